@@ -1,0 +1,75 @@
+// The subcommands of `lucerna`, one file each, and what they share. The contract is DESIGN section 5.
+#pragma once
+
+#include "gl/context.hpp"
+#include "gl/program.hpp"
+#include "host/host.hpp"
+#include "render/renderer.hpp"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lucerna::demo {
+
+/// A subcommand: its options are declared on `app`, its work is returned and run after parsing. It returns the exit code.
+using Work = std::function<int()>;
+Work addWalk(CLI::App& app);
+Work addRender(CLI::App& app);
+Work addInfo(CLI::App& app);
+
+/// --host, --json, --quiet: every subcommand has them.
+struct CommonOptions {
+  std::string host;  ///< empty: the default
+  std::string json;  ///< empty: none
+  bool quiet = false;
+
+  void declare(CLI::App& app);
+  void apply() const;  ///< checks --host and sets the log level
+  std::unique_ptr<Host> makeHost(bool wantsWindow, const HostOptions& options = {}) const;
+  void writeJson(const nlohmann::ordered_json& json) const;  ///< no effect without --json
+};
+
+/// --technique, --component, --fidelity, --deviation, --set, --size: what a picture is made with.
+struct PictureOptions {
+  std::string technique = "lpv", component = "all", fidelity = "corrected", size = "1280x720";
+  std::vector<std::string> deviations, settings;
+
+  void declare(CLI::App& app);
+  /// Throws Error(badInput) naming the option. `exposure` gets a value if --set exposure=... is given.
+  RenderSettings parse(std::optional<float>& exposure) const;
+};
+
+/// "640x360" with both from 1 to 16384; throws Error(badInput) naming the option.
+glm::ivec2 parseSize(const std::string& text);
+
+/// Every key of --set with its meaning and default, for --help and README.
+std::string settingsHelp();
+
+/// A progress bar on a terminal's standard error for work longer than a second; silent elsewhere.
+class Progress {
+ public:
+  Progress(std::string what, int total, bool quiet);
+  ~Progress();
+  void update(int done);
+
+ private:
+  std::string what_;
+  int total_;
+  bool enabled_, drawn_ = false;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Set by Ctrl-C after watchForInterrupt(): long work then ends after what it is doing, keeping what is there.
+void watchForInterrupt();
+bool interrupted();
+
+nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages);
+std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer);
+
+}  // namespace lucerna::demo

@@ -1,0 +1,197 @@
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/log.hpp"
+#include "commands.hpp"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <unistd.h>
+
+namespace lucerna::demo {
+
+// ---------------------------------------------------------------------------------------------------- options
+
+void CommonOptions::declare(CLI::App& app) {
+  app.add_option("--host", host, "who makes the OpenGL context: window, egl or osmesa (default: see README)");
+  app.add_option("--json", json, "write machine-readable results to this file");
+  app.add_flag("--quiet", quiet, "no warnings, no progress");
+}
+
+void CommonOptions::apply() const {
+  if (!host.empty()) parseHostKind(host);
+  if (quiet) setLogLevel(LogLevel::quiet);
+  if (const char* verbose = std::getenv("LUCERNA_VERBOSE"); verbose && *verbose) setLogLevel(LogLevel::verbose);
+}
+
+std::unique_ptr<Host> CommonOptions::makeHost(bool wantsWindow, const HostOptions& options) const {
+  return host.empty() ? Host::createDefault(wantsWindow, options) : Host::create(parseHostKind(host), options);
+}
+
+void CommonOptions::writeJson(const nlohmann::ordered_json& value) const {
+  if (!json.empty()) writeFileAtomically(json, value.dump(2) + "\n");
+}
+
+namespace {
+
+template <class T>
+T parseNumber(const std::string& option, const std::string& text, T lowest, T highest) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= lowest && value <= highest))
+    throwBadInput("{}: '{}' is not a number from {} to {}", option, text, lowest, highest);
+  return value;
+}
+
+bool parseSwitch(const std::string& option, const std::string& text) {
+  if (text == "on" || text == "true" || text == "1") return true;
+  if (text == "off" || text == "false" || text == "0") return false;
+  throwBadInput("{}: '{}' is neither on nor off", option, text);
+}
+
+std::pair<std::string, std::string> splitAssignment(const std::string& option, const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) throwBadInput("{} {}: expected key=value", option, text);
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+/// One key of --set. `apply` throws naming the key when the value is wrong.
+struct Setting {
+  const char* key;
+  const char* meaning;
+  void (*apply)(RenderSettings&, std::optional<float>& exposure, const std::string& key, const std::string& value);
+};
+
+#define SETTING(key, meaning, statement)                                                                          \
+  Setting {                                                                                                       \
+    key, meaning, [](RenderSettings& s, std::optional<float>& exposure, const std::string& k, const std::string& v) { \
+      (void)s, (void)exposure;                                                                                    \
+      statement;                                                                                                  \
+    }                                                                                                             \
+  }
+
+const Setting kSettings[] = {
+    SETTING("lpv.cells", "cells a side of every cascade (32)", s.lpv.cascades.cells = parseNumber(k, v, 1, 128)),
+    SETTING("lpv.cascades", "nested grids (3)", s.lpv.cascades.cascades = parseNumber(k, v, 1, LPV_MAX_CASCADES)),
+    SETTING("lpv.iterations", "propagation steps (8)", s.lpv.iterations = parseNumber(k, v, 0, 100000)),
+    SETTING("lpv.cell-size", "cell size of the coarsest cascade in scene units (0: it covers the scene)",
+            s.lpv.cascades.cellSize = parseNumber(k, v, 0.0, 1e12)),
+    SETTING("lpv.ratio", "cell size over that of the next finer cascade (2)", s.lpv.cascades.ratio = parseNumber(k, v, 1.0, 16.0)),
+    SETTING("lpv.push", "how far grids lie ahead of the camera, in half extents (0.8)", s.lpv.cascades.push = parseNumber(k, v, 0.0, 1.0)),
+    SETTING("lpv.blocking", "geometry volume on or off (on)", s.lpv.blocking = parseSwitch(k, v)),
+    SETTING("lpv.blend", "fraction of a cascade over which it fades into the next (0.25)",
+            s.lpv.blendBand = parseNumber(k, v, 0.001f, 1.0f)),
+    SETTING("lpv.lookup-offset", "cells along the normal that a receiver is moved (0.5)",
+            s.lpv.lookupOffset = parseNumber(k, v, 0.0f, 4.0f)),
+    SETTING("rsm.size", "texels a side of the reflective shadow map (256)", s.rsm.size = parseNumber(k, v, 1, 8192)),
+    SETTING("shadow.size", "texels a side of the shadow map (2048)", s.shadow.size = parseNumber(k, v, 1, 16384)),
+    SETTING("texture.anisotropy", "anisotropic filtering, at most (4)", s.textures.anisotropy = parseNumber(k, v, 1.0f, 16.0f)),
+    SETTING("exposure", "multiplies radiance before tone mapping (the scene's)", exposure = parseNumber(k, v, 1e-12f, 1e12f)),
+};
+
+#undef SETTING
+
+}  // namespace
+
+std::string settingsHelp() {
+  std::string text = "Settings (--set KEY=VALUE):\n";
+  for (const Setting& setting : kSettings) text += fmt::format("  {:<20} {}\n", setting.key, setting.meaning);
+  return text;
+}
+
+void PictureOptions::declare(CLI::App& app) {
+  app.add_option("--technique", technique, "direct or lpv")->capture_default_str();
+  app.add_option("--component", component, "all, direct or indirect")->capture_default_str();
+  app.add_option("--fidelity", fidelity, "corrected")->capture_default_str();
+  app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");
+  app.add_option("--size", size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated");
+  app.footer(settingsHelp());
+}
+
+RenderSettings PictureOptions::parse(std::optional<float>& exposure) const {
+  RenderSettings result;
+  result.technique = parseTechnique(technique);
+  result.component = parseComponent(component);
+  if (fidelity != "corrected") throwBadInput("--fidelity {}: unknown; there is corrected", fidelity);
+  if (!deviations.empty()) throwBadInput("--deviation {}: unknown; there are none yet", deviations.front());
+  result.size = parseSize(size);
+  for (const std::string& assignment : settings) {
+    const auto [key, value] = splitAssignment("--set", assignment);
+    const auto* found = std::find_if(std::begin(kSettings), std::end(kSettings), [&](const Setting& s) { return s.key == key; });
+    if (found == std::end(kSettings)) {
+      std::string known;
+      for (const Setting& setting : kSettings) known += (known.empty() ? "" : ", ") + std::string(setting.key);
+      throwBadInput("--set {}: unknown key; there are {}", assignment, known);
+    }
+    found->apply(result, exposure, "--set " + key, value);
+  }
+  return result;
+}
+
+glm::ivec2 parseSize(const std::string& text) {
+  const auto cross = text.find('x');
+  if (cross == std::string::npos) throwBadInput("--size {}: expected WIDTHxHEIGHT, such as 640x360", text);
+  return {parseNumber("--size", text.substr(0, cross), 1, 16384), parseNumber("--size", text.substr(cross + 1), 1, 16384)};
+}
+
+// ---------------------------------------------------------------------------------------------------- progress, interruption
+
+Progress::Progress(std::string what, int total, bool quiet)
+    : what_(std::move(what)), total_(total), enabled_(!quiet && isatty(STDERR_FILENO)), start_(std::chrono::steady_clock::now()) {}
+
+Progress::~Progress() {
+  if (drawn_) fmt::print(stderr, "\r\x1b[K");
+}
+
+void Progress::update(int done) {
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  if (!enabled_ || (seconds < 1.0 && !drawn_)) return;
+  constexpr int kWidth = 30;
+  const int filled = total_ > 0 ? kWidth * done / total_ : 0;
+  const double rest = done > 0 ? seconds / done * (total_ - done) : 0.0;
+  fmt::print(stderr, "\r{} [{:#<{}}{:-<{}}] {}/{}, {:.0f} s left \x1b[K", what_, "", filled, "", kWidth - filled, done, total_, rest);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+namespace {
+volatile std::sig_atomic_t g_interrupted = 0;
+}
+
+void watchForInterrupt() {
+  std::signal(SIGINT, [](int) {
+    if (g_interrupted) std::_Exit(130);  // a second Ctrl-C does not wait
+    g_interrupted = 1;
+  });
+  std::signal(SIGTERM, [](int) { g_interrupted = 1; });
+}
+
+bool interrupted() { return g_interrupted != 0; }
+
+// ---------------------------------------------------------------------------------------------------- stage times
+
+nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const auto& s : stages) {
+    json[s.name] = {{"median_ms", s.medianMs}, {"p95_ms", s.p95Ms}, {"count", s.count}, {"query_median_ms", s.queryMedianMs}};
+    if (!std::isnan(s.wallMedianMs)) json[s.name]["wall_median_ms"] = s.wallMedianMs;
+  }
+  return json;
+}
+
+std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer) {
+  std::string text = fmt::format("Stage times on {}\n{:<18}{:>12}{:>12}{:>8}{:>16}\n", renderer, "stage", "median ms", "95 % ms", "count",
+                                 "query median ms");
+  double total = 0.0;
+  for (const auto& s : stages) {
+    text += fmt::format("{:<18}{:>12.3f}{:>12.3f}{:>8}{:>16.3f}\n", s.name, s.medianMs, s.p95Ms, s.count, s.queryMedianMs);
+    total += std::isnan(s.medianMs) ? 0.0 : s.medianMs;
+  }
+  return text + fmt::format("{:<18}{:>12.3f}\n", "all stages", total);
+}
+
+}  // namespace lucerna::demo

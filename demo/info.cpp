@@ -1,0 +1,79 @@
+// lucerna info [SCENE]: host, driver, limits, extensions; a scene's counts and needs.
+#include "commands.hpp"
+#include "scene/scene.hpp"
+
+#include <fmt/core.h>
+
+namespace lucerna::demo {
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string scene;
+};
+
+int run(const Options& options) {
+  options.common.apply();
+  nlohmann::ordered_json json;
+  std::optional<Scene> scene;
+  if (!options.scene.empty()) scene = loadScene(options.scene);
+
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  const gl::Capabilities& c = context.capabilities();
+  fmt::print("lucerna {}\nhost        {}\nrenderer    {}\nvendor      {}\nOpenGL      {}\nGLSL        {}\n", LUCERNA_VERSION, nameOf(host->kind()),
+             c.renderer, c.vendor, c.version, c.shadingLanguage);
+  json["host"] = nameOf(host->kind());
+  json["renderer"] = c.renderer;
+  json["vendor"] = c.vendor;
+  json["opengl"] = c.version;
+  json["glsl"] = c.shadingLanguage;
+  fmt::print("\nlimits\n");
+  for (const auto& [name, value] : c.limits()) {
+    fmt::print("  {:<32}{}\n", name, value);
+    json["limits"][name] = value;
+  }
+  fmt::print("\nprobed extensions (of {} there are)\n", c.extensionCount);
+  for (const auto& [name, there] : c.probedExtensions()) {
+    fmt::print("  {:<32}{}\n", name, there ? "yes" : "no");
+    json["extensions"][name] = there;
+  }
+  if (scene) {
+    const glm::dvec3 low = scene->bounds.min, high = scene->bounds.max;
+    fmt::print("\nscene {}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n", scene->file.string(), "triangles", scene->triangleCount(), "vertices",
+               scene->vertices.size(), "meshes", scene->meshes.size(), "materials", scene->materials.size(), "textures", scene->textures.size());
+    fmt::print("  {:<32}{} ({} of zero area)\n", "left out, not finite", scene->droppedTriangles, scene->degenerateTriangles);
+    fmt::print("  {:<32}({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), {:.6g} m a unit\n", "bounds", low.x, low.y, low.z, high.x, high.y, high.z,
+               scene->metresPerUnit);
+    for (const Camera& camera : scene->cameras)
+      fmt::print("  {:<32}{}\n", "camera", camera.name.empty() ? "default" : camera.name);
+    json["scene"] = scene->file.string();
+    json["triangles"] = scene->triangleCount();
+    json["vertices"] = scene->vertices.size();
+    json["meshes"] = scene->meshes.size();
+    json["materials"] = scene->materials.size();
+    json["textures"] = scene->textures.size();
+    json["degenerate_triangles"] = scene->degenerateTriangles;
+    json["dropped_triangles"] = scene->droppedTriangles;
+    json["bounds"] = {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
+    fmt::print("\nneeds\n");
+    for (const auto& [name, needed] : analyse(*scene).named()) {
+      fmt::print("  {:<32}{}\n", name, needed ? "yes" : "left out");
+      json["needs"][name] = needed;
+    }
+  }
+  options.common.writeJson(json);
+  return 0;
+}
+
+}  // namespace
+
+Work addInfo(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...");
+  options->common.declare(app);
+  return [options] { return run(*options); };
+}
+
+}  // namespace lucerna::demo

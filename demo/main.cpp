@@ -1,0 +1,45 @@
+// lucerna: one executable, one subcommand a file. Errors become one line and an exit code: 2 bad input, 3 missing
+// capability, 1 a fault of ours.
+#include "base/error.hpp"
+#include "commands.hpp"
+
+#include <fmt/core.h>
+
+#include <vector>
+
+int main(int argc, char** argv) {
+  CLI::App app{"Lucerna: real-time global illumination, measured.\nStart with: lucerna walk", "lucerna"};
+  app.set_version_flag("--version", LUCERNA_VERSION);
+  app.require_subcommand(1);
+  std::vector<std::pair<CLI::App*, lucerna::demo::Work>> commands;
+  const auto add = [&](const char* name, const char* description, lucerna::demo::Work (*declare)(CLI::App&)) {
+    CLI::App* command = app.add_subcommand(name, description);
+    commands.emplace_back(command, declare(*command));
+  };
+  add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times", lucerna::demo::addWalk);
+  add("render", "Render one picture of a scene", lucerna::demo::addRender);
+  add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    const auto used = app.get_subcommands();
+    fmt::print(stderr, "lucerna: {} (lucerna {}--help lists the options)\n", error.what(), used.empty() ? "" : used[0]->get_name() + " ");
+    return static_cast<int>(lucerna::ErrorKind::badInput);
+  }
+  try {
+    for (auto& [command, work] : commands)
+      if (command->parsed()) return work();
+  } catch (const lucerna::Error& error) {
+    fmt::print(stderr, "lucerna: {}\n", error.what());
+    return error.exitCode();
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "lucerna: out of memory\n");
+    return static_cast<int>(lucerna::ErrorKind::missingCapability);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "lucerna: {}\n", error.what());
+    return static_cast<int>(lucerna::ErrorKind::fault);
+  }
+  return 0;
+}

@@ -1,0 +1,124 @@
+// lucerna render SCENE ... -o OUT: one picture. PNG is tone mapped; hdr, exr and pfm keep linear radiance.
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "commands.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+namespace lucerna::demo {
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  PictureOptions picture;
+  std::string scene, camera, output;
+  int repeat = 1;
+};
+
+// A camera's name, or px,py,pz,tx,ty,tz,fov: position, target, vertical field of view in degrees.
+Camera chooseCamera(const Scene& scene, const std::string& text) {
+  if (text.empty()) return scene.cameras.front();
+  for (const Camera& camera : scene.cameras)
+    if (camera.name == text) return camera;
+  std::vector<double> numbers;
+  std::istringstream stream(text);
+  std::string part;
+  while (std::getline(stream, part, ',')) {
+    std::size_t used = 0;
+    double value = NAN;
+    try {
+      value = std::stod(part, &used);
+    } catch (const std::exception&) {
+    }
+    if (used == 0 || used != part.size() || !std::isfinite(value)) numbers.clear();
+    if (used == 0 || used != part.size() || !std::isfinite(value)) break;
+    numbers.push_back(value);
+  }
+  if (numbers.size() != 7) {
+    std::string known;
+    for (const Camera& camera : scene.cameras) known += (known.empty() ? "" : ", ") + (camera.name.empty() ? "default" : camera.name);
+    throwBadInput("--camera {}: neither a camera of the scene ({}) nor px,py,pz,tx,ty,tz,fov", text, known);
+  }
+  Camera camera;
+  camera.position = {numbers[0], numbers[1], numbers[2]};
+  const glm::dvec3 view = glm::dvec3(numbers[3], numbers[4], numbers[5]) - camera.position;
+  if (glm::length(view) == 0.0) throwBadInput("--camera {}: the target is the position", text);
+  if (!(numbers[6] > 0.0 && numbers[6] < 180.0)) throwBadInput("--camera {}: the field of view is in degrees, above 0 and below 180", text);
+  camera.direction = glm::normalize(view);
+  camera.up = std::abs(camera.direction.y) < 0.999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
+  camera.verticalFov = glm::radians(numbers[6]);
+  return camera;
+}
+
+int run(const Options& options) {
+  options.common.apply();
+  std::optional<float> exposure;
+  RenderSettings settings = options.picture.parse(exposure);
+  settings.fullFloatTarget = true;
+  if (!isWritableImageName(options.output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
+  const Scene scene = loadScene(options.scene);
+  const Camera camera = chooseCamera(scene, options.camera);
+
+  const auto host = options.common.makeHost(false);
+  gl::Context context;
+  if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
+    throwMissingCapability("--size {}: this driver's textures end at {} pixels", options.picture.size, context.capabilities().maxTextureSize);
+  gl::ProgramLibrary programs;
+  Renderer renderer(context, programs, scene, settings);
+  if (exposure) renderer.setExposure(*exposure);
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < options.repeat; ++i) renderer.render(camera);
+  glFinish();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / options.repeat;
+  renderer.timer().drain();
+
+  const Image image = renderer.readRadiance();
+  if (lowerExtension(options.output) == ".png")
+    writePng(options.output, renderer.readDisplay());
+  else
+    writeImage(options.output, image);
+  const glm::dvec3 mean = meanOf(image);
+  if (!options.common.quiet) {
+    fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s a frame on {}\n", options.output, image.width, image.height,
+               options.picture.technique, options.picture.component, mean.x, mean.y, mean.z, seconds, context.capabilities().renderer);
+    if (options.repeat > 1) fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
+  }
+  nlohmann::ordered_json json;
+  json["renderer"] = context.capabilities().renderer;
+  json["host"] = nameOf(host->kind());
+  json["scene"] = options.scene;
+  json["technique"] = options.picture.technique;
+  json["component"] = options.picture.component;
+  json["fidelity"] = options.picture.fidelity;
+  json["deviations"] = nlohmann::ordered_json::array();
+  json["settings"] = options.picture.settings;
+  json["size"] = {image.width, image.height};
+  json["seconds"] = seconds;
+  json["mean"] = {mean.x, mean.y, mean.z};
+  json["gpu_bytes"] = renderer.gpuBytes();
+  json["left_out"] = renderer.leftOut();
+  if (options.repeat > 1) json["stages"] = stagesJson(renderer.timer().statistics());
+  options.common.writeJson(json);
+  return 0;
+}
+
+}  // namespace
+
+Work addRender(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...")->required();
+  app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")->required();
+  app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")->check(CLI::Range(1, 100000))->capture_default_str();
+  options->picture.declare(app);
+  options->common.declare(app);
+  return [options] { return run(*options); };
+}
+
+}  // namespace lucerna::demo

@@ -1,0 +1,24 @@
+// First-person camera: W A S D and Q E move, dragging with the left button looks around (the original's CControlCamera).
+#pragma once
+
+#include "host/host.hpp"
+#include "scene/scene.hpp"
+
+namespace lucerna::demo {
+
+class FreeCamera {
+ public:
+  /// speed: scene units a second; shift makes it four times as fast.
+  FreeCamera(const Camera& camera, double speed) : camera_(camera), speed_(speed) {}
+
+  void place(const Camera& camera) { camera_ = camera; }
+  /// Moves by what the keyboard and mouse did in the last `seconds`. The horizon stays level.
+  void move(const HostInput& input, double seconds);
+  const Camera& camera() const { return camera_; }
+
+ private:
+  Camera camera_;
+  double speed_;
+};
+
+}  // namespace lucerna::demo

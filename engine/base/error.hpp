@@ -1,0 +1,55 @@
+// Errors and checks (no GL).
+//
+// Two kinds, as in DESIGN section 4:
+// - CHECK(condition, ...) for programmer errors: prints the condition, the values given and the place, then aborts.
+// - Error for files, options, shaders and contexts: its message names the file, the line or key, what was wrong and what
+//   would be right. The command line prints that message and ends with exitCode().
+#pragma once
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace lucerna {
+
+/// What went wrong decides the exit code of the program.
+enum class ErrorKind {
+  fault = 1,              ///< a fault of ours
+  badInput = 2,           ///< a file or option that cannot be used
+  missingCapability = 3,  ///< the machine or driver lacks something
+};
+
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  ErrorKind kind() const { return kind_; }
+  int exitCode() const { return static_cast<int>(kind_); }
+
+ private:
+  ErrorKind kind_;
+};
+
+template <class... Args>
+[[noreturn]] void throwBadInput(fmt::format_string<Args...> format, Args&&... args) {
+  throw Error(ErrorKind::badInput, fmt::format(format, std::forward<Args>(args)...));
+}
+
+template <class... Args>
+[[noreturn]] void throwMissingCapability(fmt::format_string<Args...> format, Args&&... args) {
+  throw Error(ErrorKind::missingCapability, fmt::format(format, std::forward<Args>(args)...));
+}
+
+namespace detail {
+[[noreturn]] void checkFailed(const char* file, int line, const char* condition, const std::string& message);
+}
+
+}  // namespace lucerna
+
+/// CHECK(n < size, "n = {}, size = {}", n, size): a programmer error aborts, with values. On in every build.
+#define CHECK(condition, ...)                                                                                \
+  do {                                                                                                       \
+    if (!(condition)) [[unlikely]]                                                                           \
+      ::lucerna::detail::checkFailed(__FILE__, __LINE__, #condition, ::fmt::format(__VA_ARGS__));            \
+  } while (false)

@@ -1,0 +1,28 @@
+// Whole files in and out (no GL).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lucerna {
+
+/// The bytes of a file. Throws Error(badInput) naming the file when it is missing, a folder or unreadable.
+std::vector<std::uint8_t> readFileBytes(const std::filesystem::path& file);
+
+/// The same as text.
+std::string readFileText(const std::filesystem::path& file);
+
+/// Writes a file whole or not at all: into a temporary file in the same folder, which is then renamed.
+/// On failure (no such folder, no permission, disk full) nothing new is left behind, an older file of that name stays as it
+/// was, and Error(badInput) names the file and the reason.
+void writeFileAtomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
+void writeFileAtomically(const std::filesystem::path& file, std::string_view text);
+
+/// The extension in lower case with its dot, such as ".png"; empty where there is none.
+std::string lowerExtension(const std::filesystem::path& file);
+
+}  // namespace lucerna

@@ -1,0 +1,65 @@
+// Images in memory and on disk (no GL).
+//
+// Two kinds:
+// - Image: linear RGB in 32-bit float, scene units (radiance, W/(m^2 sr) up to the scene's own scale); row 0 is the TOP row.
+// - Bitmap: 8-bit RGBA as read from a texture file or written to a PNG, sRGB-encoded unless its user says otherwise;
+//   row 0 is the TOP row.
+// Formats: png, jpg, tga, bmp, ... are read and png is written through DevIL; exr through OpenEXR; hdr (Radiance RGBE; why not
+// through DevIL: image.cpp) and pfm (Debevec's format: bottom row first) are small enough to be done here.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace lucerna {
+
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<glm::vec3> pixels;  ///< width * height, top row first
+
+  Image() = default;
+  Image(int width_, int height_, glm::vec3 value = glm::vec3(0.0f));
+  glm::vec3& at(int x, int y) { return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]; }
+  const glm::vec3& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]; }
+};
+
+struct Bitmap {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;  ///< 4 * width * height, top row first
+  bool hasAlpha = false;           ///< whether any texel has alpha < 255
+};
+
+/// Mean over all pixels, summed in double precision.
+glm::dvec3 meanOf(const Image& image);
+
+/// sRGB transfer function, IEC 61966-2-1. Linear in [0,1] to encoded in [0,1] and back.
+float srgbFromLinear(float linear);
+float linearFromSrgb(float encoded);
+
+/// Reads any picture DevIL knows as 8-bit RGBA. Throws Error(badInput) naming the file when it is missing, a folder, or no image.
+Bitmap readBitmap(const std::filesystem::path& file);
+
+/// The same from a file's bytes in memory (textures embedded in models); `file` only names it in messages.
+Bitmap decodeBitmap(std::span<const std::uint8_t> bytes, const std::filesystem::path& file);
+
+/// Reads hdr, exr or pfm as linear float; an 8-bit picture is taken as sRGB and linearised. Throws like readBitmap.
+Image readImage(const std::filesystem::path& file);
+
+/// Writes a linear image. The extension chooses: hdr, exr, pfm keep linear values; anything else throws, as do images of no
+/// pixels. exr and pfm keep every float; hdr keeps 8 bits of mantissa, refuses NaN and infinity, and warns of negative values.
+/// The file appears whole or not at all (written beside its place, then renamed).
+void writeImage(const std::filesystem::path& file, const Image& image);
+
+/// Writes 8-bit RGB(A) as PNG; alpha is dropped. Whole or not at all.
+void writePng(const std::filesystem::path& file, const Bitmap& bitmap);
+
+/// True for the file extensions that `-o` accepts: png, hdr, exr, pfm (any case).
+bool isWritableImageName(const std::filesystem::path& file);
+
+}  // namespace lucerna

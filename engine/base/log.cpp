@@ -1,0 +1,29 @@
+#include "base/log.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+
+namespace lucerna {
+
+namespace {
+LogLevel g_level = LogLevel::warnings;
+std::vector<std::string> g_warnings;
+}  // namespace
+
+void setLogLevel(LogLevel level) { g_level = level; }
+LogLevel logLevel() { return g_level; }
+
+const std::vector<std::string>& loggedWarnings() { return g_warnings; }
+void clearLoggedWarnings() { g_warnings.clear(); }
+
+namespace detail {
+
+void writeLog(LogLevel level, const std::string& message) {
+  if (level == LogLevel::warnings) g_warnings.push_back(message);
+  if (level > g_level) return;
+  fmt::print(stderr, "{}{}\n", level == LogLevel::warnings ? "lucerna: warning: " : "lucerna: ", message);
+}
+
+}  // namespace detail
+}  // namespace lucerna

@@ -1,0 +1,177 @@
+#include "forward/gpu_scene.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+
+namespace lucerna {
+
+namespace {
+
+constexpr GLuint kDiffuseUnit = 0, kMaskUnit = 1;
+
+int mipLevels(int width, int height) { return 1 + static_cast<int>(std::floor(std::log2(std::max(width, height)))); }
+
+// Rows top first in a Bitmap, bottom first in OpenGL; v = 0 is the bottom row.
+std::vector<std::uint8_t> flippedRows(const Bitmap& bitmap) {
+  const std::size_t row = 4 * static_cast<std::size_t>(bitmap.width);
+  std::vector<std::uint8_t> flipped(bitmap.rgba.size());
+  for (int y = 0; y < bitmap.height; ++y)
+    std::copy_n(bitmap.rgba.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(bitmap.height - 1 - y)), row,
+                flipped.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y)));
+  return flipped;
+}
+
+bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, const glm::vec3& halfExtent) {
+  const glm::mat4 rows = glm::transpose(clipFromWorld);
+  for (int axis = 0; axis < 3; ++axis)
+    for (float sign : {1.0f, -1.0f}) {
+      const glm::vec4 plane = rows[3] + sign * rows[axis];  // inside: dot(plane, (p, 1)) >= 0
+      const glm::vec3 normal(plane);
+      if (glm::dot(normal, centre) + glm::dot(glm::abs(normal), halfExtent) + plane.w < 0.0f) return true;
+    }
+  return false;
+}
+
+}  // namespace
+
+GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const GpuSceneSettings& settings)
+    : scene_(&scene), needs_(needs) {
+  gl::Sampling sampling{GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_REPEAT};
+  sampling.anisotropy = capabilities.anisotropicFilter ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
+
+  std::map<int, int> albedoTextures, maskTextures;
+  const auto upload = [&](int index, bool asMask) {
+    auto& known = asMask ? maskTextures : albedoTextures;
+    if (const auto found = known.find(index); found != known.end()) return found->second;
+    const Texture& texture = scene.textures[static_cast<std::size_t>(index)];
+    const Bitmap& bitmap = texture.bitmap;
+    const std::string name = (asMask ? "mask " : "albedo ") + texture.file.filename().string();
+    const int levels = mipLevels(bitmap.width, bitmap.height);
+    std::vector<std::uint8_t> texels = flippedRows(bitmap);
+    gl::Texture& target = textures_.emplace_back(name, static_cast<GLenum>(asMask ? GL_R8 : GL_SRGB8_ALPHA8),
+                                                 glm::ivec2(bitmap.width, bitmap.height), sampling, levels);
+    if (asMask) {
+      const std::size_t channel = bitmap.hasAlpha ? 3 : 0;
+      for (std::size_t i = 0; i < texels.size() / 4; ++i) texels[i] = texels[4 * i + channel];
+      target.upload(GL_RED, GL_UNSIGNED_BYTE, texels.data());
+    } else {
+      target.upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    }
+    target.generateMipmaps();
+    return known[index] = static_cast<int>(textures_.size()) - 1;
+  };
+
+  for (const Material& material : scene.materials) {
+    Surface surface{material.diffuse, material.specular, material.emission, material.shininess};
+    if (needs.diffuseTextures && material.diffuseTexture >= 0) surface.diffuseTexture = upload(material.diffuseTexture, false);
+    surface.masked = needs.alphaMasks && material.alphaMasked;
+    if (surface.masked) surface.maskTexture = upload(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true);
+    surfaces_.push_back(surface);
+  }
+  if (needs.diffuseTextures) {
+    white_.emplace("white", static_cast<GLenum>(GL_RGBA8), glm::ivec2(1));
+    const std::array<std::uint8_t, 4> texel{255, 255, 255, 255};
+    white_->upload(GL_RGBA, GL_UNSIGNED_BYTE, texel.data());
+  }
+
+  // Opaque meshes first, so that a depth pass draws them in one call; of one material together.
+  std::vector<const Mesh*> order;
+  for (const Mesh& mesh : scene.meshes) order.push_back(&mesh);
+  const auto isMasked = [&](const Mesh* mesh) { return surfaces_[static_cast<std::size_t>(mesh->material)].masked; };
+  std::stable_sort(order.begin(), order.end(), [&](const Mesh* a, const Mesh* b) {
+    return std::pair(isMasked(a), a->material) < std::pair(isMasked(b), b->material);
+  });
+  std::vector<std::uint32_t> indices;
+  indices.reserve(scene.indices.size());
+  for (const Mesh* mesh : order) {
+    const Draw draw{static_cast<std::uint32_t>(indices.size()), mesh->indexCount, mesh->material, glm::vec3(mesh->bounds.centre()),
+                    glm::vec3(0.5 * mesh->bounds.extent())};
+    const auto first = scene.indices.begin() + mesh->firstIndex;
+    indices.insert(indices.end(), first, first + mesh->indexCount);
+    (isMasked(mesh) ? masked_ : opaque_).push_back(draw);
+    if (!isMasked(mesh)) opaqueIndexCount_ = static_cast<std::uint32_t>(indices.size());
+  }
+  CHECK(masked_.empty() || needs.alphaMasks, "{} masked meshes", masked_.size());
+
+  vertices_ = gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(), GL_STATIC_DRAW);
+  indices_ = gl::Buffer("scene indices", indices.size() * sizeof(std::uint32_t), indices.data(), GL_STATIC_DRAW);
+  const std::array<gl::VertexArray::Attribute, 3> attributes{{{0, 3, offsetof(Vertex, position)},
+                                                              {1, 2, offsetof(Vertex, texCoord)},
+                                                              {2, 3, offsetof(Vertex, normal)}}};
+  vertexArray_ = gl::VertexArray("scene", vertices_, sizeof(Vertex), attributes, &indices_);
+}
+
+gl::ShaderFlags GpuScene::materialFlags(bool masked) const {
+  return {{"DIFFUSE_TEXTURES", needs_.diffuseTextures}, {"ALPHA_MASK", masked}};
+}
+
+void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) const {
+  program.set("materialDiffuse", surface.diffuse);
+  if (needs_.specular) {
+    program.set("materialSpecular", surface.specular);
+    program.set("materialShininess", surface.shininess);
+  }
+  if (needs_.emission) program.set("materialEmission", surface.emission);
+  if (needs_.diffuseTextures)
+    (surface.diffuseTexture >= 0 ? textures_[static_cast<std::size_t>(surface.diffuseTexture)] : *white_).bind(kDiffuseUnit);
+  if (surface.masked) textures_[static_cast<std::size_t>(surface.maskTexture)].bind(kMaskUnit);
+}
+
+void GpuScene::drawRange(const Draw& draw) const {
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(draw.indexCount), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(sizeof(std::uint32_t) * draw.firstIndex));
+}
+
+void GpuScene::draw(const SurfacePrograms& programs, const View& view) const {
+  vertexArray_.bind();
+  for (const bool masked : {false, true}) {
+    const std::vector<Draw>& all = masked ? masked_ : opaque_;
+    if (all.empty()) continue;
+    std::vector<std::pair<float, const Draw*>> order;
+    for (const Draw& draw : all) {
+      if (view.clipFromWorld && outsideFrustum(*view.clipFromWorld, draw.centre, draw.halfExtent)) continue;
+      float distance = 0.0f;
+      if (view.viewPoint) {
+        const glm::vec3 away = glm::max(glm::abs(*view.viewPoint - draw.centre) - draw.halfExtent, glm::vec3(0.0f));
+        distance = glm::dot(away, away);
+      }
+      order.emplace_back(distance, &draw);
+    }
+    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    const gl::Program& program = masked ? *programs.masked : *programs.opaque;
+    program.use();
+    int bound = -1;
+    for (const auto& [distance, draw] : order) {
+      if (draw->surface != bound) bindSurface(program, surfaces_[static_cast<std::size_t>(draw->surface)]);
+      bound = draw->surface;
+      drawRange(*draw);
+    }
+  }
+}
+
+void GpuScene::drawDepth(const SurfacePrograms& programs) const {
+  vertexArray_.bind();
+  if (opaqueIndexCount_ > 0) {
+    programs.opaque->use();
+    drawRange({0, opaqueIndexCount_, 0, {}, {}});
+  }
+  if (masked_.empty()) return;
+  programs.masked->use();
+  for (const Draw& draw : masked_) {
+    textures_[static_cast<std::size_t>(surfaces_[static_cast<std::size_t>(draw.surface)].maskTexture)].bind(kMaskUnit);
+    drawRange(draw);
+  }
+}
+
+std::size_t GpuScene::gpuBytes() const {
+  std::size_t bytes = vertices_.bytes() + indices_.bytes() + (white_ ? white_->bytes() : 0);
+  for (const gl::Texture& texture : textures_) bytes += texture.bytes();
+  return bytes;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,71 @@
+// A scene's meshes and textures on the GPU, as every raster pass draws them.
+#pragma once
+
+#include "gl/context.hpp"
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+#include "scene/needs.hpp"
+#include "scene/scene.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace lucerna {
+
+struct GpuSceneSettings {
+  float anisotropy = 4.0f;  ///< at most; 1 where the extension is missing
+};
+
+/// What a pass wants drawn with which program: cut-out meshes need a discard, which costs the others early depth tests.
+struct SurfacePrograms {
+  const gl::Program* opaque = nullptr;
+  const gl::Program* masked = nullptr;  ///< null exactly when the scene has no alpha masks
+};
+
+class GpuScene {
+ public:
+  GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const GpuSceneSettings& settings = {});
+
+  /// Flags that every program with materials takes, masked or not.
+  gl::ShaderFlags materialFlags(bool masked) const;
+
+  /// Draws the meshes inside `clipFromWorld`'s frustum (all if null), nearest first as seen from `viewPoint` (in mesh order if null).
+  struct View {
+    const glm::mat4* clipFromWorld = nullptr;
+    const glm::vec3* viewPoint = nullptr;
+  };
+  void draw(const SurfacePrograms& programs, const View& view) const;
+  /// Positions alone for opaque meshes, in one call; masks for the rest.
+  void drawDepth(const SurfacePrograms& programs) const;
+
+  const Scene& scene() const { return *scene_; }
+  const SceneNeeds& needs() const { return needs_; }
+  std::size_t gpuBytes() const;
+
+ private:
+  struct Surface {
+    glm::vec3 diffuse, specular, emission;
+    float shininess;
+    int diffuseTexture = -1, maskTexture = -1;
+    bool masked = false;
+  };
+  struct Draw {
+    std::uint32_t firstIndex, indexCount;
+    int surface;
+    glm::vec3 centre, halfExtent;
+  };
+  void drawRange(const Draw& draw) const;
+  void bindSurface(const gl::Program& program, const Surface& surface) const;
+
+  const Scene* scene_;
+  SceneNeeds needs_;
+  gl::Buffer vertices_, indices_;
+  gl::VertexArray vertexArray_;
+  std::vector<gl::Texture> textures_;
+  std::optional<gl::Texture> white_;
+  std::vector<Surface> surfaces_;
+  std::vector<Draw> opaque_, masked_;
+  std::uint32_t opaqueIndexCount_ = 0;  ///< opaque meshes come first in the index buffer
+};
+
+}  // namespace lucerna

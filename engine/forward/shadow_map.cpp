@@ -1,0 +1,24 @@
+#include "forward/shadow_map.hpp"
+
+namespace lucerna {
+
+ShadowMap::ShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings) {
+  programs_.opaque = &programs.loadRaster("shadow opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}});
+  if (scene.needs().alphaMasks)
+    programs_.masked = &programs.loadRaster("shadow masked", "forward/depth.vert", "forward/depth.frag", {{"ALPHA_MASK", 1}});
+  gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, glm::vec4(1.0f)};  // beyond the map is lit
+  sampling.depthCompare = true;
+  depth_ = gl::Texture("shadow map", GL_DEPTH_COMPONENT32F, glm::ivec2(settings.size), sampling);
+  framebuffer_ = gl::Framebuffer("shadow map", {}, &depth_);
+}
+
+void ShadowMap::record(const GpuScene& scene) const {
+  gl::RasterState state;
+  state.depth = gl::Depth::lessWrite;
+  state.polygonOffset = {1.5f, 2.0f};
+  const gl::RasterPass pass("shadow map", framebuffer_, state);
+  pass.clearDepth();
+  scene.drawDepth(programs_);
+}
+
+}  // namespace lucerna

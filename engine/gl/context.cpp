@@ -1,0 +1,96 @@
+#include "gl/context.hpp"
+
+#include "base/log.hpp"
+#include "host/host.hpp"
+
+#include <set>
+
+namespace lucerna::gl {
+
+namespace {
+
+std::string string(GLenum name) {
+  const auto* text = reinterpret_cast<const char*>(glGetString(name));
+  return text ? text : "";
+}
+
+void GLAPIENTRY onDebugMessage(GLenum, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* message, const void* user) {
+  if (type == GL_DEBUG_TYPE_ERROR) {
+    logVerbose("OpenGL error: {}", message);
+    static_cast<std::vector<std::string>*>(const_cast<void*>(user))->emplace_back(message);
+  } else if (severity == GL_DEBUG_SEVERITY_HIGH) {
+    logVerbose("OpenGL: {}", message);
+  }
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, bool>> Capabilities::probedExtensions() const {
+  return {{"ARB_clear_texture", clearTexture},
+          {"texture_filter_anisotropic", anisotropicFilter},
+          {"NV_shader_atomic_float", shaderAtomicFloat},
+          {"NV_shader_atomic_fp16_vector", shaderAtomicFp16Vector}};
+}
+
+std::vector<std::pair<std::string, long>> Capabilities::limits() const {
+  return {{"texture size", maxTextureSize},
+          {"3D texture size", max3dTextureSize},
+          {"array texture layers", maxArrayTextureLayers},
+          {"colour attachments", maxColorAttachments},
+          {"texture units a stage", maxTextureImageUnits},
+          {"image units", maxImageUnits},
+          {"samples", maxSamples},
+          {"geometry output vertices", maxGeometryOutputVertices},
+          {"storage block bytes", maxShaderStorageBlockSize},
+          {"compute shared memory bytes", maxComputeSharedMemory},
+          {"compute invocations a group", maxComputeInvocations},
+          {"anisotropy", static_cast<long>(maxAnisotropy)}};
+}
+
+Context::Context() {
+  Capabilities& c = capabilities_;
+  c.vendor = string(GL_VENDOR);
+  c.renderer = string(GL_RENDERER);
+  c.version = string(GL_VERSION);
+  c.shadingLanguage = string(GL_SHADING_LANGUAGE_VERSION);
+  c.softwareRenderer = Host::isSoftwareRenderer(c.renderer);
+
+  std::set<std::string> extensions;
+  glGetIntegerv(GL_NUM_EXTENSIONS, &c.extensionCount);
+  for (GLint i = 0; i < c.extensionCount; ++i)
+    extensions.emplace(reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i))));
+  const auto has = [&](const char* name) { return extensions.contains(name); };
+  c.clearTexture = has("GL_ARB_clear_texture") && glClearTexImage;
+  c.anisotropicFilter = has("GL_EXT_texture_filter_anisotropic") || has("GL_ARB_texture_filter_anisotropic");
+  c.shaderAtomicFloat = has("GL_NV_shader_atomic_float");
+  c.shaderAtomicFp16Vector = has("GL_NV_shader_atomic_fp16_vector");
+
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &c.maxTextureSize);
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &c.max3dTextureSize);
+  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &c.maxArrayTextureLayers);
+  glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &c.maxShaderStorageBlockSize);
+  glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &c.maxComputeSharedMemory);
+  glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &c.maxComputeInvocations);
+  glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &c.maxTextureImageUnits);
+  glGetIntegerv(GL_MAX_IMAGE_UNITS, &c.maxImageUnits);
+  glGetIntegerv(GL_MAX_COLOR_ATTACHMENTS, &c.maxColorAttachments);
+  glGetIntegerv(GL_MAX_SAMPLES, &c.maxSamples);
+  glGetIntegerv(GL_MAX_GEOMETRY_OUTPUT_VERTICES, &c.maxGeometryOutputVertices);
+  if (c.anisotropicFilter) glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &c.maxAnisotropy);
+
+  glEnable(GL_DEBUG_OUTPUT);
+  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  glDebugMessageCallback(onDebugMessage, &errors_);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+}
+
+Context::~Context() { glDebugMessageCallback(nullptr, nullptr); }
+
+std::vector<std::string> Context::takeErrors() {
+  for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError())
+    if (errors_.empty()) errors_.push_back("glGetError " + std::to_string(error));
+  return std::exchange(errors_, {});
+}
+
+}  // namespace lucerna::gl

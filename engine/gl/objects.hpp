@@ -1,0 +1,154 @@
+// Move-only owners of OpenGL objects. Every object carries a debug name (KHR_debug), so that RenderDoc, apitrace and Nsight
+// show it, and knows its size in bytes. OpenGL 4.3 has no direct state access: buffers are edited through
+// GL_COPY_WRITE_BUFFER, textures through the last texture unit, so that nobody's bindings are disturbed.
+#pragma once
+
+#include "gl/api.hpp"
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lucerna::gl {
+
+/// The name of a GL object; zero when moved from.
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(GLuint id) : id_(id) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  GLuint id() const { return id_; }
+
+ private:
+  GLuint id_ = 0;
+};
+
+class Buffer {
+ public:
+  Buffer() = default;
+  /// `bytes` of storage; `data` may be null. usage: GL_STATIC_DRAW, GL_DYNAMIC_DRAW, ...
+  Buffer(const std::string& name, std::size_t bytes, const void* data, GLenum usage);
+  ~Buffer();
+  Buffer(Buffer&&) noexcept = default;
+  Buffer& operator=(Buffer&&) noexcept = default;
+
+  GLuint id() const { return handle_.id(); }
+  std::size_t bytes() const { return bytes_; }
+  void upload(std::size_t offset, std::size_t bytes, const void* data);
+  void clear(GLuint value = 0);
+  /// Binds to an indexed target: GL_UNIFORM_BUFFER, GL_SHADER_STORAGE_BUFFER.
+  void bind(GLenum target, GLuint index) const;
+  template <class T>
+  std::vector<T> read() const {
+    std::vector<T> values(bytes_ / sizeof(T));
+    readBytes(values.data());
+    return values;
+  }
+
+ private:
+  void readBytes(void* data) const;
+  Handle handle_;
+  std::size_t bytes_ = 0;
+};
+
+/// How a texture is read. Defaults: nearest, clamped to the edge.
+struct Sampling {
+  GLenum minFilter = GL_NEAREST;
+  GLenum magFilter = GL_NEAREST;
+  GLenum wrap = GL_CLAMP_TO_EDGE;  ///< GL_CLAMP_TO_BORDER has a border of zeros unless `border` says otherwise
+  glm::vec4 border{0.0f};
+  float anisotropy = 1.0f;
+  bool depthCompare = false;  ///< sampler2DShadow, less or equal
+};
+
+/// Immutable storage, 2D, 2D array or 3D.
+class Texture {
+ public:
+  Texture() = default;
+  Texture(const std::string& name, GLenum internalFormat, glm::ivec2 size, const Sampling& sampling = {}, int levels = 1);
+  Texture(const std::string& name, GLenum internalFormat, glm::ivec3 size, const Sampling& sampling = {}, int levels = 1,
+          GLenum target = GL_TEXTURE_3D);
+  ~Texture();
+  Texture(Texture&&) noexcept = default;
+  Texture& operator=(Texture&&) noexcept = default;
+
+  GLuint id() const { return handle_.id(); }
+  GLenum target() const { return target_; }
+  GLenum format() const { return format_; }
+  glm::ivec3 size() const { return size_; }
+  glm::ivec2 size2d() const { return {size_.x, size_.y}; }
+  int levels() const { return levels_; }
+  std::size_t bytes() const;
+
+  void upload(GLenum format, GLenum type, const void* data, int level = 0);
+  void generateMipmaps();
+  void bind(GLuint unit) const;
+  void bindImage(GLuint unit, GLenum access, int level = 0) const;
+  /// All texels of a level as float RGBA (depth textures: as float, one a texel).
+  std::vector<glm::vec4> readRgba(int level = 0) const;
+  std::vector<float> readDepth() const;
+
+ private:
+  void create(const std::string& name, const Sampling& sampling);
+  Handle handle_;
+  GLenum target_ = GL_TEXTURE_2D;
+  GLenum format_ = GL_RGBA8;
+  glm::ivec3 size_{0};
+  int levels_ = 1;
+};
+
+/// Sets every texel of every listed texture to zero: ARB_clear_texture where there is, else an upload of zeros.
+void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture);
+
+class Framebuffer {
+ public:
+  Framebuffer() = default;
+  /// Attaches whole textures (a 3D or array texture becomes layered). Aborts when not complete.
+  Framebuffer(const std::string& name, std::span<const Texture* const> colors, const Texture* depth = nullptr);
+  ~Framebuffer();
+  Framebuffer(Framebuffer&&) noexcept = default;
+  Framebuffer& operator=(Framebuffer&&) noexcept = default;
+
+  GLuint id() const { return handle_.id(); }
+  glm::ivec2 size() const { return size_; }
+
+ private:
+  Handle handle_;
+  glm::ivec2 size_{0};
+};
+
+class VertexArray {
+ public:
+  struct Attribute {
+    GLuint location;
+    GLint components;
+    std::size_t offset;  ///< bytes into a vertex; 32-bit floats
+  };
+  VertexArray() = default;
+  /// An empty one, for draws whose vertices come from gl_VertexID.
+  explicit VertexArray(const std::string& name);
+  VertexArray(const std::string& name, const Buffer& vertices, std::size_t stride, std::span<const Attribute> attributes,
+              const Buffer* indices);
+  ~VertexArray();
+  VertexArray(VertexArray&&) noexcept = default;
+  VertexArray& operator=(VertexArray&&) noexcept = default;
+
+  GLuint id() const { return handle_.id(); }
+  void bind() const;
+
+ private:
+  Handle handle_;
+};
+
+/// Bytes of a texel of the formats that the engine uses.
+std::size_t bytesPerTexel(GLenum internalFormat);
+
+}  // namespace lucerna::gl

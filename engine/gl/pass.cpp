@@ -1,0 +1,50 @@
+#include "gl/pass.hpp"
+
+namespace lucerna::gl {
+
+DebugGroup::DebugGroup(const std::string& name) {
+  glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(name.size()), name.c_str());
+}
+
+DebugGroup::~DebugGroup() { glPopDebugGroup(); }
+
+RasterPass::RasterPass(const std::string& name, const Framebuffer& target, const RasterState& state) : group_(name) {
+  const auto enable = [](GLenum capability, bool on) { on ? glEnable(capability) : glDisable(capability); };
+  glBindFramebuffer(GL_FRAMEBUFFER, target.id());
+  glViewport(0, 0, target.size().x, target.size().y);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);  // for clears; narrowed below
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_STENCIL_TEST);
+  glDisable(GL_FRAMEBUFFER_SRGB);
+  enable(GL_TEXTURE_CUBE_MAP_SEAMLESS, true);
+  enable(GL_PROGRAM_POINT_SIZE, true);
+  enable(GL_DEPTH_TEST, state.depth != Depth::off);
+  glDepthFunc(state.depth == Depth::equalReadOnly ? GL_EQUAL : GL_LESS);
+  if (state.depth == Depth::equalReadOnly) glDepthMask(GL_FALSE);
+  enable(GL_CULL_FACE, state.cull != Cull::none);
+  glCullFace(GL_BACK);
+  glFrontFace(GL_CCW);
+  enable(GL_BLEND, state.blend != Blend::none);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glBlendEquation(GL_FUNC_ADD);
+  enable(GL_POLYGON_OFFSET_FILL, state.polygonOffset != glm::vec2(0.0f));
+  glPolygonOffset(state.polygonOffset.x, state.polygonOffset.y);
+  enable(GL_DEPTH_CLAMP, state.depthClamp);
+}
+
+void RasterPass::clearColor(int attachment, const glm::vec4& value) const { glClearBufferfv(GL_COLOR, attachment, &value.x); }
+
+void RasterPass::clearDepth(float value) const { glClearBufferfv(GL_DEPTH, 0, &value); }
+
+void ComputePass::dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const {
+  const glm::uvec3 groups((size + groupSize - 1) / groupSize);
+  glDispatchCompute(groups.x, groups.y, groups.z);
+}
+
+void drawFullScreen(const VertexArray& emptyVertexArray) {
+  emptyVertexArray.bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace lucerna::gl

@@ -1,0 +1,60 @@
+// Pass scopes: a pass sets all the state that it relies on and names itself, so that no pass depends on what ran before.
+#pragma once
+
+#include "gl/objects.hpp"
+
+#include <glm/glm.hpp>
+
+#include <string>
+
+namespace lucerna::gl {
+
+enum class Cull { none, back };
+enum class Blend { none, add };                       ///< add: GL_ONE, GL_ONE, GL_FUNC_ADD
+enum class Depth { off, lessWrite, equalReadOnly };   ///< test and write
+
+struct RasterState {
+  Depth depth = Depth::off;
+  Cull cull = Cull::none;
+  Blend blend = Blend::none;
+  glm::vec2 polygonOffset{0.0f};  ///< factor, units; off where both are zero
+  bool depthClamp = false;
+};
+
+/// A KHR_debug group for its lifetime.
+class DebugGroup {
+ public:
+  explicit DebugGroup(const std::string& name);
+  ~DebugGroup();
+  DebugGroup(const DebugGroup&) = delete;
+  DebugGroup& operator=(const DebugGroup&) = delete;
+};
+
+/// Draws into a framebuffer with a complete state, for its lifetime.
+class RasterPass {
+ public:
+  RasterPass(const std::string& name, const Framebuffer& target, const RasterState& state);
+  void clearColor(int attachment, const glm::vec4& value) const;
+  void clearDepth(float value = 1.0f) const;
+
+ private:
+  DebugGroup group_;
+};
+
+/// Dispatches compute work; at its end the named barrier makes the results visible.
+class ComputePass {
+ public:
+  ComputePass(const std::string& name, GLbitfield barrierAtEnd) : group_(name), barrier_(barrierAtEnd) {}
+  ~ComputePass() { glMemoryBarrier(barrier_); }
+  /// Enough groups of `groupSize` to cover `size`.
+  void dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const;
+
+ private:
+  DebugGroup group_;
+  GLbitfield barrier_;
+};
+
+/// Three vertices that cover the picture; `emptyVertexArray` has no attributes.
+void drawFullScreen(const VertexArray& emptyVertexArray);
+
+}  // namespace lucerna::gl

@@ -1,0 +1,185 @@
+#include "gl/program.hpp"
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+#include <chrono>
+#include <cstdlib>
+
+namespace lucerna::gl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string shaderLog(GLuint shader) {
+  GLint length = 0;
+  glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+  glGetShaderInfoLog(shader, length, nullptr, log.data());
+  log.resize(log.find('\0') == std::string::npos ? log.size() : log.find('\0'));
+  return log;
+}
+
+std::string programLog(GLuint program) {
+  GLint length = 0;
+  glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+  glGetProgramInfoLog(program, length, nullptr, log.data());
+  log.resize(log.find('\0') == std::string::npos ? log.size() : log.find('\0'));
+  return log;
+}
+
+}  // namespace
+
+// ---------------------------------------------------------------------------------------------------- Program
+
+Program::~Program() {
+  if (id_) glDeleteProgram(id_);
+}
+
+GLint Program::location(std::string_view uniform) const {
+  if (const auto found = locations_.find(uniform); found != locations_.end()) return found->second;
+  const std::string name(uniform);
+  return locations_[name] = glGetUniformLocation(id_, name.c_str());
+}
+
+void Program::set(std::string_view u, int v) const { glProgramUniform1i(id_, location(u), v); }
+void Program::set(std::string_view u, unsigned v) const { glProgramUniform1ui(id_, location(u), v); }
+void Program::set(std::string_view u, float v) const { glProgramUniform1f(id_, location(u), v); }
+void Program::set(std::string_view u, const glm::ivec2& v) const { glProgramUniform2iv(id_, location(u), 1, &v.x); }
+void Program::set(std::string_view u, const glm::ivec3& v) const { glProgramUniform3iv(id_, location(u), 1, &v.x); }
+void Program::set(std::string_view u, const glm::vec2& v) const { glProgramUniform2fv(id_, location(u), 1, &v.x); }
+void Program::set(std::string_view u, const glm::vec3& v) const { glProgramUniform3fv(id_, location(u), 1, &v.x); }
+void Program::set(std::string_view u, const glm::vec4& v) const { glProgramUniform4fv(id_, location(u), 1, &v.x); }
+void Program::set(std::string_view u, const glm::mat4& v) const { glProgramUniformMatrix4fv(id_, location(u), 1, GL_FALSE, &v[0][0]); }
+
+std::vector<std::string> Program::activeResources() const {
+  std::vector<std::string> names;
+  for (GLenum interface : {GL_UNIFORM, GL_UNIFORM_BLOCK, GL_SHADER_STORAGE_BLOCK}) {
+    GLint count = 0, longest = 0;
+    glGetProgramInterfaceiv(id_, interface, GL_ACTIVE_RESOURCES, &count);
+    glGetProgramInterfaceiv(id_, interface, GL_MAX_NAME_LENGTH, &longest);
+    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
+    for (GLint i = 0; i < count; ++i) {
+      GLsizei length = 0;
+      glGetProgramResourceName(id_, interface, static_cast<GLuint>(i), longest, &length, name.data());
+      names.emplace_back(name.data(), static_cast<std::size_t>(length));
+    }
+  }
+  return names;
+}
+
+// ---------------------------------------------------------------------------------------------------- ProgramLibrary
+
+ProgramLibrary::ProgramLibrary(fs::path root) : root_(std::move(root)) {
+  if (!root_.empty()) return;
+  const char* environment = std::getenv("LUCERNA_SHADERS");
+  root_ = environment && *environment ? fs::path(environment) : fs::path(LUCERNA_SOURCE_DIR) / "shaders";
+  if (!fs::is_directory(root_)) throwBadInput("{}: the shaders folder is missing (LUCERNA_SHADERS names another)", root_.string());
+}
+
+const Program& ProgramLibrary::load(const ProgramDescription& description) {
+  for (const auto& program : programs_) {
+    const auto& known = program->description_;
+    const bool sameStages = std::equal(known.stages.begin(), known.stages.end(), description.stages.begin(), description.stages.end(),
+                                       [](const ShaderStage& a, const ShaderStage& b) { return a.type == b.type && a.file == b.file; });
+    if (sameStages && known.flags == description.flags) {
+      ++statistics_.reused;
+      return *program;
+    }
+  }
+  std::unique_ptr<Program> program(new Program(description));
+  build(*program);
+  programs_.push_back(std::move(program));
+  ++statistics_.built;
+  return *programs_.back();
+}
+
+const Program& ProgramLibrary::loadRaster(const std::string& name, const std::string& vertex, const std::string& fragment,
+                                          const ShaderFlags& flags, const std::string& geometry) {
+  ProgramDescription description{name, {{GL_VERTEX_SHADER, vertex}}, flags};
+  if (!geometry.empty()) description.stages.push_back({GL_GEOMETRY_SHADER, geometry});
+  if (!fragment.empty()) description.stages.push_back({GL_FRAGMENT_SHADER, fragment});
+  return load(description);
+}
+
+const Program& ProgramLibrary::loadCompute(const std::string& name, const std::string& compute, const ShaderFlags& flags) {
+  return load({name, {{GL_COMPUTE_SHADER, compute}}, flags});
+}
+
+void ProgramLibrary::build(Program& program) {
+  const auto start = std::chrono::steady_clock::now();
+  const ProgramDescription& description = program.description_;
+  std::map<fs::path, fs::file_time_type> dependencies;
+  const GLuint id = glCreateProgram();
+  std::vector<GLuint> shaders;
+  const auto fail = [&](const std::string& message) {
+    for (GLuint shader : shaders) glDeleteShader(shader);
+    glDeleteProgram(id);
+    program.dependencies_ = dependencies;  // so that mending the file is noticed
+    throw Error(ErrorKind::badInput, fmt::format("program {}: {}", description.name, message));
+  };
+  for (const ShaderStage& stage : description.stages) {
+    ExpandedSource source;
+    try {
+      source = expandShader(root_, stage.file, description.flags);
+    } catch (const Error& error) {
+      fail(error.what());
+    }
+    for (const fs::path& file : source.files) dependencies[file] = fs::last_write_time(root_ / file);
+    const GLuint shader = glCreateShader(stage.type);
+    shaders.push_back(shader);
+    const char* text = source.text.c_str();
+    glShaderSource(shader, 1, &text, nullptr);
+    glCompileShader(shader);
+    GLint compiled = GL_FALSE;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    const std::string log = rewriteShaderLog(shaderLog(shader), source);
+    if (!compiled) fail(fmt::format("shaders/{} does not compile:\n{}", stage.file, log));
+    if (!log.empty()) logVerbose("program {}: {}", description.name, log);
+    glAttachShader(id, shader);
+  }
+  glLinkProgram(id);
+  GLint linked = GL_FALSE;
+  glGetProgramiv(id, GL_LINK_STATUS, &linked);
+  if (!linked) fail(fmt::format("does not link:\n{}", programLog(id)));
+  for (GLuint shader : shaders) {
+    glDetachShader(id, shader);
+    glDeleteShader(shader);
+  }
+  glObjectLabel(GL_PROGRAM, id, static_cast<GLsizei>(description.name.size()), description.name.c_str());
+  if (program.id_) glDeleteProgram(program.id_);
+  program.id_ = id;
+  program.locations_.clear();
+  program.dependencies_ = std::move(dependencies);
+  statistics_.compileSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+ProgramLibrary::Reload ProgramLibrary::reloadChanged() {
+  Reload result;
+  for (const auto& program : programs_) {
+    bool changed = false;
+    for (auto& [file, time] : program->dependencies_) {
+      std::error_code error;
+      const auto now = fs::last_write_time(root_ / file, error);
+      changed = changed || (!error && now != time);
+    }
+    if (!changed) continue;
+    try {
+      build(*program);
+      ++result.reloaded;
+    } catch (const Error& error) {
+      result.failures.emplace_back(error.what());
+    }
+  }
+  return result;
+}
+
+std::vector<std::string> ProgramLibrary::names() const {
+  std::vector<std::string> result;
+  for (const auto& program : programs_) result.push_back(program->name());
+  return result;
+}
+
+}  // namespace lucerna::gl

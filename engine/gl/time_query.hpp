@@ -1,0 +1,85 @@
+// GPU time of named stages, without ever waiting for a result, and the wall clock beside it.
+//
+// A stage is one GL_TIME_ELAPSED query a frame, out of a ring per stage: results are fetched when they have arrived, some frames
+// later. The first result of each stage is a warm-up and is dropped (on llvmpipe it can be garbage).
+// On a software renderer a query sees only the rasterising part, since vertices are worked on at submission; there
+// `finishStages` puts glFinish around each stage and the wall clock is the figure to read. Both are kept.
+#pragma once
+
+#include "gl/api.hpp"
+
+#include <array>
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lucerna::gl {
+
+struct StageStatistics {
+  std::string name;
+  std::size_t count = 0;        ///< samples after the warm-up
+  double medianMs = 0.0, p95Ms = 0.0;          ///< the figure to read: query on hardware, wall clock on software
+  double queryMedianMs = 0.0, queryP95Ms = 0.0;
+  double wallMedianMs = 0.0, wallP95Ms = 0.0;  ///< NaN unless stages are finished
+};
+
+class TimeQuery {
+ public:
+  /// finishStages: glFinish before and after each stage, and the wall clock read.
+  explicit TimeQuery(bool finishStages) : finishStages_(finishStages) {}
+  ~TimeQuery();
+  TimeQuery(const TimeQuery&) = delete;
+  TimeQuery& operator=(const TimeQuery&) = delete;
+
+  /// Stages follow one another, they do not nest (GL_TIME_ELAPSED cannot).
+  void begin(const std::string& stage);
+  void end();
+  /// Fetches what has arrived. Call once a frame.
+  void collect();
+  /// Waits for everything still on its way; for the end of a run, not for a frame.
+  void drain();
+
+  /// In order of first appearance.
+  std::vector<StageStatistics> statistics() const;
+  /// Raw samples of a stage in milliseconds (after the warm-up), query or wall clock.
+  const std::vector<double>& querySamples(const std::string& stage) const;
+  const std::vector<double>& wallSamples(const std::string& stage) const;
+  /// Samples lost because all queries of the ring were still on their way.
+  std::size_t dropped() const { return dropped_; }
+  void reset();
+
+  /// begin and end as a scope.
+  class Scope {
+   public:
+    Scope(TimeQuery& timer, const std::string& stage) : timer_(timer) { timer_.begin(stage); }
+    ~Scope() { timer_.end(); }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    TimeQuery& timer_;
+  };
+
+ private:
+  static constexpr std::size_t kRing = 6;
+  struct Stage {
+    std::string name;
+    std::array<GLuint, kRing> queries{};
+    std::array<bool, kRing> pending{};
+    std::size_t next = 0, oldest = 0;
+    bool warmQuery = false, warmWall = false;
+    std::vector<double> queryMs, wallMs;
+  };
+  Stage& stage(const std::string& name);
+  void fetch(Stage& stage, bool wait);
+
+  bool finishStages_;
+  std::vector<Stage> stages_;
+  Stage* current_ = nullptr;
+  bool currentQuery_ = false;
+  std::chrono::steady_clock::time_point start_;
+  std::size_t dropped_ = 0;
+};
+
+}  // namespace lucerna::gl

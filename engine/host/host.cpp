@@ -1,0 +1,89 @@
+#include "host/host.hpp"
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "gl/api.hpp"
+#include "host/host_backends.hpp"
+
+#include <cstdlib>
+
+namespace lucerna {
+
+namespace {
+
+// glewInit answers 3 or 4 where there is no GLX, and the pointers are good all the same: judge it by them.
+void loadPointers(HostKind kind) {
+  glewExperimental = GL_TRUE;
+  glewInit();
+  while (glGetError() != GL_NO_ERROR) {
+  }
+  const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+  GLint major = 0, minor = 0;
+  glGetIntegerv(GL_MAJOR_VERSION, &major);
+  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  if (major * 10 + minor < 43)
+    throwMissingCapability("host {}: OpenGL 4.3 is needed, the driver gives {}", nameOf(kind), version ? version : "nothing");
+  if (!glDispatchCompute || !glTexStorage3D || !glObjectLabel)
+    throwMissingCapability("host {}: the driver says OpenGL {} but lacks entry points of 4.3", nameOf(kind), version);
+}
+
+}  // namespace
+
+std::string_view nameOf(HostKind kind) {
+  switch (kind) {
+    case HostKind::window: return "window";
+    case HostKind::egl: return "egl";
+    case HostKind::osmesa: return "osmesa";
+  }
+  return "?";
+}
+
+HostKind parseHostKind(std::string_view name) {
+  for (HostKind kind : {HostKind::window, HostKind::egl, HostKind::osmesa})
+    if (name == nameOf(kind)) return kind;
+  throwBadInput("--host {}: unknown host; there are window, egl and osmesa", name);
+}
+
+bool displayAvailable() {
+  const auto set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value && *value;
+  };
+  return set("DISPLAY") || set("WAYLAND_DISPLAY");
+}
+
+bool Host::isSoftwareRenderer(std::string_view renderer) {
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SWR", "Software"})
+    if (renderer.find(name) != std::string_view::npos) return true;
+  return false;
+}
+
+std::unique_ptr<Host> Host::create(HostKind kind, const HostOptions& options) {
+  std::unique_ptr<Host> host;
+  switch (kind) {
+    case HostKind::window: host = detail::createWindowHost(options); break;
+    case HostKind::egl: host = detail::createEglHost(options); break;
+    case HostKind::osmesa: host = detail::createOsmesaHost(options); break;
+  }
+  loadPointers(kind);
+  return host;
+}
+
+std::unique_ptr<Host> Host::createDefault(bool wantsWindow, const HostOptions& options) {
+  if (wantsWindow && displayAvailable()) {
+    try {
+      return create(HostKind::window, options);
+    } catch (const Error& error) {
+      logWarning("{}; going on without a window", error.what());
+    }
+  }
+  try {
+    auto host = create(HostKind::egl, options);
+    if (!isSoftwareRenderer(reinterpret_cast<const char*>(glGetString(GL_RENDERER)))) return host;
+  } catch (const Error& error) {
+    logVerbose("{}", error.what());
+  }
+  return create(HostKind::osmesa, options);
+}
+
+}  // namespace lucerna

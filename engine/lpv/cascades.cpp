@@ -1,0 +1,45 @@
+#include "lpv/cascades.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna {
+
+std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds& scene, const glm::dvec3& cameraPosition,
+                                   const glm::dvec3& cameraDirection) {
+  CHECK(settings.cells >= 1 && settings.cascades >= 1, "cells = {}, cascades = {}", settings.cells, settings.cascades);
+  const glm::dvec3 extent = scene.extent();
+  double coarsest = settings.cellSize;
+  if (coarsest <= 0.0) {
+    // One cell beyond the scene on either side: virtual point lights are moved half a cell, snapping moves up to one. Grids
+    // too small for that margin still cover the scene.
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    coarsest = longest > 0.0 ? longest / std::max(settings.cells - 3, 1) : 1.0;
+  }
+
+  std::vector<Cascade> cascades;
+  for (int k = 0; k < settings.cascades; ++k) {
+    Cascade cascade;
+    cascade.cellSize = coarsest / std::pow(settings.ratio, settings.cascades - 1 - k);
+    const double half = 0.5 * settings.cells * cascade.cellSize;
+    glm::dvec3 centre = cameraPosition + cameraDirection * (settings.push * half);
+    if (!scene.empty()) {
+      const glm::dvec3 low = scene.min + half - 1.5 * cascade.cellSize;
+      const glm::dvec3 high = scene.max - half + 1.5 * cascade.cellSize;
+      for (int axis = 0; axis < 3; ++axis)
+        centre[axis] = low[axis] < high[axis] ? std::clamp(centre[axis], low[axis], high[axis]) : scene.centre()[axis];
+    }
+    cascade.centre = centre;
+    // All but the coarsest move by two cells, so that the pairs of cells that are averaged when cascades are joined stay the same.
+    const std::int64_t stride = k + 1 < settings.cascades ? 2 : 1;
+    for (int axis = 0; axis < 3; ++axis)
+      cascade.firstCell[axis] =
+          stride * static_cast<std::int64_t>(std::floor((centre[axis] - half) / (cascade.cellSize * static_cast<double>(stride))));
+    cascades.push_back(cascade);
+  }
+  return cascades;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,39 @@
+// Where the cascades of the light propagation volume lie (no GL, pure): the original's `Grid` and `translateGrid`.
+//
+// A grid's minimum is always an exact multiple of its cell size, found with floor in double precision from a 64-bit cell
+// index, so moving the camera by less than a cell leaves the grid where it is, at any distance from the origin.
+// Source: ORIGINALS 1.2; [Kaplanyan2010, section 5].
+#pragma once
+
+#include "scene/scene.hpp"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace lucerna {
+
+struct CascadeSettings {
+  int cells = 32;             ///< a side, of every cascade; 1 and more
+  int cascades = 3;           ///< 1..4
+  double cellSize = 0.0;      ///< of the coarsest, scene units; 0: so that the coarsest just covers the scene
+  double ratio = 2.0;         ///< cell size of a cascade over that of the next finer one
+  double push = 0.8;          ///< how far the centre is pushed along the view, in half extents of the grid
+};
+
+struct Cascade {
+  glm::i64vec3 firstCell{0};  ///< minimum = firstCell * cellSize
+  double cellSize = 1.0;      ///< scene units
+  glm::dvec3 centre{0.0};     ///< before snapping: blending follows it, so that it does not jump
+
+  glm::dvec3 minimum() const { return glm::dvec3(firstCell) * cellSize; }
+};
+
+/// The cascades for a view, finest first.
+/// Each follows the camera: its centre lies on the camera, is pushed along the view, then held so that the grid does not
+/// stick out of the scene further than it must; then it is snapped.
+std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds& scene, const glm::dvec3& cameraPosition,
+                                   const glm::dvec3& cameraDirection);
+
+}  // namespace lucerna

@@ -1,0 +1,224 @@
+#include "render/renderer.hpp"
+
+#include "base/error.hpp"
+#include "shared/frame.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lucerna {
+
+namespace {
+
+constexpr GLuint kFrameBinding = 0;
+constexpr GLuint kShadowUnit = 2;
+
+// Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal.
+glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 size) {
+  const double diagonal = std::max(glm::length(bounds.extent()), 1e-6);
+  double farthest = diagonal;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p(corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
+                       corner & 4 ? bounds.max.z : bounds.min.z);
+    farthest = std::max(farthest, glm::length(p - camera.position));
+  }
+  const double aspect = static_cast<double>(size.x) / size.y;
+  return glm::perspective(camera.verticalFov, aspect, 5e-4 * diagonal, 1.01 * farthest) *
+         glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
+}
+
+template <class T>
+T parseNamed(std::string_view name, std::string_view option, std::initializer_list<T> values) {
+  std::string known;
+  for (T value : values) {
+    if (name == nameOf(value)) return value;
+    known += (known.empty() ? "" : ", ") + std::string(nameOf(value));
+  }
+  throwBadInput("--{} {}: unknown; there are {}", option, name, known);
+}
+
+}  // namespace
+
+std::string_view nameOf(Technique technique) { return technique == Technique::direct ? "direct" : "lpv"; }
+
+std::string_view nameOf(Component component) {
+  switch (component) {
+    case Component::all: return "all";
+    case Component::direct: return "direct";
+    case Component::indirect: return "indirect";
+  }
+  return "?";
+}
+
+Technique parseTechnique(std::string_view name) { return parseNamed(name, "technique", {Technique::direct, Technique::lpv}); }
+
+Component parseComponent(std::string_view name) {
+  return parseNamed(name, "component", {Component::all, Component::direct, Component::indirect});
+}
+
+Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings)
+    : settings_(settings),
+      needs_(analyse(scene)),
+      showsDirect_(needs_.directionalLight && settings.component != Component::indirect),
+      showsIndirect_(settings.technique == Technique::lpv && settings.component != Component::direct &&
+                     LightPropagationVolume::isNeeded(needs_)),
+      exposure_(scene.exposure),
+      timer_(context.capabilities().softwareRenderer),
+      gpuScene_(scene, needs_, context.capabilities(), settings.textures),
+      frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, GL_DYNAMIC_DRAW),
+      noAttributes_("full screen") {
+  if (scene.sun) sunFrustum_ = fitSunFrustum(scene, scene.sun->direction);
+  if (showsDirect_ && ShadowMap::isNeeded(needs_)) shadowMap_.emplace(programs, gpuScene_, settings.shadow);
+  if (showsIndirect_) {
+    rsm_.emplace(programs, gpuScene_, settings.rsm);
+    lpv_.emplace(programs, context.capabilities(), settings.lpv);
+  }
+
+  const auto loadSurface = [&](const std::string& name, bool masked) {
+    gl::ShaderFlags flags = gpuScene_.materialFlags(masked);
+    const bool showsRest = settings.component != Component::indirect;  // specular and emission belong to direct light
+    flags.insert(flags.end(), {{"DIRECT", showsDirect_},
+                               {"INDIRECT", showsIndirect_},
+                               {"SPECULAR", needs_.specular && showsDirect_},
+                               {"EMISSION", needs_.emission && showsRest},
+                               {"LPV_FULL_FLOAT", settings.lpv.storage == LightPropagationVolume::Storage::full}});
+    return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
+  };
+  surfacePrograms_.opaque = loadSurface("surface opaque", false);
+  if (needs_.alphaMasks) surfacePrograms_.masked = loadSurface("surface masked", true);
+  toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
+  allocateTargets();
+}
+
+void Renderer::allocateTargets() {
+  radiance_ = gl::Texture("radiance", settings_.fullFloatTarget ? GL_RGBA32F : GL_RGBA16F, settings_.size);
+  depth_ = gl::Texture("depth", GL_DEPTH_COMPONENT32F, settings_.size);
+  display_ = gl::Texture("display", GL_RGBA8, settings_.size);
+  const std::array<const gl::Texture*, 1> radiance{&radiance_}, display{&display_};
+  radianceTarget_ = gl::Framebuffer("radiance", radiance, &depth_);
+  displayTarget_ = gl::Framebuffer("display", display);
+}
+
+void Renderer::resize(glm::ivec2 size) {
+  if (size == settings_.size || size.x <= 0 || size.y <= 0) return;
+  settings_.size = size;
+  allocateTargets();
+}
+
+void Renderer::render(const Camera& camera) {
+  const Scene& scene = gpuScene_.scene();
+  const glm::mat4 cameraClip(clipFromWorld(camera, scene.bounds, settings_.size));
+  const glm::vec3 viewPoint(camera.position);
+
+  shared::FrameConstants frame{};
+  frame.clipFromWorld = cameraClip;
+  frame.cameraPosition = viewPoint;
+  frame.exposure = exposure_;
+  if (scene.sun) {
+    frame.sunClipFromWorld = glm::mat4(sunFrustum_.clipFromWorld);
+    frame.sunDirection = glm::vec3(scene.sun->direction);
+    frame.sunIrradiance = scene.sun->irradiance;
+    frame.shadowNormalOffset =
+        1.5f * static_cast<float>(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
+    frame.shadowTexelUv = 1.0f / static_cast<float>(settings_.shadow.size);
+  }
+  frame.background = scene.background;
+  frameConstants_.upload(0, sizeof frame, &frame);
+  frameConstants_.bind(GL_UNIFORM_BUFFER, kFrameBinding);
+
+  if (shadowMap_) {
+    const gl::TimeQuery::Scope stage(timer_, "shadow");
+    shadowMap_->record(gpuScene_);
+  }
+
+  if (lpv_) {
+    timer_.begin("rsm");
+    const auto rsm = rsm_->record(gpuScene_, sunFrustum_.texelArea(rsm_->size()));
+    timer_.end();
+    const glm::vec3 sun = scene.sun->irradiance;
+    const LightPropagationVolume::Inputs inputs{
+        rsm, placeCascades(settings_.lpv.cascades, scene.bounds, camera.position, camera.direction),
+        std::max({sun.x, sun.y, sun.z})};
+    timer_.begin("injection");
+    lpv_->place(inputs);
+    lpv_->inject(inputs);
+    timer_.end();
+    if (lpv_->geometryVolume()) {
+      const gl::TimeQuery::Scope stage(timer_, "geometry volume");
+      lpv_->fillGeometryVolume(inputs);
+    }
+    const gl::TimeQuery::Scope stage(timer_, "propagation");
+    lpv_->propagate();
+    lpv_->join();
+  }
+
+  {
+    const gl::TimeQuery::Scope stage(timer_, "shading");
+    gl::RasterState state;
+    state.depth = gl::Depth::lessWrite;
+    const gl::RasterPass pass("surfaces", radianceTarget_, state);
+    const bool showsBackground = settings_.component != Component::indirect;
+    pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
+    pass.clearDepth();
+    if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
+    if (lpv_) lpv_->bindForLookup();
+    gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
+  }
+
+  {
+    const gl::TimeQuery::Scope stage(timer_, "tone mapping");
+    const gl::RasterPass pass("tone map", displayTarget_, {});
+    toneMap_->use();
+    radiance_.bind(0);
+    gl::drawFullScreen(noAttributes_);
+  }
+  timer_.collect();
+}
+
+Image Renderer::readRadiance() const {
+  const std::vector<glm::vec4> texels = radiance_.readRgba();
+  Image image(settings_.size.x, settings_.size.y);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      image.at(x, y) = glm::vec3(texels[static_cast<std::size_t>(image.height - 1 - y) * static_cast<std::size_t>(image.width) +
+                                        static_cast<std::size_t>(x)]);
+  return image;
+}
+
+Bitmap Renderer::readDisplay() const {
+  const std::vector<glm::vec4> texels = display_.readRgba();
+  Bitmap bitmap;
+  bitmap.width = settings_.size.x;
+  bitmap.height = settings_.size.y;
+  bitmap.rgba.reserve(4 * texels.size());
+  for (int y = bitmap.height - 1; y >= 0; --y)
+    for (int x = 0; x < bitmap.width; ++x) {
+      const glm::vec4& texel = texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x)];
+      for (int channel = 0; channel < 4; ++channel) bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * texel[channel])));
+    }
+  return bitmap;
+}
+
+std::size_t Renderer::gpuBytes() const {
+  std::size_t bytes = gpuScene_.gpuBytes() + frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes();
+  if (shadowMap_) bytes += shadowMap_->gpuBytes();
+  if (rsm_) bytes += rsm_->gpuBytes();
+  if (lpv_) bytes += lpv_->gpuBytes();
+  return bytes;
+}
+
+std::vector<std::string> Renderer::leftOut() const {
+  std::vector<std::string> names;
+  for (const auto& [name, needed] : needs_.named())
+    if (!needed) names.push_back(name);
+  if (!shadowMap_) names.emplace_back("shadow map");
+  if (!rsm_) names.emplace_back("reflective shadow map");
+  if (!lpv_) names.emplace_back("light propagation volume");
+  else if (!lpv_->geometryVolume()) names.emplace_back("geometry volume");
+  return names;
+}
+
+}  // namespace lucerna

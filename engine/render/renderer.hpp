@@ -1,0 +1,86 @@
+// A frame, from a scene and a camera to an HDR picture and a display picture: the techniques in order, each built only where needed.
+#pragma once
+
+#include "base/image.hpp"
+#include "forward/gpu_scene.hpp"
+#include "forward/shadow_map.hpp"
+#include "forward/sun_frustum.hpp"
+#include "gl/context.hpp"
+#include "gl/program.hpp"
+#include "gl/time_query.hpp"
+#include "lpv/light_propagation_volume.hpp"
+#include "rsm/reflective_shadow_map.hpp"
+#include "scene/needs.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lucerna {
+
+enum class Technique { direct, lpv };
+enum class Component { all, direct, indirect };
+
+std::string_view nameOf(Technique technique);
+std::string_view nameOf(Component component);
+Technique parseTechnique(std::string_view name);  ///< throws Error(badInput) listing the names
+Component parseComponent(std::string_view name);
+
+struct RenderSettings {
+  Technique technique = Technique::lpv;
+  Component component = Component::all;
+  glm::ivec2 size{1280, 720};
+  bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits: for pictures that are measured
+  GpuSceneSettings textures;
+  ShadowMap::Settings shadow;
+  ReflectiveShadowMap::Settings rsm;
+  LightPropagationVolume::Settings lpv;
+};
+
+class Renderer {
+ public:
+  /// Compiles and allocates what `scene` and `settings` need, and nothing else. The scene must outlive the renderer.
+  Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings);
+
+  /// One frame: the HDR picture, then the display picture. Stages are timed.
+  void render(const Camera& camera);
+
+  Image readRadiance() const;   ///< linear, scene units, top row first
+  Bitmap readDisplay() const;   ///< tone mapped, sRGB, top row first
+  const gl::Framebuffer& displayFramebuffer() const { return displayTarget_; }
+  glm::ivec2 size() const { return settings_.size; }
+  void resize(glm::ivec2 size);
+  void setExposure(float exposure) { exposure_ = exposure; }
+  float exposure() const { return exposure_; }
+
+  gl::TimeQuery& timer() { return timer_; }
+  std::size_t gpuBytes() const;
+  const SceneNeeds& needs() const { return needs_; }
+  const RenderSettings& settings() const { return settings_; }
+  const LightPropagationVolume* lpv() const { return lpv_ ? &*lpv_ : nullptr; }
+  /// Names of what the scene or the settings did not need.
+  std::vector<std::string> leftOut() const;
+
+ private:
+  void allocateTargets();
+
+  RenderSettings settings_;
+  SceneNeeds needs_;
+  bool showsDirect_, showsIndirect_;
+  float exposure_;
+  gl::TimeQuery timer_;
+  GpuScene gpuScene_;
+  SunFrustum sunFrustum_;
+  gl::Buffer frameConstants_;
+  gl::VertexArray noAttributes_;
+  SurfacePrograms surfacePrograms_;
+  const gl::Program* toneMap_ = nullptr;
+  std::optional<ShadowMap> shadowMap_;
+  std::optional<ReflectiveShadowMap> rsm_;
+  std::optional<LightPropagationVolume> lpv_;
+  gl::Texture radiance_, depth_, display_;
+  gl::Framebuffer radianceTarget_, displayTarget_;
+};
+
+}  // namespace lucerna

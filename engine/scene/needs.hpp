@@ -1,0 +1,30 @@
+// SceneNeeds: what a scene and the chosen settings ask for (no GL, pure).
+//
+// The only source of shader flags and of what is built. Whatever is false here is not compiled, not allocated, not run.
+#pragma once
+
+#include "scene/scene.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lucerna {
+
+struct SceneNeeds {
+  bool diffuseTextures = false;  ///< any drawn mesh has an albedo texture
+  bool alphaMasks = false;       ///< any drawn mesh is cut out by a mask
+  bool specular = false;         ///< any drawn mesh has Ks > 0
+  bool emission = false;         ///< any drawn mesh emits
+  bool directionalLight = false; ///< a sun with irradiance > 0
+  bool background = false;       ///< background radiance > 0
+  bool indirect = false;         ///< something to light it with and something to reflect: a light and an albedo > 0
+
+  /// (name, needed) in declaration order, for `info` and reports.
+  std::vector<std::pair<std::string, bool>> named() const;
+  bool operator==(const SceneNeeds&) const = default;
+};
+
+SceneNeeds analyse(const Scene& scene);
+
+}  // namespace lucerna

@@ -1,0 +1,108 @@
+// A scene as plain data (no GL): what the loaders produce and what every technique reads.
+//
+// Space: right-handed, +y up unless the file says otherwise, lengths in scene units; `metresPerUnit` says how long a unit is.
+// Colours are linear. Reflectances are Lambertian albedos (exitance over irradiance), 0..1.
+#pragma once
+
+#include "base/image.hpp"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lucerna {
+
+/// Axis-aligned bounds; empty until something is added.
+struct Bounds {
+  glm::dvec3 min{1e300};
+  glm::dvec3 max{-1e300};
+  bool empty() const { return min.x > max.x; }
+  void add(const glm::dvec3& p) { min = glm::min(min, p); max = glm::max(max, p); }
+  void add(const Bounds& b) { min = glm::min(min, b.min); max = glm::max(max, b.max); }
+  glm::dvec3 centre() const { return 0.5 * (min + max); }
+  glm::dvec3 extent() const { return empty() ? glm::dvec3(0.0) : max - min; }
+};
+
+/// One vertex as the vertex buffer holds it: attribute 0 position, 1 texture coordinate, 2 normal.
+struct Vertex {
+  glm::vec3 position{0.0f};
+  glm::vec2 texCoord{0.0f};  ///< v = 0 is the bottom row of a texture (OBJ, OpenGL)
+  glm::vec3 normal{0.0f, 1.0f, 0.0f};
+};
+
+/// A picture used by materials; several materials may share one.
+struct Texture {
+  std::filesystem::path file;  ///< where it came from; messages name it
+  Bitmap bitmap;               ///< 8-bit; albedo maps are sRGB-encoded
+};
+
+struct Material {
+  std::string name;
+  glm::vec3 diffuse{0.5f};           ///< albedo factor (Kd), multiplies the texture
+  glm::vec3 specular{0.0f};          ///< Ks
+  float shininess = 1.0f;            ///< Blinn-Phong exponent (Ns)
+  glm::vec3 emission{0.0f};          ///< emitted radiance (Ke)
+  float opacity = 1.0f;              ///< d
+  int diffuseTexture = -1;           ///< index into Scene::textures, -1: none
+  int alphaTexture = -1;             ///< mask in its own file (map_d); its red channel, or its alpha where it has one
+                                     ///< (bitmap.hasAlpha); not sRGB-encoded, and never a diffuseTexture of this material
+  bool alphaMasked = false;          ///< cut out where alpha < 0.5, from alphaTexture or the diffuse texture's alpha
+};
+
+/// A run of indices drawn with one material.
+struct Mesh {
+  std::string name;
+  std::uint32_t firstIndex = 0;
+  std::uint32_t indexCount = 0;  ///< a multiple of 3
+  int material = 0;
+  Bounds bounds;
+};
+
+/// Light from one direction, the sun: parallel rays.
+struct DirectionalLight {
+  glm::dvec3 direction{0.0, -1.0, 0.0};  ///< unit vector along which the light travels
+  glm::vec3 irradiance{0.0f};            ///< on a plane across the rays, W/m^2 in scene units
+};
+
+/// A view of the scene. Positions in double, so that far from the origin nothing is lost before it must be.
+struct Camera {
+  std::string name;
+  glm::dvec3 position{0.0};
+  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit
+  glm::dvec3 up{0.0, 1.0, 0.0};          ///< unit, not parallel to direction
+  double verticalFov = 0.9;              ///< radians
+};
+
+struct Scene {
+  std::string name;                    ///< file stem
+  std::filesystem::path file;          ///< what was loaded
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;  ///< triangles
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;     ///< at least one where there is a mesh
+  std::vector<Texture> textures;
+  std::optional<DirectionalLight> sun;
+  std::vector<Camera> cameras;         ///< never empty after loading: the first is the default view
+  Bounds bounds;
+  double metresPerUnit = 1.0;
+  glm::vec3 background{0.0f};          ///< radiance seen where there is no surface; it lights nothing
+  float exposure = 1.0f;               ///< multiplies radiance before tone mapping
+  std::filesystem::path keyFrames;     ///< the walk's camera path; empty: none named
+  std::size_t degenerateTriangles = 0; ///< of zero area. They stay, so that counts agree with the file's (Crytek Sponza has one):
+                                       ///< whoever divides by an area or normalises a face normal must expect them
+  std::size_t droppedTriangles = 0;    ///< left out while loading, as a position in them is not finite
+
+  std::size_t triangleCount() const { return indices.size() / 3; }
+};
+
+/// Reads a scene: a scene JSON (ours; see scene_file.cpp for its keys) or whatever Assimp reads.
+/// Every problem that leaves something to show (missing texture, missing MTL) is one warning naming the file; anything else
+/// (missing file, a folder, nothing to draw, truncated or malformed data) throws Error(badInput).
+/// Files without a light get the default sun, files without a camera a view computed from the bounds.
+Scene loadScene(const std::filesystem::path& file);
+
+}  // namespace lucerna

@@ -1,0 +1,507 @@
+// Models through Assimp: geometry into one vertex and one index buffer, materials, textures, cameras and the sun.
+//
+// What is decided here, as files do not say it:
+// - Normals that are missing are made by Assimp, smooth across edges up to kCreaseAngle.
+// - Triangles with positions that are not finite are dropped and counted (Scene::droppedTriangles); lines and points are
+//   dropped. Triangles of zero area are counted (Scene::degenerateTriangles) and kept: Crytek Sponza has one, and its
+//   published count of 262,267 is to be met.
+// - Equal vertices of a mesh are joined where all their floats are equal, bit by bit: no tolerance, so that scenes of any
+//   scale keep their shape.
+// - A material with opacity 0 would be invisible; exporters that mix up `d` and `Tr` write it for solid things: taken as 1.
+// - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic), Blinn-Phong
+//   exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). Textures of metallic,
+//   roughness and emission become their mean, which keeps a surface's total.
+// - No sun in the file: kDefaultSun. No camera: the first key of keyFrames/<stem>.txt where the repository has one, else a
+//   view from outside that frames the bounding sphere.
+#include "scene/scene_file.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/log.hpp"
+#include "scene/key_frames.hpp"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/GltfMaterial.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <unordered_map>
+
+namespace lucerna {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr float kCreaseAngle = 60.0f;  // degrees between faces
+constexpr double kDefaultFov = 50.0 * kPi / 180.0;
+
+/// Slanted, so that walls are lit too. In Crytek Sponza it reaches a quarter of the court's floor and the curtains on +z.
+const glm::dvec3 kDefaultSunDirection = glm::normalize(glm::dvec3(0.12, -1.0, 0.2));
+const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
+
+glm::dvec3 toGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+glm::vec3 toGlm(const aiColor3D& c) { return {c.r, c.g, c.b}; }
+bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// Row-major Assimp to column-major GLM.
+glm::dmat4 toGlm(const aiMatrix4x4& m) {
+  return glm::transpose(glm::dmat4(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4));
+}
+
+/// File names as Windows exporters write them.
+std::string withForwardSlashes(std::string path) {
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return path;
+}
+
+/// Files for Assimp: back slashes turned, and the material libraries that are missing remembered (Assimp only logs them).
+class ModelFiles : public Assimp::DefaultIOSystem {
+ public:
+  bool Exists(const char* file) const override { return DefaultIOSystem::Exists(withForwardSlashes(file).c_str()); }
+  Assimp::IOStream* Open(const char* file, const char* mode = "rb") override {
+    const std::string path = withForwardSlashes(file);
+    Assimp::IOStream* stream = DefaultIOSystem::Open(path.c_str(), mode);
+    if (lowerExtension(path) == ".mtl") {
+      if (stream) foundMaterials = true;
+      else missingMaterials.push_back(path);
+    }
+    return stream;
+  }
+
+  bool foundMaterials = false;
+  std::vector<std::string> missingMaterials;
+};
+
+// ------------------------------------------------------------------------------------------------------------- textures
+
+Bitmap checkerBitmap() {
+  constexpr int kSize = 64, kSquare = 8;
+  Bitmap bitmap{kSize, kSize, std::vector<std::uint8_t>(4 * kSize * kSize, 255), false};
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const std::uint8_t grey = (x / kSquare + y / kSquare) % 2 ? 200 : 90;
+      std::fill_n(bitmap.rgba.begin() + 4 * (y * kSize + x), 3, grey);
+    }
+  return bitmap;
+}
+
+/// Reads every picture once; a picture that cannot be read is one warning.
+class TextureLoader {
+ public:
+  TextureLoader(Scene& scene, const aiScene& source) : scene_(scene), source_(source), folder_(scene.file.parent_path()) {}
+
+  /// Index of an albedo map; the shared checker where it cannot be read; -1 where the material has none.
+  int albedo(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
+    const std::string name = nameOf(material, types);
+    if (name.empty()) return -1;
+    const int index = load(name);
+    return index >= 0 ? index : checker();
+  }
+
+  /// Index of a picture that only refines the material: -1 also where it cannot be read.
+  int optional(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
+    const std::string name = nameOf(material, types);
+    return name.empty() ? -1 : load(name);
+  }
+
+  /// The mean of a picture that is not kept, encoded values in 0..1; 1 where there is none.
+  glm::vec3 mean(const aiMaterial& material, std::initializer_list<aiTextureType> types, bool srgb) {
+    const std::string name = nameOf(material, types);
+    if (name.empty()) return glm::vec3(1.0f);
+    const std::optional<Texture> texture = read(name);
+    if (!texture) return glm::vec3(1.0f);
+    std::array<float, 256> values{};
+    for (std::size_t i = 0; i < 256; ++i) values[i] = srgb ? linearFromSrgb(static_cast<float>(i) / 255.0f) : static_cast<float>(i) / 255.0f;
+    glm::dvec3 sum(0.0);
+    const std::vector<std::uint8_t>& rgba = texture->bitmap.rgba;
+    for (std::size_t i = 0; i < rgba.size(); i += 4) sum += glm::dvec3(values[rgba[i]], values[rgba[i + 1]], values[rgba[i + 2]]);
+    return glm::vec3(sum / static_cast<double>(rgba.size() / 4));
+  }
+
+ private:
+  static std::string nameOf(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
+    for (const aiTextureType type : types) {
+      aiString name;
+      if (material.GetTexture(type, 0, &name) == aiReturn_SUCCESS && name.length > 0) return name.C_Str();
+    }
+    return {};
+  }
+
+  int load(const std::string& name) {
+    const auto known = indices_.find(name);
+    if (known != indices_.end()) return known->second;
+    int index = -1;
+    if (std::optional<Texture> texture = read(name)) {
+      index = static_cast<int>(scene_.textures.size());
+      scene_.textures.push_back(std::move(*texture));
+    }
+    indices_[name] = index;
+    return index;
+  }
+
+  std::optional<Texture> read(const std::string& name) {
+    try {
+      if (const aiTexture* embedded = source_.GetEmbeddedTexture(name.c_str())) return readEmbedded(*embedded, name);
+      const fs::path file = resolve(name);
+      return Texture{file, readBitmap(file)};
+    } catch (const Error& e) {
+      if (std::find(unreadable_.begin(), unreadable_.end(), name) == unreadable_.end()) {
+        unreadable_.push_back(name);
+        logWarning("texture {} (a default stands in)", e.what());
+      }
+      return std::nullopt;
+    }
+  }
+
+  Texture readEmbedded(const aiTexture& embedded, const std::string& name) const {
+    const fs::path file = scene_.file.string() + ":" + name;
+    if (embedded.mHeight == 0) {  // a whole file; mWidth is its size
+      return {file, decodeBitmap({reinterpret_cast<const std::uint8_t*>(embedded.pcData), embedded.mWidth}, file)};
+    }
+    Bitmap bitmap{static_cast<int>(embedded.mWidth), static_cast<int>(embedded.mHeight), {}, false};
+    const std::size_t count = std::size_t{embedded.mWidth} * embedded.mHeight;
+    bitmap.rgba.reserve(4 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const aiTexel& texel = embedded.pcData[i];
+      bitmap.rgba.insert(bitmap.rgba.end(), {texel.r, texel.g, texel.b, texel.a});
+      bitmap.hasAlpha |= texel.a < 255;
+    }
+    return {file, std::move(bitmap)};
+  }
+
+  /// Beside the model; where the path is another machine's, the bare name beside the model.
+  fs::path resolve(const std::string& name) const {
+    const fs::path path = (folder_ / withForwardSlashes(name)).lexically_normal();
+    const fs::path bare = folder_ / path.filename();
+    std::error_code error;
+    return !fs::exists(path, error) && fs::exists(bare, error) ? bare : path;
+  }
+
+  int checker() {
+    if (checker_ < 0) {
+      checker_ = static_cast<int>(scene_.textures.size());
+      scene_.textures.push_back({"(default checker)", checkerBitmap()});
+    }
+    return checker_;
+  }
+
+  Scene& scene_;
+  const aiScene& source_;
+  fs::path folder_;
+  std::map<std::string, int> indices_;
+  std::vector<std::string> unreadable_;
+  int checker_ = -1;
+};
+
+// ------------------------------------------------------------------------------------------------------------ materials
+
+float clampedNumber(float value, float low, float high, float fallback) {
+  return std::isfinite(value) ? std::clamp(value, low, high) : fallback;
+}
+
+Material convertMaterial(const aiMaterial& source, TextureLoader& textures, const Scene& scene) {
+  Material material;
+  material.name = source.GetName().C_Str();
+  const auto colour = [&](const char* key, unsigned type, unsigned index, glm::vec3& value, float highest) {
+    aiColor3D read;
+    if (source.Get(key, type, index, read) != aiReturn_SUCCESS) return;
+    for (int c = 0; c < 3; ++c) value[c] = clampedNumber(toGlm(read)[c], 0.0f, highest, 0.0f);
+  };
+  const auto number = [&](const char* key, unsigned type, unsigned index, float fallback) {
+    float value = fallback;
+    return source.Get(key, type, index, value) == aiReturn_SUCCESS ? value : fallback;
+  };
+
+  colour(AI_MATKEY_COLOR_DIFFUSE, material.diffuse, 1.0f);
+  colour(AI_MATKEY_COLOR_SPECULAR, material.specular, 1.0f);
+  colour(AI_MATKEY_COLOR_EMISSIVE, material.emission, std::numeric_limits<float>::max());
+  material.shininess = clampedNumber(number(AI_MATKEY_SHININESS, 1.0f), 1.0f, 1e6f, 1.0f);
+
+  float metallic = 0.0f;
+  if (source.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS) {
+    float roughness = number(AI_MATKEY_ROUGHNESS_FACTOR, 1.0f);
+    // glTF: roughness in green, metallic in blue. Its own texture slot in Assimp 5.2.
+    const glm::vec3 map = textures.mean(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN}, false);
+    metallic = clampedNumber(metallic * map.z, 0.0f, 1.0f, 0.0f);
+    roughness = clampedNumber(roughness * map.y, 0.0f, 1.0f, 1.0f);
+    glm::vec3 base = material.diffuse;
+    colour(AI_MATKEY_BASE_COLOR, base, 1.0f);
+    material.diffuse = base * (1.0f - metallic);
+    material.specular = glm::mix(glm::vec3(0.04f), base, metallic);
+    const float alpha2 = std::pow(std::max(roughness, 0.03f), 4.0f);
+    material.shininess = std::max(2.0f / alpha2 - 2.0f, 1.0f);
+  }
+
+  const float strength = number(AI_MATKEY_EMISSIVE_INTENSITY, 1.0f);
+  if (material.emission != glm::vec3(0.0f))
+    material.emission *= clampedNumber(strength, 0.0f, 1e30f, 1.0f) * textures.mean(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR}, true);
+
+  material.opacity = clampedNumber(number(AI_MATKEY_OPACITY, 1.0f), 0.0f, 1.0f, 1.0f);
+  if (material.opacity == 0.0f) {
+    logWarning("{}: material '{}' has opacity 0; taken as 1", scene.file.string(), material.name);
+    material.opacity = 1.0f;
+  }
+
+  material.diffuseTexture = textures.albedo(source, {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR});
+  material.alphaTexture = textures.optional(source, {aiTextureType_OPACITY});
+  const auto hasAlpha = [&](int texture) { return texture >= 0 && scene.textures[static_cast<std::size_t>(texture)].bitmap.hasAlpha; };
+  // A colour picture named as its own mask means its alpha channel; without one it masks nothing.
+  if (material.alphaTexture >= 0 && material.alphaTexture == material.diffuseTexture) material.alphaTexture = -1;
+  material.alphaMasked = material.alphaTexture >= 0 || hasAlpha(material.diffuseTexture);
+  aiString alphaMode;
+  if (source.Get(AI_MATKEY_GLTF_ALPHAMODE, alphaMode) == aiReturn_SUCCESS && std::string_view(alphaMode.C_Str()) == "OPAQUE")
+    material.alphaMasked = false;
+  return material;
+}
+
+// ------------------------------------------------------------------------------------------------------------- geometry
+
+struct VertexHash {
+  std::size_t operator()(const std::array<std::uint32_t, 8>& words) const {
+    std::uint64_t h = 0x9e3779b97f4a7c15u;
+    for (const std::uint32_t w : words) {
+      h = (h ^ w) * 0xff51afd7ed558ccdu;
+      h ^= h >> 32;
+    }
+    return static_cast<std::size_t>(h);
+  }
+};
+static_assert(sizeof(Vertex) == 8 * sizeof(float), "compared bit by bit, so without padding");
+
+/// Assimp's post-processing trusts faces blindly: an index out of range is undefined behaviour, a face without vertices
+/// (truncated PLY) aborts the program in Debian's build, as does a mesh called polygonal that has no polygon.
+void checkFaces(const aiScene& source, const fs::path& file) {
+  for (unsigned m = 0; m < source.mNumMeshes; ++m) {
+    aiMesh& mesh = *source.mMeshes[m];
+    mesh.mPrimitiveTypes = 0;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices == 0) throwBadInput("{}: face {} of mesh '{}' has no vertices; is the file cut off?", file.string(), f, mesh.mName.C_Str());
+      for (unsigned i = 0; i < face.mNumIndices; ++i)
+        if (face.mIndices[i] >= mesh.mNumVertices)
+          throwBadInput("{}: face {} of mesh '{}' refers to vertex {}, the mesh holds {}; is the file cut off?", file.string(), f,
+                        mesh.mName.C_Str(), face.mIndices[i], mesh.mNumVertices);
+      constexpr unsigned kTypes[] = {aiPrimitiveType_POINT, aiPrimitiveType_LINE, aiPrimitiveType_TRIANGLE, aiPrimitiveType_POLYGON};
+      mesh.mPrimitiveTypes |= kTypes[std::min(face.mNumIndices, 4u) - 1];
+    }
+  }
+}
+
+/// Appends one mesh as placed by one node.
+void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromNode, int material, const std::string& name) {
+  const glm::dmat3 linear(worldFromNode);
+  const bool mirrored = glm::determinant(linear) < 0.0;
+  // Normals go with the inverse transpose; the cofactor matrix is that times the determinant, and exists for flat scalings too.
+  const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+
+  std::vector<Vertex> vertices(source.mNumVertices);
+  for (unsigned i = 0; i < source.mNumVertices; ++i) {
+    Vertex& vertex = vertices[i];
+    vertex.position = glm::vec3(worldFromNode * glm::dvec4(toGlm(source.mVertices[i]), 1.0));
+    if (source.HasTextureCoords(0)) vertex.texCoord = {source.mTextureCoords[0][i].x, source.mTextureCoords[0][i].y};
+    if (!std::isfinite(vertex.texCoord.x) || !std::isfinite(vertex.texCoord.y)) vertex.texCoord = glm::vec2(0.0f);
+    const glm::dvec3 normal = source.HasNormals() ? cofactor * toGlm(source.mNormals[i]) * (mirrored ? -1.0 : 1.0) : glm::dvec3(0.0);
+    const double length = glm::length(normal);
+    vertex.normal = std::isfinite(length) && length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f);
+  }
+
+  std::vector<std::array<unsigned, 3>> triangles;
+  triangles.reserve(source.mNumFaces);
+  std::vector<glm::dvec3> lentNormals(source.mNumVertices, glm::dvec3(0.0));  // area-weighted, for vertices that have none
+  for (unsigned f = 0; f < source.mNumFaces; ++f) {
+    const aiFace& face = source.mFaces[f];
+    if (face.mNumIndices != 3) continue;  // points and lines
+    std::array<unsigned, 3> t = {face.mIndices[0], face.mIndices[1], face.mIndices[2]};
+    if (mirrored) std::swap(t[1], t[2]);
+    const glm::dvec3 a(vertices[t[0]].position), b(vertices[t[1]].position), c(vertices[t[2]].position);
+    const glm::dvec3 cross = glm::cross(b - a, c - a);
+    const double longest2 = std::max({glm::dot(b - a, b - a), glm::dot(c - a, c - a), glm::dot(c - b, c - b)});
+    if (!isFinite(a) || !isFinite(b) || !isFinite(c)) {
+      ++scene.droppedTriangles;
+      continue;
+    }
+    // Exact up to rounding in double: float corners in one line give 0, or 1e-16 of the square built on the longest side.
+    if (!(glm::length(cross) > 1e-14 * longest2)) ++scene.degenerateTriangles;
+    for (const unsigned i : t) lentNormals[i] += cross;
+    triangles.push_back(t);
+  }
+  if (triangles.empty()) return;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const double length = glm::length(lentNormals[i]);
+    if (vertices[i].normal == glm::vec3(0.0f)) vertices[i].normal = length > 0.0 ? glm::vec3(lentNormals[i] / length) : glm::vec3(0.0f, 1.0f, 0.0f);
+  }
+
+  Mesh mesh;
+  mesh.name = name;
+  mesh.material = material;
+  mesh.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
+  std::unordered_map<std::array<std::uint32_t, 8>, std::uint32_t, VertexHash> joined;
+  joined.reserve(triangles.size());
+  for (const std::array<unsigned, 3>& t : triangles) {
+    for (const unsigned i : t) {
+      const Vertex& vertex = vertices[i];
+      const auto next = static_cast<std::uint32_t>(scene.vertices.size());
+      std::array<std::uint32_t, 8> bits;
+      std::memcpy(bits.data(), &vertex, sizeof vertex);
+      const auto [entry, isNew] = joined.try_emplace(bits, next);
+      if (isNew) {
+        scene.vertices.push_back(vertex);
+        mesh.bounds.add(glm::dvec3(vertex.position));
+      }
+      scene.indices.push_back(entry->second);
+    }
+  }
+  mesh.indexCount = static_cast<std::uint32_t>(scene.indices.size()) - mesh.firstIndex;
+  scene.bounds.add(mesh.bounds);
+  scene.meshes.push_back(std::move(mesh));
+  if (scene.indices.size() > std::numeric_limits<std::uint32_t>::max() / 2)
+    throwBadInput("{}: more than {} triangles", scene.file.string(), std::numeric_limits<std::uint32_t>::max() / 6);
+}
+
+// ---------------------------------------------------------------------------------------------------- cameras and lights
+
+/// The placement of the node of that name (Assimp ties cameras and lights to nodes by name).
+glm::dmat4 worldFromNamedNode(const aiScene& source, const aiString& name) {
+  aiMatrix4x4 world;
+  for (const aiNode* node = source.mRootNode->FindNode(name); node; node = node->mParent) world = node->mTransformation * world;
+  return toGlm(world);
+}
+
+void appendCameras(Scene& scene, const aiScene& source) {
+  // Assimp 5.2 copies a glTF node's translation into its camera too, and gives yfov * aspect as horizontal angle.
+  const std::string extension = lowerExtension(scene.file);
+  const bool gltf = extension == ".gltf" || extension == ".glb";
+  for (unsigned i = 0; i < source.mNumCameras; ++i) {
+    const aiCamera& given = *source.mCameras[i];
+    const glm::dmat4 world = worldFromNamedNode(source, given.mName);
+    Camera camera;
+    camera.name = given.mName.C_Str();
+    camera.position = glm::dvec3(world * glm::dvec4(gltf ? glm::dvec3(0.0) : toGlm(given.mPosition), 1.0));
+    camera.direction = glm::dmat3(world) * toGlm(given.mLookAt);
+    camera.up = glm::dmat3(world) * toGlm(given.mUp);
+    const double horizontal = given.mHorizontalFOV;
+    camera.verticalFov = horizontal;  // where no aspect is known
+    if (given.mAspect > 0.0f) camera.verticalFov = gltf ? horizontal / given.mAspect : 2.0 * std::atan(std::tan(0.5 * horizontal) / given.mAspect);
+    const glm::dvec3 right = glm::cross(camera.direction, camera.up);
+    const bool usable = isFinite(camera.position) && glm::length(right) > 0.0 && camera.verticalFov > 0.0 && camera.verticalFov < kPi;
+    if (!usable) {
+      logWarning("{}: camera '{}' has no proper direction, up or field of view; left out", scene.file.string(), camera.name);
+      continue;
+    }
+    camera.direction = glm::normalize(camera.direction);
+    camera.up = glm::normalize(glm::cross(right, camera.direction));
+    scene.cameras.push_back(std::move(camera));
+  }
+}
+
+void findSun(Scene& scene, const aiScene& source) {
+  unsigned others = 0;
+  for (unsigned i = 0; i < source.mNumLights; ++i) {
+    const aiLight& light = *source.mLights[i];
+    const glm::dvec3 direction = glm::dmat3(worldFromNamedNode(source, light.mName)) * toGlm(light.mDirection);
+    const glm::vec3 irradiance = toGlm(light.mColorDiffuse);
+    const bool usable = light.mType == aiLightSource_DIRECTIONAL && isFinite(direction) && glm::length(direction) > 0.0 && isFinite(irradiance);
+    if (usable && !scene.sun) scene.sun = DirectionalLight{glm::normalize(direction), glm::max(irradiance, glm::vec3(0.0f))};
+    else ++others;
+  }
+  if (others > 0) logWarning("{}: {} lights are left out; one directional light and emissive surfaces are read", scene.file.string(), others);
+  if (!scene.sun) scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
+}
+
+Camera outsideView(const Bounds& bounds) {
+  Camera camera;
+  camera.name = "default";
+  camera.verticalFov = kDefaultFov;
+  camera.direction = -glm::normalize(glm::dvec3(0.5, 0.35, 1.0));
+  const double radius = 0.5 * glm::length(bounds.extent());
+  camera.position = bounds.centre() - camera.direction * (radius / std::sin(0.5 * kDefaultFov));
+  camera.up = glm::normalize(glm::dvec3(0.0, 1.0, 0.0) - camera.direction.y * camera.direction);
+  return camera;
+}
+
+}  // namespace
+
+void setKeyFrames(Scene& scene, const fs::path& file) {
+  const std::vector<KeyFrame> keys = readKeyFrames(file);
+  scene.keyFrames = file;
+  if (!scene.cameras.empty()) return;
+  Camera camera = Spline(keys).view(0);
+  camera.name = "default";
+  scene.cameras.push_back(std::move(camera));
+}
+
+Scene loadModel(const fs::path& file) {
+  Scene scene;
+  scene.name = file.stem().string();
+  scene.file = file;
+
+  // Also tells a missing file or a folder.
+  if (lowerExtension(file) == ".obj") checkObj(file, readFileText(file));
+  else if (readFileBytes(file).empty()) throwBadInput("{}: the file is empty", file.string());
+
+  Assimp::Importer importer;
+  auto* files = new ModelFiles;  // owned by the importer
+  importer.SetIOHandler(files);
+  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngle);
+  const aiScene* source = nullptr;
+  try {
+    source = importer.ReadFile(file.string(), 0);
+    if (source) checkFaces(*source, file);
+    if (source) source = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throwBadInput("{}: cannot be read as a model: {}", file.string(), e.what());
+  }
+  if (!source || !source->mRootNode) throwBadInput("{}: cannot be read as a model: {}", file.string(), importer.GetErrorString());
+  if (!files->foundMaterials && !files->missingMaterials.empty())
+    logWarning("{}: material library {} is missing; default materials stand in", file.string(), files->missingMaterials.front());
+
+  TextureLoader textures(scene, *source);
+  std::vector<int> materialOf(source->mNumMaterials, -1);  // only those in use are converted
+  const auto convertedMaterial = [&](unsigned index) {
+    if (index >= source->mNumMaterials) throwBadInput("{}: a mesh names material {}, the file holds {}", file.string(), index, source->mNumMaterials);
+    if (materialOf[index] < 0) {
+      scene.materials.push_back(convertMaterial(*source->mMaterials[index], textures, scene));
+      materialOf[index] = static_cast<int>(scene.materials.size()) - 1;
+    }
+    return materialOf[index];
+  };
+  const std::function<void(const aiNode&, const glm::dmat4&)> appendNode = [&](const aiNode& node, const glm::dmat4& worldFromParent) {
+    const glm::dmat4 worldFromNode = worldFromParent * toGlm(node.mTransformation);
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const aiMesh& mesh = *source->mMeshes[node.mMeshes[i]];
+      if (!(mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) continue;
+      const std::string name = mesh.mName.length > 0 ? mesh.mName.C_Str() : node.mName.C_Str();
+      appendMesh(scene, mesh, worldFromNode, convertedMaterial(mesh.mMaterialIndex), name);
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) appendNode(*node.mChildren[i], worldFromNode);
+  };
+  appendNode(*source->mRootNode, glm::dmat4(1.0));
+  if (scene.indices.empty())
+    throwBadInput("{}: nothing to draw: no triangles ({} dropped as not finite)", file.string(), scene.droppedTriangles);
+  if (scene.degenerateTriangles == scene.triangleCount()) throwBadInput("{}: nothing to draw: all triangles have zero area", file.string());
+  if (scene.droppedTriangles > 0) logWarning("{}: {} triangles with positions that are not finite are left out", file.string(), scene.droppedTriangles);
+
+  findSun(scene, *source);
+  appendCameras(scene, *source);
+  const fs::path walk = fs::path(LUCERNA_SOURCE_DIR) / "keyFrames" / (scene.name + ".txt");
+  if (fs::exists(walk)) setKeyFrames(scene, walk);
+  if (scene.cameras.empty()) scene.cameras.push_back(outsideView(scene.bounds));
+  return scene;
+}
+
+Scene loadScene(const fs::path& file) { return lowerExtension(file) == ".json" ? loadSceneFile(file) : loadModel(file); }
+
+}  // namespace lucerna

@@ -1,0 +1,11 @@
+// Cut-out meshes cast the shadow of their mask; opaque ones need no fragment work.
+#if ALPHA_MASK
+in vec2 vTexCoord;
+layout(binding = 1) uniform sampler2D maskTexture;
+#endif
+
+void main() {
+#if ALPHA_MASK
+  if (texture(maskTexture, vTexCoord).r < 0.5) discard;
+#endif
+}

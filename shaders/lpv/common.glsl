@@ -1,0 +1,10 @@
+// The light propagation volume's block and storage format. All cascades lie in one 3D texture, stacked along z: cascade k has
+// the layers k * cells .. (k + 1) * cells - 1; the geometry volume's cells lie on the corners, so it has cells + 1 a side.
+#include "shared/lpv.h"
+layout(std140, binding = 1) uniform LpvBlock { LpvConstants lpv; };
+
+#if LPV_FULL_FLOAT
+#define LPV_FORMAT rgba32f
+#else
+#define LPV_FORMAT rgba16f
+#endif

@@ -1,0 +1,27 @@
+// Blocking potential at the centre of every face: the mean of the four geometry-volume cells at the face's corners
+// [Kaplanyan2010, figure 5.3 of ORIGINALS 1.5]. Done once a frame, so that each propagation step reads one texel a face.
+// Face (i,j,k) of axis x lies between the cells (i-1,j,k) and (i,j,k); likewise y, z.
+#include "lpv/common.glsl"
+layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
+layout(binding = 0) uniform sampler3D geometryVolume;
+layout(binding = 0, LPV_FORMAT) writeonly uniform image3D facesX;
+layout(binding = 1, LPV_FORMAT) writeonly uniform image3D facesY;
+layout(binding = 2, LPV_FORMAT) writeonly uniform image3D facesZ;
+
+vec4 potential(ivec3 corner) { return texelFetch(geometryVolume, corner, 0); }
+
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  int corners = lpv.shape.x + 1;
+  int layer = at.z % corners;
+  if (any(greaterThanEqual(at, ivec3(corners, corners, corners * lpv.shape.y)))) return;
+  // Faces beyond the last cell of an axis do not exist; what is written there is never read.
+  vec4 here = potential(at);
+  ivec3 x = ivec3(at.x + 1 < corners ? 1 : 0, 0, 0);
+  ivec3 y = ivec3(0, at.y + 1 < corners ? 1 : 0, 0);
+  ivec3 z = ivec3(0, 0, layer + 1 < corners ? 1 : 0);
+  vec4 hereX = potential(at + x), hereY = potential(at + y), hereZ = potential(at + z);
+  imageStore(facesX, at, 0.25 * (here + hereY + hereZ + potential(at + y + z)));
+  imageStore(facesY, at, 0.25 * (here + hereX + hereZ + potential(at + x + z)));
+  imageStore(facesZ, at, 0.25 * (here + hereX + hereY + potential(at + x + y)));
+}

@@ -1,0 +1,32 @@
+// Blocking potential [Kaplanyan2010, section 4.2]: a surfel of area A and normal n adds A / s^2 * lobe(n) to the cell of the
+// geometry volume that it lies in. That volume is shifted half a cell, so that its centres lie on the grid's corners.
+// A is the surface's true area: the texel's area across the rays divided by the cosine to the light, the cosine bounded by
+// 1/20 because the few texels on a surface seen edge-on say little about its area.
+#include "lib/sh.glsl"
+#include "lpv/common.glsl"
+layout(points) in;
+layout(points, max_vertices = LPV_MAX_CASCADES) out;
+in vec4 gPosition[];
+in vec4 gNormal[];
+in vec3 gFlux[];
+flat out vec4 fPotential;
+uniform float texelArea;  // across the rays
+
+void main() {
+  vec3 normal = gNormal[0].xyz;
+  bool usable = gPosition[0].w > 0.5 && dot(normal, normal) > 0.25 && dot(normal, normal) < 4.0;
+  if (!usable) return;
+  int corners = lpv.shape.x + 1;
+  float area = texelArea / max(gNormal[0].w, 0.05);
+  for (int k = 0; k < lpv.shape.y; ++k) {
+    float s = lpv.cascades[k].cellSize;
+    ivec3 corner = ivec3(floor((gPosition[0].xyz - lpv.cascades[k].minimum) / s + 0.5));
+    if (any(lessThan(corner, ivec3(0))) || any(greaterThanEqual(corner, ivec3(corners)))) continue;
+    fPotential = area / (s * s) * shCosineLobe(normal);
+    gl_Layer = k * corners + corner.z;
+    gl_Position = vec4((vec2(corner.xy) + 0.5) / float(corners) * 2.0 - 1.0, 0.0, 1.0);
+    gl_PointSize = 1.0;
+    EmitVertex();
+    EndPrimitive();
+  }
+}

@@ -1,0 +1,66 @@
+// One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels.
+#include "lpv/common.glsl"
+#include "lpv/kernel.glsl"
+layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
+layout(binding = 0) uniform sampler3D sourceRed;
+layout(binding = 1) uniform sampler3D sourceGreen;
+layout(binding = 2) uniform sampler3D sourceBlue;
+#if BLOCKED
+layout(binding = 3) uniform sampler3D facesX;
+layout(binding = 4) uniform sampler3D facesY;
+layout(binding = 5) uniform sampler3D facesZ;
+#endif
+layout(binding = 0, LPV_FORMAT) writeonly uniform image3D nextRed;
+layout(binding = 1, LPV_FORMAT) writeonly uniform image3D nextGreen;
+layout(binding = 2, LPV_FORMAT) writeonly uniform image3D nextBlue;
+// The running sum G_0 + G_1 + ...; the first step starts it with the injected grid.
+layout(binding = 3, LPV_FORMAT) uniform image3D sumRed;
+layout(binding = 4, LPV_FORMAT) uniform image3D sumGreen;
+layout(binding = 5, LPV_FORMAT) uniform image3D sumBlue;
+
+// From the neighbour at `source` to `cell` along one axis. toFrame and fromFrame rotate (c0, x, y, z) into (c0, travel, u, v) and
+// back; `way` is +1 or -1 along the axis. `faceOffset` leads from the cell to the crossed face.
+#define GATHER(axis, way, offset, toFrame, fromFrame, faces, faceOffset)                         \
+  if (uint(local.axis - int(way)) < uint(cells)) {                                              \
+    ivec3 source = cell - offset;                                                               \
+    const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                 \
+    FaceValues transmittance = OPEN_OR_BLOCKED(faces, faceOffset, toFrame, turn);               \
+    red += (carry(texelFetch(sourceRed, source, 0).toFrame * turn, transmittance) * turn).fromFrame;     \
+    green += (carry(texelFetch(sourceGreen, source, 0).toFrame * turn, transmittance) * turn).fromFrame; \
+    blue += (carry(texelFetch(sourceBlue, source, 0).toFrame * turn, transmittance) * turn).fromFrame;   \
+  }
+#if BLOCKED
+#define OPEN_OR_BLOCKED(faces, faceOffset, toFrame, turn) \
+  transmittanceTowardsFaces(texelFetch(faces, corner + faceOffset, 0).toFrame * turn)
+#else
+#define OPEN_OR_BLOCKED(faces, faceOffset, toFrame, turn) FaceValues(1.0, vec4(1.0))
+#endif
+
+void main() {
+  ivec3 cell = ivec3(gl_GlobalInvocationID);
+  int cells = lpv.shape.x;
+  if (any(greaterThanEqual(cell, ivec3(cells, cells, cells * lpv.shape.y)))) return;
+  ivec3 local = ivec3(cell.xy, cell.z % cells);
+  ivec3 corner = ivec3(cell.xy, cell.z / cells * (cells + 1) + local.z);  // the cell's lower corner in the geometry volume
+  vec4 red = vec4(0.0), green = vec4(0.0), blue = vec4(0.0);
+
+  GATHER(x, 1.0, ivec3(1, 0, 0), xyzw, xyzw, facesX, ivec3(0, 0, 0))
+  GATHER(x, -1.0, ivec3(-1, 0, 0), xyzw, xyzw, facesX, ivec3(1, 0, 0))
+  GATHER(y, 1.0, ivec3(0, 1, 0), xzwy, xwyz, facesY, ivec3(0, 0, 0))
+  GATHER(y, -1.0, ivec3(0, -1, 0), xzwy, xwyz, facesY, ivec3(0, 1, 0))
+  GATHER(z, 1.0, ivec3(0, 0, 1), xwyz, xzwy, facesZ, ivec3(0, 0, 0))
+  GATHER(z, -1.0, ivec3(0, 0, -1), xwyz, xzwy, facesZ, ivec3(0, 0, 1))
+
+  imageStore(nextRed, cell, red);
+  imageStore(nextGreen, cell, green);
+  imageStore(nextBlue, cell, blue);
+#if FIRST_STEP
+  imageStore(sumRed, cell, texelFetch(sourceRed, cell, 0) + red);
+  imageStore(sumGreen, cell, texelFetch(sourceGreen, cell, 0) + green);
+  imageStore(sumBlue, cell, texelFetch(sourceBlue, cell, 0) + blue);
+#else
+  imageStore(sumRed, cell, imageLoad(sumRed, cell) + red);
+  imageStore(sumGreen, cell, imageLoad(sumGreen, cell) + green);
+  imageStore(sumBlue, cell, imageLoad(sumBlue, cell) + blue);
+#endif
+}

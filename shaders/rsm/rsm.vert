@@ -1,0 +1,15 @@
+// A mesh vertex seen by the sun.
+#include "lib/frame.glsl"
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 texCoord;
+layout(location = 2) in vec3 normal;
+out vec3 vPosition;
+out vec3 vNormal;
+out vec2 vTexCoord;
+
+void main() {
+  vPosition = position;
+  vNormal = normal;
+  vTexCoord = texCoord;
+  gl_Position = frame.sunClipFromWorld * vec4(position, 1.0);
+}

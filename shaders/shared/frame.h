@@ -1,0 +1,20 @@
+// What every pass of a frame reads: uniform block 0.
+#pragma once
+#include "shared/types.h"
+
+SHARED_BEGIN
+
+struct FrameConstants {
+  mat4 clipFromWorld;     // the camera's
+  mat4 sunClipFromWorld;  // orthographic: shadow map and reflective shadow map share it
+  vec3 cameraPosition;
+  float exposure;          // multiplies radiance before tone mapping
+  vec3 sunDirection;       // unit, along which light travels
+  float shadowNormalOffset;  // world units: a receiver is moved this far along its normal before the shadow test
+  vec3 sunIrradiance;      // across the rays
+  float shadowTexelUv;     // 1 / shadow map size
+  vec3 background;         // radiance where no surface is
+  float padding;
+};
+
+SHARED_END

@@ -1,0 +1,25 @@
+// Where the light propagation volume's cascades lie: uniform block 1. Cascade 0 is the finest.
+#pragma once
+#include "shared/types.h"
+
+SHARED_BEGIN
+
+#define LPV_MAX_CASCADES 4
+
+struct LpvCascade {
+  vec3 minimum;        // world: minimum corner of cell (0,0,0); an exact multiple of cellSize
+  float cellSize;      // world units
+  vec3 blendCentre;    // world: the unsnapped centre, so that the blend moves smoothly with the camera
+  float blendHalf;     // world: from the centre to where this cascade has faded out; huge for the coarsest
+};
+
+struct LpvConstants {
+  LpvCascade cascades[LPV_MAX_CASCADES];
+  ivec4 shape;          // x: cells a side, y: cascades, z and w unused
+  float referenceIrradiance;  // E_ref: coefficients are stored as c / (E_ref cellSize^2)
+  float blendBand;      // fraction of blendHalf over which a cascade fades into the next
+  float lookupOffset;   // cells along the normal by which a receiver is moved before the lookup
+  float padding;
+};
+
+SHARED_END

@@ -1,0 +1,439 @@
+// The double-precision CPU twin of the light-propagation-volume pipeline; see the header for sources and units.
+#include "support/lpv_twin.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace lucerna::twin {
+
+namespace {
+
+constexpr int kAxes = 6;
+/// The six signed axes, the directions in which light travels to a neighbour and the outward normals of a cell's faces.
+const std::array<glm::ivec3, kAxes> kAxis = {glm::ivec3(1, 0, 0),  glm::ivec3(-1, 0, 0), glm::ivec3(0, 1, 0),
+                                             glm::ivec3(0, -1, 0), glm::ivec3(0, 0, 1),  glm::ivec3(0, 0, -1)};
+
+bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// The unit vector, or nothing where there is none.
+std::optional<glm::dvec3> unit(const glm::dvec3& v) {
+  if (!isFinite(v)) return std::nullopt;
+  const double norm = std::hypot(v.x, v.y, v.z);
+  if (!(norm > 0.0) || !std::isfinite(norm)) return std::nullopt;
+  return v / norm;
+}
+
+/// Cell of a point given in cells from the grid's minimum. The range is tested in double: no integer can overflow.
+std::optional<glm::ivec3> cellAt(const glm::ivec3& dims, const glm::dvec3& inCells, IndexRule rule) {
+  glm::ivec3 cell(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double whole = rule == IndexRule::floor ? std::floor(inCells[axis]) : std::trunc(inCells[axis]);
+    if (!(whole >= 0.0 && whole < static_cast<double>(dims[axis]))) return std::nullopt;
+    cell[axis] = static_cast<int>(whole);
+  }
+  return cell;
+}
+
+void requireSameGrid(const Volume& a, const Volume& b) {
+  if (!(a.grid == b.grid)) throw std::invalid_argument("lpv twin: the two volumes lie on different grids");
+}
+
+/// What one of the five faces of the destination receives from the source.
+struct FaceTerm {
+  glm::dvec3 towardsFace;   ///< w_f, from the source's centre to the face's
+  double solidAngle = 0.0;  ///< Omega_f, sr
+  Sh reprojected;           ///< gain/pi * lobe(n_f): what a unit flux through the face adds to the destination
+};
+struct AxisTerms {
+  glm::ivec3 axis{0};
+  std::vector<FaceTerm> faces;
+};
+
+/// The degenerate side directions of a public kernel: the axis is multiplied by component with a vector that is
+/// right for travel along +z only, instead of rotating it.
+void addComponentProductSides(AxisTerms& terms, const KernelOptions& options, double perFlux) {
+  const std::array<glm::dvec2, 4> sides = {glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(-1, 0), glm::dvec2(0, -1)};
+  const glm::dvec3 axis(terms.axis);
+  for (const glm::dvec2& side : sides) {
+    const glm::dvec3 towards = axis * (glm::dvec3(side, 2.0) / std::sqrt(5.0));
+    const glm::dvec3 reprojection = axis * glm::dvec3(side, 0.0);
+    terms.faces.push_back({towards, options.sideSolidAngle, perFlux * lobe(reprojection, options.lobeBand1)});
+  }
+}
+
+/// The 30 terms of the kernel, [Kaplanyan2010 section 4.2] with the factors of [Kirsch2010].
+std::array<AxisTerms, kAxes> kernelTerms(const KernelOptions& options) {
+  const double perFlux = options.gain / kPi;
+  std::array<AxisTerms, kAxes> kernel;
+  for (std::size_t i = 0; i < kernel.size(); ++i) {
+    AxisTerms& terms = kernel[i];
+    terms.axis = kAxis[i];
+    const glm::dvec3 p(terms.axis);
+    terms.faces.push_back({p, options.frontSolidAngle, perFlux * lobe(p, options.lobeBand1)});
+    if (options.frontFaceOnly) continue;
+    if (options.sideDirections == SideDirections::componentProduct) {
+      addComponentProductSides(terms, options, perFlux);
+      continue;
+    }
+    for (const glm::ivec3& normal : kAxis) {
+      if (normal == terms.axis || normal == -terms.axis) continue;
+      const glm::dvec3 n(normal);
+      terms.faces.push_back(
+          {glm::normalize(2.0 * p + n), options.sideSolidAngle, perFlux * lobe(n, options.lobeBand1)});
+    }
+  }
+  return kernel;
+}
+
+}  // namespace
+
+// ---- spherical harmonics -------------------------------------------------------------------------------------------
+
+double evaluate(const Sh& sh, const glm::dvec3& direction) { return sh.c0 * kY00 + kY1 * glm::dot(sh.c1, direction); }
+
+double dot(const Sh& a, const Sh& b) { return a.c0 * b.c0 + glm::dot(a.c1, b.c1); }
+
+Sh lobe(const glm::dvec3& axis, double band1) { return {kLobeBand0, band1 * axis}; }
+
+double flux(const Sh& sh) { return sh.c0 / kY00; }
+
+double length(const Sh& sh) { return std::sqrt(dot(sh, sh)); }
+
+// ---- grids ---------------------------------------------------------------------------------------------------------
+
+std::size_t GridSpec::cellCount() const {
+  return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z);
+}
+
+bool GridSpec::contains(const glm::ivec3& cell) const {
+  return cell.x >= 0 && cell.y >= 0 && cell.z >= 0 && cell.x < dims.x && cell.y < dims.y && cell.z < dims.z;
+}
+
+std::size_t GridSpec::index(const glm::ivec3& cell) const {
+  const auto x = static_cast<std::size_t>(cell.x);
+  const auto y = static_cast<std::size_t>(cell.y);
+  const auto z = static_cast<std::size_t>(cell.z);
+  return (z * static_cast<std::size_t>(dims.y) + y) * static_cast<std::size_t>(dims.x) + x;
+}
+
+glm::dvec3 GridSpec::centre(const glm::ivec3& cell) const { return minimum + cellSize * (glm::dvec3(cell) + 0.5); }
+
+bool operator==(const GridSpec& a, const GridSpec& b) {
+  return a.dims == b.dims && a.minimum == b.minimum && a.cellSize == b.cellSize;
+}
+
+std::optional<glm::ivec3> cellOf(const GridSpec& grid, const glm::dvec3& point, IndexRule rule) {
+  return cellAt(grid.dims, (point - grid.minimum) / grid.cellSize, rule);
+}
+
+VolumeRgb makeVolumeRgb(const GridSpec& grid) { return {Volume(grid), Volume(grid), Volume(grid)}; }
+
+void add(Volume& a, const Volume& b) {
+  requireSameGrid(a, b);
+  for (std::size_t i = 0; i < a.cells.size(); ++i) a.cells[i] += b.cells[i];
+}
+
+double totalFlux(const Volume& volume) {
+  double sum = 0.0;
+  for (const Sh& cell : volume.cells) sum += flux(cell);
+  return sum;
+}
+
+glm::dvec3 totalFlux(const VolumeRgb& volume) {
+  return {totalFlux(volume[0]), totalFlux(volume[1]), totalFlux(volume[2])};
+}
+
+// ---- injection -----------------------------------------------------------------------------------------------------
+
+bool inject(VolumeRgb& volume, const Vpl& vpl, const InjectionOptions& options) {
+  const std::optional<glm::dvec3> normal = unit(vpl.normal);
+  if (!normal || !isFinite(vpl.position) || !isFinite(vpl.flux)) return false;
+  const GridSpec& grid = volume[0].grid;
+  const glm::dvec3 moved = vpl.position + options.normalShift * grid.cellSize * *normal;
+  const std::optional<glm::ivec3> cell = cellOf(grid, moved, options.indexRule);
+  if (!cell) return false;
+  for (int channel = 0; channel < 3; ++channel) {
+    volume[static_cast<std::size_t>(channel)].at(*cell) += (vpl.flux[channel] / kPi) * lobe(*normal);
+  }
+  return true;
+}
+
+std::size_t inject(VolumeRgb& volume, std::span<const Vpl> vpls, const InjectionOptions& options) {
+  std::size_t kept = 0;
+  for (const Vpl& vpl : vpls) kept += inject(volume, vpl, options) ? 1U : 0U;
+  return kept;
+}
+
+// ---- geometry volume -----------------------------------------------------------------------------------------------
+
+GridSpec geometryGrid(const GridSpec& lpvGrid) {
+  return {lpvGrid.dims + 1, lpvGrid.minimum - 0.5 * lpvGrid.cellSize, lpvGrid.cellSize};
+}
+
+std::optional<glm::ivec3> geometryCellOf(const GridSpec& lpvGrid, const glm::dvec3& point, IndexRule rule) {
+  return cellAt(lpvGrid.dims + 1, (point - lpvGrid.minimum) / lpvGrid.cellSize + 0.5, rule);
+}
+
+bool injectSurfel(Volume& geometry, const GridSpec& lpvGrid, const Vpl& surfel, IndexRule rule) {
+  const std::optional<glm::dvec3> normal = unit(surfel.normal);
+  if (!normal || !isFinite(surfel.position) || !std::isfinite(surfel.area)) return false;
+  const std::optional<glm::ivec3> cell = geometryCellOf(lpvGrid, surfel.position, rule);
+  if (!cell) return false;
+  geometry.at(*cell) += (surfel.area / (lpvGrid.cellSize * lpvGrid.cellSize)) * lobe(*normal);
+  return true;
+}
+
+std::size_t injectSurfels(Volume& geometry, const GridSpec& lpvGrid, std::span<const Vpl> surfels, IndexRule rule) {
+  std::size_t kept = 0;
+  for (const Vpl& surfel : surfels) kept += injectSurfel(geometry, lpvGrid, surfel, rule) ? 1U : 0U;
+  return kept;
+}
+
+void mergeByGreatest(Volume& a, const Volume& b) {
+  requireSameGrid(a, b);
+  for (std::size_t i = 0; i < a.cells.size(); ++i) {
+    if (length(b.cells[i]) > length(a.cells[i])) a.cells[i] = b.cells[i];
+  }
+}
+
+// ---- propagation ---------------------------------------------------------------------------------------------------
+
+double frontSolidAngle() { return 4.0 * std::atan(std::sqrt(11.0) / 33.0); }
+
+double sideSolidAngle() { return -kPi / 3.0 + 2.0 * std::atan(3.0 * std::sqrt(11.0) / 11.0); }
+
+KernelOptions slippedSideKernel() {
+  KernelOptions options;
+  options.sideSolidAngle = kSlippedSideSolidAngle;
+  return options;
+}
+
+KernelOptions swappedConstantsKernel() {
+  KernelOptions options;
+  std::swap(options.frontSolidAngle, options.sideSolidAngle);
+  return options;
+}
+
+KernelOptions componentProductKernel() {
+  KernelOptions options;
+  options.sideDirections = SideDirections::componentProduct;
+  return options;
+}
+
+KernelOptions flatLobeKernel() {
+  KernelOptions options;
+  options.lobeBand1 = std::sqrt(kPi) / 3.0;
+  return options;
+}
+
+KernelOptions fourPiKernel(double amplifier) {
+  KernelOptions options;
+  options.gain = 0.25 * amplifier;  // Omega/(4 pi) * lobe for Omega * lobe/pi
+  return options;
+}
+
+KernelOptions frontFaceKernel() {
+  KernelOptions options;
+  options.frontFaceOnly = true;
+  return options;
+}
+
+double transmittance(const Sh& potential, const glm::dvec3& direction, const KernelOptions& options) {
+  double blocked = evaluate(potential, -direction);
+  if (options.twoSidedBlocking) blocked = std::max(blocked, evaluate(potential, direction));
+  if (options.clampTransmittance) blocked = std::clamp(blocked, 0.0, 1.0);
+  return 1.0 - blocked;
+}
+
+Sh potentialAtFace(const Volume& geometry, const glm::ivec3& destination, const glm::ivec3& axis) {
+  // Corner j of the LPV is the centre of geometry cell j. The face lies on the destination's low side where light
+  // travels up the axis, else on its high side.
+  glm::ivec3 corner = destination;
+  std::array<glm::ivec3, 2> across{};  // the two axes in the face's plane
+  std::size_t found = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (axis[i] != 0) {
+      if (axis[i] < 0) ++corner[i];
+    } else {
+      glm::ivec3 step(0);
+      step[i] = 1;
+      across[found++] = step;
+    }
+  }
+  return 0.25 * (geometry.at(corner) + geometry.at(corner + across[0]) + geometry.at(corner + across[1]) +
+                 geometry.at(corner + across[0] + across[1]));
+}
+
+Volume propagateStep(const Volume& source, const KernelOptions& options, const Volume* geometry) {
+  const GridSpec& grid = source.grid;
+  if (geometry != nullptr && !(geometry->grid == geometryGrid(grid))) {
+    throw std::invalid_argument("lpv twin: the geometry volume does not lie on the corners of the propagated grid");
+  }
+  const std::array<AxisTerms, kAxes> kernel = kernelTerms(options);
+  Volume destination(grid);
+  for (int z = 0; z < grid.dims.z; ++z) {
+    for (int y = 0; y < grid.dims.y; ++y) {
+      for (int x = 0; x < grid.dims.x; ++x) {
+        const glm::ivec3 cell(x, y, z);
+        Sh gathered;
+        for (const AxisTerms& terms : kernel) {
+          const glm::ivec3 from = cell - terms.axis;
+          if (!grid.contains(from)) continue;
+          const Sh& incoming = source.at(from);
+          if (incoming == Sh{}) continue;  // most cells, in the first steps
+          const Sh potential = geometry != nullptr ? potentialAtFace(*geometry, cell, terms.axis) : Sh{};
+          for (const FaceTerm& face : terms.faces) {
+            double intensity = evaluate(incoming, face.towardsFace);
+            if (options.clampIntensity) intensity = std::max(0.0, intensity);
+            double faceFlux = face.solidAngle * intensity;
+            if (geometry != nullptr) faceFlux *= transmittance(potential, face.towardsFace, options);
+            gathered += faceFlux * face.reprojected;
+          }
+        }
+        destination.at(cell) = gathered;
+      }
+    }
+  }
+  return destination;
+}
+
+Propagated propagate(const Volume& injected, int iterations, const KernelOptions& options, const Volume* geometry) {
+  Propagated result{injected, injected};
+  for (int step = 0; step < iterations; ++step) {
+    const bool blocks = step > 0 || options.blockFirstStep;
+    result.front = propagateStep(result.front, options, blocks ? geometry : nullptr);
+    add(result.accumulated, result.front);
+  }
+  return result;
+}
+
+PropagatedRgb propagate(const VolumeRgb& injected, int iterations, const KernelOptions& options,
+                        const Volume* geometry) {
+  PropagatedRgb result;
+  for (std::size_t channel = 0; channel < injected.size(); ++channel) {
+    Propagated one = propagate(injected[channel], iterations, options, geometry);
+    result.front[channel] = std::move(one.front);
+    result.accumulated[channel] = std::move(one.accumulated);
+  }
+  return result;
+}
+
+// ---- lookup --------------------------------------------------------------------------------------------------------
+
+Sh sampleTrilinear(const Volume& volume, const glm::dvec3& point) {
+  const GridSpec& grid = volume.grid;
+  const glm::dvec3 inCells = (point - grid.minimum) / grid.cellSize - 0.5;  // 0 at the centre of cell 0
+  glm::ivec3 low(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(inCells[axis] > -1.0 && inCells[axis] < static_cast<double>(grid.dims[axis]))) return {};
+    low[axis] = static_cast<int>(std::floor(inCells[axis]));
+  }
+  const glm::dvec3 fraction = inCells - glm::dvec3(low);
+  Sh sum;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 step(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
+    if (!grid.contains(low + step)) continue;
+    double weight = 1.0;
+    for (int axis = 0; axis < 3; ++axis) weight *= step[axis] == 1 ? fraction[axis] : 1.0 - fraction[axis];
+    sum += weight * volume.at(low + step);
+  }
+  return sum;
+}
+
+double irradiance(const Sh& sh, const glm::dvec3& normal, double cellSize, Lookup lookup) {
+  // [Kaplanyan2010]: the light is taken to sit half a cell away, E = I / (s/2)^2. The cosine lookup takes the mean of
+  // I under the receiver's cosine, (1/pi) * integral of I * max(0, <-n|w>).
+  const double intensity = lookup == Lookup::direct ? evaluate(sh, -normal) : dot(sh, lobe(-normal)) / kPi;
+  return std::max(0.0, 4.0 / (cellSize * cellSize) * intensity);
+}
+
+double irradiance(const Volume& volume, const glm::dvec3& point, const glm::dvec3& normal,
+                  const LookupOptions& options) {
+  const double cellSize = volume.grid.cellSize;
+  const Sh sh = sampleTrilinear(volume, point + options.normalOffset * cellSize * normal);
+  return irradiance(sh, normal, cellSize, options.lookup);
+}
+
+glm::dvec3 irradiance(const VolumeRgb& volume, const glm::dvec3& point, const glm::dvec3& normal,
+                      const LookupOptions& options) {
+  return {irradiance(volume[0], point, normal, options), irradiance(volume[1], point, normal, options),
+          irradiance(volume[2], point, normal, options)};
+}
+
+double irradianceSumOfCascades(std::span<const Volume> cascades, const glm::dvec3& point, const glm::dvec3& normal,
+                               const LookupOptions& options) {
+  double sum = 0.0;
+  for (const Volume& cascade : cascades) sum += irradiance(cascade, point, normal, options);
+  return sum;
+}
+
+// ---- the grid that follows the camera ------------------------------------------------------------------------------
+
+SnappedGrid cameraGrid(const glm::dvec3& camera, const glm::dvec3& viewDirection, const glm::ivec3& dims,
+                       double cellSize, SnapRule rule) {
+  const glm::dvec3 extent = glm::dvec3(dims) * cellSize;
+  const glm::dvec3 centre = camera + viewDirection * (0.8 * 0.5 * extent);
+  const glm::dvec3 inCells = (centre - 0.5 * extent) / cellSize;
+  SnappedGrid snapped;
+  snapped.grid.dims = dims;
+  snapped.grid.cellSize = cellSize;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double whole = rule == SnapRule::floor ? std::floor(inCells[axis]) : std::trunc(inCells[axis] + 0.5);
+    snapped.corner[axis] = static_cast<std::int64_t>(whole);
+    const double minimum = static_cast<double>(snapped.corner[axis]) * cellSize;
+    snapped.grid.minimum[axis] = rule == SnapRule::floor ? minimum : std::trunc(minimum);
+  }
+  return snapped;
+}
+
+// ---- VPLs of a lit plate -------------------------------------------------------------------------------------------
+
+double OrthographicRsm::texelArea() const {
+  return width * height / (static_cast<double>(texels.x) * static_cast<double>(texels.y));
+}
+
+OrthographicRsm fittedRsm(const Plate& plate, const glm::ivec2& texels, const glm::dvec3& irradiance) {
+  OrthographicRsm rsm;
+  rsm.centre = plate.centre;
+  rsm.width = std::abs(plate.edgeU.x);
+  rsm.height = std::abs(plate.edgeV.y);
+  rsm.texels = texels;
+  rsm.irradiance = irradiance;
+  return rsm;
+}
+
+Plate tiltedPlate(const glm::dvec3& centre, double sizeU, double sizeV, double tilt, const glm::dvec3& albedo) {
+  return {centre, {sizeU, 0.0, 0.0}, sizeV * glm::dvec3(0.0, std::cos(tilt), std::sin(tilt)), albedo};
+}
+
+std::vector<Vpl> plateVpls(const Plate& plate, const OrthographicRsm& rsm) {
+  glm::dvec3 normal = glm::normalize(glm::cross(plate.edgeU, plate.edgeV));
+  double cosine = -glm::dot(normal, rsm.direction());
+  if (cosine < 0.0) {
+    normal = -normal;
+    cosine = -cosine;
+  }
+  std::vector<Vpl> vpls;
+  if (!(cosine > 0.0)) return vpls;  // edge on: no texel sees it
+  const glm::dvec3 vplFlux = rsm.irradiance * plate.albedo * rsm.texelArea();
+  vpls.reserve(static_cast<std::size_t>(rsm.texels.x) * static_cast<std::size_t>(rsm.texels.y));
+  for (int j = 0; j < rsm.texels.y; ++j) {
+    for (int i = 0; i < rsm.texels.x; ++i) {
+      const double right = ((i + 0.5) / rsm.texels.x - 0.5) * rsm.width;
+      const double up = ((j + 0.5) / rsm.texels.y - 0.5) * rsm.height;
+      const glm::dvec3 origin = rsm.centre + right * rsm.right + up * rsm.up;
+      const double distance = glm::dot(plate.centre - origin, normal) / -cosine;
+      const glm::dvec3 hit = origin + distance * rsm.direction();
+      const glm::dvec3 local = hit - plate.centre;
+      const double u = glm::dot(local, plate.edgeU) / glm::dot(plate.edgeU, plate.edgeU);
+      const double v = glm::dot(local, plate.edgeV) / glm::dot(plate.edgeV, plate.edgeV);
+      if (std::abs(u) > 0.5 || std::abs(v) > 0.5) continue;
+      vpls.push_back({hit, normal, vplFlux, rsm.texelArea() / cosine});
+    }
+  }
+  return vpls;
+}
+
+}  // namespace lucerna::twin

@@ -1,0 +1,103 @@
+// SceneNeeds: each flag is up exactly where a drawn mesh or a light asks for it.
+#include "scene/needs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace lucerna {
+namespace {
+
+/// One drawn mesh of a plain white material, a sun; and a second material that no mesh uses.
+Scene plainScene() {
+  Scene scene;
+  scene.vertices.resize(3);
+  scene.indices = {0, 1, 2};
+  scene.materials.resize(2);
+  Mesh mesh;
+  mesh.indexCount = 3;
+  scene.meshes.push_back(mesh);
+  scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(1.0f)};
+  return scene;
+}
+
+SceneNeeds plainNeeds() {
+  SceneNeeds needs;
+  needs.directionalLight = true;
+  needs.indirect = true;
+  return needs;
+}
+
+TEST(SceneNeedsTest, AnEmptySceneNeedsNothing) { EXPECT_EQ(analyse(Scene{}), SceneNeeds{}); }
+
+TEST(SceneNeedsTest, APlainSceneNeedsOnlyItsLight) { EXPECT_EQ(analyse(plainScene()), plainNeeds()); }
+
+TEST(SceneNeedsTest, EachFeatureRaisesItsFlagAlone) {
+  struct Case {
+    const char* name;
+    std::function<void(Scene&)> change;
+    bool SceneNeeds::*flag;
+  };
+  const std::vector<Case> cases = {
+      {"texture", [](Scene& s) { s.materials[0].diffuseTexture = 0; }, &SceneNeeds::diffuseTextures},
+      {"mask", [](Scene& s) { s.materials[0].alphaMasked = true; }, &SceneNeeds::alphaMasks},
+      {"specular", [](Scene& s) { s.materials[0].specular.z = 0.01f; }, &SceneNeeds::specular},
+      {"emission", [](Scene& s) { s.materials[0].emission.y = 1e-6f; }, &SceneNeeds::emission},
+      {"background", [](Scene& s) { s.background.x = 0.1f; }, &SceneNeeds::background},
+  };
+  for (const Case& c : cases) {
+    Scene scene = plainScene();
+    c.change(scene);
+    SceneNeeds expected = plainNeeds();
+    expected.*c.flag = true;
+    EXPECT_EQ(analyse(scene), expected) << c.name;
+  }
+}
+
+TEST(SceneNeedsTest, MaterialsOfNoDrawnMeshDoNotCount) {
+  Scene scene = plainScene();
+  Material& unused = scene.materials[1];
+  unused.diffuseTexture = 0;
+  unused.alphaMasked = true;
+  unused.specular = unused.emission = glm::vec3(1.0f);
+  EXPECT_EQ(analyse(scene), plainNeeds());
+  Mesh empty;
+  empty.material = 1;
+  scene.meshes.push_back(empty);  // no indices: not drawn
+  EXPECT_EQ(analyse(scene), plainNeeds());
+  scene.meshes.back().indexCount = 3;
+  EXPECT_NE(analyse(scene), plainNeeds());
+}
+
+TEST(SceneNeedsTest, NoSunOrADarkSunIsNoLight) {
+  Scene scene = plainScene();
+  scene.sun->irradiance = glm::vec3(0.0f);
+  EXPECT_EQ(analyse(scene), SceneNeeds{});
+  scene.sun.reset();
+  EXPECT_EQ(analyse(scene), SceneNeeds{});
+}
+
+TEST(SceneNeedsTest, IndirectLightNeedsALightAndAnAlbedo) {
+  Scene black = plainScene();
+  for (Material& m : black.materials) m.diffuse = glm::vec3(0.0f);
+  EXPECT_FALSE(analyse(black).indirect);
+  Scene glowing = plainScene();
+  glowing.sun.reset();
+  glowing.background = glm::vec3(1.0f);  // lights nothing
+  EXPECT_FALSE(analyse(glowing).indirect);
+  glowing.materials[0].emission = glm::vec3(1.0f);
+  EXPECT_TRUE(analyse(glowing).indirect);
+}
+
+TEST(SceneNeedsTest, NamesComeInDeclarationOrder) {
+  SceneNeeds needs;
+  needs.specular = true;
+  const auto named = needs.named();
+  ASSERT_EQ(named.size(), sizeof(SceneNeeds));  // a bool each: a new flag must get its name
+  EXPECT_EQ(named[0].first, "diffuseTextures");
+  EXPECT_EQ(named[2], (std::pair<std::string, bool>("specular", true)));
+  EXPECT_EQ(named[6].first, "indirect");
+}
+
+}  // namespace
+}  // namespace lucerna

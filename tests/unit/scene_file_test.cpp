@@ -1,0 +1,146 @@
+// Scene JSON: each key, and that whatever is wrong is named by file and key.
+#include "scene/scene.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lucerna {
+namespace {
+
+using test::badInputMessage;
+using test::TempFolder;
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+/// A folder with a one-triangle model in a sub-folder.
+struct SceneFolder : TempFolder {
+  SceneFolder() { write("models/box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"); }
+  Scene load(const std::string& keys) const { return loadScene(write("room.json", "{\"model\": \"models/box.obj\"" + keys + "}")); }
+};
+
+bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+TEST(SceneFile, AModelAloneTakesTheDefaults) {
+  const SceneFolder folder;
+  const Scene scene = folder.load("");
+  EXPECT_EQ(scene.name, "room");
+  EXPECT_EQ(scene.file.filename(), "room.json");
+  EXPECT_EQ(scene.triangleCount(), 1u);
+  EXPECT_EQ(scene.metresPerUnit, 1.0);
+  EXPECT_EQ(scene.exposure, 1.0f);
+  EXPECT_EQ(scene.cameras.size(), 1u);
+  EXPECT_TRUE(scene.sun);
+}
+
+TEST(SceneFile, EveryKeyIsRead) {
+  const SceneFolder folder;
+  folder.write("walk.txt", "p 0 0 0 d 1 0 0 u 0 1 0\np 1 0 0 d 1 0 0 u 0 1 0\n");
+  const Scene scene = folder.load(R"(, "description": "a room", "scale": 10, "camera": {"position": [1, 2, 3], "target": [1, 2, 0], "up": [0, 2, 1], "fov": 40},
+      "sun": {"direction": [0, -2, 0], "irradiance": [1, 2, 3]}, "background": [0.1, 0.2, 0.3], "exposure": 0.5, "keyFrames": "walk.txt")");
+  EXPECT_EQ(scene.metresPerUnit, 0.01);
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_EQ(scene.cameras[0].position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(scene.cameras[0].direction, glm::dvec3(0, 0, -1));
+  EXPECT_EQ(scene.cameras[0].up, glm::dvec3(0, 1, 0));
+  EXPECT_NEAR(scene.cameras[0].verticalFov, 40 * kDegree, 1e-12);
+  EXPECT_EQ(scene.sun->direction, glm::dvec3(0, -1, 0));
+  EXPECT_EQ(scene.sun->irradiance, glm::vec3(1, 2, 3));
+  EXPECT_EQ(scene.background, glm::vec3(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(scene.exposure, 0.5f);
+  EXPECT_EQ(scene.keyFrames, folder / "walk.txt");
+}
+
+TEST(SceneFile, SeveralCamerasKeepOrderAndNames) {
+  const SceneFolder folder;
+  const Scene scene = folder.load(R"(, "cameras": [{"name": "b", "position": [0,0,5], "direction": [0,0,-3]}, {"name": "a", "position": [0,0,5], "target": [1,0,5]}])");
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  EXPECT_EQ(scene.cameras[0].name, "b");
+  EXPECT_EQ(scene.cameras[0].direction, glm::dvec3(0, 0, -1));
+  EXPECT_EQ(scene.cameras[1].name, "a");
+  EXPECT_EQ(scene.cameras[1].direction, glm::dvec3(1, 0, 0));
+}
+
+TEST(SceneFile, KeyFramesGiveTheCameraWhereNoneIsNamed) {
+  const SceneFolder folder;
+  folder.write("walk.txt", "p 7 8 9 d 1 0 0 u 0 1 0 f 33\np 1 0 0 d 1 0 0 u 0 1 0\n");
+  const Scene scene = folder.load(R"(, "keyFrames": "walk.txt")");
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_EQ(scene.cameras[0].position, glm::dvec3(7, 8, 9));
+  EXPECT_NEAR(scene.cameras[0].verticalFov, 33 * kDegree, 1e-12);
+}
+
+TEST(SceneFile, TheSunCanBeSwitchedOff) {
+  const SceneFolder folder;
+  EXPECT_FALSE(folder.load(R"(, "sun": null)").sun);
+}
+
+TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
+  const SceneFolder folder;
+  const std::string camera = R"(, "camera": {"position": [0,0,5], )";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {R"(, "modell": 1)", "unknown key \"modell\"; known are: description, model, scale"},
+      {R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,1], "colour": 1})", "\"sun.colour\""},
+      {camera + R"("direction": [0,0,-1], "zoom": 2})", "\"camera.zoom\""},
+      {R"(, "scale": "10")", "\"scale\""},
+      {R"(, "scale": 0)", "above 0"},
+      {R"(, "scale": -1)", "above 0"},
+      {R"(, "exposure": null)", "\"exposure\""},
+      {R"(, "exposure": 1e999)", "JSON"},
+      {R"(, "exposure": NaN)", "JSON"},
+      {R"(, "background": [1, 2])", "\"background\""},
+      {R"(, "background": [1, 2, 3, 4])", "\"background\""},
+      {R"(, "background": [1, 2, "3"])", "\"background[2]\""},
+      {R"(, "background": [1, 2, -3])", "\"background\""},
+      {R"(, "background": [1, 2, 1e300])", "\"background\""},
+      {R"(, "sun": [1, 2, 3])", "\"sun\""},
+      {R"(, "sun": {"direction": [0,-1,0]})", "irradiance"},
+      {R"(, "sun": {"direction": [0,0,0], "irradiance": [1,1,1]})", "\"sun.direction\""},
+      {R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,-1]})", "\"sun.irradiance\""},
+      {R"(, "camera": {"target": [0,0,0]})", "\"position\""},
+      {R"(, "camera": {"position": [0,0,5]})", "\"target\" or \"direction\""},
+      {camera + R"("target": [0,0,0], "direction": [0,0,-1]})", "\"target\" or \"direction\""},
+      {camera + R"("target": [0,0,5]})", "\"camera\""},
+      {camera + R"("direction": [0,1,0]})", "parallel"},
+      {camera + R"("direction": [0,0,-1], "fov": 180})", "\"camera.fov\""},
+      {camera + R"("direction": [0,0,-1], "fov": 0})", "\"camera.fov\""},
+      {R"(, "cameras": [])", "\"cameras\""},
+      {R"(, "cameras": {"name": "a"})", "\"cameras\""},
+      {R"(, "cameras": [{"position": [0,0,5], "direction": [0,0,-1]}])", "\"name\""},
+      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]},{"name":"a","position":[0,0,5],"direction":[0,0,-1]}])", "\"cameras[1].name\""},
+      {R"(, "cameras": [{"name":"a","position":[0,0,"5"],"direction":[0,0,-1]}])", "\"cameras[0].position[2]\""},
+      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]}], "camera": {"position":[0,0,5],"direction":[0,0,-1]})", "one of them"},
+      {R"(, "keyFrames": "")", "\"keyFrames\""},
+      {R"(, "description": 3)", "\"description\""},
+      {R"(, "scene": {})", "VPT"},
+      {R"(, "scale": 1,)", "JSON"},
+  };
+  for (const auto& [keys, expected] : cases) {
+    const std::string message = badInputMessage([&] { folder.load(keys); });
+    EXPECT_TRUE(contains(message, "room.json")) << keys << "\n" << message;
+    EXPECT_TRUE(contains(message, expected)) << keys << "\n" << message;
+  }
+}
+
+TEST(SceneFile, FilesThatAreMissingOrNoSceneAreErrors) {
+  const SceneFolder folder;
+  const auto message = [&](std::string_view content) {
+    const auto file = folder.write("s.json", content);
+    return badInputMessage([&] { loadScene(file); });
+  };
+  EXPECT_TRUE(contains(message(""), "s.json"));
+  EXPECT_TRUE(contains(message("{}"), "\"model\""));
+  EXPECT_TRUE(contains(message("[1, 2]"), "object"));
+  EXPECT_TRUE(contains(message("{\"model\": \"models"), "s.json"));
+  EXPECT_TRUE(contains(message(std::string_view("\xff\xfe\0\1", 4)), "s.json"));
+  EXPECT_TRUE(contains(message(R"({"model": 3})"), "\"model\""));
+  EXPECT_TRUE(contains(message(R"({"model": "none.obj"})"), "none.obj: no such file"));
+  EXPECT_TRUE(contains(message(R"({"model": "models"})"), "is a folder"));
+  EXPECT_TRUE(contains(message(R"({"model": "s.json"})"), "\"model\""));
+  EXPECT_TRUE(contains(message(R"({"model": "models/box.obj", "keyFrames": "none.txt"})"), "none.txt: no such file"));
+  EXPECT_TRUE(contains(badInputMessage([&] { loadScene(folder / "gone.json"); }), "gone.json: no such file"));
+}
+
+}  // namespace
+}  // namespace lucerna
