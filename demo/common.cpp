@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <ctime>
 #include <unistd.h>
 
 namespace lucerna::demo {
@@ -160,14 +161,21 @@ void Progress::update(int done) {
 
 namespace {
 volatile std::sig_atomic_t g_interrupted = 0;
+volatile std::time_t g_interruptedAt = 0;
+
+void onInterrupt(int) {
+  // A second Ctrl-C does not wait for the work to end; one that comes with the first (timeout signals a whole group) is the same.
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  if (g_interrupted && now.tv_sec > g_interruptedAt + 1) std::_Exit(130);
+  if (!g_interrupted) g_interruptedAt = now.tv_sec;
+  g_interrupted = 1;
 }
+}  // namespace
 
 void watchForInterrupt() {
-  std::signal(SIGINT, [](int) {
-    if (g_interrupted) std::_Exit(130);  // a second Ctrl-C does not wait
-    g_interrupted = 1;
-  });
-  std::signal(SIGTERM, [](int) { g_interrupted = 1; });
+  std::signal(SIGINT, onInterrupt);
+  std::signal(SIGTERM, onInterrupt);
 }
 
 bool interrupted() { return g_interrupted != 0; }

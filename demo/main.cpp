@@ -25,6 +25,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     const auto used = app.get_subcommands();
+    if (used.empty() && argc > 1 && argv[1][0] != '-') {
+      fmt::print(stderr, "lucerna: {}: no such subcommand (lucerna --help lists them)\n", argv[1]);
+      return static_cast<int>(lucerna::ErrorKind::badInput);
+    }
     fmt::print(stderr, "lucerna: {} (lucerna {}--help lists the options)\n", error.what(), used.empty() ? "" : used[0]->get_name() + " ");
     return static_cast<int>(lucerna::ErrorKind::badInput);
   }

@@ -108,7 +108,7 @@ void Renderer::resize(glm::ivec2 size) {
   allocateTargets();
 }
 
-void Renderer::render(const Camera& camera) {
+void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   const Scene& scene = gpuScene_.scene();
   const glm::mat4 cameraClip(clipFromWorld(camera, scene.bounds, settings_.size));
   const glm::vec3 viewPoint(camera.position);
@@ -140,7 +140,7 @@ void Renderer::render(const Camera& camera) {
     timer_.end();
     const glm::vec3 sun = scene.sun->irradiance;
     const LightPropagationVolume::Inputs inputs{
-        rsm, placeCascades(settings_.lpv.cascades, scene.bounds, camera.position, camera.direction),
+        rsm, placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction),
         std::max({sun.x, sun.y, sun.z})};
     timer_.begin("injection");
     lpv_->place(inputs);

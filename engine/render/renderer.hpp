@@ -44,7 +44,9 @@ class Renderer {
   Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings);
 
   /// One frame: the HDR picture, then the display picture. Stages are timed.
-  void render(const Camera& camera);
+  void render(const Camera& camera) { render(camera, camera); }
+  /// The same with the light propagation volume placed for another view: what changes then is flicker, not motion.
+  void render(const Camera& camera, const Camera& volumeCamera);
 
   Image readRadiance() const;   ///< linear, scene units, top row first
   Bitmap readDisplay() const;   ///< tone mapped, sRGB, top row first

@@ -2,6 +2,7 @@
 // geometry volume that it lies in. That volume is shifted half a cell, so that its centres lie on the grid's corners.
 // A is the surface's true area: the texel's area across the rays divided by the cosine to the light, the cosine bounded by
 // 1/20 because the few texels on a surface seen edge-on say little about its area.
+#include "lib/finite.glsl"
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
 layout(points) in;
@@ -14,13 +15,15 @@ uniform float texelArea;  // across the rays
 
 void main() {
   vec3 normal = gNormal[0].xyz;
-  bool usable = gPosition[0].w > 0.5 && dot(normal, normal) > 0.25 && dot(normal, normal) < 4.0;
+  bool usable = gPosition[0].w > 0.5 && allFinite(gPosition[0].xyz) && allFinite(normal) && allFinite(gNormal[0].www) &&
+                dot(normal, normal) > 0.25 && dot(normal, normal) < 4.0;
   if (!usable) return;
   int corners = lpv.shape.x + 1;
   float area = texelArea / max(gNormal[0].w, 0.05);
   for (int k = 0; k < lpv.shape.y; ++k) {
     float s = lpv.cascades[k].cellSize;
-    ivec3 corner = ivec3(floor((gPosition[0].xyz - lpv.cascades[k].minimum) / s + 0.5));
+    vec3 cornerPosition = (gPosition[0].xyz - lpv.cascades[k].minimum) / s + 0.5;
+    ivec3 corner = ivec3(floor(clamp(cornerPosition, -1.0, float(corners))));  // the integer of a huge number is undefined
     if (any(lessThan(corner, ivec3(0))) || any(greaterThanEqual(corner, ivec3(corners)))) continue;
     fPotential = area / (s * s) * shCosineLobe(normal);
     gl_Layer = k * corners + corner.z;

@@ -369,6 +369,72 @@ double irradianceSumOfCascades(std::span<const Volume> cascades, const glm::dvec
   return sum;
 }
 
+// ---- cascades joined into one picture ---------------------------------------------------------------------------------
+
+Volume halved(const Volume& fine) {
+  const GridSpec& grid = fine.grid;
+  Volume coarse(GridSpec{(grid.dims + 1) / 2, grid.minimum, 2.0 * grid.cellSize});
+  for (int z = 0; z < grid.dims.z; ++z) {
+    for (int y = 0; y < grid.dims.y; ++y) {
+      for (int x = 0; x < grid.dims.x; ++x) {
+        // The mean of eight c/s^2, times (2 s)^2.
+        coarse.at(glm::ivec3(x, y, z) / 2) += (4.0 / 8.0) * fine.at({x, y, z});
+      }
+    }
+  }
+  return coarse;
+}
+
+std::vector<Volume> joinCascades(std::span<const Volume> cascades) {
+  std::vector<Volume> joined(cascades.begin(), cascades.end());
+  for (std::size_t k = joined.size(); k-- > 1;) {
+    const Volume& next = joined[k];
+    Volume& own = joined[k - 1];
+    const Volume coarse = halved(own);
+    const auto density = [](const Volume& volume, const glm::dvec3& point) {
+      return (1.0 / (volume.grid.cellSize * volume.grid.cellSize)) * sampleTrilinear(volume, point);
+    };
+    const GridSpec& grid = own.grid;
+    for (int z = 0; z < grid.dims.z; ++z) {
+      for (int y = 0; y < grid.dims.y; ++y) {
+        for (int x = 0; x < grid.dims.x; ++x) {
+          const glm::dvec3 point = grid.centre({x, y, z});
+          own.at({x, y, z}) += (grid.cellSize * grid.cellSize) * (density(next, point) - density(coarse, point));
+        }
+      }
+    }
+  }
+  return joined;
+}
+
+std::vector<double> blendWeights(std::span<const Volume> cascades, const CascadeBlend& blend, const glm::dvec3& point,
+                                 double lookupOffset) {
+  if (blend.centres.size() != cascades.size()) throw std::invalid_argument("lpv twin: one blend centre a cascade is needed");
+  std::vector<double> weights;
+  double left = 1.0;
+  for (std::size_t k = 0; k + 1 < cascades.size(); ++k) {
+    const GridSpec& grid = cascades[k].grid;
+    const double half = (0.5 * grid.dims.x - 2.5 - lookupOffset) * grid.cellSize;
+    const glm::dvec3 away = glm::abs(point - blend.centres[k]);
+    const double distance = std::max({away.x, away.y, away.z});
+    const double weight = half > 0.0 ? left * std::clamp((half - distance) / (blend.band * half), 0.0, 1.0) : 0.0;
+    weights.push_back(weight);
+    left -= weight;
+  }
+  if (!cascades.empty()) weights.push_back(left);
+  return weights;
+}
+
+double blendedIrradiance(std::span<const Volume> cascades, const CascadeBlend& blend, const glm::dvec3& point,
+                         const glm::dvec3& normal, const LookupOptions& options) {
+  const std::vector<double> weights = blendWeights(cascades, blend, point, options.normalOffset);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < cascades.size(); ++k) {
+    if (weights[k] > 0.0) sum += weights[k] * irradiance(cascades[k], point, normal, options);
+  }
+  return sum;
+}
+
 // ---- the grid that follows the camera ------------------------------------------------------------------------------
 
 SnappedGrid cameraGrid(const glm::dvec3& camera, const glm::dvec3& viewDirection, const glm::ivec3& dims,

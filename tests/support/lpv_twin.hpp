@@ -223,6 +223,29 @@ glm::dvec3 irradiance(const VolumeRgb& volume, const glm::dvec3& point, const gl
 double irradianceSumOfCascades(std::span<const Volume> cascades, const glm::dvec3& point, const glm::dvec3& normal,
                                const LookupOptions& options = {});
 
+// ---- cascades joined into one picture ---------------------------------------------------------------------------------
+
+/// down: half resolution, each cell the mean of 2x2x2 of `fine`, of their c/s^2 (what an irradiance depends on); an odd last
+/// cell is averaged with zeros. Same minimum, cells twice as big.
+Volume halved(const Volume& fine);
+/// Joins cascades, finest first: C_k = G_k - up(down(G_k)) + up(C_k+1), the coarsest C = G. up is trilinear with zeros beyond
+/// the border; all terms are values of c/s^2. Source: a Laplacian pyramid, P. Burt and E. Adelson, "The Laplacian Pyramid as a
+/// Compact Image Code", 1983. The result is in plain units again.
+std::vector<Volume> joinCascades(std::span<const Volume> cascades);
+
+struct CascadeBlend {
+  std::vector<glm::dvec3> centres;  ///< of the cascades before snapping, finest first
+  double band = 0.25;               ///< fraction of blendHalf over which a cascade fades
+};
+/// How much each cascade counts at a point, finest first; the coarsest takes what is left, so that the sum is 1. With
+/// blendHalf = (cells/2 - 2.5 - lookupOffset) * s: weight_k = left * clamp((blendHalf - max|p - centre|) / (band * blendHalf), 0, 1).
+/// A cascade of so few cells that its blendHalf is not positive counts nothing.
+std::vector<double> blendWeights(std::span<const Volume> cascades, const CascadeBlend& blend, const glm::dvec3& point,
+                                 double lookupOffset);
+/// The weighted sum of the cascades' irradiances.
+double blendedIrradiance(std::span<const Volume> cascades, const CascadeBlend& blend, const glm::dvec3& point,
+                         const glm::dvec3& normal, const LookupOptions& options = {});
+
 // ---- the grid that follows the camera ------------------------------------------------------------------------------
 
 /// The published snapping rounds by int(x + 0.5), wrong for negatives, and then truncates to whole scene units.

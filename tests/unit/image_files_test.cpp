@@ -193,7 +193,7 @@ TEST(ImageFiles, BottomUpFormatsComeOutTopRowFirst) {
   std::string bmp = "BM";
   const auto number = [](std::uint32_t v, int bytes) {
     std::string s;
-    for (int i = 0; i < bytes; ++i) s += static_cast<char>(v >> (8 * i));
+    for (int i = 0; i < bytes; ++i) s += static_cast<char>(i < 4 ? v >> (8 * i) : 0);
     return s;
   };
   bmp += number(54 + 8, 4) + number(0, 4) + number(54, 4) + number(40, 4) + number(1, 4) + number(2, 4) + number(1, 2) + number(24, 2) +

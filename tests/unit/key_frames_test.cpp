@@ -117,6 +117,8 @@ TEST(SplineTest, DirectionAndUpStayUnitAndPerpendicular) {
   EXPECT_NEAR(glm::length(middle.direction), 1.0, 1e-12);
   EXPECT_NEAR(glm::length(middle.up), 1.0, 1e-12);
   EXPECT_NEAR(glm::dot(middle.direction, middle.up), 0.0, 1e-12);
+  EXPECT_EQ(middle.direction, glm::dvec3(-1, 0, 0));  // the nearest key's, where the spline's is lost
+  EXPECT_EQ(middle.up, glm::dvec3(0, -1, 0));
 }
 
 // From looking ahead over the zenith to looking back: neither direction nor up may jump.

@@ -221,6 +221,16 @@ TEST(SceneLoader, AMissingOrBrokenTextureIsOneWarningAndAChecker) {
   EXPECT_FALSE(checker.hasAlpha);
 }
 
+TEST(SceneLoader, EmissionMapsCountByTheirMeanAndAreWarnedOfOnce) {
+  const TempFolder folder;
+  writePng(folder / "glow.png", Bitmap{1, 2, {255, 255, 255, 255, 0, 0, 0, 255}, false});
+  const std::string faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
+  EXPECT_EQ(loadObj(folder, faces, "newmtl a\nKe 4 2 0\nmap_Ke glow.png\nnewmtl b\n").materials[0].emission, glm::vec3(2.0f, 1.0f, 0.0f));
+  const Scene scene = loadObj(folder, faces, "newmtl a\nKe 4 2 0\nmap_Ke none.png\nnewmtl b\nKe 1 1 1\nmap_Ke none.png\nmap_Kd none.png\n");
+  EXPECT_EQ(scene.materials[0].emission, glm::vec3(4.0f, 2.0f, 0.0f));
+  EXPECT_EQ(warningsNaming("none.png"), 1u);
+}
+
 TEST(SceneLoader, AlphaMasksComeFromTheirFileOrTheTexture) {
   const TempFolder folder;
   writePicture(folder / "colour.png", 200);

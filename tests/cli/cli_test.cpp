@@ -1,0 +1,213 @@
+// The command line as a contract (DESIGN section 5): fields of --json, files written, and for every wrong input one clear line,
+// the right exit code and nothing half-written. Runs the built executable on OSMesa.
+#include "base/image.hpp"
+#include "support/subprocess.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using lucerna::test::run;
+using lucerna::test::RunResult;
+using lucerna::test::TempFolder;
+
+// A floor and a wall that meet, lit by the default sun.
+const char* kScene =
+    "mtllib scene.mtl\n"
+    "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\n"
+    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "usemtl white\nf 1/1 4/4 3/3 2/2\nusemtl red\nf 1/1 2/2 6/3 5/4\n";
+const char* kMaterials = "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0.1\n";
+
+class CommandLine : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write("scene.obj", kScene);
+    write("scene.mtl", kMaterials);
+    write("path.txt", "p 4 2 4 d -1 -0.3 -1 u 0 1 0\np 3 2 5 d -0.8 -0.3 -1 u 0 1 0\n");
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(std::ifstream(path(name))); }
+  std::string scene() const { return path("scene.obj"); }
+
+  /// Exit code, one line on standard error that holds every given part, and no file of that name.
+  void expectRefused(const std::string& arguments, int exitCode, const std::vector<std::string>& parts, const std::string& notWritten = {}) const {
+    const RunResult result = RUN_LUCERNA(arguments);
+    EXPECT_EQ(result.exitCode, exitCode) << arguments << "\n" << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << arguments << "\n" << result.err;
+    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+    if (notWritten.empty()) return;
+    EXPECT_FALSE(fs::exists(path(notWritten))) << notWritten;
+  }
+
+ private:
+  TempFolder folder_;
+};
+
+TEST_F(CommandLine, HelpListsEverySubcommandAndTheirOptions) {
+  const RunResult top = RUN_LUCERNA("--help");
+  EXPECT_EQ(top.exitCode, 0);
+  for (const char* name : {"walk", "render", "info"}) {
+    EXPECT_NE(top.out.find(name), std::string::npos) << name;
+    const RunResult help = RUN_LUCERNA(std::string(name) + " --help");
+    EXPECT_EQ(help.exitCode, 0);
+    for (const char* option : {"--host", "--json", "--quiet"}) EXPECT_NE(help.out.find(option), std::string::npos) << name << option;
+  }
+}
+
+TEST_F(CommandLine, InfoReportsHostAndScene) {
+  const RunResult result = RUN_LUCERNA("info " + scene() + " --host osmesa --json " + path("info.json"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const auto info = json("info.json");
+  EXPECT_EQ(info.at("host"), "osmesa");
+  EXPECT_EQ(info.at("triangles"), 4);
+  EXPECT_GE(info.at("vertices"), 6);
+  EXPECT_EQ(info.at("materials"), 2);
+  EXPECT_EQ(info.at("needs").at("alphaMasks"), false);
+  EXPECT_EQ(info.at("needs").at("indirect"), true);
+  EXPECT_NE(info.at("renderer").get<std::string>(), "");
+}
+
+TEST_F(CommandLine, RenderWritesEveryFormatWithTheSameMean) {
+  for (const char* extension : {"png", "hdr", "exr", "pfm"}) {
+    const std::string out = path(std::string("picture.") + extension);
+    const RunResult result =
+        RUN_LUCERNA("render " + scene() + " --host osmesa --size 48x32 --set lpv.cells=8 -o " + out + " --json " + path("render.json"));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const auto render = json("render.json");
+    EXPECT_EQ(render.at("technique"), "lpv");
+    EXPECT_EQ(render.at("fidelity"), "corrected");
+    EXPECT_TRUE(render.at("deviations").is_array());
+    EXPECT_GT(render.at("seconds"), 0.0);
+    const lucerna::Image image = lucerna::readImage(out);
+    ASSERT_EQ(image.width, 48);
+    ASSERT_EQ(image.height, 32);
+    if (std::string(extension) == "png") continue;  // tone mapped
+    const glm::dvec3 mean = lucerna::meanOf(image);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(render.at("mean").at(static_cast<std::size_t>(c)).get<double>(), mean[c], 0.01 * mean[c] + 1e-6) << extension;
+  }
+}
+
+TEST_F(CommandLine, ComponentsAddUp) {
+  glm::dvec3 means[3];
+  const char* names[] = {"all", "direct", "indirect"};
+  for (int i = 0; i < 3; ++i) {
+    const RunResult result = RUN_LUCERNA("render " + scene() + " --host osmesa --size 48x32 --set lpv.cells=8 --component " + names[i] + " -o " + path("x.pfm"));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    means[i] = lucerna::meanOf(lucerna::readImage(path("x.pfm")));
+  }
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(means[0][c], means[1][c] + means[2][c], 1e-5 * means[0][c]);
+  EXPECT_GT(means[2].x, 0.0);
+}
+
+TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
+  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --host osmesa --record " + path("out") +
+                                       " --frames 3 --size 64x36 --json " + path("walk.json"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), 3);
+  const auto walk = json("walk.json");
+  EXPECT_EQ(walk.at("frames"), 3);
+  EXPECT_GT(walk.at("gpu_bytes"), 0);
+  for (const char* stage : {"shadow", "rsm", "injection", "geometry volume", "propagation", "shading"}) {
+    ASSERT_TRUE(walk.at("stages").contains(stage)) << stage;
+    EXPECT_EQ(walk.at("stages").at(stage).at("count"), 3) << stage;
+    EXPECT_GT(walk.at("stages").at(stage).at("median_ms"), 0.0) << stage;
+    EXPECT_GE(walk.at("stages").at(stage).at("p95_ms"), walk.at("stages").at(stage).at("median_ms")) << stage;
+  }
+}
+
+TEST_F(CommandLine, DirectLightLeavesTheIndirectStagesOut) {
+  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --technique direct --host osmesa --record " + path("out") +
+                                       " --frames 1 --size 64x36 --json " + path("walk.json"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const auto walk = json("walk.json");
+  for (const char* stage : {"rsm", "injection", "geometry volume", "propagation"}) EXPECT_FALSE(walk.at("stages").contains(stage)) << stage;
+  const auto& left = walk.at("left_out");
+  EXPECT_NE(std::find(left.begin(), left.end(), "light propagation volume"), left.end());
+}
+
+// ---------------------------------------------------------------------------------------------------- wrong input
+
+TEST_F(CommandLine, WrongOptionsAreRefused) {
+  expectRefused("", 2, {"--help"});
+  expectRefused("paint", 2, {"paint"});
+  expectRefused("render " + scene() + " --colour red -o " + path("x.png"), 2, {"--colour"}, "x.png");
+  expectRefused("render " + scene(), 2, {"--output"});
+  expectRefused("render " + scene() + " --size 0x0 -o " + path("x.png"), 2, {"--size", "0"}, "x.png");
+  expectRefused("render " + scene() + " --size 64 -o " + path("x.png"), 2, {"--size", "WIDTHxHEIGHT"}, "x.png");
+  expectRefused("render " + scene() + " --size 64x-2 -o " + path("x.png"), 2, {"--size", "-2"}, "x.png");
+  expectRefused("render " + scene() + " --technique magic -o " + path("x.png"), 2, {"magic", "direct", "lpv"}, "x.png");
+  expectRefused("render " + scene() + " --component half -o " + path("x.png"), 2, {"half", "indirect"}, "x.png");
+  expectRefused("render " + scene() + " --set lpv.cels=3 -o " + path("x.png"), 2, {"lpv.cels", "lpv.cells"}, "x.png");
+  expectRefused("render " + scene() + " --set lpv.cells=many -o " + path("x.png"), 2, {"lpv.cells", "many"}, "x.png");
+  expectRefused("render " + scene() + " --set lpv.cells=nan -o " + path("x.png"), 2, {"lpv.cells"}, "x.png");
+  expectRefused("render " + scene() + " --set exposure=nan -o " + path("x.png"), 2, {"exposure"}, "x.png");
+  expectRefused("render " + scene() + " --host vulkan -o " + path("x.png"), 2, {"vulkan", "osmesa"}, "x.png");
+  expectRefused("render " + scene() + " --camera 1,2,3 -o " + path("x.png"), 2, {"--camera", "px,py,pz"}, "x.png");
+  expectRefused("render " + scene() + " -o " + path("x.bmp"), 2, {"x.bmp", "png"}, "x.bmp");
+  expectRefused("walk " + scene() + " --frames 0", 2, {"--frames"});
+  expectRefused("walk " + scene() + " --keys " + path("path.txt") + " --views 5:9999 --record " + path("w"), 2, {"--views", "0:200"}, "w");
+}
+
+TEST_F(CommandLine, WrongFilesAreRefused) {
+  const std::string tail = " --host osmesa --size 32x32 -o " + path("x.png");
+  expectRefused("render " + path("nothing.obj") + tail, 2, {"nothing.obj"}, "x.png");
+  fs::create_directory(path("folder"));
+  expectRefused("render " + path("folder") + tail, 2, {"folder"}, "x.png");
+  write("cut.obj", std::string(kScene).substr(0, std::string(kScene).rfind("f ") + 5));  // the last face is cut short
+  expectRefused("render " + path("cut.obj") + tail, 2, {"cut.obj"}, "x.png");
+  write("noise.obj", std::string("\0\1\2\xff\xfe garbage", 14));
+  expectRefused("render " + path("noise.obj") + tail, 2, {"noise.obj"}, "x.png");
+  write("bad.txt", "p 4 2 4 d -1 -0.3 -1 u 0 1 0\np 3 2 5 d -0.8 -0.3 u 0 1 0\n");
+  expectRefused("walk " + scene() + " --keys " + path("bad.txt") + " --host osmesa --record " + path("w"), 2, {"bad.txt", "2"}, "w");
+  write("file", "in the way");
+  expectRefused("walk " + scene() + " --host osmesa --record " + path("file"), 2, {"file", "folder"});
+  expectRefused("render " + scene() + " --host osmesa --size 32x32 -o " + path("no/such/folder/x.png"), 2, {"x.png"});
+  expectRefused("render " + scene() + " --host osmesa --size 32x32 -o " + path("y.png") + " --json " + path("no/such/x.json"), 2, {"x.json"});
+}
+
+TEST_F(CommandLine, ATextureThatIsNoImageIsOneWarning) {
+  write("scene.mtl", "newmtl white\nKd 0.8 0.8 0.8\nmap_Kd broken.png\nnewmtl red\nKd 0.7 0.1 0.1\nmap_Kd textures\\\\missing.png\n");
+  write("broken.png", "this is no picture");
+  const RunResult result = RUN_LUCERNA("render " + scene() + " --host osmesa --size 32x32 --set lpv.cells=8 -o " + path("x.png"));
+  EXPECT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_TRUE(fs::exists(path("x.png")));
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 2) << result.err;
+  EXPECT_NE(result.err.find("broken.png"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("missing.png"), std::string::npos) << result.err;
+  EXPECT_EQ(RUN_LUCERNA("render " + scene() + " --quiet --host osmesa --size 32x32 --set lpv.cells=8 -o " + path("x.png")).err, "");
+}
+
+TEST_F(CommandLine, AnOldDriverIsAMissingCapability) {
+  const RunResult result = run("MESA_GL_VERSION_OVERRIDE=3.3 '" LUCERNA_BINARY "' render " + scene() + " --host osmesa --size 32x32 -o " + path("x.png"));
+  EXPECT_EQ(result.exitCode, 3) << result.err;
+  EXPECT_NE(result.err.find("4.3"), std::string::npos) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_FALSE(fs::exists(path("x.png")));
+}
+
+TEST_F(CommandLine, AWindowWithoutADisplayIsAMissingCapability) {
+  const RunResult result = run("env -u DISPLAY -u WAYLAND_DISPLAY '" LUCERNA_BINARY "' walk " + scene() + " --host window");
+  EXPECT_EQ(result.exitCode, 3) << result.err;
+  EXPECT_NE(result.err.find("display"), std::string::npos) << result.err;
+}
+
+TEST_F(CommandLine, InterruptedWalkKeepsWholePicturesAndItsTable) {
+  const RunResult result = run("timeout --signal=INT 3 '" LUCERNA_BINARY "' walk " + scene() + " --keys " + path("path.txt") + " --host osmesa --record " +
+                               path("out") + " --frames 100000 --size 320x180 --json " + path("walk.json"));
+  EXPECT_EQ(result.exitCode, 124) << result.err;  // timeout's own code; the program ends by itself after the signal
+  ASSERT_TRUE(fs::exists(path("walk.json"))) << result.err;
+  const int frames = json("walk.json").at("frames");
+  EXPECT_GT(frames, 0);
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), frames);
+  for (const auto& entry : fs::directory_iterator(path("out"))) EXPECT_EQ(lucerna::readBitmap(entry.path()).width, 320);
+}
+
+}  // namespace

@@ -1,0 +1,120 @@
+#include "support/lpv_on_gl.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace lucerna::test {
+
+namespace {
+
+constexpr int kWidth = 64;  // of the hand-made maps
+
+twin::Sh shOf(const glm::vec4& c, double scale) { return {scale * c.x, scale * glm::dvec3(c.y, c.z, c.w)}; }
+
+}  // namespace
+
+RsmTextures::RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLenum normalFormat)
+    : texelArea_(static_cast<float>(texelArea)) {
+  const int height = std::max(1, (static_cast<int>(texels.size()) + kWidth - 1) / kWidth);
+  const glm::ivec2 size(kWidth, height);
+  const std::size_t count = static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(height);
+  std::vector<glm::vec4> positions(count), normals(count), fluxes(count);
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    positions[i] = texels[i].position;
+    normals[i] = texels[i].normal;
+    fluxes[i] = glm::vec4(texels[i].flux, 0.0f);
+  }
+  position_ = gl::Texture("test rsm position", GL_RGBA32F, size);
+  normal_ = gl::Texture("test rsm normal", normalFormat, size);
+  flux_ = gl::Texture("test rsm flux", GL_RGBA32F, size);
+  position_.upload(GL_RGBA, GL_FLOAT, positions.data());
+  normal_.upload(GL_RGBA, GL_FLOAT, normals.data());
+  flux_.upload(GL_RGBA, GL_FLOAT, fluxes.data());
+}
+
+std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea) {
+  std::vector<twin::Vpl> vpls;
+  for (const RsmTexel& texel : texels) {
+    if (!(texel.position.w > 0.5f)) continue;
+    const double area = texelArea / std::max(static_cast<double>(texel.normal.w), 0.05);
+    vpls.push_back({glm::dvec3(texel.position), glm::dvec3(texel.normal), glm::dvec3(texel.flux), area});
+  }
+  return vpls;
+}
+
+twin::GridSpec gridOf(const Cascade& cascade, int cells) { return {glm::ivec3(cells), cascade.minimum(), cascade.cellSize}; }
+
+std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume, const LightPropagationVolume::Inputs& inputs) {
+  const int cells = volume[0].size().x;
+  CHECK(volume[0].size() == glm::ivec3(cells, cells, cells * static_cast<int>(inputs.cascades.size())), "{} cells", cells);
+  std::vector<twin::VolumeRgb> result;
+  for (const Cascade& cascade : inputs.cascades) result.push_back(twin::makeVolumeRgb(gridOf(cascade, cells)));
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const std::vector<glm::vec4> texels = volume[channel].readRgba();
+    auto texel = texels.begin();
+    for (twin::VolumeRgb& cascade : result) {
+      const double s = cascade[channel].grid.cellSize;
+      for (twin::Sh& cell : cascade[channel].cells) cell = shOf(*texel++, static_cast<double>(inputs.referenceIrradiance) * s * s);
+    }
+  }
+  return result;
+}
+
+std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LightPropagationVolume::Inputs& inputs) {
+  const std::vector<glm::vec4> texels = lpv.geometryVolume()->readRgba();
+  std::vector<twin::Volume> result;
+  auto texel = texels.begin();
+  for (const Cascade& cascade : inputs.cascades) {
+    twin::Volume& volume = result.emplace_back(twin::geometryGrid(gridOf(cascade, lpv.settings().cascades.cells)));
+    for (twin::Sh& cell : volume.cells) cell = shOf(*texel++, 1.0);
+  }
+  return result;
+}
+
+std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const LightPropagationVolume& lpv, std::span<const Probe> probes) {
+  std::vector<glm::vec4> packed;
+  for (const Probe& probe : probes) {
+    packed.emplace_back(probe.position, 0.0f);
+    packed.emplace_back(probe.normal, 0.0f);
+  }
+  const gl::Buffer in("probes", packed.size() * sizeof(glm::vec4), packed.data(), GL_STATIC_DRAW);
+  const gl::Buffer out("irradiances", probes.size() * sizeof(glm::vec4), nullptr, GL_STREAM_READ);
+  const bool full = lpv.settings().storage == LightPropagationVolume::Storage::full;
+  {
+    const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
+    programs.loadCompute("lpv probe", "lpv/probe.comp", {{"LPV_FULL_FLOAT", full}}).use();
+    lpv.bindForLookup();
+    in.bind(GL_SHADER_STORAGE_BUFFER, 0);
+    out.bind(GL_SHADER_STORAGE_BUFFER, 1);
+    pass.dispatch(glm::ivec3(static_cast<int>(probes.size()), 1, 1), glm::ivec3(64, 1, 1));
+  }
+  std::vector<glm::vec3> result;
+  for (const glm::vec4& value : out.read<glm::vec4>()) result.emplace_back(value);
+  return result;
+}
+
+double relativeError(const twin::Volume& expected, const twin::Volume& actual) {
+  double scale = 0.0, difference = 0.0;
+  for (std::size_t i = 0; i < expected.cells.size(); ++i) {
+    const twin::Sh apart = expected.cells[i] - actual.cells[i];
+    for (const auto& [reference, error] : {std::pair{expected.cells[i].c0, apart.c0}, std::pair{expected.cells[i].c1.x, apart.c1.x},
+                                           std::pair{expected.cells[i].c1.y, apart.c1.y}, std::pair{expected.cells[i].c1.z, apart.c1.z}}) {
+      if (!std::isfinite(error)) return std::numeric_limits<double>::infinity();
+      scale = std::max(scale, std::abs(reference));
+      difference = std::max(difference, std::abs(error));
+    }
+  }
+  return difference == 0.0 ? 0.0 : difference / scale;
+}
+
+double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& actual) {
+  double error = 0.0;
+  for (std::size_t channel = 0; channel < 3; ++channel) error = std::max(error, relativeError(expected[channel], actual[channel]));
+  return error;
+}
+
+}  // namespace lucerna::test

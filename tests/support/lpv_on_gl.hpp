@@ -1,0 +1,55 @@
+// The GL light propagation volume fed by hand-made reflective shadow maps and read back in the units of the CPU twin.
+#pragma once
+
+#include "gl/context.hpp"
+#include "gl/program.hpp"
+#include "lpv/light_propagation_volume.hpp"
+#include "support/lpv_twin.hpp"
+
+#include <span>
+#include <vector>
+
+namespace lucerna::test {
+
+/// One texel of a reflective shadow map, as the three textures hold it.
+struct RsmTexel {
+  glm::vec4 position{0.0f};  ///< world; w = 1 where there is a surface
+  glm::vec4 normal{0.0f};    ///< w = cosine to the light
+  glm::vec3 flux{0.0f};
+};
+
+/// A reflective shadow map that no light has drawn.
+class RsmTextures {
+ public:
+  RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLenum normalFormat = GL_RGBA32F);
+  ReflectiveShadowMap::Outputs outputs() const { return {position_, normal_, flux_, texelArea_}; }
+
+ private:
+  gl::Texture position_, normal_, flux_;
+  float texelArea_;
+};
+
+/// The same texels as the twin takes them; background is left out. Area: texelArea / max(cosine, 1/20).
+std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea);
+
+twin::GridSpec gridOf(const Cascade& cascade, int cells);
+
+/// One cascade of a volume that was read back, c = value * E_ref * s^2.
+std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume, const LightPropagationVolume::Inputs& inputs);
+/// One cascade each of the geometry volume; nothing is scaled there.
+std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LightPropagationVolume::Inputs& inputs);
+
+/// A point and the unit normal of the surface there.
+struct Probe {
+  glm::vec3 position;
+  glm::vec3 normal;
+};
+/// lpvIrradiance of shaders/lpv/lookup.glsl at the probes.
+std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const LightPropagationVolume& lpv, std::span<const Probe> probes);
+
+/// Largest difference of a coefficient over the largest coefficient of `expected`: the error of a sum is set by its largest
+/// terms, and a cell's small coefficients are differences of larger ones.
+double relativeError(const twin::Volume& expected, const twin::Volume& actual);
+double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& actual);
+
+}  // namespace lucerna::test
