@@ -5,13 +5,13 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
-from generator import columns, furnish, obj, roof, shell  # noqa: E402
+from generator import columns, obj, placement, roof, shell  # noqa: E402
 from generator.mesh import Mesh  # noqa: E402
 
 
 def main():
     mesh = Mesh()
-    for part in (shell, columns, roof, furnish):
+    for part in (shell, columns, roof, placement):
         before = mesh.triangle_count()
         part.build(mesh)
         print(f"{part.__name__.split('.')[-1]:12} {mesh.triangle_count() - before:7} triangles")

@@ -2,7 +2,7 @@
 //
 // A grid's minimum is always an exact multiple of its cell size, found with floor in double precision from a 64-bit cell
 // index, so moving the camera by less than a cell leaves the grid where it is, at any distance from the origin.
-// Source: ORIGINALS 1.2; [Kaplanyan2010, section 5].
+// Source: [LPV2015, 6.4]; [Kaplanyan2010, section 5].
 #pragma once
 
 #include "scene/scene.hpp"

@@ -55,6 +55,7 @@ class LpvGlTest : public test::GlTest {
     s.iterations = iterations;
     s.blocking = blocking;
     s.storage = storage;
+    s.handOver = std::max(iterations, 1);  // nothing is handed over: each cascade for itself
     return s;
   }
 
@@ -397,28 +398,28 @@ TEST_F(LpvAgainstTwin, HalfStorage) {
 TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  constexpr int kIterations = 5, kHandOver = 2;
   for (const Storage storage : {Storage::full, Storage::half}) {
     double worst = 0.0, worstLookup = 0.0;
     for (const Case& c : kCases) {
-      // Stores on the way in 16 bits: two steps and their sum, then two a join.
-      const double tolerance = storage == Storage::full ? kFullTolerance : (3 + 2 * (c.cascades - 1)) * kHalfUlp;
       const CaseInputs inputs(c, 6);
-      LightPropagationVolume::Settings s = settings(c.cells, c.cascades, 2, false, storage);
+      LightPropagationVolume::Settings s = settings(c.cells, c.cascades, kIterations, true, storage);
+      s.handOver = kHandOver;
       s.blendBand = 0.4f;
       s.lookupOffset = 0.25f;
+      // Stores on the way in 16 bits: the steps and their sum, then two a join, whose balance carries the errors of both grids.
+      const double tolerance = storage == Storage::full ? kFullTolerance : (kIterations + 1 + 4 * (c.cascades - 1)) * kHalfUlp;
       const LightPropagationVolume lpv = run(s, inputs.inputs, true);
       const std::vector<VolumeRgb> actual = test::readVolume(lpv.result(), inputs.inputs);
-      const TwinRun separate = runTwin(inputs, c.cells, 2, false);
-      std::array<std::vector<twin::Volume>, 3> expected;
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        for (const VolumeRgb& cascade : separate.result) expected[channel].push_back(cascade[channel]);
-        expected[channel] = twin::joinCascades(expected[channel]);
-        for (std::size_t k = 0; k < actual.size(); ++k) {
-          const double error = test::relativeError(expected[channel][k], actual[k][channel]);
-          EXPECT_LT(error, tolerance) << c.cells << "^3, cascade " << k << " of " << c.cascades << ", channel " << channel << ", half "
-                                      << (storage == Storage::half);
-          worst = std::max(worst, error);
-        }
+      const TwinRun separate = runTwin(inputs, c.cells, 0, false);
+      std::vector<twin::CascadeParts> parts;
+      for (std::size_t k = 0; k < separate.injected.size(); ++k)
+        parts.push_back(twin::propagateParts(separate.injected[k], kIterations, kHandOver, {}, &separate.geometry[k]));
+      const std::vector<VolumeRgb> expected = twin::joinCascades(parts, {4.0, 1e-4 * static_cast<double>(inputs.inputs.referenceIrradiance)});
+      for (std::size_t k = 0; k < actual.size(); ++k) {
+        const double error = test::relativeError(expected[k], actual[k]);
+        EXPECT_LT(error, tolerance) << c.cells << "^3, cascade " << k << " of " << c.cascades << ", half " << (storage == Storage::half);
+        worst = std::max(worst, error);
       }
       twin::CascadeBlend blend{{}, static_cast<double>(s.blendBand)};
       for (const Cascade& cascade : inputs.cascades) blend.centres.push_back(cascade.centre);
@@ -432,9 +433,11 @@ TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
       const std::vector<glm::vec3> seen = test::probeIrradiance(library(), lpv, probes);
       const twin::LookupOptions lookup{twin::Lookup::cosine, static_cast<double>(s.lookupOffset)};
       for (std::size_t channel = 0; channel < 3; ++channel) {
+        std::vector<twin::Volume> cascades;
+        for (const VolumeRgb& cascade : expected) cascades.push_back(cascade[channel]);
         std::vector<double> all;
         for (const Probe& probe : probes)
-          all.push_back(twin::blendedIrradiance(expected[channel], blend, glm::dvec3(probe.position), glm::dvec3(probe.normal), lookup));
+          all.push_back(twin::blendedIrradiance(cascades, blend, glm::dvec3(probe.position), glm::dvec3(probe.normal), lookup));
         const double largest = *std::max_element(all.begin(), all.end());
         for (std::size_t i = 0; i < probes.size(); ++i) {
           const double error = std::abs(all[i] - static_cast<double>(seen[i][static_cast<int>(channel)])) / largest;
@@ -446,6 +449,16 @@ TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
     report(storage == Storage::half ? "half, join" : "full, join", worst);
     report(storage == Storage::half ? "half, blended lookup" : "full, blended lookup", worstLookup);
   }
+}
+
+TEST_F(LpvAgainstTwin, HandOverStepFollowsTheSpreadOfLight) {
+  // Root mean square distances after 1, 2, 4, 8, 16, 24 steps [reference notes 2.3]: the step whose distance times the ratio is nearest.
+  EXPECT_EQ(LightPropagationVolume::handOverStep(8, 2.0), 2);    // 3.222 / 2 = 1.611 beside 1.496
+  EXPECT_EQ(LightPropagationVolume::handOverStep(16, 2.0), 4);   // 4.619 / 2 = 2.310 beside 2.216
+  EXPECT_EQ(LightPropagationVolume::handOverStep(8, 1.0), 8);
+  EXPECT_EQ(LightPropagationVolume::handOverStep(1, 2.0), 1);
+  EXPECT_EQ(LightPropagationVolume::handOverStep(0, 2.0), 1);
+  EXPECT_EQ(LightPropagationVolume::handOverStep(8, 16.0), 1);
 }
 
 // ---- known answers (reference notes 2.3, 2.6, 5.3 to 5.7) --------------------------------------------------------------
@@ -772,6 +785,7 @@ TEST_F(LpvKnownAnswers, TheMeanOfASmoothFieldDoesNotDependOnTheNumberOfCascades)
   double one = 0.0;
   for (int cascades = 1; cascades <= 4; ++cascades) {
     s.cascades.cascades = cascades;
+    s.handOver = 0;  // as it is by default
     const LightPropagationVolume::Inputs inputs{textures.outputs(), {all.end() - cascades, all.end()}, 1.0f};
     const LightPropagationVolume lpv = run(s, inputs, true);
     double mean = 0.0;

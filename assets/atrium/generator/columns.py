@@ -25,7 +25,7 @@ def leaf(mesh, r, y, height, width, curl, angle):
         along = unit(np.gradient(path, axis=0))
         out = np.stack([along[:, 1], -along[:, 0]], 1)                              # the leaf's outer side, hanging under at its tip
         half = width / 2 * np.array([0.8, 1.0, 0.95, 0.8, 0.6, 0.35])
-        rows = [[(u * w, y + q[1] - abs(u) * 0.35 * w * o[1], q[0] - abs(u) * 0.35 * w * o[0]) for u in (-1.0, 0.0, 1.0)] for q, o, w in zip(path, out, half)]
+        rows = [[(u * w, y + q[1] - abs(u) * 0.14 * w * o[1], q[0] - abs(u) * 0.14 * w * o[0]) for u in (-1.0, 0.0, 1.0)] for q, o, w in zip(path, out, half)]
         p = np.array(rows)
         mesh.grid("stone_trim", p, np.stack([p[..., 0], p[..., 1]], -1))
 
@@ -51,15 +51,9 @@ def column(mesh, y0, y1, r, segments, leaves, steps=6):
     mesh.box("stone_trim", (-a * 0.93, low, -a * 0.93), (a * 0.93, low + 0.04 * k, a * 0.93), "t")
     mesh.box("stone_trim", (-a, low + 0.04 * k, -a), (a, high, a), "")
     for i in range(leaves):
-        leaf(mesh, top * 1.05, cap + 0.045 * k, 0.2 * k, 5.4 * top / leaves, 0.085 * k, 360.0 * i / leaves)
+        leaf(mesh, top * 1.1, cap + 0.045 * k, 0.2 * k, 5.4 * top / leaves, 0.085 * k, 360.0 * i / leaves)
     for i in range(4):                                        # tall leaves under the corners
-        leaf(mesh, top * 1.05, cap + 0.05 * k, 0.33 * k, 0.66 * top, 0.145 * k, 90.0 * i + 45.0)
-
-
-def pier_trim(mesh, s0, s1, top, thick, out=0.05):
-    """Base and impost mouldings around a square pier."""
-    mesh.box("stone_trim", (s0 - out, top - 0.12, -thick - out), (s1 + out, top, out), "")
-    mesh.box("stone_trim", (s0 - out * 0.5, top - 0.2, -thick - out * 0.5), (s1 + out * 0.5, top - 0.12, out * 0.5), "t")
+        leaf(mesh, top * 1.13, cap + 0.05 * k, 0.3 * k, 0.66 * top, 0.145 * k, 90.0 * i + 45.0)
 
 
 BALUSTER = [(0.055, 0.0), (0.054, 0.03), (0.034, 0.06), (0.062, 0.2), (0.036, 0.4),
@@ -73,7 +67,8 @@ def balustrade(mesh, side):
     edges = side.upper
     for i in range(len(edges) - 1):
         s0, s1 = edges[i] + 0.19, edges[i + 1] - 0.19
-        mesh.run("stone_trim", [(d - 0.1, UPPER_FLOOR), (d + 0.1, UPPER_FLOOR), (d + 0.1, RAIL_LOW), (d - 0.1, RAIL_LOW)][1:] + [(d - 0.1, UPPER_FLOOR)], s0, s1)
+        plinth = [(d + 0.1, UPPER_FLOOR), (d + 0.1, RAIL_LOW), (d - 0.1, RAIL_LOW), (d - 0.1, UPPER_FLOOR)]
+        mesh.run("stone_trim", plinth, s0, s1)
         rail = [(d + 0.09, RAIL_HIGH), (d + 0.12, RAIL_HIGH + 0.03), (d + 0.14, RAIL_HIGH + 0.05), (d + 0.14, RAIL_HIGH + 0.11), (d + 0.1, RAIL_HIGH + 0.14),
                 (d - 0.1, RAIL_HIGH + 0.14), (d - 0.14, RAIL_HIGH + 0.11), (d - 0.14, RAIL_HIGH + 0.05), (d - 0.12, RAIL_HIGH + 0.03), (d - 0.09, RAIL_HIGH)]
         mesh.run("stone_trim", rail, s0, s1, closed=True)
@@ -94,8 +89,8 @@ def build(mesh):
             if side is not EAST:
                 for s in side.bays[1:-1]:
                     with mesh.frame(offset=(s, 0, -WALL / 2)):
-                        column(mesh, STEP, SPRING, 0.25, 16, 8)
+                        column(mesh, STEP, SPRING + 0.01, 0.25, 16, 8)
             balustrade(mesh, side)
             for s in side.upper[1:-1]:
                 with mesh.frame(offset=(s, 0, -UPPER_WALL / 2)):
-                    column(mesh, RAIL_HIGH + 0.16, UPPER_SPRING, 0.14, 10, 0, 4)
+                    column(mesh, RAIL_HIGH + 0.16, UPPER_SPRING + 0.01, 0.14, 10, 0, 4)

@@ -1,4 +1,4 @@
-"""Curtains, fountain, planters, banners, lanterns: their shapes. Where they stand is in furnish.py."""
+"""Curtains, fountain, planters, banners, lanterns: their shapes. Where they stand is in placement.py."""
 import math
 
 import numpy as np

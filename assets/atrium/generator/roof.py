@@ -3,8 +3,8 @@ import math
 
 import numpy as np
 
-from .layout import COURT_X, COURT_Z, EAVE_OUT, EAVE_Y, GALLERY, ROOF_SLOPE, SIDES, UPPER_FLOOR, UPPER_TOP, WALL
-from .mesh import turn, unit
+from .layout import EAVE_OUT, EAVE_Y, GALLERY, ROOF_SLOPE, SIDES, UPPER_FLOOR, UPPER_TOP, WALL
+from .mesh import unit
 
 TILE, TILE_LENGTH = 0.285, 0.46
 DEEP = WALL + GALLERY

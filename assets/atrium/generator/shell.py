@@ -6,6 +6,7 @@ from .architecture import (GROUND_FOOT, PIER_FOOT, UPPER_FOOT, VAULT_RISE, arcad
 from .layout import (BACK_X, BACK_Z, CEILING, COURT_X, COURT_Z, EAST, GALLERY, OUTER, SHELL_TOP, SIDES, SLAB, SPRING, STEP,
                      STEP_OUT, UPPER_FLOOR, UPPER_SPRING, UPPER_TOP, UPPER_WALL, WALL)
 from .mesh import turn
+from .openings import openings
 
 PORTAL_SPRING = 2.55
 BORDER = 1.0                      # width of the floor's border
@@ -109,7 +110,6 @@ def outside(mesh, side):
 
 def back_walls(mesh, side):
     """Inner faces of the back walls; openings come from openings.py."""
-    from .openings import openings
     for storey, low, high in ((0, STEP, SLAB), (1, UPPER_FLOOR, CEILING)):
         with mesh.frame(offset=(0, 0, BACK)):
             wall_with_openings(mesh, "plaster", -side.back, side.back, low, high, openings(mesh, side, storey))
