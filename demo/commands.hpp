@@ -50,6 +50,8 @@ glm::ivec2 parseSize(const std::string& text);
 
 /// Every key of --set with its meaning and default, for --help and README.
 std::string settingsHelp();
+/// Every deviation with its meaning.
+std::string deviationsHelp();
 
 /// A progress bar on a terminal's standard error for work longer than a second; silent elsewhere.
 class Progress {

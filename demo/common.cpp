@@ -2,6 +2,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -53,6 +54,16 @@ bool parseSwitch(const std::string& option, const std::string& text) {
   throwBadInput("{}: '{}' is neither on nor off", option, text);
 }
 
+template <class T>
+T parseChoice(const std::string& option, const std::string& text, std::initializer_list<std::pair<const char*, T>> choices) {
+  std::string known;
+  for (const auto& [name, value] : choices) {
+    if (text == name) return value;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  }
+  throwBadInput("{}: '{}' is unknown; there are {}", option, text, known);
+}
+
 std::pair<std::string, std::string> splitAssignment(const std::string& option, const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throwBadInput("{} {}: expected key=value", option, text);
@@ -82,6 +93,14 @@ const Setting kSettings[] = {
             s.lpv.cascades.cellSize = parseNumber(k, v, 0.0, 1e12)),
     SETTING("lpv.ratio", "cell size over that of the next finer cascade (2)", s.lpv.cascades.ratio = parseNumber(k, v, 1.0, 16.0)),
     SETTING("lpv.push", "how far grids lie ahead of the camera, in half extents (0.8)", s.lpv.cascades.push = parseNumber(k, v, 0.0, 1.0)),
+    SETTING("lpv.fill", "how the grid is filled: layered, atomic or fixed (layered)",
+            s.lpv.fill = parseChoice<LightPropagationVolume::Fill>(k, v, {{"layered", LightPropagationVolume::Fill::layered},
+                                                                          {"atomic", LightPropagationVolume::Fill::atomic},
+                                                                          {"fixed", LightPropagationVolume::Fill::fixed}})),
+    SETTING("lpv.propagate", "compute, or layered: one pass a step and cascade, as published (compute)",
+            s.lpv.propagate = parseChoice<LightPropagationVolume::Propagate>(k, v, {{"compute", LightPropagationVolume::Propagate::compute},
+                                                                                    {"layered", LightPropagationVolume::Propagate::layered}})),
+    SETTING("lpv.amplifier", "factor of the deviating 4 pi kernel; 4 conserves (1)", s.lpv.amplifier = parseNumber(k, v, 0.0f, 100.0f)),
     SETTING("lpv.blocking", "geometry volume on or off (on)", s.lpv.blocking = parseSwitch(k, v)),
     SETTING("lpv.blend", "fraction of a cascade over which it fades into the next (0.25)",
             s.lpv.blendBand = parseNumber(k, v, 0.001f, 1.0f)),
@@ -105,22 +124,30 @@ std::string settingsHelp() {
   return text;
 }
 
+std::string deviationsHelp() {
+  std::string text = "\nDeviations (--deviation NAME=on|off; * are on with --fidelity original):\n";
+  for (const Deviation& deviation : allDeviations())
+    text += fmt::format("{} {:<24} {}\n", deviation.inOriginal ? '*' : ' ', deviation.name, deviation.meaning);
+  return text;
+}
+
 void PictureOptions::declare(CLI::App& app) {
   app.add_option("--technique", technique, "direct or lpv")->capture_default_str();
   app.add_option("--component", component, "all, direct or indirect")->capture_default_str();
-  app.add_option("--fidelity", fidelity, "corrected")->capture_default_str();
+  app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str();
   app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");
   app.add_option("--size", size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated");
-  app.footer(settingsHelp());
+  app.footer(settingsHelp() + deviationsHelp());
 }
 
 RenderSettings PictureOptions::parse(std::optional<float>& exposure) const {
   RenderSettings result;
   result.technique = parseTechnique(technique);
   result.component = parseComponent(component);
-  if (fidelity != "corrected") throwBadInput("--fidelity {}: unknown; there is corrected", fidelity);
-  if (!deviations.empty()) throwBadInput("--deviation {}: unknown; there are none yet", deviations.front());
+  if (fidelity != "corrected" && fidelity != "original") throwBadInput("--fidelity {}: unknown; there are corrected, original", fidelity);
+  applyFidelity(result, fidelity == "original" ? Fidelity::original : Fidelity::corrected);
+  for (const std::string& deviation : deviations) applyDeviation(result, deviation);
   result.size = parseSize(size);
   for (const std::string& assignment : settings) {
     const auto [key, value] = splitAssignment("--set", assignment);

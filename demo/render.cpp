@@ -2,6 +2,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "commands.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -96,7 +97,7 @@ int run(const Options& options) {
   json["technique"] = options.picture.technique;
   json["component"] = options.picture.component;
   json["fidelity"] = options.picture.fidelity;
-  json["deviations"] = nlohmann::ordered_json::array();
+  json["deviations"] = activeDeviations(settings);
   json["settings"] = options.picture.settings;
   json["size"] = {image.width, image.height};
   json["seconds"] = seconds;

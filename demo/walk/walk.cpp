@@ -4,6 +4,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
+#include "render/deviations.hpp"
 #include "scene/key_frames.hpp"
 #include "walk/free_camera.hpp"
 
@@ -91,6 +92,7 @@ nlohmann::ordered_json resultJson(const Options& options, const Host& host, cons
   json["scene"] = options.scene;
   json["technique"] = options.picture.technique;
   json["fidelity"] = options.picture.fidelity;
+  json["deviations"] = activeDeviations(renderer.settings());
   json["settings"] = options.picture.settings;
   json["size"] = {renderer.size().x, renderer.size().y};
   json["frames"] = frames;

@@ -17,6 +17,7 @@ struct RasterState {
   Depth depth = Depth::off;
   Cull cull = Cull::none;
   Blend blend = Blend::none;
+  GLuint firstBlended = 0;  ///< colour attachments before this one are written, not blended
   glm::vec2 polygonOffset{0.0f};  ///< factor, units; off where both are zero
   bool depthClamp = false;
 };

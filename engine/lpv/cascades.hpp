@@ -20,6 +20,8 @@ struct CascadeSettings {
   double cellSize = 0.0;      ///< of the coarsest, scene units; 0: so that half its cells span the scene
   double ratio = 2.0;         ///< cell size of a cascade over that of the next finer one
   double push = 0.8;          ///< how far the centre is pushed along the view, in half extents of the grid
+  double spanOfScene = 2.0;   ///< edge of the coarsest over the scene's longest side, where cellSize is 0
+  bool heldInScene = true;    ///< centres are held so that grids do not stick out of the scene further than they must
 };
 
 struct Cascade {

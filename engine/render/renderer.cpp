@@ -83,8 +83,9 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     flags.insert(flags.end(), {{"DIRECT", showsDirect_},
                                {"INDIRECT", showsIndirect_},
                                {"SPECULAR", needs_.specular && showsDirect_},
-                               {"EMISSION", needs_.emission && showsRest},
-                               {"LPV_FULL_FLOAT", settings.lpv.storage == LightPropagationVolume::Storage::full}});
+                               {"EMISSION", needs_.emission && showsRest}});
+    const gl::ShaderFlags lookup = LightPropagationVolume::lookupFlags(settings.lpv);
+    if (showsIndirect_) flags.insert(flags.end(), lookup.begin(), lookup.end());
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
   };
   surfacePrograms_.opaque = loadSurface("surface opaque", false);
@@ -143,9 +144,11 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     const auto rsm = rsm_->record(gpuScene_, sunFrustum_.texelArea(rsm_->size()));
     timer_.end();
     const glm::vec3 sun = scene.sun->irradiance;
+    const float brightest = std::max({sun.x, sun.y, sun.z});
+    const glm::dvec4 lightPosition = glm::inverse(sunFrustum_.clipFromWorld) * glm::dvec4(0.0, 0.0, -1.0, 1.0);
     const LightPropagationVolume::Inputs inputs{
-        rsm, placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction),
-        std::max({sun.x, sun.y, sun.z})};
+        rsm, placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction), brightest,
+        glm::vec3(lightPosition)};
     timer_.begin("injection");
     lpv_->place(inputs);
     lpv_->inject(inputs);

@@ -5,9 +5,13 @@
 namespace lucerna {
 
 ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings) {
-  programs_.opaque = &programs.loadRaster("rsm opaque", "rsm/rsm.vert", "rsm/rsm.frag", scene.materialFlags(false));
-  if (scene.needs().alphaMasks)
-    programs_.masked = &programs.loadRaster("rsm masked", "rsm/rsm.vert", "rsm/rsm.frag", scene.materialFlags(true));
+  const auto load = [&](const std::string& name, bool masked) {
+    gl::ShaderFlags flags = scene.materialFlags(masked);
+    flags.emplace_back("FLUX_COSINE", settings.fluxCosine);
+    return &programs.loadRaster(name, "rsm/rsm.vert", "rsm/rsm.frag", flags);
+  };
+  programs_.opaque = load("rsm opaque", false);
+  if (scene.needs().alphaMasks) programs_.masked = load("rsm masked", true);
   // Positions and flux in 32 bits: world coordinates do not fit 16, nor does a flux of any unit. Read texel by texel.
   const glm::ivec2 size(settings.size);
   position_ = gl::Texture("rsm position", GL_RGBA32F, size);

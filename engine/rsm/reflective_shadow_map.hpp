@@ -11,6 +11,7 @@ class ReflectiveShadowMap {
  public:
   struct Settings {
     int size = 256;  ///< texels a side
+    bool fluxCosine = false;  ///< deviation rsm.flux-cosine: flux times N.L
   };
   struct Outputs {
     const gl::Texture& position;  ///< RGBA32F, world; w = 1 where there is a surface, 0 background

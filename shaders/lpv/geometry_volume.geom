@@ -12,6 +12,10 @@ in vec4 gNormal[];
 in vec3 gFlux[];
 flat out vec4 fPotential;
 uniform float texelArea;  // across the rays
+#if SURFEL_AREA
+uniform vec3 lightPosition;
+uniform float texelCount;
+#endif
 
 void main() {
   vec3 normal = gNormal[0].xyz;
@@ -19,7 +23,13 @@ void main() {
                 dot(normal, normal) > 0.25 && dot(normal, normal) < 4.0;
   if (!usable) return;
   int corners = lpv.shape.x + 1;
+#if SURFEL_AREA
+  // Deviation lpv.surfel-area: the formula of a 90 degree perspective light, weighted by N.L, for an orthographic one.
+  vec3 away = gPosition[0].xyz - lightPosition;
+  float area = 4.0 * dot(away, away) / texelCount * gNormal[0].w;
+#else
   float area = texelArea / max(gNormal[0].w, 0.05);
+#endif
   for (int k = 0; k < lpv.shape.y; ++k) {
     float s = lpv.cascades[k].cellSize;
     vec3 cornerPosition = (gPosition[0].xyz - lpv.cascades[k].minimum) / s + 0.5;

@@ -21,7 +21,12 @@ vec3 lpvCascadeIrradiance(int k, vec3 position, vec3 normal) {
   float border = clamp(min(texel.z, cells - texel.z) + 0.5, 0.0, 1.0);
   texel.z = clamp(texel.z, 0.5, cells - 0.5) + float(k) * cells;
   vec3 uvw = texel / vec3(cells, cells, cells * float(lpv.shape.y));
+#if FLUX_UNITS
+  // Deviation lpv.flux-units: intensity towards the surface times 1.7, a factor set by eye.
+  vec4 lobe = shBasis(-normal) * (1.7 * kPi / 4.0);
+#else
   vec4 lobe = shCosineLobe(-normal);
+#endif
   vec3 c = vec3(dot(textureLod(lpvRed, uvw, 0.0), lobe), dot(textureLod(lpvGreen, uvw, 0.0), lobe),
                 dot(textureLod(lpvBlue, uvw, 0.0), lobe));
   return max(c, 0.0) * (border * 4.0 / kPi * lpv.referenceIrradiance);
@@ -30,6 +35,11 @@ vec3 lpvCascadeIrradiance(int k, vec3 position, vec3 normal) {
 // From the finest cascade to the coarsest, each blended into the next near its border; the weights sum to 1.
 vec3 lpvIrradiance(vec3 position, vec3 normal) {
   vec3 irradiance = vec3(0.0);
+#if SUM_CASCADES
+  // Deviation lpv.sum-cascades: every cascade adds its light once more.
+  for (int k = 0; k < lpv.shape.y; ++k) irradiance += lpvCascadeIrradiance(k, position, normal);
+  return irradiance;
+#endif
   float left = 1.0;
   for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
     float weight = left * lpvCascadeWeight(k, position);

@@ -22,4 +22,7 @@ void main() {
   outPosition = vec4(vPosition, 1.0);
   outNormal = vec4(normal, cosine);
   outFlux = vec4(frame.sunIrradiance * materialAlbedo(vTexCoord) * texelArea, 0.0);
+#if FLUX_COSINE
+  outFlux *= cosine;  // deviation rsm.flux-cosine
+#endif
 }

@@ -109,7 +109,8 @@ TEST_F(ReflectiveShadowMapGl, FluxIsAlbedoTimesIrradianceTimesProjectedArea) {
         const glm::dvec3 expected = expectedFlux(scene);
         const std::string what = "tilt " + std::to_string(degrees) + ", map " + std::to_string(size) + ", sun x " + std::to_string(sun.x);
         expectWithin(drawn.totalFlux, expected, 0.01, what);
-        expectWithin(drawn.injectedFlux, drawn.totalFlux, 1e-4, what + ", injected");
+        // A cell sums some thousand equal terms in 32 bits: 8192 roundings of 2^-24 at worst.
+        expectWithin(drawn.injectedFlux, drawn.totalFlux, 5e-4, what + ", injected");
         worst = std::max(worst, std::abs(drawn.totalFlux.x / expected.x - 1.0));
       }
   EXPECT_GE(cases, 36);

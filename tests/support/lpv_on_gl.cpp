@@ -83,10 +83,9 @@ std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const Light
   }
   const gl::Buffer in("probes", packed.size() * sizeof(glm::vec4), packed.data(), GL_STATIC_DRAW);
   const gl::Buffer out("irradiances", probes.size() * sizeof(glm::vec4), nullptr, GL_STREAM_READ);
-  const bool full = lpv.settings().storage == LightPropagationVolume::Storage::full;
   {
     const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
-    programs.loadCompute("lpv probe", "lpv/probe.comp", {{"LPV_FULL_FLOAT", full}}).use();
+    programs.loadCompute("lpv probe", "lpv/probe.comp", LightPropagationVolume::lookupFlags(lpv.settings())).use();
     lpv.bindForLookup();
     in.bind(GL_SHADER_STORAGE_BUFFER, 0);
     out.bind(GL_SHADER_STORAGE_BUFFER, 1);
