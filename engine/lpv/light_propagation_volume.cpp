@@ -120,6 +120,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
 gl::ShaderFlags LightPropagationVolume::lookupFlags(const Settings& settings) {
   return {{"LPV_FULL_FLOAT", settings.storage == Storage::full},
           {"FLUX_UNITS", settings.deviations.fluxUnits},
+          {"UNWINDOWED", settings.deviations.unwindowed},
           {"SUM_CASCADES", settings.deviations.sumCascades}};
 }
 

@@ -35,6 +35,7 @@ class LightPropagationVolume {
     bool fewerSteps = false;         ///< one step less, and the injected grid is not in the sum
     bool blockFirstStep = false;     ///< the first step is blocked too
     bool surfelArea = false;         ///< perspective formula times N.L for an orthographic light
+    bool unwindowed = false;         ///< light that travels away from a surface counts negative
     bool blockingDirection = false;  ///< potential evaluated in the direction of travel
     bool kernel() const { return sideDirections || sideSolidAngle || fourPiKernel || blockingDirection; }
     bool operator==(const Deviations&) const = default;

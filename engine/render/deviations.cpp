@@ -25,6 +25,7 @@ const std::array kDeviations{
     LPV_DEVIATION("fewer-steps", "N steps run N - 1, and the injected grid is left out of the sum", true, fewerSteps),
     LPV_DEVIATION("block-first-step", "a light's own surface blocks it", true, blockFirstStep),
     LPV_DEVIATION("surfel-area", "surfel areas of a perspective light, times N.L, for an orthographic one", true, surfelArea),
+    LPV_DEVIATION("unwindowed", "light that travels away from a surface counts negative there", true, unwindowed),
     LPV_DEVIATION("blocking-direction", "blocking potential evaluated in the direction of travel", true, blockingDirection),
 };
 

@@ -389,9 +389,11 @@ TEST_F(GlPrograms, HotReloadKeepsTheOldProgramUntilTheFileIsMended) {
 }
 
 TEST_F(GlPrograms, AShaderFolderThatIsMissingIsNamed) {
+  const char* known = std::getenv("LUCERNA_SHADERS");
+  const std::string before = known ? known : "";
   ::setenv("LUCERNA_SHADERS", "/nowhere/at/all", 1);
   const std::string message = badInputMessage([] { ProgramLibrary(); });
-  ::unsetenv("LUCERNA_SHADERS");
+  ::setenv("LUCERNA_SHADERS", before.c_str(), 1);  // empty: the project's own
   EXPECT_TRUE(has(message, "/nowhere/at/all"));
   EXPECT_TRUE(has(message, "LUCERNA_SHADERS"));
 }

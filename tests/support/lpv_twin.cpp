@@ -346,7 +346,9 @@ Sh sampleTrilinear(const Volume& volume, const glm::dvec3& point) {
 double irradiance(const Sh& sh, const glm::dvec3& normal, double cellSize, Lookup lookup) {
   // [Kaplanyan2010]: the light is taken to sit half a cell away, E = I / (s/2)^2. The cosine lookup takes the mean of
   // I under the receiver's cosine, (1/pi) * integral of I * max(0, <-n|w>).
-  const double intensity = lookup == Lookup::direct ? evaluate(sh, -normal) : dot(sh, lobe(-normal)) / kPi;
+  // Windowed: two cosine lobes give pi/4 + window * pi/3 cos, negative behind for a window of 1, zero at 3/4.
+  const double window = lookup == Lookup::windowed ? 0.75 : 1.0;
+  const double intensity = lookup == Lookup::direct ? evaluate(sh, -normal) : dot(sh, lobe(-normal, window * kLobeBand1)) / kPi;
   return std::max(0.0, 4.0 / (cellSize * cellSize) * intensity);
 }
 

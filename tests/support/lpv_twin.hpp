@@ -204,16 +204,17 @@ PropagatedRgb propagate(const VolumeRgb& injected, int iterations, const KernelO
 enum class Lookup {
   cosine,  ///< E = 4/(pi s^2) * <c | lobe(-n)>
   direct,  ///< E = 4/s^2 * I(-n)
+  windowed,  ///< cosine with the receiver's band 1 times 3/4: no sum of cosine lobes gives negative light
 };
 struct LookupOptions {
-  Lookup lookup = Lookup::cosine;
+  Lookup lookup = Lookup::windowed;
   double normalOffset = 0.5;  ///< cells along the normal from the surface to the point that is sampled
 };
 
 /// Trilinear interpolation between cell centres, zero beyond them (GL_LINEAR with GL_CLAMP_TO_BORDER, border 0).
 Sh sampleTrilinear(const Volume& volume, const glm::dvec3& point);
 /// Irradiance from the coefficients at a point with unit normal; never negative.
-double irradiance(const Sh& sh, const glm::dvec3& normal, double cellSize, Lookup lookup = Lookup::cosine);
+double irradiance(const Sh& sh, const glm::dvec3& normal, double cellSize, Lookup lookup = Lookup::windowed);
 /// Irradiance at a surface point with unit normal.
 double irradiance(const Volume& volume, const glm::dvec3& point, const glm::dvec3& normal,
                   const LookupOptions& options = {});
