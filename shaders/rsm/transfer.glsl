@@ -7,7 +7,7 @@ const float kPi = 3.14159265358979;
 #define NEAR_NONE 0
 #define NEAR_CLAMP 1  // the distance is kept above minimumDistance2
 #define NEAR_DISC 2   // d^2 + A/pi for one d^2: exact on the axis of a disc of area A
-#define NEAR_QUAD 3   // the exact form factor of the surfel's outline where d^2 < 4 A, else the point
+#define NEAR_QUAD 3   // the exact form factor of the surfel's outline within near2 (d^2 < 4 A where the light falls straight), else the point
 #if NEAR == NEAR_CLAMP
 uniform float minimumDistance2;  // scene units squared
 #endif
@@ -48,7 +48,7 @@ vec3 surfelIrradiance(RsmSurfel surfel, vec3 position, vec3 normal) {
   float emitted = dot(surfel.normal, direction);
   if (!(emitted > 0.0)) return vec3(0.0);
 #if NEAR == NEAR_QUAD
-  if (d2 < 4.0 * surfel.area) {  // its centre may lie below the horizon, a part of it above
+  if (d2 < surfel.near2) {  // its centre may lie below the horizon, a part of it above
     vec3 u, v;
     rsmSurfelEdges(surfel, u, v);
     return surfel.flux / length(cross(u, v)) * quadFormFactor(-away, u, v, normal);
