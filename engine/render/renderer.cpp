@@ -191,11 +191,13 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   {
     const gl::TimeQuery::Scope stage(timer_, "shading");
     gl::RasterState state;
-    state.depth = gather_ ? gl::Depth::equalReadOnly : gl::Depth::lessWrite;  // the gather has drawn depth
+    // Depth is drawn anew after a gather too: against its depth (GL_EQUAL) the last of two surfaces that share an edge would win,
+    // not the first, and a pixel would take its normal from one and its albedo from the other.
+    state.depth = gl::Depth::lessWrite;
     const gl::RasterPass pass("surfaces", radianceTarget_, state);
     const bool showsBackground = settings_.component != Component::indirect;
     pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
-    if (!gather_) pass.clearDepth();
+    pass.clearDepth();
     if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
     if (lpv_) lpv_->bindForLookup();
     if (gather_) gather_->irradiance().bind(kGatheredUnit);

@@ -45,7 +45,7 @@ class RsmGather {
   };
   static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
 
-  /// depth: of the picture's size, drawn by recordGeometry and then ready for a pass with Depth::equalReadOnly.
+  /// depth: of the picture's size; recordGeometry draws it, the gather reads it, nothing needs it afterwards.
   RsmGather(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings, const gl::Texture& depth);
   void resize(const gl::Texture& depth);
 

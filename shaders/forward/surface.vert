@@ -7,8 +7,6 @@ out vec3 vPosition;
 out vec3 vNormal;
 out vec2 vTexCoord;
 
-invariant gl_Position;  // several programs draw with it, one against the depth of another
-
 void main() {
   vPosition = position;
   vNormal = normal;

@@ -49,6 +49,10 @@ vec3 surfelIrradiance(RsmSurfel surfel, vec3 position, vec3 normal) {
   if (!(emitted > 0.0)) return vec3(0.0);
 #if NEAR == NEAR_QUAD
   if (d2 < surfel.near2) {  // its centre may lie below the horizon, a part of it above
+    // The other side of a thin lit surface lies in the surfel's own plane, and rounding may put it just in front, where it would
+    // receive all that the surfel gives. What faces a surfel must be clear of it by a twentieth of its edge.
+    float clear = 0.025 * sqrt(surfel.near2) * -dot(surfel.normal, normal);
+    if (dot(surfel.normal, away) < clear) return vec3(0.0);
     vec3 u, v;
     rsmSurfelEdges(surfel, u, v);
     return surfel.flux / length(cross(u, v)) * quadFormFactor(-away, u, v, normal);

@@ -57,6 +57,9 @@ glm::dvec3 surfelIrradiance(const RsmMap& map, const RsmMap::Texel& texel, const
   // The outline's squared edges, were it tilted along the longer one: w^2 and h^2 / cos^2; their symmetric mean, doubled twice.
   const double nearDistance = std::sqrt((width * width + height * height) * (1.0 + 1.0 / (cosine * cosine)));
   if (options.nearField == NearField::quad && distance < nearDistance) {
+    // The other side of the surfel's own sheet: facing it, and nearer its plane than a twentieth of the edge (half of nearDistance).
+    const double facing = -glm::dot(texel.normal, n);
+    if (facing > 0.0 && emitted * distance < 0.05 * facing * 0.5 * nearDistance) return glm::dvec3(0.0);
     const double slope = std::max(-glm::dot(texel.normal, map.direction), 0.05);
     const auto onSurface = [&](const glm::dvec3& edge) { return edge + map.direction * (glm::dot(texel.normal, edge) / slope); };
     const glm::dvec3 u = onSurface(map.right * width), v = onSurface(map.up * height);
