@@ -236,6 +236,9 @@ TEST_F(RsmRendered, TheWallOfACornerHasTheExactIrradiance) {
     // The floor's texels start within half a texel of the wall: 0.02 of h at least is missed or doubled where h is of its size.
     EXPECT_NEAR(e / (static_cast<double>(kAlbedo * kSun) * test::cornerIrradiance(h)), 1.0, h < 0.15 ? 0.3 : 0.08) << h;
     ++compared;
+    // Lambert: the picture's radiance is albedo / pi times it.
+    const double radiance = static_cast<double>(r.image.at(s.size.x / 2, s.size.y - 1 - y).x);
+    EXPECT_NEAR(radiance, static_cast<double>(kAlbedo) / M_PI * e, 1e-5 * radiance);
   }
   EXPECT_GT(compared, 80);
 }
@@ -299,6 +302,20 @@ TEST_F(RsmRendered, StepOneIsNoInterpolationAndThresholdsRefuse) {
   EXPECT_EQ(none.counts.frames, 3u);
   EXPECT_EQ(none.counts.refused, none.counts.pixels);
   for (std::size_t i = 0; i < none.irradiance.size(); ++i) EXPECT_EQ(glm::vec3(none.irradiance[i]), glm::vec3(off.irradiance[i]));
+}
+
+TEST_F(RsmRendered, ASampleFitsOnlyNearThePlaneAndNotFarAway) {
+  // The room's parallel surfaces stand behind one another: with one threshold wide open the other refuses.
+  const Scene scene = room();
+  RenderSettings s = settings();
+  const auto refused = [&](float plane, float distance) {
+    s.gather.fitPlane = plane;
+    s.gather.fitDistance = distance;
+    return render(scene, s).counts.refused;
+  };
+  const std::uint64_t none = refused(1e6f, 1e6f);
+  EXPECT_GT(refused(0.25f, 1e6f), none + 100);
+  EXPECT_GT(refused(1e6f, 3.0f), none + 100);
 }
 
 TEST_F(RsmRendered, OddSizesAndPicturesSmallerThanAStep) {
