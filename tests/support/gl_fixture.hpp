@@ -28,6 +28,7 @@ class GlTest : public ::testing::Test {
   gl::ProgramLibrary& programs() { return programs_; }
 
  private:
+  friend class GlEnvironment;
   static std::unique_ptr<Host>& host() {
     static std::unique_ptr<Host> instance;
     return instance;
@@ -38,5 +39,16 @@ class GlTest : public ::testing::Test {
   }
   gl::ProgramLibrary programs_;
 };
+
+/// Ends the context before the program's exit handlers run: OSMesa brings LLVM along, whose static objects are gone by the time
+/// our own are destroyed, and a context that still holds compiled compute shaders would then crash.
+class GlEnvironment : public ::testing::Environment {
+ public:
+  void TearDown() override {
+    GlTest::context_().reset();
+    GlTest::host().reset();
+  }
+};
+inline ::testing::Environment* const kGlEnvironment = ::testing::AddGlobalTestEnvironment(new GlEnvironment);
 
 }  // namespace lucerna::test
