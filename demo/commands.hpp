@@ -1,4 +1,4 @@
-// The subcommands of `lucerna`, one file each, and what they share. The contract is DESIGN section 5.
+// The subcommands of `lucerna`, one file each, and what they share.
 #pragma once
 
 #include "gl/context.hpp"

@@ -13,10 +13,10 @@ std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds
   const glm::dvec3 extent = scene.extent();
   double coarsest = settings.cellSize;
   if (coarsest <= 0.0) {
-    // One cell beyond the scene on either side: virtual point lights are moved half a cell, snapping moves up to one. Grids
-    // too small for that margin still cover the scene.
+    // Half the cells span the scene: eight steps then carry light across a quarter of it. Finer cells would hold more detail, which
+    // is what the finer cascades are for, but would leave most of the scene dark.
     const double longest = std::max({extent.x, extent.y, extent.z});
-    coarsest = longest > 0.0 ? longest / std::max(settings.cells - 3, 1) : 1.0;
+    coarsest = longest > 0.0 ? 2.0 * longest / settings.cells : 1.0;
   }
 
   std::vector<Cascade> cascades;

@@ -2,7 +2,9 @@
 
 #include "base/error.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace lucerna {
 
@@ -54,51 +56,59 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   }
 
   if (settings.iterations > 0) {
-    const auto load = [&](const std::string& name, bool withBlocking, bool first) {
+    const auto load = [&](const std::string& name, bool withBlocking, bool withInjected, bool begins) {
       return &programs.loadCompute(name, "lpv/propagate.comp",
                                    {{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y},
-                                    {"BLOCKED", withBlocking}, {"FIRST_STEP", first}});
+                                    {"BLOCKED", withBlocking}, {"BEGINS_WITH_INJECTED", withInjected}, {"BEGINS_SUM", begins}});
     };
-    propagateFirst_ = load("lpv propagate first", false, true);
-    if (settings.iterations > 1) propagateFurther_ = load("lpv propagate", blocked, false);
+    propagateFirst_ = load("lpv propagate first", false, true, true);
+    if (settings.iterations > 1) propagateFurther_ = load("lpv propagate", blocked, false, false);
     for (std::size_t channel = 0; channel < 3; ++channel) {
       sum_[channel] = gl::Texture(fmt::format("lpv sum {}", kChannels[channel]), format, size, sampling);
       for (std::size_t i = 0; i < (settings.iterations > 1 ? 2u : 1u); ++i)
         fronts_[i][channel] = gl::Texture(fmt::format("lpv front {} {}", i, kChannels[channel]), format, size, sampling);
     }
-  }
-
-  if (settings.iterations > 0 && c.cascades > 1) {
-    const gl::ShaderFlags flags{{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}};
-    coarsen_ = &programs.loadCompute("lpv coarsen", "lpv/coarsen.comp", flags);
-    compose_ = &programs.loadCompute("lpv join", "lpv/compose.comp", flags);
-    const int half = (c.cells + 1) / 2;
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      coarsened_[channel] = gl::Texture(fmt::format("lpv coarsened {}", kChannels[channel]), format,
-                                        glm::ivec3(half, half, half * (c.cascades - 1)), sampling);
+    if (settings_.handOver == 0) settings_.handOver = handOverStep(settings.iterations, c.ratio);
+    if (c.cascades > 1 && settings_.handOver < settings.iterations) {
+      propagateFar_ = load("lpv propagate far", blocked, false, true);
+      const int half = (c.cells + 1) / 2;
+      brightness_ = gl::Texture("lpv brightness", GL_R32F, glm::ivec3(half, half, half * (c.cascades - 1)), sampling);
+      coarsen_ = &programs.loadCompute("lpv coarsen", "lpv/coarsen.comp", {{"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}, {"LPV_FULL_FLOAT", full}});
+      join_ = &programs.loadCompute("lpv join", "lpv/join.comp", {{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}});
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        farSum_[channel] = gl::Texture(fmt::format("lpv far sum {}", kChannels[channel]), format, size, sampling);
+    }
   }
 }
 
+int LightPropagationVolume::handOverStep(int iterations, double ratio) {
+  const double steps = ((1.33 * iterations - 0.33) / (ratio * ratio) + 0.33) / 1.33;
+  return std::clamp(static_cast<int>(std::lround(steps)), 1, std::max(iterations, 1));
+}
+
 void LightPropagationVolume::join() {
-  if (!coarsen_) return;
+  if (!join_) return;
   {
     const gl::ComputePass pass("lpv coarsen", GL_TEXTURE_FETCH_BARRIER_BIT);
     coarsen_->use();
     for (GLuint channel = 0; channel < 3; ++channel) {
       sum_[channel].bind(channel);
-      coarsened_[channel].bindImage(channel, GL_WRITE_ONLY);
+      farSum_[channel].bind(3 + channel);
     }
-    pass.dispatch(coarsened_[0].size(), kGroup);
+    brightness_.bindImage(0, GL_WRITE_ONLY);
+    pass.dispatch(brightness_.size(), kGroup);
   }
-  for (int k = settings_.cascades.cascades - 2; k >= 0; --k) {
+  for (int k = settings_.cascades.cascades - 1; k >= 0; --k) {
     const gl::ComputePass pass("lpv join", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    compose_->use();
-    compose_->set("cascade", k);
+    join_->use();
+    join_->set("cascade", k);
     for (GLuint channel = 0; channel < 3; ++channel) {
-      coarsened_[channel].bind(channel);
+      farSum_[channel].bind(channel);
       sum_[channel].bind(3 + channel);
       sum_[channel].bindImage(channel, GL_READ_WRITE);
+      farSum_[channel].bindImage(3 + channel, GL_READ_WRITE);
     }
+    brightness_.bind(6);
     pass.dispatch(glm::ivec3(settings_.cascades.cells), kGroup);
   }
 }
@@ -168,12 +178,13 @@ void LightPropagationVolume::propagate() {
   for (int step = 0; step < settings_.iterations; ++step) {
     const gl::ComputePass pass("lpv propagate", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     Volume& next = fronts_[static_cast<std::size_t>(step % 2)];
-    (step == 0 ? propagateFirst_ : propagateFurther_)->use();
+    const bool far = join_ && step >= settings_.handOver;
+    (step == 0 ? propagateFirst_ : far && step == settings_.handOver ? propagateFar_ : propagateFurther_)->use();
     for (GLuint channel = 0; channel < 3; ++channel) {
       (*front)[channel].bind(channel);
       if (step > 0 && faces_) (*faces_)[channel].bind(3 + channel);
       next[channel].bindImage(channel, GL_WRITE_ONLY);
-      sum_[channel].bindImage(3 + channel, GL_READ_WRITE);
+      (far ? farSum_ : sum_)[channel].bindImage(3 + channel, GL_READ_WRITE);
     }
     pass.dispatch(sum_[0].size(), kGroup);
     front = &next;
@@ -193,10 +204,11 @@ std::size_t LightPropagationVolume::gpuBytes() const {
   for (std::size_t channel = 0; channel < 3; ++channel) {
     add(injected_[channel]);
     add(sum_[channel]);
-    add(coarsened_[channel]);
+    add(farSum_[channel]);
     for (const Volume& front : fronts_) add(front[channel]);
     if (faces_) add((*faces_)[channel]);
   }
+  add(brightness_);
   if (geometryVolume_) add(*geometryVolume_);
   return bytes;
 }

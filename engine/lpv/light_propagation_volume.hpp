@@ -23,6 +23,7 @@ class LightPropagationVolume {
     int iterations = 8;         ///< propagation steps; 0: injected light alone
     bool blocking = true;       ///< geometry volume
     float blendBand = 0.25f;    ///< fraction of a cascade's half extent over which it fades into the next
+    int handOver = 0;           ///< steps after which a finer cascade takes light from the coarser one; 0: handOverStep()
     float lookupOffset = 0.5f;  ///< cells along the normal by which a receiver is moved before the lookup
     Storage storage = Storage::half;
   };
@@ -33,6 +34,10 @@ class LightPropagationVolume {
   };
   /// Red, green and blue: 3D textures of SH coefficients c / (E_ref s^2), cascades stacked along z.
   using Volume = std::array<gl::Texture, 3>;
+
+  /// After how many steps light has spread as far in a grid as after `iterations` in the next finer one. Steps spread it by
+  /// a root mean square distance of about sqrt(1.33 n - 0.33) cells (reference: 1, 1.496, 2.216, 3.222 cells after 1, 2, 4, 8).
+  static int handOverStep(int iterations, double ratio);
 
   static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
 
@@ -63,13 +68,16 @@ class LightPropagationVolume {
   const gl::Program* averageFaces_ = nullptr;
   const gl::Program* propagateFirst_ = nullptr;    ///< unblocked, starts the sum
   const gl::Program* propagateFurther_ = nullptr;  ///< blocked where blocking is on
-  const gl::Program* coarsen_ = nullptr;
-  const gl::Program* compose_ = nullptr;
+  const gl::Program* propagateFar_ = nullptr;      ///< starts the sum of the far-travelled light
+  const gl::Program* coarsen_ = nullptr;           ///< only with several cascades, as join_
+  const gl::Program* join_ = nullptr;
   gl::Buffer constants_;
   gl::VertexArray noAttributes_;
-  Volume injected_, sum_;
+  Volume injected_;
+  Volume sum_;        ///< of the first steps; after join() all light
+  Volume farSum_;     ///< of the steps after the hand-over; only with several cascades
+  gl::Texture brightness_;  ///< half resolution of all cascades but the coarsest
   std::array<Volume, 2> fronts_;
-  Volume coarsened_;  ///< half resolution of all cascades but the coarsest
   gl::Framebuffer injectTarget_;
   std::optional<gl::Texture> geometryVolume_;
   std::optional<std::array<gl::Texture, 3>> faces_;  ///< potential at the faces across x, y, z

@@ -98,6 +98,9 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   };
   surfacePrograms_.opaque = loadSurface("surface opaque", false);
   if (needs_.alphaMasks) surfacePrograms_.masked = loadSurface("surface masked", true);
+  depthPrograms_.opaque = &programs.loadRaster("depth opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}});
+  if (needs_.alphaMasks)
+    depthPrograms_.masked = &programs.loadRaster("depth masked", "forward/depth.vert", "forward/depth.frag", {{"ALPHA_MASK", 1}, {"FROM_SUN", 0}});
   toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
   allocateTargets();
   if (showsGather_) gather_.emplace(programs, gpuScene_, settings.gather, depth_);
@@ -109,6 +112,7 @@ void Renderer::allocateTargets() {
   display_ = gl::Texture("display", GL_RGBA8, settings_.size);
   const std::array<const gl::Texture*, 1> radiance{&radiance_}, display{&display_};
   radianceTarget_ = gl::Framebuffer("radiance", radiance, &depth_);
+  depthTarget_ = gl::Framebuffer("depth", {}, &depth_);
   displayTarget_ = gl::Framebuffer("display", display);
 }
 
@@ -190,14 +194,18 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
 
   {
     const gl::TimeQuery::Scope stage(timer_, "shading");
+    if (!gather_) {  // its geometry pass has drawn depth
+      gl::RasterState state;
+      state.depth = gl::Depth::lessWrite;
+      const gl::RasterPass pass("depth", depthTarget_, state);
+      pass.clearDepth();
+      gpuScene_.draw(depthPrograms_, {&cameraClip, &viewPoint});
+    }
     gl::RasterState state;
-    // Depth is drawn anew after a gather too: against its depth (GL_EQUAL) the last of two surfaces that share an edge would win,
-    // not the first, and a pixel would take its normal from one and its albedo from the other.
-    state.depth = gl::Depth::lessWrite;
+    state.depth = gl::Depth::equalReadOnly;
     const gl::RasterPass pass("surfaces", radianceTarget_, state);
     const bool showsBackground = settings_.component != Component::indirect;
     pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
-    pass.clearDepth();
     if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
     if (lpv_) lpv_->bindForLookup();
     if (gather_) gather_->irradiance().bind(kGatheredUnit);

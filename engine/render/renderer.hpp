@@ -81,14 +81,14 @@ class Renderer {
   SunFrustum sunFrustum_;
   gl::Buffer frameConstants_;
   gl::VertexArray noAttributes_;
-  SurfacePrograms surfacePrograms_;
+  SurfacePrograms depthPrograms_, surfacePrograms_;
   const gl::Program* toneMap_ = nullptr;
   std::optional<ShadowMap> shadowMap_;
   std::optional<ReflectiveShadowMap> rsm_;
   std::optional<LightPropagationVolume> lpv_;
   std::optional<RsmGather> gather_;
   gl::Texture radiance_, depth_, display_;
-  gl::Framebuffer radianceTarget_, displayTarget_;
+  gl::Framebuffer depthTarget_, radianceTarget_, displayTarget_;
 };
 
 }  // namespace lucerna

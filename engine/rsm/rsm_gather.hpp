@@ -45,7 +45,7 @@ class RsmGather {
   };
   static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
 
-  /// depth: of the picture's size; recordGeometry draws it, the gather reads it, nothing needs it afterwards.
+  /// depth: of the picture's size; recordGeometry draws it, the gather and then shading read it.
   RsmGather(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings, const gl::Texture& depth);
   void resize(const gl::Texture& depth);
 

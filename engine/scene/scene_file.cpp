@@ -200,9 +200,12 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   scene.name = file.stem().string();
   scene.file = file;
   if (scale) scene.metresPerUnit = *scale / 1000.0;
+  if (sun) {
+    scene.sun = *sun;
+    scene.exposure = 1.0f;  // the default exposure belongs to the default sun
+  }
   if (exposure) scene.exposure = static_cast<float>(*exposure);
   if (background) scene.background = *background;
-  if (sun) scene.sun = *sun;
   if (!cameras.empty()) scene.cameras = std::move(cameras);
   if (!keyFrames.empty()) {
     if (!root.has("camera") && !root.has("cameras")) scene.cameras.clear();

@@ -1,6 +1,6 @@
 // A virtual point light goes into one cell of every cascade that it lies in: gl_Layer chooses the slice, blending adds
-// [ORIGINALS 1.3]. Its intensity is Phi / pi * max(0, cos), as SH Phi / pi * lobe(n). It is moved half a cell along its normal
-// first, so that it does not light its own surface [GPU Pro 2, p. 190].
+// [LPV2015, 6.4.2]. Its intensity is Phi / pi * max(0, cos), as SH Phi / pi * lobe(n). It is moved half a cell along its normal
+// first, so that it does not light its own surface [GPUPro2, p. 190].
 #include "lib/finite.glsl"
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"

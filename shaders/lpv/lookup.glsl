@@ -1,4 +1,4 @@
-// Irradiance at a surface from the light propagation volume [ORIGINALS 1.6]: trilinear coefficients, dot product with the SH
+// Irradiance at a surface from the light propagation volume [LPV2015, 5.4]: trilinear coefficients, dot product with the SH
 // cosine lobe about -n (light that arrives), E = 4 / (pi s^2) * <c, lobe(-n)>: the light is taken to come from the cell's centre,
 // half a cell away, E = I / (s/2)^2 [Kaplanyan2010]. Stored coefficients are c / (E_ref s^2), so s cancels.
 #include "lib/sh.glsl"

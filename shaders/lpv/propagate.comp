@@ -13,7 +13,8 @@ layout(binding = 5) uniform sampler3D facesZ;
 layout(binding = 0, LPV_FORMAT) writeonly uniform image3D nextRed;
 layout(binding = 1, LPV_FORMAT) writeonly uniform image3D nextGreen;
 layout(binding = 2, LPV_FORMAT) writeonly uniform image3D nextBlue;
-// The running sum G_0 + G_1 + ...; the first step starts it with the injected grid.
+// The sum of fronts that this step belongs to: that of the first steps or, with several cascades, that of the later ones.
+// The step that begins a sum writes it: with the injected grid if it is the first of all.
 layout(binding = 3, LPV_FORMAT) uniform image3D sumRed;
 layout(binding = 4, LPV_FORMAT) uniform image3D sumGreen;
 layout(binding = 5, LPV_FORMAT) uniform image3D sumBlue;
@@ -54,10 +55,14 @@ void main() {
   imageStore(nextRed, cell, red);
   imageStore(nextGreen, cell, green);
   imageStore(nextBlue, cell, blue);
-#if FIRST_STEP
+#if BEGINS_WITH_INJECTED
   imageStore(sumRed, cell, texelFetch(sourceRed, cell, 0) + red);
   imageStore(sumGreen, cell, texelFetch(sourceGreen, cell, 0) + green);
   imageStore(sumBlue, cell, texelFetch(sourceBlue, cell, 0) + blue);
+#elif BEGINS_SUM
+  imageStore(sumRed, cell, red);
+  imageStore(sumGreen, cell, green);
+  imageStore(sumBlue, cell, blue);
 #else
   imageStore(sumRed, cell, imageLoad(sumRed, cell) + red);
   imageStore(sumGreen, cell, imageLoad(sumGreen, cell) + green);

@@ -1,4 +1,4 @@
-// The command line as a contract (DESIGN section 5): fields of --json, files written, and for every wrong input one clear line,
+// The command line as a contract: fields of --json, files written, and for every wrong input one clear line,
 // the right exit code and nothing half-written. Runs the built executable on OSMesa.
 #include "base/image.hpp"
 #include "support/subprocess.hpp"
