@@ -72,6 +72,9 @@ void watchForInterrupt();
 bool interrupted();
 
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages);
+/// What the gather of the reflective shadow map saved: pixels a frame.
+nlohmann::ordered_json gatherJson(const RsmGather& gather);
+std::string gatherLine(const RsmGather& gather);
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer);
 
 }  // namespace lucerna::demo

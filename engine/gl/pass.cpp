@@ -47,6 +47,11 @@ void ComputePass::dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) 
   glDispatchCompute(groups.x, groups.y, groups.z);
 }
 
+void ComputePass::dispatchIndirect(const Buffer& groups) const {
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.id());
+  glDispatchComputeIndirect(0);
+}
+
 void drawFullScreen(const VertexArray& emptyVertexArray) {
   emptyVertexArray.bind();
   glDrawArrays(GL_TRIANGLES, 0, 3);

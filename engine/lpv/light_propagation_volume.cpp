@@ -16,6 +16,12 @@ constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 
 }  // namespace
 
+std::string_view nameOf(LpvFill fill) {
+  return fill == LpvFill::layered ? "layered" : fill == LpvFill::atomic ? "atomic" : "fixed";
+}
+
+std::string_view nameOf(LpvPropagate propagate) { return propagate == LpvPropagate::compute ? "compute" : "layered"; }
+
 LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
                                                const Settings& settings)
     : settings_(settings), haveClearTexture_(capabilities.clearTexture) {
@@ -24,7 +30,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   CHECK(c.cascades >= 1 && c.cascades <= LPV_MAX_CASCADES, "cascades = {}", c.cascades);
   CHECK(c.cells >= 1 && (c.cells + 1) * c.cascades <= capabilities.max3dTextureSize, "cells = {}", c.cells);
   const bool full = settings.storage == Storage::full;
-  const bool layered = settings.propagate == Propagate::layered;
+  const bool layered = settings.propagate == LpvPropagate::layered;
   const GLenum format = full ? GL_RGBA32F : GL_RGBA16F;
   const glm::ivec3 size(c.cells, c.cells, c.cells * c.cascades);
   const gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};  // outside the grid is dark
@@ -46,13 +52,13 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
 
   // Injection. 32-bit floats for what is summed: 16-bit sums stop growing after some 2000 equal additions.
   allocate(injected_, "injected", GL_RGBA32F, size, sampling);
-  if (settings.fill == Fill::layered) {
+  if (settings.fill == LpvFill::layered) {
     inject_ = &programs.loadRaster("lpv inject", "lpv/inject.vert", "lpv/inject.frag",
                                    {{"LPV_FULL_FLOAT", full}, {"FLUX_UNITS", deviations.fluxUnits}}, "lpv/inject.geom");
     const std::array<const gl::Texture*, 3> targets{&injected_[0], &injected_[1], &injected_[2]};
     injectTarget_ = gl::Framebuffer("lpv inject", targets);
   } else {
-    const bool fixed = settings.fill == Fill::fixed;
+    const bool fixed = settings.fill == LpvFill::fixed;
     if (!fixed && !capabilities.shaderAtomicFloat && !capabilities.shaderAtomicFp16Vector)
       throwMissingCapability("lpv.fill=atomic: the driver has neither NV_shader_atomic_fp16_vector nor NV_shader_atomic_float; "
                              "lpv.fill=fixed needs no extension");
@@ -204,7 +210,7 @@ void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
   const double area = settings_.deviations.fluxUnits ? inputs.rsm.texelArea : finest * finest;
   const double texels = static_cast<double>(inputs.rsm.position.size().x) * inputs.rsm.position.size().y;
   const double largest = 1.0233267079464885 / 3.141592653589793 * texels * inputs.rsm.texelArea / area;  // E_ref cancels
-  const auto fixedScale = static_cast<float>(settings_.fill == Fill::fixed ? 1073741824.0 / largest : 1.0);
+  const auto fixedScale = static_cast<float>(settings_.fill == LpvFill::fixed ? 1073741824.0 / largest : 1.0);
   const std::array<const gl::Texture*, 3> counts{&counts_[0], &counts_[1], &counts_[2]};
   gl::clearToZero(counts, haveClearTexture_);
   {
@@ -255,7 +261,7 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
 void LightPropagationVolume::propagate() {
   for (const gl::Program* program : {propagateFirst_, propagateFurther_, propagateFar_})
     if (program && settings_.deviations.fourPiKernel) program->set("amplifier", settings_.amplifier);
-  if (settings_.propagate == Propagate::layered) return propagateLayered();
+  if (settings_.propagate == LpvPropagate::layered) return propagateLayered();
   const Volume* front = &injected_;
   for (int step = 0; step < steps_; ++step) {
     const gl::ComputePass pass("lpv propagate", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);

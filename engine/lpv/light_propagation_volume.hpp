@@ -11,18 +11,23 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 
 namespace lucerna {
+
+/// How the grid is filled. `layered`: geometry shader and additive blending. `atomic`: float image atomics, an extension.
+/// `fixed`: 32-bit integer image atomics, core OpenGL 4.3, the same bits every run.
+enum class LpvFill { layered, atomic, fixed };
+std::string_view nameOf(LpvFill fill);
+
+/// `compute`: all cascades in one dispatch a step. `layered`: as published, one pass a step and cascade.
+enum class LpvPropagate { compute, layered };
+std::string_view nameOf(LpvPropagate propagate);
 
 class LightPropagationVolume {
  public:
   /// What the grids are kept in; `full` (32-bit) is for tests, which compare with the double-precision twin.
   enum class Storage { half, full };
-  /// How the grid is filled. `layered`: geometry shader and additive blending. `atomic`: float image atomics, an extension.
-  /// `fixed`: 32-bit integer image atomics, core OpenGL 4.3, the same bits every run.
-  enum class Fill { layered, atomic, fixed };
-  /// `compute`: all cascades in one dispatch a step. `layered`: as published, one pass a step and cascade.
-  enum class Propagate { compute, layered };
   /// What the published text and its public demo do differently, each by itself; README.md has formula, source and effect.
   struct Deviations {
     bool fluxUnits = false;          ///< neither texel area nor cell size counts; lookup times 1.7 / pi
@@ -42,8 +47,8 @@ class LightPropagationVolume {
   };
   struct Settings {
     CascadeSettings cascades;
-    Fill fill = Fill::layered;
-    Propagate propagate = Propagate::compute;
+    LpvFill fill = LpvFill::layered;
+    LpvPropagate propagate = LpvPropagate::compute;
     Deviations deviations;
     float amplifier = 1.0f;     ///< of the deviating kernel: 4 would conserve
     int iterations = 8;         ///< propagation steps; 0: injected light alone

@@ -9,12 +9,18 @@ namespace lucerna {
 
 namespace {
 
-#define LPV_DEVIATION(name, meaning, inOriginal, member) \
-  Deviation { "lpv." name, meaning, inOriginal, [](RenderSettings& s) -> bool& { return s.lpv.deviations.member; } }
+#define SWITCH(name, meaning, inOriginal, member)                                        \
+  Deviation {                                                                           \
+    name, meaning, inOriginal, [](const RenderSettings& s) { return bool{s.member}; }, \
+        [](RenderSettings& s, bool on) { s.member = on; }                               \
+  }
+#define LPV_DEVIATION(name, meaning, inOriginal, member) SWITCH("lpv." name, meaning, inOriginal, lpv.deviations.member)
 
 const std::array kDeviations{
-    Deviation{"rsm.flux-cosine", "flux of a texel times the cosine to the light", true,
-              [](RenderSettings& s) -> bool& { return s.rsm.fluxCosine; }},
+    SWITCH("rsm.flux-cosine", "flux of a texel times the cosine to the light", true, rsm.fluxCosine),
+    Deviation{"rsm.gather-weight", "samples of the gather weighted by xi^2 instead of xi", true,
+              [](const RenderSettings& s) { return s.gather.weight == RsmGather::Weight::published; },
+              [](RenderSettings& s, bool on) { s.gather.weight = on ? RsmGather::Weight::published : RsmGather::Weight::unbiased; }},
     LPV_DEVIATION("flux-units", "brightness follows the number of texels and the cell size; lookup times 1.7", true, fluxUnits),
     LPV_DEVIATION("sum-cascades", "all cascades are added", true, sumCascades),
     LPV_DEVIATION("unjoined", "cascades are blended as they are, without handing light over", false, unjoined),
@@ -30,6 +36,7 @@ const std::array kDeviations{
 };
 
 #undef LPV_DEVIATION
+#undef SWITCH
 
 }  // namespace
 
@@ -37,9 +44,9 @@ std::span<const Deviation> allDeviations() { return kDeviations; }
 
 void applyFidelity(RenderSettings& settings, Fidelity fidelity) {
   const bool original = fidelity == Fidelity::original;
-  for (const Deviation& deviation : kDeviations) deviation.flag(settings) = original && deviation.inOriginal;
+  for (const Deviation& deviation : kDeviations) deviation.turn(settings, original && deviation.inOriginal);
   if (!original) return;
-  settings.lpv.propagate = LightPropagationVolume::Propagate::layered;
+  settings.lpv.propagate = LpvPropagate::layered;
   settings.lpv.lookupOffset = 0.0f;
   // Cells 2.5, 1.625 and 1.0 units, and a coarsest grid of 80 units in a scene of some 112: not held inside the scene.
   settings.lpv.cascades.ratio = 1.58;
@@ -58,14 +65,13 @@ void applyDeviation(RenderSettings& settings, std::string_view assignment) {
     for (const Deviation& d : kDeviations) known += (known.empty() ? "" : ", ") + std::string(d.name);
     throwBadInput("--deviation {}: unknown; there are {}", assignment, known);
   }
-  found->flag(settings) = value == "on";
+  found->turn(settings, value == "on");
 }
 
 std::vector<std::string> activeDeviations(const RenderSettings& settings) {
   std::vector<std::string> names;
-  RenderSettings copy = settings;
   for (const Deviation& deviation : kDeviations)
-    if (deviation.flag(copy)) names.emplace_back(deviation.name);
+    if (deviation.isOn(settings)) names.emplace_back(deviation.name);
   return names;
 }
 

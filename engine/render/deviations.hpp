@@ -19,7 +19,8 @@ struct Deviation {
   const char* name;     ///< technique, dot, what deviates
   const char* meaning;  ///< one line
   bool inOriginal;      ///< whether the published text or its demo has it
-  bool& (*flag)(RenderSettings&);
+  bool (*isOn)(const RenderSettings&);
+  void (*turn)(RenderSettings&, bool on);
 };
 
 std::span<const Deviation> allDeviations();

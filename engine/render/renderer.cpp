@@ -14,7 +14,7 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kFrameBinding = 0;
-constexpr GLuint kShadowUnit = 2;
+constexpr GLuint kShadowUnit = 2, kGatheredUnit = 7;
 
 // Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal.
 glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 size) {
@@ -42,7 +42,14 @@ T parseNamed(std::string_view name, std::string_view option, std::initializer_li
 
 }  // namespace
 
-std::string_view nameOf(Technique technique) { return technique == Technique::direct ? "direct" : "lpv"; }
+std::string_view nameOf(Technique technique) {
+  switch (technique) {
+    case Technique::direct: return "direct";
+    case Technique::rsm: return "rsm";
+    case Technique::lpv: return "lpv";
+  }
+  return "?";
+}
 
 std::string_view nameOf(Component component) {
   switch (component) {
@@ -53,7 +60,9 @@ std::string_view nameOf(Component component) {
   return "?";
 }
 
-Technique parseTechnique(std::string_view name) { return parseNamed(name, "technique", {Technique::direct, Technique::lpv}); }
+Technique parseTechnique(std::string_view name) {
+  return parseNamed(name, "technique", {Technique::direct, Technique::rsm, Technique::lpv});
+}
 
 Component parseComponent(std::string_view name) {
   return parseNamed(name, "component", {Component::all, Component::direct, Component::indirect});
@@ -63,8 +72,8 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     : settings_(settings),
       needs_(analyse(scene)),
       showsDirect_(needs_.directionalLight && settings.component != Component::indirect),
-      showsIndirect_(settings.technique == Technique::lpv && settings.component != Component::direct &&
-                     LightPropagationVolume::isNeeded(needs_)),
+      showsLpv_(settings.technique == Technique::lpv && settings.component != Component::direct && LightPropagationVolume::isNeeded(needs_)),
+      showsGather_(settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs_)),
       exposure_(scene.exposure),
       timer_(context.capabilities().softwareRenderer),
       gpuScene_(scene, needs_, context.capabilities(), settings.textures),
@@ -72,20 +81,20 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       noAttributes_("full screen") {
   if (scene.sun) sunFrustum_ = fitSunFrustum(scene, scene.sun->direction);
   if (showsDirect_ && ShadowMap::isNeeded(needs_)) shadowMap_.emplace(programs, gpuScene_, settings.shadow);
-  if (showsIndirect_) {
-    rsm_.emplace(programs, gpuScene_, settings.rsm);
-    lpv_.emplace(programs, context.capabilities(), settings.lpv);
-  }
+  if (showsLpv_ || showsGather_) rsm_.emplace(programs, gpuScene_, settings.rsm);
+  if (showsLpv_) lpv_.emplace(programs, context.capabilities(), settings.lpv);
 
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_.materialFlags(masked);
     const bool showsRest = settings.component != Component::indirect;  // specular and emission belong to direct light
     flags.insert(flags.end(), {{"DIRECT", showsDirect_},
-                               {"INDIRECT", showsIndirect_},
+                               {"INDIRECT", showsLpv_},
+                               {"GATHERED", showsGather_},
+                               {"SHOW_REFUSED", showsGather_ && settings.gather.showRefused},
                                {"SPECULAR", needs_.specular && showsDirect_},
                                {"EMISSION", needs_.emission && showsRest}});
     const gl::ShaderFlags lookup = LightPropagationVolume::lookupFlags(settings.lpv);
-    if (showsIndirect_) flags.insert(flags.end(), lookup.begin(), lookup.end());
+    if (showsLpv_) flags.insert(flags.end(), lookup.begin(), lookup.end());
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
   };
   surfacePrograms_.opaque = loadSurface("surface opaque", false);
@@ -95,6 +104,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     depthPrograms_.masked = &programs.loadRaster("depth masked", "forward/depth.vert", "forward/depth.frag", {{"ALPHA_MASK", 1}, {"FROM_SUN", 0}});
   toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
   allocateTargets();
+  if (showsGather_) gather_.emplace(programs, gpuScene_, settings.gather, depth_);
 }
 
 void Renderer::allocateTargets() {
@@ -111,11 +121,13 @@ void Renderer::resize(glm::ivec2 size) {
   if (size == settings_.size || size.x <= 0 || size.y <= 0) return;
   settings_.size = size;
   allocateTargets();
+  if (gather_) gather_->resize(depth_);
 }
 
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   const Scene& scene = gpuScene_.scene();
-  const glm::mat4 cameraClip(clipFromWorld(camera, scene.bounds, settings_.size));
+  const glm::dmat4 exactClip = clipFromWorld(camera, scene.bounds, settings_.size);
+  const glm::mat4 cameraClip(exactClip);
   const glm::vec3 viewPoint(camera.position);
 
   shared::FrameConstants frame{};
@@ -137,6 +149,27 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   if (shadowMap_) {
     const gl::TimeQuery::Scope stage(timer_, "shadow");
     shadowMap_->record(gpuScene_);
+  }
+
+  if (gather_) {
+    timer_.begin("rsm");
+    const auto rsm = rsm_->record(gpuScene_, sunFrustum_.texelArea(rsm_->size()));
+    timer_.end();
+    {
+      const gl::TimeQuery::Scope stage(timer_, "geometry");
+      gather_->recordGeometry(gpuScene_, {&cameraClip, &viewPoint});
+    }
+    const RsmGather::Inputs inputs{rsm, glm::mat4(glm::inverse(exactClip)),
+                                   static_cast<float>(2.0 * std::tan(0.5 * camera.verticalFov) / settings_.size.y)};
+    if (gather_->settings().interpolates()) {
+      timer_.begin("gather low");
+      gather_->gatherLow(inputs);
+      timer_.end();
+      const gl::TimeQuery::Scope stage(timer_, "interpolation");
+      gather_->interpolate(inputs);
+    }
+    const gl::TimeQuery::Scope stage(timer_, "gather full");
+    gather_->gatherFull(inputs);
   }
 
   if (lpv_) {
@@ -164,7 +197,7 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
 
   {
     const gl::TimeQuery::Scope stage(timer_, "shading");
-    {
+    if (!gather_) {  // its geometry pass has drawn depth
       gl::RasterState state;
       state.depth = gl::Depth::lessWrite;
       const gl::RasterPass pass("depth", depthTarget_, state);
@@ -178,6 +211,7 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
     if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
     if (lpv_) lpv_->bindForLookup();
+    if (gather_) gather_->irradiance().bind(kGatheredUnit);
     gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
   }
 
@@ -189,6 +223,12 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     gl::drawFullScreen(noAttributes_);
   }
   timer_.collect();
+  if (gather_) gather_->collect();
+}
+
+void Renderer::drain() {
+  timer_.drain();
+  if (gather_) gather_->collect(true);
 }
 
 Image Renderer::readRadiance() const {
@@ -220,6 +260,7 @@ std::size_t Renderer::gpuBytes() const {
   if (shadowMap_) bytes += shadowMap_->gpuBytes();
   if (rsm_) bytes += rsm_->gpuBytes();
   if (lpv_) bytes += lpv_->gpuBytes();
+  if (gather_) bytes += gather_->gpuBytes();
   return bytes;
 }
 
@@ -229,6 +270,7 @@ std::vector<std::string> Renderer::leftOut() const {
     if (!needed) names.push_back(name);
   if (!shadowMap_) names.emplace_back("shadow map");
   if (!rsm_) names.emplace_back("reflective shadow map");
+  if (!gather_) names.emplace_back("rsm gather");
   if (!lpv_) names.emplace_back("light propagation volume");
   else if (!lpv_->geometryVolume()) names.emplace_back("geometry volume");
   return names;

@@ -10,6 +10,7 @@
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "rsm/reflective_shadow_map.hpp"
+#include "rsm/rsm_gather.hpp"
 #include "scene/needs.hpp"
 
 #include <optional>
@@ -19,7 +20,7 @@
 
 namespace lucerna {
 
-enum class Technique { direct, lpv };
+enum class Technique { direct, rsm, lpv };
 enum class Component { all, direct, indirect };
 
 std::string_view nameOf(Technique technique);
@@ -35,6 +36,7 @@ struct RenderSettings {
   GpuSceneSettings textures;
   ShadowMap::Settings shadow;
   ReflectiveShadowMap::Settings rsm;
+  RsmGather::Settings gather;
   LightPropagationVolume::Settings lpv;
 };
 
@@ -61,6 +63,9 @@ class Renderer {
   const SceneNeeds& needs() const { return needs_; }
   const RenderSettings& settings() const { return settings_; }
   const LightPropagationVolume* lpv() const { return lpv_ ? &*lpv_ : nullptr; }
+  const RsmGather* gather() const { return gather_ ? &*gather_ : nullptr; }
+  /// Waits for everything still on its way, times and counts; for the end of a run, not for a frame.
+  void drain();
   /// Names of what the scene or the settings did not need.
   std::vector<std::string> leftOut() const;
 
@@ -69,7 +74,7 @@ class Renderer {
 
   RenderSettings settings_;
   SceneNeeds needs_;
-  bool showsDirect_, showsIndirect_;
+  bool showsDirect_, showsLpv_, showsGather_;
   float exposure_;
   gl::TimeQuery timer_;
   GpuScene gpuScene_;
@@ -81,6 +86,7 @@ class Renderer {
   std::optional<ShadowMap> shadowMap_;
   std::optional<ReflectiveShadowMap> rsm_;
   std::optional<LightPropagationVolume> lpv_;
+  std::optional<RsmGather> gather_;
   gl::Texture radiance_, depth_, display_;
   gl::Framebuffer depthTarget_, radianceTarget_, displayTarget_;
 };

@@ -1,4 +1,5 @@
-// Forward shading: direct sunlight with a filtered shadow map, indirect light from the light propagation volume, emission.
+// Forward shading: direct sunlight with a filtered shadow map, indirect light from the light propagation volume or gathered
+// beforehand, emission.
 // Output: radiance, linear, scene units. Lambert: L = albedo / pi * E. Specular: Blinn-Phong, normalised so that its energy
 // does not depend on the exponent, (n + 8) / (8 pi) [AkenineMoller2018, section 9.8].
 #include "lib/frame.glsl"
@@ -6,6 +7,9 @@
 #include "lib/material.glsl"
 #if INDIRECT
 #include "lpv/lookup.glsl"
+#endif
+#if GATHERED
+layout(binding = 7) uniform sampler2D gatheredIrradiance;  // w = 2: interpolation refused the pixel
 #endif
 
 in vec3 vPosition;
@@ -57,8 +61,15 @@ void main() {
 #if INDIRECT
   result += albedo / kPi * lpvIrradiance(vPosition, normal);
 #endif
+#if GATHERED
+  vec4 gathered = texelFetch(gatheredIrradiance, ivec2(gl_FragCoord.xy), 0);
+  result += albedo / kPi * gathered.rgb;
+#endif
 #if EMISSION
   result += materialEmission;
+#endif
+#if SHOW_REFUSED
+  if (gathered.w > 1.5) result = vec3(1.0, 0.0, 0.0) / frame.exposure;
 #endif
   radiance = vec4(result, 1.0);
 }
