@@ -535,19 +535,23 @@ TEST_F(LpvKnownAnswers, InjectedFluxIsBand0TimesTheRootOf4Pi) {
 }
 
 TEST_F(LpvKnownAnswers, LightFromAheadIsSeenAndFromBehindIsNot) {
-  // One light of flux 1 in a cell of size 1, looked up in the cell's middle: E = 4/pi <c, lobe(-n)>, c = lobe(axis)/pi. Ahead that is
-  // 4/pi^2 (pi/4 + pi/3) = 7/(3 pi); for a receiver that faces along with the light the lobes' product is negative, which is no light.
-  const glm::vec3 axis = glm::normalize(glm::vec3(2, -1, 2));
+  // One light of flux 1 in a cell of size 1, looked up in the cell's middle: E = 4/pi <c, lobe(-n)>, c = lobe(axis)/pi, which is
+  // 4/pi^2 (pi/4 + w pi/3 cos) with the window w of the receiver's lobe: 2/pi ahead and nothing behind for w = 3/4. For w = 1, as
+  // published, it is 7/(3 pi) ahead, and behind it would be negative, which is no light.
+  const glm::vec3 axis = glm::normalize(glm::vec3(2, -1, 2)), across = glm::normalize(glm::vec3(1, 2, 0));
   const Field field(one(5, axis, glm::vec3(1.0f)), 5);
-  LightPropagationVolume::Settings s = settings(5, 1, 0);
-  s.lookupOffset = 0.0f;
-  const LightPropagationVolume lpv = run(s, field.inputs);
-  const glm::vec3 across = glm::normalize(glm::vec3(1, 2, 0));
   const std::vector<Probe> probes{{glm::vec3(2.5f), -axis}, {glm::vec3(2.5f), axis}, {glm::vec3(2.5f), across}};
-  const std::vector<glm::vec3> seen = test::probeIrradiance(library(), lpv, probes);
-  EXPECT_NEAR(seen[0].x, 7.0 / (3.0 * twin::kPi), 1e-5);
-  EXPECT_EQ(seen[1].x, 0.0f);
-  EXPECT_NEAR(seen[2].x, 1.0 / twin::kPi, 1e-5);
+  for (const bool unwindowed : {false, true}) {
+    LightPropagationVolume::Settings s = settings(5, 1, 0);
+    s.lookupOffset = 0.0f;
+    s.deviations.unwindowed = unwindowed;
+    const LightPropagationVolume lpv = run(s, field.inputs);
+    const std::vector<glm::vec3> seen = test::probeIrradiance(library(), lpv, probes);
+    EXPECT_NEAR(seen[0].x, unwindowed ? 7.0 / (3.0 * twin::kPi) : 2.0 / twin::kPi, 1e-5);
+    EXPECT_NEAR(seen[1].x, 0.0, 1e-6);
+    EXPECT_GE(seen[1].x, 0.0f);
+    EXPECT_NEAR(seen[2].x, 1.0 / twin::kPi, 1e-5);
+  }
 }
 
 TEST_F(LpvKnownAnswers, BorderDecay) {
