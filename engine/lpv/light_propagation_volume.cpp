@@ -67,7 +67,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     fillsHalfVectors_ = !fixed && capabilities.shaderAtomicFp16Vector;
     const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed && !fillsHalfVectors_}, {"FILL_HALF", fillsHalfVectors_}};
     inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(with(group, fill), vpl));
-    resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(group, fill));
+    resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(with(group, fill), vpl));
     allocate(counts_, "count", fixed ? GL_R32I : fillsHalfVectors_ ? GL_RGBA16F : GL_R32F,
              glm::ivec3(fillsHalfVectors_ ? size.x : 4 * size.x, size.y, size.z), {});
   }
