@@ -50,11 +50,13 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     return flags;
   };
 
+  const gl::ShaderFlags vpl{{"FLUX_UNITS", deviations.fluxUnits}, {"LOWEST_CELL", deviations.firstCell ? 1 : 0}};
+
   // Injection. 32-bit floats for what is summed: 16-bit sums stop growing after some 2000 equal additions.
   allocate(injected_, "injected", GL_RGBA32F, size, sampling);
   if (settings.fill == LpvFill::layered) {
     inject_ = &programs.loadRaster("lpv inject", "lpv/inject.vert", "lpv/inject.frag",
-                                   {{"LPV_FULL_FLOAT", full}, {"FLUX_UNITS", deviations.fluxUnits}}, "lpv/inject.geom");
+                                   with({{"LPV_FULL_FLOAT", full}}, vpl), "lpv/inject.geom");
     const std::array<const gl::Texture*, 3> targets{&injected_[0], &injected_[1], &injected_[2]};
     injectTarget_ = gl::Framebuffer("lpv inject", targets);
   } else {
@@ -64,8 +66,8 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
                              "lpv.fill=fixed needs no extension");
     fillsHalfVectors_ = !fixed && capabilities.shaderAtomicFp16Vector;
     const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed && !fillsHalfVectors_}, {"FILL_HALF", fillsHalfVectors_}};
-    inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(with(group, fill), {{"FLUX_UNITS", deviations.fluxUnits}}));
-    resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(group, fill));
+    inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(with(group, fill), vpl));
+    resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(with(group, fill), vpl));
     allocate(counts_, "count", fixed ? GL_R32I : fillsHalfVectors_ ? GL_RGBA16F : GL_R32F,
              glm::ivec3(fillsHalfVectors_ ? size.x : 4 * size.x, size.y, size.z), {});
   }
@@ -73,7 +75,8 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   const bool blocked = settings.blocking && (steps_ > 1 || (steps_ == 1 && deviations.blockFirstStep));  // the first step is not, by itself
   if (blocked) {
     fillGeometryVolume_ = &programs.loadRaster("lpv geometry volume", "lpv/inject.vert", "lpv/geometry_volume.frag",
-                                               {{"LPV_FULL_FLOAT", full}, {"TRUNCATE", deviations.truncate}, {"SURFEL_AREA", deviations.surfelArea}},
+                                               {{"LPV_FULL_FLOAT", full}, {"TRUNCATE", deviations.truncate}, {"SURFEL_AREA", deviations.surfelArea},
+                                                {"LOWEST_CELL", deviations.firstCell ? 1 : 0}},
                                                "lpv/geometry_volume.geom");
     const glm::ivec3 corners(c.cells + 1, c.cells + 1, (c.cells + 1) * c.cascades);
     geometryVolume_.emplace("lpv geometry volume", static_cast<GLenum>(GL_RGBA32F), corners, sampling);
@@ -169,8 +172,12 @@ void LightPropagationVolume::place(const Inputs& inputs) {
   for (std::size_t k = 0; k < inputs.cascades.size(); ++k) {
     const Cascade& cascade = inputs.cascades[k];
     auto& target = constants.cascades[k];
-    // Deviation: the origin is truncated to whole world units, off the raster of cells.
-    target.minimum = glm::vec3(settings_.deviations.truncate ? glm::trunc(cascade.minimum()) : cascade.minimum());
+    target.minimum = glm::vec3(cascade.minimum());
+    if (settings_.deviations.truncate) {
+      // int(x + 0.5) cells from the world's origin, wrong where negative; then whole world units, off the raster of cells.
+      const glm::dvec3 inCells = (cascade.centre - 0.5 * cells * cascade.cellSize) / cascade.cellSize;
+      target.minimum = glm::vec3(glm::trunc(glm::trunc(inCells + 0.5) * cascade.cellSize));
+    }
     target.cellSize = static_cast<float>(cascade.cellSize);
     target.blendCentre = glm::vec3(cascade.centre);
     // Snapping moves the grid by up to two cells and the trilinear lookup needs half a cell more.

@@ -34,6 +34,7 @@ class LightPropagationVolume {
     bool sumCascades = false;        ///< all cascades are added, none is joined
     bool unjoined = false;           ///< cascades are blended as they are
     bool truncate = false;           ///< conversion to int instead of floor; grids snap to whole world units
+    bool firstCell = false;          ///< bounds tested with > for >=: cell 0 of every axis stays dark
     bool sideDirections = false;     ///< side faces by component-wise product
     bool sideSolidAngle = false;     ///< 0.4234413544
     bool fourPiKernel = false;       ///< Omega / (4 pi) with an amplifier

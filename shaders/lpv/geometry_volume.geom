@@ -33,8 +33,13 @@ void main() {
   for (int k = 0; k < lpv.shape.y; ++k) {
     float s = lpv.cascades[k].cellSize;
     vec3 cornerPosition = (gPosition[0].xyz - lpv.cascades[k].minimum) / s + 0.5;
-    ivec3 corner = ivec3(floor(clamp(cornerPosition, -1.0, float(corners))));  // the integer of a huge number is undefined
-    if (any(lessThan(corner, ivec3(0))) || any(greaterThanEqual(corner, ivec3(corners)))) continue;
+    vec3 bounded = clamp(cornerPosition, -1.0, float(corners));  // the integer of a huge number is undefined
+#if TRUNCATE
+    ivec3 corner = ivec3(bounded);  // deviation lpv.truncate: what lies in (-1, 0) falls into cell 0
+#else
+    ivec3 corner = ivec3(floor(bounded));
+#endif
+    if (any(lessThan(corner, ivec3(LOWEST_CELL))) || any(greaterThanEqual(corner, ivec3(corners)))) continue;
     fPotential = area / (s * s) * shCosineLobe(normal);
     gl_Layer = k * corners + corner.z;
     gl_Position = vec4((vec2(corner.xy) + 0.5) / float(corners) * 2.0 - 1.0, 0.0, 1.0);

@@ -30,12 +30,12 @@ layout(binding = 0, FILL_FORMAT) coherent uniform FILL_IMAGE countRed;
 layout(binding = 1, FILL_FORMAT) coherent uniform FILL_IMAGE countGreen;
 layout(binding = 2, FILL_FORMAT) coherent uniform FILL_IMAGE countBlue;
 uniform float fluxScale;   // 1, or without units 1 / texel area
-uniform float fixedScale;  // integer steps a unit of a stored coefficient
+uniform float fixedScale;  // integer steps a unit of a coefficient stored in the finest cascade, see lpv/fixed.glsl
 
 #if FILL_FIXED
 #define COUNT(image, at, c)                                                       \
   for (int i = 0; i < 4; ++i)                                                     \
-    imageAtomicAdd(image, ivec3(4 * at.x + i, at.yz), int(round((c)[i] * fixedScale)))
+    imageAtomicAdd(image, ivec3(4 * at.x + i, at.yz), int(round((c)[i] * stepsOfCascade(k, fixedScale))))
 #elif FILL_FLOAT
 #define COUNT(image, at, c) \
   for (int i = 0; i < 4; ++i) imageAtomicAdd(image, ivec3(4 * at.x + i, at.yz), (c)[i])
@@ -43,6 +43,7 @@ uniform float fixedScale;  // integer steps a unit of a stored coefficient
 #define COUNT(image, at, c) imageAtomicAdd(image, at, f16vec4(c))
 #endif
 
+#include "lpv/fixed.glsl"
 #include "lpv/vpl.glsl"
 
 void main() {

@@ -15,12 +15,18 @@ layout(binding = 1, rgba32f) writeonly uniform image3D injectedGreen;
 layout(binding = 2, rgba32f) writeonly uniform image3D injectedBlue;
 uniform float fixedScale;
 
+#if FILL_FIXED
+#include "lpv/fixed.glsl"
+#else
+float stepsOfCascade(int k, float fixedScale) { return fixedScale; }
+#endif
+
 #if FILL_HALF
 #define RESOLVED(count) texelFetch(count, cell, 0)
 #else
 #define RESOLVED(count)                                                                                               \
   vec4(texelFetch(count, first, 0).x, texelFetch(count, first + ivec3(1, 0, 0), 0).x,                                 \
-       texelFetch(count, first + ivec3(2, 0, 0), 0).x, texelFetch(count, first + ivec3(3, 0, 0), 0).x) / fixedScale
+       texelFetch(count, first + ivec3(2, 0, 0), 0).x, texelFetch(count, first + ivec3(3, 0, 0), 0).x) / steps
 #endif
 
 void main() {
@@ -28,6 +34,7 @@ void main() {
   int cells = lpv.shape.x;
   if (any(greaterThanEqual(cell, ivec3(cells, cells, cells * lpv.shape.y)))) return;
   ivec3 first = ivec3(4 * cell.x, cell.yz);
+  float steps = stepsOfCascade(cell.z / cells, fixedScale);
   imageStore(injectedRed, cell, RESOLVED(countRed));
   imageStore(injectedGreen, cell, RESOLVED(countGreen));
   imageStore(injectedBlue, cell, RESOLVED(countBlue));

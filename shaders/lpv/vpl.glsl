@@ -1,5 +1,5 @@
 // A virtual point light of the reflective shadow map as the grid takes it, shared by all ways to fill it.
-// Needs lib/sh.glsl and lpv/common.glsl.
+// Needs lib/sh.glsl and lpv/common.glsl. LOWEST_CELL is 0; 1 with the deviation lpv.first-cell.
 
 // Background, black, zero and non-finite texels carry no light (NaN fails every comparison).
 bool isUsableVpl(vec4 position, vec3 normal, vec3 flux) {
@@ -12,7 +12,7 @@ bool isUsableVpl(vec4 position, vec3 normal, vec3 flux) {
 bool vplCell(int k, vec3 position, vec3 normal, out ivec3 cell) {
   float s = lpv.cascades[k].cellSize;
   cell = ivec3(floor((position + 0.5 * s * normal - lpv.cascades[k].minimum) / s));
-  return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(lpv.shape.x)));
+  return all(greaterThanEqual(cell, ivec3(LOWEST_CELL))) && all(lessThan(cell, ivec3(lpv.shape.x)));
 }
 
 // Intensity Phi / pi * max(0, cos) of unit flux, as stored: c / (E_ref s^2) is near 1 whatever the units, so that 16-bit floats neither

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
 namespace {
 
@@ -105,6 +106,44 @@ TEST_F(CommandLine, ComponentsAddUp) {
   }
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(means[0][c], means[1][c] + means[2][c], 1e-5 * means[0][c]);
   EXPECT_GT(means[2].x, 0.0);
+}
+
+TEST_F(CommandLine, DeviationsAreReported) {
+  const auto deviations = [&](const std::string& arguments) {
+    const RunResult result = RUN_LUCERNA("render " + scene() + " --host osmesa --size 32x24 --set lpv.cells=8 -o " + path("x.pfm") + " --json " +
+                                         path("render.json") + arguments);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    const auto render = json("render.json");
+    return std::pair(render.at("fidelity").get<std::string>(), render.at("deviations").get<std::vector<std::string>>());
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(deviations(""), std::pair(std::string("corrected"), Names{}));
+  EXPECT_EQ(deviations(" --deviation lpv.side-directions=on"), std::pair(std::string("corrected"), Names{"lpv.side-directions"}));
+  const auto [fidelity, original] = deviations(" --fidelity original");
+  EXPECT_EQ(fidelity, "original");
+  // What --help marks with a star.
+  const std::string help = RUN_LUCERNA("render --help").out;
+  std::istringstream lines(help.substr(help.find("\nDeviations (")));
+  Names marked;
+  int known = 0;
+  for (std::string line, star, name; std::getline(lines, line);) {
+    std::istringstream words(line);
+    if (!(words >> star)) continue;
+    const bool isMarked = star == "*";
+    if (isMarked) words >> name;
+    else name = star;
+    if (!name.starts_with("lpv.") && !name.starts_with("rsm.")) continue;
+    ++known;
+    if (isMarked) marked.push_back(name);
+  }
+  EXPECT_EQ(original, marked);
+  EXPECT_GT(marked.size(), 5u);
+  EXPECT_GT(known, static_cast<int>(marked.size()));
+  Names without = marked;
+  std::erase(without, "lpv.truncate");
+  EXPECT_EQ(deviations(" --fidelity original --deviation lpv.truncate=off").second, without);
+  expectRefused("render " + scene() + " --host osmesa --deviation lpv.nothing=on -o " + path("y.pfm"), 2, {"lpv.nothing", "lpv.side-directions"}, "y.pfm");
+  expectRefused("render " + scene() + " --host osmesa --deviation lpv.truncate=maybe -o " + path("y.pfm"), 2, {"lpv.truncate=maybe", "=on or"}, "y.pfm");
 }
 
 TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {

@@ -153,7 +153,7 @@ bool inject(VolumeRgb& volume, const Vpl& vpl, const InjectionOptions& options) 
   const GridSpec& grid = volume[0].grid;
   const glm::dvec3 moved = vpl.position + options.normalShift * grid.cellSize * *normal;
   const std::optional<glm::ivec3> cell = cellOf(grid, moved, options.indexRule);
-  if (!cell) return false;
+  if (!cell || glm::any(glm::lessThan(*cell, glm::ivec3(options.lowestCell)))) return false;
   for (int channel = 0; channel < 3; ++channel) {
     volume[static_cast<std::size_t>(channel)].at(*cell) += (vpl.flux[channel] / kPi) * lobe(*normal);
   }
@@ -241,7 +241,7 @@ KernelOptions frontFaceKernel() {
 }
 
 double transmittance(const Sh& potential, const glm::dvec3& direction, const KernelOptions& options) {
-  double blocked = evaluate(potential, -direction);
+  double blocked = evaluate(potential, options.blockAlongTravel ? direction : -direction);
   if (options.twoSidedBlocking) blocked = std::max(blocked, evaluate(potential, direction));
   if (options.clampTransmittance) blocked = std::clamp(blocked, 0.0, 1.0);
   return 1.0 - blocked;

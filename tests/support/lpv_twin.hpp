@@ -114,6 +114,7 @@ struct Vpl {
 struct InjectionOptions {
   double normalShift = 0.5;  ///< cells that a VPL is moved along its normal before its cell is sought
   IndexRule indexRule = IndexRule::floor;
+  int lowestCell = 0;  ///< 1: the published bounds test with > for >=
 };
 
 /// Adds Phi/pi * lobe(n) to the VPL's cell. False where it was dropped: outside, normal zero or not finite, position or
@@ -164,6 +165,7 @@ struct KernelOptions {
   bool clampIntensity = true;      ///< max(0, I); off for the conservation anchors only
   bool clampTransmittance = true;  ///< clamp B to [0, 1]
   bool twoSidedBlocking = false;   ///< block by max(B(w), B(-w))
+  bool blockAlongTravel = false;   ///< published mistake: the potential is evaluated in the direction of travel
   bool blockFirstStep = false;     ///< off: else a VPL is blocked by its own surface
   Sh (*storePotential)(const Sh&) = nullptr;  ///< what keeping a face's potential makes of it; null: nothing
 };

@@ -1,0 +1,124 @@
+// The deviations' switches: by name, by fidelity, reported, and each with its line in the README.md of its technique.
+#include "base/error.hpp"
+#include "render/deviations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace lucerna {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> namesInOriginal() {
+  std::vector<std::string> names;
+  for (const Deviation& deviation : allDeviations())
+    if (deviation.inOriginal) names.emplace_back(deviation.name);
+  return names;
+}
+
+TEST(Deviations, NamesAreDistinctAndBeginWithTheirTechniquesFolder) {
+  std::set<std::string> names;
+  for (const Deviation& deviation : allDeviations()) {
+    const std::string name = deviation.name;
+    EXPECT_TRUE(names.insert(name).second) << name;
+    const auto dot = name.find('.');
+    ASSERT_NE(dot, std::string::npos) << name;
+    EXPECT_TRUE(fs::is_directory(fs::path(LUCERNA_SOURCE_DIR) / "engine" / name.substr(0, dot))) << name;
+    EXPECT_FALSE(std::string(deviation.meaning).empty()) << name;
+  }
+  EXPECT_FALSE(names.empty());
+}
+
+TEST(Deviations, EachHasItsLineInTheReadmeOfItsTechnique) {
+  for (const Deviation& deviation : allDeviations()) {
+    const std::string name = deviation.name;
+    std::ifstream file(fs::path(LUCERNA_SOURCE_DIR) / "engine" / name.substr(0, name.find('.')) / "README.md");
+    std::string line;
+    bool inSection = false, found = false;
+    while (std::getline(file, line)) {
+      if (line.starts_with("#")) inSection = line == "## Deviations";
+      if (inSection && line.starts_with("| `" + name + "` |")) {
+        found = true;
+        // Formula as published, ours, source, effect: none left empty.
+        EXPECT_EQ(std::count(line.begin(), line.end(), '|'), 6) << line;
+        EXPECT_EQ(line.find("|  |"), std::string::npos) << line;
+      }
+    }
+    EXPECT_TRUE(found) << name << " has no line in the README.md of its technique, section Deviations";
+  }
+}
+
+TEST(Deviations, NoneIsOnByDefaultNorCorrected) {
+  RenderSettings settings;
+  EXPECT_TRUE(activeDeviations(settings).empty());
+  applyFidelity(settings, Fidelity::corrected);
+  EXPECT_TRUE(activeDeviations(settings).empty());
+}
+
+TEST(Deviations, OriginalTurnsOnJustThoseMarkedAndWhatGoesWithThem) {
+  RenderSettings settings;
+  applyFidelity(settings, Fidelity::original);
+  EXPECT_EQ(activeDeviations(settings), namesInOriginal());
+  EXPECT_FALSE(namesInOriginal().empty());
+  EXPECT_LT(namesInOriginal().size(), allDeviations().size());
+  EXPECT_EQ(settings.lpv.propagate, LpvPropagate::layered);
+  EXPECT_EQ(settings.lpv.lookupOffset, 0.0f);
+  EXPECT_EQ(settings.lpv.cascades.ratio, 1.58);
+  EXPECT_EQ(settings.lpv.cascades.spanOfScene, 80.0 / 112.0);
+  EXPECT_FALSE(settings.lpv.cascades.heldInScene);
+  // The other way: a deviation that was on before is off.
+  RenderSettings turned;
+  for (const Deviation& deviation : allDeviations()) deviation.turn(turned, true);
+  applyFidelity(turned, Fidelity::original);
+  EXPECT_EQ(activeDeviations(turned), namesInOriginal());
+  for (const Deviation& deviation : allDeviations()) deviation.turn(turned, true);
+  applyFidelity(turned, Fidelity::corrected);
+  EXPECT_TRUE(activeDeviations(turned).empty());
+}
+
+TEST(Deviations, EachIsTurnedByItsNameAlone) {
+  for (const Deviation& deviation : allDeviations()) {
+    const std::string name = deviation.name;
+    RenderSettings settings;
+    applyDeviation(settings, name + "=on");
+    EXPECT_EQ(activeDeviations(settings), std::vector{name});
+    applyDeviation(settings, name + "=on");
+    EXPECT_EQ(activeDeviations(settings), std::vector{name});
+    applyDeviation(settings, name + "=off");
+    EXPECT_TRUE(activeDeviations(settings).empty()) << name;
+  }
+}
+
+TEST(Deviations, UnknownNamesAndValuesAreRefused) {
+  const std::string name = allDeviations().front().name;
+  for (const std::string& wrong : {std::string(), std::string("="), std::string("=on"), name, name + "=", name + "=yes", name + "=On", name + "=on ",
+                                   " " + name + "=on", name + "x=on", std::string("lpv.side=on")}) {
+    RenderSettings settings;
+    try {
+      applyDeviation(settings, wrong);
+      ADD_FAILURE() << "'" << wrong << "' was not refused";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::badInput) << wrong;
+      EXPECT_NE(std::string(error.what()).find("--deviation " + wrong), std::string::npos) << error.what();
+    }
+    EXPECT_TRUE(activeDeviations(settings).empty()) << wrong;
+  }
+  // An unknown name is answered with all that there are.
+  RenderSettings settings;
+  try {
+    applyDeviation(settings, "lpv.nothing=on");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    for (const Deviation& deviation : allDeviations()) EXPECT_NE(std::string(error.what()).find(deviation.name), std::string::npos) << deviation.name;
+  }
+}
+
+}  // namespace
+}  // namespace lucerna
