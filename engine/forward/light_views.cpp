@@ -38,7 +38,7 @@ glm::dmat4 view(const LightViews& views, const glm::dvec3& axis, const glm::dvec
 }  // namespace
 
 LightViews lightViews(const SpotLight& light, const Bounds& scene) {
-  LightViews views{light.position, light.intensity, light.direction, std::cos(light.innerAngle), std::cos(light.outerAngle)};
+  LightViews views{light.position, light.intensity, light.direction, std::cos(light.innerAngle), std::cos(light.outerAngle), {}};
   placePlanes(views, scene);
   views.tangent = 1.01 * std::tan(light.outerAngle);  // the cone's rim lies inside the map, its filter too
   const glm::dvec3 up = std::abs(light.direction.y) < 0.99 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
@@ -47,7 +47,9 @@ LightViews lightViews(const SpotLight& light, const Bounds& scene) {
 }
 
 LightViews lightViews(const PointLight& light, const Bounds& scene) {
-  LightViews views{light.position, light.intensity};
+  LightViews views;
+  views.position = light.position;
+  views.intensity = light.intensity;
   placePlanes(views, scene);
   for (const Face& face : kFaces) views.clipFromWorld.push_back(view(views, face.axis, face.up));
   return views;

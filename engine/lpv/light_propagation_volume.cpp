@@ -104,6 +104,7 @@ void LightPropagationVolume::join() {
 }
 
 void LightPropagationVolume::place(const Inputs& inputs) {
+  CHECK(inputs.referenceIrradiance > 0.0f, "E_ref = {}", inputs.referenceIrradiance);
   CHECK(static_cast<int>(inputs.cascades.size()) == settings_.cascades.cascades, "{} cascades", inputs.cascades.size());
   shared::LpvConstants constants{};
   const int cells = settings_.cascades.cells;
@@ -126,6 +127,16 @@ void LightPropagationVolume::place(const Inputs& inputs) {
   constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
 }
 
+void LightPropagationVolume::drawTexels(const Inputs& inputs) const {
+  noAttributes_.bind();
+  for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {
+    rsm.position.bind(0);
+    rsm.normal.bind(1);
+    rsm.flux.bind(2);
+    glDrawArrays(GL_POINTS, 0, rsm.texelCount());
+  }
+}
+
 void LightPropagationVolume::inject(const Inputs& inputs) {
   std::array<const gl::Texture*, 3> targets{&injected_[0], &injected_[1], &injected_[2]};
   gl::clearToZero(targets, haveClearTexture_);
@@ -133,11 +144,7 @@ void LightPropagationVolume::inject(const Inputs& inputs) {
   state.blend = gl::Blend::add;
   const gl::RasterPass pass("lpv inject", injectTarget_, state);
   inject_->use();
-  inputs.rsm.position.bind(0);
-  inputs.rsm.normal.bind(1);
-  inputs.rsm.flux.bind(2);
-  noAttributes_.bind();
-  glDrawArrays(GL_POINTS, 0, inputs.rsm.position.size().x * inputs.rsm.position.size().y);
+  drawTexels(inputs);
 }
 
 void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
@@ -149,12 +156,7 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
     state.blend = gl::Blend::add;
     const gl::RasterPass pass("lpv geometry volume", geometryTarget_, state);
     fillGeometryVolume_->use();
-    fillGeometryVolume_->set("texelArea", inputs.rsm.texelArea);
-    inputs.rsm.position.bind(0);
-    inputs.rsm.normal.bind(1);
-    inputs.rsm.flux.bind(2);
-    noAttributes_.bind();
-    glDrawArrays(GL_POINTS, 0, inputs.rsm.position.size().x * inputs.rsm.position.size().y);
+    drawTexels(inputs);
   }
   const gl::ComputePass pass("lpv geometry faces", GL_TEXTURE_FETCH_BARRIER_BIT);
   averageFaces_->use();

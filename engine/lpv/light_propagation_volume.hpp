@@ -27,9 +27,9 @@ class LightPropagationVolume {
     Storage storage = Storage::half;
   };
   struct Inputs {
-    ReflectiveShadowMap::Outputs rsm;
+    std::vector<ReflectiveShadowMap::Outputs> rsms;  ///< one a light; all are added up
     std::vector<Cascade> cascades;  ///< finest first, as many as in the settings
-    float referenceIrradiance;      ///< the sun's largest channel; only scales the stored values
+    float referenceIrradiance;      ///< E_ref > 0, of the order of what the lights make; only scales the stored values
   };
   /// Red, green and blue: 3D textures of SH coefficients c / (E_ref s^2), cascades stacked along z.
   using Volume = std::array<gl::Texture, 3>;
@@ -56,6 +56,9 @@ class LightPropagationVolume {
   std::size_t gpuBytes() const;
 
  private:
+  /// One point for each texel of each reflective shadow map, with the program in use.
+  void drawTexels(const Inputs& inputs) const;
+
   Settings settings_;
   bool haveClearTexture_;
   const gl::Program* inject_ = nullptr;

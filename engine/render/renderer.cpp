@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "shared/frame.h"
+#include "shared/sun_cascades.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -14,7 +15,11 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kFrameBinding = 0;
+constexpr GLuint kSunCascadeBinding = 4;
 constexpr GLuint kShadowUnit = 2;
+constexpr float kShadowNormalOffset = 1.5f;  // texels of the sun's shadow map
+
+double nearPlane(const Bounds& bounds) { return 5e-4 * std::max(glm::length(bounds.extent()), 1e-6); }
 
 // Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal.
 glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 size) {
@@ -26,7 +31,7 @@ glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 
     farthest = std::max(farthest, glm::length(p - camera.position));
   }
   const double aspect = static_cast<double>(size.x) / size.y;
-  return glm::perspective(camera.verticalFov, aspect, 5e-4 * diagonal, 1.01 * farthest) *
+  return glm::perspective(camera.verticalFov, aspect, nearPlane(bounds), 1.01 * farthest) *
          glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
 }
 
@@ -62,7 +67,7 @@ Component parseComponent(std::string_view name) {
 Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings)
     : settings_(settings),
       needs_(analyse(scene)),
-      showsDirect_(needs_.directionalLight && settings.component != Component::indirect),
+      showsDirect_(needs_.anyLight() && settings.component != Component::indirect),
       showsIndirect_(settings.technique == Technique::lpv && settings.component != Component::direct &&
                      LightPropagationVolume::isNeeded(needs_)),
       exposure_(scene.exposure),
@@ -71,16 +76,36 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, GL_DYNAMIC_DRAW),
       noAttributes_("full screen") {
   if (scene.sun) sunFrustum_ = fitSunFrustum(scene, scene.sun->direction);
-  if (showsDirect_ && ShadowMap::isNeeded(needs_)) shadowMap_.emplace(programs, gpuScene_, settings.shadow);
+  spots_ = spotViews(scene);
+  points_ = pointViews(scene);
+  const bool showsSun = showsDirect_ && ShadowMap::isNeeded(needs_);
+  const int cascades = settings.sunCascades.cascades > 1 && showsSun ? settings.sunCascades.cascades : 0;
+  if (cascades > 0) {
+    sunCascades_.emplace(programs, gpuScene_, "sun cascades",
+                         LayeredDepth::Shape{GL_TEXTURE_2D_ARRAY, settings.shadow.size, cascades, cascades});
+    sunCascadeConstants_ = gl::Buffer("sun cascades", sizeof(shared::SunCascadeConstants), nullptr, GL_DYNAMIC_DRAW);
+  } else if (showsSun) {
+    shadowMap_.emplace(programs, gpuScene_, settings.shadow);
+  }
+  if (showsDirect_ && LocalLights::isNeeded(needs_)) localLights_.emplace(programs, gpuScene_, settings.lights, spots_, points_);
   if (showsIndirect_) {
-    rsm_.emplace(programs, gpuScene_, settings.rsm);
-    lpv_.emplace(programs, context.capabilities(), settings.lpv);
+    using Light = ReflectiveShadowMap::Light;
+    const int faceSize = std::max(settings.rsm.size / 2, 1);
+    if (needs_.directionalLight) rsms_.emplace_back(programs, gpuScene_, ReflectiveShadowMap::Settings{settings.rsm.size, Light::sun});
+    for (std::size_t i = 0; i < spots_.size(); ++i)
+      rsms_.emplace_back(programs, gpuScene_, ReflectiveShadowMap::Settings{settings.rsm.size, Light::spot});
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      rsms_.emplace_back(programs, gpuScene_, ReflectiveShadowMap::Settings{faceSize, Light::point});
+    if (!rsms_.empty()) lpv_.emplace(programs, context.capabilities(), settings.lpv);
   }
 
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_.materialFlags(masked);
     const bool showsRest = settings.component != Component::indirect;  // specular and emission belong to direct light
-    flags.insert(flags.end(), {{"DIRECT", showsDirect_},
+    flags.insert(flags.end(), {{"DIRECT", showsSun},
+                               {"SUN_CASCADES", cascades},
+                               {"SPOT_LIGHTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
+                               {"POINT_LIGHTS", localLights_ ? static_cast<int>(points_.size()) : 0},
                                {"INDIRECT", showsIndirect_},
                                {"SPECULAR", needs_.specular && showsDirect_},
                                {"EMISSION", needs_.emission && showsRest},
@@ -108,6 +133,49 @@ void Renderer::resize(glm::ivec2 size) {
   allocateTargets();
 }
 
+void Renderer::recordShadows(const Camera& camera) {
+  if (shadowMap_) {
+    const gl::TimeQuery::Scope stage(timer_, "shadow");
+    shadowMap_->record(gpuScene_);
+  }
+  if (sunCascades_) {
+    const gl::TimeQuery::Scope stage(timer_, "shadow");
+    const Scene& scene = gpuScene_.scene();
+    const double aspect = static_cast<double>(settings_.size.x) / settings_.size.y;
+    shared::SunCascadeConstants constants{};
+    std::vector<glm::dmat4> clip;
+    for (const SunCascade& cascade : placeSunCascades(settings_.sunCascades, scene, scene.sun->direction, sunFrustum_, camera, aspect,
+                                                      nearPlane(scene.bounds), sunCascades_->size())) {
+      constants.clipFromWorld[clip.size()] = glm::mat4(cascade.clipFromWorld);
+      constants.normalOffset[static_cast<int>(clip.size())] = kShadowNormalOffset * static_cast<float>(cascade.texel);
+      clip.push_back(cascade.clipFromWorld);
+    }
+    sunCascadeConstants_.upload(0, sizeof constants, &constants);
+    sunCascadeConstants_.bind(GL_UNIFORM_BUFFER, kSunCascadeBinding);
+    sunCascades_->record(gpuScene_, clip);
+  }
+  if (localLights_ && localLights_->hasSpots()) {
+    const gl::TimeQuery::Scope stage(timer_, "spot shadows");
+    localLights_->recordSpots(gpuScene_);
+  }
+  if (localLights_ && localLights_->hasPoints()) {
+    const gl::TimeQuery::Scope stage(timer_, "point shadows");
+    localLights_->recordPoints(gpuScene_);
+  }
+}
+
+std::vector<ReflectiveShadowMap::Outputs> Renderer::recordReflectiveShadowMaps() {
+  const gl::TimeQuery::Scope stage(timer_, "rsm");
+  std::vector<ReflectiveShadowMap::Outputs> outputs;
+  auto spot = spots_.begin(), point = points_.begin();
+  for (ReflectiveShadowMap& rsm : rsms_) switch (rsm.light()) {
+      case ReflectiveShadowMap::Light::sun: outputs.push_back(rsm.record(gpuScene_, sunFrustum_.texelArea(rsm.size()))); break;
+      case ReflectiveShadowMap::Light::spot: outputs.push_back(rsm.record(gpuScene_, *spot++)); break;
+      case ReflectiveShadowMap::Light::point: outputs.push_back(rsm.record(gpuScene_, *point++)); break;
+    }
+  return outputs;
+}
+
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   const Scene& scene = gpuScene_.scene();
   const glm::mat4 cameraClip(clipFromWorld(camera, scene.bounds, settings_.size));
@@ -122,26 +190,19 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     frame.sunDirection = glm::vec3(scene.sun->direction);
     frame.sunIrradiance = scene.sun->irradiance;
     frame.shadowNormalOffset =
-        1.5f * static_cast<float>(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
+        kShadowNormalOffset * static_cast<float>(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
     frame.shadowTexelUv = 1.0f / static_cast<float>(settings_.shadow.size);
   }
   frame.background = scene.background;
   frameConstants_.upload(0, sizeof frame, &frame);
   frameConstants_.bind(GL_UNIFORM_BUFFER, kFrameBinding);
 
-  if (shadowMap_) {
-    const gl::TimeQuery::Scope stage(timer_, "shadow");
-    shadowMap_->record(gpuScene_);
-  }
+  recordShadows(camera);
 
   if (lpv_) {
-    timer_.begin("rsm");
-    const auto rsm = rsm_->record(gpuScene_, sunFrustum_.texelArea(rsm_->size()));
-    timer_.end();
-    const glm::vec3 sun = scene.sun->irradiance;
     const LightPropagationVolume::Inputs inputs{
-        rsm, placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction),
-        std::max({sun.x, sun.y, sun.z})};
+        recordReflectiveShadowMaps(), placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction),
+        typicalIrradiance(scene)};
     timer_.begin("injection");
     lpv_->place(inputs);
     lpv_->inject(inputs);
@@ -164,6 +225,8 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
     pass.clearDepth();
     if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
+    if (sunCascades_) sunCascades_->depth().bind(kShadowUnit);
+    if (localLights_) localLights_->bindForShading();
     if (lpv_) lpv_->bindForLookup();
     gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
   }
@@ -205,7 +268,9 @@ Bitmap Renderer::readDisplay() const {
 std::size_t Renderer::gpuBytes() const {
   std::size_t bytes = gpuScene_.gpuBytes() + frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes();
   if (shadowMap_) bytes += shadowMap_->gpuBytes();
-  if (rsm_) bytes += rsm_->gpuBytes();
+  if (sunCascades_) bytes += sunCascades_->gpuBytes() + sunCascadeConstants_.bytes();
+  if (localLights_) bytes += localLights_->gpuBytes();
+  for (const ReflectiveShadowMap& rsm : rsms_) bytes += rsm.gpuBytes();
   if (lpv_) bytes += lpv_->gpuBytes();
   return bytes;
 }
@@ -214,8 +279,11 @@ std::vector<std::string> Renderer::leftOut() const {
   std::vector<std::string> names;
   for (const auto& [name, needed] : needs_.named())
     if (!needed) names.push_back(name);
-  if (!shadowMap_) names.emplace_back("shadow map");
-  if (!rsm_) names.emplace_back("reflective shadow map");
+  if (!shadowMap_ && !sunCascades_) names.emplace_back("shadow map");
+  if (!sunCascades_) names.emplace_back("sun cascades");
+  if (!localLights_ || !localLights_->hasSpots()) names.emplace_back("spot shadow maps");
+  if (!localLights_ || !localLights_->hasPoints()) names.emplace_back("point shadow maps");
+  if (rsms_.empty()) names.emplace_back("reflective shadow map");
   if (!lpv_) names.emplace_back("light propagation volume");
   else if (!lpv_->geometryVolume()) names.emplace_back("geometry volume");
   return names;

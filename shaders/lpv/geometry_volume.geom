@@ -1,7 +1,6 @@
 // Blocking potential [Kaplanyan2010, section 4.2]: a surfel of area A and normal n adds A / s^2 * lobe(n) to the cell of the
 // geometry volume that it lies in. That volume is shifted half a cell, so that its centres lie on the grid's corners.
-// A is the surface's true area: the texel's area across the rays divided by the cosine to the light, the cosine bounded by
-// 1/20 because the few texels on a surface seen edge-on say little about its area.
+// A is the surface's true area, which the reflective shadow map holds beside the flux.
 #include "lib/finite.glsl"
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
@@ -9,17 +8,16 @@ layout(points) in;
 layout(points, max_vertices = LPV_MAX_CASCADES) out;
 in vec4 gPosition[];
 in vec4 gNormal[];
-in vec3 gFlux[];
+in vec4 gFlux[];  // w = area
 flat out vec4 fPotential;
-uniform float texelArea;  // across the rays
 
 void main() {
   vec3 normal = gNormal[0].xyz;
-  bool usable = gPosition[0].w > 0.5 && allFinite(gPosition[0].xyz) && allFinite(normal) && allFinite(gNormal[0].www) &&
+  bool usable = gPosition[0].w > 0.5 && allFinite(gPosition[0].xyz) && allFinite(normal) && allFinite(gFlux[0].www) &&
                 dot(normal, normal) > 0.25 && dot(normal, normal) < 4.0;
   if (!usable) return;
   int corners = lpv.shape.x + 1;
-  float area = texelArea / max(gNormal[0].w, 0.05);
+  float area = gFlux[0].w;
   for (int k = 0; k < lpv.shape.y; ++k) {
     float s = lpv.cascades[k].cellSize;
     vec3 cornerPosition = (gPosition[0].xyz - lpv.cascades[k].minimum) / s + 0.5;

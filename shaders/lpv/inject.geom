@@ -8,7 +8,7 @@ layout(points) in;
 layout(points, max_vertices = LPV_MAX_CASCADES) out;
 in vec4 gPosition[];
 in vec4 gNormal[];
-in vec3 gFlux[];
+in vec4 gFlux[];
 flat out vec4 fRed;
 flat out vec4 fGreen;
 flat out vec4 fBlue;
@@ -16,7 +16,7 @@ flat out vec4 fBlue;
 void main() {
   vec3 position = gPosition[0].xyz;
   vec3 normal = gNormal[0].xyz;
-  vec3 flux = gFlux[0];
+  vec3 flux = gFlux[0].rgb;
   // Background, black, zero and non-finite texels carry no light.
   bool usable = gPosition[0].w > 0.5 && allFinite(position) && allFinite(normal) && allFinite(flux) &&
                 dot(normal, normal) > 0.25 && dot(normal, normal) < 4.0 && flux.r + flux.g + flux.b > 0.0;

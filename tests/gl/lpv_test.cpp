@@ -176,7 +176,7 @@ struct CaseInputs {
 
   explicit CaseInputs(const Case& c, unsigned seed)
       : cascades(place(c)), texels(makeTexels(c, seed, cascades)), textures(texels, texelArea),
-        inputs{textures.outputs(), cascades, 3.5f} {}
+        inputs{{textures.outputs()}, cascades, 3.5f} {}
 
   static std::vector<Cascade> place(const Case& c) {
     CascadeSettings s;
