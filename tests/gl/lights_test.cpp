@@ -1,0 +1,298 @@
+// Spot, omnidirectional and cascaded lights on GL: irradiance, shadows, flux and area of reflective shadow maps, what is left out.
+#include "render/renderer.hpp"
+#include "shared/frame.h"
+#include "support/gl_fixture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <numbers>
+
+namespace lucerna {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr float kAlbedo = 0.6f;
+
+/// Quads of one grey material; a quad's front is where its corners run anticlockwise.
+struct LitScene : Scene {
+  LitScene() {
+    materials.resize(1);
+    materials[0].diffuse = glm::vec3(kAlbedo);
+    meshes.resize(1);
+    cameras.resize(1);
+  }
+  void quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    const glm::vec3 normal(glm::normalize(glm::cross(b - a, c - a)));
+    for (const glm::dvec3& p : {a, b, c, d}) {
+      vertices.push_back({glm::vec3(p), {}, normal});
+      bounds.add(p);
+    }
+    for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + i);
+    meshes[0].indexCount = static_cast<std::uint32_t>(indices.size());
+    meshes[0].bounds = bounds;
+  }
+  /// A rectangle across an axis at `at` along it, u and v the next two axes; its front looks towards the origin.
+  void across(int axis, double at, glm::dvec2 low, glm::dvec2 high) {
+    const auto p = [&](double u, double v) {
+      glm::dvec3 result;
+      result[axis] = at;
+      result[(axis + 1) % 3] = u;
+      result[(axis + 2) % 3] = v;
+      return result;
+    };
+    if (at > 0.0) quad(p(low.x, low.y), p(low.x, high.y), p(high.x, high.y), p(high.x, low.y));
+    else quad(p(low.x, low.y), p(high.x, low.y), p(high.x, high.y), p(low.x, high.y));
+  }
+  void room(double half) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double at : {-half, half}) across(axis, at, glm::dvec2(-half), glm::dvec2(half));
+  }
+};
+
+Camera viewFrom(const glm::dvec3& position, const glm::dvec3& direction, double fov) {
+  Camera camera;
+  camera.position = position;
+  camera.direction = glm::normalize(direction);
+  const glm::dvec3 up = std::abs(camera.direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, up));
+  camera.up = glm::cross(right, camera.direction);
+  camera.verticalFov = fov;
+  return camera;
+}
+
+class LightsGl : public test::GlTest {
+ protected:
+  static RenderSettings settings(Technique technique, glm::ivec2 size) {
+    RenderSettings s;
+    s.technique = technique;
+    s.size = size;
+    s.fullFloatTarget = true;
+    return s;
+  }
+  /// Direct light of a plane seen whole: calls check(point, irradiance) for each pixel; the plane is dot(n, p) = h.
+  void eachPixel(const LitScene& scene, const Camera& camera, const glm::dvec3& n, double h,
+                 const std::function<void(const glm::dvec3&, double)>& check) {
+    constexpr int kSize = 96;
+    Renderer renderer(context(), programs(), scene, settings(Technique::direct, {kSize, kSize}));
+    renderer.render(camera);
+    const Image image = renderer.readRadiance();
+    const glm::dvec3 right = glm::cross(camera.direction, camera.up);
+    const double t = std::tan(0.5 * camera.verticalFov);
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const double u = t * (2.0 * (x + 0.5) / kSize - 1.0), v = t * (1.0 - 2.0 * (y + 0.5) / kSize);
+        const glm::dvec3 ray = camera.direction + u * right + v * camera.up;
+        const glm::dvec3 p = camera.position + ray * ((h - glm::dot(n, camera.position)) / glm::dot(n, ray));
+        check(p, static_cast<double>(image.at(x, y).x) * kPi / static_cast<double>(kAlbedo));
+      }
+  }
+};
+
+TEST_F(LightsGl, APointLightOnAPlateFallsWithTheSquareOfTheDistance) {
+  LitScene scene;
+  scene.quad({-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0});
+  const PointLight light{{0.3, 0.2, 0.7}, glm::vec3(5.0f)};
+  scene.points = {light};
+  double largest = 0.0;
+  eachPixel(scene, viewFrom({0, 0, 3}, {0, 0, -1}, 1.0), {0, 0, 1}, 0.0, [&](const glm::dvec3& p, double irradiance) {
+    const glm::dvec3 away = light.position - p;
+    const double expected = 5.0 * away.z / std::pow(glm::length(away), 3.0);
+    largest = std::max(largest, std::abs(irradiance / expected - 1.0));
+  });
+  EXPECT_LT(largest, 1e-3);
+  std::cout << "[ measured ] point on a plate, largest relative error: " << largest << "\n";
+}
+
+TEST_F(LightsGl, ASpotFallsOffBetweenItsAngles) {
+  LitScene scene;
+  scene.quad({-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0});
+  SpotLight light;
+  light.position = {0.5, -0.4, 1.5};
+  light.direction = glm::normalize(glm::dvec3(-0.3, 0.2, -1.0));
+  light.intensity = glm::vec3(5.0f);
+  light.innerAngle = 0.3;
+  light.outerAngle = 0.6;
+  scene.spots = {light};
+  double largest = 0.0;
+  int full = 0, none = 0, between = 0;
+  eachPixel(scene, viewFrom({0, 0, 3}, {0, 0, -1}, 1.2), {0, 0, 1}, 0.0, [&](const glm::dvec3& p, double irradiance) {
+    const glm::dvec3 away = light.position - p;
+    const double cosine = -glm::dot(away, light.direction) / glm::length(away);
+    const double t = std::clamp((cosine - std::cos(0.6)) / (std::cos(0.3) - std::cos(0.6)), 0.0, 1.0);
+    const double unit = 5.0 * away.z / std::pow(glm::length(away), 3.0);
+    largest = std::max(largest, std::abs(irradiance / unit - t * t * (3.0 - 2.0 * t)));
+    if (t == 1.0) ++full;
+    else if (t > 0.0) ++between;
+    else ++none;
+    if (t == 0.0) {
+      EXPECT_EQ(irradiance, 0.0);
+    }
+  });
+  EXPECT_LT(largest, 1e-3);
+  EXPECT_TRUE(full > 100 && none > 100 && between > 100) << full << " " << none << " " << between;
+  std::cout << "[ measured ] spot on a plate, largest error of the falloff: " << largest << "\n";
+}
+
+// A box around the lamp with a hole in each side, each of another shape and off its middle, in a room: each wall is lit through its hole.
+TEST_F(LightsGl, AllSixFacesOfAnOmnidirectionalLightCastShadows) {
+  constexpr double kInner = 0.5, kOuter = 2.0;
+  LitScene scene;
+  scene.room(kOuter);
+  struct Hole {
+    glm::dvec2 low, high;
+  };
+  std::vector<Hole> holes;
+  for (int face = 0; face < 6; ++face) {
+    const double k = 0.02 * face;
+    const Hole hole{{-0.25 + k, -0.12}, {0.1, 0.22 - k}};
+    holes.push_back(hole);
+    const double at = face % 2 ? -kInner : kInner;
+    scene.across(face / 2, at, {-kInner, -kInner}, {hole.low.x, kInner});
+    scene.across(face / 2, at, {hole.high.x, -kInner}, {kInner, kInner});
+    scene.across(face / 2, at, {hole.low.x, -kInner}, {hole.high.x, hole.low.y});
+    scene.across(face / 2, at, {hole.low.x, hole.high.y}, {hole.high.x, kInner});
+  }
+  scene.points = {PointLight{glm::dvec3(0.0), glm::vec3(5.0f)}};
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face / 2;
+    glm::dvec3 n(0.0);
+    n[axis] = face % 2 ? -1.0 : 1.0;
+    const Hole& hole = holes[static_cast<std::size_t>(face)];
+    int lit = 0, dark = 0, wrong = 0;
+    eachPixel(scene, viewFrom(0.6 * n, n, 0.5 * kPi), n, kOuter, [&](const glm::dvec3& p, double irradiance) {
+      const glm::dvec2 q = (kInner / kOuter) * glm::dvec2(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+      const double inside = std::min({q.x - hole.low.x, hole.high.x - q.x, q.y - hole.low.y, hole.high.y - q.y});
+      const double expected = 5.0 * kOuter / std::pow(glm::length(p), 3.0);
+      if (inside > 0.01) ++lit, wrong += std::abs(irradiance / expected - 1.0) > 1e-3;
+      if (inside < -0.01) ++dark, wrong += irradiance != 0.0;
+    });
+    EXPECT_EQ(wrong, 0) << "face " << face;
+    EXPECT_TRUE(lit > 500 && dark > 500) << "face " << face << ": " << lit << " lit, " << dark << " dark";
+  }
+}
+
+struct Totals {
+  double flux = 0.0, area = 0.0;
+};
+
+Totals totals(const ReflectiveShadowMap::Outputs& rsm) {
+  const std::vector<glm::vec4> positions = rsm.position.readRgba(), fluxes = rsm.flux.readRgba();
+  EXPECT_EQ(static_cast<int>(fluxes.size()), rsm.texelCount());
+  Totals result;
+  for (std::size_t i = 0; i < fluxes.size(); ++i) {
+    if (positions[i].w < 0.5f) continue;
+    result.flux += static_cast<double>(fluxes[i].x);
+    result.area += static_cast<double>(fluxes[i].w);
+  }
+  return result;
+}
+
+TEST_F(LightsGl, TotalFluxOfASpotIsTheAlbedoTimesItsOwn) {
+  LitScene scene;
+  scene.quad({-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0});
+  SpotLight light;
+  light.position = {0.1, 0.2, 2.0};
+  light.direction = glm::normalize(glm::dvec3(0.3, -0.2, -1.0));
+  light.intensity = glm::vec3(3.0f);
+  light.innerAngle = 0.4;
+  light.outerAngle = 0.8;
+  scene.spots = {light};
+  const GpuScene gpuScene(scene, analyse(scene), capabilities());
+  const double expected = static_cast<double>(kAlbedo) * 3.0 * 2.0 * kPi * (1.0 - 0.5 * (std::cos(0.4) + std::cos(0.8)));
+  for (const int size : {64, 128, 256, 512}) {
+    ReflectiveShadowMap rsm(programs(), gpuScene, {size, ReflectiveShadowMap::Light::spot});
+    const double ratio = totals(rsm.record(gpuScene, lightViews(light, scene.bounds))).flux / expected;
+    EXPECT_NEAR(ratio, 1.0, 0.01) << size;
+    std::cout << "[ measured ] spot on a plate, RSM " << size << ": flux / expected " << ratio << "\n";
+  }
+}
+
+TEST_F(LightsGl, TotalFluxAndAreaOfAnOmnidirectionalLightAreTheRooms) {
+  LitScene scene;
+  scene.room(1.5);
+  const PointLight light{{0.4, -0.5, 0.3}, glm::vec3(3.0f)};
+  scene.points = {light};
+  const GpuScene gpuScene(scene, analyse(scene), capabilities());
+  for (const int size : {32, 64, 256, 512}) {
+    ReflectiveShadowMap rsm(programs(), gpuScene, {size, ReflectiveShadowMap::Light::point});
+    const Totals sum = totals(rsm.record(gpuScene, lightViews(light, scene.bounds)));
+    const double flux = sum.flux / (static_cast<double>(kAlbedo) * 4.0 * kPi * 3.0), area = sum.area / (6.0 * 9.0);
+    EXPECT_NEAR(flux, 1.0, 0.01) << size;
+    EXPECT_NEAR(area, 1.0, 0.03) << size;
+    std::cout << "[ measured ] omni in a room, RSM 6 x " << size << ": flux / expected " << flux << ", area / expected " << area << "\n";
+  }
+}
+
+TEST_F(LightsGl, TheSunsFluxCountsProjectedAreaAndItsSurfelsTrueArea) {
+  LitScene scene;
+  const glm::dvec3 u(2, 0, 0), v(0, 1.0, 1.0 * std::sqrt(3.0));  // tilted by 60 degrees; 4 x 4
+  scene.quad(-u - v, u - v, u + v, -u + v);
+  scene.sun = DirectionalLight{{0, -1, 0}, glm::vec3(2.0f)};
+  const GpuScene gpuScene(scene, analyse(scene), capabilities());
+  const SunFrustum frustum = fitSunFrustum(scene, scene.sun->direction);
+  shared::FrameConstants frame{};
+  frame.sunClipFromWorld = glm::mat4(frustum.clipFromWorld);
+  frame.sunDirection = glm::vec3(scene.sun->direction);
+  frame.sunIrradiance = scene.sun->irradiance;
+  const gl::Buffer block("frame constants", sizeof frame, &frame, GL_STATIC_DRAW);
+  block.bind(GL_UNIFORM_BUFFER, 0);
+  ReflectiveShadowMap rsm(programs(), gpuScene, {256, ReflectiveShadowMap::Light::sun});
+  const Totals sum = totals(rsm.record(gpuScene, frustum.texelArea(256)));
+  const double projected = 16.0 * std::abs(glm::normalize(glm::cross(u, v)).y);
+  EXPECT_NEAR(sum.flux / (static_cast<double>(kAlbedo) * 2.0 * projected), 1.0, 0.01);
+  EXPECT_NEAR(sum.area / 16.0, 1.0, 0.01);
+}
+
+TEST_F(LightsGl, TheVolumeAddsLightsUp) {
+  LitScene scene;
+  scene.room(1.0);
+  const PointLight point{{0.4, -0.5, 0.3}, glm::vec3(3.0f, 2.0f, 1.0f)};
+  SpotLight spot;
+  spot.position = {0.0, 0.8, 0.0};
+  spot.intensity = glm::vec3(1.0f, 4.0f, 2.0f);
+  scene.points = {point};
+  scene.spots = {spot};
+  const GpuScene gpuScene(scene, analyse(scene), capabilities());
+  ReflectiveShadowMap spotMap(programs(), gpuScene, {64, ReflectiveShadowMap::Light::spot});
+  ReflectiveShadowMap pointMap(programs(), gpuScene, {32, ReflectiveShadowMap::Light::point});
+  const auto a = spotMap.record(gpuScene, lightViews(spot, scene.bounds));
+  const auto b = pointMap.record(gpuScene, lightViews(point, scene.bounds));
+  LightPropagationVolume::Settings s;
+  s.cascades.cells = 8;
+  s.cascades.cascades = 2;
+  s.iterations = 2;
+  s.storage = LightPropagationVolume::Storage::full;
+  const auto grids = [&](std::vector<ReflectiveShadowMap::Outputs> rsms) {
+    LightPropagationVolume lpv(programs(), capabilities(), s);
+    const LightPropagationVolume::Inputs inputs{std::move(rsms), placeCascades(s.cascades, scene.bounds, glm::dvec3(0.0), {0, 0, -1}),
+                                                typicalIrradiance(scene)};
+    lpv.place(inputs);
+    lpv.inject(inputs);
+    lpv.fillGeometryVolume(inputs);
+    std::vector<std::vector<glm::vec4>> result{lpv.geometryVolume()->readRgba()};
+    for (const gl::Texture& channel : lpv.injected()) result.push_back(channel.readRgba());
+    return result;
+  };
+  const auto both = grids({a, b}), onlyA = grids({a}), onlyB = grids({b}), neither = grids({});
+  for (std::size_t grid = 0; grid < both.size(); ++grid) {
+    float largest = 0.0f, error = 0.0f;
+    for (std::size_t i = 0; i < both[grid].size(); ++i) {
+      const glm::vec4 sum = onlyA[grid][i] + onlyB[grid][i];
+      for (int c = 0; c < 4; ++c) {
+        largest = std::max(largest, std::abs(both[grid][i][c]));
+        error = std::max(error, std::abs(both[grid][i][c] - sum[c]));
+      }
+      EXPECT_EQ(neither[grid][i], glm::vec4(0.0f));
+    }
+    EXPECT_GT(largest, 0.0f);
+    EXPECT_LT(error, 2e-6f * largest) << "grid " << grid;
+  }
+}
+
+}  // namespace
+}  // namespace lucerna
