@@ -91,7 +91,7 @@ const Setting kSettings[] = {
     SETTING("shadow.size", "texels a side of the shadow map (2048)", s.shadow.size = parseNumber(k, v, 1, 16384)),
     SETTING("shadow.cascades", "shadow maps of the sun along the view, 1: one for the whole scene (1)",
             s.sunCascades.cascades = parseNumber(k, v, 1, SUN_MAX_CASCADES)),
-    SETTING("shadow.split", "how cascades divide the view's depth, 0 uniformly to 1 logarithmically (0.75)",
+    SETTING("shadow.split", "how cascades divide the view's depth, 0 uniformly to 1 logarithmically (0.9)",
             s.sunCascades.split = parseNumber(k, v, 0.0, 1.0)),
     SETTING("shadow.spot-size", "texels a side of a spot light's shadow map (1024)", s.lights.spotSize = parseNumber(k, v, 1, 16384)),
     SETTING("shadow.point-size", "texels a side of each face of an omnidirectional light's shadow map (512)",

@@ -19,7 +19,7 @@ namespace lucerna {
 
 struct SunCascadeSettings {
   int cascades = 1;     ///< 1: one map for the whole scene, no cascades at all; at most SUN_MAX_CASCADES
-  double split = 0.75;  ///< lambda: 0 uniform, 1 logarithmic
+  double split = 0.9;   ///< lambda: 0 uniform, 1 logarithmic. Near planes lie at 1/2000 of the scene, so half and half would be nearly uniform
 };
 
 /// The split distances along the view axis, cascades + 1 of them, from near to far exactly. 0 < near < far.

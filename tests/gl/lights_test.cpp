@@ -294,5 +294,208 @@ TEST_F(LightsGl, TheVolumeAddsLightsUp) {
   }
 }
 
+/// Whether the segment from a to b meets a box.
+bool meets(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& low, const glm::dvec3& high) {
+  double enter = 0.0, leave = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = b[axis] - a[axis], t0 = (low[axis] - a[axis]) / d, t1 = (high[axis] - a[axis]) / d;
+    enter = std::max(enter, std::min(t0, t1));
+    leave = std::min(leave, std::max(t0, t1));
+  }
+  return enter < leave;
+}
+
+void block(LitScene& scene, const glm::dvec3& low, const glm::dvec3& high) {
+  const auto p = [&](int x, int y, int z) { return glm::dvec3(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z); };
+  scene.quad(p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1));
+  scene.quad(p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1));
+  scene.quad(p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1));
+  scene.quad(p(1, 1, 0), p(0, 1, 0), p(0, 1, 1), p(1, 1, 1));
+  scene.quad(p(0, 1, 0), p(0, 0, 0), p(0, 0, 1), p(0, 1, 1));
+}
+
+// A block on a floor: lit places are lit in full (no acne), the shadow begins at the block (no peter-panning), at slanting light too.
+TEST_F(LightsGl, ShadowsOfABlockNeitherSpeckleNorComeLoose) {
+  const glm::dvec3 low(-0.3, -0.3, 0.0), high(0.3, 0.3, 0.5);
+  for (const bool spot : {false, true})
+    for (const glm::dvec3& position : {glm::dvec3(0.9, 0.5, 1.2), glm::dvec3(1.6, -0.7, 0.7), glm::dvec3(-1.5, 1.4, 0.6)}) {
+      LitScene scene;
+      scene.quad({-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0});
+      block(scene, low, high);
+      const glm::dvec3 axis = glm::normalize(glm::dvec3(0.0, 0.0, 0.2) - position);
+      if (spot) scene.spots = {SpotLight{position, axis, glm::vec3(5.0f), 1.0, 1.2}};
+      else scene.points = {PointLight{position, glm::vec3(5.0f)}};
+      int lit = 0, dark = 0, wrong = 0;
+      eachPixel(scene, viewFrom({0, 0, 4}, {0, 0, -1}, 0.8), {0, 0, 1}, 0.0, [&](const glm::dvec3& p, double irradiance) {
+        const double inBox = std::max(std::abs(p.x), std::abs(p.y));
+        const glm::dvec3 away = position - p;
+        const double cosine = -glm::dot(away, axis) / glm::length(away);
+        if (inBox < 0.37 || (spot && cosine < std::cos(0.98))) return;  // the block's top hides what is behind it
+        const double expected = 5.0 * away.z / std::pow(glm::length(away), 3.0), margin = 0.02;
+        if (!meets(p, position, low - margin, high + margin)) ++lit, wrong += std::abs(irradiance / expected - 1.0) > 2e-3;
+        if (meets(p, position, low + margin * glm::dvec3(1, 1, 0), high - margin)) ++dark, wrong += irradiance > 1e-3 * expected;
+      });
+      EXPECT_EQ(wrong, 0) << (spot ? "spot " : "point ") << position.x;
+      EXPECT_TRUE(lit > 1000 && dark > 100) << lit << " lit, " << dark << " dark";
+    }
+}
+
+TEST_F(LightsGl, WhatASceneHasNoneOfLeavesNoTrace) {
+  LitScene scene;
+  scene.room(1.0);
+  scene.sun = DirectionalLight{{0, -1, 0}, glm::vec3(1.0f)};
+  const auto resources = [](const gl::ProgramLibrary& library) {
+    std::string text;
+    for (const auto& program : library.programs()) {
+      text += program->name() + "\n";
+      for (const std::string& name : program->activeResources()) text += name + "\n";
+    }
+    return text;
+  };
+  const auto bytes = [&](const LitScene& s, const RenderSettings& r) {
+    gl::ProgramLibrary library;
+    return Renderer(context(), library, s, r).gpuBytes();
+  };
+  for (const Technique technique : {Technique::direct, Technique::lpv}) {
+    gl::ProgramLibrary library;
+    Renderer renderer(context(), library, scene, settings(technique, {32, 32}));
+    for (int i = 0; i < 3; ++i) renderer.render(viewFrom({0, 0, 0.5}, {0, 0, -1}, 1.0));
+    renderer.timer().drain();
+    const std::string text = resources(library);
+    for (const char* word : {"spot", "point s", "rsm point", "LightBlock", "lights", "Cascade", "clipFromWorld["})
+      EXPECT_EQ(text.find(word), std::string::npos) << word << " in\n" << text;
+    for (const auto& stage : renderer.timer().statistics()) {
+      EXPECT_EQ(stage.name.find("spot"), std::string::npos);
+      EXPECT_EQ(stage.name.find("point"), std::string::npos);
+    }
+    const auto leftOut = renderer.leftOut();
+    for (const char* name : {"spotLights", "pointLights", "sun cascades", "spot shadow maps", "point shadow maps"})
+      EXPECT_TRUE(std::count(leftOut.begin(), leftOut.end(), name) == 1) << name;
+  }
+  // What each kind costs, to the byte.
+  const RenderSettings s = settings(Technique::direct, {32, 32});
+  const std::size_t sunOnly = bytes(scene, s);
+  LitScene withPoint = scene, withSpot = scene, withoutSun = scene;
+  withPoint.points = {PointLight{glm::dvec3(0.1), glm::vec3(1.0f)}};
+  withSpot.spots = {SpotLight{}};
+  EXPECT_EQ(bytes(withSpot, s), sunOnly);  // intensity 0
+  withSpot.spots[0].intensity = glm::vec3(1.0f);
+  EXPECT_EQ(bytes(withPoint, s), sunOnly + sizeof(shared::LightConstants) + 6u * 512u * 512u * 4u);
+  EXPECT_EQ(bytes(withSpot, s), sunOnly + sizeof(shared::LightConstants) + 1024u * 1024u * 4u);
+  withoutSun.sun.reset();
+  EXPECT_EQ(bytes(withoutSun, s), sunOnly - 2048u * 2048u * 4u);
+  RenderSettings cascades = s;
+  cascades.sunCascades.cascades = 3;
+  EXPECT_EQ(bytes(scene, cascades), sunOnly + 2u * 2048u * 2048u * 4u + sizeof(shared::SunCascadeConstants));
+  EXPECT_EQ(bytes(withoutSun, cascades), bytes(withoutSun, s));
+}
+
+TEST_F(LightsGl, EveryStageOfEveryLightIsTimed) {
+  LitScene scene;
+  scene.room(1.0);
+  scene.sun = DirectionalLight{{0, -1, 0}, glm::vec3(1.0f)};
+  scene.points = {PointLight{glm::dvec3(0.1), glm::vec3(1.0f)}, PointLight{glm::dvec3(-0.1), glm::vec3(1.0f)}};
+  scene.spots = {SpotLight{{}, {0, -1, 0}, glm::vec3(1.0f), 0.3, 0.5}};
+  RenderSettings s = settings(Technique::lpv, {32, 32});
+  s.sunCascades.cascades = 2;
+  s.lpv.cascades.cells = 8;
+  Renderer renderer(context(), programs(), scene, s);
+  for (int i = 0; i < 3; ++i) renderer.render(viewFrom({0, 0, 0.5}, {0, 0, -1}, 1.0));
+  renderer.timer().drain();
+  std::vector<std::string> names;
+  for (const auto& stage : renderer.timer().statistics()) {
+    names.push_back(stage.name);
+    EXPECT_GT(stage.medianMs, 0.0) << stage.name;
+  }
+  for (const char* name : {"shadow", "spot shadows", "point shadows", "rsm", "injection", "geometry volume", "propagation", "shading"})
+    EXPECT_TRUE(std::count(names.begin(), names.end(), name) == 1) << name;
+}
+
+/// The sun's visibility in each pixel of a floor y = 0.
+std::vector<double> sunVisibility(const gl::Context& context, gl::ProgramLibrary& programs, const LitScene& scene, RenderSettings s, int cascades,
+                                  const Camera& camera) {
+  s.sunCascades.cascades = cascades;
+  Renderer renderer(context, programs, scene, s);
+  renderer.render(camera);
+  const Image image = renderer.readRadiance();
+  const double full = static_cast<double>(kAlbedo) / kPi * static_cast<double>(scene.sun->irradiance.x) * -scene.sun->direction.y;
+  std::vector<double> result;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) result.push_back(static_cast<double>(image.at(x, y).x) / full);
+  return result;
+}
+
+LitScene columns(double half, double spacing) {
+  LitScene scene;
+  scene.quad({-half, 0, -half}, {-half, 0, half}, {half, 0, half}, {half, 0, -half});
+  const double w = 0.1 * spacing;
+  for (double x = -0.9 * half; x < 0.9 * half; x += spacing)
+    for (double z = -0.9 * half; z < 0.9 * half; z += spacing) {
+      // A sheet: its front and back.
+      scene.quad({x - w, 0, z}, {x + w, 0, z}, {x + w, 4 * w, z}, {x - w, 4 * w, z});
+      scene.quad({x + w, 0, z}, {x - w, 0, z}, {x - w, 4 * w, z}, {x + w, 4 * w, z});
+    }
+  // The sheets are black, so that what is neither dark nor full in a picture is the floor half in shadow.
+  scene.materials.push_back(Material{});
+  scene.materials[1].diffuse = glm::vec3(0.0f);
+  scene.meshes.push_back(scene.meshes[0]);
+  scene.meshes[0].indexCount = 6;
+  scene.meshes[1].firstIndex = 6;
+  scene.meshes[1].indexCount -= 6;
+  scene.meshes[1].material = 1;
+  scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.4, -1.0, 0.5)), glm::vec3(1.0f)};
+  return scene;
+}
+
+int partial(const std::vector<double>& visibility) {
+  return static_cast<int>(std::count_if(visibility.begin(), visibility.end(), [](double v) { return v > 0.02 && v < 0.98; }));
+}
+
+TEST_F(LightsGl, CascadesShowTheShadowOfOneMapOnASmallScene) {
+  const LitScene scene = columns(1.0, 0.2);
+  const RenderSettings s = settings(Technique::direct, {160, 160});
+  const Camera camera = viewFrom({0.1, 0.5, 0.3}, {0, -1, -0.4}, 0.8);
+  const auto one = sunVisibility(context(), programs(), scene, s, 1, camera);
+  for (const int cascades : {2, 3, 4}) {
+    const auto several = sunVisibility(context(), programs(), scene, s, cascades, camera);
+    int differing = 0;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      differing += std::abs(one[i] - several[i]) > 1e-3;
+      sum += several[i] - one[i];
+    }
+    std::cout << "[ measured ] " << cascades << " cascades: " << 100.0 * differing / static_cast<double>(one.size()) << " % of pixels differ, at edges\n";
+    EXPECT_GT(differing, 0);  // else no cascade is in the picture
+    EXPECT_LT(differing, static_cast<int>(one.size()) / 25);
+    EXPECT_LT(std::abs(sum), 2e-3 * static_cast<double>(one.size()));
+  }
+}
+
+TEST_F(LightsGl, CascadesAreSharperNearTheCameraOfALargeScene) {
+  const LitScene scene = columns(200.0, 4.0);
+  const RenderSettings s = settings(Technique::direct, {160, 160});
+  const Camera camera = viewFrom({0.3, 5.0, 2.0}, {0, -1, -0.3}, 0.9);
+  const int one = partial(sunVisibility(context(), programs(), scene, s, 1, camera));
+  const int three = partial(sunVisibility(context(), programs(), scene, s, 3, camera));
+  std::cout << "[ measured ] pixels half in shadow: one map " << one << ", three cascades " << three << "\n";
+  EXPECT_GT(one, 500);
+  EXPECT_LT(4 * three, one);
+}
+
+// Every place on the floor in front of a camera that turns is lit or shadowed alike, cascade borders included.
+TEST_F(LightsGl, CascadesLeaveNoGapHoweverTheCameraTurns) {
+  LitScene scene;
+  scene.quad({-200, 0, -200}, {-200, 0, 200}, {200, 0, 200}, {200, 0, -200});
+  scene.quad({-150, 30, -150}, {150, 30, -150}, {150, 30, 150}, {-150, 30, 150});  // a roof: below it all is dark
+  scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.1, -1.0, 0.05)), glm::vec3(1.0f)};
+  const RenderSettings s = settings(Technique::direct, {64, 64});
+  for (int turn = 0; turn < 12; ++turn) {
+    const double a = 0.55 * turn;
+    const Camera camera = viewFrom({3.0 * turn, 2.0, -2.0 * turn}, {std::sin(a), -0.35, std::cos(a)}, 0.6);
+    const auto visibility = sunVisibility(context(), programs(), scene, s, 4, camera);
+    EXPECT_EQ(*std::max_element(visibility.begin(), visibility.end()), 0.0) << "turn " << turn;
+  }
+}
+
 }  // namespace
 }  // namespace lucerna
