@@ -340,6 +340,77 @@ TEST_F(LightsGl, ShadowsOfABlockNeitherSpeckleNorComeLoose) {
     }
 }
 
+// Each light's shadow is its own: light of all kinds together is the sum of each alone.
+TEST_F(LightsGl, DirectLightAddsUp) {
+  LitScene scene;
+  scene.quad({-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0});
+  block(scene, {-0.3, -0.3, 0.0}, {0.3, 0.3, 0.5});
+  const auto spot = [](const glm::dvec3& p) { return SpotLight{p, glm::normalize(-p), glm::vec3(3.0f), 0.5, 0.7}; };
+  const std::vector<std::function<void(Scene&)>> lights = {
+      [](Scene& s) { s.sun = DirectionalLight{glm::normalize(glm::dvec3(0.3, 0.4, -1.0)), glm::vec3(1.0f)}; },
+      [](Scene& s) { s.points.push_back({{1.0, 0.2, 0.9}, glm::vec3(2.0f)}); },
+      [](Scene& s) { s.points.push_back({{-1.0, -0.5, 1.1}, glm::vec3(1.0f)}); },
+      [&](Scene& s) { s.spots.push_back(spot({0.3, 1.2, 1.0})); },
+      [&](Scene& s) { s.spots.push_back(spot({-0.6, -1.3, 1.3})); },
+  };
+  const auto picture = [&](const LitScene& lit) {
+    Renderer renderer(context(), programs(), lit, settings(Technique::direct, {96, 96}));
+    renderer.render(viewFrom({0, 0, 4}, {0, 0, -1}, 0.8));
+    return renderer.readRadiance();
+  };
+  LitScene all = scene;
+  std::vector<Image> alone;
+  for (const auto& light : lights) {
+    LitScene one = scene;
+    light(one);
+    light(all);
+    alone.push_back(picture(one));
+  }
+  const Image together = picture(all);
+  for (int y = 0; y < 96; ++y)
+    for (int x = 0; x < 96; ++x) {
+      float sum = 0.0f;
+      for (const Image& image : alone) sum += image.at(x, y).x;
+      ASSERT_NEAR(together.at(x, y).x, sum, 1e-5f * sum) << x << " " << y;
+    }
+}
+
+// A sheet between lamp and floor whose left half a mask cuts out, in the shadow maps of every kind and the reflective shadow maps.
+TEST_F(LightsGl, MasksCutShadowsOut) {
+  const SpotLight spot{{0, 0, 2}, {0, 0, -1}, glm::vec3(2.0f), 0.7, 0.8};
+  for (const int kind : {0, 1, 2})
+    for (const double x : {-0.3, 0.3}) {
+      LitScene scene;
+      scene.quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
+      scene.quad({-1.2, -1.2, 1}, {1.2, -1.2, 1}, {1.2, 1.2, 1}, {-1.2, 1.2, 1});
+      scene.textures.push_back({"mask.png", {}});
+      scene.textures[0].bitmap.width = 2;
+      scene.textures[0].bitmap.height = 1;
+      scene.textures[0].bitmap.rgba = {0, 0, 0, 255, 255, 255, 255, 255};
+      for (std::size_t i = 4; i < 8; ++i) scene.vertices[i].texCoord = {scene.vertices[i].position.x > 0.0f ? 1.0f : 0.0f, 0.5f};
+      scene.materials.push_back(scene.materials[0]);
+      scene.materials[1].alphaTexture = 0;
+      scene.materials[1].alphaMasked = true;
+      scene.meshes.push_back(scene.meshes[0]);
+      scene.meshes[0].indexCount = scene.meshes[1].indexCount = scene.meshes[1].firstIndex = 6;
+      scene.meshes[1].material = 1;
+      if (kind == 0) scene.sun = DirectionalLight{{0, 0, -1}, glm::vec3(1.0f)};
+      if (kind == 1) scene.spots = {spot};
+      if (kind == 2) scene.points = {PointLight{{0, 0, 2}, glm::vec3(2.0f)}};
+      RenderSettings s = settings(Technique::lpv, {16, 16});
+      s.component = Component::all;
+      s.sunCascades.cascades = 2;
+      s.lpv.cascades.cells = 8;
+      s.lpv.iterations = 0;
+      Renderer renderer(context(), programs(), scene, s);
+      renderer.render(viewFrom({x, 0, 0.9}, {0, 0, -1}, 0.1));
+      const double radiance = static_cast<double>(renderer.readRadiance().at(8, 8).x);
+      const double direct = static_cast<double>(kAlbedo) / kPi * (kind == 0 ? 1.0 : 0.5);
+      if (x < 0.0) EXPECT_GT(radiance, 0.85 * direct) << kind;
+      else EXPECT_LT(radiance, 0.5 * direct) << kind;
+    }
+}
+
 TEST_F(LightsGl, WhatASceneHasNoneOfLeavesNoTrace) {
   LitScene scene;
   scene.room(1.0);
@@ -486,12 +557,12 @@ TEST_F(LightsGl, CascadesAreSharperNearTheCameraOfALargeScene) {
 TEST_F(LightsGl, CascadesLeaveNoGapHoweverTheCameraTurns) {
   LitScene scene;
   scene.quad({-200, 0, -200}, {-200, 0, 200}, {200, 0, 200}, {200, 0, -200});
-  scene.quad({-150, 30, -150}, {150, 30, -150}, {150, 30, 150}, {-150, 30, 150});  // a roof: below it all is dark
+  scene.quad({-250, 30, -250}, {250, 30, -250}, {250, 30, 250}, {-250, 30, 250});  // a roof: below it all is dark
   scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.1, -1.0, 0.05)), glm::vec3(1.0f)};
   const RenderSettings s = settings(Technique::direct, {64, 64});
   for (int turn = 0; turn < 12; ++turn) {
     const double a = 0.55 * turn;
-    const Camera camera = viewFrom({3.0 * turn, 2.0, -2.0 * turn}, {std::sin(a), -0.35, std::cos(a)}, 0.6);
+    const Camera camera = viewFrom({3.0 * turn, 2.0, -2.0 * turn}, {std::sin(a), -0.2, std::cos(a)}, 0.5);
     const auto visibility = sunVisibility(context(), programs(), scene, s, 4, camera);
     EXPECT_EQ(*std::max_element(visibility.begin(), visibility.end()), 0.0) << "turn " << turn;
   }
