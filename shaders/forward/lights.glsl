@@ -12,6 +12,7 @@ struct Arriving {
 };
 
 const float kNormalOffset = 1.5;  // texels of the shadow map at the receiver's depth
+const float kTouching = 1e-30;      // distance squared: a surface point in the lamp itself has no direction to it and gets no light, not NaN
 
 #if SPOT_LIGHTS
 layout(binding = 10) uniform sampler2DArrayShadow spotShadows;
@@ -19,7 +20,7 @@ layout(binding = 10) uniform sampler2DArrayShadow spotShadows;
 Arriving spotLight(int i, vec3 position, vec3 normal) {
   vec3 away = lights.spots[i].position - position;
   float distance2 = dot(away, away);
-  Arriving result = Arriving(vec3(0.0), away * inversesqrt(distance2), 0.0);
+  Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
   result.cosine = dot(normal, result.toLight);
   float falloff = spotFalloff(-dot(result.toLight, lights.spots[i].direction), lights.spots[i].cosInner, lights.spots[i].cosOuter);
   if (result.cosine <= 0.0 || falloff <= 0.0) return result;
@@ -43,7 +44,7 @@ float pointShadowTap(int i, vec3 fromLight) {
 Arriving pointLight(int i, vec3 position, vec3 normal) {
   vec3 away = lights.points[i].position - position;
   float distance2 = dot(away, away);
-  Arriving result = Arriving(vec3(0.0), away * inversesqrt(distance2), 0.0);
+  Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
   result.cosine = dot(normal, result.toLight);
   if (result.cosine <= 0.0) return result;
   // Depth is measured along the face's axis, the largest component.

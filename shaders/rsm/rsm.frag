@@ -35,7 +35,7 @@ void main() {
 #if PERSPECTIVE
   vec3 away = lightPosition - vPosition;
   float distance2 = dot(away, away);
-  vec3 toLight = away * inversesqrt(distance2);
+  vec3 toLight = away * inversesqrt(max(distance2, 1e-30));  // a surface point in the lamp itself: no area, not NaN
   vec2 atDepth1 = gl_FragCoord.xy * texelWidth - lightTangent;
   float cosAxis = inversesqrt(1.0 + dot(atDepth1, atDepth1));
   float solidAngle = texelWidth * texelWidth * cosAxis * cosAxis * cosAxis;
