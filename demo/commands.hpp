@@ -1,4 +1,4 @@
-// The subcommands of `lucerna`, one file each, and what they share. The contract is DESIGN section 5.
+// The subcommands of `lucerna`, one file each, and what they share.
 #pragma once
 
 #include "gl/context.hpp"
@@ -50,6 +50,8 @@ glm::ivec2 parseSize(const std::string& text);
 
 /// Every key of --set with its meaning and default, for --help and README.
 std::string settingsHelp();
+/// Every deviation with its meaning.
+std::string deviationsHelp();
 
 /// A progress bar on a terminal's standard error for work longer than a second; silent elsewhere.
 class Progress {
@@ -70,6 +72,9 @@ void watchForInterrupt();
 bool interrupted();
 
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages);
+/// What the gather of the reflective shadow map saved: pixels a frame.
+nlohmann::ordered_json gatherJson(const RsmGather& gather);
+std::string gatherLine(const RsmGather& gather);
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer);
 
 }  // namespace lucerna::demo

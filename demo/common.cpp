@@ -2,6 +2,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -53,6 +54,16 @@ bool parseSwitch(const std::string& option, const std::string& text) {
   throwBadInput("{}: '{}' is neither on nor off", option, text);
 }
 
+template <class T>
+T parseChoice(const std::string& option, const std::string& text, std::initializer_list<T> choices) {
+  std::string known;
+  for (T choice : choices) {
+    if (text == nameOf(choice)) return choice;
+    known += (known.empty() ? "" : ", ") + std::string(nameOf(choice));
+  }
+  throwBadInput("{}: '{}' is none of {}", option, text, known);
+}
+
 std::pair<std::string, std::string> splitAssignment(const std::string& option, const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throwBadInput("{} {}: expected key=value", option, text);
@@ -78,16 +89,39 @@ const Setting kSettings[] = {
     SETTING("lpv.cells", "cells a side of every cascade (32)", s.lpv.cascades.cells = parseNumber(k, v, 1, 128)),
     SETTING("lpv.cascades", "nested grids (3)", s.lpv.cascades.cascades = parseNumber(k, v, 1, LPV_MAX_CASCADES)),
     SETTING("lpv.iterations", "propagation steps (8)", s.lpv.iterations = parseNumber(k, v, 0, 100000)),
-    SETTING("lpv.cell-size", "cell size of the coarsest cascade in scene units (0: it covers the scene)",
+    SETTING("lpv.cell-size", "cell size of the coarsest cascade in scene units (0: half the cells span the scene)",
             s.lpv.cascades.cellSize = parseNumber(k, v, 0.0, 1e12)),
     SETTING("lpv.ratio", "cell size over that of the next finer cascade (2)", s.lpv.cascades.ratio = parseNumber(k, v, 1.0, 16.0)),
     SETTING("lpv.push", "how far grids lie ahead of the camera, in half extents (0.8)", s.lpv.cascades.push = parseNumber(k, v, 0.0, 1.0)),
+    SETTING("lpv.fill", "how the grid is filled: layered, atomic or fixed (layered)",
+            s.lpv.fill = parseChoice(k, v, {LpvFill::layered, LpvFill::atomic, LpvFill::fixed})),
+    SETTING("lpv.propagate", "compute, or layered: one pass a step and cascade, as published (compute)",
+            s.lpv.propagate = parseChoice(k, v, {LpvPropagate::compute, LpvPropagate::layered})),
+    SETTING("lpv.amplifier", "factor of the deviating 4 pi kernel; 4 conserves (1)", s.lpv.amplifier = parseNumber(k, v, 0.0f, 100.0f)),
     SETTING("lpv.blocking", "geometry volume on or off (on)", s.lpv.blocking = parseSwitch(k, v)),
     SETTING("lpv.blend", "fraction of a cascade over which it fades into the next (0.25)",
             s.lpv.blendBand = parseNumber(k, v, 0.001f, 1.0f)),
+    SETTING("lpv.hand-over", "steps after which finer cascades take a coarser one's light (0: from iterations and ratio)",
+            s.lpv.handOver = parseNumber(k, v, 0, 100000)),
     SETTING("lpv.lookup-offset", "cells along the normal that a receiver is moved (0.5)",
             s.lpv.lookupOffset = parseNumber(k, v, 0.0f, 4.0f)),
     SETTING("rsm.size", "texels a side of the reflective shadow map (256)", s.rsm.size = parseNumber(k, v, 1, 8192)),
+    SETTING("rsm.samples", "samples of the map a gathered point (400)", s.gather.samples = parseNumber(k, v, 1, 65536)),
+    SETTING("rsm.radius", "reach of the gather, fraction of the map's side (0.3)", s.gather.radius = parseNumber(k, v, 1e-4f, 2.0f)),
+    SETTING("rsm.weight", "unbiased or published: xi or xi^2 (unbiased)",
+            s.gather.weight = parseChoice(k, v, {RsmGather::Weight::unbiased, RsmGather::Weight::published})),
+    SETTING("rsm.rotation", "none or noise: the sample pattern turned from pixel to pixel (none)",
+            s.gather.rotation = parseChoice(k, v, {RsmGather::Rotation::none, RsmGather::Rotation::noise})),
+    SETTING("rsm.near", "beside a texel's surface: quad, disc, clamp or none (quad)",
+            s.gather.nearField = parseChoice(k, v, {RsmGather::Near::quad, RsmGather::Near::disc, RsmGather::Near::clamp, RsmGather::Near::none})),
+    SETTING("rsm.clamp", "least distance with rsm.near=clamp, in texels (1)", s.gather.clampTexels = parseNumber(k, v, 0.0f, 1000.0f)),
+    SETTING("rsm.interpolate", "gather few pixels, interpolate the others where they fit (on)", s.gather.interpolate = parseSwitch(k, v)),
+    SETTING("rsm.low-resolution", "pixels between gathered ones each way (4)", s.gather.lowResolution = parseNumber(k, v, 1, 64)),
+    SETTING("rsm.fit-normal", "least cosine between normals that fit (0.9)", s.gather.fitNormal = parseNumber(k, v, -1.0f, 1.0f)),
+    SETTING("rsm.fit-plane", "most distance off the tangent plane, in low-resolution steps (0.25)",
+            s.gather.fitPlane = parseNumber(k, v, 0.0f, 1e6f)),
+    SETTING("rsm.fit-distance", "most distance, in low-resolution steps (8)", s.gather.fitDistance = parseNumber(k, v, 0.0f, 1e6f)),
+    SETTING("rsm.show-refused", "paint the pixels that interpolation refused red (off)", s.gather.showRefused = parseSwitch(k, v)),
     SETTING("shadow.size", "texels a side of the shadow map (2048)", s.shadow.size = parseNumber(k, v, 1, 16384)),
     SETTING("shadow.cascades", "shadow maps of the sun along the view, 1: one for the whole scene (1)",
             s.sunCascades.cascades = parseNumber(k, v, 1, SUN_MAX_CASCADES)),
@@ -110,22 +144,30 @@ std::string settingsHelp() {
   return text;
 }
 
+std::string deviationsHelp() {
+  std::string text = "\nDeviations (--deviation NAME=on|off; * are on with --fidelity original):\n";
+  for (const Deviation& deviation : allDeviations())
+    text += fmt::format("{} {:<24} {}\n", deviation.inOriginal ? '*' : ' ', deviation.name, deviation.meaning);
+  return text;
+}
+
 void PictureOptions::declare(CLI::App& app) {
-  app.add_option("--technique", technique, "direct or lpv")->capture_default_str();
+  app.add_option("--technique", technique, "direct, rsm or lpv")->capture_default_str();
   app.add_option("--component", component, "all, direct or indirect")->capture_default_str();
-  app.add_option("--fidelity", fidelity, "corrected")->capture_default_str();
+  app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str();
   app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");
   app.add_option("--size", size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated");
-  app.footer(settingsHelp());
+  app.footer(settingsHelp() + deviationsHelp());
 }
 
 RenderSettings PictureOptions::parse(std::optional<float>& exposure) const {
   RenderSettings result;
   result.technique = parseTechnique(technique);
   result.component = parseComponent(component);
-  if (fidelity != "corrected") throwBadInput("--fidelity {}: unknown; there is corrected", fidelity);
-  if (!deviations.empty()) throwBadInput("--deviation {}: unknown; there are none yet", deviations.front());
+  if (fidelity != "corrected" && fidelity != "original") throwBadInput("--fidelity {}: unknown; there are corrected, original", fidelity);
+  applyFidelity(result, fidelity == "original" ? Fidelity::original : Fidelity::corrected);
+  for (const std::string& deviation : deviations) applyDeviation(result, deviation);
   result.size = parseSize(size);
   for (const std::string& assignment : settings) {
     const auto [key, value] = splitAssignment("--set", assignment);
@@ -196,6 +238,20 @@ nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages
     if (!std::isnan(s.wallMedianMs)) json[s.name]["wall_median_ms"] = s.wallMedianMs;
   }
   return json;
+}
+
+nlohmann::ordered_json gatherJson(const RsmGather& gather) {
+  const RsmGather::Counts& c = gather.counts();
+  const auto perFrame = [&](std::uint64_t sum) { return c.frames ? (sum + c.frames / 2) / c.frames : 0; };
+  return {{"refused", perFrame(c.refused)}, {"pixels", perFrame(c.pixels)}, {"gathered", perFrame(c.gathered)}, {"saving", c.saving()}, {"frames", c.frames}};
+}
+
+std::string gatherLine(const RsmGather& gather) {
+  const nlohmann::ordered_json json = gatherJson(gather);
+  const auto count = [&](const char* key) { return json.at(key).get<std::uint64_t>(); };
+  if (count("frames") == 0) return "";
+  return fmt::format("gathered {} of {} pixels a frame ({} refused by interpolation), {:.1f} % saved\n", count("gathered"), count("pixels"), count("refused"),
+                     100.0 * gather.counts().saving());
 }
 
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer) {

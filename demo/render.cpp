@@ -2,6 +2,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "commands.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -76,7 +77,7 @@ int run(const Options& options) {
   for (int i = 0; i < options.repeat; ++i) renderer.render(camera);
   glFinish();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / options.repeat;
-  renderer.timer().drain();
+  renderer.drain();
 
   const Image image = renderer.readRadiance();
   if (lowerExtension(options.output) == ".png")
@@ -87,6 +88,7 @@ int run(const Options& options) {
   if (!options.common.quiet) {
     fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s a frame on {}\n", options.output, image.width, image.height,
                options.picture.technique, options.picture.component, mean.x, mean.y, mean.z, seconds, context.capabilities().renderer);
+    if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
     if (options.repeat > 1) fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
   }
   nlohmann::ordered_json json;
@@ -96,13 +98,14 @@ int run(const Options& options) {
   json["technique"] = options.picture.technique;
   json["component"] = options.picture.component;
   json["fidelity"] = options.picture.fidelity;
-  json["deviations"] = nlohmann::ordered_json::array();
+  json["deviations"] = activeDeviations(settings);
   json["settings"] = options.picture.settings;
   json["size"] = {image.width, image.height};
   json["seconds"] = seconds;
   json["mean"] = {mean.x, mean.y, mean.z};
   json["gpu_bytes"] = renderer.gpuBytes();
   json["left_out"] = renderer.leftOut();
+  if (renderer.gather()) json["rsm"] = gatherJson(*renderer.gather());
   if (options.repeat > 1) json["stages"] = stagesJson(renderer.timer().statistics());
   options.common.writeJson(json);
   return 0;

@@ -4,6 +4,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
+#include "render/deviations.hpp"
 #include "scene/key_frames.hpp"
 #include "walk/free_camera.hpp"
 
@@ -91,6 +92,7 @@ nlohmann::ordered_json resultJson(const Options& options, const Host& host, cons
   json["scene"] = options.scene;
   json["technique"] = options.picture.technique;
   json["fidelity"] = options.picture.fidelity;
+  json["deviations"] = activeDeviations(renderer.settings());
   json["settings"] = options.picture.settings;
   json["size"] = {renderer.size().x, renderer.size().y};
   json["frames"] = frames;
@@ -98,6 +100,7 @@ nlohmann::ordered_json resultJson(const Options& options, const Host& host, cons
   json["stages"] = stagesJson(renderer.timer().statistics());
   json["gpu_bytes"] = renderer.gpuBytes();
   json["left_out"] = renderer.leftOut();
+  if (renderer.gather()) json["rsm"] = gatherJson(*renderer.gather());
   return json;
 }
 
@@ -133,12 +136,13 @@ int record(const Options& options, const Host& host, const gl::Context& context,
     before = view;
     progress.update(done + 1);
   }
-  renderer.timer().drain();
+  renderer.drain();
   double seconds = 0.0;
   for (double s : frameSeconds) seconds += s;
   if (!options.common.quiet) {
     fmt::print("{} pictures {}x{} in {}, {:.2f} frames a second\n", done, renderer.size().x, renderer.size().y, folder.string(), done / seconds);
     fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
+    if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
     if (options.flicker)
       fmt::print("flicker, largest change of a view when its volume is that of the view before: {:.3f} % of the mean, {:.2f} % in any 16x16 block\n",
                  100.0 * largest.mean, 100.0 * largest.block);
@@ -199,7 +203,7 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
     }
     if (options.frames > 0 && frames >= options.frames) break;
   }
-  renderer.timer().drain();
+  renderer.drain();
   const double seconds = secondsSince(start);
   if (!options.common.quiet)
     fmt::print("{} frames in {:.1f} s\n{}", frames, seconds, stagesTable(renderer.timer().statistics(), context.capabilities().renderer));

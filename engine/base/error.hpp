@@ -1,6 +1,6 @@
 // Errors and checks (no GL).
 //
-// Two kinds, as in DESIGN section 4:
+// Two kinds:
 // - CHECK(condition, ...) for programmer errors: prints the condition, the values given and the place, then aborts.
 // - Error for files, options, shaders and contexts: its message names the file, the line or key, what was wrong and what
 //   would be right. The command line prints that message and ends with exitCode().

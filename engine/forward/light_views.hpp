@@ -24,6 +24,8 @@ struct LightViews {
   bool omnidirectional() const { return clipFromWorld.size() == 6; }
   /// Width of a texel at depth 1 along the view's axis, for a map of size x size texels a view.
   double texelWidth(int size) const { return 2.0 * tangent / size; }
+  /// Upper bound of the sum of the texels' solid angles in shaders/rsm/rsm.frag, all views together, sr; tends to the views' own.
+  double largestSolidAngle(int size) const;
 };
 
 LightViews lightViews(const SpotLight& light, const Bounds& scene);

@@ -1,4 +1,4 @@
-// The sun's shadow map: depth alone, its own size, so that shadows stay sharp whatever the reflective shadow map's [ORIGINALS 1.1].
+// The sun's shadow map: depth alone, its own size, so that shadows stay sharp whatever the reflective shadow map's [LPV2015, 6.3.1].
 #pragma once
 
 #include "forward/gpu_scene.hpp"

@@ -44,19 +44,22 @@ const Format& formatOf(GLenum internalFormat) {
 
 std::size_t bytesPerTexel(GLenum internalFormat) { return formatOf(internalFormat).bytes; }
 
+namespace detail {
+void deleteBuffer(GLuint id) { glDeleteBuffers(1, &id); }
+void deleteTexture(GLuint id) { glDeleteTextures(1, &id); }
+void deleteFramebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
+void deleteVertexArray(GLuint id) { glDeleteVertexArrays(1, &id); }
+}  // namespace detail
+
 // ---------------------------------------------------------------------------------------------------- Buffer
 
 Buffer::Buffer(const std::string& name, std::size_t bytes, const void* data, GLenum usage) : bytes_(bytes) {
   GLuint id = 0;
   glGenBuffers(1, &id);
-  handle_ = Handle(id);
+  handle_ = decltype(handle_)(id);
   glBindBuffer(GL_COPY_WRITE_BUFFER, id);
   label(GL_BUFFER, id, name);
   glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes), data, usage);
-}
-
-Buffer::~Buffer() {
-  if (const GLuint id = handle_.id()) glDeleteBuffers(1, &id);
 }
 
 void Buffer::upload(std::size_t offset, std::size_t bytes, const void* data) {
@@ -95,7 +98,7 @@ void Texture::create(const std::string& name, const Sampling& s) {
   CHECK(size_.x > 0 && size_.y > 0 && size_.z > 0, "texture {}: {}x{}x{}", name, size_.x, size_.y, size_.z);
   GLuint id = 0;
   glGenTextures(1, &id);
-  handle_ = Handle(id);
+  handle_ = decltype(handle_)(id);
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id);
   label(GL_TEXTURE, id, name);
@@ -117,17 +120,18 @@ void Texture::create(const std::string& name, const Sampling& s) {
   }
 }
 
-Texture::~Texture() {
-  if (const GLuint id = handle_.id()) glDeleteTextures(1, &id);
+glm::ivec3 Texture::levelSize(int level) const {
+  glm::ivec3 size = glm::max(size_ >> level, glm::ivec3(1));
+  if (target_ == GL_TEXTURE_2D_ARRAY) size.z = size_.z;  // layers stay
+  return size;
 }
 
 std::size_t Texture::bytes() const {
+  if (!id()) return 0;
   std::size_t texels = 0;
-  glm::ivec3 size = size_;
   for (int level = 0; level < levels_; ++level) {
+    const glm::ivec3 size = levelSize(level);
     texels += static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
-    size = glm::max(size / 2, glm::ivec3(1));
-    if (target_ == GL_TEXTURE_2D_ARRAY) size.z = size_.z;
   }
   return texels * bytesPerTexel(format_);
 }
@@ -135,7 +139,7 @@ std::size_t Texture::bytes() const {
 void Texture::upload(GLenum format, GLenum type, const void* data, int level) {
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
-  const glm::ivec3 size = glm::max(size_ >> level, glm::ivec3(1));
+  const glm::ivec3 size = levelSize(level);
   if (target_ == GL_TEXTURE_2D)
     glTexSubImage2D(target_, level, 0, 0, size.x, size.y, format, type, data);
   else
@@ -159,7 +163,7 @@ void Texture::bindImage(GLuint unit, GLenum access, int level) const {
 
 std::vector<glm::vec4> Texture::readRgba(int level) const {
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-  const glm::ivec3 size = glm::max(size_ >> level, glm::ivec3(1));
+  const glm::ivec3 size = levelSize(level);
   std::vector<glm::vec4> texels(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
@@ -179,12 +183,13 @@ void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture
   std::vector<std::byte> zeros;
   for (const Texture* texture : textures) {
     const Format& format = formatOf(texture->format());
-    if (haveClearTexture) {
-      glClearTexImage(texture->id(), 0, format.format, format.type, nullptr);
-      continue;
+    if (!haveClearTexture) zeros.resize(std::max(zeros.size(), texture->bytes()), std::byte{0});
+    for (int level = 0; level < texture->levels(); ++level) {
+      if (haveClearTexture)
+        glClearTexImage(texture->id(), level, format.format, format.type, nullptr);
+      else
+        const_cast<Texture*>(texture)->upload(format.format, format.type, zeros.data(), level);
     }
-    zeros.resize(std::max(zeros.size(), texture->bytes()), std::byte{0});
-    const_cast<Texture*>(texture)->upload(format.format, format.type, zeros.data());
   }
 }
 
@@ -193,7 +198,7 @@ void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture
 Framebuffer::Framebuffer(const std::string& name, std::span<const Texture* const> colors, const Texture* depth) {
   GLuint id = 0;
   glGenFramebuffers(1, &id);
-  handle_ = Handle(id);
+  handle_ = decltype(handle_)(id);
   glBindFramebuffer(GL_FRAMEBUFFER, id);
   label(GL_FRAMEBUFFER, id, name);
   std::vector<GLenum> buffers;
@@ -217,16 +222,12 @@ Framebuffer::Framebuffer(const std::string& name, std::span<const Texture* const
   CHECK(status == GL_FRAMEBUFFER_COMPLETE, "framebuffer {}: status {:#x}", name, status);
 }
 
-Framebuffer::~Framebuffer() {
-  if (const GLuint id = handle_.id()) glDeleteFramebuffers(1, &id);
-}
-
 // ---------------------------------------------------------------------------------------------------- VertexArray
 
 VertexArray::VertexArray(const std::string& name) {
   GLuint id = 0;
   glGenVertexArrays(1, &id);
-  handle_ = Handle(id);
+  handle_ = decltype(handle_)(id);
   glBindVertexArray(id);
   label(GL_VERTEX_ARRAY, id, name);
 }
@@ -242,10 +243,6 @@ VertexArray::VertexArray(const std::string& name, const Buffer& vertices, std::s
   }
   if (indices) glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices->id());
   glBindVertexArray(0);
-}
-
-VertexArray::~VertexArray() {
-  if (const GLuint id = handle_.id()) glDeleteVertexArrays(1, &id);
 }
 
 void VertexArray::bind() const { glBindVertexArray(id()); }

@@ -15,14 +15,27 @@
 
 namespace lucerna::gl {
 
-/// The name of a GL object; zero when moved from.
+namespace detail {
+void deleteBuffer(GLuint id);
+void deleteTexture(GLuint id);
+void deleteFramebuffer(GLuint id);
+void deleteVertexArray(GLuint id);
+}  // namespace detail
+
+/// Owns the name of a GL object; zero when moved from.
+template <void (*Delete)(GLuint)>
 class Handle {
  public:
   Handle() = default;
   explicit Handle(GLuint id) : id_(id) {}
+  ~Handle() {
+    if (id_) Delete(id_);
+  }
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
   Handle& operator=(Handle&& other) noexcept {
-    std::swap(id_, other.id_);
+    if (this == &other) return *this;
+    if (id_) Delete(id_);
+    id_ = std::exchange(other.id_, 0);
     return *this;
   }
   GLuint id() const { return id_; }
@@ -36,12 +49,11 @@ class Buffer {
   Buffer() = default;
   /// `bytes` of storage; `data` may be null. usage: GL_STATIC_DRAW, GL_DYNAMIC_DRAW, ...
   Buffer(const std::string& name, std::size_t bytes, const void* data, GLenum usage);
-  ~Buffer();
   Buffer(Buffer&&) noexcept = default;
   Buffer& operator=(Buffer&&) noexcept = default;
 
   GLuint id() const { return handle_.id(); }
-  std::size_t bytes() const { return bytes_; }
+  std::size_t bytes() const { return id() ? bytes_ : 0; }
   void upload(std::size_t offset, std::size_t bytes, const void* data);
   void clear(GLuint value = 0);
   /// Binds to an indexed target: GL_UNIFORM_BUFFER, GL_SHADER_STORAGE_BUFFER.
@@ -55,7 +67,7 @@ class Buffer {
 
  private:
   void readBytes(void* data) const;
-  Handle handle_;
+  Handle<detail::deleteBuffer> handle_;
   std::size_t bytes_ = 0;
 };
 
@@ -76,7 +88,6 @@ class Texture {
   Texture(const std::string& name, GLenum internalFormat, glm::ivec2 size, const Sampling& sampling = {}, int levels = 1);
   Texture(const std::string& name, GLenum internalFormat, glm::ivec3 size, const Sampling& sampling = {}, int levels = 1,
           GLenum target = GL_TEXTURE_3D);
-  ~Texture();
   Texture(Texture&&) noexcept = default;
   Texture& operator=(Texture&&) noexcept = default;
 
@@ -86,7 +97,7 @@ class Texture {
   glm::ivec3 size() const { return size_; }
   glm::ivec2 size2d() const { return {size_.x, size_.y}; }
   int levels() const { return levels_; }
-  std::size_t bytes() const;
+  std::size_t bytes() const;  ///< of all levels; zero when moved from
 
   void upload(GLenum format, GLenum type, const void* data, int level = 0);
   void generateMipmaps();
@@ -98,14 +109,15 @@ class Texture {
 
  private:
   void create(const std::string& name, const Sampling& sampling);
-  Handle handle_;
+  glm::ivec3 levelSize(int level) const;
+  Handle<detail::deleteTexture> handle_;
   GLenum target_ = GL_TEXTURE_2D;
   GLenum format_ = GL_RGBA8;
   glm::ivec3 size_{0};
   int levels_ = 1;
 };
 
-/// Sets every texel of every listed texture to zero: ARB_clear_texture where there is, else an upload of zeros.
+/// Sets every texel of every level of every listed texture to zero: ARB_clear_texture where there is, else an upload of zeros.
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture);
 
 class Framebuffer {
@@ -113,7 +125,6 @@ class Framebuffer {
   Framebuffer() = default;
   /// Attaches whole textures (a 3D or array texture becomes layered). Aborts when not complete.
   Framebuffer(const std::string& name, std::span<const Texture* const> colors, const Texture* depth = nullptr);
-  ~Framebuffer();
   Framebuffer(Framebuffer&&) noexcept = default;
   Framebuffer& operator=(Framebuffer&&) noexcept = default;
 
@@ -121,7 +132,7 @@ class Framebuffer {
   glm::ivec2 size() const { return size_; }
 
  private:
-  Handle handle_;
+  Handle<detail::deleteFramebuffer> handle_;
   glm::ivec2 size_{0};
 };
 
@@ -137,7 +148,6 @@ class VertexArray {
   explicit VertexArray(const std::string& name);
   VertexArray(const std::string& name, const Buffer& vertices, std::size_t stride, std::span<const Attribute> attributes,
               const Buffer* indices);
-  ~VertexArray();
   VertexArray(VertexArray&&) noexcept = default;
   VertexArray& operator=(VertexArray&&) noexcept = default;
 
@@ -145,7 +155,7 @@ class VertexArray {
   void bind() const;
 
  private:
-  Handle handle_;
+  Handle<detail::deleteVertexArray> handle_;
 };
 
 /// Bytes of a texel of the formats that the engine uses.

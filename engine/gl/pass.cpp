@@ -17,6 +17,10 @@ RasterPass::RasterPass(const std::string& name, const Framebuffer& target, const
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_STENCIL_TEST);
   glDisable(GL_FRAMEBUFFER_SRGB);
+  for (GLenum never : {GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DITHER, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_MASK, GL_PRIMITIVE_RESTART})
+    glDisable(never);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  glDepthRange(0.0, 1.0);
   enable(GL_TEXTURE_CUBE_MAP_SEAMLESS, true);
   enable(GL_PROGRAM_POINT_SIZE, true);
   enable(GL_DEPTH_TEST, state.depth != Depth::off);
@@ -26,6 +30,7 @@ RasterPass::RasterPass(const std::string& name, const Framebuffer& target, const
   glCullFace(GL_BACK);
   glFrontFace(GL_CCW);
   enable(GL_BLEND, state.blend != Blend::none);
+  for (GLuint attachment = 0; attachment < state.firstBlended; ++attachment) glDisablei(GL_BLEND, attachment);
   glBlendFunc(GL_ONE, GL_ONE);
   glBlendEquation(GL_FUNC_ADD);
   enable(GL_POLYGON_OFFSET_FILL, state.polygonOffset != glm::vec2(0.0f));
@@ -40,6 +45,11 @@ void RasterPass::clearDepth(float value) const { glClearBufferfv(GL_DEPTH, 0, &v
 void ComputePass::dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const {
   const glm::uvec3 groups((size + groupSize - 1) / groupSize);
   glDispatchCompute(groups.x, groups.y, groups.z);
+}
+
+void ComputePass::dispatchIndirect(const Buffer& groups) const {
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.id());
+  glDispatchComputeIndirect(0);
 }
 
 void drawFullScreen(const VertexArray& emptyVertexArray) {

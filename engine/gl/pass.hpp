@@ -17,6 +17,7 @@ struct RasterState {
   Depth depth = Depth::off;
   Cull cull = Cull::none;
   Blend blend = Blend::none;
+  GLuint firstBlended = 0;  ///< colour attachments before this one are written, not blended
   glm::vec2 polygonOffset{0.0f};  ///< factor, units; off where both are zero
   bool depthClamp = false;
 };
@@ -48,6 +49,8 @@ class ComputePass {
   ~ComputePass() { glMemoryBarrier(barrier_); }
   /// Enough groups of `groupSize` to cover `size`.
   void dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const;
+  /// As many groups as the buffer's first three words say, written by a pass before with GL_COMMAND_BARRIER_BIT at its end.
+  void dispatchIndirect(const Buffer& groups) const;
 
  private:
   DebugGroup group_;

@@ -117,7 +117,13 @@ void ProgramLibrary::build(Program& program) {
   const auto fail = [&](const std::string& message) {
     for (GLuint shader : shaders) glDeleteShader(shader);
     glDeleteProgram(id);
-    program.dependencies_ = dependencies;  // so that mending the file is noticed
+    // So that mending a file is noticed, and the same failure not met again until then: the files of old, as they are now, and those
+    // read since.
+    for (auto& [file, time] : program.dependencies_) {
+      std::error_code gone;
+      if (const auto now = fs::last_write_time(root_ / file, gone); !gone) time = now;
+    }
+    for (const auto& [file, time] : dependencies) program.dependencies_[file] = time;
     throw Error(ErrorKind::badInput, fmt::format("program {}: {}", description.name, message));
   };
   for (const ShaderStage& stage : description.stages) {

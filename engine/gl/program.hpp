@@ -3,7 +3,7 @@
 // A small preprocessor of our own stands before the driver's: it writes `#version 430 core`, the program's declared flags as
 // `#define NAME value`, then the file with its include-once, root-relative `#include "lib/x.glsl"`s. It refuses what drivers let pass:
 // an identifier in #if that is no declared flag (a misspelt one would silently leave a feature out), a missing file, a cycle.
-// Driver logs are rewritten to shaders/lib/x.glsl:12. Names of flags come from SceneNeeds and Settings alone.
+// A branch that a flag leaves out (`#if FLAG`, `#if !FLAG`) includes nothing. Driver logs are rewritten to shaders/lib/x.glsl:12. Names of flags come from SceneNeeds and Settings alone.
 #pragma once
 
 #include "gl/objects.hpp"

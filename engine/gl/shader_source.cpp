@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -18,7 +20,10 @@ namespace fs = std::filesystem;
 class Expander {
  public:
   Expander(const fs::path& root, const ShaderFlags& flags) : root_(root) {
-    for (const auto& flag : flags) known_.insert(flag.first);
+    for (const auto& [name, value] : flags) {
+      known_.insert(name);
+      values_[name] = value;
+    }
   }
 
   ExpandedSource expand(const std::string& file, const ShaderFlags& flags) {
@@ -58,15 +63,43 @@ class Expander {
       static const std::regex kVersion(R"(^\s*#\s*version\b.*$)");
       std::smatch match;
       if (std::regex_match(line, match, kInclude)) {
-        include(match[1], where);
+        if (std::find(branches_.begin(), branches_.end(), false) == branches_.end()) include(match[1], where);
+        continue;
+      }
+      if (std::regex_match(line, match, kCondition)) checkCondition(match[2], where);
+      followBranches(line);
+      if (std::find(branches_.begin(), branches_.end(), false) != branches_.end()) {
+        emit(line, {index, number});  // left out by a flag
         continue;
       }
       if (std::regex_match(line, kVersion)) throwBadInput("{}: #version is written by the library, leave it out", where);
-      if (std::regex_match(line, match, kCondition)) checkCondition(match[2], where);
       if (std::regex_match(line, match, kDefine)) known_.insert(match[1]);
       emit(line, {index, number});
     }
     open_.pop_back();
+  }
+
+  // Which branches are open, so that a branch that a flag leaves out includes nothing. Only `#if FLAG`, `#if !FLAG` and their #elif, #else
+  // are judged; any other condition counts as taken, its #else too.
+  void followBranches(const std::string& line) {
+    static const std::regex kFlag(R"(^\s*#\s*(if|elif)\s+(!?)\s*([A-Za-z_]\w*)\s*(//.*)?$)");
+    static const std::regex kOpen(R"(^\s*#\s*(if|ifdef|ifndef)\b.*$)");
+    static const std::regex kElse(R"(^\s*#\s*(elif|else)\b.*$)");
+    static const std::regex kEnd(R"(^\s*#\s*endif\b.*$)");
+    std::smatch match;
+    std::optional<bool> value;
+    if (std::regex_match(line, match, kFlag) && values_.contains(match[3])) value = (values_[match[3]] != 0) == match[2].str().empty();
+    if (std::regex_match(line, kOpen)) {
+      branches_.push_back(value.value_or(true));
+      taken_.push_back(value);
+    } else if (std::regex_match(line, kElse) && !branches_.empty()) {
+      // An earlier branch that surely was taken closes the later ones; one that surely was not leaves them to their own flag.
+      branches_.back() = taken_.back() == true ? false : value.value_or(true);
+      if (taken_.back() != true) taken_.back() = value == true ? std::optional(true) : taken_.back() == false ? value : std::nullopt;
+    } else if (std::regex_match(line, kEnd) && !branches_.empty()) {
+      branches_.pop_back();
+      taken_.pop_back();
+    }
   }
 
   // Every identifier in a condition must be a declared flag or a macro of the file's own.
@@ -82,6 +115,9 @@ class Expander {
 
   fs::path root_;
   std::set<std::string> known_;
+  std::map<std::string, int> values_;
+  std::vector<bool> branches_;                 // whether each open #if's present branch counts as taken
+  std::vector<std::optional<bool>> taken_;     // whether one of its branches surely was, surely was not, or cannot be told
   std::vector<std::string> open_;
   ExpandedSource result_;
 };

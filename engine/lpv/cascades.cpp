@@ -13,10 +13,10 @@ std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds
   const glm::dvec3 extent = scene.extent();
   double coarsest = settings.cellSize;
   if (coarsest <= 0.0) {
-    // One cell beyond the scene on either side: virtual point lights are moved half a cell, snapping moves up to one. Grids
-    // too small for that margin still cover the scene.
+    // Half the cells span the scene: eight steps then carry light across a quarter of it. Finer cells would hold more detail, which
+    // is what the finer cascades are for, but would leave most of the scene dark.
     const double longest = std::max({extent.x, extent.y, extent.z});
-    coarsest = longest > 0.0 ? longest / std::max(settings.cells - 3, 1) : 1.0;
+    coarsest = longest > 0.0 ? settings.spanOfScene * longest / settings.cells : 1.0;
   }
 
   std::vector<Cascade> cascades;
@@ -25,7 +25,7 @@ std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds
     cascade.cellSize = coarsest / std::pow(settings.ratio, settings.cascades - 1 - k);
     const double half = 0.5 * settings.cells * cascade.cellSize;
     glm::dvec3 centre = cameraPosition + cameraDirection * (settings.push * half);
-    if (!scene.empty()) {
+    if (!scene.empty() && settings.heldInScene) {
       const glm::dvec3 low = scene.min + half - 1.5 * cascade.cellSize;
       const glm::dvec3 high = scene.max - half + 1.5 * cascade.cellSize;
       for (int axis = 0; axis < 3; ++axis)

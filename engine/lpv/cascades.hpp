@@ -2,7 +2,7 @@
 //
 // A grid's minimum is always an exact multiple of its cell size, found with floor in double precision from a 64-bit cell
 // index, so moving the camera by less than a cell leaves the grid where it is, at any distance from the origin.
-// Source: ORIGINALS 1.2; [Kaplanyan2010, section 5].
+// Source: [LPV2015, 6.4]; [Kaplanyan2010, section 5].
 #pragma once
 
 #include "scene/scene.hpp"
@@ -17,9 +17,11 @@ namespace lucerna {
 struct CascadeSettings {
   int cells = 32;             ///< a side, of every cascade; 1 and more
   int cascades = 3;           ///< 1..4
-  double cellSize = 0.0;      ///< of the coarsest, scene units; 0: so that the coarsest just covers the scene
+  double cellSize = 0.0;      ///< of the coarsest, scene units; 0: so that half its cells span the scene
   double ratio = 2.0;         ///< cell size of a cascade over that of the next finer one
   double push = 0.8;          ///< how far the centre is pushed along the view, in half extents of the grid
+  double spanOfScene = 2.0;   ///< edge of the coarsest over the scene's longest side, where cellSize is 0
+  bool heldInScene = true;    ///< centres are held so that grids do not stick out of the scene further than they must
 };
 
 struct Cascade {

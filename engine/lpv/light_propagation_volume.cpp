@@ -2,7 +2,9 @@
 
 #include "base/error.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace lucerna {
 
@@ -14,91 +16,148 @@ constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 
 }  // namespace
 
+std::string_view nameOf(LpvFill fill) {
+  return fill == LpvFill::layered ? "layered" : fill == LpvFill::atomic ? "atomic" : "fixed";
+}
+
+std::string_view nameOf(LpvPropagate propagate) { return propagate == LpvPropagate::compute ? "compute" : "layered"; }
+
 LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
                                                const Settings& settings)
     : settings_(settings), haveClearTexture_(capabilities.clearTexture) {
   const CascadeSettings& c = settings.cascades;
+  const Deviations& deviations = settings.deviations;
   CHECK(c.cascades >= 1 && c.cascades <= LPV_MAX_CASCADES, "cascades = {}", c.cascades);
   CHECK(c.cells >= 1 && (c.cells + 1) * c.cascades <= capabilities.max3dTextureSize, "cells = {}", c.cells);
   const bool full = settings.storage == Storage::full;
+  const bool layered = settings.propagate == LpvPropagate::layered;
   const GLenum format = full ? GL_RGBA32F : GL_RGBA16F;
   const glm::ivec3 size(c.cells, c.cells, c.cells * c.cascades);
   const gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};  // outside the grid is dark
+  steps_ = std::max(settings.iterations - (deviations.fewerSteps ? 1 : 0), 0);
+  const bool joined = c.cascades > 1 && !deviations.sumCascades && !deviations.unjoined;
+  if (settings_.handOver == 0) settings_.handOver = handOverStep(steps_, c.ratio);
 
   constants_ = gl::Buffer("lpv constants", sizeof(shared::LpvConstants), nullptr, GL_DYNAMIC_DRAW);
   noAttributes_ = gl::VertexArray("lpv points");
+  const auto allocate = [](Volume& volume, const char* name, GLenum texelFormat, glm::ivec3 texels, const gl::Sampling& how) {
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      volume[channel] = gl::Texture(fmt::format("lpv {} {}", name, kChannels[channel]), texelFormat, texels, how);
+  };
+  const gl::ShaderFlags group{{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}};
+  const auto with = [](gl::ShaderFlags flags, const gl::ShaderFlags& more) {
+    flags.insert(flags.end(), more.begin(), more.end());
+    return flags;
+  };
 
-  const gl::ShaderFlags storage{{"LPV_FULL_FLOAT", full}};
-  inject_ = &programs.loadRaster("lpv inject", "lpv/inject.vert", "lpv/inject.frag", storage, "lpv/inject.geom");
-  std::vector<const gl::Texture*> targets;
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    // 32-bit floats for what is summed by blending: 16-bit sums stop growing after some 2000 equal additions.
-    injected_[channel] = gl::Texture(fmt::format("lpv injected {}", kChannels[channel]), GL_RGBA32F, size, sampling);
-    targets.push_back(&injected_[channel]);
+  // Injection. 32-bit floats for what is summed: 16-bit sums stop growing after some 2000 equal additions.
+  allocate(injected_, "injected", GL_RGBA32F, size, sampling);
+  if (settings.fill == LpvFill::layered) {
+    inject_ = &programs.loadRaster("lpv inject", "lpv/inject.vert", "lpv/inject.frag",
+                                   {{"LPV_FULL_FLOAT", full}, {"FLUX_UNITS", deviations.fluxUnits}}, "lpv/inject.geom");
+    const std::array<const gl::Texture*, 3> targets{&injected_[0], &injected_[1], &injected_[2]};
+    injectTarget_ = gl::Framebuffer("lpv inject", targets);
+  } else {
+    const bool fixed = settings.fill == LpvFill::fixed;
+    if (!fixed && !capabilities.shaderAtomicFloat && !capabilities.shaderAtomicFp16Vector)
+      throwMissingCapability("lpv.fill=atomic: the driver has neither NV_shader_atomic_fp16_vector nor NV_shader_atomic_float; "
+                             "lpv.fill=fixed needs no extension");
+    fillsHalfVectors_ = !fixed && capabilities.shaderAtomicFp16Vector;
+    const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed && !fillsHalfVectors_}, {"FILL_HALF", fillsHalfVectors_}};
+    inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(with(group, fill), {{"FLUX_UNITS", deviations.fluxUnits}}));
+    resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(group, fill));
+    allocate(counts_, "count", fixed ? GL_R32I : fillsHalfVectors_ ? GL_RGBA16F : GL_R32F,
+             glm::ivec3(fillsHalfVectors_ ? size.x : 4 * size.x, size.y, size.z), {});
   }
-  injectTarget_ = gl::Framebuffer("lpv inject", targets);
 
-  const bool blocked = settings.blocking && settings.iterations > 1;  // the first step is never blocked
+  const bool blocked = settings.blocking && (steps_ > 1 || (steps_ == 1 && deviations.blockFirstStep));  // the first step is not, by itself
   if (blocked) {
-    fillGeometryVolume_ = &programs.loadRaster("lpv geometry volume", "lpv/inject.vert", "lpv/geometry_volume.frag", storage,
+    fillGeometryVolume_ = &programs.loadRaster("lpv geometry volume", "lpv/inject.vert", "lpv/geometry_volume.frag",
+                                               {{"LPV_FULL_FLOAT", full}, {"TRUNCATE", deviations.truncate}, {"SURFEL_AREA", deviations.surfelArea}},
                                                "lpv/geometry_volume.geom");
-    averageFaces_ = &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp",
-                                          {{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}});
     const glm::ivec3 corners(c.cells + 1, c.cells + 1, (c.cells + 1) * c.cascades);
-    geometryVolume_.emplace("lpv geometry volume", static_cast<GLenum>(GL_RGBA32F), corners);
+    geometryVolume_.emplace("lpv geometry volume", static_cast<GLenum>(GL_RGBA32F), corners, sampling);
     const std::array<const gl::Texture*, 1> target{&*geometryVolume_};
     geometryTarget_ = gl::Framebuffer("lpv geometry volume", target);
-    faces_.emplace();
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      (*faces_)[axis] = gl::Texture(fmt::format("lpv geometry faces {}", "xyz"[axis]), format, corners);
-  }
-
-  if (settings.iterations > 0) {
-    const auto load = [&](const std::string& name, bool withBlocking, bool first) {
-      return &programs.loadCompute(name, "lpv/propagate.comp",
-                                   {{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y},
-                                    {"BLOCKED", withBlocking}, {"FIRST_STEP", first}});
-    };
-    propagateFirst_ = load("lpv propagate first", false, true);
-    if (settings.iterations > 1) propagateFurther_ = load("lpv propagate", blocked, false);
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      sum_[channel] = gl::Texture(fmt::format("lpv sum {}", kChannels[channel]), format, size, sampling);
-      for (std::size_t i = 0; i < (settings.iterations > 1 ? 2u : 1u); ++i)
-        fronts_[i][channel] = gl::Texture(fmt::format("lpv front {} {}", i, kChannels[channel]), format, size, sampling);
+    if (!layered) {
+      averageFaces_ = &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp", group);
+      faces_.emplace();
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        (*faces_)[axis] = gl::Texture(fmt::format("lpv geometry faces {}", "xyz"[axis]), format, corners);
     }
   }
 
-  if (settings.iterations > 0 && c.cascades > 1) {
-    const gl::ShaderFlags flags{{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}};
-    coarsen_ = &programs.loadCompute("lpv coarsen", "lpv/coarsen.comp", flags);
-    compose_ = &programs.loadCompute("lpv join", "lpv/compose.comp", flags);
+  if (steps_ == 0) return;
+  const gl::ShaderFlags kernel{{"SIDE_DIRECTIONS", deviations.sideDirections},
+                               {"SIDE_SOLID_ANGLE", deviations.sideSolidAngle},
+                               {"FOUR_PI_KERNEL", deviations.fourPiKernel},
+                               {"BLOCKING_DIRECTION", deviations.blockingDirection}};
+  const auto load = [&](const std::string& name, bool withBlocking, bool withInjected, bool begins) {
+    if (layered)
+      return &programs.loadRaster("lpv propagate layered", "lpv/propagate_layered.vert", "lpv/propagate_layered.frag",
+                                  with({{"LPV_FULL_FLOAT", full}, {"BLOCKED", withBlocking}, {"BEGINS_WITH_INJECTED", withInjected}}, kernel),
+                                  "lpv/propagate_layered.geom");
+    return &programs.loadCompute(name, "lpv/propagate.comp",
+                                 with(with(group, {{"BLOCKED", withBlocking}, {"FACE_KERNEL", deviations.kernel()},
+                                                   {"BEGINS_WITH_INJECTED", withInjected}, {"BEGINS_SUM", begins}}), kernel));
+  };
+  propagateFirst_ = load("lpv propagate first", blocked && deviations.blockFirstStep, !deviations.fewerSteps, true);
+  if (steps_ > 1) propagateFurther_ = load("lpv propagate", blocked, false, false);
+  allocate(sum_, "sum", format, size, sampling);
+  for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i) allocate(fronts_[i], i == 0 ? "front even" : "front odd", format, size, sampling);
+  if (joined && settings_.handOver < steps_) {
+    propagateFar_ = load("lpv propagate far", blocked, false, true);
+    coarsen_ = &programs.loadCompute("lpv coarsen", "lpv/coarsen.comp", group);
+    join_ = &programs.loadCompute("lpv join", "lpv/join.comp", group);
+    allocate(farSum_, "far sum", format, size, sampling);
     const int half = (c.cells + 1) / 2;
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      coarsened_[channel] = gl::Texture(fmt::format("lpv coarsened {}", kChannels[channel]), format,
-                                        glm::ivec3(half, half, half * (c.cascades - 1)), sampling);
+    brightness_ = gl::Texture("lpv brightness", GL_R32F, glm::ivec3(half, half, half * (c.cascades - 1)), sampling);
   }
+  if (layered)
+    for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i)
+      for (std::size_t far = 0; far < (join_ ? 2u : 1u); ++far) {
+        Volume& front = fronts_[i];
+        Volume& sum = far ? farSum_ : sum_;
+        const std::array<const gl::Texture*, 6> targets{&front[0], &front[1], &front[2], &sum[0], &sum[1], &sum[2]};
+        layeredTargets_[i][far] = gl::Framebuffer("lpv propagate layered", targets);
+      }
+}
+
+gl::ShaderFlags LightPropagationVolume::lookupFlags(const Settings& settings) {
+  return {{"LPV_FULL_FLOAT", settings.storage == Storage::full},
+          {"FLUX_UNITS", settings.deviations.fluxUnits},
+          {"UNWINDOWED", settings.deviations.unwindowed},
+          {"SUM_CASCADES", settings.deviations.sumCascades}};
+}
+
+int LightPropagationVolume::handOverStep(int iterations, double ratio) {
+  const double steps = ((1.33 * iterations - 0.33) / (ratio * ratio) + 0.33) / 1.33;
+  return std::clamp(static_cast<int>(std::lround(steps)), 1, std::max(iterations, 1));
 }
 
 void LightPropagationVolume::join() {
-  if (!coarsen_) return;
+  if (!join_) return;
   {
     const gl::ComputePass pass("lpv coarsen", GL_TEXTURE_FETCH_BARRIER_BIT);
     coarsen_->use();
     for (GLuint channel = 0; channel < 3; ++channel) {
       sum_[channel].bind(channel);
-      coarsened_[channel].bindImage(channel, GL_WRITE_ONLY);
+      farSum_[channel].bind(3 + channel);
     }
-    pass.dispatch(coarsened_[0].size(), kGroup);
+    brightness_.bindImage(0, GL_WRITE_ONLY);
+    pass.dispatch(brightness_.size(), kGroup);
   }
-  for (int k = settings_.cascades.cascades - 2; k >= 0; --k) {
+  for (int k = settings_.cascades.cascades - 1; k >= 0; --k) {
     const gl::ComputePass pass("lpv join", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    compose_->use();
-    compose_->set("cascade", k);
+    join_->use();
+    join_->set("cascade", k);
     for (GLuint channel = 0; channel < 3; ++channel) {
-      coarsened_[channel].bind(channel);
+      farSum_[channel].bind(channel);
       sum_[channel].bind(3 + channel);
       sum_[channel].bindImage(channel, GL_READ_WRITE);
+      farSum_[channel].bindImage(3 + channel, GL_READ_WRITE);
     }
+    brightness_.bind(6);
     pass.dispatch(glm::ivec3(settings_.cascades.cells), kGroup);
   }
 }
@@ -111,7 +170,8 @@ void LightPropagationVolume::place(const Inputs& inputs) {
   for (std::size_t k = 0; k < inputs.cascades.size(); ++k) {
     const Cascade& cascade = inputs.cascades[k];
     auto& target = constants.cascades[k];
-    target.minimum = glm::vec3(cascade.minimum());
+    // Deviation: the origin is truncated to whole world units, off the raster of cells.
+    target.minimum = glm::vec3(settings_.deviations.truncate ? glm::trunc(cascade.minimum()) : cascade.minimum());
     target.cellSize = static_cast<float>(cascade.cellSize);
     target.blendCentre = glm::vec3(cascade.centre);
     // Snapping moves the grid by up to two cells and the trilinear lookup needs half a cell more.
@@ -127,24 +187,57 @@ void LightPropagationVolume::place(const Inputs& inputs) {
   constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
 }
 
-void LightPropagationVolume::drawTexels(const Inputs& inputs) const {
-  noAttributes_.bind();
-  for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {
-    rsm.position.bind(0);
-    rsm.normal.bind(1);
-    rsm.flux.bind(2);
-    glDrawArrays(GL_POINTS, 0, rsm.texelCount());
-  }
+float LightPropagationVolume::fluxScale(const ReflectiveShadowMap::Outputs& rsm) const {
+  // Without units each light counts as E * albedo, whatever its texel's area.
+  return settings_.deviations.fluxUnits ? 1.0f / rsm.texelArea : 1.0f;
 }
 
 void LightPropagationVolume::inject(const Inputs& inputs) {
-  std::array<const gl::Texture*, 3> targets{&injected_[0], &injected_[1], &injected_[2]};
+  if (resolve_) return fillByAtomics(inputs);
+  const std::array<const gl::Texture*, 3> targets{&injected_[0], &injected_[1], &injected_[2]};
   gl::clearToZero(targets, haveClearTexture_);
   gl::RasterState state;
   state.blend = gl::Blend::add;
   const gl::RasterPass pass("lpv inject", injectTarget_, state);
   inject_->use();
-  drawTexels(inputs);
+  noAttributes_.bind();
+  for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {
+    inject_->set("fluxScale", fluxScale(rsm));
+    rsm.bind();
+    glDrawArrays(GL_POINTS, 0, rsm.texelCount());
+  }
+}
+
+void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
+  // The largest stored coefficient that there can be: all light of all maps, reflected by white, in one cell of the finest cascade. 2^30 steps for
+  // it, so that the rounding of a million lights cannot overflow 31 bits either.
+  const double finest = inputs.cascades.front().cellSize;
+  const double unit = inputs.referenceIrradiance * (settings_.deviations.fluxUnits ? 1.0 : finest * finest);
+  double flux = 0.0;
+  for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) flux += rsm.largestFlux * static_cast<double>(fluxScale(rsm));
+  const double largest = 1.0233267079464885 / 3.141592653589793 * flux / unit;  // of the sun alone E_ref cancels
+  const auto fixedScale = static_cast<float>(settings_.fill == LpvFill::fixed && largest > 0.0 ? 1073741824.0 / largest : 1.0);
+  const std::array<const gl::Texture*, 3> counts{&counts_[0], &counts_[1], &counts_[2]};
+  gl::clearToZero(counts, haveClearTexture_);
+  {
+    const gl::ComputePass pass("lpv inject by atomics", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    inject_->use();
+    inject_->set("fixedScale", fixedScale);
+    for (GLuint channel = 0; channel < 3; ++channel) counts_[channel].bindImage(channel, GL_READ_WRITE);
+    for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {  // atomics need no order among them
+      inject_->set("fluxScale", fluxScale(rsm));
+      rsm.bind();
+      pass.dispatch(rsm.position.size(), kGroup);
+    }
+  }
+  const gl::ComputePass pass("lpv resolve", GL_TEXTURE_FETCH_BARRIER_BIT);
+  resolve_->set("fixedScale", fixedScale);
+  resolve_->use();
+  for (GLuint channel = 0; channel < 3; ++channel) {
+    counts_[channel].bind(channel);
+    injected_[channel].bindImage(channel, GL_WRITE_ONLY);
+  }
+  pass.dispatch(injected_[0].size(), kGroup);
 }
 
 void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
@@ -156,8 +249,18 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
     state.blend = gl::Blend::add;
     const gl::RasterPass pass("lpv geometry volume", geometryTarget_, state);
     fillGeometryVolume_->use();
-    drawTexels(inputs);
+    noAttributes_.bind();
+    for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {
+      if (settings_.deviations.surfelArea) {
+        const bool isSun = rsm.light == ReflectiveShadowMap::Light::sun;
+        fillGeometryVolume_->set("lightPosition", inputs.lightPosition);
+        fillGeometryVolume_->set("texelCount", isSun ? static_cast<float>(rsm.texelCount()) : 0.0f);
+      }
+      rsm.bind();
+      glDrawArrays(GL_POINTS, 0, rsm.texelCount());
+    }
   }
+  if (!averageFaces_) return;
   const gl::ComputePass pass("lpv geometry faces", GL_TEXTURE_FETCH_BARRIER_BIT);
   averageFaces_->use();
   geometryVolume_->bind(0);
@@ -166,19 +269,52 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
 }
 
 void LightPropagationVolume::propagate() {
+  for (const gl::Program* program : {propagateFirst_, propagateFurther_, propagateFar_})
+    if (program && settings_.deviations.fourPiKernel) program->set("amplifier", settings_.amplifier);
+  if (settings_.propagate == LpvPropagate::layered) return propagateLayered();
   const Volume* front = &injected_;
-  for (int step = 0; step < settings_.iterations; ++step) {
+  for (int step = 0; step < steps_; ++step) {
     const gl::ComputePass pass("lpv propagate", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     Volume& next = fronts_[static_cast<std::size_t>(step % 2)];
-    (step == 0 ? propagateFirst_ : propagateFurther_)->use();
+    const bool far = join_ && step >= settings_.handOver;
+    (step == 0 ? propagateFirst_ : far && step == settings_.handOver ? propagateFar_ : propagateFurther_)->use();
     for (GLuint channel = 0; channel < 3; ++channel) {
       (*front)[channel].bind(channel);
-      if (step > 0 && faces_) (*faces_)[channel].bind(3 + channel);
+      if (faces_) (*faces_)[channel].bind(3 + channel);
       next[channel].bindImage(channel, GL_WRITE_ONLY);
-      sum_[channel].bindImage(3 + channel, GL_READ_WRITE);
+      (far ? farSum_ : sum_)[channel].bindImage(3 + channel, GL_READ_WRITE);
     }
     pass.dispatch(sum_[0].size(), kGroup);
     front = &next;
+  }
+}
+
+// As published: one layered pass a step and cascade, blending adds to the sum.
+void LightPropagationVolume::propagateLayered() {
+  if (steps_ == 0) return;
+  std::vector<const gl::Texture*> sums{&sum_[0], &sum_[1], &sum_[2]};
+  if (join_) sums.insert(sums.end(), {&farSum_[0], &farSum_[1], &farSum_[2]});
+  gl::clearToZero(sums, haveClearTexture_);
+  const int cells = settings_.cascades.cells;
+  const Volume* front = &injected_;
+  for (int step = 0; step < steps_; ++step) {
+    const auto next = static_cast<std::size_t>(step % 2);
+    const bool far = join_ && step >= settings_.handOver;
+    gl::RasterState state;
+    state.blend = gl::Blend::add;
+    state.firstBlended = 3;
+    const gl::RasterPass pass("lpv propagate layered", layeredTargets_[next][far ? 1 : 0], state);
+    const gl::Program& program = step == 0 ? *propagateFirst_ : *propagateFurther_;
+    program.use();
+    for (GLuint channel = 0; channel < 3; ++channel) (*front)[channel].bind(channel);
+    if (geometryVolume_) geometryVolume_->bind(3);
+    noAttributes_.bind();
+    for (int k = 0; k < settings_.cascades.cascades; ++k) {
+      program.set("cascade", k);
+      program.set("firstLayer", k * cells);
+      glDrawArraysInstanced(GL_TRIANGLES, 0, 3, cells);
+    }
+    front = &fronts_[next];
   }
 }
 
@@ -193,12 +329,14 @@ std::size_t LightPropagationVolume::gpuBytes() const {
     if (texture.id()) bytes += texture.bytes();
   };
   for (std::size_t channel = 0; channel < 3; ++channel) {
+    add(counts_[channel]);
     add(injected_[channel]);
     add(sum_[channel]);
-    add(coarsened_[channel]);
+    add(farSum_[channel]);
     for (const Volume& front : fronts_) add(front[channel]);
     if (faces_) add((*faces_)[channel]);
   }
+  add(brightness_);
   if (geometryVolume_) add(*geometryVolume_);
   return bytes;
 }

@@ -11,28 +11,68 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 
 namespace lucerna {
+
+/// How the grid is filled. `layered`: geometry shader and additive blending. `atomic`: float image atomics, an extension.
+/// `fixed`: 32-bit integer image atomics, core OpenGL 4.3, the same bits every run.
+enum class LpvFill { layered, atomic, fixed };
+std::string_view nameOf(LpvFill fill);
+
+/// `compute`: all cascades in one dispatch a step. `layered`: as published, one pass a step and cascade.
+enum class LpvPropagate { compute, layered };
+std::string_view nameOf(LpvPropagate propagate);
 
 class LightPropagationVolume {
  public:
   /// What the grids are kept in; `full` (32-bit) is for tests, which compare with the double-precision twin.
   enum class Storage { half, full };
+  /// What the published text and its public demo do differently, each by itself; README.md has formula, source and effect.
+  struct Deviations {
+    bool fluxUnits = false;          ///< neither texel area nor cell size counts; lookup times 1.7 / pi
+    bool sumCascades = false;        ///< all cascades are added, none is joined
+    bool unjoined = false;           ///< cascades are blended as they are
+    bool truncate = false;           ///< conversion to int instead of floor; grids snap to whole world units
+    bool sideDirections = false;     ///< side faces by component-wise product
+    bool sideSolidAngle = false;     ///< 0.4234413544
+    bool fourPiKernel = false;       ///< Omega / (4 pi) with an amplifier
+    bool fewerSteps = false;         ///< one step less, and the injected grid is not in the sum
+    bool blockFirstStep = false;     ///< the first step is blocked too
+    bool surfelArea = false;         ///< perspective formula times N.L for an orthographic light; other lights keep true areas
+    bool unwindowed = false;         ///< light that travels away from a surface counts negative
+    bool blockingDirection = false;  ///< potential evaluated in the direction of travel
+    bool kernel() const { return sideDirections || sideSolidAngle || fourPiKernel || blockingDirection; }
+    bool operator==(const Deviations&) const = default;
+  };
   struct Settings {
     CascadeSettings cascades;
+    LpvFill fill = LpvFill::layered;
+    LpvPropagate propagate = LpvPropagate::compute;
+    Deviations deviations;
+    float amplifier = 1.0f;     ///< of the deviating kernel: 4 would conserve
     int iterations = 8;         ///< propagation steps; 0: injected light alone
     bool blocking = true;       ///< geometry volume
     float blendBand = 0.25f;    ///< fraction of a cascade's half extent over which it fades into the next
+    int handOver = 0;           ///< steps after which a finer cascade takes light from the coarser one; 0: handOverStep()
     float lookupOffset = 0.5f;  ///< cells along the normal by which a receiver is moved before the lookup
     Storage storage = Storage::half;
   };
   struct Inputs {
     std::vector<ReflectiveShadowMap::Outputs> rsms;  ///< one a light; all are added up
-    std::vector<Cascade> cascades;  ///< finest first, as many as in the settings
+    std::vector<Cascade> cascades;                   ///< finest first, as many as in the settings
     float referenceIrradiance;      ///< E_ref > 0, of the order of what the lights make; only scales the stored values
+    glm::vec3 lightPosition{0.0f};  ///< the sun's; only read by the deviation surfelArea
   };
   /// Red, green and blue: 3D textures of SH coefficients c / (E_ref s^2), cascades stacked along z.
   using Volume = std::array<gl::Texture, 3>;
+
+  /// Flags of shaders/lpv/lookup.glsl, for the programs that include it.
+  static gl::ShaderFlags lookupFlags(const Settings& settings);
+
+  /// After how many steps light has spread as far in a grid as after `iterations` in the next finer one. Steps spread it by
+  /// a root mean square distance of about sqrt(1.33 n - 0.33) cells (reference: 1, 1.496, 2.216, 3.222 cells after 1, 2, 4, 8).
+  static int handOverStep(int iterations, double ratio);
 
   static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
 
@@ -50,33 +90,42 @@ class LightPropagationVolume {
 
   const Volume& injected() const { return injected_; }
   /// The sum G_0 + ... + G_iterations; after join() of all cascades together.
-  const Volume& result() const { return settings_.iterations > 0 ? sum_ : injected_; }
+  const Volume& result() const { return steps_ > 0 ? sum_ : injected_; }
   const gl::Texture* geometryVolume() const { return geometryVolume_ ? &*geometryVolume_ : nullptr; }
   const Settings& settings() const { return settings_; }
   std::size_t gpuBytes() const;
 
  private:
-  /// One point for each texel of each reflective shadow map, with the program in use.
-  void drawTexels(const Inputs& inputs) const;
+  float fluxScale(const ReflectiveShadowMap::Outputs& rsm) const;
+  void fillByAtomics(const Inputs& inputs);
+  void propagateLayered();
 
   Settings settings_;
+  int steps_ = 0;  ///< propagation steps that are run
   bool haveClearTexture_;
+  bool fillsHalfVectors_ = false;  ///< atomics on four half floats at once
   const gl::Program* inject_ = nullptr;
+  const gl::Program* resolve_ = nullptr;             ///< only with atomics
   const gl::Program* fillGeometryVolume_ = nullptr;
   const gl::Program* averageFaces_ = nullptr;
-  const gl::Program* propagateFirst_ = nullptr;    ///< unblocked, starts the sum
+  const gl::Program* propagateFirst_ = nullptr;    ///< starts the sum with the injected grid
   const gl::Program* propagateFurther_ = nullptr;  ///< blocked where blocking is on
-  const gl::Program* coarsen_ = nullptr;
-  const gl::Program* compose_ = nullptr;
+  const gl::Program* propagateFar_ = nullptr;      ///< starts the sum of the far-travelled light
+  const gl::Program* coarsen_ = nullptr;           ///< only with several cascades, as join_
+  const gl::Program* join_ = nullptr;
   gl::Buffer constants_;
   gl::VertexArray noAttributes_;
-  Volume injected_, sum_;
+  Volume counts_;     ///< what atomics count in
+  Volume injected_;
+  Volume sum_;        ///< of the first steps; after join() all light
+  Volume farSum_;     ///< of the steps after the hand-over; only with several cascades
+  gl::Texture brightness_;  ///< half resolution of all cascades but the coarsest
   std::array<Volume, 2> fronts_;
-  Volume coarsened_;  ///< half resolution of all cascades but the coarsest
   gl::Framebuffer injectTarget_;
   std::optional<gl::Texture> geometryVolume_;
   std::optional<std::array<gl::Texture, 3>> faces_;  ///< potential at the faces across x, y, z
   gl::Framebuffer geometryTarget_;
+  std::array<std::array<gl::Framebuffer, 2>, 2> layeredTargets_;  ///< front x (sum, far sum); only for the layered pass
 };
 
 }  // namespace lucerna

@@ -1,6 +1,7 @@
 #include "render/renderer.hpp"
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "shared/frame.h"
 #include "shared/sun_cascades.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr GLuint kFrameBinding = 0;
 constexpr GLuint kSunCascadeBinding = 4;
-constexpr GLuint kShadowUnit = 2;
+constexpr GLuint kShadowUnit = 2, kGatheredUnit = 7;
 constexpr float kShadowNormalOffset = 1.5f;  // texels of the sun's shadow map
 
 double nearPlane(const Bounds& bounds) { return 5e-4 * std::max(glm::length(bounds.extent()), 1e-6); }
@@ -47,7 +48,14 @@ T parseNamed(std::string_view name, std::string_view option, std::initializer_li
 
 }  // namespace
 
-std::string_view nameOf(Technique technique) { return technique == Technique::direct ? "direct" : "lpv"; }
+std::string_view nameOf(Technique technique) {
+  switch (technique) {
+    case Technique::direct: return "direct";
+    case Technique::rsm: return "rsm";
+    case Technique::lpv: return "lpv";
+  }
+  return "?";
+}
 
 std::string_view nameOf(Component component) {
   switch (component) {
@@ -58,7 +66,9 @@ std::string_view nameOf(Component component) {
   return "?";
 }
 
-Technique parseTechnique(std::string_view name) { return parseNamed(name, "technique", {Technique::direct, Technique::lpv}); }
+Technique parseTechnique(std::string_view name) {
+  return parseNamed(name, "technique", {Technique::direct, Technique::rsm, Technique::lpv});
+}
 
 Component parseComponent(std::string_view name) {
   return parseNamed(name, "component", {Component::all, Component::direct, Component::indirect});
@@ -68,8 +78,8 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     : settings_(settings),
       needs_(analyse(scene)),
       showsDirect_(needs_.anyLight() && settings.component != Component::indirect),
-      showsIndirect_(settings.technique == Technique::lpv && settings.component != Component::direct &&
-                     LightPropagationVolume::isNeeded(needs_)),
+      showsLpv_(settings.technique == Technique::lpv && settings.component != Component::direct && LightPropagationVolume::isNeeded(needs_)),
+      showsGather_(settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs_)),
       exposure_(scene.exposure),
       timer_(context.capabilities().softwareRenderer),
       gpuScene_(scene, needs_, context.capabilities(), settings.textures),
@@ -88,16 +98,21 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     shadowMap_.emplace(programs, gpuScene_, settings.shadow);
   }
   if (showsDirect_ && LocalLights::isNeeded(needs_)) localLights_.emplace(programs, gpuScene_, settings.lights, spots_, points_);
-  if (showsIndirect_) {
-    using Light = ReflectiveShadowMap::Light;
-    const int faceSize = std::max(settings.rsm.size / 2, 1);
-    if (needs_.directionalLight) rsms_.emplace_back(programs, gpuScene_, ReflectiveShadowMap::Settings{settings.rsm.size, Light::sun});
-    for (std::size_t i = 0; i < spots_.size(); ++i)
-      rsms_.emplace_back(programs, gpuScene_, ReflectiveShadowMap::Settings{settings.rsm.size, Light::spot});
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      rsms_.emplace_back(programs, gpuScene_, ReflectiveShadowMap::Settings{faceSize, Light::point});
-    if (!rsms_.empty()) lpv_.emplace(programs, context.capabilities(), settings.lpv);
+  using Light = ReflectiveShadowMap::Light;
+  const auto addMap = [&](Light light) {
+    ReflectiveShadowMap::Settings map = settings.rsm;
+    map.light = light;
+    if (light == Light::point) map.size = std::max(map.size / 2, 1);
+    rsms_.emplace_back(programs, gpuScene_, map);
+  };
+  if ((showsLpv_ || showsGather_) && needs_.directionalLight) addMap(Light::sun);
+  if (showsLpv_) {
+    for (std::size_t i = 0; i < spots_.size(); ++i) addMap(Light::spot);
+    for (std::size_t i = 0; i < points_.size(); ++i) addMap(Light::point);
+    lpv_.emplace(programs, context.capabilities(), settings.lpv);
   }
+  if (settings.technique == Technique::rsm && settings.component != Component::direct && LocalLights::isNeeded(needs_))
+    logWarning("technique rsm gathers the sun's light alone: spot and omnidirectional lights give direct light only (lpv takes all)");
 
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_.materialFlags(masked);
@@ -106,16 +121,23 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
                                {"SUN_CASCADES", cascades},
                                {"SPOT_LIGHTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
                                {"POINT_LIGHTS", localLights_ ? static_cast<int>(points_.size()) : 0},
-                               {"INDIRECT", showsIndirect_},
+                               {"INDIRECT", showsLpv_},
+                               {"GATHERED", showsGather_},
+                               {"SHOW_REFUSED", showsGather_ && settings.gather.showRefused},
                                {"SPECULAR", needs_.specular && showsDirect_},
-                               {"EMISSION", needs_.emission && showsRest},
-                               {"LPV_FULL_FLOAT", settings.lpv.storage == LightPropagationVolume::Storage::full}});
+                               {"EMISSION", needs_.emission && showsRest}});
+    const gl::ShaderFlags lookup = LightPropagationVolume::lookupFlags(settings.lpv);
+    if (showsLpv_) flags.insert(flags.end(), lookup.begin(), lookup.end());
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
   };
   surfacePrograms_.opaque = loadSurface("surface opaque", false);
   if (needs_.alphaMasks) surfacePrograms_.masked = loadSurface("surface masked", true);
+  depthPrograms_.opaque = &programs.loadRaster("depth opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}});
+  if (needs_.alphaMasks)
+    depthPrograms_.masked = &programs.loadRaster("depth masked", "forward/depth.vert", "forward/depth.frag", {{"ALPHA_MASK", 1}, {"FROM_SUN", 0}});
   toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
   allocateTargets();
+  if (showsGather_) gather_.emplace(programs, gpuScene_, settings.gather, depth_);
 }
 
 void Renderer::allocateTargets() {
@@ -124,6 +146,7 @@ void Renderer::allocateTargets() {
   display_ = gl::Texture("display", GL_RGBA8, settings_.size);
   const std::array<const gl::Texture*, 1> radiance{&radiance_}, display{&display_};
   radianceTarget_ = gl::Framebuffer("radiance", radiance, &depth_);
+  depthTarget_ = gl::Framebuffer("depth", {}, &depth_);
   displayTarget_ = gl::Framebuffer("display", display);
 }
 
@@ -131,6 +154,7 @@ void Renderer::resize(glm::ivec2 size) {
   if (size == settings_.size || size.x <= 0 || size.y <= 0) return;
   settings_.size = size;
   allocateTargets();
+  if (gather_) gather_->resize(depth_);
 }
 
 void Renderer::recordShadows(const Camera& camera) {
@@ -178,7 +202,8 @@ std::vector<ReflectiveShadowMap::Outputs> Renderer::recordReflectiveShadowMaps()
 
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   const Scene& scene = gpuScene_.scene();
-  const glm::mat4 cameraClip(clipFromWorld(camera, scene.bounds, settings_.size));
+  const glm::dmat4 exactClip = clipFromWorld(camera, scene.bounds, settings_.size);
+  const glm::mat4 cameraClip(exactClip);
   const glm::vec3 viewPoint(camera.position);
 
   shared::FrameConstants frame{};
@@ -199,10 +224,30 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
 
   recordShadows(camera);
 
+  if (gather_) {
+    const ReflectiveShadowMap::Outputs rsm = recordReflectiveShadowMaps().front();  // the sun's is the only one
+    {
+      const gl::TimeQuery::Scope stage(timer_, "geometry");
+      gather_->recordGeometry(gpuScene_, {&cameraClip, &viewPoint});
+    }
+    const RsmGather::Inputs inputs{rsm, glm::mat4(glm::inverse(exactClip)),
+                                   static_cast<float>(2.0 * std::tan(0.5 * camera.verticalFov) / settings_.size.y)};
+    if (gather_->settings().interpolates()) {
+      timer_.begin("gather low");
+      gather_->gatherLow(inputs);
+      timer_.end();
+      const gl::TimeQuery::Scope stage(timer_, "interpolation");
+      gather_->interpolate(inputs);
+    }
+    const gl::TimeQuery::Scope stage(timer_, "gather full");
+    gather_->gatherFull(inputs);
+  }
+
   if (lpv_) {
+    const glm::dvec4 lightPosition = glm::inverse(sunFrustum_.clipFromWorld) * glm::dvec4(0.0, 0.0, -1.0, 1.0);
     const LightPropagationVolume::Inputs inputs{
         recordReflectiveShadowMaps(), placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction),
-        typicalIrradiance(scene)};
+        typicalIrradiance(scene), glm::vec3(lightPosition)};
     timer_.begin("injection");
     lpv_->place(inputs);
     lpv_->inject(inputs);
@@ -218,16 +263,23 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
 
   {
     const gl::TimeQuery::Scope stage(timer_, "shading");
+    if (!gather_) {  // its geometry pass has drawn depth
+      gl::RasterState state;
+      state.depth = gl::Depth::lessWrite;
+      const gl::RasterPass pass("depth", depthTarget_, state);
+      pass.clearDepth();
+      gpuScene_.draw(depthPrograms_, {&cameraClip, &viewPoint});
+    }
     gl::RasterState state;
-    state.depth = gl::Depth::lessWrite;
+    state.depth = gl::Depth::equalReadOnly;
     const gl::RasterPass pass("surfaces", radianceTarget_, state);
     const bool showsBackground = settings_.component != Component::indirect;
     pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
-    pass.clearDepth();
     if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
     if (sunCascades_) sunCascades_->depth().bind(kShadowUnit);
     if (localLights_) localLights_->bindForShading();
     if (lpv_) lpv_->bindForLookup();
+    if (gather_) gather_->irradiance().bind(kGatheredUnit);
     gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
   }
 
@@ -239,6 +291,12 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     gl::drawFullScreen(noAttributes_);
   }
   timer_.collect();
+  if (gather_) gather_->collect();
+}
+
+void Renderer::drain() {
+  timer_.drain();
+  if (gather_) gather_->collect(true);
 }
 
 Image Renderer::readRadiance() const {
@@ -272,6 +330,7 @@ std::size_t Renderer::gpuBytes() const {
   if (localLights_) bytes += localLights_->gpuBytes();
   for (const ReflectiveShadowMap& rsm : rsms_) bytes += rsm.gpuBytes();
   if (lpv_) bytes += lpv_->gpuBytes();
+  if (gather_) bytes += gather_->gpuBytes();
   return bytes;
 }
 
@@ -284,6 +343,7 @@ std::vector<std::string> Renderer::leftOut() const {
   if (!localLights_ || !localLights_->hasSpots()) names.emplace_back("spot shadow maps");
   if (!localLights_ || !localLights_->hasPoints()) names.emplace_back("point shadow maps");
   if (rsms_.empty()) names.emplace_back("reflective shadow map");
+  if (!gather_) names.emplace_back("rsm gather");
   if (!lpv_) names.emplace_back("light propagation volume");
   else if (!lpv_->geometryVolume()) names.emplace_back("geometry volume");
   return names;

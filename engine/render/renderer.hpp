@@ -13,6 +13,7 @@
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "rsm/reflective_shadow_map.hpp"
+#include "rsm/rsm_gather.hpp"
 #include "scene/needs.hpp"
 
 #include <optional>
@@ -22,7 +23,7 @@
 
 namespace lucerna {
 
-enum class Technique { direct, lpv };
+enum class Technique { direct, rsm, lpv };
 enum class Component { all, direct, indirect };
 
 std::string_view nameOf(Technique technique);
@@ -39,7 +40,8 @@ struct RenderSettings {
   ShadowMap::Settings shadow;          ///< of the sun; the size is that of each cascade where there are several
   SunCascadeSettings sunCascades;
   LocalLights::Settings lights;
-  ReflectiveShadowMap::Settings rsm;   ///< the size serves the sun and spots; each face of an omnidirectional light has half of it
+  ReflectiveShadowMap::Settings rsm;   ///< the size serves the sun and spots; each face of an omnidirectional light has half of it. `light` is not read
+  RsmGather::Settings gather;
   LightPropagationVolume::Settings lpv;
 };
 
@@ -66,6 +68,9 @@ class Renderer {
   const SceneNeeds& needs() const { return needs_; }
   const RenderSettings& settings() const { return settings_; }
   const LightPropagationVolume* lpv() const { return lpv_ ? &*lpv_ : nullptr; }
+  const RsmGather* gather() const { return gather_ ? &*gather_ : nullptr; }
+  /// Waits for everything still on its way, times and counts; for the end of a run, not for a frame.
+  void drain();
   /// Names of what the scene or the settings did not need.
   std::vector<std::string> leftOut() const;
 
@@ -76,14 +81,15 @@ class Renderer {
 
   RenderSettings settings_;
   SceneNeeds needs_;
-  bool showsDirect_, showsIndirect_;  ///< direct light of any kind
+  bool showsDirect_;  ///< direct light of any kind
+  bool showsLpv_, showsGather_;
   float exposure_;
   gl::TimeQuery timer_;
   GpuScene gpuScene_;
   SunFrustum sunFrustum_;
   gl::Buffer frameConstants_;
   gl::VertexArray noAttributes_;
-  SurfacePrograms surfacePrograms_;
+  SurfacePrograms depthPrograms_, surfacePrograms_;
   const gl::Program* toneMap_ = nullptr;
   std::optional<ShadowMap> shadowMap_;
   std::optional<LayeredDepth> sunCascades_;  ///< instead of shadowMap_
@@ -92,8 +98,9 @@ class Renderer {
   std::optional<LocalLights> localLights_;
   std::vector<ReflectiveShadowMap> rsms_;    ///< one a light: the sun, the spots, the points
   std::optional<LightPropagationVolume> lpv_;
+  std::optional<RsmGather> gather_;
   gl::Texture radiance_, depth_, display_;
-  gl::Framebuffer radianceTarget_, displayTarget_;
+  gl::Framebuffer depthTarget_, radianceTarget_, displayTarget_;
 };
 
 }  // namespace lucerna

@@ -4,13 +4,16 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 
 namespace lucerna {
 
 namespace {
 constexpr std::array<const char*, 3> kNames{"rsm", "rsm spot", "rsm point"};
-}
+
+double largest(const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); }
+}  // namespace
 
 ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings)
     : light_(settings.light) {
@@ -18,7 +21,7 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
   const int layers = settings.light == Light::point ? 6 : 1;
   const auto load = [&](bool masked) {
     gl::ShaderFlags flags = scene.materialFlags(masked);
-    flags.insert(flags.end(), {{"PERSPECTIVE", settings.light != Light::sun}, {"LAYERS", layers}});
+    flags.insert(flags.end(), {{"PERSPECTIVE", settings.light != Light::sun}, {"LAYERS", layers}, {"FLUX_COSINE", settings.fluxCosine}});
     return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "rsm/rsm.vert", "rsm/rsm.frag", flags,
                                 layers > 1 ? "rsm/rsm.geom" : "");
   };
@@ -37,7 +40,7 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
   framebuffer_ = gl::Framebuffer(name, colors, &depth_);
 }
 
-ReflectiveShadowMap::Outputs ReflectiveShadowMap::draw(const GpuScene& scene, bool depthClamp) {
+void ReflectiveShadowMap::draw(const GpuScene& scene, bool depthClamp) {
   gl::RasterState state;
   state.depth = gl::Depth::lessWrite;
   state.depthClamp = depthClamp;
@@ -45,14 +48,15 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::draw(const GpuScene& scene, bo
   for (int attachment = 0; attachment < 3; ++attachment) pass.clearColor(attachment, glm::vec4(0.0f));
   pass.clearDepth();
   scene.draw(programs_, {});
-  return {position_, normal_, flux_};
 }
 
 ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, double texelArea) {
   CHECK(light_ == Light::sun, "a map of light kind {}", static_cast<int>(light_));
   programs_.opaque->set("texelArea", static_cast<float>(texelArea));
   if (programs_.masked) programs_.masked->set("texelArea", static_cast<float>(texelArea));
-  return draw(scene, false);
+  draw(scene, false);
+  const double irradiance = scene.scene().sun ? largest(scene.scene().sun->irradiance) : 0.0;
+  return {position_, normal_, flux_, static_cast<float>(texelArea), irradiance * texelArea * size() * size(), light_};
 }
 
 ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, const LightViews& light) {
@@ -70,7 +74,8 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, 
     program->set("cosInner", static_cast<float>(light.cosInner));
     program->set("cosOuter", static_cast<float>(light.cosOuter));
   }
-  return draw(scene, true);  // what stands before the near plane reflects too
+  draw(scene, true);  // what stands before the near plane reflects too
+  return {position_, normal_, flux_, 1.0f, largest(light.intensity) * light.largestSolidAngle(size()), light_};
 }
 
 }  // namespace lucerna

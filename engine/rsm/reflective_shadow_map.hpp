@@ -14,14 +14,20 @@ class ReflectiveShadowMap {
   struct Settings {
     int size = 256;  ///< texels a side, of every layer
     Light light = Light::sun;
+    bool fluxCosine = false;  ///< deviation rsm.flux-cosine: flux times N.L
   };
   /// 2D arrays: one layer, or the six faces of an omnidirectional light.
   struct Outputs {
     const gl::Texture& position;  ///< RGBA32F, world; w = 1 where there is a surface, 0 background
     const gl::Texture& normal;    ///< RGBA16F, unit, on the light's side; w = cosine to the light
     const gl::Texture& flux;      ///< RGBA32F, reflected flux of the texel, W; w = area of the surface in it, scene units squared
+    float texelArea = 1.0f;       ///< sun: across the rays, scene units squared; other lights have no such area: 1. Only for deviations
+    double largestFlux = 0.0;     ///< of all texels together, W: what the light sends into the map, an upper bound for any albedo up to 1
+    Light light = Light::sun;
     /// Texels of all layers.
     int texelCount() const { return position.size().x * position.size().y * position.size().z; }
+    /// To the units 0, 1, 2, where all that reads a map expects it.
+    void bind() const { position.bind(0), normal.bind(1), flux.bind(2); }
   };
   /// Needed by techniques that light the scene indirectly: something must reflect a light.
   static bool isNeeded(const SceneNeeds& needs) { return needs.anyLight() && needs.indirect; }
@@ -37,7 +43,7 @@ class ReflectiveShadowMap {
   std::size_t gpuBytes() const { return position_.bytes() + normal_.bytes() + flux_.bytes() + depth_.bytes(); }
 
  private:
-  Outputs draw(const GpuScene& scene, bool depthClamp);
+  void draw(const GpuScene& scene, bool depthClamp);
   Light light_;
   SurfacePrograms programs_;
   gl::Texture position_, normal_, flux_, depth_;

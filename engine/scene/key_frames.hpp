@@ -30,7 +30,7 @@ std::vector<KeyFrame> readKeyFrames(const std::filesystem::path& file);
 /// second derivative 0 at both ends, first and second derivatives continuous at the keys.
 class Spline {
  public:
-  static constexpr int kViewsPerSegment = 200;  ///< ORIGINALS 1.7
+  static constexpr int kViewsPerSegment = 200;  ///< as in [LPV2015]
 
   explicit Spline(std::vector<KeyFrame> keys, int viewsPerSegment = kViewsPerSegment);
 

@@ -118,7 +118,7 @@ struct Scene {
   Bounds bounds;
   double metresPerUnit = 1.0;
   glm::vec3 background{0.0f};          ///< radiance seen where there is no surface; it lights nothing
-  float exposure = 1.0f;               ///< multiplies radiance before tone mapping
+  float exposure = 1.0f;               ///< multiplies radiance before tone mapping; 3 with the default sun
   std::filesystem::path keyFrames;     ///< the walk's camera path; empty: none named
   std::size_t degenerateTriangles = 0; ///< of zero area. They stay, so that counts agree with the file's (Crytek Sponza has one):
                                        ///< whoever divides by an area or normalises a face normal must expect them

@@ -252,13 +252,15 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   scene.name = file.stem().string();
   scene.file = file;
   if (scale) scene.metresPerUnit = *scale / 1000.0;
-  if (exposure) scene.exposure = static_cast<float>(*exposure);
-  if (background) scene.background = *background;
   if (spots) scene.spots = *spots;
   if (points) scene.points = *points;
-  if (sun) scene.sun = *sun;
-  else if (scene.defaultSun && (spots || points)) scene.sun.reset();
-  scene.defaultSun = scene.defaultSun && !sun && scene.sun;
+  if (sun || (scene.defaultSun && (spots || points))) {
+    scene.sun = sun ? *sun : std::nullopt;
+    scene.defaultSun = false;
+    scene.exposure = 1.0f;  // the default exposure belongs to the default sun
+  }
+  if (exposure) scene.exposure = static_cast<float>(*exposure);
+  if (background) scene.background = *background;
   if (!cameras.empty()) scene.cameras = std::move(cameras);
   if (!keyFrames.empty()) {
     if (!root.has("camera") && !root.has("cameras")) scene.cameras.clear();

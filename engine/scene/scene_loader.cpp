@@ -52,6 +52,8 @@ constexpr double kDefaultFov = 50.0 * kPi / 180.0;
 /// Slanted, so that walls are lit too. In Crytek Sponza it reaches a quarter of the court's floor and the curtains on +z.
 const glm::dvec3 kDefaultSunDirection = glm::normalize(glm::dvec3(0.12, -1.0, 0.2));
 const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
+/// Goes with that sun: bright where it shines, still readable where only its reflection comes.
+const float kDefaultExposure = 3.0f;
 
 glm::dvec3 toGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 glm::vec3 toGlm(const aiColor3D& c) { return {c.r, c.g, c.b}; }
@@ -444,6 +446,7 @@ void appendLights(Scene& scene, const aiScene& source) {
   if (scene.sun || !scene.spots.empty() || !scene.points.empty()) return;
   scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
   scene.defaultSun = true;
+  scene.exposure = kDefaultExposure;
 }
 
 Camera outsideView(const Bounds& bounds) {

@@ -1,5 +1,6 @@
-// Depth from the light: the shadow map's only stage for opaque meshes.
+// Depth alone, from the sun (shadow map) or from the camera (before shading, so that hidden surfaces are not shaded).
 #include "lib/frame.glsl"
+invariant gl_Position;  // the shading pass must find exactly this depth
 layout(location = 0) in vec3 position;
 #if ALPHA_MASK
 layout(location = 1) in vec2 texCoord;
@@ -7,7 +8,11 @@ out vec2 vTexCoord;
 #endif
 
 void main() {
+#if FROM_SUN
   gl_Position = frame.sunClipFromWorld * vec4(position, 1.0);
+#else
+  gl_Position = frame.clipFromWorld * vec4(position, 1.0);
+#endif
 #if ALPHA_MASK
   vTexCoord = texCoord;
 #endif

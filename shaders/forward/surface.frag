@@ -1,4 +1,5 @@
-// Forward shading: direct light of the sun, of spot and of omnidirectional lights with filtered shadow maps, indirect light from the light propagation volume, emission.
+// Forward shading: direct light of the sun, of spot and of omnidirectional lights with filtered shadow maps, indirect light from the
+// light propagation volume or gathered beforehand, emission.
 // Output: radiance, linear, scene units. Lambert: L = albedo / pi * E. Specular: Blinn-Phong, normalised so that its energy
 // does not depend on the exponent, (n + 8) / (8 pi) [AkenineMoller2018, section 9.8].
 #include "lib/frame.glsl"
@@ -7,6 +8,9 @@
 #include "lib/shadow.glsl"  // here, outside any condition: two of those below share it
 #if INDIRECT
 #include "lpv/lookup.glsl"
+#endif
+#if GATHERED
+layout(binding = 7) uniform sampler2D gatheredIrradiance;  // w = 2: interpolation refused the pixel
 #endif
 
 in vec3 vPosition;
@@ -68,8 +72,15 @@ void main() {
 #if INDIRECT
   result += albedo / kPi * lpvIrradiance(vPosition, normal);
 #endif
+#if GATHERED
+  vec4 gathered = texelFetch(gatheredIrradiance, ivec2(gl_FragCoord.xy), 0);
+  result += albedo / kPi * gathered.rgb;
+#endif
 #if EMISSION
   result += materialEmission;
+#endif
+#if SHOW_REFUSED
+  if (gathered.w > 1.5) result = vec3(1.0, 0.0, 0.0) / frame.exposure;
 #endif
   radiance = vec4(result, 1.0);
 }

@@ -1,5 +1,6 @@
 // A mesh vertex seen by the camera.
 #include "lib/frame.glsl"
+invariant gl_Position;
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
 layout(location = 2) in vec3 normal;

@@ -1,5 +1,5 @@
 // Radiance to display: exposure, a filmic curve, sRGB encoding.
-// Curve: the rational fit of the ACES reference rendering by Narkowicz 2015, applied per channel to linear values.
+// Curve: the rational fit of the ACES reference rendering [Narkowicz2015], applied per channel to linear values.
 #include "lib/frame.glsl"
 in vec2 uv;
 layout(binding = 0) uniform sampler2D radianceTexture;

@@ -1,5 +1,5 @@
 // Real spherical harmonics of bands 0 and 1 as a vec4 (c0, c1x, c1y, c1z).
-// The published packing (Y00, -Y1 y, Y1 z, -Y1 x) [ORIGINALS 1.2] differs in order and sign only, which cancel, since
+// The published packing (Y00, -Y1 y, Y1 z, -Y1 x) [LPV2015, 5.1] differs in order and sign only, which cancel, since
 // evaluation and projection share it.
 const float kPi = 3.14159265358979;
 const float kY00 = 0.28209479177387814;  // 1 / (2 sqrt(pi))

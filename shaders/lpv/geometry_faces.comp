@@ -1,5 +1,5 @@
 // Blocking potential at the centre of every face: the mean of the four geometry-volume cells at the face's corners
-// [Kaplanyan2010, figure 5.3 of ORIGINALS 1.5]. Done once a frame, so that each propagation step reads one texel a face.
+// [Kaplanyan2010; LPV2015, figure 5.3]. Done once a frame, so that each propagation step reads one texel a face.
 // Face (i,j,k) of axis x lies between the cells (i-1,j,k) and (i,j,k); likewise y, z.
 #include "lpv/common.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;

@@ -10,6 +10,10 @@ in vec4 gPosition[];
 in vec4 gNormal[];
 in vec4 gFlux[];  // w = area
 flat out vec4 fPotential;
+#if SURFEL_AREA
+uniform vec3 lightPosition;
+uniform float texelCount;  // 0: the light is a perspective one, which has true areas
+#endif
 
 void main() {
   vec3 normal = gNormal[0].xyz;
@@ -18,6 +22,11 @@ void main() {
   if (!usable) return;
   int corners = lpv.shape.x + 1;
   float area = gFlux[0].w;
+#if SURFEL_AREA
+  // Deviation lpv.surfel-area: the formula of a 90 degree perspective light, weighted by N.L, for an orthographic one.
+  vec3 away = gPosition[0].xyz - lightPosition;
+  if (texelCount > 0.0) area = 4.0 * dot(away, away) / texelCount * gNormal[0].w;
+#endif
   for (int k = 0; k < lpv.shape.y; ++k) {
     float s = lpv.cascades[k].cellSize;
     vec3 cornerPosition = (gPosition[0].xyz - lpv.cascades[k].minimum) / s + 0.5;

@@ -2,7 +2,7 @@
 // behind it along one axis. Everything is in the frame (travel, u, v) of that axis: vec4(c0, c along, c u, c v).
 //
 // For each of the five faces of the destination but the shared one: the intensity I towards the face's centre, the flux
-// Omega * max(0, I) * transmittance, then Phi / pi * lobe(face normal) [ORIGINALS 1.3: no 1/(4 pi), reprojection Phi_l = Phi_f].
+// Omega * max(0, I) * transmittance, then Phi / pi * lobe(face normal) [LPV2015, 6.2: no 1/(4 pi), reprojection Phi_l = Phi_f].
 // Seen from the source's centre a side face's centre lies along (2 travel + side) / sqrt(5).
 // Solid angles: exact, one front and four sides make 2 pi / 3, six neighbours 4 pi: band 0 is conserved.
 #include "lib/sh.glsl"

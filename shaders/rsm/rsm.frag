@@ -57,4 +57,7 @@ void main() {
   outPosition = vec4(vPosition, 1.0);
   outNormal = vec4(normal, cosine);
   outFlux = vec4(incoming * materialAlbedo(vTexCoord), across / max(cosine, 0.05));
+#if FLUX_COSINE
+  outFlux.rgb *= cosine;  // deviation rsm.flux-cosine
+#endif
 }

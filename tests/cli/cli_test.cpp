@@ -1,4 +1,4 @@
-// The command line as a contract (DESIGN section 5): fields of --json, files written, and for every wrong input one clear line,
+// The command line as a contract: fields of --json, files written, and for every wrong input one clear line,
 // the right exit code and nothing half-written. Runs the built executable on OSMesa.
 #include "base/image.hpp"
 #include "support/subprocess.hpp"
@@ -133,6 +133,31 @@ TEST_F(CommandLine, DirectLightLeavesTheIndirectStagesOut) {
   EXPECT_NE(std::find(left.begin(), left.end(), "light propagation volume"), left.end());
 }
 
+TEST_F(CommandLine, RsmReportsWhatInterpolationSaved) {
+  for (const char* command : {"render ", "walk "}) {
+    const bool walks = std::string(command) == "walk ";
+    const RunResult result = RUN_LUCERNA(command + scene() + " --technique rsm --host osmesa --size 64x36 --json " + path("rsm.json") +
+                                         (walks ? " --frames 2 --keys " + path("path.txt") + " --record " + path("out") : " -o " + path("x.pfm")));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_NE(result.out.find("refused by interpolation"), std::string::npos) << result.out;
+    const auto report = json("rsm.json");
+    const auto& rsm = report.at("rsm");
+    EXPECT_GT(rsm.at("pixels"), 0);
+    EXPECT_LE(rsm.at("pixels"), 64 * 36);
+    EXPECT_LE(rsm.at("refused"), rsm.at("gathered"));
+    EXPECT_LE(rsm.at("gathered"), rsm.at("pixels").get<int>() + 16 * 9);
+    if (!walks) continue;
+    for (const char* stage : {"rsm", "geometry", "gather low", "interpolation", "gather full", "shading"})
+      EXPECT_TRUE(report.at("stages").contains(stage)) << stage;
+  }
+  // Other techniques have nothing of it.
+  ASSERT_EQ(RUN_LUCERNA("render " + scene() + " --technique direct --host osmesa --size 32x32 --json " + path("direct.json") + " -o " + path("x.pfm")).exitCode, 0);
+  const auto direct = json("direct.json");
+  EXPECT_FALSE(direct.contains("rsm"));
+  const auto& left = direct.at("left_out");
+  EXPECT_NE(std::find(left.begin(), left.end(), "rsm gather"), left.end());
+}
+
 // ---------------------------------------------------------------------------------------------------- wrong input
 
 TEST_F(CommandLine, WrongOptionsAreRefused) {
@@ -149,6 +174,8 @@ TEST_F(CommandLine, WrongOptionsAreRefused) {
   expectRefused("render " + scene() + " --set lpv.cells=many -o " + path("x.png"), 2, {"lpv.cells", "many"}, "x.png");
   expectRefused("render " + scene() + " --set lpv.cells=nan -o " + path("x.png"), 2, {"lpv.cells"}, "x.png");
   expectRefused("render " + scene() + " --set exposure=nan -o " + path("x.png"), 2, {"exposure"}, "x.png");
+  expectRefused("render " + scene() + " --technique rsm --set rsm.weight=heavy -o " + path("x.png"), 2, {"rsm.weight", "heavy", "published"}, "x.png");
+  expectRefused("render " + scene() + " --technique rsm --set rsm.radius=0 -o " + path("x.png"), 2, {"rsm.radius"}, "x.png");
   expectRefused("render " + scene() + " --host vulkan -o " + path("x.png"), 2, {"vulkan", "osmesa"}, "x.png");
   expectRefused("render " + scene() + " --camera 1,2,3 -o " + path("x.png"), 2, {"--camera", "px,py,pz"}, "x.png");
   expectRefused("render " + scene() + " -o " + path("x.bmp"), 2, {"x.bmp", "png"}, "x.bmp");

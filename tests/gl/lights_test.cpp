@@ -206,8 +206,11 @@ TEST_F(LightsGl, TotalFluxOfASpotIsTheAlbedoTimesItsOwn) {
   const double expected = static_cast<double>(kAlbedo) * 3.0 * 2.0 * kPi * (1.0 - 0.5 * (std::cos(0.4) + std::cos(0.8)));
   for (const int size : {64, 128, 256, 512}) {
     ReflectiveShadowMap rsm(programs(), gpuScene, {size, ReflectiveShadowMap::Light::spot});
-    const double ratio = totals(rsm.record(gpuScene, lightViews(light, scene.bounds))).flux / expected;
+    const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, lightViews(light, scene.bounds));
+    const double ratio = totals(outputs).flux / expected;
     EXPECT_NEAR(ratio, 1.0, 0.01) << size;
+    EXPECT_GE(outputs.largestFlux, expected / static_cast<double>(kAlbedo)) << size;
+    EXPECT_LE(outputs.largestFlux, 3.0 * expected / static_cast<double>(kAlbedo)) << size;
     std::cout << "[ measured ] spot on a plate, RSM " << size << ": flux / expected " << ratio << "\n";
   }
 }
@@ -220,7 +223,10 @@ TEST_F(LightsGl, TotalFluxAndAreaOfAnOmnidirectionalLightAreTheRooms) {
   const GpuScene gpuScene(scene, analyse(scene), capabilities());
   for (const int size : {32, 64, 256, 512}) {
     ReflectiveShadowMap rsm(programs(), gpuScene, {size, ReflectiveShadowMap::Light::point});
-    const Totals sum = totals(rsm.record(gpuScene, lightViews(light, scene.bounds)));
+    const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, lightViews(light, scene.bounds));
+    const Totals sum = totals(outputs);
+    EXPECT_GE(outputs.largestFlux * (1.0 + 1e-6), sum.flux / static_cast<double>(kAlbedo)) << size;
+    EXPECT_NEAR(outputs.largestFlux / (4.0 * kPi * 3.0), 1.0, 0.01) << size;
     const double flux = sum.flux / (static_cast<double>(kAlbedo) * 4.0 * kPi * 3.0), area = sum.area / (6.0 * 9.0);
     EXPECT_NEAR(flux, 1.0, 0.01) << size;
     EXPECT_NEAR(area, 1.0, 0.03) << size;
@@ -242,7 +248,9 @@ TEST_F(LightsGl, TheSunsFluxCountsProjectedAreaAndItsSurfelsTrueArea) {
   const gl::Buffer block("frame constants", sizeof frame, &frame, GL_STATIC_DRAW);
   block.bind(GL_UNIFORM_BUFFER, 0);
   ReflectiveShadowMap rsm(programs(), gpuScene, {256, ReflectiveShadowMap::Light::sun});
-  const Totals sum = totals(rsm.record(gpuScene, frustum.texelArea(256)));
+  const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, frustum.texelArea(256));
+  const Totals sum = totals(outputs);
+  EXPECT_NEAR(outputs.largestFlux / (2.0 * frustum.width * frustum.height), 1.0, 1e-6);
   const double projected = 16.0 * std::abs(glm::normalize(glm::cross(u, v)).y);
   EXPECT_NEAR(sum.flux / (static_cast<double>(kAlbedo) * 2.0 * projected), 1.0, 0.01);
   EXPECT_NEAR(sum.area / 16.0, 1.0, 0.01);
@@ -265,6 +273,7 @@ TEST_F(LightsGl, TheVolumeAddsLightsUp) {
   LightPropagationVolume::Settings s;
   s.cascades.cells = 8;
   s.cascades.cascades = 2;
+  s.cascades.cellSize = 0.4;  // five cells across the room: the rounding of a cell's sum grows with the texels in it
   s.iterations = 2;
   s.storage = LightPropagationVolume::Storage::full;
   const auto grids = [&](std::vector<ReflectiveShadowMap::Outputs> rsms) {
@@ -279,6 +288,24 @@ TEST_F(LightsGl, TheVolumeAddsLightsUp) {
     return result;
   };
   const auto both = grids({a, b}), onlyA = grids({a}), onlyB = grids({b}), neither = grids({});
+  // Integers hold the same, to half a step a texel and coefficient; the bound of the sum of all lights leaves steps enough.
+  s.fill = LpvFill::fixed;
+  const auto counted = grids({a, b});
+  for (std::size_t grid = 0; grid < both.size(); ++grid)
+    for (std::size_t i = 0; i < both[grid].size(); ++i)
+      for (int c = 0; c < 4; ++c) EXPECT_NEAR(counted[grid][i][c], both[grid][i][c], 1e-4f * (1e-2f + std::abs(both[grid][i][c]))) << grid;
+  // Perspective lights have true areas and no area across the rays: the deviations of the sun's leave theirs finite and unchanged.
+  s.deviations.surfelArea = s.deviations.fluxUnits = true;
+  const auto deviating = grids({a, b});
+  EXPECT_EQ(deviating[0], both[0]);
+  for (std::size_t grid = 1; grid < both.size(); ++grid) {
+    float largest = 0.0f;
+    for (const glm::vec4& cell : deviating[grid]) {
+      ASSERT_TRUE(std::isfinite(cell.x + cell.y + cell.z + cell.w));
+      largest = std::max(largest, cell.x);
+    }
+    EXPECT_GT(largest, 0.0f);
+  }
   for (std::size_t grid = 0; grid < both.size(); ++grid) {
     float largest = 0.0f, error = 0.0f;
     for (std::size_t i = 0; i < both[grid].size(); ++i) {
@@ -459,6 +486,67 @@ TEST_F(LightsGl, WhatASceneHasNoneOfLeavesNoTrace) {
   cascades.sunCascades.cascades = 3;
   EXPECT_EQ(bytes(scene, cascades), sunOnly + 2u * 2048u * 2048u * 4u + sizeof(shared::SunCascadeConstants));
   EXPECT_EQ(bytes(withoutSun, cascades), bytes(withoutSun, s));
+}
+
+// All the light of three lamps falls into one cell, from white walls: the fixed point's sum stays below 2^31, at any size of the maps.
+TEST_F(LightsGl, FixedPointSumsOfAllLightsDoNotOverflow) {
+  LitScene scene;
+  scene.room(1.0);
+  scene.materials[0].diffuse = glm::vec3(1.0f);
+  // Into the middle of the one cell, 0 to 4, so that no light leaves it when it is moved half a cell.
+  for (Vertex& vertex : scene.vertices) vertex.position += 2.0f;
+  scene.bounds = {glm::dvec3(1.0), glm::dvec3(3.0)};
+  for (const glm::dvec3& at : {glm::dvec3(2.0), glm::dvec3(2.3, 1.8, 2.1)}) scene.points.push_back({at, glm::vec3(30.0f, 20.0f, 10.0f)});
+  scene.spots = {SpotLight{glm::dvec3(2.0), {0, -1, 0}, glm::vec3(70.0f, 1.0f, 1.0f), 0.3, 1.3}};
+  const GpuScene gpuScene(scene, analyse(scene), capabilities());
+  LightPropagationVolume::Settings s;
+  s.cascades.cells = 1;
+  s.cascades.cascades = 1;
+  s.cascades.cellSize = 4.0;
+  s.iterations = 0;
+  for (const int size : {1, 2, 3, 64, 256}) {
+    std::vector<ReflectiveShadowMap> maps;
+    std::vector<ReflectiveShadowMap::Outputs> outputs;
+    double flux = 0.0;
+    for (std::size_t i = 0; i < 2; ++i) maps.emplace_back(programs(), gpuScene, ReflectiveShadowMap::Settings{size, ReflectiveShadowMap::Light::point});
+    maps.emplace_back(programs(), gpuScene, ReflectiveShadowMap::Settings{size, ReflectiveShadowMap::Light::spot});
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      outputs.push_back(maps[i].record(gpuScene, i < 2 ? lightViews(scene.points[i], scene.bounds) : lightViews(scene.spots[0], scene.bounds)));
+      flux += totals(outputs.back()).flux;
+      EXPECT_GE(outputs.back().largestFlux * (1.0 + 1e-6), totals(outputs.back()).flux) << size;
+    }
+    s.fill = LpvFill::fixed;
+    LightPropagationVolume lpv(programs(), capabilities(), s);
+    const LightPropagationVolume::Inputs inputs{outputs, placeCascades(s.cascades, scene.bounds, glm::dvec3(2.0), glm::dvec3(0.0)), typicalIrradiance(scene)};
+    lpv.place(inputs);
+    lpv.inject(inputs);
+    const double stored = static_cast<double>(lpv.injected()[0].readRgba()[0].x) * std::sqrt(4.0 * kPi);
+    EXPECT_NEAR(stored * static_cast<double>(inputs.referenceIrradiance) * 16.0 / flux, 1.0, 1e-4) << size;
+  }
+}
+
+TEST_F(LightsGl, TheGatherIsOfTheSunAlone) {
+  LitScene scene;
+  scene.room(1.0);
+  scene.points = {PointLight{glm::dvec3(0.1), glm::vec3(1.0f)}};
+  const Camera camera = viewFrom({0, 0, 0.5}, {0, 0, -1}, 1.0);
+  const auto drawn = [&](Technique technique) {
+    Renderer renderer(context(), programs(), scene, settings(technique, {32, 32}));
+    renderer.render(camera);
+    const auto leftOut = renderer.leftOut();
+    EXPECT_EQ(std::count(leftOut.begin(), leftOut.end(), "rsm gather") == 0, technique == Technique::rsm && scene.sun.has_value());
+    EXPECT_EQ(renderer.gather() != nullptr, technique == Technique::rsm && scene.sun.has_value());
+    return renderer.readRadiance();
+  };
+  EXPECT_EQ(drawn(Technique::rsm).pixels, drawn(Technique::direct).pixels);
+  // With a sun, what is added to direct light is what there is without the lamp. The sun shines from below, through no window: the
+  // room's own floor is lit from outside.
+  scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.2, 1.0, 0.1)), glm::vec3(1.0f)};
+  const Image both = drawn(Technique::rsm), direct = drawn(Technique::direct);
+  scene.points.clear();
+  const Image sunBoth = drawn(Technique::rsm), sunDirect = drawn(Technique::direct);
+  for (std::size_t i = 0; i < both.pixels.size(); ++i)
+    EXPECT_LT(glm::length(both.pixels[i] - direct.pixels[i] - sunBoth.pixels[i] + sunDirect.pixels[i]), 1e-5f) << i;
 }
 
 TEST_F(LightsGl, EveryStageOfEveryLightIsTimed) {

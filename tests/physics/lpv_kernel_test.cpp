@@ -1065,6 +1065,14 @@ TEST(LpvLookup, IrradianceOfKnownFields) {
     // From behind nothing, and nothing negative.
     EXPECT_EQ(irradiance(unitLobe(kUp), kUp, cellSize, Lookup::direct), 0.0);
     EXPECT_EQ(irradiance(unitLobe(kUp), kUp, cellSize, Lookup::cosine), 0.0);
+    // Windowed by 3/4: pi/4 (1 + cos) over pi, so head on 2 / pi, and what travels away counts nothing, not less than nothing.
+    EXPECT_NEAR(irradiance(unitIsotropic(), kUp, cellSize, Lookup::windowed) / perArea, 4.0 * intensity, 1e-14);
+    EXPECT_NEAR(irradiance(unitLobe(kUp), -kUp, cellSize, Lookup::windowed) / perArea, 2.0 / kPi, 1e-14);
+    EXPECT_NEAR(irradiance(unitLobe(kUp), kUp, cellSize, Lookup::windowed) / perArea, 0.0, 1e-14);
+    Sh opposed = unitLobe(kUp);
+    opposed += unitLobe(-kUp);
+    EXPECT_NEAR(irradiance(opposed, kUp, cellSize, Lookup::windowed) / perArea, 2.0 / kPi, 1e-14);
+    EXPECT_LT(irradiance(opposed, kUp, cellSize, Lookup::cosine), irradiance(unitLobe(-kUp), kUp, cellSize, Lookup::cosine));
   }
 }
 
@@ -1076,7 +1084,7 @@ TEST(LpvLookup, CosineLookupIsTheConvolutionWithTheReceiversCosine) {
     const glm::dvec3 n = randomDirection(random);
     const double folded = integrateSphere(
         [&](const glm::dvec3& w) { return evaluate(sh, w) * (0.25 + 0.5 * glm::dot(-n, w)); });
-    EXPECT_NEAR(irradiance(sh, n, 0.5), std::max(0.0, 16.0 / kPi * folded), 1e-12);
+    EXPECT_NEAR(irradiance(sh, n, 0.5, Lookup::cosine), std::max(0.0, 16.0 / kPi * folded), 1e-12);
   }
 }
 

@@ -17,6 +17,7 @@ class GlTest : public ::testing::Test {
     if (host()) return;
     host() = Host::create(HostKind::osmesa);
     context_() = std::make_unique<gl::Context>();
+    ::testing::UnitTest::GetInstance()->listeners().Append(new EndOfProgram);
   }
   void SetUp() override { context().takeErrors(); }
   void TearDown() override {
@@ -28,6 +29,13 @@ class GlTest : public ::testing::Test {
   gl::ProgramLibrary& programs() { return programs_; }
 
  private:
+  /// Ends the context before main() does: later, among the destructors of statics, those of the driver have run already.
+  struct EndOfProgram : ::testing::EmptyTestEventListener {
+    void OnTestProgramEnd(const ::testing::UnitTest&) override {
+      context_().reset();
+      host().reset();
+    }
+  };
   static std::unique_ptr<Host>& host() {
     static std::unique_ptr<Host> instance;
     return instance;

@@ -17,12 +17,15 @@ twin::Sh shOf(const glm::vec4& c, double scale) { return {scale * c.x, scale * g
 
 }  // namespace
 
-RsmTextures::RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLenum normalFormat) {
+RsmTextures::RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLenum normalFormat)
+    : texelArea_(static_cast<float>(texelArea)) {
   const int height = std::max(1, (static_cast<int>(texels.size()) + kWidth - 1) / kWidth);
   const glm::ivec3 size(kWidth, height, 1);
   const std::size_t count = static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(height);
   std::vector<glm::vec4> positions(count), normals(count), fluxes(count);
   for (std::size_t i = 0; i < texels.size(); ++i) {
+    const glm::vec3& f = texels[i].flux;
+    if (std::isfinite(f.x + f.y + f.z)) largestFlux_ += static_cast<double>(std::max({f.x, f.y, f.z, 0.0f}));
     positions[i] = texels[i].position;
     normals[i] = texels[i].normal;
     fluxes[i] = glm::vec4(texels[i].flux, static_cast<float>(texelArea / std::max(static_cast<double>(texels[i].normal.w), 0.05)));
@@ -82,10 +85,9 @@ std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const Light
   }
   const gl::Buffer in("probes", packed.size() * sizeof(glm::vec4), packed.data(), GL_STATIC_DRAW);
   const gl::Buffer out("irradiances", probes.size() * sizeof(glm::vec4), nullptr, GL_STREAM_READ);
-  const bool full = lpv.settings().storage == LightPropagationVolume::Storage::full;
   {
     const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
-    programs.loadCompute("lpv probe", "lpv/probe.comp", {{"LPV_FULL_FLOAT", full}}).use();
+    programs.loadCompute("lpv probe", "lpv/probe.comp", LightPropagationVolume::lookupFlags(lpv.settings())).use();
     lpv.bindForLookup();
     in.bind(GL_SHADER_STORAGE_BUFFER, 0);
     out.bind(GL_SHADER_STORAGE_BUFFER, 1);

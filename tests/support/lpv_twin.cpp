@@ -283,7 +283,8 @@ Volume propagateStep(const Volume& source, const KernelOptions& options, const V
           if (!grid.contains(from)) continue;
           const Sh& incoming = source.at(from);
           if (incoming == Sh{}) continue;  // most cells, in the first steps
-          const Sh potential = geometry != nullptr ? potentialAtFace(*geometry, cell, terms.axis) : Sh{};
+          Sh potential = geometry != nullptr ? potentialAtFace(*geometry, cell, terms.axis) : Sh{};
+          if (options.storePotential != nullptr) potential = options.storePotential(potential);
           for (const FaceTerm& face : terms.faces) {
             double intensity = evaluate(incoming, face.towardsFace);
             if (options.clampIntensity) intensity = std::max(0.0, intensity);
@@ -345,7 +346,9 @@ Sh sampleTrilinear(const Volume& volume, const glm::dvec3& point) {
 double irradiance(const Sh& sh, const glm::dvec3& normal, double cellSize, Lookup lookup) {
   // [Kaplanyan2010]: the light is taken to sit half a cell away, E = I / (s/2)^2. The cosine lookup takes the mean of
   // I under the receiver's cosine, (1/pi) * integral of I * max(0, <-n|w>).
-  const double intensity = lookup == Lookup::direct ? evaluate(sh, -normal) : dot(sh, lobe(-normal)) / kPi;
+  // Windowed: two cosine lobes give pi/4 + window * pi/3 cos, negative behind for a window of 1, zero at 3/4.
+  const double window = lookup == Lookup::windowed ? 0.75 : 1.0;
+  const double intensity = lookup == Lookup::direct ? evaluate(sh, -normal) : dot(sh, lobe(-normal, window * kLobeBand1)) / kPi;
   return std::max(0.0, 4.0 / (cellSize * cellSize) * intensity);
 }
 
@@ -385,25 +388,72 @@ Volume halved(const Volume& fine) {
   return coarse;
 }
 
-std::vector<Volume> joinCascades(std::span<const Volume> cascades) {
-  std::vector<Volume> joined(cascades.begin(), cascades.end());
-  for (std::size_t k = joined.size(); k-- > 1;) {
-    const Volume& next = joined[k];
-    Volume& own = joined[k - 1];
-    const Volume coarse = halved(own);
-    const auto density = [](const Volume& volume, const glm::dvec3& point) {
-      return (1.0 / (volume.grid.cellSize * volume.grid.cellSize)) * sampleTrilinear(volume, point);
-    };
-    const GridSpec& grid = own.grid;
+CascadeParts propagateParts(const VolumeRgb& injected, int iterations, int handOver, const KernelOptions& options,
+                            const Volume* geometry) {
+  CascadeParts parts{injected, makeVolumeRgb(injected[0].grid)};
+  for (std::size_t channel = 0; channel < injected.size(); ++channel) {
+    Volume front = injected[channel];
+    for (int step = 0; step < iterations; ++step) {
+      const bool blocks = step > 0 || options.blockFirstStep;
+      front = propagateStep(front, options, blocks ? geometry : nullptr);
+      add((step < handOver ? parts.first : parts.later)[channel], front);
+    }
+  }
+  return parts;
+}
+
+std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, const JoinOptions& options) {
+  // By c/s^2: every volume is divided by its s^2 first, the results are multiplied by it at the end.
+  const auto scaled = [](VolumeRgb volume, double exponent) {
+    for (Volume& channel : volume) {
+      const double factor = std::pow(channel.grid.cellSize, exponent);
+      for (Sh& cell : channel.cells) cell = factor * cell;
+    }
+    return volume;
+  };
+  std::vector<VolumeRgb> joined(cascades.size());
+  VolumeRgb handedOver;  // R of the cascade before
+  for (std::size_t k = cascades.size(); k-- > 0;) {
+    const VolumeRgb first = scaled(cascades[k].first, -2.0), later = scaled(cascades[k].later, -2.0);
+    const GridSpec& grid = first[0].grid;
+    VolumeRgb light = makeVolumeRgb(grid), passedOn = makeVolumeRgb(grid);
+    Volume brightness(grid);  // band 0 of M + F, all channels together
+    for (std::size_t i = 0; i < brightness.cells.size(); ++i) {
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        brightness.cells[i].c0 += first[channel].cells[i].c0 + later[channel].cells[i].c0;
+      }
+    }
+    Volume coarse = halved(brightness);
+    for (Sh& cell : coarse.cells) cell = 0.25 * cell;  // halved() keeps c: (2 s)^2 times the mean of c/s^2, which these are already
     for (int z = 0; z < grid.dims.z; ++z) {
       for (int y = 0; y < grid.dims.y; ++y) {
         for (int x = 0; x < grid.dims.x; ++x) {
-          const glm::dvec3 point = grid.centre({x, y, z});
-          own.at({x, y, z}) += (grid.cellSize * grid.cellSize) * (density(next, point) - density(coarse, point));
+          const glm::ivec3 cell(x, y, z);
+          const glm::dvec3 point = grid.centre(cell);
+          double balance = 1.0;
+          std::array<Sh, 3> fromCoarser;
+          if (k + 1 < cascades.size()) {
+            double replaced = 0.0;
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+              fromCoarser[channel] = sampleTrilinear(handedOver[channel], point);
+              replaced += sampleTrilinear(joined[k + 1][channel], point).c0 - fromCoarser[channel].c0;
+            }
+            const double own = sampleTrilinear(coarse, point).c0;
+            balance = std::clamp((std::max(0.0, replaced) + options.dark) / (own + options.dark), 1.0 / options.largestBalance,
+                                 options.largestBalance);
+            if (std::isnan(balance)) balance = 1.0;  // no light, nothing to balance
+          }
+          for (std::size_t channel = 0; channel < 3; ++channel) {
+            passedOn[channel].at(cell) = balance * later[channel].at(cell) + fromCoarser[channel];
+            light[channel].at(cell) = balance * first[channel].at(cell) + passedOn[channel].at(cell);
+          }
         }
       }
     }
+    joined[k] = std::move(light);
+    handedOver = std::move(passedOn);
   }
+  for (VolumeRgb& cascade : joined) cascade = scaled(std::move(cascade), 2.0);
   return joined;
 }
 

@@ -165,6 +165,7 @@ struct KernelOptions {
   bool clampTransmittance = true;  ///< clamp B to [0, 1]
   bool twoSidedBlocking = false;   ///< block by max(B(w), B(-w))
   bool blockFirstStep = false;     ///< off: else a VPL is blocked by its own surface
+  Sh (*storePotential)(const Sh&) = nullptr;  ///< what keeping a face's potential makes of it; null: nothing
 };
 KernelOptions slippedSideKernel();       ///< side constant 0.4234413544
 KernelOptions swappedConstantsKernel();  ///< front and side solid angle swapped
@@ -203,16 +204,17 @@ PropagatedRgb propagate(const VolumeRgb& injected, int iterations, const KernelO
 enum class Lookup {
   cosine,  ///< E = 4/(pi s^2) * <c | lobe(-n)>
   direct,  ///< E = 4/s^2 * I(-n)
+  windowed,  ///< cosine with the receiver's band 1 times 3/4: no sum of cosine lobes gives negative light
 };
 struct LookupOptions {
-  Lookup lookup = Lookup::cosine;
+  Lookup lookup = Lookup::windowed;
   double normalOffset = 0.5;  ///< cells along the normal from the surface to the point that is sampled
 };
 
 /// Trilinear interpolation between cell centres, zero beyond them (GL_LINEAR with GL_CLAMP_TO_BORDER, border 0).
 Sh sampleTrilinear(const Volume& volume, const glm::dvec3& point);
 /// Irradiance from the coefficients at a point with unit normal; never negative.
-double irradiance(const Sh& sh, const glm::dvec3& normal, double cellSize, Lookup lookup = Lookup::cosine);
+double irradiance(const Sh& sh, const glm::dvec3& normal, double cellSize, Lookup lookup = Lookup::windowed);
 /// Irradiance at a surface point with unit normal.
 double irradiance(const Volume& volume, const glm::dvec3& point, const glm::dvec3& normal,
                   const LookupOptions& options = {});
@@ -228,10 +230,25 @@ double irradianceSumOfCascades(std::span<const Volume> cascades, const glm::dvec
 /// down: half resolution, each cell the mean of 2x2x2 of `fine`, of their c/s^2 (what an irradiance depends on); an odd last
 /// cell is averaged with zeros. Same minimum, cells twice as big.
 Volume halved(const Volume& fine);
-/// Joins cascades, finest first: C_k = G_k - up(down(G_k)) + up(C_k+1), the coarsest C = G. up is trilinear with zeros beyond
-/// the border; all terms are values of c/s^2. Source: a Laplacian pyramid, P. Burt and E. Adelson, "The Laplacian Pyramid as a
-/// Compact Image Code", 1983. The result is in plain units again.
-std::vector<Volume> joinCascades(std::span<const Volume> cascades);
+
+/// One cascade's accumulated light in two parts.
+struct CascadeParts {
+  VolumeRgb first;  ///< M = G_0 + ... + G_h: the next finer cascade carries this light by itself
+  VolumeRgb later;  ///< F = G_h+1 + ... + G_N: too far-travelled for the finer one, handed over to it
+};
+/// propagate() with the sum split after `handOver` steps.
+CascadeParts propagateParts(const VolumeRgb& injected, int iterations, int handOver, const KernelOptions& options = {},
+                            const Volume* geometry = nullptr);
+
+struct JoinOptions {
+  double largestBalance = 4.0;  ///< b and 1/b at most
+  double dark = 0.0;            ///< c/s^2 that both sides of the balance are lifted by, so that no light is balanced against none
+};
+/// Joins cascades, finest first. All terms are values of c/s^2, up is trilinear with zeros beyond the border:
+///   C_k = b_k (M_k + F_k) + up(R_k+1),  R_k = b_k F_k + up(R_k+1);  the coarsest: C = M + F, R = F.
+///   b_k = (max(0, up(C_k+1 - R_k+1)) + dark) / (up(down(M_k + F_k)) + dark), bounded, of band 0 summed over the three channels:
+/// the finer grid gets the brightness of what it replaces. The results C are in plain units again.
+std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, const JoinOptions& options = {});
 
 struct CascadeBlend {
   std::vector<glm::dvec3> centres;  ///< of the cascades before snapping, finest first

@@ -24,6 +24,44 @@ struct LightFolder : TempFolder {
   Scene load(const std::string& keys) const { return loadScene(write("room.json", "{\"model\": \"box.obj\"" + keys + "}")); }
 };
 
+TEST(SceneLights, TheDefaultExposureGoesWithTheDefaultSun) {
+  const LightFolder folder;
+  const std::string point = R"("points": [{"position": [0,1,0], "intensity": [1,1,1]}])";
+  EXPECT_EQ(folder.load("").exposure, 3.0f);
+  EXPECT_EQ(folder.load(", " + point).exposure, 1.0f);
+  EXPECT_FALSE(folder.load(", " + point).sun.has_value());
+  EXPECT_EQ(folder.load(", \"exposure\": 2, " + point).exposure, 2.0f);
+  EXPECT_EQ(folder.load(", \"sun\": null, " + point).exposure, 1.0f);
+}
+
+TEST(LightViews, LargestSolidAngleBoundsTheTexelsSum) {
+  Bounds bounds;
+  bounds.add(glm::dvec3(-1.0));
+  bounds.add(glm::dvec3(1.0));
+  std::vector<LightViews> all{lightViews(PointLight{}, bounds)};
+  for (const double degrees : {1.0, 20.0, 45.0, 70.0, 80.0}) {
+    SpotLight spot;
+    spot.outerAngle = degrees * kDegree;
+    all.push_back(lightViews(spot, bounds));
+  }
+  for (const LightViews& light : all)
+    for (const int size : {1, 2, 3, 7, 64, 512}) {
+      const double width = light.texelWidth(size);
+      double sum = 0.0;
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+          const glm::dvec2 p = (glm::dvec2(x, y) + 0.5) * width - light.tangent;
+          sum += width * width * std::pow(1.0 + glm::dot(p, p), -1.5) * static_cast<double>(light.clipFromWorld.size());
+        }
+      const double bound = light.largestSolidAngle(size);
+      EXPECT_GE(bound * (1.0 + 1e-12), sum) << light.tangent << ", " << size;
+      if (size == 512) {
+        EXPECT_LT(bound / sum, 1.01) << light.tangent;
+      }
+    }
+  EXPECT_NEAR(all[0].largestSolidAngle(1024) / (4.0 * std::numbers::pi), 1.0, 1e-4);
+}
+
 TEST(SceneLights, EveryKeyIsRead) {
   const Scene scene = LightFolder().load(
       R"(, "spots": [{"position": [1,2,3], "direction": [0,-2,0], "intensity": [4,5,6], "innerAngle": 10, "outerAngle": 80},

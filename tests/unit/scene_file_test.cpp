@@ -29,9 +29,10 @@ TEST(SceneFile, AModelAloneTakesTheDefaults) {
   EXPECT_EQ(scene.file.filename(), "room.json");
   EXPECT_EQ(scene.triangleCount(), 1u);
   EXPECT_EQ(scene.metresPerUnit, 1.0);
-  EXPECT_EQ(scene.exposure, 1.0f);
+  EXPECT_EQ(scene.exposure, 3.0f);  // goes with the default sun
   EXPECT_EQ(scene.cameras.size(), 1u);
   EXPECT_TRUE(scene.sun);
+  EXPECT_EQ(folder.load(R"(, "sun": {"direction": [0, -1, 0], "irradiance": [1, 1, 1]})").exposure, 1.0f);
 }
 
 TEST(SceneFile, EveryKeyIsRead) {

@@ -3,8 +3,7 @@ import math
 
 import numpy as np
 
-from .layout import (BACK_X, BACK_Z, CEILING, COURT_X, COURT_Z, GALLERY, OUTER, PORTAL_HALF, SHELL_TOP, SIDES, SLAB,
-                     SPRING, UPPER_FLOOR, UPPER_SPRING, UPPER_TOP, UPPER_WALL, WALL)
+from .layout import SPRING
 from .mesh import turn
 
 # Distance from an arch's foot to the centre line of its column, by storey.
@@ -23,27 +22,25 @@ def spandrel(mesh, material, s0, s1, centre, radius, spring, top, segments):
     mesh.grid(material, points, mesh.box_uv(material, points.reshape(-1, 3), (0, 0, 1)), np.tile([0.0, 0.0, 1.0], (2, len(s), 1)))
 
 
-def archivolt(radius, thick, width, step):
+def archivolt(radius, thick, width, step, beads):
     """Profile (radius, d) of an arch from its back edge through the intrados to the moulding on its court face."""
     r, t, w = radius, thick, width
-    bead = [(r + 0.55 * w + 0.16 * w * (1 - math.cos(a)), step + 0.2 * w * math.sin(a)) for a in np.linspace(0.3, 2.6, 5)]
+    bead = [(r + 0.55 * w + 0.16 * w * (1 - math.cos(a)), step + 0.2 * w * math.sin(a)) for a in np.linspace(0.4, 2.5, beads)] if beads else []
     return [(r, -t), (r, step * 0.6), (r + 0.38 * w, step * 0.6), (r + 0.42 * w, step), *bead,
             (r + w - 0.012, step * 0.75), (r + w, step * 0.5), (r + w, 0.0)]
 
 
 def arcade(mesh, edges, feet, spring, top, thick, width, step, segments, material="limestone"):
-    """A wall on arches, one for each bay; d from 0 (court face) to -thick. `feet`: foot width at each edge."""
+    """A wall on arches, one for each bay; d from 0 (court face) to -thick.
+
+    `feet`: half the width of the wall's foot at each edge; `spring`: height, or one for each bay; `width`, `step`: moulding."""
     for i in range(len(edges) - 1):
         s0, s1 = edges[i], edges[i + 1]
         a, b = s0 + feet[i], s1 - feet[i + 1]
         centre, radius = (a + b) / 2, (b - a) / 2
-        if isinstance(spring, dict):
-            y = spring[i]
-        else:
-            y = spring
+        y = spring[i] if isinstance(spring, dict) else spring
         spandrel(mesh, material, s0, s1, centre, radius + width, y, top, segments)
-        if b - a > 0:
-            mesh.arc("stone_trim", archivolt(radius, thick, width, step), centre, y, segments)
+        mesh.arc("stone_trim", archivolt(radius, thick, width, step, 4 if segments > 16 else 0), centre, y, segments)
         with mesh.frame(turn("y", 180), (0, 0, -thick)):
             spandrel(mesh, "plaster", -s1, -s0, -centre, radius, y, top, segments)
         # the undersides at the feet
@@ -55,14 +52,12 @@ def arcade(mesh, edges, feet, spring, top, thick, width, step, segments, materia
 
 def keystone(mesh, centre, crown, low, high, half, step):
     """A tapering block over an arch's crown."""
-    for y0, y1, w0, w1, d in ((crown + low, crown + high, half, half * 1.35, step),):
-        f = [(centre - w0, y0, d), (centre + w0, y0, d), (centre + w1, y1, d * 1.3), (centre - w1, y1, d * 1.3)]
-        k = [(x, y, 0.0) for x, y, _ in f]
-        mesh.quad("stone_trim", *f)
-        mesh.quad("stone_trim", f[1], k[1], k[2], f[2])
-        mesh.quad("stone_trim", k[0], f[0], f[3], k[3])
-        mesh.quad("stone_trim", f[3], f[2], k[2], k[3])
-        mesh.quad("stone_trim", k[0], k[1], f[1], f[0])
+    y0, y1, wide, d = crown + low, crown + high, half * 1.35, step * 1.3
+    f = [(centre - half, y0, step), (centre + half, y0, step), (centre + wide, y1, d), (centre - wide, y1, d)]
+    k = [(s, y, 0.0) for s, y, _ in f]
+    mesh.quad("stone_trim", *f)
+    for i in range(4):
+        mesh.quad("stone_trim", k[i], k[(i + 1) % 4], f[(i + 1) % 4], f[i])
 
 
 def groin_vault(mesh, s0, s1, d0, d1, segments=12):
@@ -75,8 +70,8 @@ def groin_vault(mesh, s0, s1, d0, d1, segments=12):
             # web |along| >= |across|; height depends on `across` alone
             across = np.concatenate([w, -w[::-1][1:]])
             rows = []
-            for k in range(5):
-                rows.append([(c, sign * (abs(c) + (1.0 - abs(c)) * k / 4.0)) for c in across])
+            for k in (0.0, 1.0):          # a web is straight along its barrel: from the groin to the edge
+                rows.append([(c, sign * (abs(c) + (1.0 - abs(c)) * k)) for c in across])
             uv_arc = np.arccos(across)
             points, normals, uvs = [], [], []
             for row in rows:
@@ -89,11 +84,11 @@ def groin_vault(mesh, s0, s1, d0, d1, segments=12):
                     normals.append((n[0], n[1], 0) if axis == 0 else (0, n[1], n[0]))
                     run = (hd if axis == 0 else hs) * along
                     uvs.append((t * half / 3.0, run / 3.0))
-            shape = (5, len(across), 3)
+            shape = (2, len(across), 3)
             p, n = np.reshape(points, shape), np.reshape(normals, shape)
-            uv = np.reshape(uvs, (5, len(across), 2))
-            face = np.cross(p[2, 2] - p[2, 1], p[3, 1] - p[2, 1])
-            if face @ n[2, 1] < 0:
+            uv = np.reshape(uvs, (2, len(across), 2))
+            face = np.cross(p[0, 3] - p[0, 2], p[1, 2] - p[0, 2])
+            if face @ n[0, 2] < 0:
                 p, n, uv = p[:, ::-1], n[:, ::-1], uv[:, ::-1]
             mesh.grid("plaster", p, uv, n)
 

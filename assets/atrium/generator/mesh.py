@@ -54,8 +54,19 @@ def profile_pieces(points, closed=False):
     return [(a[i], a[i] + delta[i], shared(i, i - 1), shared(i, i + 1), at[i], at[i + 1]) for i in range(n)]
 
 
+def sheet_normals(p):
+    """Mean of the normals of the quads around each point of a (rows, columns, 3) patch."""
+    quad = unit(np.cross(p[1:, 1:] - p[:-1, :-1], p[1:, :-1] - p[:-1, 1:]))
+    total = np.zeros_like(p)
+    for rows in (slice(0, -1), slice(1, None)):
+        for cols in (slice(0, -1), slice(1, None)):
+            total[rows, cols] += quad
+    return unit(total)
+
+
 class Mesh:
-    """Corners by material: positions, normals, texture coordinates, and triangles of corner numbers."""
+    """Corners by material: positions, normals, texture coordinates, and faces of four corner numbers
+    (of a triangle the last stands twice)."""
 
     def __init__(self):
         self.parts = {}
@@ -70,18 +81,21 @@ class Mesh:
         yield
         self._linear, self._offset = kept
 
-    def add(self, material, points, normals, uvs, triangles):
-        """Adds corners in the current frame (a rotation)."""
+    def add(self, material, points, normals, uvs, faces):
+        """Adds corners in the current frame (a rotation) and faces of three or four corners."""
+        faces = np.asarray(faces, int)
+        if faces.shape[1] == 3:
+            faces = faces[:, [0, 1, 2, 2]]
         points = np.asarray(points, float).reshape(-1, 3) @ self._linear.T + self._offset
         normals = unit(np.asarray(normals, float).reshape(-1, 3)) @ self._linear.T
         self.parts.setdefault(material, []).append(
-            (points, normals, np.asarray(uvs, float).reshape(-1, 2), np.asarray(triangles, int).reshape(-1, 3)))
+            (points, normals, np.asarray(uvs, float).reshape(-1, 2), faces))
 
     def quad(self, material, a, b, c, d, uv=None):
         """A flat quad, counter-clockwise; UVs by its own edges (a -> b is u) or the four given."""
         p = np.asarray([a, b, c, d], float)
         n = unit(np.cross(p[1] - p[0], p[3] - p[0]))
-        self.add(material, p, np.tile(n, (4, 1)), self.box_uv(material, p, n) if uv is None else uv, [[0, 1, 2], [0, 2, 3]])
+        self.add(material, p, np.tile(n, (4, 1)), self.box_uv(material, p, n) if uv is None else uv, [[0, 1, 2, 3]])
 
     @staticmethod
     def box_uv(material, points, normal):
@@ -115,10 +129,9 @@ class Mesh:
         p = np.asarray(points, float)
         rows, cols = p.shape[:2]
         if normals is None:
-            normals = unit(np.cross(np.gradient(p, axis=1), np.gradient(p, axis=0)))
+            normals = sheet_normals(p)
         i = (np.arange(rows - 1)[:, None] * cols + np.arange(cols - 1)).ravel()
-        tris = np.concatenate([np.stack([i, i + 1, i + cols + 1], 1), np.stack([i, i + cols + 1, i + cols], 1)])
-        self.add(material, p, normals, uvs, tris)
+        self.add(material, p, normals, uvs, np.stack([i, i + 1, i + cols + 1, i + cols], 1))
 
     def lathe(self, material, profile, segments, closed=False, start=0.0, sweep=2.0 * math.pi, flat=False):
         """Turns a profile of (radius, y), drawn upwards for an outside, about the y axis. `flat`: faceted around."""
@@ -170,4 +183,4 @@ class Mesh:
             self.grid(material, points, uvs, normals)
 
     def triangle_count(self):
-        return sum(len(part[3]) for parts in self.parts.values() for part in parts)
+        return sum(2 * len(part[3]) - int((part[3][:, 2] == part[3][:, 3]).sum()) for parts in self.parts.values() for part in parts)

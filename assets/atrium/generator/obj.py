@@ -25,8 +25,14 @@ def _table(key, rows):
     return lines, rank[inverse.ravel()] + 1
 
 
+def _area2(points, triangles):
+    """Twice the triangles' areas."""
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1)
+
+
 def write(mesh, obj_path, mtl_path):
-    """Writes both files; triangles without area after rounding are left out. Returns counts."""
+    """Writes both files, quads as quads (they split along 0-2); triangles without area after rounding are left out. Returns counts."""
     points, normals, uvs, faces, spans = [], [], [], [], []
     corners = 0
     for material in sorted(mesh.parts):
@@ -37,11 +43,10 @@ def write(mesh, obj_path, mtl_path):
         spans.append((material, begin, sum(map(len, faces))))
     points = np.round(np.concatenate(points), 4)
     normals, uvs, faces = unit(np.concatenate(normals)), np.concatenate(uvs), np.concatenate(faces)
-    a, b, c = (points[faces[:, i]] for i in range(3))
-    solid = np.linalg.norm(np.cross(b - a, c - a), axis=1) > 2e-7
-
+    solid = np.stack([_area2(points, faces[:, :3]), _area2(points, faces[:, [0, 2, 3]])], axis=1) > 2e-7
     used = np.zeros(len(points), bool)
-    used[faces[solid]] = True
+    used[faces[solid[:, 0], :3]] = True
+    used[faces[solid[:, 1]][:, [0, 2, 3]]] = True
     position = np.cumsum(used) - 1
     v, vi = _table("v", points[used])
     vt, ti = _table("vt", uvs[used])
@@ -51,8 +56,10 @@ def write(mesh, obj_path, mtl_path):
     for material, begin, end in spans:
         lines += ["g " + material, "usemtl " + material]
         for k in range(begin, end):
-            if solid[k]:
-                lines.append("f " + " ".join(f"{vi[i]}/{ti[i]}/{ni[i]}" for i in position[faces[k]]))
+            first, second = solid[k]
+            if first or second:
+                corners = [c for c, kept in zip(position[faces[k]], (True, first, True, second)) if kept]
+                lines.append("f " + " ".join(f"{vi[i]}/{ti[i]}/{ni[i]}" for i in corners))
     obj_path.write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
 
     lines = ["# Lucerna atrium. Kd times map_Kd. MIT licence. Made by generate.py."]
@@ -64,4 +71,4 @@ def write(mesh, obj_path, mtl_path):
             (kd, ks, ns), maps = PLAIN[name], []
         lines += ["", "newmtl " + name, "Kd " + " ".join(map(str, kd)), f"Ks {ks} {ks} {ks}", f"Ns {ns}", "illum 2", *maps]
     mtl_path.write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
-    return {"triangles": int(solid.sum()), "positions": len(v), "uvs": len(vt), "normals": len(vn), "dropped": int((~solid).sum())}
+    return {"triangles": int(solid.sum()), "positions": len(v), "uvs": len(vt), "normals": len(vn), "faces": int(solid.any(axis=1).sum())}

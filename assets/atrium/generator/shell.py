@@ -6,6 +6,7 @@ from .architecture import (GROUND_FOOT, PIER_FOOT, UPPER_FOOT, VAULT_RISE, arcad
 from .layout import (BACK_X, BACK_Z, CEILING, COURT_X, COURT_Z, EAST, GALLERY, OUTER, SHELL_TOP, SIDES, SLAB, SPRING, STEP,
                      STEP_OUT, UPPER_FLOOR, UPPER_SPRING, UPPER_TOP, UPPER_WALL, WALL)
 from .mesh import turn
+from .openings import openings
 
 PORTAL_SPRING = 2.55
 BORDER = 1.0                      # width of the floor's border
@@ -20,10 +21,10 @@ def floors(mesh):
     for side in SIDES:
         inner = side.inner - STEP_OUT
         with side.frame(mesh):
-            d0, d1 = STEP_OUT, STEP_OUT + BORDER
-            mesh.quad("floor_border", (-inner + BORDER, 0, d1), (inner - BORDER, 0, d1), (inner, 0, d0), (-inner, 0, d0),
+            d0, d1 = STEP_OUT - 0.03, STEP_OUT + BORDER
+            mesh.quad("floor_border", (-inner + BORDER, 0, d1), (inner - BORDER, 0, d1), (inner + 0.03, 0, d0), (-inner - 0.03, 0, d0),
                       [(-inner + BORDER, 0), (inner - BORDER, 0), (inner, 1), (-inner, 1)])
-            nose = [(d0 - 0.03, 0.0), (d0 - 0.03, 0.085), (d0, 0.1), (d0, STEP - 0.02), (d0 - 0.02, STEP), (-WALL - 0.1, STEP)]
+            nose = [(d0, 0.0), (d0, 0.085), (d0 + 0.03, 0.1), (d0 + 0.03, STEP - 0.02), (d0 + 0.01, STEP), (-WALL - 0.1, STEP)]
             mesh.run("stone_trim", nose, -side.inner, side.inner, 1, -1)
             s = side.back if side.long else side.inner + WALL + 0.1
             if side.long:
@@ -45,9 +46,8 @@ def arcades(mesh, side):
     if side is EAST:
         feet = [GROUND_FOOT, PIER_FOOT, PIER_FOOT, GROUND_FOOT]
         spring = {0: SPRING, 1: PORTAL_SPRING, 2: SPRING}
-    arcade(mesh, side.bays, feet, spring, UPPER_FLOOR, WALL, 0.26, 0.05, 24)
-    with mesh.frame(offset=(0, 0, 0)):
-        arcade(mesh, side.upper, [UPPER_FOOT] * len(side.upper), UPPER_SPRING, UPPER_TOP, UPPER_WALL, 0.15, 0.035, 16)
+    arcade(mesh, side.bays, feet, spring, UPPER_FLOOR, WALL, 0.26, 0.05, 20)
+    arcade(mesh, side.upper, [UPPER_FOOT] * len(side.upper), UPPER_SPRING, UPPER_TOP, UPPER_WALL, 0.15, 0.035, 10)
     for low, high, thick in ((STEP, SLAB, WALL), (UPPER_FLOOR, UPPER_TOP, UPPER_WALL)):
         for s0, s1 in ((-side.inner - thick, -side.inner), (side.inner, side.inner + thick)):
             mesh.quad("plaster", (s1, low, -thick), (s0, low, -thick), (s0, high, -thick), (s1, high, -thick))
@@ -68,11 +68,6 @@ def responds(mesh, side):
                 inside = abs(s0 + s1) / 2 < abs(edge)
                 high = PORTAL_SPRING if inside else SPRING
                 mesh.box("limestone", (s0, STEP, -WALL), (s1, high, 0), "bt" + ("r" if s1 == edge else "l"))
-                if not inside:
-                    e = edge
-                    q = [(e, PORTAL_SPRING, 0), (e, PORTAL_SPRING, -WALL), (e, SPRING, -WALL), (e, SPRING, 0)]
-                    if False:
-                        mesh.quad("limestone", *q)
 
 
 def vaults(mesh, side):
@@ -115,7 +110,6 @@ def outside(mesh, side):
 
 def back_walls(mesh, side):
     """Inner faces of the back walls; openings come from openings.py."""
-    from .openings import openings
     for storey, low, high in ((0, STEP, SLAB), (1, UPPER_FLOOR, CEILING)):
         with mesh.frame(offset=(0, 0, BACK)):
             wall_with_openings(mesh, "plaster", -side.back, side.back, low, high, openings(mesh, side, storey))

@@ -18,6 +18,8 @@ import sys
 
 import numpy as np
 
+import texture_cloth
+import texture_leaf
 from texture_kit import (blend, blur, grid, inside, noise, relief, rgb, sample, shade, srgb_bytes, step, veins, warp,
                          write_png)
 
@@ -66,8 +68,8 @@ def limestone():
     number, distance = ashlar(x_edge, y_edge, courses, tile, 0.014)
     distance = distance * metre + 4.0  # pixels, joints of about 8 px
     # Chips: bites out of the edges, where noise is high.
-    bite = np.maximum(noise(shape, 13, 14, 120, 0.6) - 1.55, 0.0)
-    distance = distance + 9.0 * bite * step(-22, 0, distance)
+    bite = np.maximum(noise(shape, 13, 14, 120, 0.6) - 1.75, 0.0)
+    distance = distance + 7.0 * bite * step(-22, 0, distance)
     stone = inside(distance, 2.0)
 
     rng = np.random.default_rng(14)
@@ -87,8 +89,8 @@ def limestone():
 
     tone = each(number, rng.permutation(np.linspace(-1.0, 1.0, blocks)))
     honey = each(number, rng.uniform(0.0, 1.0, blocks))
-    colour = blend(rgb(0.585, 0.530, 0.440), rgb(0.600, 0.505, 0.372), honey)
-    colour = shade(colour, np.exp(0.085 * tone + 0.030 * bedding + 0.040 * cloud + 0.026 * mottle + 0.022 * grain + 0.014 * tooled))
+    colour = blend(rgb(0.575, 0.510, 0.400), rgb(0.585, 0.475, 0.325), honey)
+    colour = shade(colour, np.exp(0.125 * tone + 0.030 * bedding + 0.040 * cloud + 0.026 * mottle + 0.030 * grain + 0.014 * tooled))
     iron = step(0.9, 2.6, in_block(noise(shape, 22, 2, 22, 1.0)))  # rusty clouds
     colour = blend(colour, colour * rgb(1.0, 0.86, 0.66), 0.55 * iron)
     pits = step(1.7, 2.5, in_block(noise(shape, 23, 50, 190, 0.3))) * step(-0.6, 0.9, in_block(noise(shape, 24, 3, 14)))
@@ -99,10 +101,10 @@ def limestone():
     # Edges: rubbed pale at the arris, dirty just outside it; height makes the joint's shadow.
     arris = np.exp(-((distance + 5.0) / 4.0) ** 2) * step(-0.8, 1.0, noise(shape, 26, 4, 40))
     colour = shade(colour, 1.0 + 0.07 * arris)
-    height = 3.0 * step(2.0, -7.0, distance) - 1.2 * pits + 0.35 * mottle + 0.2 * grain + 0.35 * tooled
-    mortar = shade(rgb(0.50, 0.455, 0.385) * np.ones(shape + (3,)), np.exp(0.07 * noise(shape, 27, 60, 330, 0.2) + 0.07 * noise(shape, 28, 3, 20)))
+    height = 3.0 * step(2.0, -7.0, distance - 5.0 * np.minimum(bite, 1.0)) - 1.2 * pits + 0.35 * mottle + 0.2 * grain + 0.35 * tooled
+    mortar = shade(rgb(0.47, 0.41, 0.32) * np.ones(shape + (3,)), np.exp(0.07 * noise(shape, 27, 60, 330, 0.2) + 0.07 * noise(shape, 28, 3, 20)))
     colour = blend(mortar, colour, stone)
-    colour = shade(colour, 1.0 - 0.24 * np.exp(-((distance - 1.0) / 2.2) ** 2))
+    colour = shade(colour, 1.0 - 0.22 * np.exp(-((distance - 1.0) / 2.2) ** 2) * step(0.5, 0.0, bite))
     colour = shade(colour, relief(height, 0.17))
 
     # Dirt: soft in and below the joints, and thin streaks of rain.
@@ -110,7 +112,7 @@ def limestone():
     below = sum(np.roll(blur(joint, 2.5 + 2 * k), 5 * k, 0) for k in range(5)) / 5.0
     patchy = step(-0.7, 1.6, noise(shape, 29, 2, 20))
     streak = step(0.3, 2.4, noise(shape, 30, 3, 70, 0.5, stretch=(1.0, 9.0)))
-    soot = 0.75 * below * patchy + 0.13 * streak + 0.05 * step(0.2, 2.0, noise(shape, 31, 1.5, 7))
+    soot = 0.95 * below * patchy + 0.20 * streak + 0.05 * step(0.2, 2.0, noise(shape, 31, 1.5, 7))
     return blend(colour, colour * rgb(0.60, 0.555, 0.49), np.clip(soot, 0, 1))
 
 
@@ -138,7 +140,7 @@ def plaster():
     runs = step(0.4, 2.6, noise(shape, 52, 3, 60, 0.6, stretch=(1.0, 7.0)))
     colour = blend(colour, colour * rgb(0.83, 0.765, 0.66), np.clip(0.34 * stain + 0.25 * runs, 0, 1))
     # Worn spots show the coarser coat below; cracks.
-    worn = step(2.55, 2.75, noise(shape, 53, 7, 160, 1.0))
+    worn = step(3.0, 3.2, noise(shape, 53, 7, 160, 1.0))
     under = shade(rgb(0.56, 0.475, 0.36) * np.ones(shape + (3,)), np.exp(0.09 * noise(shape, 54, 60, 300, 0.2)))
     colour = blend(colour, under, 0.8 * worn)
     crack = veins(shape, 55, 2, 40, 0.75, 10.0) * step(0.1, 1.3, noise(shape, 56, 2, 6))
@@ -154,8 +156,8 @@ def stone_trim():
     mottle = noise(shape, 64, 10, 80, 0.7)
     grain = noise(shape, 65, 70, 220, 0.1)
     rubbed = noise(shape, 66, 20, 200, 0.3, stretch=(5.0, 0.7))
-    colour = blend(rgb(0.625, 0.585, 0.510), rgb(0.610, 0.550, 0.450), step(-1.3, 1.5, cloud))
-    colour = shade(colour, np.exp(0.026 * cloud + 0.018 * mottle + 0.014 * grain + 0.008 * rubbed))
+    colour = blend(rgb(0.615, 0.568, 0.480), rgb(0.595, 0.525, 0.415), step(-1.3, 1.5, cloud))
+    colour = shade(colour, np.exp(0.040 * cloud + 0.026 * mottle + 0.014 * grain + 0.008 * rubbed))
     pale = _seams(shape, 67, 2, 1.3)
     dark = _seams(shape, 710, 3, 0.7)
     colour = blend(colour, rgb(0.71, 0.68, 0.62), 0.40 * pale)
@@ -220,7 +222,7 @@ def wood():
     tone = each(number, [0.10, -0.16, 0.02, -0.05])
     warmth = each(number, [0.2, 0.7, 0.9, 0.0])
     colour = blend(rgb(0.255, 0.140, 0.068), rgb(0.235, 0.112, 0.050), warmth)
-    colour = shade(colour, np.exp(tone + 0.10 * fibre + 0.13 * streak - 0.34 * late))
+    colour = shade(colour, np.exp(tone + 0.10 * fibre + 0.20 * streak - 0.34 * late))
     colour = shade(colour, 1.0 - 0.38 * vessel * step(0.6, 0.1, ring))
     colour = blend(colour, rgb(0.075, 0.036, 0.018), 0.85 * step(0.25, 0.8, knots))
     colour = shade(colour, 1.0 - 0.25 * np.exp(-((knots - 0.25) / 0.1) ** 2))
@@ -299,20 +301,20 @@ def floor():
     side = period / np.sqrt(2)
     distance = np.maximum(np.abs(p - i - 0.5), np.abs(q - j - 0.5)) - 0.5
     distance = distance * side * metre + 1.9  # pixels, joints of about 4 px
-    corner = 1.0 - np.minimum(np.abs(p - i - 0.5), np.abs(q - j - 0.5)) * -2.0
+    corner = 1.0 + 2.0 * np.minimum(np.abs(p - i - 0.5), np.abs(q - j - 0.5))  # chips sooner at the corners
     bite = np.maximum(noise(shape, 203, 14, 130, 0.5) - 1.75, 0.0)
     distance = distance + 7.0 * bite * step(-14, 0, distance) * corner
     slab = inside(distance, 1.6)
     red = (i + j) % 2 == 0
 
-    # Each slab is cut from another place of its marble, and turned by a quarter or not.
+    # Each slab is cut from another place of its marble, and turned.
     rng = np.random.default_rng(204)
     columns, rows = np.meshgrid(np.arange(size, dtype=float), np.arange(size, dtype=float))
     dx = (x - (i + j + 1) * period / 2 + 1.0) % 2.0 - 1.0
     dy = (y - (i - j) * period / 2 + 1.0) % 2.0 - 1.0
-    turn = each(number, rng.integers(0, 4, 36))
-    a = np.choose(turn, [dx, -dy, -dx, dy]) * metre + each(number, rng.uniform(0, size, 36))
-    b = np.choose(turn, [dy, dx, -dy, -dx]) * metre + each(number, rng.uniform(0, size, 36))
+    angle = each(number, rng.uniform(0, 2 * np.pi, 36))
+    a = (dx * np.cos(angle) - dy * np.sin(angle)) * metre + each(number, rng.uniform(0, size, 36))
+    b = (dx * np.sin(angle) + dy * np.cos(angle)) * metre + each(number, rng.uniform(0, size, 36))
     colour = np.where(red[..., None], sample(_red_marble(shape, 300), a, b), sample(_pale_marble(shape, 400), a, b))
     tint = each(number, rng.normal(0.0, 1.0, 36))
     colour = shade(colour, np.exp(0.075 * tint + 0.028 * each(number, rng.normal(0.0, 1.0, 36)) * (dx + dy) / 0.3))
@@ -329,3 +331,111 @@ def floor():
     grout = shade(rgb(0.235, 0.200, 0.160) * np.ones(shape + (3,)), np.exp(0.16 * noise(shape, 198, 50, 350, 0.2) + 0.14 * noise(shape, 197, 3, 30)))
     colour = blend(grout, colour, slab)
     return shade(colour, relief(1.3 * step(2.0, -2.5, distance) - 0.7 * pits, 0.12))
+
+
+def floor_border():
+    """Inlaid band: two strands, red and green, woven around roundels on a cream ground, between fillets."""
+    width, height = 512, 256
+    shape = (height, width)
+    x, y = grid(width, height, 1.0, 0.5)
+    pixel = 1.0 / width
+    bend = [0.0009 * noise(shape, 501 + k, 4, 60, 0.6) for k in range(2)]
+    x, y = x + bend[0], y - 0.25 + bend[1]
+    period, swing, half = 0.5, 0.098, 0.036
+
+    columns, rows = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
+    big = (512, 512)
+    cream, red = _pale_marble(big, 520), _red_marble(big, 640)
+    net = sample(_seams(big, 760, 6, 1.4), columns + 40, rows)
+    serpent = shade(rgb(0.118, 0.165, 0.112) * np.ones(shape + (3,)), np.exp(0.24 * noise(shape, 780, 4, 90, 0.6)))
+    serpent = blend(serpent, rgb(0.36, 0.40, 0.31), 0.55 * net)
+    cream_here, red_here, red_other = cream[:height], red[:height], red[height:]
+
+    colour = cream_here.copy()
+    seam = np.zeros(shape)  # joints between the pieces
+
+    def inlay(stone, distance, joint=0.0022):
+        """Lets in a piece of stone and leaves a thin joint around it; covers joints that lie below."""
+        nonlocal colour, seam
+        cover = inside(distance, pixel)
+        colour = blend(colour, stone, cover)
+        rim = np.clip(1.0 - np.abs(distance) / joint, 0, 1)
+        seam = np.maximum(seam * (1.0 - cover), rim)
+
+    # Roundels in the eyes of the weave, every other with a star of four points.
+    cell = np.floor(x / (period / 2))
+    dx = x - (cell + 0.5) * period / 2
+    radius = np.hypot(dx, y)
+    inlay(np.where((cell % 2 == 0)[..., None], serpent, red_other), radius - 0.044)
+    star = np.abs(dx) ** 0.62 + np.abs(y) ** 0.62 - 0.040 ** 0.62
+    inlay(cream_here * 1.06, star * 0.11)
+    # Small lozenges in the spandrels outside the weave.
+    at_crossing = (x + period / 4) % (period / 2) - period / 4
+    inlay(red_other, 0.7 * (np.abs(at_crossing) + np.abs(np.abs(y) - 0.128) - 0.030))
+
+    # The strands; at every crossing the other one lies on top.
+    wave = 2 * np.pi / period
+    nearest = np.round(x / (period / 2)).astype(int) % 2
+    curves = []
+    for sign in (1.0, -1.0):
+        middle = sign * swing * np.sin(wave * x)
+        slope = sign * swing * wave * np.cos(wave * x)
+        curves.append((y - middle) / np.sqrt(1 + 0.8 * slope * slope))
+    stones = (red_here * 0.88, serpent)
+    for layer in range(2):
+        for which in range(2):
+            on_top = (nearest == which)
+            mine = on_top if layer else ~on_top
+            d = np.where(mine, np.abs(curves[which]) - half, 1.0)
+            inlay(stones[which], d)
+            inlay(cream_here * 1.04, np.where(mine, np.abs(np.abs(curves[which]) - 0.021) - 0.0042, 1.0), 0.0012)
+
+    # Fillets along both edges.
+    out = np.abs(y)
+    inlay(serpent, np.abs(out - 0.196) - 0.016)
+    inlay(cream_here * 0.97, np.where(out > 0.212, -(out - 0.2135), 1.0))
+    inlay(red_here, np.abs(out - 0.243) - 0.0065)
+    cut = np.abs((x + 0.125 * np.sign(y)) % 0.5 - 0.25)
+    seam = np.maximum(seam, np.clip(1.0 - cut / 0.0018, 0, 1) * (out > 0.18))
+
+    dull = step(-0.6, 1.8, noise(shape, 503, 2, 24, 0.9))
+    colour = blend(colour, colour * rgb(0.80, 0.765, 0.70) + 0.015, 0.5 * dull)
+    colour = blend(colour, rgb(0.47, 0.43, 0.36), 0.10 * step(0.2, 2.4, noise(shape, 504, 5, 90, 0.7)))
+    colour = blend(colour, rgb(0.150, 0.118, 0.088), 0.62 * seam * step(-1.8, 0.6, noise(shape, 505, 4, 60, 0.6)))
+    pits = step(2.3, 3.0, noise(shape, 506, 50, 200, 0.2))
+    return shade(shade(colour, 1.0 - 0.35 * pits), np.exp(0.03 * noise(shape, 507, 60, 230, 0.1)) * relief(-0.6 * seam, 0.10))
+
+
+# ------------------------------------------------------------------------------------------------------------------ main
+
+RECIPES = {
+    "limestone": limestone, "plaster": plaster, "stone_trim": stone_trim, "terracotta": terracotta, "wood": wood,
+    "floor": floor, "floor_border": floor_border,
+    "curtain_red": texture_cloth.curtain_red, "curtain_teal": texture_cloth.curtain_teal,
+    "curtain_ochre": texture_cloth.curtain_ochre, "banner": texture_cloth.banner,
+    "leaf": texture_leaf.leaf,  # writes leaf_mask too
+}
+
+
+def main(names):
+    folder = pathlib.Path(__file__).resolve().parent.parent / "textures"
+    folder.mkdir(exist_ok=True)
+    unknown = [name for name in names if name not in RECIPES]
+    if unknown:
+        sys.exit(f"unknown: {' '.join(unknown)}; known are: {' '.join(RECIPES)}")
+    for name in names or RECIPES:
+        image = RECIPES[name]()
+        if name == "leaf":
+            colour, mask = image
+            mask = np.floor(np.clip(mask, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+            write_png(folder / "leaf.png", np.dstack([srgb_bytes(colour), mask]))
+            write_png(folder / "leaf_mask.png", mask)
+        else:
+            write_png(folder / f"{name}.png", srgb_bytes(image), indexed=True)
+        albedo = image[0] if name == "leaf" else image
+        mean = ", ".join(f"{value:.3f}" for value in albedo.mean((0, 1)))
+        print(f"{name}: mean albedo ({mean}), {(folder / (name + '.png')).stat().st_size // 1024} KiB")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

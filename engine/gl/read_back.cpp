@@ -1,0 +1,38 @@
+#include "gl/read_back.hpp"
+
+namespace lucerna::gl {
+
+ReadBackRing::ReadBackRing(const std::string& name, std::size_t bytes) : bytes_(bytes) {
+  for (Buffer& buffer : buffers_) buffer = Buffer(name, bytes, nullptr, GL_STREAM_READ);
+}
+
+ReadBackRing::~ReadBackRing() {
+  for (GLsync fence : fences_)
+    if (fence) glDeleteSync(fence);
+}
+
+void ReadBackRing::copy(const Buffer& source) {
+  if (fences_[next_]) return;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glBindBuffer(GL_COPY_READ_BUFFER, source.id());
+  glBindBuffer(GL_COPY_WRITE_BUFFER, buffers_[next_].id());
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes_));
+  fences_[next_] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  next_ = (next_ + 1) % kRing;
+}
+
+std::vector<GLuint> ReadBackRing::fetch(bool wait) {
+  GLsync& fence = fences_[oldest_];
+  if (!fence) return {};
+  constexpr GLuint64 kSecond = 1000000000;
+  GLenum status = glClientWaitSync(fence, wait ? GL_SYNC_FLUSH_COMMANDS_BIT : 0, wait ? kSecond : 0);
+  while (wait && status == GL_TIMEOUT_EXPIRED) status = glClientWaitSync(fence, 0, kSecond);
+  if (status == GL_TIMEOUT_EXPIRED) return {};
+  glDeleteSync(fence);
+  fence = nullptr;
+  const std::vector<GLuint> words = buffers_[oldest_].read<GLuint>();
+  oldest_ = (oldest_ + 1) % kRing;
+  return words;
+}
+
+}  // namespace lucerna::gl

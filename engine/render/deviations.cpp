@@ -1,0 +1,78 @@
+#include "render/deviations.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace lucerna {
+
+namespace {
+
+#define SWITCH(name, meaning, inOriginal, member)                                        \
+  Deviation {                                                                           \
+    name, meaning, inOriginal, [](const RenderSettings& s) { return bool{s.member}; }, \
+        [](RenderSettings& s, bool on) { s.member = on; }                               \
+  }
+#define LPV_DEVIATION(name, meaning, inOriginal, member) SWITCH("lpv." name, meaning, inOriginal, lpv.deviations.member)
+
+const std::array kDeviations{
+    SWITCH("rsm.flux-cosine", "flux of a texel times the cosine to the light", true, rsm.fluxCosine),
+    Deviation{"rsm.gather-weight", "samples of the gather weighted by xi^2 instead of xi", true,
+              [](const RenderSettings& s) { return s.gather.weight == RsmGather::Weight::published; },
+              [](RenderSettings& s, bool on) { s.gather.weight = on ? RsmGather::Weight::published : RsmGather::Weight::unbiased; }},
+    LPV_DEVIATION("flux-units", "brightness follows the number of texels and the cell size; lookup times 1.7", true, fluxUnits),
+    LPV_DEVIATION("sum-cascades", "all cascades are added", true, sumCascades),
+    LPV_DEVIATION("unjoined", "cascades are blended as they are, without handing light over", false, unjoined),
+    LPV_DEVIATION("truncate", "conversion to int instead of floor; grids snap to whole world units", true, truncate),
+    LPV_DEVIATION("side-directions", "side faces by component-wise product", true, sideDirections),
+    LPV_DEVIATION("side-solid-angle", "0.4234413544 sr for 0.4234313544", true, sideSolidAngle),
+    LPV_DEVIATION("four-pi-kernel", "Omega / (4 pi) and an amplifier (--set lpv.amplifier)", false, fourPiKernel),
+    LPV_DEVIATION("fewer-steps", "N steps run N - 1, and the injected grid is left out of the sum", true, fewerSteps),
+    LPV_DEVIATION("block-first-step", "a light's own surface blocks it", true, blockFirstStep),
+    LPV_DEVIATION("surfel-area", "surfel areas of a perspective light, times N.L, for an orthographic one", true, surfelArea),
+    LPV_DEVIATION("unwindowed", "light that travels away from a surface counts negative there", true, unwindowed),
+    LPV_DEVIATION("blocking-direction", "blocking potential evaluated in the direction of travel", true, blockingDirection),
+};
+
+#undef LPV_DEVIATION
+#undef SWITCH
+
+}  // namespace
+
+std::span<const Deviation> allDeviations() { return kDeviations; }
+
+void applyFidelity(RenderSettings& settings, Fidelity fidelity) {
+  const bool original = fidelity == Fidelity::original;
+  for (const Deviation& deviation : kDeviations) deviation.turn(settings, original && deviation.inOriginal);
+  if (!original) return;
+  settings.lpv.propagate = LpvPropagate::layered;
+  settings.lpv.lookupOffset = 0.0f;
+  // Cells 2.5, 1.625 and 1.0 units, and a coarsest grid of 80 units in a scene of some 112: not held inside the scene.
+  settings.lpv.cascades.ratio = 1.58;
+  settings.lpv.cascades.spanOfScene = 80.0 / 112.0;
+  settings.lpv.cascades.heldInScene = false;
+}
+
+void applyDeviation(RenderSettings& settings, std::string_view assignment) {
+  const auto equals = assignment.find('=');
+  const std::string_view name = assignment.substr(0, equals);
+  const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
+  if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
+  const auto found = std::find_if(kDeviations.begin(), kDeviations.end(), [&](const Deviation& d) { return d.name == name; });
+  if (found == kDeviations.end()) {
+    std::string known;
+    for (const Deviation& d : kDeviations) known += (known.empty() ? "" : ", ") + std::string(d.name);
+    throwBadInput("--deviation {}: unknown; there are {}", assignment, known);
+  }
+  found->turn(settings, value == "on");
+}
+
+std::vector<std::string> activeDeviations(const RenderSettings& settings) {
+  std::vector<std::string> names;
+  for (const Deviation& deviation : kDeviations)
+    if (deviation.isOn(settings)) names.emplace_back(deviation.name);
+  return names;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,37 @@
+// Deviations: what the published originals do differently, each a named switch (no GL, pure).
+//
+// `--fidelity original` turns on those that the published text or its public demo have; `--deviation NAME=on|off` sets one. Each has a line in
+// its technique's README.md with formula, source and effect (a test checks that the line is there).
+#pragma once
+
+#include "render/renderer.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lucerna {
+
+enum class Fidelity { corrected, original };
+
+struct Deviation {
+  const char* name;     ///< technique, dot, what deviates
+  const char* meaning;  ///< one line
+  bool inOriginal;      ///< whether the published text or its demo has it
+  bool (*isOn)(const RenderSettings&);
+  void (*turn)(RenderSettings&, bool on);
+};
+
+std::span<const Deviation> allDeviations();
+
+/// Sets every switch as that fidelity has it, and the settings that go with it (one layered pass a step and cascade, ...).
+void applyFidelity(RenderSettings& settings, Fidelity fidelity);
+
+/// "NAME=on" or "NAME=off"; throws Error(badInput) listing the names.
+void applyDeviation(RenderSettings& settings, std::string_view assignment);
+
+/// Names of the deviations that are on.
+std::vector<std::string> activeDeviations(const RenderSettings& settings);
+
+}  // namespace lucerna

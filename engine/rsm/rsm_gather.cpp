@@ -1,0 +1,175 @@
+#include "rsm/rsm_gather.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace lucerna {
+
+namespace {
+
+constexpr GLuint kPatternBinding = 0, kWorkBinding = 1, kRefusedBinding = 2;
+constexpr GLuint kDepthUnit = 3, kNormalUnit = 4, kLowUnit = 5;
+
+// The Work block of shaders/rsm/work.glsl.
+struct GatherCounts {
+  GLuint groupsX = 0, groupsY = 1, groupsZ = 1;
+  GLuint refused = 0, surfaces = 0, lowSamples = 0;
+};
+
+glm::ivec2 lowSize(glm::ivec2 size, int step) { return (size + step - 1) / step; }
+
+// Van der Corput's radical inverse in base 2.
+double radicalInverse(std::uint32_t i) {
+  double value = 0.0, digit = 0.5;
+  for (; i; i >>= 1, digit *= 0.5)
+    if (i & 1u) value += digit;
+  return value;
+}
+
+}  // namespace
+
+std::string_view nameOf(RsmGather::Weight weight) { return weight == RsmGather::Weight::unbiased ? "unbiased" : "published"; }
+std::string_view nameOf(RsmGather::Rotation rotation) { return rotation == RsmGather::Rotation::none ? "none" : "noise"; }
+std::string_view nameOf(RsmGather::Near nearField) {
+  switch (nearField) {
+    case RsmGather::Near::none: return "none";
+    case RsmGather::Near::clamp: return "clamp";
+    case RsmGather::Near::disc: return "disc";
+    case RsmGather::Near::quad: return "quad";
+  }
+  return "?";
+}
+
+std::vector<glm::vec4> RsmGather::pattern(int samples, Weight weight, const glm::dvec2& shift) {
+  std::vector<glm::vec4> result;
+  for (int i = 0; i < samples; ++i) {
+    const double xi1 = std::fmod((i + 0.5) / samples + shift.x, 1.0);
+    const double angle = 2.0 * std::numbers::pi * (radicalInverse(static_cast<std::uint32_t>(i)) + shift.y);
+    result.emplace_back(xi1 * std::sin(angle), xi1 * std::cos(angle), weight == Weight::published ? xi1 * xi1 : xi1, 0.0);
+  }
+  return result;
+}
+
+gl::ShaderFlags RsmGather::flags(const Settings& settings) {
+  return {{"NEAR", static_cast<int>(settings.nearField)}, {"ROTATION", settings.rotation == Rotation::noise}};
+}
+
+RsmGather::RsmGather(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings, const gl::Texture& depth)
+    : settings_(settings) {
+  const auto loadGeometry = [&](const char* name, bool masked) {
+    return &programs.loadRaster(name, "forward/surface.vert", "rsm/visible.frag", scene.materialFlags(masked));
+  };
+  geometryPrograms_.opaque = loadGeometry("gather geometry opaque", false);
+  if (scene.needs().alphaMasks) geometryPrograms_.masked = loadGeometry("gather geometry masked", true);
+  if (settings.interpolates()) {
+    low_ = &programs.loadCompute("rsm gather low", "rsm/gather_low.comp", flags(settings));
+    interpolate_ = &programs.loadCompute("rsm interpolate", "rsm/interpolate.comp");
+    full_ = &programs.loadCompute("rsm gather refused", "rsm/gather_refused.comp", flags(settings));
+  } else {
+    full_ = &programs.loadCompute("rsm gather all", "rsm/gather_all.comp", flags(settings));
+  }
+  const std::vector<glm::vec4> samples = pattern(settings.samples, settings.weight);
+  pattern_ = gl::Buffer("rsm gather pattern", samples.size() * sizeof(glm::vec4), samples.data(), GL_STATIC_DRAW);
+  work_ = gl::Buffer("rsm gather work", sizeof(GatherCounts), nullptr, GL_DYNAMIC_COPY);
+  ring_ = std::make_unique<gl::ReadBackRing>("rsm gather counts", sizeof(GatherCounts));
+  resize(depth);
+}
+
+void RsmGather::resize(const gl::Texture& depth) {
+  const glm::ivec2 size = depth.size2d();
+  depth_ = &depth;
+  normal_ = gl::Texture("gather normal", GL_RGBA16F, size);
+  irradiance_ = gl::Texture("gathered irradiance", GL_RGBA32F, size);
+  if (settings_.interpolates()) {
+    lowIrradiance_ = gl::Texture("gathered irradiance low", GL_RGBA32F, lowSize(size, settings_.lowResolution));
+    refused_ = gl::Buffer("refused pixels", static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * sizeof(GLuint), nullptr,
+                          GL_DYNAMIC_COPY);
+  }
+  const std::array<const gl::Texture*, 1> colors{&normal_};
+  geometry_ = gl::Framebuffer("gather geometry", colors, &depth);
+}
+
+void RsmGather::recordGeometry(const GpuScene& scene, const GpuScene::View& view) const {
+  gl::RasterState state;
+  state.depth = gl::Depth::lessWrite;
+  const gl::RasterPass pass("gather geometry", geometry_, state);
+  pass.clearDepth();  // normals are read where depth says that there is a surface
+  scene.draw(geometryPrograms_, view);
+}
+
+void RsmGather::bindMap(const gl::Program& program, const Settings& settings, const ReflectiveShadowMap::Outputs& rsm) {
+  program.use();
+  rsm.bind();
+  program.set("gatherRadius", settings.radius);
+  if (settings.nearField == Near::clamp) program.set("minimumDistance2", settings.clampTexels * settings.clampTexels * rsm.texelArea);
+}
+
+void RsmGather::bindVisible(const gl::Program& program, const Inputs& inputs) const {
+  program.use();
+  depth_->bind(kDepthUnit);
+  normal_.bind(kNormalUnit);
+  program.set("worldFromClip", inputs.worldFromClip);
+  if (settings_.interpolates()) program.set("lowStep", settings_.lowResolution);
+  pattern_.bind(GL_SHADER_STORAGE_BUFFER, kPatternBinding);
+  work_.bind(GL_SHADER_STORAGE_BUFFER, kWorkBinding);
+  if (settings_.interpolates()) refused_.bind(GL_SHADER_STORAGE_BUFFER, kRefusedBinding);
+}
+
+void RsmGather::gatherLow(const Inputs& inputs) {
+  const GatherCounts start;
+  work_.upload(0, sizeof start, &start);
+  const gl::ComputePass pass("gather low", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+  bindMap(*low_, settings_, inputs.rsm);
+  bindVisible(*low_, inputs);
+  lowIrradiance_.bindImage(0, GL_WRITE_ONLY);
+  pass.dispatch(lowIrradiance_.size(), glm::ivec3(8, 8, 1));
+}
+
+void RsmGather::interpolate(const Inputs& inputs) {
+  const gl::ComputePass pass("interpolation", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  bindVisible(*interpolate_, inputs);
+  lowIrradiance_.bind(kLowUnit);
+  interpolate_->set("pixelWidth", inputs.pixelWidth);
+  interpolate_->set("fitNormal", settings_.fitNormal);
+  interpolate_->set("fitPlane", settings_.fitPlane);
+  interpolate_->set("fitDistance", settings_.fitDistance);
+  irradiance_.bindImage(0, GL_WRITE_ONLY);
+  pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));
+}
+
+void RsmGather::gatherFull(const Inputs& inputs) {
+  if (!settings_.interpolates()) {
+    const GatherCounts start;
+    work_.upload(0, sizeof start, &start);
+  }
+  {
+    const gl::ComputePass pass("gather full", GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    bindMap(*full_, settings_, inputs.rsm);
+    bindVisible(*full_, inputs);
+    irradiance_.bindImage(0, GL_WRITE_ONLY);
+    if (settings_.interpolates())
+      pass.dispatchIndirect(work_);
+    else
+      pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));
+  }
+  ring_->copy(work_);
+}
+
+void RsmGather::collect(bool wait) {
+  for (std::vector<GLuint> words = ring_->fetch(wait); !words.empty(); words = ring_->fetch(wait)) {
+    const GLuint refused = words[3], surfaces = words[4], lowSamples = words[5];
+    ++counts_.frames;
+    counts_.pixels += surfaces;
+    counts_.refused += refused;
+    counts_.gathered += settings_.interpolates() ? lowSamples + refused : surfaces;
+  }
+}
+
+std::size_t RsmGather::gpuBytes() const {
+  std::size_t bytes = pattern_.bytes() + work_.bytes() + ring_->bytes() + normal_.bytes() + irradiance_.bytes();
+  if (settings_.interpolates()) bytes += lowIrradiance_.bytes() + refused_.bytes();
+  return bytes;
+}
+
+}  // namespace lucerna

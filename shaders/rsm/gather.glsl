@@ -1,0 +1,34 @@
+// Irradiance at a point from the reflective shadow map: samples of it around the point's projection (s,t) at
+// (s + r xi1 sin 2 pi xi2, t + r xi1 cos 2 pi xi2) [Dachsbacher2005 sec 4.1].
+// The density of these per texel is 1 / (2 pi R^2 xi1), R = r in texels, so the sum over all texels within R is estimated
+// without bias by sum_i E_i xi1_i 2 pi R^2 / N. The published weight is xi1^2 in xi1's place.
+#include "rsm/transfer.glsl"
+layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // xi1 sin, xi1 cos, weight, unused
+uniform float gatherRadius;  // r, fraction of the map's side
+
+vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
+  ivec2 size = rsmSize();
+  vec2 centre = rsmProject(position) * vec2(size);
+  vec2 radius = gatherRadius * vec2(size);
+  float c = cos(rotation), s = sin(rotation);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < pattern.length(); ++i) {
+    vec3 p = pattern[i].xyz;
+    vec2 at = floor(centre + radius * vec2(c * p.x + s * p.y, c * p.y - s * p.x));
+    // Beyond the map is no light; compared as floats, since the integer of a huge or undefined number is undefined.
+    if (!(min(at.x, at.y) >= 0.0 && at.x < float(size.x) && at.y < float(size.y))) continue;
+    RsmSurfel surfel = rsmSurfel(ivec2(at));
+    if (surfel.lit) sum += p.z * surfelIrradiance(surfel, position, normal);
+  }
+  return sum * (2.0 * kPi * radius.x * radius.y / float(pattern.length()));
+}
+
+// The angle by which a pixel turns the pattern: neighbours differ most, after the interleaved gradient noise of
+// J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", SIGGRAPH course 2014.
+float pixelRotation(ivec2 pixel) {
+#if ROTATION
+  return 2.0 * kPi * fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
+#else
+  return 0.0;
+#endif
+}

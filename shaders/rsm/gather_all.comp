@@ -1,0 +1,23 @@
+// The full gather of every pixel: what there is without interpolation.
+#include "rsm/gather.glsl"
+#include "rsm/visible.glsl"
+#include "rsm/work.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;
+shared uint groupSurfaces;
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u) groupSurfaces = 0u;
+  barrier();
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (all(lessThan(pixel, imageSize(irradianceImage)))) {
+    vec4 result = vec4(0.0);
+    if (isVisibleSurface(pixel)) {
+      result = vec4(gatherIrradiance(visiblePosition(pixel), visibleUnitNormal(pixel), pixelRotation(pixel)), 1.0);
+      atomicAdd(groupSurfaces, 1u);
+    }
+    imageStore(irradianceImage, pixel, result);
+  }
+  barrier();
+  if (gl_LocalInvocationIndex == 0u && groupSurfaces > 0u) atomicAdd(work.surfaces, groupSurfaces);
+}

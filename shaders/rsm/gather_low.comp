@@ -1,0 +1,25 @@
+// Indirect irradiance at every Nth pixel each way [Dachsbacher2005, screen-space interpolation].
+#include "rsm/gather.glsl"
+#include "rsm/visible.glsl"
+#include "rsm/low.glsl"
+#include "rsm/work.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba32f, binding = 0) writeonly uniform image2D lowIrradiance;  // W/m^2; w = 1 on a surface
+shared uint groupSamples;
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u) groupSamples = 0u;
+  barrier();
+  ivec2 low = ivec2(gl_GlobalInvocationID.xy);
+  if (all(lessThan(low, imageSize(lowIrradiance)))) {
+    ivec2 pixel = lowPixel(low);
+    vec4 result = vec4(0.0);
+    if (isVisibleSurface(pixel)) {
+      result = vec4(gatherIrradiance(visiblePosition(pixel), visibleUnitNormal(pixel), pixelRotation(pixel)), 1.0);
+      atomicAdd(groupSamples, 1u);
+    }
+    imageStore(lowIrradiance, low, result);
+  }
+  barrier();
+  if (gl_LocalInvocationIndex == 0u && groupSamples > 0u) atomicAdd(work.lowSamples, groupSamples);
+}

@@ -1,0 +1,15 @@
+// The full gather of the pixels in the list that interpolation left. Dispatched indirectly; where the list is longer than the
+// groups that a dispatch may have, each takes several.
+#include "rsm/gather.glsl"
+#include "rsm/visible.glsl"
+#include "rsm/work.glsl"
+layout(local_size_x = WORK_GROUP) in;
+layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;
+layout(std430, binding = 2) readonly buffer Refused { uint refusedPixels[]; };
+
+void main() {
+  for (uint i = gl_GlobalInvocationID.x; i < work.refused; i += gl_NumWorkGroups.x * WORK_GROUP) {
+    ivec2 pixel = ivec2(refusedPixels[i] & 0xffffu, refusedPixels[i] >> 16);
+    imageStore(irradianceImage, pixel, vec4(gatherIrradiance(visiblePosition(pixel), visibleUnitNormal(pixel), pixelRotation(pixel)), 2.0));
+  }
+}

@@ -1,0 +1,640 @@
+// The thin layer over OpenGL: objects, programs, passes, timer queries, and the layout of structs shared with GLSL.
+#include "support/gl_fixture.hpp"
+#include "support/temp_folder.hpp"
+
+#include "base/files.hpp"
+#include "base/statistics.hpp"
+#include "gl/pass.hpp"
+#include "gl/time_query.hpp"
+#include "lpv/light_propagation_volume.hpp"
+#include "shared/frame.h"
+#include "shared/lpv.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <chrono>
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <type_traits>
+
+namespace lucerna::gl {
+namespace {
+
+namespace fs = std::filesystem;
+using test::badInputMessage;
+using test::TempFolder;
+
+::testing::AssertionResult has(const std::string& text, std::string_view part) {
+  if (text.find(part) != std::string::npos) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "\"" << text << "\" has no \"" << part << "\"";
+}
+
+// ---- objects -----------------------------------------------------------------------------------------------------------
+
+class GlObjects : public test::GlTest {
+ protected:
+  static Texture small(const std::string& name = "small") { return Texture(name, GL_RGBA8, glm::ivec2(2)); }
+  static std::string labelOf(GLenum identifier, GLuint id) {
+    std::array<char, 256> text{};
+    GLsizei length = 0;
+    glGetObjectLabel(identifier, id, static_cast<GLsizei>(text.size()), &length, text.data());
+    return {text.data(), static_cast<std::size_t>(length)};
+  }
+  /// What move construction, move assignment and the end of a scope must do to any of the owners.
+  template <class Object, class Make, class IsAlive>
+  static void expectMoveOnly(const Make& make, const IsAlive& isAlive) {
+    static_assert(!std::is_copy_constructible_v<Object> && !std::is_copy_assignable_v<Object>);
+    static_assert(std::is_nothrow_move_constructible_v<Object> && std::is_nothrow_move_assignable_v<Object>);
+    EXPECT_EQ(Object().id(), 0u);
+    GLuint first = 0, second = 0;
+    {
+      Object a = make();
+      first = a.id();
+      ASSERT_NE(first, 0u);
+      Object b(std::move(a));
+      EXPECT_EQ(a.id(), 0u);  // NOLINT: what a moved-from one holds is the question
+      EXPECT_EQ(b.id(), first);
+      EXPECT_TRUE(isAlive(first));
+      Object c = make();
+      second = c.id();
+      c = std::move(b);
+      EXPECT_EQ(b.id(), 0u);  // NOLINT
+      EXPECT_EQ(c.id(), first);
+      EXPECT_TRUE(isAlive(first));
+      EXPECT_FALSE(isAlive(second)) << "what was there before is deleted at once";
+      Object& self = c;
+      c = std::move(self);
+      EXPECT_EQ(c.id(), first);
+      EXPECT_TRUE(isAlive(first));
+    }
+    EXPECT_FALSE(isAlive(first));
+    // Deleted once: a name that was given out again must survive the end of the moved-from owner.
+    Object moved = make();
+    {
+      Object old = make();
+      moved = std::move(old);
+    }
+    EXPECT_TRUE(isAlive(moved.id()));
+  }
+};
+
+TEST_F(GlObjects, AreMoveOnlyAndDeletedOnce) {
+  expectMoveOnly<Buffer>([] { return Buffer("b", 16, nullptr, GL_STATIC_DRAW); }, [](GLuint id) { return glIsBuffer(id) == GL_TRUE; });
+  expectMoveOnly<Texture>([] { return small(); }, [](GLuint id) { return glIsTexture(id) == GL_TRUE; });
+  const Texture target = small();
+  const std::array<const Texture*, 1> targets{&target};
+  expectMoveOnly<Framebuffer>([&] { return Framebuffer("f", targets); }, [](GLuint id) { return glIsFramebuffer(id) == GL_TRUE; });
+  expectMoveOnly<VertexArray>([] { return VertexArray("v"); }, [](GLuint id) { return glIsVertexArray(id) == GL_TRUE; });
+}
+
+TEST_F(GlObjects, AMovedFromObjectHoldsNoBytes) {
+  Buffer a("a", 64, nullptr, GL_STATIC_DRAW);
+  const Buffer b(std::move(a));
+  EXPECT_EQ(a.bytes(), 0u);  // NOLINT
+  EXPECT_EQ(b.bytes(), 64u);
+  Texture c = small();
+  const Texture d(std::move(c));
+  EXPECT_EQ(c.bytes(), 0u);  // NOLINT
+  EXPECT_EQ(d.bytes(), 16u);
+}
+
+TEST_F(GlObjects, CarryTheirNames) {
+  const Buffer buffer("my buffer", 4, nullptr, GL_STATIC_DRAW);
+  const Texture texture = small("my texture");
+  const std::array<const Texture*, 1> targets{&texture};
+  const Framebuffer framebuffer("my framebuffer", targets);
+  const VertexArray vertexArray("my vertex array");
+  EXPECT_EQ(labelOf(GL_BUFFER, buffer.id()), "my buffer");
+  EXPECT_EQ(labelOf(GL_TEXTURE, texture.id()), "my texture");
+  EXPECT_EQ(labelOf(GL_FRAMEBUFFER, framebuffer.id()), "my framebuffer");
+  EXPECT_EQ(labelOf(GL_VERTEX_ARRAY, vertexArray.id()), "my vertex array");
+  EXPECT_EQ(labelOf(GL_PROGRAM, programs().loadRaster("my program", "lib/fullscreen.vert", "forward/tonemap.frag").id()), "my program");
+}
+
+TEST_F(GlObjects, BuffersKeepWhatIsUploaded) {
+  const std::array<std::uint32_t, 4> initial{1, 2, 3, 4};
+  Buffer buffer("b", sizeof initial, initial.data(), GL_DYNAMIC_DRAW);
+  EXPECT_EQ(buffer.read<std::uint32_t>(), (std::vector<std::uint32_t>{1, 2, 3, 4}));
+  const std::array<std::uint32_t, 2> part{7, 8};
+  buffer.upload(4, sizeof part, part.data());
+  EXPECT_EQ(buffer.read<std::uint32_t>(), (std::vector<std::uint32_t>{1, 7, 8, 4}));
+  buffer.clear(0xabcd1234u);
+  EXPECT_EQ(buffer.read<std::uint32_t>(), std::vector<std::uint32_t>(4, 0xabcd1234u));
+  buffer.clear();
+  EXPECT_EQ(buffer.read<std::uint32_t>(), std::vector<std::uint32_t>(4, 0u));
+  EXPECT_EQ(buffer.bytes(), 16u);
+}
+
+class GlObjectsDeathTest : public GlObjects {};
+TEST_F(GlObjectsDeathTest, AnUploadBeyondTheEndAborts) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  Buffer buffer("b", 16, nullptr, GL_STATIC_DRAW);
+  const std::uint32_t word = 0;
+  EXPECT_DEATH(buffer.upload(13, sizeof word, &word), "offset 13 \\+ 4 bytes > 16");
+  EXPECT_DEATH(bytesPerTexel(GL_RGB9_E5), "not in the engine's table");
+}
+
+TEST_F(GlObjects, TexturesKeepWhatIsUploaded) {
+  std::vector<glm::vec4> values;
+  for (int i = 0; i < 12; ++i) values.emplace_back(0.25 * i, -1.5, 0.125 * i * i, 1.0);  // exact in 16-bit floats
+  for (const GLenum format : {GL_RGBA32F, GL_RGBA16F}) {
+    Texture flat("2d", format, glm::ivec2(4, 3));
+    flat.upload(GL_RGBA, GL_FLOAT, values.data());
+    EXPECT_EQ(flat.readRgba(), values);
+    Texture deep("3d", format, glm::ivec3(2, 3, 2));
+    deep.upload(GL_RGBA, GL_FLOAT, values.data());
+    EXPECT_EQ(deep.readRgba(), values);
+    Texture layered("array", format, glm::ivec3(2, 2, 3), {}, 2, GL_TEXTURE_2D_ARRAY);
+    layered.upload(GL_RGBA, GL_FLOAT, values.data());
+    layered.upload(GL_RGBA, GL_FLOAT, values.data(), 1);
+    EXPECT_EQ(layered.readRgba(), values);
+    EXPECT_EQ(layered.readRgba(1), std::vector<glm::vec4>(values.begin(), values.begin() + 3));  // layers stay, texels halve
+  }
+  // 32-bit floats to the last bit, huge and tiny, and what 16-bit ones make of them.
+  const std::vector<glm::vec4> extremes{{3.0e38f, 1e-38f, 1.0f / 3.0f, 70000.0f}};
+  Texture full("full", GL_RGBA32F, glm::ivec2(1)), half("half", GL_RGBA16F, glm::ivec2(1));
+  full.upload(GL_RGBA, GL_FLOAT, extremes.data());
+  half.upload(GL_RGBA, GL_FLOAT, extremes.data());
+  EXPECT_EQ(full.readRgba(), extremes);
+  EXPECT_NEAR(half.readRgba()[0].z, 1.0 / 3.0, 1e-3 / 3.0);
+  EXPECT_EQ(half.readRgba()[0].y, 0.0f);
+
+  const std::array<float, 6> floats{0.0f, 0.25f, 0.5f, 0.75f, 1.0f, 0.125f};
+  Texture red("red", GL_R32F, glm::ivec2(3, 2)), depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(3, 2));
+  red.upload(GL_RED, GL_FLOAT, floats.data());
+  depth.upload(GL_DEPTH_COMPONENT, GL_FLOAT, floats.data());
+  const auto read = red.readRgba();
+  for (std::size_t i = 0; i < floats.size(); ++i) EXPECT_EQ(read[i], glm::vec4(floats[i], 0.0f, 0.0f, 1.0f));
+  EXPECT_EQ(depth.readDepth(), std::vector<float>(floats.begin(), floats.end()));
+
+  // 8 bits, rows of 3 bytes: no row is padded.
+  const std::array<std::uint8_t, 6> bytes{0, 51, 102, 153, 204, 255};
+  Texture mask("mask", GL_R8, glm::ivec2(3, 2));
+  mask.upload(GL_RED, GL_UNSIGNED_BYTE, bytes.data());
+  const auto readMask = mask.readRgba();
+  for (std::size_t i = 0; i < bytes.size(); ++i) EXPECT_FLOAT_EQ(readMask[i].x, static_cast<float>(bytes[i]) / 255.0f);
+  const std::array<std::uint8_t, 8> colours{255, 0, 51, 255, 1, 2, 3, 4};
+  for (const GLenum format : {GL_RGBA8, GL_SRGB8_ALPHA8}) {
+    Texture colour("colour", format, glm::ivec2(2, 1));
+    colour.upload(GL_RGBA, GL_UNSIGNED_BYTE, colours.data());
+    std::array<std::uint8_t, 8> back{};
+    glActiveTexture(GL_TEXTURE0);
+    colour.bind(0);
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, back.data());
+    EXPECT_EQ(back, colours);
+  }
+  const std::array<std::int32_t, 2> integers{-2147483647, 2147483647};
+  Texture integer("integer", GL_R32I, glm::ivec2(2, 1));
+  integer.upload(GL_RED_INTEGER, GL_INT, integers.data());
+  std::array<std::int32_t, 2> back{};
+  integer.bind(0);
+  glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_INT, back.data());
+  EXPECT_EQ(back, integers);
+}
+
+TEST_F(GlObjects, ClearToZeroWithAndWithoutTheExtension) {
+  for (const bool haveClearTexture : {false, true}) {
+    if (haveClearTexture && !capabilities().clearTexture) {
+      std::cout << "[ skipped  ] no ARB_clear_texture here\n";
+      continue;
+    }
+    const std::vector<glm::vec4> ones(4 * 4 * 2, glm::vec4(1.0f));
+    Texture deep("3d", GL_RGBA16F, glm::ivec3(4, 4, 2)), flat("2d", GL_RGBA32F, glm::ivec2(4, 4), {}, 3), red("red", GL_R8, glm::ivec2(3, 3)),
+        depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(2, 2));
+    deep.upload(GL_RGBA, GL_FLOAT, ones.data());
+    for (int level = 0; level < 3; ++level) flat.upload(GL_RGBA, GL_FLOAT, ones.data(), level);
+    red.upload(GL_RED, GL_FLOAT, ones.data());
+    depth.upload(GL_DEPTH_COMPONENT, GL_FLOAT, ones.data());
+    const std::array<const Texture*, 4> all{&deep, &flat, &red, &depth};
+    clearToZero(all, haveClearTexture);
+    EXPECT_EQ(deep.readRgba(), std::vector<glm::vec4>(32, glm::vec4(0.0f)));
+    for (int level = 0; level < 3; ++level) {
+      for (const glm::vec4& texel : flat.readRgba(level)) EXPECT_EQ(texel, glm::vec4(0.0f)) << level;
+    }
+    for (const glm::vec4& texel : red.readRgba()) EXPECT_EQ(texel.x, 0.0f);
+    EXPECT_EQ(depth.readDepth(), std::vector<float>(4, 0.0f));
+  }
+}
+
+TEST_F(GlObjects, BytesAreThoseOfAllLevels) {
+  EXPECT_EQ(Texture("t", GL_RGBA8, glm::ivec2(8, 4)).bytes(), 8u * 4 * 4);
+  EXPECT_EQ(Texture("t", GL_RGBA8, glm::ivec2(8, 4), {}, 4).bytes(), 4u * (32 + 8 + 2 + 1));
+  EXPECT_EQ(Texture("t", GL_RGBA16F, glm::ivec3(3, 5, 7)).bytes(), 8u * 105);
+  EXPECT_EQ(Texture("t", GL_RGBA32F, glm::ivec3(4, 4, 4), {}, 3).bytes(), 16u * (64 + 8 + 1));
+  EXPECT_EQ(Texture("t", GL_R8, glm::ivec3(4, 4, 5), {}, 3, GL_TEXTURE_2D_ARRAY).bytes(), 5u * (16 + 4 + 1));
+}
+
+TEST_F(GlObjects, EditingLeavesTheUnitsOfOthersAlone) {
+  Texture mine = small(), other = small();
+  mine.bind(3);
+  const std::vector<std::uint8_t> data(16, 9);
+  other.upload(GL_RGBA, GL_UNSIGNED_BYTE, data.data());
+  other.readRgba();
+  other.generateMipmaps();
+  GLint bound = 0;
+  glActiveTexture(GL_TEXTURE3);
+  glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
+  EXPECT_EQ(static_cast<GLuint>(bound), mine.id());
+}
+
+// ---- programs ------------------------------------------------------------------------------------------------------------
+
+class GlPrograms : public test::GlTest {
+ protected:
+  void SetUp() override {
+    GlTest::SetUp();
+    write("lib/value.glsl", "float value() { return 0.25; }\n");
+    write("fill.vert", "void main() { gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.5, 1.0); }\n");
+    write("fill.frag",
+          "#include \"lib/value.glsl\"\nlayout(location = 0) out vec4 colour;\nuniform float unused;\nuniform float factor;\n"
+          "void main() {\n#if TWICE\n  colour = vec4(2.0 * value() * factor);\n#else\n  colour = vec4(value() * factor);\n#endif\n}\n");
+    library_ = std::make_unique<ProgramLibrary>(folder_.path());
+  }
+  void TearDown() override {
+    library_.reset();
+    GlTest::TearDown();
+  }
+  ProgramLibrary& library() { return *library_; }
+  const Program& fill(bool twice = false) { return library().loadRaster("fill", "fill.vert", "fill.frag", {{"TWICE", twice}}); }
+
+  /// Writes a shader and makes sure that its time of change differs.
+  void write(const std::string& name, const std::string& text) {
+    const fs::path file = folder_.write(name, text);
+    fs::last_write_time(file, fs::file_time_type::clock::now() + std::chrono::seconds(++writes_));
+  }
+  /// What the program fills a pixel with.
+  static float filled(const Program& program) {
+    const Texture target("target", GL_RGBA32F, glm::ivec2(1));
+    const std::array<const Texture*, 1> targets{&target};
+    const Framebuffer framebuffer("target", targets);
+    const VertexArray empty("empty");
+    {
+      const RasterPass pass("fill", framebuffer, {});
+      program.use();
+      program.set("factor", 1.0f);
+      drawFullScreen(empty);
+    }
+    return target.readRgba()[0].x;
+  }
+  const TempFolder& folder() const { return folder_; }
+  /// Mesa also tells its debug output of what does not compile.
+  static void forgetCompileErrors() {
+    for (const std::string& error : context().takeErrors()) EXPECT_TRUE(has(error, "error: "));
+  }
+
+ private:
+  TempFolder folder_;
+  std::unique_ptr<ProgramLibrary> library_;
+  int writes_ = 0;
+};
+
+TEST_F(GlPrograms, ReusesTheSameFilesAndFlags) {
+  const Program& once = fill(false);
+  const Program& twice = fill(true);
+  EXPECT_EQ(&once, &fill(false));
+  EXPECT_NE(&once, &twice);
+  EXPECT_EQ(library().statistics().built, 2);
+  EXPECT_EQ(library().statistics().reused, 1);
+  EXPECT_EQ(library().names(), (std::vector<std::string>{"fill", "fill"}));
+  EXPECT_EQ(filled(once), 0.25f);
+  EXPECT_EQ(filled(twice), 0.5f);
+}
+
+TEST_F(GlPrograms, UniformsByNameAndThoseOptimisedAwayAreSkipped) {
+  const Program& program = fill();
+  program.set("unused", 3.0f);
+  program.set("neverHeardOf", glm::mat4(1.0f));
+  const auto resources = program.activeResources();
+  EXPECT_NE(std::find(resources.begin(), resources.end(), "factor"), resources.end());
+  EXPECT_EQ(std::find(resources.begin(), resources.end(), "unused"), resources.end());
+}
+
+TEST_F(GlPrograms, ACompileErrorNamesItsFileAndLine) {
+  write("lib/value.glsl", "\n// two\nfloat value() { return undeclaredName; }\n");
+  const std::string message = badInputMessage([&] { fill(); });
+  EXPECT_TRUE(has(message, "program fill: shaders/fill.frag does not compile"));
+  EXPECT_TRUE(has(message, "shaders/lib/value.glsl:3: "));
+  EXPECT_TRUE(has(message, "undeclaredName"));
+  EXPECT_TRUE(library().names().empty());
+  forgetCompileErrors();
+}
+
+TEST_F(GlPrograms, ErrorsBeforeTheDriverReachTheCaller) {
+  write("cycle.glsl", "#include \"cycle.glsl\"\n");
+  write("cycle.frag", "#include \"cycle.glsl\"\nvoid main() {}\n");
+  write("flag.frag", "#if TWCE\n#endif\nvoid main() {}\n");
+  write("version.frag", "#version 430\nvoid main() {}\n");
+  const auto load = [&](const char* file) {
+    return badInputMessage([&] { library().loadRaster("p", "fill.vert", file, {{"TWICE", 1}}); });
+  };
+  EXPECT_TRUE(has(load("cycle.frag"), "program p: shaders/cycle.glsl:1: include cycle back to shaders/cycle.glsl"));
+  EXPECT_TRUE(has(load("flag.frag"), "shaders/flag.frag:1: flag TWCE is not declared"));
+  EXPECT_TRUE(has(load("version.frag"), "shaders/version.frag:1: #version"));
+  EXPECT_TRUE(has(load("missing.frag"), "shader file shaders/missing.frag is missing"));
+}
+
+TEST_F(GlPrograms, ALinkErrorIsAnError) {
+  write("wants.frag", "in vec3 nobodyWritesThis;\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(nobodyWritesThis, 1.0); }\n");
+  EXPECT_TRUE(has(badInputMessage([&] { library().loadRaster("p", "fill.vert", "wants.frag"); }), "program p: does not link"));
+}
+
+TEST_F(GlPrograms, HotReloadTakesAChangedInclude) {
+  const Program& program = fill();
+  const GLuint before = program.id();
+  EXPECT_EQ(library().reloadChanged().reloaded, 0);
+  EXPECT_EQ(program.id(), before);
+  write("lib/value.glsl", "float value() { return 0.75; }\n");
+  EXPECT_EQ(library().reloadChanged().reloaded, 1);
+  EXPECT_EQ(filled(program), 0.75f);
+  EXPECT_EQ(library().reloadChanged().reloaded, 0);
+}
+
+TEST_F(GlPrograms, HotReloadKeepsTheOldProgramUntilTheFileIsMended) {
+  // Broken in each of the ways there are: for the driver, for our preprocessor, in linking; the file itself and an include.
+  struct Break {
+    const char* file;
+    const char* text;
+    const char* message;
+  };
+  const std::string goodFragment = "layout(location = 0) out vec4 colour;\nuniform float factor;\nvoid main() { colour = vec4(0.5 * factor); }\n";
+  for (const Break& broken : {Break{"lib/value.glsl", "float value() { return ; }\n", "shaders/lib/value.glsl:1"},
+                              Break{"lib/value.glsl", "#if UNKNOWN\n#endif\n", "flag UNKNOWN is not declared"},
+                              Break{"fill.frag", "#include \"lib/none.glsl\"\n", "shaders/lib/none.glsl is missing"},
+                              Break{"fill.vert", "#version 430\n", "#version"},
+                              Break{"fill.frag", "in vec3 nobody;\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(nobody, 1.0); }\n", "does not link"}}) {
+    SetUp();
+    const Program& program = fill();
+    const GLuint before = program.id();
+    const std::string good = readFileText(folder() / broken.file);
+    write(broken.file, broken.text);
+    const auto failed = library().reloadChanged();
+    EXPECT_EQ(failed.reloaded, 0);
+    ASSERT_EQ(failed.failures.size(), 1u) << broken.message;
+    EXPECT_TRUE(has(failed.failures[0], broken.message));
+    forgetCompileErrors();
+    EXPECT_EQ(program.id(), before);
+    EXPECT_EQ(filled(program), 0.25f) << "the old program still draws";
+    EXPECT_TRUE(library().reloadChanged().failures.empty()) << "the same failure is told once";
+    write(broken.file, good);
+    const auto mended = library().reloadChanged();
+    EXPECT_EQ(mended.reloaded, 1) << broken.message;
+    EXPECT_TRUE(mended.failures.empty());
+    write("fill.frag", goodFragment);
+    EXPECT_EQ(library().reloadChanged().reloaded, 1) << broken.message;
+    EXPECT_EQ(filled(program), 0.5f);
+  }
+}
+
+TEST_F(GlPrograms, AShaderFolderThatIsMissingIsNamed) {
+  const char* known = std::getenv("LUCERNA_SHADERS");
+  const std::string before = known ? known : "";
+  ::setenv("LUCERNA_SHADERS", "/nowhere/at/all", 1);
+  const std::string message = badInputMessage([] { ProgramLibrary(); });
+  ::setenv("LUCERNA_SHADERS", before.c_str(), 1);  // empty: the project's own
+  EXPECT_TRUE(has(message, "/nowhere/at/all"));
+  EXPECT_TRUE(has(message, "LUCERNA_SHADERS"));
+}
+
+// ---- passes --------------------------------------------------------------------------------------------------------------
+
+class GlPasses : public GlPrograms {
+ protected:
+  /// Every piece of state that could spoil a pass, set to what spoils it.
+  static void poison() {
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(0, 0, 0, 0);
+    glEnable(GL_STENCIL_TEST);
+    glStencilFunc(GL_NEVER, 0, 0);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ZERO, GL_ZERO);
+    glBlendEquation(GL_FUNC_REVERSE_SUBTRACT);
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_FRONT_AND_BACK);
+    glFrontFace(GL_CW);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_NEVER);
+    glDepthRange(0.9, 0.1);
+    glEnable(GL_DEPTH_CLAMP);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1000.0f, 100000.0f);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_POINT);
+    glViewport(1, 1, 1, 1);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    glDisable(GL_PROGRAM_POINT_SIZE);
+    glDisable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    glEnable(GL_RASTERIZER_DISCARD);
+    glEnable(GL_COLOR_LOGIC_OP);
+    glLogicOp(GL_CLEAR);
+    glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    glEnable(GL_SAMPLE_MASK);
+    glSampleMaski(0, 0);
+    glEnable(GL_PRIMITIVE_RESTART);
+    glPrimitiveRestartIndex(0);
+  }
+  /// Runs after every test: what poison() touched, as a new context has it.
+  void TearDown() override {
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_STENCIL_TEST);
+    GlPrograms::TearDown();
+  }
+};
+
+TEST_F(GlPasses, SetTheirStateWhateverWasBefore) {
+  write("depth.vert",
+        "uniform float z;\nvoid main() { gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, z, 1.0); }\n");
+  write("colour.frag", "uniform float value;\nlayout(location = 0) out vec4 colour;\nvoid main() { colour = vec4(value); }\n");
+  const Program& program = library().loadRaster("p", "depth.vert", "colour.frag");
+  const VertexArray empty("empty");
+  const auto draw = [&](float value, float z) {
+    program.use();
+    program.set("value", value);
+    program.set("z", z);
+    drawFullScreen(empty);
+  };
+  const auto picture = [&](bool poisoned) {
+    const Texture color("colour", GL_RGBA32F, glm::ivec2(5, 3)), depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(5, 3));
+    const std::array<const Texture*, 1> targets{&color};
+    const Framebuffer framebuffer("target", targets, &depth);
+    if (poisoned) poison();
+    {
+      RasterState state;
+      state.depth = Depth::lessWrite;
+      const RasterPass pass("depth", framebuffer, state);
+      pass.clearColor(0, glm::vec4(8.0f));
+      pass.clearDepth();
+      draw(1.0f, 0.5f);   // nearer than the clear
+      draw(2.0f, 0.75f);  // behind: hidden
+    }
+    if (poisoned) poison();
+    {
+      RasterState state;
+      state.blend = Blend::add;
+      const RasterPass pass("add", framebuffer, state);
+      draw(0.25f, 0.9f);  // no depth test
+      draw(0.25f, 0.9f);
+    }
+    if (poisoned) poison();
+    {
+      RasterState state;
+      state.depth = Depth::equalReadOnly;
+      state.cull = Cull::back;
+      const RasterPass pass("equal", framebuffer, state);
+      draw(7.0f, 0.6f);   // not equal
+    }
+    auto result = color.readRgba();
+    for (const float z : depth.readDepth()) result.emplace_back(z);
+    return result;
+  };
+  const auto clean = picture(false);
+  for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(clean[i], glm::vec4(1.5f)) << i;
+  for (std::size_t i = 15; i < 30; ++i) EXPECT_FLOAT_EQ(clean[i].x, 0.75f) << i;
+  EXPECT_EQ(picture(true), clean);
+}
+
+TEST_F(GlPasses, ComputeCoversWhatIsAskedForAndMakesItVisible) {
+  write("count.comp",
+        "layout(local_size_x = 4, local_size_y = 2, local_size_z = 1) in;\nlayout(binding = 0, rgba32f) writeonly uniform image3D target;\n"
+        "void main() { imageStore(target, ivec3(gl_GlobalInvocationID), vec4(gl_GlobalInvocationID + 1u, 1.0)); }\n");
+  Texture target("t", GL_RGBA32F, glm::ivec3(5, 3, 2));
+  poison();
+  {
+    const ComputePass pass("count", GL_TEXTURE_UPDATE_BARRIER_BIT);
+    library().loadCompute("count", "count.comp").use();
+    target.bindImage(0, GL_WRITE_ONLY);
+    pass.dispatch(target.size(), {4, 2, 1});
+  }
+  const auto texels = target.readRgba();
+  for (int i = 0; i < 30; ++i) EXPECT_EQ(texels[static_cast<std::size_t>(i)], glm::vec4(i % 5 + 1, i / 5 % 3 + 1, i / 15 + 1, 1)) << i;
+}
+
+// ---- timer queries -------------------------------------------------------------------------------------------------------
+
+class GlTimeQuery : public GlPrograms {};
+
+TEST_F(GlTimeQuery, DropsTheWarmUpAndCountsTheRest) {
+  for (const bool finish : {true, false}) {
+    TimeQuery timer(finish);
+    for (int frame = 0; frame < 5; ++frame) {
+      {
+        const TimeQuery::Scope stage(timer, "fill");
+        filled(fill());
+      }
+      {
+        const TimeQuery::Scope stage(timer, "again");
+        filled(fill());
+      }
+      timer.drain();  // nothing is lost
+      EXPECT_EQ(timer.querySamples("fill").size(), static_cast<std::size_t>(frame));
+      EXPECT_EQ(timer.wallSamples("fill").size(), finish ? static_cast<std::size_t>(frame) : 0u);
+    }
+    EXPECT_EQ(timer.dropped(), 0u);
+    const auto statistics = timer.statistics();
+    ASSERT_EQ(statistics.size(), 2u);
+    EXPECT_EQ(statistics[0].name, "fill");
+    EXPECT_EQ(statistics[1].name, "again");
+    const StageStatistics& s = statistics[0];
+    EXPECT_EQ(s.count, 4u);
+    EXPECT_DOUBLE_EQ(s.queryMedianMs, median(timer.querySamples("fill")));
+    EXPECT_DOUBLE_EQ(s.queryP95Ms, percentile(timer.querySamples("fill"), 0.95));
+    EXPECT_EQ(std::isnan(s.wallMedianMs), !finish);
+    EXPECT_DOUBLE_EQ(s.medianMs, finish ? median(timer.wallSamples("fill")) : s.queryMedianMs);
+    EXPECT_GT(s.medianMs, 0.0);
+    for (const double ms : timer.querySamples("fill")) EXPECT_TRUE(ms >= 0.0 && ms < 10000.0) << ms;
+    timer.reset();
+    EXPECT_EQ(timer.statistics()[0].count, 0u);
+    EXPECT_TRUE(std::isnan(timer.statistics()[0].medianMs));
+    EXPECT_TRUE(timer.querySamples("no such stage").empty());
+  }
+}
+
+TEST_F(GlTimeQuery, NeverMorePendingThanTheRingAndEverySampleIsAccountedFor) {
+  TimeQuery timer(false);
+  constexpr int kFrames = 50;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const TimeQuery::Scope stage(timer, "fill");
+    filled(fill());
+  }
+  const std::size_t fetched = timer.querySamples("fill").size() + 1;  // and the warm-up
+  const std::size_t pending = kFrames - timer.dropped() - fetched;
+  EXPECT_LE(pending, 6u);
+  timer.drain();
+  EXPECT_EQ(timer.querySamples("fill").size() + 1 + timer.dropped(), static_cast<std::size_t>(kFrames));
+}
+
+class GlTimeQueryDeathTest : public GlTimeQuery {};
+TEST_F(GlTimeQueryDeathTest, StagesDoNotNest) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  TimeQuery timer(true);
+  timer.begin("outer");
+  EXPECT_DEATH(timer.begin("inner"), "stage inner begun inside stage outer");
+  timer.end();
+  EXPECT_DEATH(timer.end(), "no stage was begun");
+}
+
+// ---- shared structs ------------------------------------------------------------------------------------------------------
+
+class GlSharedStructs : public test::GlTest {
+ protected:
+  static GLint offsetOf(const Program& program, const char* name) {
+    const GLuint index = glGetProgramResourceIndex(program.id(), GL_UNIFORM, name);
+    if (index == GL_INVALID_INDEX) return -1;
+    const GLenum property = GL_OFFSET;
+    GLint offset = -1;
+    glGetProgramResourceiv(program.id(), GL_UNIFORM, index, 1, &property, 1, nullptr, &offset);
+    return offset;
+  }
+  static GLint sizeOf(const Program& program, const char* block) {
+    const GLuint index = glGetProgramResourceIndex(program.id(), GL_UNIFORM_BLOCK, block);
+    if (index == GL_INVALID_INDEX) return -1;
+    const GLenum property = GL_BUFFER_DATA_SIZE;
+    GLint size = -1;
+    glGetProgramResourceiv(program.id(), GL_UNIFORM_BLOCK, index, 1, &property, 1, nullptr, &size);
+    return size;
+  }
+};
+
+TEST_F(GlSharedStructs, FrameBlock) {
+  using shared::FrameConstants;
+  const Program& program = programs().loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
+#define EXPECT_OFFSET(member) EXPECT_EQ(offsetOf(program, "frame." #member), static_cast<GLint>(offsetof(FrameConstants, member))) << #member
+  EXPECT_OFFSET(clipFromWorld);
+  EXPECT_OFFSET(sunClipFromWorld);
+  EXPECT_OFFSET(cameraPosition);
+  EXPECT_OFFSET(exposure);
+  EXPECT_OFFSET(sunDirection);
+  EXPECT_OFFSET(shadowNormalOffset);
+  EXPECT_OFFSET(sunIrradiance);
+  EXPECT_OFFSET(shadowTexelUv);
+  EXPECT_OFFSET(background);
+#undef EXPECT_OFFSET
+  EXPECT_EQ(sizeOf(program, "FrameBlock"), static_cast<GLint>(sizeof(FrameConstants)));
+}
+
+TEST_F(GlSharedStructs, LpvBlock) {
+  using shared::LpvCascade;
+  using shared::LpvConstants;
+  const Program& program = programs().loadCompute("probe", "lpv/probe.comp", lucerna::LightPropagationVolume::lookupFlags({}));
+  const auto inCascade = [](std::size_t k, std::size_t member) {
+    return static_cast<GLint>(offsetof(LpvConstants, cascades) + k * sizeof(LpvCascade) + member);
+  };
+  for (std::size_t k = 0; k < LPV_MAX_CASCADES; ++k) {
+    const auto name = [&](const char* member) { return "lpv.cascades[" + std::to_string(k) + "]." + member; };
+    EXPECT_EQ(offsetOf(program, name("minimum").c_str()), inCascade(k, offsetof(LpvCascade, minimum)));
+    EXPECT_EQ(offsetOf(program, name("cellSize").c_str()), inCascade(k, offsetof(LpvCascade, cellSize)));
+    EXPECT_EQ(offsetOf(program, name("blendCentre").c_str()), inCascade(k, offsetof(LpvCascade, blendCentre)));
+    EXPECT_EQ(offsetOf(program, name("blendHalf").c_str()), inCascade(k, offsetof(LpvCascade, blendHalf)));
+  }
+  EXPECT_EQ(offsetOf(program, "lpv.shape"), static_cast<GLint>(offsetof(LpvConstants, shape)));
+  EXPECT_EQ(offsetOf(program, "lpv.referenceIrradiance"), static_cast<GLint>(offsetof(LpvConstants, referenceIrradiance)));
+  EXPECT_EQ(offsetOf(program, "lpv.blendBand"), static_cast<GLint>(offsetof(LpvConstants, blendBand)));
+  EXPECT_EQ(offsetOf(program, "lpv.lookupOffset"), static_cast<GLint>(offsetof(LpvConstants, lookupOffset)));
+  EXPECT_EQ(sizeOf(program, "LpvBlock"), static_cast<GLint>(sizeof(LpvConstants)));
+}
+
+}  // namespace
+}  // namespace lucerna::gl
