@@ -22,6 +22,7 @@ using Work = std::function<int()>;
 Work addWalk(CLI::App& app);
 Work addRender(CLI::App& app);
 Work addInfo(CLI::App& app);
+Work addBench(CLI::App& app);
 
 /// --host, --json, --quiet: every subcommand has them.
 struct CommonOptions {
@@ -47,6 +48,9 @@ struct PictureOptions {
 
 /// "640x360" with both from 1 to 16384; throws Error(badInput) naming the option.
 glm::ivec2 parseSize(const std::string& text);
+
+/// A camera's name, or px,py,pz,tx,ty,tz,fov: position, target, vertical field of view in degrees; empty: the scene's first.
+Camera chooseCamera(const Scene& scene, const std::string& text);
 
 /// Every key of --set with its meaning and default, for --help and README.
 std::string settingsHelp();

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <csignal>
 #include <ctime>
+#include <sstream>
 #include <unistd.h>
 
 namespace lucerna::demo {
@@ -186,6 +187,40 @@ glm::ivec2 parseSize(const std::string& text) {
   const auto cross = text.find('x');
   if (cross == std::string::npos) throwBadInput("--size {}: expected WIDTHxHEIGHT, such as 640x360", text);
   return {parseNumber("--size", text.substr(0, cross), 1, 16384), parseNumber("--size", text.substr(cross + 1), 1, 16384)};
+}
+
+Camera chooseCamera(const Scene& scene, const std::string& text) {
+  if (text.empty()) return scene.cameras.front();
+  for (const Camera& camera : scene.cameras)
+    if (camera.name == text) return camera;
+  std::vector<double> numbers;
+  std::istringstream stream(text);
+  std::string part;
+  while (std::getline(stream, part, ',')) {
+    std::size_t used = 0;
+    double value = NAN;
+    try {
+      value = std::stod(part, &used);
+    } catch (const std::exception&) {
+    }
+    if (used == 0 || used != part.size() || !std::isfinite(value)) numbers.clear();
+    if (used == 0 || used != part.size() || !std::isfinite(value)) break;
+    numbers.push_back(value);
+  }
+  if (numbers.size() != 7) {
+    std::string known;
+    for (const Camera& camera : scene.cameras) known += (known.empty() ? "" : ", ") + (camera.name.empty() ? "default" : camera.name);
+    throwBadInput("--camera {}: neither a camera of the scene ({}) nor px,py,pz,tx,ty,tz,fov", text, known);
+  }
+  Camera camera;
+  camera.position = {numbers[0], numbers[1], numbers[2]};
+  const glm::dvec3 view = glm::dvec3(numbers[3], numbers[4], numbers[5]) - camera.position;
+  if (glm::length(view) == 0.0) throwBadInput("--camera {}: the target is the position", text);
+  if (!(numbers[6] > 0.0 && numbers[6] < 180.0)) throwBadInput("--camera {}: the field of view is in degrees, above 0 and below 180", text);
+  camera.direction = glm::normalize(view);
+  camera.up = std::abs(camera.direction.y) < 0.999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
+  camera.verticalFov = glm::radians(numbers[6]);
+  return camera;
 }
 
 // ---------------------------------------------------------------------------------------------------- progress, interruption

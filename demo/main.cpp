@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include <string>
 #include <vector>
 
 int main(int argc, char** argv) {
@@ -19,17 +20,24 @@ int main(int argc, char** argv) {
   add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times", lucerna::demo::addWalk);
   add("render", "Render one picture of a scene", lucerna::demo::addRender);
   add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
+  add("bench", "Measure: the published tables and pictures of the originals, made again", lucerna::demo::addBench);
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    const auto used = app.get_subcommands();
-    if (used.empty() && argc > 1 && argv[1][0] != '-') {
-      fmt::print(stderr, "lucerna: {}: no such subcommand (lucerna --help lists them)\n", argv[1]);
+    std::string used;
+    const CLI::App* deepest = &app;
+    while (!deepest->get_subcommands().empty()) {
+      deepest = deepest->get_subcommands()[0];
+      used += deepest->get_name() + " ";
+    }
+    const std::vector<std::string> rest = deepest->remaining();
+    if (deepest->get_require_subcommand_min() > 0 && !rest.empty() && rest[0][0] != '-') {
+      fmt::print(stderr, "lucerna: {}: no such subcommand (lucerna {}--help lists them)\n", rest[0], used);
       return static_cast<int>(lucerna::ErrorKind::badInput);
     }
-    fmt::print(stderr, "lucerna: {} (lucerna {}--help lists the options)\n", error.what(), used.empty() ? "" : used[0]->get_name() + " ");
+    fmt::print(stderr, "lucerna: {} (lucerna {}--help lists the options)\n", error.what(), used);
     return static_cast<int>(lucerna::ErrorKind::badInput);
   }
   try {

@@ -189,7 +189,7 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
       if (!view) break;  // the walk ends by itself
       freeCamera.place(path.view(first + *view));
     } else {
-      freeCamera.move(input, dt);
+      freeCamera.move(input, std::min(dt, 0.1));  // a slow frame must not throw the camera across the room
     }
     renderer.resize(host.framebufferSize());
     renderer.render(freeCamera.camera());

@@ -26,8 +26,10 @@ std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds
     const double half = 0.5 * settings.cells * cascade.cellSize;
     glm::dvec3 centre = cameraPosition + cameraDirection * (settings.push * half);
     if (!scene.empty() && settings.heldInScene) {
-      const glm::dvec3 low = scene.min + half - 1.5 * cascade.cellSize;
-      const glm::dvec3 high = scene.max - half + 1.5 * cascade.cellSize;
+      // As far out as it takes for the grid to count at the scene's outer surfaces: it has faded out some three cells before its border.
+      const double beyond = std::min(4.0, 0.25 * settings.cells) * cascade.cellSize;
+      const glm::dvec3 low = scene.min + half - beyond;
+      const glm::dvec3 high = scene.max - half + beyond;
       for (int axis = 0; axis < 3; ++axis)
         centre[axis] = low[axis] < high[axis] ? std::clamp(centre[axis], low[axis], high[axis]) : scene.centre()[axis];
     }

@@ -108,17 +108,26 @@ TEST(Cascades, AFarSceneIsPlacedLikeANearOne) {
 }
 
 TEST(Cascades, NeverFurtherOutOfTheSceneThanItMust) {
-  // The camera far outside: grids stay at the scene, at most a cell and a half beyond its bounds or, where they are larger than the
+  // The camera far outside: grids stay at the scene, at most four cells beyond its bounds or, where they are larger than the
   // scene, about its middle; snapping adds up to two cells.
   const Bounds scene = cube(glm::dvec3(0.0), 64.0);
   for (const double away : {-1e4, 1e4})
     for (const Cascade& c : placeCascades({16, 3}, scene, glm::dvec3(away, 0.0, -away), kAhead)) {
-      const double beyond = std::max(1.5 * c.cellSize, 0.5 * (16 * c.cellSize - 64.0)) + 2.0 * c.cellSize + 1e-9;
+      const double beyond = std::max(4.0 * c.cellSize, 0.5 * (16 * c.cellSize - 64.0)) + 2.0 * c.cellSize + 1e-9;
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(c.minimum()[axis], scene.min[axis] - beyond);
         EXPECT_LE(c.minimum()[axis] + 16 * c.cellSize, scene.max[axis] + beyond);
       }
     }
+}
+
+TEST(Cascades, TheFinestCountsAtTheScenesOuterSurfaces) {
+  // A cascade has faded out 3 cells (2.5 and the lookup's half) within its half extent: beside a wall of the bounds it must still count there.
+  const Bounds scene = cube(glm::dvec3(0.0), 64.0);
+  const auto cascades = placeCascades({32, 3}, scene, glm::dvec3(0.0, 30.0, 31.0), kAhead);
+  const double reach = (0.5 * 32 - 3.0) * cascades[0].cellSize;
+  EXPECT_GT(cascades[0].centre.y + reach, scene.max.y);
+  EXPECT_GT(cascades[0].centre.z + reach, scene.max.z);
 }
 
 TEST(Cascades, NothingOfASceneIsStillAGrid) {

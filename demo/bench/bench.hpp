@@ -1,0 +1,58 @@
+// `lucerna bench`: its sub-subcommands, one file each, and what they share.
+#pragma once
+
+#include "commands.hpp"
+
+#include <string>
+#include <vector>
+
+namespace lucerna::demo {
+
+Work addBenchTables(CLI::App& app);
+Work addBenchPictures(CLI::App& app);
+
+namespace bench {
+
+/// --original: whose tables and pictures. Throws Error(badInput) listing those that there are.
+void checkOriginal(const std::string& name);
+/// SCENE, or the atrium where none is given.
+std::string sceneOrAtrium(const std::string& scene);
+
+/// A figure of a published table beside ours.
+struct Row {
+  struct Published {
+    std::string gpu;
+    double ms;
+  };
+  std::string table, setting, stage;
+  int grids = 0;                     ///< 0: does not matter
+  std::vector<Published> published;  ///< one a GPU
+  std::string fill, propagate;       ///< how ours was made; empty where it does not matter
+  std::vector<double> samples;       ///< ours, ms; empty: not measured
+  bool isMean = false;               ///< else the median
+  std::string missing;               ///< an extension that this driver lacks; empty: none
+
+  std::string name() const;
+  double measured() const;  ///< NaN where there is no sample
+};
+
+struct TablesInput {
+  const gl::Context& context;
+  gl::ProgramLibrary& programs;
+  const Scene& scene;
+  double scale;  ///< 0..1
+  bool quiet;
+};
+
+struct Tables {
+  std::vector<std::string> notes;  ///< how it was measured, and how that differs from what was published
+  std::vector<Row> rows;
+  std::string summary;             ///< printed after the tables
+  nlohmann::ordered_json json;     ///< the same, and the settings
+};
+
+/// Tables 7.2 to 7.8 of the LPV original, and its comparison of ways to clear.
+Tables measureLpvTables(const TablesInput& input);
+
+}  // namespace bench
+}  // namespace lucerna::demo

@@ -1,0 +1,138 @@
+// lucerna bench tables --original NAME [SCENE]: every published table of an original, measured again here.
+#include "base/error.hpp"
+#include "base/statistics.hpp"
+#include "bench/bench.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace lucerna::demo {
+
+namespace bench {
+
+std::string Row::name() const {
+  std::string text = setting;
+  if (grids > 0) text += fmt::format(", {} grid{}", grids, grids > 1 ? "s" : "");
+  text += ", " + stage;
+  if (!fill.empty()) text += ", " + fill + "/" + propagate;
+  return text;
+}
+
+double Row::measured() const {
+  if (samples.empty()) return NAN;
+  if (isMean) return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
+  return median(samples);
+}
+
+}  // namespace bench
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string original, scene;
+  double scale = 1.0;
+};
+
+void print(const bench::Tables& tables) {
+  for (const std::string& note : tables.notes) fmt::print("{}\n", note);
+  std::string table;
+  for (const bench::Row& row : tables.rows) {
+    if (row.table != table) {
+      table = row.table;
+      fmt::print("\nTable {}\n{:<50}{:<18}", table, "", "paths");
+      for (const auto& published : row.published) fmt::print("{:>14}", published.gpu);
+      fmt::print("{:>12}{:>28}  {}\n", "here, ms", "5 .. 95 % (count)", "here / published");
+    }
+    const std::string paths = row.fill.empty() ? "" : row.fill + (row.propagate.empty() ? "" : "/" + row.propagate);
+    const std::string grids = row.grids > 0 ? fmt::format(", {} grid{}", row.grids, row.grids > 1 ? "s" : "") : "";
+    fmt::print("{:<50}{:<18}", row.setting + grids + ", " + row.stage, paths);
+    for (const auto& published : row.published) fmt::print("{:>14g}", published.ms);
+    if (!row.missing.empty()) {
+      fmt::print("  not here: {} missing\n", row.missing);
+      continue;
+    }
+    if (row.samples.empty()) {
+      fmt::print("  not measured\n");
+      continue;
+    }
+    const double ms = row.measured();
+    fmt::print("{:>12.4f}{:>28} ", ms, fmt::format("{:.4f} .. {:.4f} ({})", percentile(row.samples, 0.05), percentile(row.samples, 0.95), row.samples.size()));
+    for (const auto& published : row.published) fmt::print(" {:>9.4g}", ms / published.ms);
+    fmt::print("\n");
+  }
+  fmt::print("\n{}", tables.summary);
+}
+
+nlohmann::ordered_json rowsJson(const bench::Tables& tables, const std::string& renderer) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const bench::Row& row : tables.rows)
+    for (const auto& published : row.published) {
+      nlohmann::ordered_json json;
+      const double ms = row.measured();
+      json["table"] = row.table;
+      json["row"] = row.name() + ", " + published.gpu;
+      json["published"] = published.ms;
+      json["measured"] = ms;  // null where there is none
+      json["ratio"] = ms / published.ms;
+      json["statistic"] = row.isMean ? "mean" : "median";
+      json["spread"] = {percentile(row.samples, 0.05), percentile(row.samples, 0.95)};
+      json["count"] = row.samples.size();
+      json["unit"] = "ms";
+      json["renderer"] = renderer;
+      json["published_on"] = published.gpu;
+      json["setting"] = row.setting;
+      if (row.grids > 0) json["grids"] = row.grids;
+      json["stage"] = row.stage;
+      json["fill"] = row.fill;
+      json["propagate"] = row.propagate;
+      if (!row.missing.empty()) json["note"] = "not here: " + row.missing + " missing";
+      rows.push_back(std::move(json));
+    }
+  return rows;
+}
+
+int run(Options options) {
+  options.common.apply();
+  bench::checkOriginal(options.original);
+  if (!(options.scale > 0.0 && options.scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", options.scale);
+  options.scene = bench::sceneOrAtrium(options.scene);
+  const Scene scene = loadScene(options.scene);
+
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  const bench::Tables tables = bench::measureLpvTables({context, programs, scene, options.scale, options.common.quiet});
+  const std::string& renderer = context.capabilities().renderer;
+  fmt::print("Renderer {}\nScene    {}, {} triangles\n", renderer, scene.file.string(), scene.triangleCount());
+  print(tables);
+
+  nlohmann::ordered_json json;
+  json["renderer"] = renderer;
+  json["host"] = nameOf(host->kind());
+  json["original"] = options.original;
+  json["scene"] = options.scene;
+  json["triangles"] = scene.triangleCount();
+  json["scale"] = options.scale;
+  json["notes"] = tables.notes;
+  json["rows"] = rowsJson(tables, renderer);
+  json.update(tables.json);
+  options.common.writeJson(json);
+  return interrupted() ? 130 : 0;
+}
+
+}  // namespace
+
+Work addBenchTables(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("SCENE", options->scene, "a scene file (default: the atrium; the published scene is Crytek Sponza)");
+  app.add_option("--original", options->original, "whose tables: lpv")->required();
+  app.add_option("--scale", options->scale, "less work on a slow machine, above 0, at most 1: fewer frames; below 0.5 also smaller grids")->capture_default_str();
+  options->common.declare(app);
+  return [options] { return run(*options); };
+}
+
+}  // namespace lucerna::demo
