@@ -16,6 +16,7 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string original, scene, output, camera, fidelity = "corrected", size = "640x360";
+  std::optional<double> exposure;
 };
 
 struct Picture {
@@ -43,6 +44,8 @@ int run(const Options& options) {
   usual.size = parseSize(options.size);
   if (usual.size.x > 1920 || usual.size.y > 1080) throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
   if (lowerExtension(options.output) != ".png") throwBadInput("-o {}: the extension must be png", options.output);
+  if (options.exposure && !(*options.exposure > 0.0 && *options.exposure <= 1e12))
+    throwBadInput("--exposure {}: expected a number above 0, at most 1e12", *options.exposure);
   const std::string file = bench::sceneOrAtrium(options.scene);
   const Scene scene = loadScene(file);
   const Camera camera = chooseCamera(scene, options.camera);
@@ -69,6 +72,7 @@ int run(const Options& options) {
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     if (interrupted()) return 130;
     Renderer renderer(context, programs, scene, pictures[i].settings);
+    if (options.exposure) renderer.setExposure(static_cast<float>(*options.exposure));
     renderer.render(camera);
     pictures[i].display = renderer.readDisplay();
     pictures[i].mean = meanOf(renderer.readRadiance());
@@ -123,6 +127,7 @@ Work addBenchPictures(CLI::App& app) {
   app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str();
   app.add_option("--size", options->size, "WIDTHxHEIGHT of a tile in pixels")->capture_default_str();
+  app.add_option("--exposure", options->exposure, "multiplies radiance before tone mapping (the scene's)");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -1,7 +1,7 @@
 // Tables 7.2 to 7.8 of the LPV original [LPV2015, 7.2] and its comparison of ways to clear, measured again.
 //
 // Every configuration keeps its own volume; a round runs each of them once, published and best path of a setting next to each other (A B A B), so
-// that what else the machine does meets both. The first round is a warm-up and is dropped (gl::TimeQuery).
+// that what else the machine does meets both. The first round is a warm-up and is dropped.
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
@@ -272,12 +272,14 @@ Tables measureLpvTables(const TablesInput& input) {
   for (LpvFill fill : fills) bench.add(trialOf(fill));
   for (int round = 0; round <= std::min(frames, 5) && !interrupted(); ++round) bench.runRound();
   bench.timer().drain();
+  // The least time, not the median: what else the machine does only ever adds.
+  const auto fastest = [&](LpvFill fill) { return percentile(bench.injection(trialOf(fill)), 0.0); };
   const LpvFill bestFill = *std::min_element(fills.begin(), fills.end(), [&](LpvFill a, LpvFill b) {
-    return median(bench.injection(trialOf(a))) < median(bench.injection(trialOf(b)));
+    return fastest(a) < fastest(b);
   });
   std::string trialText;
   for (LpvFill fill : fills)
-    trialText += fmt::format("{}{} {:.2f}", trialText.empty() ? "" : ", ", nameOf(fill), median(bench.injection(trialOf(fill))));
+    trialText += fmt::format("{}{} {:.2f}", trialText.empty() ? "" : ", ", nameOf(fill), fastest(fill));
   bench.removeVolumes();
   bench.timer().reset();
 
@@ -310,6 +312,7 @@ Tables measureLpvTables(const TablesInput& input) {
   for (int round = 0; round <= frames && !interrupted(); ++round) {
     bench.runRound();
     copy.run(bench.timer());
+    if (round == 0) bench.timer().reset();  // the warm-up
     progress.update(round + 1);
   }
   bench.timer().drain();
@@ -321,7 +324,7 @@ Tables measureLpvTables(const TablesInput& input) {
       fmt::format("Scale    {}: {} frame{} a figure after one of warm-up{}", input.scale, frames, frames > 1 ? "s" : "",
                   shrink > 1 ? "; grids of 16^3 where 32^3 was published, 32^3 for 64^3" : ""),
       fmt::format("Clock    {}", capabilities.softwareRenderer ? "wall clock between glFinish (software renderer)" : "GL_TIME_ELAPSED"),
-      fmt::format("Paths    fill/propagate; layered/layered as published, {}/compute the fastest here (filling 3 grids: {} ms)", nameOf(bestFill), trialText),
+      fmt::format("Paths    fill/propagate; layered/layered as published, {}/compute the fastest here (filling 3 grids, least of {}: {} ms)", nameOf(bestFill), std::min(frames, 5), trialText),
       "Stages   injection has the geometry volume's in it where there is blocking, propagation the joining of several grids (ours, both paths)",
       "Atomics  ours fill by them (atomic: floats, an extension; fixed: integers, core) and gather in a compute shader to propagate"};
   if (input.scene.triangleCount() != 262267)

@@ -1,0 +1,167 @@
+// lucerna bench: the published tables stand in the output exactly as they were published, ratios are what they say, wrong options are refused.
+#include "base/image.hpp"
+#include "support/subprocess.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace {
+
+namespace fs = std::filesystem;
+using lucerna::test::RunResult;
+using lucerna::test::TempFolder;
+
+const char* kScene =
+    "mtllib scene.mtl\n"
+    "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\n"
+    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "usemtl white\nf 1/1 4/4 3/3 2/2\nusemtl red\nf 1/1 2/2 6/3 5/4\n";
+
+class Bench : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(path("scene.obj")) << kScene;
+    std::ofstream(path("scene.mtl")) << "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0.1\n";
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(std::ifstream(path(name))); }
+  void expectRefused(const std::string& arguments, const std::vector<std::string>& parts) const {
+    const RunResult result = RUN_LUCERNA("bench " + arguments);
+    EXPECT_EQ(result.exitCode, 2) << arguments << "\n" << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << arguments << "\n" << result.err;
+    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+  }
+
+ private:
+  TempFolder folder_;
+};
+
+struct PublishedFigure {
+  const char* table;
+  const char* setting;
+  int grids;
+  const char* stage;
+  const char* gpu;
+  double ms;
+  auto key() const { return std::tuple<std::string, std::string, int, std::string, std::string>(table, setting, grids, stage, gpu); }
+};
+
+// RSM, injection, propagation of one grid, then of three.
+std::vector<PublishedFigure> stagesOf(const char* table, const char* setting, const char* gpu, double rsm, double inject1, double propagate1, double inject3,
+                                      double propagate3) {
+  return {{table, setting, 1, "RSM", gpu, rsm},       {table, setting, 1, "injection", gpu, inject1}, {table, setting, 1, "propagation", gpu, propagate1},
+          {table, setting, 3, "RSM", gpu, rsm},       {table, setting, 3, "injection", gpu, inject3}, {table, setting, 3, "propagation", gpu, propagate3}};
+}
+
+std::vector<PublishedFigure> publishedFigures() {
+  const char *nvidia = "NVIDIA GTX 960", *amd = "AMD R9 270";
+  std::vector<PublishedFigure> all;
+  const auto add = [&](std::vector<PublishedFigure> figures) { all.insert(all.end(), figures.begin(), figures.end()); };
+  add(stagesOf("7.2", "8 iterations, blocking", nvidia, 0.274104, 0.375929, 3.3704, 0.999607, 8.75379));
+  add(stagesOf("7.2", "8 iterations, blocking", amd, 0.363047, 1.35305, 9.99295, 3.48448, 29.2733));
+  add(stagesOf("7.3", "8 iterations, no blocking", nvidia, 0.265721, 0.397134, 3.05226, 0.932677, 7.31519));
+  add(stagesOf("7.3", "8 iterations, no blocking", amd, 0.362724, 1.35732, 6.81374, 3.50141, 19.7886));
+  add(stagesOf("7.4", "12 iterations, blocking", nvidia, 0.274104, 0.401629, 6.07258, 0.999594, 13.8813));
+  add(stagesOf("7.4", "12 iterations, blocking", amd, 0.363047, 1.35242, 15.5127, 3.4849, 45.6326));
+  add(stagesOf("7.5", "12 iterations, no blocking", nvidia, 0.265721, 0.399961, 5.02879, 0.96792, 11.3734));
+  add(stagesOf("7.5", "12 iterations, no blocking", amd, 0.362724, 1.35757, 10.4721, 3.50252, 30.7741));
+  const auto both = [&](const char* table, const char* setting, int grids, double injection, double propagation) {
+    add({{table, setting, grids, "injection", nvidia, injection}, {table, setting, grids, "propagation", nvidia, propagation}});
+  };
+  both("7.6", "geometry shader, 32^3", 1, 0.375929, 3.3704);
+  both("7.6", "geometry shader, 32^3", 3, 0.999607, 8.75379);
+  both("7.6", "atomics, 32^3", 1, 0.397899, 3.76333);
+  both("7.6", "atomics, 32^3", 3, 0.998954, 10.4171);
+  both("7.7", "geometry shader, 64^3", 1, 0.796672, 15.6416);
+  both("7.7", "geometry shader, 32^3", 3, 0.999607, 8.75379);
+  both("7.7", "atomics, 64^3", 1, 0.44032, 25.0573);
+  both("7.7", "atomics, 32^3", 3, 0.998954, 10.4171);
+  const auto map = [&](const char* setting, double rsm, double injection) {
+    add({{"7.8", setting, 3, "RSM", nvidia, rsm}, {"7.8", setting, 3, "injection", nvidia, injection}});
+  };
+  map("RSM 128", 0.232448, 0.41984);
+  map("RSM 256", 0.246784, 0.999594);
+  map("RSM 512", 0.37376, 4.46874);
+  add({{"clear", "one channel of a 32^3 grid", 0, "glClearTexImage", "as published", 0.0049},
+       {"clear", "one channel of a 32^3 grid", 0, "glTexSubImage3D", "as published", 0.09958}});
+  return all;
+}
+
+TEST_F(Bench, TablesOfTheLpvOriginalStandBesideOurs) {
+  const RunResult result = RUN_LUCERNA("bench tables --original lpv " + path("scene.obj") + " --scale 0.05 --host osmesa --quiet --json " + path("tables.json"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  for (const char* text : {"llvmpipe", "Scale    0.05", "16^3", "Crytek Sponza", "Speed:", "Bound:"}) EXPECT_NE(result.out.find(text), std::string::npos) << text;
+  const auto tables = json("tables.json");
+  std::map<decltype(PublishedFigure{}.key()), double> expected;
+  for (const PublishedFigure& figure : publishedFigures()) expected[figure.key()] = figure.ms;
+  std::set<decltype(PublishedFigure{}.key())> seen;
+  std::set<std::string> fills, names;
+  for (const auto& row : tables.at("rows")) {
+    const std::tuple key(row.at("table").get<std::string>(), row.at("setting").get<std::string>(), row.value("grids", 0), row.at("stage").get<std::string>(),
+                         row.at("published_on").get<std::string>());
+    const std::string name = row.at("table").get<std::string>() + " " + row.at("row").get<std::string>();
+    ASSERT_TRUE(expected.contains(key)) << row.dump();
+    seen.insert(key);
+    EXPECT_TRUE(names.insert(name).second) << name << " is there twice";
+    EXPECT_EQ(row.at("published").get<double>(), expected.at(key)) << name;
+    EXPECT_EQ(row.at("renderer"), tables.at("renderer"));
+    fills.insert(row.at("fill").get<std::string>() + "/" + row.at("propagate").get<std::string>());
+    if (row.contains("note")) {
+      EXPECT_TRUE(row.at("measured").is_null()) << name;
+      EXPECT_NE(row.at("note").get<std::string>().find("not here: "), std::string::npos);
+      continue;
+    }
+    const double measured = row.at("measured");
+    EXPECT_GT(measured, 0.0) << name;
+    EXPECT_DOUBLE_EQ(row.at("ratio").get<double>(), measured / expected.at(key)) << name;
+    EXPECT_GT(row.at("count"), 0) << name;
+    EXPECT_LE(row.at("spread").at(0), row.at("spread").at(1)) << name;
+    if (row.at("statistic") == "median") {
+      EXPECT_LE(row.at("spread").at(0), measured) << name;
+      EXPECT_GE(row.at("spread").at(1), measured) << name;
+    }
+  }
+  for (const auto& [key, ms] : expected)
+    EXPECT_TRUE(seen.contains(key)) << std::get<0>(key) << " " << std::get<1>(key) << " " << std::get<2>(key) << " " << std::get<3>(key) << " " << std::get<4>(key);
+  for (const char* paths : {"layered/layered", "atomic/compute", "fixed/compute", "/"}) EXPECT_TRUE(fills.contains(paths)) << paths;
+  EXPECT_GT(tables.at("speed").at("speedup"), 0.0);
+  EXPECT_GT(tables.at("bound").at("over_copy"), 0.0);
+}
+
+TEST_F(Bench, PicturesOfTheLpvOriginalAreOneSheet) {
+  const RunResult result = RUN_LUCERNA("bench pictures --original lpv " + path("scene.obj") + " --size 96x54 --host osmesa --json " + path("p.json") + " -o " + path("p.png"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const lucerna::Bitmap sheet = lucerna::readBitmap(path("p.png"));
+  EXPECT_GT(sheet.width, 3 * 96);
+  EXPECT_LT(sheet.width, 4 * 96);
+  EXPECT_GT(sheet.height, 4 * 54);
+  EXPECT_EQ(json("p.json").at("pictures").size(), 7u);
+}
+
+TEST_F(Bench, WrongOptionsAreRefused) {
+  const std::string scene = path("scene.obj");
+  expectRefused("", {"subcommand", "bench --help"});
+  expectRefused("paint", {"paint", "bench --help"});
+  expectRefused("tables " + scene, {"--original"});
+  expectRefused("tables --original crytek " + scene, {"crytek", "lpv"});
+  expectRefused("tables --original lpv --colour red " + scene, {"--colour", "bench tables --help"});
+  for (const char* scale : {"0", "-1", "1.5", "nan", "half"}) expectRefused("tables --original lpv --scale " + std::string(scale) + " " + scene, {"--scale"});
+  expectRefused("tables --original lpv --host vulkan " + scene, {"vulkan", "osmesa"});
+  expectRefused("tables --original lpv " + path("nothing.obj"), {"nothing.obj"});
+  expectRefused("pictures --original lpv " + scene, {"--output"});
+  expectRefused("pictures --original lpv -o " + path("x.exr") + " " + scene, {"x.exr", "png"});
+  expectRefused("pictures --original lpv --size 4000x4000 -o " + path("x.png") + " " + scene, {"--size", "4000x4000"});
+  expectRefused("pictures --original lpv --fidelity exact -o " + path("x.png") + " " + scene, {"--fidelity", "exact", "original"});
+  expectRefused("pictures --original lpv --exposure 0 -o " + path("x.png") + " " + scene, {"--exposure"});
+  expectRefused("pictures --original lpv --camera nowhere -o " + path("x.png") + " " + scene, {"--camera", "nowhere"});
+  EXPECT_FALSE(fs::exists(path("x.png")));
+}
+
+}  // namespace
