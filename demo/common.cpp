@@ -124,6 +124,13 @@ const Setting kSettings[] = {
     SETTING("rsm.fit-distance", "most distance, in low-resolution steps (8)", s.gather.fitDistance = parseNumber(k, v, 0.0f, 1e6f)),
     SETTING("rsm.show-refused", "paint the pixels that interpolation refused red (off)", s.gather.showRefused = parseSwitch(k, v)),
     SETTING("shadow.size", "texels a side of the shadow map (2048)", s.shadow.size = parseNumber(k, v, 1, 16384)),
+    SETTING("shadow.cascades", "shadow maps of the sun along the view, 1: one for the whole scene (1)",
+            s.sunCascades.cascades = parseNumber(k, v, 1, SUN_MAX_CASCADES)),
+    SETTING("shadow.split", "how cascades divide the view's depth, 0 uniformly to 1 logarithmically (0.9)",
+            s.sunCascades.split = parseNumber(k, v, 0.0, 1.0)),
+    SETTING("shadow.spot-size", "texels a side of a spot light's shadow map (1024)", s.lights.spotSize = parseNumber(k, v, 1, 16384)),
+    SETTING("shadow.point-size", "texels a side of each face of an omnidirectional light's shadow map (512)",
+            s.lights.pointSize = parseNumber(k, v, 1, 16384)),
     SETTING("texture.anisotropy", "anisotropic filtering, at most (4)", s.textures.anisotropy = parseNumber(k, v, 1.0f, 16.0f)),
     SETTING("exposure", "multiplies radiance before tone mapping (the scene's)", exposure = parseNumber(k, v, 1e-12f, 1e12f)),
 };

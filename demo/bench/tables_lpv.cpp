@@ -137,7 +137,7 @@ class Bench {
       if (interrupted()) return;
       LightPropagationVolume& volume = volumes_.at(config);
       const LightPropagationVolume::Inputs inputs{
-          outputs.at(config.rsmSize), placeCascades(volume.settings().cascades, input_.scene.bounds, camera.position, camera.direction),
+          {outputs.at(config.rsmSize)}, placeCascades(volume.settings().cascades, input_.scene.bounds, camera.position, camera.direction),
           std::max({sun.x, sun.y, sun.z})};
       {
         const gl::TimeQuery::Scope stage(timer_, config.key() + " injection");

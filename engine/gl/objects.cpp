@@ -172,7 +172,7 @@ std::vector<glm::vec4> Texture::readRgba(int level) const {
 }
 
 std::vector<float> Texture::readDepth() const {
-  std::vector<float> texels(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y));
+  std::vector<float> texels(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   glGetTexImage(target_, 0, GL_DEPTH_COMPONENT, GL_FLOAT, texels.data());

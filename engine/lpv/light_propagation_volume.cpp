@@ -166,6 +166,7 @@ void LightPropagationVolume::join() {
 }
 
 void LightPropagationVolume::place(const Inputs& inputs) {
+  CHECK(inputs.referenceIrradiance > 0.0f, "E_ref = {}", inputs.referenceIrradiance);
   CHECK(static_cast<int>(inputs.cascades.size()) == settings_.cascades.cascades, "{} cascades", inputs.cascades.size());
   shared::LpvConstants constants{};
   const int cells = settings_.cascades.cells;
@@ -193,12 +194,12 @@ void LightPropagationVolume::place(const Inputs& inputs) {
   constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
 }
 
-void LightPropagationVolume::inject(const Inputs& inputs) {
+float LightPropagationVolume::fluxScale(const ReflectiveShadowMap::Outputs& rsm) const {
   // Without units each light counts as E * albedo, whatever its texel's area.
-  inject_->set("fluxScale", settings_.deviations.fluxUnits ? 1.0f / inputs.rsm.texelArea : 1.0f);
-  inputs.rsm.position.bind(0);
-  inputs.rsm.normal.bind(1);
-  inputs.rsm.flux.bind(2);
+  return settings_.deviations.fluxUnits ? 1.0f / rsm.texelArea : 1.0f;
+}
+
+void LightPropagationVolume::inject(const Inputs& inputs) {
   if (resolve_) return fillByAtomics(inputs);
   const std::array<const gl::Texture*, 3> targets{&injected_[0], &injected_[1], &injected_[2]};
   gl::clearToZero(targets, haveClearTexture_);
@@ -207,25 +208,34 @@ void LightPropagationVolume::inject(const Inputs& inputs) {
   const gl::RasterPass pass("lpv inject", injectTarget_, state);
   inject_->use();
   noAttributes_.bind();
-  glDrawArrays(GL_POINTS, 0, inputs.rsm.position.size().x * inputs.rsm.position.size().y);
+  for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {
+    inject_->set("fluxScale", fluxScale(rsm));
+    rsm.bind();
+    glDrawArrays(GL_POINTS, 0, rsm.texelCount());
+  }
 }
 
 void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
-  // The largest stored coefficient that there can be: all texels, as white as can be, in one cell of the finest cascade. 2^30 steps for it, so that the
-  // rounding of a million lights cannot overflow 31 bits either.
+  // The largest stored coefficient that there can be: all light of all maps, reflected by white, in one cell of the finest cascade. 2^30 steps for
+  // it, so that the rounding of a million lights cannot overflow 31 bits either.
   const double finest = inputs.cascades.front().cellSize;
-  const double area = settings_.deviations.fluxUnits ? inputs.rsm.texelArea : finest * finest;
-  const double texels = static_cast<double>(inputs.rsm.position.size().x) * inputs.rsm.position.size().y;
-  const double largest = 1.0233267079464885 / 3.141592653589793 * texels * inputs.rsm.texelArea / area;  // E_ref cancels
-  const auto fixedScale = static_cast<float>(settings_.fill == LpvFill::fixed ? 1073741824.0 / largest : 1.0);
+  const double unit = inputs.referenceIrradiance * (settings_.deviations.fluxUnits ? 1.0 : finest * finest);
+  double flux = 0.0;
+  for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) flux += rsm.largestFlux * static_cast<double>(fluxScale(rsm));
+  const double largest = 1.0233267079464885 / 3.141592653589793 * flux / unit;  // of the sun alone E_ref cancels
+  const auto fixedScale = static_cast<float>(settings_.fill == LpvFill::fixed && largest > 0.0 ? 1073741824.0 / largest : 1.0);
   const std::array<const gl::Texture*, 3> counts{&counts_[0], &counts_[1], &counts_[2]};
   gl::clearToZero(counts, haveClearTexture_);
   {
     const gl::ComputePass pass("lpv inject by atomics", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    inject_->set("fixedScale", fixedScale);
     inject_->use();
+    inject_->set("fixedScale", fixedScale);
     for (GLuint channel = 0; channel < 3; ++channel) counts_[channel].bindImage(channel, GL_READ_WRITE);
-    pass.dispatch(inputs.rsm.position.size(), kGroup);
+    for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {  // atomics need no order among them
+      inject_->set("fluxScale", fluxScale(rsm));
+      rsm.bind();
+      pass.dispatch(rsm.position.size(), kGroup);
+    }
   }
   const gl::ComputePass pass("lpv resolve", GL_TEXTURE_FETCH_BARRIER_BIT);
   resolve_->set("fixedScale", fixedScale);
@@ -246,16 +256,16 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
     state.blend = gl::Blend::add;
     const gl::RasterPass pass("lpv geometry volume", geometryTarget_, state);
     fillGeometryVolume_->use();
-    fillGeometryVolume_->set("texelArea", inputs.rsm.texelArea);
-    if (settings_.deviations.surfelArea) {
-      fillGeometryVolume_->set("lightPosition", inputs.lightPosition);
-      fillGeometryVolume_->set("texelCount", static_cast<float>(inputs.rsm.position.size().x * inputs.rsm.position.size().y));
-    }
-    inputs.rsm.position.bind(0);
-    inputs.rsm.normal.bind(1);
-    inputs.rsm.flux.bind(2);
     noAttributes_.bind();
-    glDrawArrays(GL_POINTS, 0, inputs.rsm.position.size().x * inputs.rsm.position.size().y);
+    for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {
+      if (settings_.deviations.surfelArea) {
+        const bool isSun = rsm.light == ReflectiveShadowMap::Light::sun;
+        fillGeometryVolume_->set("lightPosition", inputs.lightPosition);
+        fillGeometryVolume_->set("texelCount", isSun ? static_cast<float>(rsm.texelCount()) : 0.0f);
+      }
+      rsm.bind();
+      glDrawArrays(GL_POINTS, 0, rsm.texelCount());
+    }
   }
   if (!averageFaces_) return;
   const gl::ComputePass pass("lpv geometry faces", GL_TEXTURE_FETCH_BARRIER_BIT);

@@ -40,7 +40,7 @@ class LightPropagationVolume {
     bool fourPiKernel = false;       ///< Omega / (4 pi) with an amplifier
     bool fewerSteps = false;         ///< one step less, and the injected grid is not in the sum
     bool blockFirstStep = false;     ///< the first step is blocked too
-    bool surfelArea = false;         ///< perspective formula times N.L for an orthographic light
+    bool surfelArea = false;         ///< perspective formula times N.L for an orthographic light; other lights keep true areas
     bool unwindowed = false;         ///< light that travels away from a surface counts negative
     bool blockingDirection = false;  ///< potential evaluated in the direction of travel
     bool kernel() const { return sideDirections || sideSolidAngle || fourPiKernel || blockingDirection; }
@@ -60,10 +60,10 @@ class LightPropagationVolume {
     Storage storage = Storage::half;
   };
   struct Inputs {
-    ReflectiveShadowMap::Outputs rsm;
-    std::vector<Cascade> cascades;  ///< finest first, as many as in the settings
-    float referenceIrradiance;      ///< the sun's largest channel; only scales the stored values
-    glm::vec3 lightPosition{0.0f};  ///< only read by the deviation surfelArea
+    std::vector<ReflectiveShadowMap::Outputs> rsms;  ///< one a light; all are added up
+    std::vector<Cascade> cascades;                   ///< finest first, as many as in the settings
+    float referenceIrradiance;      ///< E_ref > 0, of the order of what the lights make; only scales the stored values
+    glm::vec3 lightPosition{0.0f};  ///< the sun's; only read by the deviation surfelArea
   };
   /// Red, green and blue: 3D textures of SH coefficients c / (E_ref s^2), cascades stacked along z.
   using Volume = std::array<gl::Texture, 3>;
@@ -97,6 +97,7 @@ class LightPropagationVolume {
   std::size_t gpuBytes() const;
 
  private:
+  float fluxScale(const ReflectiveShadowMap::Outputs& rsm) const;
   void fillByAtomics(const Inputs& inputs);
   void propagateLayered();
 

@@ -1,7 +1,9 @@
 #include "render/renderer.hpp"
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "shared/frame.h"
+#include "shared/sun_cascades.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -14,7 +16,11 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kFrameBinding = 0;
+constexpr GLuint kSunCascadeBinding = 4;
 constexpr GLuint kShadowUnit = 2, kGatheredUnit = 7;
+constexpr float kShadowNormalOffset = 1.5f;  // texels of the sun's shadow map
+
+double nearPlane(const Bounds& bounds) { return 5e-4 * std::max(glm::length(bounds.extent()), 1e-6); }
 
 // Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal.
 glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 size) {
@@ -26,7 +32,7 @@ glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 
     farthest = std::max(farthest, glm::length(p - camera.position));
   }
   const double aspect = static_cast<double>(size.x) / size.y;
-  return glm::perspective(camera.verticalFov, aspect, 5e-4 * diagonal, 1.01 * farthest) *
+  return glm::perspective(camera.verticalFov, aspect, nearPlane(bounds), 1.01 * farthest) *
          glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
 }
 
@@ -71,7 +77,7 @@ Component parseComponent(std::string_view name) {
 Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings)
     : settings_(settings),
       needs_(analyse(scene)),
-      showsDirect_(needs_.directionalLight && settings.component != Component::indirect),
+      showsDirect_(needs_.anyLight() && settings.component != Component::indirect),
       showsLpv_(settings.technique == Technique::lpv && settings.component != Component::direct && LightPropagationVolume::isNeeded(needs_)),
       showsGather_(settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs_)),
       exposure_(scene.exposure),
@@ -80,14 +86,41 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, GL_DYNAMIC_DRAW),
       noAttributes_("full screen") {
   if (scene.sun) sunFrustum_ = fitSunFrustum(scene, scene.sun->direction);
-  if (showsDirect_ && ShadowMap::isNeeded(needs_)) shadowMap_.emplace(programs, gpuScene_, settings.shadow);
-  if (showsLpv_ || showsGather_) rsm_.emplace(programs, gpuScene_, settings.rsm);
-  if (showsLpv_) lpv_.emplace(programs, context.capabilities(), settings.lpv);
+  spots_ = spotViews(scene);
+  points_ = pointViews(scene);
+  const bool showsSun = showsDirect_ && ShadowMap::isNeeded(needs_);
+  const int cascades = settings.sunCascades.cascades > 1 && showsSun ? settings.sunCascades.cascades : 0;
+  if (cascades > 0) {
+    sunCascades_.emplace(programs, gpuScene_, "sun cascades",
+                         LayeredDepth::Shape{GL_TEXTURE_2D_ARRAY, settings.shadow.size, cascades, cascades});
+    sunCascadeConstants_ = gl::Buffer("sun cascades", sizeof(shared::SunCascadeConstants), nullptr, GL_DYNAMIC_DRAW);
+  } else if (showsSun) {
+    shadowMap_.emplace(programs, gpuScene_, settings.shadow);
+  }
+  if (showsDirect_ && LocalLights::isNeeded(needs_)) localLights_.emplace(programs, gpuScene_, settings.lights, spots_, points_);
+  using Light = ReflectiveShadowMap::Light;
+  const auto addMap = [&](Light light) {
+    ReflectiveShadowMap::Settings map = settings.rsm;
+    map.light = light;
+    if (light == Light::point) map.size = std::max(map.size / 2, 1);
+    rsms_.emplace_back(programs, gpuScene_, map);
+  };
+  if ((showsLpv_ || showsGather_) && needs_.directionalLight) addMap(Light::sun);
+  if (showsLpv_) {
+    for (std::size_t i = 0; i < spots_.size(); ++i) addMap(Light::spot);
+    for (std::size_t i = 0; i < points_.size(); ++i) addMap(Light::point);
+    lpv_.emplace(programs, context.capabilities(), settings.lpv);
+  }
+  if (settings.technique == Technique::rsm && settings.component != Component::direct && LocalLights::isNeeded(needs_))
+    logWarning("technique rsm gathers the sun's light alone: spot and omnidirectional lights give direct light only (lpv takes all)");
 
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_.materialFlags(masked);
     const bool showsRest = settings.component != Component::indirect;  // specular and emission belong to direct light
-    flags.insert(flags.end(), {{"DIRECT", showsDirect_},
+    flags.insert(flags.end(), {{"DIRECT", showsSun},
+                               {"SUN_CASCADES", cascades},
+                               {"SPOT_LIGHTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
+                               {"POINT_LIGHTS", localLights_ ? static_cast<int>(points_.size()) : 0},
                                {"INDIRECT", showsLpv_},
                                {"GATHERED", showsGather_},
                                {"SHOW_REFUSED", showsGather_ && settings.gather.showRefused},
@@ -124,6 +157,49 @@ void Renderer::resize(glm::ivec2 size) {
   if (gather_) gather_->resize(depth_);
 }
 
+void Renderer::recordShadows(const Camera& camera) {
+  if (shadowMap_) {
+    const gl::TimeQuery::Scope stage(timer_, "shadow");
+    shadowMap_->record(gpuScene_);
+  }
+  if (sunCascades_) {
+    const gl::TimeQuery::Scope stage(timer_, "shadow");
+    const Scene& scene = gpuScene_.scene();
+    const double aspect = static_cast<double>(settings_.size.x) / settings_.size.y;
+    shared::SunCascadeConstants constants{};
+    std::vector<glm::dmat4> clip;
+    for (const SunCascade& cascade : placeSunCascades(settings_.sunCascades, scene, scene.sun->direction, sunFrustum_, camera, aspect,
+                                                      nearPlane(scene.bounds), sunCascades_->size())) {
+      constants.clipFromWorld[clip.size()] = glm::mat4(cascade.clipFromWorld);
+      constants.normalOffset[static_cast<int>(clip.size())] = kShadowNormalOffset * static_cast<float>(cascade.texel);
+      clip.push_back(cascade.clipFromWorld);
+    }
+    sunCascadeConstants_.upload(0, sizeof constants, &constants);
+    sunCascadeConstants_.bind(GL_UNIFORM_BUFFER, kSunCascadeBinding);
+    sunCascades_->record(gpuScene_, clip);
+  }
+  if (localLights_ && localLights_->hasSpots()) {
+    const gl::TimeQuery::Scope stage(timer_, "spot shadows");
+    localLights_->recordSpots(gpuScene_);
+  }
+  if (localLights_ && localLights_->hasPoints()) {
+    const gl::TimeQuery::Scope stage(timer_, "point shadows");
+    localLights_->recordPoints(gpuScene_);
+  }
+}
+
+std::vector<ReflectiveShadowMap::Outputs> Renderer::recordReflectiveShadowMaps() {
+  const gl::TimeQuery::Scope stage(timer_, "rsm");
+  std::vector<ReflectiveShadowMap::Outputs> outputs;
+  auto spot = spots_.begin(), point = points_.begin();
+  for (ReflectiveShadowMap& rsm : rsms_) switch (rsm.light()) {
+      case ReflectiveShadowMap::Light::sun: outputs.push_back(rsm.record(gpuScene_, sunFrustum_.texelArea(rsm.size()))); break;
+      case ReflectiveShadowMap::Light::spot: outputs.push_back(rsm.record(gpuScene_, *spot++)); break;
+      case ReflectiveShadowMap::Light::point: outputs.push_back(rsm.record(gpuScene_, *point++)); break;
+    }
+  return outputs;
+}
+
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   const Scene& scene = gpuScene_.scene();
   const glm::dmat4 exactClip = clipFromWorld(camera, scene.bounds, settings_.size);
@@ -139,22 +215,17 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     frame.sunDirection = glm::vec3(scene.sun->direction);
     frame.sunIrradiance = scene.sun->irradiance;
     frame.shadowNormalOffset =
-        1.5f * static_cast<float>(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
+        kShadowNormalOffset * static_cast<float>(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
     frame.shadowTexelUv = 1.0f / static_cast<float>(settings_.shadow.size);
   }
   frame.background = scene.background;
   frameConstants_.upload(0, sizeof frame, &frame);
   frameConstants_.bind(GL_UNIFORM_BUFFER, kFrameBinding);
 
-  if (shadowMap_) {
-    const gl::TimeQuery::Scope stage(timer_, "shadow");
-    shadowMap_->record(gpuScene_);
-  }
+  recordShadows(camera);
 
   if (gather_) {
-    timer_.begin("rsm");
-    const auto rsm = rsm_->record(gpuScene_, sunFrustum_.texelArea(rsm_->size()));
-    timer_.end();
+    const ReflectiveShadowMap::Outputs rsm = recordReflectiveShadowMaps().front();  // the sun's is the only one
     {
       const gl::TimeQuery::Scope stage(timer_, "geometry");
       gather_->recordGeometry(gpuScene_, {&cameraClip, &viewPoint});
@@ -173,15 +244,10 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   }
 
   if (lpv_) {
-    timer_.begin("rsm");
-    const auto rsm = rsm_->record(gpuScene_, sunFrustum_.texelArea(rsm_->size()));
-    timer_.end();
-    const glm::vec3 sun = scene.sun->irradiance;
-    const float brightest = std::max({sun.x, sun.y, sun.z});
     const glm::dvec4 lightPosition = glm::inverse(sunFrustum_.clipFromWorld) * glm::dvec4(0.0, 0.0, -1.0, 1.0);
     const LightPropagationVolume::Inputs inputs{
-        rsm, placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction), brightest,
-        glm::vec3(lightPosition)};
+        recordReflectiveShadowMaps(), placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction),
+        typicalIrradiance(scene), glm::vec3(lightPosition)};
     timer_.begin("injection");
     lpv_->place(inputs);
     lpv_->inject(inputs);
@@ -210,6 +276,8 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     const bool showsBackground = settings_.component != Component::indirect;
     pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
     if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
+    if (sunCascades_) sunCascades_->depth().bind(kShadowUnit);
+    if (localLights_) localLights_->bindForShading();
     if (lpv_) lpv_->bindForLookup();
     if (gather_) gather_->irradiance().bind(kGatheredUnit);
     gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
@@ -258,7 +326,9 @@ Bitmap Renderer::readDisplay() const {
 std::size_t Renderer::gpuBytes() const {
   std::size_t bytes = gpuScene_.gpuBytes() + frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes();
   if (shadowMap_) bytes += shadowMap_->gpuBytes();
-  if (rsm_) bytes += rsm_->gpuBytes();
+  if (sunCascades_) bytes += sunCascades_->gpuBytes() + sunCascadeConstants_.bytes();
+  if (localLights_) bytes += localLights_->gpuBytes();
+  for (const ReflectiveShadowMap& rsm : rsms_) bytes += rsm.gpuBytes();
   if (lpv_) bytes += lpv_->gpuBytes();
   if (gather_) bytes += gather_->gpuBytes();
   return bytes;
@@ -268,8 +338,11 @@ std::vector<std::string> Renderer::leftOut() const {
   std::vector<std::string> names;
   for (const auto& [name, needed] : needs_.named())
     if (!needed) names.push_back(name);
-  if (!shadowMap_) names.emplace_back("shadow map");
-  if (!rsm_) names.emplace_back("reflective shadow map");
+  if (!shadowMap_ && !sunCascades_) names.emplace_back("shadow map");
+  if (!sunCascades_) names.emplace_back("sun cascades");
+  if (!localLights_ || !localLights_->hasSpots()) names.emplace_back("spot shadow maps");
+  if (!localLights_ || !localLights_->hasPoints()) names.emplace_back("point shadow maps");
+  if (rsms_.empty()) names.emplace_back("reflective shadow map");
   if (!gather_) names.emplace_back("rsm gather");
   if (!lpv_) names.emplace_back("light propagation volume");
   else if (!lpv_->geometryVolume()) names.emplace_back("geometry volume");

@@ -3,7 +3,10 @@
 
 #include "base/image.hpp"
 #include "forward/gpu_scene.hpp"
+#include "forward/layered_depth.hpp"
+#include "forward/local_lights.hpp"
 #include "forward/shadow_map.hpp"
+#include "forward/sun_cascades.hpp"
 #include "forward/sun_frustum.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
@@ -34,8 +37,10 @@ struct RenderSettings {
   glm::ivec2 size{1280, 720};
   bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits: for pictures that are measured
   GpuSceneSettings textures;
-  ShadowMap::Settings shadow;
-  ReflectiveShadowMap::Settings rsm;
+  ShadowMap::Settings shadow;          ///< of the sun; the size is that of each cascade where there are several
+  SunCascadeSettings sunCascades;
+  LocalLights::Settings lights;
+  ReflectiveShadowMap::Settings rsm;   ///< the size serves the sun and spots; each face of an omnidirectional light has half of it. `light` is not read
   RsmGather::Settings gather;
   LightPropagationVolume::Settings lpv;
 };
@@ -71,10 +76,13 @@ class Renderer {
 
  private:
   void allocateTargets();
+  void recordShadows(const Camera& camera);
+  std::vector<ReflectiveShadowMap::Outputs> recordReflectiveShadowMaps();
 
   RenderSettings settings_;
   SceneNeeds needs_;
-  bool showsDirect_, showsLpv_, showsGather_;
+  bool showsDirect_;  ///< direct light of any kind
+  bool showsLpv_, showsGather_;
   float exposure_;
   gl::TimeQuery timer_;
   GpuScene gpuScene_;
@@ -84,7 +92,11 @@ class Renderer {
   SurfacePrograms depthPrograms_, surfacePrograms_;
   const gl::Program* toneMap_ = nullptr;
   std::optional<ShadowMap> shadowMap_;
-  std::optional<ReflectiveShadowMap> rsm_;
+  std::optional<LayeredDepth> sunCascades_;  ///< instead of shadowMap_
+  gl::Buffer sunCascadeConstants_;
+  std::vector<LightViews> spots_, points_;
+  std::optional<LocalLights> localLights_;
+  std::vector<ReflectiveShadowMap> rsms_;    ///< one a light: the sun, the spots, the points
   std::optional<LightPropagationVolume> lpv_;
   std::optional<RsmGather> gather_;
   gl::Texture radiance_, depth_, display_;

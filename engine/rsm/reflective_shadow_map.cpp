@@ -1,37 +1,81 @@
 #include "rsm/reflective_shadow_map.hpp"
 
+#include "base/error.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <array>
 
 namespace lucerna {
 
-ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings) {
-  const auto load = [&](const std::string& name, bool masked) {
+namespace {
+constexpr std::array<const char*, 3> kNames{"rsm", "rsm spot", "rsm point"};
+
+double largest(const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); }
+}  // namespace
+
+ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings)
+    : light_(settings.light) {
+  const std::string name = kNames[static_cast<std::size_t>(settings.light)];
+  const int layers = settings.light == Light::point ? 6 : 1;
+  const auto load = [&](bool masked) {
     gl::ShaderFlags flags = scene.materialFlags(masked);
-    flags.emplace_back("FLUX_COSINE", settings.fluxCosine);
-    return &programs.loadRaster(name, "rsm/rsm.vert", "rsm/rsm.frag", flags);
+    flags.insert(flags.end(), {{"PERSPECTIVE", settings.light != Light::sun}, {"LAYERS", layers}, {"FLUX_COSINE", settings.fluxCosine}});
+    return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "rsm/rsm.vert", "rsm/rsm.frag", flags,
+                                layers > 1 ? "rsm/rsm.geom" : "");
   };
-  programs_.opaque = load("rsm opaque", false);
-  if (scene.needs().alphaMasks) programs_.masked = load("rsm masked", true);
+  programs_.opaque = load(false);
+  if (scene.needs().alphaMasks) programs_.masked = load(true);
   // Positions and flux in 32 bits: world coordinates do not fit 16, nor does a flux of any unit. Read texel by texel.
-  const glm::ivec2 size(settings.size);
-  position_ = gl::Texture("rsm position", GL_RGBA32F, size);
-  normal_ = gl::Texture("rsm normal", GL_RGBA16F, size);
-  flux_ = gl::Texture("rsm flux", GL_RGBA32F, size);
-  depth_ = gl::Texture("rsm depth", GL_DEPTH_COMPONENT32F, size);
+  const glm::ivec3 size(settings.size, settings.size, layers);
+  const auto texture = [&](const char* what, GLenum format) {
+    return gl::Texture(fmt::format("{} {}", name, what), format, size, {}, 1, GL_TEXTURE_2D_ARRAY);
+  };
+  position_ = texture("position", GL_RGBA32F);
+  normal_ = texture("normal", GL_RGBA16F);
+  flux_ = texture("flux", GL_RGBA32F);
+  depth_ = texture("depth", GL_DEPTH_COMPONENT32F);
   const std::array<const gl::Texture*, 3> colors{&position_, &normal_, &flux_};
-  framebuffer_ = gl::Framebuffer("rsm", colors, &depth_);
+  framebuffer_ = gl::Framebuffer(name, colors, &depth_);
+}
+
+void ReflectiveShadowMap::draw(const GpuScene& scene, bool depthClamp) {
+  gl::RasterState state;
+  state.depth = gl::Depth::lessWrite;
+  state.depthClamp = depthClamp;
+  const gl::RasterPass pass(kNames[static_cast<std::size_t>(light_)], framebuffer_, state);
+  for (int attachment = 0; attachment < 3; ++attachment) pass.clearColor(attachment, glm::vec4(0.0f));
+  pass.clearDepth();
+  scene.draw(programs_, {});
 }
 
 ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, double texelArea) {
-  gl::RasterState state;
-  state.depth = gl::Depth::lessWrite;
-  const gl::RasterPass pass("rsm", framebuffer_, state);
-  for (int attachment = 0; attachment < 3; ++attachment) pass.clearColor(attachment, glm::vec4(0.0f));
-  pass.clearDepth();
+  CHECK(light_ == Light::sun, "a map of light kind {}", static_cast<int>(light_));
   programs_.opaque->set("texelArea", static_cast<float>(texelArea));
   if (programs_.masked) programs_.masked->set("texelArea", static_cast<float>(texelArea));
-  scene.draw(programs_, {});
-  return {position_, normal_, flux_, static_cast<float>(texelArea)};
+  draw(scene, false);
+  const double irradiance = scene.scene().sun ? largest(scene.scene().sun->irradiance) : 0.0;
+  return {position_, normal_, flux_, static_cast<float>(texelArea), irradiance * texelArea * size() * size(), light_};
+}
+
+ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, const LightViews& light) {
+  CHECK(light_ == (light.omnidirectional() ? Light::point : Light::spot), "a map of light kind {}", static_cast<int>(light_));
+  for (const gl::Program* program : {programs_.opaque, programs_.masked}) {
+    if (!program) continue;
+    for (std::size_t i = 0; i < light.clipFromWorld.size(); ++i)
+      program->set(fmt::format("clipFromWorld[{}]", i), glm::mat4(light.clipFromWorld[i]));
+    program->set("lightPosition", glm::vec3(light.position));
+    program->set("lightIntensity", light.intensity);
+    program->set("lightTangent", static_cast<float>(light.tangent));
+    program->set("texelWidth", static_cast<float>(light.texelWidth(size())));
+    if (light_ != Light::spot) continue;
+    program->set("lightDirection", glm::vec3(light.direction));
+    program->set("cosInner", static_cast<float>(light.cosInner));
+    program->set("cosOuter", static_cast<float>(light.cosOuter));
+  }
+  draw(scene, true);  // what stands before the near plane reflects too
+  return {position_, normal_, flux_, 1.0f, largest(light.intensity) * light.largestSolidAngle(size()), light_};
 }
 
 }  // namespace lucerna

@@ -1,35 +1,50 @@
-// Reflective shadow map of the sun [Dachsbacher2005]: what the light sees, each texel a virtual point light.
-// See README.md in this folder for inputs, outputs, units and sources.
+// Reflective shadow map of a light [Dachsbacher2005]: what the light sees, each texel a virtual point light. One map a light: of
+// the sun, of a spot light, or of an omnidirectional light with its six faces drawn in one pass.
 #pragma once
 
 #include "forward/gpu_scene.hpp"
+#include "forward/light_views.hpp"
 #include "gl/pass.hpp"
 
 namespace lucerna {
 
 class ReflectiveShadowMap {
  public:
+  enum class Light { sun, spot, point };
   struct Settings {
-    int size = 256;  ///< texels a side
+    int size = 256;  ///< texels a side, of every layer
+    Light light = Light::sun;
     bool fluxCosine = false;  ///< deviation rsm.flux-cosine: flux times N.L
   };
+  /// 2D arrays: one layer, or the six faces of an omnidirectional light.
   struct Outputs {
     const gl::Texture& position;  ///< RGBA32F, world; w = 1 where there is a surface, 0 background
     const gl::Texture& normal;    ///< RGBA16F, unit, on the light's side; w = cosine to the light
-    const gl::Texture& flux;      ///< RGBA32F, reflected flux of the texel: E * albedo * texelArea, W
-    float texelArea;              ///< scene units squared, across the rays
+    const gl::Texture& flux;      ///< RGBA32F, reflected flux of the texel, W; w = area of the surface in it, scene units squared
+    float texelArea = 1.0f;       ///< sun: across the rays, scene units squared; other lights have no such area: 1. Only for deviations
+    double largestFlux = 0.0;     ///< of all texels together, W: what the light sends into the map, an upper bound for any albedo up to 1
+    Light light = Light::sun;
+    /// Texels of all layers.
+    int texelCount() const { return position.size().x * position.size().y * position.size().z; }
+    /// To the units 0, 1, 2, where all that reads a map expects it.
+    void bind() const { position.bind(0), normal.bind(1), flux.bind(2); }
   };
   /// Needed by techniques that light the scene indirectly: something must reflect a light.
-  static bool isNeeded(const SceneNeeds& needs) { return needs.directionalLight && needs.indirect; }
+  static bool isNeeded(const SceneNeeds& needs) { return needs.anyLight() && needs.indirect; }
 
   ReflectiveShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings);
 
-  /// Draws the scene into it; the frame's uniform block must be bound. texelArea: SunFrustum::texelArea(size).
+  /// The sun's: draws the scene into it; the frame's uniform block must be bound. texelArea: SunFrustum::texelArea(size).
   Outputs record(const GpuScene& scene, double texelArea);
+  /// A spot's or an omnidirectional light's; the frame's uniform block is not read.
+  Outputs record(const GpuScene& scene, const LightViews& light);
   int size() const { return position_.size().x; }
+  Light light() const { return light_; }
   std::size_t gpuBytes() const { return position_.bytes() + normal_.bytes() + flux_.bytes() + depth_.bytes(); }
 
  private:
+  void draw(const GpuScene& scene, bool depthClamp);
+  Light light_;
   SurfacePrograms programs_;
   gl::Texture position_, normal_, flux_, depth_;
   gl::Framebuffer framebuffer_;

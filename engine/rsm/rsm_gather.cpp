@@ -100,10 +100,7 @@ void RsmGather::recordGeometry(const GpuScene& scene, const GpuScene::View& view
 
 void RsmGather::bindMap(const gl::Program& program, const Settings& settings, const ReflectiveShadowMap::Outputs& rsm) {
   program.use();
-  rsm.position.bind(0);
-  rsm.normal.bind(1);
-  rsm.flux.bind(2);
-  program.set("rsmTexelArea", rsm.texelArea);
+  rsm.bind();
   program.set("gatherRadius", settings.radius);
   if (settings.nearField == Near::clamp) program.set("minimumDistance2", settings.clampTexels * settings.clampTexels * rsm.texelArea);
 }

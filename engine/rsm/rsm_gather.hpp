@@ -34,7 +34,7 @@ class RsmGather {
     bool interpolates() const { return interpolate && lowResolution > 1; }
   };
   struct Inputs {
-    ReflectiveShadowMap::Outputs rsm;
+    ReflectiveShadowMap::Outputs rsm;  ///< the sun's
     glm::mat4 worldFromClip;  ///< the camera's
     float pixelWidth;         ///< of a pixel, scene units across the view per unit of distance
   };
@@ -43,7 +43,8 @@ class RsmGather {
     std::uint64_t frames = 0, pixels = 0, gathered = 0, refused = 0;  ///< pixels: those that show a surface
     double saving() const { return pixels ? 1.0 - static_cast<double>(gathered) / static_cast<double>(pixels) : 0.0; }
   };
-  static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
+  /// Only parallel light can be gathered: samples are placed by its projection.
+  static bool isNeeded(const SceneNeeds& needs) { return needs.directionalLight && ReflectiveShadowMap::isNeeded(needs); }
 
   /// depth: of the picture's size; recordGeometry draws it, the gather and then shading read it.
   RsmGather(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings, const gl::Texture& depth);

@@ -16,6 +16,8 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
       {"directionalLight", directionalLight},
       {"background", background},
       {"indirect", indirect},
+      {"spotLights", spotLights},
+      {"pointLights", pointLights},
   };
 }
 
@@ -34,7 +36,9 @@ SceneNeeds analyse(const Scene& scene) {
   }
   needs.directionalLight = scene.sun && anyPositive(scene.sun->irradiance);
   needs.background = anyPositive(scene.background);
-  needs.indirect = reflects && (needs.directionalLight || needs.emission);
+  for (const SpotLight& light : scene.spots) needs.spotLights |= anyPositive(light.intensity);
+  for (const PointLight& light : scene.points) needs.pointLights |= anyPositive(light.intensity);
+  needs.indirect = reflects && (needs.anyLight() || needs.emission);
   return needs;
 }
 

@@ -19,9 +19,13 @@ struct SceneNeeds {
   bool directionalLight = false; ///< a sun with irradiance > 0
   bool background = false;       ///< background radiance > 0
   bool indirect = false;         ///< something to light it with and something to reflect: a light and an albedo > 0
+  bool spotLights = false;       ///< a spot light with intensity > 0
+  bool pointLights = false;      ///< an omnidirectional light with intensity > 0
 
   /// (name, needed) in declaration order, for `info` and reports.
   std::vector<std::pair<std::string, bool>> named() const;
+  /// Any light that comes from one point or one direction: what shadow maps and reflective shadow maps are drawn from.
+  bool anyLight() const { return directionalLight || spotLights || pointLights; }
   bool operator==(const SceneNeeds&) const = default;
 };
 

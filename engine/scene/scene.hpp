@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/image.hpp"
+#include "shared/lights.h"
 
 #include <glm/glm.hpp>
 
@@ -68,6 +69,30 @@ struct DirectionalLight {
   glm::vec3 irradiance{0.0f};            ///< on a plane across the rays, W/m^2 in scene units
 };
 
+/// A lamp with a cone of light. Radiant intensity at an angle theta from `direction`:
+/// I(theta) = intensity * smoothstep((cos theta - cos outerAngle) / (cos innerAngle - cos outerAngle)), smoothstep(t) = t^2 (3 - 2 t)
+/// for t held to [0,1]; equal angles make a hard edge. Since smoothstep is antisymmetric about t = 1/2, the whole cone's flux is
+/// intensity * 2 pi * (1 - (cos innerAngle + cos outerAngle) / 2).
+struct SpotLight {
+  glm::dvec3 position{0.0};
+  glm::dvec3 direction{0.0, -1.0, 0.0};  ///< unit, the cone's axis, away from the lamp
+  glm::vec3 intensity{0.0f};             ///< radiant intensity on the axis, W/sr
+  double innerAngle = 0.5;               ///< half angle of the cone of full intensity, radians; 0..outerAngle
+  double outerAngle = 0.7;               ///< half angle beyond which there is none, radians; above 0, at most kLargestSpotAngle
+};
+
+/// A lamp that shines the same in all directions; its flux is 4 pi intensity.
+struct PointLight {
+  glm::dvec3 position{0.0};
+  glm::vec3 intensity{0.0f};  ///< radiant intensity, W/sr
+};
+
+/// One perspective shadow map serves a spot light, so its cone must stay clear of a half space: 80 degrees.
+inline constexpr double kLargestSpotAngle = 80.0 * 3.14159265358979323846 / 180.0;
+/// How many of a kind a scene may have: what the shaders' arrays hold.
+inline constexpr std::size_t kMaxSpotLights = LIGHTS_MAX_SPOTS;
+inline constexpr std::size_t kMaxPointLights = LIGHTS_MAX_POINTS;
+
 /// A view of the scene. Positions in double, so that far from the origin nothing is lost before it must be.
 struct Camera {
   std::string name;
@@ -86,6 +111,9 @@ struct Scene {
   std::vector<Material> materials;     ///< at least one where there is a mesh
   std::vector<Texture> textures;
   std::optional<DirectionalLight> sun;
+  bool defaultSun = false;             ///< no file named a light, so the sun is ours
+  std::vector<SpotLight> spots;        ///< at most kMaxSpotLights
+  std::vector<PointLight> points;      ///< at most kMaxPointLights
   std::vector<Camera> cameras;         ///< never empty after loading: the first is the default view
   Bounds bounds;
   double metresPerUnit = 1.0;
@@ -102,7 +130,7 @@ struct Scene {
 /// Reads a scene: a scene JSON (ours; see scene_file.cpp for its keys) or whatever Assimp reads.
 /// Every problem that leaves something to show (missing texture, missing MTL) is one warning naming the file; anything else
 /// (missing file, a folder, nothing to draw, truncated or malformed data) throws Error(badInput).
-/// Files without a light get the default sun, files without a camera a view computed from the bounds.
+/// Files without any light get the default sun, files without a camera a view computed from the bounds.
 Scene loadScene(const std::filesystem::path& file);
 
 }  // namespace lucerna

@@ -5,6 +5,10 @@
 //   "camera":      {"position": [x,y,z], "target": [x,y,z] or "direction": [x,y,z], "up": [x,y,z], "fov": vertical, degrees}
 //   "cameras":     an array of such, each with a "name"; instead of "camera"
 //   "sun":         {"direction": [x,y,z] along which the light travels, "irradiance": [r,g,b]}, or null for none
+//   "spots":       [{"position": [x,y,z], "direction": [x,y,z] or "target": [x,y,z], "intensity": [r,g,b] on the axis, W/sr,
+//                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula}], at most 4
+//   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr}], at most 4
+//                  Where one of these is given and "sun" is not, there is no default sun.
 //   "background":  [r,g,b], radiance
 //   "exposure":    factor before tone mapping
 //   "keyFrames":   path of the camera path, relative to the JSON
@@ -156,6 +160,50 @@ DirectionalLight readSun(const Value& object) {
   return {*direction, *irradiance};
 }
 
+SpotLight readSpot(const Value& object) {
+  constexpr double kDegree = kPi / 180.0;
+  std::optional<glm::dvec3> position, direction, target;
+  std::optional<glm::vec3> intensity;
+  std::optional<double> inner, outer;
+  const auto angle = [](std::optional<double>& result) {
+    return [&result](const Value& v) { result = v.number("a half angle in degrees") * kDegree; };
+  };
+  readObject(object, {
+      {"position", [&](const Value& v) { position = v.vector(); }},
+      {"direction", [&](const Value& v) { direction = v.unitVector(); }},
+      {"target", [&](const Value& v) { target = v.vector(); }},
+      {"intensity", [&](const Value& v) { intensity = v.light(); }},
+      {"innerAngle", angle(inner)},
+      {"outerAngle", angle(outer)},
+  });
+  if (!position || !intensity || !inner || !outer) object.fail("a spot with \"position\", \"intensity\", \"innerAngle\" and \"outerAngle\"");
+  if (target.has_value() == direction.has_value()) object.fail("a spot with either \"target\" or \"direction\"");
+  if (target && !(glm::length(*target - *position) > 0.0)) object.fail("a spot whose \"target\" is not its \"position\"");
+  if (!(*outer > 0.0 && *outer <= kLargestSpotAngle * (1.0 + 1e-12))) object.at("outerAngle").fail("a half angle above 0 and at most 80 degrees");
+  if (!(*inner >= 0.0 && *inner <= *outer)) object.at("innerAngle").fail("a half angle from 0 to \"outerAngle\"");
+  return {*position, direction ? *direction : glm::normalize(*target - *position), *intensity, *inner, *outer};
+}
+
+PointLight readPoint(const Value& object) {
+  std::optional<glm::dvec3> position;
+  std::optional<glm::vec3> intensity;
+  readObject(object, {
+      {"position", [&](const Value& v) { position = v.vector(); }},
+      {"intensity", [&](const Value& v) { intensity = v.light(); }},
+  });
+  if (!position || !intensity) object.fail("a point light with \"position\" and \"intensity\"");
+  return {*position, *intensity};
+}
+
+template <class Light>
+std::vector<Light> readLights(const Value& array, std::size_t most, Light (*read)(const Value&)) {
+  const std::string expected = fmt::format("an array of at most {} lights", most);
+  if (!array.json.is_array() || array.json.size() > most) array.fail(expected);
+  std::vector<Light> lights;
+  for (std::size_t i = 0; i < array.json.size(); ++i) lights.push_back(read(array.at(i)));
+  return lights;
+}
+
 }  // namespace
 
 Scene loadSceneFile(const std::filesystem::path& file) {
@@ -175,6 +223,8 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   std::optional<double> scale, exposure;
   std::vector<Camera> cameras;
   std::optional<std::optional<DirectionalLight>> sun;
+  std::optional<std::vector<SpotLight>> spots;
+  std::optional<std::vector<PointLight>> points;
   std::optional<glm::vec3> background;
   const auto beside = [&](const Value& v) {
     const std::string path = v.text();
@@ -188,6 +238,8 @@ Scene loadSceneFile(const std::filesystem::path& file) {
       {"camera", [&](const Value& v) { cameras = {readCamera(v)}; }},
       {"cameras", [&](const Value& v) { cameras = readCameras(v); }},
       {"sun", [&](const Value& v) { sun = v.json.is_null() ? std::nullopt : std::optional(readSun(v)); }},
+      {"spots", [&](const Value& v) { spots = readLights(v, kMaxSpotLights, readSpot); }},
+      {"points", [&](const Value& v) { points = readLights(v, kMaxPointLights, readPoint); }},
       {"background", [&](const Value& v) { background = v.light(); }},
       {"exposure", [&](const Value& v) { exposure = v.positiveNumber(); }},
       {"keyFrames", [&](const Value& v) { keyFrames = beside(v); }},
@@ -200,8 +252,11 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   scene.name = file.stem().string();
   scene.file = file;
   if (scale) scene.metresPerUnit = *scale / 1000.0;
-  if (sun) {
-    scene.sun = *sun;
+  if (spots) scene.spots = *spots;
+  if (points) scene.points = *points;
+  if (sun || (scene.defaultSun && (spots || points))) {
+    scene.sun = sun ? *sun : std::nullopt;
+    scene.defaultSun = false;
     scene.exposure = 1.0f;  // the default exposure belongs to the default sun
   }
   if (exposure) scene.exposure = static_cast<float>(*exposure);

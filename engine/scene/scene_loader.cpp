@@ -11,7 +11,10 @@
 // - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic), Blinn-Phong
 //   exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). Textures of metallic,
 //   roughness and emission become their mean, which keeps a surface's total.
-// - No sun in the file: kDefaultSun. No camera: the first key of keyFrames/<stem>.txt where the repository has one, else a
+// - Lights: a directional light's colour is its irradiance, that of a spot or point light its radiant intensity in W/sr, as
+//   the file has it (glTF's candela are not divided by a luminous efficacy); where other formats give a quadratic attenuation
+//   q, colour / q. Constant and linear attenuation are no physics and are ignored.
+// - No light in the file: kDefaultSun. No camera: the first key of keyFrames/<stem>.txt where the repository has one, else a
 //   view from outside that frames the bounding sphere.
 #include "scene/scene_file.hpp"
 
@@ -407,21 +410,43 @@ void appendCameras(Scene& scene, const aiScene& source) {
   }
 }
 
-void findSun(Scene& scene, const aiScene& source) {
+void appendLights(Scene& scene, const aiScene& source) {
+  const std::string extension = lowerExtension(scene.file);
+  const bool gltf = extension == ".gltf" || extension == ".glb";
   unsigned others = 0;
   for (unsigned i = 0; i < source.mNumLights; ++i) {
     const aiLight& light = *source.mLights[i];
-    const glm::dvec3 direction = glm::dmat3(worldFromNamedNode(source, light.mName)) * toGlm(light.mDirection);
-    const glm::vec3 irradiance = toGlm(light.mColorDiffuse);
-    const bool usable = light.mType == aiLightSource_DIRECTIONAL && isFinite(direction) && glm::length(direction) > 0.0 && isFinite(irradiance);
-    if (usable && !scene.sun) scene.sun = DirectionalLight{glm::normalize(direction), glm::max(irradiance, glm::vec3(0.0f))};
-    else ++others;
+    const glm::dmat4 world = worldFromNamedNode(source, light.mName);
+    const glm::dvec3 position(world * glm::dvec4(toGlm(light.mPosition), 1.0));
+    const glm::dvec3 direction = glm::dmat3(world) * toGlm(light.mDirection);
+    const glm::vec3 colour = glm::max(toGlm(light.mColorDiffuse), glm::vec3(0.0f));
+    const bool aimed = isFinite(direction) && glm::length(direction) > 0.0;
+    const float attenuation = gltf || !(light.mAttenuationQuadratic > 0.0f) ? 1.0f : light.mAttenuationQuadratic;
+    const glm::vec3 intensity = colour / attenuation;
+    const bool placed = isFinite(position) && isFinite(intensity);
+    if (light.mType == aiLightSource_DIRECTIONAL && aimed && isFinite(colour) && !scene.sun) {
+      scene.sun = DirectionalLight{glm::normalize(direction), colour};
+    } else if (light.mType == aiLightSource_POINT && placed && scene.points.size() < kMaxPointLights) {
+      scene.points.push_back({position, intensity});
+    } else if (light.mType == aiLightSource_SPOT && placed && aimed && light.mAngleOuterCone > 0.0f && scene.spots.size() < kMaxSpotLights) {
+      // Assimp's angles are whole cones, but its glTF reader hands on that format's half angles.
+      const double half = gltf ? 1.0 : 0.5;
+      const double outer = std::min(half * light.mAngleOuterCone, kLargestSpotAngle);
+      if (half * light.mAngleOuterCone > kLargestSpotAngle)
+        logWarning("{}: spot light '{}' is wider than 80 degrees from its axis; narrowed to that", scene.file.string(), light.mName.C_Str());
+      const double inner = std::clamp(half * light.mAngleInnerCone, 0.0, outer);
+      scene.spots.push_back({position, glm::normalize(direction), intensity, inner, outer});
+    } else {
+      ++others;
+    }
   }
-  if (others > 0) logWarning("{}: {} lights are left out; one directional light and emissive surfaces are read", scene.file.string(), others);
-  if (!scene.sun) {
-    scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
-    scene.exposure = kDefaultExposure;
-  }
+  if (others > 0)
+    logWarning("{}: {} lights are left out; one directional, {} spot and {} point lights and emissive surfaces are read", scene.file.string(),
+               others, kMaxSpotLights, kMaxPointLights);
+  if (scene.sun || !scene.spots.empty() || !scene.points.empty()) return;
+  scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
+  scene.defaultSun = true;
+  scene.exposure = kDefaultExposure;
 }
 
 Camera outsideView(const Bounds& bounds) {
@@ -499,7 +524,7 @@ Scene loadModel(const fs::path& file) {
   if (scene.degenerateTriangles == scene.triangleCount()) throwBadInput("{}: nothing to draw: all triangles have zero area", file.string());
   if (scene.droppedTriangles > 0) logWarning("{}: {} triangles with positions that are not finite are left out", file.string(), scene.droppedTriangles);
 
-  findSun(scene, *source);
+  appendLights(scene, *source);
   appendCameras(scene, *source);
   const fs::path walk = fs::path(LUCERNA_SOURCE_DIR) / "keyFrames" / (scene.name + ".txt");
   if (fs::exists(walk)) setKeyFrames(scene, walk);

@@ -1,10 +1,11 @@
-// Forward shading: direct sunlight with a filtered shadow map, indirect light from the light propagation volume or gathered
-// beforehand, emission.
+// Forward shading: direct light of the sun, of spot and of omnidirectional lights with filtered shadow maps, indirect light from the
+// light propagation volume or gathered beforehand, emission.
 // Output: radiance, linear, scene units. Lambert: L = albedo / pi * E. Specular: Blinn-Phong, normalised so that its energy
 // does not depend on the exponent, (n + 8) / (8 pi) [AkenineMoller2018, section 9.8].
 #include "lib/frame.glsl"
 #include "lib/sh.glsl"
 #include "lib/material.glsl"
+#include "lib/shadow.glsl"  // here, outside any condition: two of those below share it
 #if INDIRECT
 #include "lpv/lookup.glsl"
 #endif
@@ -26,18 +27,21 @@ uniform vec3 materialEmission;
 #endif
 
 #if DIRECT
-layout(binding = 2) uniform sampler2DShadow shadowMap;
-
-// Fraction of the sun that is seen: four bilinear comparisons, which make a 3x3 tent. Outside the map is lit.
-float sunVisibility(vec3 position, vec3 normal) {
-  vec4 clip = frame.sunClipFromWorld * vec4(position + normal * frame.shadowNormalOffset, 1.0);
-  vec3 uvz = 0.5 * clip.xyz + 0.5;
-  float d = 0.5 * frame.shadowTexelUv;
-  float sum = texture(shadowMap, uvz + vec3(-d, -d, 0.0)) + texture(shadowMap, uvz + vec3(d, -d, 0.0)) +
-              texture(shadowMap, uvz + vec3(-d, d, 0.0)) + texture(shadowMap, uvz + vec3(d, d, 0.0));
-  return 0.25 * sum;
-}
+#include "forward/sun_shadow.glsl"
 #endif
+#if SPOT_LIGHTS || POINT_LIGHTS
+#include "forward/lights.glsl"
+#endif
+
+// Reflected radiance over irradiance.
+vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
+  vec3 reflected = albedo / kPi;
+#if SPECULAR
+  vec3 halfway = normalize(toCamera + toLight);
+  reflected += materialSpecular * ((materialShininess + 8.0) / (8.0 * kPi) * pow(max(dot(normal, halfway), 0.0), materialShininess));
+#endif
+  return reflected;
+}
 
 void main() {
   if (materialCutOut(vTexCoord)) discard;
@@ -50,12 +54,19 @@ void main() {
   float cosine = dot(normal, -frame.sunDirection);
   if (cosine > 0.0) {
     vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, normal));
-    vec3 reflected = albedo / kPi;
-#if SPECULAR
-    vec3 halfway = normalize(toCamera - frame.sunDirection);
-    reflected += materialSpecular * ((materialShininess + 8.0) / (8.0 * kPi) * pow(max(dot(normal, halfway), 0.0), materialShininess));
+    result += reflection(albedo, normal, toCamera, -frame.sunDirection) * irradiance;
+  }
 #endif
-    result += reflected * irradiance;
+#if SPOT_LIGHTS
+  for (int i = 0; i < SPOT_LIGHTS; ++i) {
+    Arriving light = spotLight(i, vPosition, normal);
+    if (light.cosine > 0.0) result += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
+  }
+#endif
+#if POINT_LIGHTS
+  for (int i = 0; i < POINT_LIGHTS; ++i) {
+    Arriving light = pointLight(i, vPosition, normal);
+    if (light.cosine > 0.0) result += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
   }
 #endif
 #if INDIRECT

@@ -1,7 +1,6 @@
 // Blocking potential [Kaplanyan2010, section 4.2]: a surfel of area A and normal n adds A / s^2 * lobe(n) to the cell of the
 // geometry volume that it lies in. That volume is shifted half a cell, so that its centres lie on the grid's corners.
-// A is the surface's true area: the texel's area across the rays divided by the cosine to the light, the cosine bounded by
-// 1/20 because the few texels on a surface seen edge-on say little about its area.
+// A is the surface's true area, which the reflective shadow map holds beside the flux.
 #include "lib/finite.glsl"
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
@@ -9,26 +8,24 @@ layout(points) in;
 layout(points, max_vertices = LPV_MAX_CASCADES) out;
 in vec4 gPosition[];
 in vec4 gNormal[];
-in vec3 gFlux[];
+in vec4 gFlux[];  // w = area
 flat out vec4 fPotential;
-uniform float texelArea;  // across the rays
 #if SURFEL_AREA
 uniform vec3 lightPosition;
-uniform float texelCount;
+uniform float texelCount;  // 0: the light is a perspective one, which has true areas
 #endif
 
 void main() {
   vec3 normal = gNormal[0].xyz;
-  bool usable = gPosition[0].w > 0.5 && allFinite(gPosition[0].xyz) && allFinite(normal) && allFinite(gNormal[0].www) &&
+  bool usable = gPosition[0].w > 0.5 && allFinite(gPosition[0].xyz) && allFinite(normal) && allFinite(gFlux[0].www) &&
                 dot(normal, normal) > 0.25 && dot(normal, normal) < 4.0;
   if (!usable) return;
   int corners = lpv.shape.x + 1;
+  float area = gFlux[0].w;
 #if SURFEL_AREA
   // Deviation lpv.surfel-area: the formula of a 90 degree perspective light, weighted by N.L, for an orthographic one.
   vec3 away = gPosition[0].xyz - lightPosition;
-  float area = 4.0 * dot(away, away) / texelCount * gNormal[0].w;
-#else
-  float area = texelArea / max(gNormal[0].w, 0.05);
+  if (texelCount > 0.0) area = 4.0 * dot(away, away) / texelCount * gNormal[0].w;
 #endif
   for (int k = 0; k < lpv.shape.y; ++k) {
     float s = lpv.cascades[k].cellSize;

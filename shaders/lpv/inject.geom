@@ -1,6 +1,5 @@
 // A virtual point light goes into one cell of every cascade that it lies in: gl_Layer chooses the slice, blending adds
 // [LPV2015, 6.4.2].
-#include "lib/finite.glsl"
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
 #include "lpv/vpl.glsl"
@@ -8,16 +7,16 @@ layout(points) in;
 layout(points, max_vertices = LPV_MAX_CASCADES) out;
 in vec4 gPosition[];
 in vec4 gNormal[];
-in vec3 gFlux[];
+in vec4 gFlux[];
 flat out vec4 fRed;
 flat out vec4 fGreen;
 flat out vec4 fBlue;
 
-uniform float fluxScale;  // 1, or without units 1 / texel area
+uniform float fluxScale;  // 1, or without units 1 / texel area of the light's map
 
 void main() {
   vec3 normal = gNormal[0].xyz;
-  vec3 flux = gFlux[0];
+  vec3 flux = gFlux[0].rgb;
   if (!isUsableVpl(gPosition[0], normal, flux)) return;
   int cells = lpv.shape.x;
   for (int k = 0; k < lpv.shape.y; ++k) {

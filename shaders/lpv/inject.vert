@@ -1,15 +1,16 @@
 // One point per texel of the reflective shadow map, no vertex buffer: the texel follows from gl_VertexID.
-layout(binding = 0) uniform sampler2D rsmPosition;
-layout(binding = 1) uniform sampler2D rsmNormal;
-layout(binding = 2) uniform sampler2D rsmFlux;
+layout(binding = 0) uniform sampler2DArray rsmPosition;
+layout(binding = 1) uniform sampler2DArray rsmNormal;
+layout(binding = 2) uniform sampler2DArray rsmFlux;
 out vec4 gPosition;  // world; w = 0: background
 out vec4 gNormal;    // unit; w = cosine to the light
-out vec3 gFlux;      // reflected flux of the texel
+out vec4 gFlux;      // reflected flux of the texel; w = area of the surface in it
 
 void main() {
-  int width = textureSize(rsmPosition, 0).x;
-  ivec2 texel = ivec2(gl_VertexID % width, gl_VertexID / width);
+  ivec2 size = textureSize(rsmPosition, 0).xy;
+  int row = gl_VertexID / size.x;
+  ivec3 texel = ivec3(gl_VertexID % size.x, row % size.y, row / size.y);
   gPosition = texelFetch(rsmPosition, texel, 0);
   gNormal = texelFetch(rsmNormal, texel, 0);
-  gFlux = texelFetch(rsmFlux, texel, 0).rgb;
+  gFlux = texelFetch(rsmFlux, texel, 0);
 }

@@ -13,9 +13,9 @@
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(binding = 0) uniform sampler2D rsmPosition;
-layout(binding = 1) uniform sampler2D rsmNormal;
-layout(binding = 2) uniform sampler2D rsmFlux;
+layout(binding = 0) uniform sampler2DArray rsmPosition;
+layout(binding = 1) uniform sampler2DArray rsmNormal;
+layout(binding = 2) uniform sampler2DArray rsmFlux;
 #if FILL_FIXED
 #define FILL_FORMAT r32i
 #define FILL_IMAGE iimage3D
@@ -29,7 +29,7 @@ layout(binding = 2) uniform sampler2D rsmFlux;
 layout(binding = 0, FILL_FORMAT) coherent uniform FILL_IMAGE countRed;
 layout(binding = 1, FILL_FORMAT) coherent uniform FILL_IMAGE countGreen;
 layout(binding = 2, FILL_FORMAT) coherent uniform FILL_IMAGE countBlue;
-uniform float fluxScale;   // 1, or without units 1 / texel area
+uniform float fluxScale;   // 1, or without units 1 / texel area of the light's map
 uniform float fixedScale;  // integer steps a unit of a coefficient stored in the finest cascade, see lpv/fixed.glsl
 
 #if FILL_FIXED
@@ -47,7 +47,7 @@ uniform float fixedScale;  // integer steps a unit of a coefficient stored in th
 #include "lpv/vpl.glsl"
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  ivec3 texel = ivec3(gl_GlobalInvocationID);  // z: the map's layer
   if (any(greaterThanEqual(texel, textureSize(rsmPosition, 0)))) return;
   vec4 position = texelFetch(rsmPosition, texel, 0);
   vec3 normal = texelFetch(rsmNormal, texel, 0).xyz;

@@ -1,11 +1,12 @@
 // A virtual point light of the reflective shadow map as the grid takes it, shared by all ways to fill it.
 // Needs lib/sh.glsl and lpv/common.glsl. LOWEST_CELL is 0; 1 with the deviation lpv.first-cell.
+#include "lib/finite.glsl"
 
-// Background, black, zero and non-finite texels carry no light (NaN fails every comparison).
+// Background, black, zero and non-finite texels carry no light.
 bool isUsableVpl(vec4 position, vec3 normal, vec3 flux) {
   float length2 = dot(normal, normal);
-  return position.w > 0.5 && length2 > 0.25 && length2 < 4.0 && flux.r + flux.g + flux.b > 0.0 &&
-         max(flux.r, max(flux.g, flux.b)) < 3e38 && abs(position.x) + abs(position.y) + abs(position.z) < 3e38;
+  return position.w > 0.5 && allFinite(position.xyz) && allFinite(normal) && allFinite(flux) && length2 > 0.25 && length2 < 4.0 &&
+         flux.r + flux.g + flux.b > 0.0;
 }
 
 // Its cell in cascade k: it is moved half a cell along its normal first, so that it does not light its own surface [GPUPro2, p. 190].

@@ -1,5 +1,5 @@
 // Irradiance at a point from the reflective shadow map: samples of it around the point's projection (s,t) at
-// (s + r xi1 sin 2 pi xi2, t + r xi1 cos 2 pi xi2) [Dachsbacher2005 sec 4.1; ORIGINALS 1.1].
+// (s + r xi1 sin 2 pi xi2, t + r xi1 cos 2 pi xi2) [Dachsbacher2005 sec 4.1].
 // The density of these per texel is 1 / (2 pi R^2 xi1), R = r in texels, so the sum over all texels within R is estimated
 // without bias by sum_i E_i xi1_i 2 pi R^2 / N. The published weight is xi1^2 in xi1's place.
 #include "rsm/transfer.glsl"

@@ -1,4 +1,4 @@
-// Indirect irradiance at every Nth pixel each way [ORIGINALS 1.1, screen-space interpolation].
+// Indirect irradiance at every Nth pixel each way [Dachsbacher2005, screen-space interpolation].
 #include "rsm/gather.glsl"
 #include "rsm/visible.glsl"
 #include "rsm/low.glsl"

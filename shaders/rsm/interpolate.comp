@@ -1,5 +1,5 @@
 // Irradiance of a pixel from the 4 nearest low-resolution samples, where at least 3 of them fit it: a similar normal, near its
-// tangent plane, not far away [ORIGINALS 1.1]. Bilinear weights of those that fit. Every other pixel goes into the list that
+// tangent plane, not far away [Dachsbacher2005]. Bilinear weights of those that fit. Every other pixel goes into the list that
 // the full gather works through.
 #include "lib/frame.glsl"
 #include "rsm/visible.glsl"

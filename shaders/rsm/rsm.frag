@@ -1,28 +1,63 @@
-// Reflective shadow map of an orthographic light [Dachsbacher2005]: each texel is a virtual point light.
-// Flux = E * albedo * A_texel, in watts, A_texel the texel's area across the rays. No N.L: the tilt of a surface is already in
-// the number of texels that it covers (the published text multiplies by it: twice the cosine).
+// Reflective shadow map [Dachsbacher2005]: each texel is a virtual point light. Its flux, in watts, is what the light sends into the
+// texel times the albedo; no N.L: the tilt of a surface is already in the number of texels that it covers (the published text
+// multiplies by it: twice the cosine).
+// Sun: flux = E * albedo * A, A the texel's area across the rays. Surface area: A / cos.
+// Spot and omnidirectional: flux = I(omega) * albedo * dOmega. A texel of width w at depth 1, seen at the angle psi to the view's
+// axis, lies at the distance 1 / cos psi and is tilted by psi: dOmega = w^2 cos psi / (1 / cos psi)^2 = w^2 cos^3 psi, exact to
+// second order in w (the corner form, four arctangents, loses more than that to rounding). Surface area: d^2 dOmega / cos.
+// The cosine in an area is bounded by 1/20: the few texels on a surface seen edge-on say little about its area.
 #include "lib/frame.glsl"
 #include "lib/material.glsl"
+#include "lib/spot.glsl"
 in vec3 vPosition;
 in vec3 vNormal;
 in vec2 vTexCoord;
 layout(location = 0) out vec4 outPosition;  // world; w = 1 marks a surface, 0 background
 layout(location = 1) out vec4 outNormal;    // unit, towards the light; w = cosine to it
-layout(location = 2) out vec4 outFlux;      // reflected flux of the texel, RGB
-uniform float texelArea;                    // world units squared, across the rays
+layout(location = 2) out vec4 outFlux;      // reflected flux of the texel, RGB; w = area of the surface in it, world units squared
+#if PERSPECTIVE
+uniform vec3 lightPosition;
+uniform vec3 lightIntensity;  // W/sr
+uniform float lightTangent;   // of half a view's opening angle
+uniform float texelWidth;     // at depth 1
+#if LAYERS == 1
+uniform vec3 lightDirection;  // of a spot
+uniform float cosInner;
+uniform float cosOuter;
+#endif
+#else
+uniform float texelArea;      // world units squared, across the rays
+#endif
 
 void main() {
   if (materialCutOut(vTexCoord)) discard;
   vec3 normal = normalize(gl_FrontFacing ? vNormal : -vNormal);
-  float cosine = -dot(normal, frame.sunDirection);
+#if PERSPECTIVE
+  vec3 away = lightPosition - vPosition;
+  float distance2 = dot(away, away);
+  vec3 toLight = away * inversesqrt(max(distance2, 1e-30));  // a surface point in the lamp itself: no area, not NaN
+  vec2 atDepth1 = gl_FragCoord.xy * texelWidth - lightTangent;
+  float cosAxis = inversesqrt(1.0 + dot(atDepth1, atDepth1));
+  float solidAngle = texelWidth * texelWidth * cosAxis * cosAxis * cosAxis;
+  float across = distance2 * solidAngle;
+  vec3 incoming = lightIntensity * solidAngle;
+#if LAYERS == 1
+  incoming *= spotFalloff(-dot(toLight, lightDirection), cosInner, cosOuter);
+#endif
+#else
+  vec3 toLight = -frame.sunDirection;
+  float across = texelArea;
+  vec3 incoming = frame.sunIrradiance * texelArea;
+#endif
+  float cosine = dot(normal, toLight);
   if (cosine < 0.0) {  // an interpolated normal may turn away from the light where the face does not
     normal = -normal;
     cosine = -cosine;
   }
   outPosition = vec4(vPosition, 1.0);
   outNormal = vec4(normal, cosine);
-  outFlux = vec4(frame.sunIrradiance * materialAlbedo(vTexCoord) * texelArea, 0.0);
+  outFlux = vec4(incoming * materialAlbedo(vTexCoord), across / max(cosine, 0.05));
 #if FLUX_COSINE
-  outFlux *= cosine;  // deviation rsm.flux-cosine
+  outFlux.rgb *= cosine;  // deviation rsm.flux-cosine
 #endif
 }

@@ -1,15 +1,33 @@
-// A mesh vertex seen by the sun.
+// A mesh vertex seen by the light. Flag LAYERS: views of the target that the geometry shader projects it to; at 1 there is none.
 #include "lib/frame.glsl"
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
 layout(location = 2) in vec3 normal;
+#if LAYERS > 1
+out vec3 gNormal;
+out vec2 gTexCoord;
+#else
 out vec3 vPosition;
 out vec3 vNormal;
 out vec2 vTexCoord;
+#if PERSPECTIVE
+uniform mat4 clipFromWorld[1];
+#endif
+#endif
 
 void main() {
+#if LAYERS > 1
+  gNormal = normal;
+  gTexCoord = texCoord;
+  gl_Position = vec4(position, 1.0);
+#else
   vPosition = position;
   vNormal = normal;
   vTexCoord = texCoord;
+#if PERSPECTIVE
+  gl_Position = clipFromWorld[0] * vec4(position, 1.0);
+#else
   gl_Position = frame.sunClipFromWorld * vec4(position, 1.0);
+#endif
+#endif
 }

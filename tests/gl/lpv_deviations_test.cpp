@@ -95,7 +95,7 @@ class LpvDeviations : public test::GlTest {
     RsmTextures textures;
     LightPropagationVolume::Inputs inputs;
     Lights(std::vector<RsmTexel> lights, std::vector<Cascade> cascades, double area = 1.0, float irradiance = 1.0f)
-        : texels(std::move(lights)), texelArea(area), textures(texels, area), inputs{textures.outputs(), std::move(cascades), irradiance} {}
+        : texels(std::move(lights)), texelArea(area), textures(texels, area), inputs{{textures.outputs()}, std::move(cascades), irradiance} {}
   };
   static LightPropagationVolume run(const LpvSettings& s, const LightPropagationVolume::Inputs& inputs) {
     LightPropagationVolume lpv(library(), capabilities(), s);
@@ -496,7 +496,7 @@ TEST_F(LpvDeviations, Unjoined) {
   const RsmTextures textures(field.texels, 0.0);
   const auto mean = [&](LpvSettings of, int cascades) {
     of.cascades.cascades = cascades;
-    const LightPropagationVolume::Inputs inputs{textures.outputs(), {field.all.end() - cascades, field.all.end()}, 1.0f};
+    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, {field.all.end() - cascades, field.all.end()}, 1.0f};
     double sum = 0.0;
     for (const glm::vec3& value : test::probeIrradiance(library(), run(of, inputs), field.probes)) sum += static_cast<double>(value.x);
     return sum / static_cast<double>(field.probes.size());
@@ -512,7 +512,7 @@ TEST_F(LpvDeviations, Unjoined) {
     EXPECT_NEAR(summed, sum, 1e-5);
   }
   // Against the twin: propagated each by itself, then blended or summed.
-  const LightPropagationVolume::Inputs inputs{textures.outputs(), field.all, 1.0f};
+  const LightPropagationVolume::Inputs inputs{{textures.outputs()}, field.all, 1.0f};
   const std::vector<twin::Vpl> vpls = test::vplsOf(field.texels, 0.0);
   std::vector<twin::Volume> cascades;
   twin::CascadeBlend blend{{}, static_cast<double>(s.blendBand)};
@@ -601,11 +601,11 @@ class RsmGatherDeviations : public LpvDeviations {
     for (const twin::RsmMap::Texel& t : map.texels) {
       data[0].emplace_back(glm::vec3(t.position), 1.0f);
       data[1].emplace_back(glm::vec3(t.normal), static_cast<float>(t.cosine));
-      data[2].emplace_back(glm::vec3(t.flux), 0.0f);
+      data[2].emplace_back(glm::vec3(t.flux), static_cast<float>(map.texelArea() / std::max(t.cosine, 0.05)));
     }
     gl::Texture textures[3];
     for (int i = 0; i < 3; ++i) {
-      textures[i] = gl::Texture("test rsm", GL_RGBA32F, map.size);
+      textures[i] = gl::Texture("test rsm", GL_RGBA32F, glm::ivec3(map.size, 1), {}, 1, GL_TEXTURE_2D_ARRAY);
       textures[i].upload(GL_RGBA, GL_FLOAT, data[i].data());
     }
     shared::FrameConstants frame{};

@@ -90,7 +90,7 @@ TEST_F(LpvWays, LayeredPropagationIsTheComputeOne) {
           LpvSettings s = settings(12, cascades, iterations);
           s.blocking = blocking;
           s.storage = storage;
-          const LightPropagationVolume::Inputs inputs{textures.outputs(), place(s), kIrradiance};
+          const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
           const std::vector<VolumeRgb> compute = test::readVolume(run(s, inputs).result(), inputs);
           s.propagate = LpvPropagate::layered;
           const std::vector<VolumeRgb> layered = test::readVolume(run(s, inputs).result(), inputs);
@@ -113,7 +113,7 @@ TEST_F(LpvWays, FixedPointGivesTheLayeredGridWithinItsQuantum) {
   const RsmTextures textures(texels, kTexelArea);
   for (const int cascades : {1, 3}) {
     LpvSettings s = settings(12, cascades, 0);
-    const LightPropagationVolume::Inputs inputs{textures.outputs(), place(s), kIrradiance};
+    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
     const std::vector<VolumeRgb> layered = test::readVolume(run(s, inputs).injected(), inputs);
     s.fill = LpvFill::fixed;
     const std::vector<VolumeRgb> fixed = test::readVolume(run(s, inputs).injected(), inputs);
@@ -145,7 +145,7 @@ TEST_F(LpvWays, AtomicGivesTheLayeredGrid) {
   const std::vector<RsmTexel> texels = randomTexels(3, 5000);
   const RsmTextures textures(texels, kTexelArea);
   LpvSettings s = settings(12, 3, 0);
-  const LightPropagationVolume::Inputs inputs{textures.outputs(), place(s), kIrradiance};
+  const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
   const std::vector<VolumeRgb> layered = test::readVolume(run(s, inputs).injected(), inputs);
   s.fill = LpvFill::atomic;
   const std::vector<VolumeRgb> atomic = test::readVolume(run(s, inputs).injected(), inputs);
@@ -161,7 +161,7 @@ TEST_F(LpvWays, FixedPointGivesTheSameBitsInAnyOrder) {
     const RsmTextures textures(texels, kTexelArea);
     LpvSettings s = settings(8, 2, 0);
     s.fill = LpvFill::fixed;
-    const LightPropagationVolume::Inputs inputs{textures.outputs(), place(s), kIrradiance};
+    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
     const LightPropagationVolume lpv = run(s, inputs);
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const std::vector<glm::vec4> now = lpv.injected()[channel].readRgba();
@@ -191,7 +191,7 @@ TEST_F(LpvWays, FixedPointNeverOverflows) {
             cascades[k].firstCell = glm::i64vec3(-2);
             cascades[k].cellSize = (k == 0 ? 0.5 : 1.0) * static_cast<double>(scale);
           }
-          const LightPropagationVolume::Inputs inputs{textures.outputs(), cascades, kIrradiance};
+          const LightPropagationVolume::Inputs inputs{{textures.outputs()}, cascades, kIrradiance};
           const std::vector<VolumeRgb> injected = test::readVolume(run(s, inputs).injected(), inputs);
           for (std::size_t k = 0; k < injected.size(); ++k) {
             // Without units each counts E albedo in place of E albedo A / s^2.
@@ -286,7 +286,7 @@ TEST_F(LpvHalfStall, TenThousandEqualLightsInACellAddUp) {
         s.storage = storage;
         const RsmTexel light{{0.2f, 0.2f, 0.2f, 1.0f}, {0, 0, 1, 1}, glm::vec3(flux)};
         const RsmTextures textures(std::vector<RsmTexel>(10000, light), static_cast<double>(flux));
-        const LightPropagationVolume::Inputs inputs{textures.outputs(), place(s), 1.0f};
+        const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), 1.0f};
         const double total = twin::totalFlux(test::readVolume(run(s, inputs).injected(), inputs)[0]).x;
         // Equal terms drift in a 32-bit sum by up to 2^-25 each, 3e-4 here; measured 1.3e-4 at the least flux.
         EXPECT_NEAR(total / (10000.0 * static_cast<double>(flux)), 1.0, fill == LpvFill::layered && flux < 1e-5f ? 2e-4 : 1e-4) << flux << nameOf(fill);

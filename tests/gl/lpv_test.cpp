@@ -182,7 +182,7 @@ struct CaseInputs {
 
   explicit CaseInputs(const Case& c, unsigned seed)
       : cascades(place(c)), texels(makeTexels(c, seed, cascades)), textures(texels, texelArea),
-        inputs{textures.outputs(), cascades, 3.5f} {}
+        inputs{{textures.outputs()}, cascades, 3.5f} {}
 
   static std::vector<Cascade> place(const Case& c) {
     CascadeSettings s;
@@ -471,7 +471,7 @@ class LpvKnownAnswers : public LpvGlTest {
     RsmTextures textures;
     LightPropagationVolume::Inputs inputs;
     Field(std::vector<RsmTexel> lights, int cells, double texelArea = 1.0)
-        : texels(std::move(lights)), textures(texels, texelArea), inputs{textures.outputs(), unitCascade(cells), 1.0f} {}
+        : texels(std::move(lights)), textures(texels, texelArea), inputs{{textures.outputs()}, unitCascade(cells), 1.0f} {}
   };
   static std::vector<RsmTexel> one(int cells, const glm::vec3& normal, const glm::vec3& flux) {
     return {lightIn(glm::ivec3(cells / 2), normal, flux)};
@@ -730,7 +730,7 @@ TEST_F(LpvKnownAnswers, StoredValuesDoNotDependOnTheLightsUnit) {
                         {0, 0, 1, 1},
                         glm::vec3(0.5f * irradiance * texelArea)});
     const RsmTextures textures(texels, texelArea);
-    const LightPropagationVolume::Inputs inputs{textures.outputs(), unitCascade(7), irradiance};
+    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, unitCascade(7), irradiance};
     const LightPropagationVolume lpv = run(settings(7, 1, 8, true, Storage::half), inputs);
     stored.push_back(lpv.result()[0].readRgba());
   }
@@ -806,7 +806,7 @@ TEST_F(LpvKnownAnswers, TheMeanOfASmoothFieldDoesNotDependOnTheNumberOfCascades)
   for (int cascades = 1; cascades <= 4; ++cascades) {
     s.cascades.cascades = cascades;
     s.handOver = 0;  // as it is by default
-    const LightPropagationVolume::Inputs inputs{textures.outputs(), {all.end() - cascades, all.end()}, 1.0f};
+    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, {all.end() - cascades, all.end()}, 1.0f};
     const LightPropagationVolume lpv = run(s, inputs, true);
     double mean = 0.0;
     for (const glm::vec3& seen : test::probeIrradiance(library(), lpv, probes)) mean += static_cast<double>(seen.x) / static_cast<double>(probes.size());

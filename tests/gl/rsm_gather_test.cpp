@@ -30,12 +30,12 @@ class RsmGatherOnGl : public test::GlTest {
     for (const RsmMap::Texel& t : map.texels) {
       position.emplace_back(glm::vec3(t.position), t.surface ? 1.0f : 0.0f);
       normal.emplace_back(glm::vec3(t.normal), static_cast<float>(t.cosine));
-      flux.emplace_back(glm::vec3(t.flux), 0.0f);
+      flux.emplace_back(glm::vec3(t.flux), static_cast<float>(map.texelArea() / std::max(t.cosine, 0.05)));
     }
     gl::Texture textures[3];
     const std::vector<glm::vec4>* data[] = {&position, &normal, &flux};
     for (int i = 0; i < 3; ++i) {
-      textures[i] = gl::Texture("test rsm", GL_RGBA32F, map.size);
+      textures[i] = gl::Texture("test rsm", GL_RGBA32F, glm::ivec3(map.size, 1), {}, 1, GL_TEXTURE_2D_ARRAY);
       textures[i].upload(GL_RGBA, GL_FLOAT, data[i]->data());
     }
     shared::FrameConstants frame{};

@@ -58,7 +58,7 @@ class ReflectiveShadowMapGl : public test::GlTest {
     settings.cascades.cascades = 1;
     settings.iterations = 0;
     LightPropagationVolume lpv(*library_, capabilities(), settings);
-    const LightPropagationVolume::Inputs inputs{outputs, placeCascades(settings.cascades, scene.bounds, scene.bounds.centre(), glm::dvec3(0.0)),
+    const LightPropagationVolume::Inputs inputs{{outputs}, placeCascades(settings.cascades, scene.bounds, scene.bounds.centre(), glm::dvec3(0.0)),
                                                 scene.sun->irradiance.x};
     lpv.place(inputs);
     lpv.inject(inputs);

@@ -22,11 +22,12 @@ struct RsmTexel {
 class RsmTextures {
  public:
   RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLenum normalFormat = GL_RGBA32F);
-  ReflectiveShadowMap::Outputs outputs() const { return {position_, normal_, flux_, texelArea_}; }
+  ReflectiveShadowMap::Outputs outputs() const { return {position_, normal_, flux_, texelArea_, largestFlux_}; }
 
  private:
   gl::Texture position_, normal_, flux_;
   float texelArea_;
+  double largestFlux_ = 0.0;  ///< of the texels that carry finite light
 };
 
 /// The same texels as the twin takes them; background is left out. Area: texelArea / max(cosine, 1/20).

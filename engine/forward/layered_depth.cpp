@@ -1,0 +1,45 @@
+#include "forward/layered_depth.hpp"
+
+#include "base/error.hpp"
+
+#include <fmt/core.h>
+
+namespace lucerna {
+
+LayeredDepth::LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, const std::string& name, const Shape& shape)
+    : name_(name), shape_(shape) {
+  CHECK(shape.layersPerDraw > 0 && shape.layers % shape.layersPerDraw == 0, "{} layers, {} a draw", shape.layers, shape.layersPerDraw);
+  const auto load = [&](bool masked) {
+    return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "forward/depth_layered.vert",
+                                masked ? "forward/depth.frag" : "", {{"ALPHA_MASK", masked}, {"LAYERS", shape.layersPerDraw}},
+                                "forward/depth_layered.geom");
+  };
+  programs_.opaque = load(false);
+  if (scene.needs().alphaMasks) programs_.masked = load(true);
+  gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, glm::vec4(1.0f)};
+  if (shape.target == GL_TEXTURE_CUBE_MAP_ARRAY) sampling.wrap = GL_CLAMP_TO_EDGE;  // seamless: there is no edge
+  sampling.depthCompare = true;
+  depth_ = gl::Texture(name, GL_DEPTH_COMPONENT32F, glm::ivec3(shape.size, shape.size, shape.layers), sampling, 1, shape.target);
+  framebuffer_ = gl::Framebuffer(name, {}, &depth_);
+}
+
+void LayeredDepth::record(const GpuScene& scene, std::span<const glm::dmat4> clipFromWorld) const {
+  CHECK(static_cast<int>(clipFromWorld.size()) == shape_.layers, "{} views for {} layers", clipFromWorld.size(), shape_.layers);
+  gl::RasterState state;
+  state.depth = gl::Depth::lessWrite;
+  state.polygonOffset = {1.5f, 2.0f};
+  state.depthClamp = true;
+  const gl::RasterPass pass(name_, framebuffer_, state);
+  pass.clearDepth();
+  for (int first = 0; first < shape_.layers; first += shape_.layersPerDraw) {
+    for (const gl::Program* program : {programs_.opaque, programs_.masked}) {
+      if (!program) continue;
+      program->set("firstLayer", first);
+      for (int i = 0; i < shape_.layersPerDraw; ++i)
+        program->set(fmt::format("clipFromWorld[{}]", i), glm::mat4(clipFromWorld[static_cast<std::size_t>(first + i)]));
+    }
+    scene.drawDepth(programs_);
+  }
+}
+
+}  // namespace lucerna

@@ -1,0 +1,38 @@
+// Depth maps in the layers of one texture, several filled by one draw: a geometry shader instance a view. Serves the sun's
+// cascades, the spot lights (each kind a 2D array) and the omnidirectional lights (an array of cube maps).
+#pragma once
+
+#include "forward/gpu_scene.hpp"
+#include "gl/pass.hpp"
+
+#include <span>
+#include <string>
+
+namespace lucerna {
+
+class LayeredDepth {
+ public:
+  struct Shape {
+    GLenum target;      ///< GL_TEXTURE_2D_ARRAY or GL_TEXTURE_CUBE_MAP_ARRAY
+    int size;           ///< texels a side
+    int layers;         ///< of cube maps: 6 each
+    int layersPerDraw;  ///< that one draw of the scene fills; divides `layers`
+  };
+  LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, const std::string& name, const Shape& shape);
+
+  /// Draws the scene from every view, one a layer. What lies before a near plane is kept, at depth 0.
+  void record(const GpuScene& scene, std::span<const glm::dmat4> clipFromWorld) const;
+  /// Depth in [0,1], comparison on: sampler2DArrayShadow or samplerCubeArrayShadow. Beyond a 2D map is lit.
+  const gl::Texture& depth() const { return depth_; }
+  int size() const { return shape_.size; }
+  std::size_t gpuBytes() const { return depth_.bytes(); }
+
+ private:
+  std::string name_;
+  Shape shape_;
+  SurfacePrograms programs_;
+  gl::Texture depth_;
+  gl::Framebuffer framebuffer_;
+};
+
+}  // namespace lucerna

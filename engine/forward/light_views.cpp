@@ -1,0 +1,91 @@
+#include "forward/light_views.hpp"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lucerna {
+
+namespace {
+
+struct Face {
+  glm::dvec3 axis, up;
+};
+// OpenGL 4.3, table 8.18: the image of a cube map's face has its t axis downwards.
+constexpr std::array<Face, 6> kFaces{{{{1, 0, 0}, {0, -1, 0}}, {{-1, 0, 0}, {0, -1, 0}}, {{0, 1, 0}, {0, 0, 1}},
+                                      {{0, -1, 0}, {0, 0, -1}}, {{0, 0, 1}, {0, -1, 0}}, {{0, 0, -1}, {0, -1, 0}}}};
+
+float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+
+void placePlanes(LightViews& views, const Bounds& scene) {
+  double farthest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p(corner & 1 ? scene.max.x : scene.min.x, corner & 2 ? scene.max.y : scene.min.y,
+                       corner & 4 ? scene.max.z : scene.min.z);
+    farthest = std::max(farthest, glm::length(p - views.position));
+  }
+  views.far = farthest > 0.0 ? 1.01 * farthest : 1.0;
+  views.near = views.far / 2000.0;
+}
+
+glm::dmat4 view(const LightViews& views, const glm::dvec3& axis, const glm::dvec3& up) {
+  const double reach = views.near * views.tangent;
+  return glm::frustum(-reach, reach, -reach, reach, views.near, views.far) * glm::lookAt(views.position, views.position + axis, up);
+}
+
+}  // namespace
+
+double LightViews::largestSolidAngle(int size) const {
+  // A square pyramid of half opening angle with the tangent t has 4 asin(t^2 / (1 + t^2)) sr. The shader sums w^2 f at the texels' middles,
+  // f = (1 + x^2 + y^2)^(-3/2), which bends down nowhere by more than 3: each texel is above its integral by
+  // 3/2 * w^4 / 6 at most, N^2 of them by t^2 w^2. And f is 1 at most.
+  const double t2 = tangent * tangent, width = texelWidth(size);
+  return static_cast<double>(clipFromWorld.size()) * std::min(4.0 * std::asin(t2 / (1.0 + t2)) + t2 * width * width, 4.0 * t2);
+}
+
+LightViews lightViews(const SpotLight& light, const Bounds& scene) {
+  LightViews views{light.position, light.intensity, light.direction, std::cos(light.innerAngle), std::cos(light.outerAngle), {}};
+  placePlanes(views, scene);
+  views.tangent = 1.01 * std::tan(light.outerAngle);  // the cone's rim lies inside the map, its filter too
+  const glm::dvec3 up = std::abs(light.direction.y) < 0.99 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
+  views.clipFromWorld = {view(views, light.direction, up)};
+  return views;
+}
+
+LightViews lightViews(const PointLight& light, const Bounds& scene) {
+  LightViews views;
+  views.position = light.position;
+  views.intensity = light.intensity;
+  placePlanes(views, scene);
+  for (const Face& face : kFaces) views.clipFromWorld.push_back(view(views, face.axis, face.up));
+  return views;
+}
+
+std::vector<LightViews> spotViews(const Scene& scene) {
+  std::vector<LightViews> views;
+  for (const SpotLight& light : scene.spots)
+    if (largest(light.intensity) > 0.0f) views.push_back(lightViews(light, scene.bounds));
+  return views;
+}
+
+std::vector<LightViews> pointViews(const Scene& scene) {
+  std::vector<LightViews> views;
+  for (const PointLight& light : scene.points)
+    if (largest(light.intensity) > 0.0f) views.push_back(lightViews(light, scene.bounds));
+  return views;
+}
+
+float typicalIrradiance(const Scene& scene) {
+  const double distance = 0.25 * glm::length(scene.bounds.extent());
+  double result = scene.sun ? static_cast<double>(largest(scene.sun->irradiance)) : 0.0;
+  const auto add = [&](const glm::vec3& intensity) {
+    if (distance > 0.0) result = std::max(result, static_cast<double>(largest(intensity)) / (distance * distance));
+  };
+  for (const SpotLight& light : scene.spots) add(light.intensity);
+  for (const PointLight& light : scene.points) add(light.intensity);
+  return result > 0.0 ? static_cast<float>(std::clamp(result, 1e-30, 1e30)) : 1.0f;
+}
+
+}  // namespace lucerna

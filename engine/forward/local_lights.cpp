@@ -1,0 +1,52 @@
+#include "forward/local_lights.hpp"
+
+#include "base/error.hpp"
+#include "shared/lights.h"
+
+namespace lucerna {
+
+namespace {
+constexpr GLuint kLightBinding = 3;
+constexpr GLuint kSpotUnit = 10, kPointUnit = 11;
+}  // namespace
+
+LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
+                         const std::vector<LightViews>& spots, const std::vector<LightViews>& points) {
+  CHECK(spots.size() <= kMaxSpotLights && points.size() <= kMaxPointLights, "{} spots, {} points", spots.size(), points.size());
+  shared::LightConstants constants{};
+  for (std::size_t i = 0; i < spots.size(); ++i) {
+    const LightViews& light = spots[i];
+    spotClip_.push_back(light.clipFromWorld.front());
+    constants.spots[i] = {glm::mat4(light.clipFromWorld.front()), glm::vec3(light.position), static_cast<float>(light.cosInner),
+                          glm::vec3(light.direction), static_cast<float>(light.cosOuter), light.intensity,
+                          static_cast<float>(light.texelWidth(settings.spotSize))};
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const LightViews& light = points[i];
+    pointClip_.insert(pointClip_.end(), light.clipFromWorld.begin(), light.clipFromWorld.end());
+    // Window depth of a perspective view at the distance m along its axis: f / (f - n) - f n / ((f - n) m).
+    const double span = light.far - light.near;
+    constants.points[i] = {glm::vec3(light.position), static_cast<float>(light.texelWidth(settings.pointSize)), light.intensity,
+                           static_cast<float>(light.far * light.near / span), glm::vec3(0.0f), static_cast<float>(light.far / span)};
+  }
+  constants_ = gl::Buffer("lights", sizeof constants, &constants, GL_STATIC_DRAW);
+  const int spotLayers = static_cast<int>(spotClip_.size()), pointLayers = static_cast<int>(pointClip_.size());
+  if (spotLayers > 0)
+    spotShadows_.emplace(programs, scene, "spot shadows",
+                         LayeredDepth::Shape{GL_TEXTURE_2D_ARRAY, settings.spotSize, spotLayers, spotLayers});
+  if (pointLayers > 0)
+    pointShadows_.emplace(programs, scene, "point shadows",
+                          LayeredDepth::Shape{GL_TEXTURE_CUBE_MAP_ARRAY, settings.pointSize, pointLayers, 6});
+}
+
+void LocalLights::bindForShading() const {
+  constants_.bind(GL_UNIFORM_BUFFER, kLightBinding);
+  if (spotShadows_) spotShadows_->depth().bind(kSpotUnit);
+  if (pointShadows_) pointShadows_->depth().bind(kPointUnit);
+}
+
+std::size_t LocalLights::gpuBytes() const {
+  return constants_.bytes() + (spotShadows_ ? spotShadows_->gpuBytes() : 0) + (pointShadows_ ? pointShadows_->gpuBytes() : 0);
+}
+
+}  // namespace lucerna

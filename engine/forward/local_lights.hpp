@@ -1,0 +1,38 @@
+// Spot and omnidirectional lights of a scene for forward shading: their uniform block and their shadow maps. Lights do not move.
+#pragma once
+
+#include "forward/layered_depth.hpp"
+#include "forward/light_views.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace lucerna {
+
+class LocalLights {
+ public:
+  struct Settings {
+    int spotSize = 1024;  ///< texels a side of a spot's shadow map
+    int pointSize = 512;  ///< texels a side of each of the six faces of an omnidirectional light's
+  };
+  static bool isNeeded(const SceneNeeds& needs) { return needs.spotLights || needs.pointLights; }
+
+  LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings, const std::vector<LightViews>& spots,
+              const std::vector<LightViews>& points);
+
+  bool hasSpots() const { return spotShadows_.has_value(); }
+  bool hasPoints() const { return pointShadows_.has_value(); }
+  void recordSpots(const GpuScene& scene) const { spotShadows_->record(scene, spotClip_); }
+  void recordPoints(const GpuScene& scene) const { pointShadows_->record(scene, pointClip_); }
+  /// Binds block 3 and units 10 (spots) and 11 (points) for shaders/forward/lights.glsl.
+  void bindForShading() const;
+  std::size_t gpuBytes() const;
+
+ private:
+  std::vector<glm::dmat4> spotClip_, pointClip_;
+  std::optional<LayeredDepth> spotShadows_;   ///< a layer a spot
+  std::optional<LayeredDepth> pointShadows_;  ///< six layers a light, a cube map
+  gl::Buffer constants_;
+};
+
+}  // namespace lucerna

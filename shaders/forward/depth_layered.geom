@@ -1,0 +1,24 @@
+// Depth maps of several views in one draw: see lib/layered_triangle.glsl.
+#include "lib/layered_triangle.glsl"
+layout(triangles, invocations = LAYERS) in;
+layout(triangle_strip, max_vertices = 3) out;
+uniform int firstLayer;
+#if ALPHA_MASK
+in vec2 gTexCoord[];
+out vec2 vTexCoord;
+#endif
+
+void main() {
+  vec4 clip[3];
+  for (int i = 0; i < 3; ++i) clip[i] = clipFromWorld[gl_InvocationID] * gl_in[i].gl_Position;
+  if (beyondOneSide(clip[0], clip[1], clip[2])) return;
+  for (int i = 0; i < 3; ++i) {
+    gl_Position = clip[i];
+    gl_Layer = firstLayer + gl_InvocationID;
+#if ALPHA_MASK
+    vTexCoord = gTexCoord[i];
+#endif
+    EmitVertex();
+  }
+  EndPrimitive();
+}

@@ -1,0 +1,64 @@
+// Light that arrives from spot and omnidirectional lights: E = I(omega) cos / d^2, shadowed. The flags SPOT_LIGHTS and POINT_LIGHTS
+// are their numbers.
+#include "lib/shadow.glsl"
+#include "lib/spot.glsl"
+#include "shared/lights.h"
+layout(std140, binding = 3) uniform LightBlock { LightConstants lights; };
+
+struct Arriving {
+  vec3 irradiance;
+  vec3 toLight;  // unit
+  float cosine;  // to the normal; at or below 0 nothing arrives
+};
+
+const float kNormalOffset = 1.5;  // texels of the shadow map at the receiver's depth
+const float kTouching = 1e-30;      // distance squared: a surface point in the lamp itself has no direction to it and gets no light, not NaN
+
+#if SPOT_LIGHTS
+layout(binding = 10) uniform sampler2DArrayShadow spotShadows;
+
+Arriving spotLight(int i, vec3 position, vec3 normal) {
+  vec3 away = lights.spots[i].position - position;
+  float distance2 = dot(away, away);
+  Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
+  result.cosine = dot(normal, result.toLight);
+  float falloff = spotFalloff(-dot(result.toLight, lights.spots[i].direction), lights.spots[i].cosInner, lights.spots[i].cosOuter);
+  if (result.cosine <= 0.0 || falloff <= 0.0) return result;
+  float depth = -dot(away, lights.spots[i].direction);
+  vec4 clip = lights.spots[i].clipFromWorld * vec4(position + normal * (kNormalOffset * lights.spots[i].shadowTexel * depth), 1.0);
+  float visible = clip.w > 0.0 ? shadowTent(spotShadows, float(i), 0.5 * clip.xyz / clip.w + 0.5) : 1.0;
+  result.irradiance = lights.spots[i].intensity * (falloff * result.cosine / distance2 * visible);
+  return result;
+}
+#endif
+
+#if POINT_LIGHTS
+layout(binding = 11) uniform samplerCubeArrayShadow pointShadows;
+
+float pointShadowTap(int i, vec3 fromLight) {
+  vec3 size = abs(fromLight);
+  float depth = lights.points[i].depthOffset - lights.points[i].depthScale / max(size.x, max(size.y, size.z));
+  return texture(pointShadows, vec4(fromLight, float(i)), clamp(depth, 0.0, 1.0));
+}
+
+Arriving pointLight(int i, vec3 position, vec3 normal) {
+  vec3 away = lights.points[i].position - position;
+  float distance2 = dot(away, away);
+  Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
+  result.cosine = dot(normal, result.toLight);
+  if (result.cosine <= 0.0) return result;
+  // Depth is measured along the face's axis, the largest component.
+  vec3 size = abs(away);
+  float texel = lights.points[i].shadowTexel * max(size.x, max(size.y, size.z));
+  vec3 fromLight = normal * (kNormalOffset * texel) - away;
+  // Half a texel along the two axes of the face; a tap beyond its edge is looked up in its neighbour, at that one's depth.
+  vec3 u = size.x >= size.y && size.x >= size.z ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+  vec3 v = size.z > size.x && size.z > size.y ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
+  u *= 0.5 * texel;
+  v *= 0.5 * texel;
+  float visible = 0.25 * (pointShadowTap(i, fromLight + u + v) + pointShadowTap(i, fromLight + u - v) +
+                          pointShadowTap(i, fromLight - u + v) + pointShadowTap(i, fromLight - u - v));
+  result.irradiance = lights.points[i].intensity * (result.cosine / distance2 * visible);
+  return result;
+}
+#endif

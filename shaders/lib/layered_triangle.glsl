@@ -1,0 +1,9 @@
+// A triangle sent to several views of a layered target, an instance of the geometry shader each. Triangles wholly beyond one
+// side of a view's frustum are dropped here: of the six views of a cube most see few.
+uniform mat4 clipFromWorld[LAYERS];
+
+bool beyondOneSide(vec4 a, vec4 b, vec4 c) {
+  vec3 x = vec3(a.x, b.x, c.x), y = vec3(a.y, b.y, c.y), z = vec3(a.z, b.z, c.z), w = vec3(a.w, b.w, c.w);
+  return all(lessThanEqual(w, vec3(0.0))) || all(greaterThan(x, w)) || all(lessThan(x, -w)) || all(greaterThan(y, w)) ||
+         all(lessThan(y, -w)) || all(greaterThan(z, w));
+}

@@ -1,0 +1,34 @@
+// Spot and omnidirectional lights as the forward shader reads them: uniform block 3, there only where the scene has one of them.
+#pragma once
+#include "shared/types.h"
+
+SHARED_BEGIN
+
+#define LIGHTS_MAX_SPOTS 4
+#define LIGHTS_MAX_POINTS 4
+
+struct SpotLightConstants {
+  mat4 clipFromWorld;  // perspective, of its shadow map
+  vec3 position;
+  float cosInner;      // of the half angle of the cone of full intensity
+  vec3 direction;      // unit, along the axis
+  float cosOuter;      // of the half angle where the intensity has fallen to zero
+  vec3 intensity;      // W/sr on the axis
+  float shadowTexel;   // width of a texel of the shadow map at depth 1 (scene units per scene unit)
+};
+
+struct PointLightConstants {
+  vec3 position;
+  float shadowTexel;   // width of a texel of the shadow map at depth 1 along the face's axis
+  vec3 intensity;      // W/sr
+  float depthScale;    // shadow map depth of a point at distance m along its face's axis: depthOffset - depthScale / m
+  vec3 padding;
+  float depthOffset;
+};
+
+struct LightConstants {
+  SpotLightConstants spots[LIGHTS_MAX_SPOTS];
+  PointLightConstants points[LIGHTS_MAX_POINTS];
+};
+
+SHARED_END
