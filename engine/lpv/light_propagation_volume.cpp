@@ -64,7 +64,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     if (!fixed && !capabilities.shaderAtomicFloat && !capabilities.shaderAtomicFp16Vector)
       throwMissingCapability("lpv.fill=atomic: the driver has neither NV_shader_atomic_fp16_vector nor NV_shader_atomic_float; "
                              "lpv.fill=fixed needs no extension");
-    fillsHalfVectors_ = !fixed && capabilities.shaderAtomicFp16Vector;
+    fillsHalfVectors_ = !fixed && !capabilities.shaderAtomicFloat;  // 16-bit sums stop growing: only where there is no other
     const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed && !fillsHalfVectors_}, {"FILL_HALF", fillsHalfVectors_}};
     inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(with(group, fill), vpl));
     resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(with(group, fill), vpl));

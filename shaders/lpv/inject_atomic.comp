@@ -2,7 +2,8 @@
 // (4 x + i, y, z) of its channel's image; lpv/resolve.comp brings the images into the form that blending gives.
 // FILL_FIXED: 32-bit integers, core OpenGL 4.3; `fixedScale` is derived from the largest flux that there can be, so that nothing overflows;
 // integer sums do not depend on their order, so every run gives the same bits. FILL_FLOAT: NV_shader_atomic_float.
-// FILL_HALF: NV_shader_atomic_fp16_vector, four half floats at once, as the published text has it; its image has one texel a cell.
+// FILL_HALF: NV_shader_atomic_fp16_vector, four half floats at once, as the published text has it, only where
+// there are no atomics on 32 bits; its image has one texel a cell.
 #if FILL_FLOAT
 #extension GL_NV_shader_atomic_float : require
 #endif

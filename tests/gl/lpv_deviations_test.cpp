@@ -147,7 +147,7 @@ class LpvDeviations : public test::GlTest {
     s.amplifier = amplifier;
     for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered}) {
       EXPECT_LT(errorOfTwin(with(s, name, propagate), options), kFullTolerance) << nameOf(propagate);
-      EXPECT_GT(errorOfTwin(with(s, name, propagate), {}), 2e-6) << nameOf(propagate);
+      EXPECT_GT(errorOfTwin(with(s, name, propagate), {}), 1e-3) << nameOf(propagate);
     }
   }
   /// Band-0 gain of the second step over the first in the middle of a homogeneous isotropic field.

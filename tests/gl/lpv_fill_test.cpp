@@ -151,7 +151,7 @@ TEST_F(LpvWays, AtomicGivesTheLayeredGrid) {
   const std::vector<VolumeRgb> atomic = test::readVolume(run(s, inputs).injected(), inputs);
   // Half vectors, as published, round each of a cell's some 10 lights to 11 bits.
   for (std::size_t k = 0; k < atomic.size(); ++k)
-    EXPECT_LT(test::relativeError(layered[k], atomic[k]), capabilities().shaderAtomicFp16Vector ? 2e-2 : 1e-6) << k;
+    EXPECT_LT(test::relativeError(layered[k], atomic[k]), capabilities().shaderAtomicFloat ? 1e-6 : 2e-2) << k;
 }
 
 TEST_F(LpvWays, FixedPointGivesTheSameBitsInAnyOrder) {
@@ -279,8 +279,9 @@ TEST_F(LpvHalfStall, SixteenBitSumsStopGrowingAndThirtyTwoBitSumsDoNot) {
 
 TEST_F(LpvHalfStall, TenThousandEqualLightsInACellAddUp) {
   for (const Storage storage : {Storage::full, Storage::half})
-    for (const LpvFill fill : {LpvFill::layered, LpvFill::fixed})
+    for (const LpvFill fill : {LpvFill::layered, LpvFill::fixed, LpvFill::atomic})
       for (const float flux : {1.0f, 0.1f, 1e-3f, 1.08e-6f}) {
+        if (fill == LpvFill::atomic && !capabilities().shaderAtomicFloat) continue;
         LpvSettings s = settings(4, 1, 0);
         s.fill = fill;
         s.storage = storage;
@@ -289,7 +290,7 @@ TEST_F(LpvHalfStall, TenThousandEqualLightsInACellAddUp) {
         const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), 1.0f};
         const double total = twin::totalFlux(test::readVolume(run(s, inputs).injected(), inputs)[0]).x;
         // Equal terms drift in a 32-bit sum by up to 2^-25 each, 3e-4 here; measured 1.3e-4 at the least flux.
-        EXPECT_NEAR(total / (10000.0 * static_cast<double>(flux)), 1.0, fill == LpvFill::layered && flux < 1e-5f ? 2e-4 : 1e-4) << flux << nameOf(fill);
+        EXPECT_NEAR(total / (10000.0 * static_cast<double>(flux)), 1.0, fill != LpvFill::fixed && flux < 1e-5f ? 2e-4 : 1e-4) << flux << nameOf(fill);
       }
 }
 

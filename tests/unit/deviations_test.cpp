@@ -49,6 +49,7 @@ TEST(Deviations, EachHasItsLineInTheReadmeOfItsTechnique) {
         // Formula as published, ours, source, effect: none left empty.
         EXPECT_EQ(std::count(line.begin(), line.end(), '|'), 6) << line;
         EXPECT_EQ(line.find("|  |"), std::string::npos) << line;
+        EXPECT_EQ(line.find("` | * ") != std::string::npos, deviation.inOriginal) << line;  // the star of --fidelity original
       }
     }
     EXPECT_TRUE(found) << name << " has no line in the README.md of its technique, section Deviations";
