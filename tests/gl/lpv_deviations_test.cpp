@@ -57,15 +57,8 @@ void addWall(std::vector<RsmTexel>& texels, int cells, float x, float way) {
     texels.push_back({{x, i % (cells + 1), i / (cells + 1), 1.0f}, {way, 0.0f, 0.0f, 1.0f}, glm::vec3(0.0f)});
 }
 
-class LpvDeviations : public test::GlTest {
+class LpvDeviations : public test::SharedProgramsTest {
  protected:
-  static void SetUpTestSuite() {
-    GlTest::SetUpTestSuite();
-    library_ = std::make_unique<gl::ProgramLibrary>();
-  }
-  static void TearDownTestSuite() { library_.reset(); }
-  static gl::ProgramLibrary& library() { return *library_; }
-
   static LpvSettings settings(int cells, int iterations, bool blocking = false, int cascades = 1) {
     LpvSettings s;
     s.cascades.cells = cells;
@@ -163,10 +156,7 @@ class LpvDeviations : public test::GlTest {
     return (sums[1] - sums[0]) / sums[0];
   }
 
- private:
-  static std::unique_ptr<gl::ProgramLibrary> library_;
 };
-std::unique_ptr<gl::ProgramLibrary> LpvDeviations::library_;
 
 // ---- the list ----------------------------------------------------------------------------------------------------------
 

@@ -21,15 +21,8 @@ using twin::VolumeRgb;
 using Storage = LightPropagationVolume::Storage;
 using LpvSettings = LightPropagationVolume::Settings;
 
-class LpvWays : public test::GlTest {
+class LpvWays : public test::SharedProgramsTest {
  protected:
-  static void SetUpTestSuite() {
-    GlTest::SetUpTestSuite();
-    library_ = std::make_unique<gl::ProgramLibrary>();
-  }
-  static void TearDownTestSuite() { library_.reset(); }
-  static gl::ProgramLibrary& library() { return *library_; }
-
   static LpvSettings settings(int cells, int cascades, int iterations) {
     LpvSettings s;
     s.cascades.cells = cells;
@@ -72,10 +65,7 @@ class LpvWays : public test::GlTest {
     return test::readVolume(run(s, inputs).injected(), inputs)[0];
   }
 
- private:
-  static std::unique_ptr<gl::ProgramLibrary> library_;
 };
-std::unique_ptr<gl::ProgramLibrary> LpvWays::library_;
 
 // ---- propagation -------------------------------------------------------------------------------------------------------
 

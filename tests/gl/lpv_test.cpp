@@ -37,16 +37,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 const std::array<glm::vec3, 6> kAxes = {glm::vec3(1, 0, 0),  glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0),
                                         glm::vec3(0, -1, 0), glm::vec3(0, 0, 1),  glm::vec3(0, 0, -1)};
 
-/// Programs are compiled once a suite: tests here make many volumes of few kinds.
-class LpvGlTest : public test::GlTest {
+class LpvGlTest : public test::SharedProgramsTest {
  protected:
-  static void SetUpTestSuite() {
-    GlTest::SetUpTestSuite();
-    library_ = std::make_unique<gl::ProgramLibrary>();
-  }
-  static void TearDownTestSuite() { library_.reset(); }
-  static gl::ProgramLibrary& library() { return *library_; }
-
   static LightPropagationVolume::Settings settings(int cells, int cascades, int iterations, bool blocking = false,
                                                    Storage storage = Storage::full) {
     LightPropagationVolume::Settings s;
@@ -71,10 +63,7 @@ class LpvGlTest : public test::GlTest {
     return lpv;
   }
 
- private:
-  static std::unique_ptr<gl::ProgramLibrary> library_;
 };
-std::unique_ptr<gl::ProgramLibrary> LpvGlTest::library_;
 
 /// One cascade with its minimum in the origin and cells of size 1.
 std::vector<Cascade> unitCascade(int cells) {

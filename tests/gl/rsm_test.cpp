@@ -18,14 +18,8 @@ using test::SceneBuilder;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-class ReflectiveShadowMapGl : public test::GlTest {
+class ReflectiveShadowMapGl : public test::SharedProgramsTest {
  protected:
-  static void SetUpTestSuite() {
-    GlTest::SetUpTestSuite();
-    library_ = std::make_unique<gl::ProgramLibrary>();
-  }
-  static void TearDownTestSuite() { library_.reset(); }
-
   /// The map of a scene, read back.
   struct Drawn {
     std::vector<glm::vec4> position, normal, flux;
@@ -36,7 +30,7 @@ class ReflectiveShadowMapGl : public test::GlTest {
   static Drawn draw(const Scene& scene, int size) {
     const SceneNeeds needs = analyse(scene);
     const GpuScene gpuScene(scene, needs, capabilities());
-    ReflectiveShadowMap rsm(*library_, gpuScene, {size});
+    ReflectiveShadowMap rsm(library(), gpuScene, {size});
     EXPECT_EQ(rsm.size(), size);
     const SunFrustum frustum = fitSunFrustum(scene, scene.sun->direction);
     shared::FrameConstants frame{};
@@ -57,7 +51,7 @@ class ReflectiveShadowMapGl : public test::GlTest {
     settings.cascades.cells = 10;
     settings.cascades.cascades = 1;
     settings.iterations = 0;
-    LightPropagationVolume lpv(*library_, capabilities(), settings);
+    LightPropagationVolume lpv(library(), capabilities(), settings);
     const LightPropagationVolume::Inputs inputs{{outputs}, placeCascades(settings.cascades, scene.bounds, scene.bounds.centre(), glm::dvec3(0.0)),
                                                 scene.sun->irradiance.x};
     lpv.place(inputs);
@@ -91,10 +85,7 @@ class ReflectiveShadowMapGl : public test::GlTest {
       EXPECT_NEAR(actual[channel] / expected[channel], 1.0, relative) << what << ", channel " << channel;
   }
 
- private:
-  static std::unique_ptr<gl::ProgramLibrary> library_;
 };
-std::unique_ptr<gl::ProgramLibrary> ReflectiveShadowMapGl::library_;
 
 TEST_F(ReflectiveShadowMapGl, FluxIsAlbedoTimesIrradianceTimesProjectedArea) {
   double worst = 0.0;

@@ -47,4 +47,18 @@ class GlTest : public ::testing::Test {
   gl::ProgramLibrary programs_;
 };
 
+/// Programs are compiled once a suite, for suites that make many objects of few kinds.
+class SharedProgramsTest : public GlTest {
+ protected:
+  static void SetUpTestSuite() {
+    GlTest::SetUpTestSuite();
+    library_ = std::make_unique<gl::ProgramLibrary>();
+  }
+  static void TearDownTestSuite() { library_.reset(); }
+  static gl::ProgramLibrary& library() { return *library_; }
+
+ private:
+  inline static std::unique_ptr<gl::ProgramLibrary> library_;
+};
+
 }  // namespace lucerna::test
