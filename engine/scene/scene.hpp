@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/image.hpp"
+#include "scene/medium.hpp"
 #include "shared/lights.h"
 
 #include <glm/glm.hpp>
@@ -41,8 +42,22 @@ struct Texture {
   Bitmap bitmap;               ///< 8-bit; albedo maps are sRGB-encoded
 };
 
+/// How a surface scatters light in the path tracer. The real-time techniques read `diffuse` and `specular` alone.
+enum class Bsdf {
+  diffuse,     ///< Lambert; a `diffuse` of 0 is black
+  mirror,      ///< reflects `specular`, smooth
+  conductor,   ///< GGX of `roughness`, Fresnel by Schlick between `specular` at normal incidence and 1
+  dielectric,  ///< reflects and refracts by `ior`; smooth at roughness 0, else GGX
+  none,        ///< a boundary between media alone: light goes straight on
+};
+
 struct Material {
   std::string name;
+  Bsdf bsdf = Bsdf::diffuse;
+  float roughness = 0.0f;            ///< GGX alpha, 0..1; 0: smooth
+  float ior = 1.5f;                  ///< of the inside (against the normal) over vacuum
+  int interior = -1;                 ///< index into Scene::media of what fills a dielectric or none; -1: vacuum
+  int priority = 0;                  ///< where two closed dielectrics overlap the higher one is there [SchmidtBudge2002]
   glm::vec3 diffuse{0.5f};           ///< albedo factor (Kd), multiplies the texture
   glm::vec3 specular{0.0f};          ///< Ks
   float shininess = 1.0f;            ///< Blinn-Phong exponent (Ns)
@@ -102,6 +117,13 @@ struct Camera {
   double verticalFov = 0.9;              ///< radians
 };
 
+/// Light from infinitely far all around. A latitude-longitude picture: u grows with atan2(x, -z), v from +y (top row) to -y.
+struct Environment {
+  glm::vec3 radiance{0.0f};          ///< constant, or a factor on the picture
+  std::optional<Image> picture;      ///< linear radiance
+  double rotation = 0.0;             ///< about +y, radians
+};
+
 struct Scene {
   std::string name;                    ///< file stem
   std::filesystem::path file;          ///< what was loaded
@@ -114,6 +136,9 @@ struct Scene {
   bool defaultSun = false;             ///< no file named a light, so the sun is ours
   std::vector<SpotLight> spots;        ///< at most kMaxSpotLights
   std::vector<PointLight> points;      ///< at most kMaxPointLights
+  std::vector<Medium> media;
+  int cameraMedium = -1;               ///< index of the medium that the camera is in where no boundary tells; -1: vacuum
+  std::optional<Environment> environment;  ///< lights the scene in the path tracer and is seen behind it
   std::vector<Camera> cameras;         ///< never empty after loading: the first is the default view
   Bounds bounds;
   double metresPerUnit = 1.0;
