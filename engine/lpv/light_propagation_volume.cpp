@@ -11,6 +11,9 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kConstantsBinding = 1;
+constexpr std::size_t kStoredBytes = 8, kFullBytes = 16;  // of four coefficients in a buffer, LPV_STORED in lpv/storage.glsl
+// Bindings of the buffers of lpv/propagate.comp.
+constexpr GLuint kSourceBuffer = 0, kNextBuffer = 1, kSumBuffer = 2, kFacesBuffer = 3;
 constexpr glm::ivec3 kGroup{8, 8, 1};  // the fastest of those tried on llvmpipe, see README.md
 constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 
@@ -32,7 +35,11 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   const bool full = settings.storage == Storage::full;
   const bool layered = settings.propagate == LpvPropagate::layered;
   const GLenum format = full ? GL_RGBA32F : GL_RGBA16F;
+  const std::size_t storedBytes = full ? kFullBytes : kStoredBytes;
   const glm::ivec3 size(c.cells, c.cells, c.cells * c.cascades);
+  const auto cellsOf = [](const glm::ivec3& texels) {
+    return static_cast<std::size_t>(texels.x) * static_cast<std::size_t>(texels.y) * static_cast<std::size_t>(texels.z);
+  };
   const gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};  // outside the grid is dark
   steps_ = std::max(settings.iterations - (deviations.fewerSteps ? 1 : 0), 0);
   const bool joined = c.cascades > 1 && !deviations.sumCascades && !deviations.unjoined;
@@ -84,9 +91,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     geometryTarget_ = gl::Framebuffer("lpv geometry volume", target);
     if (!layered) {
       averageFaces_ = &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp", group);
-      faces_.emplace();
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        (*faces_)[axis] = gl::Texture(fmt::format("lpv geometry faces {}", "xyz"[axis]), format, corners);
+      faces_ = gl::Buffer("lpv geometry faces", 3 * cellsOf(corners) * storedBytes, nullptr, GL_DYNAMIC_COPY);
     }
   }
 
@@ -95,35 +100,48 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
                                {"SIDE_SOLID_ANGLE", deviations.sideSolidAngle},
                                {"FOUR_PI_KERNEL", deviations.fourPiKernel},
                                {"BLOCKING_DIRECTION", deviations.blockingDirection}};
-  const auto load = [&](const std::string& name, bool withBlocking, bool withInjected, bool begins) {
-    if (layered)
-      return &programs.loadRaster("lpv propagate layered", "lpv/propagate_layered.vert", "lpv/propagate_layered.frag",
-                                  with({{"LPV_FULL_FLOAT", full}, {"BLOCKED", withBlocking}, {"BEGINS_WITH_INJECTED", withInjected}}, kernel),
-                                  "lpv/propagate_layered.geom");
-    return &programs.loadCompute(name, "lpv/propagate.comp",
-                                 with(with(group, {{"BLOCKED", withBlocking}, {"FACE_KERNEL", deviations.kernel()},
-                                                   {"BEGINS_WITH_INJECTED", withInjected}, {"BEGINS_SUM", begins}}), kernel));
-  };
-  propagateFirst_ = load("lpv propagate first", blocked && deviations.blockFirstStep, !deviations.fewerSteps, true);
-  if (steps_ > 1) propagateFurther_ = load("lpv propagate", blocked, false, false);
-  allocate(sum_, "sum", format, size, sampling);
-  for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i) allocate(fronts_[i], i == 0 ? "front even" : "front odd", format, size, sampling);
-  if (joined && settings_.handOver < steps_) {
-    propagateFar_ = load("lpv propagate far", blocked, false, true);
+  allocate(result_, "result", format, size, sampling);
+  const bool joins = joined && settings_.handOver < steps_;
+  if (joins) {
     coarsen_ = &programs.loadCompute("lpv coarsen", "lpv/coarsen.comp", group);
     join_ = &programs.loadCompute("lpv join", "lpv/join.comp", group);
-    allocate(farSum_, "far sum", format, size, sampling);
+    allocate(farSum_, "far sum", GL_RGBA32F, size, sampling);
     const int half = (c.cells + 1) / 2;
     brightness_ = gl::Texture("lpv brightness", GL_R32F, glm::ivec3(half, half, half * (c.cascades - 1)), sampling);
+    balanced_ = gl::Texture("lpv balanced", GL_R32F, size, sampling);
   }
-  if (layered)
-    for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i)
-      for (std::size_t far = 0; far < (join_ ? 2u : 1u); ++far) {
-        Volume& front = fronts_[i];
-        Volume& sum = far ? farSum_ : sum_;
-        const std::array<const gl::Texture*, 6> targets{&front[0], &front[1], &front[2], &sum[0], &sum[1], &sum[2]};
-        layeredTargets_[i][far] = gl::Framebuffer("lpv propagate layered", targets);
-      }
+  if (joins || layered) allocate(sum_, "sum", GL_RGBA32F, size, sampling);
+  const bool firstBlocked = blocked && deviations.blockFirstStep;
+  if (!layered) {
+    const auto load = [&](const std::string& name, bool withBlocking) {
+      return &programs.loadCompute(name, "lpv/propagate.comp",
+                                   with(with(group, {{"BLOCKED", withBlocking}, {"FACE_KERNEL", deviations.kernel()}, {"JOINED", joins}}), kernel));
+    };
+    begin_ = &programs.loadCompute("lpv begin", "lpv/begin.comp", group);
+    propagateFirst_ = load("lpv propagate first", firstBlocked);
+    if (steps_ > 1) propagateFurther_ = load("lpv propagate", blocked);
+    for (std::size_t i = 0; i < 2; ++i)
+      fronts_[i] = gl::Buffer(i == 0 ? "lpv front even" : "lpv front odd", 3 * cellsOf(size) * storedBytes, nullptr, GL_DYNAMIC_COPY);
+    sums_ = gl::Buffer("lpv sums", 3 * cellsOf(size) * kFullBytes, nullptr, GL_DYNAMIC_COPY);
+    return;
+  }
+  const auto load = [&](bool withBlocking, bool withInjected) {
+    return &programs.loadRaster("lpv propagate layered", "lpv/propagate_layered.vert", "lpv/propagate_layered.frag",
+                                with({{"LPV_FULL_FLOAT", full}, {"BLOCKED", withBlocking}, {"BEGINS_WITH_INJECTED", withInjected}}, kernel),
+                                "lpv/propagate_layered.geom");
+  };
+  propagateFirst_ = load(firstBlocked, !deviations.fewerSteps);
+  if (steps_ > 1) propagateFurther_ = load(blocked, false);
+  if (!joins) finish_ = &programs.loadCompute("lpv finish", "lpv/finish.comp", group);
+  for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i) {
+    allocate(layeredFronts_[i], i == 0 ? "front even" : "front odd", GL_RGBA32F, size, sampling);
+    for (std::size_t far = 0; far < (joins ? 2u : 1u); ++far) {
+      const Volume& front = layeredFronts_[i];
+      const Volume& sum = far ? farSum_ : sum_;
+      const std::array<const gl::Texture*, 6> targets{&front[0], &front[1], &front[2], &sum[0], &sum[1], &sum[2]};
+      layeredTargets_[i][far] = gl::Framebuffer("lpv propagate layered", targets);
+    }
+  }
 }
 
 gl::ShaderFlags LightPropagationVolume::lookupFlags(const Settings& settings) {
@@ -157,10 +175,12 @@ void LightPropagationVolume::join() {
     for (GLuint channel = 0; channel < 3; ++channel) {
       farSum_[channel].bind(channel);
       sum_[channel].bind(3 + channel);
-      sum_[channel].bindImage(channel, GL_READ_WRITE);
-      farSum_[channel].bindImage(3 + channel, GL_READ_WRITE);
+      farSum_[channel].bindImage(channel, GL_WRITE_ONLY);
+      result_[channel].bindImage(3 + channel, GL_WRITE_ONLY);
     }
     brightness_.bind(6);
+    balanced_.bind(7);
+    balanced_.bindImage(6, GL_WRITE_ONLY);
     pass.dispatch(glm::ivec3(settings_.cascades.cells), kGroup);
   }
 }
@@ -268,37 +288,45 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
     }
   }
   if (!averageFaces_) return;
-  const gl::ComputePass pass("lpv geometry faces", GL_TEXTURE_FETCH_BARRIER_BIT);
+  const gl::ComputePass pass("lpv geometry faces", GL_SHADER_STORAGE_BARRIER_BIT);
   averageFaces_->use();
   geometryVolume_->bind(0);
-  for (GLuint axis = 0; axis < 3; ++axis) (*faces_)[axis].bindImage(axis, GL_WRITE_ONLY);
+  faces_.bind(GL_SHADER_STORAGE_BUFFER, kFacesBuffer);
   pass.dispatch(geometryVolume_->size(), kGroup);
 }
 
 void LightPropagationVolume::propagate() {
-  for (const gl::Program* program : {propagateFirst_, propagateFurther_, propagateFar_})
+  if (steps_ == 0) return;
+  for (const gl::Program* program : {propagateFirst_, propagateFurther_})
     if (program && settings_.deviations.fourPiKernel) program->set("amplifier", settings_.amplifier);
   if (settings_.propagate == LpvPropagate::layered) return propagateLayered();
-  const Volume* front = &injected_;
+  for (GLuint channel = 0; channel < 3; ++channel) injected_[channel].bind(channel);
+  {
+    const gl::ComputePass pass("lpv begin", GL_SHADER_STORAGE_BARRIER_BIT);
+    begin_->use();
+    fronts_[0].bind(GL_SHADER_STORAGE_BUFFER, 0);
+    pass.dispatch(injected_[0].size(), kGroup);
+  }
+  sums_.bind(GL_SHADER_STORAGE_BUFFER, kSumBuffer);
+  if (faces_.id()) faces_.bind(GL_SHADER_STORAGE_BUFFER, kFacesBuffer);
   for (int step = 0; step < steps_; ++step) {
-    const gl::ComputePass pass("lpv propagate", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    Volume& next = fronts_[static_cast<std::size_t>(step % 2)];
+    const gl::ComputePass pass("lpv propagate", GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     const bool far = join_ && step >= settings_.handOver;
-    (step == 0 ? propagateFirst_ : far && step == settings_.handOver ? propagateFar_ : propagateFurther_)->use();
-    for (GLuint channel = 0; channel < 3; ++channel) {
-      (*front)[channel].bind(channel);
-      if (faces_) (*faces_)[channel].bind(3 + channel);
-      next[channel].bindImage(channel, GL_WRITE_ONLY);
-      (far ? farSum_ : sum_)[channel].bindImage(3 + channel, GL_READ_WRITE);
-    }
-    pass.dispatch(sum_[0].size(), kGroup);
-    front = &next;
+    const bool begins = step == 0 || (far && step == settings_.handOver), ends = step + 1 == steps_ || (join_ && step + 1 == settings_.handOver);
+    const gl::Program& program = step == 0 ? *propagateFirst_ : *propagateFurther_;
+    program.use();
+    program.set("sumFrom", !begins ? 2 : step == 0 && !settings_.deviations.fewerSteps ? 1 : 0);
+    program.set("sumEnds", ends ? 1 : 0);
+    fronts_[static_cast<std::size_t>(step % 2)].bind(GL_SHADER_STORAGE_BUFFER, kSourceBuffer);
+    fronts_[static_cast<std::size_t>((step + 1) % 2)].bind(GL_SHADER_STORAGE_BUFFER, kNextBuffer);
+    const Volume& sum = !join_ ? result_ : far ? farSum_ : sum_;
+    for (GLuint channel = 0; channel < 3; ++channel) sum[channel].bindImage(channel, GL_WRITE_ONLY);
+    pass.dispatch(injected_[0].size(), kGroup);
   }
 }
 
 // As published: one layered pass a step and cascade, blending adds to the sum.
 void LightPropagationVolume::propagateLayered() {
-  if (steps_ == 0) return;
   std::vector<const gl::Texture*> sums{&sum_[0], &sum_[1], &sum_[2]};
   if (join_) sums.insert(sums.end(), {&farSum_[0], &farSum_[1], &farSum_[2]});
   gl::clearToZero(sums, haveClearTexture_);
@@ -321,8 +349,16 @@ void LightPropagationVolume::propagateLayered() {
       program.set("firstLayer", k * cells);
       glDrawArraysInstanced(GL_TRIANGLES, 0, 3, cells);
     }
-    front = &fronts_[next];
+    front = &layeredFronts_[next];
   }
+  if (!finish_) return;
+  const gl::ComputePass pass("lpv finish", GL_TEXTURE_FETCH_BARRIER_BIT);
+  finish_->use();
+  for (GLuint channel = 0; channel < 3; ++channel) {
+    sum_[channel].bind(channel);
+    result_[channel].bindImage(channel, GL_WRITE_ONLY);
+  }
+  pass.dispatch(sum_[0].size(), kGroup);
 }
 
 void LightPropagationVolume::bindForLookup() const {
@@ -331,19 +367,20 @@ void LightPropagationVolume::bindForLookup() const {
 }
 
 std::size_t LightPropagationVolume::gpuBytes() const {
-  std::size_t bytes = constants_.bytes();
+  std::size_t bytes = constants_.bytes() + fronts_[0].bytes() + fronts_[1].bytes() + sums_.bytes() + faces_.bytes();
   const auto add = [&](const gl::Texture& texture) {
     if (texture.id()) bytes += texture.bytes();
   };
   for (std::size_t channel = 0; channel < 3; ++channel) {
     add(counts_[channel]);
     add(injected_[channel]);
+    add(result_[channel]);
     add(sum_[channel]);
     add(farSum_[channel]);
-    for (const Volume& front : fronts_) add(front[channel]);
-    if (faces_) add((*faces_)[channel]);
+    for (const Volume& front : layeredFronts_) add(front[channel]);
   }
   add(brightness_);
+  add(balanced_);
   if (geometryVolume_) add(*geometryVolume_);
   return bytes;
 }

@@ -26,7 +26,7 @@ std::string_view nameOf(LpvPropagate propagate);
 
 class LightPropagationVolume {
  public:
-  /// What the grids are kept in; `full` (32-bit) is for tests, which compare with the double-precision twin.
+  /// What fronts and the result are kept in, rounded to the nearest; sums are always kept in 32 bits. `full` (32-bit) is for tests.
   enum class Storage { half, full };
   /// What the published text and its public demo do differently, each by itself; README.md has formula, source and effect.
   struct Deviations {
@@ -91,7 +91,7 @@ class LightPropagationVolume {
 
   const Volume& injected() const { return injected_; }
   /// The sum G_0 + ... + G_iterations; after join() of all cascades together.
-  const Volume& result() const { return steps_ > 0 ? sum_ : injected_; }
+  const Volume& result() const { return steps_ > 0 ? result_ : injected_; }
   const gl::Texture* geometryVolume() const { return geometryVolume_ ? &*geometryVolume_ : nullptr; }
   const Settings& settings() const { return settings_; }
   std::size_t gpuBytes() const;
@@ -109,22 +109,27 @@ class LightPropagationVolume {
   const gl::Program* resolve_ = nullptr;             ///< only with atomics
   const gl::Program* fillGeometryVolume_ = nullptr;
   const gl::Program* averageFaces_ = nullptr;
-  const gl::Program* propagateFirst_ = nullptr;    ///< starts the sum with the injected grid
+  const gl::Program* begin_ = nullptr;             ///< only with compute, as averageFaces_
+  const gl::Program* propagateFirst_ = nullptr;
   const gl::Program* propagateFurther_ = nullptr;  ///< blocked where blocking is on
-  const gl::Program* propagateFar_ = nullptr;      ///< starts the sum of the far-travelled light
+  const gl::Program* finish_ = nullptr;            ///< only with the layered pass where nothing is joined
   const gl::Program* coarsen_ = nullptr;           ///< only with several cascades, as join_
   const gl::Program* join_ = nullptr;
   gl::Buffer constants_;
   gl::VertexArray noAttributes_;
   Volume counts_;     ///< what atomics count in
   Volume injected_;
-  Volume sum_;        ///< of the first steps; after join() all light
-  Volume farSum_;     ///< of the steps after the hand-over; only with several cascades
+  Volume result_;     ///< what the lookup reads
+  Volume sum_;        ///< of the first steps, 32 bits; only with several cascades or the layered pass
+  Volume farSum_;     ///< of the steps after the hand-over, 32 bits; only with several cascades
   gl::Texture brightness_;  ///< half resolution of all cascades but the coarsest
-  std::array<Volume, 2> fronts_;
+  gl::Texture balanced_;    ///< band 0 of the first steps' light as joined
+  std::array<gl::Buffer, 2> fronts_;  ///< of the compute gather, as the two below: see lpv/propagate.comp
+  gl::Buffer sums_;
+  gl::Buffer faces_;        ///< potential at the faces across x, y, z
+  std::array<Volume, 2> layeredFronts_;
   gl::Framebuffer injectTarget_;
   std::optional<gl::Texture> geometryVolume_;
-  std::optional<std::array<gl::Texture, 3>> faces_;  ///< potential at the faces across x, y, z
   gl::Framebuffer geometryTarget_;
   std::array<std::array<gl::Framebuffer, 2>, 2> layeredTargets_;  ///< front x (sum, far sum); only for the layered pass
 };

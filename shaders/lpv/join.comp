@@ -7,20 +7,23 @@
 // counted once, nothing is ever subtracted. The balance b_k makes the finer grid as bright, on the average over a coarser cell,
 // as the M that it replaces, so that it adds detail and leaves the brightness alone.
 #include "lpv/common.glsl"
+#include "lpv/storage.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(binding = 0) uniform sampler3D farRed;  // the layers of the next coarser cascade are read, those of this one written
+layout(binding = 0) uniform sampler3D farRed;  // F of this cascade, R of the next coarser one
 layout(binding = 1) uniform sampler3D farGreen;
 layout(binding = 2) uniform sampler3D farBlue;
-layout(binding = 3) uniform sampler3D joinedRed;
-layout(binding = 4) uniform sampler3D joinedGreen;
-layout(binding = 5) uniform sampler3D joinedBlue;
+layout(binding = 3) uniform sampler3D nearRed;  // M
+layout(binding = 4) uniform sampler3D nearGreen;
+layout(binding = 5) uniform sampler3D nearBlue;
 layout(binding = 6) uniform sampler3D brightness;  // lpv/coarsen.comp
-layout(binding = 0, LPV_FORMAT) uniform image3D sumImageRed;  // M, becomes C
-layout(binding = 1, LPV_FORMAT) uniform image3D sumImageGreen;
-layout(binding = 2, LPV_FORMAT) uniform image3D sumImageBlue;
-layout(binding = 3, LPV_FORMAT) uniform image3D farImageRed;  // F, becomes R
-layout(binding = 4, LPV_FORMAT) uniform image3D farImageGreen;
-layout(binding = 5, LPV_FORMAT) uniform image3D farImageBlue;
+layout(binding = 7) uniform sampler3D balanced;    // band 0 of b M of the next coarser cascade, its channels together: M is C less R there
+layout(binding = 0, rgba32f) writeonly uniform image3D farImageRed;  // becomes R
+layout(binding = 1, rgba32f) writeonly uniform image3D farImageGreen;
+layout(binding = 2, rgba32f) writeonly uniform image3D farImageBlue;
+layout(binding = 3, LPV_FORMAT) writeonly uniform image3D resultRed;  // C
+layout(binding = 4, LPV_FORMAT) writeonly uniform image3D resultGreen;
+layout(binding = 5, LPV_FORMAT) writeonly uniform image3D resultBlue;
+layout(binding = 6, r32f) writeonly uniform image3D balancedImage;
 uniform int cascade;
 
 const float kLargestBalance = 4.0;  // and its inverse the smallest: a guard where one of the grids sees no light at all
@@ -55,20 +58,20 @@ void main() {
     coarserRed = coarser.border * textureLod(farRed, coarser.uvw, 0.0);
     coarserGreen = coarser.border * textureLod(farGreen, coarser.uvw, 0.0);
     coarserBlue = coarser.border * textureLod(farBlue, coarser.uvw, 0.0);
-    float replaced = coarser.border * (textureLod(joinedRed, coarser.uvw, 0.0).x + textureLod(joinedGreen, coarser.uvw, 0.0).x +
-                                       textureLod(joinedBlue, coarser.uvw, 0.0).x) -
-                     (coarserRed.x + coarserGreen.x + coarserBlue.x);
+    float replaced = coarser.border * textureLod(balanced, coarser.uvw, 0.0).x;
     StackedTexel half_ = stacked(0.5 * centre, cascade, (cells + 1) / 2, lpv.shape.y - 1);
     float own = half_.border * textureLod(brightness, half_.uvw, 0.0).x;
     balance = clamp((max(replaced, 0.0) + kDark) / (own + kDark), 1.0 / kLargestBalance, kLargestBalance);
   }
-#define JOIN(sumImage, farImage, coarser)                              \
-  {                                                                    \
-    vec4 farLight = balance * imageLoad(farImage, at) + coarser;       \
-    imageStore(sumImage, at, balance * imageLoad(sumImage, at) + farLight); \
-    imageStore(farImage, at, farLight);                                \
+  vec4 nearLight[3] = vec4[3](texelFetch(nearRed, at, 0), texelFetch(nearGreen, at, 0), texelFetch(nearBlue, at, 0));
+#define JOIN(channel, farLight, farImage, result, coarser)                       \
+  {                                                                              \
+    vec4 received = balance * texelFetch(farLight, at, 0) + coarser;             \
+    imageStore(farImage, at, received);                                          \
+    imageStore(result, at, toTexel(balance * nearLight[channel] + received));    \
   }
-  JOIN(sumImageRed, farImageRed, coarserRed)
-  JOIN(sumImageGreen, farImageGreen, coarserGreen)
-  JOIN(sumImageBlue, farImageBlue, coarserBlue)
+  JOIN(0, farRed, farImageRed, resultRed, coarserRed)
+  JOIN(1, farGreen, farImageGreen, resultGreen, coarserGreen)
+  JOIN(2, farBlue, farImageBlue, resultBlue, coarserBlue)
+  imageStore(balancedImage, at, vec4(balance * (nearLight[0].x + nearLight[1].x + nearLight[2].x)));
 }

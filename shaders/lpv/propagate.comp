@@ -1,94 +1,116 @@
 // One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels.
+//
+// A front lies in a buffer, cell by cell, x fastest, all of red before green before blue: on llvmpipe a load from a buffer takes a quarter of the
+// time of a texelFetch. Fronts are summed in 32 bits in another; the last step of a sum writes it to textures, which join.comp
+// or the lookup filters.
 #include "lpv/common.glsl"
+#include "lpv/storage.glsl"
 #if FACE_KERNEL
 #include "lpv/kernel_faces.glsl"
 #else
 #include "lpv/kernel.glsl"
 #endif
-layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(binding = 0) uniform sampler3D sourceRed;
-layout(binding = 1) uniform sampler3D sourceGreen;
-layout(binding = 2) uniform sampler3D sourceBlue;
-#if BLOCKED
-layout(binding = 3) uniform sampler3D facesX;
-layout(binding = 4) uniform sampler3D facesY;
-layout(binding = 5) uniform sampler3D facesZ;
+// What is joined stays in 32 bits until then.
+#if JOINED
+#define LPV_SUM_FORMAT rgba32f
+#define LPV_SUM_TEXEL(sum) sum
+#else
+#define LPV_SUM_FORMAT LPV_FORMAT
+#define LPV_SUM_TEXEL(sum) toTexel(sum)
 #endif
-layout(binding = 0, LPV_FORMAT) writeonly uniform image3D nextRed;
-layout(binding = 1, LPV_FORMAT) writeonly uniform image3D nextGreen;
-layout(binding = 2, LPV_FORMAT) writeonly uniform image3D nextBlue;
-// The sum of fronts that this step belongs to: that of the first steps or, with several cascades, that of the later ones.
-// The step that begins a sum writes it: with the injected grid if it is the first of all.
-layout(binding = 3, LPV_FORMAT) uniform image3D sumRed;
-layout(binding = 4, LPV_FORMAT) uniform image3D sumGreen;
-layout(binding = 5, LPV_FORMAT) uniform image3D sumBlue;
+layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
+layout(std430, binding = 0) readonly buffer Source { LPV_STORED source[]; };
+layout(std430, binding = 1) writeonly buffer Next { LPV_STORED next[]; };
+layout(std430, binding = 2) buffer Sums { vec4 sums[]; };
+#if BLOCKED
+layout(std430, binding = 3) readonly buffer Faces { LPV_STORED faces[]; };  // lpv/geometry_faces.comp
+#endif
+layout(binding = 0) uniform sampler3D injectedRed;
+layout(binding = 1) uniform sampler3D injectedGreen;
+layout(binding = 2) uniform sampler3D injectedBlue;
+layout(binding = 0, LPV_SUM_FORMAT) writeonly uniform image3D sumRed;
+layout(binding = 1, LPV_SUM_FORMAT) writeonly uniform image3D sumGreen;
+layout(binding = 2, LPV_SUM_FORMAT) writeonly uniform image3D sumBlue;
+// The sum of fronts that this step belongs to, that of the first steps or, with several cascades, that of the later ones: what it starts
+// from, and whether this is its last step.
+uniform int sumFrom;  // 0: nothing, 1: the injected grid, 2: the buffer
+uniform bool sumEnds;
 
 #if BLOCKED
-#define POTENTIAL(faces, faceOffset) texelFetch(faces, corner + faceOffset, 0)
+#define POTENTIAL(face) fromStored(faces[face])
 #else
-#define POTENTIAL(faces, faceOffset) vec4(0.0)
+#define POTENTIAL(face) vec4(0.0)
 #endif
 
 #if FACE_KERNEL
 // Face by face in world axes: what the deviations need.
-#define GATHER(axis, way, offset, toFrame, fromFrame, faces, faceOffset)                                                \
+#define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                     \
   if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
-    vec4 source[3] = vec4[3](texelFetch(sourceRed, cell - offset, 0), texelFetch(sourceGreen, cell - offset, 0),      \
-                             texelFetch(sourceBlue, cell - offset, 0));                                                \
-    gatherFaces(source, vec3(offset), POTENTIAL(faces, faceOffset), sum);                                              \
+    int from = at - int(way) * stride;                                                                                 \
+    vec4 light[3] = vec4[3](fromStored(source[from]), fromStored(source[from + channel]), fromStored(source[from + 2 * channel])); \
+    gatherFaces(light, way * offset, POTENTIAL(face), sum);                                                            \
   }
 
-void gatherFaces(vec4 source[3], vec3 travel, vec4 potential, inout vec4 sum[3]) {
-  addFace(source, shBasis(travel), kFaceFront, facePasses(potential, travel), reprojected(travel), sum);
+void gatherFaces(vec4 light[3], vec3 travel, vec4 potential, inout vec4 sum[3]) {
+  addFace(light, shBasis(travel), kFaceFront, facePasses(potential, travel), reprojected(travel), sum);
   for (int i = 0; i < 4; ++i) {
     vec3 towards, normal;
     sideFace(i, travel, towards, normal);
-    addFace(source, shBasis(towards), kFaceSide, facePasses(potential, towards), reprojected(normal), sum);
+    addFace(light, shBasis(towards), kFaceSide, facePasses(potential, towards), reprojected(normal), sum);
   }
 }
 #else
-// From the neighbour at `cell - offset` along one axis. toFrame and fromFrame rotate (c0, x, y, z) into (c0, travel, u, v) and back; `way`
-// is +1 or -1 along the axis. `faceOffset` leads from the cell's lower corner to the crossed face.
-#define GATHER(axis, way, offset, toFrame, fromFrame, faces, faceOffset)                                                       \
-  if (uint(local.axis - int(way)) < uint(cells)) {                                                                            \
-    const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                               \
-    FaceValues transmittance = transmittanceTowardsFaces(POTENTIAL(faces, faceOffset).toFrame * turn);                        \
-    sum[0] += (carry(texelFetch(sourceRed, cell - offset, 0).toFrame * turn, transmittance) * turn).fromFrame;                \
-    sum[1] += (carry(texelFetch(sourceGreen, cell - offset, 0).toFrame * turn, transmittance) * turn).fromFrame;              \
-    sum[2] += (carry(texelFetch(sourceBlue, cell - offset, 0).toFrame * turn, transmittance) * turn).fromFrame;               \
+// From the neighbour behind along one axis; `way` is +1 or -1, `stride` that axis' step in the buffer. toFrame and fromFrame rotate
+// (c0, x, y, z) into (c0, travel, u, v) and back. `face` is the crossed face's index.
+#define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                     \
+  if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
+    const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                        \
+    int from = at - int(way) * stride;                                                                                 \
+    FaceValues transmittance = transmittanceTowardsFaces(POTENTIAL(face).toFrame * turn);                              \
+    sum[0] += (carry(fromStored(source[from]).toFrame * turn, transmittance) * turn).fromFrame;                        \
+    sum[1] += (carry(fromStored(source[from + channel]).toFrame * turn, transmittance) * turn).fromFrame;              \
+    sum[2] += (carry(fromStored(source[from + 2 * channel]).toFrame * turn, transmittance) * turn).fromFrame;          \
   }
 #endif
 
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
-  int cells = lpv.shape.x;
-  if (any(greaterThanEqual(cell, ivec3(cells, cells, cells * lpv.shape.y)))) return;
+  int cells = lpv.shape.x, layers = cells * lpv.shape.y;
+  if (any(greaterThanEqual(cell, ivec3(cells, cells, layers)))) return;
   ivec3 local = ivec3(cell.xy, cell.z % cells);
-  ivec3 corner = ivec3(cell.xy, cell.z / cells * (cells + 1) + local.z);  // the cell's lower corner in the geometry volume
+  int at = (cell.z * cells + cell.y) * cells + cell.x, layer = cells * cells, channel = layer * layers;
+  // The faces before this cell, at its lower corner in the geometry volume.
+  int corners = cells + 1, corner = ((cell.z / cells * corners + local.z) * corners + cell.y) * corners + cell.x;
+  int facesOfAxis = corners * corners * corners * lpv.shape.y;
   vec4 sum[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
 
-  GATHER(x, 1.0, ivec3(1, 0, 0), xyzw, xyzw, facesX, ivec3(0, 0, 0))
-  GATHER(x, -1.0, ivec3(-1, 0, 0), xyzw, xyzw, facesX, ivec3(1, 0, 0))
-  GATHER(y, 1.0, ivec3(0, 1, 0), xzwy, xwyz, facesY, ivec3(0, 0, 0))
-  GATHER(y, -1.0, ivec3(0, -1, 0), xzwy, xwyz, facesY, ivec3(0, 1, 0))
-  GATHER(z, 1.0, ivec3(0, 0, 1), xwyz, xzwy, facesZ, ivec3(0, 0, 0))
-  GATHER(z, -1.0, ivec3(0, 0, -1), xwyz, xzwy, facesZ, ivec3(0, 0, 1))
+  GATHER(x, 1.0, vec3(1, 0, 0), 1, xyzw, xyzw, corner)
+  GATHER(x, -1.0, vec3(1, 0, 0), 1, xyzw, xyzw, corner + 1)
+  GATHER(y, 1.0, vec3(0, 1, 0), cells, xzwy, xwyz, facesOfAxis + corner)
+  GATHER(y, -1.0, vec3(0, 1, 0), cells, xzwy, xwyz, facesOfAxis + corner + corners)
+  GATHER(z, 1.0, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner)
+  GATHER(z, -1.0, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner + corners * corners)
 
-  vec4 red = sum[0], green = sum[1], blue = sum[2];
-  imageStore(nextRed, cell, red);
-  imageStore(nextGreen, cell, green);
-  imageStore(nextBlue, cell, blue);
-#if BEGINS_WITH_INJECTED
-  imageStore(sumRed, cell, texelFetch(sourceRed, cell, 0) + red);
-  imageStore(sumGreen, cell, texelFetch(sourceGreen, cell, 0) + green);
-  imageStore(sumBlue, cell, texelFetch(sourceBlue, cell, 0) + blue);
-#elif BEGINS_SUM
-  imageStore(sumRed, cell, red);
-  imageStore(sumGreen, cell, green);
-  imageStore(sumBlue, cell, blue);
-#else
-  imageStore(sumRed, cell, imageLoad(sumRed, cell) + red);
-  imageStore(sumGreen, cell, imageLoad(sumGreen, cell) + green);
-  imageStore(sumBlue, cell, imageLoad(sumBlue, cell) + blue);
-#endif
+  next[at] = toStored(sum[0]);
+  next[at + channel] = toStored(sum[1]);
+  next[at + 2 * channel] = toStored(sum[2]);
+
+  if (sumFrom == 1) {
+    sum[0] += texelFetch(injectedRed, cell, 0);
+    sum[1] += texelFetch(injectedGreen, cell, 0);
+    sum[2] += texelFetch(injectedBlue, cell, 0);
+  } else if (sumFrom == 2) {
+    sum[0] += sums[at];
+    sum[1] += sums[at + channel];
+    sum[2] += sums[at + 2 * channel];
+  }
+  if (sumEnds) {
+    imageStore(sumRed, cell, LPV_SUM_TEXEL(sum[0]));
+    imageStore(sumGreen, cell, LPV_SUM_TEXEL(sum[1]));
+    imageStore(sumBlue, cell, LPV_SUM_TEXEL(sum[2]));
+  } else {
+    sums[at] = sum[0];
+    sums[at + channel] = sum[1];
+    sums[at + 2 * channel] = sum[2];
+  }
 }

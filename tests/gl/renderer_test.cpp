@@ -204,12 +204,12 @@ TEST_F(RendererGl, GpuBytesIsTheSumOfWhatIsThere) {
   s.fullFloatTarget = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets - pixels * 8 + shadow + frame);
 
-  // One cascade of 16^3 in 16-bit floats: injected in 32, sum and two fronts in 16; potentials on corners in 32, on faces in 16.
+  // One cascade of 16^3 in 16-bit floats: injected and sum in 32, result and two fronts in 16; potentials on corners in 32, on faces in 16.
   s = settings(Component::indirect);
   s.lpv.storage = LightPropagationVolume::Storage::half;
   s.lpv.cascades.cascades = 1;
   const std::size_t cells = 16 * 16 * 16, corners = 17 * 17 * 17;
-  const std::size_t rsm = 256 * 256 * (16 + 8 + 16 + 4), lpv = 3 * cells * (16 + 3 * 8) + corners * (16 + 3 * 8) + sizeof(shared::LpvConstants);
+  const std::size_t rsm = 256 * 256 * (16 + 8 + 16 + 4), lpv = 3 * cells * (16 + 16 + 3 * 8) + corners * (16 + 3 * 8) + sizeof(shared::LpvConstants);
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv);
   s.lpv.blocking = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv - corners * (16 + 3 * 8));

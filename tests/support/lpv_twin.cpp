@@ -284,7 +284,6 @@ Volume propagateStep(const Volume& source, const KernelOptions& options, const V
           const Sh& incoming = source.at(from);
           if (incoming == Sh{}) continue;  // most cells, in the first steps
           Sh potential = geometry != nullptr ? potentialAtFace(*geometry, cell, terms.axis) : Sh{};
-          if (options.storePotential != nullptr) potential = options.storePotential(potential);
           for (const FaceTerm& face : terms.faces) {
             double intensity = evaluate(incoming, face.towardsFace);
             if (options.clampIntensity) intensity = std::max(0.0, intensity);

@@ -167,7 +167,6 @@ struct KernelOptions {
   bool twoSidedBlocking = false;   ///< block by max(B(w), B(-w))
   bool blockAlongTravel = false;   ///< published mistake: the potential is evaluated in the direction of travel
   bool blockFirstStep = false;     ///< off: else a VPL is blocked by its own surface
-  Sh (*storePotential)(const Sh&) = nullptr;  ///< what keeping a face's potential makes of it; null: nothing
 };
 KernelOptions slippedSideKernel();       ///< side constant 0.4234413544
 KernelOptions swappedConstantsKernel();  ///< front and side solid angle swapped
