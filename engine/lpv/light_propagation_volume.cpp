@@ -23,7 +23,9 @@ std::string_view nameOf(LpvFill fill) {
   return fill == LpvFill::layered ? "layered" : fill == LpvFill::atomic ? "atomic" : "fixed";
 }
 
-std::string_view nameOf(LpvPropagate propagate) { return propagate == LpvPropagate::compute ? "compute" : "layered"; }
+std::string_view nameOf(LpvPropagate propagate) { 
+  return propagate == LpvPropagate::compute ? "compute" : propagate == LpvPropagate::layered ? "layered" : "slices";
+}
 
 LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
                                                const Settings& settings)
@@ -33,7 +35,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   CHECK(c.cascades >= 1 && c.cascades <= LPV_MAX_CASCADES, "cascades = {}", c.cascades);
   CHECK(c.cells >= 1 && (c.cells + 1) * c.cascades <= capabilities.max3dTextureSize, "cells = {}", c.cells);
   const bool full = settings.storage == Storage::full;
-  const bool layered = settings.propagate == LpvPropagate::layered;
+  const bool layered = settings.propagate != LpvPropagate::compute;
   const GLenum format = full ? GL_RGBA32F : GL_RGBA16F;
   const std::size_t storedBytes = full ? kFullBytes : kStoredBytes;
   const glm::ivec3 size(c.cells, c.cells, c.cells * c.cascades);
@@ -127,7 +129,8 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   }
   const auto load = [&](bool withBlocking, bool withInjected) {
     return &programs.loadRaster("lpv propagate layered", "lpv/propagate_layered.vert", "lpv/propagate_layered.frag",
-                                with({{"LPV_FULL_FLOAT", full}, {"BLOCKED", withBlocking}, {"BEGINS_WITH_INJECTED", withInjected}}, kernel),
+                                with({{"LPV_FULL_FLOAT", full}, {"POINTS", settings.propagate == LpvPropagate::layered}, {"BLOCKED", withBlocking},
+                                      {"BEGINS_WITH_INJECTED", withInjected}}, kernel),
                                 "lpv/propagate_layered.geom");
   };
   propagateFirst_ = load(firstBlocked, !deviations.fewerSteps);
@@ -299,7 +302,7 @@ void LightPropagationVolume::propagate() {
   if (steps_ == 0) return;
   for (const gl::Program* program : {propagateFirst_, propagateFurther_})
     if (program && settings_.deviations.fourPiKernel) program->set("amplifier", settings_.amplifier);
-  if (settings_.propagate == LpvPropagate::layered) return propagateLayered();
+  if (settings_.propagate != LpvPropagate::compute) return propagateLayered();
   for (GLuint channel = 0; channel < 3; ++channel) injected_[channel].bind(channel);
   {
     const gl::ComputePass pass("lpv begin", GL_SHADER_STORAGE_BARRIER_BIT);
@@ -325,7 +328,7 @@ void LightPropagationVolume::propagate() {
   }
 }
 
-// As published: one layered pass a step and cascade, blending adds to the sum.
+// As published: one layered pass a step and cascade, blending adds to the sum. One point a cell, or one triangle a slice.
 void LightPropagationVolume::propagateLayered() {
   std::vector<const gl::Texture*> sums{&sum_[0], &sum_[1], &sum_[2]};
   if (join_) sums.insert(sums.end(), {&farSum_[0], &farSum_[1], &farSum_[2]});
@@ -347,7 +350,11 @@ void LightPropagationVolume::propagateLayered() {
     for (int k = 0; k < settings_.cascades.cascades; ++k) {
       program.set("cascade", k);
       program.set("firstLayer", k * cells);
-      glDrawArraysInstanced(GL_TRIANGLES, 0, 3, cells);
+      program.set("cells", cells);
+      if (settings_.propagate == LpvPropagate::layered)
+        glDrawArrays(GL_POINTS, 0, cells * cells * cells);
+      else
+        glDrawArraysInstanced(GL_TRIANGLES, 0, 3, cells);
     }
     front = &layeredFronts_[next];
   }

@@ -20,8 +20,9 @@ namespace lucerna {
 enum class LpvFill { layered, atomic, fixed };
 std::string_view nameOf(LpvFill fill);
 
-/// `compute`: all cascades in one dispatch a step. `layered`: as published, one pass a step and cascade.
-enum class LpvPropagate { compute, layered };
+/// `compute`: all cascades in one dispatch a step. `layered`: as published, one pass a step and cascade with a point a cell.
+/// `slices`: the same pass with a triangle a slice instead.
+enum class LpvPropagate { compute, layered, slices };
 std::string_view nameOf(LpvPropagate propagate);
 
 class LightPropagationVolume {

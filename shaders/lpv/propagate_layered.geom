@@ -1,15 +1,21 @@
-// Sends each triangle to its slice of the 3D texture.
+// Sends each point or triangle to its slice of the 3D texture.
+#if POINTS
+layout(points) in;
+layout(points, max_vertices = 1) out;
+#else
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;
-in int gSlice[];
+#endif
+flat in ivec3 gCell[];
 flat out int fSlice;
 uniform int firstLayer;
 
 void main() {
-  for (int i = 0; i < 3; ++i) {
-    gl_Layer = firstLayer + gSlice[0];
-    fSlice = gSlice[0];
+  for (int i = 0; i < gl_in.length(); ++i) {
+    gl_Layer = firstLayer + gCell[0].z;
+    fSlice = gCell[0].z;
     gl_Position = gl_in[i].gl_Position;
+    gl_PointSize = 1.0;
     EmitVertex();
   }
   EndPrimitive();
