@@ -114,7 +114,7 @@ class LightPropagationVolume {
   const gl::Program* propagateFirst_ = nullptr;
   const gl::Program* propagateFurther_ = nullptr;  ///< blocked where blocking is on
   const gl::Program* finish_ = nullptr;            ///< only with the layered pass where nothing is joined
-  const gl::Program* coarsen_ = nullptr;           ///< only with several cascades, as join_
+  const gl::Program* balance_ = nullptr;           ///< only with several cascades, as join_
   const gl::Program* join_ = nullptr;
   gl::Buffer constants_;
   gl::VertexArray noAttributes_;
@@ -123,8 +123,8 @@ class LightPropagationVolume {
   Volume result_;     ///< what the lookup reads
   Volume sum_;        ///< of the first steps, 32 bits; only with several cascades or the layered pass
   Volume farSum_;     ///< of the steps after the hand-over, 32 bits; only with several cascades
-  gl::Texture brightness_;  ///< half resolution of all cascades but the coarsest
-  gl::Texture balanced_;    ///< band 0 of the first steps' light as joined
+  gl::Texture balances_;  ///< of one cascade after the other with the next coarser, half its resolution
+  gl::Texture balanced_;  ///< band 0 of the first steps' light as joined
   std::array<gl::Buffer, 2> fronts_;  ///< of the compute gather, as the two below: see lpv/propagate.comp
   gl::Buffer sums_;
   gl::Buffer faces_;        ///< potential at the faces across x, y, z

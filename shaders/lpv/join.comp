@@ -4,9 +4,10 @@
 // grids would darken the picture with each cascade more; summed, as in the published text, they would brighten it. So each
 // grid's sum is kept in two parts: M, the light of the first steps, which the next finer grid carries by itself and better, and F, that
 // of the later ones, which is too far-travelled for it. A finer grid takes the coarser grids' F over: every step of the light is
-// counted once, nothing is ever subtracted. The balance b_k makes the finer grid as bright, on the average over a coarser cell,
+// counted once, nothing is ever subtracted. The balance b_k (lpv/balance.comp) makes the finer grid as bright, on the average over a coarser cell,
 // as the M that it replaces, so that it adds detail and leaves the brightness alone.
 #include "lpv/common.glsl"
+#include "lpv/stacked.glsl"
 #include "lpv/storage.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 0) uniform sampler3D farRed;  // F of this cascade, R of the next coarser one
@@ -15,32 +16,15 @@ layout(binding = 2) uniform sampler3D farBlue;
 layout(binding = 3) uniform sampler3D nearRed;  // M
 layout(binding = 4) uniform sampler3D nearGreen;
 layout(binding = 5) uniform sampler3D nearBlue;
-layout(binding = 6) uniform sampler3D brightness;  // lpv/coarsen.comp
-layout(binding = 7) uniform sampler3D balanced;    // band 0 of b M of the next coarser cascade, its channels together: M is C less R there
+layout(binding = 7) uniform sampler3D balances;  // of this cascade, one for 2x2x2 cells
 layout(binding = 0, rgba32f) writeonly uniform image3D farImageRed;  // becomes R
 layout(binding = 1, rgba32f) writeonly uniform image3D farImageGreen;
 layout(binding = 2, rgba32f) writeonly uniform image3D farImageBlue;
 layout(binding = 3, LPV_FORMAT) writeonly uniform image3D resultRed;  // C
 layout(binding = 4, LPV_FORMAT) writeonly uniform image3D resultGreen;
 layout(binding = 5, LPV_FORMAT) writeonly uniform image3D resultBlue;
-layout(binding = 6, r32f) writeonly uniform image3D balancedImage;
+layout(binding = 6, r32f) writeonly uniform image3D balanced;  // band 0 of b M, the channels together, for lpv/balance.comp
 uniform int cascade;
-
-const float kLargestBalance = 4.0;  // and its inverse the smallest: a guard where one of the grids sees no light at all
-const float kDark = 1e-4;           // c / (E_ref s^2) below which there is no light to balance
-
-// Trilinear reading of one cascade out of a stack: x and y end in the sampler's border of zeros, z by hand.
-struct StackedTexel {
-  vec3 uvw;
-  float border;
-};
-
-StackedTexel stacked(vec3 texel, int index, int side, int count) {
-  float n = float(side);
-  float border = clamp(min(texel.z, n - texel.z) + 0.5, 0.0, 1.0);
-  texel.z = clamp(texel.z, 0.5, n - 0.5) + float(index) * n;
-  return StackedTexel(texel / vec3(n, n, n * float(count)), border);
-}
 
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
@@ -52,16 +36,11 @@ void main() {
   float balance = 1.0;
   if (cascade + 1 < lpv.shape.y) {
     vec3 centre = vec3(cell) + 0.5;
-    vec3 position = lpv.cascades[cascade].minimum + centre * lpv.cascades[cascade].cellSize;
-    vec3 texel = (position - lpv.cascades[cascade + 1].minimum) / lpv.cascades[cascade + 1].cellSize;
-    StackedTexel coarser = stacked(texel, cascade + 1, cells, lpv.shape.y);
+    StackedTexel coarser = stackedTexel(lpvCoarserTexel(centre, cascade), cascade + 1);
     coarserRed = coarser.border * textureLod(farRed, coarser.uvw, 0.0);
     coarserGreen = coarser.border * textureLod(farGreen, coarser.uvw, 0.0);
     coarserBlue = coarser.border * textureLod(farBlue, coarser.uvw, 0.0);
-    float replaced = coarser.border * textureLod(balanced, coarser.uvw, 0.0).x;
-    StackedTexel half_ = stacked(0.5 * centre, cascade, (cells + 1) / 2, lpv.shape.y - 1);
-    float own = half_.border * textureLod(brightness, half_.uvw, 0.0).x;
-    balance = clamp((max(replaced, 0.0) + kDark) / (own + kDark), 1.0 / kLargestBalance, kLargestBalance);
+    balance = textureLod(balances, centre / float(2 * ((cells + 1) / 2)), 0.0).x;
   }
   vec4 nearLight[3] = vec4[3](texelFetch(nearRed, at, 0), texelFetch(nearGreen, at, 0), texelFetch(nearBlue, at, 0));
 #define JOIN(channel, farLight, farImage, result, coarser)                       \
@@ -73,5 +52,5 @@ void main() {
   JOIN(0, farRed, farImageRed, resultRed, coarserRed)
   JOIN(1, farGreen, farImageGreen, resultGreen, coarserGreen)
   JOIN(2, farBlue, farImageBlue, resultBlue, coarserBlue)
-  imageStore(balancedImage, at, vec4(balance * (nearLight[0].x + nearLight[1].x + nearLight[2].x)));
+  imageStore(balanced, at, vec4(balance * (nearLight[0].x + nearLight[1].x + nearLight[2].x)));
 }
