@@ -1,0 +1,173 @@
+// Rays against the triangles of a RayScene (engine/pathtracer/ray_scene.hpp): the first hit, or any.
+//
+// Space: RayScene's (the world moved by -RayScene::origin()). Flag ALPHA_MASKS: the including file declares, before the include,
+// `bool isCutOut(uint triangle, vec2 barycentrics)`, asked for triangles whose material is masked. Takes texture units 60 and 61.
+// Method: eight quantised boxes a node and their order after [Ylitie2017], a watertight triangle test after [Woop2013], boxes widened by the
+// rounding of their distances after [Ize2013]. Buffer textures, since llvmpipe gathers from those three times as fast as from storage blocks.
+#include "shared/bvh.h"
+
+layout(binding = 60) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS a BvhNode
+layout(binding = 61) uniform usamplerBuffer bvhTriangles;  // one with the magnitude, then BVH_TRIANGLE_TEXELS a BvhTriangle
+
+const uint kNoHit = 0xffffffffu;  // no triangle: Hit::triangle of a ray that hit nothing, and skipTriangle where nothing is to be skipped
+
+struct Ray {
+  vec3 origin;
+  float tMin;      // hits lie at tMin < t < tMax
+  vec3 direction;  // of any length above 0; t counts in lengths of it
+  float tMax;
+};
+
+struct Hit {
+  float t;
+  uint triangle;      // in the order of the scene: its corners are indices[3 * triangle] and the next two
+  vec2 barycentrics;  // weights of the second and third corner
+};
+
+// What a traversal keeps of its ray. For boxes: one over the direction, components near zero taken for 2^-60 of the longest, so that nothing
+// is infinite, and which octant it goes to. For triangles: the ray's own space, in which it runs along z from the origin [Woop2013]: axes
+// turned so that z is the longest, then sheared.
+struct BvhRay {
+  vec3 origin;
+  vec3 inverse;
+  bvec3 negative;
+  uint octant;  // 7 less the octant, as child places are counted down
+  vec3 shear;
+  bvec2 turn;
+};
+
+vec3 bvhTurn(vec3 v, bvec2 turn) { return turn.x ? v.yzx : turn.y ? v.zxy : v; }
+
+BvhRay bvhPrepare(Ray ray) {
+  vec3 d = ray.direction, a = abs(d);
+  float least = max(a.x, max(a.y, a.z)) * 8.67361738e-19;
+  BvhRay r;
+  r.origin = ray.origin;
+  r.negative = lessThan(d, vec3(0.0));
+  r.inverse = 1.0 / mix(d, mix(vec3(least), vec3(-least), r.negative), lessThan(a, vec3(least)));
+  r.octant = 7u - ((r.negative.x ? 4u : 0u) | (r.negative.y ? 2u : 0u) | (r.negative.z ? 1u : 0u));
+  r.turn = bvec2(a.x > a.y && a.x > a.z, a.y > a.z);
+  vec3 p = bvhTurn(d, r.turn);
+  r.shear = vec3(p.xy / p.z, 1.0 / p.z);
+  return r;
+}
+
+// Twice the area of (0, a, b) in the plane. Each product is rounded, but that cannot change which of the two is larger: the sign is right or
+// the area is zero. Neighbours see a shared edge with the same numbers, and zero counts as inside for both, so nothing passes between them.
+float bvhEdge(precise vec2 a, precise vec2 b) {
+  precise float ab = a.x * b.y;
+  precise float ba = a.y * b.x;
+  precise float area = ab - ba;
+  return area;
+}
+
+// Whether the ray meets the triangle at tMin < t < tMax; then where.
+bool bvhHitTriangle(BvhRay r, vec3 a, vec3 b, vec3 c, float tMin, float tMax, out float t, out vec2 barycentrics) {
+  vec3 pa = bvhTurn(a - r.origin, r.turn), pb = bvhTurn(b - r.origin, r.turn), pc = bvhTurn(c - r.origin, r.turn);
+  precise vec2 sa = pa.xy - r.shear.xy * pa.z;
+  precise vec2 sb = pb.xy - r.shear.xy * pb.z;
+  precise vec2 sc = pc.xy - r.shear.xy * pc.z;
+  float u = bvhEdge(sc, sb), v = bvhEdge(sa, sc), w = bvhEdge(sb, sa);
+  float area = u + v + w;
+  float scale = 1.0 / area;
+  barycentrics = vec2(v, w) * scale;
+  t = (u * scale * pa.z + barycentrics.x * pb.z + barycentrics.y * pc.z) * r.shear.z;
+  return !(min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0) && area != 0.0 && t > tMin && t < tMax;
+}
+
+bool bvhMissesMask(uint id, vec2 barycentrics) {
+#if ALPHA_MASKS
+  return (id & BVH_TRIANGLE_MASKED) != 0u && isCutOut(id & BVH_TRIANGLE_ID_MASK, barycentrics);
+#else
+  return false;
+#endif
+}
+
+// The place of the highest bit of a number from 1 to 2^24 - 1.
+int bvhHighest(uint bits) { return (floatBitsToInt(float(int(bits))) >> 23) - 127; }
+
+ivec3 bvhChoose(ivec3 a, ivec3 b, bvec3 second) { return ivec3(second.x ? b.x : a.x, second.y ? b.y : a.y, second.z ? b.z : a.z); }
+
+// Bits of the four children in one word of a node's words, where the ray enters their boxes before it leaves them. near, far: grid steps,
+// four bytes an axis; scale, nearBase, farBase: from steps to distances.
+uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, float tMin, float tMax, uint meta, uint octant) {
+  uint nodes = (meta & (meta << 1)) & 0x10101010u;                   // meta >= 24: a node
+  uint turned = meta ^ ((octant * 0x01010101u) & (((nodes >> 4) * 0xffu)));  // its place against the octant
+  uint hits = 0u;
+  for (int k = 0; k < 4; ++k) {
+    int shift = 8 * k;
+    vec3 a = vec3((near >> shift) & 255) * scale + nearBase, b = vec3((far >> shift) & 255) * scale + farBase;
+    float enter = max(max(a.x, a.y), max(a.z, tMin)), leave = min(min(b.x, b.y), min(b.z, tMax));
+    uint bits = ((meta >> (shift + 5)) & 7u) << ((turned >> shift) & 31u);
+    hits |= enter <= leave ? bits : 0u;
+  }
+  return hits;
+}
+
+Hit bvhTrace(Ray ray, uint skipTriangle, bool any) {
+  Hit hit = Hit(ray.tMax, kNoHit, vec2(0.0));
+  BvhRay r = bvhPrepare(ray);
+  // Siblings yet to be visited: x the first child of their parent; y bits 24..31 which are left to visit, bits 0..7 which are nodes.
+  uvec2 siblings = uvec2(0u, 0x80000000u);
+  uvec2 leaves = uvec2(0u);  // triangles yet to be tested: x the first of the node, y which
+  uint stackX[BVH_MAX_DEPTH], stackY[BVH_MAX_DEPTH];
+  int top = 0;
+  while (true) {
+    int place = bvhHighest(siblings.y >> 24);
+    siblings.y &= ~(0x01000000u << place);
+    int node = BVH_NODE_TEXELS * int(siblings.x + uint(bitCount(siblings.y & ~(0xffffffffu << (uint(place) ^ r.octant)) & 255u)));
+    if (siblings.y > 0x00ffffffu) {
+      stackX[top] = siblings.x;
+      stackY[top] = siblings.y;
+      ++top;
+    }
+    uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2), n3 = texelFetch(bvhNodes, node + 3),
+          n4 = texelFetch(bvhNodes, node + 4);
+    vec3 scale = uintBitsToFloat(uvec3(n0.w << 23, n0.w << 15, n0.w << 7) & 0x7f800000u) * r.inverse;
+    vec3 base = (uintBitsToFloat(n0.xyz) - r.origin) * r.inverse;
+    vec3 error = (abs(base) + abs(scale) * 256.0) * 4.76837158e-7;  // 2^-21: of this, of what follows and of the triangle test
+    ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z), high47 = ivec3(n3.w, n4.y, n4.w);
+    uint hits = bvhHitFour(bvhChoose(low03, high03, r.negative), bvhChoose(high03, low03, r.negative), scale, base - error, base + error, ray.tMin, hit.t, n1.z, r.octant) |
+                bvhHitFour(bvhChoose(low47, high47, r.negative), bvhChoose(high47, low47, r.negative), scale, base - error, base + error, ray.tMin, hit.t, n1.w, r.octant);
+    siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
+    leaves = uvec2(n1.y, hits & 0x00ffffffu);
+    while (leaves.y != 0u) {
+      int k = bvhHighest(leaves.y);
+      leaves.y &= ~(1u << k);
+      int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(leaves.x) + k);
+      uvec4 a = texelFetch(bvhTriangles, triangle);
+      vec3 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz), c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
+      float t;
+      vec2 barycentrics;
+      uint id = a.w & BVH_TRIANGLE_ID_MASK;
+      if (bvhHitTriangle(r, uintBitsToFloat(a.xyz), b, c, ray.tMin, hit.t, t, barycentrics) && id != skipTriangle && !bvhMissesMask(a.w, barycentrics)) {
+        hit = Hit(t, id, barycentrics);
+        if (any) return hit;
+      }
+    }
+    if (siblings.y <= 0x00ffffffu) {
+      if (top == 0) break;
+      --top;
+      siblings = uvec2(stackX[top], stackY[top]);
+    }
+  }
+  return hit;
+}
+
+// The nearest hit; its triangle is kNoHit where there is none. skipTriangle: the one the ray starts on, or kNoHit.
+Hit closestHit(Ray ray, uint skipTriangle) { return bvhTrace(ray, skipTriangle, false); }
+
+// Whether anything is hit at all.
+bool anyHit(Ray ray, uint skipTriangle) { return bvhTrace(ray, skipTriangle, true).triangle != kNoHit; }
+
+// A point just off a surface, on the side that the GEOMETRIC normal (unit) points to, beyond the rounding of a point computed from a
+// triangle's barycentrics and of the test of its neighbours. As in [WaechterBinder2019] a number of units in the last place, so that no scale
+// is assumed; theirs are each component's own, with a floor near zero, these are of the triangle's largest coordinate, which is what the
+// rounding depends on: `magnitude` = the largest absolute coordinate of its corners.
+vec3 offsetRay(vec3 p, vec3 geometricNormal, float magnitude) { return p + geometricNormal * (magnitude * 3.814697265625e-6); }  // 2^-18
+
+// The same for a point whose triangle is not at hand.
+vec3 offsetRay(vec3 p, vec3 geometricNormal) {
+  vec3 a = abs(p);
+  return offsetRay(p, geometricNormal, max(max(a.x, a.y), max(a.z, uintBitsToFloat(texelFetch(bvhTriangles, 0).x) * 9.765625e-4)));
+}
