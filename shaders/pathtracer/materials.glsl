@@ -35,8 +35,8 @@ vec4 readTexture(PathTexture t, vec2 texCoord) {
   vec2 floored = floor(p);
   vec2 f = p - floored;
   ivec2 low = ivec2(floored), high = low + 1;
-  low = mix(low, size - 1, lessThan(low, ivec2(0)));
-  high = mix(high, ivec2(0), greaterThanEqual(high, size));
+  low += size * ivec2(lessThan(low, ivec2(0)));
+  high -= size * ivec2(greaterThanEqual(high, size));
   ivec2 corner = ivec2(t.x, t.y);
   vec4 a = texelFetch(textureAtlas, ivec3(corner + low, t.layer), 0);
   vec4 b = texelFetch(textureAtlas, ivec3(corner + ivec2(high.x, low.y), t.layer), 0);
