@@ -43,7 +43,7 @@ std::vector<float> blockBounds(const DensityGrid& grid, const glm::ivec3& blocks
   return bounds;
 }
 
-shared::DensityRecord packGrid(const Medium& medium, std::vector<float>& densities) {
+shared::DensityRecord packGrid(const Medium& medium, const glm::dvec3& origin, std::vector<float>& densities) {
   const DensityGrid& grid = *medium.grid;
   const glm::dvec3 extent = grid.max - grid.min;
   if (glm::any(glm::lessThan(grid.size, glm::ivec3(1))) || !glm::all(glm::greaterThan(extent, glm::dvec3(0.0))))
@@ -55,7 +55,7 @@ shared::DensityRecord packGrid(const Medium& medium, std::vector<float>& densiti
   const glm::ivec3 blocks = (grid.size + kBlockEdge - 1) / kBlockEdge;
   const std::vector<float> bounds = blockBounds(grid, blocks);
   shared::DensityRecord record{};
-  record.min = glm::vec3(grid.min);
+  record.min = glm::vec3(grid.min - origin);
   record.cellsPerUnit = glm::vec3(glm::dvec3(grid.size) / extent);
   record.size = glm::ivec4(grid.size, kBlockEdge);
   record.blocks = glm::ivec4(blocks, 0);
@@ -68,7 +68,7 @@ shared::DensityRecord packGrid(const Medium& medium, std::vector<float>& densiti
 
 }  // namespace
 
-PackedMedia packMedia(const std::vector<Medium>& media) {
+PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin) {
   PackedMedia packed;
   for (const Medium& medium : media) {
     checkCoefficient(medium, "scattering", medium.scattering);
@@ -99,7 +99,7 @@ PackedMedia packMedia(const std::vector<Medium>& media) {
     record.majorant = static_cast<float>(largest(extinction));
     if (medium.grid) {
       record.grid = static_cast<int>(packed.grids.size());
-      packed.grids.push_back(packGrid(medium, packed.densities));
+      packed.grids.push_back(packGrid(medium, origin, packed.densities));
       // What emits alone still needs points at which its emission is looked up: some four a crossing of the box.
       if (record.majorant <= 0.0f && largest(medium.emission) > 0.0) {
         const double bound = *std::max_element(medium.grid->density.begin(), medium.grid->density.end());
@@ -111,15 +111,16 @@ PackedMedia packMedia(const std::vector<Medium>& media) {
   return packed;
 }
 
-PackedBoundaries rankBoundaries(const Scene& scene) {
+PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
   using Key = std::tuple<int, bool, float, int>;  // priority, dielectric, index, medium
+  const auto bounds = [&](const Material& m) { return m.bsdf == Bsdf::none || (m.bsdf == Bsdf::dielectric && !diffuseOnly); };
   const auto keyOf = [](const Material& m) {
     const bool dielectric = m.bsdf == Bsdf::dielectric;
     return Key{m.priority, dielectric, dielectric ? m.ior : 1.0f, m.interior};
   };
   std::vector<Key> keys;
   for (const Material& material : scene.materials) {
-    if (material.bsdf != Bsdf::dielectric && material.bsdf != Bsdf::none) continue;
+    if (!bounds(material)) continue;
     if (!(std::isfinite(material.ior) && material.ior > 0.0f)) throwBadInput("material {}: an index of refraction must be above 0, and is {}", material.name, material.ior);
     if (material.interior < -1 || material.interior >= static_cast<int>(scene.media.size()))
       throwBadInput("material {}: there is no medium {}", material.name, material.interior);
@@ -136,31 +137,25 @@ PackedBoundaries rankBoundaries(const Scene& scene) {
     packed.interiors.push_back({ior, medium, 0, 0});
     if (dielectric) packed.dielectricRanks[static_cast<int>(rank / 8)] |= 15u << (4 * (rank % 8));
   }
-  for (const Material& material : scene.materials) {
-    int rank = -1;
-    if (material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::none)
-      rank = static_cast<int>(std::lower_bound(keys.begin(), keys.end(), keyOf(material)) - keys.begin());
-    packed.rankOfMaterial.push_back(rank);
+  for (const Material& material : scene.materials)
+    packed.rankOfMaterial.push_back(bounds(material) ? static_cast<int>(std::lower_bound(keys.begin(), keys.end(), keyOf(material)) - keys.begin()) : -1);
+  for (const Mesh& mesh : scene.meshes) {
+    const int rank = packed.rankOfMaterial[static_cast<std::size_t>(mesh.material)];
+    if (rank < 0) continue;
+    const auto corner = [&](std::uint32_t i) { return scene.vertices[scene.indices[i]].position; };
+    for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3)
+      packed.triangles.push_back({corner(i), corner(i + 1), corner(i + 2), rank});
   }
   return packed;
 }
 
-Surroundings surroundingsOf(const Scene& scene, const PackedBoundaries& boundaries, const glm::dvec3& point) {
+Surroundings surroundingsOf(const PackedBoundaries& boundaries, const glm::dvec3& point) {
   std::array<double, kMaxBoundaryRanks> solidAngle{};
-  for (const Mesh& mesh : scene.meshes) {
-    const int rank = boundaries.rankOfMaterial[static_cast<std::size_t>(mesh.material)];
-    if (rank < 0) continue;
-    for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3) {
-      glm::dvec3 p[3];
-      double r[3];
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        p[k] = glm::dvec3(scene.vertices[scene.indices[i + k]].position) - point;
-        r[k] = glm::length(p[k]);
-      }
-      const double volume = glm::dot(p[0], glm::cross(p[1], p[2]));
-      const double rest = r[0] * r[1] * r[2] + glm::dot(p[0], p[1]) * r[2] + glm::dot(p[1], p[2]) * r[0] + glm::dot(p[2], p[0]) * r[1];
-      if (volume != 0.0 || rest != 0.0) solidAngle[static_cast<std::size_t>(rank)] += 2.0 * std::atan2(volume, rest);
-    }
+  for (const BoundaryTriangle& triangle : boundaries.triangles) {
+    const glm::dvec3 a = glm::dvec3(triangle.a) - point, b = glm::dvec3(triangle.b) - point, c = glm::dvec3(triangle.c) - point;
+    const double ra = glm::length(a), rb = glm::length(b), rc = glm::length(c);
+    const double volume = glm::dot(a, glm::cross(b, c)), rest = ra * rb * rc + glm::dot(a, b) * rc + glm::dot(b, c) * ra + glm::dot(c, a) * rb;
+    if (volume != 0.0 || rest != 0.0) solidAngle[static_cast<std::size_t>(triangle.rank)] += 2.0 * std::atan2(volume, rest);
   }
   Surroundings result;
   for (std::size_t rank = 0; rank < boundaries.interiors.size(); ++rank) {
@@ -170,6 +165,12 @@ Surroundings surroundingsOf(const Scene& scene, const PackedBoundaries& boundari
     result.inside[static_cast<int>(rank / 8)] |= static_cast<std::uint32_t>(std::clamp(whole, 0.0, 15.0)) << (4 * (rank % 8));
   }
   return result;
+}
+
+float iorInside(const PackedBoundaries& boundaries, const InsideCounts& inside) {
+  for (int rank = static_cast<int>(boundaries.interiors.size()) - 1; rank >= 0; --rank)
+    if (inside[rank / 8] & boundaries.dielectricRanks[rank / 8] & (15u << (4 * (rank % 8)))) return boundaries.interiors[static_cast<std::size_t>(rank)].ior;
+  return 1.0f;
 }
 
 }  // namespace lucerna

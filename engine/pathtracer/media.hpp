@@ -19,27 +19,38 @@ struct PackedMedia {
 };
 
 /// Throws Error(badInput) naming the medium where a coefficient is negative or not finite, |g| is not below 1, or a grid is not usable.
-PackedMedia packMedia(const std::vector<Medium>& media);
+/// Boxes are moved by -origin.
+PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// Counts of closed boundaries around a place, 4 bits a rank (boundary.glsl).
 using InsideCounts = glm::uvec4;
 inline constexpr int kMaxBoundaryRanks = 32;
 
-/// What boundary.glsl reads. Materials that agree in priority, index, kind and medium share a rank.
+/// A triangle of a closed boundary, scene units.
+struct BoundaryTriangle {
+  glm::vec3 a, b, c;
+  int rank;
+};
+
+/// What boundary.glsl reads, and the boundaries themselves. Materials that agree in priority, index, kind and medium share a rank.
 struct PackedBoundaries {
   std::vector<int> rankOfMaterial;                ///< as Scene::materials; -1: bounds nothing
   std::vector<shared::InteriorRecord> interiors;  ///< by rank
   InsideCounts dielectricRanks{0u};
+  std::vector<BoundaryTriangle> triangles;
 };
 
 /// Throws Error(badInput) where there are more than kMaxBoundaryRanks different ones, an index is not above 0, or a medium is missing.
-PackedBoundaries rankBoundaries(const Scene& scene);
+/// diffuseOnly: dielectrics bound nothing, as they are drawn as walls.
+PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly = false);
 
 /// The boundaries around a point, by the winding number of each rank's triangles [vanOosterom1983; Jacobson2013].
 struct Surroundings {
   InsideCounts inside{0u};
   double openness = 0.0;  ///< largest distance of a winding number from a whole one: above 0.01 a mesh is open, or the point lies on it
 };
-Surroundings surroundingsOf(const Scene& scene, const PackedBoundaries& boundaries, const glm::dvec3& point);
+Surroundings surroundingsOf(const PackedBoundaries& boundaries, const glm::dvec3& point);
+/// boundary.glsl's iorInside: that of the highest dielectric around.
+float iorInside(const PackedBoundaries& boundaries, const InsideCounts& inside);
 
 }  // namespace lucerna

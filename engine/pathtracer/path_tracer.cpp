@@ -1,6 +1,7 @@
 #include "pathtracer/path_tracer.hpp"
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "gl/pass.hpp"
 #include "pathtracer/texture_atlas.hpp"
 
@@ -16,10 +17,11 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kConstantsBinding = 0;                                                               // GL_UNIFORM_BUFFER
-constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4, kStateBinding = 5;  // GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4, kStateBinding = 5, kMediaBinding = 6,
+                 kInteriorsBinding = 7, kGridsBinding = 8, kDensitiesBinding = 9;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2;
 constexpr int kGroupSide = 8;
-constexpr std::size_t kStateWords = 5, kStateHeaderBytes = 16, kVec4Bytes = 16;
+constexpr std::size_t kStateWords = 6, kStateHeaderBytes = 16, kVec4Bytes = 16;
 
 std::uint32_t kindOf(Bsdf bsdf) {
   switch (bsdf) {
@@ -67,6 +69,18 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   CHECK(settings.size.x > 0 && settings.size.y > 0, "{} x {} pixels", settings.size.x, settings.size.y);
   if (settings.diffuseOnly) needs_.mirrors = needs_.conductors = needs_.dielectrics = needs_.roughDielectrics = false;
 
+  boundaries_ = rankBoundaries(scene, settings.diffuseOnly);
+  if (needs_.dielectrics || needs_.nullBoundaries) interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
+  if (needs_.media) {
+    const PackedMedia packed = packMedia(scene.media, rays_.origin());
+    media_ = storage("path media", packed.media, capabilities);
+    interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
+    outerMedium_ = scene.cameraMedium;
+    if (needs_.heterogeneousMedia) {
+      grids_ = storage("path density grids", packed.grids, capabilities);
+      densities_ = storage("path densities", packed.densities, capabilities);
+    }
+  }
   std::vector<shared::PathMaterial> materials(scene.materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& from = scene.materials[i];
@@ -78,7 +92,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     to.roughness = from.roughness;
     to.emission = from.emission;
     to.ior = from.ior;
-    to.boundary = static_cast<std::uint32_t>(i);
+    to.boundary = static_cast<std::uint32_t>(boundaries_.rankOfMaterial[i]);
     to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = PATH_NO_TEXTURE;
   }
   const bool textured = needs_.diffuseTextures || needs_.alphaMasks;
@@ -146,7 +160,10 @@ gl::ShaderFlags PathTracer::flags() const {
           {"TRIANGLE_WORDS", triangleWords_},
           {"MIRRORS", needs_.mirrors},
           {"DIELECTRICS", needs_.dielectrics},
-          {"NULL_BOUNDARIES", needs_.nullBoundaries},
+          {"INTERIORS", hasInteriors()},
+          {"MEDIA", needs_.media},
+          {"HETEROGENEOUS", needs_.heterogeneousMedia},
+          {"VOLUME_EMISSION", needs_.volumeEmission},
           {"EMISSION", needs_.emission},
           {"SUN", asked && needs_.directionalLight},
           {"SPOTS", asked && needs_.spotLights},
@@ -156,11 +173,15 @@ gl::ShaderFlags PathTracer::flags() const {
           {"BACKGROUND", needs_.background},
           {"NEXT_EVENT", asked},
           {"MIS", asked && (needs_.emission || needs_.environmentPicture)},
-          {"SCATTERED_LIGHT", needs_.emission || needs_.environment},
+          {"SCATTERED_LIGHT", needs_.emission || needs_.environment || needs_.volumeEmission},
+          {"DISTANCE_WITHOUT_PDF", settings_.deviations.distanceWithoutPdf},
+          {"BOOSTED_INTERACTION", settings_.deviations.boostedInteraction},
+          {"ROULETTE_WITHOUT_DIVISION", settings_.deviations.rouletteWithoutDivision},
+          {"STRAIGHT_SHADOW_RAYS", settings_.deviations.straightShadowRays},
           {"PIXEL_CENTRES", settings_.pixelCentres},
           {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
-          {"FRESNEL_AMPLITUDES", 0},
-          {"FRESNEL_SCHLICK", 0}};
+          {"FRESNEL_AMPLITUDES", settings_.deviations.fresnelAmplitudes},
+          {"FRESNEL_SCHLICK", settings_.deviations.schlick}};
 }
 
 void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials) {
@@ -257,6 +278,14 @@ void PathTracer::setCamera(const Camera& camera) {
   constants_.pixelRight = glm::vec3(pixel * right);
   constants_.pixelUp = glm::vec3(pixel * up);
   constants_.firstPixel = glm::vec3(camera.direction - 0.5 * settings_.size.x * pixel * right - 0.5 * settings_.size.y * pixel * up);
+  if (hasInteriors()) {
+    const Surroundings surroundings = surroundingsOf(boundaries_, camera.position);
+    if (surroundings.openness > 0.01)
+      logWarning("camera {}: it lies on a closed boundary, or inside of one that is open by {:.3g} of a sphere", camera.name, surroundings.openness);
+    cameraInside_ = surroundings.inside;
+    cameraIor_ = iorInside(boundaries_, cameraInside_);
+  }
+  leakedPaths_ = wrongCrossings_ = 0.0;
   const std::array<const gl::Texture*, 3> film{&filmMean_, &filmSpread_, &filmRest_};
   gl::clearToZero(film, clearTexture_);
   done_ = passTarget_ = 0;
@@ -268,19 +297,22 @@ bool PathTracer::advance(std::uint32_t samples) {
   if (done_ >= samples) return false;
   if (passTarget_ == done_ || passTarget_ > samples) {
     // A pass doubles the samples, so that pictures come early and lanes seldom wait for the last path of a tile.
-    passTarget_ = done_ + std::min(samples - done_, std::clamp(done_, 1u, 64u));
+    passTarget_ = done_ + std::min(samples - done_, std::clamp(done_, 1u, needs_.media ? 1024u : 64u));
     if (!tileBegun_) tile_ = 0;
   }
   const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_, rows = (settings_.size.y + tileSide_ - 1) / tileSide_;
   const glm::ivec2 corner = tileSide_ * glm::ivec2(tile_ % columns, tile_ / columns);
   const glm::ivec2 size = glm::min(glm::ivec2(tileSide_), settings_.size - corner);
   if (!tileBegun_) state_.clear();
-  const std::uint32_t zero = 0;
-  state_.upload(0, sizeof zero, &zero);
+  const std::array<std::uint32_t, 4> zeros{};
+  state_.upload(0, sizeof zeros, zeros.data());
 
   const auto start = std::chrono::steady_clock::now();
   dispatch(corner, size, passTarget_);
-  const auto unfinished = state_.readFirst<std::uint32_t>();
+  const auto header = state_.readFirst<std::array<std::uint32_t, 4>>();
+  const std::uint32_t unfinished = header[0];
+  leakedPaths_ += header[1];
+  wrongCrossings_ += header[2];
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!tileBegun_) {  // only then all lanes are at work; later submissions of the tile are shorter
     const double factor = std::clamp(settings_.submissionSeconds / std::max(seconds, 1e-9), 0.25, 2.0);
@@ -308,6 +340,18 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
   materials_.bind(GL_SHADER_STORAGE_BUFFER, kMaterialsBinding);
   if (lightCount_ > 0) lights_.bind(GL_SHADER_STORAGE_BUFFER, kLightsBinding);
   state_.bind(GL_SHADER_STORAGE_BUFFER, kStateBinding);
+  if (hasInteriors()) {
+    interiors_.bind(GL_SHADER_STORAGE_BUFFER, kInteriorsBinding);
+    program_->set("outerMedium", outerMedium_);
+    program_->set("dielectricRanks", boundaries_.dielectricRanks);
+    program_->set("cameraInside", cameraInside_);
+    program_->set("cameraIor", cameraIor_);
+  }
+  if (needs_.media) media_.bind(GL_SHADER_STORAGE_BUFFER, kMediaBinding);
+  if (needs_.heterogeneousMedia) {
+    grids_.bind(GL_SHADER_STORAGE_BUFFER, kGridsBinding);
+    densities_.bind(GL_SHADER_STORAGE_BUFFER, kDensitiesBinding);
+  }
   if (atlas_) atlas_->bind(kAtlasUnit);
   if (environmentPicture_) environmentPicture_->bind(kEnvironmentUnit);
   if (environmentTable_) environmentTable_->bind(kEnvironmentTableUnit);
@@ -354,6 +398,8 @@ PathTracer::Statistics PathTracer::statistics() const {
   const std::vector<Pixel> pixels = readFilm();
   const double count = static_cast<double>(pixels.size());
   Statistics result;
+  result.leakedPaths = leakedPaths_;
+  result.wrongCrossings = wrongCrossings_;
   result.fewestSamples = kUnlimited;
   glm::dvec3 variances(0.0);
   for (const Pixel& pixel : pixels) {
@@ -376,7 +422,7 @@ PathTracer::Statistics PathTracer::statistics() const {
 }
 
 std::size_t PathTracer::gpuBytes() const {
-  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + constantsBuffer_.bytes() +
+  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() +
                       filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
   for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_})
     if (*texture) bytes += (*texture)->bytes();

@@ -10,6 +10,7 @@
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 #include "pathtracer/light_table.hpp"
+#include "pathtracer/media.hpp"
 #include "pathtracer/ray_scene.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
@@ -31,6 +32,18 @@ enum class Transport {
 };
 std::string_view nameOf(Transport transport);
 
+/// What the published original does differently [VPT2024]; README.md has formula, source and effect of each.
+struct PathDeviations {
+  bool distanceWithoutPdf = false;
+  bool boostedInteraction = false;
+  bool rouletteWithoutDivision = false;
+  bool fresnelAmplitudes = false;
+  bool schlick = false;
+  bool straightShadowRays = false;
+  bool linearSeeds = false;
+  bool fixedEpsilon = false;
+};
+
 class PathTracer {
  public:
   static constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
@@ -44,6 +57,7 @@ class PathTracer {
     std::uint32_t seed = 0;              ///< pictures of different seeds are independent
     double submissionSeconds = 0.05;
     RayScene::Settings rays;
+    PathDeviations deviations;
   };
   /// From the film as it is.
   struct Statistics {
@@ -52,6 +66,8 @@ class PathTracer {
     glm::dvec3 mean{0.0};           ///< radiance
     glm::dvec3 meanError{0.0};      ///< standard error of `mean`
     double standardError = 0.0;     ///< root mean square over pixels and channels of a pixel's standard error; infinite before 2 samples
+    double leakedPaths = 0.0;    ///< ended, as they were found outside of the scene, yet inside of a closed boundary, since setCamera
+    double wrongCrossings = 0.0; ///< of boundaries left without having been entered, or entered too often: open or turned meshes
     double relativeError = 0.0;     ///< that over the mean of the picture, channels averaged; 0 for a black picture without error
   };
 
@@ -81,6 +97,7 @@ class PathTracer {
   void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
   void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured);
   gl::ShaderFlags flags() const;
+  bool hasInteriors() const { return needs_.dielectrics || needs_.nullBoundaries || needs_.media; }
   void dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target);
 
   Settings settings_;
@@ -90,6 +107,12 @@ class PathTracer {
   const gl::Program* program_ = nullptr;
   int triangleWords_ = 4;
   std::size_t lightCount_ = 0;
+  PackedBoundaries boundaries_;
+  int outerMedium_ = -1;
+  InsideCounts cameraInside_{0u};
+  float cameraIor_ = 1.0f;
+  gl::Buffer media_, interiors_, grids_, densities_;
+  double leakedPaths_ = 0.0, wrongCrossings_ = 0.0;
   gl::Buffer triangles_, materials_, lights_, state_, constantsBuffer_;
   std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_;
   gl::Texture filmMean_, filmSpread_, filmRest_;

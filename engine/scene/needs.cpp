@@ -39,6 +39,9 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
       {"dielectrics", dielectrics},
       {"roughDielectrics", roughDielectrics},
       {"nullBoundaries", nullBoundaries},
+      {"media", media},
+      {"heterogeneousMedia", heterogeneousMedia},
+      {"volumeEmission", volumeEmission},
       {"environment", environment},
       {"environmentPicture", environmentPicture},
   };
@@ -47,6 +50,16 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
 SceneNeeds analyse(const Scene& scene) {
   SceneNeeds needs;
   bool reflects = false;
+  const auto addMedium = [&](int index) {
+    if (index < 0 || index >= static_cast<int>(scene.media.size())) return;
+    const Medium& medium = scene.media[static_cast<std::size_t>(index)];
+    const bool emits = anyPositive(medium.emission);
+    if (!emits && !anyPositive(medium.scattering) && !anyPositive(medium.absorption)) return;
+    needs.media = true;
+    needs.volumeEmission |= emits;
+    needs.heterogeneousMedia |= medium.grid.has_value();
+  };
+  addMedium(scene.cameraMedium);
   for (const Mesh& mesh : scene.meshes) {
     if (mesh.indexCount == 0) continue;
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
@@ -60,6 +73,7 @@ SceneNeeds analyse(const Scene& scene) {
     needs.dielectrics |= material.bsdf == Bsdf::dielectric;
     needs.roughDielectrics |= material.bsdf == Bsdf::dielectric && material.roughness > 0.0f;
     needs.nullBoundaries |= material.bsdf == Bsdf::none;
+    if (material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::none) addMedium(material.interior);
     // A texture only scales the factor down, so the factor alone tells whether anything can be reflected.
     reflects |= anyPositive(material.diffuse);
   }

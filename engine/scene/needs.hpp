@@ -28,6 +28,9 @@ struct SceneNeeds {
   bool dielectrics = false;      ///< refracting ones, smooth or rough
   bool roughDielectrics = false;
   bool nullBoundaries = false;   ///< a boundary that changes nothing but the medium
+  bool media = false;            ///< a medium that does anything, inside of a drawn boundary or around the camera
+  bool heterogeneousMedia = false;  ///< one of them has a density grid
+  bool volumeEmission = false;   ///< one of them emits
   bool environment = false;      ///< light from all around
   bool environmentPicture = false;
 

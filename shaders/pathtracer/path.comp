@@ -24,7 +24,9 @@ layout(rgba32ui, binding = 1) uniform uimage2D filmSpread;  // sum of squared de
 layout(rgba32ui, binding = 2) uniform uimage2D filmRest;
 layout(std430, binding = 5) restrict buffer StateBlock {
   uint unfinished;      // pixels of the tile that do not have their samples yet
-  uint padding[3];
+  uint leakedPaths;     // ended, since they were found outside of the scene, yet inside of a closed boundary
+  uint wrongCrossings;  // of boundaries left without having been entered: open or turned meshes
+  uint padding;
   uvec4 state[];        // STATE_WORDS a lane, lane by lane within each
 };
 
@@ -39,19 +41,31 @@ struct Path {
   uint scatterings;     // up to here
   uint event;           // place in the sequence of random numbers: one a surface or medium met
   float ior;            // of where the ray is
+#if INTERIORS
+  uvec4 inside;         // of which closed boundaries (boundary.glsl)
+#endif
 };
 
 const uint kInFlight = 0x80000000u;  // in the saved event: there is a path to be gone on with
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
+#if INTERIORS
+uniform uvec4 cameraInside;  // of which closed boundaries the camera is
+uniform float cameraIor;     // and the index of refraction there
+#endif
+
 // What a light adds where the path now is.
 void addLight(inout Path path, vec3 light) {
 #if DIELECTRICS
-  light /= path.ior * path.ior;
+  light *= cameraIor * cameraIor / (path.ior * path.ior);
 #endif
   path.radiance += path.throughput * light;
 }
+
+#if INTERIORS
+#include "pathtracer/volume.glsl"
+#endif
 
 Path startPath(ivec2 pixel, PathNumbers numbers) {
 #if PIXEL_CENTRES
@@ -70,24 +84,22 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   path.scatterings = 0u;
   path.event = 0u;
   path.ior = 1.0;
+#if INTERIORS
+  path.inside = cameraInside;
+  path.ior = cameraIor;
+#endif
   return path;
 }
 
 // How much light gets through on a straight line; nothing that refracts lets any through.
-vec3 visibility(Path path, Surface surface, uint triangle, LightSample light) {
+vec3 visibility(Path path, Surface surface, uint triangle, LightSample light, PathNumbers numbers) {
   float side = dot(light.direction, surface.geometricNormal) > 0.0 ? 1.0 : -1.0;
   vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
-  Ray ray = light.infinite ? Ray(start, 0.0, light.direction, 3e38) : Ray(start, 0.0, light.end - start, 1.0);
-#if NULL_BOUNDARIES
-  for (uint i = 0u; i < 256u; ++i) {
-    Hit hit = closestHit(ray, triangle);
-    if (hit.triangle == kNoHit) return vec3(1.0);
-    if (materials[triangleData[hit.triangle * TRIANGLE_WORDS].w].kind != PATH_NONE) return vec3(0.0);
-    ray.tMin = hit.t;
-    triangle = hit.triangle;
-  }
-  return vec3(0.0);
+#if INTERIORS
+  return straightTransmittance(start, light.infinite ? light.direction : light.end, light.infinite, triangle, path.inside,
+                               randomWords(numbers, path.event, kPurposeTransmittance));
 #else
+  Ray ray = light.infinite ? Ray(start, 0.0, light.direction, 3e38) : Ray(start, 0.0, light.end - start, 1.0);
   return anyHit(ray, triangle) ? vec3(0.0) : vec3(1.0);
 #endif
 }
@@ -103,13 +115,24 @@ void addNextEvent(inout Path path, Surface surface, uint triangle, vec3 albedo, 
   if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, cosine / kPi);
 #endif
   if (all(equal(contribution, vec3(0.0)))) return;
-  addLight(path, contribution * visibility(path, surface, triangle, light));
+  addLight(path, contribution * visibility(path, surface, triangle, light, numbers));
 }
 #endif
 
 // Follows the path's ray to what it meets and on from there; false where the path has ended.
 bool extend(inout Path path, PathNumbers numbers) {
+#if MEDIA
+  // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
+  int medium = mediumInside(path.inside);
+  float flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
+  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight), path.skip);
+  if (medium >= 0) {
+    int became = crossMedium(path, media[medium], flight, hit, numbers);
+    if (became != kArrives) return became == kScattered;
+  }
+#else
   Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, 3e38), path.skip);
+#endif
   if (hit.triangle == kNoHit) {
 #if ENVIRONMENT
     if (counts(path.scatterings)) {
@@ -140,11 +163,19 @@ bool extend(inout Path path, PathNumbers numbers) {
     addLight(path, emission);
   }
 #endif
-#if NULL_BOUNDARIES
-  if (material.kind == PATH_NONE) {
-    path.origin = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
-    path.skip = hit.triangle;
-    return true;
+#if INTERIORS
+  uvec4 beyond = path.inside;
+  float iorBeyond = path.ior;
+  int rank = int(material.boundary);
+  if (rank >= 0) {
+    if (!crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
+    iorBeyond = iorInside(beyond);
+    if (iorBeyond == path.ior) {  // nothing refracts: another medium, or a boundary that a higher one covers
+      path.inside = beyond;
+      path.origin = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
+      path.skip = hit.triangle;
+      return true;
+    }
   }
 #endif
   if (path.scatterings >= tracer.maxScatterings) return false;
@@ -166,17 +197,15 @@ bool extend(inout Path path, PathNumbers numbers) {
 #if DIELECTRICS
   if (material.kind == PATH_DIELECTRIC) {
     path.pdf = 0.0;
-    float inside = surface.front ? material.ior : 1.0, eta = path.ior / inside, cosT;
-    float cosI = -dot(normal, path.direction), reflectance = eta == 1.0 ? 0.0 : fresnelDielectric(cosI, eta, cosT);
+    float eta = path.ior / iorBeyond, cosT, cosI = -dot(normal, path.direction), reflectance = fresnelDielectric(cosI, eta, cosT);
     if (unitFloat(choice.x) < reflectance) {
       vec3 mirrored = reflect(path.direction, normal);
       path.direction = dot(mirrored, surface.geometricNormal) > 0.0 ? mirrored : reflect(path.direction, surface.geometricNormal);
     } else {
-      if (eta != 1.0) {
-        vec3 refracted = normalize(eta * path.direction + (eta * cosI - cosT) * normal);
-        path.direction = dot(refracted, surface.geometricNormal) < 0.0 ? refracted : path.direction;
-      }
-      path.ior = inside;
+      vec3 refracted = normalize(eta * path.direction + (eta * cosI - cosT) * normal);
+      path.direction = dot(refracted, surface.geometricNormal) < 0.0 ? refracted : path.direction;
+      path.ior = iorBeyond;
+      path.inside = beyond;
     }
   }
 #endif
@@ -230,7 +259,11 @@ void main() {
   if ((saved.x & kInFlight) != 0u) {
     uvec4 w0 = state[slot], w1 = state[slot + lanes], w2 = state[slot + 2u * lanes], w3 = state[slot + 3u * lanes];
     path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz), uintBitsToFloat(w2.w),
-                uintBitsToFloat(w3.xyz), w3.w, saved.x & ~kInFlight, uintBitsToFloat(saved.y));
+                uintBitsToFloat(w3.xyz), w3.w, saved.x & ~kInFlight, uintBitsToFloat(saved.y)
+#if INTERIORS
+                , state[slot + 5u * lanes]
+#endif
+                );
   } else {
     path = startPath(pixel, numbers);
   }
@@ -259,5 +292,8 @@ void main() {
   state[slot + lanes] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
   state[slot + 2u * lanes] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
   state[slot + 3u * lanes] = uvec4(floatBitsToUint(path.radiance), path.scatterings);
+#if INTERIORS
+  state[slot + 5u * lanes] = path.inside;
+#endif
   atomicAdd(unfinished, 1u);
 }

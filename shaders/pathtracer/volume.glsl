@@ -1,7 +1,7 @@
 // A path through participating media: how far it flies, what it adds and where it goes on from a collision; and how much light a straight
 // line lets through. Hooks of path.comp, which declares Path, addLight, counts and the lights before this file is included.
 //
-// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS; deviations DISTANCE_WITHOUT_PDF,
+// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION; deviations DISTANCE_WITHOUT_PDF,
 // BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, STRAIGHT_SHADOW_RAYS.
 #include "pathtracer/boundary.glsl"
 #if MEDIA
@@ -194,4 +194,36 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   return kArrives;
 }
 #endif
+
+// How far the ray may go before it collides; with a density grid that is told once it is known where the ray ends.
+float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
+  if (medium.grid >= 0) return kFar;
+  uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
+  return flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x);
+}
+
+// What happens on the way to `hit`, the first hit within `flight`.
+int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
+  bool arrives = hit.triangle != kNoHit || flight >= kFar;
+  float distance = hit.triangle != kNoHit ? hit.t : flight;
+#if HETEROGENEOUS
+  if (medium.grid >= 0) return trackDensity(path, medium, distance, numbers);
+#endif
+  vec3 q = channelProbabilities(path.throughput);
+#if VOLUME_EMISSION
+  if (counts(path.scatterings) && distance < kFar) {
+    // Found at collisions, where it costs nothing; in channels that never collide at a point anywhere on the way.
+    if (!arrives) addLight(path, medium.emission * collisionWeight(medium, q, distance));
+    float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
+    addLight(path, mix(distance * medium.emission * passageWeight(medium, q, x), vec3(0.0), greaterThan(medium.extinction, vec3(0.0))));
+  }
+#endif
+  if (arrives) {
+    path.throughput *= passageWeight(medium, q, distance);
+    return kArrives;
+  }
+  path.throughput *= scatteringWeight(medium, q, distance);
+  path.origin += distance * path.direction;
+  return scatter(path, medium, numbers);
+}
 #endif
