@@ -42,7 +42,7 @@ Container readWhole(const fs::path& file) {
 }
 
 /// Writes and closes; returns 0 or the errno of what failed first.
-int writeAll(const fs::path& file, std::span<const std::uint8_t> bytes) {
+int writeAll(const fs::path& file, std::span<const std::uint8_t> bytes, bool durably) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return errno;
   int failure = 0;
@@ -51,18 +51,13 @@ int writeAll(const fs::path& file, std::span<const std::uint8_t> bytes) {
     if (written >= 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
     else if (errno != EINTR) failure = errno;
   }
+  if (durably && failure == 0 && ::fsync(descriptor) != 0) failure = errno;
   // Network file systems may tell of a full disk only here.
   if (::close(descriptor) != 0 && failure == 0) failure = errno;
   return failure;
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> readFileBytes(const fs::path& file) { return readWhole<std::vector<std::uint8_t>>(file); }
-
-std::string readFileText(const fs::path& file) { return readWhole<std::string>(file); }
-
-void writeFileAtomically(const fs::path& file, std::span<const std::uint8_t> bytes) {
+void replaceFile(const fs::path& file, std::span<const std::uint8_t> bytes, bool durably) {
   if (!file.has_filename()) throwBadInput("'{}': cannot be written: expected a file name", file.string());
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   std::error_code error;
@@ -71,13 +66,29 @@ void writeFileAtomically(const fs::path& file, std::span<const std::uint8_t> byt
 
   static std::atomic<unsigned> counter{0};
   const fs::path temporary = folder / fmt::format(".lucerna-{}-{}.tmp", ::getpid(), counter++);
-  int failure = writeAll(temporary, bytes);
+  int failure = writeAll(temporary, bytes, durably);
   if (failure == 0 && std::rename(temporary.c_str(), file.c_str()) != 0) failure = errno;
   if (failure != 0) {
     ::unlink(temporary.c_str());
     throwBadInput("{}: cannot be written: {}", file.string(), std::strerror(failure));
   }
+  if (!durably) return;
+  // The new name too must survive a power cut; a file system that cannot sync a folder has nothing more to offer.
+  if (const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); descriptor >= 0) {
+    ::fsync(descriptor);
+    ::close(descriptor);
+  }
 }
+
+}  // namespace
+
+std::vector<std::uint8_t> readFileBytes(const fs::path& file) { return readWhole<std::vector<std::uint8_t>>(file); }
+
+std::string readFileText(const fs::path& file) { return readWhole<std::string>(file); }
+
+void writeFileAtomically(const fs::path& file, std::span<const std::uint8_t> bytes) { replaceFile(file, bytes, false); }
+
+void writeFileDurably(const fs::path& file, std::span<const std::uint8_t> bytes) { replaceFile(file, bytes, true); }
 
 void writeFileAtomically(const fs::path& file, std::string_view text) {
   writeFileAtomically(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));

@@ -22,6 +22,9 @@ std::string readFileText(const std::filesystem::path& file);
 void writeFileAtomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 void writeFileAtomically(const std::filesystem::path& file, std::string_view text);
 
+/// The same for checkpoints: on return the bytes and the name are on the disk (fsync), not only with the system.
+void writeFileDurably(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
+
 /// The extension in lower case with its dot, such as ".png"; empty where there is none.
 std::string lowerExtension(const std::filesystem::path& file);
 

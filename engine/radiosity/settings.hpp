@@ -1,0 +1,57 @@
+// What a radiosity solution is asked for: by the published program (original_solver) and by the corrected one (no GL, pure).
+//
+// Radiosity here is exitance in the scene's own units; the original counts it in steps of its 24-bit numbers (rad_file.hpp).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lucerna {
+
+/// How the linear system is solved. The original has the first two.
+enum class RadiositySolver { automatic, jacobi, gaussSeidel, progressive, overshoot, anderson, perRoom, conjugateGradients };
+std::string_view nameOf(RadiositySolver solver);
+/// Throws Error(badInput) listing the names.
+RadiositySolver parseRadiositySolver(std::string_view name);
+
+/// Each is what the published program does; false is right.
+struct RadiosityDeviations {
+  bool publishedMap = false;      ///< pixels weighted 1/r^2 (top) and b/r^2 (sides) instead of the delta form factor
+  bool values24Bit = false;       ///< whole numbers of 24 bits, rounded down, instead of floats
+  bool centroid = false;          ///< one hemicube at a triangle's centroid, whatever its size
+  bool fixedOrientation = false;  ///< hemicubes turned towards the first corner instead of rolled at random
+  bool noNearField = false;       ///< nothing done about what is nearer than the near plane or a patch's own size
+};
+
+struct RadiositySettings {
+  int view = 500;                      ///< pixels a side of the hemicube's full face; even
+  RadiositySolver solver = RadiositySolver::automatic;
+  RadiosityDeviations deviations;
+  double error = 0.0;                  ///< stop at this guaranteed relative error; 0: when nothing changes
+  int maxSweeps = 0;                   ///< 0: no limit
+  std::size_t memoryBytes = 0;         ///< for kept rows; 0: chosen from the machine
+  unsigned seed = 1;                   ///< of the random roll
+};
+
+/// A named switch, as in engine/render/deviations.hpp. Names begin with "rad.".
+struct RadiosityDeviation {
+  const char* name;
+  const char* meaning;
+  bool RadiosityDeviations::*member;
+};
+
+std::span<const RadiosityDeviation> allRadiosityDeviations();
+
+/// All of them, as published: `--fidelity original`.
+RadiosityDeviations publishedRadiosity();
+
+/// "NAME=on" or "NAME=off"; throws Error(badInput) listing the names.
+void applyRadiosityDeviation(RadiosityDeviations& deviations, std::string_view assignment);
+
+/// Names of those that are on.
+std::vector<std::string> activeRadiosityDeviations(const RadiosityDeviations& deviations);
+
+}  // namespace lucerna
