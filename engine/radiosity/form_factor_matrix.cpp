@@ -1,0 +1,145 @@
+#include "radiosity/form_factor_matrix.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+namespace lucerna {
+
+void onAllCores(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)>& work) {
+  const std::size_t cores = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, 64);
+  if (count < 256 || cores == 1) return work(0, count);
+  std::vector<std::jthread> threads;
+  for (std::size_t k = 1; k < cores; ++k) threads.emplace_back([&, k] { work(count * k / cores, count * (k + 1) / cores); });
+  work(0, count / cores);
+}
+
+void FormFactorMatrix::appendRow(std::span<const std::uint32_t> patches, std::span<const float> factors) {
+  CHECK(patches.size() == factors.size(), "{} patches, {} factors", patches.size(), factors.size());
+  patches_.insert(patches_.end(), patches.begin(), patches.end());
+  factors_.insert(factors_.end(), factors.begin(), factors.end());
+  starts_.push_back(patches_.size());
+}
+
+FormFactorMatrix::Row FormFactorMatrix::row(std::size_t i) const {
+  const std::size_t size = starts_[i + 1] - starts_[i];
+  return {{patches_.data() + starts_[i], size}, {factors_.data() + starts_[i], size}};
+}
+
+void FormFactorMatrix::multiply(std::span<const glm::dvec3> x, std::span<glm::dvec3> y) const {
+  CHECK(x.size() == rowCount() && y.size() == rowCount(), "{} rows, vectors of {} and {}", rowCount(), x.size(), y.size());
+  onAllCores(rowCount(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      glm::dvec3 sum(0.0);
+      for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) sum += static_cast<double>(factors_[k]) * x[patches_[k]];
+      y[i] = sum;
+    }
+  });
+}
+
+std::vector<double> FormFactorMatrix::rowSums() const {
+  std::vector<double> sums(rowCount(), 0.0);
+  for (std::size_t i = 0; i < rowCount(); ++i)
+    for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) sums[i] += static_cast<double>(factors_[k]);
+  return sums;
+}
+
+double FormFactorMatrix::repair(std::span<const double> areas, std::span<const double> sums) {
+  const std::size_t n = rowCount();
+  // The transposed matrix, its rows in order as the rows are visited in order.
+  std::vector<std::size_t> starts(n + 1, 0);
+  for (const std::uint32_t j : patches_) ++starts[j + 1];
+  for (std::size_t i = 0; i < n; ++i) starts[i + 1] += starts[i];
+  std::vector<std::uint32_t> from(patches_.size());
+  std::vector<float> flux(patches_.size());  // A_i F_ij
+  {
+    std::vector<std::size_t> at(starts.begin(), starts.end() - 1);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) {
+        const std::size_t place = at[patches_[k]]++;
+        from[place] = static_cast<std::uint32_t>(i);
+        flux[place] = static_cast<float>(areas[i] * static_cast<double>(factors_[k]));
+      }
+  }
+  FormFactorMatrix mean;  // of A F and its transpose
+  std::vector<std::uint32_t> patches;
+  std::vector<float> values;
+  for (std::size_t i = 0; i < n; ++i) {
+    patches.clear();
+    values.clear();
+    std::size_t a = starts_[i], b = starts[i];
+    while (a < starts_[i + 1] || b < starts[i + 1]) {
+      const std::uint32_t ja = a < starts_[i + 1] ? patches_[a] : ~0u, jb = b < starts[i + 1] ? from[b] : ~0u, j = std::min(ja, jb);
+      // In float as in the transposed copy, so that S_ij and S_ji have the same bits.
+      float sum = 0.0f;
+      const float own = ja == j ? static_cast<float>(areas[i] * static_cast<double>(factors_[a])) : 0.0f, other = jb == j ? flux[b] : 0.0f;
+      sum = 0.5f * (own + other);
+      a += ja == j;
+      b += jb == j;
+      patches.push_back(j);
+      values.push_back(sum);
+    }
+    mean.appendRow(patches, values);
+  }
+  flux = {};
+  from = {};
+  // d_i sum_j S_ij d_j = A_i sums_i.
+  std::vector<double> d(n, 1.0), next(n);
+  double worst = 0.0;
+  constexpr int kMost = 200;
+  constexpr double kEnough = 1e-9;
+  for (int step = 0; step < kMost; ++step) {
+    worst = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      double sum = 0.0;
+      for (std::size_t k = mean.starts_[i]; k < mean.starts_[i + 1]; ++k) sum += static_cast<double>(mean.factors_[k]) * d[mean.patches_[k]];
+      const double wanted = areas[i] * sums[i], is = d[i] * sum;
+      if (is > 0.0 && wanted > 0.0) {
+        next[i] = d[i] * std::sqrt(wanted / is);
+        worst = std::max(worst, std::abs(wanted / is - 1.0));
+      } else {
+        next[i] = is > 0.0 ? 0.0 : d[i];  // a row that should be empty
+      }
+    }
+    if (worst < kEnough) break;
+    d = next;
+  }
+  onAllCores(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t k = mean.starts_[i]; k < mean.starts_[i + 1]; ++k)
+        mean.factors_[k] = static_cast<float>(static_cast<double>(mean.factors_[k]) * d[i] * d[mean.patches_[k]] / areas[i]);
+  });
+  *this = std::move(mean);
+  // Floats round up as well as down: one factor on all keeps reciprocity and puts every sum at or below its mark.
+  const std::vector<double> are = rowSums();
+  double most = 0.0, least = 1.0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (sums[i] > 0.0) most = std::max(most, are[i] / sums[i]);
+  if (most > 1.0) {
+    const float scale = static_cast<float>((1.0 - 2e-7) / most);
+    for (float& f : factors_) f *= scale;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (sums[i] > 0.0) least = std::min(least, are[i] / sums[i] / std::max(most, 1.0));
+  return 1.0 - least;
+}
+
+double FormFactorMatrix::reciprocityError(std::span<const double> areas) const {
+  double sum = 0.0, worst = 0.0;
+  for (std::size_t i = 0; i < rowCount(); ++i)
+    for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) {
+      const std::uint32_t j = patches_[k];
+      const double there = areas[i] * static_cast<double>(factors_[k]);
+      const Row other = row(j);
+      const auto found = std::lower_bound(other.patches.begin(), other.patches.end(), static_cast<std::uint32_t>(i));
+      const bool is = found != other.patches.end() && *found == i;
+      const double back = is ? areas[j] * static_cast<double>(other.factors[static_cast<std::size_t>(found - other.patches.begin())]) : 0.0;
+      sum += there;
+      worst = std::max(worst, std::abs(there - back));
+    }
+  return sum > 0.0 ? worst * static_cast<double>(entryCount()) / sum : 0.0;
+}
+
+}  // namespace lucerna

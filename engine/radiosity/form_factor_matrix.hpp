@@ -1,0 +1,51 @@
+// The form factor matrix as sparse rows in double-precision products (no GL, pure).
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace lucerna {
+
+/// F as compressed rows; entries in the order of patches, factors in float, sums in double. Products use all cores and have the same bits on
+/// any number of them: each row is one sum.
+class FormFactorMatrix {
+ public:
+  FormFactorMatrix() : starts_{0} {}
+
+  /// The next row's entries.
+  void appendRow(std::span<const std::uint32_t> patches, std::span<const float> factors);
+  std::size_t rowCount() const { return starts_.size() - 1; }
+  std::size_t entryCount() const { return patches_.size(); }
+  std::size_t bytes() const { return patches_.size() * (sizeof(std::uint32_t) + sizeof(float)) + starts_.size() * sizeof(std::size_t); }
+
+  struct Row {
+    std::span<const std::uint32_t> patches;
+    std::span<const float> factors;
+  };
+  Row row(std::size_t i) const;
+
+  /// y = F x, three channels at once: irradiance from exitance.
+  void multiply(std::span<const glm::dvec3> x, std::span<glm::dvec3> y) const;
+  std::vector<double> rowSums() const;
+
+  /// What hemicubes get wrong, put right: A_i F_ij = A_j F_ji for all pairs (both are taken to be their mean), and row i sums to `sums[i]`,
+  /// by a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]; no sum is ever above its `sums[i]`, and the largest relative deficit left is returned.
+  double repair(std::span<const double> areas, std::span<const double> sums);
+  /// Largest |A_i F_ij - A_j F_ji| over the mean of A_i F_ij.
+  double reciprocityError(std::span<const double> areas) const;
+
+ private:
+  std::vector<std::size_t> starts_;
+  std::vector<std::uint32_t> patches_;
+  std::vector<float> factors_;
+};
+
+/// Runs work(begin, end) on parts of 0..count, on all cores.
+void onAllCores(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)>& work);
+
+}  // namespace lucerna

@@ -1,0 +1,318 @@
+#include "radiosity/patches.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <unordered_map>
+
+namespace lucerna {
+
+namespace {
+
+bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+glm::dvec3 cross3(const std::array<glm::dvec3, 3>& c) { return glm::cross(c[1] - c[0], c[2] - c[0]); }
+
+/// A triangle whose doubled area is this small beside its longest edge squared is a line in floats.
+bool hasArea(const std::array<glm::dvec3, 3>& c) {
+  const double longest = std::max({glm::dot(c[1] - c[0], c[1] - c[0]), glm::dot(c[2] - c[1], c[2] - c[1]), glm::dot(c[0] - c[2], c[0] - c[2])});
+  return glm::length(cross3(c)) > 1e-7 * longest;
+}
+
+/// Joins places that are closer than `tolerance` into one point.
+class Welder {
+ public:
+  Welder(std::vector<glm::dvec3>& points, double tolerance) : points_(points), tolerance_(tolerance), cell_(std::max(4.0 * tolerance, 1e-300)) {}
+
+  std::uint32_t add(const glm::dvec3& place) {
+    const glm::dvec3 cell = glm::floor(place / cell_);
+    for (int dz = -1; dz <= 1; ++dz)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const auto [begin, end] = cells_.equal_range(key(cell + glm::dvec3(dx, dy, dz)));
+          for (auto it = begin; it != end; ++it)
+            if (glm::length(points_[it->second] - place) <= tolerance_) return it->second;
+        }
+    const auto index = static_cast<std::uint32_t>(points_.size());
+    points_.push_back(place);
+    cells_.emplace(key(cell), index);
+    return index;
+  }
+
+ private:
+  static std::uint64_t key(const glm::dvec3& cell) {
+    std::uint64_t hash = 0x9e3779b97f4a7c15u;
+    for (int axis = 0; axis < 3; ++axis) {
+      hash ^= static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[axis])) * 0xbf58476d1ce4e5b9u;
+      hash = (hash ^ (hash >> 29)) * 0x94d049bb133111ebu;
+    }
+    return hash;
+  }
+  std::vector<glm::dvec3>& points_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> cells_;
+  double tolerance_, cell_;
+};
+
+/// Linear albedo of a texture where texture coordinates wrap; nearest texel.
+glm::dvec3 texelAt(const Bitmap& bitmap, const glm::dvec2& uv) {
+  const auto wrap = [](double t, int n) { return std::min(static_cast<int>((t - std::floor(t)) * n), n - 1); };
+  const int x = wrap(uv.x, bitmap.width), y = bitmap.height - 1 - wrap(uv.y, bitmap.height);
+  const std::uint8_t* texel = bitmap.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x));
+  glm::dvec3 value;
+  for (int c = 0; c < 3; ++c) value[c] = static_cast<double>(linearFromSrgb(static_cast<float>(texel[c]) / 255.0f));
+  return value;
+}
+
+/// Mean of the texture over the patch, at the centroids of 64 equal parts.
+glm::dvec3 meanTexture(const Bitmap& bitmap, const std::array<glm::vec2, 3>& uv) {
+  constexpr int kParts = 8;
+  glm::dvec3 sum(0.0);
+  for (int i = 0; i < kParts; ++i)
+    for (int j = 0; j < 2 * (kParts - i) - 1; ++j) {
+      const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
+      const double a = (i + third) / kParts, b = (j / 2 + third) / kParts;
+      sum += texelAt(bitmap, (1.0 - a - b) * glm::dvec2(uv[0]) + a * glm::dvec2(uv[1]) + b * glm::dvec2(uv[2]));
+    }
+  return sum / static_cast<double>(kParts * kParts);
+}
+
+/// Everything about a patch that follows from its corners and its material.
+void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
+  const auto c = mesh.corners(patch);
+  const glm::dvec3 doubled = cross3(c);
+  patch.area = 0.5 * glm::length(doubled);
+  patch.faceNormal = doubled / (2.0 * patch.area);
+  patch.centroid = (c[0] + c[1] + c[2]) / 3.0;
+  const Material& material = scene.materials[static_cast<std::size_t>(patch.material)];
+  patch.reflectance = glm::dvec3(material.diffuse);
+  if (material.diffuseTexture >= 0)
+    patch.reflectance *= meanTexture(scene.textures[static_cast<std::size_t>(material.diffuseTexture)].bitmap, patch.texCoord);
+  patch.emission = std::numbers::pi * glm::dvec3(material.emission);
+}
+
+/// Corners share a light vertex where point and material are the same and their normals differ by less than the crease.
+void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings) {
+  struct Group {
+    int material;
+    glm::vec3 normal;
+    std::uint32_t index;
+  };
+  std::vector<std::vector<Group>> groups(mesh.points.size());
+  std::uint32_t count = 0;
+  for (Patch& patch : mesh.patches)
+    for (int k = 0; k < 3; ++k) {
+      auto& here = groups[patch.point[static_cast<std::size_t>(k)]];
+      const glm::vec3 normal = patch.normal[static_cast<std::size_t>(k)];
+      const auto same = [&](const Group& g) { return g.material == patch.material && static_cast<double>(glm::dot(g.normal, normal)) >= settings.crease; };
+      auto found = std::find_if(here.begin(), here.end(), same);
+      if (found == here.end()) found = here.insert(here.end(), {patch.material, normal, count++});
+      patch.light[static_cast<std::size_t>(k)] = found->index;
+    }
+  mesh.lightVertices = count;
+}
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+struct EdgeHash {
+  std::size_t operator()(const Edge& e) const { return (static_cast<std::size_t>(e.first) << 32 | e.second) * 0x9e3779b97f4a7c15u; }
+};
+Edge edgeOf(std::uint32_t a, std::uint32_t b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+
+int longestEdge(const RadiosityMesh& mesh, const Patch& patch) {
+  int longest = 0;
+  double most = -1.0;
+  Edge mostEdge{};
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t a = patch.point[static_cast<std::size_t>(k)], b = patch.point[static_cast<std::size_t>((k + 1) % 3)];
+    const glm::dvec3 d = mesh.points[a] - mesh.points[b];
+    const double length = glm::dot(d, d);
+    const Edge edge = edgeOf(a, b);
+    // Equal edges: the same one must win for both of its patches, so that marks do not chase each other.
+    if (length > most * (1.0 + 1e-12) || (length > most * (1.0 - 1e-12) && edge < mostEdge)) most = length, longest = k, mostEdge = edge;
+  }
+  return longest;
+}
+
+/// Cuts a patch at edge k's middle point.
+std::array<Patch, 2> halved(const Patch& patch, int k, std::uint32_t middle) {
+  const auto a = static_cast<std::size_t>(k), b = (a + 1) % 3;
+  std::array<Patch, 2> halves{patch, patch};
+  const glm::vec2 uv = 0.5f * (patch.texCoord[a] + patch.texCoord[b]);
+  const glm::vec3 sum = patch.normal[a] + patch.normal[b];
+  const glm::vec3 normal = glm::dot(sum, sum) > 1e-12f ? glm::normalize(sum) : glm::vec3(patch.faceNormal);
+  for (const auto& [half, corner] : {std::pair<std::size_t, std::size_t>{0, b}, {1, a}}) {
+    halves[half].point[corner] = middle;
+    halves[half].texCoord[corner] = uv;
+    halves[half].normal[corner] = normal;
+  }
+  return halves;
+}
+
+}  // namespace
+
+double RadiosityMesh::area() const {
+  double sum = 0.0;
+  for (const Patch& patch : patches) sum += patch.area;
+  return sum;
+}
+
+RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const PatchSettings& settings,
+                      const std::function<bool(std::size_t, int)>& marked, std::vector<std::uint32_t>* parent) {
+  // Marks grow until each patch with a marked edge has its longest one marked.
+  std::unordered_map<Edge, std::uint32_t, EdgeHash> middles;  // of marked edges
+  RadiosityMesh result = mesh;
+  const auto mark = [&](const Patch& patch, int k) {
+    const std::uint32_t a = patch.point[static_cast<std::size_t>(k)], b = patch.point[static_cast<std::size_t>((k + 1) % 3)];
+    const auto [it, fresh] = middles.try_emplace(edgeOf(a, b), 0u);
+    if (fresh) {
+      it->second = static_cast<std::uint32_t>(result.points.size());
+      result.points.push_back(0.5 * (mesh.points[it->first.first] + mesh.points[it->first.second]));
+    }
+    return fresh;
+  };
+  for (std::size_t i = 0; i < mesh.patches.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (marked(i, k)) mark(mesh.patches[i], k);
+  const auto middleOf = [&](const Patch& patch, int k) -> std::optional<std::uint32_t> {
+    const auto it = middles.find(edgeOf(patch.point[static_cast<std::size_t>(k)], patch.point[static_cast<std::size_t>((k + 1) % 3)]));
+    return it == middles.end() ? std::nullopt : std::optional(it->second);
+  };
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (const Patch& patch : mesh.patches)
+      for (int k = 0; k < 3; ++k)
+        if (middleOf(patch, k) && mark(patch, longestEdge(mesh, patch))) grown = true;
+  }
+  result.patches.clear();
+  if (parent) parent->clear();
+  for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
+    // The longest edge first; its halves keep at most one marked edge each.
+    std::vector<Patch> open{mesh.patches[i]};
+    while (!open.empty()) {
+      Patch patch = open.back();
+      open.pop_back();
+      int cut = longestEdge(result, patch);
+      auto middle = middleOf(patch, cut);
+      for (int k = 0; k < 3 && !middle; ++k) {
+        cut = k;
+        middle = middleOf(patch, k);
+      }
+      if (middle) {
+        const auto halves = halved(patch, cut, *middle);
+        open.insert(open.end(), halves.rbegin(), halves.rend());
+      } else {
+        complete(patch, result, scene);
+        result.patches.push_back(patch);
+        if (parent) parent->push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+  }
+  numberLightVertices(result, settings);
+  return result;
+}
+
+RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
+  for (const Material& m : scene.materials)
+    for (int c = 0; c < 3; ++c) {
+      if (!(m.diffuse[c] >= 0.0f && m.diffuse[c] <= 1.0f))
+        throwBadInput("material {}: reflectance {} is not from 0 to 1: such a surface would send out more light than it gets", m.name, m.diffuse[c]);
+      if (!(m.emission[c] >= 0.0f && std::isfinite(m.emission[c]))) throwBadInput("material {}: emission {} is not a finite number >= 0", m.name, m.emission[c]);
+    }
+  RadiosityMesh mesh;
+  Bounds bounds;
+  for (const std::uint32_t index : scene.indices)
+    if (isFinite(scene.vertices[index].position)) bounds.add(glm::dvec3(scene.vertices[index].position));
+  const glm::dvec3 extent = bounds.extent();
+  mesh.extent = std::max({extent.x, extent.y, extent.z});
+  Welder welder(mesh.points, settings.weld * mesh.extent);
+  std::set<std::array<std::uint32_t, 3>> seen;
+  for (const Mesh& part : scene.meshes)
+    for (std::uint32_t i = part.firstIndex; i + 2 < part.firstIndex + part.indexCount; i += 3) {
+      Patch patch;
+      patch.material = part.material;
+      patch.triangle = i / 3;
+      bool finite = true;
+      std::array<const Vertex*, 3> vertex{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        vertex[k] = &scene.vertices[scene.indices[i + k]];
+        finite = finite && isFinite(vertex[k]->position);
+      }
+      if (!finite) {
+        ++mesh.notFinite;
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) patch.point[k] = welder.add(glm::dvec3(vertex[k]->position));
+      if (!hasArea(mesh.corners(patch))) {
+        ++mesh.degenerate;
+        continue;
+      }
+      glm::dvec3 shading(0.0);
+      for (std::size_t k = 0; k < 3; ++k) {
+        patch.texCoord[k] = vertex[k]->texCoord;
+        patch.normal[k] = vertex[k]->normal;
+        if (isFinite(vertex[k]->normal)) shading += glm::dvec3(vertex[k]->normal);
+      }
+      if (glm::dot(shading, cross3(mesh.corners(patch))) < 0.0) {
+        std::swap(patch.point[1], patch.point[2]);
+        std::swap(patch.texCoord[1], patch.texCoord[2]);
+        std::swap(patch.normal[1], patch.normal[2]);
+        ++mesh.flipped;
+      }
+      const glm::vec3 face(glm::normalize(cross3(mesh.corners(patch))));
+      for (glm::vec3& n : patch.normal) n = isFinite(n) && glm::dot(n, face) > 0.0f ? glm::normalize(n) : face;
+      // The same three points in the same sense, whichever comes first.
+      auto key = patch.point;
+      std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
+      if (!seen.insert(key).second) {
+        ++mesh.duplicates;
+        continue;
+      }
+      complete(patch, mesh, scene);
+      mesh.patches.push_back(patch);
+    }
+  if (mesh.patches.empty())
+    throwBadInput("{}: no triangle with an area ({} without, {} with corners that are not finite)", scene.name, mesh.degenerate, mesh.notFinite);
+  numberLightVertices(mesh, settings);
+  if (settings.longestEdge > 0.0) {
+    const double most = settings.longestEdge * settings.longestEdge * (1.0 + 1e-9);
+    for (bool longer = true; longer;) {
+      longer = false;
+      const auto tooLong = [&](std::size_t i, int k) {
+        const auto c = mesh.corners(mesh.patches[i]);
+        const glm::dvec3 d = c[static_cast<std::size_t>((k + 1) % 3)] - c[static_cast<std::size_t>(k)];
+        return glm::dot(d, d) > most;
+      };
+      for (std::size_t i = 0; i < mesh.patches.size() && !longer; ++i)
+        for (int k = 0; k < 3; ++k) longer = longer || tooLong(i, k);
+      if (longer) mesh = refined(scene, mesh, settings, tooLong);
+    }
+  }
+  return mesh;
+}
+
+std::size_t countTJunctions(const RadiosityMesh& mesh) {
+  std::vector<bool> used(mesh.points.size(), false);
+  for (const Patch& patch : mesh.patches)
+    for (const std::uint32_t p : patch.point) used[p] = true;
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+    bool inside = false;
+    for (std::size_t i = 0; used[p] && i < mesh.patches.size() && !inside; ++i) {
+      const auto c = mesh.corners(mesh.patches[i]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (mesh.patches[i].point[k] == p || mesh.patches[i].point[(k + 1) % 3] == p) continue;
+        const glm::dvec3 along = c[(k + 1) % 3] - c[k], to = mesh.points[p] - c[k];
+        const double t = glm::dot(to, along) / glm::dot(along, along);
+        if (t > 1e-6 && t < 1.0 - 1e-6 && glm::length(to - t * along) < 1e-6 * glm::length(along)) inside = true;
+      }
+    }
+    count += inside;
+  }
+  return count;
+}
+
+}  // namespace lucerna

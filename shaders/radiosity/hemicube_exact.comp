@@ -1,0 +1,56 @@
+// Hemicubes, pass 3: where the closed form tells more than pixels can, it replaces their sum, and pixels tell visibility alone: for what covers
+// many pixels (exact but for its border), what is near (averaged over the receiving patch too [BaumRushmeierWinget1989]), and small sources.
+// Each invocation takes entries of pass 2's list, a stride of the whole dispatch apart.
+#include "radiosity/hemicube.glsl"
+#include "radiosity/polygon.glsl"
+
+layout(std430, binding = 4) writeonly buffer Factors { float factors[]; };
+layout(std430, binding = 6) readonly buffer ExactList { uint listed; uint padding; uvec2 list[]; };
+uniform float nearDistance;  // a receiver is divided so that (distance / size of a part) reaches this; 0: never
+uniform int mostParts;       // a side, at most
+
+// Mean over the receiver of the closed form, from the centroids of parts x parts equal triangles.
+float receivedFrom(Frame frame, int self, Triangle t) {
+  vec3 r0 = toFrame(frame, patchCorner(self, 0)), r1 = toFrame(frame, patchCorner(self, 1)), r2 = toFrame(frame, patchCorner(self, 2));
+  float size = sqrt(0.5 * length(cross(r1 - r0, r2 - r0)));
+  float away = max(length((t.a + t.b + t.c) / 3.0) - 0.5 * max(length(t.b - t.a), max(length(t.c - t.b), length(t.a - t.c))), 0.0);
+  float wanted = nearDistance * size / max(away, 1e-3 * size);
+  int parts = clamp(int(ceil(wanted)), 1, mostParts);
+  if (nearDistance <= 0.0) parts = 1;
+  float sum = 0.0;
+  float side = 1.0 / float(parts);
+  int i = 0, j = 0;  // strip and place in it: 2 (parts - i) - 1 parts, every second upside down
+  for (int k = 0; k < parts * parts; ++k) {
+    float third = (j & 1) == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
+    float u = (float(i) + third) * side, v = (float(j / 2) + third) * side;
+    vec3 at = r0 + u * (r1 - r0) + v * (r2 - r0);
+    sum += pointToTriangle(t.a - at, t.b - at, t.c - at);
+    ++j;
+    if (j >= 2 * (parts - i) - 1) ++i, j = 0;
+  }
+  return sum * side * side;
+}
+
+// Whether a source that no pixel's centre met is the nearest at the pixel that its centroid falls in, were it to fill that pixel.
+bool nearestAtCentroid(Triangle t, int firstPixel) {
+  vec3 m = (t.a + t.b + t.c) / 3.0;
+  vec2 side = abs(m.xy);
+  int face = m.z >= max(side.x, side.y) ? 0 : side.x >= side.y ? (m.x > 0.0 ? 1 : 3) : (m.y > 0.0 ? 2 : 4);
+  vec3 p = toFace(face, m);
+  vec2 low = vec2(-1.0, face == 0 ? -1.0 : 0.0);
+  ivec2 pixel = clamp(ivec2((p.xy / p.z - low) * (0.5 * float(faceSize))), ivec2(0), ivec2(faceSize - 1, face == 0 ? faceSize - 1 : faceSize / 2 - 1));
+  vec3 a = toFace(face, t.a), normal = cross(toFace(face, t.b) - a, toFace(face, t.c) - a);
+  float inverse = dot(normal, vec3(pixelCentre(face, pixel), 1.0)) / dot(normal, a);
+  return m.z > 0.0 && inverse * 1.001 >= uintBitsToFloat(keys[firstPixel + facePixels(face) + pixel.y * faceSize + pixel.x] & ~15u);
+}
+
+void main() {
+  for (uint i = gl_GlobalInvocationID.x; i < listed; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+    int hemicube = int(list[i].x) / patchCount, index = int(list[i].x) % patchCount;
+    float share = uintBitsToFloat(list[i].y);
+    Frame frame = frames[hemicube];
+    Triangle t = triangleOf(frame, index);
+    if (share < 0.0) share = nearestAtCentroid(t, hemicube * pixelsPerHemicube()) ? 1.0 : 0.0;
+    factors[list[i].x] = share * receivedFrom(frame, firstPatch + hemicube, t);
+  }
+}

@@ -1,0 +1,23 @@
+// Closed and open scenes for radiosity, as patches made in memory.
+#pragma once
+
+#include "radiosity/patches.hpp"
+#include "support/small_scenes.hpp"
+
+#include <functional>
+
+namespace lucerna::test {
+
+/// A material of one reflectance and one emitted exitance.
+int lambertian(SceneBuilder& builder, double reflectance, double exitance = 0.0);
+
+/// The inside of a cube of side 1 about the origin, its six walls each of n x n squares of two triangles, in the order floor (y = -1/2), ceiling,
+/// back (z = -1/2), front, left (x = -1/2), right; `material(wall, u, v)` with u, v the centre of a square, 0..1.
+Scene cubeRoom(int n, const std::function<int(SceneBuilder&, int wall, double u, double v)>& material);
+/// The same, all of one material.
+Scene cubeRoom(int n, double reflectance, double exitance);
+
+/// A sphere of triangles from a subdivided icosahedron, seen from inside (front within) or outside.
+void addSphere(SceneBuilder& builder, double radius, int level, bool inside, const std::function<int(const glm::dvec3& centroid)>& material);
+
+}  // namespace lucerna::test
