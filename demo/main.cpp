@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times", lucerna::demo::addWalk);
   add("render", "Render one picture of a scene", lucerna::demo::addRender);
   add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
+  add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL", lucerna::demo::addMedia);
   add("bench", "Measure: the published tables and pictures of the originals, made again", lucerna::demo::addBench);
 
   try {
