@@ -148,6 +148,7 @@ Scene loadOriginalScene(const Value& root) {
   scene.cameras = {keys.camera};
   scene.keyFrames.clear();
   for (Material& material : scene.materials) {
+    material.bsdf = Bsdf::diffuse;
     material.emission = glm::vec3(0.0f);
     material.specular = glm::vec3(0.0f);
   }

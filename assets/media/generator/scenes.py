@@ -119,7 +119,7 @@ def build_gems(folder, paths):
     parts = stones + [backdrop("sweep", "paper", 160, 140, -70, 130, 40), softbox("key", key, target, 26, 26, "key"),
                       softbox("rim", (36, 34, -48), target, 14, 44, "rim"), softbox("window", (52, 46, 44), target, 40, 12, "window")]
     materials = {name: clear(CATALOGUE[name][3]) for name in ("emerald", "ruby", "sapphire", "glass")}
-    materials |= {"paper": {"Kd": (0.62, 0.6, 0.57)}, "key": lamp((22, 20.5, 18)), "rim": lamp((16, 18, 21)), "window": lamp((9, 9, 9))}
+    materials |= {"paper": {"Kd": (0.26, 0.255, 0.25)}, "key": lamp((22, 20.5, 18)), "rim": lamp((16, 18, 21)), "window": lamp((9, 9, 9))}
     count = write(folder, "gems", parts, materials, "Four gems.")
     view = camera("published", (1.0, 27.0, 48.0), (0.2, 1.4, 0.3), 27)
     scene = {"description": "Four gems as in the VPT original's series over samples: an emerald cut, an oval and a round brilliant and a rose cut, on a paper sweep.",
@@ -135,22 +135,22 @@ def build_gems(folder, paths):
 
 def build_block(folder, paths):
     from .mesh import rounded_box
-    cube = rounded_box("block", "block", (10, 10, 10), 1.1, arc=5).placed(rotation((0, 1, 0), 27), (0, 10.03, 0))
-    key, target = (-38.0, 46.0, -26.0), (0.0, 9.0, 0.0)
-    parts = [cube, tiles("tile_light", 7.0, 14, 0), tiles("tile_dark", 7.0, 14, 1), quad("wall", "wall", (-98, 0, -60), (98, 0, -60), (98, 110, -60), (-98, 110, -60)),
-             softbox("key", key, target, 30, 30, "key"), softbox("fill", (44, 40, 40), target, 24, 24, "fill")]
+    cube = rounded_box("block", "block", (6, 6, 6), 0.7, arc=5).placed(rotation((0, 1, 0), 27), (0, 6.02, 0))
+    key, target = (-23.0, 28.0, -16.0), (0.0, 5.5, 0.0)
+    parts = [cube, tiles("tile_light", 4.0, 15, 0), tiles("tile_dark", 4.0, 15, 1), quad("wall", "wall", (-60, 0, -36), (60, 0, -36), (60, 66, -36), (-60, 66, -36)),
+             softbox("key", key, target, 18, 18, "key"), softbox("fill", (26, 24, 24), target, 14, 14, "fill")]
     materials = {"block": clear(1.33), "tile_light": {"Kd": (0.72, 0.69, 0.63)}, "tile_dark": {"Kd": (0.1, 0.16, 0.24)}, "wall": {"Kd": (0.3, 0.4, 0.46)},
                  "key": lamp((17, 16, 14.5)), "fill": lamp((6, 6.4, 7))}
     count = write(folder, "block", parts, materials, "A block on a chequered floor.")
-    view = camera("published", (14.0, 27.0, 50.0), (0.0, 7.6, 0.0), 30)
+    view = camera("published", (9.5, 18.5, 33.5), (0.0, 5.6, 0.0), 28)
     for stem, medium, what in (("milk", "milk", "Milk"), ("juice", "grape juice", "Grape juice"), ("coffee", "espresso", "Espresso")):
-        scene = {"description": f"{what} as a block of 20 mm: the VPT original's series over coefficients.", "model": "block.obj", "scale": 1,
-                 "cameras": [view, camera("edge", (12.0, 16.0, 26.0), (2.0, 13.0, 5.0), 32)],
+        scene = {"description": f"{what} as a block of 12 mm: the VPT original's series over coefficients.", "model": "block.obj", "scale": 1,
+                 "cameras": [view, camera("edge", (8.0, 10.5, 17.0), (1.2, 7.8, 3.0), 32)],
                  "sun": None, "exposure": 1.0, "environment": {"radiance": [0.16, 0.17, 0.19]}, "keyFrames": "../../../keyFrames/block.txt",
                  "materials": {"block": {"interior": medium}}}
         write_scene(folder, stem, scene)
-        write_scene(folder, f"{stem}_original", original(view, (-36.5, 44.3, -25.0), (1, 0.94, 0.85), 17 * 30 * 30, {"block": CATALOGUE[medium]}))
-    walk(paths / "block.txt", "Round the block", (0.0, 9.0, 0.0), view["position"], 120, 8, 0.3, 30)
+        write_scene(folder, f"{stem}_original", original(view, (-22.2, 27.0, -15.4), (1, 0.94, 0.85), 17 * 18 * 18, {"block": CATALOGUE[medium]}))
+    walk(paths / "block.txt", "Round the block", (0.0, 5.5, 0.0), view["position"], 120, 5, 0.3, 30)
     return count
 
 
@@ -163,8 +163,7 @@ def build_espresso(folder, paths):
     saucer_profile = vessels.rounded([(0.0, 1.0), (17.0, 1.0), (18.5, 0.0, 0.8), (22.0, 0.0, 1.5), (30.0, 2.6, 10.0), (58.0, 10.6, 20.0), (61.5, 11.2, 0.9), (60.8, 12.6, 0.9),
                                       (31.0, 5.6, 8.0), (24.5, 4.4, 2.0), (23.0, 3.5, 1.5), (0.0, 3.5)], 3.0)
     saucer = vessels.lathe("saucer", "porcelain", saucer_profile, 96)
-    steel = vessels.spoon("spoon", "steel").placed(rotation((0, 0, 1), -3.0)).placed(rotation((0, 1, 0), 36), (-52.0, 12.1, 42.0))
-    steel.placed(offset=(0.0, 8.6 - steel.low(), 0.0))
+    steel = vessels.spoon("spoon", "steel").placed(rotation((0, 1, 0), 195), (-14.0, 13.4, 41.0))  # its stem lies over the saucer's rim
     key, target = (-150.0, 190.0, -120.0), (0.0, 35.0, 0.0)
     parts = [cup, coffee, saucer, steel] + planks(330, 230, -330, 62, sorted(WOODS)) + [
         quad("wall", "wall", (-700, -80, -430), (700, -80, -430), (700, 620, -430), (-700, 620, -430)),
@@ -174,7 +173,7 @@ def build_espresso(folder, paths):
     count = write(folder, "espresso", parts, materials, "Espresso in a glass cup.")
     views = [camera("published", (62.0, 112.0, 176.0), (3.0, 24.0, 0.0), 30), camera("close-up", (26.0, 82.0, 70.0), (9.0, 44.0, 14.0), 26)]
     scene = {"description": "Espresso in a glass cup: glass and liquid overlap by 0.3 mm, and the glass has priority.", "model": "espresso.obj", "scale": 1,
-             "cameras": views, "sun": None, "exposure": 1.0, "environment": {"radiance": [0.12, 0.13, 0.15]}, "keyFrames": "../../../keyFrames/espresso.txt",
+             "cameras": views, "sun": None, "exposure": 1.5, "environment": {"radiance": [0.12, 0.13, 0.15]}, "keyFrames": "../../../keyFrames/espresso.txt",
              "materials": {"glass": {"interior": "glass", "priority": 2}, "espresso": {"interior": "espresso", "priority": 1}, "steel": {"bsdf": "conductor", "roughness": 0.12}}}
     write_scene(folder, "espresso", scene)
     for stem, view in (("espresso_original", views[0]), ("espresso_close_original", views[1])):
@@ -189,16 +188,16 @@ def build_cola(folder, paths):
     inside = [(32.0, 134.0), (25.2, 13.0, 7.0), (0.0, 11.5)]
     profile, inner = vessels.profile_of(outside, rim, inside, 6.0)
     glass = vessels.lathe("tumbler", "glass", profile, 88, crease=50.0)
-    level = 104.0
+    level = 100.0
     cola = vessels.liquid("cola", "cola", inner, level, 0.3, 1.5, 1.3, 88)
-    placed = vessels.ice_cubes(6, (11.5, 11.5, 11.5), lambda y: 25.2 + (32.0 - 25.2) * (y - 13.0) / 121.0, 40.0, 110.0, level, 11)
+    placed = vessels.ice_cubes(7, (12.0, 12.0, 12.0), lambda y: 25.2 + (32.0 - 25.2) * (y - 13.0) / 121.0, 40.0, 112.0, level, 11)
     ice = [vessels.ice_cube(f"ice_{i}", "ice", p, 100 + i) for i, p in enumerate(placed)]
-    key, target = (-190.0, 210.0, -180.0), (0.0, 70.0, 0.0)
+    key, target = (-200.0, 350.0, -190.0), (0.0, 70.0, 0.0)
     parts = [glass, cola] + ice + planks(520, 300, -380, 85, sorted(WOODS)) + [
         quad("wall", "wall", (-900, -80, -520), (900, -80, -520), (900, 900, -520), (-900, 900, -520)),
-        softbox("key", key, target, 200, 260, "key"), softbox("side", (260, 150, 30), target, 70, 280, "side"), softbox("glow", (60, 120, -330), target, 170, 150, "glow")]
-    materials = {"glass": clear(1.5), "cola": clear(1.33, (0.2, 0.06, 0.02)), "ice": clear(1.5), **WOODS, "wall": {"Kd": (0.2, 0.23, 0.26)},
-                 "key": lamp((9, 9, 9)), "side": lamp((6, 5.8, 5.4)), "glow": lamp((2.6, 2.4, 2.1))}
+        softbox("key", key, target, 200, 260, "key"), softbox("side", (260, 150, 30), target, 70, 280, "side"), softbox("glow", (40, 350, -330), (0, 90, -520), 260, 120, "glow")]
+    materials = {"glass": clear(1.5), "cola": clear(1.33, (0.2, 0.06, 0.02)), "ice": clear(1.5), **WOODS, "wall": {"Kd": (0.62, 0.6, 0.56)},
+                 "key": lamp((9, 9, 9)), "side": lamp((6, 5.8, 5.4)), "glow": lamp((16, 14.8, 13))}
     count = write(folder, "cola", parts, materials, "Cola with ice in a tumbler.")
     view = camera("published", (40.0, 150.0, 330.0), (0.0, 64.0, 0.0), 28)
     scene = {"description": "Coca Cola with ice in a tumbler. Glass, ice and cola overlap, with priorities; the ice is the medium glass, as published.", "model": "cola.obj", "scale": 1,
@@ -206,7 +205,7 @@ def build_cola(folder, paths):
              "sun": None, "exposure": 1.0, "environment": {"radiance": [0.14, 0.15, 0.17]}, "keyFrames": "../../../keyFrames/cola.txt",
              "materials": {"glass": {"interior": "glass", "priority": 3}, "ice": {"interior": "glass", "ior": 1.5, "priority": 2}, "cola": {"interior": "coca cola", "priority": 1}}}
     write_scene(folder, "cola", scene)
-    write_scene(folder, "cola_original", original(view, (-187.0, 207.0, -177.0), (1, 1, 1), 9 * 200 * 260,
+    write_scene(folder, "cola_original", original(view, (-197.0, 344.0, -186.5), (1, 1, 1), 9 * 200 * 260,
                                                   {"glass": CATALOGUE["glass"], "ice": CATALOGUE["glass"], "cola": CATALOGUE["coca cola"]}))
     walk(paths / "cola.txt", "Round the tumbler", (0.0, 70.0, 0.0), view["position"], 110, 30, 0.4, 28)
     return count
@@ -222,14 +221,14 @@ def build_smoke(folder, paths, with_grid=True):
     materials = {"room": {"Kd": (0.2, 0.21, 0.23)}, "key": lamp((60, 55, 47)), "rim": lamp((9, 12, 17))}
     bounds = box("bounds", "smoke", low, high)
     count = write(folder, "smoke", [bounds] + room(), {"smoke": clear(1.0), **materials}, "A box of smoke.")
-    if with_grid:
+    if with_grid:  # what takes long
         size = (96, 96, 96)
         smoke.write_nrrd(folder / "smoke.nrrd", size, smoke.grid(size))
     view = camera("published", (-60.0, 250.0, 980.0), (0.0, 212.0, 0.0), 28)
     scene = {"description": "A cloud of smoke on a density grid of 96^3 cells.", "model": "smoke.obj", "scale": 1,
              "cameras": [view, camera("near", (120.0, 300.0, 430.0), (10.0, 270.0, 0.0), 34)],
              "sun": None, "exposure": 1.0, "environment": {"radiance": [0.05, 0.06, 0.08]}, "keyFrames": "../../../keyFrames/smoke.txt",
-             "media": {"smoke": {"sigma_s": [0.06, 0.06, 0.06], "sigma_a": [0.0012, 0.0013, 0.0015], "g": 0.3, "ior": 1,
+             "media": {"smoke": {"sigma_s": [0.045, 0.045, 0.045], "sigma_a": [0.0009, 0.001, 0.0012], "g": 0.3, "ior": 1,
                                  "grid": {"file": "smoke.nrrd", "min": list(low), "max": list(high)}}},
              "materials": {"smoke": {"bsdf": "none", "interior": "smoke"}}}
     write_scene(folder, "smoke", scene)
