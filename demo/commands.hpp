@@ -22,6 +22,7 @@ using Work = std::function<int()>;
 Work addWalk(CLI::App& app);
 Work addRender(CLI::App& app);
 Work addInfo(CLI::App& app);
+Work addMedia(CLI::App& app);
 Work addBench(CLI::App& app);
 Work addRadiosity(CLI::App& app);
 

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   add("render", "Render one picture of a scene", lucerna::demo::addRender);
   add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
   add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
+  add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL", lucerna::demo::addMedia);
   add("bench", "Measure: the published tables and pictures of the originals, made again", lucerna::demo::addBench);
 
   try {

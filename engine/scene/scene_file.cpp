@@ -12,16 +12,20 @@
 //   "background":  [r,g,b], radiance
 //   "exposure":    factor before tone mapping
 //   "keyFrames":   path of the camera path, relative to the JSON
+//   "environment": {"radiance": [r,g,b], constant or a factor (1) on "picture": path of a latitude-longitude hdr, exr or pfm; "rotation": degrees about +y}
+//   "media", "materials", "cameraMedium": see scene_media.hpp
+// A top-level key "scene" marks the JSON of the VPT original instead: see original_scene_file.cpp.
 // Unknown keys are errors. A new key is one more entry in the table in loadSceneFile.
 #include "scene/scene_file.hpp"
 
 #include "base/error.hpp"
 #include "base/files.hpp"
-
-#include <nlohmann/json.hpp>
+#include "scene/json_value.hpp"
+#include "scene/original_scene_file.hpp"
+#include "scene/scene_media.hpp"
 
 #include <cmath>
-#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,82 +34,7 @@ namespace lucerna {
 
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr double kPi = 3.14159265358979323846;
-
-/// A value and the place it stands at, such as "cameras[1].fov", for messages.
-struct Value {
-  const Json& json;
-  const std::filesystem::path& file;
-  std::string key;
-
-  [[noreturn]] void fail(std::string_view expected) const {
-    std::string found = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (found.size() > 60) found = found.substr(0, 57) + "...";
-    throwBadInput("{}: key \"{}\": found {}, expected {}", file.string(), key, found, expected);
-  }
-
-  Value at(std::string_view name) const { return {json.at(std::string(name)), file, key.empty() ? std::string(name) : fmt::format("{}.{}", key, name)}; }
-  Value at(std::size_t index) const { return {json.at(index), file, fmt::format("{}[{}]", key, index)}; }
-  bool has(std::string_view name) const { return json.contains(std::string(name)); }
-
-  std::string text() const {
-    if (!json.is_string()) fail("text");
-    return json.get<std::string>();
-  }
-
-  double number(std::string_view expected = "a number") const {
-    if (!json.is_number() || !std::isfinite(json.get<double>())) fail(expected);
-    return json.get<double>();
-  }
-
-  double positiveNumber() const {
-    const double value = number("a number above 0");
-    if (!(value > 0.0)) fail("a number above 0");
-    return value;
-  }
-
-  glm::dvec3 vector(std::string_view expected = "an array of 3 numbers") const {
-    if (!json.is_array() || json.size() != 3) fail(expected);
-    glm::dvec3 v;
-    for (std::size_t i = 0; i < 3; ++i) v[static_cast<int>(i)] = at(i).number();
-    return v;
-  }
-
-  glm::dvec3 unitVector() const {
-    const glm::dvec3 v = vector("a direction: an array of 3 numbers");
-    if (!(glm::length(v) > 0.0)) fail("a direction other than zero");
-    return glm::normalize(v);
-  }
-
-  /// Radiance or irradiance: finite in float and not negative.
-  glm::vec3 light() const {
-    const glm::vec3 v(vector("an array of 3 numbers, 0 or more"));
-    for (int c = 0; c < 3; ++c)
-      if (!(v[c] >= 0.0f) || !std::isfinite(v[c])) fail("an array of 3 numbers, 0 or more");
-    return v;
-  }
-};
-
-struct Key {
-  const char* name;
-  std::function<void(const Value&)> read;
-};
-
-/// Gives each member of an object to the entry of its name.
-void readObject(const Value& object, const std::vector<Key>& keys) {
-  if (!object.json.is_object()) object.fail("an object {...}");
-  for (const auto& [name, json] : object.json.items()) {
-    const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
-    if (key == keys.end()) {
-      std::string known;
-      for (const Key& k : keys) known += fmt::format("{}{}", known.empty() ? "" : ", ", k.name);
-      throwBadInput("{}: unknown key \"{}\"; known are: {}", object.file.string(), object.key.empty() ? name : fmt::format("{}.{}", object.key, name), known);
-    }
-    key->read(object.at(name));
-  }
-}
 
 Camera readCamera(const Value& object) {
   Camera camera;
@@ -204,19 +133,34 @@ std::vector<Light> readLights(const Value& array, std::size_t most, Light (*read
   return lights;
 }
 
+Environment readEnvironment(const Value& object) {
+  Environment environment;
+  std::optional<glm::vec3> radiance;
+  readObject(object, {
+      {"radiance", [&](const Value& v) { radiance = v.light(); }},
+      {"picture", [&](const Value& v) { environment.picture = readImage(v.path()); }},
+      {"rotation", [&](const Value& v) { environment.rotation = v.number("degrees") * kPi / 180.0; }},
+  });
+  if (!radiance && !environment.picture) object.fail("an environment with \"radiance\" or \"picture\"");
+  environment.radiance = radiance.value_or(glm::vec3(1.0f));
+  return environment;
+}
+
 }  // namespace
 
-Scene loadSceneFile(const std::filesystem::path& file) {
-  Json json;
+Json readJson(const std::filesystem::path& file) {
   try {
-    json = Json::parse(readFileText(file));
+    return Json::parse(readFileText(file));
   } catch (const Json::exception& e) {
     throwBadInput("{}: not valid JSON: {}", file.string(), e.what());
   }
+}
+
+Scene loadSceneFile(const std::filesystem::path& file) {
+  const Json json = readJson(file);
   const Value root{json, file, ""};
   if (!json.is_object()) throwBadInput("{}: expected a JSON object with the key \"model\"", file.string());
-  if (root.has("scene"))
-    throwBadInput("{}: a top-level key \"scene\" marks the scene JSON of the VPT original, which this version does not read yet", file.string());
+  if (root.has("scene")) return loadOriginalScene(root);
 
   // What is said is kept until the model is there: it overrides what the model's file says.
   std::filesystem::path model, keyFrames;
@@ -226,14 +170,10 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   std::optional<std::vector<SpotLight>> spots;
   std::optional<std::vector<PointLight>> points;
   std::optional<glm::vec3> background;
-  const auto beside = [&](const Value& v) {
-    const std::string path = v.text();
-    if (path.empty()) v.fail("a path");
-    return file.parent_path() / path;
-  };
+  std::optional<Environment> environment;
   readObject(root, {
       {"description", [&](const Value& v) { static_cast<void>(v.text()); }},
-      {"model", [&](const Value& v) { model = beside(v); }},
+      {"model", [&](const Value& v) { model = v.path(); }},
       {"scale", [&](const Value& v) { scale = v.positiveNumber(); }},
       {"camera", [&](const Value& v) { cameras = {readCamera(v)}; }},
       {"cameras", [&](const Value& v) { cameras = readCameras(v); }},
@@ -242,7 +182,11 @@ Scene loadSceneFile(const std::filesystem::path& file) {
       {"points", [&](const Value& v) { points = readLights(v, kMaxPointLights, readPoint); }},
       {"background", [&](const Value& v) { background = v.light(); }},
       {"exposure", [&](const Value& v) { exposure = v.positiveNumber(); }},
-      {"keyFrames", [&](const Value& v) { keyFrames = beside(v); }},
+      {"keyFrames", [&](const Value& v) { keyFrames = v.path(); }},
+      {"environment", [&](const Value& v) { environment = readEnvironment(v); }},
+      {"media", [](const Value&) {}},  // these three by readSceneMedia, once the model is there
+      {"materials", [](const Value&) {}},
+      {"cameraMedium", [](const Value&) {}},
   });
   if (model.empty()) throwBadInput("{}: no key \"model\", the path of the model relative to this file", file.string());
   if (root.has("camera") && root.has("cameras")) throwBadInput("{}: both \"camera\" and \"cameras\", expected one of them", file.string());
@@ -261,6 +205,8 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   }
   if (exposure) scene.exposure = static_cast<float>(*exposure);
   if (background) scene.background = *background;
+  scene.environment = std::move(environment);
+  readSceneMedia(root, scale, scene);
   if (!cameras.empty()) scene.cameras = std::move(cameras);
   if (!keyFrames.empty()) {
     if (!root.has("camera") && !root.has("cameras")) scene.cameras.clear();

@@ -1,0 +1,118 @@
+// A value of a scene JSON with the place it stands at, so that whatever is wrong is named by file and key (no GL; private to engine/scene).
+#pragma once
+
+#include "base/error.hpp"
+
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lucerna {
+
+using Json = nlohmann::json;
+
+/// A value and the place it stands at, such as "cameras[1].fov", for messages.
+struct Value {
+  const Json& json;
+  const std::filesystem::path& file;
+  std::string key;
+
+  [[noreturn]] void fail(std::string_view expected) const {
+    std::string found = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (found.size() > 60) found = found.substr(0, 57) + "...";
+    throwBadInput("{}: key \"{}\": found {}, expected {}", file.string(), key, found, expected);
+  }
+
+  Value at(std::string_view name) const { return {json.at(std::string(name)), file, key.empty() ? std::string(name) : fmt::format("{}.{}", key, name)}; }
+  Value at(std::size_t index) const { return {json.at(index), file, fmt::format("{}[{}]", key, index)}; }
+  bool has(std::string_view name) const { return json.contains(std::string(name)); }
+
+  std::string text() const {
+    if (!json.is_string()) fail("text");
+    return json.get<std::string>();
+  }
+
+  double number(std::string_view expected = "a number") const {
+    if (!json.is_number() || !std::isfinite(json.get<double>())) fail(expected);
+    return json.get<double>();
+  }
+
+  double positiveNumber() const {
+    const double value = number("a number above 0");
+    if (!(value > 0.0)) fail("a number above 0");
+    return value;
+  }
+
+  glm::dvec3 vector(std::string_view expected = "an array of 3 numbers") const {
+    if (!json.is_array() || json.size() != 3) fail(expected);
+    glm::dvec3 v;
+    for (std::size_t i = 0; i < 3; ++i) v[static_cast<int>(i)] = at(i).number();
+    return v;
+  }
+
+  glm::dvec3 unitVector() const {
+    const glm::dvec3 v = vector("a direction: an array of 3 numbers");
+    if (!(glm::length(v) > 0.0)) fail("a direction other than zero");
+    return glm::normalize(v);
+  }
+
+  /// Radiance or irradiance: finite in float and not negative.
+  glm::vec3 light() const {
+    const glm::vec3 v(vector("an array of 3 numbers, 0 or more"));
+    for (int c = 0; c < 3; ++c)
+      if (!(v[c] >= 0.0f) || !std::isfinite(v[c])) fail("an array of 3 numbers, 0 or more");
+    return v;
+  }
+
+  double numberBetween(double lowest, double highest, std::string_view expected) const {
+    const double value = number(expected);
+    if (!(value >= lowest && value <= highest)) fail(expected);
+    return value;
+  }
+
+  /// Three numbers within bounds.
+  glm::dvec3 vectorBetween(double lowest, double highest, std::string_view expected) const {
+    const glm::dvec3 v = vector(expected);
+    for (int c = 0; c < 3; ++c)
+      if (!(v[c] >= lowest && v[c] <= highest)) fail(expected);
+    return v;
+  }
+
+  /// A path relative to the file that names it.
+  std::filesystem::path path() const {
+    const std::string name = text();
+    if (name.empty()) fail("a path");
+    return file.parent_path() / name;
+  }
+};
+
+struct Key {
+  const char* name;
+  std::function<void(const Value&)> read;
+};
+
+/// Gives each member of an object to the entry of its name; an unknown one is an error.
+inline void readObject(const Value& object, const std::vector<Key>& keys) {
+  if (!object.json.is_object()) object.fail("an object {...}");
+  for (const auto& [name, json] : object.json.items()) {
+    const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
+    if (key == keys.end()) {
+      std::string known;
+      for (const Key& k : keys) known += fmt::format("{}{}", known.empty() ? "" : ", ", k.name);
+      throwBadInput("{}: unknown key \"{}\"; known are: {}", object.file.string(), object.key.empty() ? name : fmt::format("{}.{}", object.key, name), known);
+    }
+    key->read(object.at(name));
+  }
+}
+
+/// The whole file. Throws Error(badInput) where it is missing or no JSON.
+Json readJson(const std::filesystem::path& file);
+
+}  // namespace lucerna
