@@ -19,14 +19,18 @@ constexpr GLuint kConstantsBinding = 0;                                         
 constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4, kStateBinding = 5;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2;
 constexpr int kGroupSide = 8;
+constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
 constexpr std::size_t kStateWords = 5, kStateHeaderBytes = 16, kVec4Bytes = 16;
 
-std::uint32_t kindOf(Bsdf bsdf) {
-  switch (bsdf) {
+/// A boundary of no index: light goes straight on, and lights can be asked through it.
+bool matched(const Material& material) { return material.bsdf == Bsdf::dielectric && material.ior == 1.0f; }
+
+std::uint32_t kindOf(const Material& material) {
+  switch (material.bsdf) {
     case Bsdf::diffuse: return PATH_DIFFUSE;
     case Bsdf::mirror: return PATH_MIRROR;
     case Bsdf::conductor: return PATH_CONDUCTOR;
-    case Bsdf::dielectric: return PATH_DIELECTRIC;
+    case Bsdf::dielectric: return matched(material) ? PATH_NONE : PATH_DIELECTRIC;
     case Bsdf::none: return PATH_NONE;
   }
   return PATH_DIFFUSE;
@@ -67,15 +71,17 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   CHECK(settings.size.x > 0 && settings.size.y > 0, "{} x {} pixels", settings.size.x, settings.size.y);
   if (settings.diffuseOnly) needs_.mirrors = needs_.conductors = needs_.dielectrics = needs_.roughDielectrics = false;
 
+  for (const Material& material : scene.materials) needs_.nullBoundaries |= matched(material);
+
   std::vector<shared::PathMaterial> materials(scene.materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& from = scene.materials[i];
     shared::PathMaterial& to = materials[i];
-    to.kind = kindOf(from.bsdf);
+    to.kind = kindOf(from);
     if (settings.diffuseOnly && to.kind != PATH_NONE) to.kind = PATH_DIFFUSE;
     to.albedo = from.diffuse;
     to.specular = from.specular;
-    to.roughness = from.roughness;
+    to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
     to.emission = from.emission;
     to.ior = from.ior;
     to.boundary = static_cast<std::uint32_t>(i);
@@ -146,6 +152,8 @@ gl::ShaderFlags PathTracer::flags() const {
           {"TRIANGLE_WORDS", triangleWords_},
           {"MIRRORS", needs_.mirrors},
           {"DIELECTRICS", needs_.dielectrics},
+          {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
+          {"ROUGH_DIELECTRICS", needs_.roughDielectrics},
           {"NULL_BOUNDARIES", needs_.nullBoundaries},
           {"EMISSION", needs_.emission},
           {"SUN", asked && needs_.directionalLight},
@@ -155,7 +163,7 @@ gl::ShaderFlags PathTracer::flags() const {
           {"ENVIRONMENT_PICTURE", needs_.environmentPicture},
           {"BACKGROUND", needs_.background},
           {"NEXT_EVENT", asked},
-          {"MIS", asked && (needs_.emission || needs_.environmentPicture)},
+          {"MIS", asked && (needs_.emission || needs_.environmentPicture) && settings_.transport != Transport::oneBounceUnoccluded},
           {"SCATTERED_LIGHT", needs_.emission || needs_.environment},
           {"PIXEL_CENTRES", settings_.pixelCentres},
           {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
