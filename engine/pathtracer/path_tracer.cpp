@@ -21,10 +21,11 @@ constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 
                  kInteriorsBinding = 7, kGridsBinding = 8, kDensitiesBinding = 9;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2;
 constexpr int kGroupSide = 8;
+constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = 16, kVec4Bytes = 16;
 
-std::uint32_t kindOf(Bsdf bsdf) {
-  switch (bsdf) {
+std::uint32_t kindOf(const Material& material) {
+  switch (material.bsdf) {
     case Bsdf::diffuse: return PATH_DIFFUSE;
     case Bsdf::mirror: return PATH_MIRROR;
     case Bsdf::conductor: return PATH_CONDUCTOR;
@@ -85,11 +86,11 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& from = scene.materials[i];
     shared::PathMaterial& to = materials[i];
-    to.kind = kindOf(from.bsdf);
+    to.kind = kindOf(from);
     if (settings.diffuseOnly && to.kind != PATH_NONE) to.kind = PATH_DIFFUSE;
     to.albedo = from.diffuse;
     to.specular = from.specular;
-    to.roughness = from.roughness;
+    to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
     to.emission = from.emission;
     to.ior = from.ior;
     to.boundary = static_cast<std::uint32_t>(boundaries_.rankOfMaterial[i]);
@@ -164,6 +165,8 @@ gl::ShaderFlags PathTracer::flags() const {
           {"MEDIA", needs_.media},
           {"HETEROGENEOUS", needs_.heterogeneousMedia},
           {"VOLUME_EMISSION", needs_.volumeEmission},
+          {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
+          {"ROUGH_DIELECTRICS", needs_.roughDielectrics},
           {"EMISSION", needs_.emission},
           {"SUN", asked && needs_.directionalLight},
           {"SPOTS", asked && needs_.spotLights},
@@ -172,12 +175,14 @@ gl::ShaderFlags PathTracer::flags() const {
           {"ENVIRONMENT_PICTURE", needs_.environmentPicture},
           {"BACKGROUND", needs_.background},
           {"NEXT_EVENT", asked},
-          {"MIS", asked && (needs_.emission || needs_.environmentPicture)},
+          {"MIS", asked && (needs_.emission || needs_.environmentPicture) && settings_.transport != Transport::oneBounceUnoccluded},
           {"SCATTERED_LIGHT", needs_.emission || needs_.environment || needs_.volumeEmission},
           {"DISTANCE_WITHOUT_PDF", settings_.deviations.distanceWithoutPdf},
           {"BOOSTED_INTERACTION", settings_.deviations.boostedInteraction},
           {"ROULETTE_WITHOUT_DIVISION", settings_.deviations.rouletteWithoutDivision},
           {"STRAIGHT_SHADOW_RAYS", settings_.deviations.straightShadowRays},
+          {"LINEAR_SEEDS", settings_.deviations.linearSeeds},
+          {"FIXED_EPSILON", settings_.deviations.fixedEpsilon},
           {"PIXEL_CENTRES", settings_.pixelCentres},
           {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
           {"FRESNEL_AMPLITUDES", settings_.deviations.fresnelAmplitudes},

@@ -118,7 +118,7 @@ bool survives(inout Path path, float u) {
 }
 
 // At a collision: light from a lamp, then on in a direction of the phase function.
-int scatter(inout Path path, MediumRecord medium, PathNumbers numbers) {
+int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
   path.skip = kNoHit;
   path.travelled = 0.0;
   ++path.event;
@@ -184,7 +184,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
         path.throughput *= collides ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
       if (collides || ++tries == 64u) {
         path.origin += t * path.direction;
-        if (collides) return scatter(path, medium, numbers);
+        if (collides) return scatterInMedium(path, medium, numbers);
         path.travelled += t;
         ++path.event;
         return kScattered;
@@ -195,10 +195,27 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
 }
 #endif
 
+#if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
+// Probability of an interaction [VPT2024, algorithm 4]: the largest albedo, of which the published text makes a half at least.
+float interactionProbability(MediumRecord medium) {
+  float w = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
+#if BOOSTED_INTERACTION
+  if (w > 0.0) w = max(w, 0.5);
+#endif
+  return w;
+}
+#endif
+
 // How far the ray may go before it collides; with a density grid that is told once it is known where the ray ends.
 float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   if (medium.grid >= 0) return kFar;
   uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
+#if DISTANCE_WITHOUT_PDF
+  // [VPT2024, algorithm 4]: from the least of the extinctions, and only with the probability of an interaction.
+  float least = min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b));
+  if (unitFloat(words.y) >= interactionProbability(medium) || !(least > 0.0)) return kFar;
+  return min(exponentialSample(words.x) / least, kFar);
+#endif
   return flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x);
 }
 
@@ -218,12 +235,21 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
     addLight(path, mix(distance * medium.emission * passageWeight(medium, q, x), vec3(0.0), greaterThan(medium.extinction, vec3(0.0))));
   }
 #endif
+#if DISTANCE_WITHOUT_PDF
+  path.throughput *= exp(-medium.extinction * distance);  // neither the scattering coefficient nor a density
+  if (arrives) return kArrives;
+#else
   if (arrives) {
     path.throughput *= passageWeight(medium, q, distance);
     return kArrives;
   }
   path.throughput *= scatteringWeight(medium, q, distance);
+#if BOOSTED_INTERACTION
+  float albedo = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
+  path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
+#endif
+#endif
   path.origin += distance * path.direction;
-  return scatter(path, medium, numbers);
+  return scatterInMedium(path, medium, numbers);
 }
 #endif
