@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -56,6 +57,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   settings.transport = transportOf(shared.component);
   settings.bounces = path.bounces.value_or(PathTracer::kUnlimited);
   settings.seed = path.seed;
+  settings.deviations = shared.path;
 
   const auto host = common.makeHost(false);
   gl::Context context;
@@ -101,6 +103,10 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   json["component"] = picture.component;
   json["fidelity"] = picture.fidelity;
   json["deviations"] = nlohmann::ordered_json::array();
+  for (const std::string& name : activeDeviations(shared))
+    if (name.starts_with("path.")) json["deviations"].push_back(name);
+  json["leaked_paths"] = statistics.leakedPaths;
+  json["wrong_crossings"] = statistics.wrongCrossings;
   json["settings"] = picture.settings;
   json["size"] = {image.width, image.height};
   json["seconds"] = seconds;

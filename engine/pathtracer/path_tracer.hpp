@@ -11,6 +11,7 @@
 #include "gl/program.hpp"
 #include "pathtracer/light_table.hpp"
 #include "pathtracer/media.hpp"
+#include "pathtracer/path_deviations.hpp"
 #include "pathtracer/ray_scene.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
@@ -31,18 +32,6 @@ enum class Transport {
   oneBounceUnoccluded,   ///< exactly 2, and nothing stands between the two scatterings: what a reflective shadow map gathers
 };
 std::string_view nameOf(Transport transport);
-
-/// What the published original does differently [VPT2024]; README.md has formula, source and effect of each.
-struct PathDeviations {
-  bool distanceWithoutPdf = false;
-  bool boostedInteraction = false;
-  bool rouletteWithoutDivision = false;
-  bool fresnelAmplitudes = false;
-  bool schlick = false;
-  bool straightShadowRays = false;
-  bool linearSeeds = false;
-  bool fixedEpsilon = false;
-};
 
 class PathTracer {
  public:

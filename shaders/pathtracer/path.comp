@@ -43,6 +43,7 @@ struct Path {
   float ior;            // of where the ray is
 #if INTERIORS
   uvec4 inside;         // of which closed boundaries (boundary.glsl)
+  float head;           // length of the ray before its origin, which lies a little beside the surface that it starts on
 #endif
 };
 
@@ -63,12 +64,30 @@ void addLight(inout Path path, vec3 light) {
   path.radiance += path.throughput * light;
 }
 
+#if MEDIA
+// In media a ray starts nearer to its surface than elsewhere, 8 units in the last place of the triangle's largest coordinate, as what lies
+// between may be a good part of a mean free path; and the flight through it is counted.
+const float kBeside = 4.76837158203125e-7;  // 2^-21
+#endif
+
 // Where a ray starts that leaves a surface towards the side of `normal`.
 vec3 beside(Surface surface, vec3 normal) {
 #if FIXED_EPSILON
   return surface.position + 1e-3 * normal;  // scene units, whatever the scene's size [VPT2024]
+#elif MEDIA
+  return surface.position + normal * (surface.magnitude * kBeside);
 #else
   return offsetRay(surface.position, normal, surface.magnitude);
+#endif
+}
+
+// Starts the path's next ray on a surface.
+void startAt(inout Path path, Surface surface, uint triangle) {
+  float cosine = dot(path.direction, surface.geometricNormal);
+  path.origin = beside(surface, cosine > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
+  path.skip = triangle;
+#if MEDIA
+  path.head = surface.magnitude * kBeside / max(abs(cosine), 0.01);
 #endif
 }
 
@@ -95,6 +114,7 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   path.ior = 1.0;
 #if INTERIORS
   path.inside = cameraInside;
+  path.head = 0.0;
   path.ior = cameraIor;
 #endif
   return path;
@@ -243,7 +263,7 @@ bool extend(inout Path path, PathNumbers numbers) {
   // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
   int medium = mediumInside(path.inside);
   float flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
-  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight), path.skip);
+  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight + flightMargin(path, flight)), path.skip);
   if (medium >= 0) {
     int became = crossMedium(path, media[medium], flight, hit, numbers);
     if (became != kArrives) return became == kScattered;
@@ -291,8 +311,7 @@ bool extend(inout Path path, PathNumbers numbers) {
     iorBeyond = iorInside(beyond);
     if (iorBeyond == path.ior) {  // nothing refracts: another medium, or a boundary that a higher one covers
       path.inside = beyond;
-      path.origin = beside(surface, -surface.geometricNormal);
-      path.skip = hit.triangle;
+      startAt(path, surface, hit.triangle);
       return true;
     }
   }
@@ -338,9 +357,7 @@ bool extend(inout Path path, PathNumbers numbers) {
   if (!(unitFloat(choice.y) < survival)) return false;
   path.throughput /= survival;
 #endif
-  bool leaves = dot(path.direction, surface.geometricNormal) > 0.0;
-  path.origin = beside(surface, leaves ? surface.geometricNormal : -surface.geometricNormal);
-  path.skip = hit.triangle;
+  startAt(path, surface, hit.triangle);
   return true;
 }
 
@@ -372,7 +389,7 @@ void main() {
     path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz), uintBitsToFloat(w2.w),
                 uintBitsToFloat(w3.xyz), w3.w, saved.x & ~kInFlight, uintBitsToFloat(saved.y)
 #if INTERIORS
-                , state[slot + 5u * lanes]
+                , state[slot + 5u * lanes], uintBitsToFloat(saved.z)
 #endif
                 );
   } else {
@@ -397,7 +414,12 @@ void main() {
   imageStore(filmMean, pixel, uvec4(floatBitsToUint(mean), samples));
   imageStore(filmSpread, pixel, uvec4(floatBitsToUint(spread), 0u));
   imageStore(filmRest, pixel, uvec4(floatBitsToUint(rest), 0u));
-  state[slot + 4u * lanes] = uvec4(inFlight ? path.event | kInFlight : 0u, floatBitsToUint(path.ior), 0u, 0u);
+  state[slot + 4u * lanes] = uvec4(inFlight ? path.event | kInFlight : 0u, floatBitsToUint(path.ior),
+#if INTERIORS
+                                   floatBitsToUint(path.head), 0u);
+#else
+                                   0u, 0u);
+#endif
   if (!inFlight) return;
   state[slot] = uvec4(floatBitsToUint(path.origin), path.skip);
   state[slot + lanes] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));

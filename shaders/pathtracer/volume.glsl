@@ -120,6 +120,7 @@ bool survives(inout Path path, float u) {
 // At a collision: light from a lamp, then on in a direction of the phase function.
 int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
   path.skip = kNoHit;
+  path.head = 0.0;
   path.travelled = 0.0;
   ++path.event;
   if (leaked(path)) {
@@ -186,6 +187,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
         path.origin += t * path.direction;
         if (collides) return scatterInMedium(path, medium, numbers);
         path.travelled += t;
+        path.head = 0.0;
         ++path.event;
         return kScattered;
       }
@@ -214,21 +216,28 @@ float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   // [VPT2024, algorithm 4]: from the least of the extinctions, and only with the probability of an interaction.
   float least = min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b));
   if (unitFloat(words.y) >= interactionProbability(medium) || !(least > 0.0)) return kFar;
-  return min(exponentialSample(words.x) / least, kFar);
+  return max(min(exponentialSample(words.x) / least, kFar) - path.head, 0.0);
 #endif
-  return flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x);
+  return max(flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x) - path.head, 0.0);
+}
+
+// How far beyond a collision to look for a surface: where one is so near, rounding might put the collision on its other side.
+float flightMargin(Path path, float flight) {
+  vec3 a = abs(path.origin);
+  return min((max(a.x, max(a.y, a.z)) + flight) * 9.5367431640625e-7, kFar);  // 2^-20
 }
 
 // What happens on the way to `hit`, the first hit within `flight`.
 int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
-  bool arrives = hit.triangle != kNoHit || flight >= kFar;
-  float distance = hit.triangle != kNoHit ? hit.t : flight;
+  bool arrives = hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar;
+  float collision = hit.triangle != kNoHit ? clamp(hit.t - flightMargin(path, flight), 0.0, flight) : flight;
 #if HETEROGENEOUS
-  if (medium.grid >= 0) return trackDensity(path, medium, distance, numbers);
+  if (medium.grid >= 0) return trackDensity(path, medium, hit.triangle != kNoHit ? hit.t : kFar, numbers);
 #endif
+  float distance = path.head + (arrives && hit.triangle != kNoHit ? hit.t : flight);
   vec3 q = channelProbabilities(path.throughput);
 #if VOLUME_EMISSION
-  if (counts(path.scatterings) && distance < kFar) {
+  if (counts(path.scatterings) && distance < 0.5 * kFar) {
     // Found at collisions, where it costs nothing; in channels that never collide at a point anywhere on the way.
     if (!arrives) addLight(path, medium.emission * collisionWeight(medium, q, distance));
     float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
@@ -249,7 +258,7 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
   path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
 #endif
 #endif
-  path.origin += distance * path.direction;
+  path.origin += collision * path.direction;
   return scatterInMedium(path, medium, numbers);
 }
 #endif
