@@ -263,7 +263,7 @@ bool extend(inout Path path, PathNumbers numbers) {
   // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
   int medium = mediumInside(path.inside);
   float flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
-  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight + flightMargin(path, flight)), path.skip);
+  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight + flightMargin()), path.skip);
   if (medium >= 0) {
     int became = crossMedium(path, media[medium], flight, hit, numbers);
     if (became != kArrives) return became == kScattered;

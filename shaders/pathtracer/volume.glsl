@@ -221,16 +221,13 @@ float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   return max(flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x) - path.head, 0.0);
 }
 
-// How far beyond a collision to look for a surface: where one is so near, rounding might put the collision on its other side.
-float flightMargin(Path path, float flight) {
-  vec3 a = abs(path.origin);
-  return min((max(a.x, max(a.y, a.z)) + flight) * 9.5367431640625e-7, kFar);  // 2^-20
-}
+// How far beyond a collision to look for a surface. Where one is so near, the next ray might miss it by the rounding of its distance, which
+// is that of the triangles' coordinates.
+float flightMargin() { return bvhHeader.magnitude * kBeside; }
 
 // What happens on the way to `hit`, the first hit within `flight`.
 int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
   bool arrives = hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar;
-  float collision = hit.triangle != kNoHit ? clamp(hit.t - flightMargin(path, flight), 0.0, flight) : flight;
 #if HETEROGENEOUS
   if (medium.grid >= 0) return trackDensity(path, medium, hit.triangle != kNoHit ? hit.t : kFar, numbers);
 #endif
@@ -238,10 +235,9 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
   vec3 q = channelProbabilities(path.throughput);
 #if VOLUME_EMISSION
   if (counts(path.scatterings) && distance < 0.5 * kFar) {
-    // Found at collisions, where it costs nothing; in channels that never collide at a point anywhere on the way.
-    if (!arrives) addLight(path, medium.emission * collisionWeight(medium, q, distance));
+    // By the length of the flight: one point of it stands for all. Where little collides that has hardly any noise.
     float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
-    addLight(path, mix(distance * medium.emission * passageWeight(medium, q, x), vec3(0.0), greaterThan(medium.extinction, vec3(0.0))));
+    addLight(path, distance * medium.emission * passageWeight(medium, q, x));
   }
 #endif
 #if DISTANCE_WITHOUT_PDF
@@ -258,7 +254,11 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
   path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
 #endif
 #endif
-  path.origin += collision * path.direction;
+  path.origin += flight * path.direction;
+  if (hit.triangle != kNoHit) {
+    Surface near = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+    path.origin = beside(near, near.geometricNormal);
+  }
   return scatterInMedium(path, medium, numbers);
 }
 #endif
