@@ -129,7 +129,8 @@ TEST_F(PathTracerTest, ComponentsAddUp) {
   EXPECT_GT(indirect.mean.x, 1.2 * result(Transport::oneBounce).mean.x);
 }
 
-// Units: the direct light of forward shading is the path tracer's, but for the filtered edges of shadows.
+// Units: the direct light of forward shading is the path tracer's, but for the filtered edges of shadows. (Surfaces that
+// shine light others in the path tracer alone.)
 TEST_F(PathTracerTest, DirectLightIsThatOfForwardShading) {
   Scene scene = litBox();
   scene.background = {0.1f, 0.2f, 0.3f};
@@ -138,7 +139,6 @@ TEST_F(PathTracerTest, DirectLightIsThatOfForwardShading) {
   Texture& texture = scene.textures.emplace_back();
   texture.bitmap = {4, 4, texels, false};
   scene.materials[0].diffuseTexture = 0;
-  scene.materials[1].emission = {0.1f, 0.0f, 0.2f};
   const Camera camera = openBoxCamera();
   constexpr int kSize = 64;
   RenderSettings forward;
