@@ -19,7 +19,9 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace lucerna {
 
@@ -73,6 +75,10 @@ class PathTracer {
   Image mean() const;           ///< radiance, linear, scene units, top row first; pixels without a sample are 0
   Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
   Statistics statistics() const;
+  /// The film and what it belongs to; resume() goes on from it to the same picture, bit by bit, as if there had been no break.
+  std::vector<std::uint8_t> checkpoint() const;
+  /// `name` is for messages. Throws Error(badInput) where the bytes are damaged or of another scene, view, size or setting.
+  void resume(const std::vector<std::uint8_t>& bytes, const std::string& name);
   const Settings& settings() const { return settings_; }
   const SceneNeeds& needs() const { return needs_; }
   std::size_t gpuBytes() const;
@@ -83,6 +89,7 @@ class PathTracer {
     std::uint32_t samples;
   };
   std::vector<Pixel> readFilm() const;
+  std::uint64_t identity() const;  ///< of what decides the picture
   void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
   void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured);
   gl::ShaderFlags flags() const;
@@ -107,6 +114,7 @@ class PathTracer {
   gl::Texture filmMean_, filmSpread_, filmRest_;
   int tileSide_;
   bool clearTexture_;
+  std::uint64_t sceneHash_ = 0;
 
   // How far the picture is: a pass gives every pixel passTarget_ samples, tile after tile.
   std::uint32_t done_ = 0, passTarget_ = 0;
