@@ -90,6 +90,8 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     media_ = storage("path media", packed.media, capabilities);
     interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
     outerMedium_ = scene.cameraMedium;
+    const auto add = [&](const auto& values) { sceneHash_ = fnv1a(sceneHash_, values.data(), values.size() * sizeof values[0]); };
+    add(packed.media), add(packed.grids), add(packed.densities);
     if (needs_.heterogeneousMedia) {
       grids_ = storage("path density grids", packed.grids, capabilities);
       densities_ = storage("path densities", packed.densities, capabilities);
@@ -119,7 +121,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     for (std::size_t i = 0; i < materials.size(); ++i) materials[i].pickDensity = static_cast<float>(table.pickDensity[i]);
     constants_.environmentPick = static_cast<float>(table.environmentPick);
   }
-  sceneHash_ = fnv1a(0xcbf29ce484222325u, materials.data(), materials.size() * sizeof(shared::PathMaterial));
+  sceneHash_ = fnv1a(sceneHash_, materials.data(), materials.size() * sizeof(shared::PathMaterial));
   materials_ = storage("path materials", materials, capabilities);
   triangleWords_ = 4 + (textured ? 1 : 0) + (needs_.smoothNormals ? 3 : 0);
   uploadTriangles(scene, capabilities, needs_.smoothNormals, textured);

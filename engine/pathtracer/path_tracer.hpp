@@ -114,7 +114,7 @@ class PathTracer {
   gl::Texture filmMean_, filmSpread_, filmRest_;
   int tileSide_;
   bool clearTexture_;
-  std::uint64_t sceneHash_ = 0;
+  std::uint64_t sceneHash_ = 0xcbf29ce484222325u;
 
   // How far the picture is: a pass gives every pixel passTarget_ samples, tile after tile.
   std::uint32_t done_ = 0, passTarget_ = 0;
