@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -34,12 +35,13 @@ void PathOptions::declare(CLI::App& app) {
   app.add_option("--seconds", seconds, "path: stop after this time; every pixel has one sample at least")->check(CLI::PositiveNumber);
   app.add_option("--error", error, "path: stop where the pixels' standard error, root mean square, is this fraction of the mean radiance")->check(CLI::PositiveNumber);
   app.add_option("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
+  app.add_option("--checkpoint", checkpoint, "path: go on from this file if it is there; it is written every minute and at the end");
   app.add_option("--seed", seed, "path: of the random numbers")->capture_default_str();
 }
 
 void PathOptions::refuseIfGiven(const std::string& technique) const {
-  if (spp || seconds || error || bounces || seed != 0)
-    throwBadInput("--technique {}: --spp, --seconds, --error, --bounces and --seed belong to --technique path", technique);
+  if (spp || seconds || error || bounces || seed != 0 || !checkpoint.empty())
+    throwBadInput("--technique {}: --spp, --seconds, --error, --bounces, --seed and --checkpoint belong to --technique path", technique);
 }
 
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path, const std::string& sceneFile,
@@ -56,6 +58,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   settings.transport = transportOf(shared.component);
   settings.bounces = path.bounces.value_or(PathTracer::kUnlimited);
   settings.seed = path.seed;
+  settings.deviations = shared.path;
 
   const auto host = common.makeHost(false);
   gl::Context context;
@@ -64,6 +67,10 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   gl::ProgramLibrary programs;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
+  if (!path.checkpoint.empty() && std::filesystem::exists(path.checkpoint)) tracer.resume(readFileBytes(path.checkpoint), path.checkpoint);
+  const auto save = [&] {
+    if (!path.checkpoint.empty()) writeFileAtomically(path.checkpoint, tracer.checkpoint());
+  };
   watchForInterrupt();
 
   const std::uint32_t target = path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : kDefaultSamples);
@@ -71,17 +78,23 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Progress progress("samples", static_cast<int>(std::min(target, 1000000000u)), common.quiet || !path.spp);
   // Samples in steps: between them the error is looked at, and all pixels have the same number.
-  std::uint32_t done = 0;
+  std::uint32_t done = tracer.statistics().fewestSamples;
+  double saved = 0.0;
   bool stopped = false;
   while (done < target && !stopped) {
     const std::uint32_t next = std::min(target, done + std::max(1u, done / 4));
     while (!stopped && tracer.advance(next)) stopped = interrupted() || (done > 0 && path.seconds && elapsed() >= *path.seconds);
     if (!stopped) done = next;
+    if (elapsed() > saved + 60.0) {
+      save();
+      saved = elapsed();
+    }
     progress.update(static_cast<int>(std::min(done, 1000000000u)));
     stopped = stopped || interrupted() || (path.seconds && elapsed() >= *path.seconds) ||
               (path.error && done >= 4 && tracer.statistics().relativeError <= *path.error);
   }
   const double seconds = elapsed();
+  save();
 
   const PathTracer::Statistics statistics = tracer.statistics();
   const Image image = tracer.mean();
@@ -101,6 +114,10 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   json["component"] = picture.component;
   json["fidelity"] = picture.fidelity;
   json["deviations"] = nlohmann::ordered_json::array();
+  for (const std::string& name : activeDeviations(shared))
+    if (name.starts_with("path.")) json["deviations"].push_back(name);
+  json["leaked_paths"] = statistics.leakedPaths;
+  json["wrong_crossings"] = statistics.wrongCrossings;
   json["settings"] = picture.settings;
   json["size"] = {image.width, image.height};
   json["seconds"] = seconds;

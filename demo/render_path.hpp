@@ -12,6 +12,7 @@ struct PathOptions {
   std::optional<double> error;
   std::optional<std::uint32_t> bounces;
   std::uint32_t seed = 0;
+  std::string checkpoint;  ///< empty: none
 
   void declare(CLI::App& app);
   /// Throws Error(badInput) where one is given with another technique.

@@ -10,6 +10,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <map>
 
 namespace lucerna {
@@ -21,10 +22,11 @@ constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 
                  kInteriorsBinding = 7, kGridsBinding = 8, kDensitiesBinding = 9;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2;
 constexpr int kGroupSide = 8;
+constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = 16, kVec4Bytes = 16;
 
-std::uint32_t kindOf(Bsdf bsdf) {
-  switch (bsdf) {
+std::uint32_t kindOf(const Material& material) {
+  switch (material.bsdf) {
     case Bsdf::diffuse: return PATH_DIFFUSE;
     case Bsdf::mirror: return PATH_MIRROR;
     case Bsdf::conductor: return PATH_CONDUCTOR;
@@ -33,6 +35,18 @@ std::uint32_t kindOf(Bsdf bsdf) {
   }
   return PATH_DIFFUSE;
 }
+
+std::uint64_t fnv1a(std::uint64_t hash, const void* data, std::size_t bytes) {  // Fowler, Noll, Vo
+  for (const auto* p = static_cast<const std::uint8_t*>(data); bytes > 0; --bytes, ++p) hash = (hash ^ *p) * 0x100000001b3u;
+  return hash;
+}
+
+constexpr std::array<char, 8> kCheckpointMagic{'L', 'U', 'C', 'P', 'A', 'T', 'H', '1'};
+struct CheckpointHeader {
+  std::array<char, 8> magic = kCheckpointMagic;
+  std::uint64_t identity = 0, filmHash = 0;
+  std::uint32_t width = 0, height = 0;
+};
 
 /// A buffer is never of no size.
 template <class T>
@@ -76,6 +90,8 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     media_ = storage("path media", packed.media, capabilities);
     interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
     outerMedium_ = scene.cameraMedium;
+    const auto add = [&](const auto& values) { sceneHash_ = fnv1a(sceneHash_, values.data(), values.size() * sizeof values[0]); };
+    add(packed.media), add(packed.grids), add(packed.densities);
     if (needs_.heterogeneousMedia) {
       grids_ = storage("path density grids", packed.grids, capabilities);
       densities_ = storage("path densities", packed.densities, capabilities);
@@ -85,11 +101,11 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& from = scene.materials[i];
     shared::PathMaterial& to = materials[i];
-    to.kind = kindOf(from.bsdf);
+    to.kind = kindOf(from);
     if (settings.diffuseOnly && to.kind != PATH_NONE) to.kind = PATH_DIFFUSE;
     to.albedo = from.diffuse;
     to.specular = from.specular;
-    to.roughness = from.roughness;
+    to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
     to.emission = from.emission;
     to.ior = from.ior;
     to.boundary = static_cast<std::uint32_t>(boundaries_.rankOfMaterial[i]);
@@ -105,6 +121,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     for (std::size_t i = 0; i < materials.size(); ++i) materials[i].pickDensity = static_cast<float>(table.pickDensity[i]);
     constants_.environmentPick = static_cast<float>(table.environmentPick);
   }
+  sceneHash_ = fnv1a(sceneHash_, materials.data(), materials.size() * sizeof(shared::PathMaterial));
   materials_ = storage("path materials", materials, capabilities);
   triangleWords_ = 4 + (textured ? 1 : 0) + (needs_.smoothNormals ? 3 : 0);
   uploadTriangles(scene, capabilities, needs_.smoothNormals, textured);
@@ -164,6 +181,8 @@ gl::ShaderFlags PathTracer::flags() const {
           {"MEDIA", needs_.media},
           {"HETEROGENEOUS", needs_.heterogeneousMedia},
           {"VOLUME_EMISSION", needs_.volumeEmission},
+          {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
+          {"ROUGH_DIELECTRICS", needs_.roughDielectrics},
           {"EMISSION", needs_.emission},
           {"SUN", asked && needs_.directionalLight},
           {"SPOTS", asked && needs_.spotLights},
@@ -172,12 +191,14 @@ gl::ShaderFlags PathTracer::flags() const {
           {"ENVIRONMENT_PICTURE", needs_.environmentPicture},
           {"BACKGROUND", needs_.background},
           {"NEXT_EVENT", asked},
-          {"MIS", asked && (needs_.emission || needs_.environmentPicture)},
+          {"MIS", asked && (needs_.emission || needs_.environmentPicture) && settings_.transport != Transport::oneBounceUnoccluded},
           {"SCATTERED_LIGHT", needs_.emission || needs_.environment || needs_.volumeEmission},
           {"DISTANCE_WITHOUT_PDF", settings_.deviations.distanceWithoutPdf},
           {"BOOSTED_INTERACTION", settings_.deviations.boostedInteraction},
           {"ROULETTE_WITHOUT_DIVISION", settings_.deviations.rouletteWithoutDivision},
           {"STRAIGHT_SHADOW_RAYS", settings_.deviations.straightShadowRays},
+          {"LINEAR_SEEDS", settings_.deviations.linearSeeds},
+          {"FIXED_EPSILON", settings_.deviations.fixedEpsilon},
           {"PIXEL_CENTRES", settings_.pixelCentres},
           {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
           {"FRESNEL_AMPLITUDES", settings_.deviations.fresnelAmplitudes},
@@ -268,6 +289,7 @@ void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& cap
     if (smoothNormals)
       for (const Vertex* corner : corners) add3(corner->normal), words.push_back(0);
   }
+  sceneHash_ = fnv1a(sceneHash_, words.data(), words.size() * sizeof(std::uint32_t));
   triangles_ = storage("path triangles", words, capabilities);
 }
 
@@ -289,6 +311,60 @@ void PathTracer::setCamera(const Camera& camera) {
   const std::array<const gl::Texture*, 3> film{&filmMean_, &filmSpread_, &filmRest_};
   gl::clearToZero(film, clearTexture_);
   done_ = passTarget_ = 0;
+  tile_ = 0;
+  tileBegun_ = false;
+}
+
+std::uint64_t PathTracer::identity() const {
+  shared::PathConstants constants = constants_;
+  constants.tile = glm::ivec4(0);
+  constants.sampleTarget = constants.segments = 0;
+  constants.picture.z = 0;
+  std::uint64_t hash = fnv1a(sceneHash_, &constants, sizeof constants);
+  for (const auto& [name, value] : flags()) hash = fnv1a(fnv1a(hash, name.data(), name.size()), &value, sizeof value);
+  return hash;
+}
+
+std::vector<std::uint8_t> PathTracer::checkpoint() const {
+  CheckpointHeader header;
+  header.identity = identity();
+  header.width = static_cast<std::uint32_t>(settings_.size.x);
+  header.height = static_cast<std::uint32_t>(settings_.size.y);
+  std::vector<std::uint8_t> bytes(sizeof header);
+  for (const gl::Texture* film : {&filmMean_, &filmSpread_, &filmRest_}) {
+    const std::vector<glm::uvec4> words = film->readWords();
+    const auto* begin = reinterpret_cast<const std::uint8_t*>(words.data());
+    bytes.insert(bytes.end(), begin, begin + words.size() * sizeof(glm::uvec4));
+  }
+  header.filmHash = fnv1a(0xcbf29ce484222325u, bytes.data() + sizeof header, bytes.size() - sizeof header);
+  std::memcpy(bytes.data(), &header, sizeof header);
+  return bytes;
+}
+
+void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::string& name) {
+  CheckpointHeader header;
+  const std::size_t texels = static_cast<std::size_t>(settings_.size.x) * static_cast<std::size_t>(settings_.size.y);
+  if (bytes.size() < sizeof header) throwBadInput("{}: {} bytes are no checkpoint of a path traced picture", name, bytes.size());
+  std::memcpy(&header, bytes.data(), sizeof header);
+  if (header.magic != kCheckpointMagic) throwBadInput("{}: no checkpoint of a path traced picture, or of another version", name);
+  if (header.width != static_cast<std::uint32_t>(settings_.size.x) || header.height != static_cast<std::uint32_t>(settings_.size.y))
+    throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, header.width, header.height, settings_.size.x, settings_.size.y);
+  if (bytes.size() != sizeof header + 3 * texels * sizeof(glm::uvec4) ||
+      header.filmHash != fnv1a(0xcbf29ce484222325u, bytes.data() + sizeof header, bytes.size() - sizeof header))
+    throwBadInput("{}: the checkpoint is damaged or cut off", name);
+  if (header.identity != identity()) throwBadInput("{}: a checkpoint of another scene, view or setting", name);
+  std::vector<glm::uvec4> words(texels);
+  const std::uint8_t* from = bytes.data() + sizeof header;
+  for (gl::Texture* film : {&filmMean_, &filmSpread_, &filmRest_}) {
+    std::memcpy(static_cast<void*>(words.data()), from, texels * sizeof(glm::uvec4));
+    film->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, words.data());
+    if (film == &filmMean_) {
+      done_ = kUnlimited;
+      for (const glm::uvec4& word : words) done_ = std::min(done_, word.w);
+    }
+    from += texels * sizeof(glm::uvec4);
+  }
+  passTarget_ = done_;
   tile_ = 0;
   tileBegun_ = false;
 }

@@ -11,6 +11,7 @@
 #include "gl/program.hpp"
 #include "pathtracer/light_table.hpp"
 #include "pathtracer/media.hpp"
+#include "pathtracer/path_deviations.hpp"
 #include "pathtracer/ray_scene.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
@@ -18,7 +19,9 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace lucerna {
 
@@ -31,18 +34,6 @@ enum class Transport {
   oneBounceUnoccluded,   ///< exactly 2, and nothing stands between the two scatterings: what a reflective shadow map gathers
 };
 std::string_view nameOf(Transport transport);
-
-/// What the published original does differently [VPT2024]; README.md has formula, source and effect of each.
-struct PathDeviations {
-  bool distanceWithoutPdf = false;
-  bool boostedInteraction = false;
-  bool rouletteWithoutDivision = false;
-  bool fresnelAmplitudes = false;
-  bool schlick = false;
-  bool straightShadowRays = false;
-  bool linearSeeds = false;
-  bool fixedEpsilon = false;
-};
 
 class PathTracer {
  public:
@@ -84,6 +75,10 @@ class PathTracer {
   Image mean() const;           ///< radiance, linear, scene units, top row first; pixels without a sample are 0
   Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
   Statistics statistics() const;
+  /// The film and what it belongs to; resume() goes on from it to the same picture, bit by bit, as if there had been no break.
+  std::vector<std::uint8_t> checkpoint() const;
+  /// `name` is for messages. Throws Error(badInput) where the bytes are damaged or of another scene, view, size or setting.
+  void resume(const std::vector<std::uint8_t>& bytes, const std::string& name);
   const Settings& settings() const { return settings_; }
   const SceneNeeds& needs() const { return needs_; }
   std::size_t gpuBytes() const;
@@ -94,6 +89,7 @@ class PathTracer {
     std::uint32_t samples;
   };
   std::vector<Pixel> readFilm() const;
+  std::uint64_t identity() const;  ///< of what decides the picture
   void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
   void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured);
   gl::ShaderFlags flags() const;
@@ -118,6 +114,7 @@ class PathTracer {
   gl::Texture filmMean_, filmSpread_, filmRest_;
   int tileSide_;
   bool clearTexture_;
+  std::uint64_t sceneHash_ = 0xcbf29ce484222325u;
 
   // How far the picture is: a pass gives every pixel passTarget_ samples, tile after tile.
   std::uint32_t done_ = 0, passTarget_ = 0;

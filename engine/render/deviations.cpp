@@ -36,6 +36,14 @@ const std::array kDeviations{
     LPV_DEVIATION("block-first-step", "a light's own surface blocks it", true, blockFirstStep),
     LPV_DEVIATION("surfel-area", "surfel areas of a perspective light, times N.L, for an orthographic one", true, surfelArea),
     LPV_DEVIATION("unwindowed", "light that travels away from a surface counts negative there", true, unwindowed),
+    SWITCH("path.distance-without-pdf", "free flights from the least extinction, weighted by the transmittance alone", true, path.distanceWithoutPdf),
+    SWITCH("path.boosted-interaction", "probability of an interaction raised to a half, and not divided out", true, path.boostedInteraction),
+    SWITCH("path.roulette-without-division", "survivors of Russian roulette are not weighted", true, path.rouletteWithoutDivision),
+    SWITCH("path.fresnel-amplitudes", "mean of Fresnel's amplitudes instead of their squares", true, path.fresnelAmplitudes),
+    SWITCH("path.schlick", "Schlick's approximation by the cosine on the light's side", false, path.schlick),
+    SWITCH("path.straight-shadow-rays", "shadow rays go straight through refracting boundaries", true, path.straightShadowRays),
+    SWITCH("path.linear-seeds", "PCG seeded with the pixel's number", true, path.linearSeeds),
+    SWITCH("path.fixed-epsilon", "rays start 0.001 scene units beside a surface", true, path.fixedEpsilon),
     LPV_DEVIATION("blocking-direction", "blocking potential evaluated in the direction of travel", true, blockingDirection),
 };
 

@@ -12,6 +12,7 @@
 #include "gl/program.hpp"
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
+#include "pathtracer/path_deviations.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 #include "rsm/rsm_gather.hpp"
 #include "scene/needs.hpp"
@@ -43,6 +44,7 @@ struct RenderSettings {
   ReflectiveShadowMap::Settings rsm;   ///< the size serves the sun and spots; each face of an omnidirectional light has half of it. `light` is not read
   RsmGather::Settings gather;
   LightPropagationVolume::Settings lpv;
+  PathDeviations path;                 ///< of the path tracer, which renders by itself
 };
 
 class Renderer {

@@ -9,6 +9,7 @@ bool anyPositive(const glm::vec3& v) { return v.x > 0.0f || v.y > 0.0f || v.z > 
 /// Whether a corner's normal is not that of the triangle, by more than its rounding; which way round the normals look counts too, as
 /// surfaces are turned by the triangle's side.
 bool isSmooth(const Scene& scene, const Mesh& mesh) {
+  if (mesh.firstIndex + std::size_t{mesh.indexCount} > scene.indices.size()) return false;  // a scene without geometry, for its settings alone
   for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; i += 3) {
     const auto corner = [&](std::uint32_t k) -> const Vertex& { return scene.vertices[scene.indices[i + k]]; };
     const glm::dvec3 a(corner(0).position);

@@ -43,6 +43,7 @@ struct Path {
   float ior;            // of where the ray is
 #if INTERIORS
   uvec4 inside;         // of which closed boundaries (boundary.glsl)
+  float head;           // length of the ray before its origin, which lies a little beside the surface that it starts on
 #endif
 };
 
@@ -61,6 +62,33 @@ void addLight(inout Path path, vec3 light) {
   light *= cameraIor * cameraIor / (path.ior * path.ior);
 #endif
   path.radiance += path.throughput * light;
+}
+
+#if MEDIA
+// In media a ray starts nearer to its surface than elsewhere, 8 units in the last place of the triangle's largest coordinate, as what lies
+// between may be a good part of a mean free path; and the flight through it is counted.
+const float kBeside = 4.76837158203125e-7;  // 2^-21
+#endif
+
+// Where a ray starts that leaves a surface towards the side of `normal`.
+vec3 beside(Surface surface, vec3 normal) {
+#if FIXED_EPSILON
+  return surface.position + 1e-3 * normal;  // scene units, whatever the scene's size [VPT2024]
+#elif MEDIA
+  return surface.position + normal * (surface.magnitude * kBeside);
+#else
+  return offsetRay(surface.position, normal, surface.magnitude);
+#endif
+}
+
+// Starts the path's next ray on a surface.
+void startAt(inout Path path, Surface surface, uint triangle) {
+  float cosine = dot(path.direction, surface.geometricNormal);
+  path.origin = beside(surface, cosine > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
+  path.skip = triangle;
+#if MEDIA
+  path.head = surface.magnitude * kBeside / max(abs(cosine), 0.01);
+#endif
 }
 
 #if INTERIORS
@@ -86,6 +114,7 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   path.ior = 1.0;
 #if INTERIORS
   path.inside = cameraInside;
+  path.head = 0.0;
   path.ior = cameraIor;
 #endif
   return path;
@@ -94,7 +123,7 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
 // How much light gets through on a straight line; nothing that refracts lets any through.
 vec3 visibility(Path path, Surface surface, uint triangle, LightSample light, PathNumbers numbers) {
   float side = dot(light.direction, surface.geometricNormal) > 0.0 ? 1.0 : -1.0;
-  vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
+  vec3 start = beside(surface, side * surface.geometricNormal);
 #if INTERIORS
   return straightTransmittance(start, light.infinite ? light.direction : light.end, light.infinite, triangle, path.inside,
                                randomWords(numbers, path.event, kPurposeTransmittance));
@@ -104,18 +133,127 @@ vec3 visibility(Path path, Surface surface, uint triangle, LightSample light, Pa
 #endif
 }
 
+// What a surface does to light where a path has met it. Lambert: `albedo` is its reflectance; mirrors, conductors: reflectance at normal incidence.
+struct Facet {
+  uint kind;
+  vec3 albedo;
+  float roughness;
+  float eta;       // dielectrics: index on the path's side over the other's
+  vec3 normal;     // for shading, on the path's side
+};
+
+bool isSmooth(Facet facet) {
+#if GLOSSY
+  return facet.kind == PATH_MIRROR || (facet.kind != PATH_DIFFUSE && facet.roughness == 0.0);
+#else
+  return facet.kind != PATH_DIFFUSE;
+#endif
+}
+
+// BSDF times the cosine of `i`, and the density with which scatter() draws it; not for smooth surfaces. `o` and `i` point away from the surface.
+vec3 evaluate(Facet facet, vec3 o, vec3 i, out float pdf) {
+#if GLOSSY
+  if (facet.kind != PATH_DIFFUSE) {
+    vec3 t, b;
+    tangentFrame(facet.normal, t, b);
+    vec3 lo = vec3(dot(o, t), dot(o, b), dot(o, facet.normal)), li = vec3(dot(i, t), dot(i, b), dot(i, facet.normal));
+    if (facet.kind == PATH_CONDUCTOR) return ggxReflect(lo, li, facet.roughness, pdf) * schlick(facet.albedo, max(dot(lo, normalize(lo + li)), 0.0));
+#if ROUGH_DIELECTRICS
+    float cosT, share;
+    vec3 h = normalize(lo + li);
+    float value = li.z > 0.0 ? ggxReflect(lo, li, facet.roughness, pdf) : ggxRefract(lo, li, facet.roughness, facet.eta, h, pdf);
+    float reflectance = fresnelDielectric(clamp(dot(lo, h), 0.0, 1.0), facet.eta, cosT);
+    share = li.z > 0.0 ? reflectance : 1.0 - reflectance;
+    pdf *= share;
+    return vec3(value * share);
+#endif
+  }
+#endif
+  float cosine = max(dot(i, facet.normal), 0.0);
+  pdf = cosine / kPi;
+  return facet.albedo * pdf;
+}
+
+// Draws a direction: multiplies the throughput by what that leaves and sets direction and density, 0 for smooth surfaces. False: absorbed.
+bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float choice) {
+  if (facet.kind == PATH_DIFFUSE) {
+    path.direction = cosineSample(facet.normal, xi);
+    path.pdf = dot(path.direction, facet.normal) / kPi;
+    path.throughput *= facet.albedo;
+    return dot(path.direction, geometricNormal) > 0.0;
+  }
+  vec3 o = -path.direction;
+  vec3 h = facet.normal;
+  path.pdf = 0.0;
+#if GLOSSY
+  bool rough = facet.roughness > 0.0 && facet.kind != PATH_MIRROR;
+  vec3 t, b, lo;
+  if (rough) {
+    tangentFrame(facet.normal, t, b);
+    lo = vec3(dot(o, t), dot(o, b), dot(o, facet.normal));
+    vec3 lh = ggxSample(lo, facet.roughness, xi);
+    h = normalize(lh.x * t + lh.y * b + lh.z * facet.normal);
+  }
+#endif
+  float cosI = clamp(dot(o, h), 0.0, 1.0), cosT = 0.0;
+  bool reflects = true;
+  float share = 1.0;  // of the two ways
+#if DIELECTRICS
+  if (facet.kind == PATH_DIELECTRIC) {
+    float reflectance = fresnelDielectric(cosI, facet.eta, cosT);
+    reflects = choice < reflectance;
+    share = reflects ? reflectance : 1.0 - reflectance;
+  }
+#endif
+  vec3 scattered = reflects ? 2.0 * cosI * h - o : (facet.eta * cosI - cosT) * h - facet.eta * o;
+  float side = dot(scattered, geometricNormal);
+  if (reflects ? side <= 0.0 : side >= 0.0) {  // the shading normal sends it to the wrong side of the face
+#if GLOSSY
+    if (rough) return false;
+#endif
+    scattered = reflects ? 2.0 * dot(o, geometricNormal) * geometricNormal - o : -o;
+  }
+  path.direction = normalize(scattered);
+#if GLOSSY
+  if (rough) {
+    vec3 li = vec3(dot(path.direction, t), dot(path.direction, b), dot(path.direction, facet.normal)), ignored;
+    if (reflects ? li.z <= 0.0 : li.z >= 0.0) return false;
+    float value = reflects ? ggxReflect(lo, li, facet.roughness, path.pdf) : ggxRefract(lo, li, facet.roughness, facet.eta, ignored, path.pdf);
+    if (!(path.pdf > 0.0)) return false;
+    path.throughput *= value / path.pdf;
+    path.pdf *= share;
+  }
+  if (facet.kind == PATH_CONDUCTOR) path.throughput *= schlick(facet.albedo, cosI);
+#endif
+#if MIRRORS
+  if (facet.kind == PATH_MIRROR) path.throughput *= facet.albedo;
+#endif
+  return true;
+}
+
 #if NEXT_EVENT
-void addNextEvent(inout Path path, Surface surface, uint triangle, vec3 albedo, PathNumbers numbers) {
+// iorBeyond, beyond: refractive index behind the surface, and the boundaries around that side.
+void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float iorBeyond, uvec4 beyond, PathNumbers numbers, inout vec3 radiance) {
   LightSample light;
   if (!sampleLight(surface.position, randomPair(numbers, path.event, kPurposeLight), randomWords(numbers, path.event, kPurposePick), light)) return;
-  float cosine = dot(light.direction, surface.normal);
-  if (!(cosine > 0.0 && dot(light.direction, surface.geometricNormal) > 0.0)) return;
-  vec3 contribution = albedo * (cosine / kPi) * light.value;
+  float side = dot(light.direction, surface.geometricNormal), pdf;
+  if (!(side * dot(light.direction, facet.normal) > 0.0)) return;
+#if ROUGH_DIELECTRICS
+  if (facet.kind != PATH_DIELECTRIC && side < 0.0) return;
+  if (side < 0.0) {
+    path.ior = iorBeyond;
+    path.inside = beyond;
+  }
+#else
+  if (side < 0.0) return;
+#endif
+  vec3 contribution = evaluate(facet, -path.direction, light.direction, pdf) * light.value;
 #if MIS
-  if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, cosine / kPi);
+  if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, pdf);
 #endif
   if (all(equal(contribution, vec3(0.0)))) return;
   addLight(path, contribution * visibility(path, surface, triangle, light, numbers));
+  radiance = path.radiance;
 }
 #endif
 
@@ -125,7 +263,7 @@ bool extend(inout Path path, PathNumbers numbers) {
   // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
   int medium = mediumInside(path.inside);
   float flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
-  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight), path.skip);
+  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight + flightMargin()), path.skip);
   if (medium >= 0) {
     int became = crossMedium(path, media[medium], flight, hit, numbers);
     if (became != kArrives) return became == kScattered;
@@ -163,73 +301,63 @@ bool extend(inout Path path, PathNumbers numbers) {
     addLight(path, emission);
   }
 #endif
-#if INTERIORS
-  uvec4 beyond = path.inside;
+  uvec4 beyond = uvec4(0u);  // of which closed boundaries the other side is
   float iorBeyond = path.ior;
+#if INTERIORS
+  beyond = path.inside;
   int rank = int(material.boundary);
   if (rank >= 0) {
     if (!crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
     iorBeyond = iorInside(beyond);
     if (iorBeyond == path.ior) {  // nothing refracts: another medium, or a boundary that a higher one covers
       path.inside = beyond;
-      path.origin = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
-      path.skip = hit.triangle;
+      startAt(path, surface, hit.triangle);
       return true;
     }
   }
 #endif
   if (path.scatterings >= tracer.maxScatterings) return false;
-  ++path.scatterings;
-  path.travelled = 0.0;
-  uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);
-#if MIRRORS || DIELECTRICS
-  // By the shading normal, unless that sends the ray to the wrong side of the face.
-  vec3 normal = dot(surface.normal, path.direction) < 0.0 ? surface.normal : surface.geometricNormal;
-#endif
-#if MIRRORS
-  if (material.kind == PATH_MIRROR) {
-    path.pdf = 0.0;
-    path.throughput *= material.specular;
-    vec3 mirrored = reflect(path.direction, normal);
-    path.direction = dot(mirrored, surface.geometricNormal) > 0.0 ? mirrored : reflect(path.direction, surface.geometricNormal);
-  }
-#endif
+  Facet facet = Facet(material.kind, material.specular, material.roughness, 1.0, surface.normal);
+  // Mirrors and glass are not there for a path that sees the shading normal's back.
+  if (facet.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0)) facet.normal = surface.geometricNormal;
+  if (facet.kind == PATH_DIFFUSE) facet.albedo = albedoAt(surface);
 #if DIELECTRICS
-  if (material.kind == PATH_DIELECTRIC) {
-    path.pdf = 0.0;
-    float eta = path.ior / iorBeyond, cosT, cosI = -dot(normal, path.direction), reflectance = fresnelDielectric(cosI, eta, cosT);
-    if (unitFloat(choice.x) < reflectance) {
-      vec3 mirrored = reflect(path.direction, normal);
-      path.direction = dot(mirrored, surface.geometricNormal) > 0.0 ? mirrored : reflect(path.direction, surface.geometricNormal);
-    } else {
-      vec3 refracted = normalize(eta * path.direction + (eta * cosI - cosT) * normal);
-      path.direction = dot(refracted, surface.geometricNormal) < 0.0 ? refracted : path.direction;
-      path.ior = iorBeyond;
-      path.inside = beyond;
-    }
-  }
+  if (facet.kind == PATH_DIELECTRIC) facet.eta = path.ior / iorBeyond;
 #endif
-  if (material.kind == PATH_DIFFUSE) {
-    vec3 albedo = albedoAt(surface);
+  ++path.scatterings;
 #if NEXT_EVENT
-    if (counts(path.scatterings)) addNextEvent(path, surface, hit.triangle, albedo, numbers);
+  if (!isSmooth(facet) && counts(path.scatterings)) addNextEvent(path, surface, hit.triangle, facet, iorBeyond, beyond, numbers, path.radiance);
+#endif
+#if UNOCCLUDED
+  if (path.scatterings == 2u && facet.kind == PATH_DIFFUSE) {  // nothing is in the way: on to the surfaces behind
+    path.scatterings = 1u;
+    path.origin = beside(surface, -surface.geometricNormal);
+    path.skip = hit.triangle;
+    return path.event < 4096u;
+  }
 #endif
 #if !SCATTERED_LIGHT
-    if (path.scatterings >= tracer.maxScatterings) return false;  // nothing more could be found
+  if (path.scatterings >= tracer.maxScatterings && !isSmooth(facet)) return false;  // nothing more could be found
 #endif
-    path.direction = cosineSample(surface.normal, randomPair(numbers, path.event, kPurposeScatter));
-    if (!(dot(path.direction, surface.geometricNormal) > 0.0)) return false;
-    path.pdf = dot(path.direction, surface.normal) / kPi;
-    path.throughput *= albedo;
+  path.travelled = 0.0;
+  uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);
+  if (!scatter(path, facet, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter), unitFloat(choice.x))) return false;
+#if DIELECTRICS
+  if (dot(path.direction, surface.geometricNormal) < 0.0) {
+    path.ior = iorBeyond;
+    path.inside = beyond;
   }
+#endif
   // Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path ends.
   float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), path.event < 1024u ? 1.0 : 0.999);
+#if ROULETTE_WITHOUT_DIVISION
+  if (!(unitFloat(choice.y) < min(survival, 0.95))) return false;  // [VPT2024, algorithm 3]
+#else
   if (path.scatterings < 2u) survival = survival > 0.0 ? 1.0 : 0.0;
   if (!(unitFloat(choice.y) < survival)) return false;
   path.throughput /= survival;
-  bool leaves = dot(path.direction, surface.geometricNormal) > 0.0;
-  path.origin = offsetRay(surface.position, leaves ? surface.geometricNormal : -surface.geometricNormal, surface.magnitude);
-  path.skip = hit.triangle;
+#endif
+  startAt(path, surface, hit.triangle);
   return true;
 }
 
@@ -261,7 +389,7 @@ void main() {
     path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz), uintBitsToFloat(w2.w),
                 uintBitsToFloat(w3.xyz), w3.w, saved.x & ~kInFlight, uintBitsToFloat(saved.y)
 #if INTERIORS
-                , state[slot + 5u * lanes]
+                , state[slot + 5u * lanes], uintBitsToFloat(saved.z)
 #endif
                 );
   } else {
@@ -286,7 +414,12 @@ void main() {
   imageStore(filmMean, pixel, uvec4(floatBitsToUint(mean), samples));
   imageStore(filmSpread, pixel, uvec4(floatBitsToUint(spread), 0u));
   imageStore(filmRest, pixel, uvec4(floatBitsToUint(rest), 0u));
-  state[slot + 4u * lanes] = uvec4(inFlight ? path.event | kInFlight : 0u, floatBitsToUint(path.ior), 0u, 0u);
+  state[slot + 4u * lanes] = uvec4(inFlight ? path.event | kInFlight : 0u, floatBitsToUint(path.ior),
+#if INTERIORS
+                                   floatBitsToUint(path.head), 0u);
+#else
+                                   0u, 0u);
+#endif
   if (!inFlight) return;
   state[slot] = uvec4(floatBitsToUint(path.origin), path.skip);
   state[slot + lanes] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));

@@ -45,7 +45,35 @@ struct PathNumbers {
   uint seed;    // of the picture
 };
 
+#if LINEAR_SEEDS
+uint pcgOutput(uint state) {
+  uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+  return (word >> 22u) ^ word;
+}
+
+// [VPT2024, 5.4]: PCG rxs_m_xs_32, seeded with the number of the pixel; a pixel's draws follow each other on the one cycle of 2^32 that all
+// pixels share, 16 words an event here.
+uvec4 linearWords(PathNumbers numbers, uint event, uint purpose) {
+  uint steps = ((numbers.sampleIndex * 64u + event) * 16u + purpose) * 4u + 1u;
+  uint factor = 747796405u, addend = 1u, state = numbers.pixel + numbers.seed;
+  for (; steps > 0u; steps >>= 1u) {
+    if ((steps & 1u) != 0u) state = state * factor + addend;
+    addend *= factor + 1u;
+    factor *= factor;
+  }
+  uvec4 words;
+  for (int i = 0; i < 4; ++i) {
+    words[i] = pcgOutput(state);
+    state = state * 747796405u + 1u;
+  }
+  return words;
+}
+#endif
+
 uvec4 randomWords(PathNumbers numbers, uint event, uint purpose) {
+#if LINEAR_SEEDS
+  return linearWords(numbers, event, purpose);
+#endif
   return pcg4d(uvec4(numbers.pixel, numbers.sampleIndex, event, purpose ^ numbers.seed));
 }
 
@@ -72,6 +100,9 @@ uint sobolReversed(uint i) {
 
 // Two numbers in [0, 1).
 vec2 randomPair(PathNumbers numbers, uint event, uint purpose) {
+#if LINEAR_SEEDS
+  return unitFloat(linearWords(numbers, event, purpose).xy);
+#endif
   if (event >= kLowDiscrepancyEvents) return unitFloat(randomWords(numbers, event, purpose).xy);
   uvec4 seeds = pcg4d(uvec4(numbers.pixel, 0xffffffffu, event, purpose ^ numbers.seed));
   uint i = bitfieldReverse(owenReversed(bitfieldReverse(numbers.sampleIndex), seeds.x));

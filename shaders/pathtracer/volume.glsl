@@ -118,8 +118,9 @@ bool survives(inout Path path, float u) {
 }
 
 // At a collision: light from a lamp, then on in a direction of the phase function.
-int scatter(inout Path path, MediumRecord medium, PathNumbers numbers) {
+int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
   path.skip = kNoHit;
+  path.head = 0.0;
   path.travelled = 0.0;
   ++path.event;
   if (leaked(path)) {
@@ -184,8 +185,9 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
         path.throughput *= collides ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
       if (collides || ++tries == 64u) {
         path.origin += t * path.direction;
-        if (collides) return scatter(path, medium, numbers);
+        if (collides) return scatterInMedium(path, medium, numbers);
         path.travelled += t;
+        path.head = 0.0;
         ++path.event;
         return kScattered;
       }
@@ -195,35 +197,68 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
 }
 #endif
 
+#if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
+// Probability of an interaction [VPT2024, algorithm 4]: the largest albedo, of which the published text makes a half at least.
+float interactionProbability(MediumRecord medium) {
+  float w = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
+#if BOOSTED_INTERACTION
+  if (w > 0.0) w = max(w, 0.5);
+#endif
+  return w;
+}
+#endif
+
 // How far the ray may go before it collides; with a density grid that is told once it is known where the ray ends.
 float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   if (medium.grid >= 0) return kFar;
   uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
-  return flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x);
+#if DISTANCE_WITHOUT_PDF
+  // [VPT2024, algorithm 4]: from the least of the extinctions, and only with the probability of an interaction.
+  float least = min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b));
+  if (unitFloat(words.y) >= interactionProbability(medium) || !(least > 0.0)) return kFar;
+  return max(min(exponentialSample(words.x) / least, kFar) - path.head, 0.0);
+#endif
+  return max(flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x) - path.head, 0.0);
 }
+
+// How far beyond a collision to look for a surface. Where one is so near, the next ray might miss it by the rounding of its distance, which
+// is that of the triangles' coordinates.
+float flightMargin() { return bvhHeader.magnitude * kBeside; }
 
 // What happens on the way to `hit`, the first hit within `flight`.
 int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
-  bool arrives = hit.triangle != kNoHit || flight >= kFar;
-  float distance = hit.triangle != kNoHit ? hit.t : flight;
+  bool arrives = hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar;
 #if HETEROGENEOUS
-  if (medium.grid >= 0) return trackDensity(path, medium, distance, numbers);
+  if (medium.grid >= 0) return trackDensity(path, medium, hit.triangle != kNoHit ? hit.t : kFar, numbers);
 #endif
+  float distance = path.head + (arrives && hit.triangle != kNoHit ? hit.t : flight);
   vec3 q = channelProbabilities(path.throughput);
 #if VOLUME_EMISSION
-  if (counts(path.scatterings) && distance < kFar) {
-    // Found at collisions, where it costs nothing; in channels that never collide at a point anywhere on the way.
-    if (!arrives) addLight(path, medium.emission * collisionWeight(medium, q, distance));
+  if (counts(path.scatterings) && distance < 0.5 * kFar) {
+    // By the length of the flight: one point of it stands for all. Where little collides that has hardly any noise.
     float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
-    addLight(path, mix(distance * medium.emission * passageWeight(medium, q, x), vec3(0.0), greaterThan(medium.extinction, vec3(0.0))));
+    addLight(path, distance * medium.emission * passageWeight(medium, q, x));
   }
 #endif
+#if DISTANCE_WITHOUT_PDF
+  path.throughput *= exp(-medium.extinction * distance);  // neither the scattering coefficient nor a density
+  if (arrives) return kArrives;
+#else
   if (arrives) {
     path.throughput *= passageWeight(medium, q, distance);
     return kArrives;
   }
   path.throughput *= scatteringWeight(medium, q, distance);
-  path.origin += distance * path.direction;
-  return scatter(path, medium, numbers);
+#if BOOSTED_INTERACTION
+  float albedo = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
+  path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
+#endif
+#endif
+  path.origin += flight * path.direction;
+  if (hit.triangle != kNoHit) {
+    Surface near = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+    path.origin = beside(near, near.geometricNormal);
+  }
+  return scatterInMedium(path, medium, numbers);
 }
 #endif

@@ -167,9 +167,16 @@ const std::array kTested{"rsm.flux-cosine",      "rsm.gather-weight",   "rsm.unb
                          "lpv.blocking-direction"};
 
 TEST_F(LpvDeviations, EachOneHasATestHere) {
-  for (const Deviation& deviation : allDeviations())
-    EXPECT_NE(std::find(kTested.begin(), kTested.end(), std::string_view(deviation.name)), kTested.end()) << deviation.name;
-  EXPECT_EQ(allDeviations().size(), kTested.size());
+  std::size_t others = 0;
+  for (const Deviation& deviation : allDeviations()) {
+    const std::string_view name = deviation.name;
+    if (name.starts_with("path.")) {  // tests/physics/media_deviations_test.cpp
+      ++others;
+      continue;
+    }
+    EXPECT_NE(std::find(kTested.begin(), kTested.end(), name), kTested.end()) << name;
+  }
+  EXPECT_EQ(allDeviations().size(), kTested.size() + others);
 }
 
 // ---- the kernel --------------------------------------------------------------------------------------------------------

@@ -23,6 +23,12 @@ std::vector<std::string> namesInOriginal() {
   return names;
 }
 
+/// Names begin with the technique's name on the command line; one folder is named otherwise.
+fs::path folderOf(const std::string& name) {
+  const std::string technique = name.substr(0, name.find('.'));
+  return fs::path(LUCERNA_SOURCE_DIR) / "engine" / (technique == "path" ? "pathtracer" : technique);
+}
+
 TEST(Deviations, NamesAreDistinctAndBeginWithTheirTechniquesFolder) {
   std::set<std::string> names;
   for (const Deviation& deviation : allDeviations()) {
@@ -30,7 +36,7 @@ TEST(Deviations, NamesAreDistinctAndBeginWithTheirTechniquesFolder) {
     EXPECT_TRUE(names.insert(name).second) << name;
     const auto dot = name.find('.');
     ASSERT_NE(dot, std::string::npos) << name;
-    EXPECT_TRUE(fs::is_directory(fs::path(LUCERNA_SOURCE_DIR) / "engine" / name.substr(0, dot))) << name;
+    EXPECT_TRUE(fs::is_directory(folderOf(name))) << name;
     EXPECT_FALSE(std::string(deviation.meaning).empty()) << name;
   }
   EXPECT_FALSE(names.empty());
@@ -39,7 +45,7 @@ TEST(Deviations, NamesAreDistinctAndBeginWithTheirTechniquesFolder) {
 TEST(Deviations, EachHasItsLineInTheReadmeOfItsTechnique) {
   for (const Deviation& deviation : allDeviations()) {
     const std::string name = deviation.name;
-    std::ifstream file(fs::path(LUCERNA_SOURCE_DIR) / "engine" / name.substr(0, name.find('.')) / "README.md");
+    std::ifstream file(folderOf(name) / "README.md");
     std::string line;
     bool inSection = false, found = false;
     while (std::getline(file, line)) {

@@ -42,6 +42,11 @@ TEST(SceneNeedsTest, EachFeatureRaisesItsFlagAlone) {
       {"texture", [](Scene& s) { s.materials[0].diffuseTexture = 0; }, &SceneNeeds::diffuseTextures},
       {"mask", [](Scene& s) { s.materials[0].alphaMasked = true; }, &SceneNeeds::alphaMasks},
       {"specular", [](Scene& s) { s.materials[0].specular.z = 0.01f; }, &SceneNeeds::specular},
+      {"mirror", [](Scene& s) { s.materials[0].bsdf = Bsdf::mirror; }, &SceneNeeds::mirrors},
+      {"conductor", [](Scene& s) { s.materials[0].bsdf = Bsdf::conductor; }, &SceneNeeds::conductors},
+      {"dielectric", [](Scene& s) { s.materials[0].bsdf = Bsdf::dielectric; }, &SceneNeeds::dielectrics},
+      {"boundary", [](Scene& s) { s.materials[0].bsdf = Bsdf::none; }, &SceneNeeds::nullBoundaries},
+      {"environment", [](Scene& s) { s.environment = Environment{glm::vec3(0.0f, 1.0f, 0.0f), {}, 0.0}; }, &SceneNeeds::environment},
       {"emission", [](Scene& s) { s.materials[0].emission.y = 1e-6f; }, &SceneNeeds::emission},
       {"background", [](Scene& s) { s.background.x = 0.1f; }, &SceneNeeds::background},
   };

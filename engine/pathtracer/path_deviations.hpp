@@ -1,0 +1,18 @@
+// What the published path tracer of participating media does differently [VPT2024] (no GL): README.md, section Deviations, has formula,
+// source and measured effect of each.
+#pragma once
+
+namespace lucerna {
+
+struct PathDeviations {
+  bool distanceWithoutPdf = false;
+  bool boostedInteraction = false;
+  bool rouletteWithoutDivision = false;
+  bool fresnelAmplitudes = false;
+  bool schlick = false;
+  bool straightShadowRays = false;
+  bool linearSeeds = false;
+  bool fixedEpsilon = false;
+};
+
+}  // namespace lucerna

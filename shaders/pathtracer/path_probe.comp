@@ -1,0 +1,39 @@
+// For tests: the path tracer's pure functions by themselves, one invocation an input. PROBE chooses.
+layout(local_size_x = 64) in;
+#include "pathtracer/random.glsl"
+#include "pathtracer/bsdf.glsl"
+#include "pathtracer/fresnel.glsl"
+layout(std430, binding = 0) readonly restrict buffer Inputs { vec4 inputs[]; };
+layout(std430, binding = 1) writeonly restrict buffer Outputs { vec4 outputs[]; };
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (2u * i >= uint(inputs.length())) return;
+  vec4 a = inputs[2u * i], b = inputs[2u * i + 1u], first = vec4(0.0), second = vec4(0.0);
+  float pdf = 0.0;
+#if PROBE == 0
+  // a: pixel, sample, event, purpose.
+  PathNumbers numbers = PathNumbers(uint(a.x), uint(a.y), uint(b.x));
+  uvec4 words = randomWords(numbers, uint(a.z), uint(a.w));
+  first = vec4(randomPair(numbers, uint(a.z), uint(a.w)), vec2(words.xy >> 8u));
+  second = vec4(unitFloat(words.zw), float(scaledWord(words.x, 1000u)), 0.0);
+#elif PROBE == 1
+  // a: o, alpha; b: i, eta.
+  first.x = ggxReflect(a.xyz, b.xyz, a.w, pdf);
+  first.y = pdf;
+  float cosT;
+  first.z = fresnelDielectric(a.z, b.w, cosT);
+  first.w = cosT;
+  vec3 h;
+  second.x = ggxRefract(a.xyz, vec3(b.xy, -b.z), a.w, b.w, h, pdf);
+  second.y = pdf;
+#elif PROBE == 2
+  // a: o, alpha; b: two numbers. A direction reflected by a facet, and its density; a direction about the normal.
+  vec3 h = ggxSample(a.xyz, a.w, b.xy), r = reflect(-a.xyz, h);
+  ggxReflect(a.xyz, r, a.w, pdf);
+  first = vec4(r, pdf);
+  second = vec4(cosineSample(normalize(a.xyz), b.xy), powerHeuristic(b.x, b.y) + powerHeuristic(b.y, b.x));
+#endif
+  outputs[2u * i] = first;
+  outputs[2u * i + 1u] = second;
+}

@@ -1,0 +1,196 @@
+// The path tracer as a machine: films, submissions, stopping, checkpoints, and agreement with forward shading.
+// Statistical tests: seeds are fixed; 4 standard errors.
+#include "support/path_scenes.hpp"
+
+#include "base/error.hpp"
+#include "render/renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::test {
+namespace {
+
+class PathTracerTest : public PathTest {
+ protected:
+  static Scene litBox() {
+    Scene scene = openBox();
+    scene.spots.push_back({{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
+    scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
+    return scene;
+  }
+};
+
+TEST_F(PathTracerTest, ThePictureDoesNotDependOnHowWorkIsCut) {
+  Scene scene = litBox();
+  scene.environment = Environment{};
+  scene.environment->radiance = glm::vec3(0.3f);
+  PathTracer::Settings settings = sized(24);
+  const Image whole = tracer(scene, openBoxCamera(), settings, 12).mean();
+  settings.submissionSeconds = 1e-9;  // a segment a submission
+  PathTracer cut(context(), library(), scene, settings);
+  cut.setCamera(openBoxCamera());
+  cut.record(5);
+  EXPECT_EQ(cut.statistics().fewestSamples, 5u);
+  EXPECT_EQ(cut.statistics().mostSamples, 5u);
+  cut.record(12);
+  EXPECT_EQ(cut.mean().pixels, whole.pixels);
+  settings.seed = 1;
+  EXPECT_NE(tracer(scene, openBoxCamera(), settings, 12).mean().pixels, whole.pixels);
+}
+
+TEST_F(PathTracerTest, AResumedPictureIsTheUninterruptedOne) {
+  const Scene scene = litBox();
+  const PathTracer::Settings settings = sized(24);
+  const Image whole = tracer(scene, openBoxCamera(), settings, 9).mean();
+  PathTracer first(context(), library(), scene, settings);
+  first.setCamera(openBoxCamera());
+  first.record(4);
+  first.advance(9);  // some paths are under way: they are followed again
+  const std::vector<std::uint8_t> bytes = first.checkpoint();
+  PathTracer second(context(), library(), scene, settings);
+  second.setCamera(openBoxCamera());
+  second.resume(bytes, "memory");
+  second.record(9);
+  EXPECT_EQ(second.mean().pixels, whole.pixels);
+  EXPECT_EQ(second.standardError().pixels, tracer(scene, openBoxCamera(), settings, 9).standardError().pixels);
+
+  PathTracer other = tracer(scene, lookingAt({0, 0, 12}, {0, 0, 0}), settings, 1);
+  EXPECT_THROW(other.resume(bytes, "memory"), Error);  // another view
+  EXPECT_THROW(second.resume({bytes.begin(), bytes.end() - 1}, "memory"), Error);
+  std::vector<std::uint8_t> damaged = bytes;
+  damaged[damaged.size() / 2] ^= 1;
+  EXPECT_THROW(second.resume(damaged, "memory"), Error);
+}
+
+TEST_F(PathTracerTest, SmallestPicturesAndScenes) {
+  SceneBuilder empty;
+  EXPECT_EQ(tracer(empty.scene(), lookingAt({0, 0, 1}, {0, 0, 0}), 1, 1).mean().pixels, std::vector<glm::vec3>{glm::vec3(0.0f)});
+  empty.scene().background = {1.0f, 2.0f, 3.0f};
+  const PathTracer background = tracer(empty.scene(), lookingAt({0, 0, 1}, {0, 0, 0}), 1, 3);
+  EXPECT_EQ(background.mean().pixels, std::vector<glm::vec3>{glm::vec3(1.0f, 2.0f, 3.0f)});
+  EXPECT_EQ(background.statistics().standardError, 0.0);
+  Scene dark = openBox();
+  dark.sun.reset();
+  EXPECT_EQ(tracer(dark, openBoxCamera(), 4, 2).statistics().mean, glm::dvec3(0.0));
+  EXPECT_EQ(tracer(openBox(), openBoxCamera(), 3, 1).statistics().standardError, std::numeric_limits<double>::infinity());
+  Camera far = openBoxCamera(1e6);
+  for (const glm::vec3& p : tracer(openBox(1e6), far, 8, 2).mean().pixels) EXPECT_TRUE(std::isfinite(p.x));
+}
+
+TEST_F(PathTracerTest, TheErrorFallsWithTheRootOfTheSamplesAndIsHonest) {
+  const Scene scene = litBox();
+  PathTracer::Settings settings = sized(24);
+  settings.pixelCentres = true;
+  const PathTracer reference = tracer(scene, openBoxCamera(), settings, 1024);
+  const Image truth = reference.mean();
+  settings.seed = 9;
+  PathTracer picture(context(), library(), scene, settings);
+  picture.setCamera(openBoxCamera());
+  double last = 0.0;
+  for (const std::uint32_t samples : {16u, 64u, 256u}) {
+    picture.record(samples);
+    const double error = picture.statistics().standardError;
+    if (last > 0.0) {
+      EXPECT_NEAR(last / error, 2.0, 0.3) << samples;
+    }
+    last = error;
+    const Image mean = picture.mean();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+      const glm::dvec3 d = glm::dvec3(mean.pixels[i]) - glm::dvec3(truth.pixels[i]);
+      sum += glm::dot(d, d) / (3.0 * static_cast<double>(mean.pixels.size()));
+    }
+    const double expected = std::hypot(error, reference.statistics().standardError);
+    // Low-discrepancy points make the true error smaller than independent samples would, never larger.
+    EXPECT_LT(std::sqrt(sum), 1.1 * expected) << samples;
+    EXPECT_GT(std::sqrt(sum), 0.3 * expected) << samples;
+  }
+}
+
+TEST_F(PathTracerTest, ComponentsAddUp) {
+  const Scene scene = litBox();
+  PathTracer::Settings settings = sized(32);
+  const auto result = [&](Transport transport, std::uint32_t bounces = PathTracer::kUnlimited) {
+    settings.transport = transport;
+    settings.bounces = bounces;
+    ++settings.seed;
+    return tracer(scene, openBoxCamera(), settings, 64).statistics();
+  };
+  const auto all = result(Transport::all), direct = result(Transport::direct), indirect = result(Transport::indirect);
+  PathTracer::Statistics sum = direct;
+  sum.mean += indirect.mean;
+  sum.meanError = glm::sqrt(direct.meanError * direct.meanError + indirect.meanError * indirect.meanError);
+  EXPECT_LT(deviations(all, sum), 4.0);
+  EXPECT_LT(deviations(result(Transport::indirect, 2), result(Transport::oneBounce)), 4.0);
+  EXPECT_LT(deviations(result(Transport::all, 1), direct), 4.0);
+  EXPECT_GT(indirect.mean.x, 1.2 * result(Transport::oneBounce).mean.x);
+}
+
+// Units: the direct light of forward shading is the path tracer's, but for the filtered edges of shadows. (Surfaces that
+// shine light others in the path tracer alone.)
+TEST_F(PathTracerTest, DirectLightIsThatOfForwardShading) {
+  Scene scene = litBox();
+  scene.background = {0.1f, 0.2f, 0.3f};
+  std::vector<std::uint8_t> texels;
+  for (int i = 0; i < 16; ++i) texels.insert(texels.end(), {200, 120, 60, 255});
+  Texture& texture = scene.textures.emplace_back();
+  texture.bitmap = {4, 4, texels, false};
+  scene.materials[0].diffuseTexture = 0;
+  const Camera camera = openBoxCamera();
+  constexpr int kSize = 64;
+  RenderSettings forward;
+  forward.technique = Technique::direct;
+  forward.size = glm::ivec2(kSize);
+  forward.fullFloatTarget = true;
+  Renderer renderer(context(), library(), scene, forward);
+  renderer.render(camera);
+  const Image raster = renderer.readRadiance();
+  PathTracer::Settings settings = sized(kSize);
+  settings.transport = Transport::direct;
+  settings.pixelCentres = true;
+  const PathTracer path = tracer(scene, camera, settings, 192);
+  const Image traced = path.mean(), error = path.standardError();
+  int off = 0;
+  double rasterSum = 0.0, tracedSum = 0.0;
+  for (std::size_t i = 0; i < traced.pixels.size(); ++i) {
+    bool isOff = false;
+    for (int c = 0; c < 3; ++c) isOff |= std::abs(traced.pixels[i][c] - raster.pixels[i][c]) > 5.0f * error.pixels[i][c] + 0.004f * raster.pixels[i][c] + 1e-5f;
+    off += isOff ? 1 : 0;
+    rasterSum += raster.pixels[i].y;
+    tracedSum += traced.pixels[i].y;
+  }
+  EXPECT_LT(off, kSize * kSize / 20);
+  EXPECT_NEAR(tracedSum / rasterSum, 1.0, 0.01);
+}
+
+TEST_F(PathTracerTest, MasksAndBoundariesLetLightThrough) {
+  // A plate wholly cut out, and one that is a boundary of nothing, above the floor: as if they were not there.
+  const auto make = [](bool plates) {
+    SceneBuilder builder;
+    builder.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, builder.material(glm::vec3(0.5f)));
+    const int lamp = builder.material(glm::vec3(0.0f));
+    builder.materialAt(lamp).emission = glm::vec3(3.0f);
+    builder.plate({0, 2, 0}, {1, 0, 0}, {0, 0, 1}, lamp);
+    const int masked = builder.material(glm::vec3(0.9f)), boundary = builder.material(glm::vec3(0.0f));
+    builder.materialAt(masked).diffuseTexture = builder.texture(1, 1, {255, 255, 255, 0}, true);
+    builder.materialAt(masked).alphaMasked = true;
+    builder.materialAt(boundary).bsdf = Bsdf::none;
+    if (plates) builder.plate({0, 1.2, 0}, {0, 0, 3}, {3, 0, 0}, masked);
+    if (plates) builder.plate({0, 0.6, 0}, {0, 0, 3}, {3, 0, 0}, boundary);
+    return builder;
+  };
+  const Camera camera = lookingAt({0.5, 1.7, 2.0}, {0, 0.2, 0});
+  SceneBuilder with = make(true), without = make(false);
+  PathTracer::Settings settings = sized(24);
+  const auto a = tracer(with.scene(), camera, settings, 32).statistics();
+  settings.seed = 1;
+  const auto b = tracer(without.scene(), camera, settings, 32).statistics();
+  EXPECT_LT(deviations(a, b), 4.0);
+  EXPECT_GT(a.mean.x, 0.1);
+}
+
+}  // namespace
+}  // namespace lucerna::test
