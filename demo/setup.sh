@@ -2,7 +2,7 @@
 
 run_packages="g++ cmake ninja-build pkg-config libglew-dev libglfw3-dev libglm-dev libassimp-dev libdevil-dev libosmesa6-dev
   libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev"
-test_packages="libgtest-dev xvfb xauth"
+test_packages="libgtest-dev xvfb xauth libembree-dev"
 
 # install_packages NAME...: those that are missing, all at once.
 install_packages() {

@@ -1,4 +1,4 @@
-// lucerna bench tables|pictures: published results of the originals, made again.
+// lucerna bench tables|pictures|rays: published results of the originals, made again.
 #include "bench/bench.hpp"
 
 #include "base/error.hpp"
@@ -28,6 +28,7 @@ Work addBench(CLI::App& app) {
   };
   add("tables", "Measure an original's published tables again: published, measured, ratio", addBenchTables);
   add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);
+  add("rays", "Rays per second of the compute-shader hierarchy, beside Embree on the same rays", addBenchRays);
   return [commands] {
     for (const auto& [command, work] : *commands)
       if (command->parsed()) return work();

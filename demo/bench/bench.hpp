@@ -10,6 +10,7 @@ namespace lucerna::demo {
 
 Work addBenchTables(CLI::App& app);
 Work addBenchPictures(CLI::App& app);
+Work addBenchRays(CLI::App& app);
 
 namespace bench {
 

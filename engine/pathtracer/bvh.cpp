@@ -531,4 +531,34 @@ Bvh buildBvh(const Scene& scene, const BvhSettings& settings) {
   return bvh;
 }
 
+bool refitBvh(Bvh& bvh, const Scene& scene) {
+  const Triangles moved = collect(scene);
+  if (moved.kept.size() != bvh.statistics.triangles || moved.origin != bvh.origin) return false;
+  std::vector<std::uint32_t> place(scene.triangleCount(), ~0u);
+  for (std::size_t i = 0; i < moved.kept.size(); ++i) place[moved.kept[i].id & BVH_TRIANGLE_ID_MASK] = static_cast<std::uint32_t>(i);
+  for (const BvhTriangle& triangle : bvh.triangles) {
+    const std::uint32_t id = triangle.id & BVH_TRIANGLE_ID_MASK;
+    if (id >= place.size() || place[id] == ~0u) return false;
+  }
+  for (BvhTriangle& triangle : bvh.triangles) triangle = moved.kept[place[triangle.id & BVH_TRIANGLE_ID_MASK]];
+  bvh.magnitude = moved.magnitude;
+  std::vector<Box> boxes(bvh.nodes.size());
+  for (std::size_t n = bvh.nodes.size(); n-- > 0;) {  // children lie behind their parents
+    BvhNode& node = bvh.nodes[n];
+    std::array<Box, BVH_WIDTH> children;
+    std::size_t child = node.firstChild;
+    for (std::size_t k = 0; k < BVH_WIDTH; ++k) {
+      const std::uint32_t meta = node.meta[k / 4] >> 8 * (k % 4) & 0xffu;
+      if (node.exponents >> (24 + k) & 1u) {
+        children[k] = boxes[child++];
+      } else {
+        for (std::uint32_t bits = meta >> 5, t = node.firstTriangle + (meta & 31u); bits; bits >>= 1, ++t) children[k].add(boxOf(bvh.triangles[t]));
+      }
+      boxes[n].add(children[k]);
+    }
+    encodeBoxes(node, children);
+  }
+  return true;
+}
+
 }  // namespace lucerna

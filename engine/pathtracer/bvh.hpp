@@ -15,7 +15,7 @@ namespace lucerna {
 
 struct BvhSettings {
   int threads = 0;        ///< that build; 0: all cores. The result is the same.
-  double splitBudget = 0.0;  ///< spatial splits add at most this fraction of references [Stich2009]; 0: none
+  double splitBudget = 0.3;  ///< spatial splits add at most this fraction of references [Stich2009]; 0: none
 };
 
 struct BvhStatistics {
@@ -29,7 +29,7 @@ struct BvhStatistics {
 };
 
 /// Cost of a triangle test, in node visits, measured on llvmpipe.
-inline constexpr float kBvhTriangleCost = 0.5f;
+inline constexpr float kBvhTriangleCost = 0.25f;
 
 /// Ready for upload.
 struct Bvh {
@@ -42,5 +42,9 @@ struct Bvh {
 
 /// Any scene, also an empty one.
 Bvh buildBvh(const Scene& scene, const BvhSettings& settings = {});
+
+/// Fits the boxes to corners that have moved; the hierarchy stays. False, with `bvh` as it was, where it must be built anew: the scene has
+/// other triangles, others of them are degenerate, or it lies where the space must have another origin.
+bool refitBvh(Bvh& bvh, const Scene& scene);
 
 }  // namespace lucerna

@@ -9,19 +9,34 @@ namespace lucerna {
 
 static_assert(sizeof(shared::BvhNode) == 16 * BVH_NODE_TEXELS && sizeof(shared::BvhTriangle) == 16 * BVH_TRIANGLE_TEXELS);
 
-RayScene::RayScene(const Scene& scene, const gl::Capabilities& capabilities, const Settings& settings) {
-  const Bvh bvh = buildBvh(scene, settings);
-  const std::size_t nodeBytes = bvh.nodes.size() * sizeof(shared::BvhNode), triangleBytes = bvh.triangles.size() * sizeof(shared::BvhTriangle);
-  const auto limit = 16 * static_cast<std::size_t>(capabilities.maxTextureBufferSize);
-  const std::size_t most = std::max(nodeBytes, 16 + triangleBytes);
-  if (most > limit)
-    throwMissingCapability("{}: its {} triangles need a buffer texture of {} bytes; this driver has at most {}", scene.name, scene.triangleCount(), most, limit);
-  nodes_ = gl::BufferTexture("bvh nodes", GL_RGBA32UI, nodeBytes, bvh.nodes.data());
-  // A header of one texel: the magnitude.
-  std::vector<float> words(4 + triangleBytes / sizeof(float));
+RayScene::RayScene(const Scene& scene, const gl::Capabilities& capabilities, const Settings& settings)
+    : settings_(settings), limit_(16 * static_cast<std::size_t>(capabilities.maxTextureBufferSize)) {
+  Bvh bvh = buildBvh(scene, settings_.bvh);
+  upload(scene, bvh);
+  if (settings_.moves) bvh_ = std::move(bvh);
+}
+
+void RayScene::update(const Scene& scene) {
+  CHECK(settings_.moves, "the scene {} was not said to move", scene.name);
+  if (!refitBvh(*bvh_, scene)) bvh_ = buildBvh(scene, settings_.bvh);
+  upload(scene, *bvh_);
+}
+
+void RayScene::upload(const Scene& scene, const Bvh& bvh) {
+  // Texel 0 of the triangles holds the magnitude.
+  std::vector<float> words(4 + bvh.triangles.size() * sizeof(shared::BvhTriangle) / sizeof(float));
   words[0] = bvh.magnitude;
-  if (triangleBytes > 0) std::memcpy(words.data() + 4, bvh.triangles.data(), triangleBytes);
-  triangles_ = gl::BufferTexture("bvh triangles", GL_RGBA32UI, words.size() * sizeof(float), words.data());
+  if (!bvh.triangles.empty()) std::memcpy(words.data() + 4, bvh.triangles.data(), bvh.triangles.size() * sizeof(shared::BvhTriangle));
+  const std::size_t nodeBytes = bvh.nodes.size() * sizeof(shared::BvhNode), triangleBytes = words.size() * sizeof(float);
+  if (std::max(nodeBytes, triangleBytes) > limit_)
+    throwMissingCapability("{}: its {} triangles need a buffer texture of {} bytes; this driver has at most {}", scene.name, scene.triangleCount(),
+                           std::max(nodeBytes, triangleBytes), limit_);
+  const auto put = [](gl::BufferTexture& texture, const char* name, std::size_t bytes, const void* data) {
+    if (texture.bytes() == bytes) texture.upload(0, bytes, data);
+    else texture = gl::BufferTexture(name, GL_RGBA32UI, bytes, data);
+  };
+  put(nodes_, "bvh nodes", nodeBytes, bvh.nodes.data());
+  put(triangles_, "bvh triangles", triangleBytes, words.data());
   origin_ = bvh.origin;
   statistics_ = bvh.statistics;
 }

@@ -7,16 +7,26 @@
 #include "gl/objects.hpp"
 #include "pathtracer/bvh.hpp"
 
+#include <optional>
+
 namespace lucerna {
+
+struct RaySceneSettings {
+  BvhSettings bvh;
+  bool moves = false;  ///< update() will be called: the hierarchy is kept in main memory too
+};
 
 class RayScene {
  public:
-  using Settings = BvhSettings;
+  using Settings = RaySceneSettings;
   /// Texture units that bind() occupies.
   static constexpr GLuint kNodesUnit = 60, kTrianglesUnit = 61;
 
   /// Throws Error(missingCapability) where the scene is larger than a buffer texture of the driver.
   RayScene(const Scene& scene, const gl::Capabilities& capabilities, const Settings& settings = {});
+
+  /// Takes over corners that have moved in the same scene: refits where that can be done, else builds anew, which may move origin().
+  void update(const Scene& scene);
 
   void bind() const;
   const glm::dvec3& origin() const { return origin_; }
@@ -24,8 +34,13 @@ class RayScene {
   std::size_t gpuBytes() const { return nodes_.bytes() + triangles_.bytes(); }
 
  private:
+  void upload(const Scene& scene, const Bvh& bvh);
+
+  Settings settings_;
+  std::size_t limit_;  // bytes of a buffer texture
+  std::optional<Bvh> bvh_;
   gl::BufferTexture nodes_, triangles_;
-  glm::dvec3 origin_;
+  glm::dvec3 origin_{0.0};
   BvhStatistics statistics_;
 };
 

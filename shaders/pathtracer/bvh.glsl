@@ -104,61 +104,106 @@ uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, 
   return hits;
 }
 
-Hit bvhTrace(Ray ray, uint skipTriangle, bool any) {
-  Hit hit = Hit(ray.tMax, kNoHit, vec2(0.0));
-  BvhRay r = bvhPrepare(ray);
-  // Siblings yet to be visited: x the first child of their parent; y bits 24..31 which are left to visit, bits 0..7 which are nodes.
-  uvec2 siblings = uvec2(0u, 0x80000000u);
-  uvec2 leaves = uvec2(0u);  // triangles yet to be tested: x the first of the node, y which
-  uint stackX[BVH_MAX_DEPTH], stackY[BVH_MAX_DEPTH];
-  int top = 0;
-  while (true) {
-    int place = bvhHighest(siblings.y >> 24);
-    siblings.y &= ~(0x01000000u << place);
-    int node = BVH_NODE_TEXELS * int(siblings.x + uint(bitCount(siblings.y & ~(0xffffffffu << (uint(place) ^ r.octant)) & 255u)));
-    if (siblings.y > 0x00ffffffu) {
-      stackX[top] = siblings.x;
-      stackY[top] = siblings.y;
-      ++top;
-    }
-    uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2), n3 = texelFetch(bvhNodes, node + 3),
-          n4 = texelFetch(bvhNodes, node + 4);
-    vec3 scale = uintBitsToFloat(uvec3(n0.w << 23, n0.w << 15, n0.w << 7) & 0x7f800000u) * r.inverse;
-    vec3 base = (uintBitsToFloat(n0.xyz) - r.origin) * r.inverse;
-    vec3 error = (abs(base) + abs(scale) * 256.0) * 4.76837158e-7;  // 2^-21: of this, of what follows and of the triangle test
-    ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z), high47 = ivec3(n3.w, n4.y, n4.w);
-    uint hits = bvhHitFour(bvhChoose(low03, high03, r.negative), bvhChoose(high03, low03, r.negative), scale, base - error, base + error, ray.tMin, hit.t, n1.z, r.octant) |
-                bvhHitFour(bvhChoose(low47, high47, r.negative), bvhChoose(high47, low47, r.negative), scale, base - error, base + error, ray.tMin, hit.t, n1.w, r.octant);
-    siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
-    leaves = uvec2(n1.y, hits & 0x00ffffffu);
-    while (leaves.y != 0u) {
-      int k = bvhHighest(leaves.y);
-      leaves.y &= ~(1u << k);
-      int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(leaves.x) + k);
-      uvec4 a = texelFetch(bvhTriangles, triangle);
-      vec3 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz), c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
-      float t;
-      vec2 barycentrics;
-      uint id = a.w & BVH_TRIANGLE_ID_MASK;
-      if (bvhHitTriangle(r, uintBitsToFloat(a.xyz), b, c, ray.tMin, hit.t, t, barycentrics) && id != skipTriangle && !bvhMissesMask(a.w, barycentrics)) {
-        hit = Hit(t, id, barycentrics);
-        if (any) return hit;
-      }
-    }
-    if (siblings.y <= 0x00ffffffu) {
-      if (top == 0) break;
-      --top;
-      siblings = uvec2(stackX[top], stackY[top]);
+// A ray on its way. For kernels whose lanes take up new rays while others still trace: beginRay, then advanceRay until it is done, then finishRay. An invocation
+// has one at a time, since they share one stack.
+struct BvhTraversal {
+  BvhRay ray;
+  float tMin;
+  uint skipTriangle;
+  Hit hit;         // the nearest so far; its triangle is a texel of bvhTriangles
+  uvec2 siblings;  // yet to be visited: x the first child of their parent; y bits 24..31 which are left, against the octant, bits 0..7 which are nodes
+  int top;         // of the stack; below zero: the ray is done
+  int tested;      // triangles, for statistics
+};
+
+uint bvhStackX[BVH_MAX_DEPTH], bvhStackY[BVH_MAX_DEPTH];
+
+BvhTraversal beginRay(Ray ray, uint skipTriangle) {
+  // The root is the only child of nothing, in the place that is visited first.
+  return BvhTraversal(bvhPrepare(ray), ray.tMin, skipTriangle, Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u), 0, 0);
+}
+
+bool isDone(BvhTraversal s) { return s.top < 0; }
+
+// Visits one node and tests the triangles of its leaves. any: the first hit ends the ray.
+void advanceRay(inout BvhTraversal s, bool any) {
+  int place = bvhHighest(s.siblings.y >> 24);
+  s.siblings.y &= ~(0x01000000u << place);
+  int node = BVH_NODE_TEXELS * int(s.siblings.x + uint(bitCount(s.siblings.y & ~(0xffffffffu << (uint(place) ^ s.ray.octant)) & 255u)));
+  if (s.siblings.y > 0x00ffffffu) {
+    bvhStackX[s.top] = s.siblings.x;
+    bvhStackY[s.top] = s.siblings.y;
+    ++s.top;
+  }
+  uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2), n3 = texelFetch(bvhNodes, node + 3),
+        n4 = texelFetch(bvhNodes, node + 4);
+  vec3 scale = uintBitsToFloat(uvec3(n0.w << 23, n0.w << 15, n0.w << 7) & 0x7f800000u) * s.ray.inverse;
+  vec3 base = (uintBitsToFloat(n0.xyz) - s.ray.origin) * s.ray.inverse;
+  vec3 error = (abs(base) + abs(scale) * 256.0) * 4.76837158e-7;  // 2^-21: of this, of what follows and of the triangle test
+  ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z), high47 = ivec3(n3.w, n4.y, n4.w);
+  uint hits = bvhHitFour(bvhChoose(low03, high03, s.ray.negative), bvhChoose(high03, low03, s.ray.negative), scale, base - error, base + error, s.tMin,
+                         s.hit.t, n1.z, s.ray.octant) |
+              bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale, base - error, base + error, s.tMin,
+                         s.hit.t, n1.w, s.ray.octant);
+  s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
+  uint leaves = hits & 0x00ffffffu;  // triangles to be tested, counted from the node's first
+  while (leaves != 0u) {
+    int k = bvhHighest(leaves);
+    leaves &= ~(1u << k);
+    ++s.tested;
+    int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(n1.y) + k);
+    uvec4 a = texelFetch(bvhTriangles, triangle);
+    vec3 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz), c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
+    float t;
+    vec2 barycentrics;
+    uint id = a.w & BVH_TRIANGLE_ID_MASK;
+    if (bvhHitTriangle(s.ray, uintBitsToFloat(a.xyz), b, c, s.tMin, s.hit.t, t, barycentrics) && id != s.skipTriangle && !bvhMissesMask(a.w, barycentrics)) {
+      s.hit = Hit(t, uint(triangle), barycentrics);
+      if (any) leaves = 0u;
     }
   }
+  bool ended = any && s.hit.triangle != kNoHit;
+  if (s.siblings.y <= 0x00ffffffu || ended) {
+    s.top = ended ? -1 : s.top - 1;
+    if (s.top >= 0) s.siblings = uvec2(bvhStackX[s.top], bvhStackY[s.top]);
+  }
+}
+
+// What a ray that is done has hit. Edge functions in float tell exactly whether, but in a sliver their ratios hardly tell where: distance and
+// barycentrics are computed once more, in double, from the plane and the areas in it.
+Hit finishRay(BvhTraversal s, vec3 direction) {
+  Hit hit = s.hit;
+  bool met = hit.triangle != kNoHit;
+  int triangle = met ? int(hit.triangle) : 0;
+  uvec4 first = texelFetch(bvhTriangles, triangle);
+  dvec3 a = dvec3(uintBitsToFloat(first.xyz)) - dvec3(s.ray.origin);
+  dvec3 b = dvec3(uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz)) - dvec3(s.ray.origin);
+  dvec3 c = dvec3(uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz)) - dvec3(s.ray.origin);
+  dvec3 normal = cross(b - a, c - a), d = dvec3(direction);
+  double v = dot(d, cross(a, c)), w = dot(d, cross(b, a)), along = -dot(normal, d);
+  if (along != 0.0LF) {
+    hit.t = float(-dot(normal, a) / along);
+    hit.barycentrics = clamp(vec2(v / along, w / along), vec2(0.0), vec2(1.0));
+  }
+  hit.triangle = met ? first.w & BVH_TRIANGLE_ID_MASK : kNoHit;
+  hit.t = met ? hit.t : s.hit.t;
+  hit.barycentrics = met ? hit.barycentrics : vec2(0.0);
   return hit;
 }
 
 // The nearest hit; its triangle is kNoHit where there is none. skipTriangle: the one the ray starts on, or kNoHit.
-Hit closestHit(Ray ray, uint skipTriangle) { return bvhTrace(ray, skipTriangle, false); }
+Hit closestHit(Ray ray, uint skipTriangle) {
+  BvhTraversal s = beginRay(ray, skipTriangle);
+  while (!isDone(s)) advanceRay(s, false);
+  return finishRay(s, ray.direction);
+}
 
 // Whether anything is hit at all.
-bool anyHit(Ray ray, uint skipTriangle) { return bvhTrace(ray, skipTriangle, true).triangle != kNoHit; }
+bool anyHit(Ray ray, uint skipTriangle) {
+  BvhTraversal s = beginRay(ray, skipTriangle);
+  while (!isDone(s)) advanceRay(s, true);
+  return s.hit.triangle != kNoHit;
+}
 
 // A point just off a surface, on the side that the GEOMETRIC normal (unit) points to, beyond the rounding of a point computed from a
 // triangle's barycentrics and of the test of its neighbours. As in [WaechterBinder2019] a number of units in the last place, so that no scale

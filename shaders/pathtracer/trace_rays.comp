@@ -1,4 +1,5 @@
-// Rays from a buffer, hits into another: for tests and benchmarks.
+// Rays from a buffer, hits into another: for tests and benchmarks. COUNT_WORK: in place of t and barycentrics how many nodes were visited
+// and how many triangles tested.
 #if ALPHA_MASKS
 bool isCutOut(uint triangle, vec2 barycentrics) { return barycentrics.x < 0.5; }  // tests alone: half of every masked triangle
 #endif
@@ -15,7 +16,12 @@ uniform int firstRay, rayCount;
 void main() {
   int i = firstRay + int(gl_GlobalInvocationID.x);
   if (i >= rayCount) return;
-#if ANY_HIT
+#if COUNT_WORK
+  int nodes = 0;
+  BvhTraversal ray = beginRay(rays[i], skipTriangles[i]);
+  for (; !isDone(ray); ++nodes) advanceRay(ray, ANY_HIT != 0);
+  hits[i] = Hit(float(nodes), ray.hit.triangle, vec2(ray.tested, 0.0));
+#elif ANY_HIT
   hits[i] = Hit(0.0, anyHit(rays[i], skipTriangles[i]) ? 0u : kNoHit, vec2(0.0));
 #else
   hits[i] = closestHit(rays[i], skipTriangles[i]);

@@ -1,8 +1,18 @@
-// Rays in GLSL against brute force in double.
+// Rays in GLSL against brute force in double, and against Embree where it is there.
 #include "support/gl_fixture.hpp"
 #include "support/rays_on_gl.hpp"
 #include "support/small_scenes.hpp"
 
+#ifdef LUCERNA_EMBREE
+#include "bench/embree_rays.hpp"
+#endif
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <numbers>
 #include <random>
 
 namespace lucerna {
@@ -46,29 +56,354 @@ Scene triangleSoup(int count, double size, const glm::dvec3& centre, unsigned se
   return builder.scene();
 }
 
-TEST_F(RayCasterOnGl, MeetsWhatBruteForceMeets) {
-  const Scene scene = triangleSoup(500, 0.4, glm::dvec3(0.0), 1);
-  const RayScene rayScene(scene, capabilities());
-  std::mt19937 random(2);
-  std::uniform_real_distribution<float> in(-1.5f, 1.5f);
-  std::vector<GlRay> rays(4096);
+std::vector<GlRay> randomRays(std::size_t count, const glm::dvec3& centre, const glm::dvec3& extent, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> in(-1.0, 1.0);
+  std::vector<GlRay> rays(count);
   for (GlRay& ray : rays) {
-    ray.origin = glm::vec3(in(random), in(random), in(random));
+    ray.origin = centre + extent * glm::dvec3(in(random), in(random), in(random));
     ray.direction = glm::vec3(in(random), in(random), in(random));
   }
-  const std::vector<GlHit> hits = trace(library(), rayScene, rays);
-  int met = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Twin twin = bruteForce(scene, rayScene.origin(), rays[i]);
-    ASSERT_EQ(hits[i].triangle, twin.triangle) << i;
-    if (twin.triangle == kNoHit) continue;
-    const double length = glm::length(glm::dvec3(rays[i].direction));
-    ++met;
-    // A float coordinate of about 1 moves the point by up to 1e-7.
-    EXPECT_NEAR(hits[i].t * length, twin.t * length, 1e-5 * twin.t * length + 2e-7) << i;
-  }
-  EXPECT_GT(met, 1000);
+  return rays;
 }
+
+/// Where a ray meets the plane of a triangle, in double, and how far inside of the nearest edge it passes (below zero: outside), as seen along it.
+struct Meeting {
+  double t, inside, cosine;
+};
+Meeting meet(const Scene& scene, const glm::dvec3& shift, const GlRay& ray, std::uint32_t triangle) {
+  const glm::dvec3 d(ray.direction), unit = glm::normalize(d);
+  const auto corner = [&](std::size_t k) { return glm::dvec3(scene.vertices[scene.indices[3 * triangle + k]].position) - shift - glm::dvec3(ray.origin); };
+  const glm::dvec3 corners[] = {corner(0), corner(1), corner(2)};
+  const glm::dvec3 n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double along = glm::dot(n, unit);
+  Meeting m{glm::dot(n, corners[0]) / glm::dot(n, d), 1e300, std::abs(along) / glm::length(n)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::dvec3 &p = corners[k], &q = corners[(k + 1) % 3];
+    const double length = glm::length(glm::cross(q - p, unit)), side = glm::dot(unit, glm::cross(p, q));
+    m.inside = std::min(m.inside, length > 0.0 ? std::copysign(side, side * along) / length : 0.0);
+  }
+  return m;
+}
+
+/// What another tracer says is judged in double. Where the two differ by more than rounding, the nearer one is right if its ray passes
+/// clearly through the triangle, and within rounding of an edge either is.
+struct Verdict {
+  std::size_t met = 0, atEdges = 0, wrong = 0, theirs = 0;
+};
+template <class Other>
+Verdict compare(const Scene& scene, const RayScene& rayScene, const std::vector<GlRay>& rays, const std::vector<GlHit>& ours, const std::vector<Other>& others) {
+  Verdict verdict;
+  double magnitude = 0.0;
+  for (const Vertex& v : scene.vertices)
+    for (int k = 0; k < 3; ++k) magnitude = std::max(magnitude, std::abs(static_cast<double>(v.position[k]) - rayScene.origin()[k]));
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool us = ours[i].triangle != kNoHit, them = others[i].triangle != kNoHit;
+    verdict.met += us;
+    if (!us && !them) continue;
+    const double length = glm::length(glm::dvec3(rays[i].direction));
+    const double tUs = us ? static_cast<double>(ours[i].t) * length : 1e300, tThem = them ? static_cast<double>(others[i].t) * length : 1e300;
+    const auto m = us ? meet(scene, rayScene.origin(), rays[i], ours[i].triangle) : Meeting{};
+    // Corners and origin are exact; what is computed from them is off by some units in the last place of the largest of them.
+    const double rounding = 16.0 * 0x1p-24 * (magnitude + static_cast<double>(glm::length(rays[i].origin)));
+    if (us && (std::abs(tUs - m.t * length) > 1e-5 * tUs + rounding / std::max(m.cosine, 1e-9) || m.inside < -rounding)) {
+      ++verdict.wrong;  // our distance, or what we hit, is not so
+      continue;
+    }
+    if (us && them && std::abs(tUs - tThem) <= 1e-5 * tThem + rounding / std::max(m.cosine, 1e-9)) continue;
+    const auto nearest = meet(scene, rayScene.origin(), rays[i], tUs < tThem ? ours[i].triangle : others[i].triangle);
+    if (nearest.inside <= rounding || std::abs(nearest.t) * length <= rounding) ++verdict.atEdges;
+    else ++(tUs < tThem ? verdict.theirs : verdict.wrong);
+  }
+  return verdict;
+}
+
+TEST_F(RayCasterOnGl, MeetsWhatBruteForceMeets) {
+  for (const double scale : {1.0, 1e-6, 1e6})
+    for (const double far : {0.0, 1e4}) {
+      const glm::dvec3 centre = scale * far * glm::dvec3(1.0, -1.0, 0.5);
+      Scene scene = triangleSoup(300, 0.4, centre / scale, 1);
+      for (Vertex& v : scene.vertices) v.position *= static_cast<float>(scale);
+      const RayScene rayScene(scene, capabilities());
+      const std::vector<GlRay> rays = randomRays(4096, centre - rayScene.origin(), glm::dvec3(1.5 * scale), 2);
+      const std::vector<GlHit> hits = trace(library(), rayScene, rays);
+      std::vector<GlHit> twins;
+      for (const GlRay& ray : rays) {
+        const Twin twin = bruteForce(scene, rayScene.origin(), ray);
+        twins.push_back({static_cast<float>(twin.t), twin.triangle, glm::vec2(0.0f)});
+      }
+      const Verdict v = compare(scene, rayScene, rays, hits, twins);
+      EXPECT_GT(v.met, 1000u) << scale << ", " << far;
+      EXPECT_EQ(v.wrong + v.theirs, 0u) << scale << ", " << far;
+      EXPECT_LE(v.atEdges, 2u) << scale << ", " << far;
+    }
+}
+
+TEST_F(RayCasterOnGl, KeepsIntervalsSkipsMasksAndAnswersAny) {
+  SceneBuilder builder;
+  const int solid = builder.material(glm::vec3(0.5f)), masked = builder.material(glm::vec3(0.5f));
+  builder.materialAt(masked).alphaMasked = true;
+  for (int i = 0; i < 3; ++i) {
+    const double z = i + 1.0;
+    builder.triangle({-1, -1, z}, {3, -1, z}, {-1, 3, z}, i == 0 ? masked : solid);
+  }
+  const RayScene rayScene(builder.scene(), capabilities());
+  // The first barycentric is 1/2 at x = 1: the mask is cut out left of that.
+  const auto ray = [&](float x, float tMin, float tMax) { return GlRay{glm::vec3(x, 0, 0) - glm::vec3(rayScene.origin()), tMin, glm::vec3(0, 0, 1), tMax}; };
+  const std::vector<GlRay> rays{ray(0, 0, 10), ray(1.5f, 0, 10), ray(0, 1.5f, 10), ray(0, 2.5f, 2.9f), ray(0, 2, 10), ray(0, 0, 10), ray(5, 0, 10)};
+  const std::vector<std::uint32_t> skip{kNoHit, kNoHit, kNoHit, kNoHit, kNoHit, 0, kNoHit};
+  const auto triangles = [&](const TraceOptions& options) {
+    std::vector<std::uint32_t> result;
+    for (const GlHit& hit : trace(library(), rayScene, rays, options)) result.push_back(hit.triangle);
+    return result;
+  };
+  EXPECT_EQ(triangles({.skip = skip}), (std::vector<std::uint32_t>{0, 0, 1, kNoHit, 2, 1, kNoHit}));
+  EXPECT_EQ(triangles({.alphaMasks = true, .skip = skip}), (std::vector<std::uint32_t>{1, 0, 1, kNoHit, 2, 1, kNoHit}));
+  EXPECT_EQ(triangles({.anyHit = true, .skip = skip}), (std::vector<std::uint32_t>{0, 0, 0, kNoHit, 0, 0, kNoHit}));
+  const GlHit hit = trace(library(), rayScene, std::span(rays).first(1))[0];
+  EXPECT_NEAR(hit.t, 1.0f, 1e-6f);
+  EXPECT_NEAR(hit.barycentrics.x, 0.25f, 1e-6f);
+  EXPECT_NEAR(hit.barycentrics.y, 0.25f, 1e-6f);
+}
+
+TEST_F(RayCasterOnGl, TracesNothingOneAndTheDegenerate) {
+  const std::vector<GlRay> rays = randomRays(256, glm::dvec3(0.0), glm::dvec3(1.0), 3);
+  SceneBuilder empty;
+  for (const GlHit& hit : trace(library(), RayScene(empty.scene(), capabilities()), rays)) EXPECT_EQ(hit.triangle, kNoHit);
+  SceneBuilder builder;
+  const int material = builder.material(glm::vec3(0.5f));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  builder.triangle({nan, 0, 0}, {1, 0, 0}, {0, 1, 0}, material);
+  builder.triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, material);
+  builder.triangle({-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, material);
+  const RayScene one(builder.scene(), capabilities());
+  EXPECT_EQ(one.statistics().degenerate, 2u);
+  int met = 0;
+  const std::vector<GlHit> hits = trace(library(), one, rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Twin twin = bruteForce(builder.scene(), one.origin(), rays[i]);
+    EXPECT_EQ(hits[i].triangle, twin.triangle);
+    met += hits[i].triangle == 1u;
+  }
+  EXPECT_GT(met, 50);
+}
+
+TEST_F(RayCasterOnGl, MeetsTheGiantAndTheTinyTheSliverAndTheDuplicate) {
+  SceneBuilder builder;
+  const int material = builder.material(glm::vec3(0.5f));
+  builder.triangle({-1e6, -1e6, -1e3}, {1e6, -1e6, -1e3}, {0, 1e6, -1e3}, material);
+  for (int i = 0; i < 64; ++i) {
+    const double x = 1e-3 * (i % 8) - 4e-3, y = 1e-3 * (i / 8) - 4e-3;
+    builder.triangle({x, y, 0}, {x + 5e-4, y, 0}, {x, y + 5e-4, 1e-4}, material);
+    builder.triangle({x, y, 0}, {x + 5e-4, y, 0}, {x, y + 5e-4, 1e-4}, material);  // the same again
+  }
+  for (int i = 0; i < 50; ++i) builder.triangle({-1, i * 0.01, 1}, {1, i * 0.01, 1}, {1, i * 0.01 + 1e-6, 1}, material);
+  const Scene& scene = builder.scene();
+  const RayScene rayScene(scene, capabilities());
+  std::vector<GlRay> rays = randomRays(4096, glm::dvec3(0.0, 0.0, 2e-3), glm::dvec3(5e-3, 5e-3, 1e-3), 4);
+  for (GlRay& ray : rays) ray.direction = glm::vec3(0.1f * ray.direction.x, 0.1f * ray.direction.y, -1.0f);
+  for (int i = 0; i < 1000; ++i) rays.push_back({glm::vec3(0.001f * static_cast<float>(i) - 0.5f, 0.25f + 2.5e-7f, 2), 0.0f, glm::vec3(0, 0, -1)});
+  const std::vector<GlHit> hits = trace(library(), rayScene, rays);
+  std::vector<GlHit> twins;
+  for (const GlRay& ray : rays) {
+    const Twin twin = bruteForce(scene, rayScene.origin(), ray);
+    twins.push_back({static_cast<float>(twin.t), twin.triangle, glm::vec2(0.0f)});
+  }
+  std::size_t wrong = 0, tiny = 0, slivers = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    tiny += hits[i].triangle >= 1 && hits[i].triangle < 129;
+    slivers += hits[i].triangle >= 129 && hits[i].triangle != kNoHit;
+    const bool same = hits[i].triangle == twins[i].triangle || std::abs(hits[i].t - twins[i].t) <= 1e-5f * twins[i].t;
+    const std::uint32_t nearer = hits[i].t < twins[i].t ? hits[i].triangle : twins[i].triangle;
+    wrong += !same && std::abs(meet(scene, rayScene.origin(), rays[i], nearer).inside) > 3e-7;
+  }
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_GT(tiny, 250u);
+  EXPECT_GT(slivers, 300u);
+}
+
+TEST_F(RayCasterOnGl, OutlivesFansAndNestedBoxes) {
+  // A hundred thousand triangles about one corner: all boxes overlap there.
+  SceneBuilder fan, nested;
+  const int material = fan.material(glm::vec3(0.5f));
+  constexpr int kFan = 100000;
+  const auto rim = [](int i) {
+    const double angle = 2.0 * std::numbers::pi * i / kFan;
+    return glm::dvec3(std::cos(angle), std::sin(angle), 0.3 * std::sin(20.0 * angle));
+  };
+  for (int i = 0; i < kFan; ++i) fan.triangle({0, 0, 0}, rim(i), rim((i + 1) % kFan), material);
+  nested.material(glm::vec3(0.5f));
+  for (int i = 0; i < 1000; ++i) {  // not smaller than what a float ray can aim at
+    const double s = std::pow(0.99, i);
+    nested.triangle({s, 0, 0}, {0, s, 0}, {0, 0, s}, 0);
+    nested.triangle({-s, 0, 0}, {0, -s, 0}, {0, 0, -s}, 0);
+  }
+  for (const Scene* scene : {&fan.scene(), &nested.scene()}) {
+    const RayScene rayScene(*scene, capabilities());
+    EXPECT_LE(rayScene.statistics().depth, BVH_MAX_DEPTH);
+    std::vector<GlRay> rays = randomRays(200, glm::dvec3(0.0), glm::dvec3(1.0), 5);
+    for (GlRay& ray : rays)
+      if (&ray - rays.data() < 100) ray.direction = -ray.origin * 2.0f;  // through the middle
+    const std::vector<GlHit> hits = trace(library(), rayScene, rays);
+    std::vector<GlHit> twins;
+    for (const GlRay& ray : rays) {
+      const Twin twin = bruteForce(*scene, rayScene.origin(), ray);
+      twins.push_back({static_cast<float>(twin.t), twin.triangle, glm::vec2(0.0f)});
+    }
+    const Verdict v = compare(*scene, rayScene, rays, hits, twins);
+    EXPECT_EQ(v.wrong, 0u);
+    EXPECT_GT(v.met, 30u);
+  }
+}
+
+/// A closed ball with bumps, of 4^levels * 8 triangles.
+Scene bumpyBall(int levels, const glm::dvec3& centre) {
+  Scene scene;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+  std::vector<glm::dvec3> points{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  std::vector<std::uint32_t> indices{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  for (int level = 0; level < levels; ++level) {
+    std::vector<std::uint32_t> finer;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [it, isNew] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(points.size()));
+      if (isNew) points.push_back(glm::normalize(points[a] + points[b]));
+      return it->second;
+    };
+    for (std::size_t t = 0; t < indices.size(); t += 3) {
+      const std::uint32_t a = indices[t], b = indices[t + 1], c = indices[t + 2], ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      finer.insert(finer.end(), {a, ab, ca, b, bc, ab, c, ca, bc, ab, bc, ca});
+    }
+    indices = finer;
+  }
+  for (const glm::dvec3& p : points) {
+    Vertex v;
+    v.position = centre + p * (1.0 + 0.1 * std::sin(9.0 * p.x) * std::sin(8.0 * p.y) * std::sin(7.0 * p.z));
+    scene.vertices.push_back(v);
+  }
+  scene.indices = indices;
+  scene.materials.emplace_back();
+  Mesh ball;
+  ball.indexCount = static_cast<std::uint32_t>(indices.size());
+  scene.meshes.push_back(ball);
+  return scene;
+}
+
+TEST_F(RayCasterOnGl, LetsNothingOutOfAClosedMesh) {
+  for (const glm::dvec3& centre : {glm::dvec3(0.0), glm::dvec3(1e4, 1e4, 1e4)}) {
+    const Scene scene = bumpyBall(6, centre);
+    const RayScene rayScene(scene, capabilities());
+    const glm::dvec3 middle = centre - rayScene.origin();
+    constexpr std::size_t kRays = 40000;
+    std::vector<GlRay> rays = randomRays(3 * kRays, middle, glm::dvec3(0.4), 6);
+    std::mt19937 random(7);
+    for (std::size_t i = 0; i < 2 * kRays; ++i) {  // at corners, at the middles of edges
+      const std::size_t t = random() % scene.triangleCount();
+      const auto corner = [&](std::size_t k) { return glm::vec3(glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - rayScene.origin()); };
+      rays[i].direction = (i % 2 ? corner(0) : 0.5f * corner(0) + 0.5f * corner(1)) - rays[i].origin;
+    }
+    std::size_t out = 0;
+    for (const GlHit& hit : trace(library(), rayScene, rays)) out += hit.triangle == kNoHit;
+    EXPECT_EQ(out, 0u) << centre.x;
+  }
+}
+
+TEST_F(RayCasterOnGl, FollowsWhatMoves) {
+  Scene scene = triangleSoup(1000, 0.2, glm::dvec3(0.0), 8);
+  RayScene::Settings settings;
+  settings.moves = true;
+  RayScene moved(scene, capabilities(), settings);
+  const auto check = [&] {
+    moved.update(scene);
+    const RayScene built(scene, capabilities());
+    EXPECT_EQ(moved.origin(), built.origin());
+    const std::vector<GlRay> rays = randomRays(8192, -built.origin(), glm::dvec3(1.5), 9);
+    const std::vector<GlHit> a = trace(library(), moved, rays), b = trace(library(), built, rays);
+    std::size_t differ = 0, met = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) differ += a[i].triangle != b[i].triangle || a[i].t != b[i].t, met += b[i].triangle != kNoHit;
+    EXPECT_EQ(differ, 0u);
+    EXPECT_GT(met, 2000u);
+  };
+  for (Vertex& v : scene.vertices) v.position = glm::vec3(v.position.y, v.position.x * 1.3f, -0.7f * v.position.z);
+  check();
+  scene.vertices[scene.indices[0]].position.x = std::numeric_limits<float>::quiet_NaN();  // is built anew
+  check();
+}
+
+#ifdef LUCERNA_EMBREE
+const std::filesystem::path kShared = std::filesystem::path(LUCERNA_SOURCE_DIR).parent_path() / "shared/assets";
+
+/// Random, along axes, grazing, at edges, at corners: a fifth each.
+std::vector<GlRay> mixedRays(const Scene& scene, const glm::dvec3& shift, std::size_t count, unsigned seed) {
+  std::vector<GlRay> rays = randomRays(count, scene.bounds.centre() - shift, 0.6 * scene.bounds.extent(), seed);
+  std::mt19937 random(seed + 1);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  for (std::size_t i = 0; i < count; ++i) {
+    GlRay& ray = rays[i];
+    const std::size_t t = random() % scene.triangleCount();
+    const auto corner = [&](std::size_t k) { return glm::vec3(glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - shift); };
+    const glm::vec3 a = corner(0), b = corner(1), c = corner(2);
+    if (i % 5 == 1) {
+      const int axis = static_cast<int>(random() % 3);
+      ray.direction = glm::vec3(0.0f);
+      ray.direction[axis] = random() % 2 ? 1.0f : -1.0f;
+    } else if (i % 5 == 2) {  // along a triangle's plane, tilted against it by a thousandth
+      const glm::vec3 n = glm::cross(b - a, c - a), along = (b - a) * (unit(random) - 0.5f) + (c - a) * (unit(random) - 0.5f);
+      if (glm::length(n) > 0.0f && glm::length(along) > 0.0f) {
+        ray.direction = glm::normalize(along) - 1e-3f * glm::normalize(n);
+        ray.origin = (a + b + c) / 3.0f - ray.direction * (unit(random) * static_cast<float>(glm::length(scene.bounds.extent())) * 0.1f);
+      }
+    } else if (i % 5 == 3) {
+      ray.direction = glm::mix(a, b, unit(random)) - ray.origin;
+    } else if (i % 5 == 4) {
+      ray.direction = a - ray.origin;
+    }
+  }
+  return rays;
+}
+
+void agreeWithEmbree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene, std::size_t count) {
+  const RayScene rayScene(scene, capabilities);
+  const EmbreeRays embree(scene, rayScene.origin());
+  const std::vector<GlRay> rays = mixedRays(scene, rayScene.origin(), count, 10);
+  std::vector<PlainRay> plain;
+  for (const GlRay& r : rays) plain.push_back({r.origin, r.tMin, r.direction, r.tMax});
+  std::vector<PlainHit> theirs(rays.size());
+  embree.trace(plain, theirs, false);
+  const std::vector<GlHit> ours = trace(programs, rayScene, rays);
+  const Verdict v = compare(scene, rayScene, rays, ours, theirs);
+  std::cout << scene.name << ": " << rays.size() << " rays, " << v.met << " hit; within rounding of an edge " << v.atEdges << ", Embree missed " << v.theirs << ", we "
+            << v.wrong << "\n";
+  EXPECT_EQ(v.wrong, 0u);
+  EXPECT_GT(v.met, count / 5);
+  EXPECT_LT(v.atEdges, count / 50);
+}
+
+Scene sharedScene(const char* file) {
+  const std::filesystem::path path = kShared / file;
+  return std::filesystem::exists(path) ? loadScene(path) : Scene{};
+}
+
+TEST_F(RayCasterOnGl, AgreesWithEmbreeInSponza) {
+  const Scene scene = sharedScene("crytek-sponza/sponza.obj");
+  if (scene.indices.empty()) GTEST_SKIP() << "no ../shared/assets/crytek-sponza";
+  agreeWithEmbree(library(), capabilities(), scene, 400000);
+}
+
+TEST_F(RayCasterOnGl, AgreesWithEmbreeOnADragonNearAndFar) {
+  Scene scene = sharedScene("stanford/dragon_100k.obj");
+  if (scene.indices.empty()) GTEST_SKIP() << "no ../shared/assets/stanford";
+  agreeWithEmbree(library(), capabilities(), scene, 400000);
+  const glm::dvec3 far = 1e4 * glm::length(scene.bounds.extent()) * glm::dvec3(1.0, -1.0, 0.5);
+  Bounds bounds;
+  for (Vertex& v : scene.vertices) {
+    v.position = glm::dvec3(v.position) + far;
+    bounds.add(glm::dvec3(v.position));
+  }
+  scene.bounds = bounds;
+  scene.name += ", far from the origin";
+  agreeWithEmbree(library(), capabilities(), scene, 200000);
+}
+#endif
 
 }  // namespace
 }  // namespace lucerna
