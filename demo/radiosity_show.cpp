@@ -40,9 +40,9 @@ RadDisplay displayOf(const Options& options) {
   return display;
 }
 
-void walkAround(Host& host, gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, RadDisplay display, const Camera& camera, double extent) {
+void walkAround(Host& host, gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, RadDisplay display, const Camera& camera) {
   watchForInterrupt();
-  FreeCamera freeCamera(camera, 0.08 * extent);
+  FreeCamera freeCamera(camera, 0.08 * diagonalOf(triangles));
   glm::ivec2 size = host.framebufferSize();
   auto view = std::make_unique<RadView>(programs, size);
   view->show(triangles, display);
@@ -91,7 +91,7 @@ int run(const Options& options) {
   gl::ProgramLibrary programs;
   if (options.output.empty()) {
     if (host->kind() != HostKind::window) throwMissingCapability("show: there is no window here; -o OUT.png makes a picture");
-    walkAround(*host, programs, triangles, display, camera, glm::length(cameras.cameras[0].position - camera.position) + 100.0);
+    walkAround(*host, programs, triangles, display, camera);
   } else {
     RadView view(programs, size);
     view.show(triangles, display);

@@ -39,6 +39,9 @@ std::vector<glm::vec3> displayColours(std::span<const RadTriangle> triangles, co
 /// From above one corner into the scene, all of it in view.
 Camera overviewOf(std::span<const RadTriangle> triangles);
 
+/// Of the corners' bounds.
+double diagonalOf(std::span<const RadTriangle> triangles);
+
 class RadView {
  public:
   RadView(gl::ProgramLibrary& programs, glm::ivec2 size);

@@ -156,8 +156,8 @@ void twoChambers(Builder& b) {
   b.rectangle(y, x, z, kPlaster);
   b.rectangle({0, 0, 0}, x, y, kPlaster);
   b.rectangle(z, y, x, kPlaster);
-  b.pierced({0, 0, 0}, y, z, 0.375, 0.35, 0.625, 0.50, kPlaster, true);  // in the left wall
-  b.rectangle(x, z, y, kPlaster);
+  b.rectangle({0, 0, 0}, y, z, kPlaster);
+  b.pierced(x, z, y, 0.35, 0.375, 0.50, 0.625, kPlaster, true);  // in the right wall
   // The wall between, from floor to ceiling, joined to the back wall (z = 0), leaving a gap of 8 units before the front one.
   const double x0 = 23, x1 = 25, end = 20;
   b.rectangle({x0, 0, 0}, {0, 0, end}, {0, h, 0}, kStone);
