@@ -196,7 +196,7 @@ int runRadTables(const CommonOptions& common, double scale) {
                             {"ratio", *sweeps / static_cast<double>(kSweeps)}, {"unit", "sweeps"}, {"renderer", renderer}});
   }
 
-  const int view = scale >= 0.5 ? 64 : 32;
+  const int view = scale >= 0.5 ? 100 : scale >= 0.1 ? 64 : 32;
   const std::vector<Cost> costs = interrupted() ? std::vector<Cost>{} : deviationCosts(programs, view, common.quiet);
   if (!interrupted()) {
     fmt::print("\nDeviations: model 1, threshold 20, reflectance 0.5, {}x{}; against floats, exact map, random roll at {}x{} and the same points\n{:<32}{:>10}{:>10}{:>10}\n", view, view,

@@ -158,7 +158,7 @@ TEST(RadModels, TrianglesAreSmallWellShapedAndFaceTheAir) {
     EXPECT_LT(worst, 2.0) << model;
     EXPECT_GT(source, 0.0) << model;
     EXPECT_LT(source, 0.05 * total) << model;
-    if (model == 1) {
+    if (model != 2) {  // there the ends of columns and boxes that touch something are left out
       EXPECT_LT(glm::length(sum), 1e-4 * total) << "a closed surface's area vectors cancel";
     }
   }
