@@ -21,7 +21,7 @@ struct RadiositySolve {
   bool restart = false;           ///< take no checkpoint up
 };
 
-/// The published program on its own file format. demo/radiosity_original.cpp
+/// The published program on its own file format; --fidelity corrected goes to a function of the same shape beside it. demo/radiosity_original.cpp
 int solveOriginal(const RadiositySolve& options);
 
 Work addRadiosityShow(CLI::App& app);

@@ -143,10 +143,10 @@ TEST_F(RadOriginal, LitCubeShowsThePublishedMapsError) {
     for (int sweep = 0; sweep < 5; ++sweep) EXPECT_TRUE(solver.sweep(p, always));
     double squares = 0.0, most = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < cube.size(); ++i) {
-      const double error = static_cast<double>(p.received[i]) - exact[i];
-      squares += error * error;
+      const double off = static_cast<double>(p.received[i]) - exact[i];
+      squares += off * off;
       sum += exact[i];
-      most = std::max(most, std::abs(error) / exact[i]);
+      most = std::max(most, std::abs(off) / exact[i]);
     }
     const auto count = static_cast<double>(cube.size());
     return std::pair{std::sqrt(squares / count) / (sum / count), most};  // NRMSE, and the worst triangle's own
