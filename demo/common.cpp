@@ -81,7 +81,7 @@ struct Setting {
 #define SETTING(key, meaning, statement)                                                                          \
   Setting {                                                                                                       \
     key, meaning, [](RenderSettings& s, std::optional<float>& exposure, const std::string& k, const std::string& v) { \
-      (void)s, (void)exposure;                                                                                    \
+      (void)s, (void)exposure, (void)k;                                                                                  \
       statement;                                                                                                  \
     }                                                                                                             \
   }
@@ -123,6 +123,23 @@ const Setting kSettings[] = {
             s.gather.fitPlane = parseNumber(k, v, 0.0f, 1e6f)),
     SETTING("rsm.fit-distance", "most distance, in low-resolution steps (8)", s.gather.fitDistance = parseNumber(k, v, 0.0f, 1e6f)),
     SETTING("rsm.show-refused", "paint the pixels that interpolation refused red (off)", s.gather.showRefused = parseSwitch(k, v)),
+    SETTING("radiosity.edge", "longest edge of a patch in scene units (0: a 24th of the scene)", s.radiosity.solution.patches.longestEdge = parseNumber(k, v, 0.0, 1e12)),
+    SETTING("radiosity.resolution", "pixels a side of a hemicube, even (64)", s.radiosity.solution.hemicubes.resolution = 2 * (parseNumber(k, v, 2, 4096) / 2)),
+    SETTING("radiosity.error", "guaranteed relative error of the solution (0.001)", s.radiosity.solution.error = parseNumber(k, v, 1e-12, 10.0)),
+    SETTING("radiosity.solver", "auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room or cg (auto)",
+            s.radiosity.solution.solver = parseRadiositySolver(v)),
+    SETTING("radiosity.refinements", "times that patches are halved where light changes steeply (0)", s.radiosity.solution.refinements = parseNumber(k, v, 0, 8)),
+    SETTING("radiosity.steep", "step from patch to patch that is refined, in parts of the mean (0.1)", s.radiosity.solution.steep = parseNumber(k, v, 1e-6, 1e6)),
+    SETTING("radiosity.memory", "MiB for form factors; more are computed anew (0: half of what is free)",
+            s.radiosity.solution.memoryBytes = static_cast<std::size_t>(parseNumber(k, v, 0, 1 << 30)) << 20),
+    SETTING("radiosity.repair", "reciprocity and row sums put right (on)", s.radiosity.solution.repair = parseSwitch(k, v)),
+    SETTING("radiosity.file", "a solution: loaded where there is one, else saved there", s.radiosity.file = v),
+    SETTING("radiosity.mapping", "tone, linear, log or false-colours (tone)",
+            s.radiosity.mapping = parseChoice(k, v, {RadiosityView::Mapping::tone, RadiosityView::Mapping::linear, RadiosityView::Mapping::logarithmic,
+                                                     RadiosityView::Mapping::falseColours})),
+    SETTING("radiosity.decades", "powers of ten that log and false-colours span (4)", s.radiosity.decades = parseNumber(k, v, 0.1f, 30.0f)),
+    SETTING("radiosity.mesh", "patch edges drawn over (off)", s.radiosity.mesh = parseSwitch(k, v)),
+    SETTING("radiosity.flat", "patches not interpolated (off)", s.radiosity.flat = parseSwitch(k, v)),
     SETTING("shadow.size", "texels a side of the shadow map (2048)", s.shadow.size = parseNumber(k, v, 1, 16384)),
     SETTING("shadow.cascades", "shadow maps of the sun along the view, 1: one for the whole scene (1)",
             s.sunCascades.cascades = parseNumber(k, v, 1, SUN_MAX_CASCADES)),
@@ -153,7 +170,7 @@ std::string deviationsHelp() {
 }
 
 void PictureOptions::declare(CLI::App& app) {
-  app.add_option("--technique", technique, "direct, rsm, lpv or, for render, path")->capture_default_str();
+  app.add_option("--technique", technique, "direct, rsm, lpv, radiosity or, for render, path")->capture_default_str();
   app.add_option("--component", component, "all, direct or indirect")->capture_default_str();
   app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str();
   app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");

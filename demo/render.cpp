@@ -75,6 +75,16 @@ int run(const Options& options) {
   json["left_out"] = renderer.leftOut();
   if (renderer.gather()) json["rsm"] = gatherJson(*renderer.gather());
   if (options.repeat > 1) json["stages"] = stagesJson(renderer.timer().statistics());
+  if (const RadiosityView* view = renderer.radiosity()) {
+    const RadiositySolution& s = view->solution();
+    json["radiosity"] = {{"patches", s.mesh.patches.size()}, {"degenerate", s.mesh.degenerate}, {"solver", nameOf(s.solver)}, {"products", s.progress.products},
+                         {"error_bound", s.progress.errorBound}, {"energy_balance", s.progress.energyBalance}, {"hemicubes", s.hemicubes},
+                         {"hemicube_seconds", s.hemicubeSeconds}, {"solve_seconds", s.solveSeconds}, {"repaired", s.repaired}, {"entries", s.entries}};
+    if (!options.common.quiet)
+      fmt::print("radiosity: {} patches, {} hemicubes in {:.2f} s ({:.0f}/s), solved by {} in {:.1f} products to {:.2g} (guaranteed), energy balance {:.2g}\n",
+                 s.mesh.patches.size(), s.hemicubes, s.hemicubeSeconds, s.hemicubeSeconds > 0.0 ? static_cast<double>(s.hemicubes) / s.hemicubeSeconds : 0.0,
+                 nameOf(s.solver), s.progress.products, s.progress.errorBound, s.progress.energyBalance);
+  }
   options.common.writeJson(json);
   return 0;
 }

@@ -48,11 +48,24 @@ T parseNamed(std::string_view name, std::string_view option, std::initializer_li
 
 }  // namespace
 
+namespace {
+
+std::unique_ptr<RadiosityView> makeRadiosity(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings) {
+  if (settings.technique != Technique::radiosity) return nullptr;
+  using Light = RadiosityView::Light;
+  RadiosityView::Settings view = settings.radiosity;
+  view.light = settings.component == Component::all ? Light::all : settings.component == Component::direct ? Light::direct : Light::indirect;
+  return std::make_unique<RadiosityView>(context, programs, scene, view);
+}
+
+}  // namespace
+
 std::string_view nameOf(Technique technique) {
   switch (technique) {
     case Technique::direct: return "direct";
     case Technique::rsm: return "rsm";
     case Technique::lpv: return "lpv";
+    case Technique::radiosity: return "radiosity";
   }
   return "?";
 }
@@ -67,7 +80,7 @@ std::string_view nameOf(Component component) {
 }
 
 Technique parseTechnique(std::string_view name) {
-  return parseNamed(name, "technique", {Technique::direct, Technique::rsm, Technique::lpv});
+  return parseNamed(name, "technique", {Technique::direct, Technique::rsm, Technique::lpv, Technique::radiosity});
 }
 
 Component parseComponent(std::string_view name) {
@@ -77,12 +90,13 @@ Component parseComponent(std::string_view name) {
 Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings)
     : settings_(settings),
       needs_(analyse(scene)),
-      showsDirect_(needs_.anyLight() && settings.component != Component::indirect),
+      showsDirect_(needs_.anyLight() && settings.component != Component::indirect && settings.technique != Technique::radiosity),
       showsLpv_(settings.technique == Technique::lpv && settings.component != Component::direct && LightPropagationVolume::isNeeded(needs_)),
       showsGather_(settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs_)),
       exposure_(scene.exposure),
       timer_(context.capabilities().softwareRenderer),
-      gpuScene_(scene, needs_, context.capabilities(), settings.textures),
+      radiosity_(makeRadiosity(context, programs, scene, settings)),
+      gpuScene_(radiosity_ ? radiosity_->scene() : scene, needs_, context.capabilities(), settings.textures),
       frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, GL_DYNAMIC_DRAW),
       noAttributes_("full screen") {
   if (scene.sun) sunFrustum_ = fitSunFrustum(scene, scene.sun->direction);
@@ -130,12 +144,17 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     if (showsLpv_) flags.insert(flags.end(), lookup.begin(), lookup.end());
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
   };
-  surfacePrograms_.opaque = loadSurface("surface opaque", false);
-  if (needs_.alphaMasks) surfacePrograms_.masked = loadSurface("surface masked", true);
+  if (radiosity_) {
+    surfacePrograms_ = radiosity_->loadPrograms(programs, gpuScene_);
+  } else {
+    surfacePrograms_.opaque = loadSurface("surface opaque", false);
+    if (needs_.alphaMasks) surfacePrograms_.masked = loadSurface("surface masked", true);
+  }
   depthPrograms_.opaque = &programs.loadRaster("depth opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}});
   if (needs_.alphaMasks)
     depthPrograms_.masked = &programs.loadRaster("depth masked", "forward/depth.vert", "forward/depth.frag", {{"ALPHA_MASK", 1}, {"FROM_SUN", 0}});
-  toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
+  toneMap_ = radiosity_ ? radiosity_->loadMapping(programs) : nullptr;
+  if (!toneMap_) toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
   allocateTargets();
   if (showsGather_) gather_.emplace(programs, gpuScene_, settings.gather, depth_);
 }
@@ -280,6 +299,7 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     if (localLights_) localLights_->bindForShading();
     if (lpv_) lpv_->bindForLookup();
     if (gather_) gather_->irradiance().bind(kGatheredUnit);
+    if (radiosity_) radiosity_->bind();
     gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
   }
 
@@ -331,6 +351,7 @@ std::size_t Renderer::gpuBytes() const {
   for (const ReflectiveShadowMap& rsm : rsms_) bytes += rsm.gpuBytes();
   if (lpv_) bytes += lpv_->gpuBytes();
   if (gather_) bytes += gather_->gpuBytes();
+  if (radiosity_) bytes += radiosity_->gpuBytes();
   return bytes;
 }
 
@@ -344,6 +365,7 @@ std::vector<std::string> Renderer::leftOut() const {
   if (!localLights_ || !localLights_->hasPoints()) names.emplace_back("point shadow maps");
   if (rsms_.empty()) names.emplace_back("reflective shadow map");
   if (!gather_) names.emplace_back("rsm gather");
+  if (!radiosity_) names.emplace_back("radiosity");
   if (!lpv_) names.emplace_back("light propagation volume");
   else if (!lpv_->geometryVolume()) names.emplace_back("geometry volume");
   return names;

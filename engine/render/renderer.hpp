@@ -13,10 +13,12 @@
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "pathtracer/path_deviations.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 #include "rsm/rsm_gather.hpp"
 #include "scene/needs.hpp"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,7 +26,7 @@
 
 namespace lucerna {
 
-enum class Technique { direct, rsm, lpv };
+enum class Technique { direct, rsm, lpv, radiosity };
 enum class Component { all, direct, indirect };
 
 std::string_view nameOf(Technique technique);
@@ -45,6 +47,7 @@ struct RenderSettings {
   RsmGather::Settings gather;
   LightPropagationVolume::Settings lpv;
   PathDeviations path;                 ///< of the path tracer, which renders by itself
+  RadiosityView::Settings radiosity;   ///< `light` is not read: the component says it
 };
 
 class Renderer {
@@ -70,6 +73,7 @@ class Renderer {
   const SceneNeeds& needs() const { return needs_; }
   const RenderSettings& settings() const { return settings_; }
   const LightPropagationVolume* lpv() const { return lpv_ ? &*lpv_ : nullptr; }
+  const RadiosityView* radiosity() const { return radiosity_.get(); }
   const RsmGather* gather() const { return gather_ ? &*gather_ : nullptr; }
   /// Waits for everything still on its way, times and counts; for the end of a run, not for a frame.
   void drain();
@@ -87,6 +91,7 @@ class Renderer {
   bool showsLpv_, showsGather_;
   float exposure_;
   gl::TimeQuery timer_;
+  std::unique_ptr<RadiosityView> radiosity_;  ///< before gpuScene_, which draws its patches
   GpuScene gpuScene_;
   SunFrustum sunFrustum_;
   gl::Buffer frameConstants_;

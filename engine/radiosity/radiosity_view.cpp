@@ -1,0 +1,72 @@
+#include "radiosity/radiosity_view.hpp"
+
+#include "base/log.hpp"
+
+namespace lucerna {
+
+namespace {
+
+constexpr GLuint kLightBinding = 0;
+
+RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiosityView::Settings& settings) {
+  if (!settings.file.empty() && std::filesystem::exists(settings.file)) return loadSolution(settings.file, scene);
+  std::filesystem::path checkpoint = settings.file;
+  if (!checkpoint.empty()) checkpoint += ".part";
+  RadiositySolution solution = solveScene(context, programs, scene, settings.solution, checkpoint);
+  if (!settings.file.empty()) saveSolution(settings.file, scene, solution);
+  return solution;
+}
+
+}  // namespace
+
+std::string_view nameOf(RadiosityView::Mapping mapping) {
+  switch (mapping) {
+    case RadiosityView::Mapping::tone: return "tone";
+    case RadiosityView::Mapping::linear: return "linear";
+    case RadiosityView::Mapping::logarithmic: return "log";
+    case RadiosityView::Mapping::falseColours: return "false-colours";
+  }
+  return "?";
+}
+
+RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings)
+    : settings_(settings), solution_(solveOrLoad(context, programs, scene, settings)), lit_(litScene(scene, solution_.mesh)) {
+  std::vector<glm::dvec3> patchLight = solution_.irradiance;
+  for (std::size_t i = 0; i < patchLight.size(); ++i) {
+    if (settings.light == Light::direct) patchLight[i] = solution_.direct[i];
+    if (settings.light == Light::indirect) patchLight[i] -= solution_.direct[i];
+  }
+  const std::vector<glm::vec3> atVertices = interpolatedToVertices(solution_, patchLight);
+  std::vector<float> corners;
+  corners.reserve(9 * patchLight.size());
+  for (std::size_t i = 0; i < patchLight.size(); ++i)
+    for (const std::uint32_t vertex : solution_.mesh.patches[i].light) {
+      const glm::vec3 value = settings.flat ? glm::vec3(patchLight[i]) : atVertices[vertex];
+      for (int c = 0; c < 3; ++c) corners.push_back(value[c]);
+    }
+  light_ = gl::Buffer("radiosity light", corners.size() * sizeof(float), corners.data(), GL_STATIC_DRAW);
+}
+
+SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene) const {
+  const auto load = [&](const char* name, bool masked) {
+    gl::ShaderFlags flags = gpuScene.materialFlags(masked);
+    flags.insert(flags.end(), {{"EMISSION", gpuScene.needs().emission && settings_.light != Light::indirect}, {"MESH", settings_.mesh}});
+    return &programs.loadRaster(name, "radiosity/view.vert", "radiosity/view.frag", flags);
+  };
+  SurfacePrograms result;
+  result.opaque = load("radiosity opaque", false);
+  if (gpuScene.needs().alphaMasks) result.masked = load("radiosity masked", true);
+  return result;
+}
+
+const gl::Program* RadiosityView::loadMapping(gl::ProgramLibrary& programs) const {
+  if (settings_.mapping == Mapping::tone) return nullptr;
+  const gl::Program& program = programs.loadRaster("radiosity display", "lib/fullscreen.vert", "radiosity/display.frag", {{"MAPPING", static_cast<int>(settings_.mapping)}});
+  program.use();
+  program.set("decades", settings_.decades);
+  return &program;
+}
+
+void RadiosityView::bind() const { light_.bind(GL_SHADER_STORAGE_BUFFER, kLightBinding); }
+
+}  // namespace lucerna

@@ -1,0 +1,54 @@
+// A radiosity solution in the frame: solved or loaded once, then shown from anywhere in real time.
+//
+// Input: a Scene. Output, each frame: radiance of the patches into the bound target, irradiance interpolated between light vertices (never across an
+// edge or to another material) and multiplied by the texture.
+#pragma once
+
+#include "gl/context.hpp"
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+#include "forward/gpu_scene.hpp"
+#include "radiosity/solution.hpp"
+
+#include <filesystem>
+#include <string_view>
+
+namespace lucerna {
+
+class RadiosityView {
+ public:
+  enum class Mapping { tone, linear, logarithmic, falseColours };  ///< tone: the engine's own
+  enum class Light { all, direct, indirect };                      ///< direct: of lamps that are no patches
+
+  struct Settings {
+    RadiositySolutionSettings solution;
+    std::filesystem::path file;  ///< loaded where there is one, else saved here once solved; empty: neither
+    Mapping mapping = Mapping::tone;
+    float decades = 4.0f;        ///< that logarithmic and false colours span below 1 / exposure
+    bool mesh = false;           ///< patch edges drawn over
+    bool flat = false;           ///< patches as they are, not interpolated
+    Light light = Light::all;
+  };
+
+  /// Solves or loads; throws as solveScene and loadSolution do.
+  RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings);
+
+  /// What GpuScene is to draw: the patches.
+  const Scene& scene() const { return lit_; }
+  const RadiositySolution& solution() const { return solution_; }
+  /// Programs for GpuScene::draw with depth equal, and the display mapping (null: the engine's).
+  SurfacePrograms loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene) const;
+  const gl::Program* loadMapping(gl::ProgramLibrary& programs) const;
+  void bind() const;  ///< before drawing
+  std::size_t gpuBytes() const { return light_.bytes(); }
+
+ private:
+  Settings settings_;
+  RadiositySolution solution_;
+  Scene lit_;
+  gl::Buffer light_;
+};
+
+std::string_view nameOf(RadiosityView::Mapping mapping);
+
+}  // namespace lucerna

@@ -1,0 +1,156 @@
+#include "radiosity/row_file.hpp"
+
+#include "base/error.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace lucerna {
+
+namespace {
+
+constexpr char kMagic[8] = {'L', 'U', 'C', 'R', 'O', 'W', 'S', '\n'};
+constexpr std::uint32_t kVersion = 1;
+
+struct Header {
+  char magic[8];
+  std::uint32_t version, patches;
+  std::uint64_t fingerprint;
+};
+struct BlockHeader {
+  std::uint32_t first, rows;
+  std::uint64_t entries, checksum;  ///< of all that follows in the block, and of the three before
+};
+
+std::uint64_t checksumOf(const BlockHeader& header, std::span<const std::uint8_t> data) {
+  Fingerprint sum;
+  sum.add(header.first);
+  sum.add(header.rows);
+  sum.add(header.entries);
+  sum.add(data.data(), data.size());
+  return sum.value();
+}
+
+std::size_t dataBytes(const BlockHeader& h) { return 12 * static_cast<std::size_t>(h.rows) + 8 * static_cast<std::size_t>(h.entries); }
+
+bool readAll(int descriptor, void* data, std::size_t bytes) {
+  auto* at = static_cast<std::uint8_t*>(data);
+  while (bytes > 0) {
+    const ssize_t got = ::read(descriptor, at, bytes);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    at += got;
+    bytes -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+}  // namespace
+
+void Fingerprint::add(const void* data, std::size_t bytes) {
+  const auto* at = static_cast<const std::uint8_t*>(data);
+  for (std::size_t i = 0; i < bytes; ++i) value_ = (value_ ^ at[i]) * 0x100000001b3u;
+}
+
+RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches, const std::function<void(const FormFactorRows&)>& take) : file_(file) {
+  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) throwBadInput("{}: cannot be opened for writing: {}", file.string(), std::strerror(errno));
+  const auto refuse = [&](const char* why) {
+    ::close(descriptor_);
+    descriptor_ = -1;
+    throwBadInput("{}: {}; remove it to begin anew", file.string(), why);
+  };
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) refuse("is no plain file");
+  Header header{};
+  if (status.st_size > 0) {
+    if (!readAll(descriptor_, &header, sizeof header)) {
+      // Killed before its first bytes were down, or something else's: only a beginning of our own magic is ours to write over.
+      char start[sizeof kMagic] = {};
+      const auto got = static_cast<std::size_t>(std::max<ssize_t>(::pread(descriptor_, start, sizeof start, 0), 0));
+      if (std::memcmp(start, kMagic, got) != 0) refuse("is no checkpoint of radiosity");
+      header = {};
+    } else {
+      if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) refuse("is no checkpoint of radiosity");
+      if (header.version != kVersion) refuse("is a checkpoint of another version of this program");
+      if (header.fingerprint != fingerprint || header.patches != patches) refuse("is the checkpoint of another scene or of other settings");
+    }
+  }
+  end_ = header.version ? sizeof(Header) : 0;
+  if (end_ > 0) {
+    std::uint32_t expected = 0;
+    for (;;) {
+      BlockHeader block{};
+      if (!readAll(descriptor_, &block, sizeof block) || block.first != expected || block.rows == 0 || block.rows > patches - expected ||
+          block.entries > static_cast<std::uint64_t>(block.rows) * patches || end_ + sizeof block + dataBytes(block) > static_cast<std::uint64_t>(status.st_size))
+        break;
+      std::vector<std::uint8_t> data(dataBytes(block));
+      if (!readAll(descriptor_, data.data(), data.size()) || checksumOf(block, data) != block.checksum) break;
+      FormFactorRows rows;
+      rows.first = static_cast<int>(block.first);
+      const std::uint8_t* at = data.data();
+      const auto get = [&](auto& values, std::size_t count) {
+        values.resize(count);
+        std::memcpy(values.data(), at, 4 * count);
+        at += 4 * count;
+      };
+      get(rows.counts, block.rows);
+      get(rows.fronts, block.rows);
+      get(rows.backs, block.rows);
+      get(rows.patches, block.entries);
+      get(rows.factors, block.entries);
+      take(rows);
+      expected += block.rows;
+      end_ += sizeof block + data.size();
+    }
+  }
+  if (::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) throwBadInput("{}: {}", file.string(), std::strerror(errno));
+  ::lseek(descriptor_, static_cast<off_t>(end_), SEEK_SET);
+  if (end_ == 0) {
+    std::memcpy(header.magic, kMagic, sizeof kMagic);
+    header.version = kVersion;
+    header.patches = patches;
+    header.fingerprint = fingerprint;
+    if (::write(descriptor_, &header, sizeof header) != static_cast<ssize_t>(sizeof header)) refuse("cannot be written: is the disk full?");
+    end_ = sizeof header;
+  }
+}
+
+RowFile::~RowFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void RowFile::append(const FormFactorRows& rows) {
+  BlockHeader block{static_cast<std::uint32_t>(rows.first), static_cast<std::uint32_t>(rows.counts.size()), rows.patches.size(), 0};
+  std::vector<std::uint8_t> bytes(sizeof block + dataBytes(block));
+  std::uint8_t* at = bytes.data() + sizeof block;
+  const auto put = [&](const auto& values) {
+    std::memcpy(at, values.data(), 4 * values.size());
+    at += 4 * values.size();
+  };
+  put(rows.counts);
+  put(rows.fronts);
+  put(rows.backs);
+  put(rows.patches);
+  put(rows.factors);
+  block.checksum = checksumOf(block, std::span(bytes).subspan(sizeof block));
+  std::memcpy(bytes.data(), &block, sizeof block);
+  const std::uint8_t* from = bytes.data();
+  for (std::size_t left = bytes.size(); left > 0;) {
+    const ssize_t put_ = ::write(descriptor_, from, left);
+    if (put_ < 0 && errno == EINTR) continue;
+    if (put_ <= 0) {
+      const std::string reason = std::strerror(put_ < 0 ? errno : ENOSPC);
+      const bool cut = ::ftruncate(descriptor_, static_cast<off_t>(end_)) == 0;
+      throwBadInput("{}: {}; {} rows are kept in it{}", file_.string(), reason, rows.first, cut ? "" : ", its end is to be ignored");
+    }
+    from += put_;
+    left -= static_cast<std::size_t>(put_);
+  }
+  end_ += bytes.size();
+}
+
+}  // namespace lucerna

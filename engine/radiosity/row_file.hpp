@@ -1,0 +1,48 @@
+// Rows of the form factor matrix on disk, appended submission by submission (no GL): what a killed run leaves for the next.
+//
+// A header (magic, version, fingerprint, patches), then blocks, each with its own length and checksum. A block that was cut short or damaged
+// ends the file: it and what follows is computed again.
+#pragma once
+
+#include "radiosity/hemicubes.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+namespace lucerna {
+
+class RowFile {
+ public:
+  /// Opens or makes the file; calls `take` for each whole block there is, in order. Throws Error(badInput) when the file is no row file, of
+  /// another version, or of another scene or settings (`fingerprint`); it is left as it was then.
+  RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches, const std::function<void(const FormFactorRows&)>& take);
+  ~RowFile();
+  RowFile(const RowFile&) = delete;
+  RowFile& operator=(const RowFile&) = delete;
+
+  /// Rows must follow those before. On a full disk the file is cut back to its last whole block and Error(badInput) says so.
+  void append(const FormFactorRows& rows);
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+  std::uint64_t end_ = 0;  ///< of the last whole block
+};
+
+/// FNV-1a, 64 bits.
+class Fingerprint {
+ public:
+  void add(const void* data, std::size_t bytes);
+  template <class T>
+  void add(const T& value) {
+    static_assert(std::is_standard_layout_v<T>);
+    add(&value, sizeof value);
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325u;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,397 @@
+#include "radiosity/solution.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/log.hpp"
+#include "radiosity/direct_light.hpp"
+#include "radiosity/form_factor_matrix.hpp"
+#include "radiosity/row_file.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <unistd.h>
+#include <unordered_map>
+
+namespace lucerna {
+
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+constexpr std::size_t kBytesPerEntry = 32;  // of a form factor, its mirrored copy and their mean, while they are repaired
+
+std::size_t freeMemory() {
+  return static_cast<std::size_t>(std::max(sysconf(_SC_AVPHYS_PAGES), 1L)) * static_cast<std::size_t>(std::max(sysconf(_SC_PAGESIZE), 1L));
+}
+
+std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings& s) {
+  Fingerprint f;
+  for (const Patch& patch : mesh.patches) {
+    for (const glm::dvec3& corner : mesh.corners(patch)) f.add(corner);
+    f.add(patch.emission != glm::dvec3(0.0));
+  }
+  f.add(s.resolution);
+  f.add(s.map);
+  f.add(s.randomRoll);
+  f.add(s.seed);
+  f.add(s.exactPixels);
+  f.add(s.nearDistance);
+  f.add(s.mostParts);
+  return f.value();
+}
+
+void append(FormFactorMatrix& matrix, const FormFactorRows& rows) {
+  std::size_t at = 0;
+  for (const std::uint32_t count : rows.counts) {
+    matrix.appendRow(std::span(rows.patches).subspan(at, count), std::span(rows.factors).subspan(at, count));
+    at += count;
+  }
+}
+
+/// One mesh solved: direct light, form factors, system.
+void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& settings, int refinement,
+               const std::filesystem::path& checkpoint, const std::function<bool(const RadiosityStage&)>& onStage, RadiositySolution& solution) {
+  const RadiosityMesh& mesh = solution.mesh;
+  const std::size_t n = mesh.patches.size();
+  const auto stage = [&](RadiosityStage::Kind kind, std::size_t done, const RadiosityProgress& progress = {}) {
+    return !onStage || onStage({kind, refinement, done, n, progress});
+  };
+  stage(RadiosityStage::Kind::direct, 0);
+  solution.direct = directLight(programs, scene, mesh);
+
+  FormFactorMatrix matrix;
+  solution.fronts.clear();
+  solution.backs.clear();
+  const auto take = [&](const FormFactorRows& rows, bool keep) {
+    if (keep) append(matrix, rows);
+    solution.fronts.insert(solution.fronts.end(), rows.fronts.begin(), rows.fronts.end());
+    solution.backs.insert(solution.backs.end(), rows.backs.begin(), rows.backs.end());
+  };
+  Hemicubes hemicubes(programs, context.capabilities(), mesh, settings.hemicubes);
+  const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
+  std::unique_ptr<RowFile> file;
+  if (!checkpoint.empty())
+    file = std::make_unique<RowFile>(checkpoint, rowsFingerprint(mesh, settings.hemicubes), static_cast<std::uint32_t>(n), [&](const FormFactorRows& rows) { take(rows, true); });
+  bool kept = true, stopped = false;
+  double start = now();
+  for (std::size_t first = solution.fronts.size(); first < n && !stopped;) {
+    const FormFactorRows rows = hemicubes.rows(static_cast<int>(first), static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
+    take(rows, kept);
+    if (file && kept) file->append(rows);
+    first += rows.counts.size();
+    solution.hemicubes += rows.counts.size();
+    if (kept && static_cast<double>(matrix.entryCount()) * static_cast<double>(n) / static_cast<double>(first) * static_cast<double>(kBytesPerEntry) > static_cast<double>(memory)) {
+      logWarning("radiosity: the form factors of {} patches need about {} MiB, there are {}: they are computed anew for each product", n,
+                 static_cast<std::size_t>(static_cast<double>(matrix.entryCount()) / static_cast<double>(first) * static_cast<double>(n)) * kBytesPerEntry >> 20, memory >> 20);
+      kept = false;
+      matrix = {};
+    }
+    stopped = !stage(RadiosityStage::Kind::formFactors, first);
+  }
+  solution.hemicubeSeconds += now() - start;
+  solution.keptRows = kept;
+  if (stopped) throwBadInput("radiosity: stopped after {} of {} patches{}", solution.fronts.size(), n, checkpoint.empty() ? "" : "; the next run goes on from there");
+
+  start = now();
+  RadiositySystem system;
+  std::vector<double> fronts;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Patch& patch = mesh.patches[i];
+    system.areas.push_back(patch.area);
+    system.reflectance.push_back(patch.reflectance);
+    system.emission.push_back(patch.emission + patch.reflectance * solution.direct[i]);
+    fronts.push_back(std::min(static_cast<double>(solution.fronts[i]), 1.0));
+  }
+  if (kept) {
+    const std::vector<double> before = matrix.rowSums();
+    double off = 0.0;
+    for (std::size_t i = 0; i < n; ++i) off += std::abs(before[i] - fronts[i]);
+    solution.repaired = off / static_cast<double>(n);
+    if (settings.repair) {
+      matrix.repair(system.areas, fronts);
+      system.reciprocal = true;
+    }
+    system.matrix = &matrix;
+    system.rowSums = matrix.rowSums();
+    for (double& sum : system.rowSums) sum = std::min(sum, settings.repair ? 1.0 : 1e300);
+    solution.entries = matrix.entryCount();
+    system.product = [&](auto x, auto y) { matrix.multiply(x, y); };
+  } else {
+    // Each product draws all hemicubes again; rows are scaled to their share of fronts, reciprocity is as hemicubes have it.
+    system.rowSums = fronts;
+    system.product = [&](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
+      for (std::size_t first = 0; first < n;) {
+        const FormFactorRows rows = hemicubes.rows(static_cast<int>(first), static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
+        std::size_t at = 0;
+        for (std::size_t k = 0; k < rows.counts.size(); ++k) {
+          glm::dvec3 sum(0.0);
+          double whole = 0.0;
+          for (std::size_t end = at + rows.counts[k]; at < end; ++at) {
+            sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
+            whole += static_cast<double>(rows.factors[at]);
+          }
+          y[first + k] = whole > 0.0 ? sum * (fronts[first + k] / whole) : glm::dvec3(0.0);
+        }
+        first += rows.counts.size();
+        solution.hemicubes += rows.counts.size();
+        if (!stage(RadiosityStage::Kind::formFactors, first)) throwBadInput("radiosity: stopped while rows were computed anew");
+      }
+    };
+  }
+  SolverSettings solver;
+  solver.solver = settings.solver;
+  solver.error = settings.error;
+  solver.mostProducts = settings.mostProducts;
+  solver.onStep = [&](const RadiosityProgress& p) { return stage(RadiosityStage::Kind::solving, n, p); };
+  RadiositySolved solved = solveRadiosity(system, solver);
+  solution.exitance = std::move(solved.exitance);
+  solution.irradiance = std::move(solved.irradiance);
+  for (std::size_t i = 0; i < n; ++i) solution.irradiance[i] += solution.direct[i];
+  solution.progress = solved.progress;
+  solution.solver = solved.solver;
+  solution.reached = solved.reached;
+  solution.solveSeconds += now() - start;
+  if (file) {
+    file.reset();
+    std::error_code ignored;
+    std::filesystem::remove(checkpoint, ignored);
+  }
+}
+
+double mean3(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
+
+/// Patches on both sides of a step in the light, and those along it, are marked.
+RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution, const PatchSettings& patches, double steep, double shortest) {
+  const RadiosityMesh& mesh = solution.mesh;
+  double mean = 0.0, area = 0.0;
+  for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
+    mean += mesh.patches[i].area * mean3(solution.irradiance[i]);
+    area += mesh.patches[i].area;
+  }
+  mean /= area;
+  std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::size_t>> across;  // light vertices of an edge: patch and edge
+  std::vector<bool> steepPatch(mesh.patches.size(), false);
+  for (std::size_t i = 0; i < mesh.patches.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = mesh.patches[i].light[k], b = mesh.patches[i].light[(k + 1) % 3];
+      const std::uint64_t key = static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+      const auto [it, fresh] = across.try_emplace(key, std::pair{static_cast<std::uint32_t>(i), k});
+      if (fresh) continue;
+      const std::size_t other = it->second.first;
+      const double step = std::abs(mean3(solution.irradiance[i]) - mean3(solution.irradiance[other]));
+      if (step > steep * mean) steepPatch[i] = steepPatch[other] = true;
+    }
+  return refined(scene, mesh, patches, [&](std::size_t i, int k) {
+    const auto c = mesh.corners(mesh.patches[i]);
+    return steepPatch[i] && glm::length(c[static_cast<std::size_t>((k + 1) % 3)] - c[static_cast<std::size_t>(k)]) > 2.0 * shortest;
+  });
+}
+
+}  // namespace
+
+RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& settings,
+                             const std::filesystem::path& checkpoint, const std::function<bool(const RadiosityStage&)>& onStage) {
+  PatchSettings patches = settings.patches;
+  const glm::dvec3 extent = scene.bounds.extent();
+  const double largest = std::max({extent.x, extent.y, extent.z});
+  if (patches.longestEdge <= 0.0) patches.longestEdge = largest / 24.0;
+  if (settings.wholeTriangles) patches.longestEdge = 0.0;
+  RadiositySolution solution;
+  solution.mesh = makePatches(scene, patches);
+  const double shortest = (patches.longestEdge > 0.0 ? patches.longestEdge : largest / 24.0) / std::pow(2.0, settings.refinements + 1);
+  for (int refinement = 0;; ++refinement) {
+    std::filesystem::path file = checkpoint;
+    if (!file.empty() && refinement > 0) file += fmt::format(".{}", refinement);
+    solveMesh(context, programs, scene, settings, refinement, file, onStage, solution);
+    if (refinement >= settings.refinements) return solution;
+    RadiosityMesh finer = refineSteep(scene, solution, patches, settings.steep, shortest);
+    if (finer.patches.size() == solution.mesh.patches.size()) return solution;
+    solution.mesh = std::move(finer);
+  }
+}
+
+std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution, std::span<const glm::dvec3> ofPatches) {
+  std::vector<glm::dvec3> sum(solution.mesh.lightVertices, glm::dvec3(0.0));
+  std::vector<double> weight(sum.size(), 0.0);
+  for (std::size_t i = 0; i < solution.mesh.patches.size(); ++i) {
+    const Patch& patch = solution.mesh.patches[i];
+    const double seesFronts = std::max(1.0 - static_cast<double>(solution.backs[i]), 0.0);
+    const double w = patch.area * (1e-6 + seesFronts * seesFronts * seesFronts);
+    for (const std::uint32_t v : patch.light) {
+      sum[v] += w * ofPatches[i];
+      weight[v] += w;
+    }
+  }
+  std::vector<glm::vec3> values;
+  for (std::size_t v = 0; v < sum.size(); ++v) values.emplace_back(weight[v] > 0.0 ? sum[v] / weight[v] : glm::dvec3(0.0));
+  return values;
+}
+
+Scene litScene(const Scene& scene, const RadiosityMesh& mesh) {
+  Scene lit = scene;
+  lit.vertices.clear();
+  lit.indices.clear();
+  lit.meshes.clear();
+  for (const Patch& patch : mesh.patches)
+    for (std::size_t k = 0; k < 3; ++k) lit.vertices.push_back({glm::vec3(mesh.points[patch.point[k]]), patch.texCoord[k], patch.normal[k]});
+  std::vector<std::vector<std::uint32_t>> ofMaterial(scene.materials.size());
+  for (std::uint32_t i = 0; i < mesh.patches.size(); ++i) ofMaterial[static_cast<std::size_t>(mesh.patches[i].material)].push_back(i);
+  for (std::size_t m = 0; m < ofMaterial.size(); ++m) {
+    if (ofMaterial[m].empty()) continue;
+    Mesh& part = lit.meshes.emplace_back();
+    part.name = scene.materials[m].name;
+    part.firstIndex = static_cast<std::uint32_t>(lit.indices.size());
+    part.indexCount = static_cast<std::uint32_t>(3 * ofMaterial[m].size());
+    part.material = static_cast<int>(m);
+    for (const std::uint32_t patch : ofMaterial[m])
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        lit.indices.push_back(3 * patch + k);
+        part.bounds.add(glm::dvec3(lit.vertices[3 * patch + k].position));
+      }
+  }
+  return lit;
+}
+
+// ---------------------------------------------------------------------------------------------------- files
+
+namespace {
+
+constexpr char kMagic[8] = {'L', 'U', 'C', 'L', 'I', 'G', 'H', 'T'};
+constexpr std::uint32_t kVersion = 1;
+
+struct FileHeader {
+  char magic[8];
+  std::uint32_t version, solver;
+  std::uint64_t scene, points, patches, lightVertices, checksum;
+  double products, residual, errorBound, energyBalance, extent;
+};
+struct FilePatch {
+  std::uint32_t point[3], light[3];
+  float texCoord[6], normal[9];
+  std::int32_t material;
+  std::uint32_t triangle;
+  float fronts, backs;
+  double centroid[3], faceNormal[3], area, reflectance[3], emission[3], direct[3], irradiance[3], exitance[3];
+};
+
+}  // namespace
+
+std::uint64_t fingerprint(const Scene& scene) {
+  Fingerprint f;
+  for (const Vertex& v : scene.vertices) f.add(v.position), f.add(v.texCoord);
+  f.add(scene.indices.data(), scene.indices.size() * sizeof(std::uint32_t));
+  for (const Mesh& mesh : scene.meshes) f.add(mesh.material), f.add(mesh.indexCount);
+  for (const Material& m : scene.materials) f.add(m.diffuse), f.add(m.emission);
+  for (const Texture& t : scene.textures) f.add(t.bitmap.rgba.data(), t.bitmap.rgba.size());
+  if (scene.sun) f.add(scene.sun->direction), f.add(scene.sun->irradiance);
+  for (const SpotLight& l : scene.spots) f.add(l.position), f.add(l.direction), f.add(l.intensity), f.add(l.innerAngle), f.add(l.outerAngle);
+  for (const PointLight& l : scene.points) f.add(l.position), f.add(l.intensity);
+  return f.value();
+}
+
+void saveSolution(const std::filesystem::path& file, const Scene& scene, const RadiositySolution& s) {
+  std::vector<FilePatch> patches(s.mesh.patches.size());
+  std::memset(static_cast<void*>(patches.data()), 0, patches.size() * sizeof(FilePatch));
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const Patch& from = s.mesh.patches[i];
+    FilePatch& to = patches[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      to.point[k] = from.point[k];
+      to.light[k] = from.light[k];
+      for (int c = 0; c < 2; ++c) to.texCoord[2 * k + static_cast<std::size_t>(c)] = from.texCoord[k][c];
+      for (int c = 0; c < 3; ++c) to.normal[3 * k + static_cast<std::size_t>(c)] = from.normal[k][c];
+      to.centroid[k] = from.centroid[axis];
+      to.faceNormal[k] = from.faceNormal[axis];
+      to.reflectance[k] = from.reflectance[axis];
+      to.emission[k] = from.emission[axis];
+      to.direct[k] = s.direct[i][axis];
+      to.irradiance[k] = s.irradiance[i][axis];
+      to.exitance[k] = s.exitance[i][axis];
+    }
+    to.material = from.material;
+    to.triangle = from.triangle;
+    to.area = from.area;
+    to.fronts = s.fronts[i];
+    to.backs = s.backs[i];
+  }
+  FileHeader header{};
+  std::memcpy(header.magic, kMagic, sizeof kMagic);
+  header.version = kVersion;
+  header.solver = static_cast<std::uint32_t>(s.solver);
+  header.scene = fingerprint(scene);
+  header.points = s.mesh.points.size();
+  header.patches = patches.size();
+  header.lightVertices = s.mesh.lightVertices;
+  header.products = s.progress.products;
+  header.residual = s.progress.residual;
+  header.errorBound = s.progress.errorBound;
+  header.energyBalance = s.progress.energyBalance;
+  header.extent = s.mesh.extent;
+  std::vector<std::uint8_t> bytes(sizeof header + s.mesh.points.size() * sizeof(glm::dvec3) + patches.size() * sizeof(FilePatch));
+  std::uint8_t* at = bytes.data() + sizeof header;
+  std::memcpy(at, s.mesh.points.data(), s.mesh.points.size() * sizeof(glm::dvec3));
+  std::memcpy(at + s.mesh.points.size() * sizeof(glm::dvec3), patches.data(), patches.size() * sizeof(FilePatch));
+  Fingerprint sum;
+  sum.add(at, bytes.size() - sizeof header);
+  header.checksum = sum.value();
+  std::memcpy(bytes.data(), &header, sizeof header);
+  writeFileAtomically(file, std::span<const std::uint8_t>(bytes));
+}
+
+RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& scene) {
+  const std::vector<std::uint8_t> bytes = readFileBytes(file);
+  FileHeader header{};
+  if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) throwBadInput("{}: is no radiosity solution", file.string());
+  std::memcpy(&header, bytes.data(), sizeof header);
+  if (header.version != kVersion) throwBadInput("{}: a solution of version {}, this program reads {}: solve anew", file.string(), header.version, kVersion);
+  if (header.scene != fingerprint(scene)) throwBadInput("{}: the solution of another scene, or of this one before it was changed: solve anew", file.string());
+  const std::size_t most = bytes.size() / sizeof(glm::dvec3) + 1;
+  if (header.points > most || header.patches > most || bytes.size() != sizeof header + header.points * sizeof(glm::dvec3) + header.patches * sizeof(FilePatch))
+    throwBadInput("{}: {} bytes do not fit {} points and {} patches: was it cut short?", file.string(), bytes.size(), header.points, header.patches);
+  const std::uint8_t* at = bytes.data() + sizeof header;
+  Fingerprint sum;
+  sum.add(at, bytes.size() - sizeof header);
+  if (sum.value() != header.checksum) throwBadInput("{}: its checksum is wrong: it is damaged", file.string());
+  RadiositySolution s;
+  s.mesh.points.resize(header.points);
+  std::memcpy(static_cast<void*>(s.mesh.points.data()), at, header.points * sizeof(glm::dvec3));
+  s.mesh.lightVertices = header.lightVertices;
+  s.mesh.extent = header.extent;
+  at += header.points * sizeof(glm::dvec3);
+  const auto vector = [](const double* v) { return glm::dvec3(v[0], v[1], v[2]); };
+  for (std::size_t i = 0; i < header.patches; ++i) {
+    FilePatch from;
+    std::memcpy(&from, at + i * sizeof from, sizeof from);
+    Patch& to = s.mesh.patches.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (from.point[k] >= header.points || from.light[k] >= header.lightVertices) throwBadInput("{}: patch {} has no such corner", file.string(), i);
+      to.point[k] = from.point[k];
+      to.light[k] = from.light[k];
+      to.texCoord[k] = {from.texCoord[2 * k], from.texCoord[2 * k + 1]};
+      to.normal[k] = {from.normal[3 * k], from.normal[3 * k + 1], from.normal[3 * k + 2]};
+    }
+    if (from.material < 0 || static_cast<std::size_t>(from.material) >= scene.materials.size()) throwBadInput("{}: patch {} has no such material", file.string(), i);
+    to.material = from.material;
+    to.triangle = from.triangle;
+    to.area = from.area;
+    to.centroid = vector(from.centroid);
+    to.faceNormal = vector(from.faceNormal);
+    to.reflectance = vector(from.reflectance);
+    to.emission = vector(from.emission);
+    s.direct.push_back(vector(from.direct));
+    s.irradiance.push_back(vector(from.irradiance));
+    s.exitance.push_back(vector(from.exitance));
+    s.fronts.push_back(from.fronts);
+    s.backs.push_back(from.backs);
+  }
+  s.progress = {header.products, header.residual, header.errorBound, header.energyBalance};
+  s.solver = static_cast<RadiositySolver>(header.solver);
+  s.reached = true;
+  return s;
+}
+
+}  // namespace lucerna

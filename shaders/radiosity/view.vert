@@ -1,0 +1,19 @@
+// A patch's corner seen by the camera, with the irradiance found there. litScene() lists three vertices a patch, so gl_VertexID is 3 * patch + corner.
+#include "lib/frame.glsl"
+invariant gl_Position;
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 texCoord;
+layout(std430, binding = 0) readonly buffer Light { float irradiances[]; };  // three floats a corner
+out vec3 vPosition;
+out vec3 vIrradiance;
+out vec2 vTexCoord;
+out vec3 vCorner;  // barycentric
+
+void main() {
+  int at = 3 * gl_VertexID;
+  vPosition = position;
+  vIrradiance = vec3(irradiances[at], irradiances[at + 1], irradiances[at + 2]);
+  vTexCoord = texCoord;
+  vCorner = vec3(gl_VertexID % 3 == 0, gl_VertexID % 3 == 1, gl_VertexID % 3 == 2);
+  gl_Position = frame.clipFromWorld * vec4(position, 1.0);
+}
