@@ -153,7 +153,7 @@ std::string deviationsHelp() {
 }
 
 void PictureOptions::declare(CLI::App& app) {
-  app.add_option("--technique", technique, "direct, rsm or lpv")->capture_default_str();
+  app.add_option("--technique", technique, "direct, rsm, lpv or, for render, path")->capture_default_str();
   app.add_option("--component", component, "all, direct or indirect")->capture_default_str();
   app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str();
   app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");

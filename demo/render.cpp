@@ -3,6 +3,7 @@
 #include "base/files.hpp"
 #include "commands.hpp"
 #include "render/deviations.hpp"
+#include "render_path.hpp"
 
 #include <fmt/core.h>
 
@@ -17,12 +18,15 @@ namespace {
 struct Options {
   CommonOptions common;
   PictureOptions picture;
+  PathOptions path;
   std::string scene, camera, output;
   int repeat = 1;
 };
 
 int run(const Options& options) {
   options.common.apply();
+  if (options.picture.technique == "path") return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
+  options.path.refuseIfGiven(options.picture.technique);
   std::optional<float> exposure;
   RenderSettings settings = options.picture.parse(exposure);
   settings.fullFloatTarget = true;
@@ -84,6 +88,7 @@ Work addRender(CLI::App& app) {
   app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")->required();
   app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")->check(CLI::Range(1, 100000))->capture_default_str();
   options->picture.declare(app);
+  options->path.declare(app);
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -49,6 +49,7 @@ void Program::set(std::string_view u, unsigned v) const { glProgramUniform1ui(id
 void Program::set(std::string_view u, float v) const { glProgramUniform1f(id_, location(u), v); }
 void Program::set(std::string_view u, const glm::ivec2& v) const { glProgramUniform2iv(id_, location(u), 1, &v.x); }
 void Program::set(std::string_view u, const glm::ivec3& v) const { glProgramUniform3iv(id_, location(u), 1, &v.x); }
+void Program::set(std::string_view u, const glm::uvec4& v) const { glProgramUniform4uiv(id_, location(u), 1, &v.x); }
 void Program::set(std::string_view u, const glm::vec2& v) const { glProgramUniform2fv(id_, location(u), 1, &v.x); }
 void Program::set(std::string_view u, const glm::vec3& v) const { glProgramUniform3fv(id_, location(u), 1, &v.x); }
 void Program::set(std::string_view u, const glm::vec4& v) const { glProgramUniform4fv(id_, location(u), 1, &v.x); }

@@ -66,6 +66,7 @@ class Program {
   void set(std::string_view uniform, float value) const;
   void set(std::string_view uniform, const glm::ivec2& value) const;
   void set(std::string_view uniform, const glm::ivec3& value) const;
+  void set(std::string_view uniform, const glm::uvec4& value) const;
   void set(std::string_view uniform, const glm::vec2& value) const;
   void set(std::string_view uniform, const glm::vec3& value) const;
   void set(std::string_view uniform, const glm::vec4& value) const;

@@ -1,0 +1,176 @@
+// Media and boundaries packed for the shaders; the winding numbers.
+#include "pathtracer/media.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace lucerna {
+
+namespace {
+
+constexpr int kBlockEdge = 8;
+
+bool equalChannels(const glm::vec3& v) { return v.x == v.y && v.y == v.z; }
+double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
+
+void checkCoefficient(const Medium& medium, const char* name, const glm::vec3& value) {
+  for (int c = 0; c < 3; ++c)
+    if (!(std::isfinite(value[c]) && value[c] >= 0.0f && value[c] < 1e30f))
+      throwBadInput("medium {}: {} must be finite and 0 or more, and is {}", medium.name, name, value[c]);
+}
+
+/// The largest of the cells of each block and their neighbours: a bound of what is interpolated between them.
+std::vector<float> blockBounds(const DensityGrid& grid, const glm::ivec3& blocks) {
+  std::vector<float> bounds;
+  for (int bz = 0; bz < blocks.z; ++bz)
+    for (int by = 0; by < blocks.y; ++by)
+      for (int bx = 0; bx < blocks.x; ++bx) {
+        const glm::ivec3 first = glm::max(glm::ivec3(bx, by, bz) * kBlockEdge - 1, glm::ivec3(0));
+        const glm::ivec3 last = glm::min(glm::ivec3(bx + 1, by + 1, bz + 1) * kBlockEdge, grid.size - 1);
+        float bound = 0.0f;
+        for (int z = first.z; z <= last.z; ++z)
+          for (int y = first.y; y <= last.y; ++y)
+            for (int x = first.x; x <= last.x; ++x)
+              bound = std::max(bound, grid.density[static_cast<std::size_t>(x) +
+                                                   static_cast<std::size_t>(grid.size.x) *
+                                                       (static_cast<std::size_t>(y) + static_cast<std::size_t>(grid.size.y) * static_cast<std::size_t>(z))]);
+        bounds.push_back(bound);
+      }
+  return bounds;
+}
+
+shared::DensityRecord packGrid(const Medium& medium, const glm::dvec3& origin, std::vector<float>& densities) {
+  const DensityGrid& grid = *medium.grid;
+  const glm::dvec3 extent = grid.max - grid.min;
+  if (glm::any(glm::lessThan(grid.size, glm::ivec3(1))) || !glm::all(glm::greaterThan(extent, glm::dvec3(0.0))))
+    throwBadInput("medium {}: a density grid needs one cell at least along each axis and a box of positive volume", medium.name);
+  const std::size_t cells = static_cast<std::size_t>(grid.size.x) * static_cast<std::size_t>(grid.size.y) * static_cast<std::size_t>(grid.size.z);
+  if (grid.density.size() != cells) throwBadInput("medium {}: the density grid has {} values for {} cells", medium.name, grid.density.size(), cells);
+  for (const float d : grid.density)
+    if (!(std::isfinite(d) && d >= 0.0f)) throwBadInput("medium {}: a density is {}; it must be finite and 0 or more", medium.name, d);
+  const glm::ivec3 blocks = (grid.size + kBlockEdge - 1) / kBlockEdge;
+  const std::vector<float> bounds = blockBounds(grid, blocks);
+  shared::DensityRecord record{};
+  record.min = glm::vec3(grid.min - origin);
+  record.cellsPerUnit = glm::vec3(glm::dvec3(grid.size) / extent);
+  record.size = glm::ivec4(grid.size, kBlockEdge);
+  record.blocks = glm::ivec4(blocks, 0);
+  record.firstDensity = static_cast<int>(densities.size());
+  densities.insert(densities.end(), grid.density.begin(), grid.density.end());
+  record.firstBound = static_cast<int>(densities.size());
+  densities.insert(densities.end(), bounds.begin(), bounds.end());
+  return record;
+}
+
+}  // namespace
+
+PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin) {
+  PackedMedia packed;
+  for (const Medium& medium : media) {
+    checkCoefficient(medium, "scattering", medium.scattering);
+    checkCoefficient(medium, "absorption", medium.absorption);
+    checkCoefficient(medium, "emission", medium.emission);
+    shared::MediumRecord record{};
+    const glm::dvec3 extinction = glm::dvec3(medium.scattering) + glm::dvec3(medium.absorption);
+    for (int c = 0; c < 3; ++c) {
+      const double g = medium.phase == PhaseFunction::rayleigh ? 0.0 : static_cast<double>(medium.anisotropy[c]);
+      if (!(g > -1.0 && g < 1.0)) throwBadInput("medium {}: g must lie between -1 and 1, both left out, and is {}", medium.name, g);
+      // A channel that does not scatter has no g: it follows the others, so that they need not be told apart.
+      record.albedo[c] = extinction[c] > 0.0 ? static_cast<float>(static_cast<double>(medium.scattering[c]) / extinction[c]) : 0.0f;
+      record.oneMinusG[c] = static_cast<float>(1.0 - g);
+      record.onePlusG[c] = static_cast<float>(1.0 + g);
+    }
+    for (int c = 0; c < 3; ++c)
+      if (medium.scattering[c] == 0.0f) {
+        const int other = medium.scattering[(c + 1) % 3] > 0.0f ? (c + 1) % 3 : (c + 2) % 3;
+        record.oneMinusG[c] = record.oneMinusG[other];
+        record.onePlusG[c] = record.onePlusG[other];
+      }
+    record.extinction = glm::vec3(extinction);
+    record.emission = medium.emission;
+    record.phase = medium.phase == PhaseFunction::rayleigh ? 1 : 0;
+    record.greyExtinction = equalChannels(record.extinction);
+    record.greyPhase = equalChannels(record.oneMinusG) && equalChannels(record.onePlusG);
+    record.grid = -1;
+    record.majorant = static_cast<float>(largest(extinction));
+    if (medium.grid) {
+      record.grid = static_cast<int>(packed.grids.size());
+      packed.grids.push_back(packGrid(medium, origin, packed.densities));
+      // What emits alone still needs points at which its emission is looked up: some four a crossing of the box.
+      if (record.majorant <= 0.0f && largest(medium.emission) > 0.0) {
+        const double bound = *std::max_element(medium.grid->density.begin(), medium.grid->density.end());
+        record.majorant = static_cast<float>(4.0 / (glm::length(medium.grid->max - medium.grid->min) * std::max(bound, 1e-30)));
+      }
+    }
+    packed.media.push_back(record);
+  }
+  return packed;
+}
+
+PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
+  using Key = std::tuple<int, bool, float, int>;  // priority, dielectric, index, medium
+  const auto bounds = [&](const Material& m) { return m.bsdf == Bsdf::none || (m.bsdf == Bsdf::dielectric && !diffuseOnly); };
+  const auto keyOf = [](const Material& m) {
+    const bool dielectric = m.bsdf == Bsdf::dielectric;
+    return Key{m.priority, dielectric, dielectric ? m.ior : 1.0f, m.interior};
+  };
+  std::vector<Key> keys;
+  for (const Material& material : scene.materials) {
+    if (!bounds(material)) continue;
+    if (!(std::isfinite(material.ior) && material.ior > 0.0f)) throwBadInput("material {}: an index of refraction must be above 0, and is {}", material.name, material.ior);
+    if (material.interior < -1 || material.interior >= static_cast<int>(scene.media.size()))
+      throwBadInput("material {}: there is no medium {}", material.name, material.interior);
+    keys.push_back(keyOf(material));
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  if (keys.size() > static_cast<std::size_t>(kMaxBoundaryRanks))
+    throwBadInput("{}: {} different dielectrics and boundaries of media, and at most {} can be told apart", scene.name, keys.size(), kMaxBoundaryRanks);
+
+  PackedBoundaries packed;
+  for (std::size_t rank = 0; rank < keys.size(); ++rank) {
+    const auto& [priority, dielectric, ior, medium] = keys[rank];
+    packed.interiors.push_back({ior, medium, 0, 0});
+    if (dielectric) packed.dielectricRanks[static_cast<int>(rank / 8)] |= 15u << (4 * (rank % 8));
+  }
+  for (const Material& material : scene.materials)
+    packed.rankOfMaterial.push_back(bounds(material) ? static_cast<int>(std::lower_bound(keys.begin(), keys.end(), keyOf(material)) - keys.begin()) : -1);
+  for (const Mesh& mesh : scene.meshes) {
+    const int rank = packed.rankOfMaterial[static_cast<std::size_t>(mesh.material)];
+    if (rank < 0) continue;
+    const auto corner = [&](std::uint32_t i) { return scene.vertices[scene.indices[i]].position; };
+    for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3)
+      packed.triangles.push_back({corner(i), corner(i + 1), corner(i + 2), rank});
+  }
+  return packed;
+}
+
+Surroundings surroundingsOf(const PackedBoundaries& boundaries, const glm::dvec3& point) {
+  std::array<double, kMaxBoundaryRanks> solidAngle{};
+  for (const BoundaryTriangle& triangle : boundaries.triangles) {
+    const glm::dvec3 a = glm::dvec3(triangle.a) - point, b = glm::dvec3(triangle.b) - point, c = glm::dvec3(triangle.c) - point;
+    const double ra = glm::length(a), rb = glm::length(b), rc = glm::length(c);
+    const double volume = glm::dot(a, glm::cross(b, c)), rest = ra * rb * rc + glm::dot(a, b) * rc + glm::dot(b, c) * ra + glm::dot(c, a) * rb;
+    if (volume != 0.0 || rest != 0.0) solidAngle[static_cast<std::size_t>(triangle.rank)] += 2.0 * std::atan2(volume, rest);
+  }
+  Surroundings result;
+  for (std::size_t rank = 0; rank < boundaries.interiors.size(); ++rank) {
+    const double winding = solidAngle[rank] / (4.0 * std::numbers::pi);
+    const double whole = std::round(winding);
+    result.openness = std::max(result.openness, std::abs(winding - whole));
+    result.inside[static_cast<int>(rank / 8)] |= static_cast<std::uint32_t>(std::clamp(whole, 0.0, 15.0)) << (4 * (rank % 8));
+  }
+  return result;
+}
+
+float iorInside(const PackedBoundaries& boundaries, const InsideCounts& inside) {
+  for (int rank = static_cast<int>(boundaries.interiors.size()) - 1; rank >= 0; --rank)
+    if (inside[rank / 8] & boundaries.dielectricRanks[rank / 8] & (15u << (4 * (rank % 8)))) return boundaries.interiors[static_cast<std::size_t>(rank)].ior;
+  return 1.0f;
+}
+
+}  // namespace lucerna

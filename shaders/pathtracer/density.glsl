@@ -1,0 +1,78 @@
+// Heterogeneous media: a density on a grid that multiplies a medium's coefficients, interpolated trilinearly between cell centres, 0 outside
+// its box. Blocks of cells know a bound of the density in them; between their faces collisions are drawn at the bound's rate and told
+// real from null by chance [Woodcock1965; Novak2018]. A block's bound holds for the interpolated density, neighbouring cells counted.
+// The channel that decides is chosen as in media.glsl, so that here too no weight exceeds the number of channels.
+#include "pathtracer/media.glsl"
+
+layout(std430, binding = 8) restrict readonly buffer DensityRecords { DensityRecord densityRecords[]; };
+layout(std430, binding = 9) restrict readonly buffer Densities { float densities[]; };
+
+float cellDensity(DensityRecord g, ivec3 cell) {
+  ivec3 c = clamp(cell, ivec3(0), g.size.xyz - 1);
+  return densities[g.firstDensity + c.x + g.size.x * (c.y + g.size.y * c.z)];
+}
+
+// p: in cells from the box's least corner.
+float densityAt(DensityRecord g, vec3 p) {
+  if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(g.size.xyz)))) return 0.0;
+  vec3 base = floor(p - 0.5), f = p - 0.5 - base;
+  ivec3 c = ivec3(base);
+  float z0 = mix(mix(cellDensity(g, c), cellDensity(g, c + ivec3(1, 0, 0)), f.x),
+                 mix(cellDensity(g, c + ivec3(0, 1, 0)), cellDensity(g, c + ivec3(1, 1, 0)), f.x), f.y);
+  float z1 = mix(mix(cellDensity(g, c + ivec3(0, 0, 1)), cellDensity(g, c + ivec3(1, 0, 1)), f.x),
+                 mix(cellDensity(g, c + ivec3(0, 1, 1)), cellDensity(g, c + ivec3(1, 1, 1)), f.x), f.y);
+  return mix(z0, z1, f.z);
+}
+
+// The parts of a ray in which a bound holds, front to back. Distances along the ray in scene units, positions in cells.
+struct DensityMarch {
+  vec3 origin, direction;  // in cells; cells per unit of distance
+  float near, far;         // of the present part
+  float last;              // where the ray leaves the box, or its own end
+  ivec3 block;
+};
+
+// False where the ray misses the box.
+bool densityMarchStart(DensityRecord g, vec3 origin, vec3 direction, float tMax, out DensityMarch march) {
+  march.origin = (origin - g.min) * g.cellsPerUnit;
+  march.direction = direction * g.cellsPerUnit;
+  vec3 size = vec3(g.size.xyz);
+  float near = 0.0, far = tMax;
+  for (int axis = 0; axis < 3; ++axis) {
+    float o = march.origin[axis], d = march.direction[axis];
+    if (abs(d) < 1e-20) {
+      if (o < 0.0 || o > size[axis]) return false;
+      continue;
+    }
+    float a = -o / d, b = (size[axis] - o) / d;
+    near = max(near, min(a, b));
+    far = min(far, max(a, b));
+  }
+  march.near = near;
+  march.far = near;
+  march.last = far;
+  march.block = clamp(ivec3(floor((march.origin + near * march.direction) / float(g.size.w))), ivec3(0), g.blocks.xyz - 1);
+  return near < far;
+}
+
+// The next part: [near, far] and its bound. False behind the last.
+bool densityMarchNext(DensityRecord g, inout DensityMarch march, out float bound) {
+  if (march.far >= march.last || any(lessThan(march.block, ivec3(0))) || any(greaterThanEqual(march.block, g.blocks.xyz))) return false;
+  bound = densities[g.firstBound + march.block.x + g.blocks.x * (march.block.y + g.blocks.y * march.block.z)];
+  march.near = march.far;
+  float edge = float(g.size.w), far = march.last;
+  int leaving = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    float d = march.direction[axis];
+    if (abs(d) < 1e-20) continue;
+    float t = (edge * float(march.block[axis] + (d > 0.0 ? 1 : 0)) - march.origin[axis]) / d;
+    if (t < far) {
+      far = t;
+      leaving = axis;
+    }
+  }
+  march.far = max(far, march.near);
+  if (leaving < 0) march.far = march.last;
+  else march.block[leaving] += march.direction[leaving] > 0.0 ? 1 : -1;
+  return true;
+}

@@ -1,0 +1,80 @@
+// Homogeneous participating media: free flights and scattering, unbiased for any ratio of the channels' coefficients.
+//
+// A channel j is chosen with probability q_j proportional to the path's throughput, a distance t drawn from its exponential density, and
+// all channels are weighted by the balance heuristic [Miller2019; Chiang2016]:
+//   collision at t:      throughput_c *= sigma_s,c T_c(t) / sum_j q_j sigma_t,j T_j(t)
+//   boundary at d <= t:  throughput_c *= T_c(d) / sum_j q_j T_j(d)
+// Without absorption both leave the sum of the channels as it is, so no weight exceeds their number. exp(-sigma_min t) is taken out of
+// numerators and denominators, which would underflow from an optical depth of 87 on.
+#include "shared/media.h"
+#include "pathtracer/numeric.glsl"
+#include "pathtracer/phase.glsl"
+
+const float kFar = 1e30;  // a distance that no scene has; its products with coefficients stay finite
+
+// Of no throughput the result is 0: there is no channel to choose then, nor a path to follow.
+vec3 channelProbabilities(vec3 throughput) {
+  float sum = throughput.r + throughput.g + throughput.b;
+  return sum > 0.0 ? throughput / sum : vec3(0.0);
+}
+
+// u in [0,1); never a channel of probability 0 as long as there is another.
+int pickChannel(vec3 q, float u) {
+  float r = u * (q.r + q.g + q.b);
+  if (r < q.r) return 0;
+  if (r < q.r + q.g) return 1;
+  return q.b > 0.0 ? 2 : (q.g > 0.0 ? 1 : 0);
+}
+
+// T_c(t) of the live channels over the largest of them; 0 for dead ones.
+vec3 relativeTransmittance(vec3 extinction, bvec3 live, float t) {
+  vec3 bounded = mix(vec3(3e38), extinction, live);
+  float least = min(min(bounded.r, bounded.g), bounded.b);
+  return mix(vec3(0.0), exp(-(bounded - least) * t), live);
+}
+
+// Distance to the next collision.
+float flightDistance(MediumRecord medium, int channel, uint k) {
+  float extinction = medium.extinction[channel];
+  return extinction > 0.0 ? min(exponentialSample(k) / extinction, kFar) : kFar;
+}
+
+// T_c / sum_j q_j sigma_t,j T_j: what a quantity per unit of length found at a collision counts. 0 in channels that never collide.
+vec3 collisionWeight(MediumRecord medium, vec3 q, float t) {
+  bvec3 live = bvec3(vec3(greaterThan(q, vec3(0.0))) * vec3(greaterThan(medium.extinction, vec3(0.0))));
+  vec3 e = relativeTransmittance(medium.extinction, live, t);
+  return e / dot(q, medium.extinction * e);
+}
+
+vec3 scatteringWeight(MediumRecord medium, vec3 q, float t) {
+  if (medium.greyExtinction != 0) return medium.albedo;
+  return medium.albedo * medium.extinction * collisionWeight(medium, q, t);
+}
+
+// Likewise at the boundary.
+vec3 passageWeight(MediumRecord medium, vec3 q, float d) {
+  if (medium.greyExtinction != 0) return vec3(1.0);
+  vec3 e = relativeTransmittance(medium.extinction, greaterThan(q, vec3(0.0)), d);
+  return e / dot(q, e);
+}
+
+vec3 phaseValue(MediumRecord medium, vec3 w, vec3 to) {
+  return medium.phase == 1 ? vec3(rayleighPdf(w, to)) : henyeyGreensteinPdf(w, to, medium.oneMinusG, medium.onePlusG);
+}
+
+// A direction from the phase function of a channel that q chooses; `weight` by the balance heuristic where the channels' g differ.
+// pdf: the density of the direction, all channels considered.
+vec3 phaseSample(MediumRecord medium, vec3 w, vec3 q, float u, vec2 xi, out vec3 weight, out float pdf) {
+  weight = vec3(1.0);
+  if (medium.phase == 1) {
+    vec3 to = rayleighSample(w, xi);
+    pdf = rayleighPdf(w, to);
+    return to;
+  }
+  int channel = medium.greyPhase != 0 ? 0 : pickChannel(q, u);
+  vec3 to = henyeyGreensteinSample(w, medium.oneMinusG[channel], medium.onePlusG[channel], xi);
+  vec3 p = henyeyGreensteinPdf(w, to, medium.oneMinusG, medium.onePlusG);
+  pdf = medium.greyPhase != 0 ? p.r : dot(q, p);
+  if (medium.greyPhase == 0) weight = p / pdf;
+  return to;
+}

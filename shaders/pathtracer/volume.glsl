@@ -1,0 +1,255 @@
+// A path through participating media: how far it flies, what it adds and where it goes on from a collision; and how much light a straight
+// line lets through. Hooks of path.comp, which declares Path, addLight, counts and the lights before this file is included.
+//
+// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION; deviations DISTANCE_WITHOUT_PDF,
+// BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, STRAIGHT_SHADOW_RAYS.
+#include "pathtracer/boundary.glsl"
+#if MEDIA
+#include "pathtracer/media.glsl"
+layout(std430, binding = 6) restrict readonly buffer MediumBlock { MediumRecord media[]; };
+#endif
+#if HETEROGENEOUS
+#include "pathtracer/density.glsl"
+#endif
+
+const uint kPurposeFlight = kFreePurpose;
+const uint kPurposePhase = kFreePurpose + 1u;
+const uint kPurposeMediumChoice = kFreePurpose + 2u;
+const uint kPurposeTransmittance = kFreePurpose + 3u;
+
+// What becomes of a ray in a medium.
+const int kArrives = 0;    // at what the ray was traced to
+const int kScattered = 1;  // or is in the midst of a long flight: goes on with a ray of its own
+const int kEnded = 2;
+
+#if MEDIA
+vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float distance, inout uvec4 words) {
+#if HETEROGENEOUS
+  if (medium.grid >= 0) {
+    // Ratio tracking [Novak2014]: at each tentative collision what is null of it. Roulette from a tenth on.
+    DensityRecord g = densityRecords[medium.grid];
+    DensityMarch march;
+    vec3 through = vec3(1.0);
+    float bound;
+    if (!densityMarchStart(g, origin, direction, distance, march)) return through;
+    while (densityMarchNext(g, march, bound)) {
+      float rate = medium.majorant * bound;
+      if (!(rate > 0.0)) continue;
+      float t = march.near;
+      for (;;) {
+        words = pcg4d(words);
+        t += exponentialSample(words.x) / rate;
+        if (t >= march.far) break;
+        float d = densityAt(g, march.origin + t * march.direction);
+        through *= max(1.0 - medium.extinction * (d / rate), vec3(0.0));
+        float largest = max(through.r, max(through.g, through.b));
+        if (largest < 0.1) {
+          if (unitFloat(words.y) >= 10.0 * largest) return vec3(0.0);
+          through /= 10.0 * largest;
+        }
+      }
+    }
+    return through;
+  }
+#endif
+  return exp(-medium.extinction * min(distance, kFar));
+}
+#endif
+
+// The part of the light from `start` towards `end` (or, at infinity, along `end`) that arrives. Index-matched boundaries are crossed;
+// one that refracts stops the light, since the straight line is no path of light then. skip: the triangle that `start` lies on.
+vec3 straightTransmittance(vec3 start, vec3 end, bool infinite, uint skip, uvec4 inside, uvec4 words) {
+  Ray ray = infinite ? Ray(start, 0.0, end, 3e38) : Ray(start, 0.0, end - start, 1.0);
+#if MEDIA
+  float unit = infinite ? 1.0 : length(ray.direction);
+  vec3 direction = ray.direction / unit;
+#endif
+  float ior = iorInside(inside);
+  vec3 through = vec3(1.0);
+  for (uint i = 0u; i < 256u; ++i) {
+    Hit hit = closestHit(ray, skip);
+    int rank = -1;
+    bool front = false;
+    if (hit.triangle != kNoHit) {
+      uvec4 words0 = triangleData[hit.triangle * TRIANGLE_WORDS];
+      rank = int(materials[words0.w].boundary);
+      if (rank < 0) return vec3(0.0);
+      uvec3 normal = uvec3(triangleData[hit.triangle * TRIANGLE_WORDS + 1u].w, triangleData[hit.triangle * TRIANGLE_WORDS + 2u].w,
+                           triangleData[hit.triangle * TRIANGLE_WORDS + 3u].x);
+      front = dot(uintBitsToFloat(normal), ray.direction) < 0.0;
+    }
+#if MEDIA
+    int medium = mediumInside(inside);
+    if (medium >= 0) {
+      float far = hit.triangle == kNoHit ? (infinite ? kFar : 1.0) : hit.t;
+      through *= mediumTransmittance(media[medium], start + ray.tMin * ray.direction, direction, (far - ray.tMin) * unit, words);
+      if (all(equal(through, vec3(0.0)))) return through;
+    }
+#endif
+    if (hit.triangle == kNoHit) return through;
+    crossBoundary(inside, rank, front);
+#if !STRAIGHT_SHADOW_RAYS
+    if (iorInside(inside) != ior) return vec3(0.0);
+#endif
+    ray.tMin = hit.t;
+    skip = hit.triangle;
+  }
+  return vec3(0.0);
+}
+
+#if MEDIA
+// A path that left a closed boundary through a crack would be in its medium for ever: outside of all coordinates it has.
+bool leaked(Path path) {
+  vec3 a = abs(path.origin);
+  return any(greaterThan(path.inside, uvec4(0u))) && max(a.x, max(a.y, a.z)) > bvhHeader.magnitude * 1.001;
+}
+
+// Roulette by the throughput alone: a limit by depth would darken milk. False: the path ends.
+bool survives(inout Path path, float u) {
+  float survival = min(max(path.throughput.r, max(path.throughput.g, path.throughput.b)), 1.0);
+#if ROULETTE_WITHOUT_DIVISION
+  return u < min(survival, 0.95);  // [VPT2024, 5.5]
+#else
+  if (path.event > (1u << 20)) survival = min(survival, 0.999);  // in an endless medium without absorption nothing else would
+  if (!(u < survival)) return false;
+  path.throughput /= survival;
+  return true;
+#endif
+}
+
+// At a collision: light from a lamp, then on in a direction of the phase function.
+int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
+  path.skip = kNoHit;
+  path.travelled = 0.0;
+  ++path.event;
+  if (leaked(path)) {
+    atomicAdd(leakedPaths, 1u);
+    return kEnded;
+  }
+  if (path.scatterings >= tracer.maxScatterings || all(equal(path.throughput, vec3(0.0)))) return kEnded;
+  ++path.scatterings;
+#if NEXT_EVENT
+  LightSample light;
+  if (counts(path.scatterings) &&
+      sampleLight(path.origin, randomPair(numbers, path.event, kPurposeLight), randomWords(numbers, path.event, kPurposePick), light)) {
+    vec3 phase = phaseValue(medium, path.direction, light.direction);
+    vec3 contribution = phase * light.value;
+#if MIS
+    if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, dot(channelProbabilities(path.throughput), phase));
+#endif
+    if (any(greaterThan(contribution, vec3(0.0))))
+      addLight(path, contribution * straightTransmittance(path.origin, light.infinite ? light.direction : light.end, light.infinite, kNoHit, path.inside,
+                                                          randomWords(numbers, path.event, kPurposeTransmittance)));
+  }
+#endif
+#if !SCATTERED_LIGHT && !NEXT_EVENT
+  return kEnded;
+#endif
+  uvec4 choice = randomWords(numbers, path.event, kPurposeMediumChoice);
+  vec3 weight;
+  path.direction = phaseSample(medium, path.direction, channelProbabilities(path.throughput), unitFloat(choice.x),
+                               randomPair(numbers, path.event, kPurposePhase), weight, path.pdf);
+  path.throughput *= weight;
+  return survives(path, unitFloat(choice.y)) ? kScattered : kEnded;
+}
+
+#if HETEROGENEOUS
+// Delta tracking over the part of the ray that is free. After some tentative collisions the flight is broken off where it is and goes on
+// with the next ray: exponential flights have no memory, and no submission is held up.
+int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbers numbers) {
+  DensityRecord g = densityRecords[medium.grid];
+  DensityMarch march;
+  if (!densityMarchStart(g, path.origin, path.direction, distance, march)) return kArrives;
+  uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
+  float bound;
+  uint tries = 0u;
+  while (densityMarchNext(g, march, bound)) {
+    float rate = medium.majorant * bound;
+    if (!(rate > 0.0)) continue;
+    float t = march.near;
+    for (;;) {
+      words = pcg4d(words);
+      t += exponentialSample(words.x) / rate;
+      if (t >= march.far) break;
+      vec3 share = min(medium.extinction * (densityAt(g, march.origin + t * march.direction) / rate), vec3(1.0));
+      vec3 q = channelProbabilities(path.throughput);
+      float real = dot(q, share);
+#if VOLUME_EMISSION
+      if (counts(path.scatterings)) addLight(path, medium.emission * (densityAt(g, march.origin + t * march.direction) / rate));
+#endif
+      bool collides = unitFloat(words.y) < real;
+      if (medium.greyExtinction != 0)
+        path.throughput *= collides ? medium.albedo : vec3(1.0);
+      else
+        path.throughput *= collides ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
+      if (collides || ++tries == 64u) {
+        path.origin += t * path.direction;
+        if (collides) return scatterInMedium(path, medium, numbers);
+        path.travelled += t;
+        ++path.event;
+        return kScattered;
+      }
+    }
+  }
+  return kArrives;
+}
+#endif
+
+#if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
+// Probability of an interaction [VPT2024, algorithm 4]: the largest albedo, of which the published text makes a half at least.
+float interactionProbability(MediumRecord medium) {
+  float w = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
+#if BOOSTED_INTERACTION
+  if (w > 0.0) w = max(w, 0.5);
+#endif
+  return w;
+}
+#endif
+
+// How far the ray may go before it collides; with a density grid that is told once it is known where the ray ends.
+float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
+  if (medium.grid >= 0) return kFar;
+  uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
+#if DISTANCE_WITHOUT_PDF
+  // [VPT2024, algorithm 4]: from the least of the extinctions, and only with the probability of an interaction.
+  float least = min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b));
+  if (unitFloat(words.y) >= interactionProbability(medium) || !(least > 0.0)) return kFar;
+  return min(exponentialSample(words.x) / least, kFar);
+#endif
+  return flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x);
+}
+
+// What happens on the way to `hit`, the first hit within `flight`.
+int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
+  bool arrives = hit.triangle != kNoHit || flight >= kFar;
+  float distance = hit.triangle != kNoHit ? hit.t : flight;
+#if HETEROGENEOUS
+  if (medium.grid >= 0) return trackDensity(path, medium, distance, numbers);
+#endif
+  vec3 q = channelProbabilities(path.throughput);
+#if VOLUME_EMISSION
+  if (counts(path.scatterings) && distance < kFar) {
+    // Found at collisions, where it costs nothing; in channels that never collide at a point anywhere on the way.
+    if (!arrives) addLight(path, medium.emission * collisionWeight(medium, q, distance));
+    float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
+    addLight(path, mix(distance * medium.emission * passageWeight(medium, q, x), vec3(0.0), greaterThan(medium.extinction, vec3(0.0))));
+  }
+#endif
+#if DISTANCE_WITHOUT_PDF
+  path.throughput *= exp(-medium.extinction * distance);  // neither the scattering coefficient nor a density
+  if (arrives) return kArrives;
+#else
+  if (arrives) {
+    path.throughput *= passageWeight(medium, q, distance);
+    return kArrives;
+  }
+  path.throughput *= scatteringWeight(medium, q, distance);
+#if BOOSTED_INTERACTION
+  float albedo = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
+  path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
+#endif
+#endif
+  path.origin += distance * path.direction;
+  return scatterInMedium(path, medium, numbers);
+}
+#endif

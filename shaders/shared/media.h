@@ -1,0 +1,38 @@
+// Participating media and the closed boundaries that hold them, as the path tracer reads them: storage buffers (std430).
+#pragma once
+#include "shared/types.h"
+
+SHARED_BEGIN
+
+// Lengths in scene units.
+struct MediumRecord {
+  vec3 extinction;   // 1/unit
+  float majorant;    // with a density grid: times the density's bound, the rate of tentative collisions; > 0 where anything happens
+  vec3 albedo;       // scattering over extinction, 0 where there is no extinction
+  int phase;         // 0 Henyey-Greenstein, 1 Rayleigh
+  vec3 emission;     // radiance per unit
+  int grid;          // index of its DensityRecord, -1: homogeneous
+  vec3 oneMinusG;
+  int greyExtinction;  // the channels are the same: a free flight's weight is the albedo itself
+  vec3 onePlusG;
+  int greyPhase;       // likewise: the direction's weight is 1
+};
+
+// A density grid: cell centres in `densities` from firstDensity on, x fastest; bounds of blocks of cells in `bounds` from firstBound on.
+struct DensityRecord {
+  vec3 min;          // of the box
+  int firstDensity;
+  vec3 cellsPerUnit;
+  int firstBound;
+  ivec4 size;        // cells; w: cells along a block's edge
+  ivec4 blocks;      // blocks; w unused
+};
+
+// What is inside of a closed boundary, by its rank in the order of priorities.
+struct InteriorRecord {
+  float ior;        // of a dielectric; unused elsewhere
+  int medium;       // -1: vacuum
+  int padding0, padding1;
+};
+
+SHARED_END
