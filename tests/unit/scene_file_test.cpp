@@ -114,7 +114,7 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
       {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]}], "camera": {"position":[0,0,5],"direction":[0,0,-1]})", "one of them"},
       {R"(, "keyFrames": "")", "\"keyFrames\""},
       {R"(, "description": 3)", "\"description\""},
-      {R"(, "scene": {})", "VPT"},
+      {R"(, "scene": {})", "no \"camera\""},
       {R"(, "scale": 1,)", "JSON"},
   };
   for (const auto& [keys, expected] : cases) {

@@ -125,7 +125,7 @@ def build_gems(folder, paths):
     scene = {"description": "Four gems as in the VPT original's series over samples: an emerald cut, an oval and a round brilliant and a rose cut, on a paper sweep.",
              "model": "gems.obj", "scale": 1,
              "cameras": [view, camera("ruby", (-4.0, 13.0, 22.0), (-11.0, 2.6, -1.5), 28), camera("above", (0.0, 62.0, 8.0), (0.0, 0.0, 0.5), 27)],
-             "sun": None, "exposure": 1.0, "environment": {"radiance": [0.1, 0.11, 0.13]}, "keyFrames": "../../../keyFrames/gems.txt",
+             "sun": None, "exposure": 1.3, "environment": {"radiance": [0.1, 0.11, 0.13]}, "keyFrames": "../../../keyFrames/gems.txt",
              "materials": {name: {"interior": name} for name in ("emerald", "ruby", "sapphire", "glass")}}
     write_scene(folder, "gems", scene)
     write_scene(folder, "gems_original", original(view, (-33.2, 56.5, 6.0), (1, 0.93, 0.82), 22 * 26 * 26, {n: CATALOGUE[n] for n in ("emerald", "ruby", "sapphire", "glass")}))
@@ -146,7 +146,7 @@ def build_block(folder, paths):
     for stem, medium, what in (("milk", "milk", "Milk"), ("juice", "grape juice", "Grape juice"), ("coffee", "espresso", "Espresso")):
         scene = {"description": f"{what} as a block of 12 mm: the VPT original's series over coefficients.", "model": "block.obj", "scale": 1,
                  "cameras": [view, camera("edge", (8.0, 10.5, 17.0), (1.2, 7.8, 3.0), 32)],
-                 "sun": None, "exposure": 1.0, "environment": {"radiance": [0.16, 0.17, 0.19]}, "keyFrames": "../../../keyFrames/block.txt",
+                 "sun": None, "exposure": 1.3, "environment": {"radiance": [0.16, 0.17, 0.19]}, "keyFrames": "../../../keyFrames/block.txt",
                  "materials": {"block": {"interior": medium}}}
         write_scene(folder, stem, scene)
         write_scene(folder, f"{stem}_original", original(view, (-22.2, 27.0, -15.4), (1, 0.94, 0.85), 17 * 18 * 18, {"block": CATALOGUE[medium]}))
@@ -171,7 +171,7 @@ def build_espresso(folder, paths):
     materials = {"glass": clear(1.5), "espresso": clear(1.33, (0.1, 0.05, 0.02)), "porcelain": {"Kd": (0.76, 0.75, 0.72)}, "steel": {"Kd": (0, 0, 0), "Ks": (0.66, 0.62, 0.57), "Ns": 200},
                  **WOODS, "wall": {"Kd": (0.16, 0.17, 0.18)}, "key": lamp((9.5, 9, 8.3)), "side": lamp((6, 5.6, 5)), "front": lamp((3, 3.1, 3.4))}
     count = write(folder, "espresso", parts, materials, "Espresso in a glass cup.")
-    views = [camera("published", (62.0, 112.0, 176.0), (3.0, 24.0, 0.0), 30), camera("close-up", (26.0, 82.0, 70.0), (9.0, 44.0, 14.0), 26)]
+    views = [camera("published", (62.0, 112.0, 176.0), (3.0, 24.0, 0.0), 30), camera("close-up", (30.0, 92.0, 92.0), (7.0, 43.0, 8.0), 27)]
     scene = {"description": "Espresso in a glass cup: glass and liquid overlap by 0.3 mm, and the glass has priority.", "model": "espresso.obj", "scale": 1,
              "cameras": views, "sun": None, "exposure": 1.5, "environment": {"radiance": [0.12, 0.13, 0.15]}, "keyFrames": "../../../keyFrames/espresso.txt",
              "materials": {"glass": {"interior": "glass", "priority": 2}, "espresso": {"interior": "espresso", "priority": 1}, "steel": {"bsdf": "conductor", "roughness": 0.12}}}
@@ -202,7 +202,7 @@ def build_cola(folder, paths):
     view = camera("published", (40.0, 150.0, 330.0), (0.0, 64.0, 0.0), 28)
     scene = {"description": "Coca Cola with ice in a tumbler. Glass, ice and cola overlap, with priorities; the ice is the medium glass, as published.", "model": "cola.obj", "scale": 1,
              "cameras": [view, camera("ice", (30.0, 165.0, 120.0), (2.0, 100.0, 4.0), 30)],
-             "sun": None, "exposure": 1.0, "environment": {"radiance": [0.14, 0.15, 0.17]}, "keyFrames": "../../../keyFrames/cola.txt",
+             "sun": None, "exposure": 1.4, "environment": {"radiance": [0.14, 0.15, 0.17]}, "keyFrames": "../../../keyFrames/cola.txt",
              "materials": {"glass": {"interior": "glass", "priority": 3}, "ice": {"interior": "glass", "ior": 1.5, "priority": 2}, "cola": {"interior": "coca cola", "priority": 1}}}
     write_scene(folder, "cola", scene)
     write_scene(folder, "cola_original", original(view, (-197.0, 344.0, -186.5), (1, 1, 1), 9 * 200 * 260,
@@ -213,12 +213,12 @@ def build_cola(folder, paths):
 
 def build_smoke(folder, paths, with_grid=True):
     low, high = (-210.0, 12.0, -210.0), (210.0, 432.0, 210.0)
-    key, target = (330.0, 470.0, -120.0), (0.0, 220.0, 0.0)
+    key, target = (640.0, 640.0, -60.0), (0.0, 220.0, 0.0)
 
     def room():
-        return [backdrop("sweep", "room", 1400, 900, -620, 1100, 200), softbox("key", key, target, 150, 150, "key"), softbox("rim", (-480, 260, -330), target, 120, 260, "rim")]
+        return [backdrop("sweep", "room", 1400, 900, -620, 1100, 200), softbox("key", key, target, 260, 260, "key"), softbox("rim", (-760, 330, -420), target, 160, 360, "rim")]
 
-    materials = {"room": {"Kd": (0.2, 0.21, 0.23)}, "key": lamp((60, 55, 47)), "rim": lamp((9, 12, 17))}
+    materials = {"room": {"Kd": (0.2, 0.21, 0.23)}, "key": lamp((60, 55, 47)), "rim": lamp((14, 18, 25))}
     bounds = box("bounds", "smoke", low, high)
     count = write(folder, "smoke", [bounds] + room(), {"smoke": clear(1.0), **materials}, "A box of smoke.")
     if with_grid:  # what takes long
@@ -234,7 +234,7 @@ def build_smoke(folder, paths, with_grid=True):
     write_scene(folder, "smoke", scene)
     cloud = smoke.surface("cloud", "smoke", 34, low, high)
     count += write(folder, "smoke_cloud", [cloud] + room(), {"smoke": clear(1.0), **materials}, "A homogeneous cloud for the original.")
-    write_scene(folder, "smoke_cloud", original(view, (324.0, 460.0, -117.5), (1, 0.92, 0.8), 60 * 150 * 150, {"smoke": CLOUD}))
+    write_scene(folder, "smoke_cloud", original(view, (633.0, 634.0, -59.4), (1, 0.92, 0.8), 60 * 260 * 260, {"smoke": CLOUD}))
     walk(paths / "smoke.txt", "Round the cloud", target, view["position"], 140, 60, 0.35, 28)
     return count
 

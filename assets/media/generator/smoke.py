@@ -1,4 +1,4 @@
-"""A smoke cloud: a density of our own on a grid (gradient noise [Perlin2002] over a few soft balls), and a closed surface round it for the original, which knows
+"""A smoke cloud: a density of our own on a grid (gradient noise [Perlin2002] over some soft balls), and a closed surface round it for the original, which knows
 homogeneous media only."""
 import math
 import random
@@ -34,8 +34,9 @@ class Noise:
 
 
 # Centre and radius of the balls, in the unit box: a rising plume that leans and opens like a mushroom.
-BALLS = [((0.50, 0.16, 0.50), 0.13), ((0.53, 0.28, 0.48), 0.14), ((0.49, 0.42, 0.52), 0.17), ((0.56, 0.55, 0.47), 0.20), ((0.42, 0.62, 0.53), 0.20), ((0.62, 0.70, 0.52), 0.19),
-         ((0.50, 0.74, 0.45), 0.21), ((0.36, 0.74, 0.48), 0.16), ((0.55, 0.66, 0.60), 0.18), ((0.68, 0.60, 0.44), 0.13)]
+BALLS = [((0.40, 0.12, 0.52), 0.075), ((0.44, 0.20, 0.50), 0.085), ((0.42, 0.29, 0.53), 0.10), ((0.48, 0.38, 0.48), 0.125), ((0.41, 0.47, 0.54), 0.13), ((0.54, 0.50, 0.46), 0.15),
+         ((0.34, 0.58, 0.50), 0.14), ((0.62, 0.60, 0.53), 0.16), ((0.47, 0.63, 0.60), 0.16), ((0.26, 0.68, 0.46), 0.12), ((0.72, 0.70, 0.46), 0.14), ((0.54, 0.74, 0.43), 0.17),
+         ((0.40, 0.77, 0.53), 0.15), ((0.63, 0.80, 0.57), 0.13), ((0.80, 0.62, 0.52), 0.10), ((0.50, 0.85, 0.48), 0.10)]
 
 
 def envelope(x, y, z):
@@ -45,7 +46,7 @@ def envelope(x, y, z):
         d2 = ((x - cx) ** 2 + (y - cy) ** 2 + (z - cz) ** 2) / (r * r)
         if d2 < 2.2:
             best += math.exp(-2.2 * d2)
-    return 1.7 * (best - 0.28)
+    return 1.5 * (best - 0.3)
 
 
 def density(noise, x, y, z, octaves=5):
@@ -59,8 +60,8 @@ def density(noise, x, y, z, octaves=5):
     for _ in range(octaves):
         total += amplitude * (0.45 - 1.3 * abs(noise.at(frequency * sx, frequency * sy, frequency * sz)))  # billows
         amplitude, frequency = 0.55 * amplitude, 2.03 * frequency
-    d = base + 0.85 * total
-    return max(0.0, min(1.0, d)) ** 1.25
+    d = base + 1.05 * total
+    return max(0.0, min(1.0, 1.3 * d)) ** 1.2
 
 
 def grid(size):
