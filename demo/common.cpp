@@ -55,6 +55,14 @@ bool parseSwitch(const std::string& option, const std::string& text) {
   throwBadInput("{}: '{}' is neither on nor off", option, text);
 }
 
+/// Whether there is a geometry volume, and from whose surfels.
+bool parseBlocking(const std::string& option, const std::string& text, LpvSurfels& surfels) {
+  surfels = text == "camera" ? LpvSurfels::camera : text == "both" ? LpvSurfels::both : LpvSurfels::rsm;
+  if (text == "rsm" || surfels != LpvSurfels::rsm) return true;
+  if (text == "on" || text == "off") return text == "on";
+  throwBadInput("{}: '{}' is none of rsm (or on), camera, both, off", option, text);
+}
+
 template <class T>
 T parseChoice(const std::string& option, const std::string& text, std::initializer_list<T> choices) {
   std::string known;
@@ -99,7 +107,9 @@ const Setting kSettings[] = {
     SETTING("lpv.propagate", "compute; layered: one pass a step and cascade, a point a cell, as published; slices: the same, a triangle a slice (compute)",
             s.lpv.propagate = parseChoice(k, v, {LpvPropagate::compute, LpvPropagate::layered, LpvPropagate::slices})),
     SETTING("lpv.amplifier", "factor of the deviating 4 pi kernel; 4 conserves (1)", s.lpv.amplifier = parseNumber(k, v, 0.0f, 100.0f)),
-    SETTING("lpv.blocking", "geometry volume on or off (on)", s.lpv.blocking = parseSwitch(k, v)),
+    SETTING("lpv.blocking", "geometry volume from rsm (or on), camera, both, or off (rsm)",
+            s.lpv.blocking = parseBlocking(k, v, s.lpv.surfels)),
+    SETTING("lpv.bounces", "times that light is reflected (1)", s.lpv.bounces = parseNumber(k, v, 1, 64)),
     SETTING("lpv.blend", "fraction of a cascade over which it fades into the next (0.25)",
             s.lpv.blendBand = parseNumber(k, v, 0.001f, 1.0f)),
     SETTING("lpv.hand-over", "steps after which finer cascades take a coarser one's light (0: from iterations and ratio)",

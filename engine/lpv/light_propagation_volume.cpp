@@ -11,7 +11,7 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kConstantsBinding = 1;
-constexpr std::size_t kStoredBytes = 8, kFullBytes = 16;  // of four coefficients in a buffer, LPV_STORED in lpv/storage.glsl
+constexpr std::size_t kCellBytes = 16;  // of four coefficients in a buffer
 // Bindings of the buffers of lpv/propagate.comp.
 constexpr GLuint kSourceBuffer = 0, kNextBuffer = 1, kSumBuffer = 2, kFacesBuffer = 3;
 constexpr glm::ivec3 kGroup{8, 8, 1};  // the fastest of those tried on llvmpipe, see README.md
@@ -37,7 +37,6 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   const bool full = settings.storage == Storage::full;
   const bool layered = settings.propagate != LpvPropagate::compute;
   const GLenum format = full ? GL_RGBA32F : GL_RGBA16F;
-  const std::size_t storedBytes = full ? kFullBytes : kStoredBytes;
   const glm::ivec3 size(c.cells, c.cells, c.cells * c.cascades);
   const auto cellsOf = [](const glm::ivec3& texels) {
     return static_cast<std::size_t>(texels.x) * static_cast<std::size_t>(texels.y) * static_cast<std::size_t>(texels.z);
@@ -65,7 +64,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   allocate(injected_, "injected", GL_RGBA32F, size, sampling);
   if (settings.fill == LpvFill::layered) {
     inject_ = &programs.loadRaster("lpv inject", "lpv/inject.vert", "lpv/inject.frag",
-                                   with({{"LPV_FULL_FLOAT", full}}, vpl), "lpv/inject.geom");
+                                   with({{"LPV_FULL_FLOAT", full}, {"REFLECTS", 0}}, vpl), "lpv/inject.geom");
     const std::array<const gl::Texture*, 3> targets{&injected_[0], &injected_[1], &injected_[2]};
     injectTarget_ = gl::Framebuffer("lpv inject", targets);
   } else {
@@ -81,27 +80,42 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
              glm::ivec3(fillsHalfVectors_ ? size.x : 4 * size.x, size.y, size.z), {});
   }
 
+  if (settings.bounces > 1 && (!settings.blocking || steps_ < 2))
+    throwBadInput("lpv.bounces={}: light is reflected by the geometry volume; that needs lpv.blocking other than off and two iterations", settings.bounces);
+  const gl::ShaderFlags kernel{{"FACE_KERNEL", deviations.kernel()},
+                               {"SIDE_DIRECTIONS", deviations.sideDirections},
+                               {"SIDE_SOLID_ANGLE", deviations.sideSolidAngle},
+                               {"FOUR_PI_KERNEL", deviations.fourPiKernel},
+                               {"BLOCKING_DIRECTION", deviations.blockingDirection}};
   const bool blocked = settings.blocking && (steps_ > 1 || (steps_ == 1 && deviations.blockFirstStep));  // the first step is not, by itself
   if (blocked) {
     fillGeometryVolume_ = &programs.loadRaster("lpv geometry volume", "lpv/inject.vert", "lpv/geometry_volume.frag",
                                                {{"LPV_FULL_FLOAT", full}, {"TRUNCATE", deviations.truncate}, {"SURFEL_AREA", deviations.surfelArea},
-                                                {"LOWEST_CELL", deviations.firstCell ? 1 : 0}},
+                                                {"LOWEST_CELL", deviations.firstCell ? 1 : 0}, {"REFLECTS", reflects()}},
                                                "lpv/geometry_volume.geom");
     const glm::ivec3 corners(c.cells + 1, c.cells + 1, (c.cells + 1) * c.cascades);
     geometryVolume_.emplace("lpv geometry volume", static_cast<GLenum>(GL_RGBA32F), corners, sampling);
-    const std::array<const gl::Texture*, 1> target{&*geometryVolume_};
-    geometryTarget_ = gl::Framebuffer("lpv geometry volume", target);
+    const auto allocateView = [&](const std::string& name, gl::Texture& reflectance, const gl::Texture& potential, gl::Framebuffer& target) {
+      std::vector<const gl::Texture*> targets{&potential};
+      if (reflects()) {
+        reflectance = gl::Texture(name + " reflectance", GL_RGBA32F, corners);
+        targets.push_back(&reflectance);
+      }
+      target = gl::Framebuffer(name, targets);
+    };
+    allocateView("lpv geometry volume", reflectance_, *geometryVolume_, geometryTarget_);
+    if (settings.mergeViews) {
+      mergeViews_ = &programs.loadCompute("lpv merge views", "lpv/merge_views.comp", with(group, {{"REFLECTS", reflects()}}));
+      viewPotential_ = gl::Texture("lpv view", GL_RGBA32F, corners);
+      allocateView("lpv view", viewReflectance_, viewPotential_, viewTarget_);
+    }
     if (!layered) {
-      averageFaces_ = &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp", group);
-      faces_ = gl::Buffer("lpv geometry faces", 3 * cellsOf(corners) * storedBytes, nullptr, GL_DYNAMIC_COPY);
+      averageFaces_ = &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp", with(group, kernel));
+      faces_ = gl::Buffer("lpv geometry faces", 3 * cellsOf(corners) * kCellBytes, nullptr, GL_DYNAMIC_COPY);
     }
   }
 
   if (steps_ == 0) return;
-  const gl::ShaderFlags kernel{{"SIDE_DIRECTIONS", deviations.sideDirections},
-                               {"SIDE_SOLID_ANGLE", deviations.sideSolidAngle},
-                               {"FOUR_PI_KERNEL", deviations.fourPiKernel},
-                               {"BLOCKING_DIRECTION", deviations.blockingDirection}};
   allocate(result_, "result", format, size, sampling);
   const bool joins = joined && settings_.handOver < steps_;
   if (joins) {
@@ -112,19 +126,24 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     balances_ = gl::Texture("lpv balances", GL_R32F, glm::ivec3(half), {GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE});
     balanced_ = gl::Texture("lpv balanced", GL_R32F, size, sampling);
   }
+  if (reflects()) {
+    allocate(source_, "source", GL_RGBA32F, size, sampling);
+    reflect_ = &programs.loadCompute("lpv reflect", "lpv/reflect.comp", with(group, {{"JOINED", joins}}));
+  }
   if (joins || layered) allocate(sum_, "sum", GL_RGBA32F, size, sampling);
   const bool firstBlocked = blocked && deviations.blockFirstStep;
   if (!layered) {
     const auto load = [&](const std::string& name, bool withBlocking) {
       return &programs.loadCompute(name, "lpv/propagate.comp",
-                                   with(with(group, {{"BLOCKED", withBlocking}, {"FACE_KERNEL", deviations.kernel()}, {"JOINED", joins}}), kernel));
+                                   with(with(group, {{"BLOCKED", withBlocking}}), kernel));
     };
-    begin_ = &programs.loadCompute("lpv begin", "lpv/begin.comp", group);
+    begin_ = &programs.loadCompute("lpv begin", "lpv/begin.comp", with(with(group, {{"WITH_INJECTED", !deviations.fewerSteps}}), kernel));
+    finish_ = &programs.loadCompute("lpv finish", "lpv/finish.comp", with(group, {{"FROM_BUFFER", 1}, {"JOINED", joins}}));
     propagateFirst_ = load("lpv propagate first", firstBlocked);
     if (steps_ > 1) propagateFurther_ = load("lpv propagate", blocked);
     for (std::size_t i = 0; i < 2; ++i)
-      fronts_[i] = gl::Buffer(i == 0 ? "lpv front even" : "lpv front odd", 3 * cellsOf(size) * storedBytes, nullptr, GL_DYNAMIC_COPY);
-    sums_ = gl::Buffer("lpv sums", 3 * cellsOf(size) * kFullBytes, nullptr, GL_DYNAMIC_COPY);
+      fronts_[i] = gl::Buffer(i == 0 ? "lpv front even" : "lpv front odd", 3 * cellsOf(size) * kCellBytes, nullptr, GL_DYNAMIC_COPY);
+    sums_ = gl::Buffer("lpv sums", 3 * cellsOf(size) * kCellBytes, nullptr, GL_DYNAMIC_COPY);
     return;
   }
   const auto load = [&](bool withBlocking, bool withInjected) {
@@ -135,7 +154,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   };
   propagateFirst_ = load(firstBlocked, !deviations.fewerSteps);
   if (steps_ > 1) propagateFurther_ = load(blocked, false);
-  if (!joins) finish_ = &programs.loadCompute("lpv finish", "lpv/finish.comp", group);
+  if (!joins) finish_ = &programs.loadCompute("lpv finish", "lpv/finish.comp", with(group, {{"FROM_BUFFER", 0}, {"JOINED", 0}}));
   for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i) {
     allocate(layeredFronts_[i], i == 0 ? "front even" : "front odd", GL_RGBA32F, size, sampling);
     for (std::size_t far = 0; far < (joins ? 2u : 1u); ++far) {
@@ -269,25 +288,54 @@ void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
   pass.dispatch(injected_[0].size(), kGroup);
 }
 
+void LightPropagationVolume::drawSurfels(const Inputs& inputs, const ReflectiveShadowMap::Outputs& map, const gl::Framebuffer& target) {
+  gl::RasterState state;
+  state.blend = gl::Blend::add;
+  const gl::RasterPass pass("lpv geometry volume", target, state);
+  fillGeometryVolume_->use();
+  noAttributes_.bind();
+  if (settings_.deviations.surfelArea) {
+    const bool isSun = map.light == ReflectiveShadowMap::Light::sun;
+    fillGeometryVolume_->set("lightPosition", inputs.lightPosition);
+    fillGeometryVolume_->set("texelCount", isSun ? static_cast<float>(map.texelCount()) : 0.0f);
+  }
+  map.bind();
+  glDrawArrays(GL_POINTS, 0, map.texelCount());
+}
+
+void LightPropagationVolume::mergeView() {
+  const gl::ComputePass pass("lpv merge views", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  mergeViews_->use();
+  viewPotential_.bind(0);
+  geometryVolume_->bindImage(0, GL_READ_WRITE);
+  if (reflects()) {
+    viewReflectance_.bind(1);
+    reflectance_.bindImage(1, GL_WRITE_ONLY);
+  }
+  pass.dispatch(viewPotential_.size(), kGroup);
+}
+
 void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
   if (!geometryVolume_) return;
-  const std::array<const gl::Texture*, 1> target{&*geometryVolume_};
-  gl::clearToZero(target, haveClearTexture_);
-  {
-    gl::RasterState state;
-    state.blend = gl::Blend::add;
-    const gl::RasterPass pass("lpv geometry volume", geometryTarget_, state);
-    fillGeometryVolume_->use();
-    noAttributes_.bind();
-    for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {
-      if (settings_.deviations.surfelArea) {
-        const bool isSun = rsm.light == ReflectiveShadowMap::Light::sun;
-        fillGeometryVolume_->set("lightPosition", inputs.lightPosition);
-        fillGeometryVolume_->set("texelCount", isSun ? static_cast<float>(rsm.texelCount()) : 0.0f);
-      }
-      rsm.bind();
-      glDrawArrays(GL_POINTS, 0, rsm.texelCount());
+  std::vector<const ReflectiveShadowMap::Outputs*> maps;
+  if (settings_.surfels != LpvSurfels::camera)
+    for (const ReflectiveShadowMap::Outputs& map : inputs.rsms) maps.push_back(&map);
+  if (settings_.surfels != LpvSurfels::rsm)
+    for (const ReflectiveShadowMap::Outputs& map : inputs.views) maps.push_back(&map);
+  std::vector<const gl::Texture*> targets{&*geometryVolume_};
+  if (reflects()) targets.push_back(&reflectance_);
+  gl::clearToZero(targets, haveClearTexture_);
+  bool merges = false;  // the first map needs none
+  for (const ReflectiveShadowMap::Outputs* map : maps) {
+    CHECK(!reflects() || map->albedo, "a map without albedo for {} bounces", settings_.bounces);
+    if (merges) {
+      std::vector<const gl::Texture*> view{&viewPotential_};
+      if (reflects()) view.push_back(&viewReflectance_);
+      gl::clearToZero(view, haveClearTexture_);
     }
+    drawSurfels(inputs, *map, merges ? viewTarget_ : geometryTarget_);
+    if (merges) mergeView();
+    merges = settings_.mergeViews;
   }
   if (!averageFaces_) return;
   const gl::ComputePass pass("lpv geometry faces", GL_SHADER_STORAGE_BARRIER_BIT);
@@ -301,39 +349,68 @@ void LightPropagationVolume::propagate() {
   if (steps_ == 0) return;
   for (const gl::Program* program : {propagateFirst_, propagateFurther_})
     if (program && settings_.deviations.fourPiKernel) program->set("amplifier", settings_.amplifier);
-  if (settings_.propagate != LpvPropagate::compute) return propagateLayered();
-  for (GLuint channel = 0; channel < 3; ++channel) injected_[channel].bind(channel);
+  propagateFrom(injected_);
+  for (int bounce = 1; bounce < settings_.bounces; ++bounce) {
+    reflect(bounce == 1);
+    propagateFrom(source_);
+  }
+}
+
+void LightPropagationVolume::reflect(bool first) {
+  const gl::ComputePass pass("lpv reflect", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  reflect_->use();
+  reflect_->set("first", first ? 1 : 0);
+  reflect_->set("sourceShare", settings_.deviations.fewerSteps ? 0.0f : 1.0f);
+  for (GLuint channel = 0; channel < 3; ++channel) {
+    injected_[channel].bind(channel);
+    (join_ ? sum_ : result_)[channel].bind(3 + channel);
+    if (join_) farSum_[channel].bind(6 + channel);
+    source_[channel].bindImage(channel, GL_READ_WRITE);
+  }
+  geometryVolume_->bind(9);
+  reflectance_.bind(10);
+  pass.dispatch(source_[0].size(), kGroup);
+}
+
+void LightPropagationVolume::propagateFrom(const Volume& source) {
+  if (settings_.propagate != LpvPropagate::compute) return propagateLayered(source);
+  for (GLuint channel = 0; channel < 3; ++channel) source[channel].bind(channel);
+  sums_.bind(GL_SHADER_STORAGE_BUFFER, kSumBuffer);
+  if (faces_.id()) faces_.bind(GL_SHADER_STORAGE_BUFFER, kFacesBuffer);
+  const glm::ivec3 size = injected_[0].size();
   {
     const gl::ComputePass pass("lpv begin", GL_SHADER_STORAGE_BARRIER_BIT);
     begin_->use();
     fronts_[0].bind(GL_SHADER_STORAGE_BUFFER, 0);
-    pass.dispatch(injected_[0].size(), kGroup);
+    pass.dispatch(size, kGroup);
   }
-  sums_.bind(GL_SHADER_STORAGE_BUFFER, kSumBuffer);
-  if (faces_.id()) faces_.bind(GL_SHADER_STORAGE_BUFFER, kFacesBuffer);
   for (int step = 0; step < steps_; ++step) {
-    const gl::ComputePass pass("lpv propagate", GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     const bool far = join_ && step >= settings_.handOver;
-    const bool begins = step == 0 || (far && step == settings_.handOver), ends = step + 1 == steps_ || (join_ && step + 1 == settings_.handOver);
-    const gl::Program& program = step == 0 ? *propagateFirst_ : *propagateFurther_;
-    program.use();
-    program.set("sumFrom", !begins ? 2 : step == 0 && !settings_.deviations.fewerSteps ? 1 : 0);
-    program.set("sumEnds", ends ? 1 : 0);
-    fronts_[static_cast<std::size_t>(step % 2)].bind(GL_SHADER_STORAGE_BUFFER, kSourceBuffer);
-    fronts_[static_cast<std::size_t>((step + 1) % 2)].bind(GL_SHADER_STORAGE_BUFFER, kNextBuffer);
+    {
+      const gl::ComputePass pass("lpv propagate", GL_SHADER_STORAGE_BARRIER_BIT);
+      const gl::Program& program = step == 0 ? *propagateFirst_ : *propagateFurther_;
+      program.use();
+      program.set("sumBegins", far && step == settings_.handOver ? 1 : 0);
+      fronts_[static_cast<std::size_t>(step % 2)].bind(GL_SHADER_STORAGE_BUFFER, kSourceBuffer);
+      fronts_[static_cast<std::size_t>((step + 1) % 2)].bind(GL_SHADER_STORAGE_BUFFER, kNextBuffer);
+      pass.dispatch(size, kGroup);
+    }
+    if (step + 1 < steps_ && !(join_ && step + 1 == settings_.handOver)) continue;
+    const gl::ComputePass pass("lpv finish", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    finish_->use();
     const Volume& sum = !join_ ? result_ : far ? farSum_ : sum_;
     for (GLuint channel = 0; channel < 3; ++channel) sum[channel].bindImage(channel, GL_WRITE_ONLY);
-    pass.dispatch(injected_[0].size(), kGroup);
+    pass.dispatch(size, kGroup);
   }
 }
 
 // As published: one layered pass a step and cascade, blending adds to the sum. One point a cell, or one triangle a slice.
-void LightPropagationVolume::propagateLayered() {
+void LightPropagationVolume::propagateLayered(const Volume& source) {
   std::vector<const gl::Texture*> sums{&sum_[0], &sum_[1], &sum_[2]};
   if (join_) sums.insert(sums.end(), {&farSum_[0], &farSum_[1], &farSum_[2]});
   gl::clearToZero(sums, haveClearTexture_);
   const int cells = settings_.cascades.cells;
-  const Volume* front = &injected_;
+  const Volume* front = &source;
   for (int step = 0; step < steps_; ++step) {
     const auto next = static_cast<std::size_t>(step % 2);
     const bool far = join_ && step >= settings_.handOver;
@@ -377,8 +454,10 @@ std::size_t LightPropagationVolume::gpuBytes() const {
   const auto add = [&](const gl::Texture& texture) {
     if (texture.id()) bytes += texture.bytes();
   };
+  for (const gl::Texture* texture : {&reflectance_, &viewPotential_, &viewReflectance_}) add(*texture);
   for (std::size_t channel = 0; channel < 3; ++channel) {
     add(counts_[channel]);
+    add(source_[channel]);
     add(injected_[channel]);
     add(result_[channel]);
     add(sum_[channel]);

@@ -25,6 +25,9 @@ std::string_view nameOf(LpvFill fill);
 enum class LpvPropagate { compute, layered, slices };
 std::string_view nameOf(LpvPropagate propagate);
 
+/// Whose surfels fill the geometry volume: those that the lights' maps see, those that the camera sees, or both.
+enum class LpvSurfels { rsm, camera, both };
+
 class LightPropagationVolume {
  public:
   /// What fronts and the result are kept in, rounded to the nearest; sums are always kept in 32 bits. `full` (32-bit) is for tests.
@@ -55,6 +58,9 @@ class LightPropagationVolume {
     float amplifier = 1.0f;     ///< of the deviating kernel: 4 would conserve
     int iterations = 8;         ///< propagation steps; 0: injected light alone
     bool blocking = true;       ///< geometry volume
+    LpvSurfels surfels = LpvSurfels::rsm;
+    bool mergeViews = false;    ///< several maps see surfels: of one seen twice the longer vector counts. Else all are summed
+    int bounces = 1;            ///< more than 1 need blocking, two iterations and maps with albedo
     float blendBand = 0.25f;    ///< fraction of a cascade's half extent over which it fades into the next
     int handOver = 0;           ///< steps after which a finer cascade takes light from the coarser one; 0: handOverStep()
     float lookupOffset = 0.5f;  ///< cells along the normal by which a receiver is moved before the lookup
@@ -65,6 +71,7 @@ class LightPropagationVolume {
     std::vector<Cascade> cascades;                   ///< finest first, as many as in the settings
     float referenceIrradiance;      ///< E_ref > 0, of the order of what the lights make; only scales the stored values
     glm::vec3 lightPosition{0.0f};  ///< the sun's; only read by the deviation surfelArea
+    std::vector<ReflectiveShadowMap::Outputs> views{};  ///< what the camera sees, for its surfels alone: flux is not read
   };
   /// Red, green and blue: 3D textures of SH coefficients c / (E_ref s^2), cascades stacked along z.
   using Volume = std::array<gl::Texture, 3>;
@@ -98,9 +105,14 @@ class LightPropagationVolume {
   std::size_t gpuBytes() const;
 
  private:
+  bool reflects() const { return settings_.bounces > 1; }
   float fluxScale(const ReflectiveShadowMap::Outputs& rsm) const;
+  void drawSurfels(const Inputs& inputs, const ReflectiveShadowMap::Outputs& map, const gl::Framebuffer& target);
+  void mergeView();
+  void reflect(bool first);
+  void propagateFrom(const Volume& source);
+  void propagateLayered(const Volume& source);
   void fillByAtomics(const Inputs& inputs);
-  void propagateLayered();
 
   Settings settings_;
   int steps_ = 0;  ///< propagation steps that are run
@@ -110,6 +122,8 @@ class LightPropagationVolume {
   const gl::Program* resolve_ = nullptr;             ///< only with atomics
   const gl::Program* fillGeometryVolume_ = nullptr;
   const gl::Program* averageFaces_ = nullptr;
+  const gl::Program* mergeViews_ = nullptr;  ///< only with several views
+  const gl::Program* reflect_ = nullptr;     ///< only with several bounces
   const gl::Program* begin_ = nullptr;             ///< only with compute, as averageFaces_
   const gl::Program* propagateFirst_ = nullptr;
   const gl::Program* propagateFurther_ = nullptr;  ///< blocked where blocking is on
@@ -131,6 +145,10 @@ class LightPropagationVolume {
   std::array<Volume, 2> layeredFronts_;
   gl::Framebuffer injectTarget_;
   std::optional<gl::Texture> geometryVolume_;
+  gl::Texture reflectance_;    ///< albedo A / s^2 of its surfels; only with several bounces
+  gl::Texture viewPotential_, viewReflectance_;  ///< of one view, before it is merged
+  gl::Framebuffer viewTarget_;
+  Volume source_;              ///< injected light and all bounces so far, 32 bits
   gl::Framebuffer geometryTarget_;
   std::array<std::array<gl::Framebuffer, 2>, 2> layeredTargets_;  ///< front x (sum, far sum); only for the layered pass
 };

@@ -116,6 +116,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   const auto addMap = [&](Light light) {
     ReflectiveShadowMap::Settings map = settings.rsm;
     map.light = light;
+    map.albedo = showsLpv_ && settings.lpv.bounces > 1;
     if (light == Light::point) map.size = std::max(map.size / 2, 1);
     rsms_.emplace_back(programs, gpuScene_, map);
   };
@@ -123,7 +124,17 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   if (showsLpv_) {
     for (std::size_t i = 0; i < spots_.size(); ++i) addMap(Light::spot);
     for (std::size_t i = 0; i < points_.size(); ++i) addMap(Light::point);
-    lpv_.emplace(programs, context.capabilities(), settings.lpv);
+    LightPropagationVolume::Settings volume = settings.lpv;
+    if (volume.blocking && volume.iterations > 1 && volume.surfels != LpvSurfels::rsm) {
+      ReflectiveShadowMap::Settings map;
+      map.size = settings.rsm.size;
+      map.light = Light::spot;
+      map.albedo = volume.bounces > 1;
+      cameraMap_.emplace(programs, gpuScene_, map);
+    }
+    const std::size_t views = (volume.surfels == LpvSurfels::camera ? 0 : rsms_.size()) + (cameraMap_ ? 1 : 0);
+    volume.mergeViews = volume.blocking && views > 1;
+    lpv_.emplace(programs, context.capabilities(), volume);
   }
   if (settings.technique == Technique::rsm && settings.component != Component::direct && LocalLights::isNeeded(needs_))
     logWarning("technique rsm gathers the sun's light alone: spot and omnidirectional lights give direct light only (lpv takes all)");
@@ -219,6 +230,19 @@ std::vector<ReflectiveShadowMap::Outputs> Renderer::recordReflectiveShadowMaps()
   return outputs;
 }
 
+// The camera as a lamp without light: the map's texels hold position, normal and area of what it sees.
+std::vector<ReflectiveShadowMap::Outputs> Renderer::recordCameraMap(const Camera& camera) {
+  if (!cameraMap_) return {};
+  const gl::TimeQuery::Scope stage(timer_, "camera surfels");
+  const double aspect = static_cast<double>(settings_.size.x) / static_cast<double>(settings_.size.y);
+  SpotLight eye;
+  eye.position = camera.position;
+  eye.direction = camera.direction;
+  eye.outerAngle = std::min(std::atan(std::tan(0.5 * camera.verticalFov) * std::max(aspect, 1.0)), kLargestSpotAngle);
+  eye.innerAngle = 0.0;
+  return {cameraMap_->record(gpuScene_, lightViews(eye, gpuScene_.scene().bounds))};
+}
+
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   const Scene& scene = gpuScene_.scene();
   const glm::dmat4 exactClip = clipFromWorld(camera, scene.bounds, settings_.size);
@@ -266,7 +290,7 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     const glm::dvec4 lightPosition = glm::inverse(sunFrustum_.clipFromWorld) * glm::dvec4(0.0, 0.0, -1.0, 1.0);
     const LightPropagationVolume::Inputs inputs{
         recordReflectiveShadowMaps(), placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction),
-        typicalIrradiance(scene), glm::vec3(lightPosition)};
+        typicalIrradiance(scene), glm::vec3(lightPosition), recordCameraMap(volumeCamera)};
     timer_.begin("injection");
     lpv_->place(inputs);
     lpv_->inject(inputs);
@@ -350,6 +374,7 @@ std::size_t Renderer::gpuBytes() const {
   if (localLights_) bytes += localLights_->gpuBytes();
   for (const ReflectiveShadowMap& rsm : rsms_) bytes += rsm.gpuBytes();
   if (lpv_) bytes += lpv_->gpuBytes();
+  if (cameraMap_) bytes += cameraMap_->gpuBytes();
   if (gather_) bytes += gather_->gpuBytes();
   if (radiosity_) bytes += radiosity_->gpuBytes();
   return bytes;
@@ -368,6 +393,10 @@ std::vector<std::string> Renderer::leftOut() const {
   if (!radiosity_) names.emplace_back("radiosity");
   if (!lpv_) names.emplace_back("light propagation volume");
   else if (!lpv_->geometryVolume()) names.emplace_back("geometry volume");
+  else {
+    if (!cameraMap_) names.emplace_back("camera surfels");
+    if (settings_.lpv.bounces == 1) names.emplace_back("light bounces");
+  }
   return names;
 }
 

@@ -84,6 +84,7 @@ class Renderer {
   void allocateTargets();
   void recordShadows(const Camera& camera);
   std::vector<ReflectiveShadowMap::Outputs> recordReflectiveShadowMaps();
+  std::vector<ReflectiveShadowMap::Outputs> recordCameraMap(const Camera& camera);  ///< empty where none is needed
 
   RenderSettings settings_;
   SceneNeeds needs_;
@@ -104,6 +105,7 @@ class Renderer {
   std::vector<LightViews> spots_, points_;
   std::optional<LocalLights> localLights_;
   std::vector<ReflectiveShadowMap> rsms_;    ///< one a light: the sun, the spots, the points
+  std::optional<ReflectiveShadowMap> cameraMap_;  ///< what the camera sees, for the geometry volume
   std::optional<LightPropagationVolume> lpv_;
   std::optional<RsmGather> gather_;
   gl::Texture radiance_, depth_, display_;

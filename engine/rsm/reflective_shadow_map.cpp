@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace lucerna {
 
@@ -21,7 +22,7 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
   const int layers = settings.light == Light::point ? 6 : 1;
   const auto load = [&](bool masked) {
     gl::ShaderFlags flags = scene.materialFlags(masked);
-    flags.insert(flags.end(), {{"PERSPECTIVE", settings.light != Light::sun}, {"LAYERS", layers}, {"FLUX_COSINE", settings.fluxCosine}});
+    flags.insert(flags.end(), {{"PERSPECTIVE", settings.light != Light::sun}, {"LAYERS", layers}, {"FLUX_COSINE", settings.fluxCosine}, {"ALBEDO", settings.albedo}});
     return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "rsm/rsm.vert", "rsm/rsm.frag", flags,
                                 layers > 1 ? "rsm/rsm.geom" : "");
   };
@@ -36,7 +37,11 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
   normal_ = texture("normal", GL_RGBA16F);
   flux_ = texture("flux", GL_RGBA32F);
   depth_ = texture("depth", GL_DEPTH_COMPONENT32F);
-  const std::array<const gl::Texture*, 3> colors{&position_, &normal_, &flux_};
+  std::vector<const gl::Texture*> colors{&position_, &normal_, &flux_};
+  if (settings.albedo) {
+    albedo_ = texture("albedo", GL_RGBA16F);
+    colors.push_back(&albedo_);
+  }
   framebuffer_ = gl::Framebuffer(name, colors, &depth_);
 }
 
@@ -45,7 +50,7 @@ void ReflectiveShadowMap::draw(const GpuScene& scene, bool depthClamp) {
   state.depth = gl::Depth::lessWrite;
   state.depthClamp = depthClamp;
   const gl::RasterPass pass(kNames[static_cast<std::size_t>(light_)], framebuffer_, state);
-  for (int attachment = 0; attachment < 3; ++attachment) pass.clearColor(attachment, glm::vec4(0.0f));
+  for (int attachment = 0; attachment < (albedo() ? 4 : 3); ++attachment) pass.clearColor(attachment, glm::vec4(0.0f));
   pass.clearDepth();
   scene.draw(programs_, {});
 }
@@ -56,7 +61,7 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, 
   if (programs_.masked) programs_.masked->set("texelArea", static_cast<float>(texelArea));
   draw(scene, false);
   const double irradiance = scene.scene().sun ? largest(scene.scene().sun->irradiance) : 0.0;
-  return {position_, normal_, flux_, static_cast<float>(texelArea), irradiance * texelArea * size() * size(), light_};
+  return {position_, normal_, flux_, static_cast<float>(texelArea), irradiance * texelArea * size() * size(), light_, albedo()};
 }
 
 ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, const LightViews& light) {
@@ -75,7 +80,7 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, 
     program->set("cosOuter", static_cast<float>(light.cosOuter));
   }
   draw(scene, true);  // what stands before the near plane reflects too
-  return {position_, normal_, flux_, 1.0f, largest(light.intensity) * light.largestSolidAngle(size()), light_};
+  return {position_, normal_, flux_, 1.0f, largest(light.intensity) * light.largestSolidAngle(size()), light_, albedo()};
 }
 
 }  // namespace lucerna

@@ -15,6 +15,7 @@ class ReflectiveShadowMap {
     int size = 256;  ///< texels a side, of every layer
     Light light = Light::sun;
     bool fluxCosine = false;  ///< deviation rsm.flux-cosine: flux times N.L
+    bool albedo = false;      ///< a fourth target: for light that is reflected more than once
   };
   /// 2D arrays: one layer, or the six faces of an omnidirectional light.
   struct Outputs {
@@ -24,10 +25,14 @@ class ReflectiveShadowMap {
     float texelArea = 1.0f;       ///< sun: across the rays, scene units squared; other lights have no such area: 1. Only for deviations
     double largestFlux = 0.0;     ///< of all texels together, W: what the light sends into the map, an upper bound for any albedo up to 1
     Light light = Light::sun;
+    const gl::Texture* albedo = nullptr;  ///< RGBA16F, linear; null unless asked for
     /// Texels of all layers.
     int texelCount() const { return position.size().x * position.size().y * position.size().z; }
-    /// To the units 0, 1, 2, where all that reads a map expects it.
-    void bind() const { position.bind(0), normal.bind(1), flux.bind(2); }
+    /// To the units 0, 1, 2 and, if there is an albedo, 3, where all that reads a map expects it.
+    void bind() const {
+      position.bind(0), normal.bind(1), flux.bind(2);
+      if (albedo) albedo->bind(3);
+    }
   };
   /// Needed by techniques that light the scene indirectly: something must reflect a light.
   static bool isNeeded(const SceneNeeds& needs) { return needs.anyLight() && needs.indirect; }
@@ -40,13 +45,14 @@ class ReflectiveShadowMap {
   Outputs record(const GpuScene& scene, const LightViews& light);
   int size() const { return position_.size().x; }
   Light light() const { return light_; }
-  std::size_t gpuBytes() const { return position_.bytes() + normal_.bytes() + flux_.bytes() + depth_.bytes(); }
+  std::size_t gpuBytes() const { return position_.bytes() + normal_.bytes() + flux_.bytes() + albedo_.bytes() + depth_.bytes(); }
 
  private:
   void draw(const GpuScene& scene, bool depthClamp);
+  const gl::Texture* albedo() const { return albedo_.id() ? &albedo_ : nullptr; }
   Light light_;
   SurfacePrograms programs_;
-  gl::Texture position_, normal_, flux_, depth_;
+  gl::Texture position_, normal_, flux_, albedo_, depth_;
   gl::Framebuffer framebuffer_;
 };
 

@@ -2,10 +2,10 @@
 // [Kaplanyan2010; LPV2015, figure 5.3]. Done once a frame, so that each propagation step reads one texel a face.
 // Face (i,j,k) of axis x lies between the cells (i-1,j,k) and (i,j,k); likewise y, z.
 #include "lpv/common.glsl"
-#include "lpv/storage.glsl"
+#include "lpv/stored_units.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 0) uniform sampler3D geometryVolume;
-layout(std430, binding = 3) writeonly buffer Faces { LPV_STORED faces[]; };  // all of x before y before z
+layout(std430, binding = 3) writeonly buffer Faces { vec4 faces[]; };  // all of x before y before z
 
 vec4 potential(ivec3 corner) { return texelFetch(geometryVolume, corner, 0); }
 
@@ -21,7 +21,7 @@ void main() {
   ivec3 z = ivec3(0, 0, layer + 1 < corners ? 1 : 0);
   vec4 hereX = potential(at + x), hereY = potential(at + y), hereZ = potential(at + z);
   int face = (at.z * corners + at.y) * corners + at.x, facesOfAxis = corners * corners * corners * lpv.shape.y;
-  faces[face] = toStored(0.25 * (here + hereY + hereZ + potential(at + y + z)));
-  faces[face + facesOfAxis] = toStored(0.25 * (here + hereX + hereZ + potential(at + x + z)));
-  faces[face + 2 * facesOfAxis] = toStored(0.25 * (here + hereX + hereY + potential(at + x + y)));
+  faces[face] = 0.25 * kStoredUnits * (here + hereY + hereZ + potential(at + y + z));
+  faces[face + facesOfAxis] = 0.25 * kStoredUnits * (here + hereX + hereZ + potential(at + x + z));
+  faces[face + 2 * facesOfAxis] = 0.25 * kStoredUnits * (here + hereX + hereY + potential(at + x + y));
 }

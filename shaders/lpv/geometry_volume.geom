@@ -10,6 +10,10 @@ in vec4 gPosition[];
 in vec4 gNormal[];
 in vec4 gFlux[];  // w = area
 flat out vec4 fPotential;
+#if REFLECTS
+in vec3 gAlbedo[];
+flat out vec3 fReflectance;
+#endif
 #if SURFEL_AREA
 uniform vec3 lightPosition;
 uniform float texelCount;  // 0: the light is a perspective one, which has true areas
@@ -38,6 +42,9 @@ void main() {
 #endif
     if (any(lessThan(corner, ivec3(LOWEST_CELL))) || any(greaterThanEqual(corner, ivec3(corners)))) continue;
     fPotential = area / (s * s) * shCosineLobe(normal);
+#if REFLECTS
+    fReflectance = area / (s * s) * gAlbedo[0];
+#endif
     gl_Layer = k * corners + corner.z;
     gl_Position = vec4((vec2(corner.xy) + 0.5) / float(corners) * 2.0 - 1.0, 0.0, 1.0);
     gl_PointSize = 1.0;

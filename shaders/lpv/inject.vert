@@ -5,6 +5,10 @@ layout(binding = 2) uniform sampler2DArray rsmFlux;
 out vec4 gPosition;  // world; w = 0: background
 out vec4 gNormal;    // unit; w = cosine to the light
 out vec4 gFlux;      // reflected flux of the texel; w = area of the surface in it
+#if REFLECTS
+layout(binding = 3) uniform sampler2DArray rsmAlbedo;
+out vec3 gAlbedo;
+#endif
 
 void main() {
   ivec2 size = textureSize(rsmPosition, 0).xy;
@@ -13,4 +17,7 @@ void main() {
   gPosition = texelFetch(rsmPosition, texel, 0);
   gNormal = texelFetch(rsmNormal, texel, 0);
   gFlux = texelFetch(rsmFlux, texel, 0);
+#if REFLECTS
+  gAlbedo = texelFetch(rsmAlbedo, texel, 0).rgb;
+#endif
 }

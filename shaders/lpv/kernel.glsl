@@ -1,28 +1,29 @@
 // One direction of the propagation step [Kaplanyan2010, section 4.3; Kirsch2010]: what reaches a cell from the neighbour
-// behind it along one axis. Everything is in the frame (travel, u, v) of that axis: vec4(c0, c along, c u, c v).
+// behind it along one axis. Everything is in the frame (travel, u, v) of that axis.
 //
 // For each of the five faces of the destination but the shared one: the intensity I towards the face's centre, the flux
 // Omega * max(0, I) * transmittance, then Phi / pi * lobe(face normal) [LPV2015, 6.2: no 1/(4 pi), reprojection Phi_l = Phi_f].
 // Seen from the source's centre a side face's centre lies along (2 travel + side) / sqrt(5).
 // Solid angles: exact, one front and four sides make 2 pi / 3, six neighbours 4 pi: band 0 is conserved.
+//
+// A function is kept in face units, (Y00 c0, Y1 / sqrt(5) c1): its value towards the front is then x + sqrt(5) y, towards the sides x + 2 y + z,
+// x + 2 y - z, x + 2 y + w and x + 2 y - w. That, and reprojecting the fluxes of all six neighbours together, halves the arithmetic.
 #include "lib/sh.glsl"
 
 const float kFrontSolidAngle = 0.40066968464623916;  // 4 atan(sqrt(11) / 33)
 const float kSideSolidAngle = 0.42343135443673924;   // 2 atan(3 sqrt(11) / 11) - pi / 3
-const float kAlongSide = 0.89442719099991588;        // 2 / sqrt(5)
-const float kAcrossSide = 0.44721359549995794;       // 1 / sqrt(5)
+const float kRoot5 = 2.2360679774997897;
+const vec4 kFaceUnits = vec4(kY00, vec3(kY1 / kRoot5));  // times coefficients: face units
 
-// Value of a two-band function towards the front face and the sides +u, -u, +v, -v.
+// Value towards the front face and the sides +u, -u, +v, -v.
 struct FaceValues {
   float front;
   vec4 sides;
 };
 
-FaceValues evaluateTowardsFaces(vec4 c) {
-  float constant = kY00 * c.x;
-  float base = constant + kY1 * kAlongSide * c.y;
-  vec2 across = kY1 * kAcrossSide * c.zw;
-  return FaceValues(constant + kY1 * c.y, base + vec4(across.x, -across.x, across.y, -across.y));
+FaceValues evaluateTowardsFaces(vec4 f) {
+  float base = f.x + 2.0 * f.y;
+  return FaceValues(f.x + kRoot5 * f.y, base + vec4(f.z, -f.z, f.w, -f.w));
 }
 
 // Fraction that passes a blocking potential. A surfel blocks what meets its front, light that travels against its normal:
@@ -32,10 +33,20 @@ FaceValues transmittanceTowardsFaces(vec4 potential) {
   return FaceValues(1.0 - clamp(b.front, 0.0, 1.0), 1.0 - clamp(b.sides, 0.0, 1.0));
 }
 
-vec4 carry(vec4 source, FaceValues transmittance) {
-  FaceValues intensity = evaluateTowardsFaces(source);
-  float front = kFrontSolidAngle * max(intensity.front, 0.0) * transmittance.front;
-  vec4 sides = kSideSolidAngle * max(intensity.sides, 0.0) * transmittance.sides;
-  float total = front + sides.x + sides.y + sides.z + sides.w;
-  return vec4(kLobe0 * total, kLobe1 * vec3(front, sides.x - sides.y, sides.z - sides.w)) / kPi;
+// Solid angles times what passes.
+FaceValues solidAngles(FaceValues transmittance) {
+  return FaceValues(kFrontSolidAngle * transmittance.front, kSideSolidAngle * transmittance.sides);
 }
+
+// Fluxes to the faces: all together, along travel, u and v.
+vec4 carry(vec4 source, FaceValues openings) {
+  FaceValues intensity = evaluateTowardsFaces(source);
+  float front = max(intensity.front, 0.0) * openings.front;
+  vec4 sides = max(intensity.sides, 0.0) * openings.sides;
+  return vec4(front + (sides.x + sides.y) + (sides.z + sides.w), front, sides.x - sides.y, sides.z - sides.w);
+}
+
+// Fluxes in world axes, reprojected, as coefficients (kLobe0 and kLobe1 over pi) and in face units. Each rounded once: a product of rounded
+// constants would gain or lose the same 1e-7 in every step.
+const vec4 kFluxInCoefficients = vec4(0.28209479177387814, vec3(0.32573500793527993));
+const vec4 kFluxInFaceUnits = vec4(0.07957747154594767, vec3(0.07117625434171772));  // 1 / (4 pi), 1 / (2 sqrt(5) pi)

@@ -1,43 +1,20 @@
 // One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels.
 //
 // A front lies in a buffer, cell by cell, x fastest, all of red before green before blue: on llvmpipe a load from a buffer takes a quarter of the
-// time of a texelFetch. Fronts are summed in 32 bits in another; the last step of a sum writes it to textures, which join.comp
-// or the lookup filters.
+// time of a texelFetch. Fronts are summed in 32 bits in another. No branches: a software rasteriser runs both sides of each.
 #include "lpv/common.glsl"
-#include "lpv/storage.glsl"
-#if FACE_KERNEL
-#include "lpv/kernel_faces.glsl"
-#else
-#include "lpv/kernel.glsl"
-#endif
-// What is joined stays in 32 bits until then.
-#if JOINED
-#define LPV_SUM_FORMAT rgba32f
-#define LPV_SUM_TEXEL(sum) sum
-#else
-#define LPV_SUM_FORMAT LPV_FORMAT
-#define LPV_SUM_TEXEL(sum) toTexel(sum)
-#endif
+#include "lpv/stored_units.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(std430, binding = 0) readonly buffer Source { LPV_STORED source[]; };
-layout(std430, binding = 1) writeonly buffer Next { LPV_STORED next[]; };
+layout(std430, binding = 0) readonly buffer Source { vec4 source[]; };
+layout(std430, binding = 1) writeonly buffer Next { vec4 next[]; };
 layout(std430, binding = 2) buffer Sums { vec4 sums[]; };
 #if BLOCKED
-layout(std430, binding = 3) readonly buffer Faces { LPV_STORED faces[]; };  // lpv/geometry_faces.comp
+layout(std430, binding = 3) readonly buffer Faces { vec4 faces[]; };  // lpv/geometry_faces.comp
 #endif
-layout(binding = 0) uniform sampler3D injectedRed;
-layout(binding = 1) uniform sampler3D injectedGreen;
-layout(binding = 2) uniform sampler3D injectedBlue;
-layout(binding = 0, LPV_SUM_FORMAT) writeonly uniform image3D sumRed;
-layout(binding = 1, LPV_SUM_FORMAT) writeonly uniform image3D sumGreen;
-layout(binding = 2, LPV_SUM_FORMAT) writeonly uniform image3D sumBlue;
-// The sum of fronts that this step belongs to, that of the first steps or, with several cascades, that of the later ones: what it starts
-// from, and whether this is its last step.
-uniform int sumFrom;  // 0: nothing, 1: the injected grid, 2: the buffer
-uniform bool sumEnds;
+uniform bool sumBegins;  // the fronts of this step and of those that follow are a new sum: that of the later steps, with several cascades
 
 #if BLOCKED
-#define POTENTIAL(face) fromStored(faces[face])
+#define POTENTIAL(face) faces[face]
 #else
 #define POTENTIAL(face) vec4(0.0)
 #endif
@@ -47,7 +24,7 @@ uniform bool sumEnds;
 #define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                     \
   if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
     int from = at - int(way) * stride;                                                                                 \
-    vec4 light[3] = vec4[3](fromStored(source[from]), fromStored(source[from + channel]), fromStored(source[from + 2 * channel])); \
+    vec4 light[3] = vec4[3](source[from], source[from + channel], source[from + 2 * channel]); \
     gatherFaces(light, way * offset, POTENTIAL(face), sum);                                                            \
   }
 
@@ -66,10 +43,10 @@ void gatherFaces(vec4 light[3], vec3 travel, vec4 potential, inout vec4 sum[3]) 
   if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
     const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                        \
     int from = at - int(way) * stride;                                                                                 \
-    FaceValues transmittance = transmittanceTowardsFaces(POTENTIAL(face).toFrame * turn);                              \
-    sum[0] += (carry(fromStored(source[from]).toFrame * turn, transmittance) * turn).fromFrame;                        \
-    sum[1] += (carry(fromStored(source[from + channel]).toFrame * turn, transmittance) * turn).fromFrame;              \
-    sum[2] += (carry(fromStored(source[from + 2 * channel]).toFrame * turn, transmittance) * turn).fromFrame;          \
+    FaceValues openings = solidAngles(transmittanceTowardsFaces(POTENTIAL(face).toFrame * turn));                      \
+    sum[0] += (carry(source[from].toFrame * turn, openings) * turn).fromFrame;                             \
+    sum[1] += (carry(source[from + channel].toFrame * turn, openings) * turn).fromFrame;                   \
+    sum[2] += (carry(source[from + 2 * channel].toFrame * turn, openings) * turn).fromFrame;               \
   }
 #endif
 
@@ -91,26 +68,9 @@ void main() {
   GATHER(z, 1.0, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner)
   GATHER(z, -1.0, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner + corners * corners)
 
-  next[at] = toStored(sum[0]);
-  next[at + channel] = toStored(sum[1]);
-  next[at + 2 * channel] = toStored(sum[2]);
+  next[at] = kNextUnits * sum[0];
+  next[at + channel] = kNextUnits * sum[1];
+  next[at + 2 * channel] = kNextUnits * sum[2];
 
-  if (sumFrom == 1) {
-    sum[0] += texelFetch(injectedRed, cell, 0);
-    sum[1] += texelFetch(injectedGreen, cell, 0);
-    sum[2] += texelFetch(injectedBlue, cell, 0);
-  } else if (sumFrom == 2) {
-    sum[0] += sums[at];
-    sum[1] += sums[at + channel];
-    sum[2] += sums[at + 2 * channel];
-  }
-  if (sumEnds) {
-    imageStore(sumRed, cell, LPV_SUM_TEXEL(sum[0]));
-    imageStore(sumGreen, cell, LPV_SUM_TEXEL(sum[1]));
-    imageStore(sumBlue, cell, LPV_SUM_TEXEL(sum[2]));
-  } else {
-    sums[at] = sum[0];
-    sums[at + channel] = sum[1];
-    sums[at + 2 * channel] = sum[2];
-  }
+  for (int i = 0; i < 3; ++i) sums[at + i * channel] = kSumUnits * sum[i] + (sumBegins ? vec4(0.0) : sums[at + i * channel]);
 }

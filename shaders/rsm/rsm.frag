@@ -15,6 +15,9 @@ in vec2 vTexCoord;
 layout(location = 0) out vec4 outPosition;  // world; w = 1 marks a surface, 0 background
 layout(location = 1) out vec4 outNormal;    // unit, towards the light; w = cosine to it
 layout(location = 2) out vec4 outFlux;      // reflected flux of the texel, RGB; w = area of the surface in it, world units squared
+#if ALBEDO
+layout(location = 3) out vec4 outAlbedo;    // of the surface, linear; for light that is reflected more than once
+#endif
 #if PERSPECTIVE
 uniform vec3 lightPosition;
 uniform vec3 lightIntensity;  // W/sr
@@ -56,7 +59,11 @@ void main() {
   }
   outPosition = vec4(vPosition, 1.0);
   outNormal = vec4(normal, cosine);
-  outFlux = vec4(incoming * materialAlbedo(vTexCoord), across / max(cosine, 0.05));
+  vec3 albedo = materialAlbedo(vTexCoord);
+  outFlux = vec4(incoming * albedo, across / max(cosine, 0.05));
+#if ALBEDO
+  outAlbedo = vec4(albedo, 1.0);
+#endif
 #if FLUX_COSINE
   outFlux.rgb *= cosine;  // deviation rsm.flux-cosine
 #endif

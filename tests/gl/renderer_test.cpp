@@ -204,15 +204,15 @@ TEST_F(RendererGl, GpuBytesIsTheSumOfWhatIsThere) {
   s.fullFloatTarget = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets - pixels * 8 + shadow + frame);
 
-  // One cascade of 16^3 in 16-bit floats: injected and sum in 32, result and two fronts in 16; potentials on corners in 32, on faces in 16.
+  // One cascade of 16^3, the result in 16-bit floats; injected light, two fronts and their sum in 32, as potentials on corners and faces.
   s = settings(Component::indirect);
   s.lpv.storage = LightPropagationVolume::Storage::half;
   s.lpv.cascades.cascades = 1;
   const std::size_t cells = 16 * 16 * 16, corners = 17 * 17 * 17;
-  const std::size_t rsm = 256 * 256 * (16 + 8 + 16 + 4), lpv = 3 * cells * (16 + 16 + 3 * 8) + corners * (16 + 3 * 8) + sizeof(shared::LpvConstants);
+  const std::size_t rsm = 256 * 256 * (16 + 8 + 16 + 4), lpv = 3 * cells * (8 + 4 * 16) + corners * 4 * 16 + sizeof(shared::LpvConstants);
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv);
   s.lpv.blocking = false;
-  EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv - corners * (16 + 3 * 8));
+  EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv - corners * 4 * 16);
   s.lpv.iterations = 0;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(),
             geometry + targets + frame + rsm + 3 * cells * 16 + sizeof(shared::LpvConstants));
@@ -272,7 +272,7 @@ TEST_F(RendererGl, IndirectBrightnessHardlyDependsOnCascades) {
 TEST_F(RendererGl, IndirectBrightnessDoesNotDependOnTheReflectiveShadowMap) {
   const Scene scene = openBox();
   double reference = 0.0;
-  for (const int size : {256, 128, 512}) {
+  for (const int size : {256, 64, 128, 512, 1024}) {
     RenderSettings s = settings(Component::indirect, {96, 72});
     s.rsm.size = size;
     const double mean = luminance(render(scene, openBoxCamera(), s));

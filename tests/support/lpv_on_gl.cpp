@@ -22,17 +22,20 @@ RsmTextures::RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLe
   const int height = std::max(1, (static_cast<int>(texels.size()) + kWidth - 1) / kWidth);
   const glm::ivec3 size(kWidth, height, 1);
   const std::size_t count = static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(height);
-  std::vector<glm::vec4> positions(count), normals(count), fluxes(count);
+  std::vector<glm::vec4> positions(count), normals(count), fluxes(count), albedos(count);
   for (std::size_t i = 0; i < texels.size(); ++i) {
     const glm::vec3& f = texels[i].flux;
     if (std::isfinite(f.x + f.y + f.z)) largestFlux_ += static_cast<double>(std::max({f.x, f.y, f.z, 0.0f}));
     positions[i] = texels[i].position;
     normals[i] = texels[i].normal;
+    albedos[i] = glm::vec4(texels[i].albedo, 1.0f);
     fluxes[i] = glm::vec4(texels[i].flux, static_cast<float>(texelArea / std::max(static_cast<double>(texels[i].normal.w), 0.05)));
   }
   position_ = gl::Texture("test rsm position", GL_RGBA32F, size, {}, 1, GL_TEXTURE_2D_ARRAY);
   normal_ = gl::Texture("test rsm normal", normalFormat, size, {}, 1, GL_TEXTURE_2D_ARRAY);
   flux_ = gl::Texture("test rsm flux", GL_RGBA32F, size, {}, 1, GL_TEXTURE_2D_ARRAY);
+  albedo_ = gl::Texture("test rsm albedo", GL_RGBA32F, size, {}, 1, GL_TEXTURE_2D_ARRAY);
+  albedo_.upload(GL_RGBA, GL_FLOAT, albedos.data());
   position_.upload(GL_RGBA, GL_FLOAT, positions.data());
   normal_.upload(GL_RGBA, GL_FLOAT, normals.data());
   flux_.upload(GL_RGBA, GL_FLOAT, fluxes.data());
@@ -43,7 +46,7 @@ std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea
   for (const RsmTexel& texel : texels) {
     if (!(texel.position.w > 0.5f)) continue;
     const double area = texelArea / std::max(static_cast<double>(texel.normal.w), 0.05);
-    vpls.push_back({glm::dvec3(texel.position), glm::dvec3(texel.normal), glm::dvec3(texel.flux), area});
+    vpls.push_back({glm::dvec3(texel.position), glm::dvec3(texel.normal), glm::dvec3(texel.flux), area, glm::dvec3(texel.albedo)});
   }
   return vpls;
 }

@@ -16,16 +16,19 @@ struct RsmTexel {
   glm::vec4 position{0.0f};  ///< world; w = 1 where there is a surface
   glm::vec4 normal{0.0f};    ///< w = cosine to the light
   glm::vec3 flux{0.0f};
+  glm::vec3 albedo{0.0f};    ///< for bounces
 };
 
 /// A reflective shadow map that no light has drawn.
 class RsmTextures {
  public:
   RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLenum normalFormat = GL_RGBA32F);
-  ReflectiveShadowMap::Outputs outputs() const { return {position_, normal_, flux_, texelArea_, largestFlux_}; }
+  ReflectiveShadowMap::Outputs outputs() const {
+    return {position_, normal_, flux_, texelArea_, largestFlux_, ReflectiveShadowMap::Light::sun, &albedo_};
+  }
 
  private:
-  gl::Texture position_, normal_, flux_;
+  gl::Texture position_, normal_, flux_, albedo_;
   float texelArea_;
   double largestFlux_ = 0.0;  ///< of the texels that carry finite light
 };

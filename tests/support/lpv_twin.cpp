@@ -320,6 +320,83 @@ PropagatedRgb propagate(const VolumeRgb& injected, int iterations, const KernelO
   return result;
 }
 
+// ---- bounces -------------------------------------------------------------------------------------------------------
+
+namespace {
+/// The flux that leaves a cell along the signed axis towards the five faces of the next cell, each with a weight of its direction.
+template <class Weight>
+double fluxTowards(const Sh& light, const glm::ivec3& axis, const Weight& weight) {
+  const glm::dvec3 p(axis);
+  double sum = frontSolidAngle() * std::max(evaluate(light, p), 0.0) * weight(p);
+  for (int i = 0; i < 3; ++i) {
+    if (axis[i] != 0) continue;
+    for (const double way : {1.0, -1.0}) {
+      glm::dvec3 n(0.0);
+      n[i] = way;
+      const glm::dvec3 towards = glm::normalize(2.0 * p + n);
+      sum += sideSolidAngle() * std::max(evaluate(light, towards), 0.0) * weight(towards);
+    }
+  }
+  return sum;
+}
+
+std::array<glm::ivec3, 6> signedAxes() { return {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}}; }
+}  // namespace
+
+VolumeRgb injectReflectance(const GridSpec& lpvGrid, std::span<const Vpl> surfels) {
+  VolumeRgb result = makeVolumeRgb(geometryGrid(lpvGrid));
+  for (const Vpl& surfel : surfels) {
+    if (!unit(surfel.normal) || !isFinite(surfel.position) || !std::isfinite(surfel.area)) continue;
+    const std::optional<glm::ivec3> cell = geometryCellOf(lpvGrid, surfel.position);
+    if (!cell) continue;
+    for (int channel = 0; channel < 3; ++channel)
+      result[static_cast<std::size_t>(channel)].at(*cell).c0 += surfel.albedo[channel] * surfel.area / (lpvGrid.cellSize * lpvGrid.cellSize);
+  }
+  return result;
+}
+
+double clampGain() {
+  double gain = 0.0;
+  for (const glm::ivec3& axis : signedAxes()) gain += fluxTowards((1.0 / kPi) * lobe({0, 0, 1}), axis, [](const glm::dvec3&) { return 1.0; });
+  return gain;
+}
+
+VolumeRgb reflect(const VolumeRgb& light, const Volume& geometry, const VolumeRgb& reflectance) {
+  const GridSpec& grid = light[0].grid;
+  VolumeRgb result = makeVolumeRgb(grid);
+  const double gain = clampGain();
+  for (int z = 0; z < grid.dims.z; ++z)
+    for (int y = 0; y < grid.dims.y; ++y)
+      for (int x = 0; x < grid.dims.x; ++x)
+        for (const glm::ivec3& axis : signedAxes()) {
+          const glm::ivec3 cell(x, y, z);
+          const Sh potential = potentialAtFace(geometry, cell + axis, axis);
+          if (potential.c0 <= 0.0) continue;
+          const double directed = glm::length(potential.c1);
+          const glm::dvec3 normal = directed > 1e-3 * potential.c0 ? potential.c1 / directed : -glm::dvec3(axis);
+          for (std::size_t channel = 0; channel < 3; ++channel) {
+            const double held = fluxTowards(light[channel].at(cell), axis, [&](const glm::dvec3& w) { return 1.0 - transmittance(potential, w); });
+            const double albedo = potentialAtFace(reflectance[channel], cell + axis, axis).c0 * kLobeBand0 / potential.c0;
+            result[channel].at(cell) += (albedo * held / gain / kPi) * lobe(normal);
+          }
+        }
+  return result;
+}
+
+Bounced propagateBounces(const VolumeRgb& injected, int iterations, int bounces, const Volume& geometry, const VolumeRgb& reflectance) {
+  Bounced result{injected, propagate(injected, iterations, {}, &geometry).accumulated};
+  for (int bounce = 1; bounce < bounces; ++bounce) {
+    VolumeRgb travelled = result.light;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      for (std::size_t i = 0; i < travelled[channel].cells.size(); ++i)
+        travelled[channel].cells[i] = travelled[channel].cells[i] - result.source[channel].cells[i];
+    result.source = reflect(travelled, geometry, reflectance);
+    for (std::size_t channel = 0; channel < 3; ++channel) add(result.source[channel], injected[channel]);
+    result.light = propagate(result.source, iterations, {}, &geometry).accumulated;
+  }
+  return result;
+}
+
 // ---- lookup --------------------------------------------------------------------------------------------------------
 
 Sh sampleTrilinear(const Volume& volume, const glm::dvec3& point) {

@@ -109,6 +109,7 @@ struct Vpl {
   glm::dvec3 normal{0.0};  ///< any length but zero; normalised on use
   glm::dvec3 flux{0.0};    ///< RGB, W; radiant intensity is flux/pi * max(0, cos)
   double area = 0.0;       ///< true surface area, for the geometry volume
+  glm::dvec3 albedo{0.0};  ///< RGB, for bounces
 };
 
 struct InjectionOptions {
@@ -199,6 +200,21 @@ struct PropagatedRgb {
 };
 PropagatedRgb propagate(const VolumeRgb& injected, int iterations, const KernelOptions& options = {},
                         const Volume* geometry = nullptr);
+
+// ---- bounces -------------------------------------------------------------------------------------------------------
+
+/// Albedo times A/s^2 of all surfels of a geometry-volume cell, RGB in band 0 of a volume on the same grid as the geometry.
+VolumeRgb injectReflectance(const GridSpec& lpvGrid, std::span<const Vpl> surfels);
+/// What a cosine lobe along an axis gains in its first step, by the clamp of negative intensities: 1.138208.
+double clampGain();
+/// What surfaces throw back of `light`, the sum of fronts without its source: at each of a cell's six faces the flux to the five faces beyond
+/// that the potential holds back, times the mean albedo over clampGain(), back into the cell as a lobe about the potential's axis.
+VolumeRgb reflect(const VolumeRgb& light, const Volume& geometry, const VolumeRgb& reflectance);
+struct Bounced {
+  VolumeRgb source;  ///< injected light and what came back of it, `bounces` - 1 times
+  VolumeRgb light;   ///< that, propagated
+};
+Bounced propagateBounces(const VolumeRgb& injected, int iterations, int bounces, const Volume& geometry, const VolumeRgb& reflectance);
 
 // ---- lookup --------------------------------------------------------------------------------------------------------
 

@@ -1,0 +1,21 @@
+// Merges what another view sees into the geometry volume: per cell the longer coefficient vector [LPV2015, 5.2], so that a surface
+// which both see counts once. A surface may be cut by a view's edge or seen in part: the longer vector is the one that saw more of it.
+#include "lpv/common.glsl"
+layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
+layout(binding = 0) uniform sampler3D viewPotential;
+layout(binding = 0, rgba32f) uniform image3D potential;
+#if REFLECTS
+layout(binding = 1) uniform sampler3D viewReflectance;
+layout(binding = 1, rgba32f) writeonly uniform image3D reflectance;
+#endif
+
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(at, textureSize(viewPotential, 0)))) return;
+  vec4 other = texelFetch(viewPotential, at, 0), own = imageLoad(potential, at);
+  if (dot(other, other) <= dot(own, own)) return;
+  imageStore(potential, at, other);
+#if REFLECTS
+  imageStore(reflectance, at, texelFetch(viewReflectance, at, 0));
+#endif
+}
