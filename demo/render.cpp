@@ -21,8 +21,9 @@ struct Options {
   int repeat = 1;
 };
 
-int run(const Options& options) {
+int run(Options options) {
   options.common.apply();
+  options.picture.readSettingsFile();
   std::optional<float> exposure;
   RenderSettings settings = options.picture.parse(exposure);
   settings.fullFloatTarget = true;

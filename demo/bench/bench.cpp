@@ -28,6 +28,10 @@ Work addBench(CLI::App& app) {
   };
   add("tables", "Measure an original's published tables again: published, measured, ratio", addBenchTables);
   add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);
+  add("error", "Error against run time: every technique over a ladder of settings", addBenchError);
+  add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);
+  add("needs", "What a scene leaves out, and what that saves", addBenchNeeds);
+  add("all", "The whole report on one page: tables, error, stability, needs, rays", addBenchAll);
   return [commands] {
     for (const auto& [command, work] : *commands)
       if (command->parsed()) return work();

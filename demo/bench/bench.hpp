@@ -10,6 +10,10 @@ namespace lucerna::demo {
 
 Work addBenchTables(CLI::App& app);
 Work addBenchPictures(CLI::App& app);
+Work addBenchError(CLI::App& app);
+Work addBenchStability(CLI::App& app);
+Work addBenchNeeds(CLI::App& app);
+Work addBenchAll(CLI::App& app);
 
 namespace bench {
 
