@@ -45,6 +45,8 @@ struct PictureOptions {
   std::string settingsFile;  ///< --settings: what it says counts as given before the command line
 
   void declare(CLI::App& app);
+  std::optional<std::uint32_t> settingsSpp;  ///< samples a pixel that the settings file asks for, path tracing alone
+
   /// Reads --settings, if given; options that were given on the command line stay. Call once, before parse().
   void readSettingsFile();
   /// The options as a settings file, which readSettingsFile() takes.

@@ -153,7 +153,7 @@ std::string deviationsHelp() {
 }
 
 void PictureOptions::declare(CLI::App& app) {
-  app.add_option("--technique", technique, "direct, rsm or lpv")->capture_default_str();
+  app.add_option("--technique", technique, "direct, rsm, lpv or, for render, path")->capture_default_str();
   app.add_option("--component", component, "all, direct or indirect")->capture_default_str();
   app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str();
   app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");
@@ -181,6 +181,7 @@ void PictureOptions::readSettingsFile() {
     take("fidelity", fidelity, usual.fidelity);
     prepend("deviations", deviations);
     prepend("settings", settings);
+    if (json.contains("spp")) settingsSpp = json.at("spp").get<std::uint32_t>();
   } catch (const nlohmann::json::exception& error) {
     throwBadInput("--settings {}: not a settings file (technique, fidelity, deviations, settings): {}", settingsFile, error.what());
   }

@@ -3,6 +3,7 @@
 #include "base/files.hpp"
 #include "commands.hpp"
 #include "render/deviations.hpp"
+#include "render_path.hpp"
 
 #include <fmt/core.h>
 
@@ -17,6 +18,7 @@ namespace {
 struct Options {
   CommonOptions common;
   PictureOptions picture;
+  PathOptions path;
   std::string scene, camera, output;
   int repeat = 1;
 };
@@ -24,6 +26,9 @@ struct Options {
 int run(Options options) {
   options.common.apply();
   options.picture.readSettingsFile();
+  if (!options.path.spp) options.path.spp = options.picture.settingsSpp;
+  if (options.picture.technique == "path") return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
+  options.path.refuseIfGiven(options.picture.technique);
   std::optional<float> exposure;
   RenderSettings settings = options.picture.parse(exposure);
   settings.fullFloatTarget = true;
@@ -85,6 +90,7 @@ Work addRender(CLI::App& app) {
   app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")->required();
   app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")->check(CLI::Range(1, 100000))->capture_default_str();
   options->picture.declare(app);
+  options->path.declare(app);
   options->common.declare(app);
   return [options] { return run(*options); };
 }

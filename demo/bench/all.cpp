@@ -32,8 +32,6 @@ struct Part {
   std::function<void(HtmlPage&, nlohmann::ordered_json&)> make;
 };
 
-std::string asset(const char* file) { return (fs::path(LUCERNA_SOURCE_DIR) / "assets" / file).string(); }
-
 /// "WxH" with about 160x90 pixels at scale 1.
 std::string sizeOf(double scale) {
   const int width = std::max(32, 16 * static_cast<int>(std::lround(20.0 * std::sqrt(scale))));

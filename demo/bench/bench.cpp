@@ -13,8 +13,10 @@ void checkOriginal(const std::string& name) {
   if (name != "lpv") throwBadInput("--original {}: unknown; there are lpv", name);
 }
 
+std::string asset(const std::string& file) { return (std::filesystem::path(LUCERNA_SOURCE_DIR) / "assets" / file).string(); }
+
 std::string sceneOrAtrium(const std::string& scene) {
-  return scene.empty() ? (std::filesystem::path(LUCERNA_SOURCE_DIR) / "assets/atrium/atrium.json").string() : scene;
+  return scene.empty() ? asset("atrium/atrium.json") : scene;
 }
 
 }  // namespace bench

@@ -19,6 +19,8 @@ namespace bench {
 
 /// --original: whose tables and pictures. Throws Error(badInput) listing those that there are.
 void checkOriginal(const std::string& name);
+/// A file of the assets folder.
+std::string asset(const std::string& file);
 /// SCENE, or the atrium where none is given.
 std::string sceneOrAtrium(const std::string& scene);
 

@@ -462,6 +462,20 @@ float linearFromSrgb(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
+Bitmap toneMapped(const Image& radiance, float exposure) {
+  Bitmap bitmap{radiance.width, radiance.height, {}, false};
+  bitmap.rgba.reserve(4 * radiance.pixels.size());
+  for (const glm::vec3& pixel : radiance.pixels) {
+    for (int c = 0; c < 3; ++c) {
+      const float x = 0.6f * exposure * pixel[c];  // [Narkowicz2015]; constants as in the shader
+      const float curve = std::clamp((x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f), 0.0f, 1.0f);
+      bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * srgbFromLinear(curve))));
+    }
+    bitmap.rgba.push_back(255);
+  }
+  return bitmap;
+}
+
 Bitmap decodeBitmap(std::span<const std::uint8_t> bytes, const fs::path& file) {
   DevilImage devil;
   devil.decode(bytes, file);

@@ -42,6 +42,9 @@ glm::dvec3 meanOf(const Image& image);
 float srgbFromLinear(float linear);
 float linearFromSrgb(float encoded);
 
+/// Radiance as shown: exposure, the filmic curve of shaders/forward/tonemap.frag, sRGB encoding.
+Bitmap toneMapped(const Image& radiance, float exposure);
+
 /// Reads any picture DevIL knows as 8-bit RGBA. Throws Error(badInput) naming the file when it is missing, a folder, or no image.
 Bitmap readBitmap(const std::filesystem::path& file);
 

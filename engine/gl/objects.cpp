@@ -26,6 +26,7 @@ constexpr std::array kFormats{
     Format{GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1},
     Format{GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8},
     Format{GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
+    Format{GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16},
     Format{GL_R32F, GL_RED, GL_FLOAT, 4},
     Format{GL_R32I, GL_RED_INTEGER, GL_INT, 4},
     Format{GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4},
@@ -75,10 +76,11 @@ void Buffer::clear(GLuint value) {
 
 void Buffer::bind(GLenum target, GLuint index) const { glBindBufferBase(target, index, id()); }
 
-void Buffer::readBytes(void* data) const {
+void Buffer::readBytes(void* data, std::size_t bytes) const {
+  CHECK(bytes <= bytes_, "{} bytes of {}", bytes, bytes_);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_READ_BUFFER, id());
-  glGetBufferSubData(GL_COPY_READ_BUFFER, 0, static_cast<GLsizeiptr>(bytes_), data);
+  glGetBufferSubData(GL_COPY_READ_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
 }
 
 // ---------------------------------------------------------------------------------------------------- Texture
@@ -177,6 +179,16 @@ std::vector<float> Texture::readDepth() const {
   glBindTexture(target_, id());
   glGetTexImage(target_, 0, GL_DEPTH_COMPONENT, GL_FLOAT, texels.data());
   return texels;
+}
+
+std::vector<glm::uvec4> Texture::readWords() const {
+  CHECK(format_ == GL_RGBA32UI, "format {:#x}", format_);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  std::vector<glm::uvec4> words(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z));
+  glActiveTexture(GL_TEXTURE0 + kEditUnit);
+  glBindTexture(target_, id());
+  glGetTexImage(target_, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, words.data());
+  return words;
 }
 
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture) {

@@ -61,12 +61,19 @@ class Buffer {
   template <class T>
   std::vector<T> read() const {
     std::vector<T> values(bytes_ / sizeof(T));
-    readBytes(values.data());
+    readBytes(values.data(), bytes_);
     return values;
+  }
+  /// What it begins with.
+  template <class T>
+  T readFirst() const {
+    T value{};
+    readBytes(&value, sizeof value);
+    return value;
   }
 
  private:
-  void readBytes(void* data) const;
+  void readBytes(void* data, std::size_t bytes) const;
   Handle<detail::deleteBuffer> handle_;
   std::size_t bytes_ = 0;
 };
@@ -106,6 +113,7 @@ class Texture {
   /// All texels of a level as float RGBA (depth textures: as float, one a texel).
   std::vector<glm::vec4> readRgba(int level = 0) const;
   std::vector<float> readDepth() const;
+  std::vector<glm::uvec4> readWords() const;  ///< of an RGBA32UI texture
 
  private:
   void create(const std::string& name, const Sampling& sampling);

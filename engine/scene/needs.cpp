@@ -5,6 +5,21 @@ namespace lucerna {
 
 namespace {
 bool anyPositive(const glm::vec3& v) { return v.x > 0.0f || v.y > 0.0f || v.z > 0.0f; }
+
+/// Whether a corner's normal is not that of the triangle, by more than its rounding; which way round the normals look counts too, as
+/// surfaces are turned by the triangle's side.
+bool isSmooth(const Scene& scene, const Mesh& mesh) {
+  for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; i += 3) {
+    const auto corner = [&](std::uint32_t k) -> const Vertex& { return scene.vertices[scene.indices[i + k]]; };
+    const glm::dvec3 a(corner(0).position);
+    const glm::dvec3 cross = glm::cross(glm::dvec3(corner(1).position) - a, glm::dvec3(corner(2).position) - a);
+    const double length = glm::length(cross);
+    if (!(length > 0.0)) continue;
+    for (std::uint32_t k = 0; k < 3; ++k)
+      if (!(glm::length(glm::dvec3(corner(k).normal) - cross / length) < 1e-5)) return true;
+  }
+  return false;
+}
 }  // namespace
 
 std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
@@ -18,6 +33,14 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
       {"indirect", indirect},
       {"spotLights", spotLights},
       {"pointLights", pointLights},
+      {"smoothNormals", smoothNormals},
+      {"mirrors", mirrors},
+      {"conductors", conductors},
+      {"dielectrics", dielectrics},
+      {"roughDielectrics", roughDielectrics},
+      {"nullBoundaries", nullBoundaries},
+      {"environment", environment},
+      {"environmentPicture", environmentPicture},
   };
 }
 
@@ -31,6 +54,12 @@ SceneNeeds analyse(const Scene& scene) {
     needs.alphaMasks |= material.alphaMasked;
     needs.specular |= anyPositive(material.specular);
     needs.emission |= anyPositive(material.emission);
+    needs.smoothNormals = needs.smoothNormals || isSmooth(scene, mesh);
+    needs.mirrors |= material.bsdf == Bsdf::mirror;
+    needs.conductors |= material.bsdf == Bsdf::conductor;
+    needs.dielectrics |= material.bsdf == Bsdf::dielectric;
+    needs.roughDielectrics |= material.bsdf == Bsdf::dielectric && material.roughness > 0.0f;
+    needs.nullBoundaries |= material.bsdf == Bsdf::none;
     // A texture only scales the factor down, so the factor alone tells whether anything can be reflected.
     reflects |= anyPositive(material.diffuse);
   }
@@ -38,6 +67,8 @@ SceneNeeds analyse(const Scene& scene) {
   needs.background = anyPositive(scene.background);
   for (const SpotLight& light : scene.spots) needs.spotLights |= anyPositive(light.intensity);
   for (const PointLight& light : scene.points) needs.pointLights |= anyPositive(light.intensity);
+  needs.environment = scene.environment && anyPositive(scene.environment->radiance);
+  needs.environmentPicture = needs.environment && scene.environment->picture.has_value();
   needs.indirect = reflects && (needs.anyLight() || needs.emission);
   return needs;
 }

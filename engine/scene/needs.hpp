@@ -21,6 +21,15 @@ struct SceneNeeds {
   bool indirect = false;         ///< something to light it with and something to reflect: a light and an albedo > 0
   bool spotLights = false;       ///< a spot light with intensity > 0
   bool pointLights = false;      ///< an omnidirectional light with intensity > 0
+  // Of the path tracer alone:
+  bool smoothNormals = false;    ///< a vertex normal that is not its triangle's
+  bool mirrors = false;
+  bool conductors = false;
+  bool dielectrics = false;      ///< refracting ones, smooth or rough
+  bool roughDielectrics = false;
+  bool nullBoundaries = false;   ///< a boundary that changes nothing but the medium
+  bool environment = false;      ///< light from all around
+  bool environmentPicture = false;
 
   /// (name, needed) in declaration order, for `info` and reports.
   std::vector<std::pair<std::string, bool>> named() const;

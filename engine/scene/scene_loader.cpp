@@ -11,6 +11,9 @@
 // - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic), Blinn-Phong
 //   exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). Textures of metallic,
 //   roughness and emission become their mean, which keeps a surface's total.
+// - How surfaces scatter in the path tracer (Material::bsdf; the real-time techniques do not read it). MTL: illum 5 is a mirror of Ks;
+//   illum 4, 6, 7 and 9 with an Ni are a smooth dielectric of that index (Ni 1: a boundary that does nothing). glTF: transmission
+//   above 0.5 a dielectric of index 1.5, else metallic above 0.5 a conductor of the base colour; alpha = roughness^2. All else is Lambert.
 // - Lights: a directional light's colour is its irradiance, that of a spot or point light its radiant intensity in W/sr, as
 //   the file has it (glTF's candela are not divided by a luminous efficacy); where other formats give a quadratic attenuation
 //   q, colour / q. Constant and linear attenuation are no physics and are ignored.
@@ -246,6 +249,19 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, cons
     material.specular = glm::mix(glm::vec3(0.04f), base, metallic);
     const float alpha2 = std::pow(std::max(roughness, 0.03f), 4.0f);
     material.shininess = std::max(2.0f / alpha2 - 2.0f, 1.0f);
+    material.roughness = roughness * roughness;
+    if (number(AI_MATKEY_TRANSMISSION_FACTOR, 0.0f) > 0.5f) material.bsdf = Bsdf::dielectric;
+    else if (metallic > 0.5f) material.bsdf = Bsdf::conductor;
+  }
+
+  int illum = 0;
+  if (source.Get("$mat.illum", 0, 0, illum) == aiReturn_SUCCESS) {
+    const float index = number(AI_MATKEY_REFRACTI, 0.0f);
+    if (illum == 5 && material.specular != glm::vec3(0.0f)) material.bsdf = Bsdf::mirror;
+    if ((illum == 4 || illum == 6 || illum == 7 || illum == 9) && std::isfinite(index) && index >= 1.0f) {
+      material.bsdf = Bsdf::dielectric;
+      material.ior = index;
+    }
   }
 
   const float strength = number(AI_MATKEY_EMISSIVE_INTENSITY, 1.0f);

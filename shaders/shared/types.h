@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 namespace lucerna::shared {
 using glm::ivec4;
+using glm::uint;
 using glm::mat4;
 using glm::vec3;
 using glm::vec4;

@@ -1,0 +1,122 @@
+#include "render_path.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "pathtracer/path_tracer.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace lucerna::demo {
+
+namespace {
+
+/// Where nothing else stops.
+constexpr std::uint32_t kDefaultSamples = 64;
+
+nlohmann::ordered_json finiteOrNull(double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr); }
+
+Transport transportOf(Component component) {
+  switch (component) {
+    case Component::all: return Transport::all;
+    case Component::direct: return Transport::direct;
+    case Component::indirect: return Transport::indirect;
+  }
+  return Transport::all;
+}
+
+}  // namespace
+
+void PathOptions::declare(CLI::App& app) {
+  app.add_option("--spp", spp, "path: samples a pixel, at most (64, without --seconds and --error)")->check(CLI::Range(1u, 4000000000u));
+  app.add_option("--seconds", seconds, "path: stop after this time; every pixel has one sample at least")->check(CLI::PositiveNumber);
+  app.add_option("--error", error, "path: stop where the pixels' standard error, root mean square, is this fraction of the mean radiance")->check(CLI::PositiveNumber);
+  app.add_option("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
+  app.add_option("--seed", seed, "path: of the random numbers")->capture_default_str();
+}
+
+void PathOptions::refuseIfGiven(const std::string& technique) const {
+  if (spp || seconds || error || bounces || seed != 0)
+    throwBadInput("--technique {}: --spp, --seconds, --error, --bounces and --seed belong to --technique path", technique);
+}
+
+int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path, const std::string& sceneFile,
+               const std::string& cameraText, const std::string& output) {
+  PictureOptions rest = picture;
+  rest.technique = "direct";
+  std::optional<float> exposure;
+  const RenderSettings shared = rest.parse(exposure);
+  if (!isWritableImageName(output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
+  const Scene scene = loadScene(sceneFile);
+  const Camera camera = chooseCamera(scene, cameraText);
+  PathTracer::Settings settings;
+  settings.size = shared.size;
+  settings.transport = transportOf(shared.component);
+  settings.bounces = path.bounces.value_or(PathTracer::kUnlimited);
+  settings.seed = path.seed;
+
+  const auto host = common.makeHost(false);
+  gl::Context context;
+  if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
+    throwMissingCapability("--size {}: this driver's textures end at {} pixels", picture.size, context.capabilities().maxTextureSize);
+  gl::ProgramLibrary programs;
+  PathTracer tracer(context, programs, scene, settings);
+  tracer.setCamera(camera);
+  watchForInterrupt();
+
+  const std::uint32_t target = path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : kDefaultSamples);
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  Progress progress("samples", static_cast<int>(std::min(target, 1000000000u)), common.quiet || !path.spp);
+  // Samples in steps: between them the error is looked at, and all pixels have the same number.
+  std::uint32_t done = 0;
+  bool stopped = false;
+  while (done < target && !stopped) {
+    const std::uint32_t next = std::min(target, done + std::max(1u, done / 4));
+    while (!stopped && tracer.advance(next)) stopped = interrupted() || (done > 0 && path.seconds && elapsed() >= *path.seconds);
+    if (!stopped) done = next;
+    progress.update(static_cast<int>(std::min(done, 1000000000u)));
+    stopped = stopped || interrupted() || (path.seconds && elapsed() >= *path.seconds) ||
+              (path.error && done >= 4 && tracer.statistics().relativeError <= *path.error);
+  }
+  const double seconds = elapsed();
+
+  const PathTracer::Statistics statistics = tracer.statistics();
+  const Image image = tracer.mean();
+  if (lowerExtension(output) == ".png")
+    writePng(output, toneMapped(image, exposure.value_or(scene.exposure)));
+  else
+    writeImage(output, image);
+  if (!common.quiet)
+    fmt::print("{}: {}x{}, path, {}, {:.6g} samples a pixel, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} ({:.3g} of the mean), {:.3f} s on {}\n",
+               output, image.width, image.height, picture.component, statistics.samples, statistics.mean.x, statistics.mean.y, statistics.mean.z,
+               statistics.standardError, statistics.relativeError, seconds, context.capabilities().renderer);
+  nlohmann::ordered_json json;
+  json["renderer"] = context.capabilities().renderer;
+  json["host"] = nameOf(host->kind());
+  json["scene"] = sceneFile;
+  json["technique"] = "path";
+  json["component"] = picture.component;
+  json["fidelity"] = picture.fidelity;
+  json["deviations"] = nlohmann::ordered_json::array();
+  json["settings"] = picture.settings;
+  json["size"] = {image.width, image.height};
+  json["seconds"] = seconds;
+  json["mean"] = {statistics.mean.x, statistics.mean.y, statistics.mean.z};
+  json["mean_standard_error"] = {finiteOrNull(statistics.meanError.x), finiteOrNull(statistics.meanError.y), finiteOrNull(statistics.meanError.z)};
+  json["spp"] = statistics.samples;
+  json["standard_error"] = finiteOrNull(statistics.standardError);
+  json["relative_error"] = finiteOrNull(statistics.relativeError);
+  json["bounces"] = path.bounces ? nlohmann::ordered_json(*path.bounces) : nlohmann::ordered_json(nullptr);
+  json["interrupted"] = interrupted();
+  json["gpu_bytes"] = tracer.gpuBytes();
+  json["left_out"] = nlohmann::ordered_json::array();
+  for (const auto& [name, needed] : tracer.needs().named())
+    if (!needed) json["left_out"].push_back(name);
+  common.writeJson(json);
+  return 0;
+}
+
+}  // namespace lucerna::demo

@@ -1,0 +1,24 @@
+// lucerna render --technique path: the path tracer's options and its progressive picture.
+#pragma once
+
+#include "commands.hpp"
+
+namespace lucerna::demo {
+
+/// What stops a path traced picture, whichever comes first, and which light paths it holds.
+struct PathOptions {
+  std::optional<std::uint32_t> spp;   ///< 64 where nothing else stops either
+  std::optional<double> seconds;
+  std::optional<double> error;
+  std::optional<std::uint32_t> bounces;
+  std::uint32_t seed = 0;
+
+  void declare(CLI::App& app);
+  /// Throws Error(badInput) where one is given with another technique.
+  void refuseIfGiven(const std::string& technique) const;
+};
+
+int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path, const std::string& sceneFile,
+               const std::string& cameraText, const std::string& output);
+
+}  // namespace lucerna::demo

@@ -1,0 +1,179 @@
+#include "pathtracer/light_table.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace lucerna {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+/// What a light is worth: luminance, but never nothing for a light of any colour.
+double worth(const glm::dvec3& c) { return 0.5 * luminance(c) + 0.5 * std::max({c.x, c.y, c.z}); }
+
+/// Solid angle of a texel in row y.
+double texelSolidAngle(const Image& picture, int y) {
+  return 2.0 * kPi / picture.width * (std::cos(kPi * y / picture.height) - std::cos(kPi * (y + 1) / picture.height));
+}
+
+}  // namespace
+
+AliasTable aliasTable(const std::vector<double>& weights) {
+  double sum = 0.0;
+  for (const double w : weights) sum += w;
+  CHECK(std::isfinite(sum) && sum > 0.0, "{} weights with sum {}", weights.size(), sum);
+  const std::size_t n = weights.size();
+  AliasTable table{std::vector<float>(n, 1.0f), std::vector<std::uint32_t>(n), std::vector<double>(n)};
+  std::vector<double> share(n);  // mean 1
+  std::vector<std::uint32_t> small, large;
+  for (std::size_t i = 0; i < n; ++i) {
+    table.alias[i] = static_cast<std::uint32_t>(i);
+    table.probability[i] = weights[i] / sum;
+    share[i] = table.probability[i] * static_cast<double>(n);
+    (share[i] < 1.0 ? small : large).push_back(static_cast<std::uint32_t>(i));
+  }
+  while (!small.empty() && !large.empty()) {
+    const std::uint32_t s = small.back(), l = large.back();
+    small.pop_back();
+    table.threshold[s] = static_cast<float>(share[s]);
+    table.alias[s] = l;
+    share[l] -= 1.0 - share[s];
+    if (share[l] < 1.0) {
+      large.pop_back();
+      small.push_back(l);
+    }
+  }
+  // What rounding has left in `small` has a share of 1 but for rounding, unless it weighs nothing and must never come up.
+  for (const std::uint32_t s : small)
+    if (weights[s] == 0.0) {
+      table.threshold[s] = 0.0f;
+      table.alias[s] = static_cast<std::uint32_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());
+    }
+  return table;
+}
+
+LightTable lightTable(const Scene& scene, const glm::dvec3& origin, const std::vector<glm::vec3>& emissionMeans) {
+  LightTable table;
+  table.pickDensity.assign(scene.materials.size(), 0.0);
+  const auto place = [&](const glm::dvec3& p) { return glm::vec3(p - origin); };
+  std::vector<double> powers;  // of each light
+  const double radius = scene.bounds.empty() ? 1.0 : std::max(0.5 * glm::length(scene.bounds.extent()), 1e-300);
+  const double disc = kPi * radius * radius;
+  const auto add = [&](const shared::PathLight& light, double power) {
+    if (!(power > 0.0)) return;
+    table.lights.push_back(light);
+    powers.push_back(power);
+  };
+
+  if (scene.sun) {
+    shared::PathLight light{};
+    light.kind = PATH_LIGHT_SUN;
+    light.b = glm::vec3(scene.sun->direction);
+    light.c = scene.sun->irradiance;
+    add(light, worth(light.c) * disc);
+  }
+  for (const SpotLight& spot : scene.spots) {
+    shared::PathLight light{};
+    light.kind = PATH_LIGHT_SPOT;
+    light.a = place(spot.position);
+    light.b = glm::vec3(spot.direction);
+    light.c = spot.intensity;
+    light.p = std::bit_cast<std::uint32_t>(static_cast<float>(std::cos(spot.innerAngle)));
+    light.q = std::bit_cast<std::uint32_t>(static_cast<float>(std::cos(spot.outerAngle)));
+    add(light, worth(light.c) * 2.0 * kPi * (1.0 - 0.5 * (std::cos(spot.innerAngle) + std::cos(spot.outerAngle))));
+  }
+  for (const PointLight& point : scene.points) {
+    shared::PathLight light{};
+    light.kind = PATH_LIGHT_POINT;
+    light.a = place(point.position);
+    light.c = point.intensity;
+    add(light, worth(light.c) * 4.0 * kPi);
+  }
+  const std::size_t lamps = table.lights.size();
+  std::vector<double> areas;
+  for (const Mesh& mesh : scene.meshes) {
+    const auto m = static_cast<std::size_t>(mesh.material);
+    glm::dvec3 emission(scene.materials[m].emission);
+    if (!emissionMeans.empty()) emission *= glm::dvec3(emissionMeans[m]);
+    if (!(worth(emission) > 0.0)) continue;
+    for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; i += 3) {
+      const auto corner = [&](std::uint32_t k) { return glm::dvec3(scene.vertices[scene.indices[i + k]].position); };
+      const glm::dvec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
+      const double area = 0.5 * glm::length(glm::cross(ab, ac));
+      if (!(area > 0.0) || !std::isfinite(area)) continue;
+      shared::PathLight light{};
+      light.kind = PATH_LIGHT_TRIANGLE;
+      light.a = place(a);
+      light.b = glm::vec3(ab);
+      light.c = glm::vec3(ac);
+      light.p = i / 3;
+      light.q = static_cast<std::uint32_t>(mesh.material);
+      const std::size_t before = table.lights.size();
+      add(light, worth(emission) * 2.0 * kPi * area);  // both sides shine
+      if (table.lights.size() > before) areas.push_back(area);
+    }
+  }
+  const std::size_t triangles = table.lights.size() - lamps;
+  if (scene.environment && scene.environment->picture) {
+    shared::PathLight light{};
+    light.kind = PATH_LIGHT_ENVIRONMENT;
+    add(light, worth(glm::dvec3(scene.environment->radiance) * meanRadiance(*scene.environment->picture)) * 4.0 * kPi * disc);
+  }
+  if (table.lights.empty()) return table;
+  const bool environment = table.lights.back().kind == PATH_LIGHT_ENVIRONMENT;
+
+  double sum = 0.0, triangleSum = 0.0;
+  for (std::size_t i = 0; i < powers.size(); ++i) {
+    sum += powers[i];
+    if (i >= lamps && i < lamps + triangles) triangleSum += powers[i];
+  }
+  const double parties = static_cast<double>(lamps) + (triangles > 0 ? 1.0 : 0.0) + (environment ? 1.0 : 0.0);
+  std::vector<double> weights(powers.size());
+  for (std::size_t i = 0; i < powers.size(); ++i) {
+    const bool isTriangle = i >= lamps && i < lamps + triangles;
+    weights[i] = 0.5 * powers[i] / sum + 0.5 / parties * (isTriangle ? powers[i] / triangleSum : 1.0);
+  }
+  const AliasTable picks = aliasTable(weights);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    shared::PathLight& light = table.lights[i];
+    light.threshold = picks.threshold[i];
+    light.alias = picks.alias[i];
+    light.probability = static_cast<float>(picks.probability[i]);
+    if (light.kind == PATH_LIGHT_TRIANGLE) table.pickDensity[light.q] = picks.probability[i] / areas[i - lamps];
+  }
+  if (environment) table.environmentPick = picks.probability.back();
+  return table;
+}
+
+glm::dvec3 meanRadiance(const Image& picture) {
+  glm::dvec3 sum(0.0);
+  for (int y = 0; y < picture.height; ++y) {
+    glm::dvec3 row(0.0);
+    for (int x = 0; x < picture.width; ++x) row += glm::dvec3(picture.at(x, y));
+    sum += row * texelSolidAngle(picture, y);
+  }
+  return sum / (4.0 * kPi);
+}
+
+std::vector<glm::vec4> environmentTable(const Image& picture) {
+  std::vector<double> weights(picture.pixels.size());
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      weights[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x)] =
+          worth(glm::dvec3(picture.at(x, y))) * texelSolidAngle(picture, y);
+  const AliasTable picks = aliasTable(weights);
+  std::vector<glm::vec4> table(weights.size());
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const int y = static_cast<int>(i / static_cast<std::size_t>(picture.width));
+    table[i] = glm::vec4(picks.threshold[i], static_cast<float>(picks.alias[i]),
+                         static_cast<float>(picks.probability[i] / texelSolidAngle(picture, y)), 0.0f);
+  }
+  return table;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,394 @@
+#include "pathtracer/path_tracer.hpp"
+
+#include "base/error.hpp"
+#include "gl/pass.hpp"
+#include "pathtracer/texture_atlas.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+namespace lucerna {
+
+namespace {
+
+constexpr GLuint kConstantsBinding = 0;                                                               // GL_UNIFORM_BUFFER
+constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4, kStateBinding = 5;  // GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2;
+constexpr int kGroupSide = 8;
+constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
+constexpr std::size_t kStateWords = 5, kStateHeaderBytes = 16, kVec4Bytes = 16;
+
+/// A boundary of no index: light goes straight on, and lights can be asked through it.
+bool matched(const Material& material) { return material.bsdf == Bsdf::dielectric && material.ior == 1.0f; }
+
+std::uint32_t kindOf(const Material& material) {
+  switch (material.bsdf) {
+    case Bsdf::diffuse: return PATH_DIFFUSE;
+    case Bsdf::mirror: return PATH_MIRROR;
+    case Bsdf::conductor: return PATH_CONDUCTOR;
+    case Bsdf::dielectric: return matched(material) ? PATH_NONE : PATH_DIELECTRIC;
+    case Bsdf::none: return PATH_NONE;
+  }
+  return PATH_DIFFUSE;
+}
+
+/// A buffer is never of no size.
+template <class T>
+gl::Buffer storage(const std::string& name, const std::vector<T>& values, const gl::Capabilities& capabilities) {
+  const std::size_t bytes = std::max(values.size(), std::size_t{1}) * sizeof(T);
+  if (bytes > static_cast<std::size_t>(capabilities.maxShaderStorageBlockSize))
+    throwMissingCapability("{}: {} bytes; this driver's storage blocks have at most {}", name, bytes, capabilities.maxShaderStorageBlockSize);
+  gl::Buffer buffer(name, bytes, nullptr, GL_STATIC_DRAW);
+  if (!values.empty()) buffer.upload(0, values.size() * sizeof(T), values.data());
+  return buffer;
+}
+
+}  // namespace
+
+std::string_view nameOf(Transport transport) {
+  switch (transport) {
+    case Transport::all: return "all";
+    case Transport::direct: return "direct";
+    case Transport::indirect: return "indirect";
+    case Transport::oneBounce: return "one-bounce";
+    case Transport::oneBounceUnoccluded: return "one-bounce-unoccluded";
+  }
+  return "?";
+}
+
+PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings)
+    : settings_(settings),
+      needs_(analyse(scene)),
+      rays_(scene, context.capabilities(), settings.rays),
+      constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW),
+      tileSide_(context.capabilities().softwareRenderer ? 128 : 512),
+      clearTexture_(context.capabilities().clearTexture) {
+  const gl::Capabilities& capabilities = context.capabilities();
+  CHECK(settings.size.x > 0 && settings.size.y > 0, "{} x {} pixels", settings.size.x, settings.size.y);
+  if (settings.diffuseOnly) needs_.mirrors = needs_.conductors = needs_.dielectrics = needs_.roughDielectrics = false;
+
+  for (const Material& material : scene.materials) needs_.nullBoundaries |= matched(material);
+
+  std::vector<shared::PathMaterial> materials(scene.materials.size());
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& from = scene.materials[i];
+    shared::PathMaterial& to = materials[i];
+    to.kind = kindOf(from);
+    if (settings.diffuseOnly && to.kind != PATH_NONE) to.kind = PATH_DIFFUSE;
+    to.albedo = from.diffuse;
+    to.specular = from.specular;
+    to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
+    to.emission = from.emission;
+    to.ior = from.ior;
+    to.boundary = static_cast<std::uint32_t>(i);
+    to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = PATH_NO_TEXTURE;
+  }
+  const bool textured = needs_.diffuseTextures || needs_.alphaMasks;
+  if (textured) uploadTextures(scene, capabilities, materials);
+
+  if (settings.nextEvent) {
+    const LightTable table = lightTable(scene, rays_.origin());
+    lightCount_ = table.lights.size();
+    if (lightCount_ > 0) lights_ = storage("path lights", table.lights, capabilities);
+    for (std::size_t i = 0; i < materials.size(); ++i) materials[i].pickDensity = static_cast<float>(table.pickDensity[i]);
+    constants_.environmentPick = static_cast<float>(table.environmentPick);
+  }
+  materials_ = storage("path materials", materials, capabilities);
+  triangleWords_ = 4 + (textured ? 1 : 0) + (needs_.smoothNormals ? 3 : 0);
+  uploadTriangles(scene, capabilities, needs_.smoothNormals, textured);
+
+  if (needs_.environment) {
+    const Environment& environment = *scene.environment;
+    constants_.environment = environment.radiance;
+    constants_.environmentTurn = glm::vec4(std::cos(environment.rotation), std::sin(environment.rotation), 0.0, 0.0);
+    if (needs_.environmentPicture) {
+      const Image& picture = *environment.picture;
+      const glm::ivec2 size(picture.width, picture.height);
+      std::vector<glm::vec4> texels;
+      texels.reserve(picture.pixels.size());
+      for (const glm::vec3& p : picture.pixels) texels.emplace_back(p, 0.0f);
+      environmentPicture_.emplace("environment", static_cast<GLenum>(GL_RGBA32F), size);
+      environmentPicture_->upload(GL_RGBA, GL_FLOAT, texels.data());
+      texels = environmentTable(picture);
+      environmentTable_.emplace("environment table", static_cast<GLenum>(GL_RGBA32F), size);
+      environmentTable_->upload(GL_RGBA, GL_FLOAT, texels.data());
+    }
+  }
+  constants_.background = scene.background;
+  constants_.seed = settings.seed;
+  constants_.minScatterings = 0;
+  constants_.maxScatterings = settings.bounces;
+  switch (settings.transport) {
+    case Transport::all: break;
+    case Transport::direct: constants_.maxScatterings = std::min(settings.bounces, 1u); break;
+    case Transport::indirect: constants_.minScatterings = 2; break;
+    case Transport::oneBounce:
+    case Transport::oneBounceUnoccluded:
+      constants_.minScatterings = 2;
+      constants_.maxScatterings = std::min(settings.bounces, 2u);
+      break;
+  }
+
+  const glm::ivec2 tile = glm::min(settings.size, glm::ivec2(tileSide_));
+  const std::size_t lanes = static_cast<std::size_t>(tile.x) * static_cast<std::size_t>(tile.y);
+  constants_.picture = glm::ivec4(settings.size, static_cast<int>(lanes), 0);
+  state_ = gl::Buffer("path state", kStateHeaderBytes + lanes * kStateWords * kVec4Bytes, nullptr, GL_DYNAMIC_COPY);
+  filmMean_ = gl::Texture("film mean", GL_RGBA32UI, settings.size);
+  filmSpread_ = gl::Texture("film spread", GL_RGBA32UI, settings.size);
+  filmRest_ = gl::Texture("film rest", GL_RGBA32UI, settings.size);
+  program_ = &programs.loadCompute("path tracing", "pathtracer/path.comp", flags());
+  setCamera(scene.cameras.empty() ? Camera{} : scene.cameras.front());
+}
+
+gl::ShaderFlags PathTracer::flags() const {
+  const bool asked = lightCount_ > 0;
+  return {{"TEXTURES", needs_.diffuseTextures},
+          {"ALPHA_MASKS", needs_.alphaMasks},
+          {"SMOOTH_NORMALS", needs_.smoothNormals},
+          {"TRIANGLE_WORDS", triangleWords_},
+          {"MIRRORS", needs_.mirrors},
+          {"DIELECTRICS", needs_.dielectrics},
+          {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
+          {"ROUGH_DIELECTRICS", needs_.roughDielectrics},
+          {"NULL_BOUNDARIES", needs_.nullBoundaries},
+          {"EMISSION", needs_.emission},
+          {"SUN", asked && needs_.directionalLight},
+          {"SPOTS", asked && needs_.spotLights},
+          {"POINTS", asked && needs_.pointLights},
+          {"ENVIRONMENT", needs_.environment},
+          {"ENVIRONMENT_PICTURE", needs_.environmentPicture},
+          {"BACKGROUND", needs_.background},
+          {"NEXT_EVENT", asked},
+          {"MIS", asked && (needs_.emission || needs_.environmentPicture) && settings_.transport != Transport::oneBounceUnoccluded},
+          {"SCATTERED_LIGHT", needs_.emission || needs_.environment},
+          {"PIXEL_CENTRES", settings_.pixelCentres},
+          {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
+          {"FRESNEL_AMPLITUDES", 0},
+          {"FRESNEL_SCHLICK", 0}};
+}
+
+void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials) {
+  // A picture may be in the atlas twice: as colour, and as mask in the alpha channel.
+  struct Entry {
+    int texture;
+    bool mask;
+    auto operator<=>(const Entry&) const = default;
+  };
+  std::map<Entry, std::size_t> index;
+  std::vector<Entry> entries;
+  const auto want = [&](int texture, bool mask) {
+    const auto [place, isNew] = index.try_emplace({texture, mask}, entries.size());
+    if (isNew) entries.push_back({texture, mask});
+    return place->second;
+  };
+  std::vector<std::array<std::size_t, 2>> used(materials.size(), {SIZE_MAX, SIZE_MAX});
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& material = scene.materials[i];
+    if (needs_.diffuseTextures && material.diffuseTexture >= 0) used[i][0] = want(material.diffuseTexture, false);
+    if (needs_.alphaMasks && material.alphaMasked) used[i][1] = want(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true);
+  }
+  std::vector<glm::ivec2> sizes;
+  for (const Entry& entry : entries) {
+    const Texture& texture = scene.textures[static_cast<std::size_t>(entry.texture)];
+    sizes.emplace_back(texture.bitmap.width, texture.bitmap.height);
+    if (std::max(sizes.back().x, sizes.back().y) > capabilities.maxTextureSize)
+      throwMissingCapability("{}: {} x {} texels; this driver's textures have at most {}", texture.file.string(), sizes.back().x, sizes.back().y,
+                             capabilities.maxTextureSize);
+  }
+  const AtlasLayout layout = layOutAtlas(sizes, std::min(capabilities.maxTextureSize, 8192));
+  if (layout.size.z > capabilities.maxArrayTextureLayers)
+    throwMissingCapability("{} layers of textures; this driver has at most {}", layout.size.z, capabilities.maxArrayTextureLayers);
+  std::vector<std::uint8_t> texels(4 * static_cast<std::size_t>(layout.size.x) * static_cast<std::size_t>(layout.size.y) * static_cast<std::size_t>(layout.size.z));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(entries[i].texture)].bitmap;
+    const AtlasPlace& place = layout.places[i];
+    for (int y = 0; y < sizes[i].y; ++y) {  // rows bottom first, as v = 0 is the bottom row
+      const std::uint8_t* from = bitmap.rgba.data() + 4 * static_cast<std::size_t>(sizes[i].y - 1 - y) * static_cast<std::size_t>(sizes[i].x);
+      std::uint8_t* to = texels.data() + 4 * ((static_cast<std::size_t>(place.layer) * static_cast<std::size_t>(layout.size.y) + static_cast<std::size_t>(place.corner.y + y)) *
+                                                  static_cast<std::size_t>(layout.size.x) + static_cast<std::size_t>(place.corner.x));
+      std::copy_n(from, 4 * static_cast<std::size_t>(sizes[i].x), to);
+      if (entries[i].mask && !bitmap.hasAlpha)
+        for (int x = 0; x < sizes[i].x; ++x) to[4 * x + 3] = from[4 * x];
+    }
+  }
+  atlas_.emplace("texture atlas", static_cast<GLenum>(GL_SRGB8_ALPHA8), layout.size, gl::Sampling{}, 1, static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
+  atlas_->upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  const auto place = [&](std::size_t entry, shared::PathTexture& to) {
+    if (entry == SIZE_MAX) return;
+    to = {layout.places[entry].layer, layout.places[entry].corner.x, layout.places[entry].corner.y, sizes[entry].x, sizes[entry].y, 0, 0, 0};
+  };
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    place(used[i][0], materials[i].diffuseTexture);
+    place(used[i][1], materials[i].maskTexture);
+  }
+}
+
+void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured) {
+  std::vector<std::uint32_t> words;
+  words.reserve(scene.triangleCount() * static_cast<std::size_t>(triangleWords_) * 4);
+  std::vector<std::uint32_t> materialOf(scene.triangleCount(), 0);
+  for (const Mesh& mesh : scene.meshes)
+    std::fill_n(materialOf.begin() + mesh.firstIndex / 3, mesh.indexCount / 3, static_cast<std::uint32_t>(mesh.material));
+  const auto add = [&](float value) { words.push_back(std::bit_cast<std::uint32_t>(value)); };
+  const auto add3 = [&](const glm::vec3& v) { add(v.x), add(v.y), add(v.z); };
+  for (std::size_t t = 0; t < scene.triangleCount(); ++t) {
+    const Vertex* corners[3];
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = &scene.vertices[scene.indices[3 * t + k]];
+    const auto place = [&](int k) { return glm::dvec3(corners[k]->position) - rays_.origin(); };
+    const glm::dvec3 cross = glm::cross(place(1) - place(0), place(2) - place(0));
+    const double length = glm::length(cross);
+    const glm::vec3 normal = length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0f);  // rays meet no triangle without area
+    add3(glm::vec3(place(0)));
+    words.push_back(materialOf[t]);
+    add3(glm::vec3(place(1)));
+    add(normal.x);
+    add3(glm::vec3(place(2)));
+    add(normal.y);
+    add3({normal.z, corners[2]->texCoord.x, corners[2]->texCoord.y});
+    words.push_back(0);
+    if (textured)
+      for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
+    if (smoothNormals)
+      for (const Vertex* corner : corners) add3(corner->normal), words.push_back(0);
+  }
+  triangles_ = storage("path triangles", words, capabilities);
+}
+
+void PathTracer::setCamera(const Camera& camera) {
+  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)), up = glm::cross(right, camera.direction);
+  const double pixel = 2.0 * std::tan(0.5 * camera.verticalFov) / settings_.size.y;
+  constants_.cameraPosition = glm::vec3(camera.position - rays_.origin());
+  constants_.pixelRight = glm::vec3(pixel * right);
+  constants_.pixelUp = glm::vec3(pixel * up);
+  constants_.firstPixel = glm::vec3(camera.direction - 0.5 * settings_.size.x * pixel * right - 0.5 * settings_.size.y * pixel * up);
+  const std::array<const gl::Texture*, 3> film{&filmMean_, &filmSpread_, &filmRest_};
+  gl::clearToZero(film, clearTexture_);
+  done_ = passTarget_ = 0;
+  tile_ = 0;
+  tileBegun_ = false;
+}
+
+bool PathTracer::advance(std::uint32_t samples) {
+  if (done_ >= samples) return false;
+  if (passTarget_ == done_ || passTarget_ > samples) {
+    // A pass doubles the samples, so that pictures come early and lanes seldom wait for the last path of a tile.
+    passTarget_ = done_ + std::min(samples - done_, std::clamp(done_, 1u, 64u));
+    if (!tileBegun_) tile_ = 0;
+  }
+  const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_, rows = (settings_.size.y + tileSide_ - 1) / tileSide_;
+  const glm::ivec2 corner = tileSide_ * glm::ivec2(tile_ % columns, tile_ / columns);
+  const glm::ivec2 size = glm::min(glm::ivec2(tileSide_), settings_.size - corner);
+  if (!tileBegun_) state_.clear();
+  const std::uint32_t zero = 0;
+  state_.upload(0, sizeof zero, &zero);
+
+  const auto start = std::chrono::steady_clock::now();
+  dispatch(corner, size, passTarget_);
+  const auto unfinished = state_.readFirst<std::uint32_t>();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!tileBegun_) {  // only then all lanes are at work; later submissions of the tile are shorter
+    const double factor = std::clamp(settings_.submissionSeconds / std::max(seconds, 1e-9), 0.25, 2.0);
+    segments_ = std::clamp(static_cast<std::uint32_t>(std::lround(factor * segments_)), 1u, 1u << 16);
+  }
+  tileBegun_ = unfinished > 0;
+  if (!tileBegun_ && ++tile_ == columns * rows) {
+    done_ = passTarget_;
+    tile_ = 0;
+  }
+  return done_ < samples;
+}
+
+void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target) {
+  constants_.tile = glm::ivec4(corner, size);
+  constants_.sampleTarget = target;
+  constants_.segments = segments_;
+  constantsBuffer_.upload(0, sizeof constants_, &constants_);
+  const gl::ComputePass pass("path tracing", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                                 GL_TEXTURE_UPDATE_BARRIER_BIT);
+  program_->use();
+  rays_.bind();
+  constantsBuffer_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
+  triangles_.bind(GL_SHADER_STORAGE_BUFFER, kTrianglesBinding);
+  materials_.bind(GL_SHADER_STORAGE_BUFFER, kMaterialsBinding);
+  if (lightCount_ > 0) lights_.bind(GL_SHADER_STORAGE_BUFFER, kLightsBinding);
+  state_.bind(GL_SHADER_STORAGE_BUFFER, kStateBinding);
+  if (atlas_) atlas_->bind(kAtlasUnit);
+  if (environmentPicture_) environmentPicture_->bind(kEnvironmentUnit);
+  if (environmentTable_) environmentTable_->bind(kEnvironmentTableUnit);
+  filmMean_.bindImage(0, GL_READ_WRITE);
+  filmSpread_.bindImage(1, GL_READ_WRITE);
+  filmRest_.bindImage(2, GL_READ_WRITE);
+  pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
+}
+
+std::vector<PathTracer::Pixel> PathTracer::readFilm() const {
+  const std::vector<glm::uvec4> mean = filmMean_.readWords(), spread = filmSpread_.readWords();
+  std::vector<Pixel> pixels(mean.size());
+  const auto floats = [](const glm::uvec4& w) { return glm::vec3(std::bit_cast<float>(w.x), std::bit_cast<float>(w.y), std::bit_cast<float>(w.z)); };
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = {floats(mean[i]), floats(spread[i]), mean[i].w};
+  return pixels;
+}
+
+namespace {
+template <class Pixels, class Value>
+Image toImage(const Pixels& pixels, glm::ivec2 size, Value value) {
+  Image image(size.x, size.y);
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x)
+      image.at(x, size.y - 1 - y) = value(pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x)]);
+  return image;
+}
+
+/// Variance of a pixel's mean. Rounding may leave a sum of squares a hair below 0.
+glm::dvec3 meanVariance(const glm::vec3& spread, std::uint32_t samples) {
+  const double n = samples;
+  return samples < 2 ? glm::dvec3(0.0) : glm::max(glm::dvec3(spread), glm::dvec3(0.0)) / (n * (n - 1.0));
+}
+}  // namespace
+
+Image PathTracer::mean() const {
+  return toImage(readFilm(), settings_.size, [](const Pixel& p) { return p.mean; });
+}
+
+Image PathTracer::standardError() const {
+  return toImage(readFilm(), settings_.size, [](const Pixel& p) { return glm::vec3(glm::sqrt(meanVariance(p.spread, p.samples))); });
+}
+
+PathTracer::Statistics PathTracer::statistics() const {
+  const std::vector<Pixel> pixels = readFilm();
+  const double count = static_cast<double>(pixels.size());
+  Statistics result;
+  result.fewestSamples = kUnlimited;
+  glm::dvec3 variances(0.0);
+  for (const Pixel& pixel : pixels) {
+    result.fewestSamples = std::min(result.fewestSamples, pixel.samples);
+    result.mostSamples = std::max(result.mostSamples, pixel.samples);
+    result.samples += pixel.samples / count;
+    result.mean += glm::dvec3(pixel.mean) / count;
+    variances += meanVariance(pixel.spread, pixel.samples);
+  }
+  result.meanError = glm::sqrt(variances) / count;
+  if (result.fewestSamples < 2) {
+    result.standardError = result.relativeError = std::numeric_limits<double>::infinity();
+    result.meanError = glm::dvec3(result.standardError);
+    return result;
+  }
+  result.standardError = std::sqrt((variances.x + variances.y + variances.z) / (3.0 * count));
+  const double mean = (result.mean.x + result.mean.y + result.mean.z) / 3.0;
+  result.relativeError = result.standardError > 0.0 ? result.standardError / mean : 0.0;
+  return result;
+}
+
+std::size_t PathTracer::gpuBytes() const {
+  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + constantsBuffer_.bytes() +
+                      filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
+  for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_})
+    if (*texture) bytes += (*texture)->bytes();
+  return bytes;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,106 @@
+// The path tracer: unbiased light transport between surfaces, by a compute program (shaders/pathtracer/path.comp).
+// See README.md in this folder, section "Path tracing", for inputs, outputs, units, sources and measurements.
+//
+// Progressive: each submission is bounded to about Settings::submissionSeconds of work and adds to a film of means and variances in
+// float that does not stall; any number of samples may follow later, and the picture is the same however the work was cut.
+#pragma once
+
+#include "base/image.hpp"
+#include "gl/context.hpp"
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+#include "pathtracer/light_table.hpp"
+#include "pathtracer/ray_scene.hpp"
+#include "scene/needs.hpp"
+#include "scene/scene.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+namespace lucerna {
+
+/// Which light paths count, by how often light was scattered between lamp and camera; a boundary passed straight through is no scattering.
+enum class Transport {
+  all,                   ///< any number
+  direct,                ///< 0 and 1: what is seen of lights, and what they light
+  indirect,              ///< 2 and more
+  oneBounce,             ///< exactly 2
+  oneBounceUnoccluded,   ///< exactly 2, and nothing stands between the two scatterings: what a reflective shadow map gathers
+};
+std::string_view nameOf(Transport transport);
+
+class PathTracer {
+ public:
+  static constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
+  struct Settings {
+    glm::ivec2 size{1280, 720};
+    Transport transport = Transport::all;
+    std::uint32_t bounces = kUnlimited;  ///< scatterings at most; below kUnlimited longer paths are missing from the picture
+    bool diffuseOnly = false;            ///< every surface that scatters is taken for Lambert with its `diffuse`, as forward shading takes it
+    bool nextEvent = true;               ///< ask lights directly; without, only lights that rays can hit give light
+    bool pixelCentres = false;           ///< camera rays through the centres of pixels, as raster techniques shade; else all over them, a box filter
+    std::uint32_t seed = 0;              ///< pictures of different seeds are independent
+    double submissionSeconds = 0.05;
+    RayScene::Settings rays;
+  };
+  /// From the film as it is.
+  struct Statistics {
+    std::uint32_t fewestSamples = 0, mostSamples = 0;  ///< of a pixel
+    double samples = 0.0;                              ///< mean over pixels
+    glm::dvec3 mean{0.0};           ///< radiance
+    glm::dvec3 meanError{0.0};      ///< standard error of `mean`
+    double standardError = 0.0;     ///< root mean square over pixels and channels of a pixel's standard error; infinite before 2 samples
+    double relativeError = 0.0;     ///< that over the mean of the picture, channels averaged; 0 for a black picture without error
+  };
+
+  /// Compiles and allocates. Throws Error(missingCapability) where the driver's limits are too small for the scene.
+  PathTracer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings);
+
+  /// Sets the view and empties the film.
+  void setCamera(const Camera& camera);
+  /// One submission towards `samples` samples in every pixel, waited for. False once all have them.
+  bool advance(std::uint32_t samples);
+  /// All that is missing.
+  void record(std::uint32_t samples) { while (advance(samples)) {} }
+
+  Image mean() const;           ///< radiance, linear, scene units, top row first; pixels without a sample are 0
+  Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
+  Statistics statistics() const;
+  const Settings& settings() const { return settings_; }
+  const SceneNeeds& needs() const { return needs_; }
+  std::size_t gpuBytes() const;
+
+ private:
+  struct Pixel {
+    glm::vec3 mean, spread;
+    std::uint32_t samples;
+  };
+  std::vector<Pixel> readFilm() const;
+  void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
+  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured);
+  gl::ShaderFlags flags() const;
+  void dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target);
+
+  Settings settings_;
+  SceneNeeds needs_;
+  RayScene rays_;
+  shared::PathConstants constants_{};
+  const gl::Program* program_ = nullptr;
+  int triangleWords_ = 4;
+  std::size_t lightCount_ = 0;
+  gl::Buffer triangles_, materials_, lights_, state_, constantsBuffer_;
+  std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_;
+  gl::Texture filmMean_, filmSpread_, filmRest_;
+  int tileSide_;
+  bool clearTexture_;
+
+  // How far the picture is: a pass gives every pixel passTarget_ samples, tile after tile.
+  std::uint32_t done_ = 0, passTarget_ = 0;
+  int tile_ = 0;
+  bool tileBegun_ = false;
+  std::uint32_t segments_ = 4;
+};
+
+}  // namespace lucerna

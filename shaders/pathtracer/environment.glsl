@@ -1,0 +1,48 @@
+// Light from infinitely far all around: constant, or a latitude-longitude picture (top row +y, u from atan2(x, -z)) turned about +y.
+// The picture's texels are picked by an alias table [Vose1991] in proportion to what they send, uniformly over each texel's solid angle.
+#if ENVIRONMENT_PICTURE
+layout(binding = 1) uniform sampler2D environmentPicture;  // radiance without the factor
+layout(binding = 2) uniform sampler2D environmentTable;    // threshold, alias (a whole number), density over solid angle, 1/sr
+
+const float kTwoPi = 6.28318530717958648;
+
+vec3 turnAboutY(vec3 d, vec2 turn) { return vec3(d.x * turn.x + d.z * turn.y, d.y, d.z * turn.x - d.x * turn.y); }
+
+// Texel coordinates of a direction, 0..size.
+vec2 environmentTexel(vec3 direction, ivec2 size) {
+  vec3 d = turnAboutY(direction, tracer.environmentTurn.xy * vec2(1.0, -1.0));
+  float u = 0.5 + atan(d.x, -d.z) / kTwoPi, v = 0.5 - atan(d.y, length(d.xz)) / (0.5 * kTwoPi);
+  return vec2(u, v) * vec2(size);
+}
+
+// A texel's value wherever a direction falls into it: what is picked is what is seen.
+vec3 environmentRadiance(vec3 direction) {
+  ivec2 size = textureSize(environmentPicture, 0);
+  ivec2 texel = clamp(ivec2(environmentTexel(direction, size)), ivec2(0), size - 1);
+  return tracer.environment * texelFetch(environmentPicture, texel, 0).rgb;
+}
+
+// Density of environmentSample for a direction, 1/sr.
+float environmentPdf(vec3 direction) {
+  ivec2 size = textureSize(environmentPicture, 0);
+  ivec2 texel = clamp(ivec2(environmentTexel(direction, size)), ivec2(0), size - 1);
+  return texelFetch(environmentTable, texel, 0).z;
+}
+
+// words: which texel; xi: where in it. Gives radiance and density.
+vec3 environmentSample(vec2 xi, uvec2 words, out vec3 radiance, out float pdf) {
+  ivec2 size = textureSize(environmentPicture, 0);
+  int i = int(scaledWord(words.x, uint(size.x * size.y)));
+  vec4 entry = texelFetch(environmentTable, ivec2(i % size.x, i / size.x), 0);
+  if (unitFloat(words.y) >= entry.x) i = int(entry.y);
+  ivec2 texel = ivec2(i % size.x, i / size.x);
+  pdf = texelFetch(environmentTable, texel, 0).z;
+  radiance = tracer.environment * texelFetch(environmentPicture, texel, 0).rgb;
+  float azimuth = kTwoPi * ((float(texel.x) + xi.x) / float(size.x) - 0.5);
+  float top = cos(0.5 * kTwoPi * float(texel.y) / float(size.y)), bottom = cos(0.5 * kTwoPi * float(texel.y + 1) / float(size.y));
+  float y = mix(top, bottom, xi.y), r = sqrt(max(0.0, (1.0 - y) * (1.0 + y)));
+  return turnAboutY(vec3(r * sin(azimuth), y, -r * cos(azimuth)), tracer.environmentTurn.xy);
+}
+#elif ENVIRONMENT
+vec3 environmentRadiance(vec3 direction) { return tracer.environment; }
+#endif

@@ -1,0 +1,73 @@
+// One light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: SUN, SPOTS, POINTS, EMISSION,
+// ENVIRONMENT_PICTURE; a constant environment is found by scattered rays alone, which sample it as well as anything could.
+#include "lib/spot.glsl"
+
+layout(std430, binding = 4) readonly restrict buffer LightBlock { PathLight lights[]; };
+
+struct LightSample {
+  vec3 direction;  // unit, towards it
+  float pdf;       // density with which this direction is sampled, 1/sr; 0: the light has one direction alone
+  vec3 value;      // radiance over pdf; of a light of one direction the irradiance across the rays over the probability of picking it
+  vec3 end;        // where it is, moved off its surface; unused at infinity
+  bool infinite;
+};
+
+// xi: where on the light; words: which. False: no light comes from what was picked.
+bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
+  uint i = scaledWord(words.x, uint(lights.length()));
+  if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
+  PathLight source = lights[i];
+  light.infinite = false;
+  light.pdf = 0.0;
+  light.end = source.a;
+  vec3 away = source.a - position;
+  float distance2 = dot(away, away);
+#if EMISSION
+  if (source.kind == PATH_LIGHT_TRIANGLE) {
+    vec2 w = triangleSample(xi);
+    vec3 p = source.a + w.x * source.b + w.y * source.c;
+    vec3 normal = cross(source.b, source.c);
+    float twiceArea = length(normal);
+    normal /= twiceArea;
+    away = p - position;
+    distance2 = dot(away, away);
+    light.direction = away * inversesqrt(distance2);
+    float cosine = dot(light.direction, normal);
+    if (!(abs(cosine) > 0.0 && distance2 > 0.0)) return false;
+    float area = 0.5 * twiceArea / source.probability;  // over the density by area
+    light.pdf = distance2 / (abs(cosine) * area);
+    light.value = emissionAt(source.q, source.p, w) / light.pdf;
+    vec3 largest = max(abs(source.a), max(abs(source.a + source.b), abs(source.a + source.c)));
+    light.end = offsetRay(p, cosine < 0.0 ? normal : -normal, max(largest.x, max(largest.y, largest.z)));
+    return true;
+  }
+#endif
+#if ENVIRONMENT_PICTURE
+  if (source.kind == PATH_LIGHT_ENVIRONMENT) {
+    vec3 radiance;
+    light.direction = environmentSample(xi, words.zw, radiance, light.pdf);
+    light.infinite = true;
+    light.pdf *= source.probability;
+    light.value = radiance / light.pdf;
+    return light.pdf > 0.0;
+  }
+#endif
+#if SUN
+  if (source.kind == PATH_LIGHT_SUN) {
+    light.direction = -source.b;
+    light.infinite = true;
+    light.value = source.c / source.probability;
+    return true;
+  }
+#endif
+#if SPOTS || POINTS
+  if (!(distance2 > 0.0)) return false;
+  light.direction = away * inversesqrt(distance2);
+  light.value = source.c / (source.probability * distance2);
+#endif
+#if SPOTS
+  if (source.kind == PATH_LIGHT_SPOT)
+    light.value *= spotFalloff(-dot(light.direction, source.b), uintBitsToFloat(source.p), uintBitsToFloat(source.q));
+#endif
+  return any(greaterThan(light.value, vec3(0.0)));
+}

@@ -1,0 +1,104 @@
+// What a ray has hit: place, normals and material. Storage blocks 2 (triangles) and 3 (materials). Textures lie in one atlas; they are
+// read bilinearly from the finest level, since many paths a pixel filter them.
+#if TEXTURES || ALPHA_MASKS
+layout(binding = 0) uniform sampler2DArray textureAtlas;
+#endif
+
+// TRIANGLE_WORDS uvec4 a triangle, floats as their bits:
+// 0: first corner, material; 1: second corner, geometric normal x; 2: third corner, geometric normal y; 3: geometric normal z, then with
+// TEXTURES || ALPHA_MASKS the third corner's texture coordinates; after it with them the first's and second's; with SMOOTH_NORMALS the corners' normals.
+layout(std430, binding = 2) readonly restrict buffer TriangleBlock { uvec4 triangleData[]; };
+layout(std430, binding = 3) readonly restrict buffer MaterialBlock { PathMaterial materials[]; };
+
+struct Surface {
+  vec3 position;
+  float magnitude;       // largest coordinate of the triangle's corners: what the rounding of `position` depends on
+  vec3 geometricNormal;  // unit, on the side the ray came from
+  bool front;            // that is the triangle's front
+  vec3 normal;           // for shading, unit; turned as the geometric one was
+  uint material;
+  vec2 texCoord;
+};
+
+#if TEXTURES || ALPHA_MASKS
+vec2 texCoordAt(uint triangle, vec2 barycentrics) {
+  uint first = triangle * TRIANGLE_WORDS;
+  vec4 ab = uintBitsToFloat(triangleData[first + 4u]);
+  vec2 c = uintBitsToFloat(triangleData[first + 3u].yz);
+  return ab.xy + barycentrics.x * (ab.zw - ab.xy) + barycentrics.y * (c - ab.xy);
+}
+
+// Repeated both ways, bilinear between texel centres.
+vec4 readTexture(PathTexture t, vec2 texCoord) {
+  ivec2 size = ivec2(t.width, t.height);
+  vec2 p = fract(texCoord) * vec2(size) - 0.5;
+  vec2 floored = floor(p);
+  vec2 f = p - floored;
+  ivec2 low = ivec2(floored), high = low + 1;
+  low += size * ivec2(lessThan(low, ivec2(0)));
+  high -= size * ivec2(greaterThanEqual(high, size));
+  ivec2 corner = ivec2(t.x, t.y);
+  vec4 a = texelFetch(textureAtlas, ivec3(corner + low, t.layer), 0);
+  vec4 b = texelFetch(textureAtlas, ivec3(corner + ivec2(high.x, low.y), t.layer), 0);
+  vec4 c = texelFetch(textureAtlas, ivec3(corner + ivec2(low.x, high.y), t.layer), 0);
+  vec4 d = texelFetch(textureAtlas, ivec3(corner + high, t.layer), 0);
+  return mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
+}
+#endif
+
+#if ALPHA_MASKS
+// Asked by the ray caster. Below a half there is nothing.
+bool isCutOut(uint triangle, vec2 barycentrics) {
+  uint material = triangleData[triangle * TRIANGLE_WORDS].w;
+  return readTexture(materials[material].maskTexture, texCoordAt(triangle, barycentrics)).a < 0.5;
+}
+#endif
+
+Surface surfaceAt(uint triangle, vec2 barycentrics, vec3 direction) {
+  uint first = triangle * TRIANGLE_WORDS;
+  uvec4 words0 = triangleData[first], words1 = triangleData[first + 1u], words2 = triangleData[first + 2u];
+  vec3 a = uintBitsToFloat(words0.xyz), b = uintBitsToFloat(words1.xyz), c = uintBitsToFloat(words2.xyz);
+  float wa = 1.0 - barycentrics.x - barycentrics.y;
+  Surface surface;
+  surface.position = wa * a + barycentrics.x * b + barycentrics.y * c;
+  vec3 largest = max(abs(a), max(abs(b), abs(c)));
+  surface.magnitude = max(largest.x, max(largest.y, largest.z));
+  surface.material = words0.w;
+  vec3 normal = uintBitsToFloat(uvec3(words1.w, words2.w, triangleData[first + 3u].x));
+  surface.front = dot(normal, direction) < 0.0;
+  surface.geometricNormal = surface.front ? normal : -normal;
+#if SMOOTH_NORMALS
+  uint n = first + TRIANGLE_WORDS - 3u;
+  vec3 smoothed = wa * uintBitsToFloat(triangleData[n].xyz) + barycentrics.x * uintBitsToFloat(triangleData[n + 1u].xyz) +
+                  barycentrics.y * uintBitsToFloat(triangleData[n + 2u].xyz);
+  float length2 = dot(smoothed, smoothed);
+  // Turned by the face's side alone, as in forward/surface.frag; opposite normals at the corners may cancel.
+  surface.normal = length2 > 1e-12 ? (surface.front ? smoothed : -smoothed) * inversesqrt(length2) : surface.geometricNormal;
+#else
+  surface.normal = surface.geometricNormal;
+#endif
+#if TEXTURES || ALPHA_MASKS
+  surface.texCoord = texCoordAt(triangle, barycentrics);
+#endif
+  return surface;
+}
+
+vec3 albedoAt(Surface surface) {
+  vec3 albedo = materials[surface.material].albedo;
+#if TEXTURES
+  PathTexture t = materials[surface.material].diffuseTexture;
+  if (t.layer >= 0) albedo *= readTexture(t, surface.texCoord).rgb;
+#endif
+  return albedo;
+}
+
+#if EMISSION
+vec3 emissionAt(uint material, uint triangle, vec2 barycentrics) {
+  vec3 emission = materials[material].emission;
+#if TEXTURES
+  PathTexture t = materials[material].emissionTexture;
+  if (t.layer >= 0) emission *= readTexture(t, texCoordAt(triangle, barycentrics)).rgb;
+#endif
+  return emission;
+}
+#endif

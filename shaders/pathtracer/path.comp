@@ -1,0 +1,363 @@
+// Path tracing: one invocation a pixel follows its paths one after the other, segment by segment, and starts the next as soon as one has
+// ended, until the pixel has its samples or this submission's segments are used up; the unfinished path then waits in the state buffer.
+// So every submission is bounded however long paths get, and no path is dropped: dropping the long ones would bias the picture.
+//
+// A path: camera ray, then at each surface next-event estimation towards one light and a new direction drawn from the surface, weighted
+// against each other [Veach1997], and Russian roulette. `throughput` is without the squares of refractive indices, as L / n^2 is what a
+// boundary conserves; what a light adds is multiplied by (n_camera / n_here)^2 instead.
+// Film: three images of 32-bit words that hold floats' bits: mean and number of samples; sum of squared deviations [Welford1962]; the
+// mean's rest below a float's last place, so that it does not stall however many samples there are.
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "shared/path_tracer.h"
+layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
+
+#include "pathtracer/random.glsl"
+#include "pathtracer/bsdf.glsl"
+#include "pathtracer/fresnel.glsl"
+#include "pathtracer/materials.glsl"
+#include "pathtracer/bvh.glsl"
+#include "pathtracer/environment.glsl"
+#include "pathtracer/lights.glsl"
+
+layout(rgba32ui, binding = 0) uniform uimage2D filmMean;    // xyz and, as an integer, the number of samples
+layout(rgba32ui, binding = 1) uniform uimage2D filmSpread;  // sum of squared deviations; w unused
+layout(rgba32ui, binding = 2) uniform uimage2D filmRest;
+layout(std430, binding = 5) restrict buffer StateBlock {
+  uint unfinished;      // pixels of the tile that do not have their samples yet
+  uint padding[3];
+  uvec4 state[];        // STATE_WORDS a lane, lane by lane within each
+};
+
+struct Path {
+  vec3 origin;
+  uint skip;            // triangle that the ray starts on
+  vec3 direction;       // unit
+  float pdf;            // density with which it was sampled, 1/sr; 0 where nothing else could have: camera and smooth surfaces
+  vec3 throughput;
+  float travelled;      // since the last scattering, along boundaries that change nothing
+  vec3 radiance;
+  uint scatterings;     // up to here
+  uint event;           // place in the sequence of random numbers: one a surface or medium met
+  float ior;            // of where the ray is
+};
+
+const uint kInFlight = 0x80000000u;  // in the saved event: there is a path to be gone on with
+
+bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
+
+// What a light adds where the path now is.
+void addLight(inout Path path, vec3 light) {
+#if DIELECTRICS
+  light /= path.ior * path.ior;
+#endif
+  path.radiance += path.throughput * light;
+}
+
+Path startPath(ivec2 pixel, PathNumbers numbers) {
+#if PIXEL_CENTRES
+  vec2 place = vec2(pixel) + 0.5;
+#else
+  vec2 place = vec2(pixel) + randomPair(numbers, 0u, kPurposeFilm);
+#endif
+  Path path;
+  path.origin = tracer.cameraPosition;
+  path.skip = kNoHit;
+  path.direction = normalize(tracer.firstPixel + place.x * tracer.pixelRight + place.y * tracer.pixelUp);
+  path.pdf = 0.0;
+  path.throughput = vec3(1.0);
+  path.travelled = 0.0;
+  path.radiance = vec3(0.0);
+  path.scatterings = 0u;
+  path.event = 0u;
+  path.ior = 1.0;
+  return path;
+}
+
+// How much light gets through on a straight line; nothing that refracts lets any through.
+vec3 visibility(Path path, Surface surface, uint triangle, LightSample light) {
+  float side = dot(light.direction, surface.geometricNormal) > 0.0 ? 1.0 : -1.0;
+  vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
+  Ray ray = light.infinite ? Ray(start, 0.0, light.direction, 3e38) : Ray(start, 0.0, light.end - start, 1.0);
+#if NULL_BOUNDARIES
+  for (uint i = 0u; i < 256u; ++i) {
+    Hit hit = closestHit(ray, triangle);
+    if (hit.triangle == kNoHit) return vec3(1.0);
+    if (materials[triangleData[hit.triangle * TRIANGLE_WORDS].w].kind != PATH_NONE) return vec3(0.0);
+    ray.tMin = hit.t;
+    triangle = hit.triangle;
+  }
+  return vec3(0.0);
+#else
+  return anyHit(ray, triangle) ? vec3(0.0) : vec3(1.0);
+#endif
+}
+
+// What a surface does to light where a path has met it. Lambert: `albedo` is its reflectance; mirrors, conductors: reflectance at normal incidence.
+struct Facet {
+  uint kind;
+  vec3 albedo;
+  float roughness;
+  float eta;       // dielectrics: index on the path's side over the other's
+  vec3 normal;     // for shading, on the path's side
+};
+
+bool isSmooth(Facet facet) {
+#if GLOSSY
+  return facet.kind == PATH_MIRROR || (facet.kind != PATH_DIFFUSE && facet.roughness == 0.0);
+#else
+  return facet.kind != PATH_DIFFUSE;
+#endif
+}
+
+// BSDF times the cosine of `i`, and the density with which scatter() draws it; not for smooth surfaces. `o` and `i` point away from the surface.
+vec3 evaluate(Facet facet, vec3 o, vec3 i, out float pdf) {
+#if GLOSSY
+  if (facet.kind != PATH_DIFFUSE) {
+    vec3 t, b;
+    tangentFrame(facet.normal, t, b);
+    vec3 lo = vec3(dot(o, t), dot(o, b), dot(o, facet.normal)), li = vec3(dot(i, t), dot(i, b), dot(i, facet.normal));
+    if (facet.kind == PATH_CONDUCTOR) return ggxReflect(lo, li, facet.roughness, pdf) * schlick(facet.albedo, max(dot(lo, normalize(lo + li)), 0.0));
+#if ROUGH_DIELECTRICS
+    float cosT, share;
+    vec3 h = normalize(lo + li);
+    float value = li.z > 0.0 ? ggxReflect(lo, li, facet.roughness, pdf) : ggxRefract(lo, li, facet.roughness, facet.eta, h, pdf);
+    float reflectance = fresnelDielectric(clamp(dot(lo, h), 0.0, 1.0), facet.eta, cosT);
+    share = li.z > 0.0 ? reflectance : 1.0 - reflectance;
+    pdf *= share;
+    return vec3(value * share);
+#endif
+  }
+#endif
+  float cosine = max(dot(i, facet.normal), 0.0);
+  pdf = cosine / kPi;
+  return facet.albedo * pdf;
+}
+
+// Draws a direction: multiplies the throughput by what that leaves and sets direction and density, 0 for smooth surfaces. False: absorbed.
+bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float choice) {
+  if (facet.kind == PATH_DIFFUSE) {
+    path.direction = cosineSample(facet.normal, xi);
+    path.pdf = dot(path.direction, facet.normal) / kPi;
+    path.throughput *= facet.albedo;
+    return dot(path.direction, geometricNormal) > 0.0;
+  }
+  vec3 o = -path.direction;
+  vec3 h = facet.normal;
+  path.pdf = 0.0;
+#if GLOSSY
+  bool rough = facet.roughness > 0.0 && facet.kind != PATH_MIRROR;
+  vec3 t, b, lo;
+  if (rough) {
+    tangentFrame(facet.normal, t, b);
+    lo = vec3(dot(o, t), dot(o, b), dot(o, facet.normal));
+    vec3 lh = ggxSample(lo, facet.roughness, xi);
+    h = normalize(lh.x * t + lh.y * b + lh.z * facet.normal);
+  }
+#endif
+  float cosI = clamp(dot(o, h), 0.0, 1.0), cosT = 0.0;
+  bool reflects = true;
+  float share = 1.0;  // of the two ways
+#if DIELECTRICS
+  if (facet.kind == PATH_DIELECTRIC) {
+    float reflectance = fresnelDielectric(cosI, facet.eta, cosT);
+    reflects = choice < reflectance;
+    share = reflects ? reflectance : 1.0 - reflectance;
+  }
+#endif
+  vec3 scattered = reflects ? 2.0 * cosI * h - o : (facet.eta * cosI - cosT) * h - facet.eta * o;
+  float side = dot(scattered, geometricNormal);
+  if (reflects ? side <= 0.0 : side >= 0.0) {  // the shading normal sends it to the wrong side of the face
+#if GLOSSY
+    if (rough) return false;
+#endif
+    scattered = reflects ? 2.0 * dot(o, geometricNormal) * geometricNormal - o : -o;
+  }
+  path.direction = normalize(scattered);
+#if GLOSSY
+  if (rough) {
+    vec3 li = vec3(dot(path.direction, t), dot(path.direction, b), dot(path.direction, facet.normal)), ignored;
+    if (reflects ? li.z <= 0.0 : li.z >= 0.0) return false;
+    float value = reflects ? ggxReflect(lo, li, facet.roughness, path.pdf) : ggxRefract(lo, li, facet.roughness, facet.eta, ignored, path.pdf);
+    if (!(path.pdf > 0.0)) return false;
+    path.throughput *= value / path.pdf;
+    path.pdf *= share;
+  }
+  if (facet.kind == PATH_CONDUCTOR) path.throughput *= schlick(facet.albedo, cosI);
+#endif
+#if MIRRORS
+  if (facet.kind == PATH_MIRROR) path.throughput *= facet.albedo;
+#endif
+  return true;
+}
+
+#if NEXT_EVENT
+// iorBeyond: refractive index behind the surface.
+void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float iorBeyond, PathNumbers numbers, inout vec3 radiance) {
+  LightSample light;
+  if (!sampleLight(surface.position, randomPair(numbers, path.event, kPurposeLight), randomWords(numbers, path.event, kPurposePick), light)) return;
+  float side = dot(light.direction, surface.geometricNormal), pdf;
+  if (!(side * dot(light.direction, facet.normal) > 0.0)) return;
+#if ROUGH_DIELECTRICS
+  if (facet.kind != PATH_DIELECTRIC && side < 0.0) return;
+  if (side < 0.0) path.ior = iorBeyond;
+#else
+  if (side < 0.0) return;
+#endif
+  vec3 contribution = evaluate(facet, -path.direction, light.direction, pdf) * light.value;
+#if MIS
+  if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, pdf);
+#endif
+  if (all(equal(contribution, vec3(0.0)))) return;
+  addLight(path, contribution * visibility(path, surface, triangle, light));
+  radiance = path.radiance;
+}
+#endif
+
+// Follows the path's ray to what it meets and on from there; false where the path has ended.
+bool extend(inout Path path, PathNumbers numbers) {
+  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, 3e38), path.skip);
+  if (hit.triangle == kNoHit) {
+#if ENVIRONMENT
+    if (counts(path.scatterings)) {
+      vec3 radiance = environmentRadiance(path.direction);
+#if ENVIRONMENT_PICTURE && NEXT_EVENT
+      if (path.pdf > 0.0) radiance *= powerHeuristic(path.pdf, tracer.environmentPick * environmentPdf(path.direction));
+#endif
+      addLight(path, radiance);
+    }
+#elif BACKGROUND
+    if (path.scatterings == 0u && counts(0u)) addLight(path, tracer.background);  // is seen, but lights nothing
+#endif
+    return false;
+  }
+  Surface surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+  PathMaterial material = materials[surface.material];
+  path.travelled += hit.t;
+  ++path.event;
+#if EMISSION
+  if (any(greaterThan(material.emission, vec3(0.0))) && counts(path.scatterings)) {
+    vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
+#if NEXT_EVENT
+    if (path.pdf > 0.0) {
+      float pdf = material.pickDensity * path.travelled * path.travelled / -dot(surface.geometricNormal, path.direction);
+      emission *= powerHeuristic(path.pdf, pdf);
+    }
+#endif
+    addLight(path, emission);
+  }
+#endif
+#if NULL_BOUNDARIES
+  if (material.kind == PATH_NONE) {
+    path.origin = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
+    path.skip = hit.triangle;
+    return true;
+  }
+#endif
+  if (path.scatterings >= tracer.maxScatterings) return false;
+  Facet facet = Facet(material.kind, material.specular, material.roughness, 1.0, surface.normal);
+  // Mirrors and glass are not there for a path that sees the shading normal's back.
+  if (facet.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0)) facet.normal = surface.geometricNormal;
+  if (facet.kind == PATH_DIFFUSE) facet.albedo = albedoAt(surface);
+  float iorBeyond = path.ior;
+#if DIELECTRICS
+  if (facet.kind == PATH_DIELECTRIC) {
+    iorBeyond = surface.front ? material.ior : 1.0;
+    facet.eta = path.ior / iorBeyond;
+  }
+  if (facet.kind == PATH_DIELECTRIC && facet.eta == 1.0) {  // no boundary for light
+    path.ior = iorBeyond;
+    path.pdf = 0.0;  // lights are not asked through it
+    path.origin = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
+    path.skip = hit.triangle;
+    return true;
+  }
+#endif
+  ++path.scatterings;
+#if NEXT_EVENT
+  if (!isSmooth(facet) && counts(path.scatterings)) addNextEvent(path, surface, hit.triangle, facet, iorBeyond, numbers, path.radiance);
+#endif
+#if UNOCCLUDED
+  if (path.scatterings == 2u && facet.kind == PATH_DIFFUSE) {  // nothing is in the way: on to the surfaces behind
+    path.scatterings = 1u;
+    path.origin = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
+    path.skip = hit.triangle;
+    return path.event < 4096u;
+  }
+#endif
+#if !SCATTERED_LIGHT
+  if (path.scatterings >= tracer.maxScatterings && !isSmooth(facet)) return false;  // nothing more could be found
+#endif
+  path.travelled = 0.0;
+  uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);
+  if (!scatter(path, facet, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter), unitFloat(choice.x))) return false;
+#if DIELECTRICS
+  if (dot(path.direction, surface.geometricNormal) < 0.0) path.ior = iorBeyond;
+#endif
+  // Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path ends.
+  float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), path.event < 1024u ? 1.0 : 0.999);
+  if (path.scatterings < 2u) survival = survival > 0.0 ? 1.0 : 0.0;
+  if (!(unitFloat(choice.y) < survival)) return false;
+  path.throughput /= survival;
+  bool leaves = dot(path.direction, surface.geometricNormal) > 0.0;
+  path.origin = offsetRay(surface.position, leaves ? surface.geometricNormal : -surface.geometricNormal, surface.magnitude);
+  path.skip = hit.triangle;
+  return true;
+}
+
+// a + b as a float and what that float lacks [Knuth1997, 4.2.2].
+vec3 twoSum(vec3 a, vec3 b, out vec3 rest) {
+  precise vec3 sum = a + b;
+  precise vec3 back = sum - a;
+  precise vec3 error = (a - (sum - back)) + (b - back);
+  rest = error;
+  return sum;
+}
+
+void main() {
+  ivec2 lane = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(lane, tracer.tile.zw))) return;
+  ivec2 pixel = tracer.tile.xy + lane;
+  uvec4 meanWords = imageLoad(filmMean, pixel);
+  uint samples = meanWords.w;
+  if (samples >= tracer.sampleTarget) return;
+  vec3 mean = uintBitsToFloat(meanWords.xyz), rest = uintBitsToFloat(imageLoad(filmRest, pixel).xyz);
+  vec3 spread = uintBitsToFloat(imageLoad(filmSpread, pixel).xyz);
+
+  PathNumbers numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), samples, tracer.seed);
+  uint slot = uint(lane.y * tracer.tile.z + lane.x), lanes = uint(tracer.picture.z);
+  uvec4 saved = state[slot + 4u * lanes];
+  Path path;
+  if ((saved.x & kInFlight) != 0u) {
+    uvec4 w0 = state[slot], w1 = state[slot + lanes], w2 = state[slot + 2u * lanes], w3 = state[slot + 3u * lanes];
+    path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz), uintBitsToFloat(w2.w),
+                uintBitsToFloat(w3.xyz), w3.w, saved.x & ~kInFlight, uintBitsToFloat(saved.y));
+  } else {
+    path = startPath(pixel, numbers);
+  }
+
+  bool inFlight = true;
+  for (uint segment = 0u; segment < tracer.segments; ++segment) {
+    if (extend(path, numbers)) continue;
+    ++samples;
+    vec3 difference = (path.radiance - mean) - rest;
+    mean = twoSum(mean, rest + difference / float(samples), rest);
+    spread += difference * ((path.radiance - mean) - rest);
+    numbers.sampleIndex = samples;
+    if (samples >= tracer.sampleTarget) {
+      inFlight = false;
+      break;
+    }
+    path = startPath(pixel, numbers);
+  }
+
+  imageStore(filmMean, pixel, uvec4(floatBitsToUint(mean), samples));
+  imageStore(filmSpread, pixel, uvec4(floatBitsToUint(spread), 0u));
+  imageStore(filmRest, pixel, uvec4(floatBitsToUint(rest), 0u));
+  state[slot + 4u * lanes] = uvec4(inFlight ? path.event | kInFlight : 0u, floatBitsToUint(path.ior), 0u, 0u);
+  if (!inFlight) return;
+  state[slot] = uvec4(floatBitsToUint(path.origin), path.skip);
+  state[slot + lanes] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
+  state[slot + 2u * lanes] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
+  state[slot + 3u * lanes] = uvec4(floatBitsToUint(path.radiance), path.scatterings);
+  atomicAdd(unfinished, 1u);
+}

@@ -1,0 +1,79 @@
+// Random numbers by their place alone: (pixel, sample, event on the path, purpose). Nothing is carried along, so any path can be
+// followed again by itself, and the order in which paths are followed does not matter.
+//
+// Numbers in general are hashes, pcg4d [Jarzynski2020]. The first events' pairs of numbers come from Sobol's (0,2)-sequence, its order
+// shuffled and its points scrambled after Owen a pixel and purpose by hashes [Burley2020].
+
+const uint kLowDiscrepancyEvents = 4u;
+
+// Purposes: one a decision. Media use those from kFreePurpose on.
+const uint kPurposeFilm = 0u;
+const uint kPurposeLight = 1u;      // where on the light
+const uint kPurposePick = 2u;       // which light
+const uint kPurposeScatter = 3u;    // the new direction
+const uint kPurposeChoice = 4u;     // lobe, roulette
+const uint kFreePurpose = 5u;
+
+uvec4 pcg4d(uvec4 v) {
+  v = v * 1664525u + 1013904223u;
+  v.x += v.y * v.w;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  v.w += v.y * v.z;
+  v ^= v >> 16u;
+  v.x += v.y * v.w;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  v.w += v.y * v.z;
+  return v;
+}
+
+// [0, 1) in steps of 2^-24.
+float unitFloat(uint word) { return float(word >> 8u) * (1.0 / 16777216.0); }
+vec2 unitFloat(uvec2 words) { return vec2(words >> 8u) * (1.0 / 16777216.0); }
+
+// A whole number below `count`, from all 32 bits.
+uint scaledWord(uint word, uint count) {
+  uint high, low;
+  umulExtended(word, count, high, low);
+  return high;
+}
+
+struct PathNumbers {
+  uint pixel;   // its index in the picture
+  uint sampleIndex;
+  uint seed;    // of the picture
+};
+
+uvec4 randomWords(PathNumbers numbers, uint event, uint purpose) {
+  return pcg4d(uvec4(numbers.pixel, numbers.sampleIndex, event, purpose ^ numbers.seed));
+}
+
+// Owen's scrambling of a number whose bits are reversed: each bit is turned over by a hash of those below it [Burley2020].
+uint owenReversed(uint x, uint seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16u) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+// The second dimension of Sobol's sequence before its bits are reversed. Bit k is the sum over j of bit j times binomial(j, k), which is
+// odd where k's bits are among j's: a sum over supersets, one step a bit of the index.
+uint sobolReversed(uint i) {
+  i ^= (i >> 1u) & 0x55555555u;
+  i ^= (i >> 2u) & 0x33333333u;
+  i ^= (i >> 4u) & 0x0f0f0f0fu;
+  i ^= (i >> 8u) & 0x00ff00ffu;
+  i ^= (i >> 16u) & 0x0000ffffu;
+  return i;
+}
+
+// Two numbers in [0, 1).
+vec2 randomPair(PathNumbers numbers, uint event, uint purpose) {
+  if (event >= kLowDiscrepancyEvents) return unitFloat(randomWords(numbers, event, purpose).xy);
+  uvec4 seeds = pcg4d(uvec4(numbers.pixel, 0xffffffffu, event, purpose ^ numbers.seed));
+  uint i = bitfieldReverse(owenReversed(bitfieldReverse(numbers.sampleIndex), seeds.x));
+  return unitFloat(bitfieldReverse(uvec2(owenReversed(i, seeds.y), owenReversed(sobolReversed(i), seeds.z))));
+}
