@@ -3,6 +3,7 @@
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
 #include "bench/needs_bench.hpp"
+#include "measure/neutral.hpp"
 
 #include <fmt/core.h>
 
@@ -38,32 +39,9 @@ double largestDifference(const Image& a, const Image& b) {
 
 }  // namespace
 
-/// The same scene with neutral data for everything that a scene may need and this one does not: nothing of it can change the picture.
 Scene withEverything(const Scene& scene) {
   Scene full = scene;
-  if (full.meshes.empty()) return full;
-  const auto whiteTexture = [&] {  // one each: a material's mask and albedo are never the same texture
-    Texture texture;
-    texture.file = "neutral";
-    texture.bitmap.width = texture.bitmap.height = 1;
-    texture.bitmap.rgba = {255, 255, 255, 255};
-    full.textures.push_back(texture);
-    return static_cast<int>(full.textures.size()) - 1;
-  };
-  const SceneNeeds needs = analyse(scene);
-  Material& material = full.materials[static_cast<std::size_t>(full.meshes.front().material)];
-  constexpr float kNothing = 1e-30f;  // above 0, and lost in any sum
-  if (!needs.diffuseTextures) material.diffuseTexture = whiteTexture();
-  if (!needs.alphaMasks) {
-    material.alphaMasked = true;
-    material.alphaTexture = whiteTexture();
-  }
-  if (!needs.specular) material.specular = glm::vec3(kNothing);
-  if (!needs.emission) material.emission = glm::vec3(kNothing);
-  if (!needs.background) full.background = glm::vec3(kNothing);
-  const glm::dvec3 middle = scene.bounds.centre(), above = middle + glm::dvec3(0.0, 0.25 * scene.bounds.extent().y, 0.0);
-  if (!needs.spotLights) full.spots.push_back({above, {0.0, -1.0, 0.0}, glm::vec3(kNothing), 0.4, 0.6});
-  if (!needs.pointLights) full.points.push_back({middle, glm::vec3(kNothing)});
+  for (const std::string& need : measure::neutralNeeds()) measure::addNeutral(full, need);
   return full;
 }
 

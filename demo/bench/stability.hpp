@@ -1,7 +1,10 @@
 // `lucerna bench stability`: stiff and extreme cases of every technique, each with an exact or a bounding answer.
 #pragma once
 
-#include "commands.hpp"
+#include "gl/context.hpp"
+#include "gl/program.hpp"
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <functional>
 #include <string>

@@ -1,5 +1,7 @@
 // Stiff and extreme cases of whole pictures: units, scale, place, resolution, nothing to light. A room without a roof, lit by the sun; answers are ratios that must be 1, or exact zeros.
 #include "bench/stability.hpp"
+#include "bench/stability_room.hpp"
+#include "render/renderer.hpp"
 
 #include <fmt/core.h>
 
@@ -10,86 +12,29 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-struct Room {
-  double scale = 1.0;
-  glm::dvec3 place{0.0};          ///< of its middle, scene units
-  float albedo = 0.7f, irradiance = 3.0f;
-  glm::dvec3 sun{-0.35, -1.0, -0.1};
-  bool badTriangles = false;      ///< zero area, slivers, twice the same
-};
-
-class RoomScene {
- public:
-  explicit RoomScene(const Room& room) {
-    scene_.name = "stability";
-    const double s = 10.0 * room.scale, h = 0.5 * s;
-    material(glm::vec3(room.albedo));
-    material(room.albedo * glm::vec3(0.85f, 0.15f, 0.15f));
-    material(room.albedo * glm::vec3(0.15f, 0.85f, 0.15f));
-    plate(room.place + glm::dvec3(0, -h, 0), {0, 0, s}, {s, 0, 0}, 0);  // floor
-    plate(room.place + glm::dvec3(0, 0, -h), {s, 0, 0}, {0, s, 0}, 0);  // back
-    plate(room.place + glm::dvec3(-h, 0, 0), {0, s, 0}, {0, 0, s}, 1);  // left
-    plate(room.place + glm::dvec3(h, 0, 0), {0, 0, s}, {0, s, 0}, 2);   // right
-    if (room.badTriangles) addBad(room.place, s);
-    scene_.sun = DirectionalLight{glm::normalize(room.sun), glm::vec3(room.irradiance)};
-    Camera camera;
-    camera.position = room.place + room.scale * glm::dvec3(0.0, 1.0, 12.0);
-    camera.direction = glm::normalize(glm::dvec3(0.0, -2.0, -12.0));
-    scene_.cameras.push_back(camera);
-  }
-  const Scene& scene() const { return scene_; }
-
- private:
-  void material(const glm::vec3& albedo) { scene_.materials.emplace_back().diffuse = albedo; }
-
-  void triangles(const std::vector<glm::dvec3>& corners, const glm::vec3& normal, int material, std::initializer_list<std::uint32_t> order) {
-    Mesh& mesh = scene_.meshes.emplace_back();
-    mesh.firstIndex = static_cast<std::uint32_t>(scene_.indices.size());
-    mesh.indexCount = static_cast<std::uint32_t>(order.size());
-    mesh.material = material;
-    const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
-    for (const glm::dvec3& p : corners) {
-      scene_.vertices.push_back({glm::vec3(p), glm::vec2(0.0f), normal});
-      mesh.bounds.add(p);
-    }
-    for (const std::uint32_t i : order) scene_.indices.push_back(first + i);
-    scene_.bounds.add(mesh.bounds);
-  }
-  void plate(const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v, int material) {
-    std::vector<glm::dvec3> corners;
-    for (const glm::dvec2& c : {glm::dvec2(-.5, -.5), glm::dvec2(.5, -.5), glm::dvec2(.5, .5), glm::dvec2(-.5, .5)}) corners.push_back(centre + c.x * u + c.y * v);
-    triangles(corners, glm::vec3(glm::normalize(glm::cross(u, v))), material, {0, 1, 2, 0, 2, 3});
-  }
-  void addBad(const glm::dvec3& o, double s) {
-    const glm::dvec3 a = o + 0.3 * s * glm::dvec3(-1, -1, 0), b = a + glm::dvec3(0, 0.2 * s, 0);
-    triangles({a, a, a}, {0, 1, 0}, 0, {0, 1, 2});
-    triangles({a, b, 0.5 * (a + b)}, {0, 0, 1}, 0, {0, 1, 2});
-    triangles({o + 0.5 * s * glm::dvec3(-1, -1, -1), o + 0.5 * s * glm::dvec3(1, -1, -1), o + 0.5 * s * glm::dvec3(1, -1.0 + 1e-12, -1)}, {0, 0, 1}, 0, {0, 1, 2});
-  }
-
-  Scene scene_;
-};
-
 struct View {
-  std::string technique;
+  Technique technique;
   Component component = Component::all;
   glm::ivec2 size{48, 32};
-  std::vector<std::string> settings;
+  int rsmSize = 128, samples = 400;
+  float radius = 0.3f;
+  bool interpolate = true;
 };
 
 Image picture(const StabilityContext& c, const Room& room, const View& view) {
-  PictureOptions options;
-  options.technique = view.technique;
-  options.settings = {"shadow.size=512", "rsm.size=128"};
-  options.settings.insert(options.settings.end(), view.settings.begin(), view.settings.end());
-  std::optional<float> exposure;
-  RenderSettings settings = options.parse(exposure);
+  RenderSettings settings;
+  settings.technique = view.technique;
+  settings.shadow.size = 512;
+  settings.rsm.size = view.rsmSize;
+  settings.gather.samples = view.samples;
+  settings.gather.radius = view.radius;
+  settings.gather.interpolate = view.interpolate;
   settings.size = view.size;
   settings.component = view.component;
   settings.fullFloatTarget = true;
-  const RoomScene scene(room);
-  Renderer renderer(c.context, c.programs, scene.scene(), settings);
-  renderer.render(scene.scene().cameras.front());
+  const Scene scene = makeRoom(room);
+  Renderer renderer(c.context, c.programs, scene, settings);
+  renderer.render(scene.cameras.front());
   return renderer.readRadiance();
 }
 
@@ -104,8 +49,8 @@ double notFinite(const Image& image) {
   return count;
 }
 
-void add(std::vector<StabilityCase>& cases, const std::string& technique, std::string name, std::string parameter, std::function<Measurement(const StabilityContext&)> run) {
-  cases.push_back({technique, std::move(name), std::move(parameter), std::move(run)});
+void add(std::vector<StabilityCase>& cases, Technique technique, std::string name, std::string parameter, std::function<Measurement(const StabilityContext&)> run) {
+  cases.push_back({std::string(nameOf(technique)), std::move(name), std::move(parameter), std::move(run)});
 }
 
 void addUnits(std::vector<StabilityCase>& cases, const View& view) {
@@ -172,25 +117,29 @@ void addIndirect(std::vector<StabilityCase>& cases, View view) {
   for (const int size : {32, 64, 512})
     add(cases, view.technique, "mean of indirect light, against a map of 128", fmt::format("rsm.size={}", size), [view, size](const StabilityContext& c) {
       View other = view;
-      other.settings = {fmt::format("rsm.size={}", size)};
+      other.rsmSize = size;
       return Measurement{1.0, meanOfPicture(c, {}, other) / meanOfPicture(c, {}, view), size < 64 ? 0.15 : 0.05};
     });
 }
 
 void addRsm(std::vector<StabilityCase>& cases) {
-  const View view{"rsm", Component::indirect, {48, 32}, {}};
-  add(cases, "rsm", "one sample: pixels not finite", "rsm.samples=1", [view](const StabilityContext& c) {
+  View view{Technique::rsm};
+  view.component = Component::indirect;
+  add(cases, Technique::rsm, "one sample: pixels not finite", "rsm.samples=1", [view](const StabilityContext& c) {
     View one = view;
-    one.settings = {"rsm.samples=1"};
+    one.samples = 1;
     return Measurement{0.0, notFinite(picture(c, {}, one)), 0.0};
   });
-  add(cases, "rsm", "mean of 16384 samples, against 1024", "rsm.samples=16384", [](const StabilityContext& c) {
-    const View many{"rsm", Component::indirect, {24, 16}, {"rsm.samples=16384", "rsm.interpolate=off"}}, usual{"rsm", Component::indirect, {24, 16}, {"rsm.samples=1024", "rsm.interpolate=off"}};
+  add(cases, Technique::rsm, "mean of 16384 samples, against 1024", "rsm.samples=16384", [view](const StabilityContext& c) {
+    View usual = view;
+    usual.size = {24, 16}, usual.samples = 1024, usual.interpolate = false;
+    View many = usual;
+    many.samples = 16384;
     return Measurement{1.0, meanOfPicture(c, {}, many) / meanOfPicture(c, {}, usual), 0.03};
   });
-  add(cases, "rsm", "reach of half a texel: pixels not finite", "rsm.radius=0.004", [view](const StabilityContext& c) {
+  add(cases, Technique::rsm, "reach of half a texel: pixels not finite", "rsm.radius=0.004", [view](const StabilityContext& c) {
     View near = view;
-    near.settings = {"rsm.radius=0.004"};
+    near.radius = 0.004f;
     return Measurement{0.0, notFinite(picture(c, {}, near)), 0.0};
   });
 }
@@ -198,11 +147,11 @@ void addRsm(std::vector<StabilityCase>& cases) {
 }  // namespace
 
 void addPictureCases(std::vector<StabilityCase>& cases) {
-  for (const char* technique : {"direct", "rsm", "lpv"}) {
-    const View view{technique, Component::all, {48, 32}, {}};
+  for (const Technique technique : {Technique::direct, Technique::rsm, Technique::lpv}) {
+    const View view{technique};
     addUnits(cases, view);
     addExtremes(cases, view);
-    if (std::string_view(technique) != "direct") addIndirect(cases, view);
+    if (technique != Technique::direct) addIndirect(cases, view);
   }
   addRsm(cases);
 }
