@@ -27,14 +27,14 @@ std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
   return options.techniques;
 }
 
-std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<std::string>& techniques) {
+std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<std::string>& techniques, const Bounds& bounds) {
   std::vector<std::string> raster;
   for (const std::string& t : techniques)
     if (t != "path") raster.push_back(t);
   if (options.deviations) return deviationRungs(raster);
   std::vector<Rung> rungs;
   for (const std::string& t : raster)
-    for (Rung& rung : ladderOf(t, options.small)) rungs.push_back(std::move(rung));
+    for (Rung& rung : ladderOf(t, options.small, std::max({bounds.extent().x, bounds.extent().y, bounds.extent().z}))) rungs.push_back(std::move(rung));
   return rungs;
 }
 
@@ -57,17 +57,19 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   const Camera camera = chooseCamera(scene, options.camera);
   const glm::ivec2 size = parseSize(options.size);
   const std::vector<std::string> techniques = chosenTechniques(options);
-  const std::vector<Rung> rungs = rungsOf(options, techniques);
+  const std::vector<Rung> rungs = rungsOf(options, techniques, scene.bounds);
   const std::string title = fmt::format("{}, camera {}, {}x{}", scene.name, camera.name.empty() ? "default" : camera.name, size.x, size.y);
   const std::filesystem::path folder = options.out;
-  openFolder(folder, fmt::format("{}, {}, {}, {}", title, options.deviations ? "deviations" : "ladders", context.capabilities().renderer,
-                                 measure::keyOf(scene, camera, size, measure::Transport::all, "rows").name()));
+  makeFolder(folder);
 
   auto result = std::make_unique<ErrorBenchResult>();
   const bool withPath = !options.deviations && std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
   auto references = obtainReferences({context, programs, scene, camera, size, (withPath ? 0.7 : 1.0) * options.budget, options.referenceSamples, options.references, options.quiet});
   if (!references) return result;
   result->references = std::move(*references);
+  // Rows are judged by the reference that there was: a better one is another bench.
+  claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", title, options.deviations ? "deviations" : "ladders", context.capabilities().renderer,
+                                  measure::keyOf(scene, camera, size, measure::Transport::all, "rows").name(), result->references.all().samples));
 
   const ErrorBench bench{context, programs, scene, camera, size, result->references, folder, 0.3 * options.budget, options.frames};
   writePng(folder / "pictures/reference.png", measure::toneMapped(result->references.all().mean, scene.exposure));

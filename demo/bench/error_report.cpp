@@ -56,8 +56,9 @@ struct Column {
 };
 const Column kColumns[] = {
     {"technique and settings", [](const ErrorRow& r) { return text(r, "label"); }},
+    {"front", [](const ErrorRow& r) { return flag(r, "pareto") ? fmt::format("{:g}", number(r, "front")) : ""; }},
     {"ms", [](const ErrorRow& r) { return fmt::format("{:.2f}", number(r, "ms")); }},
-    {"wall ms, 5..95 %", [](const ErrorRow& r) { return fmt::format("{:.2f} ({:.2f}..{:.2f})", number(r, "wall_ms"), spread(r, 0), spread(r, 1)); }},
+    {"5..95 %", [](const ErrorRow& r) { return fmt::format("{:.2f}..{:.2f}", spread(r, 0), spread(r, 1)); }},
     {"query ms", [](const ErrorRow& r) { return std::isnan(number(r, "query_ms")) ? "" : fmt::format("{:.2f}", number(r, "query_ms")); }},
     {"set-up ms", [](const ErrorRow& r) { return fmt::format("{:.0f}", number(r, "setup_ms")); }},
     {"NRMSE", errorText},
@@ -167,16 +168,14 @@ bool plotRows(const fs::path& folder, const ErrorReport& report) {
   plot.yLabel = "NRMSE against path tracing, %";
   Series front{"Pareto front", {}, true, true};
   std::map<std::string, std::size_t> index;
-  int number_ = 0;
   for (const ErrorRow& row : report.rows) {
     const std::string name = text(row, "series");
     const auto [found, isNew] = index.try_emplace(name, plot.series.size());
     if (isNew) plot.series.push_back({name, {}, true, false});
     if (!flag(row, "at_noise")) plot.series[found->second].points.push_back({number(row, "ms"), 100.0 * number(row, "nrmse"), ""});
-    if (flag(row, "pareto") && !flag(row, "at_noise")) front.points.push_back({number(row, "ms"), 100.0 * number(row, "nrmse"), ""});
+    if (flag(row, "pareto") && !flag(row, "at_noise")) front.points.push_back({number(row, "ms"), 100.0 * number(row, "nrmse"), fmt::format("{:g}", number(row, "front"))});
   }
   std::sort(front.points.begin(), front.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
-  for (Series::Point& p : front.points) p.label = fmt::format("{}", ++number_);
   for (Series& series : plot.series) std::sort(series.points.begin(), series.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
   plot.series.insert(plot.series.begin(), front);
   const measure::Reference& all = report.references->all();
@@ -209,7 +208,7 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
     table.marked.push_back(flag(row, "pareto"));
   }
   page.table(table);
-  page.paragraph("Marked: nothing measured here is better in both time and error. ms: a picture; wall clock on software renderers, GPU timer queries else. NRMSE: root mean square "
+  page.paragraph("Marked: nothing measured here is better in both time and error; their numbers (front) are those of the plot. ms: the median of a picture, wall clock on software renderers, GPU timer queries else; 5..95 % of the wall clock. NRMSE: root mean square "
                  "error over the reference's mean, linear radiance, less the reference's own noise; \"noise\": cannot be told from it. bias: signed, of the mean, with its standard error; "
                  "(0): within 3 of it. Relative MSE: epsilon 0.01 mean^2. Inside model: indirect light against a reference of the technique's own transport.");
   if (!report.model.empty()) {

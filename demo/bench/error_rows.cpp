@@ -131,16 +131,25 @@ std::string writePictures(const ErrorBench& bench, const std::string& name, cons
   return stem;
 }
 
+double rankedError(const ErrorRow& row) {
+  const auto noise = row.find("at_noise");
+  return noise != row.end() && noise->is_boolean() && noise->get<bool>() ? 3.0 * number(row, "noise_nrmse") : number(row, "nrmse");
+}
+
 double number(const ErrorRow& row, const char* key) {
   const auto found = row.find(key);
   return found == row.end() || !found->is_number() ? NAN : found->get<double>();
 }
 
-void openFolder(const fs::path& folder, const std::string& identity) {
+void makeFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder / "rows", error);
   if (!error) fs::create_directories(folder / "pictures", error);
   if (error) throwBadInput("--out {}: the folder cannot be made ({})", folder.string(), error.message());
+  writeFileAtomically(folder / "rows/.writable", "");
+}
+
+void claimFolder(const fs::path& folder, const std::string& identity) {
   const fs::path file = folder / "bench.txt";
   if (fs::exists(file)) {
     if (const std::string known = readFileText(file); known != identity + "\n")
@@ -187,9 +196,14 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
 
 void markFront(std::vector<ErrorRow>& rows) {
   std::vector<measure::CostAndError> points;
-  for (const ErrorRow& row : rows) points.push_back({number(row, "ms"), number(row, "nrmse")});
+  for (const ErrorRow& row : rows) points.push_back({number(row, "ms"), rankedError(row)});
   const std::vector<bool> front = measure::paretoFront(points);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i]["pareto"] = static_cast<bool>(front[i]);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    int rank = 0;  // how many of the front are at most as slow
+    for (std::size_t j = 0; j < rows.size(); ++j) rank += front[i] && front[j] && points[j].cost <= points[i].cost;
+    rows[i]["pareto"] = static_cast<bool>(front[i]);
+    rows[i]["front"] = rank;
+  }
 }
 
 }  // namespace lucerna::demo::bench

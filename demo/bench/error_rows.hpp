@@ -24,8 +24,10 @@ struct ErrorBench {
   int frames;                    ///< a rung at least
 };
 
-/// The folder made ready: what an earlier bench of the same kind finished is kept. Throws Error(badInput) where it holds another bench, or cannot be written.
-void openFolder(const std::filesystem::path& folder, const std::string& identity);
+/// Makes the folder and tries to write into it. Throws Error(badInput) where that cannot be.
+void makeFolder(const std::filesystem::path& folder);
+/// Says whose bench the folder holds: what an earlier one of the same identity finished is kept. Throws Error(badInput) where it holds another.
+void claimFolder(const std::filesystem::path& folder, const std::string& identity);
 /// The rung's row from the folder, if it was finished.
 std::optional<ErrorRow> finishedRow(const std::filesystem::path& folder, const Rung& rung);
 /// Renders, judges, writes picture and row.
@@ -36,8 +38,10 @@ std::vector<ErrorRow> measurePath(const ErrorBench& bench);
 /// Tone mapped, and both heat maps against all light, as PNGs; returns their common path below the folder, without ".png".
 std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture);
 
-/// Fills "pareto" by `ms` and `nrmse`.
+/// Fills "pareto" by `ms` and `nrmse`, and "front", 1 for the fastest of it, 0 off it.
 void markFront(std::vector<ErrorRow>& rows);
+/// What the row is ranked by: its NRMSE, or the least that the reference can tell.
+double rankedError(const ErrorRow& row);
 /// A number of a row, NaN where it is null or missing.
 double number(const ErrorRow& row, const char* key);
 

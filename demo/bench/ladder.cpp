@@ -41,24 +41,50 @@ std::vector<Rung> lpvLadder(bool shrink) {
   return rungs;
 }
 
+// What a solution costs is baking (setup_ms); a picture of it costs next to nothing, whatever the patches.
+std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
+  std::vector<Rung> rungs;
+  for (int parts : {6, 12, 24, 48})
+    if (!shrink || parts < 48) rungs.push_back(rung("radiosity", "patches", {fmt::format("radiosity.edge={:.6g}", longestSide / parts)}));
+  for (int pixels : {16, 32, 64, 128})
+    if (!shrink || pixels < 128)
+      rungs.push_back(rung("radiosity", "hemicubes", {fmt::format("radiosity.edge={:.6g}", longestSide / 12), fmt::format("radiosity.resolution={}", pixels)}));
+  return rungs;
+}
+
+bool rendererHas(const std::string& technique) {
+  try {
+    parseTechnique(technique);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 std::string Rung::label() const {
   std::string text = picture.technique;
   if (picture.fidelity != "corrected") text += " " + picture.fidelity;
-  for (const std::string& setting : picture.settings) text += " " + setting;
+  // "rsm samples=16", not "rsm rsm.samples=16".
+  for (const std::string& setting : picture.settings) text += " " + (setting.starts_with(picture.technique + ".") ? setting.substr(picture.technique.size() + 1) : setting);
   for (const std::string& deviation : picture.deviations) text += " " + deviation;
   return text;
 }
 
 std::string Rung::name() const { return label(); }
 
-std::vector<std::string> ladderTechniques() { return {"direct", "rsm", "lpv"}; }
+std::vector<std::string> ladderTechniques() {
+  std::vector<std::string> techniques{"direct", "rsm", "lpv", "radiosity"};
+  std::erase_if(techniques, [](const std::string& t) { return !rendererHas(t); });
+  return techniques;
+}
 
-std::vector<Rung> ladderOf(const std::string& technique, bool shrink) {
+std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double longestSide) {
   if (technique == "direct") return {rung("direct", "", {})};
   if (technique == "rsm") return rsmLadder(shrink);
   if (technique == "lpv") return lpvLadder(shrink);
+  if (technique == "radiosity" && rendererHas(technique)) return radiosityLadder(shrink, longestSide);
   std::string known;
   for (const std::string& t : ladderTechniques()) known += (known.empty() ? "" : ", ") + t;
   throwBadInput("--techniques {}: unknown; there are {}", technique, known);

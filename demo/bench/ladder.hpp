@@ -20,8 +20,8 @@ struct Rung {
 
 /// The techniques that have a ladder.
 std::vector<std::string> ladderTechniques();
-/// Throws Error(badInput) naming an unknown technique. `shrink`: leave the most expensive rungs out.
-std::vector<Rung> ladderOf(const std::string& technique, bool shrink);
+/// Throws Error(badInput) naming an unknown technique. `shrink`: leave the most expensive rungs out. longestSide: of the scene, for patch sizes.
+std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double longestSide);
 /// Corrected, and corrected with one deviation on at a time, for every technique that the deviation belongs to.
 std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques);
 

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // Colours that stay apart for colour-blind eyes [Okabe2008], and marks that stay apart in grey.
-constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A4FBF", "#8C6D31"};
-constexpr int kMarks[] = {7, 5, 9, 13, 11, 4, 6, 8};
+constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A4FBF", "#8C6D31", "#333333", "#B22222", "#3CB371", "#999900"};
+constexpr int kMarks[] = {7, 5, 9, 13, 11, 4, 6, 8, 2, 10, 12, 1};
 
 /// A string for gnuplot between double quotes; plain text, so the enhanced mode's signs are switched off by the script.
 std::string quoted(const std::string& text) {
@@ -38,6 +38,16 @@ struct Range {
       if (value >= s * power * (1 - 1e-9)) below = s * power;
     }
     return below;
+  }
+  /// Numbers 1, 2 and 5 of every decade within, for an axis of few decades; gnuplot's own for one of many.
+  std::string tics(const char* axis) const {
+    const double first = step(low / 1.15, false), last = step(high * 1.15, true);
+    if (last / first > 1e4) return "";
+    std::string list;
+    for (double power = std::pow(10.0, std::floor(std::log10(first))); power <= last * 1.001; power *= 10.0)
+      for (double s : {1.0, 2.0, 5.0})
+        if (s * power >= first * 0.999 && s * power <= last * 1.001) list += fmt::format("{}{:g}", list.empty() ? "" : ", ", s * power);
+    return fmt::format("set {}tics ({})\n", axis, list);
   }
   std::string text() const { return fmt::format("[{:g}:{:g}]", step(low / 1.15, false), step(high * 1.15, true)); }
 };
@@ -67,8 +77,8 @@ std::string script(const std::string& stem, const LogLogPlot& plot, int& leftOut
       if (labelled) line(fmt::format("{} using 1:2:3 with labels offset 0,1 font ',11' tc rgb '#6b5500' notitle", name));
       continue;
     }
-    const char* rgb = kColours[colour % 8];
-    const int mark = kMarks[colour % 8];
+    const char* rgb = kColours[colour % 12];
+    const int mark = kMarks[colour % 12];
     ++colour;
     line(fmt::format("{} using 1:2 with {} lw 1.5 pt {} ps 0.9 lc rgb '{}' title {}", name, series.joined ? "linespoints" : "points", mark, rgb, quoted(series.name)));
   }
@@ -84,10 +94,10 @@ std::string script(const std::string& stem, const LogLogPlot& plot, int& leftOut
   }
   const std::string common = fmt::format(
       "set encoding utf8\nset title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\nset logscale xy\nset xrange {}\nset yrange {}\n"
-      "set mxtics 10\nset mytics 10\nset format x '%g'\nset format y '%g'\nset grid xtics ytics lw 0.5 lc rgb '#dddddd'\nset border 3\nset tics nomirror out\n"
+      "set mxtics 10\nset mytics 10\nset format x '%g'\nset format y '%g'\nset grid xtics ytics back lt 1 lw 1 lc rgb '#e0e0e0'\nset border 3\nset tics nomirror out\n"
       "set key outside right top vertical Left reverse samplen 2 noenhanced\nset samples 200\n",
       quoted(plot.title), quoted(plot.xLabel), quoted(plot.yLabel), x.text(), y.text());
-  return data + common + fmt::format("set terminal svg size 1060,560 font 'sans-serif,13' background '#ffffff'\nset output {}\n{}\n", quoted(stem + ".svg"), draw) +
+  return data + common + x.tics("x") + y.tics("y") + fmt::format("set terminal svg size 1060,560 font 'sans-serif,13' background '#ffffff'\nset output {}\n{}\n", quoted(stem + ".svg"), draw) +
          fmt::format("set terminal pngcairo size 1060,560 font 'sans-serif,11' background '#ffffff'\nset output {}\n{}\nset output\n", quoted(stem + ".png"), draw);
 }
 
