@@ -25,6 +25,8 @@ Work addInfo(CLI::App& app);
 Work addMedia(CLI::App& app);
 Work addBench(CLI::App& app);
 Work addRadiosity(CLI::App& app);
+Work addCompare(CLI::App& app);
+Work addTune(CLI::App& app);
 
 /// --host, --json, --quiet: every subcommand has them.
 struct CommonOptions {
@@ -42,8 +44,15 @@ struct CommonOptions {
 struct PictureOptions {
   std::string technique = "lpv", component = "all", fidelity = "corrected", size = "1280x720";
   std::vector<std::string> deviations, settings;
+  std::string settingsFile;  ///< --settings: what it says counts as given before the command line
 
   void declare(CLI::App& app);
+  std::optional<std::uint32_t> settingsSpp;  ///< samples a pixel that the settings file asks for, path tracing alone
+
+  /// Reads --settings, if given; options that were given on the command line stay. Call once, before parse().
+  void readSettingsFile();
+  /// The options as a settings file, which readSettingsFile() takes.
+  nlohmann::ordered_json toJson() const;
   /// Throws Error(badInput) naming the option. `exposure` gets a value if --set exposure=... is given.
   RenderSettings parse(std::optional<float>& exposure) const;
 };

@@ -186,7 +186,36 @@ void PictureOptions::declare(CLI::App& app) {
   app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");
   app.add_option("--size", size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated");
+  app.add_option("--settings", settingsFile, "a settings file, such as `lucerna tune` writes; what else is given here comes after it");
   app.footer(settingsHelp() + deviationsHelp());
+}
+
+void PictureOptions::readSettingsFile() {
+  if (settingsFile.empty()) return;
+  const PictureOptions usual;
+  nlohmann::json json;
+  try {
+    json = nlohmann::json::parse(readFileText(settingsFile));
+    const auto take = [&](const char* key, std::string& value, const std::string& default_) {
+      if (json.contains(key) && value == default_) value = json.at(key).get<std::string>();
+    };
+    const auto prepend = [&](const char* key, std::vector<std::string>& values) {
+      if (!json.contains(key)) return;
+      const auto more = json.at(key).get<std::vector<std::string>>();
+      values.insert(values.begin(), more.begin(), more.end());
+    };
+    take("technique", technique, usual.technique);
+    take("fidelity", fidelity, usual.fidelity);
+    prepend("deviations", deviations);
+    prepend("settings", settings);
+    if (json.contains("spp")) settingsSpp = json.at("spp").get<std::uint32_t>();
+  } catch (const nlohmann::json::exception& error) {
+    throwBadInput("--settings {}: not a settings file (technique, fidelity, deviations, settings): {}", settingsFile, error.what());
+  }
+}
+
+nlohmann::ordered_json PictureOptions::toJson() const {
+  return {{"technique", technique}, {"fidelity", fidelity}, {"deviations", deviations}, {"settings", settings}};
 }
 
 RenderSettings PictureOptions::parse(std::optional<float>& exposure) const {

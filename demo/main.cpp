@@ -22,7 +22,9 @@ int main(int argc, char** argv) {
   add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
   add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
   add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL", lucerna::demo::addMedia);
-  add("bench", "Measure: the published tables and pictures of the originals, made again", lucerna::demo::addBench);
+  add("bench", "Measure: error over time, stability, what is left out; published tables and pictures made again", lucerna::demo::addBench);
+  add("compare", "Errors between two HDR pictures, with heat maps", lucerna::demo::addCompare);
+  add("tune", "Measure a scene, and choose the technique and settings that meet a frame time or an error", lucerna::demo::addTune);
 
   try {
     app.parse(argc, argv);

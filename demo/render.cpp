@@ -23,8 +23,10 @@ struct Options {
   int repeat = 1;
 };
 
-int run(const Options& options) {
+int run(Options options) {
   options.common.apply();
+  options.picture.readSettingsFile();
+  if (!options.path.spp) options.path.spp = options.picture.settingsSpp;
   if (options.picture.technique == "path") return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
   options.path.refuseIfGiven(options.picture.technique);
   std::optional<float> exposure;

@@ -1,7 +1,7 @@
 # Sourced by demo/run and tests/run: installs the Debian packages that are missing, and builds with a preset.
 
 run_packages="g++ cmake ninja-build pkg-config libglew-dev libglfw3-dev libglm-dev libassimp-dev libdevil-dev libosmesa6-dev
-  libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev"
+  libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev gnuplot-nox"
 test_packages="libgtest-dev xvfb xauth libembree-dev"
 
 # install_packages NAME...: those that are missing, all at once.

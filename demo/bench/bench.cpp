@@ -13,8 +13,10 @@ void checkOriginal(const std::string& name) {
   if (name != "lpv" && name != "rad") throwBadInput("--original {}: unknown; there are lpv, rad", name);
 }
 
+std::string asset(const std::string& file) { return (std::filesystem::path(LUCERNA_SOURCE_DIR) / "assets" / file).string(); }
+
 std::string sceneOrAtrium(const std::string& scene) {
-  return scene.empty() ? (std::filesystem::path(LUCERNA_SOURCE_DIR) / "assets/atrium/atrium.json").string() : scene;
+  return scene.empty() ? asset("atrium/atrium.json") : scene;
 }
 
 }  // namespace bench
@@ -29,6 +31,10 @@ Work addBench(CLI::App& app) {
   add("tables", "Measure an original's published tables again: published, measured, ratio", addBenchTables);
   add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);
   add("rays", "Rays per second of the compute-shader hierarchy, beside Embree on the same rays", addBenchRays);
+  add("error", "Error against run time: every technique over a ladder of settings", addBenchError);
+  add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);
+  add("needs", "What a scene leaves out, and what that saves", addBenchNeeds);
+  add("all", "The whole report on one page: tables, error, stability, needs, rays", addBenchAll);
   return [commands] {
     for (const auto& [command, work] : *commands)
       if (command->parsed()) return work();

@@ -11,11 +11,17 @@ namespace lucerna::demo {
 Work addBenchTables(CLI::App& app);
 Work addBenchPictures(CLI::App& app);
 Work addBenchRays(CLI::App& app);
+Work addBenchError(CLI::App& app);
+Work addBenchStability(CLI::App& app);
+Work addBenchNeeds(CLI::App& app);
+Work addBenchAll(CLI::App& app);
 
 namespace bench {
 
 /// --original: whose tables and pictures. Throws Error(badInput) listing those that there are.
 void checkOriginal(const std::string& name);
+/// A file of the assets folder.
+std::string asset(const std::string& file);
 /// SCENE, or the atrium where none is given.
 std::string sceneOrAtrium(const std::string& scene);
 

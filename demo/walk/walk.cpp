@@ -213,6 +213,7 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
 
 int run(Options options) {
   options.common.apply();
+  options.picture.readSettingsFile();
   std::optional<float> exposure;
   const RenderSettings settings = options.picture.parse(exposure);
   if (options.scene.empty()) options.scene = (fs::path(LUCERNA_SOURCE_DIR) / "assets/atrium/atrium.json").string();

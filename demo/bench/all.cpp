@@ -1,0 +1,195 @@
+// lucerna bench all --out DIR: the whole report on one page, with an index: error, deviations, stability, needs, tables, rays.
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "bench/bench.hpp"
+#include "bench/error_bench.hpp"
+#include "bench/needs_bench.hpp"
+#include "bench/stability.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace lucerna::demo {
+
+namespace bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AllOptions {
+  CommonOptions common;
+  std::string out;
+  double scale = 0.25;
+  std::vector<std::string> scenes;  ///< for error and needs; empty: Cornell and atrium
+};
+
+/// What a part of the report contributes; a part that throws is written down as missing, and the others go on.
+struct Part {
+  const char* name;
+  std::function<void(HtmlPage&, nlohmann::ordered_json&)> make;
+};
+
+/// "WxH" with about 160x90 pixels at scale 1.
+std::string sizeOf(double scale) {
+  const int width = std::max(32, 16 * static_cast<int>(std::lround(20.0 * std::sqrt(scale))));
+  return fmt::format("{}x{}", width, width * 9 / 16);
+}
+
+class Report {
+ public:
+  Report(const AllOptions& options, const gl::Context& context, const std::string& host) : options_(options), context_(context), host_(host), page_("Lucerna: measurements") {
+    page_.preformatted(fmt::format("Renderer {}\nHost     {}, {}\nScale    {}; pictures {}\n", context.capabilities().renderer, host, cpuName(), options.scale, sizeOf(options.scale)));
+  }
+
+  void errors(const std::string& file, bool deviations) {
+    const Scene scene = loadScene(file);
+    gl::ProgramLibrary programs;
+    ErrorBenchOptions options;
+    options.scene = file;
+    options.size = sizeOf(options_.scale);
+    options.out = (fs::path(options_.out) / fmt::format("{}-{}", deviations ? "deviations" : "error", scene.name)).string();
+    options.budget = 240.0 * options_.scale;
+    options.small = options_.scale < 0.5;
+    options.deviations = deviations;
+    options.frames = 3;
+    options.quiet = options_.common.quiet;
+    const auto result = runErrorBench(context_, programs, scene, options, host_);
+    if (!result->complete) return;
+    HtmlPage part("");
+    addToPage(part, options.out, result->report);
+    page_.append(part);
+    json_[deviations ? "deviations" : "error"].push_back(errorBenchJson(*result, options));
+  }
+
+  void stability() {
+    gl::ProgramLibrary programs;
+    const std::vector<StabilityRow> rows = runStability({context_, programs}, "", options_.common.quiet);
+    page_.section("Stability");
+    HtmlPage::Table table{{"technique", "case", "parameter", "expected", "measured", "verdict"}, {}, {}};
+    int failed = 0;
+    for (const StabilityRow& row : rows) {
+      table.rows.push_back({row.technique, row.name, row.parameter, expectedText(row.measurement), fmt::format("{:.7g}", row.measurement.measured), row.passed ? "pass" : "FAIL " + row.note});
+      table.marked.push_back(!row.passed);
+      failed += !row.passed;
+    }
+    page_.paragraph(fmt::format("{} rows, {} failed (marked).", rows.size(), failed));
+    page_.table(table);
+    json_["stability"] = stabilityJson(rows);
+  }
+
+  void needs(const std::vector<std::string>& files) {
+    page_.section("What scenes leave out");
+    HtmlPage::Table table{{"scene", "left out", "compile ms", "GPU MiB", "ms a picture", "largest pixel difference"}, {}, {}};
+    for (const std::string& file : files) {
+      const Scene scene = loadScene(file);
+      RenderSettings settings;
+      settings.size = parseSize(sizeOf(options_.scale));
+      const NeedsResult r = measureNeeds(context_, scene, scene.cameras.front(), settings, 3);
+      std::string names;
+      for (const std::string& name : r.leftOut) names += (names.empty() ? "" : ", ") + name;
+      const auto both = [](double with, double without) { return fmt::format("{:.1f} instead of {:.1f}", without, with); };
+      table.rows.push_back({r.scene, names, both(r.with.compileMs, r.without.compileMs),
+                            both(static_cast<double>(r.with.gpuBytes) / 1048576.0, static_cast<double>(r.without.gpuBytes) / 1048576.0), both(r.with.ms, r.without.ms),
+                            fmt::format("{:.2g} of {:.2g}", r.maxDifference, r.maxRadiance)});
+      json_["needs"].push_back(needsJson(r));
+    }
+    page_.paragraph("Left out as the scene does not need it, instead of forced on with data that change nothing.");
+    page_.table(table);
+  }
+
+  void tables() {
+    gl::ProgramLibrary programs;
+    const Scene scene = loadScene(sceneOrAtrium(""));
+    const Tables tables = measureLpvTables({context_, programs, scene, std::min(1.0, options_.scale), options_.common.quiet});
+    page_.section("Published tables, measured again");
+    HtmlPage::Table table{{"table", "row", "published ms", "here ms", "here / published"}, {}, {}};
+    for (const Row& row : tables.rows)
+      for (const Row::Published& published : row.published)
+        table.rows.push_back({row.table, row.name() + ", " + published.gpu, fmt::format("{:.4g}", published.ms), fmt::format("{:.4g}", row.measured()), fmt::format("{:.3g}", row.measured() / published.ms)});
+    std::string notes;
+    for (const std::string& note : tables.notes) notes += note + "\n";
+    page_.preformatted(notes + tables.summary);
+    page_.table(table);
+    json_["tables"] = tables.json;
+  }
+
+  void missing(const char* part, const std::string& why) {
+    page_.section(part);
+    page_.paragraph("Not here: " + why);
+    json_["missing"].push_back({{"part", part}, {"why", why}});
+  }
+
+  void write(double seconds) {
+    page_.paragraph(fmt::format("The whole report took {:.0f} s.", seconds));
+    writeFileAtomically(fs::path(options_.out) / "index.html", page_.text());
+  }
+  nlohmann::ordered_json& json() { return json_; }
+
+ private:
+  const AllOptions& options_;
+  const gl::Context& context_;
+  std::string host_;
+  HtmlPage page_;
+  nlohmann::ordered_json json_;
+};
+
+int run(AllOptions options) {
+  options.common.apply();
+  std::error_code error;
+  fs::create_directories(options.out, error);
+  if (error || !fs::is_directory(options.out)) throwBadInput("--out {}: the folder cannot be made ({})", options.out, error ? error.message() : "a file is in the way");
+  if (!(options.scale > 0.0 && options.scale <= 4.0)) throwBadInput("--scale {}: expected a number above 0, at most 4", options.scale);
+  if (options.scenes.empty()) options.scenes = {asset("cornell/cornell.json"), asset("atrium/atrium.json")};
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  watchForInterrupt();
+  const auto start = std::chrono::steady_clock::now();
+  Report report(options, context, std::string(nameOf(host->kind())));
+  const auto part = [&](const char* name, auto make) {
+    if (interrupted()) return;
+    if (!options.common.quiet) fmt::print("{}\n", name);
+    try {
+      make();
+    } catch (const Error& e) {
+      if (e.kind() == ErrorKind::badInput) throw;  // such as a full disk: nothing after it would fare better
+      report.missing(name, e.what());
+    }
+  };
+  for (const std::string& scene : options.scenes) part("error against run time", [&] { report.errors(scene, false); });
+  part("deviations", [&] { report.errors(options.scenes.front(), true); });
+  part("stability", [&] { report.stability(); });
+  part("needs", [&] { report.needs(options.scenes); });
+  part("tables", [&] { report.tables(); });
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (interrupted()) {
+    fmt::print(stderr, "lucerna: interrupted; the same command with --out {} goes on\n", options.out);
+    return 130;
+  }
+  report.write(seconds);
+  if (!options.common.quiet) fmt::print("{}/index.html, {:.0f} s\n", options.out, seconds);
+  report.json()["renderer"] = context.capabilities().renderer;
+  report.json()["host"] = std::string(nameOf(host->kind()));
+  report.json()["cpu"] = cpuName();
+  report.json()["scale"] = options.scale;
+  report.json()["seconds"] = seconds;
+  options.common.writeJson(report.json());
+  return 0;
+}
+
+}  // namespace
+
+}  // namespace bench
+
+Work addBenchAll(CLI::App& app) {
+  auto options = std::make_shared<bench::AllOptions>();
+  app.add_option("SCENE", options->scenes, "scene files for error and needs (default: the Cornell box and the atrium)");
+  app.add_option("--out", options->out, "folder of the report; an interrupted one goes on")->required();
+  app.add_option("--scale", options->scale, "how much work: pixels and seconds; 1 takes four times as long as the default")->capture_default_str();
+  options->common.declare(app);
+  return [options] { return bench::run(*options); };
+}
+
+}  // namespace lucerna::demo

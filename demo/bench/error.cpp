@@ -1,0 +1,168 @@
+// lucerna bench error SCENE: every technique over a ladder of settings, its time and its error against a path-traced reference.
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "bench/bench.hpp"
+#include "bench/error_bench.hpp"
+#include "measure/hash.hpp"
+#include "measure/tone_map.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace lucerna::demo {
+
+namespace bench {
+
+namespace {
+
+std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
+  std::vector<std::string> known = ladderTechniques();
+  known.emplace_back("path");
+  if (options.techniques.empty()) return known;
+  std::string list;
+  for (const std::string& t : known) list += (list.empty() ? "" : ", ") + t;
+  for (const std::string& t : options.techniques)
+    if (std::find(known.begin(), known.end(), t) == known.end()) throwBadInput("--techniques {}: unknown; there are {}", t, list);
+  return options.techniques;
+}
+
+std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<std::string>& techniques, const Bounds& bounds) {
+  std::vector<std::string> raster;
+  for (const std::string& t : techniques)
+    if (t != "path") raster.push_back(t);
+  if (options.deviations) return deviationRungs(raster);
+  std::vector<Rung> rungs;
+  for (const std::string& t : raster)
+    for (Rung& rung : ladderOf(t, options.small, std::max({bounds.extent().x, bounds.extent().y, bounds.extent().z}))) rungs.push_back(std::move(rung));
+  return rungs;
+}
+
+}  // namespace
+
+void ErrorBenchOptions::declare(CLI::App& app) {
+  app.add_option("--camera", camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.add_option("--size", size, "WIDTHxHEIGHT of the pictures")->capture_default_str();
+  app.add_option("--budget", budget, "seconds for references and path tracing; known references are used again")->capture_default_str()->check(CLI::Range(0.01, 1e6));
+  app.add_option("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")->check(CLI::Range(2, 1 << 30));
+  app.add_option("--references", references, "folder of kept references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
+  app.add_option("--techniques", techniques, "of direct, rsm, lpv, path; default: all")->delimiter(',');
+  app.add_option("--frames", frames, "pictures a rung at least")->capture_default_str()->check(CLI::Range(1, 10000));
+  app.add_flag("--small", small, "without the most expensive rungs");
+  app.add_option("--out", out, "folder of the report; an interrupted bench goes on where it was");
+}
+
+std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const ErrorBenchOptions& options,
+                                                const std::string& hostName) {
+  const Camera camera = chooseCamera(scene, options.camera);
+  const glm::ivec2 size = parseSize(options.size);
+  const std::vector<std::string> techniques = chosenTechniques(options);
+  const std::vector<Rung> rungs = rungsOf(options, techniques, scene.bounds);
+  const std::string title = fmt::format("{}, camera {}, {}x{}", scene.name, camera.name.empty() ? "default" : camera.name, size.x, size.y);
+  const std::filesystem::path folder = options.out;
+  makeFolder(folder);
+
+  auto result = std::make_unique<ErrorBenchResult>();
+  const bool withPath = !options.deviations && std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
+  auto references = obtainReferences({context, programs, scene, camera, size, (withPath ? 0.7 : 1.0) * options.budget, options.referenceSamples, options.references, options.quiet});
+  if (!references) return result;
+  result->references = std::move(*references);
+  // Rows are judged by the reference that there was: a better one is another bench.
+  claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", title, options.deviations ? "deviations" : "ladders", context.capabilities().renderer,
+                                  measure::keyOf(scene, camera, size, measure::Transport::all, "rows").name(), result->references.all().samples));
+
+  const ErrorBench bench{context, programs, scene, camera, size, result->references, folder, 0.3 * options.budget, options.frames};
+  writePng(folder / "pictures/reference.png", measure::toneMapped(result->references.all().mean, scene.exposure));
+  std::vector<ErrorRow> rows;
+  Progress progress(options.deviations ? "deviations" : "ladders", static_cast<int>(rungs.size()) + (withPath ? 1 : 0), options.quiet);
+  for (const Rung& rung : rungs) {
+    if (interrupted()) return result;
+    if (auto known = finishedRow(folder, rung)) {
+      (*known)["series"] = rung.series;
+      rows.push_back(*known);
+    } else {
+      rows.push_back(measureRung(bench, rung));
+    }
+    progress.update(static_cast<int>(rows.size()));
+  }
+  if (withPath)
+    for (ErrorRow& row : measurePath(bench)) rows.push_back(std::move(row));
+  if (interrupted()) return result;
+  markFront(rows);
+
+  ErrorReport& report = result->report;
+  report.title = title;
+  report.renderer = context.capabilities().renderer;
+  report.host = hostName;
+  report.cpu = cpuName();
+  report.rows = std::move(rows);
+  report.model = modelErrors(result->references);
+  report.references = &result->references;
+  report.isDeviationStudy = options.deviations;
+  writeFileAtomically(folder / "error.csv", csvOf(report.rows));
+  writeFileAtomically(folder / "error.json", errorBenchJson(*result, options).dump(2) + "\n");
+  plotRows(folder, report);
+  HtmlPage page("Lucerna: " + title);
+  addToPage(page, folder, report);
+  writeFileAtomically(folder / "report.html", page.text());
+  result->complete = true;
+  return result;
+}
+
+nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const ErrorBenchOptions& options) {
+  const ErrorReport& report = result.report;
+  nlohmann::ordered_json json;
+  json["renderer"] = report.renderer;
+  json["host"] = report.host;
+  json["cpu"] = report.cpu;
+  json["bench"] = report.title;
+  json["scene"] = options.scene;
+  json["size"] = options.size;
+  json["references"] = referencesJson(result.references);
+  json["model"] = modelJson(report.model);
+  json["relmse_epsilon"] = measure::kRelativeEpsilon;
+  json["rows"] = report.rows;
+  return json;
+}
+
+}  // namespace bench
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  bench::ErrorBenchOptions bench;
+};
+
+int run(Options options) {
+  options.common.apply();
+  options.bench.quiet = options.common.quiet;
+  if (options.bench.out.empty()) options.bench.out = options.bench.deviations ? "bench-deviations" : "bench-error";
+  options.bench.scene = bench::sceneOrAtrium(options.bench.scene);
+  const Scene scene = loadScene(options.bench.scene);
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  const auto result = bench::runErrorBench(context, programs, scene, options.bench, std::string(nameOf(host->kind())));
+  if (!result->complete) {
+    fmt::print(stderr, "lucerna: interrupted; the same command with --out {} goes on\n", options.bench.out);
+    return 130;
+  }
+  if (!options.common.quiet) fmt::print("{}\n{}/report.html\n", bench::terminalTable(result->report), options.bench.out);
+  options.common.writeJson(bench::errorBenchJson(*result, options.bench));
+  return 0;
+}
+
+}  // namespace
+
+Work addBenchError(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("SCENE", options->bench.scene, "a scene file (default: the atrium)");
+  options->bench.declare(app);
+  app.add_flag("--deviations", options->bench.deviations, "each deviation of the originals alone, instead of ladders of settings");
+  options->common.declare(app);
+  return [options] { return run(*options); };
+}
+
+}  // namespace lucerna::demo

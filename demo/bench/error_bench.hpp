@@ -1,0 +1,30 @@
+// `lucerna bench error` as a function, for those that build on it: tune, bench all.
+#pragma once
+
+#include "bench/error_report.hpp"
+
+namespace lucerna::demo::bench {
+
+struct ErrorBenchOptions {
+  std::string scene, camera, size = "160x90", out, references;
+  std::vector<std::string> techniques;  ///< empty: all
+  double budget = 120.0;                ///< seconds for references and path tracing together
+  std::uint64_t referenceSamples = 0;   ///< 0: by time
+  int frames = 5;
+  bool deviations = false, small = false, quiet = false;
+
+  void declare(CLI::App& app);
+};
+
+struct ErrorBenchResult {
+  ErrorReport report;
+  References references;      ///< report.references points here once placed
+  bool complete = false;      ///< false: interrupted; what was finished lies in the folder
+};
+
+/// Measures what the folder does not hold yet; writes rows, CSV, plots and page into it. Throws Error(badInput) for options that cannot be.
+std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const ErrorBenchOptions& options,
+                                                const std::string& hostName);
+nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const ErrorBenchOptions& options);
+
+}  // namespace lucerna::demo::bench

@@ -1,0 +1,30 @@
+// What is made of the rows of `lucerna bench error`: terminal table, CSV, plots, HTML.
+#pragma once
+
+#include "bench/error_rows.hpp"
+#include "bench/html.hpp"
+
+namespace lucerna::demo::bench {
+
+struct ErrorReport {
+  std::string title;                     ///< scene, camera, size
+  std::string renderer, host, cpu;
+  std::vector<ErrorRow> rows;
+  std::vector<ModelError> model;
+  const References* references = nullptr;
+  bool isDeviationStudy = false;
+};
+
+std::string terminalTable(const ErrorReport& report);
+std::string csvOf(const std::vector<ErrorRow>& rows);
+nlohmann::ordered_json modelJson(const std::vector<ModelError>& model);
+nlohmann::ordered_json referencesJson(const References& references);
+/// SVG and PNG beside each other; one warning where gnuplot is missing, and false.
+bool plotRows(const std::filesystem::path& folder, const ErrorReport& report);
+/// Adds its sections to `page`; pictures and plot are read from the folder.
+void addToPage(HtmlPage& page, const std::filesystem::path& folder, const ErrorReport& report);
+
+/// The processor's name and count, from /proc/cpuinfo; "unknown processor" elsewhere.
+std::string cpuName();
+
+}  // namespace lucerna::demo::bench

@@ -1,0 +1,209 @@
+#include "bench/error_rows.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/log.hpp"
+#include "base/statistics.hpp"
+#include "measure/flip.hpp"
+#include "measure/front.hpp"
+#include "measure/hash.hpp"
+#include "measure/heat_map.hpp"
+#include "measure/tone_map.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace lucerna::demo::bench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double msSince(Clock::time_point start) { return 1e3 * std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::string fileStem(const std::string& name) {
+  measure::Hash hash;
+  hash.add(std::string_view(name));
+  std::string text = fmt::format("{}-{:08x}", name.substr(0, 48), static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32));
+  for (char& c : text)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+  return text;
+}
+
+fs::path rowFile(const fs::path& folder, const std::string& name) { return folder / "rows" / (fileStem(name) + ".json"); }
+
+/// The rung's options as settings of a renderer that measures.
+RenderSettings settingsOf(const ErrorBench& bench, const Rung& rung, Component component) {
+  std::optional<float> exposure;
+  RenderSettings settings = rung.picture.parse(exposure);
+  settings.component = component;
+  settings.size = bench.size;
+  settings.fullFloatTarget = true;
+  return settings;
+}
+
+struct Timed {
+  std::vector<double> wallMs;
+  double queryMs = 0.0;  ///< medians of all stages together
+  double setupMs = 0.0;
+  std::size_t gpuBytes = 0;
+  Image picture;
+};
+
+Timed render(const ErrorBench& bench, const RenderSettings& settings, int frames) {
+  Timed timed;
+  auto start = Clock::now();
+  Renderer renderer(bench.context, bench.programs, bench.scene, settings);
+  glFinish();
+  timed.setupMs = msSince(start);
+  renderer.render(bench.camera);  // warm-up
+  glFinish();
+  renderer.drain();
+  renderer.timer().reset();
+  const auto all = Clock::now();
+  for (int i = 0; i < frames || (i < 3 * frames && msSince(all) < 200.0); ++i) {
+    start = Clock::now();
+    renderer.render(bench.camera);
+    glFinish();
+    timed.wallMs.push_back(msSince(start));
+  }
+  renderer.drain();
+  for (const gl::StageStatistics& stage : renderer.timer().statistics())
+    if (std::isfinite(stage.queryMedianMs)) timed.queryMs += stage.queryMedianMs;
+  timed.gpuBytes = renderer.gpuBytes();
+  timed.picture = renderer.readRadiance();
+  return timed;
+}
+
+nlohmann::ordered_json errorsJson(const measure::JudgedErrors& e) {
+  return {{"nrmse", e.nrmse},
+          {"rmse", e.rmse},
+          {"relmse", e.relmse},
+          {"bias", e.measured.bias},
+          {"bias_error", e.biasError},
+          {"relative_bias", e.measured.relativeBias},
+          {"p99", e.measured.p99},
+          {"max", e.measured.max},
+          {"at_noise", e.atNoise},
+          {"bias_at_noise", e.biasAtNoise},
+          {"noise_nrmse", e.noiseNrmse},
+          {"measured_nrmse", e.measured.nrmse},
+          {"not_finite", e.measured.notFinite}};
+}
+
+measure::JudgedErrors judge(const Image& picture, const measure::Reference& reference, double ownError = 0.0) {
+  return measure::lessNoise(measure::errorsOf(picture, reference.mean), measure::noiseOf(reference.mean, reference.standardError, reference.meanError), ownError);
+}
+
+/// RSM and LPV: what they get wrong inside their model, against the reference of the model itself.
+const measure::Reference* modelOf(const References& references, Technique technique, const RenderSettings& settings) {
+  if (technique == Technique::rsm) return &references.of.at(measure::Transport::oneBounceUnoccluded);
+  if (technique == Technique::lpv) return &references.of.at(settings.lpv.blocking ? measure::Transport::oneBounce : measure::Transport::oneBounceUnoccluded);
+  return nullptr;
+}
+
+void keep(const ErrorBench& bench, const std::string& name, const ErrorRow& row) { writeFileAtomically(rowFile(bench.folder, name), row.dump(1) + "\n"); }
+
+std::optional<ErrorRow> readRow(const fs::path& file) {
+  if (!fs::exists(file)) return std::nullopt;
+  ErrorRow row = ErrorRow::parse(readFileText(file), nullptr, false);
+  if (row.is_discarded()) {
+    logWarning("{}: a damaged row is measured again", file.string());
+    return std::nullopt;
+  }
+  return row;
+}
+
+}  // namespace
+
+std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture) {
+  const std::string stem = "pictures/" + fileStem(name);
+  const Image& truth = bench.references.all().mean;
+  // One scale for all rows, so that they can be compared: a fifth of what a black picture would have.
+  const double scale = std::max(0.2 * measure::heatMapScale(Image(truth.width, truth.height), truth), 1e-30);
+  const auto file = [&](const char* kind) { return bench.folder / (stem + kind + ".png"); };
+  writePng(file(""), measure::toneMapped(picture, bench.scene.exposure));
+  writePng(file(".absolute"), measure::heatMap(picture, truth, measure::HeatMap::absolute, scale));
+  writePng(file(".signed"), measure::heatMap(picture, truth, measure::HeatMap::signedLuminance, scale));
+  return stem;
+}
+
+double rankedError(const ErrorRow& row) {
+  const auto noise = row.find("at_noise");
+  return noise != row.end() && noise->is_boolean() && noise->get<bool>() ? 3.0 * number(row, "noise_nrmse") : number(row, "nrmse");
+}
+
+double number(const ErrorRow& row, const char* key) {
+  const auto found = row.find(key);
+  return found == row.end() || !found->is_number() ? NAN : found->get<double>();
+}
+
+void makeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder / "rows", error);
+  if (!error) fs::create_directories(folder / "pictures", error);
+  if (error) throwBadInput("--out {}: the folder cannot be made ({})", folder.string(), error.message());
+  writeFileAtomically(folder / "rows/.writable", "");
+}
+
+void claimFolder(const fs::path& folder, const std::string& identity) {
+  const fs::path file = folder / "bench.txt";
+  if (fs::exists(file)) {
+    if (const std::string known = readFileText(file); known != identity + "\n")
+      throwBadInput("--out {}: holds another bench ({}); choose another folder", folder.string(), known.substr(0, known.find('\n')));
+    return;
+  }
+  writeFileAtomically(file, identity + "\n");
+}
+
+std::optional<ErrorRow> finishedRow(const fs::path& folder, const Rung& rung) { return readRow(rowFile(folder, rung.name())); }
+
+ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
+  const RenderSettings settings = settingsOf(bench, rung, Component::all);
+  const Timed timed = render(bench, settings, bench.frames);
+  const bool software = bench.context.capabilities().softwareRenderer;
+  const double wall = median(timed.wallMs);
+
+  ErrorRow row;
+  row["technique"] = rung.picture.technique;
+  row["fidelity"] = rung.picture.fidelity;
+  row["settings"] = rung.picture.settings;
+  row["deviations"] = rung.picture.deviations;
+  row["series"] = rung.series;
+  row["label"] = rung.label();
+  row["ms"] = software || timed.queryMs == 0.0 ? wall : timed.queryMs;
+  row["wall_ms"] = wall;
+  row["wall_ms_spread"] = {percentile(timed.wallMs, 0.05), percentile(timed.wallMs, 0.95)};
+  row["query_ms"] = timed.queryMs;
+  row["frames"] = timed.wallMs.size();
+  row["setup_ms"] = timed.setupMs;
+  row["gpu_bytes"] = timed.gpuBytes;
+  const measure::JudgedErrors errors = judge(timed.picture, bench.references.all());
+  row.update(errorsJson(errors));
+  row["flip"] = errors.measured.notFinite > 0 ? NAN : measure::flipHdr(timed.picture, bench.references.all().mean).mean;
+  if (const measure::Reference* model = modelOf(bench.references, settings.technique, settings)) {
+    const Image indirect = render(bench, settingsOf(bench, rung, Component::indirect), 1).picture;
+    row["inside_model"] = errorsJson(judge(indirect, *model));
+    row["inside_model"]["transport"] = std::string(measure::nameOf(model->transport));
+  }
+  row["picture"] = writePictures(bench, rung.name(), timed.picture);
+  keep(bench, rung.name(), row);
+  return row;
+}
+
+void markFront(std::vector<ErrorRow>& rows) {
+  std::vector<measure::CostAndError> points;
+  for (const ErrorRow& row : rows) points.push_back({number(row, "ms"), rankedError(row)});
+  const std::vector<bool> front = measure::paretoFront(points);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    int rank = 0;  // how many of the front are at most as slow
+    for (std::size_t j = 0; j < rows.size(); ++j) rank += front[i] && front[j] && points[j].cost <= points[i].cost;
+    rows[i]["pareto"] = static_cast<bool>(front[i]);
+    rows[i]["front"] = rank;
+  }
+}
+
+}  // namespace lucerna::demo::bench

@@ -1,0 +1,48 @@
+// One rung of a ladder measured: a picture, its time, its errors; kept in the folder of the bench, so that an interrupted one goes on.
+#pragma once
+
+#include "bench/ladder.hpp"
+#include "bench/references.hpp"
+
+#include <filesystem>
+#include <optional>
+
+namespace lucerna::demo::bench {
+
+/// A finished measurement as it is written: the fields of DESIGN.md section 5 and more. NaN is null.
+using ErrorRow = nlohmann::ordered_json;
+
+struct ErrorBench {
+  const gl::Context& context;
+  gl::ProgramLibrary& programs;
+  const Scene& scene;
+  const Camera& camera;
+  glm::ivec2 size;
+  const References& references;
+  std::filesystem::path folder;  ///< of pictures and rows
+  double pathSeconds;            ///< a rung of the path tracer's ladder may take that long
+  int frames;                    ///< a rung at least
+};
+
+/// Makes the folder and tries to write into it. Throws Error(badInput) where that cannot be.
+void makeFolder(const std::filesystem::path& folder);
+/// Says whose bench the folder holds: what an earlier one of the same identity finished is kept. Throws Error(badInput) where it holds another.
+void claimFolder(const std::filesystem::path& folder, const std::string& identity);
+/// The rung's row from the folder, if it was finished.
+std::optional<ErrorRow> finishedRow(const std::filesystem::path& folder, const Rung& rung);
+/// Renders, judges, writes picture and row.
+ErrorRow measureRung(const ErrorBench& bench, const Rung& rung);
+/// The path tracer's ladder: one picture observed at 1, 2, 4, ... samples, several seeds; a row each.
+std::vector<ErrorRow> measurePath(const ErrorBench& bench);
+
+/// Tone mapped, and both heat maps against all light, as PNGs; returns their common path below the folder, without ".png".
+std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture);
+
+/// Fills "pareto" by `ms` and `nrmse`, and "front", 1 for the fastest of it, 0 off it.
+void markFront(std::vector<ErrorRow>& rows);
+/// What the row is ranked by: its NRMSE, or the least that the reference can tell.
+double rankedError(const ErrorRow& row);
+/// A number of a row, NaN where it is null or missing.
+double number(const ErrorRow& row, const char* key);
+
+}  // namespace lucerna::demo::bench

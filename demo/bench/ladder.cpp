@@ -1,0 +1,112 @@
+#include "bench/ladder.hpp"
+
+#include "base/error.hpp"
+#include "render/deviations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lucerna::demo::bench {
+
+namespace {
+
+Rung rung(const std::string& technique, const std::string& series, std::vector<std::string> settings, const std::string& fidelity = "corrected") {
+  Rung r;
+  r.series = technique + (series.empty() ? "" : " " + series) + (fidelity == "original" ? " (original)" : "");
+  r.picture.technique = technique;
+  r.picture.fidelity = fidelity;
+  r.picture.settings = std::move(settings);
+  return r;
+}
+
+std::vector<Rung> rsmLadder(bool shrink) {
+  std::vector<Rung> rungs;
+  for (const bool interpolate : {true, false})
+    for (int samples : {16, 50, 100, 200, 400, 800, 1600}) {
+      if (shrink && samples > (interpolate ? 800 : 400)) continue;
+      rungs.push_back(rung("rsm", interpolate ? "interpolated" : "full", {fmt::format("rsm.samples={}", samples), fmt::format("rsm.interpolate={}", interpolate ? "on" : "off")}));
+    }
+  for (int samples : {50, 400}) rungs.push_back(rung("rsm", "", {fmt::format("rsm.samples={}", samples)}, "original"));
+  return rungs;
+}
+
+std::vector<Rung> lpvLadder(bool shrink) {
+  std::vector<Rung> rungs;
+  for (int cells : {8, 16, 32, 64})
+    if (!shrink || cells < 64) rungs.push_back(rung("lpv", "cells", {fmt::format("lpv.cells={}", cells)}));
+  for (int cascades : {1, 2, 3, 4}) rungs.push_back(rung("lpv", "cascades", {fmt::format("lpv.cascades={}", cascades)}));
+  for (int iterations : {2, 4, 8, 16, 32}) rungs.push_back(rung("lpv", "iterations", {fmt::format("lpv.iterations={}", iterations)}));
+  for (int iterations : {8, 12}) rungs.push_back(rung("lpv", "", {fmt::format("lpv.iterations={}", iterations)}, "original"));
+  return rungs;
+}
+
+// What a solution costs is baking (setup_ms); a picture of it costs next to nothing, whatever the patches.
+std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
+  std::vector<Rung> rungs;
+  for (int parts : {6, 12, 24, 48})
+    if (!shrink || parts < 48) rungs.push_back(rung("radiosity", "patches", {fmt::format("radiosity.edge={:.6g}", longestSide / parts)}));
+  for (int pixels : {16, 32, 64, 128})
+    if (!shrink || pixels < 128)
+      rungs.push_back(rung("radiosity", "hemicubes", {fmt::format("radiosity.edge={:.6g}", longestSide / 12), fmt::format("radiosity.resolution={}", pixels)}));
+  return rungs;
+}
+
+bool rendererHas(const std::string& technique) {
+  try {
+    parseTechnique(technique);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::string Rung::label() const {
+  std::string text = picture.technique;
+  if (picture.fidelity != "corrected") text += " " + picture.fidelity;
+  // "rsm samples=16", not "rsm rsm.samples=16".
+  for (const std::string& setting : picture.settings) text += " " + (setting.starts_with(picture.technique + ".") ? setting.substr(picture.technique.size() + 1) : setting);
+  for (const std::string& deviation : picture.deviations) text += " " + deviation;
+  return text;
+}
+
+std::string Rung::name() const { return label(); }
+
+std::vector<std::string> ladderTechniques() {
+  std::vector<std::string> techniques{"direct", "rsm", "lpv", "radiosity"};
+  std::erase_if(techniques, [](const std::string& t) { return !rendererHas(t); });
+  return techniques;
+}
+
+std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double longestSide) {
+  if (technique == "direct") return {rung("direct", "", {})};
+  if (technique == "rsm") return rsmLadder(shrink);
+  if (technique == "lpv") return lpvLadder(shrink);
+  if (technique == "radiosity" && rendererHas(technique)) return radiosityLadder(shrink, longestSide);
+  std::string known;
+  for (const std::string& t : ladderTechniques()) known += (known.empty() ? "" : ", ") + t;
+  throwBadInput("--techniques {}: unknown; there are {}", technique, known);
+}
+
+std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
+  std::vector<Rung> rungs;
+  for (const std::string& technique : techniques) {
+    if (technique == "direct") continue;
+    rungs.push_back(rung(technique, "corrected", {}));
+    for (const Deviation& deviation : allDeviations()) {
+      // A deviation's name begins with the technique that it belongs to; the light propagation volume reads the reflective shadow map's flux too.
+      const std::string name(deviation.name);
+      const bool reads = name.starts_with(technique + ".") || (technique == "lpv" && name == "rsm.flux-cosine");
+      if (!reads) continue;
+      Rung r = rung(technique, name, {});
+      r.picture.deviations = {name + "=on"};
+      rungs.push_back(r);
+    }
+    rungs.push_back(rung(technique, "", {}, "original"));
+  }
+  return rungs;
+}
+
+}  // namespace lucerna::demo::bench

@@ -1,0 +1,152 @@
+// lucerna bench needs [SCENE]...: what a scene leaves out, and what leaving it out saves: the same picture with every feature forced on beside it.
+#include "base/error.hpp"
+#include "base/statistics.hpp"
+#include "bench/bench.hpp"
+#include "bench/needs_bench.hpp"
+#include "measure/neutral.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace lucerna::demo {
+
+namespace bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Frames of the two renderers in turn, so that what else the machine does meets both.
+void measureFrames(Renderer& renderer, const Camera& camera, std::vector<double>& ms) {
+  const auto start = Clock::now();
+  renderer.render(camera);
+  glFinish();
+  ms.push_back(1e3 * std::chrono::duration<double>(Clock::now() - start).count());
+}
+
+double largestDifference(const Image& a, const Image& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      const double d = std::abs(static_cast<double>(a.pixels[i][c]) - static_cast<double>(b.pixels[i][c]));
+      largest = std::isnan(d) ? INFINITY : std::max(largest, d);
+    }
+  return largest;
+}
+
+}  // namespace
+
+Scene withEverything(const Scene& scene) {
+  Scene full = scene;
+  for (const std::string& need : measure::neutralNeeds()) measure::addNeutral(full, need);
+  return full;
+}
+
+NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings, int frames) {
+  settings.fullFloatTarget = true;
+  const Scene full = withEverything(scene);
+  NeedsResult result;
+  // Libraries of their own: each compiles what it needs and nothing is found ready.
+  gl::ProgramLibrary leanPrograms, fullPrograms;
+  Renderer lean(context, leanPrograms, scene, settings), complete(context, fullPrograms, full, settings);
+  lean.render(camera);
+  complete.render(camera);
+  glFinish();
+  std::vector<double> leanMs, fullMs;
+  for (int i = 0; i < frames && !interrupted(); ++i) {
+    measureFrames(lean, camera, leanMs);
+    measureFrames(complete, camera, fullMs);
+  }
+  const Image leanPicture = lean.readRadiance();
+  result.leftOut = lean.leftOut();
+  for (const std::string& name : complete.leftOut()) std::erase(result.leftOut, name);
+  result.without = {lean.gpuBytes(), leanPrograms.programs().size(), 1e3 * leanPrograms.statistics().compileSeconds, median(leanMs)};
+  result.with = {complete.gpuBytes(), fullPrograms.programs().size(), 1e3 * fullPrograms.statistics().compileSeconds, median(fullMs)};
+  result.maxDifference = largestDifference(leanPicture, complete.readRadiance());
+  for (const glm::vec3& p : leanPicture.pixels) result.maxRadiance = std::max({result.maxRadiance, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+  result.scene = scene.name;
+  result.technique = std::string(nameOf(settings.technique));
+  return result;
+}
+
+nlohmann::ordered_json needsJson(const NeedsResult& r) {
+  return {{"scene", r.scene},
+          {"technique", r.technique},
+          {"left_out", r.leftOut},
+          {"gpu_bytes_with", r.with.gpuBytes},
+          {"gpu_bytes_without", r.without.gpuBytes},
+          {"ms_with", r.with.ms},
+          {"ms_without", r.without.ms},
+          {"compile_ms_with", r.with.compileMs},
+          {"compile_ms_without", r.without.compileMs},
+          {"programs_with", r.with.programs},
+          {"programs_without", r.without.programs},
+          {"max_difference", r.maxDifference},
+          {"max_radiance", r.maxRadiance}};
+}
+
+std::string needsText(const NeedsResult& r) {
+  std::string names;
+  for (const std::string& name : r.leftOut) names += (names.empty() ? "" : ", ") + name;
+  const auto line = [](const char* what, double with, double without, const char* unit) {
+    return fmt::format("  {:<22}{:>12.2f}{:>12.2f} {:<5}{:>8.2f}\n", what, with, without, unit, without / with);
+  };
+  return fmt::format("{}, {}: left out: {}\n  {:<22}{:>12}{:>12} {:<5}{:>8}\n", r.scene, r.technique, names.empty() ? "nothing" : names, "", "forced on", "left out", "", "ratio") +
+         line("compile time", r.with.compileMs, r.without.compileMs, "ms") + line("GPU memory", static_cast<double>(r.with.gpuBytes) / 1048576.0, static_cast<double>(r.without.gpuBytes) / 1048576.0, "MiB") +
+         line("a picture", r.with.ms, r.without.ms, "ms") + fmt::format("  largest difference of a pixel {:.3g}, of radiances to {:.3g}\n", r.maxDifference, r.maxRadiance);
+}
+
+}  // namespace bench
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  PictureOptions picture;
+  std::vector<std::string> scenes;
+  std::string camera;
+  int frames = 5;
+};
+
+int run(Options options) {
+  options.common.apply();
+  options.picture.readSettingsFile();
+  std::optional<float> exposure;
+  const RenderSettings settings = options.picture.parse(exposure);
+  if (options.scenes.empty()) options.scenes = {bench::sceneOrAtrium("")};
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  watchForInterrupt();
+  if (!options.common.quiet) fmt::print("Renderer {}\n", context.capabilities().renderer);
+  nlohmann::ordered_json results = nlohmann::ordered_json::array();
+  for (const std::string& file : options.scenes) {
+    const Scene scene = loadScene(file);
+    const bench::NeedsResult result = bench::measureNeeds(context, scene, chooseCamera(scene, options.camera), settings, options.frames);
+    if (interrupted()) return 130;
+    if (!options.common.quiet) fmt::print("{}", bench::needsText(result));
+    results.push_back(bench::needsJson(result));
+  }
+  nlohmann::ordered_json json = results.size() == 1 ? results[0] : nlohmann::ordered_json{{"scenes", results}};
+  json["renderer"] = context.capabilities().renderer;
+  json["host"] = std::string(nameOf(host->kind()));
+  options.common.writeJson(json);
+  return 0;
+}
+
+}  // namespace
+
+Work addBenchNeeds(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  options->picture.size = "320x180";
+  app.add_option("SCENE", options->scenes, "scene files (default: the atrium)");
+  app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.add_option("--frames", options->frames, "pictures of each kind, in turn")->capture_default_str()->check(CLI::Range(1, 10000));
+  options->picture.declare(app);
+  options->common.declare(app);
+  return [options] { return run(*options); };
+}
+
+}  // namespace lucerna::demo

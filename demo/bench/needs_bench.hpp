@@ -1,0 +1,28 @@
+// `lucerna bench needs` as functions, for `bench all` and tests.
+#pragma once
+
+#include "commands.hpp"
+
+#include <string>
+#include <vector>
+
+namespace lucerna::demo::bench {
+
+struct NeedsResult {
+  struct Cost {
+    std::size_t gpuBytes = 0, programs = 0;
+    double compileMs = 0.0, ms = 0.0;
+  };
+  std::string scene, technique;
+  std::vector<std::string> leftOut;  ///< here, and not where all is forced on
+  Cost with, without;
+  double maxDifference = 0.0, maxRadiance = 0.0;
+};
+
+/// The scene with neutral data for all that it does not need.
+Scene withEverything(const Scene& scene);
+NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings, int frames);
+nlohmann::ordered_json needsJson(const NeedsResult& result);
+std::string needsText(const NeedsResult& result);
+
+}  // namespace lucerna::demo::bench

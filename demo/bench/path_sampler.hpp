@@ -1,0 +1,40 @@
+// The path tracer as the sampler of references: corrected, restricted to one transport, camera rays through pixel centres as forward shading has them.
+#pragma once
+
+#include "commands.hpp"
+#include "measure/reference.hpp"
+
+#include <memory>
+
+namespace lucerna { class PathTracer; }
+
+namespace lucerna::demo::bench {
+
+class PathSampler {
+ public:
+  /// Part of the references' key: raised when the path tracer's answer changes.
+  static constexpr std::string_view kVersion = "path tracer 1, pixel centres, lambert";
+
+  PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera, glm::ivec2 size, measure::Transport transport);
+  ~PathSampler();
+  PathSampler(const PathSampler&) = delete;
+  PathSampler& operator=(const PathSampler&) = delete;
+
+  measure::Sampler asSampler();
+
+ private:
+  Image sample(std::uint64_t first, std::uint32_t samples);
+  void begin(std::uint64_t first);
+
+  const gl::Context& context_;
+  gl::ProgramLibrary& programs_;
+  const Scene& scene_;
+  Camera camera_;
+  glm::ivec2 size_;
+  measure::Transport transport_;
+  std::unique_ptr<PathTracer> tracer_;
+  std::uint64_t begin_ = 0, next_ = 0;  ///< paths of the running session
+  Image sum_;                           ///< mean of those so far
+};
+
+}  // namespace lucerna::demo::bench

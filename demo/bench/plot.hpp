@@ -1,0 +1,34 @@
+// Log-log plots by gnuplot, run where a report is made (Debian package gnuplot-nox).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lucerna::demo::bench {
+
+struct Series {
+  std::string name;
+  struct Point {
+    double x, y;
+    std::string label;  ///< beside the point; empty: none
+  };
+  std::vector<Point> points;
+  bool joined = true;
+  bool isFront = false;  ///< drawn thick, behind the others
+};
+
+struct LogLogPlot {
+  std::string title, xLabel, yLabel;  ///< labels with units
+  std::vector<Series> series;
+  double floor = 0.0;                 ///< a horizontal line, such as the reference's noise; 0: none
+  std::string floorLabel;
+  double guideSlope = 0.0;            ///< a thin line of that slope through the first point of the last series; 0: none
+};
+
+bool haveGnuplot();
+/// Writes STEM.gp, STEM.svg and STEM.png into the folder. Points that are not finite and above 0 have no place on these axes: they are left out and counted in the return value.
+/// Throws Error(missingCapability) where gnuplot is missing or fails.
+int writeLogLogPlot(const std::filesystem::path& folder, const std::string& stem, const LogLogPlot& plot);
+
+}  // namespace lucerna::demo::bench

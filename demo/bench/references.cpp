@@ -1,0 +1,64 @@
+#include "bench/references.hpp"
+
+#include "base/error.hpp"
+#include "bench/path_sampler.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace lucerna::demo::bench {
+
+using measure::Reference;
+using measure::Transport;
+
+namespace {
+
+Reference difference(const Reference& a, const Reference& b) {
+  Reference result = a;
+  for (std::size_t i = 0; i < a.mean.pixels.size(); ++i) {
+    result.mean.pixels[i] -= b.mean.pixels[i];
+    const glm::vec3 ea = a.standardError.pixels[i], eb = b.standardError.pixels[i];
+    result.standardError.pixels[i] = glm::sqrt(ea * ea + eb * eb);
+  }
+  result.meanError = std::hypot(a.meanError, b.meanError);
+  return result;
+}
+
+}  // namespace
+
+std::optional<References> obtainReferences(const ReferenceRequest& request) {
+  const measure::ReferenceCache cache(request.folder.empty() ? measure::ReferenceCache::defaultFolder() : request.folder);
+  // Shares of the time: all light is the noisiest and judges every row.
+  constexpr std::pair<Transport, double> kShares[] = {
+      {Transport::all, 0.5}, {Transport::direct, 0.1}, {Transport::oneBounce, 0.2}, {Transport::oneBounceUnoccluded, 0.2}};
+  References result;
+  Progress progress("references", static_cast<int>(std::size(kShares)), request.quiet);
+  int done = 0;
+  for (const auto& [transport, share] : kShares) {
+    PathSampler sampler(request.context, request.programs, request.scene, request.camera, request.size, transport);
+    const measure::ReferenceKey key = measure::keyOf(request.scene, request.camera, request.size, transport, PathSampler::kVersion);
+    measure::SamplingGoal goal;
+    goal.seconds = share * request.seconds;
+    goal.samples = request.samples;
+    auto reference = measure::obtainReference(cache, key, sampler.asSampler(), transport, goal, request.context.capabilities().renderer, interrupted);
+    if (!reference || interrupted()) return std::nullopt;
+    result.of.emplace(transport, std::move(*reference));
+    progress.update(++done);
+  }
+  result.indirect_ = difference(result.all(), result.of.at(Transport::direct));
+  return result;
+}
+
+std::vector<ModelError> modelErrors(const References& r) {
+  const auto judge = [&](const Reference& model, const Reference& truth) {
+    const Reference d = difference(truth, model);
+    return measure::lessNoise(measure::errorsOf(model.mean, truth.mean), measure::noiseOf(truth.mean, d.standardError, d.meanError));
+  };
+  const Reference &one = r.of.at(Transport::oneBounce), &unoccluded = r.of.at(Transport::oneBounceUnoccluded);
+  return {{"no visibility between surfaces (RSM)", judge(unoccluded, one)},
+          {"one bounce only (RSM, LPV)", judge(one, r.indirect())},
+          {"both (RSM)", judge(unoccluded, r.indirect())}};
+}
+
+}  // namespace lucerna::demo::bench

@@ -1,0 +1,138 @@
+// lucerna bench stability [--technique T]: a row a case: technique, parameter, expected, measured, verdict.
+#include "bench/stability.hpp"
+
+#include "base/error.hpp"
+#include "bench/bench.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace lucerna::demo {
+
+namespace bench {
+
+bool Measurement::passes() const {
+  if (!std::isfinite(measured)) return false;
+  switch (rule) {
+    case Rule::equals: return std::abs(measured - expected) <= tolerance;
+    case Rule::atMost: return measured <= expected;
+    case Rule::atLeast: return measured >= expected;
+  }
+  return false;
+}
+
+std::string expectedText(const Measurement& m) {
+  switch (m.rule) {
+    case Rule::equals: return m.tolerance > 0.0 ? fmt::format("{:.6g} +- {:.2g}", m.expected, m.tolerance) : fmt::format("{:.6g} exactly", m.expected);
+    case Rule::atMost: return fmt::format("<= {:.6g}", m.expected);
+    case Rule::atLeast: return fmt::format(">= {:.6g}", m.expected);
+  }
+  return "";
+}
+
+namespace {
+
+StabilityRow runCase(const StabilityCase& c, const StabilityContext& context) {
+  using Clock = std::chrono::steady_clock;
+  StabilityRow row{c.technique, c.name, c.parameter, "", {}, 0.0, false};
+  const auto start = Clock::now();
+  try {
+    row.measurement = c.run(context);
+    row.passed = row.measurement.passes();
+  } catch (const Error& error) {
+    row.measurement.measured = NAN;
+    row.note = error.what();
+  }
+  row.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return row;
+}
+
+}  // namespace
+
+std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet) {
+  std::vector<StabilityCase> cases;
+  addLpvCases(cases);
+  addPictureCases(cases);
+  addPathCases(cases);
+  std::string known;
+  for (const StabilityCase& c : cases)
+    if (known.find(c.technique) == std::string::npos) known += (known.empty() ? "" : ", ") + c.technique;
+  if (!technique.empty()) std::erase_if(cases, [&](const StabilityCase& c) { return c.technique != technique; });
+  if (cases.empty()) throwBadInput("--technique {}: unknown; there are {}", technique, known);
+  std::vector<StabilityRow> rows;
+  Progress progress("stability", static_cast<int>(cases.size()), quiet);
+  for (const StabilityCase& c : cases) {
+    if (interrupted()) break;
+    rows.push_back(runCase(c, context));
+    progress.update(static_cast<int>(rows.size()));
+  }
+  return rows;
+}
+
+nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows) {
+  auto json = nlohmann::ordered_json::array();
+  for (const StabilityRow& row : rows) {
+    const char* rule = row.measurement.rule == Rule::equals ? "equals" : row.measurement.rule == Rule::atMost ? "at most" : "at least";
+    json.push_back({{"technique", row.technique},
+                    {"case", row.name},
+                    {"parameter", row.parameter},
+                    {"expected", row.measurement.expected},
+                    {"tolerance", row.measurement.tolerance},
+                    {"rule", rule},
+                    {"measured", row.measurement.measured},
+                    {"verdict", row.passed ? "pass" : "fail"},
+                    {"seconds", row.seconds}});
+    if (!row.note.empty()) json.back()["note"] = row.note;
+  }
+  return json;
+}
+
+}  // namespace bench
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string technique;
+};
+
+int run(const Options& options) {
+  options.common.apply();
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  const std::vector<bench::StabilityRow> rows = bench::runStability({context, programs}, options.technique, options.common.quiet);
+  int failed = 0;
+  double seconds = 0.0;
+  if (!options.common.quiet) fmt::print("Renderer {}\n\n{:<11}{:<46}{:<22}{:<26}{:<14}{:>7}\n", context.capabilities().renderer, "technique", "case", "parameter", "expected", "measured", "s");
+  for (const bench::StabilityRow& row : rows) {
+    failed += !row.passed;
+    seconds += row.seconds;
+    if (options.common.quiet) continue;
+    fmt::print("{:<11}{:<46}{:<22}{:<26}{:<14.7g}{:>7.2f}  {}{}\n", row.technique, row.name, row.parameter, expectedText(row.measurement), row.measurement.measured, row.seconds,
+               row.passed ? "pass" : "FAIL", row.note.empty() ? "" : ": " + row.note);
+  }
+  if (!options.common.quiet) fmt::print("\n{} rows, {} failed, {:.1f} s\n", rows.size(), failed, seconds);
+  options.common.writeJson({{"renderer", context.capabilities().renderer},
+                            {"host", std::string(nameOf(host->kind()))},
+                            {"rows", bench::stabilityJson(rows)},
+                            {"failed", failed},
+                            {"seconds", seconds}});
+  if (interrupted()) return 130;
+  return failed > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+Work addBenchStability(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("--technique", options->technique, "only this one's rows");
+  options->common.declare(app);
+  return [options] { return run(*options); };
+}
+
+}  // namespace lucerna::demo

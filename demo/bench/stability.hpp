@@ -1,0 +1,56 @@
+// `lucerna bench stability`: stiff and extreme cases of every technique, each with an exact or a bounding answer.
+#pragma once
+
+#include "gl/context.hpp"
+#include "gl/program.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lucerna::demo::bench {
+
+/// How `measured` is held against `expected`. What is not finite passes none of them.
+enum class Rule {
+  equals,   ///< |measured - expected| <= tolerance
+  atMost,   ///< measured <= expected
+  atLeast,  ///< measured >= expected
+};
+
+struct Measurement {
+  double expected = 0.0, measured = 0.0, tolerance = 0.0;
+  Rule rule = Rule::equals;
+  bool passes() const;
+};
+
+struct StabilityContext {
+  const gl::Context& context;
+  gl::ProgramLibrary& programs;
+};
+
+/// A row of the table. `run` may throw: that is a failure, with the message as its note.
+struct StabilityCase {
+  std::string technique;  ///< direct, rsm, lpv, radiosity, path
+  std::string name, parameter;
+  std::function<Measurement(const StabilityContext&)> run;
+};
+
+void addLpvCases(std::vector<StabilityCase>& cases);
+/// Of the techniques that Renderer draws: units, scale, place, size, nothing to light.
+void addPictureCases(std::vector<StabilityCase>& cases);
+void addPathCases(std::vector<StabilityCase>& cases);
+
+struct StabilityRow {
+  std::string technique, name, parameter, note;
+  Measurement measurement;
+  double seconds = 0.0;
+  bool passed = false;
+};
+/// Those of `technique`, or all; stops when interrupted.
+std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet);
+nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows);
+std::string expectedText(const Measurement& m);
+
+}  // namespace lucerna::demo::bench

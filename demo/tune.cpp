@@ -1,0 +1,87 @@
+// lucerna tune SCENE --frame-time MS | --error E: measures the scene, then picks the technique and settings that meet one of them best.
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "bench/bench.hpp"
+#include "bench/error_bench.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace lucerna::demo {
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  bench::ErrorBenchOptions bench;
+  std::string output;
+  std::optional<double> frameTime, error;
+};
+
+using bench::ErrorRow;
+using bench::number;
+
+double figure(const ErrorRow& row, std::string_view name) { return name == "nrmse" ? bench::rankedError(row) : number(row, "ms"); }
+
+/// The row that meets the wish and is best in the other figure; the one that comes nearest where none does.
+const ErrorRow& choose(const std::vector<ErrorRow>& rows, const char* wish, double limit, const char* other, bool& met) {
+  const ErrorRow* best = nullptr;
+  met = false;
+  for (const ErrorRow& row : rows) {
+    const double value = figure(row, wish), cost = figure(row, other);
+    if (!std::isfinite(value) || !std::isfinite(cost)) continue;
+    const bool meets = value <= limit;
+    const bool better = !best || (meets && !met) || (meets == met && (meets ? cost < figure(*best, other) : value < figure(*best, wish)));
+    if (better) best = &row;
+    met |= meets;
+  }
+  if (!best) throw Error(ErrorKind::fault, "tune: no row has a finite time and error");
+  return *best;
+}
+
+std::string describe(const ErrorRow& row) {
+  return fmt::format("{}: {:.2f} ms a picture, NRMSE {:.3g} %", row.at("label").get<std::string>(), number(row, "ms"), 100.0 * bench::rankedError(row));
+}
+
+int run(Options options) {
+  options.common.apply();
+  options.bench.quiet = options.common.quiet;
+  if (options.frameTime.has_value() == options.error.has_value()) throwBadInput("tune: give one of --frame-time MS and --error E");
+  if (options.bench.out.empty()) options.bench.out = "bench-error";
+  if (options.bench.techniques.empty()) options.bench.techniques = bench::ladderTechniques();  // those that walk in real time; path tracing where it is asked for
+  options.bench.scene = bench::sceneOrAtrium(options.bench.scene);
+  const Scene scene = loadScene(options.bench.scene);
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  const auto result = bench::runErrorBench(context, programs, scene, options.bench, std::string(nameOf(host->kind())));
+  if (!result->complete) return 130;
+
+  bool met = false;
+  const ErrorRow& row = options.frameTime ? choose(result->report.rows, "ms", *options.frameTime, "nrmse", met) : choose(result->report.rows, "nrmse", *options.error, "ms", met);
+  if (!met) throwBadInput("tune: nothing meets {}; the nearest is {}", options.frameTime ? fmt::format("{:g} ms", *options.frameTime) : fmt::format("NRMSE {:g}", *options.error), describe(row));
+  nlohmann::ordered_json settings = {{"technique", row.at("technique")}, {"fidelity", row.at("fidelity")}, {"deviations", row.at("deviations")}, {"settings", row.contains("spp") ? nlohmann::ordered_json::array() : row.at("settings")}};
+  if (row.contains("spp")) settings["spp"] = row.at("spp");
+  settings["measured"] = {{"ms", row.at("ms")}, {"nrmse", row.at("nrmse")}, {"size", options.bench.size}, {"scene", options.bench.scene}, {"renderer", context.capabilities().renderer}};
+  writeFileAtomically(options.output, settings.dump(2) + "\n");
+  if (!options.common.quiet) fmt::print("{}\n{}: lucerna render {} --settings {} -o OUT.png\n", describe(row), options.output, options.bench.scene, options.output);
+  options.common.writeJson(settings);
+  return 0;
+}
+
+}  // namespace
+
+Work addTune(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("SCENE", options->bench.scene, "a scene file (default: the atrium)");
+  app.add_option("--frame-time", options->frameTime, "milliseconds a picture at most: the least error")->check(CLI::PositiveNumber);
+  app.add_option("--error", options->error, "NRMSE at most, such as 0.1: the least time")->check(CLI::PositiveNumber);
+  app.add_option("-o,--output", options->output, "the settings file")->required();
+  options->bench.declare(app);
+  options->common.declare(app);
+  return [options] { return run(*options); };
+}
+
+}  // namespace lucerna::demo

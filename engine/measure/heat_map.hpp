@@ -1,0 +1,20 @@
+// Pictures of errors (no GL): how far two linear pictures are apart at each pixel, absolutely or with its sign.
+//
+// Absolute: the pixel's largest |d| over its channels, black (0) over red and orange to white (scale and beyond).
+// Signed: d of the luminance [IEC 61966-2-1], blue (-scale) over white (0) to red (+scale). Both linear in d; what is not finite is green.
+#pragma once
+
+#include "base/image.hpp"
+
+namespace lucerna::measure {
+
+enum class HeatMap { absolute, signedLuminance };
+
+/// A scale that shows most of the error: the 99th percentile of |d|, rounded up to 1, 2 or 5 times a power of ten. 0 where the pictures are equal.
+double heatMapScale(const Image& image, const Image& reference);
+/// scale: the |d| at the end of the colours, radiance, above 0.
+Bitmap heatMap(const Image& image, const Image& reference, HeatMap kind, double scale);
+/// The colours from the least value (left) to the largest, for a legend.
+Bitmap heatMapLegend(HeatMap kind, int width, int height);
+
+}  // namespace lucerna::measure

@@ -1,0 +1,92 @@
+// References: pictures of one transport, sampled far beyond what they judge, with their own standard errors, and kept on disk (no GL: who samples is passed in).
+#pragma once
+
+#include "base/image.hpp"
+#include "scene/scene.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace lucerna::measure {
+
+/// Which light a picture holds.
+/// direct: emitted, and scattered once. oneBounce: after exactly one diffuse reflection more, without `direct`; unoccluded: where nothing stands between the two
+/// surfaces. all: everything.
+enum class Transport { direct, oneBounce, oneBounceUnoccluded, all };
+std::string_view nameOf(Transport transport);
+
+/// The mean picture of `samples` paths a pixel, the paths number `first`, first + 1, ...: other numbers are independent, the same ones give the same picture.
+using Sampler = std::function<Image(std::uint64_t first, std::uint32_t samples)>;
+
+struct Reference {
+  Transport transport = Transport::all;
+  Image mean;
+  Image standardError;        ///< of each pixel and channel
+  double meanError = 0.0;     ///< standard error of the mean over pixels and channels
+  std::uint64_t samples = 0;  ///< paths a pixel
+  double seconds = 0.0;       ///< spent on it
+  std::string renderer;       ///< who sampled
+};
+
+/// Mean and standard errors from batches of equal sizes, each a picture of its own: what correlates pixels within one does not deceive the error.
+class BatchMean {
+ public:
+  void add(const Image& batch);
+  int batches() const { return batches_; }
+  /// At least two batches.
+  Image mean() const;
+  Image standardError() const;
+  double meanError() const;
+
+ private:
+  int width_ = 0, height_ = 0, batches_ = 0;
+  std::vector<glm::dvec3> sum_, squares_;  // Welford: mean, sum of squared deviations
+  double meanOfMeans_ = 0.0, meanSquares_ = 0.0;
+};
+
+/// Two independent references as one, weighted by samples.
+Reference merged(const Reference& a, const Reference& b);
+
+struct SamplingGoal {
+  std::uint64_t samples = 0;   ///< stop when there are that many a pixel; 0: by time
+  double seconds = 60.0;       ///< stop when that much was spent; at least kBatches batches of one sample are made
+  static constexpr int kBatches = 16;
+};
+
+/// Samples from path number `first` on until the goal is met. `stop` is asked between batches; a reference of fewer than two batches is none.
+std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first, const SamplingGoal& goal,
+                                         const std::function<bool()>& stop = {});
+
+/// What a reference is of: the scene's content, the view, the size, the transport, and how the sampler works (its version and switches, as text).
+struct ReferenceKey {
+  std::uint64_t value = 0;
+  std::string name() const;  ///< 16 hexadecimal digits
+};
+ReferenceKey keyOf(const Scene& scene, const Camera& camera, glm::ivec2 size, Transport transport, std::string_view sampler);
+
+/// References in a folder, a file each, written whole or not at all and checked when read.
+class ReferenceCache {
+ public:
+  /// The folder is made; throws Error(badInput) where it cannot be.
+  explicit ReferenceCache(std::filesystem::path folder);
+  /// Empty where there is none; a damaged file is one warning and none.
+  std::optional<Reference> load(const ReferenceKey& key) const;
+  void store(const ReferenceKey& key, const Reference& reference) const;
+  std::filesystem::path fileOf(const ReferenceKey& key) const;
+
+  /// LUCERNA_REFERENCES, else XDG_CACHE_HOME/lucerna, else ~/.cache/lucerna.
+  static std::filesystem::path defaultFolder();
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// From the cache where it meets the goal; what is there is sampled further where it does not, and kept. Empty where `stop` came before two batches.
+std::optional<Reference> obtainReference(const ReferenceCache& cache, const ReferenceKey& key, const Sampler& sampler, Transport transport, const SamplingGoal& goal,
+                                         const std::string& renderer, const std::function<bool()>& stop = {});
+
+}  // namespace lucerna::measure

@@ -1,0 +1,153 @@
+// lucerna compare, bench error|stability|needs, tune, --settings: contracts, what is refused, and that an interrupted bench goes on.
+#include "base/files.hpp"
+#include "base/image.hpp"
+#include "support/subprocess.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace lucerna;
+using test::RunResult;
+
+const char* kScene =
+    "mtllib scene.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "usemtl white\nf 1/1 4/4 3/3 2/2\nusemtl red\nf 1/1 2/2 6/3 5/4\n";
+
+class Measure : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(path("scene.obj")) << kScene;
+    std::ofstream(path("scene.mtl")) << "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0.1\n";
+    ::setenv("LUCERNA_REFERENCES", path("references").c_str(), 1);
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(std::ifstream(path(name))); }
+  std::string benchError(const std::string& more) const {
+    return "bench error '" + path("scene.obj") + "' --host osmesa --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --out '" + path("out") + "' --json '" + path("error.json") + "' " + more;
+  }
+  void expectOneLine(const RunResult& result, int exitCode, const std::vector<std::string>& parts) const {
+    EXPECT_EQ(result.exitCode, exitCode) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+  }
+
+ private:
+  test::TempFolder folder_;
+};
+
+TEST_F(Measure, CompareSaysHowFarTwoPicturesAreApart) {
+  Image reference(20, 10, glm::vec3(2.0f)), image(20, 10, glm::vec3(2.2f));
+  image.at(3, 4).y = 5.0f;
+  writeImage(path("a.pfm"), image);
+  writeImage(path("b.pfm"), reference);
+  const RunResult result = RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("b.pfm") + "' --heatmap '" + path("heat.png") + "' --json '" + path("c.json") + "'");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const auto c = json("c.json");
+  EXPECT_NEAR(c.at("rmse"), std::sqrt((0.04 * 599 + 9.0) / 600.0), 1e-6);
+  EXPECT_NEAR(c.at("nrmse"), c.at("rmse").get<double>() / 2.0, 1e-12);
+  EXPECT_NEAR(c.at("bias"), 0.2 + 2.8 / 600.0, 1e-6);
+  EXPECT_NEAR(c.at("max"), 3.0, 1e-6);
+  EXPECT_NEAR(c.at("p99"), 0.2, 1e-6);
+  EXPECT_TRUE(c.contains("relmse"));
+  EXPECT_GT(c.at("flip").get<double>(), 0.0);
+  EXPECT_GT(readBitmap(path("heat.png")).width, 40);
+  writeImage(path("small.pfm"), Image(3, 3));
+  expectOneLine(RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("small.pfm") + "'"), 2, {"20x10", "3x3"});
+  expectOneLine(RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("b.pfm") + "' --heatmap x.jpg"), 2, {"--heatmap", "png"});
+}
+
+TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
+  const RunResult first = RUN_LUCERNA(benchError("--techniques direct,rsm,path"));
+  ASSERT_EQ(first.exitCode, 0) << first.err;
+  const auto report = json("error.json");
+  ASSERT_GT(report.at("rows").size(), 10u);
+  bool pareto = false;
+  for (const auto& row : report.at("rows")) {
+    for (const char* key : {"technique", "fidelity", "settings", "ms", "nrmse", "bias", "bias_error", "pareto", "gpu_bytes", "wall_ms", "setup_ms", "relmse", "p99", "flip", "at_noise"})
+      EXPECT_TRUE(row.contains(key)) << key;
+    pareto |= row.at("pareto").get<bool>();
+    EXPECT_EQ(row.contains("inside_model"), row.at("technique") == "rsm");
+  }
+  EXPECT_TRUE(pareto);
+  EXPECT_EQ(report.at("references").size(), 4u);
+  EXPECT_EQ(report.at("model").size(), 3u);
+  for (const char* file : {"report.html", "error.csv", "error.json"}) EXPECT_TRUE(fs::exists(path("out") + "/" + file)) << file;
+  // A page of its own: nothing is fetched.
+  const std::string page = readFileText(path("out") + "/report.html");
+  EXPECT_EQ(page.find("src=\"http"), std::string::npos);
+  EXPECT_NE(page.find("data:image/png;base64,"), std::string::npos);
+
+  // One row is lost and one damaged: these are measured again, the others stay as they are.
+  std::vector<fs::path> rows;
+  for (const auto& entry : fs::directory_iterator(path("out") + "/rows"))
+    if (entry.path().extension() == ".json" && entry.path().filename() != "path.json") rows.push_back(entry.path());
+  std::sort(rows.begin(), rows.end());
+  fs::remove(rows[0]);
+  std::ofstream(rows[1]) << "{ half";
+  const std::string kept = readFileText(rows[2]);
+  const auto time = fs::last_write_time(rows[2]);
+  ASSERT_EQ(RUN_LUCERNA(benchError("--techniques direct,rsm,path")).exitCode, 0);
+  EXPECT_EQ(readFileText(rows[2]), kept);
+  EXPECT_EQ(fs::last_write_time(rows[2]), time);
+  EXPECT_TRUE(fs::exists(rows[0]));
+  EXPECT_NO_THROW(nlohmann::json::parse(readFileText(rows[1])));
+  EXPECT_EQ(json("error.json").at("rows").size(), report.at("rows").size());
+
+  // Another scene or size is another bench.
+  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --host osmesa --size 32x18 --reference-spp 16 --out '" + path("out") + "'"), 2, {"another bench", "out"});
+}
+
+TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {
+  const std::string common = "tune '" + path("scene.obj") + "' --host osmesa --size 32x16 --reference-spp 16 --budget 1 --frames 1 --small --techniques direct,rsm --out '" + path("out") + "' ";
+  ASSERT_EQ(RUN_LUCERNA(common + "--frame-time 100000 -o '" + path("s.json") + "'").exitCode, 0);
+  const auto settings = json("s.json");
+  EXPECT_TRUE(settings.contains("technique"));
+  const RunResult picture = RUN_LUCERNA("render '" + path("scene.obj") + "' --host osmesa --size 32x16 --settings '" + path("s.json") + "' -o '" + path("p.pfm") + "' --json '" + path("p.json") + "'");
+  ASSERT_EQ(picture.exitCode, 0) << picture.err;
+  EXPECT_EQ(json("p.json").at("technique"), settings.at("technique"));
+  EXPECT_EQ(json("p.json").at("settings"), settings.at("settings"));
+  expectOneLine(RUN_LUCERNA(common + "--error 1e-9 -o '" + path("s.json") + "'"), 2, {"nothing meets", "nearest"});
+  expectOneLine(RUN_LUCERNA(common + "-o '" + path("s.json") + "'"), 2, {"--frame-time", "--error"});
+  std::ofstream(path("bad.json")) << "[1, 2";
+  expectOneLine(RUN_LUCERNA("render '" + path("scene.obj") + "' --settings '" + path("bad.json") + "' -o '" + path("p.pfm") + "'"), 2, {"--settings", "bad.json"});
+}
+
+TEST_F(Measure, WhatCannotBeIsOneLine) {
+  std::ofstream(path("file")) << "x";
+  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --host osmesa --out '" + path("file") + "'"), 2, {"--out", "file"});
+  expectOneLine(RUN_LUCERNA(benchError("--techniques magic")), 2, {"magic", "rsm"});
+  expectOneLine(RUN_LUCERNA("bench stability --host osmesa --technique magic"), 2, {"magic", "lpv"});
+  expectOneLine(RUN_LUCERNA("bench all --host osmesa --out '" + path("file") + "'"), 2, {"--out"});
+}
+
+TEST_F(Measure, StabilityRowsSayWhatWasExpected) {
+  const RunResult result = RUN_LUCERNA("bench stability --host osmesa --technique direct --json '" + path("s.json") + "'");
+  EXPECT_EQ(result.exitCode, 0) << result.out;
+  const auto rows = json("s.json").at("rows");
+  EXPECT_GE(rows.size(), 10u);
+  for (const auto& row : rows) {
+    for (const char* key : {"technique", "case", "parameter", "expected", "measured", "verdict"}) EXPECT_TRUE(row.contains(key)) << key;
+    EXPECT_EQ(row.at("verdict"), "pass") << row.dump();
+  }
+}
+
+TEST_F(Measure, NeedsSayWhatLeavingOutSaves) {
+  const RunResult result = RUN_LUCERNA("bench needs '" + path("scene.obj") + "' --host osmesa --size 32x16 --frames 1 --technique direct --json '" + path("n.json") + "'");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const auto n = json("n.json");
+  for (const char* key : {"left_out", "gpu_bytes_with", "gpu_bytes_without", "ms_with", "ms_without", "max_difference"}) ASSERT_TRUE(n.contains(key)) << key;
+  EXPECT_GE(n.at("left_out").size(), 5u);
+  EXPECT_LT(n.at("gpu_bytes_without").get<double>(), n.at("gpu_bytes_with").get<double>());
+  EXPECT_LE(n.at("max_difference").get<double>(), 1e-5 * n.at("max_radiance").get<double>());
+}
+
+}  // namespace

@@ -1,0 +1,102 @@
+// What a scene does not need: no resource of it in any program, none of its bytes, no pass of its name; and leaving it out changes nothing but rounding.
+#include "measure/neutral.hpp"
+#include "render/renderer.hpp"
+#include "support/gl_fixture.hpp"
+#include "support/small_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+using namespace lucerna;
+
+struct Need {
+  const char* name;
+  std::vector<const char*> resources;  ///< of programs
+  std::vector<const char*> stages;     ///< timed passes
+};
+
+const Need kNeeds[] = {{"diffuseTextures", {"diffuseTexture"}, {}},
+                       {"alphaMasks", {"maskTexture"}, {}},
+                       {"specular", {"materialSpecular", "materialShininess"}, {}},
+                       {"emission", {"materialEmission"}, {}},
+                       {"background", {}, {}},
+                       {"spotLights", {"spotShadows"}, {"spot shadows"}},
+                       {"pointLights", {"pointShadows"}, {"point shadows"}}};
+
+class NeedsOff : public test::GlTest {
+ protected:
+  struct Drawn {
+    std::vector<std::string> resources, stages, leftOut;
+    std::size_t gpuBytes = 0, programs = 0;
+    Image picture;
+  };
+  static Drawn draw(const Scene& scene) {
+    gl::ProgramLibrary library;
+    RenderSettings settings;
+    settings.technique = Technique::lpv;
+    settings.size = {48, 32};
+    settings.fullFloatTarget = true;
+    settings.shadow.size = 256;
+    settings.rsm.size = 64;
+    settings.lights.spotSize = settings.lights.pointSize = 64;
+    settings.lpv.cascades.cells = 8;
+    Renderer renderer(context(), library, scene, settings);
+    renderer.render(test::openBoxCamera());
+    renderer.render(test::openBoxCamera());  // the first times of a stage are dropped
+    renderer.drain();
+    Drawn drawn;
+    for (const auto& program : library.programs())
+      for (const std::string& resource : program->activeResources()) drawn.resources.push_back(resource);
+    for (const gl::StageStatistics& stage : renderer.timer().statistics()) drawn.stages.push_back(stage.name);
+    drawn.leftOut = renderer.leftOut();
+    drawn.gpuBytes = renderer.gpuBytes();
+    drawn.programs = library.programs().size();
+    drawn.picture = renderer.readRadiance();
+    return drawn;
+  }
+  static bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::any_of(names.begin(), names.end(), [&](const std::string& n) { return n == name || n.find(name) != std::string::npos; });
+  }
+};
+
+TEST_F(NeedsOff, EveryNeutralNeedHasARow) {
+  ASSERT_EQ(measure::neutralNeeds().size(), std::size(kNeeds));
+  for (const Need& need : kNeeds) EXPECT_EQ(std::count(measure::neutralNeeds().begin(), measure::neutralNeeds().end(), need.name), 1) << need.name;
+}
+
+TEST_F(NeedsOff, LeavesNothingBehindAndChangesNothing) {
+  const Scene lean = test::openBox();
+  const Drawn off = draw(lean);
+  double brightest = 0.0;
+  for (const glm::vec3& p : off.picture.pixels) brightest = std::max({brightest, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+  for (const Need& need : kNeeds) {
+    SCOPED_TRACE(need.name);
+    Scene scene = lean;
+    measure::addNeutral(scene, need.name);
+    const Drawn on = draw(scene);
+    EXPECT_TRUE(contains(off.leftOut, need.name));
+    EXPECT_FALSE(std::count(on.leftOut.begin(), on.leftOut.end(), need.name));
+    for (const char* resource : need.resources) {
+      EXPECT_FALSE(contains(off.resources, resource)) << resource;
+      EXPECT_TRUE(contains(on.resources, resource)) << resource;
+    }
+    for (const char* stage : need.stages) {
+      EXPECT_FALSE(contains(off.stages, stage)) << stage;
+      EXPECT_TRUE(contains(on.stages, stage)) << stage;
+    }
+    // A uniform has no bytes of its own; what has a texture or a buffer does.
+    if (!need.stages.empty() || std::string_view(need.name) == "diffuseTextures" || std::string_view(need.name) == "alphaMasks") {
+      EXPECT_LT(off.gpuBytes, on.gpuBytes);
+    } else {
+      EXPECT_EQ(off.gpuBytes, on.gpuBytes);
+    }
+    double largest = 0.0;
+    for (std::size_t i = 0; i < off.picture.pixels.size(); ++i)
+      for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(static_cast<double>(off.picture.pixels[i][c]) - static_cast<double>(on.picture.pixels[i][c])));
+    EXPECT_LE(largest, 1e-5 * brightest);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,118 @@
+// The bench judged by itself: the path tracer's error falls as samples^-1/2 and has no bias; a loss of 1 % is seen; the reference's noise is no error.
+#include "measure/front.hpp"
+#include "measure/image_errors.hpp"
+#include "measure/reference.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "support/gl_fixture.hpp"
+#include "support/small_scenes.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace lucerna;
+
+class BenchProof : public test::SharedProgramsTest {
+ protected:
+  static constexpr int kWidth = 32, kHeight = 24;
+
+  static std::unique_ptr<PathTracer> tracer(const Scene& scene, std::uint32_t seed, Transport transport = Transport::all) {
+    PathTracer::Settings settings;
+    settings.size = {kWidth, kHeight};
+    settings.transport = transport;
+    settings.diffuseOnly = settings.pixelCentres = true;
+    settings.seed = seed;
+    auto result = std::make_unique<PathTracer>(context(), library(), scene, settings);
+    result->setCamera(test::openBoxCamera());
+    return result;
+  }
+  static double channelMean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
+
+  /// 4096 samples in 16 batches of other seeds.
+  static const measure::Reference& reference() {
+    static const measure::Reference result = [] {
+      const Scene scene = test::openBox();
+      measure::SamplingGoal goal;
+      goal.samples = 16 * 256;
+      return measure::sampleReference(
+                 [&](std::uint64_t first, std::uint32_t samples) {
+                   const auto t = tracer(scene, 1000u + static_cast<std::uint32_t>(first));
+                   t->record(samples);
+                   return t->mean();
+                 },
+                 measure::Transport::all, 0, goal)
+          .value();
+    }();
+    return result;
+  }
+  static measure::JudgedErrors judge(const PathTracer& t) {
+    const measure::Reference& r = reference();
+    return measure::lessNoise(measure::errorsOf(t.mean(), r.mean), measure::noiseOf(r.mean, r.standardError, r.meanError), channelMean(t.statistics().meanError));
+  }
+};
+
+TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
+  const Scene scene = test::openBox();
+  std::vector<double> samples, errors;
+  for (std::uint32_t n : {1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u}) {
+    double mse = 0.0;
+    constexpr int kSeeds = 4;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+      const auto t = tracer(scene, 10 * n + seed);
+      t->record(n);
+      const double nrmse = judge(*t).nrmse;
+      mse += nrmse * nrmse / kSeeds;
+    }
+    samples.push_back(n);
+    errors.push_back(std::sqrt(mse));
+  }
+  const measure::Slope slope = measure::logLogSlope(samples, errors);
+  EXPECT_NEAR(slope.slope, -0.5, 0.05) << "+- " << slope.error;
+}
+
+// Six seeds, each within 3 standard errors: all of them fail to be with probability 6 * 0.0027 = 1.6 %; the seeds are fixed.
+TEST_F(BenchProof, CorrectedRunsHaveNoBias) {
+  const Scene scene = test::openBox();
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    const auto t = tracer(scene, seed);
+    t->record(64);
+    const measure::JudgedErrors e = judge(*t);
+    EXPECT_TRUE(e.biasAtNoise) << "seed " << seed << ": " << e.measured.bias << " +- " << e.biasError;
+  }
+}
+
+TEST_F(BenchProof, ALossOfOnePercentIsSeen) {
+  Scene lossy = test::openBox();
+  lossy.sun->irradiance *= 0.99f;
+  const auto t = tracer(lossy, 5);
+  t->record(1024);
+  const measure::JudgedErrors e = judge(*t);
+  EXPECT_FALSE(e.biasAtNoise) << e.measured.bias << " +- " << e.biasError;
+  EXPECT_NEAR(e.measured.relativeBias, -0.01, 3.0 * e.biasError / e.measured.referenceMean);
+}
+
+TEST_F(BenchProof, TheReferencesNoiseIsNoError) {
+  const Scene scene = test::openBox();
+  const auto t = tracer(scene, 7);
+  t->record(4096);
+  const measure::JudgedErrors e = judge(*t);
+  EXPECT_TRUE(e.atNoise);
+  // What is left is this run's own noise, about as large as the reference's: not the two together.
+  EXPECT_LT(e.nrmse, 1.3 * e.noiseNrmse);
+  EXPECT_GT(e.measured.nrmse, 1.2 * e.noiseNrmse);
+}
+
+TEST_F(BenchProof, TransportsAddUp) {
+  const Scene scene = test::openBox();
+  const auto all = tracer(scene, 1), direct = tracer(scene, 2, Transport::direct), indirect = tracer(scene, 3, Transport::indirect), one = tracer(scene, 4, Transport::oneBounce),
+             unoccluded = tracer(scene, 5, Transport::oneBounceUnoccluded);
+  for (const auto* t : {&all, &direct, &indirect, &one, &unoccluded}) (*t)->record(256);
+  const auto mean = [](const auto& t) { return channelMean(t->statistics().mean); };
+  const auto error = [](const auto& t) { return channelMean(t->statistics().meanError); };
+  EXPECT_NEAR(mean(all), mean(direct) + mean(indirect), 4.0 * std::sqrt(std::pow(error(all), 2) + std::pow(error(direct), 2) + std::pow(error(indirect), 2)));
+  EXPECT_LT(mean(one), mean(indirect));
+  EXPECT_GT(mean(one), 0.3 * mean(indirect));
+  EXPECT_GT(mean(unoccluded), mean(one) - 4.0 * std::hypot(error(one), error(unoccluded)));
+}
+
+}  // namespace

@@ -1,0 +1,181 @@
+// Image errors, the Pareto front and the slope against figures worked out by hand; heat maps and FLIP against their definitions.
+#include "measure/flip.hpp"
+#include "measure/front.hpp"
+#include "measure/heat_map.hpp"
+#include "measure/image_errors.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace {
+
+using namespace lucerna;
+using namespace lucerna::measure;
+
+Image picture(std::initializer_list<glm::vec3> pixels) {
+  Image image(static_cast<int>(pixels.size()), 1);
+  image.pixels.assign(pixels.begin(), pixels.end());
+  return image;
+}
+
+// d = (1 0 0), (0 -2 0): squares 1 + 4 over 6; reference mean (1 + 1 + 1 + 2 + 4 + 3) / 6 = 2.
+TEST(ImageErrors, AreThoseOfTheFormulas) {
+  const Image reference = picture({{1, 1, 1}, {2, 4, 3}}), image = picture({{2, 1, 1}, {2, 2, 3}});
+  const ImageErrors e = errorsOf(image, reference);
+  EXPECT_DOUBLE_EQ(e.referenceMean, 2.0);
+  EXPECT_NEAR(e.rmse, std::sqrt(5.0 / 6.0), 1e-12);
+  EXPECT_NEAR(e.nrmse, std::sqrt(5.0 / 6.0) / 2.0, 1e-12);
+  EXPECT_NEAR(e.relmse, (1.0 / 1.04 + 4.0 / 16.04) / 6.0, 1e-12);  // epsilon: 0.01 * 2^2
+  EXPECT_NEAR(e.bias, -1.0 / 6.0, 1e-12);
+  EXPECT_NEAR(e.relativeBias, -1.0 / 12.0, 1e-12);
+  EXPECT_NEAR(e.channelBias.x, 0.5, 1e-12);
+  EXPECT_NEAR(e.channelBias.y, -1.0, 1e-12);
+  EXPECT_DOUBLE_EQ(e.max, 2.0);
+  EXPECT_NEAR(e.p99, 1.99, 1e-12);  // between the pixels' 1 and 2
+}
+
+TEST(ImageErrors, DoNotDependOnUnits) {
+  const Image reference = picture({{1, 2, 3}, {4, 0, 1}}), image = picture({{1.5f, 2, 2}, {3, 0.5f, 1}});
+  Image bright = reference, brightImage = image;
+  for (glm::vec3& p : bright.pixels) p *= 1024.0f;
+  for (glm::vec3& p : brightImage.pixels) p *= 1024.0f;
+  const ImageErrors a = errorsOf(image, reference), b = errorsOf(brightImage, bright);
+  EXPECT_DOUBLE_EQ(a.nrmse, b.nrmse);
+  EXPECT_DOUBLE_EQ(a.relmse, b.relmse);
+  EXPECT_DOUBLE_EQ(a.relativeBias, b.relativeBias);
+  EXPECT_DOUBLE_EQ(1024.0 * a.rmse, b.rmse);
+}
+
+TEST(ImageErrors, EqualAndBlackPicturesHaveNone) {
+  const Image black(3, 2);
+  const ImageErrors e = errorsOf(black, black);
+  EXPECT_EQ(e.rmse, 0.0);
+  EXPECT_EQ(e.nrmse, 0.0);
+  EXPECT_EQ(e.relmse, 0.0);
+  EXPECT_EQ(e.relativeBias, 0.0);
+}
+
+TEST(ImageErrors, NotFinitePixelsAreCountedAndShownNotClampedAway) {
+  Image image(2, 1, glm::vec3(1.0f));
+  image.pixels[1].y = std::numeric_limits<float>::quiet_NaN();
+  const ImageErrors e = errorsOf(image, Image(2, 1, glm::vec3(1.0f)));
+  EXPECT_EQ(e.notFinite, 1u);
+  EXPECT_TRUE(std::isnan(e.rmse));
+  EXPECT_TRUE(std::isnan(e.max));
+  EXPECT_TRUE(std::isnan(lessNoise(e, {}).nrmse));
+  EXPECT_FALSE(lessNoise(e, {}).atNoise);
+}
+
+TEST(ImageErrors, OtherSizesAreRefused) {
+  EXPECT_NE(test::badInputMessage([] { errorsOf(Image(2, 1), Image(1, 2)); }).find("2x1"), std::string::npos);
+  EXPECT_FALSE(test::badInputMessage([] { errorsOf(Image(), Image()); }).empty());
+}
+
+TEST(ImageErrors, TheReferencesNoiseIsTakenOff) {
+  const Image reference = picture({{1, 1, 1}, {1, 1, 1}}), image = picture({{1.5f, 1.5f, 1.5f}, {1.5f, 1.5f, 1.5f}});
+  const Image standardError(2, 1, glm::vec3(0.3f));
+  const ReferenceNoise noise = noiseOf(reference, standardError, 0.05);
+  EXPECT_NEAR(noise.variance, 0.09, 1e-7);
+  EXPECT_NEAR(noise.relativeVariance, 0.09 / 1.01, 1e-7);
+  const JudgedErrors judged = lessNoise(errorsOf(image, reference), noise, 0.12);
+  EXPECT_NEAR(judged.nrmse, std::sqrt(0.25 - 0.09), 1e-7);
+  EXPECT_NEAR(judged.relmse, 0.16 / 1.01, 1e-7);
+  EXPECT_NEAR(judged.noiseNrmse, 0.3, 1e-7);
+  EXPECT_NEAR(judged.biasError, 0.13, 1e-12);
+  EXPECT_TRUE(judged.atNoise);  // 0.5 < 3 * 0.3
+  EXPECT_FALSE(judged.biasAtNoise);  // 0.5 > 3 * 0.13
+}
+
+TEST(ParetoFront, IsWhatNothingBeatsInBoth) {
+  const double nan = std::nan("");
+  const std::vector<CostAndError> points{{1, 9}, {2, 5}, {2, 6}, {3, 5}, {4, 1}, {9, 1}, {nan, 0}, {0, nan}, {4, 1}};
+  EXPECT_EQ(paretoFront(points), (std::vector<bool>{true, true, false, false, true, false, false, false, false}));
+  EXPECT_TRUE(paretoFront({}).empty());
+}
+
+TEST(LogLogSlope, OfAPowerLawIsItsExponent) {
+  std::vector<double> x, y;
+  for (double v : {1.0, 4.0, 16.0, 64.0}) x.push_back(v), y.push_back(3.0 / std::sqrt(v));
+  EXPECT_NEAR(logLogSlope(x, y).slope, -0.5, 1e-12);
+  EXPECT_NEAR(logLogSlope(x, y).error, 0.0, 1e-9);
+  EXPECT_TRUE(std::isnan(logLogSlope(std::vector{2.0, 2.0}, std::vector{1.0, 3.0}).slope));
+}
+
+// Residuals of (0,0), (1,1), (2,0) about their mean line y = 1/3: -1/3, 2/3, -1/3; error sqrt((6/9) / 1 / 2).
+TEST(LogLogSlope, SaysHowUncertainItIs) {
+  const double e = std::exp(1.0);
+  const Slope s = logLogSlope(std::vector{1.0, e, e * e}, std::vector{1.0, e, 1.0});
+  EXPECT_NEAR(s.slope, 0.0, 1e-12);
+  EXPECT_NEAR(s.error, std::sqrt(6.0 / 9.0 / 2.0), 1e-12);
+}
+
+TEST(HeatMap, ScaleShowsMostOfTheError) {
+  Image a(10, 10), b(10, 10);
+  EXPECT_EQ(heatMapScale(a, b), 0.0);
+  for (glm::vec3& p : a.pixels) p.x = 0.3f;
+  EXPECT_NEAR(heatMapScale(a, b), 0.5, 1e-12);
+  for (glm::vec3& p : a.pixels) p.x = 0.5f;
+  EXPECT_NEAR(heatMapScale(a, b), 0.5, 1e-12);
+}
+
+TEST(HeatMap, ColoursSayHowMuchAndWhichWay) {
+  const Image reference = picture({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}), image = picture({{1, 1, 1}, {3, 3, 3}, {0, 0, 0}, {std::nanf(""), 0, 0}});
+  const Bitmap absolute = heatMap(image, reference, HeatMap::absolute, 1.0), sign = heatMap(image, reference, HeatMap::signedLuminance, 1.0);
+  const auto at = [](const Bitmap& b, int x) { return std::array<int, 3>{b.rgba[4 * static_cast<std::size_t>(x)], b.rgba[4 * static_cast<std::size_t>(x) + 1], b.rgba[4 * static_cast<std::size_t>(x) + 2]}; };
+  EXPECT_EQ(at(absolute, 0), (std::array{0, 0, 0}));
+  EXPECT_EQ(at(absolute, 1), (std::array{255, 255, 255}));
+  EXPECT_EQ(at(sign, 0), (std::array{247, 247, 247}));
+  EXPECT_GT(at(sign, 1)[0], at(sign, 1)[2]);  // too bright: red
+  EXPECT_GT(at(sign, 2)[2], at(sign, 2)[0]);  // too dark: blue
+  EXPECT_EQ(at(absolute, 3), (std::array{0, 255, 0}));
+}
+
+// ---- FLIP: uniform pictures are not changed by filters, have no features, and so leave the colour metric alone ----
+
+double flipOfUniform(glm::vec3 a, glm::vec3 b) { return flipLdr(Image(3, 3, a), Image(3, 3, b), 10.0).mean; }
+
+TEST(Flip, EqualPicturesDoNotDiffer) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.3f), glm::vec3(0.3f)), 0.0, 1e-9); }
+
+TEST(Flip, GreenAgainstBlueIsTheLargestOfAll) { EXPECT_NEAR(flipOfUniform({0, 1, 0}, {0, 0, 1}), 1.0, 1e-9); }
+
+// Black and white: |dL*| = 100, 100^0.7 = 25.11886. Green (L* 87.7362, a* -86.1787, b* 83.1826) and blue (32.2982, 79.1936, -107.8586), a* and b* times L*/100:
+// 55.4380 + hypot(-75.6099 - 25.5781, 72.9812 + 34.8364) = 203.3017, ^0.7 = 41.2761. Above 0.4 of it, so 0.95 + 0.05 (25.11886 - 16.51044) / (0.6 * 41.2761) = 0.96738.
+TEST(Flip, BlackAgainstWhite) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.0f), glm::vec3(1.0f)), 0.96738, 2e-5); }
+
+// Grey 0.2 and 0.25, L* = 116 cbrt(Y) - 16: 51.8372 and 57.0754; 5.2382^0.7 = 3.18734, times 0.95 / 16.51044 = 0.18340.
+TEST(Flip, TwoGreys) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.25f), glm::vec3(0.2f)), 0.18340, 2e-5); }
+
+// An edge that is only in one picture counts more than its colour alone: the exponent falls below 1.
+TEST(Flip, FeaturesRaiseTheDifference) {
+  Image flat(40, 40, glm::vec3(0.5f)), line = flat;
+  for (int y = 0; y < 40; ++y) line.at(20, y) = glm::vec3(0.6f);
+  const Flip flip = flipLdr(line, flat, 67.0);
+  const float beside = flip.map[20 * 40 + 20], far = flip.map[20 * 40 + 2];
+  EXPECT_GT(beside, 0.1f);
+  EXPECT_LT(far, 0.02f);
+}
+
+TEST(Flip, ExposuresFollowTheReference) {
+  // The curve reaches 0.85 at radiance 2.26835 / 0.6...: brightest pixel 2^-3 of the median's exposure.
+  const FlipExposures e = flipExposures(picture({{1, 1, 1}, {1, 1, 1}, {8, 8, 8}}));
+  EXPECT_NEAR(e.stop - e.start, 3.0, 1e-6);
+  EXPECT_EQ(e.count, 3);
+  const double x = 0.6 * std::exp2(e.stop);
+  EXPECT_NEAR(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.85, 1e-6);
+}
+
+TEST(Flip, HdrSeesDarkAndBrightDifferences) {
+  Image reference(16, 16, glm::vec3(0.01f));
+  for (int x = 9; x < 16; ++x)  // the median is dark
+    for (int y = 0; y < 16; ++y) reference.at(x, y) = glm::vec3(100.0f);
+  Image dark = reference, bright = reference;
+  for (int y = 0; y < 16; ++y) dark.at(1, y) *= 3.0f, bright.at(14, y) *= 0.3f;
+  EXPECT_GT(flipHdr(dark, reference, 10.0).mean, 0.01);
+  EXPECT_GT(flipHdr(bright, reference, 10.0).mean, 0.01);
+  EXPECT_EQ(flipHdr(reference, reference, 10.0).mean, 0.0);
+}
+
+}  // namespace
