@@ -10,7 +10,7 @@ namespace lucerna::demo {
 namespace bench {
 
 void checkOriginal(const std::string& name) {
-  if (name != "lpv") throwBadInput("--original {}: unknown; there are lpv", name);
+  if (name != "lpv" && name != "vpt") throwBadInput("--original {}: unknown; there are lpv, vpt", name);
 }
 
 std::string sceneOrAtrium(const std::string& scene) {
