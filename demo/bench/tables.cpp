@@ -36,6 +36,9 @@ struct Options {
   std::optional<double> scale;
 };
 
+/// Milliseconds in a column: large ones without decimals that say nothing.
+std::string column(double ms) { return ms < 1e5 ? fmt::format("{:.4f}", ms) : fmt::format("{:.5g}", ms); }
+
 void print(const bench::Tables& tables) {
   for (const std::string& note : tables.notes) fmt::print("{}\n", note);
   std::string table;
@@ -59,7 +62,7 @@ void print(const bench::Tables& tables) {
       continue;
     }
     const double ms = row.measured();
-    fmt::print("{:>12.4f}{:>28} ", ms, fmt::format("{:.4f} .. {:.4f} ({})", percentile(row.samples, 0.05), percentile(row.samples, 0.95), row.samples.size()));
+    fmt::print("{:>12}{:>28} ", column(ms), fmt::format("{} .. {} ({})", column(percentile(row.samples, 0.05)), column(percentile(row.samples, 0.95)), row.samples.size()));
     for (const auto& published : row.published) fmt::print(" {:>9.4g}", ms / published.ms);
     fmt::print("\n");
   }

@@ -33,7 +33,7 @@ Tables measureVptTables(const VptTablesInput& input) {
     Row row;
     row.table = picture.table;
     row.setting = fmt::format("{}: {}", picture.figure, picture.label);
-    row.stage = fmt::format("{} samples", picture.samples);
+    row.stage = "the picture";
     row.published = {{kVptGpu, picture.publishedMs}};
     if (!interrupted()) {
       const Scene scene = loadVptScene(picture);
