@@ -19,7 +19,8 @@ VptSheet drawVptPictures(const VptTablesInput& input, glm::ivec2 size, std::opti
     const glm::dvec3 mean = drawn.statistics.mean;
     tiles.push_back({fmt::format("{}  {} ({} spp, mean {:.3g})", picture.figure, picture.label, samples, 0.2126 * mean.x + 0.7152 * mean.y + 0.0722 * mean.z),
                      toneMapped(drawn.image, exposure ? static_cast<float>(*exposure) : scene.exposure)});
-    result.json.push_back({{"picture", fmt::format("{} {}", picture.figure, picture.label)}, {"mean", {mean.x, mean.y, mean.z}}, {"spp", drawn.statistics.samples}, {"ms", drawn.ms}});
+    result.json.push_back({{"picture", fmt::format("{} {}", picture.figure, picture.label)}, {"mean", {mean.x, mean.y, mean.z}}, {"spp", drawn.statistics.samples}, {"ms", drawn.ms},
+                           {"leaked_paths", drawn.statistics.leakedPaths}, {"wrong_crossings", drawn.statistics.wrongCrossings}});
     progress.update(static_cast<int>(tiles.size()));
   }
   result.tiles = tiles.size();
