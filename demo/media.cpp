@@ -30,9 +30,9 @@ int list(const Options& options) {
   nlohmann::ordered_json json;
   json["unit"] = "1/mm";
   json["media"] = nlohmann::ordered_json::array();
-  fmt::print("{:<33}{:<26}{:<28}{:<18}{:<6}{:<26}{:<27}{}\n", "medium", "sigma_s R G B, 1/mm", "sigma_a R G B, 1/mm", "g R G B", "ior", "albedo R G B", "mean free path, mm", "source");
+  fmt::print("{:<35}{:<28}{:<30}{:<20}{:<6}{:<28}{:<28}{}\n", "medium", "sigma_s R G B, 1/mm", "sigma_a R G B, 1/mm", "g R G B", "ior", "albedo R G B", "mean free path, mm", "source");
   for (const CatalogueMedium& m : mediaCatalogue()) {
-    fmt::print("{:<33}{:<26}{:<28}{:<18}{:<6g}{:<26}{:<27}{}\n", m.name, triple(m.scattering), triple(m.absorption), triple(m.anisotropy), m.ior, triple(m.albedo()),
+    fmt::print("{:<35}{:<28}{:<30}{:<20}{:<6g}{:<28}{:<28}{}\n", m.name, triple(m.scattering), triple(m.absorption), triple(m.anisotropy), m.ior, triple(m.albedo()),
                triple(m.meanFreePath()), m.source);
     json["media"].push_back({{"name", m.name}, {"sigma_s", array(m.scattering)}, {"sigma_a", array(m.absorption)}, {"g", array(m.anisotropy)}, {"ior", m.ior},
                              {"albedo", array(m.albedo())}, {"mean_free_path", array(m.meanFreePath())}, {"published", m.published}, {"source", m.source}});

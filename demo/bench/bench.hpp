@@ -58,6 +58,24 @@ struct Tables {
   nlohmann::ordered_json json;     ///< the same, and the settings
 };
 
+struct VptTablesInput {
+  const gl::Context& context;
+  gl::ProgramLibrary& programs;
+  double scale;  ///< 0..1
+  bool quiet;
+};
+
+/// The times under the pictures of the VPT original, on scenes of ours.
+Tables measureVptTables(const VptTablesInput& input);
+
+/// Those pictures on one sheet.
+struct VptSheet {
+  Bitmap sheet;
+  nlohmann::ordered_json json;
+  std::size_t tiles = 0;
+};
+VptSheet drawVptPictures(const VptTablesInput& input, glm::ivec2 size, std::optional<double> exposure);
+
 /// Tables 7.2 to 7.8 of the LPV original, and its comparison of ways to clear.
 Tables measureLpvTables(const TablesInput& input);
 

@@ -1,4 +1,4 @@
-// lucerna bench pictures --original NAME [SCENE] -o FILE.png: pictures 7.3 to 7.7 of the LPV original, on one labelled sheet.
+// lucerna bench pictures --original NAME [SCENE] -o FILE.png: pictures 7.3 to 7.7 of the LPV original, or those of the VPT one, on one labelled sheet.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/bench.hpp"
@@ -16,8 +16,8 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string original, scene, output, camera, fidelity = "corrected", size = "640x360";
-  std::optional<double> exposure;
+  std::string original, scene, output, camera, fidelity = "corrected", size;
+  std::optional<double> exposure, scale;
 };
 
 struct Picture {
@@ -35,6 +35,38 @@ Bitmap difference(const Bitmap& a, const Bitmap& b) {
   return result;
 }
 
+/// Tiles, and the published samples times this, where nothing else is asked for.
+constexpr const char* kVptTile = "320x180";
+constexpr double kVptScale = 0.02;
+
+int runVpt(const Options& options) {
+  const glm::ivec2 size = parseSize(options.size.empty() ? kVptTile : options.size);
+  const double scale = options.scale.value_or(kVptScale);
+  if (size.x > 1920 || size.y > 1080) throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
+  if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
+  if (!options.scene.empty()) throwBadInput("SCENE {}: the pictures of vpt are made of their own scenes", options.scene);
+  if (!options.camera.empty()) throwBadInput("--camera {}: the pictures of vpt have their own cameras", options.camera);
+  if (options.fidelity != "corrected") throwBadInput("--fidelity {}: the pictures of vpt are made with the corrected estimator", options.fidelity);
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  const bench::VptSheet sheet = bench::drawVptPictures({context, programs, scale, options.common.quiet}, size, options.exposure);
+  if (interrupted()) return 130;
+  writePng(options.output, sheet.sheet);
+  if (!options.common.quiet) fmt::print("{}: {} tiles of {}x{}, on {}\n", options.output, sheet.tiles, size.x, size.y, context.capabilities().renderer);
+  nlohmann::ordered_json json;
+  json["renderer"] = context.capabilities().renderer;
+  json["host"] = nameOf(host->kind());
+  json["original"] = options.original;
+  json["scale"] = scale;
+  json["fidelity"] = options.fidelity;
+  json["size"] = {size.x, size.y};
+  json["pictures"] = sheet.json;
+  options.common.writeJson(json);
+  return 0;
+}
+
 int run(const Options& options) {
   options.common.apply();
   bench::checkOriginal(options.original);
@@ -42,11 +74,13 @@ int run(const Options& options) {
   if (options.fidelity != "corrected" && options.fidelity != "original")
     throwBadInput("--fidelity {}: unknown; there are corrected, original", options.fidelity);
   applyFidelity(usual, options.fidelity == "original" ? Fidelity::original : Fidelity::corrected);
-  usual.size = parseSize(options.size);
-  if (usual.size.x > 1920 || usual.size.y > 1080) throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
   if (lowerExtension(options.output) != ".png") throwBadInput("-o {}: the extension must be png", options.output);
   if (options.exposure && !(*options.exposure > 0.0 && *options.exposure <= 1e12))
     throwBadInput("--exposure {}: expected a number above 0, at most 1e12", *options.exposure);
+  if (options.original == "vpt") return runVpt(options);
+  if (options.scale) throwBadInput("--scale {}: only with --original vpt", *options.scale);
+  usual.size = parseSize(options.size.empty() ? "640x360" : options.size);
+  if (usual.size.x > 1920 || usual.size.y > 1080) throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
   if (options.original == "rad") {
     if (!options.scene.empty()) throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
     if (!options.camera.empty()) throwBadInput("--camera {}: --original rad has one view of each model", options.camera);
@@ -127,12 +161,13 @@ int run(const Options& options) {
 
 Work addBenchPictures(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene, "a scene file (default: the atrium; the published scene is Crytek Sponza)");
-  app.add_option("--original", options->original, "whose pictures: lpv or rad")->required();
+  app.add_option("SCENE", options->scene, "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
+  app.add_option("--original", options->original, "whose pictures: lpv, rad or vpt")->required();
   app.add_option("-o,--output", options->output, "FILE.png")->required();
   app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str();
-  app.add_option("--size", options->size, "WIDTHxHEIGHT of a tile in pixels")->capture_default_str();
+  app.add_option("--size", options->size, "WIDTHxHEIGHT of a tile in pixels (lpv and rad 640x360, vpt 320x180)");
+  app.add_option("--scale", options->scale, "vpt: the published samples times this, above 0, at most 1 (0.02)");
   app.add_option("--exposure", options->exposure, "multiplies radiance before tone mapping (the scene's)");
   options->common.declare(app);
   return [options] { return run(*options); };

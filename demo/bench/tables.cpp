@@ -34,8 +34,11 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string original, scene;
-  double scale = 1.0;
+  std::optional<double> scale;
 };
+
+/// Milliseconds in a column: large ones without decimals that say nothing.
+std::string column(double ms) { return ms < 1e5 ? fmt::format("{:.4f}", ms) : fmt::format("{:.5g}", ms); }
 
 void print(const bench::Tables& tables) {
   for (const std::string& note : tables.notes) fmt::print("{}\n", note);
@@ -60,7 +63,7 @@ void print(const bench::Tables& tables) {
       continue;
     }
     const double ms = row.measured();
-    fmt::print("{:>12.4f}{:>28} ", ms, fmt::format("{:.4f} .. {:.4f} ({})", percentile(row.samples, 0.05), percentile(row.samples, 0.95), row.samples.size()));
+    fmt::print("{:>12}{:>28} ", column(ms), fmt::format("{} .. {} ({})", column(percentile(row.samples, 0.05)), column(percentile(row.samples, 0.95)), row.samples.size()));
     for (const auto& published : row.published) fmt::print(" {:>9.4g}", ms / published.ms);
     fmt::print("\n");
   }
@@ -95,33 +98,46 @@ nlohmann::ordered_json rowsJson(const bench::Tables& tables, const std::string& 
   return rows;
 }
 
+/// So that a software renderer needs minutes.
+constexpr double kVptScale = 0.05;
+
 int run(Options options) {
   options.common.apply();
   bench::checkOriginal(options.original);
-  if (!(options.scale > 0.0 && options.scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", options.scale);
+  const bool vpt = options.original == "vpt";
+  const double scale = options.scale.value_or(vpt ? kVptScale : 1.0);
+  if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
+  if (vpt && !options.scene.empty()) throwBadInput("SCENE {}: the tables of vpt are measured on their own scenes", options.scene);
   if (options.original == "rad") {
     if (!options.scene.empty()) throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
-    return bench::runRadTables(options.common, options.scale);
+    return bench::runRadTables(options.common, scale);
   }
-  options.scene = bench::sceneOrAtrium(options.scene);
-  const Scene scene = loadScene(options.scene);
+  Scene scene;
+  if (!vpt) {
+    options.scene = bench::sceneOrAtrium(options.scene);
+    scene = loadScene(options.scene);
+  }
 
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
   watchForInterrupt();
-  const bench::Tables tables = bench::measureLpvTables({context, programs, scene, options.scale, options.common.quiet});
+  const bench::Tables tables = vpt ? bench::measureVptTables({context, programs, scale, options.common.quiet})
+                                   : bench::measureLpvTables({context, programs, scene, scale, options.common.quiet});
   const std::string& renderer = context.capabilities().renderer;
-  fmt::print("Renderer {}\nScene    {}, {} triangles\n", renderer, scene.file.string(), scene.triangleCount());
+  fmt::print("Renderer {}\n", renderer);
+  if (!vpt) fmt::print("Scene    {}, {} triangles\n", scene.file.string(), scene.triangleCount());
   print(tables);
 
   nlohmann::ordered_json json;
   json["renderer"] = renderer;
   json["host"] = nameOf(host->kind());
   json["original"] = options.original;
-  json["scene"] = options.scene;
-  json["triangles"] = scene.triangleCount();
-  json["scale"] = options.scale;
+  if (!vpt) {
+    json["scene"] = options.scene;
+    json["triangles"] = scene.triangleCount();
+  }
+  json["scale"] = scale;
   json["notes"] = tables.notes;
   json["rows"] = rowsJson(tables, renderer);
   json.update(tables.json);
@@ -133,9 +149,10 @@ int run(Options options) {
 
 Work addBenchTables(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene, "a scene file (default: the atrium; the published scene is Crytek Sponza)");
-  app.add_option("--original", options->original, "whose tables: lpv or rad")->required();
-  app.add_option("--scale", options->scale, "less work on a slow machine, above 0, at most 1: fewer frames or hemicubes; below 0.5 also smaller grids and models")->capture_default_str();
+  app.add_option("SCENE", options->scene, "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
+  app.add_option("--original", options->original, "whose tables: lpv, rad or vpt")->required();
+  app.add_option("--scale", options->scale, "less work on a slow machine, above 0, at most 1. lpv and rad (1): fewer frames or hemicubes; below 0.5 also smaller "
+                                           "grids and models. vpt (0.05): each side and the samples of the published pictures times this");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

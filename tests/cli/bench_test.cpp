@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <map>
 #include <set>
@@ -151,6 +152,12 @@ TEST_F(Bench, WrongOptionsAreRefused) {
   expectRefused("paint", {"paint", "bench --help"});
   expectRefused("tables " + scene, {"--original"});
   expectRefused("tables --original crytek " + scene, {"crytek", "lpv"});
+  expectRefused("tables --original vpt " + scene, {"SCENE", "own scenes"});
+  expectRefused("tables --original vpt --scale 2", {"--scale"});
+  expectRefused("pictures --original vpt -o " + path("x.png") + " " + scene, {"SCENE", "own scenes"});
+  expectRefused("pictures --original vpt --scale 0 -o " + path("x.png"), {"--scale"});
+  expectRefused("pictures --original vpt --fidelity original -o " + path("x.png"), {"--fidelity"});
+  expectRefused("pictures --original lpv --scale 0.5 -o " + path("x.png") + " " + scene, {"--scale"});
   expectRefused("tables --original lpv --colour red " + scene, {"--colour", "bench tables --help"});
   for (const char* scale : {"0", "-1", "1.5", "nan", "half"}) expectRefused("tables --original lpv --scale " + std::string(scale) + " " + scene, {"--scale"});
   expectRefused("tables --original lpv --host vulkan " + scene, {"vulkan", "osmesa"});
@@ -162,6 +169,27 @@ TEST_F(Bench, WrongOptionsAreRefused) {
   expectRefused("pictures --original lpv --exposure 0 -o " + path("x.png") + " " + scene, {"--exposure"});
   expectRefused("pictures --original lpv --camera nowhere -o " + path("x.png") + " " + scene, {"--camera", "nowhere"});
   EXPECT_FALSE(fs::exists(path("x.png")));
+}
+
+TEST_F(Bench, VptTablesHoldWhatWasPublished) {
+  const RunResult result = RUN_LUCERNA("bench tables --original vpt --scale 0.001 --host osmesa --quiet --json " + path("vpt.json"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_NE(result.out.find("Scaled by 0.001: 16x9 pixels instead of 1920x1080"), std::string::npos) << result.out;
+  const double published[] = {14,    61,    445,   3619,  7289,  14580, 15500, 23300, 36500, 38000, 14500,
+                              16700, 21900, 24300, 25800, 15100, 23300, 14500, 18500, 27200, 51300};  // ms, figures 5.8 a to 5.20
+  const auto tables = json("vpt.json");
+  const auto& rows = tables.at("rows");
+  ASSERT_EQ(rows.size(), std::size(published));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].at("published"), published[i]) << rows[i].at("row");
+    EXPECT_GT(rows[i].at("measured").get<double>(), 0.0) << rows[i].at("row");
+    EXPECT_NEAR(rows[i].at("ratio").get<double>(), rows[i].at("measured").get<double>() / published[i], 1e-9 * rows[i].at("ratio").get<double>());
+    const auto& picture = tables.at("pictures")[i];
+    // Multiplied up from the samples that were drawn to the published ones.
+    const double samples = i < 6 ? std::array{1, 8, 64, 512, 1024, 2048}[i] : i < 17 ? 2048 : 1024;
+    const double factor = samples * 1920 * 1080 / (picture.at("spp").get<double>() * 16 * 9);
+    EXPECT_NEAR(rows[i].at("measured").get<double>(), picture.at("ms").get<double>() * factor, 1e-6 * rows[i].at("measured").get<double>());
+  }
 }
 
 }  // namespace

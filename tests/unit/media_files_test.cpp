@@ -69,15 +69,16 @@ TEST(MediaCatalogue, EveryMediumIsPhysicalAndNamed) {
 }
 
 TEST(MediaCatalogue, ThePublishedLiquidsAreTheMeasuredOnesUndiluted) {
-  // The original's eight liquids, from the dilutions: its five decimals are met.
+  // Seven of the original's eight liquids, to a unit of the last digit printed there (the eighth is mistyped in blue). Milk and espresso have six digits.
   const std::pair<const char*, const char*> same[] = {{"milk", "measured regular milk"}, {"espresso", "measured espresso"},       {"sprite", "measured sprite"},
                                                       {"coca cola", "measured coke"},    {"apple juice", "measured apple juice"}, {"grape juice", "measured grape juice"},
                                                       {"chardonnay", "measured chardonnay"}};
   for (const auto& [published, measured] : same) {
     const CatalogueMedium &a = *findCatalogueMedium(published), &b = *findCatalogueMedium(measured);
+    const auto lastDigit = [](double value) { return value >= 10.0 ? 1e-4 : 1e-5; };
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(a.scattering[c], b.scattering[c], 6e-5) << published;
-      EXPECT_NEAR(a.absorption[c], b.absorption[c], 6e-5) << published;
+      EXPECT_NEAR(a.scattering[c], b.scattering[c], lastDigit(a.scattering[c])) << published;
+      EXPECT_NEAR(a.absorption[c], b.absorption[c], lastDigit(a.absorption[c])) << published;
       EXPECT_EQ(a.anisotropy[c], b.anisotropy[c]) << published;
     }
   }

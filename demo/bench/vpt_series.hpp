@@ -1,0 +1,48 @@
+// The published pictures of the VPT original [VPT2024, 5.7] as scenes of ours: what each shows, what was changed for it, what it took there.
+#pragma once
+
+#include "bench/bench.hpp"
+#include "pathtracer/path_tracer.hpp"
+
+#include <string>
+#include <vector>
+
+namespace lucerna::demo::bench {
+
+/// What the original drew with: pixels, graphics card.
+inline constexpr glm::ivec2 kVptSize{1920, 1080};
+inline constexpr const char* kVptGpu = "RTX 3060 Mobile";
+/// Milk and grape juice were drawn "with a lowered index of refraction"; which, the text does not say.
+inline constexpr float kVptLoweredIor = 1.1f;
+
+struct VptPicture {
+  const char* table;    ///< the series it belongs to
+  const char* figure;   ///< such as "5.12 a"
+  const char* label;
+  const char* scene;    ///< in assets/media
+  const char* camera;
+  std::uint32_t samples;
+  double publishedMs;
+  double scattering = 1.0, absorption = 1.0, anisotropy = 1.0;  ///< factors on every medium
+  float ior = 0.0f;     ///< of every boundary; 0: the scene's
+};
+
+const std::vector<VptPicture>& vptPictures();
+
+/// The scene of a picture with its changes made.
+Scene loadVptScene(const VptPicture& picture);
+
+/// The size and samples that --scale makes of the published ones: each side and the samples times `scale`, at least 16x9 and 1.
+glm::ivec2 vptSize(double scale);
+std::uint32_t vptSamples(const VptPicture& picture, double scale);
+
+/// Path traces a picture, at most about so many seconds where that is not 0.
+struct VptResult {
+  Image image;
+  PathTracer::Statistics statistics;
+  double ms = 0.0;  ///< of what was done, compiling and uploading left out
+};
+VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, const VptPicture& picture, const Scene& scene, glm::ivec2 size, std::uint32_t samples,
+                    double mostSeconds);
+
+}  // namespace lucerna::demo::bench
