@@ -16,14 +16,18 @@ uniform int firstRay, rayCount;
 void main() {
   int i = firstRay + int(gl_GlobalInvocationID.x);
   if (i >= rayCount) return;
+  Ray start = rays[i];
+#if OFFSET_ORIGINS  // along the direction, which is that of the surface's normal
+  start.origin = offsetRay(start.origin, normalize(start.direction));
+#endif
 #if COUNT_WORK
   int nodes = 0;
-  BvhTraversal ray = beginRay(rays[i], skipTriangles[i]);
+  BvhTraversal ray = beginRay(start, skipTriangles[i]);
   for (; !isDone(ray); ++nodes) advanceRay(ray, ANY_HIT != 0);
   hits[i] = Hit(float(nodes), ray.hit.triangle, vec2(ray.tested, 0.0));
 #elif ANY_HIT
-  hits[i] = Hit(0.0, anyHit(rays[i], skipTriangles[i]) ? 0u : kNoHit, vec2(0.0));
+  hits[i] = Hit(0.0, anyHit(start, skipTriangles[i]) ? 0u : kNoHit, vec2(0.0));
 #else
-  hits[i] = closestHit(rays[i], skipTriangles[i]);
+  hits[i] = closestHit(start, skipTriangles[i]);
 #endif
 }

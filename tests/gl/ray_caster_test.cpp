@@ -157,9 +157,9 @@ TEST_F(RayCasterOnGl, KeepsIntervalsSkipsMasksAndAnswersAny) {
     for (const GlHit& hit : trace(library(), rayScene, rays, options)) result.push_back(hit.triangle);
     return result;
   };
-  EXPECT_EQ(triangles({.skip = skip}), (std::vector<std::uint32_t>{0, 0, 1, kNoHit, 2, 1, kNoHit}));
-  EXPECT_EQ(triangles({.alphaMasks = true, .skip = skip}), (std::vector<std::uint32_t>{1, 0, 1, kNoHit, 2, 1, kNoHit}));
-  EXPECT_EQ(triangles({.anyHit = true, .skip = skip}), (std::vector<std::uint32_t>{0, 0, 0, kNoHit, 0, 0, kNoHit}));
+  EXPECT_EQ(triangles({.anyHit = false, .alphaMasks = false, .offsetOrigins = false, .skip = skip}), (std::vector<std::uint32_t>{0, 0, 1, kNoHit, 2, 1, kNoHit}));
+  EXPECT_EQ(triangles({.anyHit = false, .alphaMasks = true, .offsetOrigins = false, .skip = skip}), (std::vector<std::uint32_t>{1, 0, 1, kNoHit, 2, 1, kNoHit}));
+  EXPECT_EQ(triangles({.anyHit = true, .alphaMasks = false, .offsetOrigins = false, .skip = skip}), (std::vector<std::uint32_t>{0, 0, 0, kNoHit, 0, 0, kNoHit}));
   const GlHit hit = trace(library(), rayScene, std::span(rays).first(1))[0];
   EXPECT_NEAR(hit.t, 1.0f, 1e-6f);
   EXPECT_NEAR(hit.barycentrics.x, 0.25f, 1e-6f);
@@ -304,6 +304,36 @@ TEST_F(RayCasterOnGl, LetsNothingOutOfAClosedMesh) {
     std::size_t out = 0;
     for (const GlHit& hit : trace(library(), rayScene, rays)) out += hit.triangle == kNoHit;
     EXPECT_EQ(out, 0u) << centre.x;
+  }
+}
+
+TEST_F(RayCasterOnGl, OffsetsAreOfTheScenesOwnScale) {
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    // Points of a ball, rounded to float; rays outwards meet its surface only where rounding left the point inside.
+    Scene scene = bumpyBall(4, glm::dvec3(0.0));
+    for (Vertex& v : scene.vertices) v.position = glm::vec3(scale * glm::normalize(glm::dvec3(v.position)));
+    const RayScene rayScene(scene, capabilities());
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    std::vector<GlRay> rays(20000);
+    for (GlRay& ray : rays) {
+      const std::size_t t = random() % scene.triangleCount();
+      const auto corner = [&](std::size_t k) { return glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position); };
+      const double u = std::sqrt(unit(random)), v = unit(random);
+      ray.origin = (1.0 - u) * corner(0) + u * (1.0 - v) * corner(1) + u * v * corner(2);
+      const glm::dvec3 normal = glm::normalize(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+      ray.direction = glm::dot(normal, corner(0)) > 0.0 ? normal : -normal;
+    }
+    const auto met = [&](bool offset) {
+      std::size_t n = 0;
+      for (const GlHit& hit : trace(library(), rayScene, rays, {.anyHit = true, .alphaMasks = false, .offsetOrigins = offset, .skip = {}})) n += hit.triangle != kNoHit;
+      return n;
+    };
+    EXPECT_GT(met(false), 2000u) << scale;
+    EXPECT_EQ(met(true), 0u) << scale;
+    // And not so far that a wall a ten thousandth of the ball away is passed.
+    for (GlRay& ray : rays) ray.origin -= 1e-4f * static_cast<float>(scale) * ray.direction;
+    EXPECT_EQ(met(true), rays.size()) << scale;
   }
 }
 
