@@ -36,6 +36,7 @@ std::vector<std::pair<std::string, long>> Capabilities::limits() const {
   return {{"texture size", maxTextureSize},
           {"3D texture size", max3dTextureSize},
           {"array texture layers", maxArrayTextureLayers},
+          {"buffer texels", maxTextureBufferSize},
           {"colour attachments", maxColorAttachments},
           {"texture units a stage", maxTextureImageUnits},
           {"image units", maxImageUnits},
@@ -68,6 +69,7 @@ Context::Context() {
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &c.maxTextureSize);
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &c.max3dTextureSize);
   glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &c.maxArrayTextureLayers);
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &c.maxTextureBufferSize);
   glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &c.maxShaderStorageBlockSize);
   glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &c.maxComputeSharedMemory);
   glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &c.maxComputeInvocations);

@@ -20,7 +20,7 @@ struct Capabilities {
   bool shaderAtomicFloat = false;   ///< NV_shader_atomic_float: atomic LPV injection on r32f
   bool shaderAtomicFp16Vector = false;  ///< NV_shader_atomic_fp16_vector: atomic LPV injection on rgba16f
 
-  GLint maxTextureSize = 0, max3dTextureSize = 0, maxArrayTextureLayers = 0;
+  GLint maxTextureSize = 0, max3dTextureSize = 0, maxArrayTextureLayers = 0, maxTextureBufferSize = 0;
   GLint maxShaderStorageBlockSize = 0, maxComputeSharedMemory = 0, maxComputeInvocations = 0;
   GLint maxTextureImageUnits = 0, maxImageUnits = 0, maxColorAttachments = 0, maxSamples = 0;
   GLint maxGeometryOutputVertices = 0;

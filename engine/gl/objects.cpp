@@ -191,6 +191,22 @@ std::vector<glm::uvec4> Texture::readWords() const {
   return words;
 }
 
+BufferTexture::BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data)
+    : buffer_(name, bytes, data, GL_STATIC_DRAW) {
+  GLuint id = 0;
+  glGenTextures(1, &id);
+  texture_ = decltype(texture_)(id);
+  glActiveTexture(GL_TEXTURE0 + kEditUnit);
+  glBindTexture(GL_TEXTURE_BUFFER, id);
+  label(GL_TEXTURE, id, name);
+  glTexBuffer(GL_TEXTURE_BUFFER, format, buffer_.id());
+}
+
+void BufferTexture::bind(GLuint unit) const {
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_BUFFER, texture_.id());
+}
+
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture) {
   std::vector<std::byte> zeros;
   for (const Texture* texture : textures) {

@@ -125,6 +125,24 @@ class Texture {
   int levels_ = 1;
 };
 
+/// A buffer that shaders read as texels (samplerBuffer): on llvmpipe three times as fast to gather from as a shader storage block.
+class BufferTexture {
+ public:
+  BufferTexture() = default;
+  /// format: GL_RGBA32F, GL_RGBA32UI, ...; `bytes` above 0.
+  BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data);
+  BufferTexture(BufferTexture&&) noexcept = default;
+  BufferTexture& operator=(BufferTexture&&) noexcept = default;
+
+  std::size_t bytes() const { return buffer_.bytes(); }
+  void upload(std::size_t offset, std::size_t bytes, const void* data) { buffer_.upload(offset, bytes, data); }
+  void bind(GLuint unit) const;
+
+ private:
+  Buffer buffer_;
+  Handle<detail::deleteTexture> texture_;
+};
+
 /// Sets every texel of every level of every listed texture to zero: ARB_clear_texture where there is, else an upload of zeros.
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture);
 

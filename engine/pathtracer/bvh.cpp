@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <limits>
+#include <optional>
+#include <thread>
 
 namespace lucerna {
 
@@ -18,16 +22,32 @@ using shared::BvhTriangle;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kBins = 16;
+constexpr std::size_t kParallelFrom = 4096;  // references below which another thread is not worth its start
 
 struct Box {
   glm::vec3 min{kInfinity}, max{-kInfinity};
   void add(const glm::vec3& p) { min = glm::min(min, p), max = glm::max(max, p); }
   void add(const Box& b) { min = glm::min(min, b.min), max = glm::max(max, b.max); }
-  float halfArea() const {
-    const glm::vec3 e = max - min;
-    return e.x < 0.0f ? 0.0f : e.x * e.y + e.y * e.z + e.z * e.x;
+  bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+  double halfArea() const {
+    const glm::dvec3 e = glm::dvec3(max) - glm::dvec3(min);
+    return empty() ? 0.0 : e.x * e.y + e.y * e.z + e.z * e.x;
   }
   glm::vec3 centre() const { return 0.5f * min + 0.5f * max; }
+};
+
+Box intersection(const Box& a, const Box& b) { return {glm::max(a.min, b.min), glm::min(a.max, b.max)}; }
+
+Box boxOf(const BvhTriangle& t) {
+  Box box;
+  box.add(t.a), box.add(t.b), box.add(t.c);
+  return box;
+}
+
+// A reference's box is that of the part of its triangle that lies in its node.
+struct Reference {
+  Box box;
+  std::uint32_t triangle;
 };
 
 // The scene's corners may be anything; what is kept is finite and has an area.
@@ -48,167 +68,466 @@ glm::dvec3 chooseOrigin(const Box& bounds) {
   return origin;
 }
 
-class Builder {
- public:
-  Builder(const Scene& scene, const BvhSettings& settings, Bvh& result) : settings_(settings), result_(result) { collect(scene); }
+// The triangles that rays can hit, in the space of the hierarchy, in the order of the scene.
+struct Triangles {
+  std::vector<BvhTriangle> kept;
+  glm::dvec3 origin;
+  float magnitude = 0.0f;
+};
 
-  void build() {
-    result_.nodes.emplace_back();
-    std::vector<Reference> all = std::move(references_);
-    Box box;
-    for (const Reference& r : all) box.add(r.box);
-    rootArea_ = box.halfArea();
-    if (all.size() <= static_cast<std::size_t>(settings_.leafTriangles)) {
-      setChild(0, 0, all.empty() ? Box{} : box, all.empty() ? BVH_LEAF : makeLeaf(all, 0, all.size(), 1));
-      setChild(0, 1, Box{}, BVH_LEAF);
-      result_.statistics.sahCost = 1.0 + static_cast<double>(all.size());
-    } else {
-      split(0, all, 0, all.size(), 0, box);
+Triangles collect(const Scene& scene) {
+  Triangles result;
+  std::vector<bool> masked(scene.triangleCount(), false);
+  for (const Mesh& mesh : scene.meshes)
+    if (scene.materials[static_cast<std::size_t>(mesh.material)].alphaMasked)
+      std::fill_n(masked.begin() + mesh.firstIndex / 3, mesh.indexCount / 3, true);
+  Box bounds;
+  for (std::size_t t = 0; t < scene.triangleCount(); ++t) {
+    BvhTriangle triangle{};
+    const auto corner = [&](std::size_t k) { return scene.vertices[scene.indices[3 * t + k]].position; };
+    triangle.a = corner(0), triangle.b = corner(1), triangle.c = corner(2);
+    if (!hasArea(triangle.a, triangle.b, triangle.c)) continue;
+    triangle.id = static_cast<std::uint32_t>(t) | (masked[t] ? BVH_TRIANGLE_MASKED : 0u);
+    bounds.add(boxOf(triangle));
+    result.kept.push_back(triangle);
+  }
+  result.origin = chooseOrigin(bounds);
+  for (BvhTriangle& triangle : result.kept)
+    for (glm::vec3* corner : {&triangle.a, &triangle.b, &triangle.c}) {
+      *corner = glm::vec3(glm::dvec3(*corner) - result.origin);
+      for (int k = 0; k < 3; ++k) result.magnitude = std::max(result.magnitude, std::abs((*corner)[k]));
     }
+  return result;
+}
+
+// ---------------------------------------------------------------------------------------------------- binary hierarchy
+
+struct BinaryNode {
+  Box box;
+  std::uint32_t left = 0, right = 0;  // 0, 0: a leaf of one reference
+  std::uint32_t triangle = 0;
+  std::uint32_t references = 1;       // of the subtree
+  bool leaf() const { return right == 0; }
+};
+
+class BinaryBuilder {
+ public:
+  BinaryBuilder(const std::vector<BvhTriangle>& triangles, const BvhSettings& settings) : triangles_(triangles) {
+    spareThreads_ = (settings.threads > 0 ? settings.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))) - 1;
+    std::vector<Reference> all;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      all.push_back({boxOf(triangles[i]), static_cast<std::uint32_t>(i)});
+      rootBox_.add(all.back().box);
+    }
+    const auto spare = static_cast<std::size_t>(settings.splitBudget * static_cast<double>(all.size()));
+    nodes_.resize(std::max<std::size_t>(1, 2 * (all.size() + spare)));
+    if (!all.empty()) build(std::move(all), spare, 1);
+  }
+  /// 0 is the root.
+  const std::vector<BinaryNode>& nodes() const { return nodes_; }
+
+ private:
+  struct Cut {
+    double cost = std::numeric_limits<double>::infinity();
+    int axis = -1, bin = 0;
+    Box left, right;
+  };
+
+  static Box boxOfAll(const std::vector<Reference>& references) {
+    Box box;
+    for (const Reference& r : references) box.add(r.box);
+    return box;
+  }
+
+  std::uint32_t build(std::vector<Reference> references, std::size_t spare, int depth) {
+    const std::uint32_t index = used_++;
+    BinaryNode& node = nodes_[index];
+    node.box = boxOfAll(references);
+    if (references.size() == 1) {
+      node.triangle = references[0].triangle;
+      return index;
+    }
+    std::vector<Reference> left, right;
+    divide(references, node.box, spare, depth, left, right);
+    const std::size_t added = left.size() + right.size() - references.size();
+    CHECK(!left.empty() && !right.empty() && added <= spare, "{} + {} references of {}, {} to spare", left.size(), right.size(), references.size(), spare);
+    references = {};
+    const std::size_t leftSpare = (spare - added) * left.size() / (left.size() + right.size()), rightSpare = spare - added - leftSpare;
+    std::future<std::uint32_t> other;
+    if (left.size() >= kParallelFrom && right.size() >= kParallelFrom && spareThreads_.fetch_sub(1) > 0) {
+      other = std::async(std::launch::async, [&] { return build(std::move(left), leftSpare, depth + 1); });
+      node.right = build(std::move(right), rightSpare, depth + 1);
+      node.left = other.get();
+      ++spareThreads_;
+    } else {
+      if (left.size() >= kParallelFrom && right.size() >= kParallelFrom) ++spareThreads_;
+      node.left = build(std::move(left), leftSpare, depth + 1);
+      node.right = build(std::move(right), rightSpare, depth + 1);
+    }
+    node.references = nodes_[node.left].references + nodes_[node.right].references;
+    return index;
+  }
+
+  // [Wald2007]
+  static int binOf(float centre, float low, float width) {
+    return std::clamp(static_cast<int>((centre - low) / width * static_cast<float>(kBins)), 0, kBins - 1);
+  }
+
+  static Cut bestObjectCut(const std::vector<Reference>& references, const Box& centres) {
+    Cut best;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float low = centres.min[axis], width = centres.max[axis] - low;
+      if (!(width > 0.0f)) continue;
+      std::array<Box, kBins> boxes{};
+      std::array<std::size_t, kBins> counts{};
+      for (const Reference& r : references) {
+        const auto bin = static_cast<std::size_t>(binOf(r.box.centre()[axis], low, width));
+        boxes[bin].add(r.box);
+        ++counts[bin];
+      }
+      improve(best, axis, boxes, counts, counts);
+    }
+    return best;
+  }
+
+  // `enter`: how many references begin in a bin, `leave`: how many end there.
+  static void improve(Cut& best, int axis, const std::array<Box, kBins>& boxes, const std::array<std::size_t, kBins>& enter,
+                      const std::array<std::size_t, kBins>& leave) {
+    std::array<Box, kBins> rightBoxes{};
+    std::array<std::size_t, kBins> rightCounts{};
+    Box sum;
+    std::size_t n = 0;
+    for (std::size_t b = kBins - 1; b > 0; --b) {
+      sum.add(boxes[b]), n += leave[b];
+      rightBoxes[b] = sum, rightCounts[b] = n;
+    }
+    sum = {}, n = 0;
+    for (std::size_t b = 0; b + 1 < kBins; ++b) {
+      sum.add(boxes[b]), n += enter[b];
+      if (n == 0 || rightCounts[b + 1] == 0) continue;
+      const double cost = sum.halfArea() * static_cast<double>(n) + rightBoxes[b + 1].halfArea() * static_cast<double>(rightCounts[b + 1]);
+      if (cost < best.cost) best = {cost, axis, static_cast<int>(b), sum, rightBoxes[b + 1]};
+    }
+  }
+
+  // The part of a reference between two planes across an axis, rounded outwards; nothing where only rounding put it there.
+  std::optional<Box> clip(const Reference& r, int axis, float low, float high) const {
+    const BvhTriangle& t = triangles_[r.triangle];
+    const std::array<glm::dvec3, 3> corners{t.a, t.b, t.c};
+    glm::dvec3 min(1e300), max(-1e300);
+    const auto add = [&](const glm::dvec3& p) { min = glm::min(min, p), max = glm::max(max, p); };
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::dvec3 &p = corners[i], &q = corners[(i + 1) % 3];
+      if (p[axis] >= low && p[axis] <= high) add(p);
+      for (const double plane : {static_cast<double>(low), static_cast<double>(high)})
+        if ((p[axis] < plane && q[axis] > plane) || (p[axis] > plane && q[axis] < plane)) {
+          glm::dvec3 x = p + (plane - p[axis]) / (q[axis] - p[axis]) * (q - p);
+          x[axis] = plane;
+          add(x);
+        }
+    }
+    Box box;
+    for (int k = 0; k < 3; ++k) {
+      box.min[k] = std::nextafter(static_cast<float>(min[k]), -kInfinity);
+      box.max[k] = std::nextafter(static_cast<float>(max[k]), kInfinity);
+    }
+    Box slab = r.box;
+    slab.min[axis] = std::max(slab.min[axis], low), slab.max[axis] = std::min(slab.max[axis], high);
+    box = intersection(box, slab);
+    return box.empty() ? std::nullopt : std::optional(box);
+  }
+
+  static float plane(const Box& box, int axis, int k) {
+    if (k <= 0) return box.min[axis];
+    if (k >= kBins) return box.max[axis];
+    return static_cast<float>(box.min[axis] + (static_cast<double>(box.max[axis]) - box.min[axis]) * k / kBins);
+  }
+
+  // [Stich2009 section 4.1]
+  Cut bestSpatialCut(const std::vector<Reference>& references, const Box& box) const {
+    Cut best;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float low = box.min[axis], width = box.max[axis] - low;
+      if (!(width > 0.0f)) continue;
+      std::array<Box, kBins> boxes{};
+      std::array<std::size_t, kBins> enter{}, leave{};
+      for (const Reference& r : references) {
+        const int first = binOf(r.box.min[axis], low, width), last = std::max(first, binOf(r.box.max[axis], low, width));
+        ++enter[static_cast<std::size_t>(first)], ++leave[static_cast<std::size_t>(last)];
+        for (int b = first; b <= last; ++b) {
+          if (first == last) boxes[static_cast<std::size_t>(b)].add(r.box);
+          else if (const auto part = clip(r, axis, plane(box, axis, b), plane(box, axis, b + 1))) boxes[static_cast<std::size_t>(b)].add(*part);
+        }
+      }
+      improve(best, axis, boxes, enter, leave);
+    }
+    return best;
+  }
+
+  // Splits those references that the plane crosses where that costs less than leaving them on one side whole [Stich2009 section 4.4].
+  bool divideInSpace(const std::vector<Reference>& references, const Box& box, const Cut& cut, std::size_t spare, std::vector<Reference>& left,
+                     std::vector<Reference>& right) const {
+    const float at = plane(box, cut.axis, cut.bin + 1);
+    Box leftBox = cut.left, rightBox = cut.right;
+    std::vector<const Reference*> crossing;
+    for (const Reference& r : references) {
+      if (r.box.max[cut.axis] <= at) left.push_back(r), leftBox.add(r.box);
+      else if (r.box.min[cut.axis] >= at) right.push_back(r), rightBox.add(r.box);
+      else crossing.push_back(&r);
+    }
+    std::size_t nLeft = left.size() + crossing.size(), nRight = right.size() + crossing.size();
+    for (const Reference* r : crossing) {
+      Box leftWhole = leftBox, rightWhole = rightBox;
+      leftWhole.add(r->box), rightWhole.add(r->box);
+      const auto cost = [](const Box& a, std::size_t n, const Box& b, std::size_t m) {
+        return a.halfArea() * static_cast<double>(n) + b.halfArea() * static_cast<double>(m);
+      };
+      const double both = cost(leftBox, nLeft, rightBox, nRight), onlyLeft = cost(leftWhole, nLeft, rightBox, nRight - 1),
+                   onlyRight = cost(leftBox, nLeft - 1, rightWhole, nRight);
+      const auto partLeft = clip(*r, cut.axis, r->box.min[cut.axis], at), partRight = clip(*r, cut.axis, at, r->box.max[cut.axis]);
+      if (both < std::min(onlyLeft, onlyRight) && spare > 0 && partLeft && partRight) {
+        left.push_back({*partLeft, r->triangle}), right.push_back({*partRight, r->triangle});
+        --spare;
+      } else if (onlyLeft < onlyRight) {
+        left.push_back(*r), leftBox = leftWhole, --nRight;
+      } else {
+        right.push_back(*r), rightBox = rightWhole, --nLeft;
+      }
+    }
+    const bool good = !left.empty() && !right.empty() && left.size() < references.size() && right.size() < references.size();
+    if (!good) left.clear(), right.clear();
+    return good;
+  }
+
+  void divide(std::vector<Reference>& references, const Box& box, std::size_t spare, int depth, std::vector<Reference>& left, std::vector<Reference>& right) const {
+    Box centres;
+    for (const Reference& r : references) centres.add(r.box.centre());
+    // Once halving is all that keeps the depth below its bound, halve.
+    const bool deep = depth + 1 + static_cast<int>(std::bit_width(references.size() + spare)) >= BVH_MAX_DEPTH;
+    if (!deep) {
+      const Cut object = bestObjectCut(references, centres);
+      const Box both = object.axis >= 0 ? intersection(object.left, object.right) : box;
+      if (spare > 0 && !both.empty() && both.halfArea() > 1e-5 * rootBox_.halfArea()) {
+        const Cut space = bestSpatialCut(references, box);
+        if (space.cost < object.cost && divideInSpace(references, box, space, spare, left, right)) return;
+      }
+      if (object.axis >= 0) {
+        const float low = centres.min[object.axis], width = centres.max[object.axis] - low;
+        for (const Reference& r : references) (binOf(r.box.centre()[object.axis], low, width) <= object.bin ? left : right).push_back(r);
+        return;
+      }
+    }
+    const glm::vec3 e = centres.max - centres.min;
+    const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
+    const auto middle = references.begin() + static_cast<std::ptrdiff_t>(references.size() / 2);
+    std::nth_element(references.begin(), middle, references.end(), [&](const Reference& a, const Reference& b) {
+      const float ca = a.box.centre()[axis], cb = b.box.centre()[axis];
+      return ca != cb ? ca < cb : a.triangle < b.triangle;
+    });
+    left.assign(references.begin(), middle), right.assign(middle, references.end());
+  }
+
+  const std::vector<BvhTriangle>& triangles_;
+  Box rootBox_;
+  std::vector<BinaryNode> nodes_;
+  std::atomic<std::uint32_t> used_{0};
+  std::atomic<int> spareThreads_{0};
+};
+
+// ---------------------------------------------------------------------------------------------------- eight children
+
+// Writes the boxes of a node's children; a child that is missing has an empty box.
+void encodeBoxes(BvhNode& node, const std::array<Box, BVH_WIDTH>& children) {
+  Box all;
+  for (const Box& child : children) all.add(child);
+  if (all.empty()) all.add(glm::vec3(0.0f));
+  node.origin = all.min;
+  node.exponents &= 0xff000000u;
+  std::fill(std::begin(node.low), std::end(node.low), 0u), std::fill(std::begin(node.high), std::end(node.high), 0u);
+  for (int axis = 0; axis < 3; ++axis) {
+    // Boxes of one grid are exact in double: a float plus 0..255 times a power of two.
+    const double extent = static_cast<double>(all.max[axis]) - all.min[axis];
+    int exponent = -126;
+    if (extent > 0.0) exponent = std::clamp(static_cast<int>(std::ceil(std::log2(extent / 255.0))), -126, 126);
+    while (std::ldexp(255.0, exponent) < extent) ++exponent;
+    node.exponents |= static_cast<std::uint32_t>(exponent + 127) << 8 * axis;
+    for (std::size_t k = 0; k < BVH_WIDTH; ++k) {
+      if (children[k].empty()) continue;
+      const auto steps = [&](float x) { return std::ldexp(static_cast<double>(x) - all.min[axis], -exponent); };
+      const auto low = static_cast<std::uint32_t>(std::clamp(std::floor(steps(children[k].min[axis])), 0.0, 255.0));
+      const auto high = static_cast<std::uint32_t>(std::clamp(std::ceil(steps(children[k].max[axis])), 0.0, 255.0));
+      const std::size_t word = 2 * static_cast<std::size_t>(axis) + k / 4, shift = 8 * (k % 4);
+      node.low[word] |= low << shift;
+      node.high[word] |= high << shift;
+    }
+  }
+}
+
+// Chooses which nodes of the binary hierarchy become wide nodes and leaves, for the least expected cost [Ylitie2017 section 3.1].
+class Collapse {
+ public:
+  Collapse(const std::vector<BinaryNode>& binary, const std::vector<BvhTriangle>& triangles, Bvh& result)
+      : binary_(binary), triangles_(triangles), result_(result) {
+    result_.nodes.emplace_back();
+    result_.statistics.depth = 1;
+    if (triangles.empty()) {
+      encodeBoxes(result_.nodes[0], {});
+      return;
+    }
+    choices_.resize(binary.size());
+    choose(0);
+    emit(0, 0, 1);
   }
 
  private:
-  struct Reference {
-    Box box;
-    std::uint32_t triangle;  // into kept_
+  static constexpr std::size_t kMaxRoots = BVH_WIDTH - 1;
+  // cost[i - 1]: of a subtree as a forest of at most i trees; left[i - 1]: how many of those are in its left child, 0: one tree less is as good.
+  struct Choice {
+    std::array<float, kMaxRoots> cost;
+    std::array<std::uint8_t, kMaxRoots> left;
+    std::uint8_t childrenOfLeft;  // of the eight that it has as a wide node
+    bool leaf;
   };
 
-  void collect(const Scene& scene) {
-    Box bounds;
-    std::vector<bool> masked(scene.triangleCount(), false);
-    for (const Mesh& mesh : scene.meshes)
-      if (scene.materials[static_cast<std::size_t>(mesh.material)].alphaMasked)
-        std::fill_n(masked.begin() + mesh.firstIndex / 3, mesh.indexCount / 3, true);
-    const auto corner = [&](std::size_t i) { return scene.vertices[scene.indices[i]].position; };
-    std::vector<std::uint32_t> kept;
-    for (std::size_t t = 0; t < scene.triangleCount(); ++t) {
-      const glm::vec3 a = corner(3 * t), b = corner(3 * t + 1), c = corner(3 * t + 2);
-      if (!hasArea(a, b, c)) continue;
-      kept.push_back(static_cast<std::uint32_t>(t));
-      bounds.add(a), bounds.add(b), bounds.add(c);
+  void choose(std::uint32_t n) {
+    const BinaryNode& node = binary_[n];
+    Choice& c = choices_[n];
+    const auto area = static_cast<float>(node.box.halfArea());
+    const float leafCost = node.references <= BVH_MAX_LEAF ? area * static_cast<float>(node.references) * kBvhTriangleCost : kInfinity;
+    if (node.leaf()) {
+      c.cost.fill(leafCost), c.left.fill(0), c.leaf = true;
+      return;
     }
-    result_.statistics.triangles = kept.size();
-    result_.statistics.degenerate = scene.triangleCount() - kept.size();
-    result_.origin = chooseOrigin(bounds);
-    const auto moved = [&](std::size_t i) { return glm::vec3(glm::dvec3(corner(i)) - result_.origin); };
-    float magnitude = 0.0f;
-    for (const std::uint32_t t : kept) {
-      BvhTriangle triangle{};
-      triangle.a = moved(3 * t), triangle.b = moved(3 * t + 1), triangle.c = moved(3 * t + 2);
-      triangle.id = t | (masked[t] ? BVH_TRIANGLE_MASKED : 0u);
-      Box box;
-      box.add(triangle.a), box.add(triangle.b), box.add(triangle.c);
-      for (int k = 0; k < 3; ++k) magnitude = std::max({magnitude, std::abs(box.min[k]), std::abs(box.max[k])});
-      references_.push_back({box, static_cast<std::uint32_t>(kept_.size())});
-      kept_.push_back(triangle);
-    }
-    result_.header.magnitude = magnitude;
-    // A ray that runs in a face of a box must not miss it: all boxes are a little larger [Ize2013].
-    padding_ = magnitude * 0x1p-21f;
-  }
-
-  void setChild(std::size_t node, int side, const Box& box, std::uint32_t child) {
-    BvhNode& n = result_.nodes[node];
-    (side ? n.minimum1 : n.minimum0) = box.min - padding_;
-    (side ? n.maximum1 : n.maximum0) = box.max + padding_;
-    (side ? n.child1 : n.child0) = child;
-  }
-
-  std::uint32_t makeLeaf(const std::vector<Reference>& references, std::size_t begin, std::size_t end, int depth) {
-    const auto first = static_cast<std::uint32_t>(result_.triangles.size());
-    for (std::size_t i = begin; i < end; ++i) result_.triangles.push_back(kept_[references[i].triangle]);
-    ++result_.statistics.leaves;
-    result_.statistics.depth = std::max(result_.statistics.depth, depth);
-    return BVH_LEAF | static_cast<std::uint32_t>(end - begin - 1) << BVH_LEAF_COUNT_SHIFT | first;
-  }
-
-  // Where [begin, end) is best cut: references are reordered, the cut is returned. `end`: they are best left in a leaf.
-  std::size_t partition(std::vector<Reference>& all, std::size_t begin, std::size_t end, int depth, const Box& box, bool mayBeLeaf) {
-    const std::size_t count = end - begin;
-    Box centres;
-    for (std::size_t i = begin; i < end; ++i) centres.add(all[i].box.centre());
-    double best = mayBeLeaf ? static_cast<double>(count) * static_cast<double>(box.halfArea()) : 1e300;
-    int bestAxis = -1, bestBin = 0;
-    const auto binOf = [&](const Reference& r, int axis) {
-      const float low = centres.min[axis], width = centres.max[axis] - low;
-      return std::clamp(static_cast<int>((r.box.centre()[axis] - low) / width * static_cast<float>(kBins)), 0, kBins - 1);
+    choose(node.left), choose(node.right);
+    const Choice &l = choices_[node.left], &r = choices_[node.right];
+    const auto distribute = [&](std::size_t roots) {
+      std::pair<float, std::size_t> best{kInfinity, 0};
+      for (std::size_t k = 1; k < roots; ++k)
+        if (k <= kMaxRoots && roots - k <= kMaxRoots) best = std::min(best, std::pair{l.cost[k - 1] + r.cost[roots - k - 1], k});
+      return best;
     };
-    // Once halving is all that keeps the depth below its bound, halve.
-    const bool deep = depth + 1 + static_cast<int>(std::bit_width(count)) >= BVH_MAX_DEPTH;
-    for (int axis = 0; axis < 3 && !deep; ++axis) {
-      if (!(centres.max[axis] > centres.min[axis])) continue;
-      std::array<Box, kBins> boxes{};
-      std::array<std::size_t, kBins> counts{};
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto bin = static_cast<std::size_t>(binOf(all[i], axis));
-        boxes[bin].add(all[i].box);
-        ++counts[bin];
-      }
-      std::array<double, kBins> right{};
-      Box sum;
-      std::size_t n = 0;
-      for (std::size_t b = kBins - 1; b > 0; --b) {
-        sum.add(boxes[b]), n += counts[b];
-        right[b] = static_cast<double>(sum.halfArea()) * static_cast<double>(n);
-      }
-      sum = {}, n = 0;
-      for (std::size_t b = 0; b + 1 < kBins; ++b) {
-        sum.add(boxes[b]), n += counts[b];
-        if (n == 0 || n == count) continue;
-        const double cost = static_cast<double>(box.halfArea()) + static_cast<double>(sum.halfArea()) * static_cast<double>(n) + right[b + 1];
-        if (cost < best) best = cost, bestAxis = axis, bestBin = static_cast<int>(b);
-      }
+    const auto [childrenCost, childrenOfLeft] = distribute(BVH_WIDTH);
+    c.childrenOfLeft = static_cast<std::uint8_t>(childrenOfLeft);
+    c.leaf = leafCost <= childrenCost + area;
+    c.cost[0] = c.leaf ? leafCost : childrenCost + area;
+    c.left[0] = 0;
+    for (std::size_t i = 2; i <= kMaxRoots; ++i) {
+      const auto [cost, left] = distribute(i);
+      const bool better = cost < c.cost[i - 2];
+      c.cost[i - 1] = better ? cost : c.cost[i - 2];
+      c.left[i - 1] = better ? static_cast<std::uint8_t>(left) : 0;
     }
-    const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin), last = all.begin() + static_cast<std::ptrdiff_t>(end);
-    if (bestAxis >= 0) {
-      const auto cut = std::partition(first, last, [&](const Reference& r) { return binOf(r, bestAxis) <= bestBin; });
-      return static_cast<std::size_t>(cut - all.begin());
-    }
-    if (mayBeLeaf) return end;
-    const glm::vec3 e = centres.max - centres.min;
-    const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
-    const std::size_t middle = begin + count / 2;
-    std::nth_element(first, all.begin() + static_cast<std::ptrdiff_t>(middle), last,
-                     [&](const Reference& a, const Reference& b) { return a.box.centre()[axis] < b.box.centre()[axis]; });
-    return middle;
   }
 
-  void split(std::size_t node, std::vector<Reference>& all, std::size_t begin, std::size_t end, int depth, const Box& box) {
-    const std::size_t cut = partition(all, begin, end, depth, box, false);
-    result_.statistics.sahCost += static_cast<double>(box.halfArea() / rootArea_);
-    for (const int side : {0, 1}) {
-      const std::size_t from = side ? cut : begin, to = side ? end : cut, count = to - from;
-      Box childBox;
-      for (std::size_t i = from; i < to; ++i) childBox.add(all[i].box);
-      const bool small = count <= static_cast<std::size_t>(settings_.leafTriangles);
-      if (small && (count == 1 || partition(all, from, to, depth + 1, childBox, true) == to)) {
-        setChild(node, side, childBox, makeLeaf(all, from, to, depth + 1));
-        result_.statistics.sahCost += static_cast<double>(childBox.halfArea() / rootArea_) * static_cast<double>(count);
+  // The roots of a subtree's forest of at most `roots` trees.
+  void gather(std::uint32_t n, std::size_t roots, std::vector<std::uint32_t>& out) const {
+    const Choice& c = choices_[n];
+    while (roots > 1 && c.left[roots - 1] == 0) --roots;
+    if (roots == 1) return out.push_back(n);
+    gather(binary_[n].left, c.left[roots - 1], out);
+    gather(binary_[n].right, roots - c.left[roots - 1], out);
+  }
+
+  void gatherTriangles(std::uint32_t n, std::vector<std::uint32_t>& out) const {
+    if (binary_[n].leaf()) return out.push_back(binary_[n].triangle);
+    gatherTriangles(binary_[n].left, out), gatherTriangles(binary_[n].right, out);
+  }
+
+  // A child's place says when rays visit it: those whose direction has the signs s = place bits (4: x, 2: y, 1: z; set: negative) visit it
+  // first, so it should lie far back against such directions. Greedily by what a place gains.
+  std::array<int, BVH_WIDTH> arrange(const std::vector<std::uint32_t>& children, const Box& box) const {
+    std::array<int, BVH_WIDTH> childAt;
+    childAt.fill(-1);
+    std::vector<bool> placed(children.size(), false);
+    for (std::size_t round = 0; round < children.size(); ++round) {
+      float best = kInfinity;
+      std::size_t bestChild = 0, bestPlace = 0;
+      for (std::size_t i = 0; i < children.size(); ++i) {
+        if (placed[i]) continue;
+        const glm::vec3 d = binary_[children[i]].box.centre() - box.centre();
+        for (std::size_t place = 0; place < BVH_WIDTH; ++place) {
+          if (childAt[place] >= 0) continue;
+          const float cost = (place & 4 ? -d.x : d.x) + (place & 2 ? -d.y : d.y) + (place & 1 ? -d.z : d.z);
+          if (cost < best || best == kInfinity) best = cost, bestChild = i, bestPlace = place;
+        }
+      }
+      placed[bestChild] = true;
+      childAt[bestPlace] = static_cast<int>(bestChild);
+    }
+    return childAt;
+  }
+
+  void emit(std::uint32_t n, std::size_t index, int depth) {
+    const Choice& c = choices_[n];
+    std::vector<std::uint32_t> children;
+    if (c.leaf) {
+      children.push_back(n);  // the root alone: everything fits a leaf
+    } else {
+      gather(binary_[n].left, c.childrenOfLeft, children);
+      gather(binary_[n].right, BVH_WIDTH - std::size_t{c.childrenOfLeft}, children);
+    }
+    CHECK(depth <= BVH_MAX_DEPTH && children.size() <= BVH_WIDTH, "depth {}, {} children", depth, children.size());
+    BvhStatistics& statistics = result_.statistics;
+    statistics.depth = std::max(statistics.depth, depth);
+    const double rootArea = binary_[0].box.halfArea(), area = rootArea > 0.0 ? binary_[n].box.halfArea() / rootArea : 1.0;
+    statistics.sahCost += area;
+
+    const std::array<int, BVH_WIDTH> childAt = arrange(children, binary_[n].box);
+    BvhNode node{};
+    node.firstChild = static_cast<std::uint32_t>(result_.nodes.size());
+    node.firstTriangle = static_cast<std::uint32_t>(result_.triangles.size());
+    std::array<Box, BVH_WIDTH> boxes;
+    std::vector<std::uint32_t> inner;
+    for (std::size_t k = 0; k < BVH_WIDTH; ++k) {
+      if (childAt[k] < 0) continue;
+      const std::uint32_t child = children[static_cast<std::size_t>(childAt[k])];
+      boxes[k] = binary_[child].box;
+      std::uint32_t meta = 0;
+      if (choices_[child].leaf) {
+        std::vector<std::uint32_t> leaf;
+        gatherTriangles(child, leaf);
+        // Two parts of one triangle in a leaf are that triangle once.
+        std::sort(leaf.begin(), leaf.end());
+        leaf.erase(std::unique(leaf.begin(), leaf.end()), leaf.end());
+        meta = ((1u << leaf.size()) - 1u) << 5 | (static_cast<std::uint32_t>(result_.triangles.size()) - node.firstTriangle);
+        for (const std::uint32_t t : leaf) result_.triangles.push_back(triangles_[t]);
+        ++statistics.leaves;
+        statistics.sahCost += kBvhTriangleCost * static_cast<double>(leaf.size()) * (rootArea > 0.0 ? boxes[k].halfArea() / rootArea : 1.0);
       } else {
-        const std::size_t child = result_.nodes.size();
-        result_.nodes.emplace_back();
-        setChild(node, side, childBox, static_cast<std::uint32_t>(child));
-        split(child, all, from, to, depth + 1, childBox);
+        meta = 1u << 5 | static_cast<std::uint32_t>(24 + k);
+        node.exponents |= 1u << (24 + k);
+        inner.push_back(child);
       }
+      node.meta[k / 4] |= meta << 8 * (k % 4);
     }
+    encodeBoxes(node, boxes);
+    result_.nodes[index] = node;
+    result_.nodes.resize(result_.nodes.size() + inner.size());
+    for (std::size_t i = 0; i < inner.size(); ++i) emit(inner[i], node.firstChild + i, depth + 1);
   }
 
-  BvhSettings settings_;
+  const std::vector<BinaryNode>& binary_;
+  const std::vector<BvhTriangle>& triangles_;
   Bvh& result_;
-  std::vector<BvhTriangle> kept_;
-  std::vector<Reference> references_;
-  float padding_ = 0.0f, rootArea_ = 0.0f;
+  std::vector<Choice> choices_;
 };
 
 }  // namespace
 
 Bvh buildBvh(const Scene& scene, const BvhSettings& settings) {
-  CHECK(settings.leafTriangles >= 1 && settings.leafTriangles <= 16, "{} triangles a leaf", settings.leafTriangles);
   const auto start = std::chrono::steady_clock::now();
+  const Triangles triangles = collect(scene);
   Bvh bvh;
-  Builder(scene, settings, bvh).build();
-  bvh.statistics.nodes = bvh.nodes.size();
-  bvh.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  bvh.origin = triangles.origin;
+  bvh.magnitude = triangles.magnitude;
+  const BinaryBuilder binary(triangles.kept, settings);
+  Collapse(binary.nodes(), triangles.kept, bvh);
+  BvhStatistics& s = bvh.statistics;
+  s.triangles = triangles.kept.size();
+  s.degenerate = scene.triangleCount() - s.triangles;
+  s.references = bvh.triangles.size();
+  s.nodes = bvh.nodes.size();
+  s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return bvh;
 }
 

@@ -2,7 +2,7 @@
 //
 // Space: the scene moved by -origin, so that far from the world's origin no precision is lost; lengths in scene units. A coordinate axis
 // is moved only where the scene lies so far along it that every difference is exact in float, so the triangles are those of the scene.
-// Sources: binned surface area heuristic [Wald2007]; README.md, section "Ray casting".
+// Sources: binned surface area heuristic [Wald2007], collapse to eight children and node layout [Ylitie2017]; README.md, section "Ray casting".
 #pragma once
 
 #include "scene/scene.hpp"
@@ -14,24 +14,29 @@
 namespace lucerna {
 
 struct BvhSettings {
-  int leafTriangles = 4;  ///< at most, 1..16
+  int threads = 0;        ///< that build; 0: all cores. The result is the same.
+  double splitBudget = 0.0;  ///< spatial splits add at most this fraction of references [Stich2009]; 0: none
 };
 
 struct BvhStatistics {
   std::size_t triangles = 0;   ///< that rays can hit
   std::size_t degenerate = 0;  ///< dropped: no area, or a corner that is not finite
+  std::size_t references = 0;  ///< of leaves to triangles; above `triangles` where spatial splits paid
   std::size_t nodes = 0, leaves = 0;
-  int depth = 0;         ///< of the deepest leaf; the root's children have depth 1
-  double sahCost = 0.0;  ///< expected cost of a ray that meets the root's box: 1 a node visit, 1 a triangle
+  int depth = 0;         ///< of the deepest node; the root has 1
+  double sahCost = 0.0;  ///< expected cost of a ray that meets the root's box: 1 a node visit, kBvhTriangleCost a triangle
   double seconds = 0.0;  ///< wall clock
 };
 
+/// Cost of a triangle test, in node visits, measured on llvmpipe.
+inline constexpr float kBvhTriangleCost = 0.5f;
+
 /// Ready for upload.
 struct Bvh {
-  shared::BvhHeader header;
   std::vector<shared::BvhNode> nodes;          ///< never empty: 0 is the root
   std::vector<shared::BvhTriangle> triangles;  ///< in the order of the leaves
   glm::dvec3 origin{0.0};                      ///< world position of the space's origin
+  float magnitude = 0.0f;                      ///< of the largest coordinate, in that space
   BvhStatistics statistics;
 };
 

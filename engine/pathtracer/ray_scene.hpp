@@ -12,10 +12,10 @@ namespace lucerna {
 class RayScene {
  public:
   using Settings = BvhSettings;
-  /// What bind() occupies.
-  static constexpr GLuint kNodesBinding = 0, kTrianglesBinding = 1;  ///< GL_SHADER_STORAGE_BUFFER
+  /// Texture units that bind() occupies.
+  static constexpr GLuint kNodesUnit = 60, kTrianglesUnit = 61;
 
-  /// Throws Error(missingCapability) where the scene is larger than a shader storage block of the driver.
+  /// Throws Error(missingCapability) where the scene is larger than a buffer texture of the driver.
   RayScene(const Scene& scene, const gl::Capabilities& capabilities, const Settings& settings = {});
 
   void bind() const;
@@ -24,7 +24,7 @@ class RayScene {
   std::size_t gpuBytes() const { return nodes_.bytes() + triangles_.bytes(); }
 
  private:
-  gl::Buffer nodes_, triangles_;
+  gl::BufferTexture nodes_, triangles_;
   glm::dvec3 origin_;
   BvhStatistics statistics_;
 };

@@ -1,17 +1,13 @@
 // Rays against the triangles of a RayScene (engine/pathtracer/ray_scene.hpp): the first hit, or any.
 //
 // Space: RayScene's (the world moved by -RayScene::origin()). Flag ALPHA_MASKS: the including file declares, before the include,
-// `bool isCutOut(uint triangle, vec2 barycentrics)`, asked for triangles whose material is masked. Binds shader storage blocks 0 and 1.
-// Watertight: the triangle test is that of [Woop2013], boxes are padded after [Ize2013].
+// `bool isCutOut(uint triangle, vec2 barycentrics)`, asked for triangles whose material is masked. Takes texture units 60 and 61.
+// Method: eight quantised boxes a node and their order after [Ylitie2017], a watertight triangle test after [Woop2013], boxes widened by the
+// rounding of their distances after [Ize2013]. Buffer textures, since llvmpipe gathers from those three times as fast as from storage blocks.
 #include "shared/bvh.h"
 
-layout(std430, binding = 0) readonly restrict buffer BvhNodes {
-  BvhHeader bvhHeader;
-  BvhNode bvhNodes[];
-};
-layout(std430, binding = 1) readonly restrict buffer BvhTriangles {
-  BvhTriangle bvhTriangles[];
-};
+layout(binding = 60) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS a BvhNode
+layout(binding = 61) uniform usamplerBuffer bvhTriangles;  // one with the magnitude, then BVH_TRIANGLE_TEXELS a BvhTriangle
 
 const uint kNoHit = 0xffffffffu;  // no triangle: Hit::triangle of a ray that hit nothing, and skipTriangle where nothing is to be skipped
 
@@ -28,66 +24,55 @@ struct Hit {
   vec2 barycentrics;  // weights of the second and third corner
 };
 
-// The ray's own space, in which it runs along z from the origin [Woop2013]: axes permuted so that z is its longest, then sheared.
-struct RaySpace {
+// What a traversal keeps of its ray. For boxes: one over the direction, components near zero taken for 2^-60 of the longest, so that nothing
+// is infinite, and which octant it goes to. For triangles: the ray's own space, in which it runs along z from the origin [Woop2013]: axes
+// turned so that z is the longest, then sheared.
+struct BvhRay {
   vec3 origin;
+  vec3 inverse;
+  bvec3 negative;
+  uint octant;  // 7 less the octant, as child places are counted down
   vec3 shear;
-  int axis;
+  bvec2 turn;
 };
 
-vec3 bvhPermute(vec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v; }
+vec3 bvhTurn(vec3 v, bvec2 turn) { return turn.x ? v.yzx : turn.y ? v.zxy : v; }
 
-RaySpace raySpace(Ray ray) {
-  vec3 d = abs(ray.direction);
-  RaySpace space;
-  space.axis = d.x > d.y && d.x > d.z ? 0 : d.y > d.z ? 1 : 2;
-  vec3 p = bvhPermute(ray.direction, space.axis);
-  space.shear = vec3(p.x / p.z, p.y / p.z, 1.0 / p.z);
-  space.origin = ray.origin;
-  return space;
+BvhRay bvhPrepare(Ray ray) {
+  vec3 d = ray.direction, a = abs(d);
+  float least = max(a.x, max(a.y, a.z)) * 8.67361738e-19;
+  BvhRay r;
+  r.origin = ray.origin;
+  r.negative = lessThan(d, vec3(0.0));
+  r.inverse = 1.0 / mix(d, mix(vec3(least), vec3(-least), r.negative), lessThan(a, vec3(least)));
+  r.octant = 7u - ((r.negative.x ? 4u : 0u) | (r.negative.y ? 2u : 0u) | (r.negative.z ? 1u : 0u));
+  r.turn = bvec2(a.x > a.y && a.x > a.z, a.y > a.z);
+  vec3 p = bvhTurn(d, r.turn);
+  r.shear = vec3(p.xy / p.z, 1.0 / p.z);
+  return r;
 }
 
-// Twice the area of (0, a, b) in the plane. Products of floats are exact in double, so its sign always is right: in float it is wrong only
-// where it is zero. Neighbours see a shared edge with the same numbers, so nothing passes between them.
+// Twice the area of (0, a, b) in the plane. Each product is rounded, but that cannot change which of the two is larger: the sign is right or
+// the area is zero. Neighbours see a shared edge with the same numbers, and zero counts as inside for both, so nothing passes between them.
 float bvhEdge(precise vec2 a, precise vec2 b) {
   precise float ab = a.x * b.y;
   precise float ba = a.y * b.x;
   precise float area = ab - ba;
-  if (area == 0.0) area = float(double(a.x) * double(b.y) - double(a.y) * double(b.x));
   return area;
 }
 
 // Whether the ray meets the triangle at tMin < t < tMax; then where.
-bool hitTriangle(RaySpace space, vec3 a, vec3 b, vec3 c, float tMin, float tMax, out float t, out vec2 barycentrics) {
-  vec3 pa = bvhPermute(a - space.origin, space.axis), pb = bvhPermute(b - space.origin, space.axis), pc = bvhPermute(c - space.origin, space.axis);
-  precise vec2 sa = pa.xy - space.shear.xy * pa.z;
-  precise vec2 sb = pb.xy - space.shear.xy * pb.z;
-  precise vec2 sc = pc.xy - space.shear.xy * pc.z;
+bool bvhHitTriangle(BvhRay r, vec3 a, vec3 b, vec3 c, float tMin, float tMax, out float t, out vec2 barycentrics) {
+  vec3 pa = bvhTurn(a - r.origin, r.turn), pb = bvhTurn(b - r.origin, r.turn), pc = bvhTurn(c - r.origin, r.turn);
+  precise vec2 sa = pa.xy - r.shear.xy * pa.z;
+  precise vec2 sb = pb.xy - r.shear.xy * pb.z;
+  precise vec2 sc = pc.xy - r.shear.xy * pc.z;
   float u = bvhEdge(sc, sb), v = bvhEdge(sa, sc), w = bvhEdge(sb, sa);
-  t = 0.0;
-  barycentrics = vec2(0.0);
-  if (min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0) return false;
   float area = u + v + w;
-  if (area == 0.0) return false;
-  barycentrics = vec2(v, w) / area;
-  t = (u / area * pa.z + barycentrics.x * pb.z + barycentrics.y * pc.z) * space.shear.z;
-  return t > tMin && t < tMax;
-}
-
-// One over the direction; components of zero are taken for so small ones that a box's padding outweighs them.
-vec3 inverseDirection(vec3 direction) {
-  vec3 d = abs(direction);
-  return vec3(1.0) / mix(direction, vec3(1e-37), lessThan(d, vec3(1e-37)));
-}
-
-// Where the ray enters a box: to be compared with tMax; 3e38 where it misses it.
-float enterBox(vec3 minimum, vec3 maximum, Ray ray, vec3 inverse) {
-  const float kFar = 1.0 + 2.0 * 1.8e-7;  // 1 + 2 gamma(3) [Ize2013 section 4]
-  vec3 a = (minimum - ray.origin) * inverse, b = (maximum - ray.origin) * inverse;
-  vec3 near = min(a, b), far = max(a, b);
-  float enter = max(max(near.x, near.y), max(near.z, ray.tMin));
-  float leave = min(min(far.x, far.y), far.z) * kFar;
-  return enter <= leave ? enter : 3e38;
+  float scale = 1.0 / area;
+  barycentrics = vec2(v, w) * scale;
+  t = (u * scale * pa.z + barycentrics.x * pb.z + barycentrics.y * pc.z) * r.shear.z;
+  return !(min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0) && area != 0.0 && t > tMin && t < tMax;
 }
 
 bool bvhMissesMask(uint id, vec2 barycentrics) {
@@ -98,43 +83,73 @@ bool bvhMissesMask(uint id, vec2 barycentrics) {
 #endif
 }
 
+// The place of the highest bit of a number from 1 to 2^24 - 1.
+int bvhHighest(uint bits) { return (floatBitsToInt(float(int(bits))) >> 23) - 127; }
+
+ivec3 bvhChoose(ivec3 a, ivec3 b, bvec3 second) { return ivec3(second.x ? b.x : a.x, second.y ? b.y : a.y, second.z ? b.z : a.z); }
+
+// Bits of the four children in one word of a node's words, where the ray enters their boxes before it leaves them. near, far: grid steps,
+// four bytes an axis; scale, nearBase, farBase: from steps to distances.
+uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, float tMin, float tMax, uint meta, uint octant) {
+  uint nodes = (meta & (meta << 1)) & 0x10101010u;                   // meta >= 24: a node
+  uint turned = meta ^ ((octant * 0x01010101u) & (((nodes >> 4) * 0xffu)));  // its place against the octant
+  uint hits = 0u;
+  for (int k = 0; k < 4; ++k) {
+    int shift = 8 * k;
+    vec3 a = vec3((near >> shift) & 255) * scale + nearBase, b = vec3((far >> shift) & 255) * scale + farBase;
+    float enter = max(max(a.x, a.y), max(a.z, tMin)), leave = min(min(b.x, b.y), min(b.z, tMax));
+    uint bits = ((meta >> (shift + 5)) & 7u) << ((turned >> shift) & 31u);
+    hits |= enter <= leave ? bits : 0u;
+  }
+  return hits;
+}
+
 Hit bvhTrace(Ray ray, uint skipTriangle, bool any) {
   Hit hit = Hit(ray.tMax, kNoHit, vec2(0.0));
-  RaySpace space = raySpace(ray);
-  vec3 inverse = inverseDirection(ray.direction);
-  uint stack[BVH_MAX_DEPTH];
+  BvhRay r = bvhPrepare(ray);
+  // Siblings yet to be visited: x the first child of their parent; y bits 24..31 which are left to visit, bits 0..7 which are nodes.
+  uvec2 siblings = uvec2(0u, 0x80000000u);
+  uvec2 leaves = uvec2(0u);  // triangles yet to be tested: x the first of the node, y which
+  uint stackX[BVH_MAX_DEPTH], stackY[BVH_MAX_DEPTH];
   int top = 0;
-  uint node = 0u;
   while (true) {
-    if ((node & BVH_LEAF) == 0u) {
-      BvhNode n = bvhNodes[node];
-      float enter0 = enterBox(n.minimum0, n.maximum0, ray, inverse), enter1 = enterBox(n.minimum1, n.maximum1, ray, inverse);
-      bool in0 = enter0 < hit.t, in1 = enter1 < hit.t;
-      if (in0 && in1) {
-        bool firstIs0 = enter0 <= enter1;
-        stack[top++] = firstIs0 ? n.child1 : n.child0;
-        node = firstIs0 ? n.child0 : n.child1;
-        continue;
-      }
-      if (in0 || in1) {
-        node = in0 ? n.child0 : n.child1;
-        continue;
-      }
-    } else {
-      uint first = node & BVH_LEAF_FIRST_MASK, count = ((node & ~BVH_LEAF) >> BVH_LEAF_COUNT_SHIFT) + 1u;
-      for (uint i = first; i < first + count; ++i) {
-        BvhTriangle triangle = bvhTriangles[i];
-        float t;
-        vec2 barycentrics;
-        uint id = triangle.id & BVH_TRIANGLE_ID_MASK;
-        if (id == skipTriangle || !hitTriangle(space, triangle.a, triangle.b, triangle.c, ray.tMin, hit.t, t, barycentrics)) continue;
-        if (bvhMissesMask(triangle.id, barycentrics)) continue;
+    int place = bvhHighest(siblings.y >> 24);
+    siblings.y &= ~(0x01000000u << place);
+    int node = BVH_NODE_TEXELS * int(siblings.x + uint(bitCount(siblings.y & ~(0xffffffffu << (uint(place) ^ r.octant)) & 255u)));
+    if (siblings.y > 0x00ffffffu) {
+      stackX[top] = siblings.x;
+      stackY[top] = siblings.y;
+      ++top;
+    }
+    uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2), n3 = texelFetch(bvhNodes, node + 3),
+          n4 = texelFetch(bvhNodes, node + 4);
+    vec3 scale = uintBitsToFloat(uvec3(n0.w << 23, n0.w << 15, n0.w << 7) & 0x7f800000u) * r.inverse;
+    vec3 base = (uintBitsToFloat(n0.xyz) - r.origin) * r.inverse;
+    vec3 error = (abs(base) + abs(scale) * 256.0) * 4.76837158e-7;  // 2^-21: of this, of what follows and of the triangle test
+    ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z), high47 = ivec3(n3.w, n4.y, n4.w);
+    uint hits = bvhHitFour(bvhChoose(low03, high03, r.negative), bvhChoose(high03, low03, r.negative), scale, base - error, base + error, ray.tMin, hit.t, n1.z, r.octant) |
+                bvhHitFour(bvhChoose(low47, high47, r.negative), bvhChoose(high47, low47, r.negative), scale, base - error, base + error, ray.tMin, hit.t, n1.w, r.octant);
+    siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
+    leaves = uvec2(n1.y, hits & 0x00ffffffu);
+    while (leaves.y != 0u) {
+      int k = bvhHighest(leaves.y);
+      leaves.y &= ~(1u << k);
+      int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(leaves.x) + k);
+      uvec4 a = texelFetch(bvhTriangles, triangle);
+      vec3 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz), c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
+      float t;
+      vec2 barycentrics;
+      uint id = a.w & BVH_TRIANGLE_ID_MASK;
+      if (bvhHitTriangle(r, uintBitsToFloat(a.xyz), b, c, ray.tMin, hit.t, t, barycentrics) && id != skipTriangle && !bvhMissesMask(a.w, barycentrics)) {
         hit = Hit(t, id, barycentrics);
         if (any) return hit;
       }
     }
-    if (top == 0) break;
-    node = stack[--top];
+    if (siblings.y <= 0x00ffffffu) {
+      if (top == 0) break;
+      --top;
+      siblings = uvec2(stackX[top], stackY[top]);
+    }
   }
   return hit;
 }
@@ -154,5 +169,5 @@ vec3 offsetRay(vec3 p, vec3 geometricNormal, float magnitude) { return p + geome
 // The same for a point whose triangle is not at hand.
 vec3 offsetRay(vec3 p, vec3 geometricNormal) {
   vec3 a = abs(p);
-  return offsetRay(p, geometricNormal, max(max(a.x, a.y), max(a.z, bvhHeader.magnitude * 9.765625e-4)));
+  return offsetRay(p, geometricNormal, max(max(a.x, a.y), max(a.z, uintBitsToFloat(texelFetch(bvhTriangles, 0).x) * 9.765625e-4)));
 }

@@ -1,26 +1,26 @@
-// The ray caster's buffers: a header and nodes in one, triangles in the other. See engine/pathtracer/README.md, section "Ray casting".
+// The ray caster's node, as C++ writes and GLSL reads it. See engine/pathtracer/README.md, section "Ray casting".
 #pragma once
 #include "shared/types.h"
 
 SHARED_BEGIN
 
-#define BVH_MAX_DEPTH 48                 // of the deepest leaf; what a traversal stack holds
-#define BVH_LEAF 0x80000000u             // a child that is a leaf: this, (count - 1) << 27, and its first triangle
-#define BVH_LEAF_COUNT_SHIFT 27
-#define BVH_LEAF_FIRST_MASK 0x07ffffffu
+#define BVH_WIDTH 8
+#define BVH_NODE_TEXELS 5                // of 16 bytes
+#define BVH_TRIANGLE_TEXELS 3
+#define BVH_MAX_DEPTH 32                 // of the deepest node: what a traversal stack holds
+#define BVH_MAX_LEAF 3                   // triangles
 #define BVH_TRIANGLE_MASKED 0x80000000u  // in BvhTriangle::id: cut out by an alpha mask
 #define BVH_TRIANGLE_ID_MASK 0x7fffffffu
 
-// Two boxes and what is in them. A child that is missing has an empty box.
+// Eight boxes on a grid of 256 steps an axis, in 80 bytes [Ylitie2017]. Byte k of a pair of words belongs to child k.
 struct BvhNode {
-  vec3 minimum0;
-  uint child0;  // index of a node, or a leaf
-  vec3 maximum0;
-  uint child1;
-  vec3 minimum1;
-  float padding0;
-  vec3 maximum1;
-  float padding1;
+  vec3 origin;          // of the grid
+  uint exponents;       // bytes 0..2: the biased exponents of the grid's steps along x, y, z; byte 3: bit k is set where child k is a node
+  uint firstChild;      // child nodes lie behind one another, in the order of k
+  uint firstTriangle;   // so do the triangles of the children that are leaves
+  uint meta[2];         // a byte a child. Node: 1 << 5 | 24 + k. Leaf: one bit a triangle << 5 | its first triangle, counted from firstTriangle. None: 0
+  uint low[6];          // in grid steps: x 0..3, x 4..7, y ..., z ...
+  uint high[6];
 };
 
 struct BvhTriangle {
@@ -30,13 +30,6 @@ struct BvhTriangle {
   float padding0;
   vec3 c;
   float padding1;
-};
-
-struct BvhHeader {
-  float magnitude;  // of the largest coordinate
-  float padding0;
-  float padding1;
-  float padding2;
 };
 
 SHARED_END
