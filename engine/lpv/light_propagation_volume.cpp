@@ -110,11 +110,11 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i) allocate(fronts_[i], i == 0 ? "front even" : "front odd", format, size, sampling);
   if (joined && settings_.handOver < steps_) {
     propagateFar_ = load("lpv propagate far", blocked, false, true);
-    coarsen_ = &programs.loadCompute("lpv coarsen", "lpv/coarsen.comp", group);
+    balance_ = &programs.loadCompute("lpv balance", "lpv/balance.comp", group);
     join_ = &programs.loadCompute("lpv join", "lpv/join.comp", group);
     allocate(farSum_, "far sum", format, size, sampling);
     const int half = (c.cells + 1) / 2;
-    brightness_ = gl::Texture("lpv brightness", GL_R32F, glm::ivec3(half, half, half * (c.cascades - 1)), sampling);
+    balances_ = gl::Texture("lpv balances", GL_R32F, glm::ivec3(half), {GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE});
   }
   if (layered)
     for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i)
@@ -140,27 +140,26 @@ int LightPropagationVolume::handOverStep(int iterations, double ratio) {
 
 void LightPropagationVolume::join() {
   if (!join_) return;
-  {
-    const gl::ComputePass pass("lpv coarsen", GL_TEXTURE_FETCH_BARRIER_BIT);
-    coarsen_->use();
-    for (GLuint channel = 0; channel < 3; ++channel) {
-      sum_[channel].bind(channel);
-      farSum_[channel].bind(3 + channel);
-    }
-    brightness_.bindImage(0, GL_WRITE_ONLY);
-    pass.dispatch(brightness_.size(), kGroup);
-  }
   for (int k = settings_.cascades.cascades - 1; k >= 0; --k) {
-    const gl::ComputePass pass("lpv join", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    join_->use();
-    join_->set("cascade", k);
     for (GLuint channel = 0; channel < 3; ++channel) {
       farSum_[channel].bind(channel);
       sum_[channel].bind(3 + channel);
+    }
+    if (k + 1 < settings_.cascades.cascades) {
+      const gl::ComputePass pass("lpv balance", GL_TEXTURE_FETCH_BARRIER_BIT);
+      balance_->use();
+      balance_->set("cascade", k);
+      balances_.bindImage(0, GL_WRITE_ONLY);
+      pass.dispatch(balances_.size(), kGroup);
+    }
+    const gl::ComputePass pass("lpv join", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    join_->use();
+    join_->set("cascade", k);
+    balances_.bind(3);
+    for (GLuint channel = 0; channel < 3; ++channel) {
       sum_[channel].bindImage(channel, GL_READ_WRITE);
       farSum_[channel].bindImage(3 + channel, GL_READ_WRITE);
     }
-    brightness_.bind(6);
     pass.dispatch(glm::ivec3(settings_.cascades.cells), kGroup);
   }
 }
@@ -343,7 +342,7 @@ std::size_t LightPropagationVolume::gpuBytes() const {
     for (const Volume& front : fronts_) add(front[channel]);
     if (faces_) add((*faces_)[channel]);
   }
-  add(brightness_);
+  add(balances_);
   if (geometryVolume_) add(*geometryVolume_);
   return bytes;
 }

@@ -112,7 +112,7 @@ class LightPropagationVolume {
   const gl::Program* propagateFirst_ = nullptr;    ///< starts the sum with the injected grid
   const gl::Program* propagateFurther_ = nullptr;  ///< blocked where blocking is on
   const gl::Program* propagateFar_ = nullptr;      ///< starts the sum of the far-travelled light
-  const gl::Program* coarsen_ = nullptr;           ///< only with several cascades, as join_
+  const gl::Program* balance_ = nullptr;           ///< only with several cascades, as join_
   const gl::Program* join_ = nullptr;
   gl::Buffer constants_;
   gl::VertexArray noAttributes_;
@@ -120,7 +120,7 @@ class LightPropagationVolume {
   Volume injected_;
   Volume sum_;        ///< of the first steps; after join() all light
   Volume farSum_;     ///< of the steps after the hand-over; only with several cascades
-  gl::Texture brightness_;  ///< half resolution of all cascades but the coarsest
+  gl::Texture balances_;  ///< of one cascade after the other with the next coarser, half its resolution
   std::array<Volume, 2> fronts_;
   gl::Framebuffer injectTarget_;
   std::optional<gl::Texture> geometryVolume_;

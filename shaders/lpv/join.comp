@@ -4,17 +4,15 @@
 // grids would darken the picture with each cascade more; summed, as in the published text, they would brighten it. So each
 // grid's sum is kept in two parts: M, the light of the first steps, which the next finer grid carries by itself and better, and F, that
 // of the later ones, which is too far-travelled for it. A finer grid takes the coarser grids' F over: every step of the light is
-// counted once, nothing is ever subtracted. The balance b_k makes the finer grid as bright, on the average over a coarser cell,
+// counted once, nothing is ever subtracted. The balance b_k (lpv/balance.comp) makes the finer grid as bright, on the average over a coarser cell,
 // as the M that it replaces, so that it adds detail and leaves the brightness alone.
 #include "lpv/common.glsl"
+#include "lpv/stacked.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 0) uniform sampler3D farRed;  // the layers of the next coarser cascade are read, those of this one written
 layout(binding = 1) uniform sampler3D farGreen;
 layout(binding = 2) uniform sampler3D farBlue;
-layout(binding = 3) uniform sampler3D joinedRed;
-layout(binding = 4) uniform sampler3D joinedGreen;
-layout(binding = 5) uniform sampler3D joinedBlue;
-layout(binding = 6) uniform sampler3D brightness;  // lpv/coarsen.comp
+layout(binding = 3) uniform sampler3D balances;  // of this cascade, one for 2x2x2 cells
 layout(binding = 0, LPV_FORMAT) uniform image3D sumImageRed;  // M, becomes C
 layout(binding = 1, LPV_FORMAT) uniform image3D sumImageGreen;
 layout(binding = 2, LPV_FORMAT) uniform image3D sumImageBlue;
@@ -22,22 +20,6 @@ layout(binding = 3, LPV_FORMAT) uniform image3D farImageRed;  // F, becomes R
 layout(binding = 4, LPV_FORMAT) uniform image3D farImageGreen;
 layout(binding = 5, LPV_FORMAT) uniform image3D farImageBlue;
 uniform int cascade;
-
-const float kLargestBalance = 4.0;  // and its inverse the smallest: a guard where one of the grids sees no light at all
-const float kDark = 1e-4;           // c / (E_ref s^2) below which there is no light to balance
-
-// Trilinear reading of one cascade out of a stack: x and y end in the sampler's border of zeros, z by hand.
-struct StackedTexel {
-  vec3 uvw;
-  float border;
-};
-
-StackedTexel stacked(vec3 texel, int index, int side, int count) {
-  float n = float(side);
-  float border = clamp(min(texel.z, n - texel.z) + 0.5, 0.0, 1.0);
-  texel.z = clamp(texel.z, 0.5, n - 0.5) + float(index) * n;
-  return StackedTexel(texel / vec3(n, n, n * float(count)), border);
-}
 
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
@@ -49,18 +31,11 @@ void main() {
   float balance = 1.0;
   if (cascade + 1 < lpv.shape.y) {
     vec3 centre = vec3(cell) + 0.5;
-    vec3 position = lpv.cascades[cascade].minimum + centre * lpv.cascades[cascade].cellSize;
-    vec3 texel = (position - lpv.cascades[cascade + 1].minimum) / lpv.cascades[cascade + 1].cellSize;
-    StackedTexel coarser = stacked(texel, cascade + 1, cells, lpv.shape.y);
+    StackedTexel coarser = stackedTexel(lpvCoarserTexel(centre, cascade), cascade + 1);
     coarserRed = coarser.border * textureLod(farRed, coarser.uvw, 0.0);
     coarserGreen = coarser.border * textureLod(farGreen, coarser.uvw, 0.0);
     coarserBlue = coarser.border * textureLod(farBlue, coarser.uvw, 0.0);
-    float replaced = coarser.border * (textureLod(joinedRed, coarser.uvw, 0.0).x + textureLod(joinedGreen, coarser.uvw, 0.0).x +
-                                       textureLod(joinedBlue, coarser.uvw, 0.0).x) -
-                     (coarserRed.x + coarserGreen.x + coarserBlue.x);
-    StackedTexel half_ = stacked(0.5 * centre, cascade, (cells + 1) / 2, lpv.shape.y - 1);
-    float own = half_.border * textureLod(brightness, half_.uvw, 0.0).x;
-    balance = clamp((max(replaced, 0.0) + kDark) / (own + kDark), 1.0 / kLargestBalance, kLargestBalance);
+    balance = textureLod(balances, centre / float(2 * ((cells + 1) / 2)), 0.0).x;
   }
 #define JOIN(sumImage, farImage, coarser)                              \
   {                                                                    \

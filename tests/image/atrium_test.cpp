@@ -95,7 +95,7 @@ TEST_F(Pictures, BrightnessDoesNotFollowTheNumberOfCascadesOrTexels) {
   for (const int cascades : {2, 3}) {
     const double ratio = mean(cascades, 256) / one;
     std::cout << "[ measured ] " << cascades << " cascades over one, all cameras: " << ratio << "\n";
-    EXPECT_NEAR(ratio, 1.0, 0.10);  // finer grids see thin columns that the coarse one smears: measured 1.035 and 1.065
+    EXPECT_NEAR(ratio, 1.0, 0.05);  // finer grids see thin columns that the coarse one smears: measured 1.012 and 1.033
   }
   for (const int texels : {128, 512}) {
     const double ratio = mean(3, texels) / mean(3, 256);

@@ -374,20 +374,6 @@ double irradianceSumOfCascades(std::span<const Volume> cascades, const glm::dvec
 
 // ---- cascades joined into one picture ---------------------------------------------------------------------------------
 
-Volume halved(const Volume& fine) {
-  const GridSpec& grid = fine.grid;
-  Volume coarse(GridSpec{(grid.dims + 1) / 2, grid.minimum, 2.0 * grid.cellSize});
-  for (int z = 0; z < grid.dims.z; ++z) {
-    for (int y = 0; y < grid.dims.y; ++y) {
-      for (int x = 0; x < grid.dims.x; ++x) {
-        // The mean of eight c/s^2, times (2 s)^2.
-        coarse.at(glm::ivec3(x, y, z) / 2) += (4.0 / 8.0) * fine.at({x, y, z});
-      }
-    }
-  }
-  return coarse;
-}
-
 CascadeParts propagateParts(const VolumeRgb& injected, int iterations, int handOver, const KernelOptions& options,
                             const Volume* geometry) {
   CascadeParts parts{injected, makeVolumeRgb(injected[0].grid)};
@@ -417,14 +403,27 @@ std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, cons
     const VolumeRgb first = scaled(cascades[k].first, -2.0), later = scaled(cascades[k].later, -2.0);
     const GridSpec& grid = first[0].grid;
     VolumeRgb light = makeVolumeRgb(grid), passedOn = makeVolumeRgb(grid);
-    Volume brightness(grid);  // band 0 of M + F, all channels together
-    for (std::size_t i = 0; i < brightness.cells.size(); ++i) {
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        brightness.cells[i].c0 += first[channel].cells[i].c0 + later[channel].cells[i].c0;
-      }
+    // b of 2x2x2 cells in band 0, from the mean of this cascade's M + F and the coarser one's M at their centre.
+    Volume balances(GridSpec{(grid.dims + 1) / 2, grid.minimum, 2.0 * grid.cellSize});
+    if (k + 1 < cascades.size()) {
+      for (int z = 0; z < grid.dims.z; ++z)
+        for (int y = 0; y < grid.dims.y; ++y)
+          for (int x = 0; x < grid.dims.x; ++x)
+            for (std::size_t channel = 0; channel < 3; ++channel)
+              balances.at(glm::ivec3(x, y, z) / 2).c0 += (first[channel].at({x, y, z}).c0 + later[channel].at({x, y, z}).c0) / 8.0;
+      for (int z = 0; z < balances.grid.dims.z; ++z)
+        for (int y = 0; y < balances.grid.dims.y; ++y)
+          for (int x = 0; x < balances.grid.dims.x; ++x) {
+            const glm::ivec3 block(x, y, z);
+            double replaced = 0.0;
+            for (std::size_t channel = 0; channel < 3; ++channel)
+              replaced += sampleTrilinear(joined[k + 1][channel], balances.grid.centre(block)).c0 -
+                          sampleTrilinear(handedOver[channel], balances.grid.centre(block)).c0;
+            double& b = balances.at(block).c0;
+            b = std::clamp((std::max(0.0, replaced) + options.dark) / (b + options.dark), 1.0 / options.largestBalance, options.largestBalance);
+            if (std::isnan(b)) b = 1.0;  // no light, nothing to balance
+          }
     }
-    Volume coarse = halved(brightness);
-    for (Sh& cell : coarse.cells) cell = 0.25 * cell;  // halved() keeps c: (2 s)^2 times the mean of c/s^2, which these are already
     for (int z = 0; z < grid.dims.z; ++z) {
       for (int y = 0; y < grid.dims.y; ++y) {
         for (int x = 0; x < grid.dims.x; ++x) {
@@ -433,15 +432,10 @@ std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, cons
           double balance = 1.0;
           std::array<Sh, 3> fromCoarser;
           if (k + 1 < cascades.size()) {
-            double replaced = 0.0;
-            for (std::size_t channel = 0; channel < 3; ++channel) {
-              fromCoarser[channel] = sampleTrilinear(handedOver[channel], point);
-              replaced += sampleTrilinear(joined[k + 1][channel], point).c0 - fromCoarser[channel].c0;
-            }
-            const double own = sampleTrilinear(coarse, point).c0;
-            balance = std::clamp((std::max(0.0, replaced) + options.dark) / (own + options.dark), 1.0 / options.largestBalance,
-                                 options.largestBalance);
-            if (std::isnan(balance)) balance = 1.0;  // no light, nothing to balance
+            for (std::size_t channel = 0; channel < 3; ++channel) fromCoarser[channel] = sampleTrilinear(handedOver[channel], point);
+            // Held at the edge: beyond the outermost centres their values go on.
+            const glm::dvec3 lowest = balances.grid.centre({0, 0, 0}), highest = balances.grid.centre(balances.grid.dims - 1);
+            balance = sampleTrilinear(balances, glm::clamp(point, lowest, highest)).c0;
           }
           for (std::size_t channel = 0; channel < 3; ++channel) {
             passedOn[channel].at(cell) = balance * later[channel].at(cell) + fromCoarser[channel];

@@ -229,10 +229,6 @@ double irradianceSumOfCascades(std::span<const Volume> cascades, const glm::dvec
 
 // ---- cascades joined into one picture ---------------------------------------------------------------------------------
 
-/// down: half resolution, each cell the mean of 2x2x2 of `fine`, of their c/s^2 (what an irradiance depends on); an odd last
-/// cell is averaged with zeros. Same minimum, cells twice as big.
-Volume halved(const Volume& fine);
-
 /// One cascade's accumulated light in two parts.
 struct CascadeParts {
   VolumeRgb first;  ///< M = G_0 + ... + G_h: the next finer cascade carries this light by itself
@@ -248,8 +244,8 @@ struct JoinOptions {
 };
 /// Joins cascades, finest first. All terms are values of c/s^2, up is trilinear with zeros beyond the border:
 ///   C_k = b_k (M_k + F_k) + up(R_k+1),  R_k = b_k F_k + up(R_k+1);  the coarsest: C = M + F, R = F.
-///   b_k = (max(0, up(C_k+1 - R_k+1)) + dark) / (up(down(M_k + F_k)) + dark), bounded, of band 0 summed over the three channels:
-/// the finer grid gets the brightness of what it replaces. The results C are in plain units again.
+///   b_k = upHeld((max(0, up(C_k+1 - R_k+1)) + dark) / (down(M_k + F_k) + dark)), bounded, of band 0 summed over the three channels: the
+/// finer grid gets the brightness of what it replaces. down is the mean of 2x2x2 cells, upHeld is trilinear, held beyond the border. The results C are in plain units again.
 std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, const JoinOptions& options = {});
 
 struct CascadeBlend {
