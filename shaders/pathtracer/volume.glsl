@@ -98,10 +98,13 @@ vec3 straightTransmittance(vec3 start, vec3 end, bool infinite, uint skip, uvec4
 }
 
 #if MEDIA
+// The largest coordinate of any triangle: in the header of the ray caster's triangles.
+float sceneMagnitude() { return uintBitsToFloat(texelFetch(bvhTriangles, 0).x); }
+
 // A path that left a closed boundary through a crack would be in its medium for ever: outside of all coordinates it has.
 bool leaked(Path path) {
   vec3 a = abs(path.origin);
-  return any(greaterThan(path.inside, uvec4(0u))) && max(a.x, max(a.y, a.z)) > bvhHeader.magnitude * 1.001;
+  return any(greaterThan(path.inside, uvec4(0u))) && max(a.x, max(a.y, a.z)) > sceneMagnitude() * 1.001;
 }
 
 // Roulette by the throughput alone: a limit by depth would darken milk. False: the path ends.
@@ -266,7 +269,7 @@ float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
 
 // How far beyond a collision to look for a surface. Where one is so near, the next ray might miss it by the rounding of its distance, which
 // is that of the triangles' coordinates.
-float flightMargin() { return bvhHeader.magnitude * kBeside; }
+float flightMargin() { return sceneMagnitude() * kBeside; }
 
 // What happens on the way to `hit`, the first hit within `flight`.
 int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
