@@ -390,7 +390,8 @@ bool PathTracer::advance(std::uint32_t samples) {
   leakedPaths_ += header[1];
   wrongCrossings_ += header[2];
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!tileBegun_) {  // only then all lanes are at work; later submissions of the tile are shorter
+  // Measured while most lanes are at work: later submissions of a tile are shorter, and the next tile's must not be long for that.
+  if (!tileBegun_ || 2 * unfinished > static_cast<std::uint32_t>(size.x * size.y)) {
     const double factor = std::clamp(settings_.submissionSeconds / std::max(seconds, 1e-9), 0.25, 2.0);
     segments_ = std::clamp(static_cast<std::uint32_t>(std::lround(factor * segments_)), 1u, 1u << 16);
   }

@@ -98,10 +98,13 @@ vec3 straightTransmittance(vec3 start, vec3 end, bool infinite, uint skip, uvec4
 }
 
 #if MEDIA
+// The largest coordinate of any triangle: in the header of the ray caster's triangles.
+float sceneMagnitude() { return uintBitsToFloat(texelFetch(bvhTriangles, 0).x); }
+
 // A path that left a closed boundary through a crack would be in its medium for ever: outside of all coordinates it has.
 bool leaked(Path path) {
   vec3 a = abs(path.origin);
-  return any(greaterThan(path.inside, uvec4(0u))) && max(a.x, max(a.y, a.z)) > bvhHeader.magnitude * 1.001;
+  return any(greaterThan(path.inside, uvec4(0u))) && max(a.x, max(a.y, a.z)) > sceneMagnitude() * 1.001;
 }
 
 // Roulette by the throughput alone: a limit by depth would darken milk. False: the path ends.
@@ -116,6 +119,44 @@ bool survives(inout Path path, float u) {
   return true;
 #endif
 }
+
+#if NEXT_EVENT
+// Whether the lamp that `words` pick has a place, but no size: one whose 1/r^2 collisions alone would sample with infinite variance.
+bool isPointLike(uvec4 words) {
+  uint i = scaledWord(words.x, uint(lights.length()));
+  if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
+  return lights[i].kind == PATH_LIGHT_POINT || lights[i].kind == PATH_LIGHT_SPOT;
+}
+
+// Light from such a lamp, scattered once on a flight of length `s` from the path's origin. The place is drawn in proportion to 1 / r^2
+// [KullaFajardo2012], on the flight rather than on the whole ray: that it comes so far is the transmittance, but for the channels' differences.
+void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNumbers numbers) {
+  uvec4 words = randomWords(numbers, path.event, kPurposePick);
+  if (!counts(path.scatterings + 1u) || all(equal(medium.albedo, vec3(0.0))) || !isPointLike(words)) return;
+  LightSample light;
+  vec2 xi = randomPair(numbers, path.event, kPurposeLight);
+  if (!sampleLight(path.origin, xi, words, light)) {
+    // A spot may not light the origin: its place is asked for all the same.
+    uint i = scaledWord(words.x, uint(lights.length()));
+    if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
+    light.end = lights[i].a;
+  }
+  vec3 to = light.end - path.origin;
+  float a = -dot(to, path.direction);
+  vec3 beside = to + a * path.direction;
+  float h = max(length(beside), max(1e-4 * min(s, length(to)), 1e-30)), b = a + s;
+  float angle = atan((b - a) * h, h * h + a * b);
+  if (!(angle > 0.0)) return;
+  float sine = sin(xi.x * angle), cosine = cos(xi.x * angle);
+  float x = clamp(sine * (h * h + a * a) / (h * cosine - a * sine), 0.0, s);
+  float density = h / (angle * (h * h + (x + a) * (x + a)));
+  vec3 place = path.origin + x * path.direction;
+  if (!sampleLight(place, xi, words, light)) return;
+  vec3 contribution = medium.albedo * medium.extinction * passageWeight(medium, q, x) * phaseValue(medium, path.direction, light.direction) * light.value / density;
+  if (any(greaterThan(contribution, vec3(0.0))))
+    addLight(path, contribution * straightTransmittance(place, light.end, false, kNoHit, path.inside, randomWords(numbers, path.event, kPurposeTransmittance)));
+}
+#endif
 
 // At a collision: light from a lamp, then on in a direction of the phase function.
 int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
@@ -132,7 +173,12 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
   path.chain = 0u;
 #if NEXT_EVENT
   LightSample light;
-  if (counts(path.scatterings) &&
+#if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
+  bool asked = false;
+#else
+  bool asked = medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));  // they have been, on the way here
+#endif
+  if (counts(path.scatterings) && !asked &&
       sampleLight(path.origin, randomPair(numbers, path.event, kPurposeLight), randomWords(numbers, path.event, kPurposePick), light)) {
     vec3 phase = phaseValue(medium, path.direction, light.direction);
     vec3 contribution = phase * light.value;
@@ -224,7 +270,7 @@ float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
 
 // How far beyond a collision to look for a surface. Where one is so near, the next ray might miss it by the rounding of its distance, which
 // is that of the triangles' coordinates.
-float flightMargin() { return bvhHeader.magnitude * kBeside; }
+float flightMargin() { return sceneMagnitude() * kBeside; }
 
 // What happens on the way to `hit`, the first hit within `flight`.
 int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
@@ -240,6 +286,11 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
     float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
     addLight(path, distance * medium.emission * passageWeight(medium, q, x));
   }
+#endif
+#if NEXT_EVENT && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
+#if POINTS || SPOTS
+  addPointLight(path, medium, q, distance, numbers);
+#endif
 #endif
 #if DISTANCE_WITHOUT_PDF
   path.throughput *= exp(-medium.extinction * distance);  // neither the scattering coefficient nor a density
