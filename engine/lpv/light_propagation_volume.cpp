@@ -81,7 +81,8 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   }
 
   if (settings.bounces > 1 && (!settings.blocking || steps_ < 2))
-    throwBadInput("lpv.bounces={}: light is reflected by the geometry volume; that needs lpv.blocking other than off and two iterations", settings.bounces);
+    throwBadInput("lpv.bounces={}: light is reflected by the geometry volume; that needs lpv.blocking other than off and two iterations",
+                  settings.bounces);
   const gl::ShaderFlags kernel{{"FACE_KERNEL", deviations.kernel()},
                                {"SIDE_DIRECTIONS", deviations.sideDirections},
                                {"SIDE_SOLID_ANGLE", deviations.sideSolidAngle},

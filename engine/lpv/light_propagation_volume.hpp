@@ -30,7 +30,7 @@ enum class LpvSurfels { rsm, camera, both };
 
 class LightPropagationVolume {
  public:
-  /// What fronts and the result are kept in, rounded to the nearest; sums are always kept in 32 bits. `full` (32-bit) is for tests.
+  /// What the result is kept in, rounded to the nearest; all that leads to it is kept in 32 bits. `full` (32-bit) is for tests.
   enum class Storage { half, full };
   /// What the published text and its public demo do differently, each by itself; README.md has formula, source and effect.
   struct Deviations {

@@ -1,7 +1,7 @@
 // One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels.
 //
-// A front lies in a buffer, cell by cell, x fastest, all of red before green before blue: on llvmpipe a load from a buffer takes a quarter of the
-// time of a texelFetch. Fronts are summed in 32 bits in another. No branches: a software rasteriser runs both sides of each.
+// A front lies in a buffer, cell by cell, x fastest, all of red before green before blue; the sum of fronts in another. No branches where a sum
+// begins or ends: a software rasteriser runs both sides of each.
 #include "lpv/common.glsl"
 #include "lpv/stored_units.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
@@ -21,10 +21,10 @@ uniform bool sumBegins;  // the fronts of this step and of those that follow are
 
 #if FACE_KERNEL
 // Face by face in world axes: what the deviations need.
-#define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                     \
+#define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                    \
   if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
     int from = at - int(way) * stride;                                                                                 \
-    vec4 light[3] = vec4[3](source[from], source[from + channel], source[from + 2 * channel]); \
+    vec4 light[3] = vec4[3](source[from], source[from + channel], source[from + 2 * channel]);                         \
     gatherFaces(light, way * offset, POTENTIAL(face), sum);                                                            \
   }
 
@@ -39,14 +39,14 @@ void gatherFaces(vec4 light[3], vec3 travel, vec4 potential, inout vec4 sum[3]) 
 #else
 // From the neighbour behind along one axis; `way` is +1 or -1, `stride` that axis' step in the buffer. toFrame and fromFrame rotate
 // (c0, x, y, z) into (c0, travel, u, v) and back. `face` is the crossed face's index.
-#define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                     \
+#define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                    \
   if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
     const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                        \
     int from = at - int(way) * stride;                                                                                 \
     FaceValues openings = solidAngles(transmittanceTowardsFaces(POTENTIAL(face).toFrame * turn));                      \
-    sum[0] += (carry(source[from].toFrame * turn, openings) * turn).fromFrame;                             \
-    sum[1] += (carry(source[from + channel].toFrame * turn, openings) * turn).fromFrame;                   \
-    sum[2] += (carry(source[from + 2 * channel].toFrame * turn, openings) * turn).fromFrame;               \
+    sum[0] += (carry(source[from].toFrame * turn, openings) * turn).fromFrame;                                         \
+    sum[1] += (carry(source[from + channel].toFrame * turn, openings) * turn).fromFrame;                               \
+    sum[2] += (carry(source[from + 2 * channel].toFrame * turn, openings) * turn).fromFrame;                           \
   }
 #endif
 

@@ -304,7 +304,8 @@ TEST_F(LpvViews, TheCamerasSurfelsHaveTheAreaOfWhatItSees) {
     renderer.render(camera);
     const double cell = placeCascades(s.lpv.cascades, builder.scene().bounds, camera.position, camera.direction)[0].cellSize;
     double area = 0.0;
-    for (const glm::vec4& potential : renderer.lpv()->geometryVolume()->readRgba()) area += static_cast<double>(potential.x) / twin::kLobeBand0 * cell * cell;
+    for (const glm::vec4& potential : renderer.lpv()->geometryVolume()->readRgba())
+      area += static_cast<double>(potential.x) / twin::kLobeBand0 * cell * cell;
     report(fmt::format("tilt {}: area seen over the plate's", tilt), area / 12.0);
     EXPECT_NEAR(area / 12.0, 1.0, 0.01);
     const auto left = renderer.leftOut();

@@ -316,7 +316,9 @@ TEST_F(LpvAgainstTwin, HalfStorage) {
           for (std::size_t k = 0; k < actual.size(); ++k)
             for (std::size_t channel = 0; channel < 3; ++channel) {
               const double error = test::relativeError(expected.result[k][channel], actual[k][channel]);
-              EXPECT_LT(error, kHalfTolerance) << c.cells << "^3, cascade " << k << " of " << c.cascades << ", " << iterations << " steps, blocking "
+              EXPECT_LT(error, kHalfTolerance);  // what is promised
+              // And what one rounding to the nearest leaves, half a unit in the last place; a store that cuts off would leave a whole one.
+              EXPECT_LT(error, 0.5 * kHalfUlp + kFullTolerance) << c.cells << "^3, cascade " << k << " of " << c.cascades << ", " << iterations << " steps, blocking "
                                                << blocking << ", " << nameOf(propagate);
               worst = std::max(worst, error);
             }
