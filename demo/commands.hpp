@@ -23,6 +23,7 @@ Work addWalk(CLI::App& app);
 Work addRender(CLI::App& app);
 Work addInfo(CLI::App& app);
 Work addBench(CLI::App& app);
+Work addRadiosity(CLI::App& app);
 
 /// --host, --json, --quiet: every subcommand has them.
 struct CommonOptions {

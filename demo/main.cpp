@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   };
   add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times", lucerna::demo::addWalk);
   add("render", "Render one picture of a scene", lucerna::demo::addRender);
+  add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
   add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
   add("bench", "Measure: the published tables and pictures of the originals, made again", lucerna::demo::addBench);
 

@@ -10,7 +10,7 @@ namespace lucerna::demo {
 namespace bench {
 
 void checkOriginal(const std::string& name) {
-  if (name != "lpv") throwBadInput("--original {}: unknown; there are lpv", name);
+  if (name != "lpv" && name != "rad") throwBadInput("--original {}: unknown; there are lpv, rad", name);
 }
 
 std::string sceneOrAtrium(const std::string& scene) {

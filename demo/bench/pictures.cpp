@@ -3,6 +3,7 @@
 #include "base/files.hpp"
 #include "bench/bench.hpp"
 #include "bench/contact_sheet.hpp"
+#include "bench/rad.hpp"
 #include "render/deviations.hpp"
 
 #include <fmt/core.h>
@@ -46,6 +47,11 @@ int run(const Options& options) {
   if (lowerExtension(options.output) != ".png") throwBadInput("-o {}: the extension must be png", options.output);
   if (options.exposure && !(*options.exposure > 0.0 && *options.exposure <= 1e12))
     throwBadInput("--exposure {}: expected a number above 0, at most 1e12", *options.exposure);
+  if (options.original == "rad") {
+    if (!options.scene.empty()) throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
+    if (!options.camera.empty()) throwBadInput("--camera {}: --original rad has one view of each model", options.camera);
+    return bench::runRadPictures(options.common, options.output, usual.size);
+  }
   const std::string file = bench::sceneOrAtrium(options.scene);
   const Scene scene = loadScene(file);
   const Camera camera = chooseCamera(scene, options.camera);
@@ -122,7 +128,7 @@ int run(const Options& options) {
 Work addBenchPictures(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file (default: the atrium; the published scene is Crytek Sponza)");
-  app.add_option("--original", options->original, "whose pictures: lpv")->required();
+  app.add_option("--original", options->original, "whose pictures: lpv or rad")->required();
   app.add_option("-o,--output", options->output, "FILE.png")->required();
   app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str();

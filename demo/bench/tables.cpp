@@ -2,6 +2,7 @@
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
+#include "bench/rad.hpp"
 
 #include <fmt/core.h>
 
@@ -98,6 +99,10 @@ int run(Options options) {
   options.common.apply();
   bench::checkOriginal(options.original);
   if (!(options.scale > 0.0 && options.scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", options.scale);
+  if (options.original == "rad") {
+    if (!options.scene.empty()) throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
+    return bench::runRadTables(options.common, options.scale);
+  }
   options.scene = bench::sceneOrAtrium(options.scene);
   const Scene scene = loadScene(options.scene);
 
@@ -129,8 +134,8 @@ int run(Options options) {
 Work addBenchTables(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file (default: the atrium; the published scene is Crytek Sponza)");
-  app.add_option("--original", options->original, "whose tables: lpv")->required();
-  app.add_option("--scale", options->scale, "less work on a slow machine, above 0, at most 1: fewer frames; below 0.5 also smaller grids")->capture_default_str();
+  app.add_option("--original", options->original, "whose tables: lpv or rad")->required();
+  app.add_option("--scale", options->scale, "less work on a slow machine, above 0, at most 1: fewer frames or hemicubes; below 0.5 also smaller grids and models")->capture_default_str();
   options->common.declare(app);
   return [options] { return run(*options); };
 }

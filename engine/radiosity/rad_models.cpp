@@ -152,17 +152,23 @@ void hall(Builder& b) {
 void twoChambers(Builder& b) {
   const double w = 48, h = 16, d = 28;
   const dvec3 x{w, 0, 0}, y{0, h, 0}, z{0, 0, d};
-  b.rectangle({0, 0, 0}, z, x, kFloor);
-  b.rectangle(y, x, z, kPlaster);
-  b.rectangle({0, 0, 0}, x, y, kPlaster);
-  b.rectangle(z, y, x, kPlaster);
-  b.pierced({0, 0, 0}, y, z, 0.375, 0.35, 0.625, 0.50, kPlaster, true);  // in the left wall
-  b.rectangle(x, z, y, kPlaster);
-  // The wall between, from floor to ceiling, joined to the back wall (z = 0), leaving a gap of 8 units before the front one.
+  // The wall between, from floor to ceiling, joined to the back wall (z = 0), leaving a gap of 8 units before the front one. What it
+  // touches is cut along its edges: a triangle that lay under it would be lit by one chamber and shown in the other.
   const double x0 = 23, x1 = 25, end = 20;
-  b.rectangle({x0, 0, 0}, {0, 0, end}, {0, h, 0}, kStone);
-  b.rectangle({x1, 0, 0}, {0, h, 0}, {0, 0, end}, kStone);
-  b.rectangle({x0, 0, end}, {x1 - x0, 0, 0}, {0, h, 0}, kStone);
+  b.rectangle({0, 0, 0}, z, {x0, 0, 0}, kFloor);
+  b.rectangle({x1, 0, 0}, z, {w - x1, 0, 0}, kFloor);
+  b.rectangle({x0, 0, end}, {0, 0, d - end}, {x1 - x0, 0, 0}, kFloor);
+  b.rectangle({0, h, 0}, {x0, 0, 0}, z, kPlaster);
+  b.rectangle({x1, h, 0}, {w - x1, 0, 0}, z, kPlaster);
+  b.rectangle({x0, h, end}, {x1 - x0, 0, 0}, {0, 0, d - end}, kPlaster);
+  b.rectangle({0, 0, 0}, {x0, 0, 0}, y, kPlaster);
+  b.rectangle({x1, 0, 0}, {w - x1, 0, 0}, y, kPlaster);
+  b.rectangle(z, y, x, kPlaster);
+  b.rectangle({0, 0, 0}, y, z, kPlaster);
+  b.pierced(x, z, y, 0.35, 0.375, 0.50, 0.625, kPlaster, true);  // the lamp, in the right wall
+  b.rectangle({x0, 0, 0}, {0, 0, end}, y, kStone);
+  b.rectangle({x1, 0, 0}, y, {0, 0, end}, kStone);
+  b.rectangle({x0, 0, end}, {x1 - x0, 0, 0}, y, kStone);
 }
 
 // With it model 2 has 25,932, 136,328 and 545,312 triangles at thresholds of 5, 1 and 0.25; published are 26,360, 136,512 and 546,048 [RAD2008 table 4.1].

@@ -1,0 +1,96 @@
+// lucerna bench pictures --original rad -o FILE.png: what the radiosity original's figures show, on the three models, on one sheet.
+#include "bench/rad.hpp"
+
+#include "bench/contact_sheet.hpp"
+#include "radiosity/original_display.hpp"
+#include "radiosity/original_solver.hpp"
+#include "radiosity/rad_models.hpp"
+
+#include <fmt/core.h>
+
+#include <optional>
+
+namespace lucerna::demo::bench {
+
+int runRadPictures(const CommonOptions& common, const std::string& output, glm::ivec2 size) {
+  const auto host = common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  RadView view(programs, size);
+  std::vector<Tile> tiles;
+  constexpr int kTiles = 20;
+  Progress progress("bench pictures", kTiles, common.quiet);
+
+  using Settings = OriginalRadiosity::Settings;
+  const auto settingsOf = [](int pixels) {
+    Settings settings;
+    settings.view = pixels;
+    return settings;
+  };
+  /// After so many sweeps more than what is in the file.
+  const auto solve = [&](const std::vector<RadTriangle>& triangles, const Settings& settings, int sweeps) {
+    OriginalRadiosity solver(programs, triangles, settings);
+    OriginalProgress p = solver.start();
+    for (int sweep = 0; sweep < sweeps && !interrupted(); ++sweep) solver.sweep(p, [](const OriginalProgress&) { return !interrupted(); });
+    return solver.withReceived(p.received);
+  };
+  const auto add = [&](const std::string& label, const std::vector<RadTriangle>& triangles, RadDisplay display = {}) {
+    view.show(triangles, display);
+    view.record(overviewOf(triangles));
+    tiles.push_back({label, view.read()});
+    progress.update(static_cast<int>(tiles.size()));
+  };
+  const auto with = [](RadMapping mapping, bool mesh = false, bool backs = false) {
+    RadDisplay display;
+    display.mapping = mapping, display.mesh = mesh, display.backCorners = backs;
+    return display;
+  };
+
+  const std::vector<RadTriangle> cube = makeRadModel(1, {10.0, 0.3, 1000000});
+  const std::vector<RadTriangle> lit = solve(cube, settingsOf(100), 3);
+  const RadDisplay constant = with(RadMapping::linear);  // shows small differences better than the logarithm
+  add("3.10a camera at the centroid, 3 sweeps", lit, constant);
+  Settings corners = settingsOf(100);
+  corners.deviations.centroid = false;
+  add("3.10b camera at the three corners, 1 sweep", solve(cube, corners, 1), constant);
+  // The wall between the chambers is 2 units thick: beside it a camera whose near plane lies 4 units off looks through it.
+  Settings far = settingsOf(48);
+  far.nearPlane = 4.0;
+  add("3.13 near plane too far: bright seams along the wall", solve(makeRadModel(3, {5.0, 0.3, 10000000}), far, 2));
+  if (interrupted()) return 130;
+
+  const std::vector<RadTriangle> hall = makeRadModel(2, {100.0, 0.3, 1000000});
+  const std::vector<RadTriangle> once = solve(hall, settingsOf(32), 1), twice = solve(once, settingsOf(32), 1);
+  if (interrupted()) return 130;
+  add("4.1 model 2, mesh", hall, with(RadMapping::logarithmic, true));
+  add("4.5a model 2 after sweep 1", once);
+  add("4.5b after sweep 2", twice);
+  add("3.16a as the computation draws it", twice, with(RadMapping::bits24));
+  add("3.16b as it is shown", twice);
+  add("3.17a times a constant", twice, with(RadMapping::linear));
+  add("3.17b logarithm", twice);
+  add("3.17 the filmic curve of the engine", twice, with(RadMapping::filmic));
+  add("3.18 triangles turned away, by their corners", twice, with(RadMapping::logarithmic, false, true));
+
+  for (int pixels : {25, 50, 100, 200}) add(fmt::format("4.6 {} x {} px", pixels, pixels), pixels == 100 ? lit : solve(cube, settingsOf(pixels), 3), constant);
+  if (interrupted()) return 130;
+  for (double threshold : {80.0, 20.0, 5.0})
+    add(fmt::format("4.4 model 3, triangles below {} units", threshold), solve(makeRadModel(3, {threshold, 0.3, 10000000}), settingsOf(32), threshold > 5.0 ? 5 : 3));
+  const std::vector<RadTriangle> bent = makeRadModel(3, {10.0, 0.3, 10000000});
+  add("model 3, light round the wall, false colours", solve(bent, settingsOf(48), 4), with(RadMapping::falseColours));
+  if (interrupted()) return 130;
+
+  writePng(output, contactSheet("RAD original, its figures on our models 1 to 3 (1 where no number is given), published solver; views 25 to 200 px, few sweeps; 800 px of 4.6 left out", tiles, 4));
+  if (!common.quiet) fmt::print("{}: {} tiles of {}x{}, on {}\n", output, tiles.size(), size.x, size.y, context.capabilities().renderer);
+  nlohmann::ordered_json json;
+  json["renderer"] = context.capabilities().renderer;
+  json["host"] = nameOf(host->kind());
+  json["original"] = "rad";
+  json["size"] = {size.x, size.y};
+  for (const Tile& tile : tiles) json["pictures"].push_back({{"picture", tile.label}});
+  common.writeJson(json);
+  return 0;
+}
+
+}  // namespace lucerna::demo::bench

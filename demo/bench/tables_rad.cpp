@@ -1,0 +1,215 @@
+// lucerna bench tables --original rad: the published program's times on model 2, and what each of its deviations costs.
+//
+// A whole published run takes minutes to days. Here hemicubes of triangles spread evenly over the scene are drawn for a while, and a run of 7 sweeps,
+// as many as published, is computed from their rate: every hemicube costs the same, since every view draws the whole scene.
+#include "bench/rad.hpp"
+
+#include "base/error.hpp"
+#include "radiosity/original_solver.hpp"
+#include "radiosity/rad_models.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+namespace lucerna::demo::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+constexpr int kSweeps = 7;
+constexpr const char* kPublishedOn = "GeForce 7600 GT";
+
+// [RAD2008 tables 4.1 and 4.2]: minutes of a whole run, seconds a triangle.
+struct Published {
+  double threshold;
+  int triangles;
+  std::array<double, 3> minutes, secondsATriangle;  // at 100, 200 and 500 pixels
+};
+constexpr std::array kPublished{Published{5.0, 26360, {4.0 + 40.0 / 60.0, 8.75, 39.0 + 40.0 / 60.0}, {0.011, 0.020, 0.091}},
+                                Published{1.0, 136512, {58.0 + 20.0 / 60.0, 81.0 + 40.0 / 60.0, 233.0}, {0.026, 0.036, 0.102}},
+                                Published{0.25, 546048, {583.0, 700.0, 1516.0}, {0.064, 0.077, 0.166}}};
+constexpr std::array kViews{100, 200, 500};
+
+struct Rate {
+  std::size_t hemicubes = 0, triangles = 0;
+  double seconds = 0.0;
+  double hemicubesASecond() const { return static_cast<double>(hemicubes) / seconds; }
+  double mtrianglesASecond() const { return static_cast<double>(triangles) / seconds / 1e6; }
+};
+
+Rate measure(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, int view, std::size_t most, double mostSeconds) {
+  OriginalRadiosity::Settings settings;
+  settings.view = view;
+  OriginalRadiosity solver(programs, triangles, settings);
+  solver.gather(0);  // warm-up
+  const std::size_t warm = solver.hemicubes(), warmTriangles = solver.drawnTriangles();
+  const auto start = Clock::now();
+  for (std::size_t i = 0; i < most && !interrupted(); ++i) {
+    solver.gather((2 * i + 1) * triangles.size() / (2 * most));
+    if (i >= 3 && secondsSince(start) > mostSeconds) break;
+  }
+  return {solver.hemicubes() - warm, solver.drawnTriangles() - warmTriangles, secondsSince(start)};
+}
+
+/// Sweeps to rest of the published solver, with the numbers of the manual's example; nothing where it was interrupted.
+std::optional<std::uint32_t> sweepsToRest(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, int view, bool quiet) {
+  OriginalRadiosity::Settings settings;
+  settings.view = view;
+  OriginalRadiosity solver(programs, triangles, settings);
+  OriginalProgress progress = solver.start();
+  do {
+    Progress bar(fmt::format("sweep {}", progress.sweeps + 1), static_cast<int>(triangles.size()), quiet);
+    const auto goOn = [&](const OriginalProgress& now) {
+      bar.update(static_cast<int>(now.done));
+      return !interrupted();
+    };
+    if (!solver.sweep(progress, goOn)) return std::nullopt;
+  } while (progress.change > 0.0 && progress.sweeps < 100);
+  return progress.sweeps;
+}
+
+struct Cost {
+  std::string name;
+  double nrmse = 0.0, most = 0.0, bias = 0.0;
+};
+
+/// The lit cube as published, with one deviation turned off, and with all but the centroid off, each against that last one at four times the pixels.
+std::vector<Cost> deviationCosts(gl::ProgramLibrary& programs, int view, bool quiet) {
+  const std::vector<RadTriangle> cube = makeRadModel(1, {20.0, 0.5, 100000});
+  Progress bar("deviations", 8, quiet);
+  int done = 0;
+  const auto solve = [&](const RadiosityDeviations& deviations, int pixels) {
+    OriginalRadiosity::Settings settings;
+    settings.view = pixels;
+    settings.gaussSeidel = true;
+    settings.deviations = deviations;
+    OriginalRadiosity solver(programs, cube, settings);
+    OriginalProgress progress = solver.start();
+    for (int sweep = 0; sweep < 6 && !interrupted(); ++sweep) solver.sweep(progress, [](const OriginalProgress&) { return !interrupted(); });
+    bar.update(++done);
+    return progress.received;
+  };
+  RadiosityDeviations right;
+  right.centroid = true;  // the receiving points stay the same
+  const std::vector<float> reference = solve(right, 4 * view);
+  const auto costOf = [&](const std::string& name, const RadiosityDeviations& deviations) {
+    const std::vector<float> received = solve(deviations, view);
+    double squares = 0.0, sum = 0.0, area = 0.0, difference = 0.0;
+    Cost cost;
+    cost.name = name;
+    for (std::size_t i = 0; i < cube.size(); ++i) {
+      const double a = areaOf(cube[i]), is = static_cast<double>(reference[i]), error = static_cast<double>(received[i]) - is;
+      squares += a * error * error, sum += a * is, difference += a * error, area += a;
+      cost.most = std::max(cost.most, std::abs(error) / is);
+    }
+    cost.nrmse = std::sqrt(squares / area) / (sum / area);
+    cost.bias = difference / sum;
+    return cost;
+  };
+  std::vector<Cost> costs{costOf("as published", publishedRadiosity())};
+  for (const RadiosityDeviation& deviation : allRadiosityDeviations()) {
+    RadiosityDeviations one = publishedRadiosity();
+    one.*deviation.member = false;
+    costs.push_back(costOf(fmt::format("{}=off", deviation.name), one));
+  }
+  costs.push_back(costOf("all off but rad.centroid", right));
+  return costs;
+}
+
+}  // namespace
+
+int runRadTables(const CommonOptions& common, double scale) {
+  const auto host = common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  const std::string& renderer = context.capabilities().renderer;
+  const auto most = static_cast<std::size_t>(std::max(8.0, std::round(400.0 * scale)));
+  const double mostSeconds = std::max(1.0, 40.0 * scale);
+
+  nlohmann::ordered_json json;
+  json["renderer"] = renderer;
+  json["host"] = nameOf(host->kind());
+  json["original"] = "rad";
+  json["scale"] = scale;
+  const std::vector<std::string> notes{
+      fmt::format("Scale    {}: at most {} hemicubes or {:.0f} s a figure, of triangles spread evenly over the scene", scale, most, mostSeconds),
+      fmt::format("Whole    not run: {} sweeps over all triangles, computed from the rate (extrapolated); published are whole runs of {} sweeps", kSweeps, kSweeps),
+      "Scene    model 2; its measures are ours, its numbers of triangles within 2 % of the published"};
+  json["notes"] = notes;
+  fmt::print("Renderer {}\n", renderer);
+  for (const std::string& note : notes) fmt::print("{}\n", note);
+
+  fmt::print("\nTables 4.1 and 4.2\n{:<28}{:>14}{:>14}{:>9}{:>14}{:>14}{:>13}{:>14}\n", "", "whole, min", "here, min", "ratio", "s a triangle", "here, s", "hemicubes/s",
+             "Mtriangles/s");
+  json["rows"] = nlohmann::ordered_json::array();
+  for (const Published& published : kPublished) {
+    if (interrupted()) break;
+    RadModelSettings model;
+    model.areaThreshold = published.threshold;
+    const std::vector<RadTriangle> triangles = makeRadModel(2, model);
+    for (std::size_t v = 0; v < kViews.size() && !interrupted(); ++v) {
+      const Rate rate = measure(programs, triangles, kViews[v], most, mostSeconds);
+      const double secondsATriangle = kSweeps / rate.hemicubesASecond(), minutes = secondsATriangle * static_cast<double>(triangles.size()) / 60.0;
+      const std::string name = fmt::format("{}x{}, {} triangles", kViews[v], kViews[v], published.triangles);
+      fmt::print("{:<28}{:>14.2f}{:>14.2f}{:>9.3g}{:>14.3f}{:>14.4f}{:>13.1f}{:>14.2f}\n", name, published.minutes[v], minutes, minutes / published.minutes[v],
+                 published.secondsATriangle[v], secondsATriangle, rate.hemicubesASecond(), rate.mtrianglesASecond());
+      std::fflush(stdout);
+      for (const bool whole : {true, false}) {
+        nlohmann::ordered_json row;
+        row["table"] = whole ? "4.1" : "4.2";
+        row["row"] = name;
+        row["published"] = whole ? published.minutes[v] : published.secondsATriangle[v];
+        row["measured"] = whole ? minutes : secondsATriangle;
+        row["ratio"] = row["measured"].get<double>() / row["published"].get<double>();
+        row["unit"] = whole ? "min" : "s";
+        row["renderer"] = renderer;
+        row["published_on"] = kPublishedOn;
+        row["triangles"] = triangles.size();
+        row["view"] = kViews[v];
+        row["sweeps"] = kSweeps;
+        row["extrapolated"] = true;
+        row["hemicubes"] = rate.hemicubes;
+        row["hemicubes_per_s"] = rate.hemicubesASecond();
+        row["mtriangles_per_s"] = rate.mtrianglesASecond();
+        json["rows"].push_back(std::move(row));
+      }
+    }
+  }
+
+  // Model 2 as coarse as it gets; the others where even that is too much.
+  const bool hall = scale >= 0.5;
+  RadModelSettings model;
+  model.areaThreshold = hall ? 100.0 : 30.0;
+  const std::vector<RadTriangle> coarse = makeRadModel(hall ? 2 : 3, model);
+  if (const auto sweeps = interrupted() ? std::nullopt : sweepsToRest(programs, coarse, 32, common.quiet)) {
+    fmt::print("\nSweeps   {} until nothing changes (model {}, {} triangles, 32x32, reflectance 0.15, power 100000); published {} (model 2)\n", *sweeps, hall ? 2 : 3, coarse.size(),
+               kSweeps);
+    json["rows"].push_back({{"table", "4.1"}, {"row", fmt::format("sweeps, model {}, {} triangles", hall ? 2 : 3, coarse.size())}, {"published", kSweeps}, {"measured", *sweeps},
+                            {"ratio", *sweeps / static_cast<double>(kSweeps)}, {"unit", "sweeps"}, {"renderer", renderer}});
+  }
+
+  const int view = scale >= 0.5 ? 100 : scale >= 0.1 ? 64 : 32;
+  const std::vector<Cost> costs = interrupted() ? std::vector<Cost>{} : deviationCosts(programs, view, common.quiet);
+  if (!interrupted()) {
+    fmt::print("\nDeviations: model 1, threshold 20, reflectance 0.5, {}x{}; against floats, exact map, random roll at {}x{} and the same points\n{:<32}{:>10}{:>10}{:>10}\n", view, view,
+               4 * view, 4 * view, "", "NRMSE %", "worst %", "bias %");
+    json["deviations"] = nlohmann::ordered_json::array();
+    for (const Cost& cost : costs) {
+      fmt::print("{:<32}{:>10.2f}{:>10.2f}{:>+10.2f}\n", cost.name, 100.0 * cost.nrmse, 100.0 * cost.most, 100.0 * cost.bias);
+      json["deviations"].push_back({{"name", cost.name}, {"nrmse", cost.nrmse}, {"worst", cost.most}, {"bias", cost.bias}});
+    }
+    fmt::print("rad.centroid=off samples three corners; those on another wall see it edge on and lose its light\n");
+  }
+  common.writeJson(json);
+  return interrupted() ? 130 : 0;
+}
+
+}  // namespace lucerna::demo::bench

@@ -1,0 +1,128 @@
+// lucerna radiosity generate|solve|show: the three programs of the radiosity original, on its own file format and on any mesh.
+#include "radiosity.hpp"
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "radiosity/rad_file.hpp"
+#include "radiosity/rad_models.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::demo {
+
+namespace {
+
+struct Generate {
+  CommonOptions common;
+  std::string file;
+  int model = 0;
+  std::vector<double> numbers;  // threshold, reflectance, light power; all or none
+};
+
+int generate(const Generate& options) {
+  options.common.apply();
+  RadModelSettings settings;
+  if (!options.numbers.empty()) {
+    if (options.numbers.size() != 3) throwBadInput("AREA_THRESHOLD REFLECTANCE LIGHT_POWER: {} of them given, expected all three or none", options.numbers.size());
+    settings.areaThreshold = options.numbers[0];
+    settings.reflectance = options.numbers[1];
+    double power = options.numbers[2];
+    // The manual allows 2^24, which three bytes just do not hold.
+    if (power == 16777216.0) {
+      logWarning("LIGHT_POWER 16777216: 24 bits hold one less; {} taken", kRadMost);
+      power = kRadMost;
+    }
+    if (!(power >= 0.0 && power <= kRadMost)) throwBadInput("LIGHT_POWER {}: expected 0 to {} (24 bits)", power, kRadMost);
+    if (power != std::floor(power)) throwBadInput("LIGHT_POWER {}: expected a whole number", power);
+    settings.lightPower = static_cast<std::uint32_t>(power);
+  }
+  const std::vector<RadTriangle> triangles = makeRadModel(options.model, settings);
+  writeRadFile(options.file, triangles);
+  const auto sources = std::count_if(triangles.begin(), triangles.end(), [](const RadTriangle& t) { return t.e > 0; });
+  double area = 0.0;
+  for (const RadTriangle& t : triangles) area += areaOf(t);
+  if (!options.common.quiet)
+    fmt::print("{}: model {}, {} triangles below {} square units ({} sources of power {}), reflectance {}, {} bytes\n", options.file, options.model, triangles.size(),
+               settings.areaThreshold, sources, settings.lightPower, settings.reflectance, 4 + triangles.size() * sizeof(RadTriangle));
+  nlohmann::ordered_json json;
+  json["file"] = options.file;
+  json["model"] = options.model;
+  json["triangles"] = triangles.size();
+  json["sources"] = sources;
+  json["area"] = area;
+  json["area_threshold"] = settings.areaThreshold;
+  json["reflectance"] = settings.reflectance;
+  json["light_power"] = settings.lightPower;
+  options.common.writeJson(json);
+  return 0;
+}
+
+Work addGenerate(CLI::App& app) {
+  auto options = std::make_shared<Generate>();
+  app.add_option("FILE", options->file, "the triangle file to write")->required();
+  app.add_option("MODEL", options->model, "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle")->required();
+  app.add_option("NUMBERS", options->numbers, "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until below the area; 0 to 1; 0 to 16777215")
+      ->expected(0, 3);
+  app.footer("As published: lucerna radiosity generate model1.out 1 2.5 0.15 100000");
+  options->common.declare(app);
+  return [options] { return generate(*options); };
+}
+
+int solve(const RadiositySolve& options) {
+  options.common.apply();
+  if (options.settings.view < 2 || options.settings.view > 4096) throwBadInput("VIEW {}: expected 2 to 4096 pixels", options.settings.view);
+  if (options.settings.maxSweeps < 0) throwBadInput("--max-sweeps {}: expected 0 (no limit) or more", options.settings.maxSweeps);
+  if (!(options.saveEvery >= 0.0)) throwBadInput("--save-every {}: expected seconds, 0 or more", options.saveEvery);
+  if (options.nearPlane && !(*options.nearPlane > 0.0 && std::isfinite(*options.nearPlane))) throwBadInput("--near {}: expected a distance above 0", *options.nearPlane);
+  if (options.fidelity == "original") return solveOriginal(options);
+  if (options.fidelity != "corrected") throwBadInput("--fidelity {}: unknown; there are corrected, original", options.fidelity);
+  throwMissingCapability("--fidelity corrected: this build has the published solver only; use --fidelity original");
+}
+
+std::string radiosityDeviationsHelp() {
+  std::string text = "Deviations (--deviation NAME=on|off; all are on with --fidelity original):\n";
+  for (const RadiosityDeviation& deviation : allRadiosityDeviations()) text += fmt::format("  {:<24} {}\n", deviation.name, deviation.meaning);
+  return text;
+}
+
+Work addSolve(CLI::App& app) {
+  auto options = std::make_shared<RadiositySolve>();
+  app.add_option("IN", options->in, "a triangle file")->required();
+  app.add_option("OUT", options->out, "where every sweep is saved; may be IN. Ctrl-C stops at any time, the same command goes on")->required();
+  app.add_option("VIEW", options->settings.view, "pixels a side of a hemicube's face")->capture_default_str();
+  app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str();
+  app.add_option("--solver", options->solver, "original: jacobi (default) or gauss-seidel");
+  app.add_option("--deviation", options->deviations, "NAME=on|off: one deviation of the published original; may be repeated");
+  app.add_option("--max-sweeps", options->settings.maxSweeps, "stop after so many sweeps (0: when nothing changes)")->capture_default_str();
+  app.add_option("--near", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
+  app.add_option("--seed", options->settings.seed, "of the random roll with rad.fixed-orientation=off")->capture_default_str();
+  app.add_option("--save-every", options->saveEvery, "seconds between checkpoints within a sweep")->capture_default_str();
+  app.add_flag("--restart", options->restart, "begin anew where a stopped run could go on");
+  app.footer(radiosityDeviationsHelp());
+  options->common.declare(app);
+  return [options] { return solve(*options); };
+}
+
+}  // namespace
+
+Work addRadiosity(CLI::App& app) {
+  app.require_subcommand(1);
+  auto commands = std::make_shared<std::vector<std::pair<CLI::App*, Work>>>();
+  const auto add = [&](const char* name, const char* description, Work (*declare)(CLI::App&)) {
+    CLI::App* command = app.add_subcommand(name, description);
+    commands->emplace_back(command, declare(*command));
+  };
+  add("generate", "Make one of the original's three models", addGenerate);
+  add("solve", "Compute the radiosity of a scene", addSolve);
+  add("show", "Look at a triangle file in a window, or make a picture of it", addRadiosityShow);
+  return [commands] {
+    for (const auto& [command, work] : *commands)
+      if (command->parsed()) return work();
+    return 0;
+  };
+}
+
+}  // namespace lucerna::demo

@@ -1,0 +1,131 @@
+// lucerna radiosity show FILE [s|c]: a triangle file in a window, or as one picture with -o.
+#include "radiosity.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/log.hpp"
+#include "radiosity/original_display.hpp"
+#include "scene/scene.hpp"
+#include "walk/free_camera.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace lucerna::demo {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  CommonOptions common;
+  std::string file, mode, output, mapping, camera, size = "1280x720";
+  double constant = 0.0;
+  bool mesh = false, falseColours = false;
+};
+
+RadDisplay displayOf(const Options& options) {
+  RadDisplay display;
+  if (!options.mode.empty() && options.mode != "s" && options.mode != "c") throwBadInput("{}: unknown; there are s (triangles turned away too), c (colours as computed)", options.mode);
+  if (!options.mapping.empty()) display.mapping = parseRadMapping(options.mapping);
+  if (options.falseColours) display.mapping = RadMapping::falseColours;
+  if (options.mode == "c") display.mapping = RadMapping::bits24;
+  display.backCorners = options.mode == "s";
+  if (!(options.constant >= 0.0 && std::isfinite(options.constant))) throwBadInput("--constant {}: expected a number above 0, or 0 to choose one", options.constant);
+  display.constant = options.constant;
+  display.mesh = options.mesh;
+  return display;
+}
+
+void walkAround(Host& host, gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, RadDisplay display, const Camera& camera) {
+  watchForInterrupt();
+  FreeCamera freeCamera(camera, 0.08 * diagonalOf(triangles));
+  glm::ivec2 size = host.framebufferSize();
+  auto view = std::make_unique<RadView>(programs, size);
+  view->show(triangles, display);
+  host.setTitle("Lucerna radiosity - 1 log, 2 linear, 3 filmic, 4 false colours, 5 bits, M mesh, B backs, - = constant, WASD QE and drag, Esc");
+  auto frameStart = Clock::now();
+  while (!interrupted()) {
+    const HostInput input = host.poll();
+    if (input.closeRequested || input.pressed.find('\x1b') != std::string::npos) return;
+    bool changed = host.framebufferSize() != size;
+    if (changed) view = std::make_unique<RadView>(programs, size = host.framebufferSize());
+    for (const char key : input.pressed) {
+      changed = true;
+      if (key >= '1' && key <= '5') display.mapping = static_cast<RadMapping>(key - '1');
+      if (key == 'M') display.mesh = !display.mesh;
+      if (key == 'B') display.backCorners = !display.backCorners;
+      const double constant = display.constant > 0.0 ? display.constant : exposureOf(triangles);
+      if (key == '=') display.constant = 1.25 * constant;
+      if (key == '-') display.constant = constant / 1.25;
+    }
+    if (changed) view->show(triangles, display);
+    const double dt = std::chrono::duration<double>(Clock::now() - frameStart).count();
+    frameStart = Clock::now();
+    freeCamera.move(input, std::min(dt, 0.1));
+    view->record(freeCamera.camera());
+    host.present(view->framebuffer().id(), size);
+  }
+}
+
+int run(const Options& options) {
+  options.common.apply();
+  const RadDisplay display = displayOf(options);
+  const glm::ivec2 size = parseSize(options.size);
+  if (!options.output.empty() && lowerExtension(options.output) != ".png") throwBadInput("-o {}: the extension must be png", options.output);
+  const std::vector<RadTriangle> triangles = readRadFile(options.file);
+  checkRadTriangles(triangles, options.file);
+  Scene cameras;
+  cameras.cameras = {overviewOf(triangles)};
+  const Camera camera = chooseCamera(cameras, options.camera);
+
+  HostOptions hostOptions;
+  hostOptions.windowSize = size;
+  const auto host = options.common.makeHost(options.output.empty(), hostOptions);
+  const gl::Context context;
+  if (std::max(size.x, size.y) > context.capabilities().maxTextureSize)
+    throwMissingCapability("--size {}: this driver's textures end at {} pixels", options.size, context.capabilities().maxTextureSize);
+  gl::ProgramLibrary programs;
+  if (options.output.empty()) {
+    if (host->kind() != HostKind::window) throwMissingCapability("show: there is no window here; -o OUT.png makes a picture");
+    walkAround(*host, programs, triangles, display, camera);
+  } else {
+    RadView view(programs, size);
+    view.show(triangles, display);
+    view.record(camera);
+    writePng(options.output, view.read());
+    if (!options.common.quiet)
+      fmt::print("{}: {}x{}, {} triangles, {}, on {}\n", options.output, size.x, size.y, triangles.size(), nameOf(display.mapping), context.capabilities().renderer);
+  }
+  nlohmann::ordered_json json;
+  json["renderer"] = context.capabilities().renderer;
+  json["host"] = nameOf(host->kind());
+  json["triangles"] = triangles.size();
+  json["mapping"] = nameOf(display.mapping);
+  json["constant"] = display.constant > 0.0 ? display.constant : exposureOf(triangles);
+  json["size"] = {size.x, size.y};
+  options.common.writeJson(json);
+  return interrupted() ? 130 : 0;
+}
+
+}  // namespace
+
+Work addRadiosityShow(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->file, "a triangle file")->required();
+  app.add_option("MODE", options->mode, "s: triangles turned away shown too, by their corners; c: the 24-bit colours that the computation draws");
+  app.add_option("-o,--output", options->output, "OUT.png: a picture instead of a window");
+  app.add_option("--mapping", options->mapping, "log (as published, default), linear (times a constant), filmic (the engine's), false (colours), bits (as c)");
+  app.add_option("--constant", options->constant, "linear and filmic: what a value is multiplied by, 1 being white (0: from the scene)")->capture_default_str();
+  app.add_flag("--mesh", options->mesh, "draw the triangles' edges");
+  app.add_flag("--false-colours", options->falseColours, "the same as --mapping false");
+  app.add_option("--camera", options->camera, "px,py,pz,tx,ty,tz,fov (position, target, degrees); default: from above a corner");
+  app.add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  options->common.declare(app);
+  return [options] { return run(*options); };
+}
+
+}  // namespace lucerna::demo

@@ -1,0 +1,65 @@
+// The original's third program: a triangle file drawn, each triangle in one colour [RAD2008 section 3.8].
+//
+// What is shown is e + b [RAD2008 eq 3-1], mapped to 0..255 by a logarithm as published, times a constant (which it is compared with), by the
+// engine's filmic curve, as false colours, or as the 24-bit colours of the computation. Colours are chosen on the CPU, one a triangle.
+#pragma once
+
+#include "base/image.hpp"
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+#include "radiosity/rad_file.hpp"
+#include "scene/scene.hpp"
+
+#include <glm/glm.hpp>
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace lucerna {
+
+enum class RadMapping { logarithmic, linear, filmic, falseColours, bits24 };
+std::string_view nameOf(RadMapping mapping);
+/// log, linear, filmic, false or bits; throws Error(badInput) listing them.
+RadMapping parseRadMapping(std::string_view name);
+
+struct RadDisplay {
+  RadMapping mapping = RadMapping::logarithmic;
+  double constant = 0.0;      ///< linear and filmic: what a value is multiplied by, 1 being white; 0: exposureOf()
+  bool backCorners = false;   ///< triangles turned away shown by their corners; else not at all
+  bool mesh = false;          ///< edges over the faces
+};
+
+/// What brings the 99th percentile (by area) of received radiosity to white: sources lie orders of magnitude above it. 1 where nothing is received.
+double exposureOf(std::span<const RadTriangle> triangles);
+
+/// Colours as displayed (sRGB), 0..1, one a triangle. Pure. The logarithm is log(1 + v) / log(1 + the greatest v).
+std::vector<glm::vec3> displayColours(std::span<const RadTriangle> triangles, const RadDisplay& display);
+
+/// From above one corner into the scene, all of it in view.
+Camera overviewOf(std::span<const RadTriangle> triangles);
+
+/// Of the corners' bounds.
+double diagonalOf(std::span<const RadTriangle> triangles);
+
+class RadView {
+ public:
+  RadView(gl::ProgramLibrary& programs, glm::ivec2 size);
+  void show(std::span<const RadTriangle> triangles, const RadDisplay& display);
+  void record(const Camera& camera) const;
+  Bitmap read() const;
+  const gl::Framebuffer& framebuffer() const { return framebuffer_; }
+  std::size_t gpuBytes() const { return vertices_.bytes() + color_.bytes() + depth_.bytes(); }
+
+ private:
+  const gl::Program* program_;
+  gl::Buffer vertices_;
+  gl::VertexArray vertexArray_;
+  gl::Texture color_, depth_;
+  gl::Framebuffer framebuffer_;
+  RadDisplay display_;
+  GLsizei count_ = 0;
+  double extent_ = 1.0;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,68 @@
+// lucerna bench tables --original rad: the published figures stand in it as published, ratios are what they say.
+#include "support/subprocess.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+
+namespace {
+
+using lucerna::test::RunResult;
+using lucerna::test::TempFolder;
+
+TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
+  const TempFolder folder;
+  const std::string file = (folder / "t.json").string();
+  const RunResult result = RUN_LUCERNA("bench tables --original rad --scale 0.005 --host osmesa --quiet --json '" + file + "'");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
+  EXPECT_NE(result.out.find("extrapolated"), std::string::npos);
+  // Published, of [RAD2008 tables 4.1 and 4.2].
+  const std::map<std::pair<std::string, std::string>, double> published{
+      {{"4.1", "100x100, 26360 triangles"}, 280.0 / 60.0},   {{"4.1", "200x200, 26360 triangles"}, 525.0 / 60.0},   {{"4.1", "500x500, 26360 triangles"}, 2380.0 / 60.0},
+      {{"4.1", "100x100, 136512 triangles"}, 3500.0 / 60.0}, {{"4.1", "200x200, 136512 triangles"}, 4900.0 / 60.0}, {{"4.1", "500x500, 136512 triangles"}, 233.0},
+      {{"4.1", "100x100, 546048 triangles"}, 583.0},         {{"4.1", "200x200, 546048 triangles"}, 700.0},         {{"4.1", "500x500, 546048 triangles"}, 1516.0},
+      {{"4.2", "100x100, 26360 triangles"}, 0.011},          {{"4.2", "200x200, 26360 triangles"}, 0.020},          {{"4.2", "500x500, 26360 triangles"}, 0.091},
+      {{"4.2", "100x100, 136512 triangles"}, 0.026},         {{"4.2", "200x200, 136512 triangles"}, 0.036},         {{"4.2", "500x500, 136512 triangles"}, 0.102},
+      {{"4.2", "100x100, 546048 triangles"}, 0.064},         {{"4.2", "200x200, 546048 triangles"}, 0.077},         {{"4.2", "500x500, 546048 triangles"}, 0.166},
+  };
+  std::size_t found = 0;
+  for (const auto& row : json["rows"]) {
+    EXPECT_NEAR(row["ratio"].get<double>(), row["measured"].get<double>() / row["published"].get<double>(), 1e-9);
+    EXPECT_GT(row["measured"].get<double>(), 0.0);
+    if (row["unit"] == "sweeps") {
+      EXPECT_EQ(row["published"], 7);
+      EXPECT_GE(row["measured"].get<int>(), 5);
+      EXPECT_LE(row["measured"].get<int>(), 12);
+      continue;
+    }
+    const auto at = published.find({row["table"], row["row"]});
+    ASSERT_NE(at, published.end()) << row;
+    EXPECT_NEAR(row["published"].get<double>(), at->second, 1e-9) << row;
+    EXPECT_TRUE(row["extrapolated"].get<bool>());
+    // Seven sweeps over all triangles at this rate; five views of the whole scene a hemicube.
+    const double triangles = row["triangles"].get<double>(), rate = row["hemicubes_per_s"].get<double>();
+    EXPECT_NEAR(row["measured"].get<double>(), row["table"] == "4.1" ? 7.0 * triangles / rate / 60.0 : 7.0 / rate, 1e-6 * row["measured"].get<double>());
+    EXPECT_NEAR(row["mtriangles_per_s"].get<double>(), 5.0 * triangles * rate / 1e6, 1e-3 * row["mtriangles_per_s"].get<double>());
+    ++found;
+  }
+  EXPECT_EQ(found, published.size());
+
+  std::map<std::string, double> nrmse;
+  for (const auto& row : json["deviations"]) nrmse[row["name"]] = row["nrmse"];
+  ASSERT_EQ(nrmse.size(), 7u);
+  EXPECT_LT(nrmse["rad.published-map=off"], 0.9 * nrmse["as published"]);
+  EXPECT_LT(nrmse["all off but rad.centroid"], nrmse["as published"]);
+}
+
+TEST(BenchRad, ScenesAreRefused) {
+  const RunResult result = RUN_LUCERNA("bench tables --original rad some.obj");
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_NE(result.err.find("makes its own models"), std::string::npos) << result.err;
+}
+
+}  // namespace

@@ -1,0 +1,198 @@
+// lucerna radiosity generate|solve|show as a user runs them, and what happens to the files when a run is stopped, killed, or cannot write.
+#include "radiosity/rad_file.hpp"
+#include "base/files.hpp"
+#include "base/image.hpp"
+#include "support/subprocess.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using lucerna::RadTriangle;
+using lucerna::test::run;
+using lucerna::test::RunResult;
+using lucerna::test::TempFolder;
+
+class Radiosity : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(std::ifstream(path(name))); }
+  std::vector<std::uint8_t> bytes(const std::string& name) const { return lucerna::readFileBytes(path(name)); }
+  /// Model 1 with few triangles, bright enough for several sweeps.
+  void generate(const std::string& name, const std::string& numbers = "40 0.5 1000000") const {
+    const RunResult result = RUN_LUCERNA("radiosity generate '" + path(name) + "' 1 " + numbers);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+  }
+  static std::string solve(const std::string& in, const std::string& out, const std::string& more = "") {
+    return "'" LUCERNA_BINARY "' radiosity solve '" + in + "' '" + out + "' 16 --fidelity original --host osmesa " + more;
+  }
+  void expectRefused(const std::string& command, const std::vector<std::string>& parts, int exitCode = 2) const {
+    const RunResult result = run(command);
+    EXPECT_EQ(result.exitCode, exitCode) << command << "\n" << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << command << "\n" << result.err;
+    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+  }
+  const TempFolder& folder() const { return folder_; }
+
+ private:
+  TempFolder folder_;
+};
+
+TEST_F(Radiosity, GenerateSolveShow) {
+  const RunResult made = RUN_LUCERNA("radiosity generate '" + path("m.rad") + "' 1 40 0.5 1000000 --json '" + path("g.json") + "'");
+  ASSERT_EQ(made.exitCode, 0) << made.err;
+  const auto triangles = json("g.json")["triangles"].get<std::size_t>();
+  EXPECT_EQ(bytes("m.rad").size(), 4 + 72 * triangles);
+  EXPECT_EQ(json("g.json")["light_power"], 1000000);
+
+  const RunResult solved = run(solve(path("m.rad"), path("s.rad"), "--json '" + path("s.json") + "'"));
+  ASSERT_EQ(solved.exitCode, 0) << solved.err;
+  const nlohmann::json s = json("s.json");
+  EXPECT_EQ(s["patches"], triangles);
+  EXPECT_TRUE(s["settled"].get<bool>());
+  EXPECT_GT(s["sweeps"].get<int>(), 5);
+  EXPECT_GT(s["seconds"].get<double>(), 0.0);
+  EXPECT_NEAR(s["hemicubes_per_s"].get<double>(), s["hemicubes"].get<double>() / s["seconds"].get<double>(), 1e-6 * s["hemicubes_per_s"].get<double>());
+  EXPECT_TRUE(s["error_bound"].is_null());
+  EXPECT_LT(std::abs(s["energy_balance"].get<double>()), 0.3);
+  EXPECT_EQ(s["deviations"].size(), 5u);
+  EXPECT_FALSE(fs::exists(path("s.rad.sweep"))) << "a run that ended leaves no checkpoint";
+  const auto before = lucerna::readRadFile(path("m.rad")), after = lucerna::readRadFile(path("s.rad"));
+  std::size_t lit = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    EXPECT_EQ(after[i].p3, before[i].p3);
+    lit += after[i].b > 0;
+  }
+  EXPECT_GT(lit, after.size() * 9 / 10);
+
+  // Nothing changes any more: one sweep says so and the file stays as it is.
+  const RunResult again = run(solve(path("s.rad"), path("s.rad"), "--json '" + path("t.json") + "'"));
+  EXPECT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_EQ(json("t.json")["sweeps"], 1);
+  EXPECT_EQ(lucerna::encodeRadFile(after), bytes("s.rad"));
+
+  for (const char* mode : {"", "s", "c", "--mapping linear", "--mapping filmic", "--false-colours", "--mesh"}) {
+    const RunResult shown = RUN_LUCERNA("radiosity show '" + path("s.rad") + "' " + mode + " -o '" + path("s.png") + "' --size 80x60 --host osmesa");
+    EXPECT_EQ(shown.exitCode, 0) << mode << shown.err;
+    EXPECT_EQ(lucerna::readBitmap(path("s.png")).width, 80);
+    fs::remove(path("s.png"));
+  }
+}
+
+TEST_F(Radiosity, WrongInputIsOneClearLine) {
+  generate("m.rad");
+  const std::string good = path("m.rad"), out = path("o.rad");
+  const auto broken = [&](const std::string& name, auto change) {
+    std::vector<std::uint8_t> b = bytes("m.rad");
+    change(b);
+    lucerna::writeFileAtomically(path(name), b);
+    return path(name);
+  };
+  const std::string size = std::to_string(bytes("m.rad").size());
+  expectRefused(solve(broken("cut.rad", [](auto& b) { b.resize(b.size() - 10); }), out), {"cut.rad", size, std::to_string(bytes("m.rad").size() - 10)});
+  expectRefused(solve(broken("turned.rad", [](auto& b) { std::reverse(b.begin(), b.begin() + 4); }), out), {"turned.rad", "byte order"});
+  expectRefused(solve(broken("nan.rad", [](auto& b) { b[6] = 0xc0, b[7] = 0x7f; }), out), {"nan.rad", "triangle 0", "finite"});
+  expectRefused(solve(broken("ro.rad", [](auto& b) { b[4 + 60 + 3] = 0x40; }), out), {"ro.rad", "triangle 0", "reflectance"});
+  expectRefused(solve(path("missing.rad"), out), {"missing.rad", "no such file"});
+  expectRefused(solve(good, path("no/such/o.rad")), {"no/such", "no folder"});
+  expectRefused(solve(good, "/proc/o.rad"), {"/proc/o.rad", "cannot be written"});
+  expectRefused(solve(good, out, "--solver cg"), {"cg", "jacobi", "gauss-seidel"});
+  expectRefused(solve(good, out, "--deviation rad.x=on"), {"rad.x", "rad.24-bit"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + good + "' '" + out + "' 1 --fidelity original", {"VIEW 1"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + good + "' '" + out + "' --fidelity exact", {"exact", "original"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity show '" + good + "' x -o '" + path("o.png") + "'", {"x", "s ", "c "});
+  expectRefused("'" LUCERNA_BINARY "' radiosity show '" + good + "' -o '" + path("o.jpg") + "'", {"png"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 7", {"MODEL 7"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 1 2.5", {"all three or none"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 1 2.5 0.15 20000000", {"LIGHT_POWER 20000000", "16777215"});
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_EQ(folder().listing().find("tmp"), std::string::npos) << folder().listing();
+}
+
+/// Ends a run by a signal some time after its start, again and again, until it ends by itself; returns how many it took.
+int runInPieces(const std::string& command, const std::string& signal) {
+  for (int pieces = 0; pieces < 200; ++pieces) {
+    const RunResult result = run("timeout -s " + signal + " 1.2 " + command);
+    if (result.exitCode == 0) return pieces;
+    EXPECT_TRUE(result.exitCode == 124 || result.exitCode == 130 || result.exitCode == 137) << result.exitCode << result.err;
+  }
+  ADD_FAILURE() << "never ended";
+  return 0;
+}
+
+TEST_F(Radiosity, KilledAndInterruptedRunsGoOnWithoutLoss) {
+  generate("m.rad", "20 0.5 1000000");
+  ASSERT_EQ(run(solve(path("m.rad"), path("whole.rad"))).exitCode, 0);
+  EXPECT_GT(runInPieces(solve(path("m.rad"), path("killed.rad"), "--save-every 0.02"), "KILL"), 0);
+  EXPECT_EQ(bytes("killed.rad"), bytes("whole.rad"));
+  EXPECT_GT(runInPieces(solve(path("m.rad"), path("stopped.rad"), "--save-every 1000"), "INT"), 0);
+  EXPECT_EQ(bytes("stopped.rad"), bytes("whole.rad"));
+  EXPECT_FALSE(fs::exists(path("killed.rad.sweep")));
+}
+
+TEST_F(Radiosity, CheckpointOfAnotherRunIsNotTakenUp) {
+  generate("m.rad");
+  ASSERT_EQ(run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 2")).exitCode, 0);
+  ASSERT_TRUE(fs::exists(path("whole.rad.sweep")));
+  const std::vector<std::uint8_t> two = bytes("whole.rad");
+  // As many sweeps as asked for are there: nothing is done.
+  EXPECT_EQ(run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 2")).exitCode, 0);
+  EXPECT_EQ(bytes("whole.rad"), two);
+  const RunResult other = run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1 --solver gauss-seidel --json '" + path("j.json") + "'"));
+  EXPECT_EQ(other.exitCode, 0) << other.err;
+  EXPECT_NE(other.err.find("not taken up (made with other settings"), std::string::npos) << other.err;
+  EXPECT_EQ(json("j.json")["sweeps_here"], 1);
+  // Another file in OUT's place.
+  ASSERT_EQ(run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1")).exitCode, 0);
+  fs::copy_file(path("m.rad"), path("whole.rad"), fs::copy_options::overwrite_existing);
+  lucerna::writeFileAtomically(path("whole.rad"), two);
+  const RunResult foreign = run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1"));
+  EXPECT_NE(foreign.err.find("is not what it belongs to"), std::string::npos) << foreign.err;
+  ASSERT_TRUE(fs::exists(path("whole.rad.sweep")));
+  std::ofstream(path("whole.rad.sweep"), std::ios::binary | std::ios::trunc) << "LUCRADSW";
+  const RunResult damaged = run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1"));
+  EXPECT_EQ(damaged.exitCode, 0);
+  EXPECT_NE(damaged.err.find("too few"), std::string::npos) << damaged.err;
+}
+
+TEST_F(Radiosity, FileThatChangesUnderTheRunIsLeftAlone) {
+  generate("m.rad", "10 0.5 1000000");
+  // Another program replaces OUT while the first sweep runs.
+  const std::string command = solve(path("m.rad"), path("o.rad"), "--save-every 0") + " & pid=$!; while ! [ -s '" + path("o.rad") + "' ]; do sleep 0.02; done; sleep 0.3; printf theirs > '" +
+                              path("o.rad") + "'; wait $pid";
+  const RunResult result = run(command);
+  EXPECT_EQ(result.exitCode, 2) << result.out << result.err;
+  EXPECT_NE(result.err.find("changed by something else"), std::string::npos) << result.err;
+  EXPECT_EQ(lucerna::readFileText(path("o.rad")), "theirs");
+}
+
+TEST_F(Radiosity, DiskThatIsFullLeavesTheOldCheckpoint) {
+  generate("m.rad");
+  ASSERT_EQ(run(solve(path("m.rad"), path("o.rad"), "--max-sweeps 1")).exitCode, 0);
+  const std::vector<std::uint8_t> old = bytes("o.rad"), oldCheckpoint = bytes("o.rad.sweep");
+  // No file may grow beyond 1 KiB: every write fails half way.
+  const RunResult limited = run("trap '' XFSZ; ulimit -f 1; " + solve(path("m.rad"), path("o.rad")));
+  EXPECT_EQ(limited.exitCode, 2) << limited.err;
+  EXPECT_NE(limited.err.find("cannot be written: File too large"), std::string::npos) << limited.err;
+  EXPECT_EQ(bytes("o.rad"), old);
+  EXPECT_EQ(bytes("o.rad.sweep"), oldCheckpoint);
+  EXPECT_EQ(folder().listing().find("tmp"), std::string::npos) << folder().listing();
+
+  if (run("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'").exitCode != 0) GTEST_SKIP() << "no permission to mount a tmpfs; the file size limit above was tried";
+  fs::create_directory(path("small"));
+  const std::string full = "unshare -rm sh -c \"mount -t tmpfs -o size=40k none '" + path("small") + "' && cp '" + path("o.rad") + "' '" + path("o.rad.sweep") + "' '" + path("small") +
+                           "/' && head -c 100000 /dev/zero > '" + path("small") + "/filler'; " + solve(path("m.rad"), path("small") + "/o.rad") + "; code=\\$?; cmp '" + path("o.rad") + "' '" +
+                           path("small") + "/o.rad' && cmp '" + path("o.rad.sweep") + "' '" + path("small") + "/o.rad.sweep' && exit \\$code; exit 99\"";
+  const RunResult result = run(full);
+  EXPECT_EQ(result.exitCode, 2) << result.out << result.err;
+  EXPECT_NE(result.err.find("No space left on device"), std::string::npos) << result.err;
+}
+
+}  // namespace
