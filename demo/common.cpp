@@ -133,7 +133,7 @@ const Setting kSettings[] = {
             s.gather.fitPlane = parseNumber(k, v, 0.0f, 1e6f)),
     SETTING("rsm.fit-distance", "most distance, in low-resolution steps (8)", s.gather.fitDistance = parseNumber(k, v, 0.0f, 1e6f)),
     SETTING("rsm.show-refused", "paint the pixels that interpolation refused red (off)", s.gather.showRefused = parseSwitch(k, v)),
-    SETTING("radiosity.edge", "longest edge of a patch in scene units (0: a 24th of the scene)", s.radiosity.solution.patches.longestEdge = parseNumber(k, v, 0.0, 1e12)),
+    SETTING("radiosity.edge", "longest edge of a patch in scene units (0: a 12th of the scene)", s.radiosity.solution.patches.longestEdge = parseNumber(k, v, 0.0, 1e12)),
     SETTING("radiosity.resolution", "pixels a side of a hemicube, even (64)", s.radiosity.solution.hemicubes.resolution = 2 * (parseNumber(k, v, 2, 4096) / 2)),
     SETTING("radiosity.error", "guaranteed relative error of the solution (0.001)", s.radiosity.solution.error = parseNumber(k, v, 1e-12, 10.0)),
     SETTING("radiosity.solver", "auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room or cg (auto)",

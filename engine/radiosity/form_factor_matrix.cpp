@@ -21,11 +21,12 @@ void FormFactorMatrix::appendRow(std::span<const std::uint32_t> patches, std::sp
   patches_.insert(patches_.end(), patches.begin(), patches.end());
   factors_.insert(factors_.end(), factors.begin(), factors.end());
   starts_.push_back(patches_.size());
+  scales_.push_back(1.0);
 }
 
 FormFactorMatrix::Row FormFactorMatrix::row(std::size_t i) const {
   const std::size_t size = starts_[i + 1] - starts_[i];
-  return {{patches_.data() + starts_[i], size}, {factors_.data() + starts_[i], size}};
+  return {{patches_.data() + starts_[i], size}, {factors_.data() + starts_[i], size}, scales_[i]};
 }
 
 void FormFactorMatrix::multiply(std::span<const glm::dvec3> x, std::span<glm::dvec3> y) const {
@@ -34,7 +35,7 @@ void FormFactorMatrix::multiply(std::span<const glm::dvec3> x, std::span<glm::dv
     for (std::size_t i = begin; i < end; ++i) {
       glm::dvec3 sum(0.0);
       for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) sum += static_cast<double>(factors_[k]) * x[patches_[k]];
-      y[i] = sum;
+      y[i] = scales_[i] * sum;
     }
   });
 }
@@ -42,7 +43,7 @@ void FormFactorMatrix::multiply(std::span<const glm::dvec3> x, std::span<glm::dv
 std::vector<double> FormFactorMatrix::rowSums() const {
   std::vector<double> sums(rowCount(), 0.0);
   for (std::size_t i = 0; i < rowCount(); ++i)
-    for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) sums[i] += static_cast<double>(factors_[k]);
+    for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) sums[i] += scales_[i] * static_cast<double>(factors_[k]);
   return sums;
 }
 
@@ -112,18 +113,9 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
         mean.factors_[k] = static_cast<float>(static_cast<double>(mean.factors_[k]) * d[i] * d[mean.patches_[k]] / areas[i]);
   });
   *this = std::move(mean);
-  // Floats round up as well as down: one factor on all keeps reciprocity and puts every sum at or below its mark.
   const std::vector<double> are = rowSums();
-  double most = 0.0, least = 1.0;
-  for (std::size_t i = 0; i < n; ++i)
-    if (sums[i] > 0.0) most = std::max(most, are[i] / sums[i]);
-  if (most > 1.0) {
-    const float scale = static_cast<float>((1.0 - 2e-7) / most);
-    for (float& f : factors_) f *= scale;
-  }
-  for (std::size_t i = 0; i < n; ++i)
-    if (sums[i] > 0.0) least = std::min(least, are[i] / sums[i] / std::max(most, 1.0));
-  return 1.0 - least;
+  for (std::size_t i = 0; i < n; ++i) scales_[i] = are[i] > 0.0 ? sums[i] / are[i] : 1.0;
+  return worst;
 }
 
 double FormFactorMatrix::reciprocityError(std::span<const double> areas) const {

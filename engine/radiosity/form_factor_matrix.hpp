@@ -26,6 +26,7 @@ class FormFactorMatrix {
   struct Row {
     std::span<const std::uint32_t> patches;
     std::span<const float> factors;
+    double scale;  ///< of all of them: what floats cannot hold of a row's sum
   };
   Row row(std::size_t i) const;
 
@@ -34,7 +35,8 @@ class FormFactorMatrix {
   std::vector<double> rowSums() const;
 
   /// What hemicubes get wrong, put right: A_i F_ij = A_j F_ji for all pairs (both are taken to be their mean), and row i sums to `sums[i]`,
-  /// by a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]; no sum is ever above its `sums[i]`, and the largest relative deficit left is returned.
+  /// by a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]. Returns the largest relative error of a sum before the last rounding; that is then
+  /// put right row by row in double (reciprocity holds to the floats' 1e-7), since light in a white room counts it 1 / (1 - rho) times.
   double repair(std::span<const double> areas, std::span<const double> sums);
   /// Largest |A_i F_ij - A_j F_ji| over the mean of A_i F_ij.
   double reciprocityError(std::span<const double> areas) const;
@@ -43,6 +45,7 @@ class FormFactorMatrix {
   std::vector<std::size_t> starts_;
   std::vector<std::uint32_t> patches_;
   std::vector<float> factors_;
+  std::vector<double> scales_;
 };
 
 /// Runs work(begin, end) on parts of 0..count, on all cores.

@@ -21,6 +21,7 @@ namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
+constexpr double kEdges = 12.0;  // longest edges that span the scene, where nobody says
 constexpr std::size_t kBytesPerEntry = 32;  // of a form factor, its mirrored copy and their mean, while they are repaired
 
 std::size_t freeMemory() {
@@ -103,7 +104,9 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     system.areas.push_back(patch.area);
     system.reflectance.push_back(patch.reflectance);
     system.emission.push_back(patch.emission + patch.reflectance * solution.direct[i]);
-    fronts.push_back(std::min(static_cast<double>(solution.fronts[i]), 1.0));
+    // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed.
+    const double share = static_cast<double>(solution.fronts[i]);
+    fronts.push_back(share > 1.0 - 1e-5 ? 1.0 : share);
   }
   if (kept) {
     const std::vector<double> before = matrix.rowSums();
@@ -115,8 +118,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
       system.reciprocal = true;
     }
     system.matrix = &matrix;
-    system.rowSums = matrix.rowSums();
-    for (double& sum : system.rowSums) sum = std::min(sum, settings.repair ? 1.0 : 1e300);
+    system.rowSums = settings.repair ? fronts : matrix.rowSums();
     solution.entries = matrix.entryCount();
     system.product = [&](auto x, auto y) { matrix.multiply(x, y); };
   } else {
@@ -197,11 +199,11 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
   PatchSettings patches = settings.patches;
   const glm::dvec3 extent = scene.bounds.extent();
   const double largest = std::max({extent.x, extent.y, extent.z});
-  if (patches.longestEdge <= 0.0) patches.longestEdge = largest / 24.0;
+  if (patches.longestEdge <= 0.0) patches.longestEdge = largest / kEdges;
   if (settings.wholeTriangles) patches.longestEdge = 0.0;
   RadiositySolution solution;
   solution.mesh = makePatches(scene, patches);
-  const double shortest = (patches.longestEdge > 0.0 ? patches.longestEdge : largest / 24.0) / std::pow(2.0, settings.refinements + 1);
+  const double shortest = (patches.longestEdge > 0.0 ? patches.longestEdge : largest / kEdges) / std::pow(2.0, settings.refinements + 1);
   for (int refinement = 0;; ++refinement) {
     std::filesystem::path file = checkpoint;
     if (!file.empty() && refinement > 0) file += fmt::format(".{}", refinement);

@@ -18,7 +18,7 @@
 namespace lucerna {
 
 struct RadiositySolutionSettings {
-  PatchSettings patches;           ///< longestEdge 0: a 24th of the scene's largest extent
+  PatchSettings patches;           ///< longestEdge 0: a 12th of the scene's largest extent
   bool wholeTriangles = false;     ///< patches are the scene's triangles, whatever longestEdge says
   HemicubeSettings hemicubes;
   RadiositySolver solver = RadiositySolver::automatic;

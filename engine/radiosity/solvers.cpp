@@ -40,7 +40,7 @@ class Solve {
       if (largest(system.emission)[c] == 0.0) q_[c] = 0.0;  // dark: its solution is 0 whatever it reflects
       if (q_[c] < 1.0) {
         factor_[c] = q_[c] / (1.0 - q_[c]);
-      } else if (lost[c] < 1e-9 * area_) {
+      } else if (lost[c] < 1e-7 * area_) {
         throwBadInput("reflectance 1 everywhere in a closed scene ({:.2g} of the light gets out): what is emitted can never be absorbed, so there is no "
                       "solution; lower a reflectance or open the scene", leaks / area_);
       } else {
@@ -154,8 +154,8 @@ glm::dvec3 largestDifference(const Vector& a, const Vector& b) {
   return most;
 }
 
-void jacobi(Solve& solve) {
-  Vector exitance = solve.system().emission, irradiance(solve.size());
+void jacobi(Solve& solve, Vector exitance) {
+  Vector irradiance(solve.size());
   for (;;) {
     solve.product(exitance, irradiance);
     Vector next = jacobiStep(solve.system(), irradiance);
@@ -173,8 +173,8 @@ void gaussSeidel(Solve& solve) {
       const FormFactorMatrix::Row row = s.matrix->row(i);
       glm::dvec3 sum(0.0);
       for (std::size_t k = 0; k < row.patches.size(); ++k) sum += static_cast<double>(row.factors[k]) * exitance[row.patches[k]];
-      irradiance[i] = sum;
-      const glm::dvec3 next = s.emission[i] + s.reflectance[i] * sum;
+      irradiance[i] = row.scale * sum;
+      const glm::dvec3 next = s.emission[i] + s.reflectance[i] * irradiance[i];
       change = glm::max(change, glm::abs(next - exitance[i]));
       exitance[i] = next;
       solve.countRow();
@@ -207,13 +207,17 @@ void progressive(Solve& solve, bool overshoot) {
     const FormFactorMatrix::Row row = s.matrix->row(best);
     for (std::size_t k = 0; k < row.patches.size(); ++k) {
       const std::size_t j = row.patches[k];
-      const glm::dvec3 arrives = static_cast<double>(row.factors[k]) * s.areas[best] / s.areas[j] * shoots;  // F_ji by reciprocity
+      const glm::dvec3 arrives = row.scale * static_cast<double>(row.factors[k]) * s.areas[best] / s.areas[j] * shoots;  // F_ji by reciprocity
       irradiance[j] += arrives;
       unshot[j] += s.reflectance[j] * arrives;
       unshotFlux += s.areas[j] * s.reflectance[j] * arrives;
     }
     solve.countRow();
-    if (count % std::max<std::size_t>(n / 10, 1) == 0 && !solve.report(irradiance, largest(unshot))) return;
+    if (count % std::max<std::size_t>(n / 10, 1) != 0) continue;
+    Vector exitance = jacobiStep(s, irradiance);
+    // Shooting takes reciprocity for exact; what rounding leaves of it the last step must see.
+    if (solve.boundOf(largest(unshot), solve.meanOf(exitance)) <= solve.error()) return jacobi(solve, std::move(exitance));
+    if (!solve.report(irradiance, largest(unshot))) return;
   }
 }
 
@@ -412,7 +416,7 @@ RadiositySolved solveRadiosity(const RadiositySystem& system, const SolverSettin
   if (solver == RadiositySolver::conjugateGradients && !system.reciprocal)
     throwBadInput("solver cg: needs form factors repaired to A_i F_ij = A_j F_ji; take anderson for those that are not");
   switch (solver) {
-    case RadiositySolver::jacobi: jacobi(solve); break;
+    case RadiositySolver::jacobi: jacobi(solve, system.emission); break;
     case RadiositySolver::gaussSeidel: gaussSeidel(solve); break;
     case RadiositySolver::progressive: progressive(solve, false); break;
     case RadiositySolver::overshoot: progressive(solve, true); break;
