@@ -6,7 +6,7 @@
 
 namespace lucerna {
 
-HemicubeMap makeHemicubeMap(int view, bool published) {
+MultiplierMap makeMultiplierMap(int view, bool published) {
   CHECK(view >= 2, "view {}", view);
   const int half = view / 2;
   const auto fromMiddle = [&](int i) { return std::abs(0.5 + i - view / 2.0) / (view / 2.0); };
@@ -14,7 +14,7 @@ HemicubeMap makeHemicubeMap(int view, bool published) {
     const double r2 = 1.0 + a * a + b * b;
     return published ? cosine / r2 : cosine / (r2 * r2);
   };
-  HemicubeMap map;
+  MultiplierMap map;
   map.view = view;
   std::vector<double> top, side;
   double sum = 0.0;

@@ -6,7 +6,7 @@
 namespace lucerna {
 
 /// Weights of a hemicube's pixels; over one top and four sides they sum to 1, as a closed scene's form factors do.
-struct HemicubeMap {
+struct MultiplierMap {
   int view = 0;             ///< pixels a side
   std::vector<float> top;   ///< view x view
   std::vector<float> side;  ///< view x view/2, from the horizon up, as glReadPixels gives the upper half
@@ -15,6 +15,6 @@ struct HemicubeMap {
 /// published: 1/r * 1/r on top, 1/r * b/r on the sides, r^2 = 1 + a^2 + b^2, a and b a pixel's distances from the middle where half a
 /// face is 1 [RAD2008 section 3.5.3]. Else the delta form factors 1/(pi r^4) and b/(pi r^4) [Cohen1985]: with r also a pixel's solid angle falls.
 /// An odd view leaves the middle row of the sides out, as published.
-HemicubeMap makeHemicubeMap(int view, bool published);
+MultiplierMap makeMultiplierMap(int view, bool published);
 
 }  // namespace lucerna

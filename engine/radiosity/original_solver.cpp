@@ -27,7 +27,7 @@ double rollOf(std::uint32_t triangle, std::uint32_t seed) {
 }  // namespace
 
 OriginalRadiosity::OriginalRadiosity(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, const Settings& settings)
-    : settings_(settings), triangles_(triangles), map_(makeHemicubeMap(settings.view, settings.deviations.publishedMap)) {
+    : settings_(settings), triangles_(triangles), map_(makeMultiplierMap(settings.view, settings.deviations.publishedMap)) {
   CHECK(settings.view >= 2 && settings.view <= 4096, "view {}", settings.view);
   CHECK(!triangles.empty(), "{} triangles", triangles.size());
   const bool bits24 = settings.deviations.values24Bit;

@@ -75,7 +75,7 @@ class OriginalRadiosity {
 
   Settings settings_;
   std::span<const RadTriangle> triangles_;
-  HemicubeMap map_;
+  MultiplierMap map_;
   const gl::Program* program_;
   gl::Buffer vertices_;
   gl::VertexArray vertexArray_;

@@ -173,7 +173,7 @@ TEST(RadModels, TrianglesAreSmallWellShapedAndFaceTheAir) {
 TEST(RadMap, WeightsSumToOne) {
   for (bool published : {true, false})
     for (int view : {2, 3, 16, 101, 500}) {
-      const HemicubeMap map = makeHemicubeMap(view, published);
+      const MultiplierMap map = makeMultiplierMap(view, published);
       ASSERT_EQ(map.top.size(), static_cast<std::size_t>(view * view));
       ASSERT_EQ(map.side.size(), static_cast<std::size_t>(view * (view / 2)));
       const double sum = std::accumulate(map.top.begin(), map.top.end(), 0.0) + 4.0 * std::accumulate(map.side.begin(), map.side.end(), 0.0);
@@ -184,7 +184,7 @@ TEST(RadMap, WeightsSumToOne) {
 // The known figures of both maps: weight of the middle times N^2, and the top face's share.
 TEST(RadMap, CentreWeightAndTopShareAreKnown) {
   for (const auto& [published, centre, share] : {std::tuple{true, 0.82303, 0.52634}, std::tuple{false, 4.0 / 3.14159265358979, 0.55413}}) {
-    const HemicubeMap map = makeHemicubeMap(1024, published);
+    const MultiplierMap map = makeMultiplierMap(1024, published);
     EXPECT_NEAR(static_cast<double>(map.top[512 * 1024 + 512]) * 1024.0 * 1024.0, centre, 1e-5) << published;
     EXPECT_NEAR(std::accumulate(map.top.begin(), map.top.end(), 0.0), share, 1e-5) << published;
   }
@@ -192,7 +192,7 @@ TEST(RadMap, CentreWeightAndTopShareAreKnown) {
 
 TEST(RadMap, SidesCountLeastAtTheHorizon) {
   for (bool published : {true, false}) {
-    const HemicubeMap map = makeHemicubeMap(8, published);
+    const MultiplierMap map = makeMultiplierMap(8, published);
     for (std::size_t row = 1; row < 4; ++row) EXPECT_LT(2.0f * map.side[4], map.side[8 * row + 4]) << row;
     EXPECT_EQ(map.side[3], map.side[4]);
     EXPECT_LT(map.side[0], map.side[3]);
