@@ -56,24 +56,24 @@ std::string nameOf(const SlabRow& row) { return fmt::format("a {} tau {} g {} n 
 
 TEST_F(MediaPhysics, SlabsReflectAndTransmitAsTabled) {
   const SlabRow rows[] = {
-      {.9, 2, .75, 1, 1.0, .097395, .660958, 1024},    // [vandeHulst1980, volume 2, table 35]
-      {.99, 1, 0, 1, 0.5, .486518, .491628, 512},      // [vandeHulst1980, volume 1, page 256]
-      {.5, 1, -.5, 1, 1.0, .164737, .404695, 512},
-      {1, 10, 0, 1, 1.0, .853005, .146995, 256},
-      {.99, 10, .75, 1, 1.0, .472571, .340012, 256},
-      {.9, 1, .75, 1.5, 0.3, .32282, .40355, 512},
-      {.9, 1, .75, 1.5, 1.0, .115171, .681242, 512},
-      {.99, 10, 0, 1.33, 1.0, .64265, .10068, 256},
-      {.5, 1, .9, 1.33, 0.5, .07545, .39517, 512},
-      {0, 1, 0, 1.5, 1.0, .044990, .339111, 512},      // Beer and Lambert between two boundaries
-      {1, 10, .75, 1.5, 1.0, .541999, .458001, 256},
+      {.9, 2, .75, 1, 1.0, .097395, .660958, 2048},    // [vandeHulst1980, volume 2, table 35]
+      {.99, 1, 0, 1, 0.5, .486518, .491628, 2048},      // [vandeHulst1980, volume 1, page 256]
+      {.5, 1, -.5, 1, 1.0, .164737, .404695, 2048},
+      {1, 10, 0, 1, 1.0, .853005, .146995, 1024},
+      {.99, 10, .75, 1, 1.0, .472571, .340012, 1024},
+      {.9, 1, .75, 1.5, 0.3, .32282, .40355, 2048},
+      {.9, 1, .75, 1.5, 1.0, .115171, .681242, 2048},
+      {.99, 10, 0, 1.33, 1.0, .64265, .10068, 1024},
+      {.5, 1, .9, 1.33, 0.5, .07545, .39517, 2048},
+      {0, 1, 0, 1.5, 1.0, .044990, .339111, 2048},      // Beer and Lambert between two boundaries
+      {1, 10, .75, 1.5, 1.0, .541999, .458001, 1024},
   };
   for (const SlabRow& row : rows) {
     PathTracer::Settings settings;
     settings.nextEvent = row.depth == 2.0;  // by either way of finding the light
     const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine), row.samples, settings);
-    expectExact("R " + nameOf(row), s.mean.x, s.meanError.x, row.reflectance, 0.002);
-    expectExact("T " + nameOf(row), s.mean.y, s.meanError.y, row.transmittance, 0.002);
+    expectExact("R " + nameOf(row), s.mean.x, s.meanError.x, row.reflectance, 0.0011);
+    expectExact("T " + nameOf(row), s.mean.y, s.meanError.y, row.transmittance, 0.0011);
     if (row.albedo == 1.0) {
       EXPECT_NEAR(s.mean.x + s.mean.y, 1.0, 2e-5) << nameOf(row);  // each path's throughput stays 1
     }
