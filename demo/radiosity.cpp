@@ -79,7 +79,7 @@ int solve(const RadiositySolve& options) {
   if (options.nearPlane && !(*options.nearPlane > 0.0 && std::isfinite(*options.nearPlane))) throwBadInput("--near {}: expected a distance above 0", *options.nearPlane);
   if (options.fidelity == "original") return solveOriginal(options);
   if (options.fidelity != "corrected") throwBadInput("--fidelity {}: unknown; there are corrected, original", options.fidelity);
-  throwMissingCapability("--fidelity corrected: this build has the published solver only; use --fidelity original");
+  return solveCorrected(options);
 }
 
 std::string radiosityDeviationsHelp() {
@@ -90,20 +90,28 @@ std::string radiosityDeviationsHelp() {
 
 Work addSolve(CLI::App& app) {
   auto options = std::make_shared<RadiositySolve>();
-  app.add_option("IN", options->in, "a triangle file")->required();
+  app.add_option("IN", options->in, "a triangle file; corrected: or any scene")->required();
   app.add_option("OUT", options->out, "where every sweep is saved; may be IN. Ctrl-C stops at any time, the same command goes on")->required();
-  app.add_option("VIEW", options->settings.view, "pixels a side of a hemicube's face")->capture_default_str();
+  const CLI::Option* view = app.add_option("VIEW", options->settings.view, "pixels a side of a hemicube's face (original 500, corrected 64)");
   app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str();
-  app.add_option("--solver", options->solver, "original: jacobi (default) or gauss-seidel");
+  app.add_option("--solver", options->solver, "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room, cg");
   app.add_option("--deviation", options->deviations, "NAME=on|off: one deviation of the published original; may be repeated");
   app.add_option("--max-sweeps", options->settings.maxSweeps, "stop after so many sweeps (0: when nothing changes)")->capture_default_str();
   app.add_option("--near", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
   app.add_option("--seed", options->settings.seed, "of the random roll with rad.fixed-orientation=off")->capture_default_str();
   app.add_option("--save-every", options->saveEvery, "seconds between checkpoints within a sweep")->capture_default_str();
   app.add_flag("--restart", options->restart, "begin anew where a stopped run could go on");
+  app.add_option("--error", options->settings.error, "corrected: stop at this guaranteed relative error (0.001)");
+  app.add_option_function<double>("--memory", [options](double mib) { options->settings.memoryBytes = static_cast<std::size_t>(std::max(mib, 0.0) * 1048576.0); },
+                                  "corrected: MiB for form factors; more are computed anew for each product (half of what is free)");
+  app.add_option("--edge", options->edge, "corrected: longest edge of a scene's patches in scene units (a 12th of the scene)")->check(CLI::NonNegativeNumber);
+  app.add_option("--refinements", options->refinements, "corrected: times that a scene's patches are halved where light changes steeply (0)")->check(CLI::Range(0, 8));
   app.footer(radiosityDeviationsHelp());
   options->common.declare(app);
-  return [options] { return solve(*options); };
+  return [options, view] {
+    options->viewGiven = view->count() > 0;
+    return solve(*options);
+  };
 }
 
 }  // namespace

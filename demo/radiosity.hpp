@@ -18,11 +18,16 @@ struct RadiositySolve {
   RadiositySettings settings;     ///< view, maxSweeps, seed; the rest is parsed by the solver that runs
   std::optional<double> nearPlane;
   double saveEvery = 10.0;        ///< seconds between checkpoints within a sweep
+  bool viewGiven = false;         ///< else each solver takes its own
+  double edge = 0.0;              ///< corrected: longest edge of a patch, scene units; 0: its own
+  int refinements = 0;            ///< corrected
   bool restart = false;           ///< take no checkpoint up
 };
 
 /// The published program on its own file format; --fidelity corrected goes to a function of the same shape beside it. demo/radiosity_original.cpp
 int solveOriginal(const RadiositySolve& options);
+/// Any scene or triangle file. demo/radiosity_corrected.cpp
+int solveCorrected(const RadiositySolve& options);
 
 Work addRadiosityShow(CLI::App& app);
 

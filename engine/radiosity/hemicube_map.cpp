@@ -23,7 +23,7 @@ double halfFace(double x, double y) {
 
 }  // namespace
 
-std::vector<double> deltaFormFactors(int n, HemicubeMap map) {
+std::vector<double> deltaFormFactors(int n, DeltaMap map) {
   CHECK(n >= 2 && n % 2 == 0, "a hemicube of {} pixels a side", n);
   std::vector<double> factors;
   factors.reserve(static_cast<std::size_t>(3 * n * n / 2));
@@ -35,14 +35,14 @@ std::vector<double> deltaFormFactors(int n, HemicubeMap map) {
         const double a = x + 0.5 * side, b = y + 0.5 * side, r2 = 1.0 + a * a + b * b;
         const auto antiderivative = face == 0 ? fullFace : halfFace;
         switch (map) {
-          case HemicubeMap::exact:
+          case DeltaMap::exact:
             factors.push_back(antiderivative(x + side, y + side) - antiderivative(x, y + side) - antiderivative(x + side, y) + antiderivative(x, y));
             break;
-          case HemicubeMap::centre: factors.push_back((face == 0 ? 1.0 : b) / (kPi * r2 * r2) * side * side); break;
-          case HemicubeMap::published: factors.push_back((face == 0 ? 1.0 : b) / r2); break;
+          case DeltaMap::centre: factors.push_back((face == 0 ? 1.0 : b) / (kPi * r2 * r2) * side * side); break;
+          case DeltaMap::published: factors.push_back((face == 0 ? 1.0 : b) / r2); break;
         }
       }
-  if (map == HemicubeMap::published) {
+  if (map == DeltaMap::published) {
     const double sum = sumOverHemicube(factors, n);
     for (double& f : factors) f /= sum;
   }

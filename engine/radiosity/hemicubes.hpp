@@ -1,9 +1,8 @@
 // Form factors by hemicubes on the GPU, many a submission.
 //
 // Input: a RadiosityMesh. Output: rows of the form factor matrix, F[i][j] = the share of what patch i sends out that reaches patch j's
-// front = the part of its hemisphere that j fills, cosine-weighted. Two programs draw them:
-// - compute: a rasteriser in compute shaders that adds up form factors without an item buffer to sort (shaders/radiosity/hemicube.glsl);
-//   no near plane. Fast on software renderers, which give compute all their cores.
+// front = the part of its hemisphere that j fills, cosine-weighted. A rasteriser in compute shaders draws and adds them up without an item
+// buffer to sort (shaders/radiosity/hemicube.glsl); it has no near plane, and on software renderers all their cores.
 // Sources: shaders/REFERENCES.md [CohenGreenberg1985], [BaumRushmeierWinget1989], [Olano1997].
 #pragma once
 
@@ -20,7 +19,7 @@ namespace lucerna {
 
 struct HemicubeSettings {
   int resolution = 64;                     ///< pixels a side of the full face; even
-  HemicubeMap map = HemicubeMap::exact;
+  DeltaMap map = DeltaMap::exact;
   bool randomRoll = true;                  ///< each turned about its normal by a hash of seed and patch; else towards the first corner
   std::uint32_t seed = 1;
   int exactPixels = 12;                    ///< what covers at least as many pixels takes its closed form; 0: never

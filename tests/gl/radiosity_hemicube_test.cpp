@@ -122,7 +122,7 @@ TEST_F(Hemicube, PixelsSeeWhatRaysSee) {
   settings.randomRoll = false;
   const Computed c = compute(scene, settings);
   const test::RayCaster caster(scene);
-  const auto deltas = deltaFormFactors(32, HemicubeMap::exact);
+  const auto deltas = deltaFormFactors(32, DeltaMap::exact);
   double worst = 0.0, total = 0.0, different = 0.0;
   for (std::size_t i = 0; i < c.mesh.patches.size(); i += 7) {
     const Patch& patch = c.mesh.patches[i];
@@ -281,7 +281,7 @@ TEST_F(Hemicube, ASphereSeesItselfAlikeEverywhere) {
     return std::sqrt(squares / static_cast<double>(c.areas.size() * (c.areas.size() - 1)));
   };
   HemicubeSettings published = pixelsAlone(128);
-  published.map = HemicubeMap::published;
+  published.map = DeltaMap::published;
   EXPECT_LT(rms({}, 2), 0.06);  // of flat triangles: less with every level
   EXPECT_LT(rms(pixelsAlone(128)), 0.12);
   EXPECT_GT(rms(published), 0.2);

@@ -78,7 +78,7 @@ TEST_F(RadiositySolutions, ASphereWithOneLitPatchIsLitAlikeEverywhere) {
   EXPECT_LT(exact, 0.03);
   EXPECT_NEAR(mean, 1.0, 0.02);  // rho / (1 - rho) of the mean emission
   RadiositySolutionSettings published = whole();
-  published.hemicubes.map = HemicubeMap::published;
+  published.hemicubes.map = DeltaMap::published;
   published.hemicubes.exactPixels = 0;
   published.repair = false;
   EXPECT_GT(spread(published, mean), 3.0 * exact);
@@ -125,7 +125,7 @@ TEST_F(RadiositySolutions, TheCubeWithALitCeilingAndThePublishedMap) {
   fine.hemicubes.exactPixels = 1;
   fine.hemicubes.nearDistance = 12.0f;
   fine.hemicubes.mostParts = 16;
-  published.hemicubes.map = HemicubeMap::published;
+  published.hemicubes.map = DeltaMap::published;
   published.hemicubes.exactPixels = 0;
   published.repair = false;
   const RadiositySolution best = solve(scene, fine);

@@ -279,15 +279,15 @@ TEST(RadiosityKnown, DeltaFormFactors) {
   const double sums[][2] = {{8, 1.008568800}, {16, 1.002123181}, {32, 1.000529642}, {64, 1.000132339}, {100, 1.000054200}, {128, 1.000033080}, {256, 1.000008270}, {500, 1.000002168}, {512, 1.000002067}};
   for (const auto& [size, sum] : sums) {
     const int n = static_cast<int>(size);
-    EXPECT_NEAR(sumOverHemicube(deltaFormFactors(n, HemicubeMap::centre), n), sum, 1e-8) << n;
-    const auto exact = deltaFormFactors(n, HemicubeMap::exact);
+    EXPECT_NEAR(sumOverHemicube(deltaFormFactors(n, DeltaMap::centre), n), sum, 1e-8) << n;
+    const auto exact = deltaFormFactors(n, DeltaMap::exact);
     EXPECT_NEAR(sumOverHemicube(exact, n), 1.0, 1e-12);
     EXPECT_NEAR(std::accumulate(exact.begin(), exact.begin() + n * n, 0.0), 0.554126423979572, 1e-12);
     EXPECT_NEAR(std::accumulate(exact.begin() + n * n, exact.end(), 0.0), 0.111468394005107, 1e-12);
-    EXPECT_NEAR(sumOverHemicube(deltaFormFactors(n, HemicubeMap::published), n), 1.0, 1e-12);
+    EXPECT_NEAR(sumOverHemicube(deltaFormFactors(n, DeltaMap::published), n), 1.0, 1e-12);
   }
   // The published map: the middle of the full face has a third of its weight.
-  const auto exact = deltaFormFactors(1024, HemicubeMap::exact), published = deltaFormFactors(1024, HemicubeMap::published);
+  const auto exact = deltaFormFactors(1024, DeltaMap::exact), published = deltaFormFactors(1024, DeltaMap::published);
   EXPECT_NEAR(exact[512 * 1024 + 512] * 1024 * 1024, 1.27322, 1e-4);
   EXPECT_LT(published[512 * 1024 + 512], 0.7 * exact[512 * 1024 + 512]);
 }

@@ -1,0 +1,142 @@
+// lucerna radiosity solve --fidelity corrected: any scene, or a triangle file of the original.
+// A scene's solution is a file that `render --technique radiosity --set radiosity.file=OUT` shows; a triangle file gets its b, as the original's does.
+#include "radiosity.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "radiosity/rad_file.hpp"
+#include "radiosity/solution.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numbers>
+
+namespace lucerna::demo {
+
+namespace {
+
+/// A triangle file's size follows from its first four bytes.
+bool isRadFile(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::uint32_t count = 0;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  return stream.read(reinterpret_cast<char*>(&count), sizeof count) && !error && size == 4 + std::uintmax_t{count} * sizeof(RadTriangle);
+}
+
+/// The bag of triangles as a scene: a material for each pair of reflectance and emission. Exitances are the file's own whole numbers.
+Scene sceneOf(const std::vector<RadTriangle>& triangles, const std::string& name) {
+  Scene scene;
+  scene.name = name;
+  std::map<std::pair<float, std::uint32_t>, std::vector<std::uint32_t>> ofMaterial;
+  for (const RadTriangle& t : triangles) {
+    ofMaterial[{t.ro, t.e}].push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+    for (const auto& p : {t.p1, t.p2, t.p3}) {
+      scene.vertices.push_back({{p[0], p[1], p[2]}, {}, {t.n[0], t.n[1], t.n[2]}});
+      scene.bounds.add(glm::dvec3(scene.vertices.back().position));
+    }
+  }
+  for (const auto& [key, firsts] : ofMaterial) {
+    Material& material = scene.materials.emplace_back();
+    material.name = fmt::format("ro {} e {}", key.first, key.second);
+    material.diffuse = glm::vec3(key.first);
+    material.emission = glm::vec3(static_cast<float>(key.second / std::numbers::pi));
+    Mesh& mesh = scene.meshes.emplace_back();
+    mesh.material = static_cast<int>(scene.materials.size()) - 1;
+    mesh.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
+    mesh.indexCount = static_cast<std::uint32_t>(3 * firsts.size());
+    for (const std::uint32_t first : firsts) scene.indices.insert(scene.indices.end(), {first, first + 1, first + 2});
+  }
+  return scene;
+}
+
+}  // namespace
+
+int solveCorrected(const RadiositySolve& options) {
+  if (options.nearPlane) throwBadInput("--near: corrected hemicubes have no near plane");
+  RadiosityDeviations deviations;
+  for (const std::string& deviation : options.deviations) applyRadiosityDeviation(deviations, deviation);
+  if (deviations.values24Bit) throwBadInput("--deviation rad.24-bit=on: whole numbers are the published solver's; use --fidelity original with the other deviations off");
+  const bool rad = isRadFile(options.in);
+  std::vector<RadTriangle> triangles;
+  if (rad) {
+    triangles = readRadFile(options.in);
+    checkRadTriangles(triangles, options.in);
+  }
+  const Scene scene = rad ? sceneOf(triangles, options.in) : loadScene(options.in);
+  RadiositySolutionSettings settings;
+  settings.wholeTriangles = rad;
+  settings.patches.longestEdge = options.edge;
+  settings.refinements = rad ? 0 : options.refinements;
+  if (options.viewGiven) settings.hemicubes.resolution = 2 * ((options.settings.view + 1) / 2);
+  settings.hemicubes.seed = options.settings.seed;
+  settings.hemicubes.randomRoll = !deviations.fixedOrientation;
+  if (deviations.publishedMap) settings.hemicubes.map = DeltaMap::published;
+  if (deviations.publishedMap || deviations.noNearField) settings.hemicubes.exactPixels = 0;
+  if (deviations.centroid) settings.hemicubes.nearDistance = 0.0f;
+  settings.repair = !deviations.publishedMap && !deviations.noNearField;
+  if (!options.solver.empty()) settings.solver = parseRadiositySolver(options.solver);
+  if (options.settings.error > 0.0) settings.error = options.settings.error;
+  if (options.settings.maxSweeps > 0) settings.mostProducts = options.settings.maxSweeps;
+  settings.memoryBytes = options.settings.memoryBytes;
+
+  const auto host = options.common.makeHost(false);
+  gl::Context context;
+  gl::ProgramLibrary programs;
+  const std::filesystem::path checkpoint = options.out + ".rows";
+  if (options.restart) std::filesystem::remove(checkpoint);
+  watchForInterrupt();
+  Progress progress("hemicubes", 1000, options.common.quiet);
+  RadiositySolution solution;
+  try {
+    solution = solveScene(context, programs, scene, settings, checkpoint, [&](const RadiosityStage& stage) {
+      if (stage.total > 0) progress.update(static_cast<int>(1000 * stage.done / stage.total));
+      if (stage.kind == RadiosityStage::Kind::solving && !options.common.quiet)
+        fmt::print("{:6.1f} products: residual {:.3g}, error at most {:.3g}, energy balance {:.3g}\n", stage.solve.products, stage.solve.residual, stage.solve.errorBound, stage.solve.energyBalance);
+      return !interrupted();
+    });
+  } catch (const Error&) {
+    if (!interrupted()) throw;
+    fmt::print("stopped; the same command goes on from {}\n", checkpoint.string());
+    return 0;
+  }
+  if (rad) {
+    for (RadTriangle& triangle : triangles) triangle.b = 0;
+    // Patches name triangles in the scene's order, which is by material.
+    for (std::size_t i = 0; i < solution.irradiance.size(); ++i) {
+      const std::size_t index = scene.indices[3 * solution.mesh.patches[i].triangle] / 3;
+      triangles[index].b = static_cast<std::uint32_t>(std::clamp(std::round(solution.irradiance[i].x), 0.0, static_cast<double>(kRadMost)));
+    }
+    writeRadFile(options.out, triangles);
+  } else {
+    saveSolution(options.out, scene, solution);
+  }
+  const double rate = solution.hemicubeSeconds > 0.0 ? static_cast<double>(solution.hemicubes) / solution.hemicubeSeconds : 0.0;
+  if (!options.common.quiet)
+    fmt::print("{}: {} patches ({} without area left out), {} hemicubes of {} pixels in {:.2f} s ({:.0f}/s), {} in {:.1f} products and {:.2f} s, error at most {:.3g}, "
+               "energy balance {:.3g} on {}\n",
+               options.out, solution.mesh.patches.size(), solution.mesh.degenerate, solution.hemicubes, settings.hemicubes.resolution, solution.hemicubeSeconds, rate,
+               nameOf(solution.solver), solution.progress.products, solution.solveSeconds, solution.progress.errorBound, solution.progress.energyBalance, context.capabilities().renderer);
+  nlohmann::ordered_json json;
+  json["renderer"] = context.capabilities().renderer;
+  json["fidelity"] = options.fidelity;
+  json["deviations"] = activeRadiosityDeviations(deviations);
+  json["solver"] = nameOf(solution.solver);
+  json["patches"] = solution.mesh.patches.size();
+  json["degenerate"] = solution.mesh.degenerate;
+  json["sweeps"] = solution.progress.products;
+  json["hemicubes"] = solution.hemicubes;
+  json["seconds"] = solution.hemicubeSeconds + solution.solveSeconds;
+  json["hemicubes_per_s"] = rate;
+  json["error_bound"] = solution.progress.errorBound;
+  json["energy_balance"] = solution.progress.energyBalance;
+  json["entries"] = solution.entries;
+  options.common.writeJson(json);
+  return 0;
+}
+
+}  // namespace lucerna::demo
