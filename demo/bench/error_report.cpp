@@ -203,6 +203,10 @@ bool plotRows(const fs::path& folder, const ErrorReport& report) {
     plot.guideSlope = -0.5;
     std::swap(plot.series[index["path"] + 1], plot.series.back());
   }
+  if (std::all_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.points.empty(); })) {
+    logWarning("no plot: every row is at the reference's noise; give it more --budget");
+    return false;
+  }
   try {
     writeLogLogPlot(folder, "error", plot);
     return true;
