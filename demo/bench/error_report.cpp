@@ -83,8 +83,24 @@ std::string notes(const ErrorReport& report) {
 }
 
 std::string modelText(const ModelError& m) {
-  return fmt::format("{:<44}NRMSE {:.3g} %{}, bias {:+.3g} % of indirect light", m.name, 100.0 * m.errors.nrmse, m.errors.atNoise ? " (at the reference's noise)" : "",
-                     100.0 * m.errors.measured.relativeBias);
+  const std::string error = m.errors.atNoise ? fmt::format("< {:.3g} % (noise)", 300.0 * m.errors.noiseNrmse) : fmt::format("{:.3g} %", 100.0 * m.errors.nrmse);
+  return fmt::format("{:<44}NRMSE {}, bias {:+.3g} % +- {:.2g} of indirect light", m.name, error, 100.0 * m.errors.measured.relativeBias,
+                     100.0 * m.errors.biasError / m.errors.measured.referenceMean);
+}
+
+/// How the path tracer's error falls; empty with fewer than three rows above the reference's noise.
+std::string slopeText(const std::vector<ErrorRow>& rows) {
+  std::vector<double> ms, samples, errors;
+  for (const ErrorRow& row : rows) {
+    if (text(row, "technique") != "path" || flag(row, "at_noise") || !(number(row, "nrmse") > 0.0)) continue;
+    ms.push_back(number(row, "ms"));
+    samples.push_back(number(row, "spp"));
+    errors.push_back(number(row, "nrmse"));
+  }
+  if (errors.size() < 3) return "";
+  const measure::Slope byTime = measure::logLogSlope(ms, errors), bySamples = measure::logLogSlope(samples, errors);
+  return fmt::format("Path tracing: error ~ samples^({:.3f} +- {:.3f}), time^({:.3f} +- {:.3f}) from {:g} to {:g} samples; -1/2 is what independent samples give.", bySamples.slope,
+                     bySamples.error, byTime.slope, byTime.error, samples.front(), samples.back());
 }
 
 }  // namespace
@@ -118,6 +134,7 @@ std::string terminalTable(const ErrorReport& report) {
     result += "\n";
   }
   result += "* nothing measured here is better in both time and error (Pareto front)\n";
+  if (const std::string slope = slopeText(report.rows); !slope.empty()) result += slope + "\n";
   if (!report.model.empty()) result += "\nWhat the models leave out, whatever the settings:\n";
   for (const ModelError& m : report.model) result += "  " + modelText(m) + "\n";
   return result;
@@ -186,6 +203,10 @@ bool plotRows(const fs::path& folder, const ErrorReport& report) {
     plot.guideSlope = -0.5;
     std::swap(plot.series[index["path"] + 1], plot.series.back());
   }
+  if (std::all_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.points.empty(); })) {
+    logWarning("no plot: every row is at the reference's noise; give it more --budget");
+    return false;
+  }
   try {
     writeLogLogPlot(folder, "error", plot);
     return true;
@@ -211,10 +232,12 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
   page.paragraph("Marked: nothing measured here is better in both time and error; their numbers (front) are those of the plot. ms: the median of a picture, wall clock on software renderers, GPU timer queries else; 5..95 % of the wall clock. NRMSE: root mean square "
                  "error over the reference's mean, linear radiance, less the reference's own noise; \"noise\": cannot be told from it. bias: signed, of the mean, with its standard error; "
                  "(0): within 3 of it. Relative MSE: epsilon 0.01 mean^2. Inside model: indirect light against a reference of the technique's own transport.");
+  if (const std::string slope = slopeText(report.rows); !slope.empty()) page.paragraph(slope);
   if (!report.model.empty()) {
     HtmlPage::Table model{{"left out", "NRMSE of indirect light", "bias"}, {}, {}};
     for (const ModelError& m : report.model)
-      model.rows.push_back({m.name, fmt::format("{:.3g} %{}", 100.0 * m.errors.nrmse, m.errors.atNoise ? " (noise)" : ""), fmt::format("{:+.3g} %", 100.0 * m.errors.measured.relativeBias)});
+      model.rows.push_back({m.name, m.errors.atNoise ? fmt::format("< {:.3g} % (noise)", 300.0 * m.errors.noiseNrmse) : fmt::format("{:.3g} %", 100.0 * m.errors.nrmse),
+                            fmt::format("{:+.3g} % +- {:.2g}", 100.0 * m.errors.measured.relativeBias, 100.0 * m.errors.biasError / m.errors.measured.referenceMean)});
     page.heading("What the models leave out, whatever the settings");
     page.table(model);
   }

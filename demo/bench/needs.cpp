@@ -39,15 +39,18 @@ double largestDifference(const Image& a, const Image& b) {
 
 }  // namespace
 
-Scene withEverything(const Scene& scene) {
+Scene withEverything(const Scene& scene, const RenderSettings& settings) {
   Scene full = scene;
-  for (const std::string& need : measure::neutralNeeds()) measure::addNeutral(full, need);
+  // A lamp, however dark, adds the surfaces that it sees to the geometry volume: there it is not neutral.
+  const bool lampsBlock = settings.technique == Technique::lpv && settings.lpv.blocking;
+  for (const std::string& need : measure::neutralNeeds())
+    if (!(lampsBlock && (need == "spotLights" || need == "pointLights"))) measure::addNeutral(full, need);
   return full;
 }
 
 NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings, int frames) {
   settings.fullFloatTarget = true;
-  const Scene full = withEverything(scene);
+  const Scene full = withEverything(scene, settings);
   NeedsResult result;
   // Libraries of their own: each compiles what it needs and nothing is found ready.
   gl::ProgramLibrary leanPrograms, fullPrograms;

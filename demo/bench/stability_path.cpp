@@ -57,7 +57,8 @@ void addFurnaces(std::vector<StabilityCase>& cases) {
       room.albedo = rho;
       room.emission = glm::vec3(1.0f);
       View view;
-      view.samples = rho > 0.95f ? 128 : 64;
+      // Paths grow as 1 / (1 - rho), and with them the work of a sample and its spread.
+      view.samples = rho > 0.995f ? 16 : rho > 0.95f ? 32 : 128;
       return within(trace(c, makeRoom(room), view), 1.0 / (1.0 - static_cast<double>(rho)), rho > 0.95f ? 0.05 : 0.005);
     });
 }
