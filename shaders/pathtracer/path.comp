@@ -41,6 +41,7 @@ struct Path {
   uint scatterings;     // up to here
   uint event;           // place in the sequence of random numbers: one a surface or medium met
   float ior;            // of where the ray is
+  uint chain;           // smooth scatterings in a row up to here
 #if INTERIORS
   uvec4 inside;         // of which closed boundaries (boundary.glsl)
   float head;           // length of the ray before its origin, which lies a little beside the surface that it starts on
@@ -117,6 +118,7 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   path.head = 0.0;
   path.ior = cameraIor;
 #endif
+  path.chain = 0u;
   return path;
 }
 
@@ -348,8 +350,11 @@ bool extend(inout Path path, PathNumbers numbers) {
     path.inside = beyond;
   }
 #endif
-  // Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path ends.
-  float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), path.event < 1024u ? 1.0 : 0.999);
+  // Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path ends. Total reflection
+  // may catch paths in glass for ever, which hold next to no light: after many smooth scatterings in a row more of them die.
+  path.chain = path.pdf == 0.0 ? min(path.chain + 1u, 255u) : 0u;
+  float most = path.chain > 32u ? 0.9 : path.event < 1024u ? 1.0 : 0.999;
+  float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), most);
 #if ROULETTE_WITHOUT_DIVISION
   if (!(unitFloat(choice.y) < min(survival, 0.95))) return false;  // [VPT2024, algorithm 3]
 #else
@@ -387,7 +392,7 @@ void main() {
   if ((saved.x & kInFlight) != 0u) {
     uvec4 w0 = state[slot], w1 = state[slot + lanes], w2 = state[slot + 2u * lanes], w3 = state[slot + 3u * lanes];
     path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz), uintBitsToFloat(w2.w),
-                uintBitsToFloat(w3.xyz), w3.w, saved.x & ~kInFlight, uintBitsToFloat(saved.y)
+                uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, saved.x & ~kInFlight, uintBitsToFloat(saved.y), w3.w >> 24u
 #if INTERIORS
                 , state[slot + 5u * lanes], uintBitsToFloat(saved.z)
 #endif
@@ -424,7 +429,7 @@ void main() {
   state[slot] = uvec4(floatBitsToUint(path.origin), path.skip);
   state[slot + lanes] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
   state[slot + 2u * lanes] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
-  state[slot + 3u * lanes] = uvec4(floatBitsToUint(path.radiance), path.scatterings);
+  state[slot + 3u * lanes] = uvec4(floatBitsToUint(path.radiance), min(path.scatterings, 0xffffffu) | path.chain << 24u);
 #if INTERIORS
   state[slot + 5u * lanes] = path.inside;
 #endif

@@ -276,4 +276,31 @@ TEST_F(CommandLine, InterruptedWalkKeepsWholePicturesAndItsTable) {
   for (const auto& entry : fs::directory_iterator(path("out"))) EXPECT_EQ(lucerna::readBitmap(entry.path()).width, 320);
 }
 
+TEST_F(CommandLine, PathTracingSaysHowGoodThePictureIs) {
+  const std::string common = "render " + scene() + " --technique path --host osmesa --size 8x8 ";
+  ASSERT_EQ(RUN_LUCERNA(common + "--spp 6 -o " + path("whole.pfm") + " --json " + path("whole.json")).exitCode, 0);
+  const auto whole = json("whole.json");
+  EXPECT_EQ(whole.at("spp"), 6.0);
+  EXPECT_GT(whole.at("standard_error"), 0.0);
+  EXPECT_GT(whole.at("mean").at(0), 0.0);
+  EXPECT_GE(whole.at("seconds"), 0.0);
+  // With a break, by a checkpoint: the same picture.
+  const std::string checkpoint = " --checkpoint " + path("film");
+  ASSERT_EQ(RUN_LUCERNA(common + "--spp 2 -o " + path("a.pfm") + checkpoint).exitCode, 0);
+  ASSERT_EQ(RUN_LUCERNA(common + "--spp 6 -o " + path("b.pfm") + checkpoint).exitCode, 0);
+  EXPECT_EQ(lucerna::readImage(path("b.pfm")).pixels, lucerna::readImage(path("whole.pfm")).pixels);
+  expectRefused(common + "--spp 6 --seed 5 -o " + path("no.pfm") + checkpoint, 2, {"film", "another"}, "no.pfm");
+  // Other rules that stop it.
+  ASSERT_EQ(RUN_LUCERNA(common + "--error 0.2 -o " + path("c.png") + " --json " + path("error.json")).exitCode, 0);
+  EXPECT_LE(json("error.json").at("relative_error"), 0.2);
+  ASSERT_EQ(RUN_LUCERNA(common + "--seconds 0.01 -o " + path("d.png") + " --json " + path("seconds.json")).exitCode, 0);
+  EXPECT_GE(json("seconds.json").at("spp"), 1.0);
+  EXPECT_LT(json("seconds.json").at("seconds"), 20.0);
+}
+
+TEST_F(CommandLine, PathTracingRefusesWhatItDoesNotHave) {
+  expectRefused("render " + scene() + " --technique path --fidelity original -o " + path("no.png"), 2, {"path", "corrected"}, "no.png");
+  expectRefused("render " + scene() + " --technique lpv --spp 4 -o " + path("no.png"), 2, {"--spp", "path"}, "no.png");
+}
+
 }  // namespace

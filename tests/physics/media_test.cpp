@@ -119,10 +119,8 @@ TEST_F(MediaPhysics, FurnacesStayAtOne) {
     scene.environment = constantEnvironment(1.0);
     const bool white = scene.media[0].absorption == glm::vec3(0.0f);
     const auto s = measure(scene, white ? 256 : 512, {}, 16, white ? 5.0 : 0.0);
-    // Without absorption the sum of the channels of each path stays as it is: no noise at all.
-    if (white) {
-      EXPECT_NEAR((s.mean.x + s.mean.y + s.mean.z) / (3.0 * exact), 1.0, 1e-4) << what;
-    }
+    // Paths that total reflection catches in the shell of glass meet roulette, so that energy is 1 in the mean alone; without such a shell it
+    // is in each path (SlabsReflectAndTransmitAsTabled, and the furnace in media_deviations_test.cpp).
     std::printf("%-44s %.6f %.6f %.6f +- %.1e  %.2f s\n", what, s.mean.x, s.mean.y, s.mean.z, s.meanError.x, seconds_);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(s.mean[c], exact, 3.5 * s.meanError[c] + 2e-5 * exact) << what << " channel " << c;
