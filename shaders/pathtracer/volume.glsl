@@ -162,6 +162,7 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
 int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
   path.skip = kNoHit;
   path.head = 0.0;
+  path.chain = 0u;
   path.travelled = 0.0;
   ++path.event;
   if (leaked(path)) {

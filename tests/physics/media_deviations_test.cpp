@@ -81,7 +81,7 @@ TEST_F(MediaDeviations, StraightShadowRays) {
   light.position = {0.0, 1.0, 0.0};
   light.intensity = glm::vec3(1.0f);
   scene.points = {light};
-  scene.cameras = {lookingAt({0.3, -0.5, 0.0}, {0.0, -1.0, 0.0})};
+  scene.cameras = {cameraAt({0.3, -0.5, 0.0}, {0.0, -1.0, 0.0})};
   PathTracer::Settings settings;
   const double exact = 0.319294 * 0.5 / M_PI, straight = 0.25 * 0.5 / M_PI;
   settings.bounces = 1;
@@ -142,7 +142,7 @@ TEST_F(MediaDeviations, AllOfThemInTheWhiteFurnace) {
   scene.media = {homogeneous(glm::dvec3(2.0), glm::dvec3(0.0), 0.6)};
   addSphere(scene, glm::dvec3(0.0), 1.0, 3, addBoundary(scene, Bsdf::dielectric, 1.33, 0));
   scene.environment = constantEnvironment(1.0);
-  scene.cameras = {lookingAt({0.0, 0.0, 6.0}, glm::dvec3(0.0), 0.2)};
+  scene.cameras = {cameraAt({0.0, 0.0, 6.0}, glm::dvec3(0.0), 0.2)};
   const std::pair<const char*, PathDeviations> cases[] = {{"corrected", {}},
                                                           {"distance-without-pdf", {.distanceWithoutPdf = true}},
                                                           {"boosted-interaction", {.boostedInteraction = true}},

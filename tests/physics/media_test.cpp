@@ -119,10 +119,8 @@ TEST_F(MediaPhysics, FurnacesStayAtOne) {
     scene.environment = constantEnvironment(1.0);
     const bool white = scene.media[0].absorption == glm::vec3(0.0f);
     const auto s = measure(scene, white ? 256 : 512, {}, 16, white ? 5.0 : 0.0);
-    // Without absorption the sum of the channels of each path stays as it is: no noise at all.
-    if (white) {
-      EXPECT_NEAR((s.mean.x + s.mean.y + s.mean.z) / (3.0 * exact), 1.0, 1e-4) << what;
-    }
+    // Paths that total reflection catches in the shell of glass meet roulette, so that energy is 1 in the mean alone; without such a shell it
+    // is in each path (SlabsReflectAndTransmitAsTabled, and the furnace in media_deviations_test.cpp).
     std::printf("%-44s %.6f %.6f %.6f +- %.1e  %.2f s\n", what, s.mean.x, s.mean.y, s.mean.z, s.meanError.x, seconds_);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(s.mean[c], exact, 3.5 * s.meanError[c] + 2e-5 * exact) << what << " channel " << c;
@@ -136,18 +134,18 @@ TEST_F(MediaPhysics, FurnacesStayAtOne) {
   addSphere(nested, glm::dvec3(0.0), 1.0, 3, addBoundary(nested, Bsdf::dielectric, 1.5, -1, 2));
   addSphere(nested, glm::dvec3(0.1, 0.0, 0.0), 0.8, 3, addBoundary(nested, Bsdf::dielectric, 1.33, 0, 3));
   addSphere(nested, glm::dvec3(0.9, 0.1, 0.0), 0.6, 3, addBoundary(nested, Bsdf::dielectric, 2.0, 1, 1));  // overlaps, and lies below
-  nested.cameras = {lookingAt({0.2, 0.3, 5.0}, glm::dvec3(0.2, 0.1, 0.0), 0.4)};
+  nested.cameras = {cameraAt({0.2, 0.3, 5.0}, glm::dvec3(0.2, 0.1, 0.0), 0.4)};
   furnace("white, nested and overlapping dielectrics", nested, 1.0);
 
   Scene inside = nested;
-  inside.cameras = {lookingAt({0.1, 0.0, 0.0}, {1.0, 0.2, 0.3}, 0.8)};
+  inside.cameras = {cameraAt({0.1, 0.0, 0.0}, {1.0, 0.2, 0.3}, 0.8)};
   furnace("white, camera in the milk of n 1.33", inside, 1.33 * 1.33);
 
   Scene thermal;
   warm.emission = warm.absorption;
   thermal.media = {warm};
   addSphere(thermal, glm::dvec3(0.0), 1.0, 3, addBoundary(thermal, Bsdf::none, 1.0, 0));
-  thermal.cameras = {lookingAt({0.2, 0.3, 5.0}, glm::dvec3(0.2, 0.1, 0.0), 0.3)};
+  thermal.cameras = {cameraAt({0.2, 0.3, 5.0}, glm::dvec3(0.2, 0.1, 0.0), 0.3)};
   furnace("thermal", thermal, 1.0);
 
   Scene glowing = thermal;
@@ -200,7 +198,7 @@ TEST_F(MediaPhysics, MeanPathLengthInASphere) {
     medium.emission = glm::vec3(1.0f);
     scene.media = {medium};
     addSphere(scene, glm::dvec3(0.0), 1.0, 4, addBoundary(scene, ior == 1.0 ? Bsdf::none : Bsdf::dielectric, ior, 0));
-    scene.cameras = {lookingAt({0.0, 0.0, 400.0}, glm::dvec3(0.0), 2.0 * std::atan(1.1 / 400.0))};
+    scene.cameras = {cameraAt({0.0, 0.0, 400.0}, glm::dvec3(0.0), 2.0 * std::atan(1.1 / 400.0))};
     const auto s = measure(scene, 512);
     const double perDisc = 2.2 * 2.2 / M_PI * ior * ior;
     for (int c = 0; c < 3; ++c)
@@ -220,7 +218,7 @@ TEST_F(MediaPhysics, PointSourceInAnInfiniteMedium) {
     light.position = {0.0, 0.0, -2.5};
     light.intensity = glm::vec3(static_cast<float>(1.0 / (4.0 * M_PI)));
     scene.points = {light};
-    scene.cameras = {lookingAt({0.0, 0.0, 2.5}, {std::sin(M_PI / 3.0) * 10.0, 0.0, 2.5 - std::cos(M_PI / 3.0) * 10.0})};
+    scene.cameras = {cameraAt({0.0, 0.0, 2.5}, {std::sin(M_PI / 3.0) * 10.0, 0.0, 2.5 - std::cos(M_PI / 3.0) * 10.0})};
     const auto s = measure(scene, 1024);
     expectExact(sphere ? "point source, sphere of 40 mean free paths" : "point source, endless medium", 1e4 * s.mean.x, 1e4 * s.meanError.x, 1e4 * exact, 0.2);
   }
@@ -241,7 +239,7 @@ TEST_F(MediaPhysics, SingleScatteringOfALamp) {
     Material floor;
     scene.materials = {floor};
     addBox(scene, {-9.0, -9.0, 8.0}, {9.0, 9.0, 9.0}, 0);  // behind the camera
-    scene.cameras = {lookingAt({0.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, 1e-5)};
+    scene.cameras = {cameraAt({0.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, 1e-5)};
     PathTracer::Settings settings;
     settings.bounces = 1;
     const auto s = measure(scene, 1024, settings);
@@ -275,7 +273,7 @@ TEST_F(MediaPhysics, ScaleAndMatchedBoundariesLeaveThePictureAsItIs) {
     light.position = glm::dvec3(0.2, 0.1, 0.3) * scale;
     light.intensity = glm::vec3(static_cast<float>(scale * scale));
     scene.points = {light};
-    scene.cameras = {lookingAt(glm::dvec3(0.0, 0.0, 4.0) * scale, glm::dvec3(0.0), 0.4)};
+    scene.cameras = {cameraAt(glm::dvec3(0.0, 0.0, 4.0) * scale, glm::dvec3(0.0), 0.4)};
     return scene;
   };
   const Image one = picture(ball(1.0, Bsdf::none));

@@ -96,7 +96,7 @@ Environment constantEnvironment(double radiance) {
   return environment;
 }
 
-Camera lookingAt(const glm::dvec3& from, const glm::dvec3& to, double fov) {
+Camera cameraAt(const glm::dvec3& from, const glm::dvec3& to, double fov) {
   Camera camera;
   camera.position = from;
   camera.direction = glm::normalize(to - from);
@@ -113,7 +113,7 @@ Scene slab(const Medium& medium, double ior, double cosine, double halfWidth) {
   addBox(scene, {-halfWidth, -0.5, -halfWidth}, {halfWidth, 0.5, halfWidth}, 0);
   scene.environment = halves();
   const glm::dvec3 at(0.013, 0.5, 0.007);  // off the diagonals of the box's faces
-  scene.cameras = {lookingAt(at + 2.0 * glm::dvec3(std::sqrt(1.0 - cosine * cosine), cosine, 0.0), at)};
+  scene.cameras = {cameraAt(at + 2.0 * glm::dvec3(std::sqrt(1.0 - cosine * cosine), cosine, 0.0), at)};
   return scene;
 }
 

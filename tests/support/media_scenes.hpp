@@ -18,7 +18,7 @@ Environment halves();
 Environment constantEnvironment(double radiance);
 
 /// A camera whose pixels all look the same way.
-Camera lookingAt(const glm::dvec3& from, const glm::dvec3& to, double fov = 1e-4);
+Camera cameraAt(const glm::dvec3& from, const glm::dvec3& to, double fov = 1e-4);
 
 /// A slab of thickness 1 between y = -1/2 and 1/2, so wide that nothing leaves by its sides, seen from above at a cosine; the environment is
 /// halves(). By reciprocity red is the plane albedo and green the transmittance for light that comes in at that cosine
