@@ -171,7 +171,6 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
   }
   if (path.scatterings >= tracer.maxScatterings || all(equal(path.throughput, vec3(0.0)))) return kEnded;
   ++path.scatterings;
-  path.chain = 0u;
 #if NEXT_EVENT
   LightSample light;
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
