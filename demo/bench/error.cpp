@@ -64,7 +64,7 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
 
   auto result = std::make_unique<ErrorBenchResult>();
   const bool withPath = !options.deviations && std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
-  auto references = obtainReferences({context, programs, scene, camera, size, (withPath ? 0.7 : 1.0) * options.budget, options.referenceSamples, options.references, options.quiet});
+  auto references = obtainReferences({context, programs, scene, camera, size, (withPath ? 0.7 : 1.0) * options.budget, options.referenceSamples, options.references, options.quiet, folder / "references"});
   if (!references) return result;
   result->references = std::move(*references);
   // Rows are judged by the reference that there was: a better one is another bench.

@@ -41,8 +41,12 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
     measure::SamplingGoal goal;
     goal.seconds = share * request.seconds;
     goal.samples = request.samples;
-    auto reference = measure::obtainReference(cache, key, sampler.asSampler(), transport, goal, request.context.capabilities().renderer, interrupted);
+    std::optional<Reference> reference;
+    if (!request.own.empty()) reference = measure::ReferenceCache(request.own).load(key);
+    const bool isOwn = reference.has_value();
+    if (!isOwn) reference = measure::obtainReference(cache, key, sampler.asSampler(), transport, goal, request.context.capabilities().renderer, interrupted);
     if (!reference || interrupted()) return std::nullopt;
+    if (!isOwn && !request.own.empty()) measure::ReferenceCache(request.own).store(key, *reference);
     result.of.emplace(transport, std::move(*reference));
     progress.update(++done);
   }

@@ -20,6 +20,7 @@ struct ReferenceRequest {
   std::uint64_t samples = 0;      ///< a pixel; 0: by time
   std::filesystem::path folder;   ///< of the cache; empty: the default
   bool quiet = false;
+  std::filesystem::path own = {};  ///< the bench's copies: what its rows were judged by stays, though the cache goes on growing; empty: none
 };
 
 /// Indirect light by a difference of pictures, errors in quadrature.
