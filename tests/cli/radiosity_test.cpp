@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 
@@ -116,10 +117,10 @@ TEST_F(Radiosity, WrongInputIsOneClearLine) {
   EXPECT_EQ(folder().listing().find("tmp"), std::string::npos) << folder().listing();
 }
 
-/// Ends a run by a signal some time after its start, again and again, until it ends by itself; returns how many it took.
-int runInPieces(const std::string& command, const std::string& signal) {
+/// Ends a run by a signal `seconds` after its start, again and again, until it ends by itself; returns how many it took.
+int runInPieces(const std::string& command, const std::string& signal, double seconds) {
   for (int pieces = 0; pieces < 200; ++pieces) {
-    const RunResult result = run("timeout -s " + signal + " 1.2 " + command);
+    const RunResult result = run("timeout -s " + signal + " " + std::to_string(seconds) + " " + command);
     if (result.exitCode == 0) return pieces;
     EXPECT_TRUE(result.exitCode == 124 || result.exitCode == 130 || result.exitCode == 137) << result.exitCode << result.err;
   }
@@ -129,10 +130,12 @@ int runInPieces(const std::string& command, const std::string& signal) {
 
 TEST_F(Radiosity, KilledAndInterruptedRunsGoOnWithoutLoss) {
   generate("m.rad", "20 0.5 1000000");
+  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run(solve(path("m.rad"), path("whole.rad"))).exitCode, 0);
-  EXPECT_GT(runInPieces(solve(path("m.rad"), path("killed.rad"), "--save-every 0.02"), "KILL"), 0);
+  const double piece = 0.4 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_GT(runInPieces(solve(path("m.rad"), path("killed.rad"), "--save-every 0.02"), "KILL", piece), 0);
   EXPECT_EQ(bytes("killed.rad"), bytes("whole.rad"));
-  EXPECT_GT(runInPieces(solve(path("m.rad"), path("stopped.rad"), "--save-every 1000"), "INT"), 0);
+  EXPECT_GT(runInPieces(solve(path("m.rad"), path("stopped.rad"), "--save-every 1000"), "INT", piece), 0);
   EXPECT_EQ(bytes("stopped.rad"), bytes("whole.rad"));
   EXPECT_FALSE(fs::exists(path("killed.rad.sweep")));
 }

@@ -108,7 +108,7 @@ class PathFunctionsTest : public SharedProgramsTest {
   using Pair = std::array<glm::vec4, 2>;
   std::vector<Pair> probe(int which, const std::vector<Pair>& inputs) {
     const gl::Program& program = library().loadCompute("path probe", "pathtracer/path_probe.comp",
-                                                       {{"PROBE", which}, {"GLOSSY", 1}, {"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}});
+                                                       {{"PROBE", which}, {"GLOSSY", 1}, {"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LINEAR_SEEDS", 0}});
     const gl::Buffer in("inputs", inputs.size() * sizeof(Pair), inputs.data(), GL_STATIC_DRAW);
     const gl::Buffer out("outputs", inputs.size() * sizeof(Pair), nullptr, GL_DYNAMIC_READ);
     in.bind(GL_SHADER_STORAGE_BUFFER, 0);
