@@ -46,8 +46,8 @@ void PathOptions::refuseIfGiven(const std::string& technique) const {
 
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path, const std::string& sceneFile,
                const std::string& cameraText, const std::string& output) {
-  if (picture.fidelity != "corrected" || !picture.deviations.empty())
-    throwBadInput("--technique path: there is only --fidelity corrected, without deviations");
+  for (const std::string& deviation : picture.deviations)
+    if (!deviation.starts_with("path.")) throwBadInput("--deviation {}: --technique path has those that begin with path.", deviation);
   PictureOptions rest = picture;
   rest.technique = "direct";
   std::optional<float> exposure;
