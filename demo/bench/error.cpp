@@ -3,7 +3,7 @@
 #include "base/files.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
-#include "measure/hash.hpp"
+#include "base/hash.hpp"
 #include "measure/tone_map.hpp"
 
 #include <fmt/core.h>

@@ -6,7 +6,7 @@
 #include "base/statistics.hpp"
 #include "measure/flip.hpp"
 #include "measure/front.hpp"
-#include "measure/hash.hpp"
+#include "base/hash.hpp"
 #include "measure/heat_map.hpp"
 #include "measure/tone_map.hpp"
 
@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 double msSince(Clock::time_point start) { return 1e3 * std::chrono::duration<double>(Clock::now() - start).count(); }
 
 std::string fileStem(const std::string& name) {
-  measure::Hash hash;
+  Hash hash;
   hash.add(std::string_view(name));
   std::string text = fmt::format("{}-{:08x}", name.substr(0, 48), static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32));
   for (char& c : text)

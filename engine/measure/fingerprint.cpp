@@ -11,35 +11,32 @@ static_assert(sizeof(Medium) == 184, "add what is new to the fingerprint");
 static_assert(sizeof(Environment) == 64, "add what is new to the fingerprint");
 #endif
 
-void add(Hash& h, const glm::vec3& v) { h.add(v.x), h.add(v.y), h.add(v.z); }
-void add(Hash& h, const glm::dvec3& v) { h.add(v.x), h.add(v.y), h.add(v.z); }
-
 void add(Hash& h, const Material& m) {
   h.add(static_cast<int>(m.bsdf));
   h.add(m.roughness), h.add(m.ior), h.add(m.interior), h.add(m.priority);
-  add(h, m.diffuse), add(h, m.specular), add(h, m.emission);
+  h.add(m.diffuse), h.add(m.specular), h.add(m.emission);
   h.add(m.shininess), h.add(m.opacity), h.add(m.diffuseTexture), h.add(m.alphaTexture), h.add(m.alphaMasked);
 }
 
 void add(Hash& h, const Image& image) {
   h.add(image.width), h.add(image.height);
-  for (const glm::vec3& p : image.pixels) add(h, p);
+  for (const glm::vec3& p : image.pixels) h.add(p);
 }
 
 void add(Hash& h, const Medium& m) {
-  add(h, m.scattering), add(h, m.absorption), add(h, m.anisotropy), add(h, m.emission);
+  h.add(m.scattering), h.add(m.absorption), h.add(m.anisotropy), h.add(m.emission);
   h.add(static_cast<int>(m.phase));
   h.add(m.grid.has_value());
   if (!m.grid) return;
-  h.add(m.grid->size.x), h.add(m.grid->size.y), h.add(m.grid->size.z);
+  h.add(m.grid->size);
   h.bytes(m.grid->density.data(), m.grid->density.size() * sizeof(float));
-  add(h, m.grid->min), add(h, m.grid->max);
+  h.add(m.grid->min), h.add(m.grid->max);
 }
 
 }  // namespace
 
 void addScene(Hash& h, const Scene& scene) {
-  for (const Vertex& v : scene.vertices) add(h, v.position), h.add(v.texCoord.x), h.add(v.texCoord.y), add(h, v.normal);
+  for (const Vertex& v : scene.vertices) h.add(v.position), h.add(v.texCoord), h.add(v.normal);
   h.bytes(scene.indices.data(), scene.indices.size() * sizeof scene.indices[0]);
   for (const Mesh& m : scene.meshes) h.add(m.firstIndex), h.add(m.indexCount), h.add(m.material);
   for (const Material& m : scene.materials) add(h, m);
@@ -48,21 +45,21 @@ void addScene(Hash& h, const Scene& scene) {
     h.bytes(t.bitmap.rgba.data(), t.bitmap.rgba.size());
   }
   h.add(scene.sun.has_value());
-  if (scene.sun) add(h, scene.sun->direction), add(h, scene.sun->irradiance);
-  for (const SpotLight& l : scene.spots) add(h, l.position), add(h, l.direction), add(h, l.intensity), h.add(l.innerAngle), h.add(l.outerAngle);
-  for (const PointLight& l : scene.points) add(h, l.position), add(h, l.intensity);
+  if (scene.sun) h.add(scene.sun->direction), h.add(scene.sun->irradiance);
+  for (const SpotLight& l : scene.spots) h.add(l.position), h.add(l.direction), h.add(l.intensity), h.add(l.innerAngle), h.add(l.outerAngle);
+  for (const PointLight& l : scene.points) h.add(l.position), h.add(l.intensity);
   for (const Medium& m : scene.media) add(h, m);
   h.add(scene.cameraMedium);
   h.add(scene.environment.has_value());
   if (scene.environment) {
-    add(h, scene.environment->radiance), h.add(scene.environment->rotation), h.add(scene.environment->picture.has_value());
+    h.add(scene.environment->radiance), h.add(scene.environment->rotation), h.add(scene.environment->picture.has_value());
     if (scene.environment->picture) add(h, *scene.environment->picture);
   }
-  add(h, scene.background);
+  h.add(scene.background);
 }
 
 void addCamera(Hash& h, const Camera& camera) {
-  add(h, camera.position), add(h, camera.direction), add(h, camera.up);
+  h.add(camera.position), h.add(camera.direction), h.add(camera.up);
   h.add(camera.verticalFov);
 }
 

@@ -2,7 +2,7 @@
 // It is taken of what was loaded, so a changed texture or MTL changes it, and a moved folder or a renamed file does not.
 #pragma once
 
-#include "measure/hash.hpp"
+#include "base/hash.hpp"
 #include "scene/scene.hpp"
 
 namespace lucerna::measure {

@@ -36,11 +36,6 @@ std::uint32_t kindOf(const Material& material) {
   return PATH_DIFFUSE;
 }
 
-std::uint64_t fnv1a(std::uint64_t hash, const void* data, std::size_t bytes) {  // Fowler, Noll, Vo
-  for (const auto* p = static_cast<const std::uint8_t*>(data); bytes > 0; --bytes, ++p) hash = (hash ^ *p) * 0x100000001b3u;
-  return hash;
-}
-
 constexpr std::array<char, 8> kCheckpointMagic{'L', 'U', 'C', 'P', 'A', 'T', 'H', '1'};
 struct CheckpointHeader {
   std::array<char, 8> magic = kCheckpointMagic;
@@ -90,7 +85,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     media_ = storage("path media", packed.media, capabilities);
     interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
     outerMedium_ = scene.cameraMedium;
-    const auto add = [&](const auto& values) { sceneHash_ = fnv1a(sceneHash_, values.data(), values.size() * sizeof values[0]); };
+    const auto add = [&](const auto& values) { sceneHash_.bytes(values.data(), values.size() * sizeof values[0]); };
     add(packed.media), add(packed.grids), add(packed.densities);
     if (needs_.heterogeneousMedia) {
       grids_ = storage("path density grids", packed.grids, capabilities);
@@ -121,7 +116,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     for (std::size_t i = 0; i < materials.size(); ++i) materials[i].pickDensity = static_cast<float>(table.pickDensity[i]);
     constants_.environmentPick = static_cast<float>(table.environmentPick);
   }
-  sceneHash_ = fnv1a(sceneHash_, materials.data(), materials.size() * sizeof(shared::PathMaterial));
+  sceneHash_.bytes(materials.data(), materials.size() * sizeof(shared::PathMaterial));
   materials_ = storage("path materials", materials, capabilities);
   triangleWords_ = 4 + (textured ? 1 : 0) + (needs_.smoothNormals ? 3 : 0);
   uploadTriangles(scene, capabilities, needs_.smoothNormals, textured);
@@ -289,7 +284,7 @@ void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& cap
     if (smoothNormals)
       for (const Vertex* corner : corners) add3(corner->normal), words.push_back(0);
   }
-  sceneHash_ = fnv1a(sceneHash_, words.data(), words.size() * sizeof(std::uint32_t));
+  sceneHash_.bytes(words.data(), words.size() * sizeof(std::uint32_t));
   triangles_ = storage("path triangles", words, capabilities);
 }
 
@@ -320,9 +315,13 @@ std::uint64_t PathTracer::identity() const {
   constants.tile = glm::ivec4(0);
   constants.sampleTarget = constants.segments = 0;
   constants.picture.z = 0;
-  std::uint64_t hash = fnv1a(sceneHash_, &constants, sizeof constants);
-  for (const auto& [name, value] : flags()) hash = fnv1a(fnv1a(hash, name.data(), name.size()), &value, sizeof value);
-  return hash;
+  Hash hash = sceneHash_;
+  hash.bytes(&constants, sizeof constants);
+  for (const auto& [name, value] : flags()) {
+    hash.bytes(name.data(), name.size());
+    hash.bytes(&value, sizeof value);
+  }
+  return hash.value();
 }
 
 std::vector<std::uint8_t> PathTracer::checkpoint() const {
@@ -336,7 +335,7 @@ std::vector<std::uint8_t> PathTracer::checkpoint() const {
     const auto* begin = reinterpret_cast<const std::uint8_t*>(words.data());
     bytes.insert(bytes.end(), begin, begin + words.size() * sizeof(glm::uvec4));
   }
-  header.filmHash = fnv1a(0xcbf29ce484222325u, bytes.data() + sizeof header, bytes.size() - sizeof header);
+  header.filmHash = Hash::of(bytes.data() + sizeof header, bytes.size() - sizeof header);
   std::memcpy(bytes.data(), &header, sizeof header);
   return bytes;
 }
@@ -350,7 +349,7 @@ void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::strin
   if (header.width != static_cast<std::uint32_t>(settings_.size.x) || header.height != static_cast<std::uint32_t>(settings_.size.y))
     throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, header.width, header.height, settings_.size.x, settings_.size.y);
   if (bytes.size() != sizeof header + 3 * texels * sizeof(glm::uvec4) ||
-      header.filmHash != fnv1a(0xcbf29ce484222325u, bytes.data() + sizeof header, bytes.size() - sizeof header))
+      header.filmHash != Hash::of(bytes.data() + sizeof header, bytes.size() - sizeof header))
     throwBadInput("{}: the checkpoint is damaged or cut off", name);
   if (header.identity != identity()) throwBadInput("{}: a checkpoint of another scene, view or setting", name);
   std::vector<glm::uvec4> words(texels);

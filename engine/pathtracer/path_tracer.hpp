@@ -5,6 +5,7 @@
 // float that does not stall; any number of samples may follow later, and the picture is the same however the work was cut.
 #pragma once
 
+#include "base/hash.hpp"
 #include "base/image.hpp"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
@@ -114,7 +115,7 @@ class PathTracer {
   gl::Texture filmMean_, filmSpread_, filmRest_;
   int tileSide_;
   bool clearTexture_;
-  std::uint64_t sceneHash_ = 0xcbf29ce484222325u;
+  Hash sceneHash_;
 
   // How far the picture is: a pass gives every pixel passTarget_ samples, tile after tile.
   std::uint32_t done_ = 0, passTarget_ = 0;

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/hash.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -24,9 +25,7 @@ static_assert(sizeof(Head) == 64);
 }  // namespace
 
 std::uint64_t digestOf(std::span<const std::uint8_t> bytes) {
-  std::uint64_t digest = 0xcbf29ce484222325u;
-  for (std::uint8_t byte : bytes) digest = (digest ^ byte) * 0x100000001b3u;
-  return digest;
+  return Hash::of(bytes.data(), bytes.size());
 }
 
 std::uint64_t digestOf(const OriginalRadiosity::Settings& s, double nearPlane, const std::string& renderer) {

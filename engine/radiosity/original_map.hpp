@@ -13,7 +13,7 @@ struct MultiplierMap {
 };
 
 /// published: 1/r * 1/r on top, 1/r * b/r on the sides, r^2 = 1 + a^2 + b^2, a and b a pixel's distances from the middle where half a
-/// face is 1 [RAD2008 section 3.5.3]. Else the delta form factors 1/(pi r^4) and b/(pi r^4) [Cohen1985]: with r also a pixel's solid angle falls.
+/// face is 1 [RAD2008 section 3.5.3]. Else the delta form factors 1/(pi r^4) and b/(pi r^4) [CohenGreenberg1985]: with r also a pixel's solid angle falls.
 /// An odd view leaves the middle row of the sides out, as published.
 MultiplierMap makeMultiplierMap(int view, bool published);
 

@@ -1,6 +1,7 @@
 #include "radiosity/row_file.hpp"
 
 #include "base/error.hpp"
+#include "base/hash.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -26,11 +27,11 @@ struct BlockHeader {
 };
 
 std::uint64_t checksumOf(const BlockHeader& header, std::span<const std::uint8_t> data) {
-  Fingerprint sum;
+  Hash sum;
   sum.add(header.first);
   sum.add(header.rows);
   sum.add(header.entries);
-  sum.add(data.data(), data.size());
+  sum.bytes(data.data(), data.size());
   return sum.value();
 }
 
@@ -49,11 +50,6 @@ bool readAll(int descriptor, void* data, std::size_t bytes) {
 }
 
 }  // namespace
-
-void Fingerprint::add(const void* data, std::size_t bytes) {
-  const auto* at = static_cast<const std::uint8_t*>(data);
-  for (std::size_t i = 0; i < bytes; ++i) value_ = (value_ ^ at[i]) * 0x100000001b3u;
-}
 
 RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches, const std::function<void(const FormFactorRows&)>& take) : file_(file) {
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);

@@ -30,19 +30,4 @@ class RowFile {
   std::uint64_t end_ = 0;  ///< of the last whole block
 };
 
-/// FNV-1a, 64 bits.
-class Fingerprint {
- public:
-  void add(const void* data, std::size_t bytes);
-  template <class T>
-  void add(const T& value) {
-    static_assert(std::is_standard_layout_v<T>);
-    add(&value, sizeof value);
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325u;
-};
-
 }  // namespace lucerna

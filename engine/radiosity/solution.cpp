@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/hash.hpp"
 #include "base/log.hpp"
 #include "radiosity/direct_light.hpp"
 #include "radiosity/form_factor_matrix.hpp"
@@ -29,7 +30,7 @@ std::size_t freeMemory() {
 }
 
 std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings& s) {
-  Fingerprint f;
+  Hash f;
   for (const Patch& patch : mesh.patches) {
     for (const glm::dvec3& corner : mesh.corners(patch)) f.add(corner);
     f.add(patch.emission != glm::dvec3(0.0));
@@ -282,12 +283,12 @@ struct FilePatch {
 }  // namespace
 
 std::uint64_t fingerprint(const Scene& scene) {
-  Fingerprint f;
+  Hash f;
   for (const Vertex& v : scene.vertices) f.add(v.position), f.add(v.texCoord);
-  f.add(scene.indices.data(), scene.indices.size() * sizeof(std::uint32_t));
+  f.bytes(scene.indices.data(), scene.indices.size() * sizeof(std::uint32_t));
   for (const Mesh& mesh : scene.meshes) f.add(mesh.material), f.add(mesh.indexCount);
   for (const Material& m : scene.materials) f.add(m.diffuse), f.add(m.emission);
-  for (const Texture& t : scene.textures) f.add(t.bitmap.rgba.data(), t.bitmap.rgba.size());
+  for (const Texture& t : scene.textures) f.bytes(t.bitmap.rgba.data(), t.bitmap.rgba.size());
   if (scene.sun) f.add(scene.sun->direction), f.add(scene.sun->irradiance);
   for (const SpotLight& l : scene.spots) f.add(l.position), f.add(l.direction), f.add(l.intensity), f.add(l.innerAngle), f.add(l.outerAngle);
   for (const PointLight& l : scene.points) f.add(l.position), f.add(l.intensity);
@@ -337,9 +338,7 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
   std::uint8_t* at = bytes.data() + sizeof header;
   std::memcpy(at, s.mesh.points.data(), s.mesh.points.size() * sizeof(glm::dvec3));
   std::memcpy(at + s.mesh.points.size() * sizeof(glm::dvec3), patches.data(), patches.size() * sizeof(FilePatch));
-  Fingerprint sum;
-  sum.add(at, bytes.size() - sizeof header);
-  header.checksum = sum.value();
+  header.checksum = Hash::of(at, bytes.size() - sizeof header);
   std::memcpy(bytes.data(), &header, sizeof header);
   writeFileAtomically(file, std::span<const std::uint8_t>(bytes));
 }
@@ -355,9 +354,7 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
   if (header.points > most || header.patches > most || bytes.size() != sizeof header + header.points * sizeof(glm::dvec3) + header.patches * sizeof(FilePatch))
     throwBadInput("{}: {} bytes do not fit {} points and {} patches: was it cut short?", file.string(), bytes.size(), header.points, header.patches);
   const std::uint8_t* at = bytes.data() + sizeof header;
-  Fingerprint sum;
-  sum.add(at, bytes.size() - sizeof header);
-  if (sum.value() != header.checksum) throwBadInput("{}: its checksum is wrong: it is damaged", file.string());
+  if (Hash::of(at, bytes.size() - sizeof header) != header.checksum) throwBadInput("{}: its checksum is wrong: it is damaged", file.string());
   RadiositySolution s;
   s.mesh.points.resize(header.points);
   std::memcpy(static_cast<void*>(s.mesh.points.data()), at, header.points * sizeof(glm::dvec3));

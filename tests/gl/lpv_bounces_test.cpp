@@ -38,13 +38,7 @@ class LpvMoreLight : public test::SharedProgramsTest {
     return placeCascades(s.cascades, Bounds{}, glm::dvec3(0.0), glm::dvec3(0.0));
   }
   static LightPropagationVolume run(const LightPropagationVolume::Settings& s, const LightPropagationVolume::Inputs& inputs) {
-    LightPropagationVolume lpv(library(), capabilities(), s);
-    lpv.place(inputs);
-    lpv.inject(inputs);
-    lpv.fillGeometryVolume(inputs);
-    lpv.propagate();
-    lpv.join();
-    return lpv;
+    return test::runVolume(library(), capabilities(), s, inputs);
   }
   /// Coloured surfels, off the borders of cells (multiples of 1/4) for axis-aligned normals, so that 32 bits choose the twin's cell.
   static std::vector<RsmTexel> randomTexels(unsigned seed, int count) {

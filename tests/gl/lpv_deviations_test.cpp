@@ -91,13 +91,7 @@ class LpvDeviations : public test::SharedProgramsTest {
         : texels(std::move(lights)), texelArea(area), textures(texels, area), inputs{{textures.outputs()}, std::move(cascades), irradiance} {}
   };
   static LightPropagationVolume run(const LpvSettings& s, const LightPropagationVolume::Inputs& inputs) {
-    LightPropagationVolume lpv(library(), capabilities(), s);
-    lpv.place(inputs);
-    lpv.inject(inputs);
-    lpv.fillGeometryVolume(inputs);
-    lpv.propagate();
-    lpv.join();
-    return lpv;
+    return test::runVolume(library(), capabilities(), s, inputs);
   }
   static VolumeRgb resultOf(const LpvSettings& s, const Lights& lights) { return test::readVolume(run(s, lights.inputs).result(), lights.inputs)[0]; }
   static float seen(const LpvSettings& s, const Lights& lights, const Probe& probe) {

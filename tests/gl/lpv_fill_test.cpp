@@ -36,13 +36,7 @@ class LpvWays : public test::SharedProgramsTest {
     return placeCascades(s.cascades, Bounds{}, glm::dvec3(0.3, -0.2, 0.1), glm::dvec3(0.0));
   }
   static LightPropagationVolume run(const LpvSettings& s, const LightPropagationVolume::Inputs& inputs) {
-    LightPropagationVolume lpv(library(), capabilities(), s);
-    lpv.place(inputs);
-    lpv.inject(inputs);
-    lpv.fillGeometryVolume(inputs);
-    lpv.propagate();
-    lpv.join();
-    return lpv;
+    return test::runVolume(library(), capabilities(), s, inputs);
   }
 
   static constexpr float kIrradiance = 3.5f;

@@ -53,13 +53,7 @@ class LpvGlTest : public test::SharedProgramsTest {
   /// Runs all stages, join() where asked for.
   static LightPropagationVolume run(const LightPropagationVolume::Settings& s, const LightPropagationVolume::Inputs& inputs,
                                     bool join = false) {
-    LightPropagationVolume lpv(library(), capabilities(), s);
-    lpv.place(inputs);
-    lpv.inject(inputs);
-    lpv.fillGeometryVolume(inputs);
-    lpv.propagate();
-    if (join) lpv.join();
-    return lpv;
+    return test::runVolume(library(), capabilities(), s, inputs, join);
   }
 
 };

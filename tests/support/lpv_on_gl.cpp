@@ -53,6 +53,17 @@ std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea
 
 twin::GridSpec gridOf(const Cascade& cascade, int cells) { return {glm::ivec3(cells), cascade.minimum(), cascade.cellSize}; }
 
+LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const LightPropagationVolume::Settings& settings,
+                                 const LightPropagationVolume::Inputs& inputs, bool join) {
+  LightPropagationVolume lpv(programs, capabilities, settings);
+  lpv.place(inputs);
+  lpv.inject(inputs);
+  lpv.fillGeometryVolume(inputs);
+  lpv.propagate();
+  if (join) lpv.join();
+  return lpv;
+}
+
 std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume, const LightPropagationVolume::Inputs& inputs) {
   const int cells = volume[0].size().x;
   CHECK(volume[0].size() == glm::ivec3(cells, cells, cells * static_cast<int>(inputs.cascades.size())), "{} cells", cells);

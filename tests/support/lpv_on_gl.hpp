@@ -38,6 +38,10 @@ std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea
 
 twin::GridSpec gridOf(const Cascade& cascade, int cells);
 
+/// All stages of a volume made for it; join() unless told otherwise.
+LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const LightPropagationVolume::Settings& settings,
+                                 const LightPropagationVolume::Inputs& inputs, bool join = true);
+
 /// One cascade of a volume that was read back, c = value * E_ref * s^2.
 std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume, const LightPropagationVolume::Inputs& inputs);
 /// One cascade each of the geometry volume; nothing is scaled there.
