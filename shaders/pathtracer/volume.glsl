@@ -109,10 +109,11 @@ bool leaked(Path path) {
 
 // Roulette by the throughput alone: a limit by depth would darken milk. False: the path ends.
 bool survives(inout Path path, float u) {
-  float survival = min(max(path.throughput.r, max(path.throughput.g, path.throughput.b)), 1.0);
+  float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
 #if ROULETTE_WITHOUT_DIVISION
-  return u < min(survival, 0.95);  // [VPT2024, 5.5]
+  return u < min(largest, 0.95);  // [VPT2024, 5.5]
 #else
+  float survival = min(largest / kRouletteBelow, 1.0);
   if (path.event > (1u << 20)) survival = min(survival, 0.999);  // in an endless medium without absorption nothing else would
   if (!(u < survival)) return false;
   path.throughput /= survival;
@@ -193,7 +194,7 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
 #if !SCATTERED_LIGHT && !NEXT_EVENT
   return kEnded;
 #endif
-  uvec4 choice = randomWords(numbers, path.event, kPurposeMediumChoice);
+  uvec2 choice = randomWordPair(numbers, path.event, kPurposeMediumChoice);
   vec3 weight;
   path.direction = phaseSample(medium, path.direction, channelProbabilities(path.throughput), unitFloat(choice.x),
                                randomPair(numbers, path.event, kPurposePhase), weight, path.pdf);
@@ -258,7 +259,7 @@ float interactionProbability(MediumRecord medium) {
 // How far the ray may go before it collides; with a density grid that is told once it is known where the ray ends.
 float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   if (medium.grid >= 0) return kFar;
-  uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
+  uvec2 words = randomWordPair(numbers, path.event, kPurposeFlight);
 #if DISTANCE_WITHOUT_PDF
   // [VPT2024, algorithm 4]: from the least of the extinctions, and only with the probability of an interaction.
   float least = min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b));
