@@ -149,6 +149,16 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
   return packed;
 }
 
+bool boundariesMayTouch(const Scene& scene, const PackedBoundaries& boundaries) {
+  const auto rankOf = [&](const Mesh& mesh) { return boundaries.rankOfMaterial[static_cast<std::size_t>(mesh.material)]; };
+  for (const Mesh& a : scene.meshes) {
+    if (rankOf(a) < 0) continue;
+    for (const Mesh& b : scene.meshes)
+      if (rankOf(b) != rankOf(a) && glm::all(glm::lessThanEqual(a.bounds.min, b.bounds.max)) && glm::all(glm::lessThanEqual(b.bounds.min, a.bounds.max))) return true;
+  }
+  return false;
+}
+
 Surroundings surroundingsOf(const PackedBoundaries& boundaries, const glm::dvec3& point) {
   std::array<double, kMaxBoundaryRanks> solidAngle{};
   for (const BoundaryTriangle& triangle : boundaries.triangles) {

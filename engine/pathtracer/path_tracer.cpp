@@ -79,6 +79,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   if (settings.diffuseOnly) needs_.mirrors = needs_.conductors = needs_.dielectrics = needs_.roughDielectrics = false;
 
   boundaries_ = rankBoundaries(scene, settings.diffuseOnly);
+  touching_ = boundariesMayTouch(scene, boundaries_);
   if (needs_.dielectrics || needs_.nullBoundaries) interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
   if (needs_.media) {
     const PackedMedia packed = packMedia(scene.media, rays_.origin());
@@ -173,6 +174,7 @@ gl::ShaderFlags PathTracer::flags() const {
           {"MIRRORS", needs_.mirrors},
           {"DIELECTRICS", needs_.dielectrics},
           {"INTERIORS", hasInteriors()},
+          {"TOUCHING", hasInteriors() && touching_},
           {"MEDIA", needs_.media},
           {"HETEROGENEOUS", needs_.heterogeneousMedia},
           {"VOLUME_EMISSION", needs_.volumeEmission},

@@ -105,6 +105,7 @@ class PathTracer {
   int triangleWords_ = 4;
   std::size_t lightCount_ = 0;
   PackedBoundaries boundaries_;
+  bool touching_ = false;  ///< a boundary may coincide with, or cross, another surface
   int outerMedium_ = -1;
   InsideCounts cameraInside_{0u};
   float cameraIor_ = 1.0f;

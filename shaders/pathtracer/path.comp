@@ -79,16 +79,19 @@ void addLight(inout Path path, vec3 light) {
 const float kBeside = 4.76837158203125e-7;  // 2^-21
 #endif
 
-// Where a ray starts that leaves a surface towards the side of `normal`.
-vec3 beside(Surface surface, vec3 normal) {
+// How far beside a surface rays start that leave it.
+float gapAt(Surface surface) {
 #if FIXED_EPSILON
-  return surface.position + 1e-3 * normal;  // scene units, whatever the scene's size [VPT2024]
+  return 1e-3;  // scene units, whatever the scene's size [VPT2024]
 #elif MEDIA
-  return surface.position + normal * (surface.magnitude * kBeside);
+  return surface.magnitude * kBeside;
 #else
-  return offsetRay(surface.position, normal, surface.magnitude);
+  return surface.magnitude * 3.814697265625e-6;  // as offsetRay
 #endif
 }
+
+// Where a ray starts that leaves a surface towards the side of `normal`.
+vec3 beside(Surface surface, vec3 normal) { return surface.position + normal * gapAt(surface); }
 
 // Starts the path's next ray on a surface.
 void startAt(inout Path path, Surface surface, uint triangle) {
@@ -296,6 +299,27 @@ bool extend(inout Path path, PathNumbers numbers) {
     return false;
   }
   Surface surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+  uvec4 beyond = uvec4(0u);  // of which closed boundaries the other side is
+#if INTERIORS
+  beyond = path.inside;
+  int rank = int(materials[surface.material].boundary);
+  if (rank >= 0) {
+    bool right = crossBoundary(beyond, rank, surface.front);
+#if TOUCHING
+    // What else the step beyond crosses: a face that coincides with this one is of the same interface.
+    vec3 ahead = -gapAt(surface) * surface.geometricNormal;
+    Hit opaque = crossOnTheWay(beyond, surface.position - 0.5 * ahead, 1.5 * ahead, hit.triangle);
+    if (opaque.triangle != kNoHit) {  // a wall right behind is what the path has met, from where it is
+      rank = -1;
+      beyond = path.inside;
+      hit.triangle = opaque.triangle;
+      hit.barycentrics = opaque.barycentrics;
+      surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+    } else
+#endif
+    if (!right) atomicAdd(wrongCrossings, 1u);
+  }
+#endif
   PathMaterial material = materials[surface.material];
   path.travelled += hit.t;
   ++path.event;
@@ -311,13 +335,9 @@ bool extend(inout Path path, PathNumbers numbers) {
     addLight(path, emission);
   }
 #endif
-  uvec4 beyond = uvec4(0u);  // of which closed boundaries the other side is
   float iorBeyond = path.ior;
 #if INTERIORS
-  beyond = path.inside;
-  int rank = int(material.boundary);
   if (rank >= 0) {
-    if (!crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
     iorBeyond = iorInside(beyond);
     if (iorBeyond == path.ior) {  // nothing refracts: another medium, or a boundary that a higher one covers
       path.inside = beyond;
@@ -365,7 +385,7 @@ bool extend(inout Path path, PathNumbers numbers) {
   // Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path ends. Total reflection
   // may catch paths in glass for ever, which hold next to no light: after many smooth scatterings in a row more of them die.
   path.chain = path.pdf == 0.0 ? min(path.chain + 1u, 255u) : 0u;
-  float most = path.chain > 32u ? 0.9 : path.event < 1024u ? 1.0 : 0.999;
+  float most = path.chain > 32u ? 0.99 : path.event < 1024u ? 1.0 : 0.999;
   float largest = max(path.throughput.x, max(path.throughput.y, path.throughput.z));
 #if ROULETTE_WITHOUT_DIVISION
   if (!(unitFloat(choice.y) < min(largest, min(most, 0.95)))) return false;  // [VPT2024, algorithm 3]
@@ -376,6 +396,12 @@ bool extend(inout Path path, PathNumbers numbers) {
   path.throughput /= survival;
 #endif
   startAt(path, surface, hit.triangle);
+#if TOUCHING
+  if (rank >= 0 && dot(path.direction, surface.geometricNormal) > 0.0) {
+    crossOnTheWay(path.inside, surface.position, gapAt(surface) * surface.geometricNormal, hit.triangle);
+    path.ior = iorInside(path.inside);
+  }
+#endif
   return true;
 }
 

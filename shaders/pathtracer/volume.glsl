@@ -16,11 +16,42 @@ const uint kPurposeFlight = kFreePurpose;
 const uint kPurposePhase = kFreePurpose + 1u;
 const uint kPurposeMediumChoice = kFreePurpose + 2u;
 const uint kPurposeTransmittance = kFreePurpose + 3u;
+const uint kPurposeSeek = kFreePurpose + 4u;
 
 // What becomes of a ray in a medium.
 const int kArrives = 0;    // at what the ray was traced to
 const int kScattered = 1;  // or is in the midst of a long flight: goes on with a ray of its own
 const int kEnded = 2;
+
+int rankOf(uint triangle) { return int(materials[triangleData[triangle * TRIANGLE_WORDS].w].boundary); }
+
+// Whether a ray comes from the triangle's front.
+bool facesAgainst(uint triangle, vec3 direction) {
+  uint first = triangle * TRIANGLE_WORDS;
+  return dot(uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x)), direction) < 0.0;
+}
+
+#if TOUCHING
+// Crosses what lies on a step so short that rounding matters. Faces that coincide may be met in any order, or on the way already, so that the
+// counts decide: a boundary can be entered where the path is outside of it and left where it is inside. The first surface in the way that
+// bounds nothing ends the step and is given back; kNoHit where there is none.
+Hit crossOnTheWay(inout uvec4 inside, vec3 from, vec3 step, uint skip) {
+  Ray ray = Ray(from, 0.0, step, 1.0);
+  Hit hit;
+  for (int i = 0; i < 8; ++i) {
+    hit = closestHit(ray, skip);
+    if (hit.triangle == kNoHit) return hit;
+    int rank = rankOf(hit.triangle);
+    if (rank < 0) return hit;
+    bool entering = facesAgainst(hit.triangle, step);
+    if (isInsideOf(inside, rank) != entering) crossBoundary(inside, rank, entering);
+    ray.tMin = hit.t;
+    skip = hit.triangle;
+  }
+  hit.triangle = kNoHit;
+  return hit;
+}
+#endif
 
 #if MEDIA
 vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float distance, inout uvec4 words) {
@@ -66,33 +97,37 @@ vec3 straightTransmittance(vec3 start, vec3 end, bool infinite, uint skip, uvec4
 #endif
   float ior = iorInside(inside);
   vec3 through = vec3(1.0);
+  float from = 0.0;  // where the present medium begins
   for (uint i = 0u; i < 256u; ++i) {
     Hit hit = closestHit(ray, skip);
     int rank = -1;
     bool front = false;
     if (hit.triangle != kNoHit) {
-      uvec4 words0 = triangleData[hit.triangle * TRIANGLE_WORDS];
-      rank = int(materials[words0.w].boundary);
+      rank = rankOf(hit.triangle);
       if (rank < 0) return vec3(0.0);
-      uvec3 normal = uvec3(triangleData[hit.triangle * TRIANGLE_WORDS + 1u].w, triangleData[hit.triangle * TRIANGLE_WORDS + 2u].w,
-                           triangleData[hit.triangle * TRIANGLE_WORDS + 3u].x);
-      front = dot(uintBitsToFloat(normal), ray.direction) < 0.0;
+      front = facesAgainst(hit.triangle, ray.direction);
     }
 #if MEDIA
     int medium = mediumInside(inside);
     if (medium >= 0) {
       float far = hit.triangle == kNoHit ? (infinite ? kFar : 1.0) : hit.t;
-      through *= mediumTransmittance(media[medium], start + ray.tMin * ray.direction, direction, (far - ray.tMin) * unit, words);
+      through *= mediumTransmittance(media[medium], start + from * ray.direction, direction, (far - from) * unit, words);
       if (all(equal(through, vec3(0.0)))) return through;
     }
 #endif
     if (hit.triangle == kNoHit) return through;
     crossBoundary(inside, rank, front);
+    ray.tMin = from = hit.t;
+    skip = hit.triangle;
+#if TOUCHING
+    Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
+    vec3 ahead = -gapAt(surface) * surface.geometricNormal;
+    if (crossOnTheWay(inside, surface.position - 0.5 * ahead, 1.5 * ahead, hit.triangle).triangle != kNoHit) return vec3(0.0);
+    ray.tMin += dot(ahead, ahead) / max(dot(ahead, ray.direction), 0.01 * gapAt(surface) * length(ray.direction));
+#endif
 #if !STRAIGHT_SHADOW_RAYS
     if (iorInside(inside) != ior) return vec3(0.0);
 #endif
-    ray.tMin = hit.t;
-    skip = hit.triangle;
   }
   return vec3(0.0);
 }
@@ -159,6 +194,29 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
 }
 #endif
 
+#if NEXT_EVENT
+// A new direction, drawn from the phase function, and now and then instead towards the lamp that the next flight asks. A flight that passes
+// the lamp at a distance h finds light in proportion to 1/h; by directions of the phase function alone that has an infinite variance. Angles
+// to the lamp drawn uniformly have a density in proportion to 1/h themselves. The farther the lamp the more seldom, as the flight would hardly
+// get there, and since each such choice makes the path's weight a little more uneven.
+void seekLamp(inout Path path, MediumRecord medium, vec3 before, vec3 q, PathNumbers numbers, inout vec3 weight) {
+  uvec4 words = randomWords(numbers, path.event, kPurposePick), choice = randomWords(numbers, path.event, kPurposeSeek);
+  uint i = scaledWord(words.x, uint(lights.length()));
+  if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
+  vec3 to = lights[i].a - path.origin;
+  float r = length(to), share = 0.25 * exp(-r * min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b)));
+  if (!(r > 0.0)) return;
+  to /= r;
+  if (unitFloat(choice.x) < share) {
+    float angle = 3.14159265358979324 * unitFloat(choice.y);
+    path.direction = phaseDirection(to, sin(angle), cos(angle), unitFloat(choice.z));
+  }
+  vec3 p = phaseValue(medium, before, path.direction);
+  path.pdf = (1.0 - share) * dot(q, p) + share / (19.7392088 * max(length(cross(path.direction, to)), 1e-6));  // 2 pi^2
+  weight = p / path.pdf;
+}
+#endif
+
 // At a collision: light from a lamp, then on in a direction of the phase function.
 int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
   path.skip = kNoHit;
@@ -195,9 +253,11 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
   return kEnded;
 #endif
   uvec2 choice = randomWordPair(numbers, path.event, kPurposeMediumChoice);
-  vec3 weight;
-  path.direction = phaseSample(medium, path.direction, channelProbabilities(path.throughput), unitFloat(choice.x),
-                               randomPair(numbers, path.event, kPurposePhase), weight, path.pdf);
+  vec3 weight, before = path.direction, q = channelProbabilities(path.throughput);
+  path.direction = phaseSample(medium, before, q, unitFloat(choice.x), randomPair(numbers, path.event, kPurposePhase), weight, path.pdf);
+#if NEXT_EVENT && (POINTS || SPOTS)
+  if (asked) seekLamp(path, medium, before, q, numbers, weight);
+#endif
   path.throughput *= weight;
   return survives(path, unitFloat(choice.y)) ? kScattered : kEnded;
 }
@@ -270,8 +330,8 @@ float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
 }
 
 // How far beyond a collision to look for a surface. Where one is so near, the next ray might miss it by the rounding of its distance, which
-// is that of the triangles' coordinates.
-float flightMargin() { return sceneMagnitude() * kBeside; }
+// is that of the triangles' coordinates: collisions keep a distance from it, and a ray may meet it at a grazing angle.
+float flightMargin() { return sceneMagnitude() * kBeside * 64.0; }
 
 // What happens on the way to `hit`, the first hit within `flight`.
 int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
@@ -310,7 +370,7 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
   path.origin += flight * path.direction;
   if (hit.triangle != kNoHit) {
     Surface near = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
-    path.origin = beside(near, near.geometricNormal);
+    if ((hit.t - flight) * -dot(near.geometricNormal, path.direction) < gapAt(near)) path.origin = beside(near, near.geometricNormal);
   }
   return scatterInMedium(path, medium, numbers);
 }
