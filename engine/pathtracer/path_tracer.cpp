@@ -102,25 +102,26 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     to.albedo = from.diffuse;
     to.specular = from.specular;
     to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
-    to.emission = from.emission;
+    to.emission = from.emissionTexture >= 0 ? from.emissionScale : from.emission;
     to.ior = from.ior;
     to.boundary = static_cast<std::uint32_t>(boundaries_.rankOfMaterial[i]);
     to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = PATH_NO_TEXTURE;
   }
-  const bool textured = needs_.diffuseTextures || needs_.alphaMasks;
+  const bool textured = needs_.diffuseTextures || needs_.alphaMasks || needs_.emissionTextures;
   if (textured) uploadTextures(scene, capabilities, materials);
 
+  std::vector<float> pickDensity;
   if (settings.nextEvent) {
     const LightTable table = lightTable(scene, rays_.origin());
+    pickDensity = table.pickDensity;
     lightCount_ = table.lights.size();
     if (lightCount_ > 0) lights_ = storage("path lights", table.lights, capabilities);
-    for (std::size_t i = 0; i < materials.size(); ++i) materials[i].pickDensity = static_cast<float>(table.pickDensity[i]);
     constants_.environmentPick = static_cast<float>(table.environmentPick);
   }
   sceneHash_.bytes(materials.data(), materials.size() * sizeof(shared::PathMaterial));
   materials_ = storage("path materials", materials, capabilities);
   triangleWords_ = 4 + (textured ? 1 : 0) + (needs_.smoothNormals ? 3 : 0);
-  uploadTriangles(scene, capabilities, needs_.smoothNormals, textured);
+  uploadTriangles(scene, capabilities, needs_.smoothNormals, textured, pickDensity);
 
   if (needs_.environment) {
     const Environment& environment = *scene.environment;
@@ -167,7 +168,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
 
 gl::ShaderFlags PathTracer::flags() const {
   const bool asked = lightCount_ > 0;
-  return {{"TEXTURES", needs_.diffuseTextures},
+  return {{"TEXTURES", needs_.diffuseTextures || needs_.emissionTextures},
           {"ALPHA_MASKS", needs_.alphaMasks},
           {"SMOOTH_NORMALS", needs_.smoothNormals},
           {"TRIANGLE_WORDS", triangleWords_},
@@ -216,11 +217,12 @@ void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capa
     if (isNew) entries.push_back({texture, mask});
     return place->second;
   };
-  std::vector<std::array<std::size_t, 2>> used(materials.size(), {SIZE_MAX, SIZE_MAX});
+  std::vector<std::array<std::size_t, 3>> used(materials.size(), {SIZE_MAX, SIZE_MAX, SIZE_MAX});
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& material = scene.materials[i];
     if (needs_.diffuseTextures && material.diffuseTexture >= 0) used[i][0] = want(material.diffuseTexture, false);
     if (needs_.alphaMasks && material.alphaMasked) used[i][1] = want(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true);
+    if (needs_.emissionTextures && material.emissionTexture >= 0) used[i][2] = want(material.emissionTexture, false);
   }
   std::vector<glm::ivec2> sizes;
   for (const Entry& entry : entries) {
@@ -255,10 +257,12 @@ void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capa
   for (std::size_t i = 0; i < materials.size(); ++i) {
     place(used[i][0], materials[i].diffuseTexture);
     place(used[i][1], materials[i].maskTexture);
+    place(used[i][2], materials[i].emissionTexture);
   }
 }
 
-void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured) {
+void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured,
+                                 const std::vector<float>& pickDensity) {
   std::vector<std::uint32_t> words;
   words.reserve(scene.triangleCount() * static_cast<std::size_t>(triangleWords_) * 4);
   std::vector<std::uint32_t> materialOf(scene.triangleCount(), 0);
@@ -280,7 +284,7 @@ void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& cap
     add3(glm::vec3(place(2)));
     add(normal.y);
     add3({normal.z, corners[2]->texCoord.x, corners[2]->texCoord.y});
-    words.push_back(0);
+    add(pickDensity.empty() ? 0.0f : pickDensity[t]);
     if (textured)
       for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
     if (smoothNormals)

@@ -92,7 +92,7 @@ class PathTracer {
   std::vector<Pixel> readFilm() const;
   std::uint64_t identity() const;  ///< of what decides the picture
   void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
-  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured);
+  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured, const std::vector<float>& pickDensity);
   gl::ShaderFlags flags() const;
   bool hasInteriors() const { return needs_.dielectrics || needs_.nullBoundaries || needs_.media; }
   void dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target);

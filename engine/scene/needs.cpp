@@ -34,6 +34,7 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
       {"indirect", indirect},
       {"spotLights", spotLights},
       {"pointLights", pointLights},
+      {"emissionTextures", emissionTextures},
       {"smoothNormals", smoothNormals},
       {"mirrors", mirrors},
       {"conductors", conductors},
@@ -68,6 +69,7 @@ SceneNeeds analyse(const Scene& scene) {
     needs.alphaMasks |= material.alphaMasked;
     needs.specular |= anyPositive(material.specular);
     needs.emission |= anyPositive(material.emission);
+    needs.emissionTextures |= anyPositive(material.emission) && material.emissionTexture >= 0;
     needs.smoothNormals = needs.smoothNormals || isSmooth(scene, mesh);
     needs.mirrors |= material.bsdf == Bsdf::mirror;
     needs.conductors |= material.bsdf == Bsdf::conductor;

@@ -22,6 +22,7 @@ struct SceneNeeds {
   bool spotLights = false;       ///< a spot light with intensity > 0
   bool pointLights = false;      ///< an omnidirectional light with intensity > 0
   // Of the path tracer alone:
+  bool emissionTextures = false; ///< any drawn mesh emits by a picture
   bool smoothNormals = false;    ///< a vertex normal that is not its triangle's
   bool mirrors = false;
   bool conductors = false;

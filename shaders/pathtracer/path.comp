@@ -328,7 +328,7 @@ bool extend(inout Path path, PathNumbers numbers) {
     vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
 #if NEXT_EVENT
     if (path.pdf > 0.0) {
-      float pdf = material.pickDensity * path.travelled * path.travelled / -dot(surface.geometricNormal, path.direction);
+      float pdf = pickDensity(hit.triangle) * path.travelled * path.travelled / -dot(surface.geometricNormal, path.direction);
       emission *= powerHeuristic(path.pdf, pdf);
     }
 #endif

@@ -53,7 +53,7 @@ struct PathMaterial {
   vec3 specular;
   float roughness;          // GGX alpha
   vec3 emission;
-  float pickDensity;        // probability a unit of area that a light sample goes to a point on it
+  float padding2;
   float ior;
   uint boundary;            // which closed boundary it is of: index of the material
   float padding0, padding1;
