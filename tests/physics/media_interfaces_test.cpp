@@ -76,7 +76,7 @@ TEST_F(MediaInterfaces, MilkThatFillsGlassExactlyIsAWhiteFurnace) {
       scene.environment = constantEnvironment(1.0);
       scene.cameras = {inside ? cameraAt({0.1, 0.2, 0.3}, {1.0, 0.4, -0.3}, 0.9) : cameraAt({2.0, 1.7, 4.0}, glm::dvec3(0.0), 0.5)};
       const double exact = inside ? 1.33 * 1.33 : 1.0;
-      const Estimate e = measure(scene, 256);
+      const Estimate e = measure(scene, 128);
       std::printf("milk in glass, %s diagonals, camera %s: %.6f +- %.6f\n", otherDiagonal ? "other" : "the same", inside ? "inside" : "outside", e.energy, e.energyError);
       EXPECT_NEAR(e.energy, exact, 3.5 * e.energyError + 2e-5 * exact);
       EXPECT_LT(e.energyError, 3e-4 * exact);
@@ -106,7 +106,7 @@ TEST_F(MediaInterfaces, ReflectanceIsThatOfTheRelativeIndex) {
       const double exact = both(both(top, between), bottom);
       PathTracer::Settings settings;
       settings.nextEvent = false;
-      const Estimate e = measure(scene, 1024, 16, settings);
+      const Estimate e = measure(scene, 512, 16, settings);
       std::printf("glass on water, mu %.1f: R %.6f +- %.6f (%.6f), R + T %.6f\n", mu, e.mean.x, e.error.x, exact, e.mean.x + e.mean.y);
       EXPECT_NEAR(e.mean.x, exact, 3.5 * e.error.x);
       EXPECT_LT(e.error.x, 0.005 * exact);
@@ -164,7 +164,7 @@ TEST_F(MediaInterfaces, NestedAndOverlappingDielectricsKeepEnergy) {
       scene.cameras = {inside ? cameraAt({0.1, 0.0, 0.0}, {1.0, 0.2, 0.3}, 0.8) : cameraAt({0.2, 0.3, 5.0}, glm::dvec3(0.2, 0.1, 0.0), 0.4)};
       scene.environment = constantEnvironment(1.0);
       const double exact = inside ? 1.33 * 1.33 : 1.0;
-      const Estimate e = measure(scene, 512);
+      const Estimate e = measure(scene, 256);
       std::printf("nested, %s, camera %s: %.6f +- %.6f of %.4f\n", grey ? "grey" : "coloured", inside ? "inside" : "outside", e.energy, e.energyError, exact);
       EXPECT_NEAR(e.energy, exact, 3.5 * e.energyError + 2e-5 * exact);
       EXPECT_LT(e.energyError, 2.5e-4 * exact);
