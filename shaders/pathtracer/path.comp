@@ -302,16 +302,16 @@ bool extend(inout Path path, PathNumbers numbers) {
   uvec4 beyond = uvec4(0u);  // of which closed boundaries the other side is
 #if INTERIORS
   beyond = path.inside;
+  uvec4 before = path.inside;  // and the place where a reflected ray starts
   int rank = int(materials[surface.material].boundary);
   if (rank >= 0) {
     bool right = crossBoundary(beyond, rank, surface.front);
 #if TOUCHING
     // What else the step beyond crosses: a face that coincides with this one is of the same interface.
-    vec3 ahead = -gapAt(surface) * surface.geometricNormal;
-    Hit opaque = crossOnTheWay(beyond, surface.position - 0.5 * ahead, 1.5 * ahead, hit.triangle);
+    Hit opaque = crossBesides(beyond, before, surface.position, -gapAt(surface) * surface.geometricNormal, hit.triangle);
     if (opaque.triangle != kNoHit) {  // a wall right behind is what the path has met, from where it is
       rank = -1;
-      beyond = path.inside;
+      beyond = before = path.inside;
       hit.triangle = opaque.triangle;
       hit.barycentrics = opaque.barycentrics;
       surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
@@ -397,9 +397,9 @@ bool extend(inout Path path, PathNumbers numbers) {
 #endif
   startAt(path, surface, hit.triangle);
 #if TOUCHING
-  if (rank >= 0 && dot(path.direction, surface.geometricNormal) > 0.0) {
-    crossOnTheWay(path.inside, surface.position, gapAt(surface) * surface.geometricNormal, hit.triangle);
-    path.ior = iorInside(path.inside);
+  if (dot(path.direction, surface.geometricNormal) > 0.0) {
+    path.inside = before;
+    path.ior = iorInside(before);
   }
 #endif
   return true;

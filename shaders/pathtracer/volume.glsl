@@ -32,19 +32,24 @@ bool facesAgainst(uint triangle, vec3 direction) {
 }
 
 #if TOUCHING
-// Crosses what lies on a step so short that rounding matters. Faces that coincide may be met in any order, or on the way already, so that the
-// counts decide: a boundary can be entered where the path is outside of it and left where it is inside. The first surface in the way that
-// bounds nothing ends the step and is given back; kNoHit where there is none.
-Hit crossOnTheWay(inout uvec4 inside, vec3 from, vec3 step, uint skip) {
-  Ray ray = Ray(from, 0.0, step, 1.0);
+// Crosses what lies within a gap of a surface, where rounding matters: `beyond` is what rays start in that go on behind the surface, `before`
+// in front of it. Faces that coincide with the surface may be met in any order, up to half a gap before it too, so that the counts decide: a
+// boundary can be entered where the path is outside of it and left where it is inside. ahead: a gap long, to behind the surface. The first
+// surface there that bounds nothing is given back, kNoHit where there is none.
+Hit crossBesides(inout uvec4 beyond, inout uvec4 before, vec3 position, vec3 ahead, uint skip) {
+  Ray ray = Ray(position - ahead, 0.0, 2.0 * ahead, 1.0);
   Hit hit;
   for (int i = 0; i < 8; ++i) {
     hit = closestHit(ray, skip);
     if (hit.triangle == kNoHit) return hit;
     int rank = rankOf(hit.triangle);
-    if (rank < 0) return hit;
-    bool entering = facesAgainst(hit.triangle, step);
-    if (isInsideOf(inside, rank) != entering) crossBoundary(inside, rank, entering);
+    bool front = facesAgainst(hit.triangle, ahead);
+    if (hit.t < 0.25) {
+      if (rank >= 0 && isInsideOf(before, rank) == front) crossBoundary(before, rank, !front);
+    } else {
+      if (rank < 0) return hit;
+      if (isInsideOf(beyond, rank) != front) crossBoundary(beyond, rank, front);
+    }
     ray.tMin = hit.t;
     skip = hit.triangle;
   }
@@ -122,7 +127,8 @@ vec3 straightTransmittance(vec3 start, vec3 end, bool infinite, uint skip, uvec4
 #if TOUCHING
     Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
     vec3 ahead = -gapAt(surface) * surface.geometricNormal;
-    if (crossOnTheWay(inside, surface.position - 0.5 * ahead, 1.5 * ahead, hit.triangle).triangle != kNoHit) return vec3(0.0);
+    uvec4 before = inside;
+    if (crossBesides(inside, before, surface.position, ahead, hit.triangle).triangle != kNoHit) return vec3(0.0);
     ray.tMin += dot(ahead, ahead) / max(dot(ahead, ray.direction), 0.01 * gapAt(surface) * length(ray.direction));
 #endif
 #if !STRAIGHT_SHADOW_RAYS
