@@ -184,7 +184,7 @@ void PictureOptions::declare(CLI::App& app) {
   app.add_option("--component", component, "all, direct or indirect")->capture_default_str();
   app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str();
   app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");
-  app.add_option("--size", size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  app.add_option("--size", size, "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for --fidelity original")->capture_default_str();
   app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated");
   app.add_option("--settings", settingsFile, "a settings file, such as `lucerna tune` writes; what else is given here comes after it");
   app.footer(settingsHelp() + deviationsHelp());

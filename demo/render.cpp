@@ -102,7 +102,10 @@ Work addRender(CLI::App& app) {
   options->picture.declare(app);
   options->path.declare(app);
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options, size = app.get_option("--size")] {
+    options->path.sizeGiven = size->count() > 0;
+    return run(*options);
+  };
 }
 
 }  // namespace lucerna::demo

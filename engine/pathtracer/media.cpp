@@ -134,7 +134,11 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
   PackedBoundaries packed;
   for (std::size_t rank = 0; rank < keys.size(); ++rank) {
     const auto& [priority, dielectric, ior, medium] = keys[rank];
-    packed.interiors.push_back({ior, medium, 0, 0});
+    shared::InteriorRecord interior{};
+    interior.ior = ior;
+    interior.medium = medium;
+    interior.clearance = -1;
+    packed.interiors.push_back(interior);
     if (dielectric) packed.dielectricRanks[static_cast<int>(rank / 8)] |= 15u << (4 * (rank % 8));
   }
   for (const Material& material : scene.materials)

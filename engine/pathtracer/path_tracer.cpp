@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "gl/pass.hpp"
+#include "pathtracer/clearance.hpp"
 #include "pathtracer/texture_atlas.hpp"
 
 #include <algorithm>
@@ -20,9 +21,13 @@ namespace {
 constexpr GLuint kConstantsBinding = 0;                                                               // GL_UNIFORM_BUFFER
 constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4, kStateBinding = 5, kMediaBinding = 6,
                  kInteriorsBinding = 7, kGridsBinding = 8, kDensitiesBinding = 9;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2;
+constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kClearancesUnit = 3;
 constexpr int kGroupSide = 8;
 constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
+constexpr int kClearanceCells = 64;
+// llvmpipe leaves all loops of a shader after 65,535 turns, those of all lanes of a vector (8, 16 at most) counted together. Far less is never
+// reached in 50 ms but by small pictures.
+constexpr int kSoftwareTurns = 3500;
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = 16, kVec4Bytes = 16;
 
 std::uint32_t kindOf(const Material& material) {
@@ -37,6 +42,35 @@ std::uint32_t kindOf(const Material& material) {
 }
 
 constexpr std::array<char, 8> kCheckpointMagic{'L', 'U', 'C', 'P', 'A', 'T', 'H', '1'};
+/// Whether every lamp is in the open, where the index is 1: triangles by boxes, so that some are taken for enclosed that are not.
+bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
+  const std::size_t ranks = boundaries.interiors.size();
+  const float inf = std::numeric_limits<float>::infinity();
+  std::vector<std::array<glm::vec3, 2>> boxes(ranks, {glm::vec3(inf), glm::vec3(-inf)});
+  const auto widen = [](std::array<glm::vec3, 2>& box, const glm::vec3& p) { box = {glm::min(box[0], p), glm::max(box[1], p)}; };
+  for (const BoundaryTriangle& t : boundaries.triangles) {
+    const int rank = t.rank;
+    if ((boundaries.dielectricRanks[rank / 8] >> (4 * (rank % 8)) & 15u) == 0) continue;
+    for (const glm::vec3* p : {&t.a, &t.b, &t.c}) widen(boxes[static_cast<std::size_t>(rank)], *p);
+  }
+  const auto isOutside = [&](const std::array<glm::vec3, 2>& lamp) {
+    return std::none_of(boxes.begin(), boxes.end(), [&](const std::array<glm::vec3, 2>& box) {
+      return glm::all(glm::lessThanEqual(lamp[0], box[1])) && glm::all(glm::lessThanEqual(box[0], lamp[1]));
+    });
+  };
+  for (const Mesh& mesh : scene.meshes) {
+    if (scene.materials[static_cast<std::size_t>(mesh.material)].emission == glm::vec3(0.0f)) continue;
+    for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3) {
+      std::array<glm::vec3, 2> box{glm::vec3(inf), glm::vec3(-inf)};
+      for (std::uint32_t k = i; k < i + 3; ++k) widen(box, scene.vertices[scene.indices[k]].position);
+      if (!isOutside(box)) return false;
+    }
+  }
+  const auto isPlaceOutside = [&](const glm::dvec3& place) { return isOutside({glm::vec3(place), glm::vec3(place)}); };
+  return std::all_of(scene.points.begin(), scene.points.end(), [&](const PointLight& light) { return isPlaceOutside(light.position); }) &&
+         std::all_of(scene.spots.begin(), scene.spots.end(), [&](const SpotLight& light) { return isPlaceOutside(light.position); });
+}
+
 struct CheckpointHeader {
   std::array<char, 8> magic = kCheckpointMagic;
   std::uint64_t identity = 0, filmHash = 0;
@@ -73,12 +107,17 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       rays_(scene, context.capabilities(), settings.rays),
       constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW),
       tileSide_(context.capabilities().softwareRenderer ? 128 : 512),
+      turns_(context.capabilities().softwareRenderer ? kSoftwareTurns : std::numeric_limits<int>::max()),
       clearTexture_(context.capabilities().clearTexture) {
   const gl::Capabilities& capabilities = context.capabilities();
   CHECK(settings.size.x > 0 && settings.size.y > 0, "{} x {} pixels", settings.size.x, settings.size.y);
   if (settings.diffuseOnly) needs_.mirrors = needs_.conductors = needs_.dielectrics = needs_.roughDielectrics = false;
 
   boundaries_ = rankBoundaries(scene, settings.diffuseOnly);
+  lampsOutside_ = needs_.dielectrics && !settings.deviations.straightShadowRays && areLampsOutside(scene, boundaries_);
+  const bool published = settings.deviations.distanceWithoutPdf || settings.deviations.boostedInteraction;
+  needs_.denseMedia = needs_.denseMedia && needs_.dielectrics && settings.walks && !published && (!settings.nextEvent || lampsOutside_);
+  if (needs_.denseMedia) addClearances(scene);
   if (needs_.dielectrics || needs_.nullBoundaries) interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
   if (needs_.media) {
     const PackedMedia packed = packMedia(scene.media, rays_.origin());
@@ -155,7 +194,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
 
   const glm::ivec2 tile = glm::min(settings.size, glm::ivec2(tileSide_));
   const std::size_t lanes = static_cast<std::size_t>(tile.x) * static_cast<std::size_t>(tile.y);
-  constants_.picture = glm::ivec4(settings.size, static_cast<int>(lanes), 0);
+  constants_.picture = glm::ivec4(settings.size, static_cast<int>(lanes), turns_);
   state_ = gl::Buffer("path state", kStateHeaderBytes + lanes * kStateWords * kVec4Bytes, nullptr, GL_DYNAMIC_COPY);
   filmMean_ = gl::Texture("film mean", GL_RGBA32UI, settings.size);
   filmSpread_ = gl::Texture("film spread", GL_RGBA32UI, settings.size);
@@ -174,6 +213,8 @@ gl::ShaderFlags PathTracer::flags() const {
           {"DIELECTRICS", needs_.dielectrics},
           {"INTERIORS", hasInteriors()},
           {"MEDIA", needs_.media},
+          {"LAMPS_OUTSIDE", lampsOutside_},
+          {"WALKS", needs_.denseMedia},
           {"HETEROGENEOUS", needs_.heterogeneousMedia},
           {"VOLUME_EMISSION", needs_.volumeEmission},
           {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
@@ -198,6 +239,30 @@ gl::ShaderFlags PathTracer::flags() const {
           {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
           {"FRESNEL_AMPLITUDES", settings_.deviations.fresnelAmplitudes},
           {"FRESNEL_SCHLICK", settings_.deviations.schlick}};
+}
+
+void PathTracer::addClearances(const Scene& scene) {
+  std::vector<Corners> triangles(scene.triangleCount());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) triangles[t][k] = glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - rays_.origin();
+  std::vector<float> radii;
+  for (std::size_t rank = 0; rank < boundaries_.interiors.size(); ++rank) {
+    shared::InteriorRecord& interior = boundaries_.interiors[rank];
+    glm::dvec3 min(std::numeric_limits<double>::infinity()), max(-min);
+    for (const BoundaryTriangle& t : boundaries_.triangles)
+      if (t.rank == static_cast<int>(rank))
+        for (const glm::vec3* p : {&t.a, &t.b, &t.c}) min = glm::min(min, glm::dvec3(*p)), max = glm::max(max, glm::dvec3(*p));
+    const double extent = glm::length(max - min);
+    if (interior.medium < 0 || !(extent > 0.0) || !isDense(scene.media[static_cast<std::size_t>(interior.medium)], extent)) continue;
+    const ClearanceGrid grid = clearanceGrid(triangles, min - rays_.origin(), max - rays_.origin(), kClearanceCells);
+    interior.clearance = static_cast<int>(radii.size());
+    interior.cell = static_cast<float>(grid.cell);
+    interior.min = glm::vec3(grid.min);
+    interior.size = glm::ivec4(grid.size, 0);
+    radii.insert(radii.end(), grid.radius.begin(), grid.radius.end());
+  }
+  needs_.denseMedia = !radii.empty();
+  if (needs_.denseMedia) clearances_ = gl::BufferTexture("path clearances", GL_R32F, radii.size() * sizeof(float), radii.data());
 }
 
 void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials) {
@@ -314,7 +379,7 @@ std::uint64_t PathTracer::identity() const {
   shared::PathConstants constants = constants_;
   constants.tile = glm::ivec4(0);
   constants.sampleTarget = constants.segments = 0;
-  constants.picture.z = 0;
+  constants.picture.z = constants.picture.w = 0;
   Hash hash = sceneHash_;
   hash.bytes(&constants, sizeof constants);
   for (const auto& [name, value] : flags()) {
@@ -423,6 +488,7 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
     program_->set("cameraInside", cameraInside_);
     program_->set("cameraIor", cameraIor_);
   }
+  if (needs_.denseMedia) clearances_.bind(kClearancesUnit);
   if (needs_.media) media_.bind(GL_SHADER_STORAGE_BUFFER, kMediaBinding);
   if (needs_.heterogeneousMedia) {
     grids_.bind(GL_SHADER_STORAGE_BUFFER, kGridsBinding);
@@ -498,7 +564,7 @@ PathTracer::Statistics PathTracer::statistics() const {
 }
 
 std::size_t PathTracer::gpuBytes() const {
-  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() +
+  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
                       filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
   for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_})
     if (*texture) bytes += (*texture)->bytes();

@@ -253,6 +253,9 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
 #if MIS
   if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, pdf);
 #endif
+#if LAMPS_OUTSIDE
+  if (path.ior != 1.0) return;  // a lamp beyond a boundary that refracts lies on no straight line
+#endif
   if (all(equal(contribution, vec3(0.0)))) return;
   addLight(path, contribution * visibility(path, surface, triangle, light, numbers));
   radiance = path.radiance;
@@ -265,6 +268,9 @@ bool extend(inout Path path, PathNumbers numbers) {
   // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
   int medium = mediumInside(path.inside);
   float flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
+#if WALKS
+  if (medium >= 0 && !walk(path, media[medium], flight, numbers)) return false;
+#endif
   Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight + flightMargin()), path.skip);
   if (medium >= 0) {
     int became = crossMedium(path, media[medium], flight, hit, numbers);
@@ -402,7 +408,8 @@ void main() {
   }
 
   bool inFlight = true;
-  for (uint segment = 0u; segment < tracer.segments; ++segment) {
+  for (uint segment = 0u; segment < tracer.segments && loopTurns < uint(tracer.picture.w); ++segment) {
+    loopTurns += 4u;
     if (extend(path, numbers)) continue;
     ++samples;
     vec3 difference = (path.radiance - mean) - rest;

@@ -1,8 +1,8 @@
 // A path through participating media: how far it flies, what it adds and where it goes on from a collision; and how much light a straight
 // line lets through. Hooks of path.comp, which declares Path, addLight, counts and the lights before this file is included.
 //
-// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION; deviations DISTANCE_WITHOUT_PDF,
-// BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, STRAIGHT_SHADOW_RAYS.
+// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION, LAMPS_OUTSIDE (no lamp is within
+// a dielectric), WALKS (dense media have clearance grids); deviations DISTANCE_WITHOUT_PDF, BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, STRAIGHT_SHADOW_RAYS.
 #include "pathtracer/boundary.glsl"
 #if MEDIA
 #include "pathtracer/media.glsl"
@@ -33,10 +33,12 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
     float bound;
     if (!densityMarchStart(g, origin, direction, distance, march)) return through;
     while (densityMarchNext(g, march, bound)) {
+      ++loopTurns;
       float rate = medium.majorant * bound;
       if (!(rate > 0.0)) continue;
       float t = march.near;
       for (;;) {
+        ++loopTurns;
         words = pcg4d(words);
         t += exponentialSample(words.x) / rate;
         if (t >= march.far) break;
@@ -158,8 +160,17 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
 }
 #endif
 
-// At a collision: light from a lamp, then on in a direction of the phase function.
-int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
+// Whether a straight line from where the path is may reach a lamp at all: with all lamps outside, not from within anything that refracts.
+bool lampsReach(Path path) {
+#if LAMPS_OUTSIDE
+  return path.ior == 1.0;
+#else
+  return true;
+#endif
+}
+
+// At a collision: light from a lamp where `asks`, then on in a direction of the phase function.
+int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, bool asks) {
   path.skip = kNoHit;
   path.head = 0.0;
   path.chain = 0u;
@@ -174,9 +185,9 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
 #if NEXT_EVENT
   LightSample light;
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
-  bool asked = false;
+  bool asked = !asks;
 #else
-  bool asked = medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));  // they have been, on the way here
+  bool asked = !asks || medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));  // they have been, on the way here
 #endif
   if (counts(path.scatterings) && !asked &&
       sampleLight(path.origin, randomPair(numbers, path.event, kPurposeLight), randomWords(numbers, path.event, kPurposePick), light)) {
@@ -212,10 +223,12 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   float bound;
   uint tries = 0u;
   while (densityMarchNext(g, march, bound)) {
+    ++loopTurns;
     float rate = medium.majorant * bound;
     if (!(rate > 0.0)) continue;
     float t = march.near;
     for (;;) {
+      ++loopTurns;
       words = pcg4d(words);
       t += exponentialSample(words.x) / rate;
       if (t >= march.far) break;
@@ -232,7 +245,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
         path.throughput *= collides ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
       if (collides || ++tries == 64u) {
         path.origin += t * path.direction;
-        if (collides) return scatterInMedium(path, medium, numbers);
+        if (collides) return scatterInMedium(path, medium, numbers, lampsReach(path));
         path.travelled += t;
         path.head = 0.0;
         ++path.event;
@@ -272,6 +285,53 @@ float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
 // is that of the triangles' coordinates.
 float flightMargin() { return sceneMagnitude() * kBeside; }
 
+// What a flight of that length adds, and leaves of the throughput.
+void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, bool arrives, PathNumbers numbers) {
+#if VOLUME_EMISSION
+  if (counts(path.scatterings) && distance < 0.5 * kFar) {
+    // By the length of the flight: one point of it stands for all. Where little collides that has hardly any noise.
+    float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
+    addLight(path, distance * medium.emission * passageWeight(medium, q, x));
+  }
+#endif
+#if DISTANCE_WITHOUT_PDF
+  path.throughput *= exp(-medium.extinction * distance);  // neither the scattering coefficient nor a density
+#else
+  path.throughput *= arrives ? passageWeight(medium, q, distance) : scatteringWeight(medium, q, distance);
+#if BOOSTED_INTERACTION
+  float albedo = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
+  if (!arrives) path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
+#endif
+#endif
+}
+
+#if WALKS
+layout(binding = 3) uniform samplerBuffer clearances;  // distances from cells' centres to the nearest triangle of the scene
+const uint kWalkSteps = 64u;
+
+// From collision to collision as long as `flight`, the one drawn last, ends before it could meet any triangle: no ray is traced for such. Every
+// number drawn and every sum is that of a path that traces them all. Where a lamp might be asked there is no walk. False: the path ends.
+bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers numbers) {
+  int rank = topRank(path.inside);
+  if (rank < 0 || (NEXT_EVENT != 0 && lampsReach(path))) return true;
+  InteriorRecord interior = interiors[rank];
+  if (interior.clearance < 0) return true;
+  ivec3 last = interior.size.xyz - 1;
+  float margin = 2.0 * flightMargin();
+  for (uint step = 0u; step < kWalkSteps; ++step) {
+    ivec3 cell = clamp(ivec3((path.origin - interior.min) / interior.cell), ivec3(0), last);
+    float radius = texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
+    if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell))) return true;
+    ++loopTurns;
+    weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);
+    path.origin += flight * path.direction;
+    if (scatterInMedium(path, medium, numbers, false) != kScattered) return false;
+    flight = beginFlight(path, medium, numbers);
+  }
+  return true;
+}
+#endif
+
 // What happens on the way to `hit`, the first hit within `flight`.
 int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
   bool arrives = hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar;
@@ -280,37 +340,18 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
 #endif
   float distance = path.head + (arrives && hit.triangle != kNoHit ? hit.t : flight);
   vec3 q = channelProbabilities(path.throughput);
-#if VOLUME_EMISSION
-  if (counts(path.scatterings) && distance < 0.5 * kFar) {
-    // By the length of the flight: one point of it stands for all. Where little collides that has hardly any noise.
-    float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
-    addLight(path, distance * medium.emission * passageWeight(medium, q, x));
-  }
-#endif
 #if NEXT_EVENT && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
 #if POINTS || SPOTS
-  addPointLight(path, medium, q, distance, numbers);
+  if (lampsReach(path)) addPointLight(path, medium, q, distance, numbers);
 #endif
 #endif
-#if DISTANCE_WITHOUT_PDF
-  path.throughput *= exp(-medium.extinction * distance);  // neither the scattering coefficient nor a density
+  weighFlight(path, medium, q, distance, arrives, numbers);
   if (arrives) return kArrives;
-#else
-  if (arrives) {
-    path.throughput *= passageWeight(medium, q, distance);
-    return kArrives;
-  }
-  path.throughput *= scatteringWeight(medium, q, distance);
-#if BOOSTED_INTERACTION
-  float albedo = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
-  path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
-#endif
-#endif
   path.origin += flight * path.direction;
   if (hit.triangle != kNoHit) {
     Surface near = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
     path.origin = beside(near, near.geometricNormal);
   }
-  return scatterInMedium(path, medium, numbers);
+  return scatterInMedium(path, medium, numbers, lampsReach(path));
 }
 #endif

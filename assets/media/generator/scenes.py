@@ -190,7 +190,7 @@ def build_cola(folder, paths):
     glass = vessels.lathe("tumbler", "glass", profile, 88, crease=50.0)
     level = 100.0
     cola = vessels.liquid("cola", "cola", inner, level, 0.3, 1.5, 1.3, 88)
-    placed = vessels.ice_cubes(7, (12.0, 12.0, 12.0), lambda y: 25.2 + (32.0 - 25.2) * (y - 13.0) / 121.0, 40.0, 112.0, level, 11)
+    placed = vessels.ice_cubes(12, (8.6, 8.6, 8.6), lambda y: 25.2 + (32.0 - 25.2) * (y - 13.0) / 121.0, 50.0, 112.0, level, 11)
     ice = [vessels.ice_cube(f"ice_{i}", "ice", p, 100 + i) for i, p in enumerate(placed)]
     key, target = (-200.0, 350.0, -190.0), (0.0, 70.0, 0.0)
     parts = [glass, cola] + ice + planks(520, 300, -380, 85, sorted(WOODS)) + [
@@ -199,7 +199,7 @@ def build_cola(folder, paths):
     materials = {"glass": clear(1.5), "cola": clear(1.33, (0.2, 0.06, 0.02)), "ice": clear(1.5), **WOODS, "wall": {"Kd": (0.62, 0.6, 0.56)},
                  "key": lamp((9, 9, 9)), "side": lamp((6, 5.8, 5.4)), "glow": lamp((16, 14.8, 13))}
     count = write(folder, "cola", parts, materials, "Cola with ice in a tumbler.")
-    view = camera("published", (40.0, 150.0, 330.0), (0.0, 64.0, 0.0), 28)
+    view = camera("published", (40.0, 205.0, 290.0), (0.0, 69.0, 0.0), 28)
     scene = {"description": "Coca Cola with ice in a tumbler. Glass, ice and cola overlap, with priorities; the ice is the medium glass, as published.", "model": "cola.obj", "scale": 1,
              "cameras": [view, camera("ice", (30.0, 165.0, 120.0), (2.0, 100.0, 4.0), 30)],
              "sun": None, "exposure": 1.4, "environment": {"radiance": [0.14, 0.15, 0.17]}, "keyFrames": "../../../keyFrames/cola.txt",
@@ -218,7 +218,7 @@ def build_smoke(folder, paths, with_grid=True):
     def room():
         return [backdrop("sweep", "room", 1400, 900, -620, 1100, 200), softbox("key", key, target, 260, 260, "key"), softbox("rim", (-760, 330, -420), target, 160, 360, "rim")]
 
-    materials = {"room": {"Kd": (0.2, 0.21, 0.23)}, "key": lamp((60, 55, 47)), "rim": lamp((14, 18, 25))}
+    materials = {"room": {"Kd": (0.035, 0.038, 0.044)}, "key": lamp((60, 55, 47)), "rim": lamp((14, 18, 25))}
     bounds = box("bounds", "smoke", low, high)
     count = write(folder, "smoke", [bounds] + room(), {"smoke": clear(1.0), **materials}, "A box of smoke.")
     if with_grid:  # what takes long
