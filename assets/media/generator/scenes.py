@@ -140,7 +140,7 @@ def build_block(folder, paths):
     parts = [cube, tiles("tile_light", 4.0, 15, 0), tiles("tile_dark", 4.0, 15, 1), quad("wall", "wall", (-60, 0, -36), (60, 0, -36), (60, 66, -36), (-60, 66, -36)),
              softbox("key", key, target, 32, 32, "key"), softbox("fill", (26, 24, 24), target, 28, 28, "fill")]  # large: light from within is found by chance
     materials = {"block": clear(1.33), "tile_light": {"Kd": (0.72, 0.69, 0.63)}, "tile_dark": {"Kd": (0.1, 0.16, 0.24)}, "wall": {"Kd": (0.3, 0.4, 0.46)},
-                 "key": lamp((5.4, 5.1, 4.6)), "fill": lamp((1.5, 1.6, 1.75))}
+                 "key": lamp((5.4, 5.1, 4.6)), "fill": lamp((3.0, 3.2, 3.5))}
     count = write(folder, "block", parts, materials, "A block on a chequered floor.")
     view = camera("published", (9.5, 18.5, 33.5), (0.0, 5.6, 0.0), 28)
     for stem, medium, what in (("milk", "milk", "Milk"), ("juice", "grape juice", "Grape juice"), ("coffee", "espresso", "Espresso")):
