@@ -4,10 +4,12 @@
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
 #include "bench/needs_bench.hpp"
+#include "bench/rays_bench.hpp"
 #include "bench/stability.hpp"
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -116,6 +118,30 @@ class Report {
     json_["tables"] = tables.json;
   }
 
+  void rays(const std::vector<std::string>& files) {
+    gl::ProgramLibrary programs;
+    RaysOptions options;
+    options.rays = std::clamp(static_cast<int>(options.rays * options_.scale), 1024, 1 << 22);
+    options.repeats = 5;
+    page_.section("Rays per second");
+    HtmlPage::Table table{{"scene", "rays", "million rays a second", "Embree's", "ratio", "nodes a ray", "triangles a ray", "answers that differ"}, {}, {}};
+    for (const std::string& file : files) {
+      const Scene scene = loadScene(file);
+      const RaysResult result = measureRays(context_, programs, scene, options, options_.common.quiet);
+      const auto figure = [](const nlohmann::ordered_json& row, const char* key, const char* format) {
+        const auto& value = row.at(key);
+        return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : std::string("not here");
+      };
+      for (const auto& row : result.json.at("rows"))
+        table.rows.push_back({scene.name, row.at("rays").get<std::string>(), figure(row, "mrays_per_s", "{:.3f}"), figure(row, "embree_mrays_per_s", "{:.3f}"), figure(row, "ratio", "{:.3f}"),
+                              figure(row, "nodes_per_ray", "{:.1f}"), figure(row, "triangles_per_ray", "{:.1f}"), fmt::format("{} of {}", row.at("differ").dump(), row.at("count").dump())});
+      json_["rays"].push_back(result.json);
+    }
+    page_.paragraph(fmt::format("The compute-shader hierarchy beside Embree's single rays on the same {} rays of each kind, in turn, medians of {}; all of this machine's cores work for either.", options.rays,
+                                options.repeats));
+    page_.table(table);
+  }
+
   void missing(const char* part, const std::string& why) {
     page_.section(part);
     page_.paragraph("Not here: " + why);
@@ -162,6 +188,7 @@ int run(AllOptions options) {
   part("deviations", [&] { report.errors(options.scenes.front(), true); });
   part("stability", [&] { report.stability(); });
   part("needs", [&] { report.needs(options.scenes); });
+  part("rays", [&] { report.rays(options.scenes); });
   part("tables", [&] { report.tables(); });
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (interrupted()) {

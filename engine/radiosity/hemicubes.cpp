@@ -45,7 +45,6 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   batch_ = static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1, std::min<std::size_t>(patches, 1024)));
 
   std::vector<float> corners;
-  std::vector<GLuint> sources;
   corners.reserve(9 * patches);
   double emitting = 0.0;
   for (const Patch& patch : mesh.patches) emitting += patch.emission != glm::dvec3(0.0) ? patch.area : 0.0;
@@ -53,12 +52,12 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   for (const Patch& patch : mesh.patches) {
     for (const glm::dvec3& corner : mesh.corners(patch))
       for (int axis = 0; axis < 3; ++axis) corners.push_back(static_cast<float>(corner[axis]));
-    sources.push_back(smallSources && patch.emission != glm::dvec3(0.0));
+    smallSources_.push_back(smallSources && patch.emission != glm::dvec3(0.0));
   }
   std::vector<float> deltas;
   for (const double d : deltaFormFactors(settings.resolution, settings.map)) deltas.push_back(static_cast<float>(d));
   corners_ = gl::Buffer("radiosity corners", corners.size() * sizeof(float), corners.data(), GL_STATIC_DRAW);
-  sources_ = gl::Buffer("radiosity sources", sources.size() * sizeof(GLuint), sources.data(), GL_STATIC_DRAW);
+  sources_ = gl::Buffer("radiosity sources", smallSources_.size() * sizeof(GLuint), smallSources_.data(), GL_STATIC_DRAW);
   deltaFactors_ = gl::Buffer("delta form factors", deltas.size() * sizeof(float), deltas.data(), GL_STATIC_DRAW);
   const auto batch = static_cast<std::size_t>(batch_);
   frames_ = storage("hemicube frames", batch * sizeof(Frame));

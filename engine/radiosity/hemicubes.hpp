@@ -44,6 +44,8 @@ class Hemicubes {
 
   int batchSize() const { return batch_; }
   int patchCount() const { return patchCount_; }
+  /// 1 for patches that shine and are small beside the scene: factors to them are closed forms, however few pixels they cover.
+  const std::vector<std::uint32_t>& smallSources() const { return smallSources_; }
   /// At most batchSize() rows from `first` on; waits for them.
   FormFactorRows rows(int first, int count);
   std::size_t gpuBytes() const;
@@ -57,6 +59,7 @@ class Hemicubes {
   const RadiosityMesh* mesh_;
   HemicubeSettings settings_;
   int patchCount_ = 0, batch_ = 0;
+  std::vector<std::uint32_t> smallSources_;
   const gl::Program *depth_, *depthLarge_, *sum_, *sumLarge_, *exact_;
   gl::Buffer corners_, sources_, deltaFactors_, frames_, keys_, factors_, exactList_, shares_, largeList_;
 };

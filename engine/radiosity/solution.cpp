@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <numbers>
 #include <unistd.h>
 #include <unordered_map>
 
@@ -65,10 +66,17 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   solution.direct = directLight(programs, scene, mesh);
 
   FormFactorMatrix matrix;
+  std::vector<double> ownSums;
   solution.fronts.clear();
   solution.backs.clear();
   const auto take = [&](const FormFactorRows& rows, bool keep) {
     if (keep) append(matrix, rows);
+    std::size_t at = 0;
+    for (const std::uint32_t count : rows.counts) {
+      double sum = 0.0;
+      for (const std::size_t end = at + count; at < end; ++at) sum += static_cast<double>(rows.factors[at]);
+      ownSums.push_back(sum);
+    }
     solution.fronts.insert(solution.fronts.end(), rows.fronts.begin(), rows.fronts.end());
     solution.backs.insert(solution.backs.end(), rows.backs.begin(), rows.backs.end());
   };
@@ -99,32 +107,33 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
 
   start = now();
   RadiositySystem system;
-  std::vector<double> fronts;
+  std::vector<double> sums;
   for (std::size_t i = 0; i < n; ++i) {
     const Patch& patch = mesh.patches[i];
     system.areas.push_back(patch.area);
     system.reflectance.push_back(patch.reflectance);
     system.emission.push_back(patch.emission + patch.reflectance * solution.direct[i]);
-    // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed.
-    const double share = static_cast<double>(solution.fronts[i]);
-    fronts.push_back(share > 1.0 - 1e-5 ? 1.0 : share);
+    // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed. An open row sums to what its factors say: closed forms know of
+    // lights that no pixel meets.
+    sums.push_back(static_cast<double>(solution.fronts[i]) > 1.0 - 1e-5 ? 1.0 : std::min(1.0, ownSums[i]));
   }
   if (kept) {
     const std::vector<double> before = matrix.rowSums();
     double off = 0.0;
-    for (std::size_t i = 0; i < n; ++i) off += std::abs(before[i] - fronts[i]);
+    for (std::size_t i = 0; i < n; ++i) off += std::abs(before[i] - sums[i]);
     solution.repaired = off / static_cast<double>(n);
     if (settings.repair) {
-      matrix.repair(system.areas, fronts);
+      const double pixel = 4.0 / (std::numbers::pi * settings.hemicubes.resolution * settings.hemicubes.resolution);  // the largest delta form factor
+      matrix.repair(system.areas, sums, hemicubes.smallSources(), settings.hemicubes.exactPixels * pixel);
       system.reciprocal = true;
     }
     system.matrix = &matrix;
-    system.rowSums = settings.repair ? fronts : matrix.rowSums();
+    system.rowSums = matrix.rowSums();
     solution.entries = matrix.entryCount();
     system.product = [&](auto x, auto y) { matrix.multiply(x, y); };
   } else {
-    // Each product draws all hemicubes again; rows are scaled to their share of fronts, reciprocity is as hemicubes have it.
-    system.rowSums = fronts;
+    // Each product draws all hemicubes again; rows are scaled to their sums, reciprocity is as hemicubes have it.
+    system.rowSums = sums;
     system.product = [&](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
       for (std::size_t first = 0; first < n;) {
         const FormFactorRows rows = hemicubes.rows(static_cast<int>(first), static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
@@ -136,7 +145,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
             sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
             whole += static_cast<double>(rows.factors[at]);
           }
-          y[first + k] = whole > 0.0 ? sum * (fronts[first + k] / whole) : glm::dvec3(0.0);
+          y[first + k] = whole > 0.0 ? sum * (sums[first + k] / whole) : glm::dvec3(0.0);
         }
         first += rows.counts.size();
         solution.hemicubes += rows.counts.size();

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 namespace {
 
@@ -78,6 +79,11 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     EXPECT_EQ(row.contains("inside_model"), row.at("technique") == "rsm");
   }
   EXPECT_TRUE(pareto);
+  std::map<std::string, int> ofPath;
+  for (const auto& row : report.at("rows"))
+    if (row.at("technique") == "path") ++ofPath[row.at("fidelity").get<std::string>()];
+  EXPECT_GE(ofPath["corrected"], 3);
+  EXPECT_GE(ofPath["original"], 3);
   EXPECT_EQ(report.at("references").size(), 4u);
   EXPECT_EQ(report.at("model").size(), 3u);
   for (const char* file : {"report.html", "error.csv", "error.json"}) EXPECT_TRUE(fs::exists(path("out") + "/" + file)) << file;
@@ -138,6 +144,61 @@ TEST_F(Measure, StabilityRowsSayWhatWasExpected) {
     for (const char* key : {"technique", "case", "parameter", "expected", "measured", "verdict"}) EXPECT_TRUE(row.contains(key)) << key;
     EXPECT_EQ(row.at("verdict"), "pass") << row.dump();
   }
+}
+
+TEST_F(Measure, StabilityIsComparedWithATableThatWasKept) {
+  const std::string run = "bench stability --host osmesa --quiet --technique direct ";
+  ASSERT_EQ(RUN_LUCERNA(run + "--json '" + path("kept.json") + "'").exitCode, 0);
+  const auto kept = json("kept.json");
+  const auto against = [&](const nlohmann::json& table) {
+    std::ofstream(path("old.json")) << table;
+    return RUN_LUCERNA(run + "--compare '" + path("old.json") + "' --json '" + path("now.json") + "'");
+  };
+  RunResult same = against(kept);
+  EXPECT_EQ(same.exitCode, 0) << same.out;
+  EXPECT_TRUE(json("now.json").at("worse").empty());
+
+  // A row that is gone, one that allowed less, one that expected something else, and one of another technique, which is not asked for.
+  auto stricter = kept;
+  auto gone = kept.at("rows")[0];
+  gone["case"] = "no such case";
+  stricter["rows"].push_back(gone);
+  gone["technique"] = "lpv";
+  stricter["rows"].push_back(gone);
+  stricter["rows"][0]["tolerance"] = 1e-9;
+  stricter["rows"][1]["expected"] = 7.0;
+  const RunResult worse = against(stricter);
+  EXPECT_EQ(worse.exitCode, 1) << worse.out;
+  EXPECT_EQ(json("now.json").at("worse").size(), 3u) << worse.out;
+  for (const char* part : {"no such case, sun 1e-09x: gone", "allows", "expects 1, was 7"}) EXPECT_NE(worse.out.find(part), std::string::npos) << part << " in " << worse.out;
+
+  expectOneLine(against({{"rows", {{{"case", 1}}}}}), 2, {"--compare", "old.json"});
+  expectOneLine(RUN_LUCERNA(run + "--compare '" + path("scene.obj") + "'"), 2, {"--compare", "scene.obj"});
+}
+
+// What continuous integration keeps: tests/stability.json, made by `lucerna bench stability --json tests/stability.json`.
+TEST_F(Measure, NoStabilityRowIsWorseThanTheKeptTable) {
+  const RunResult result = RUN_LUCERNA("bench stability --host osmesa --compare '" LUCERNA_SOURCE_DIR "/tests/stability.json' --json '" + path("s.json") + "'");
+  EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+  const auto table = json("s.json");
+  EXPECT_GE(table.at("rows").size(), 270u);
+  EXPECT_LT(table.at("seconds").get<double>(), 600.0);
+  std::map<std::string, int> rows;
+  for (const auto& row : table.at("rows")) ++rows[row.at("technique").get<std::string>()];
+  for (const char* technique : {"direct", "rsm", "lpv", "radiosity", "path"}) EXPECT_GE(rows[technique], 14) << technique;
+}
+
+TEST_F(Measure, AFullDiskIsOneLine) {
+  if (test::run("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'").exitCode != 0) GTEST_SKIP() << "no permission to mount a tmpfs";
+  fs::create_directory(path("small"));
+  const std::string small = path("small");
+  const RunResult result = test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench error '" + path("scene.obj") +
+                                "' --host osmesa --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --quiet --techniques direct,rsm --out '" + small + "/out'\"");
+  expectOneLine(result, 2, {"No space left on device", small});
+  // Nor a page half written, where the rows fit and the page does not.
+  const RunResult all = test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench all '" + path("scene.obj") + "' --host osmesa --scale 0.01 --quiet --out '" +
+                             small + "/out'; code=\\$?; test -e '" + small + "/out/index.html' && exit 99; exit \\$code\"");
+  expectOneLine(all, 2, {"No space left on device", small});
 }
 
 TEST_F(Measure, NeedsSayWhatLeavingOutSaves) {
