@@ -8,6 +8,7 @@
 #include "bench/stability.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -25,14 +26,11 @@ struct AllOptions {
   CommonOptions common;
   std::string out;
   double scale = 0.25;
-  std::vector<std::string> scenes;  ///< for error and needs; empty: Cornell and atrium
+  std::vector<std::string> scenes;  ///< for error, needs and rays; empty: Cornell and atrium
+  std::vector<std::string> parts;   ///< empty: all
 };
 
-/// What a part of the report contributes; a part that throws is written down as missing, and the others go on.
-struct Part {
-  const char* name;
-  std::function<void(HtmlPage&, nlohmann::ordered_json&)> make;
-};
+constexpr const char* kParts[] = {"error", "deviations", "stability", "needs", "rays", "tables"};
 
 /// "WxH" with about 160x90 pixels at scale 1.
 std::string sizeOf(double scale) {
@@ -168,6 +166,8 @@ int run(AllOptions options) {
   fs::create_directories(options.out, error);
   if (error || !fs::is_directory(options.out)) throwBadInput("--out {}: the folder cannot be made ({})", options.out, error ? error.message() : "a file is in the way");
   if (!(options.scale > 0.0 && options.scale <= 4.0)) throwBadInput("--scale {}: expected a number above 0, at most 4", options.scale);
+  for (const std::string& name : options.parts)
+    if (std::find(std::begin(kParts), std::end(kParts), name) == std::end(kParts)) throwBadInput("--parts {}: unknown; there are {}", name, fmt::join(kParts, ", "));
   if (options.scenes.empty()) options.scenes = {asset("cornell/cornell.json"), asset("atrium/atrium.json")};
   const auto host = options.common.makeHost(false);
   const gl::Context context;
@@ -175,7 +175,7 @@ int run(AllOptions options) {
   const auto start = std::chrono::steady_clock::now();
   Report report(options, context, std::string(nameOf(host->kind())));
   const auto part = [&](const char* name, auto make) {
-    if (interrupted()) return;
+    if (interrupted() || (!options.parts.empty() && std::find(options.parts.begin(), options.parts.end(), name) == options.parts.end())) return;
     if (!options.common.quiet) fmt::print("{}\n", name);
     try {
       make();
@@ -184,7 +184,7 @@ int run(AllOptions options) {
       report.missing(name, e.what());
     }
   };
-  for (const std::string& scene : options.scenes) part("error against run time", [&] { report.errors(scene, false); });
+  for (const std::string& scene : options.scenes) part("error", [&] { report.errors(scene, false); });
   part("deviations", [&] { report.errors(options.scenes.front(), true); });
   part("stability", [&] { report.stability(); });
   part("needs", [&] { report.needs(options.scenes); });
@@ -214,6 +214,7 @@ Work addBenchAll(CLI::App& app) {
   auto options = std::make_shared<bench::AllOptions>();
   app.add_option("SCENE", options->scenes, "scene files for error and needs (default: the Cornell box and the atrium)");
   app.add_option("--out", options->out, "folder of the report; an interrupted one goes on")->required();
+  app.add_option("--parts", options->parts, "of error, deviations, stability, needs, rays, tables; default: all")->delimiter(',');
   app.add_option("--scale", options->scale, "how much work: pixels and seconds; 1 takes four times as long as the default")->capture_default_str();
   options->common.declare(app);
   return [options] { return bench::run(*options); };

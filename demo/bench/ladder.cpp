@@ -44,11 +44,11 @@ std::vector<Rung> lpvLadder(bool shrink) {
 // What a solution costs is baking (setup_ms); a picture of it costs next to nothing, whatever the patches.
 std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
   std::vector<Rung> rungs;
-  for (int parts : {6, 12, 24, 48})
-    if (!shrink || parts < 48) rungs.push_back(rung("radiosity", "patches", {fmt::format("radiosity.edge={:.6g}", longestSide / parts)}));
+  for (int parts : {3, 6, 12, 24})
+    if (!shrink || parts < 24) rungs.push_back(rung("radiosity", "patches", {fmt::format("radiosity.edge={:.6g}", longestSide / parts)}));
   for (int pixels : {16, 32, 64, 128})
     if (!shrink || pixels < 128)
-      rungs.push_back(rung("radiosity", "hemicubes", {fmt::format("radiosity.edge={:.6g}", longestSide / 12), fmt::format("radiosity.resolution={}", pixels)}));
+      rungs.push_back(rung("radiosity", "hemicubes", {fmt::format("radiosity.edge={:.6g}", longestSide / 6), fmt::format("radiosity.resolution={}", pixels)}));
   return rungs;
 }
 
