@@ -95,7 +95,7 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   // One row is lost and one damaged: these are measured again, the others stay as they are.
   std::vector<fs::path> rows;
   for (const auto& entry : fs::directory_iterator(path("out") + "/rows"))
-    if (entry.path().extension() == ".json" && entry.path().filename() != "path.json") rows.push_back(entry.path());
+    if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with("path")) rows.push_back(entry.path());
   std::sort(rows.begin(), rows.end());
   fs::remove(rows[0]);
   std::ofstream(rows[1]) << "{ half";
