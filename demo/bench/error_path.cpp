@@ -28,6 +28,7 @@ struct PathSeries {
   int seeds = 1;         ///< the median of so many
   double seconds = 0.0;  ///< a seed's ladder
   bool lastRung = false; ///< that one alone is kept
+  std::uint32_t samples = 0;  ///< the last rung; 0: by time
 
   std::string label() const {
     std::string text = "path";
@@ -98,7 +99,7 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed, std::v
   std::size_t step = 0;
   for (std::uint32_t samples = 1; !interrupted(); samples *= 2, ++step) {
     // The first seed decides how far the ladder goes; the others climb the same rungs.
-    if (seed == 0 && samples > 4 && 2.0 * spent > 1e3 * series.seconds) break;
+    if (seed == 0 && (series.samples ? samples > series.samples : samples > 4 && 2.0 * spent > 1e3 * series.seconds)) break;
     if (seed > 0 && step >= ladder.size()) break;
     const auto start = Clock::now();
     const std::clock_t cpuStart = std::clock();
@@ -171,7 +172,9 @@ ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t 
 
 std::vector<ErrorRow> measurePath(const ErrorBench& bench, bool deviations) {
   std::vector<ErrorRow> rows;
-  for (const PathSeries& series : seriesOf(bench, deviations)) {
+  for (PathSeries series : seriesOf(bench, deviations)) {
+    // Deviations are compared at as many samples as the corrected tracer had time for.
+    if (deviations && !rows.empty()) series.samples = rows.front().at("spp").get<std::uint32_t>();
     const std::filesystem::path file = rowFile(bench.folder, series.name);
     if (std::filesystem::exists(file)) {
       const ErrorRow known = ErrorRow::parse(readFileText(file), nullptr, false);
