@@ -15,6 +15,7 @@ struct RadiositySolve {
   CommonOptions common;
   std::string in, out, fidelity = "corrected", solver;
   std::vector<std::string> deviations;
+  std::vector<std::string> set;   ///< corrected: rad.KEY=VALUE as `lucerna render` takes them
   RadiositySettings settings;     ///< view, maxSweeps, seed; the rest is parsed by the solver that runs
   std::optional<double> nearPlane;
   double saveEvery = 10.0;        ///< seconds between checkpoints within a sweep

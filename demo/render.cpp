@@ -32,6 +32,7 @@ int run(Options options) {
   std::optional<float> exposure;
   RenderSettings settings = options.picture.parse(exposure);
   settings.fullFloatTarget = true;
+  if (settings.radiosity.direct == RadiosityView::Direct::automatic) settings.radiosity.direct = RadiosityView::Direct::pixels;
   if (!isWritableImageName(options.output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
   const Scene scene = loadScene(options.scene);
   const Camera camera = chooseCamera(scene, options.camera);

@@ -120,6 +120,10 @@ RowFile::~RowFile() {
 }
 
 void RowFile::append(const FormFactorRows& rows) {
+  struct stat here {}, there {};
+  if (::fstat(descriptor_, &here) != 0 || ::stat(file_.c_str(), &there) != 0 || here.st_ino != there.st_ino || here.st_dev != there.st_dev ||
+      static_cast<std::uint64_t>(here.st_size) != end_)
+    throwBadInput("{}: was changed or replaced by something else while rows were written to it; it is left as it is", file_.string());
   BlockHeader block{static_cast<std::uint32_t>(rows.first), static_cast<std::uint32_t>(rows.counts.size()), rows.patches.size(), 0};
   std::vector<std::uint8_t> bytes(sizeof block + dataBytes(block));
   std::uint8_t* at = bytes.data() + sizeof block;

@@ -1,6 +1,6 @@
-#include "measure/fingerprint.hpp"
+#include "scene/fingerprint.hpp"
 
-namespace lucerna::measure {
+namespace lucerna {
 
 namespace {
 
@@ -63,4 +63,4 @@ void addCamera(Hash& h, const Camera& camera) {
   h.add(camera.verticalFov);
 }
 
-}  // namespace lucerna::measure
+}  // namespace lucerna
