@@ -21,6 +21,7 @@ struct RadiositySolve {
   bool viewGiven = false;         ///< else each solver takes its own
   double edge = 0.0;              ///< corrected: longest edge of a patch, scene units; 0: its own
   int refinements = 0;            ///< corrected
+  std::string visibility;         ///< corrected: how pixels learn what they see; empty: auto
   bool restart = false;           ///< take no checkpoint up
 };
 

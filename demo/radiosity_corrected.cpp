@@ -79,6 +79,7 @@ int solveCorrected(const RadiositySolve& options) {
   if (deviations.publishedMap || deviations.noNearField) settings.hemicubes.exactPixels = 0;
   if (deviations.centroid) settings.hemicubes.nearDistance = 0.0f;
   settings.repair = !deviations.publishedMap && !deviations.noNearField;
+  if (!options.visibility.empty()) settings.hemicubes.visibility = parseHemicubeVisibility(options.visibility);
   if (!options.solver.empty()) settings.solver = parseRadiositySolver(options.solver);
   if (options.settings.error > 0.0) settings.error = options.settings.error;
   if (options.settings.maxSweeps > 0) settings.mostProducts = options.settings.maxSweeps;
@@ -126,6 +127,7 @@ int solveCorrected(const RadiositySolve& options) {
   json["fidelity"] = options.fidelity;
   json["deviations"] = activeRadiosityDeviations(deviations);
   json["solver"] = nameOf(solution.solver);
+  json["visibility"] = nameOf(solution.visibility);
   json["patches"] = solution.mesh.patches.size();
   json["degenerate"] = solution.mesh.degenerate;
   json["sweeps"] = solution.progress.products;

@@ -64,6 +64,13 @@ class Buffer {
     readBytes(values.data(), bytes_);
     return values;
   }
+  /// Its first `count` values.
+  template <class T>
+  std::vector<T> read(std::size_t count) const {
+    std::vector<T> values(count);
+    readBytes(values.data(), count * sizeof(T));
+    return values;
+  }
   /// What it begins with.
   template <class T>
   T readFirst() const {
@@ -137,6 +144,8 @@ class BufferTexture {
   std::size_t bytes() const { return buffer_.bytes(); }
   void upload(std::size_t offset, std::size_t bytes, const void* data) { buffer_.upload(offset, bytes, data); }
   void bind(GLuint unit) const;
+  /// The same bytes, for a pass that writes them as a storage block; GL_TEXTURE_FETCH_BARRIER_BIT before they are fetched.
+  Buffer& buffer() { return buffer_; }
 
  private:
   Buffer buffer_;

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -14,7 +15,7 @@ namespace lucerna {
 namespace {
 
 constexpr char kMagic[8] = {'L', 'U', 'C', 'R', 'O', 'W', 'S', '\n'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;  // 2: rows depend on how pixels learn what they see
 
 struct Header {
   char magic[8];
@@ -113,6 +114,13 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
     if (::write(descriptor_, &header, sizeof header) != static_cast<ssize_t>(sizeof header)) refuse("cannot be written: is the disk full?");
     end_ = sizeof header;
   }
+}
+
+std::optional<std::uint64_t> RowFile::fingerprintOf(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Header header{};
+  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion) return std::nullopt;
+  return header.fingerprint;
 }
 
 RowFile::~RowFile() {

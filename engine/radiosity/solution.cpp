@@ -35,6 +35,7 @@ std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings&
     for (const glm::dvec3& corner : mesh.corners(patch)) f.add(corner);
     f.add(patch.emission != glm::dvec3(0.0));
   }
+  f.add(s.visibility);
   f.add(s.resolution);
   f.add(s.map);
   f.add(s.randomRoll);
@@ -72,29 +73,43 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     solution.fronts.insert(solution.fronts.end(), rows.fronts.begin(), rows.fronts.end());
     solution.backs.insert(solution.backs.end(), rows.backs.begin(), rows.backs.end());
   };
-  Hemicubes hemicubes(programs, context.capabilities(), mesh, settings.hemicubes);
+  // Rows by different ways differ in their last bits: a checkpoint is gone on with as it was begun.
+  HemicubeSettings asked = settings.hemicubes;
+  if (const auto begun = asked.visibility == HemicubeVisibility::automatic && !checkpoint.empty() ? RowFile::fingerprintOf(checkpoint) : std::nullopt)
+    for (const HemicubeVisibility one : {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
+      HemicubeSettings as = asked;
+      as.visibility = one;
+      if (rowsFingerprint(mesh, as) == *begun) asked.visibility = one;
+    }
+  Hemicubes hemicubes(programs, context.capabilities(), mesh, asked);
+  asked.visibility = hemicubes.visibility();
   const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
   std::unique_ptr<RowFile> file;
   if (!checkpoint.empty())
-    file = std::make_unique<RowFile>(checkpoint, rowsFingerprint(mesh, settings.hemicubes), static_cast<std::uint32_t>(n), [&](const FormFactorRows& rows) { take(rows, true); });
+    file = std::make_unique<RowFile>(checkpoint, rowsFingerprint(mesh, asked), static_cast<std::uint32_t>(n), [&](const FormFactorRows& rows) { take(rows, true); });
   bool kept = true, stopped = false;
+  std::size_t computed = 0;
   double start = now();
-  for (std::size_t first = solution.fronts.size(); first < n && !stopped;) {
-    const FormFactorRows rows = hemicubes.rows(static_cast<int>(first), static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
+  const std::size_t from = solution.fronts.size();
+  const auto keep = [&](const FormFactorRows& rows) {
     take(rows, kept);
     if (file && kept) file->append(rows);
-    first += rows.counts.size();
-    solution.hemicubes += rows.counts.size();
-    if (kept && static_cast<double>(matrix.entryCount()) * static_cast<double>(n) / static_cast<double>(first) * static_cast<double>(kBytesPerEntry) > static_cast<double>(memory)) {
-      logWarning("radiosity: the form factors of {} patches need about {} MiB, there are {}: they are computed anew for each product", n,
-                 static_cast<std::size_t>(static_cast<double>(matrix.entryCount()) / static_cast<double>(first) * static_cast<double>(n)) * kBytesPerEntry >> 20, memory >> 20);
+    const double perPatch = static_cast<double>(matrix.entryCount()) / static_cast<double>(solution.fronts.size()), bytes = perPatch * static_cast<double>(n) * static_cast<double>(kBytesPerEntry);
+    if (kept && bytes > static_cast<double>(memory)) {
+      logWarning("radiosity: the form factors of {} patches need about {} MiB, there are {}: they are computed anew for each product", n, static_cast<std::size_t>(bytes) >> 20, memory >> 20);
       kept = false;
       matrix = {};
     }
-    stopped = !stage(RadiosityStage::Kind::formFactors, first);
-  }
+  };
+  hemicubes.stream(static_cast<int>(from), static_cast<int>(n), keep, [&](int done) {
+    solution.hemicubes += static_cast<std::size_t>(done) - from - computed;
+    computed = static_cast<std::size_t>(done) - from;
+    stopped = !stage(RadiosityStage::Kind::formFactors, static_cast<std::size_t>(done));
+    return !stopped;
+  });
   solution.hemicubeSeconds += now() - start;
   solution.keptRows = kept;
+  solution.visibility = hemicubes.visibility();
   if (stopped) throwBadInput("radiosity: stopped after {} of {} patches{}", solution.fronts.size(), n, checkpoint.empty() ? "" : "; the next run goes on from there");
 
   start = now();

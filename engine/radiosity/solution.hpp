@@ -47,6 +47,7 @@ struct RadiositySolution {
   RadiositySolver solver = RadiositySolver::automatic;
   bool reached = false;
   bool keptRows = true;
+  HemicubeVisibility visibility = HemicubeVisibility::automatic;  ///< that this run's hemicubes were made by
   std::size_t hemicubes = 0;           ///< computed in this run
   double hemicubeSeconds = 0.0, solveSeconds = 0.0;
   std::size_t entries = 0;             ///< form factors kept
