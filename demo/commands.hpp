@@ -65,6 +65,8 @@ Camera chooseCamera(const Scene& scene, const std::string& text);
 
 /// Every key of --set with its meaning and default, for --help and README.
 std::string settingsHelp();
+/// "rad.KEY=VALUE" of what a radiosity solution depends on; throws Error(badInput) with those keys.
+void applySolutionSetting(RadiositySolutionSettings& settings, const std::string& assignment);
 /// Every deviation with its meaning.
 std::string deviationsHelp();
 

@@ -73,7 +73,9 @@ T parseChoice(const std::string& option, const std::string& text, std::initializ
   throwBadInput("{}: '{}' is none of {}", option, text, known);
 }
 
-std::pair<std::string, std::string> splitAssignment(const std::string& option, const std::string& text) {
+/// Radiosity's settings begin with "rad.", as its deviations do; the technique's whole name is understood too.
+std::pair<std::string, std::string> splitAssignment(const std::string& option, std::string text) {
+  if (text.starts_with("radiosity.")) text.replace(0, 9, "rad");
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throwBadInput("{} {}: expected key=value", option, text);
   return {text.substr(0, equals), text.substr(equals + 1)};
@@ -133,23 +135,38 @@ const Setting kSettings[] = {
             s.gather.fitPlane = parseNumber(k, v, 0.0f, 1e6f)),
     SETTING("rsm.fit-distance", "most distance, in low-resolution steps (8)", s.gather.fitDistance = parseNumber(k, v, 0.0f, 1e6f)),
     SETTING("rsm.show-refused", "paint the pixels that interpolation refused red (off)", s.gather.showRefused = parseSwitch(k, v)),
-    SETTING("radiosity.edge", "longest edge of a patch in scene units (0: a 12th of the scene)", s.radiosity.solution.patches.longestEdge = parseNumber(k, v, 0.0, 1e12)),
-    SETTING("radiosity.resolution", "pixels a side of a hemicube, even (64)", s.radiosity.solution.hemicubes.resolution = 2 * (parseNumber(k, v, 2, 4096) / 2)),
-    SETTING("radiosity.error", "guaranteed relative error of the solution (0.001)", s.radiosity.solution.error = parseNumber(k, v, 1e-12, 10.0)),
-    SETTING("radiosity.solver", "auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room or cg (auto)",
+    SETTING("rad.edge", "longest edge of a patch in scene units (0: a 12th of the scene)", s.radiosity.solution.patches.longestEdge = parseNumber(k, v, 0.0, 1e12)),
+    SETTING("rad.resolution", "pixels a side of a hemicube, even (64)", s.radiosity.solution.hemicubes.resolution = 2 * (parseNumber(k, v, 2, 4096) / 2)),
+    SETTING("rad.visibility", "what tells hemicubes' pixels what they see: auto (measured at start), raster, rays or item-buffer (auto)",
+            s.radiosity.solution.hemicubes.visibility = parseHemicubeVisibility(v)),
+    SETTING("rad.error", "guaranteed relative error of the solution (0.001)", s.radiosity.solution.error = parseNumber(k, v, 1e-12, 10.0)),
+    SETTING("rad.solver", "auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room or cg (auto)",
             s.radiosity.solution.solver = parseRadiositySolver(v)),
-    SETTING("radiosity.refinements", "times that patches are halved where light changes steeply (0)", s.radiosity.solution.refinements = parseNumber(k, v, 0, 8)),
-    SETTING("radiosity.steep", "step from patch to patch that is refined, in parts of the mean (0.1)", s.radiosity.solution.steep = parseNumber(k, v, 1e-6, 1e6)),
-    SETTING("radiosity.memory", "MiB for form factors; more are computed anew (0: half of what is free)",
+    SETTING("rad.refinements", "times that patches are halved where light changes steeply (0)", s.radiosity.solution.refinements = parseNumber(k, v, 0, 8)),
+    SETTING("rad.products", "products with the form factors, at most (100000)", s.radiosity.solution.mostProducts = parseNumber(k, v, 1, 100000000)),
+    SETTING("rad.seed", "of the hemicubes' random roll (1)", s.radiosity.solution.hemicubes.seed = static_cast<std::uint32_t>(parseNumber(k, v, 0, 2147483647))),
+    SETTING("rad.exact-pixels", "pixels from which a patch takes its closed form factor; 0: none does (12)",
+            s.radiosity.solution.hemicubes.exactPixels = parseNumber(k, v, 0, 1 << 24)),
+    SETTING("rad.near", "receivers are divided until others are so many part sizes away; 0: never (3)",
+            s.radiosity.solution.hemicubes.nearDistance = parseNumber(k, v, 0.0f, 1e6f)),
+    SETTING("rad.parts", "parts a side of a receiver, at most (8)", s.radiosity.solution.hemicubes.mostParts = parseNumber(k, v, 1, 64)),
+    SETTING("rad.steep", "step from patch to patch that is refined, in parts of the mean (0.1)", s.radiosity.solution.steep = parseNumber(k, v, 1e-6, 1e6)),
+    SETTING("rad.memory", "MiB for form factors; more are computed anew (0: half of what is free)",
             s.radiosity.solution.memoryBytes = static_cast<std::size_t>(parseNumber(k, v, 0, 1 << 30)) << 20),
-    SETTING("radiosity.repair", "reciprocity and row sums put right (on)", s.radiosity.solution.repair = parseSwitch(k, v)),
-    SETTING("radiosity.file", "a solution: loaded where there is one, else saved there", s.radiosity.file = v),
-    SETTING("radiosity.mapping", "tone, linear, log or false-colours (tone)",
+    SETTING("rad.batch", "MiB of GPU memory that the hemicubes of one submission take (0: what suits the renderer)",
+            s.radiosity.solution.hemicubes.batchBytes = static_cast<std::size_t>(parseNumber(k, v, 0.0, 1e6) * 1048576.0)),
+    SETTING("rad.repair", "reciprocity and row sums put right (on)", s.radiosity.solution.repair = parseSwitch(k, v)),
+    SETTING("rad.file", "a solution: loaded where there is one, else saved there", s.radiosity.file = v),
+    SETTING("rad.mapping", "tone, linear, log or false-colours (tone)",
             s.radiosity.mapping = parseChoice(k, v, {RadiosityView::Mapping::tone, RadiosityView::Mapping::linear, RadiosityView::Mapping::logarithmic,
                                                      RadiosityView::Mapping::falseColours})),
-    SETTING("radiosity.decades", "powers of ten that log and false-colours span (4)", s.radiosity.decades = parseNumber(k, v, 0.1f, 30.0f)),
-    SETTING("radiosity.mesh", "patch edges drawn over (off)", s.radiosity.mesh = parseSwitch(k, v)),
-    SETTING("radiosity.flat", "patches not interpolated (off)", s.radiosity.flat = parseSwitch(k, v)),
+    SETTING("rad.decades", "powers of ten that log and false-colours span (4)", s.radiosity.decades = parseNumber(k, v, 0.1f, 30.0f)),
+    SETTING("rad.mesh", "patch edges drawn over (off)", s.radiosity.mesh = parseSwitch(k, v)),
+    SETTING("rad.direct", "direct light: pixels, by shadow rays in each; patches, a value each; auto: pixels in render, patches elsewhere (auto)",
+            s.radiosity.direct = parseChoice(k, v, {RadiosityView::Direct::automatic, RadiosityView::Direct::patches, RadiosityView::Direct::pixels})),
+    SETTING("rad.shadow-rays", "shadow rays a pixel with rad.direct=pixels, divided among the emissive triangles (32)",
+            s.radiosity.shadowRays = parseNumber(k, v, 1, 4096)),
+    SETTING("rad.flat", "patches not interpolated (off)", s.radiosity.flat = parseSwitch(k, v)),
     SETTING("shadow.size", "texels a side of the shadow map (2048)", s.shadow.size = parseNumber(k, v, 1, 16384)),
     SETTING("shadow.cascades", "shadow maps of the sun along the view, 1: one for the whole scene (1)",
             s.sunCascades.cascades = parseNumber(k, v, 1, SUN_MAX_CASCADES)),
@@ -163,6 +180,24 @@ const Setting kSettings[] = {
 };
 
 #undef SETTING
+
+/// What concerns the picture of a solution, not the solution.
+constexpr std::string_view kViewOfSolution[] = {"rad.file", "rad.mapping", "rad.decades", "rad.mesh", "rad.flat", "rad.direct", "rad.shadow-rays"};
+
+}  // namespace
+
+namespace {
+
+/// Throws Error(badInput) with the keys that there are, where `key` is none of those that `known` says.
+template <class Known>
+const Setting& findSetting(const std::string& assignment, const std::string& key, Known known) {
+  const auto* found = std::find_if(std::begin(kSettings), std::end(kSettings), [&](const Setting& s) { return s.key == key && known(s); });
+  if (found != std::end(kSettings)) return *found;
+  std::string keys;
+  for (const Setting& setting : kSettings)
+    if (known(setting)) keys += (keys.empty() ? "" : ", ") + std::string(setting.key);
+  throwBadInput("--set {}: unknown key; there are {}", assignment, keys);
+}
 
 }  // namespace
 
@@ -184,7 +219,7 @@ void PictureOptions::declare(CLI::App& app) {
   app.add_option("--component", component, "all, direct or indirect")->capture_default_str();
   app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str();
   app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");
-  app.add_option("--size", size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  app.add_option("--size", size, "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for --fidelity original")->capture_default_str();
   app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated");
   app.add_option("--settings", settingsFile, "a settings file, such as `lucerna tune` writes; what else is given here comes after it");
   app.footer(settingsHelp() + deviationsHelp());
@@ -228,15 +263,22 @@ RenderSettings PictureOptions::parse(std::optional<float>& exposure) const {
   result.size = parseSize(size);
   for (const std::string& assignment : settings) {
     const auto [key, value] = splitAssignment("--set", assignment);
-    const auto* found = std::find_if(std::begin(kSettings), std::end(kSettings), [&](const Setting& s) { return s.key == key; });
-    if (found == std::end(kSettings)) {
-      std::string known;
-      for (const Setting& setting : kSettings) known += (known.empty() ? "" : ", ") + std::string(setting.key);
-      throwBadInput("--set {}: unknown key; there are {}", assignment, known);
-    }
-    found->apply(result, exposure, "--set " + key, value);
+    findSetting(assignment, key, [](const Setting&) { return true; }).apply(result, exposure, "--set " + key, value);
   }
   return result;
+}
+
+void applySolutionSetting(RadiositySolutionSettings& settings, const std::string& assignment) {
+  const auto [key, value] = splitAssignment("--set", assignment);
+  const auto solves = [](const Setting& s) {
+    const std::string_view name = s.key;
+    return name.starts_with("rad.") && std::find(std::begin(kViewOfSolution), std::end(kViewOfSolution), name) == std::end(kViewOfSolution);
+  };
+  RenderSettings all;
+  all.radiosity.solution = settings;
+  std::optional<float> exposure;
+  findSetting(assignment, key, solves).apply(all, exposure, "--set " + key, value);
+  settings = all.radiosity.solution;
 }
 
 glm::ivec2 parseSize(const std::string& text) {

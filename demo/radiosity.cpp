@@ -77,6 +77,8 @@ int solve(const RadiositySolve& options) {
   if (options.settings.maxSweeps < 0) throwBadInput("--max-sweeps {}: expected 0 (no limit) or more", options.settings.maxSweeps);
   if (!(options.saveEvery >= 0.0)) throwBadInput("--save-every {}: expected seconds, 0 or more", options.saveEvery);
   if (options.nearPlane && !(*options.nearPlane > 0.0 && std::isfinite(*options.nearPlane))) throwBadInput("--near {}: expected a distance above 0", *options.nearPlane);
+  if (options.fidelity == "original" && !options.set.empty()) throwBadInput("--set {}: the published program has no such settings", options.set.front());
+  if (options.fidelity == "original" && !options.visibility.empty()) throwBadInput("--visibility {}: the published program draws colours; it is for --fidelity corrected", options.visibility);
   if (options.fidelity == "original") return solveOriginal(options);
   if (options.fidelity != "corrected") throwBadInput("--fidelity {}: unknown; there are corrected, original", options.fidelity);
   return solveCorrected(options);
@@ -106,6 +108,8 @@ Work addSolve(CLI::App& app) {
                                   "corrected: MiB for form factors; more are computed anew for each product (half of what is free)");
   app.add_option("--edge", options->edge, "corrected: longest edge of a scene's patches in scene units (a 12th of the scene)")->check(CLI::NonNegativeNumber);
   app.add_option("--refinements", options->refinements, "corrected: times that a scene's patches are halved where light changes steeply (0)")->check(CLI::Range(0, 8));
+  app.add_option("--set", options->set, "corrected: rad.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated");
+  app.add_option("--visibility", options->visibility, "corrected: what tells pixels what they see: auto (measured at start), raster, rays, item-buffer");
   app.footer(radiosityDeviationsHelp());
   options->common.declare(app);
   return [options, view] {

@@ -15,12 +15,14 @@ struct RadiositySolve {
   CommonOptions common;
   std::string in, out, fidelity = "corrected", solver;
   std::vector<std::string> deviations;
+  std::vector<std::string> set;   ///< corrected: rad.KEY=VALUE as `lucerna render` takes them
   RadiositySettings settings;     ///< view, maxSweeps, seed; the rest is parsed by the solver that runs
   std::optional<double> nearPlane;
   double saveEvery = 10.0;        ///< seconds between checkpoints within a sweep
   bool viewGiven = false;         ///< else each solver takes its own
   double edge = 0.0;              ///< corrected: longest edge of a patch, scene units; 0: its own
   int refinements = 0;            ///< corrected
+  std::string visibility;         ///< corrected: how pixels learn what they see; empty: auto
   bool restart = false;           ///< take no checkpoint up
 };
 

@@ -1,5 +1,5 @@
 // lucerna radiosity solve --fidelity corrected: any scene, or a triangle file of the original.
-// A scene's solution is a file that `render --technique radiosity --set radiosity.file=OUT` shows; a triangle file gets its b, as the original's does.
+// A scene's solution is a file that `render --technique radiosity --set rad.file=OUT` shows; a triangle file gets its b, as the original's does.
 #include "radiosity.hpp"
 
 #include "base/error.hpp"
@@ -11,9 +11,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <array>
 #include <fstream>
 #include <map>
 #include <numbers>
+#include <sys/stat.h>
 
 namespace lucerna::demo {
 
@@ -54,13 +56,17 @@ Scene sceneOf(const std::vector<RadTriangle>& triangles, const std::string& name
   return scene;
 }
 
+/// Tells a file from what takes its place.
+std::array<std::int64_t, 4> stampOf(const std::string& file) {
+  struct stat s {};
+  if (::stat(file.c_str(), &s) != 0) return {};
+  return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size), static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
+}
+
 }  // namespace
 
 int solveCorrected(const RadiositySolve& options) {
   if (options.nearPlane) throwBadInput("--near: corrected hemicubes have no near plane");
-  RadiosityDeviations deviations;
-  for (const std::string& deviation : options.deviations) applyRadiosityDeviation(deviations, deviation);
-  if (deviations.values24Bit) throwBadInput("--deviation rad.24-bit=on: whole numbers are the published solver's; use --fidelity original with the other deviations off");
   const bool rad = isRadFile(options.in);
   std::vector<RadTriangle> triangles;
   if (rad) {
@@ -69,26 +75,26 @@ int solveCorrected(const RadiositySolve& options) {
   }
   const Scene scene = rad ? sceneOf(triangles, options.in) : loadScene(options.in);
   RadiositySolutionSettings settings;
-  settings.wholeTriangles = rad;
   settings.patches.longestEdge = options.edge;
-  settings.refinements = rad ? 0 : options.refinements;
+  settings.refinements = options.refinements;
   if (options.viewGiven) settings.hemicubes.resolution = 2 * ((options.settings.view + 1) / 2);
   settings.hemicubes.seed = options.settings.seed;
-  settings.hemicubes.randomRoll = !deviations.fixedOrientation;
-  if (deviations.publishedMap) settings.hemicubes.map = DeltaMap::published;
-  if (deviations.publishedMap || deviations.noNearField) settings.hemicubes.exactPixels = 0;
-  if (deviations.centroid) settings.hemicubes.nearDistance = 0.0f;
-  settings.repair = !deviations.publishedMap && !deviations.noNearField;
+  for (const std::string& deviation : options.deviations) applyRadiosityDeviation(settings.deviations, deviation);
+  if (!options.visibility.empty()) settings.hemicubes.visibility = parseHemicubeVisibility(options.visibility);
   if (!options.solver.empty()) settings.solver = parseRadiositySolver(options.solver);
   if (options.settings.error > 0.0) settings.error = options.settings.error;
   if (options.settings.maxSweeps > 0) settings.mostProducts = options.settings.maxSweeps;
   settings.memoryBytes = options.settings.memoryBytes;
+  for (const std::string& setting : options.set) applySolutionSetting(settings, setting);
+  settings.wholeTriangles = rad;
+  if (rad) settings.refinements = 0;
 
   const auto host = options.common.makeHost(false);
   gl::Context context;
   gl::ProgramLibrary programs;
   const std::filesystem::path checkpoint = options.out + ".rows";
-  if (options.restart) std::filesystem::remove(checkpoint);
+  if (options.restart) removeCheckpoints(checkpoint);
+  const auto before = stampOf(options.out);
   watchForInterrupt();
   Progress progress("hemicubes", 1000, options.common.quiet);
   RadiositySolution solution;
@@ -104,6 +110,8 @@ int solveCorrected(const RadiositySolve& options) {
     fmt::print("stopped; the same command goes on from {}\n", checkpoint.string());
     return 0;
   }
+  if (stampOf(options.out) != before)
+    throwBadInput("{}: was changed by something else while it was being solved; it is left as it is. The same command takes the form factors from {}", options.out, checkpoint.string());
   if (rad) {
     for (RadTriangle& triangle : triangles) triangle.b = 0;
     // Patches name triangles in the scene's order, which is by material.
@@ -115,6 +123,7 @@ int solveCorrected(const RadiositySolve& options) {
   } else {
     saveSolution(options.out, scene, solution);
   }
+  removeCheckpoints(checkpoint);
   const double rate = solution.hemicubeSeconds > 0.0 ? static_cast<double>(solution.hemicubes) / solution.hemicubeSeconds : 0.0;
   if (!options.common.quiet)
     fmt::print("{}: {} patches ({} without area left out), {} hemicubes of {} pixels in {:.2f} s ({:.0f}/s), {} in {:.1f} products and {:.2f} s, error at most {:.3g}, "
@@ -124,8 +133,9 @@ int solveCorrected(const RadiositySolve& options) {
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
   json["fidelity"] = options.fidelity;
-  json["deviations"] = activeRadiosityDeviations(deviations);
+  json["deviations"] = activeRadiosityDeviations(solution.deviations);
   json["solver"] = nameOf(solution.solver);
+  json["visibility"] = nameOf(solution.visibility);
   json["patches"] = solution.mesh.patches.size();
   json["degenerate"] = solution.mesh.degenerate;
   json["sweeps"] = solution.progress.products;

@@ -32,6 +32,7 @@ int run(Options options) {
   std::optional<float> exposure;
   RenderSettings settings = options.picture.parse(exposure);
   settings.fullFloatTarget = true;
+  if (settings.radiosity.direct == RadiosityView::Direct::automatic) settings.radiosity.direct = RadiosityView::Direct::pixels;
   if (!isWritableImageName(options.output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
   const Scene scene = loadScene(options.scene);
   const Camera camera = chooseCamera(scene, options.camera);
@@ -102,7 +103,10 @@ Work addRender(CLI::App& app) {
   options->picture.declare(app);
   options->path.declare(app);
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options, size = app.get_option("--size")] {
+    options->path.sizeGiven = size->count() > 0;
+    return run(*options);
+  };
 }
 
 }  // namespace lucerna::demo

@@ -28,6 +28,16 @@ Transport transportOf(Component component) {
   return Transport::all;
 }
 
+/// Of the original's pictures [VPT2024].
+constexpr const char* kPublishedSize = "1920x1080";
+
+/// Whether a scene file is the original's JSON, which has a key "scene".
+bool isOriginalScene(const std::string& file) {
+  if (lowerExtension(file) != ".json") return false;
+  const nlohmann::json json = nlohmann::json::parse(readFileText(file), nullptr, false, true);
+  return json.is_object() && json.contains("scene");
+}
+
 }  // namespace
 
 void PathOptions::declare(CLI::App& app) {
@@ -50,6 +60,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     if (!deviation.starts_with("path.")) throwBadInput("--deviation {}: --technique path has those that begin with path.", deviation);
   PictureOptions rest = picture;
   rest.technique = "direct";
+  if (!path.sizeGiven && (picture.fidelity == "original" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
   std::optional<float> exposure;
   const RenderSettings shared = rest.parse(exposure);
   if (!isWritableImageName(output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
@@ -65,7 +76,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const auto host = common.makeHost(false);
   gl::Context context;
   if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
-    throwMissingCapability("--size {}: this driver's textures end at {} pixels", picture.size, context.capabilities().maxTextureSize);
+    throwMissingCapability("--size {}: this driver's textures end at {} pixels", rest.size, context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);

@@ -13,6 +13,7 @@ struct PathOptions {
   std::optional<std::uint32_t> bounces;
   std::uint32_t seed = 0;
   std::string checkpoint;  ///< empty: none
+  bool sizeGiven = true;   ///< --size was; without it the original's files and fidelity have the original's size
 
   void declare(CLI::App& app);
   /// Throws Error(badInput) where one is given with another technique.

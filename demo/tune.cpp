@@ -45,26 +45,18 @@ std::string describe(const ErrorRow& row) {
 }
 
 int run(Options options) {
-  options.common.apply();
-  options.bench.quiet = options.common.quiet;
   if (options.frameTime.has_value() == options.error.has_value()) throwBadInput("tune: give one of --frame-time MS and --error E");
   if (options.bench.out.empty()) options.bench.out = "bench-error";
   if (options.bench.techniques.empty()) options.bench.techniques = bench::ladderTechniques();  // those that walk in real time; path tracing where it is asked for
-  options.bench.scene = bench::sceneOrAtrium(options.bench.scene);
-  const Scene scene = loadScene(options.bench.scene);
-  const auto host = options.common.makeHost(false);
-  const gl::Context context;
-  gl::ProgramLibrary programs;
-  watchForInterrupt();
-  const auto result = bench::runErrorBench(context, programs, scene, options.bench, std::string(nameOf(host->kind())));
-  if (!result->complete) return 130;
+  const auto result = bench::benchScene(options.common, options.bench);
+  if (!result) return 130;
 
   bool met = false;
   const ErrorRow& row = options.frameTime ? choose(result->report.rows, "ms", *options.frameTime, "nrmse", met) : choose(result->report.rows, "nrmse", *options.error, "ms", met);
   if (!met) throwBadInput("tune: nothing meets {}; the nearest is {}", options.frameTime ? fmt::format("{:g} ms", *options.frameTime) : fmt::format("NRMSE {:g}", *options.error), describe(row));
   nlohmann::ordered_json settings = {{"technique", row.at("technique")}, {"fidelity", row.at("fidelity")}, {"deviations", row.at("deviations")}, {"settings", row.contains("spp") ? nlohmann::ordered_json::array() : row.at("settings")}};
   if (row.contains("spp")) settings["spp"] = row.at("spp");
-  settings["measured"] = {{"ms", row.at("ms")}, {"nrmse", row.at("nrmse")}, {"size", options.bench.size}, {"scene", options.bench.scene}, {"renderer", context.capabilities().renderer}};
+  settings["measured"] = {{"ms", row.at("ms")}, {"nrmse", row.at("nrmse")}, {"size", options.bench.size}, {"scene", options.bench.scene}, {"renderer", result->report.renderer}};
   writeFileAtomically(options.output, settings.dump(2) + "\n");
   if (!options.common.quiet) fmt::print("{}\n{}: lucerna render {} --settings {} -o OUT.png\n", describe(row), options.output, options.bench.scene, options.output);
   options.common.writeJson(settings);

@@ -4,10 +4,13 @@
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
 #include "bench/needs_bench.hpp"
+#include "bench/rays_bench.hpp"
 #include "bench/stability.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -23,14 +26,11 @@ struct AllOptions {
   CommonOptions common;
   std::string out;
   double scale = 0.25;
-  std::vector<std::string> scenes;  ///< for error and needs; empty: Cornell and atrium
+  std::vector<std::string> scenes;  ///< for error, needs and rays; empty: Cornell and atrium
+  std::vector<std::string> parts;   ///< empty: all
 };
 
-/// What a part of the report contributes; a part that throws is written down as missing, and the others go on.
-struct Part {
-  const char* name;
-  std::function<void(HtmlPage&, nlohmann::ordered_json&)> make;
-};
+constexpr const char* kParts[] = {"error", "deviations", "stability", "needs", "rays", "tables"};
 
 /// "WxH" with about 160x90 pixels at scale 1.
 std::string sizeOf(double scale) {
@@ -116,6 +116,30 @@ class Report {
     json_["tables"] = tables.json;
   }
 
+  void rays(const std::vector<std::string>& files) {
+    gl::ProgramLibrary programs;
+    RaysOptions options;
+    options.rays = std::clamp(static_cast<int>(options.rays * options_.scale), 1024, 1 << 22);
+    options.repeats = 5;
+    page_.section("Rays per second");
+    HtmlPage::Table table{{"scene", "rays", "million rays a second", "Embree's", "ratio", "nodes a ray", "triangles a ray", "answers that differ"}, {}, {}};
+    for (const std::string& file : files) {
+      const Scene scene = loadScene(file);
+      const RaysResult result = measureRays(context_, programs, scene, options, options_.common.quiet);
+      const auto figure = [](const nlohmann::ordered_json& row, const char* key, const char* format) {
+        const auto& value = row.at(key);
+        return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : std::string("not here");
+      };
+      for (const auto& row : result.json.at("rows"))
+        table.rows.push_back({scene.name, row.at("rays").get<std::string>(), figure(row, "mrays_per_s", "{:.3f}"), figure(row, "embree_mrays_per_s", "{:.3f}"), figure(row, "ratio", "{:.3f}"),
+                              figure(row, "nodes_per_ray", "{:.1f}"), figure(row, "triangles_per_ray", "{:.1f}"), fmt::format("{} of {}", row.at("differ").dump(), row.at("count").dump())});
+      json_["rays"].push_back(result.json);
+    }
+    page_.paragraph(fmt::format("The compute-shader hierarchy beside Embree's single rays on the same {} rays of each kind, in turn, medians of {}; all of this machine's cores work for either.", options.rays,
+                                options.repeats));
+    page_.table(table);
+  }
+
   void missing(const char* part, const std::string& why) {
     page_.section(part);
     page_.paragraph("Not here: " + why);
@@ -142,6 +166,8 @@ int run(AllOptions options) {
   fs::create_directories(options.out, error);
   if (error || !fs::is_directory(options.out)) throwBadInput("--out {}: the folder cannot be made ({})", options.out, error ? error.message() : "a file is in the way");
   if (!(options.scale > 0.0 && options.scale <= 4.0)) throwBadInput("--scale {}: expected a number above 0, at most 4", options.scale);
+  for (const std::string& name : options.parts)
+    if (std::find(std::begin(kParts), std::end(kParts), name) == std::end(kParts)) throwBadInput("--parts {}: unknown; there are {}", name, fmt::join(kParts, ", "));
   if (options.scenes.empty()) options.scenes = {asset("cornell/cornell.json"), asset("atrium/atrium.json")};
   const auto host = options.common.makeHost(false);
   const gl::Context context;
@@ -149,7 +175,7 @@ int run(AllOptions options) {
   const auto start = std::chrono::steady_clock::now();
   Report report(options, context, std::string(nameOf(host->kind())));
   const auto part = [&](const char* name, auto make) {
-    if (interrupted()) return;
+    if (interrupted() || (!options.parts.empty() && std::find(options.parts.begin(), options.parts.end(), name) == options.parts.end())) return;
     if (!options.common.quiet) fmt::print("{}\n", name);
     try {
       make();
@@ -158,10 +184,11 @@ int run(AllOptions options) {
       report.missing(name, e.what());
     }
   };
-  for (const std::string& scene : options.scenes) part("error against run time", [&] { report.errors(scene, false); });
+  for (const std::string& scene : options.scenes) part("error", [&] { report.errors(scene, false); });
   part("deviations", [&] { report.errors(options.scenes.front(), true); });
   part("stability", [&] { report.stability(); });
   part("needs", [&] { report.needs(options.scenes); });
+  part("rays", [&] { report.rays(options.scenes); });
   part("tables", [&] { report.tables(); });
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (interrupted()) {
@@ -187,6 +214,7 @@ Work addBenchAll(CLI::App& app) {
   auto options = std::make_shared<bench::AllOptions>();
   app.add_option("SCENE", options->scenes, "scene files for error and needs (default: the Cornell box and the atrium)");
   app.add_option("--out", options->out, "folder of the report; an interrupted one goes on")->required();
+  app.add_option("--parts", options->parts, "of error, deviations, stability, needs, rays, tables; default: all")->delimiter(',');
   app.add_option("--scale", options->scale, "how much work: pixels and seconds; 1 takes four times as long as the default")->capture_default_str();
   options->common.declare(app);
   return [options] { return bench::run(*options); };

@@ -16,6 +16,16 @@ namespace bench {
 
 namespace {
 
+/// Patches are never fewer than triangles, and form factors go with their square: above that the ladder of radiosity would take hours on two cores.
+constexpr std::size_t kMostTrianglesOfRadiosity = 30000;
+
+/// Techniques that a scene is too large for, a line each; only where none was asked for by name.
+std::vector<std::string> leftOutOf(const ErrorBenchOptions& options, const Scene& scene) {
+  if (!options.techniques.empty() || scene.triangleCount() <= kMostTrianglesOfRadiosity) return {};
+  return {fmt::format("radiosity: left out; {} triangles, a patch each at least, and it is measured up to {} (--techniques radiosity measures it all the same)", scene.triangleCount(),
+                      kMostTrianglesOfRadiosity)};
+}
+
 std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
   std::vector<std::string> known = ladderTechniques();
   known.emplace_back("path");
@@ -25,6 +35,13 @@ std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
   for (const std::string& t : options.techniques)
     if (std::find(known.begin(), known.end(), t) == known.end()) throwBadInput("--techniques {}: unknown; there are {}", t, list);
   return options.techniques;
+}
+
+/// The scene as references see it, Lambert's surfaces alone: forward shading would add highlights that they have not (in the atrium 1.3 % of direct light).
+Scene withoutHighlights(Scene scene) {
+  for (Material& m : scene.materials)
+    if (m.bsdf == Bsdf::diffuse) m.specular = glm::vec3(0.0f);
+  return scene;
 }
 
 std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<std::string>& techniques, const Bounds& bounds) {
@@ -46,25 +63,28 @@ void ErrorBenchOptions::declare(CLI::App& app) {
   app.add_option("--budget", budget, "seconds for references and path tracing; known references are used again")->capture_default_str()->check(CLI::Range(0.01, 1e6));
   app.add_option("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")->check(CLI::Range(2, 1 << 30));
   app.add_option("--references", references, "folder of kept references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
-  app.add_option("--techniques", techniques, "of direct, rsm, lpv, path; default: all")->delimiter(',');
+  app.add_option("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all")->delimiter(',');
   app.add_option("--frames", frames, "pictures a rung at least")->capture_default_str()->check(CLI::Range(1, 10000));
   app.add_flag("--small", small, "without the most expensive rungs");
   app.add_option("--out", out, "folder of the report; an interrupted bench goes on where it was");
 }
 
-std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const ErrorBenchOptions& options,
+std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& original, const ErrorBenchOptions& options,
                                                 const std::string& hostName) {
+  const Scene scene = withoutHighlights(original);
   const Camera camera = chooseCamera(scene, options.camera);
   const glm::ivec2 size = parseSize(options.size);
-  const std::vector<std::string> techniques = chosenTechniques(options);
+  std::vector<std::string> techniques = chosenTechniques(options);
+  const std::vector<std::string> leftOut = leftOutOf(options, scene);
+  if (!leftOut.empty()) std::erase(techniques, "radiosity");
   const std::vector<Rung> rungs = rungsOf(options, techniques, scene.bounds);
   const std::string title = fmt::format("{}, camera {}, {}x{}", scene.name, camera.name.empty() ? "default" : camera.name, size.x, size.y);
   const std::filesystem::path folder = options.out;
   makeFolder(folder);
 
   auto result = std::make_unique<ErrorBenchResult>();
-  const bool withPath = !options.deviations && std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
-  auto references = obtainReferences({context, programs, scene, camera, size, (withPath ? 0.7 : 1.0) * options.budget, options.referenceSamples, options.references, options.quiet, folder / "references"});
+  const bool withPath = std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
+  auto references = obtainReferences({context, programs, scene, camera, size, (withPath ? 0.7 : 1.0) * options.budget, options.referenceSamples, options.references, options.quiet, withPath, folder / "references"});
   if (!references) return result;
   result->references = std::move(*references);
   // Rows are judged by the reference that there was: a better one is another bench.
@@ -86,7 +106,7 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
     progress.update(static_cast<int>(rows.size()));
   }
   if (withPath)
-    for (ErrorRow& row : measurePath(bench)) rows.push_back(std::move(row));
+    for (ErrorRow& row : measurePath(bench, options.deviations)) rows.push_back(std::move(row));
   if (interrupted()) return result;
   markFront(rows);
 
@@ -99,6 +119,7 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   report.model = modelErrors(result->references);
   report.references = &result->references;
   report.isDeviationStudy = options.deviations;
+  report.leftOut = leftOut;
   writeFileAtomically(folder / "error.csv", csvOf(report.rows));
   writeFileAtomically(folder / "error.json", errorBenchJson(*result, options).dump(2) + "\n");
   plotRows(folder, report);
@@ -107,6 +128,21 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   writeFileAtomically(folder / "report.html", page.text());
   result->complete = true;
   return result;
+}
+
+std::unique_ptr<ErrorBenchResult> benchScene(const CommonOptions& common, ErrorBenchOptions& options) {
+  common.apply();
+  options.quiet = common.quiet;
+  options.scene = sceneOrAtrium(options.scene);
+  const Scene scene = loadScene(options.scene);
+  const auto host = common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  auto result = runErrorBench(context, programs, scene, options, std::string(nameOf(host->kind())));
+  if (result->complete) return result;
+  fmt::print(stderr, "lucerna: interrupted; the same command with --out {} goes on\n", options.out);
+  return nullptr;
 }
 
 nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const ErrorBenchOptions& options) {
@@ -120,7 +156,9 @@ nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const Erro
   json["size"] = options.size;
   json["references"] = referencesJson(result.references);
   json["model"] = modelJson(report.model);
+  json["left_out"] = report.leftOut;
   json["relmse_epsilon"] = measure::kRelativeEpsilon;
+  json["path_slope"] = pathSlopeJson(report.rows);
   json["rows"] = report.rows;
   return json;
 }
@@ -135,20 +173,9 @@ struct Options {
 };
 
 int run(Options options) {
-  options.common.apply();
-  options.bench.quiet = options.common.quiet;
   if (options.bench.out.empty()) options.bench.out = options.bench.deviations ? "bench-deviations" : "bench-error";
-  options.bench.scene = bench::sceneOrAtrium(options.bench.scene);
-  const Scene scene = loadScene(options.bench.scene);
-  const auto host = options.common.makeHost(false);
-  const gl::Context context;
-  gl::ProgramLibrary programs;
-  watchForInterrupt();
-  const auto result = bench::runErrorBench(context, programs, scene, options.bench, std::string(nameOf(host->kind())));
-  if (!result->complete) {
-    fmt::print(stderr, "lucerna: interrupted; the same command with --out {} goes on\n", options.bench.out);
-    return 130;
-  }
+  const auto result = bench::benchScene(options.common, options.bench);
+  if (!result) return 130;
   if (!options.common.quiet) fmt::print("{}\n{}/report.html\n", bench::terminalTable(result->report), options.bench.out);
   options.common.writeJson(bench::errorBenchJson(*result, options.bench));
   return 0;

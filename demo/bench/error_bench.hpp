@@ -25,6 +25,8 @@ struct ErrorBenchResult {
 /// Measures what the folder does not hold yet; writes rows, CSV, plots and page into it. Throws Error(badInput) for options that cannot be.
 std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const ErrorBenchOptions& options,
                                                 const std::string& hostName);
+/// The same for a command: loads the scene, makes the host, says so where it was interrupted and is then null.
+std::unique_ptr<ErrorBenchResult> benchScene(const CommonOptions& common, ErrorBenchOptions& options);
 nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const ErrorBenchOptions& options);
 
 }  // namespace lucerna::demo::bench

@@ -1,63 +1,118 @@
-// The path tracer's ladder: pictures that go on being sampled, observed at 1, 2, 4, ... samples a pixel.
+// The path tracer's ladders, corrected and as published, and its deviations one by one: pictures that go on being sampled, observed at 1, 2, 4, ... samples a pixel.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/statistics.hpp"
 #include "bench/error_rows.hpp"
 #include "measure/flip.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 
 namespace lucerna::demo::bench {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int kSeeds = 3;
+constexpr std::uint32_t kWarmUp = 8;  // samples a pixel
+
+/// Corrected, as published, or corrected with one deviation.
+struct PathSeries {
+  std::string name, fidelity;
+  std::vector<std::string> deviations;
+  PathDeviations switches;
+  int seeds = 1;         ///< the median of so many
+  double seconds = 0.0;  ///< a seed's ladder
+  bool lastRung = false; ///< that one alone is kept
+  std::uint32_t samples = 0;  ///< the last rung; 0: by time
+
+  std::string label() const {
+    std::string text = "path";
+    if (fidelity != "corrected") text += " " + fidelity;
+    for (const std::string& d : deviations) text += " " + d;
+    return text;
+  }
+};
+
+PathSeries seriesOf(const std::string& fidelity, const std::string& deviation) {
+  RenderSettings settings;
+  PathSeries series;
+  series.fidelity = fidelity;
+  series.name = deviation.empty() ? fidelity == "original" ? "path (original)" : "path" : "path " + deviation;
+  if (fidelity == "original") applyFidelity(settings, Fidelity::original);
+  if (!deviation.empty()) {
+    series.deviations = {deviation + "=on"};
+    applyDeviation(settings, series.deviations[0]);
+  }
+  series.switches = settings.path;
+  return series;
+}
+
+/// The ladders; for the study of deviations a rung of each.
+std::vector<PathSeries> seriesOf(const ErrorBench& bench, bool deviations) {
+  std::vector<PathSeries> all{seriesOf("corrected", "")};
+  all[0].seeds = 3;
+  if (deviations)
+    for (const Deviation& d : allDeviations())
+      if (std::string_view(d.name).starts_with("path.")) all.push_back(seriesOf("corrected", std::string(d.name)));
+  all.push_back(seriesOf("original", ""));
+  for (PathSeries& series : all) {
+    series.lastRung = deviations;
+    if (deviations) series.seeds = 1;
+    series.seconds = bench.pathSeconds / (deviations ? static_cast<double>(all.size()) : 4.0);
+  }
+  return all;
+}
 
 struct Observation {
-  std::vector<double> ms;
+  std::vector<double> ms, cpuMs;
   std::vector<measure::JudgedErrors> errors;
   std::size_t gpuBytes = 0;
   double setupMs = 0.0;
   Image picture;  // of the first seed
 };
 
-PathTracer::Settings settingsOf(const ErrorBench& bench, int seed) {
+PathTracer::Settings settingsOf(const ErrorBench& bench, const PathSeries& series, int seed) {
   PathTracer::Settings settings;
   settings.size = bench.size;
-  settings.diffuseOnly = true;   // as the reference
+  settings.diffuseOnly = !bench.references.own;  // as the reference
+  settings.deviations = series.switches;
   settings.pixelCentres = true;
   settings.seed = 0x51ed270bu + static_cast<std::uint32_t>(seed) * 7919u;
   return settings;
 }
 
-void observe(const ErrorBench& bench, int seed, std::vector<std::pair<std::uint32_t, Observation>>& ladder) {
+void observe(const ErrorBench& bench, const PathSeries& series, int seed, std::vector<std::pair<std::uint32_t, Observation>>& ladder) {
   const auto made = Clock::now();
-  PathTracer tracer(bench.context, bench.programs, bench.scene, settingsOf(bench, seed));
+  PathTracer tracer(bench.context, bench.programs, bench.scene, settingsOf(bench, series, seed));
   tracer.setCamera(bench.camera);
-  tracer.record(1);  // warm-up: the driver finishes the program on first use
+  // Baking: the driver finishes the program on first use, and submissions grow until each takes its share of a second.
+  tracer.record(kWarmUp);
   tracer.setCamera(bench.camera);
   glFinish();
   const double setup = std::chrono::duration<double, std::milli>(Clock::now() - made).count();
-  double spent = 0.0;
+  double spent = 0.0, cpu = 0.0;
   std::size_t step = 0;
   for (std::uint32_t samples = 1; !interrupted(); samples *= 2, ++step) {
     // The first seed decides how far the ladder goes; the others climb the same rungs.
-    if (seed == 0 && samples > 4 && 2.0 * spent > 1e3 * bench.pathSeconds / kSeeds) break;
+    if (seed == 0 && (series.samples ? samples > series.samples : samples > 4 && 2.0 * spent > 1e3 * series.seconds)) break;
     if (seed > 0 && step >= ladder.size()) break;
     const auto start = Clock::now();
+    const std::clock_t cpuStart = std::clock();
     tracer.record(samples);
     glFinish();
     spent += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    cpu += 1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC;
     if (seed == 0) ladder.emplace_back(samples, Observation{});
     Observation& o = ladder[step].second;
     o.ms.push_back(spent);
+    o.cpuMs.push_back(cpu);
     const Image picture = tracer.mean();
-    const measure::Reference& truth = bench.references.all();
+    const measure::Reference& truth = bench.references.path();
     const glm::dvec3 own = tracer.statistics().meanError;
     // Channels share their paths: their errors add up as if wholly dependent.
     const double ownError = samples > 1 ? (own.x + own.y + own.z) / 3.0 : INFINITY;
@@ -76,19 +131,20 @@ double medianOf(const std::vector<measure::JudgedErrors>& errors, double (*of)(c
   return median(values);
 }
 
-ErrorRow rowOf(const ErrorBench& bench, std::uint32_t samples, const Observation& o) {
+ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t samples, const Observation& o) {
   using measure::JudgedErrors;
   const JudgedErrors& first = o.errors.front();
   ErrorRow row;
   row["technique"] = "path";
-  row["fidelity"] = "corrected";
+  row["fidelity"] = series.fidelity;
   row["settings"] = {fmt::format("spp={}", samples)};
-  row["deviations"] = nlohmann::ordered_json::array();
-  row["series"] = "path";
-  row["label"] = fmt::format("path spp={}", samples);
+  row["deviations"] = series.deviations;
+  row["series"] = series.name;
+  row["label"] = fmt::format("{} spp={}", series.label(), samples);
   row["spp"] = samples;
   row["ms"] = median(o.ms);
   row["wall_ms"] = median(o.ms);
+  row["cpu_ms"] = median(o.cpuMs);  // of all cores: on software renderers what else the machine does is not in it
   row["wall_ms_spread"] = {percentile(o.ms, 0.0), percentile(o.ms, 1.0)};
   row["frames"] = o.ms.size();
   row["setup_ms"] = o.setupMs;
@@ -107,25 +163,35 @@ ErrorRow rowOf(const ErrorBench& bench, std::uint32_t samples, const Observation
   row["noise_nrmse"] = first.noiseNrmse;
   row["measured_nrmse"] = first.measured.nrmse;
   row["not_finite"] = first.measured.notFinite;
-  row["flip"] = first.measured.notFinite > 0 ? NAN : measure::flipHdr(o.picture, bench.references.all().mean).mean;
-  row["picture"] = writePictures(bench, fmt::format("path spp={}", samples), o.picture);
+  row["flip"] = first.measured.notFinite > 0 ? NAN : measure::flipHdr(o.picture, bench.references.path().mean).mean;
+  row["picture"] = writePictures(bench, fmt::format("{} spp={}", series.label(), samples), o.picture, bench.references.path());
   return row;
 }
 
 }  // namespace
 
-std::vector<ErrorRow> measurePath(const ErrorBench& bench) {
-  const std::filesystem::path file = bench.folder / "rows" / "path.json";
-  if (std::filesystem::exists(file)) {
-    const ErrorRow known = ErrorRow::parse(readFileText(file), nullptr, false);
-    if (known.is_array()) return known.get<std::vector<ErrorRow>>();
-  }
-  std::vector<std::pair<std::uint32_t, Observation>> ladder;
-  for (int seed = 0; seed < kSeeds && !interrupted(); ++seed) observe(bench, seed, ladder);
+std::vector<ErrorRow> measurePath(const ErrorBench& bench, bool deviations) {
   std::vector<ErrorRow> rows;
-  if (interrupted()) return rows;
-  for (const auto& [samples, observation] : ladder) rows.push_back(rowOf(bench, samples, observation));
-  writeFileAtomically(file, nlohmann::ordered_json(rows).dump(1) + "\n");
+  for (PathSeries series : seriesOf(bench, deviations)) {
+    // Deviations are compared at as many samples as the corrected tracer had time for.
+    if (deviations && !rows.empty()) series.samples = rows.front().at("spp").get<std::uint32_t>();
+    const std::filesystem::path file = rowFile(bench.folder, series.name);
+    if (std::filesystem::exists(file)) {
+      const ErrorRow known = ErrorRow::parse(readFileText(file), nullptr, false);
+      if (known.is_array()) {
+        rows.insert(rows.end(), known.begin(), known.end());
+        continue;
+      }
+    }
+    std::vector<std::pair<std::uint32_t, Observation>> ladder;
+    for (int seed = 0; seed < series.seeds && !interrupted(); ++seed) observe(bench, series, seed, ladder);
+    if (interrupted()) return {};
+    std::vector<ErrorRow> own;
+    for (const auto& [samples, observation] : ladder)
+      if (!series.lastRung || samples == ladder.back().first) own.push_back(rowOf(bench, series, samples, observation));
+    writeFileAtomically(file, nlohmann::ordered_json(own).dump(1) + "\n");
+    rows.insert(rows.end(), own.begin(), own.end());
+  }
   return rows;
 }
 

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <thread>
 
 namespace lucerna::demo::bench {
@@ -72,6 +73,7 @@ const Column kColumns[] = {
 
 std::string notes(const ErrorReport& report) {
   std::string line = fmt::format("Renderer {}\nHost     {}, {}\nBench    {}\n", report.renderer, report.host, report.cpu, report.title);
+  for (const std::string& left : report.leftOut) line += left + "\n";
   for (const auto& [transport, r] : report.references->of) {
     const measure::ReferenceNoise noise = report.references->noise(r);
     const glm::dvec3 mean = meanOf(r.mean);
@@ -88,19 +90,35 @@ std::string modelText(const ModelError& m) {
                      100.0 * m.errors.biasError / m.errors.measured.referenceMean);
 }
 
-/// How the path tracer's error falls; empty with fewer than three rows above the reference's noise.
-std::string slopeText(const std::vector<ErrorRow>& rows) {
-  std::vector<double> ms, samples, errors;
+/// How the path tracer's error falls by samples, and from the eighth on by wall clock and processor time: a pass doubles what there is, and in the first ones lanes wait for
+/// the longest path of so few, so that a sample alone costs more than one of many.
+struct PathSlope {
+  measure::Slope samples, time, processor;
+  double first = 0.0, last = 0.0;  ///< samples
+};
+
+/// None with fewer than three rows of 8 samples or more above the reference's noise.
+std::optional<PathSlope> pathSlope(const std::vector<ErrorRow>& rows) {
+  std::vector<double> ms, cpuMs, samples, errors, errorsOverTime;
   for (const ErrorRow& row : rows) {
-    if (text(row, "technique") != "path" || flag(row, "at_noise") || !(number(row, "nrmse") > 0.0)) continue;
-    ms.push_back(number(row, "ms"));
+    if (text(row, "series") != "path" || flag(row, "at_noise") || !(number(row, "nrmse") > 0.0)) continue;
+    if (number(row, "spp") >= 8.0) {
+      ms.push_back(number(row, "ms"));
+      cpuMs.push_back(number(row, "cpu_ms"));
+      errorsOverTime.push_back(number(row, "nrmse"));
+    }
     samples.push_back(number(row, "spp"));
     errors.push_back(number(row, "nrmse"));
   }
-  if (errors.size() < 3) return "";
-  const measure::Slope byTime = measure::logLogSlope(ms, errors), bySamples = measure::logLogSlope(samples, errors);
-  return fmt::format("Path tracing: error ~ samples^({:.3f} +- {:.3f}), time^({:.3f} +- {:.3f}) from {:g} to {:g} samples; -1/2 is what independent samples give.", bySamples.slope,
-                     bySamples.error, byTime.slope, byTime.error, samples.front(), samples.back());
+  if (errorsOverTime.size() < 3) return std::nullopt;
+  return PathSlope{measure::logLogSlope(samples, errors), measure::logLogSlope(ms, errorsOverTime), measure::logLogSlope(cpuMs, errorsOverTime), samples.front(), samples.back()};
+}
+
+std::string slopeText(const std::vector<ErrorRow>& rows) {
+  const std::optional<PathSlope> s = pathSlope(rows);
+  if (!s) return "";
+  return fmt::format("Path tracing: error ~ samples^({:.3f} +- {:.3f}), time^({:.3f} +- {:.3f}), processor time^({:.3f} +- {:.3f}) from {:g} to {:g} samples, by time from 8 on; -1/2 is what independent samples give.",
+                     s->samples.slope, s->samples.error, s->time.slope, s->time.error, s->processor.slope, s->processor.error, s->first, s->last);
 }
 
 }  // namespace
@@ -154,6 +172,13 @@ std::string csvOf(const std::vector<ErrorRow>& rows) {
     csv += inside == row.end() ? ",\n" : fmt::format(",{:.9g}\n", number(*inside, "nrmse"));
   }
   return csv;
+}
+
+nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows) {
+  const std::optional<PathSlope> s = pathSlope(rows);
+  if (!s) return {};
+  return {{"samples", s->samples.slope}, {"samples_error", s->samples.error}, {"time", s->time.slope}, {"time_error", s->time.error}, {"processor_time", s->processor.slope},
+          {"processor_time_error", s->processor.error}, {"from", s->first}, {"to", s->last}};
 }
 
 nlohmann::ordered_json modelJson(const std::vector<ModelError>& model) {

@@ -13,10 +13,13 @@ struct ErrorReport {
   std::vector<ModelError> model;
   const References* references = nullptr;
   bool isDeviationStudy = false;
+  std::vector<std::string> leftOut;      ///< techniques that were not measured, and why
 };
 
 std::string terminalTable(const ErrorReport& report);
 std::string csvOf(const std::vector<ErrorRow>& rows);
+/// The path tracer's corrected ladder: exponents of its error, null with fewer than three rows above the reference's noise.
+nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows);
 nlohmann::ordered_json modelJson(const std::vector<ModelError>& model);
 nlohmann::ordered_json referencesJson(const References& references);
 /// SVG and PNG beside each other; one warning where gnuplot is missing, and false.

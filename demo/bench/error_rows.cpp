@@ -33,8 +33,6 @@ std::string fileStem(const std::string& name) {
   return text;
 }
 
-fs::path rowFile(const fs::path& folder, const std::string& name) { return folder / "rows" / (fileStem(name) + ".json"); }
-
 /// The rung's options as settings of a renderer that measures.
 RenderSettings settingsOf(const ErrorBench& bench, const Rung& rung, Component component) {
   std::optional<float> exposure;
@@ -119,9 +117,11 @@ std::optional<ErrorRow> readRow(const fs::path& file) {
 
 }  // namespace
 
-std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture) {
+fs::path rowFile(const fs::path& folder, const std::string& name) { return folder / "rows" / (fileStem(name) + ".json"); }
+
+std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture, const measure::Reference& reference) {
   const std::string stem = "pictures/" + fileStem(name);
-  const Image& truth = bench.references.all().mean;
+  const Image& truth = reference.mean;
   // One scale for all rows, so that they can be compared: a fifth of what a black picture would have.
   const double scale = std::max(0.2 * measure::heatMapScale(Image(truth.width, truth.height), truth), 1e-30);
   const auto file = [&](const char* kind) { return bench.folder / (stem + kind + ".png"); };
@@ -189,7 +189,7 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
     row["inside_model"] = errorsJson(judge(indirect, *model));
     row["inside_model"]["transport"] = std::string(measure::nameOf(model->transport));
   }
-  row["picture"] = writePictures(bench, rung.name(), timed.picture);
+  row["picture"] = writePictures(bench, rung.name(), timed.picture, bench.references.all());
   keep(bench, rung.name(), row);
   return row;
 }

@@ -32,11 +32,14 @@ void claimFolder(const std::filesystem::path& folder, const std::string& identit
 std::optional<ErrorRow> finishedRow(const std::filesystem::path& folder, const Rung& rung);
 /// Renders, judges, writes picture and row.
 ErrorRow measureRung(const ErrorBench& bench, const Rung& rung);
-/// The path tracer's ladder: one picture observed at 1, 2, 4, ... samples, several seeds; a row each.
-std::vector<ErrorRow> measurePath(const ErrorBench& bench);
+/// The path tracer's ladders, corrected and as published: one picture observed at 1, 2, 4, ... samples, a row each. `deviations`: each alone too, a row each.
+/// Empty where it was interrupted; series that were finished are kept.
+std::vector<ErrorRow> measurePath(const ErrorBench& bench, bool deviations);
 
-/// Tone mapped, and both heat maps against all light, as PNGs; returns their common path below the folder, without ".png".
-std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture);
+/// Tone mapped, and both heat maps against `truth`, as PNGs; returns their common path below the folder, without ".png".
+std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture, const measure::Reference& truth);
+/// Where the row of that name is kept.
+std::filesystem::path rowFile(const std::filesystem::path& folder, const std::string& name);
 
 /// Fills "pareto" by `ms` and `nrmse`, and "front", 1 for the fastest of it, 0 off it.
 void markFront(std::vector<ErrorRow>& rows);

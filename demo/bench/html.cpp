@@ -24,12 +24,12 @@ std::string base64(std::span<const std::uint8_t> bytes) {
 }
 
 constexpr std::string_view kStyle = R"(
-body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1e; background: #fff; max-width: 1240px; margin: 2em auto; padding: 0 1.5em; }
+body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1e; background: #fff; max-width: 1480px; margin: 2em auto; padding: 0 1.5em; }
 h1 { font-size: 1.7em; margin-bottom: .2em; } h2 { margin-top: 2.2em; border-bottom: 2px solid #ddd; padding-bottom: .2em; } h3 { margin-top: 1.6em; }
 nav { background: #f5f5f7; padding: .6em 1.2em; border-radius: 6px; } nav a { margin-right: 1.4em; }
 .scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 12.5px; font-variant-numeric: tabular-nums; margin: .8em 0; }
-th, td { padding: .25em .5em; border-bottom: 1px solid #e4e4e8; text-align: right; white-space: nowrap; }
+table { border-collapse: collapse; font-size: 11.5px; font-variant-numeric: tabular-nums; margin: .8em 0; }
+th, td { padding: .22em .4em; border-bottom: 1px solid #e4e4e8; text-align: right; white-space: nowrap; }
 th { background: #f5f5f7; position: sticky; top: 0; } th:first-child, td:first-child { text-align: left; }
 td.text { text-align: left; } tr.marked { background: #fff6d6; font-weight: 600; }
 figure { display: inline-block; margin: .4em .8em .8em 0; vertical-align: top; } figcaption { font-size: 12px; color: #555; max-width: 340px; }

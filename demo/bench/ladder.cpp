@@ -37,6 +37,7 @@ std::vector<Rung> lpvLadder(bool shrink) {
     if (!shrink || cells < 64) rungs.push_back(rung("lpv", "cells", {fmt::format("lpv.cells={}", cells)}));
   for (int cascades : {1, 2, 3, 4}) rungs.push_back(rung("lpv", "cascades", {fmt::format("lpv.cascades={}", cascades)}));
   for (int iterations : {2, 4, 8, 16, 32}) rungs.push_back(rung("lpv", "iterations", {fmt::format("lpv.iterations={}", iterations)}));
+  for (int bounces : {1, 2, 4}) rungs.push_back(rung("lpv", "bounces", {fmt::format("lpv.bounces={}", bounces)}));
   for (int iterations : {8, 12}) rungs.push_back(rung("lpv", "", {fmt::format("lpv.iterations={}", iterations)}, "original"));
   return rungs;
 }
@@ -44,13 +45,16 @@ std::vector<Rung> lpvLadder(bool shrink) {
 // What a solution costs is baking (setup_ms); a picture of it costs next to nothing, whatever the patches.
 std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
   std::vector<Rung> rungs;
-  for (int parts : {6, 12, 24, 48})
-    if (!shrink || parts < 48) rungs.push_back(rung("radiosity", "patches", {fmt::format("radiosity.edge={:.6g}", longestSide / parts)}));
+  for (int parts : {3, 6, 12, 24})
+    if (!shrink || parts < 24) rungs.push_back(rung("radiosity", "patches", {fmt::format("rad.edge={:.6g}", longestSide / parts)}));
   for (int pixels : {16, 32, 64, 128})
     if (!shrink || pixels < 128)
-      rungs.push_back(rung("radiosity", "hemicubes", {fmt::format("radiosity.edge={:.6g}", longestSide / 12), fmt::format("radiosity.resolution={}", pixels)}));
+      rungs.push_back(rung("radiosity", "hemicubes", {fmt::format("rad.edge={:.6g}", longestSide / 6), fmt::format("rad.resolution={}", pixels)}));
   return rungs;
 }
+
+/// What a technique's settings and deviations begin with.
+std::string prefixOf(const std::string& technique) { return (technique == "radiosity" ? "rad" : technique) + "."; }
 
 bool rendererHas(const std::string& technique) {
   try {
@@ -67,7 +71,8 @@ std::string Rung::label() const {
   std::string text = picture.technique;
   if (picture.fidelity != "corrected") text += " " + picture.fidelity;
   // "rsm samples=16", not "rsm rsm.samples=16".
-  for (const std::string& setting : picture.settings) text += " " + (setting.starts_with(picture.technique + ".") ? setting.substr(picture.technique.size() + 1) : setting);
+  const std::string prefix = prefixOf(picture.technique);
+  for (const std::string& setting : picture.settings) text += " " + (setting.starts_with(prefix) ? setting.substr(prefix.size()) : setting);
   for (const std::string& deviation : picture.deviations) text += " " + deviation;
   return text;
 }
@@ -98,7 +103,7 @@ std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
     for (const Deviation& deviation : allDeviations()) {
       // A deviation's name begins with the technique that it belongs to; the light propagation volume reads the reflective shadow map's flux too.
       const std::string name(deviation.name);
-      const bool reads = name.starts_with(technique + ".") || (technique == "lpv" && name == "rsm.flux-cosine");
+      const bool reads = name.starts_with(prefixOf(technique)) || (technique == "lpv" && name == "rsm.flux-cosine");
       if (!reads) continue;
       Rung r = rung(technique, name, {});
       r.picture.deviations = {name + "=on"};

@@ -20,8 +20,8 @@ Transport pathTransport(measure::Transport transport) {
 }  // namespace
 
 PathSampler::PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera, glm::ivec2 size,
-                         measure::Transport transport)
-    : context_(context), programs_(programs), scene_(scene), camera_(camera), size_(size), transport_(transport) {}
+                         measure::Transport transport, bool allMaterials)
+    : context_(context), programs_(programs), scene_(scene), camera_(camera), size_(size), transport_(transport), allMaterials_(allMaterials) {}
 
 PathSampler::~PathSampler() = default;
 
@@ -33,10 +33,10 @@ void PathSampler::begin(std::uint64_t first) {
   PathTracer::Settings settings;
   settings.size = size_;
   settings.transport = pathTransport(transport_);
-  settings.diffuseOnly = true;
+  settings.diffuseOnly = !allMaterials_;
   settings.pixelCentres = true;
   // Another seed for another part of the same reference and for each transport: their noise must be independent.
-  settings.seed = static_cast<std::uint32_t>(first * 2654435761u) ^ (static_cast<std::uint32_t>(transport_) + 1) * 0x9e3779b9u;
+  settings.seed = static_cast<std::uint32_t>(first * 2654435761u) ^ (static_cast<std::uint32_t>(transport_) + 1) * 0x9e3779b9u ^ (allMaterials_ ? 0x5bd1e995u : 0u);
   tracer_.reset();
   tracer_ = std::make_unique<PathTracer>(context_, programs_, scene_, settings);
   tracer_->setCamera(camera_);

@@ -1,4 +1,4 @@
-// The path tracer as the sampler of references: corrected, restricted to one transport, camera rays through pixel centres as forward shading has them.
+// The path tracer as the sampler of references: corrected, restricted to one transport, surfaces Lambert's unless all materials are asked for, camera rays through pixel centres as forward shading has them.
 #pragma once
 
 #include "commands.hpp"
@@ -14,8 +14,10 @@ class PathSampler {
  public:
   /// Part of the references' key: raised when the path tracer's answer changes.
   static constexpr std::string_view kVersion = "path tracer 1, pixel centres, lambert";
+  static constexpr std::string_view kVersionOfAllMaterials = "path tracer 1, pixel centres, all materials";
 
-  PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera, glm::ivec2 size, measure::Transport transport);
+  PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera, glm::ivec2 size, measure::Transport transport,
+              bool allMaterials = false);
   ~PathSampler();
   PathSampler(const PathSampler&) = delete;
   PathSampler& operator=(const PathSampler&) = delete;
@@ -32,6 +34,7 @@ class PathSampler {
   Camera camera_;
   glm::ivec2 size_;
   measure::Transport transport_;
+  bool allMaterials_;
   std::unique_ptr<PathTracer> tracer_;
   std::uint64_t begin_ = 0, next_ = 0;  ///< paths of the running session
   Image sum_;                           ///< mean of those so far

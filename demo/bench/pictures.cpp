@@ -78,13 +78,15 @@ int run(const Options& options) {
   if (options.exposure && !(*options.exposure > 0.0 && *options.exposure <= 1e12))
     throwBadInput("--exposure {}: expected a number above 0, at most 1e12", *options.exposure);
   if (options.original == "vpt") return runVpt(options);
-  if (options.scale) throwBadInput("--scale {}: only with --original vpt", *options.scale);
+  if (options.scale && options.original != "rad") throwBadInput("--scale {}: only with --original vpt and rad", *options.scale);
   usual.size = parseSize(options.size.empty() ? "640x360" : options.size);
   if (usual.size.x > 1920 || usual.size.y > 1080) throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
   if (options.original == "rad") {
     if (!options.scene.empty()) throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
     if (!options.camera.empty()) throwBadInput("--camera {}: --original rad has one view of each model", options.camera);
-    return bench::runRadPictures(options.common, options.output, usual.size);
+    const double scale = options.scale.value_or(1.0);
+    if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
+    return bench::runRadPictures(options.common, options.output, usual.size, scale);
   }
   const std::string file = bench::sceneOrAtrium(options.scene);
   const Scene scene = loadScene(file);
@@ -167,7 +169,7 @@ Work addBenchPictures(CLI::App& app) {
   app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str();
   app.add_option("--size", options->size, "WIDTHxHEIGHT of a tile in pixels (lpv and rad 640x360, vpt 320x180)");
-  app.add_option("--scale", options->scale, "vpt: the published samples times this, above 0, at most 1 (0.02)");
+  app.add_option("--scale", options->scale, "vpt: the published samples times this (0.02); rad: triangles over and pixels times this (1); above 0, at most 1");
   app.add_option("--exposure", options->exposure, "multiplies radiance before tone mapping (the scene's)");
   options->common.declare(app);
   return [options] { return run(*options); };

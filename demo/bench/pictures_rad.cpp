@@ -8,11 +8,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace lucerna::demo::bench {
 
-int runRadPictures(const CommonOptions& common, const std::string& output, glm::ivec2 size) {
+int runRadPictures(const CommonOptions& common, const std::string& output, glm::ivec2 size, double scale) {
   const auto host = common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
@@ -23,9 +25,12 @@ int runRadPictures(const CommonOptions& common, const std::string& output, glm::
   Progress progress("bench pictures", kTiles, common.quiet);
 
   using Settings = OriginalRadiosity::Settings;
-  const auto settingsOf = [](int pixels) {
+  // Smaller work: larger triangles, fewer pixels.
+  const auto viewOf = [&](int pixels) { return std::max(8, 2 * static_cast<int>(std::lround(0.5 * pixels * std::sqrt(scale)))); };
+  const auto model = [&](int number, double threshold, double reflectance, std::uint32_t power) { return makeRadModel(number, {threshold / scale, reflectance, power}); };
+  const auto settingsOf = [&](int pixels) {
     Settings settings;
-    settings.view = pixels;
+    settings.view = viewOf(pixels);
     return settings;
   };
   /// After so many sweeps more than what is in the file.
@@ -47,7 +52,7 @@ int runRadPictures(const CommonOptions& common, const std::string& output, glm::
     return display;
   };
 
-  const std::vector<RadTriangle> cube = makeRadModel(1, {10.0, 0.3, 1000000});
+  const std::vector<RadTriangle> cube = model(1, 10.0, 0.3, 1000000);
   const std::vector<RadTriangle> lit = solve(cube, settingsOf(100), 3);
   const RadDisplay constant = with(RadMapping::linear);  // shows small differences better than the logarithm
   add("3.10a camera at the centroid, 3 sweeps", lit, constant);
@@ -57,10 +62,10 @@ int runRadPictures(const CommonOptions& common, const std::string& output, glm::
   // The wall between the chambers is 2 units thick: beside it a camera whose near plane lies 4 units off looks through it.
   Settings far = settingsOf(48);
   far.nearPlane = 4.0;
-  add("3.13 near plane too far: bright seams along the wall", solve(makeRadModel(3, {5.0, 0.3, 10000000}), far, 2));
+  add("3.13 near plane too far: bright seams along the wall", solve(model(3, 5.0, 0.3, 10000000), far, 2));
   if (interrupted()) return 130;
 
-  const std::vector<RadTriangle> hall = makeRadModel(2, {100.0, 0.3, 1000000});
+  const std::vector<RadTriangle> hall = model(2, 100.0, 0.3, 1000000);
   const std::vector<RadTriangle> once = solve(hall, settingsOf(32), 1), twice = solve(once, settingsOf(32), 1);
   if (interrupted()) return 130;
   add("4.1 model 2, mesh", hall, with(RadMapping::logarithmic, true));
@@ -73,22 +78,27 @@ int runRadPictures(const CommonOptions& common, const std::string& output, glm::
   add("3.17 the filmic curve of the engine", twice, with(RadMapping::filmic));
   add("3.18 triangles turned away, by their corners", twice, with(RadMapping::logarithmic, false, true));
 
-  for (int pixels : {25, 50, 100, 200}) add(fmt::format("4.6 {} x {} px", pixels, pixels), pixels == 100 ? lit : solve(cube, settingsOf(pixels), 3), constant);
+  for (int pixels : {25, 50, 100, 200}) add(fmt::format("4.6 {} x {} px", viewOf(pixels), viewOf(pixels)), pixels == 100 ? lit : solve(cube, settingsOf(pixels), 3), constant);
   if (interrupted()) return 130;
   for (double threshold : {80.0, 20.0, 5.0})
-    add(fmt::format("4.4 model 3, triangles below {} units", threshold), solve(makeRadModel(3, {threshold, 0.3, 10000000}), settingsOf(32), threshold > 5.0 ? 5 : 3));
-  const std::vector<RadTriangle> bent = makeRadModel(3, {10.0, 0.3, 10000000});
+    add(fmt::format("4.4 model 3, triangles below {:.4g} units", threshold / scale), solve(model(3, threshold, 0.3, 10000000), settingsOf(32), threshold > 5.0 ? 5 : 3));
+  const std::vector<RadTriangle> bent = model(3, 10.0, 0.3, 10000000);
   add("model 3, light round the wall, false colours", solve(bent, settingsOf(48), 4), with(RadMapping::falseColours));
   if (interrupted()) return 130;
 
-  writePng(output, contactSheet("RAD original, its figures on our models 1 to 3 (1 where no number is given), published solver; views 25 to 200 px, few sweeps; 800 px of 4.6 left out", tiles, 4));
+  writePng(output, contactSheet(std::string("RAD original, its figures on our models 1 to 3 (1 where no number is given), published solver; views 25 to 200 px, few sweeps; 800 px of 4.6 left out") + (scale < 1.0 ? fmt::format("; --scale {}: triangles larger and pixels fewer by it", scale) : ""), tiles, 4));
   if (!common.quiet) fmt::print("{}: {} tiles of {}x{}, on {}\n", output, tiles.size(), size.x, size.y, context.capabilities().renderer);
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
   json["host"] = nameOf(host->kind());
   json["original"] = "rad";
   json["size"] = {size.x, size.y};
-  for (const Tile& tile : tiles) json["pictures"].push_back({{"picture", tile.label}});
+  json["scale"] = scale;
+  for (const Tile& tile : tiles) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < tile.picture.rgba.size(); i += 4) sum += tile.picture.rgba[i] + tile.picture.rgba[i + 1] + tile.picture.rgba[i + 2];
+    json["pictures"].push_back({{"picture", tile.label}, {"mean", sum / (3.0 * 255.0 * size.x * size.y)}});
+  }
   common.writeJson(json);
   return 0;
 }

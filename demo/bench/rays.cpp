@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "bench/embree_rays.hpp"
+#include "bench/rays_bench.hpp"
 #include "gl/pass.hpp"
 #include "pathtracer/ray_scene.hpp"
 
@@ -17,14 +18,11 @@
 
 namespace lucerna::demo {
 
-namespace {
+namespace bench {
 
-struct Options {
-  CommonOptions common;
-  std::string scene, camera;
-  int rays = 1 << 18, repeats = 7;
-  double splitBudget = BvhSettings{}.splitBudget;
-};
+RaysOptions::RaysOptions() : splitBudget(BvhSettings{}.splitBudget) {}
+
+namespace {
 
 double secondsOf(const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
@@ -168,15 +166,11 @@ std::string spread(const std::vector<double>& values) {
   return values.empty() ? "-" : fmt::format("{:.3f} ({:.3f}..{:.3f})", median(values), percentile(values, 0.0), percentile(values, 1.0));
 }
 
-int run(const Options& options) {
+}  // namespace
+
+RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RaysOptions& options, bool quiet) {
   if (options.rays < 1024 || options.rays > (1 << 22)) throwBadInput("--rays {}: from 1024 to {}", options.rays, 1 << 22);
   if (options.repeats < 1) throwBadInput("--repeats {}: at least 1", options.repeats);
-  options.common.apply();
-  watchForInterrupt();
-  const Scene scene = loadScene(bench::sceneOrAtrium(options.scene));
-  const auto host = options.common.makeHost(false);
-  const gl::Context context;
-  gl::ProgramLibrary programs;
   RayScene::Settings settings;
   settings.bvh.splitBudget = options.splitBudget;
   const RayScene rayScene(scene, context.capabilities(), settings);
@@ -203,7 +197,7 @@ int run(const Options& options) {
   if (const std::vector<SurfacePoint> second = surfacePoints(scene, rayScene.origin(), first, hitsOf(first)); second.size() > points.size() / 4) points = second;
   kinds[2] = {.name = "diffuse", .anyHit = false, .rays = diffuseRays(points, count, random)};
 
-  Progress progress("bench rays", options.repeats * static_cast<int>(kinds.size()), options.common.quiet);
+  Progress progress("bench rays", options.repeats * static_cast<int>(kinds.size()), quiet);
   int done = 0;
   for (Kind& kind : kinds) {
     const gl::Program& program = tracer.program(kind.anyHit, false);
@@ -237,21 +231,45 @@ int run(const Options& options) {
 #ifdef LUCERNA_EMBREE
   json["embree_build_seconds"] = embreeBuild;
 #endif
-  fmt::print("{}: {} triangles ({} degenerate dropped), {} references, {} nodes, depth {}, {:.1f} MB, built in {:.2f} s\non {}\n", scene.name, s.triangles, s.degenerate,
+  RaysResult result;
+  result.text = fmt::format("{}: {} triangles ({} degenerate dropped), {} references, {} nodes, depth {}, {:.1f} MB, built in {:.2f} s\non {}\n", scene.name, s.triangles, s.degenerate,
              s.references, s.nodes, s.depth, 1e-6 * static_cast<double>(rayScene.gpuBytes()), s.seconds, context.capabilities().renderer);
-  fmt::print("{:<9}{:>24}{:>24}{:>22}{:>8}{:>11}{:>11}{:>11}{:>9}\n", "rays", "Mrays/s", "Embree Mrays/s", "ratio", "differ", "nodes/ray", "tris/ray", "bytes/ray", "lanes");
+  result.text += fmt::format("{:<9}{:>24}{:>24}{:>22}{:>8}{:>11}{:>11}{:>11}{:>9}\n", "rays", "Mrays/s", "Embree Mrays/s", "ratio", "differ", "nodes/ray", "tris/ray", "bytes/ray", "lanes");
   for (const Kind& k : kinds) {
     const double bytes = 16.0 * (BVH_NODE_TEXELS * k.nodes + BVH_TRIANGLE_TEXELS * k.triangles);
-    fmt::print("{:<9}{:>24}{:>24}{:>22}{:>8}{:>11.1f}{:>11.1f}{:>11.0f}{:>8.0f}%\n", k.name, spread(k.ours), spread(k.embree), spread(k.ratios), k.differ, k.nodes, k.triangles,
+    result.text += fmt::format("{:<9}{:>24}{:>24}{:>22}{:>8}{:>11.1f}{:>11.1f}{:>11.0f}{:>8.0f}%\n", k.name, spread(k.ours), spread(k.embree), spread(k.ratios), k.differ, k.nodes, k.triangles,
                bytes, 100.0 * k.utilisation);
     json["rows"].push_back({{"rays", k.name}, {"count", k.rays.size()}, {"mrays_per_s", number(k.ours)}, {"embree_mrays_per_s", number(k.embree)},
                             {"ratio", number(k.ratios)}, {"samples", k.ours}, {"embree_samples", k.embree}, {"differ", k.differ}, {"nodes_per_ray", k.nodes},
                             {"triangles_per_ray", k.triangles}, {"bytes_per_ray", bytes}, {"lane_utilisation", k.utilisation}});
   }
 #ifndef LUCERNA_EMBREE
-  fmt::print("Embree was not there when this was built (Debian: libembree-dev): no comparison\n");
+  result.text += fmt::format("Embree was not there when this was built (Debian: libembree-dev): no comparison\n");
 #endif
-  options.common.writeJson(json);
+  result.json = std::move(json);
+  return result;
+}
+
+}  // namespace bench
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string scene;
+  bench::RaysOptions bench;
+};
+
+int run(const Options& options) {
+  options.common.apply();
+  watchForInterrupt();
+  const Scene scene = loadScene(bench::sceneOrAtrium(options.scene));
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  const bench::RaysResult result = bench::measureRays(context, programs, scene, options.bench, options.common.quiet);
+  fmt::print("{}", result.text);
+  options.common.writeJson(result.json);
   return interrupted() ? 130 : 0;
 }
 
@@ -260,10 +278,10 @@ int run(const Options& options) {
 Work addBenchRays(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file (default: the atrium)");
-  app.add_option("--rays", options->rays, "rays of each kind")->capture_default_str();
-  app.add_option("--repeats", options->repeats, "measurements of each kind, after one to warm up")->capture_default_str();
-  app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("--split-budget", options->splitBudget, "references that spatial splits may add, a fraction")->capture_default_str();
+  app.add_option("--rays", options->bench.rays, "rays of each kind")->capture_default_str();
+  app.add_option("--repeats", options->bench.repeats, "measurements of each kind, after one to warm up")->capture_default_str();
+  app.add_option("--camera", options->bench.camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.add_option("--split-budget", options->bench.splitBudget, "references that spatial splits may add, a fraction")->capture_default_str();
   app.footer("Medians with least and most. Lanes: how much of the work of eight rays side by side is not waiting for the slowest of them, by nodes.\n"
              "Differ: rays that Embree answers otherwise, by more than 1e-4 of the distance. All of this machine's cores work for either.");
   options->common.declare(app);

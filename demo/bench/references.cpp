@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lucerna::demo::bench {
@@ -29,15 +30,22 @@ Reference difference(const Reference& a, const Reference& b) {
 
 std::optional<References> obtainReferences(const ReferenceRequest& request) {
   const measure::ReferenceCache cache(request.folder.empty() ? measure::ReferenceCache::defaultFolder() : request.folder);
+  const bool own = request.path && std::any_of(request.scene.materials.begin(), request.scene.materials.end(),
+                                               [](const Material& m) { return m.bsdf != Bsdf::diffuse && m.bsdf != Bsdf::none; });
   // Shares of the time: all light is the noisiest and judges every row.
-  constexpr std::pair<Transport, double> kShares[] = {
-      {Transport::all, 0.5}, {Transport::direct, 0.1}, {Transport::oneBounce, 0.2}, {Transport::oneBounceUnoccluded, 0.2}};
+  struct Share {
+    Transport transport;
+    bool allMaterials;
+    double time;
+  };
+  std::vector<Share> shares{{Transport::all, false, 0.5}, {Transport::direct, false, 0.1}, {Transport::oneBounce, false, 0.2}, {Transport::oneBounceUnoccluded, false, 0.2}};
+  if (own) shares = {{Transport::all, false, 0.25}, {Transport::direct, false, 0.1}, {Transport::oneBounce, false, 0.1}, {Transport::oneBounceUnoccluded, false, 0.1}, {Transport::all, true, 0.45}};
   References result;
-  Progress progress("references", static_cast<int>(std::size(kShares)), request.quiet);
+  Progress progress("references", static_cast<int>(shares.size()), request.quiet);
   int done = 0;
-  for (const auto& [transport, share] : kShares) {
-    PathSampler sampler(request.context, request.programs, request.scene, request.camera, request.size, transport);
-    const measure::ReferenceKey key = measure::keyOf(request.scene, request.camera, request.size, transport, PathSampler::kVersion);
+  for (const auto& [transport, allMaterials, share] : shares) {
+    PathSampler sampler(request.context, request.programs, request.scene, request.camera, request.size, transport, allMaterials);
+    const measure::ReferenceKey key = measure::keyOf(request.scene, request.camera, request.size, transport, allMaterials ? PathSampler::kVersionOfAllMaterials : PathSampler::kVersion);
     measure::SamplingGoal goal;
     goal.seconds = share * request.seconds;
     goal.samples = request.samples;
@@ -47,7 +55,10 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
     if (!isOwn) reference = measure::obtainReference(cache, key, sampler.asSampler(), transport, goal, request.context.capabilities().renderer, interrupted);
     if (!reference || interrupted()) return std::nullopt;
     if (!isOwn && !request.own.empty()) measure::ReferenceCache(request.own).store(key, *reference);
-    result.of.emplace(transport, std::move(*reference));
+    if (allMaterials)
+      result.own = std::move(*reference);
+    else
+      result.of.emplace(transport, std::move(*reference));
     progress.update(++done);
   }
   result.indirect_ = difference(result.all(), result.of.at(Transport::direct));

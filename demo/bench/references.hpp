@@ -20,6 +20,7 @@ struct ReferenceRequest {
   std::uint64_t samples = 0;      ///< a pixel; 0: by time
   std::filesystem::path folder;   ///< of the cache; empty: the default
   bool quiet = false;
+  bool path = false;               ///< one for the path tracer too, where it sees more than Lambert's surfaces
   std::filesystem::path own = {};  ///< the bench's copies: what its rows were judged by stays, though the cache goes on growing; empty: none
 };
 
@@ -30,7 +31,10 @@ struct References {
   const measure::Reference& indirect() const { return indirect_; }
   measure::ReferenceNoise noise(const measure::Reference& r) const { return measure::noiseOf(r.mean, r.standardError, r.meanError); }
   const measure::Reference& all() const { return of.at(measure::Transport::all); }
+  /// What path tracing is judged by: mirrors, glass and rough metal as they are.
+  const measure::Reference& path() const { return own ? *own : all(); }
 
+  std::optional<measure::Reference> own;  ///< none: the scene has surfaces of Lambert's alone
   measure::Reference indirect_;
 };
 

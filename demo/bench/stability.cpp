@@ -2,6 +2,7 @@
 #include "bench/stability.hpp"
 
 #include "base/error.hpp"
+#include "base/files.hpp"
 #include "bench/bench.hpp"
 
 #include <fmt/core.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 
 namespace lucerna::demo {
 
@@ -56,7 +58,9 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
   std::vector<StabilityCase> cases;
   addLpvCases(cases);
   addPictureCases(cases);
+  addRadiosityCases(cases);
   addPathCases(cases);
+  addMediaCases(cases);
   std::string known;
   for (const StabilityCase& c : cases)
     if (known.find(c.technique) == std::string::npos) known += (known.empty() ? "" : ", ") + c.technique;
@@ -90,17 +94,56 @@ nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows) {
   return json;
 }
 
+std::vector<std::string> worseRows(const nlohmann::ordered_json& now, const nlohmann::ordered_json& kept, const std::string& technique, const std::string& file) {
+  std::vector<std::string> worse;
+  try {
+    const auto key = [](const nlohmann::ordered_json& row) {
+      return fmt::format("{}: {}, {}", row.at("technique").get<std::string>(), row.at("case").get<std::string>(), row.at("parameter").get<std::string>());
+    };
+    std::map<std::string, const nlohmann::ordered_json*> rows;
+    for (const auto& row : now) rows.emplace(key(row), &row);
+    for (const auto& before : kept) {
+      const std::string name = key(before);
+      if (!technique.empty() && before.at("technique") != technique) continue;
+      const auto found = rows.find(name);
+      if (found == rows.end()) {
+        worse.push_back(name + ": gone");
+        continue;
+      }
+      const auto& row = *found->second;
+      if (before.at("verdict") == "pass" && row.at("verdict") != "pass") worse.push_back(fmt::format("{}: measured {}, was {}", name, row.at("measured").dump(), before.at("measured").dump()));
+      if (before.at("rule") != row.at("rule")) worse.push_back(fmt::format("{}: the rule is {}, was {}", name, row.at("rule").dump(), before.at("rule").dump()));
+      // Statistical rows allow multiples of their own standard error, which differs a little from processor to processor.
+      const double allowed = row.at("tolerance"), allowedBefore = before.at("tolerance");
+      if (!(allowed <= 1.05 * allowedBefore)) worse.push_back(fmt::format("{}: allows {}, was {}", name, allowed, allowedBefore));
+      const double expected = row.at("expected"), expectedBefore = before.at("expected");
+      if (!(std::abs(expected - expectedBefore) <= 1e-9 * std::abs(expectedBefore))) worse.push_back(fmt::format("{}: expects {}, was {}", name, expected, expectedBefore));
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throwBadInput("--compare {}: no table of bench stability --json ({})", file, error.what());
+  }
+  return worse;
+}
+
 }  // namespace bench
 
 namespace {
 
 struct Options {
   CommonOptions common;
-  std::string technique;
+  std::string technique, compare;
 };
+
+/// The rows of a table that was kept. Throws Error(badInput).
+nlohmann::ordered_json readKept(const std::string& file) {
+  const auto json = nlohmann::ordered_json::parse(readFileText(file), nullptr, false);
+  if (!json.is_object() || !json.contains("rows")) throwBadInput("--compare {}: no table of bench stability --json", file);
+  return json.at("rows");
+}
 
 int run(const Options& options) {
   options.common.apply();
+  const nlohmann::ordered_json kept = options.compare.empty() ? nlohmann::ordered_json() : readKept(options.compare);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
@@ -108,22 +151,31 @@ int run(const Options& options) {
   const std::vector<bench::StabilityRow> rows = bench::runStability({context, programs}, options.technique, options.common.quiet);
   int failed = 0;
   double seconds = 0.0;
-  if (!options.common.quiet) fmt::print("Renderer {}\n\n{:<11}{:<46}{:<22}{:<26}{:<14}{:>7}\n", context.capabilities().renderer, "technique", "case", "parameter", "expected", "measured", "s");
+  if (!options.common.quiet) fmt::print("Renderer {}\n\n{:<11}{:<66}{:<24}{:<26}{:<14}{:>7}\n", context.capabilities().renderer, "technique", "case", "parameter", "expected", "measured", "s");
   for (const bench::StabilityRow& row : rows) {
     failed += !row.passed;
     seconds += row.seconds;
     if (options.common.quiet) continue;
-    fmt::print("{:<11}{:<46}{:<22}{:<26}{:<14.7g}{:>7.2f}  {}{}\n", row.technique, row.name, row.parameter, expectedText(row.measurement), row.measurement.measured, row.seconds,
+    fmt::print("{:<11}{:<66}{:<24}{:<26}{:<14.7g}{:>7.2f}  {}{}\n", row.technique, row.name, row.parameter, expectedText(row.measurement), row.measurement.measured, row.seconds,
                row.passed ? "pass" : "FAIL", row.note.empty() ? "" : ": " + row.note);
   }
   if (!options.common.quiet) fmt::print("\n{} rows, {} failed, {:.1f} s\n", rows.size(), failed, seconds);
+  const nlohmann::ordered_json json = bench::stabilityJson(rows);
+  std::vector<std::string> worse;
+  if (!options.compare.empty() && !interrupted()) {
+    worse = bench::worseRows(json, kept, options.technique, options.compare);
+    for (const std::string& line : worse) fmt::print("worse than {}: {}\n", options.compare, line);
+    if (worse.empty() && !options.common.quiet) fmt::print("nothing is worse than {}\n", options.compare);
+  }
   options.common.writeJson({{"renderer", context.capabilities().renderer},
                             {"host", std::string(nameOf(host->kind()))},
-                            {"rows", bench::stabilityJson(rows)},
+                            {"rows", json},
                             {"failed", failed},
+                            {"worse", worse},
                             {"seconds", seconds}});
   if (interrupted()) return 130;
-  return failed > 0 ? 1 : 0;
+  // Beside a table that was kept, a defect that it knows of is no news.
+  return (options.compare.empty() ? failed > 0 : !worse.empty()) ? 1 : 0;
 }
 
 }  // namespace
@@ -131,6 +183,7 @@ int run(const Options& options) {
 Work addBenchStability(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("--technique", options->technique, "only this one's rows");
+  app.add_option("--compare", options->compare, "a table kept by --json: rows that are gone, fail now, expect another answer or allow more are named, exit code 1");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -41,6 +41,8 @@ void addLpvCases(std::vector<StabilityCase>& cases);
 /// Of the techniques that Renderer draws: units, scale, place, size, nothing to light.
 void addPictureCases(std::vector<StabilityCase>& cases);
 void addPathCases(std::vector<StabilityCase>& cases);
+void addMediaCases(std::vector<StabilityCase>& cases);
+void addRadiosityCases(std::vector<StabilityCase>& cases);
 
 struct StabilityRow {
   std::string technique, name, parameter, note;
@@ -52,5 +54,8 @@ struct StabilityRow {
 std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet);
 nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows);
 std::string expectedText(const Measurement& m);
+/// What is worse in `now` than in `kept`, both as stabilityJson() has them, a line each: rows that are gone, that failed not and fail, that expect something else or allow
+/// more. New rows are no harm. `technique`, unless empty: of its rows alone. Throws Error(badInput) where `kept` is no such table; `file` is for the message.
+std::vector<std::string> worseRows(const nlohmann::ordered_json& now, const nlohmann::ordered_json& kept, const std::string& technique, const std::string& file);
 
 }  // namespace lucerna::demo::bench

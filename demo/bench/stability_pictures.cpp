@@ -32,6 +32,8 @@ Image picture(const StabilityContext& c, const Room& room, const View& view) {
   settings.size = view.size;
   settings.component = view.component;
   settings.fullFloatTarget = true;
+  settings.radiosity.solution.patches.longestEdge = 3.0 * room.scale;
+  settings.radiosity.solution.hemicubes.resolution = 32;
   const Scene scene = makeRoom(room);
   Renderer renderer(c.context, c.programs, scene, settings);
   renderer.render(scene.cameras.front());
@@ -147,11 +149,11 @@ void addRsm(std::vector<StabilityCase>& cases) {
 }  // namespace
 
 void addPictureCases(std::vector<StabilityCase>& cases) {
-  for (const Technique technique : {Technique::direct, Technique::rsm, Technique::lpv}) {
+  for (const Technique technique : {Technique::direct, Technique::rsm, Technique::lpv, Technique::radiosity}) {
     const View view{technique};
     addUnits(cases, view);
     addExtremes(cases, view);
-    if (technique != Technique::direct) addIndirect(cases, view);
+    if (technique == Technique::rsm || technique == Technique::lpv) addIndirect(cases, view);
   }
   addRsm(cases);
 }

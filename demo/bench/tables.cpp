@@ -48,7 +48,7 @@ void print(const bench::Tables& tables) {
       table = row.table;
       fmt::print("\nTable {}\n{:<50}{:<18}", table, "", "paths");
       for (const auto& published : row.published) fmt::print("{:>14}", published.gpu);
-      fmt::print("{:>12}{:>28}  {}\n", "here, ms", "5 .. 95 % (count)", "here / published");
+      fmt::print("{:>12}{:>32}  {}\n", "here, ms", "5 .. 95 % (count)", "here / published");
     }
     const std::string paths = row.fill.empty() ? "" : row.fill + (row.propagate.empty() ? "" : "/" + row.propagate);
     const std::string grids = row.grids > 0 ? fmt::format(", {} grid{}", row.grids, row.grids > 1 ? "s" : "") : "";
@@ -63,7 +63,7 @@ void print(const bench::Tables& tables) {
       continue;
     }
     const double ms = row.measured();
-    fmt::print("{:>12}{:>28} ", column(ms), fmt::format("{} .. {} ({})", column(percentile(row.samples, 0.05)), column(percentile(row.samples, 0.95)), row.samples.size()));
+    fmt::print("{:>12}{:>32} ", column(ms), fmt::format("{} .. {} ({})", column(percentile(row.samples, 0.05)), column(percentile(row.samples, 0.95)), row.samples.size()));
     for (const auto& published : row.published) fmt::print(" {:>9.4g}", ms / published.ms);
     fmt::print("\n");
   }

@@ -180,45 +180,39 @@ class Bench {
   std::vector<Config> order_;
 };
 
-/// Reading and writing grids of that size once a step: the least that propagation must do.
+/// Reading and writing grids of that size once a step, lit or not: the least that propagation in all cells must do.
 class Copy {
  public:
-  Copy(gl::ProgramLibrary& programs, int cells, int grids, int iterations) : iterations_(iterations) {
-    const gl::ShaderFlags flags{{"LPV_FULL_FLOAT", 0}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}};
-    for (int withSum = 0; withSum < 2; ++withSum) {
-      gl::ShaderFlags all = flags;
-      all.emplace_back("WITH_SUM", withSum);
-      copy_[static_cast<std::size_t>(withSum)] = &programs.loadCompute(withSum ? "bench copy and sum" : "bench copy", "bench/copy_grids.comp", all);
+  Copy(gl::ProgramLibrary& programs, int cells, int grids, int iterations) : iterations_(iterations), cells_(cells * cells * cells * grids) {
+    for (int withSum = 0; withSum < 2; ++withSum)
+      copy_[static_cast<std::size_t>(withSum)] =
+          &programs.loadCompute(withSum ? "bench copy and sum" : "bench copy", "bench/copy_grids.comp", {{"WITH_SUM", withSum}});
+    for (gl::BufferTexture& grid : grids_) {
+      grid = gl::BufferTexture("bench grids", GL_RGBA32F, 3 * 16 * static_cast<std::size_t>(cells_), nullptr, GL_DYNAMIC_COPY);
+      grid.clear();
     }
-    for (auto& volume : grids_)
-      for (gl::Texture& texture : volume) {
-        texture = gl::Texture("bench grid", GL_RGBA16F, glm::ivec3(cells, cells, cells * grids));
-        const std::array<const gl::Texture*, 1> one{&texture};
-        gl::clearToZero(one, false);
-      }
   }
 
   void run(gl::TimeQuery& timer) const {
     for (std::size_t withSum = 0; withSum < 2; ++withSum) {
       const gl::TimeQuery::Scope stage(timer, withSum ? "copy and sum" : "copy");
       for (int step = 0; step < iterations_; ++step) {
-        const gl::ComputePass pass("bench copy", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        const gl::ComputePass pass("bench copy", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
         copy_[withSum]->use();
-        for (GLuint channel = 0; channel < 3; ++channel) {
-          grids_[step % 2 ? 1 : 0][channel].bind(channel);
-          grids_[step % 2 ? 0 : 1][channel].bindImage(channel, GL_WRITE_ONLY);
-          grids_[2][channel].bindImage(3 + channel, GL_READ_WRITE);
-        }
-        pass.dispatch(grids_[0][0].size(), kGroup);
+        copy_[withSum]->set("count", cells_);
+        grids_[step % 2 ? 1 : 0].bind(0);
+        grids_[step % 2 ? 0 : 1].buffer().bind(GL_SHADER_STORAGE_BUFFER, 0);
+        grids_[2].bind(1);
+        grids_[2].buffer().bind(GL_SHADER_STORAGE_BUFFER, 1);
+        pass.dispatch(glm::ivec3(cells_, 1, 1), glm::ivec3(64, 1, 1));
       }
     }
   }
 
  private:
-  static constexpr glm::ivec3 kGroup{8, 8, 1};  // as the propagation
-  int iterations_;
+  int iterations_, cells_;
   std::array<const gl::Program*, 2> copy_{};
-  std::array<LightPropagationVolume::Volume, 3> grids_;
+  std::array<gl::BufferTexture, 3> grids_;
 };
 
 /// One channel of a 32^3 grid set to zero, both ways in turn.

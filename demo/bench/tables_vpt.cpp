@@ -4,7 +4,13 @@
 // samples, as a path tracer's work is proportional to both. A picture that would take too long ends early and is multiplied up likewise.
 #include "bench/vpt_series.hpp"
 
+#include "measure/image_errors.hpp"
+#include "render/deviations.hpp"
+
 #include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace lucerna::demo::bench {
 
@@ -12,6 +18,47 @@ namespace {
 
 /// Seconds a picture below full scale may take.
 constexpr double kMostSeconds = 15.0;
+
+/// Of the picture that stands for the estimator: espresso, as much absorbed as scattered behind a boundary that refracts.
+constexpr std::size_t kEstimatorPicture = 14;
+
+/// The published estimator, and each of its deviations alone, against the corrected one: time, and how far the picture is off.
+void measureEstimators(const VptTablesInput& input, glm::ivec2 size, double mostSeconds, Tables& tables) {
+  const VptPicture& picture = vptPictures()[kEstimatorPicture];
+  const Scene scene = loadVptScene(picture);
+  const std::uint32_t samples = vptSamples(picture, input.scale);
+  struct Estimator {
+    std::string name;
+    RenderSettings settings;
+  };
+  std::vector<Estimator> estimators{{"corrected", {}}, {"original", {}}};
+  applyFidelity(estimators[1].settings, Fidelity::original);
+  for (const Deviation& deviation : allDeviations()) {
+    if (!std::string_view(deviation.name).starts_with("path.")) continue;
+    Estimator& alone = estimators.emplace_back(Estimator{deviation.name, {}});
+    deviation.turn(alone.settings, true);
+  }
+  tables.json["estimators"] = nlohmann::ordered_json::array();
+  if (interrupted()) return;
+  const VptResult reference = renderVpt(input.context, input.programs, picture, scene, size, 4 * samples, 4.0 * mostSeconds, {}, 1);
+  const auto channelMean = [](const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; };
+  const double right = channelMean(reference.statistics.mean);
+  tables.summary += fmt::format("\nThe estimator on {} ({}), beside the corrected one with other random numbers and {:.4g} samples a pixel. Bias: of the picture's mean.\n{:<34}{:>12}{:>14}{:>22}{:>12}\n", picture.label,
+                                picture.figure, reference.statistics.samples, "", "ms a sample", "NRMSE", "bias", "time");
+  double correctedMs = 0.0;
+  for (const Estimator& estimator : estimators) {
+    if (interrupted()) return;
+    const VptResult result = renderVpt(input.context, input.programs, picture, scene, size, samples, mostSeconds, estimator.settings.path);
+    const double ms = result.ms / result.statistics.samples;
+    if (correctedMs == 0.0) correctedMs = ms;
+    const double bias = channelMean(result.statistics.mean) / right - 1.0;
+    const double error = std::hypot(channelMean(result.statistics.meanError), channelMean(reference.statistics.meanError)) / right;
+    const double nrmse = measure::errorsOf(result.image, reference.image).nrmse;
+    tables.summary += fmt::format("{:<34}{:>12.4g}{:>14.4g}{:>22}{:>11.3g}x\n", estimator.name, ms, nrmse, fmt::format("{:+.4f} +- {:.4f}", bias, error), ms / correctedMs);
+    tables.json["estimators"].push_back({{"estimator", estimator.name}, {"figure", picture.figure}, {"ms_a_sample", ms}, {"spp", result.statistics.samples}, {"nrmse", nrmse}, {"bias", bias},
+                                         {"bias_error", error}, {"time_ratio", ms / correctedMs}});
+  }
+}
 
 }  // namespace
 
@@ -56,6 +103,7 @@ Tables measureVptTables(const VptTablesInput& input) {
     progress.update(static_cast<int>(i) + 1);
   }
   tables.summary = fmt::format("All pictures together: {:.4g} s here, {:.4g} s published ({:.4g} times).\n", measured / 1000.0, published / 1000.0, measured / published);
+  measureEstimators(input, size, 0.5 * mostSeconds, tables);
   return tables;
 }
 

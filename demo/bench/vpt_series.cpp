@@ -56,8 +56,10 @@ std::uint32_t vptSamples(const VptPicture& picture, double scale) {
 }
 
 VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, const VptPicture& picture, const Scene& scene, glm::ivec2 size, std::uint32_t samples,
-                    double mostSeconds) {
+                    double mostSeconds, const PathDeviations& deviations, std::uint32_t seed) {
   PathTracer::Settings settings;
+  settings.deviations = deviations;
+  settings.seed = seed;
   settings.size = size;
   PathTracer tracer(context, programs, scene, settings);
   const Camera camera = chooseCamera(scene, picture.camera);

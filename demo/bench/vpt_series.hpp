@@ -43,6 +43,6 @@ struct VptResult {
   double ms = 0.0;  ///< of what was done, compiling and uploading left out
 };
 VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, const VptPicture& picture, const Scene& scene, glm::ivec2 size, std::uint32_t samples,
-                    double mostSeconds);
+                    double mostSeconds, const PathDeviations& deviations = {}, std::uint32_t seed = 0);
 
 }  // namespace lucerna::demo::bench

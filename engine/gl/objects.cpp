@@ -148,6 +148,14 @@ void Texture::upload(GLenum format, GLenum type, const void* data, int level) {
     glTexSubImage3D(target_, level, 0, 0, 0, size.x, size.y, size.z, format, type, data);
 }
 
+void Texture::copyFrom(const Buffer& buffer, std::size_t offset) {
+  const Format& format = formatOf(format_);
+  CHECK(levels_ == 1 && offset + bytes() <= buffer.bytes(), "{} bytes at {} of {}", bytes(), offset, buffer.bytes());
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer.id());
+  upload(format.format, format.type, reinterpret_cast<const void*>(offset));
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+}
+
 void Texture::generateMipmaps() {
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
@@ -191,8 +199,8 @@ std::vector<glm::uvec4> Texture::readWords() const {
   return words;
 }
 
-BufferTexture::BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data)
-    : buffer_(name, bytes, data, GL_STATIC_DRAW) {
+BufferTexture::BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data, GLenum usage)
+    : buffer_(name, bytes, data, usage) {
   GLuint id = 0;
   glGenTextures(1, &id);
   texture_ = decltype(texture_)(id);

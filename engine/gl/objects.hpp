@@ -64,6 +64,13 @@ class Buffer {
     readBytes(values.data(), bytes_);
     return values;
   }
+  /// Its first `count` values.
+  template <class T>
+  std::vector<T> read(std::size_t count) const {
+    std::vector<T> values(count);
+    readBytes(values.data(), count * sizeof(T));
+    return values;
+  }
   /// What it begins with.
   template <class T>
   T readFirst() const {
@@ -107,6 +114,9 @@ class Texture {
   std::size_t bytes() const;  ///< of all levels; zero when moved from
 
   void upload(GLenum format, GLenum type, const void* data, int level = 0);
+  /// Level 0 from a buffer that holds the texels as the texture keeps them, beginning at `offset`. What shaders wrote there needs
+  /// GL_PIXEL_BUFFER_BARRIER_BIT before.
+  void copyFrom(const Buffer& buffer, std::size_t offset);
   void generateMipmaps();
   void bind(GLuint unit) const;
   void bindImage(GLuint unit, GLenum access, int level = 0) const;
@@ -130,13 +140,17 @@ class BufferTexture {
  public:
   BufferTexture() = default;
   /// format: GL_RGBA32F, GL_RGBA32UI, ...; `bytes` above 0.
-  BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data);
+  BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data, GLenum usage = GL_STATIC_DRAW);
   BufferTexture(BufferTexture&&) noexcept = default;
   BufferTexture& operator=(BufferTexture&&) noexcept = default;
 
   std::size_t bytes() const { return buffer_.bytes(); }
   void upload(std::size_t offset, std::size_t bytes, const void* data) { buffer_.upload(offset, bytes, data); }
+  void clear() { buffer_.clear(); }
   void bind(GLuint unit) const;
+  /// The same words as a shader storage block, for those who write them; GL_TEXTURE_FETCH_BARRIER_BIT before they are fetched.
+  Buffer& buffer() { return buffer_; }
+  const Buffer& buffer() const { return buffer_; }
 
  private:
   Buffer buffer_;

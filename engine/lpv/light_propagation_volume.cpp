@@ -12,9 +12,14 @@ namespace {
 
 constexpr GLuint kConstantsBinding = 1;
 constexpr std::size_t kCellBytes = 16;  // of four coefficients in a buffer
-// Bindings of the buffers of lpv/propagate.comp.
-constexpr GLuint kSourceBuffer = 0, kNextBuffer = 1, kSumBuffer = 2, kFacesBuffer = 3;
+// Bindings of storage buffers: of the steps (lpv/propagate.comp) and of what makes the result from the sums (lpv/join.comp).
+constexpr GLuint kFrontBuffer = 0, kNextBuffer = 1, kSumBuffer = 2, kFacesBuffer = 3, kBricksBuffer = 4;
+constexpr GLuint kReceivedBuffer = 0, kResultBuffer = 1, kBalancedBuffer = 2, kBalancesBuffer = 3;
 constexpr glm::ivec3 kGroup{8, 8, 1};  // the fastest of those tried on llvmpipe, see README.md
+constexpr glm::ivec3 kTexelsOfGroup = kGroup * glm::ivec3(4, 4, 1);  // an invocation adds up a tile of 4x4, as in lpv/tile.glsl
+constexpr double kSmallestCosine = 0.05;                             // to which the reflective shadow map bounds a texel's area
+constexpr int kBrick = 4;              // cells a side, as in lpv/bricks.glsl
+constexpr std::array<GLuint, 4> kNoBricks{64, 0, 1, 0};  // groups of the dispatch, a row at a time, and their count
 constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 
 }  // namespace
@@ -41,6 +46,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   const auto cellsOf = [](const glm::ivec3& texels) {
     return static_cast<std::size_t>(texels.x) * static_cast<std::size_t>(texels.y) * static_cast<std::size_t>(texels.z);
   };
+  const std::size_t volumeBytes = 3 * cellsOf(size) * kCellBytes;
   const gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};  // outside the grid is dark
   steps_ = std::max(settings.iterations - (deviations.fewerSteps ? 1 : 0), 0);
   const bool joined = c.cascades > 1 && !deviations.sumCascades && !deviations.unjoined;
@@ -51,6 +57,11 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   const auto allocate = [](Volume& volume, const char* name, GLenum texelFormat, glm::ivec3 texels, const gl::Sampling& how) {
     for (std::size_t channel = 0; channel < 3; ++channel)
       volume[channel] = gl::Texture(fmt::format("lpv {} {}", name, kChannels[channel]), texelFormat, texels, how);
+  };
+  const auto buffer = [&](const std::string& name, GLenum texelFormat, std::size_t bytes) {
+    if (bytes / gl::bytesPerTexel(texelFormat) > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
+      throwMissingCapability("{}: {} bytes; the largest texture buffer of the driver has {} texels", name, bytes, capabilities.maxTextureBufferSize);
+    return gl::BufferTexture(name, texelFormat, bytes, nullptr, GL_DYNAMIC_COPY);
   };
   const gl::ShaderFlags group{{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}};
   const auto with = [](gl::ShaderFlags flags, const gl::ShaderFlags& more) {
@@ -75,9 +86,9 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     fillsHalfVectors_ = !fixed && !capabilities.shaderAtomicFloat;  // 16-bit sums stop growing: only where there is no other
     const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed && !fillsHalfVectors_}, {"FILL_HALF", fillsHalfVectors_}};
     inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(with(group, fill), vpl));
-    resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(with(group, fill), vpl));
-    allocate(counts_, "count", fixed ? GL_R32I : fillsHalfVectors_ ? GL_RGBA16F : GL_R32F,
-             glm::ivec3(fillsHalfVectors_ ? size.x : 4 * size.x, size.y, size.z), {});
+    if (fixed || fillsHalfVectors_) resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(with(group, fill), vpl));
+    if (fillsHalfVectors_) allocate(counts_, "count", GL_RGBA16F, size, {});
+    fronts_[0] = buffer("lpv front even", GL_RGBA32F, volumeBytes);
   }
 
   if (settings.bounces > 1 && (!settings.blocking || steps_ < 2))
@@ -110,43 +121,64 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
       viewPotential_ = gl::Texture("lpv view", GL_RGBA32F, corners);
       allocateView("lpv view", viewReflectance_, viewPotential_, viewTarget_);
     }
+    // What several views see is merged and what reflects has an albedo as well: then by blending, whatever fills the grid.
+    if (settings.fill != LpvFill::layered && !fillsHalfVectors_ && !settings.mergeViews && !reflects() && !deviations.surfelArea) {
+      const gl::ShaderFlags fill{{"FILL_FIXED", settings.fill == LpvFill::fixed}, {"FILL_FLOAT", settings.fill == LpvFill::atomic}, {"TRUNCATE", deviations.truncate}};
+      countSurfels_ = &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp", with(with(group, fill), vpl));
+      potential_ = buffer("lpv geometry volume's counts", GL_RGBA32F, cellsOf(corners) * kCellBytes);
+    }
     if (!layered) {
-      averageFaces_ = &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp", with(group, kernel));
-      faces_ = gl::Buffer("lpv geometry faces", 3 * cellsOf(corners) * kCellBytes, nullptr, GL_DYNAMIC_COPY);
+      const auto average = [&](bool fromBuffer) {
+        return &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp", with(with(group, {{"FROM_BUFFER", fromBuffer}}), kernel));
+      };
+      averageFaces_ = average(false);
+      if (countSurfels_) averageCountedFaces_ = average(true);
+      faces_ = buffer("lpv geometry faces", GL_RGBA32F, 3 * cellsOf(corners) * kCellBytes);
     }
   }
 
   if (steps_ == 0) return;
   allocate(result_, "result", format, size, sampling);
   const bool joins = joined && settings_.handOver < steps_;
+  const gl::ShaderFlags from = with(group, {{"FROM_BUFFER", !layered}, {"JOINED", joins}});
   if (joins) {
-    balance_ = &programs.loadCompute("lpv balance", "lpv/balance.comp", group);
-    join_ = &programs.loadCompute("lpv join", "lpv/join.comp", group);
-    allocate(farSum_, "far sum", GL_RGBA32F, size, sampling);
-    const int half = (c.cells + 1) / 2;
-    balances_ = gl::Texture("lpv balances", GL_R32F, glm::ivec3(half), {GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE});
-    balanced_ = gl::Texture("lpv balanced", GL_R32F, size, sampling);
+    const int pairs = (c.cells + 1) / 2;
+    balance_ = &programs.loadCompute("lpv balance", "lpv/balance.comp", from);
+    join_ = &programs.loadCompute("lpv join", "lpv/join.comp", with(from, {{"HAS_COARSER", 1}}));
+    joinCoarsest_ = &programs.loadCompute("lpv join coarsest", "lpv/join.comp", with(from, {{"HAS_COARSER", 0}}));
+    received_ = buffer("lpv received", GL_RGBA32F, volumeBytes);
+    balances_ = buffer("lpv balances", GL_R32F, cellsOf(glm::ivec3(pairs)) * sizeof(float));
+    balanced_ = buffer("lpv balanced", GL_R32F, cellsOf(size) * sizeof(float));
+  } else {
+    finish_ = &programs.loadCompute("lpv finish", "lpv/finish.comp", from);
   }
+  resultTexels_ = gl::Buffer("lpv result texels", 3 * result_[0].bytes(), nullptr, GL_DYNAMIC_COPY);
   if (reflects()) {
     allocate(source_, "source", GL_RGBA32F, size, sampling);
-    reflect_ = &programs.loadCompute("lpv reflect", "lpv/reflect.comp", with(group, {{"JOINED", joins}}));
+    reflect_ = &programs.loadCompute("lpv reflect", "lpv/reflect.comp", from);
   }
-  if (joins || layered) allocate(sum_, "sum", GL_RGBA32F, size, sampling);
   const bool firstBlocked = blocked && deviations.blockFirstStep;
   if (!layered) {
-    const auto load = [&](const std::string& name, bool withBlocking) {
+    const auto load = [&](const std::string& name, bool first, bool withBlocking) {
       return &programs.loadCompute(name, "lpv/propagate.comp",
-                                   with(with(group, {{"BLOCKED", withBlocking}}), kernel));
+                                   with(with(group, {{"FIRST", first}, {"WITH_INJECTED", !deviations.fewerSteps}, {"BLOCKED", withBlocking}}), kernel));
     };
-    begin_ = &programs.loadCompute("lpv begin", "lpv/begin.comp", with(with(group, {{"WITH_INJECTED", !deviations.fewerSteps}}), kernel));
-    finish_ = &programs.loadCompute("lpv finish", "lpv/finish.comp", with(group, {{"FROM_BUFFER", 1}, {"JOINED", joins}}));
-    propagateFirst_ = load("lpv propagate first", firstBlocked);
-    if (steps_ > 1) propagateFurther_ = load("lpv propagate", blocked);
+    begin_ = &programs.loadCompute("lpv begin", "lpv/begin.comp", group);
+    markBricks_ = &programs.loadCompute("lpv mark bricks", "lpv/mark_bricks.comp", group);
+    listBricks_ = &programs.loadCompute("lpv list bricks", "lpv/list_bricks.comp", group);
+    propagateFirst_ = load("lpv propagate first", true, firstBlocked);
+    if (steps_ > 1) propagateFurther_ = load("lpv propagate", false, blocked);
     for (std::size_t i = 0; i < 2; ++i)
-      fronts_[i] = gl::Buffer(i == 0 ? "lpv front even" : "lpv front odd", 3 * cellsOf(size) * kCellBytes, nullptr, GL_DYNAMIC_COPY);
-    sums_ = gl::Buffer("lpv sums", 3 * cellsOf(size) * kCellBytes, nullptr, GL_DYNAMIC_COPY);
+      if (fronts_[i].bytes() == 0) fronts_[i] = buffer(i == 0 ? "lpv front even" : "lpv front odd", GL_RGBA32F, volumeBytes);
+    sums_ = buffer("lpv sums", GL_RGBA32F, volumeBytes);
+    if (joins) farSums_ = buffer("lpv far sums", GL_RGBA32F, volumeBytes);
+    const int bricksOfAxis = (c.cells + kBrick - 1) / kBrick;
+    brickCount_ = bricksOfAxis * bricksOfAxis * bricksOfAxis * c.cascades;
+    bricks_ = gl::Buffer("lpv bricks", sizeof kNoBricks + 3 * static_cast<std::size_t>(brickCount_) * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
     return;
   }
+  allocate(sum_, "sum", GL_RGBA32F, size, sampling);
+  if (joins) allocate(farSum_, "far sum", GL_RGBA32F, size, sampling);
   const auto load = [&](bool withBlocking, bool withInjected) {
     return &programs.loadRaster("lpv propagate layered", "lpv/propagate_layered.vert", "lpv/propagate_layered.frag",
                                 with({{"LPV_FULL_FLOAT", full}, {"POINTS", settings.propagate == LpvPropagate::layered}, {"BLOCKED", withBlocking},
@@ -155,7 +187,6 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   };
   propagateFirst_ = load(firstBlocked, !deviations.fewerSteps);
   if (steps_ > 1) propagateFurther_ = load(blocked, false);
-  if (!joins) finish_ = &programs.loadCompute("lpv finish", "lpv/finish.comp", with(group, {{"FROM_BUFFER", 0}, {"JOINED", 0}}));
   for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i) {
     allocate(layeredFronts_[i], i == 0 ? "front even" : "front odd", GL_RGBA32F, size, sampling);
     for (std::size_t far = 0; far < (joins ? 2u : 1u); ++far) {
@@ -179,32 +210,48 @@ int LightPropagationVolume::handOverStep(int iterations, double ratio) {
   return std::clamp(static_cast<int>(std::lround(steps)), 1, std::max(iterations, 1));
 }
 
+void LightPropagationVolume::bindSums() const {
+  if (settings_.propagate == LpvPropagate::compute) {
+    sums_.bind(0);
+    if (join_) farSums_.bind(3);
+    return;
+  }
+  for (GLuint channel = 0; channel < 3; ++channel) {
+    sum_[channel].bind(channel);
+    if (join_) farSum_[channel].bind(3 + channel);
+  }
+}
+
+// From the buffer to the textures that are filtered: see lpv/result.glsl.
+void LightPropagationVolume::copyResult() {
+  for (std::size_t channel = 0; channel < 3; ++channel) result_[channel].copyFrom(resultTexels_, channel * result_[channel].bytes());
+}
+
 void LightPropagationVolume::join() {
   if (!join_) return;
+  bindSums();
+  balances_.bind(7);
   for (int k = settings_.cascades.cascades - 1; k >= 0; --k) {
-    for (GLuint channel = 0; channel < 3; ++channel) {
-      farSum_[channel].bind(channel);
-      sum_[channel].bind(3 + channel);
-    }
-    balanced_.bind(6);
-    if (k + 1 < settings_.cascades.cascades) {
+    const bool coarsest = k + 1 == settings_.cascades.cascades;
+    if (!coarsest) {
       const gl::ComputePass pass("lpv balance", GL_TEXTURE_FETCH_BARRIER_BIT);
       balance_->use();
       balance_->set("cascade", k);
-      balances_.bindImage(0, GL_WRITE_ONLY);
-      pass.dispatch(balances_.size(), kGroup);
+      balanced_.bind(6);
+      balances_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kBalancesBuffer);
+      pass.dispatch(glm::ivec3((settings_.cascades.cells + 1) / 2), kGroup);
     }
-    const gl::ComputePass pass("lpv join", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    join_->use();
-    join_->set("cascade", k);
-    balances_.bind(7);
-    for (GLuint channel = 0; channel < 3; ++channel) {
-      farSum_[channel].bindImage(channel, GL_WRITE_ONLY);
-      result_[channel].bindImage(3 + channel, GL_WRITE_ONLY);
-    }
-    balanced_.bindImage(6, GL_WRITE_ONLY);
+    const gl::ComputePass pass("lpv join", GL_TEXTURE_FETCH_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+    const gl::Program& program = coarsest ? *joinCoarsest_ : *join_;
+    program.use();
+    program.set("cascade", k);
+    received_.bind(6);
+    received_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kReceivedBuffer);
+    resultTexels_.bind(GL_SHADER_STORAGE_BUFFER, kResultBuffer);
+    balanced_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kBalancedBuffer);
     pass.dispatch(glm::ivec3(settings_.cascades.cells), kGroup);
   }
+  copyResult();
 }
 
 void LightPropagationVolume::place(const Inputs& inputs) {
@@ -242,7 +289,7 @@ float LightPropagationVolume::fluxScale(const ReflectiveShadowMap::Outputs& rsm)
 }
 
 void LightPropagationVolume::inject(const Inputs& inputs) {
-  if (resolve_) return fillByAtomics(inputs);
+  if (settings_.fill != LpvFill::layered) return fillByAtomics(inputs);
   const std::array<const gl::Texture*, 3> targets{&injected_[0], &injected_[1], &injected_[2]};
   gl::clearToZero(targets, haveClearTexture_);
   gl::RasterState state;
@@ -266,27 +313,76 @@ void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
   for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) flux += rsm.largestFlux * static_cast<double>(fluxScale(rsm));
   const double largest = 1.0233267079464885 / 3.141592653589793 * flux / unit;  // of the sun alone E_ref cancels
   const auto fixedScale = static_cast<float>(settings_.fill == LpvFill::fixed && largest > 0.0 ? 1073741824.0 / largest : 1.0);
-  const std::array<const gl::Texture*, 3> counts{&counts_[0], &counts_[1], &counts_[2]};
-  gl::clearToZero(counts, haveClearTexture_);
+  fronts_[0].clear();
+  if (fillsHalfVectors_) {
+    const std::array<const gl::Texture*, 3> counts{&counts_[0], &counts_[1], &counts_[2]};
+    gl::clearToZero(counts, haveClearTexture_);
+  }
   {
-    const gl::ComputePass pass("lpv inject by atomics", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    const gl::ComputePass pass("lpv inject by atomics",
+                               GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
     inject_->use();
     inject_->set("fixedScale", fixedScale);
-    for (GLuint channel = 0; channel < 3; ++channel) counts_[channel].bindImage(channel, GL_READ_WRITE);
+    fronts_[0].buffer().bind(GL_SHADER_STORAGE_BUFFER, kFrontBuffer);
+    if (fillsHalfVectors_)
+      for (GLuint channel = 0; channel < 3; ++channel) counts_[channel].bindImage(channel, GL_READ_WRITE);
     for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {  // atomics need no order among them
       inject_->set("fluxScale", fluxScale(rsm));
       rsm.bind();
-      pass.dispatch(rsm.position.size(), kGroup);
+      pass.dispatch(rsm.position.size(), kTexelsOfGroup);
     }
   }
-  const gl::ComputePass pass("lpv resolve", GL_TEXTURE_FETCH_BARRIER_BIT);
-  resolve_->set("fixedScale", fixedScale);
-  resolve_->use();
-  for (GLuint channel = 0; channel < 3; ++channel) {
-    counts_[channel].bind(channel);
-    injected_[channel].bindImage(channel, GL_WRITE_ONLY);
+  if (fillsHalfVectors_) {
+    const gl::ComputePass pass("lpv resolve", GL_TEXTURE_FETCH_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+    resolve_->use();
+    for (GLuint channel = 0; channel < 3; ++channel) counts_[channel].bind(channel);
+    fronts_[0].buffer().bind(GL_SHADER_STORAGE_BUFFER, kFrontBuffer);
+    pass.dispatch(injected_[0].size(), kGroup);
+  } else if (resolve_) {
+    resolveCounts(fronts_[0], injected_[0].size(), 3, fixedScale);
   }
-  pass.dispatch(injected_[0].size(), kGroup);
+  for (std::size_t channel = 0; channel < 3; ++channel) injected_[channel].copyFrom(fronts_[0].buffer(), channel * injected_[channel].bytes());
+  frontIsInjected_ = true;
+}
+
+void LightPropagationVolume::resolveCounts(const gl::BufferTexture& counts, const glm::ivec3& size, int channels, float fixedScale) {
+  const gl::ComputePass pass("lpv resolve", GL_TEXTURE_FETCH_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+  resolve_->use();
+  resolve_->set("fixedScale", fixedScale);
+  resolve_->set("size", size);
+  resolve_->set("channels", channels);
+  counts.buffer().bind(GL_SHADER_STORAGE_BUFFER, kFrontBuffer);
+  pass.dispatch(size, kGroup);
+}
+
+// Steps for integers come from the area of all texels together, which only the sun's map knows.
+bool LightPropagationVolume::countsSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps) const {
+  if (!countSurfels_) return false;
+  return settings_.fill != LpvFill::fixed || std::all_of(maps.begin(), maps.end(), [](const ReflectiveShadowMap::Outputs* map) {
+           return map->light == ReflectiveShadowMap::Light::sun;
+         });
+}
+
+void LightPropagationVolume::countSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps, const Inputs& inputs) {
+  // The largest coefficient that there can be: all texels of all maps in one cell of the finest cascade, and as steep as they are counted.
+  const double finest = inputs.cascades.front().cellSize;
+  double area = 0.0;
+  for (const ReflectiveShadowMap::Outputs* map : maps) area += map->texelCount() * static_cast<double>(map->texelArea) / kSmallestCosine;
+  const double largest = 1.0233267079464885 * area / (finest * finest);
+  const auto fixedScale = static_cast<float>(resolve_ && largest > 0.0 ? 1073741824.0 / largest : 1.0);
+  potential_.clear();
+  {
+    const gl::ComputePass pass("lpv count surfels", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+    countSurfels_->use();
+    countSurfels_->set("fixedScale", fixedScale);
+    potential_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kFrontBuffer);
+    for (const ReflectiveShadowMap::Outputs* map : maps) {
+      map->bind();
+      pass.dispatch(map->position.size(), kTexelsOfGroup);
+    }
+  }
+  if (resolve_) resolveCounts(potential_, geometryVolume_->size(), 1, fixedScale);
+  geometryVolume_->copyFrom(potential_.buffer(), 0);
 }
 
 void LightPropagationVolume::drawSurfels(const Inputs& inputs, const ReflectiveShadowMap::Outputs& map, const gl::Framebuffer& target) {
@@ -323,6 +419,25 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
     for (const ReflectiveShadowMap::Outputs& map : inputs.rsms) maps.push_back(&map);
   if (settings_.surfels != LpvSurfels::rsm)
     for (const ReflectiveShadowMap::Outputs& map : inputs.views) maps.push_back(&map);
+  const bool counted = countsSurfels(maps);
+  if (counted)
+    countSurfels(maps, inputs);
+  else
+    drawAllSurfels(maps, inputs);
+  if (!averageFaces_) return;
+  const gl::ComputePass pass("lpv geometry faces", GL_TEXTURE_FETCH_BARRIER_BIT);
+  if (counted) {
+    averageCountedFaces_->use();
+    potential_.bind(0);
+  } else {
+    averageFaces_->use();
+    geometryVolume_->bind(0);
+  }
+  faces_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kFacesBuffer);
+  pass.dispatch(geometryVolume_->size(), kGroup);
+}
+
+void LightPropagationVolume::drawAllSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps, const Inputs& inputs) {
   std::vector<const gl::Texture*> targets{&*geometryVolume_};
   if (reflects()) targets.push_back(&reflectance_);
   gl::clearToZero(targets, haveClearTexture_);
@@ -338,12 +453,6 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
     if (merges) mergeView();
     merges = settings_.mergeViews;
   }
-  if (!averageFaces_) return;
-  const gl::ComputePass pass("lpv geometry faces", GL_SHADER_STORAGE_BARRIER_BIT);
-  averageFaces_->use();
-  geometryVolume_->bind(0);
-  faces_.bind(GL_SHADER_STORAGE_BUFFER, kFacesBuffer);
-  pass.dispatch(geometryVolume_->size(), kGroup);
 }
 
 void LightPropagationVolume::propagate() {
@@ -362,10 +471,9 @@ void LightPropagationVolume::reflect(bool first) {
   reflect_->use();
   reflect_->set("first", first ? 1 : 0);
   reflect_->set("sourceShare", settings_.deviations.fewerSteps ? 0.0f : 1.0f);
+  bindSums();
   for (GLuint channel = 0; channel < 3; ++channel) {
-    injected_[channel].bind(channel);
-    (join_ ? sum_ : result_)[channel].bind(3 + channel);
-    if (join_) farSum_[channel].bind(6 + channel);
+    injected_[channel].bind(6 + channel);
     source_[channel].bindImage(channel, GL_READ_WRITE);
   }
   geometryVolume_->bind(9);
@@ -374,34 +482,60 @@ void LightPropagationVolume::reflect(bool first) {
 }
 
 void LightPropagationVolume::propagateFrom(const Volume& source) {
-  if (settings_.propagate != LpvPropagate::compute) return propagateLayered(source);
-  for (GLuint channel = 0; channel < 3; ++channel) source[channel].bind(channel);
-  sums_.bind(GL_SHADER_STORAGE_BUFFER, kSumBuffer);
-  if (faces_.id()) faces_.bind(GL_SHADER_STORAGE_BUFFER, kFacesBuffer);
-  const glm::ivec3 size = injected_[0].size();
+  if (settings_.propagate == LpvPropagate::compute)
+    propagateByCompute(source);
+  else
+    propagateLayered(source);
+  if (!finish_) return;
   {
-    const gl::ComputePass pass("lpv begin", GL_SHADER_STORAGE_BARRIER_BIT);
+    const gl::ComputePass pass("lpv finish", GL_PIXEL_BUFFER_BARRIER_BIT);
+    finish_->use();
+    bindSums();
+    resultTexels_.bind(GL_SHADER_STORAGE_BUFFER, kResultBuffer);
+    pass.dispatch(injected_[0].size(), kGroup);
+  }
+  copyResult();
+}
+
+void LightPropagationVolume::propagateByCompute(const Volume& source) {
+  // What no brick is dispatched for is never written, so it has to be dark.
+  fronts_[1].clear();
+  sums_.clear();
+  if (join_) farSums_.clear();
+  bricks_.clear();
+  bricks_.upload(0, sizeof kNoBricks, kNoBricks.data());
+  bricks_.bind(GL_SHADER_STORAGE_BUFFER, kBricksBuffer);
+  const glm::ivec3 size = injected_[0].size();
+  if (!frontIsInjected_) {
+    const gl::ComputePass pass("lpv begin", GL_TEXTURE_FETCH_BARRIER_BIT);
     begin_->use();
-    fronts_[0].bind(GL_SHADER_STORAGE_BUFFER, 0);
+    for (GLuint channel = 0; channel < 3; ++channel) source[channel].bind(channel);
+    fronts_[0].buffer().bind(GL_SHADER_STORAGE_BUFFER, kFrontBuffer);
     pass.dispatch(size, kGroup);
   }
-  for (int step = 0; step < steps_; ++step) {
-    const bool far = join_ && step >= settings_.handOver;
-    {
-      const gl::ComputePass pass("lpv propagate", GL_SHADER_STORAGE_BARRIER_BIT);
-      const gl::Program& program = step == 0 ? *propagateFirst_ : *propagateFurther_;
-      program.use();
-      program.set("sumBegins", far && step == settings_.handOver ? 1 : 0);
-      fronts_[static_cast<std::size_t>(step % 2)].bind(GL_SHADER_STORAGE_BUFFER, kSourceBuffer);
-      fronts_[static_cast<std::size_t>((step + 1) % 2)].bind(GL_SHADER_STORAGE_BUFFER, kNextBuffer);
-      pass.dispatch(size, kGroup);
-    }
-    if (step + 1 < steps_ && !(join_ && step + 1 == settings_.handOver)) continue;
-    const gl::ComputePass pass("lpv finish", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-    finish_->use();
-    const Volume& sum = !join_ ? result_ : far ? farSum_ : sum_;
-    for (GLuint channel = 0; channel < 3; ++channel) sum[channel].bindImage(channel, GL_WRITE_ONLY);
+  {
+    const gl::ComputePass pass("lpv mark bricks", GL_SHADER_STORAGE_BARRIER_BIT);
+    markBricks_->use();
+    markBricks_->set("everywhere", settings_.everyBrick ? 1 : 0);
+    fronts_[0].bind(0);
     pass.dispatch(size, kGroup);
+  }
+  frontIsInjected_ = false;  // the second step overwrites it
+  if (faces_.bytes() > 0) faces_.bind(1);
+  for (int step = 0; step < steps_; ++step) {
+    {
+      const gl::ComputePass pass("lpv list bricks", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+      listBricks_->use();
+      pass.dispatch(glm::ivec3(brickCount_, 1, 1), glm::ivec3(64, 1, 1));
+    }
+    const gl::ComputePass pass("lpv propagate", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    (step == 0 ? propagateFirst_ : propagateFurther_)->use();
+    const gl::BufferTexture& sums = join_ && step >= settings_.handOver ? farSums_ : sums_;
+    fronts_[static_cast<std::size_t>(step % 2)].bind(0);
+    sums.bind(2);
+    fronts_[static_cast<std::size_t>((step + 1) % 2)].buffer().bind(GL_SHADER_STORAGE_BUFFER, kNextBuffer);
+    sums.buffer().bind(GL_SHADER_STORAGE_BUFFER, kSumBuffer);
+    pass.dispatchIndirect(bricks_);
   }
 }
 
@@ -435,14 +569,6 @@ void LightPropagationVolume::propagateLayered(const Volume& source) {
     }
     front = &layeredFronts_[next];
   }
-  if (!finish_) return;
-  const gl::ComputePass pass("lpv finish", GL_TEXTURE_FETCH_BARRIER_BIT);
-  finish_->use();
-  for (GLuint channel = 0; channel < 3; ++channel) {
-    sum_[channel].bind(channel);
-    result_[channel].bindImage(channel, GL_WRITE_ONLY);
-  }
-  pass.dispatch(sum_[0].size(), kGroup);
 }
 
 void LightPropagationVolume::bindForLookup() const {
@@ -451,7 +577,8 @@ void LightPropagationVolume::bindForLookup() const {
 }
 
 std::size_t LightPropagationVolume::gpuBytes() const {
-  std::size_t bytes = constants_.bytes() + fronts_[0].bytes() + fronts_[1].bytes() + sums_.bytes() + faces_.bytes();
+  std::size_t bytes = constants_.bytes() + bricks_.bytes() + resultTexels_.bytes();
+  for (const gl::BufferTexture* buffer : {&fronts_[0], &fronts_[1], &sums_, &farSums_, &potential_, &faces_, &received_, &balances_, &balanced_}) bytes += buffer->bytes();
   const auto add = [&](const gl::Texture& texture) {
     if (texture.id()) bytes += texture.bytes();
   };
@@ -465,8 +592,6 @@ std::size_t LightPropagationVolume::gpuBytes() const {
     add(farSum_[channel]);
     for (const Volume& front : layeredFronts_) add(front[channel]);
   }
-  add(balances_);
-  add(balanced_);
   if (geometryVolume_) add(*geometryVolume_);
   return bytes;
 }

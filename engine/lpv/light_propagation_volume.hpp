@@ -65,6 +65,7 @@ class LightPropagationVolume {
     int handOver = 0;           ///< steps after which a finer cascade takes light from the coarser one; 0: handOverStep()
     float lookupOffset = 0.5f;  ///< cells along the normal by which a receiver is moved before the lookup
     Storage storage = Storage::half;
+    bool everyBrick = false;    ///< the compute gather does not leave out what light has not reached; the same bits, for tests and to measure it
   };
   struct Inputs {
     std::vector<ReflectiveShadowMap::Outputs> rsms;  ///< one a light; all are added up
@@ -108,40 +109,58 @@ class LightPropagationVolume {
   bool reflects() const { return settings_.bounces > 1; }
   float fluxScale(const ReflectiveShadowMap::Outputs& rsm) const;
   void drawSurfels(const Inputs& inputs, const ReflectiveShadowMap::Outputs& map, const gl::Framebuffer& target);
+  void drawAllSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps, const Inputs& inputs);
   void mergeView();
   void reflect(bool first);
   void propagateFrom(const Volume& source);
+  void propagateByCompute(const Volume& source);
+  void bindSums() const;
+  void copyResult();
   void propagateLayered(const Volume& source);
   void fillByAtomics(const Inputs& inputs);
+  void resolveCounts(const gl::BufferTexture& counts, const glm::ivec3& size, int channels, float fixedScale);
+  bool countsSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps) const;
+  void countSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps, const Inputs& inputs);
 
   Settings settings_;
-  int steps_ = 0;  ///< propagation steps that are run
+  int steps_ = 0;       ///< propagation steps that are run
+  int brickCount_ = 0;  ///< of all cascades, lit or not
   bool haveClearTexture_;
   bool fillsHalfVectors_ = false;  ///< atomics on four half floats at once
+  bool frontIsInjected_ = false;   ///< by atomics: the injected light is in the first front already
   const gl::Program* inject_ = nullptr;
-  const gl::Program* resolve_ = nullptr;             ///< only with atomics
+  const gl::Program* resolve_ = nullptr;             ///< only with atomics on integers or half floats
+  const gl::Program* countSurfels_ = nullptr;        ///< only with atomics on 32 bits
   const gl::Program* fillGeometryVolume_ = nullptr;
-  const gl::Program* averageFaces_ = nullptr;
+  const gl::Program* averageFaces_ = nullptr;         ///< from the texture
+  const gl::Program* averageCountedFaces_ = nullptr;  ///< from what atomics counted
   const gl::Program* mergeViews_ = nullptr;  ///< only with several views
   const gl::Program* reflect_ = nullptr;     ///< only with several bounces
-  const gl::Program* begin_ = nullptr;             ///< only with compute, as averageFaces_
+  const gl::Program* begin_ = nullptr;             ///< only with compute, as averageFaces_ and the two of bricks
+  const gl::Program* markBricks_ = nullptr;
+  const gl::Program* listBricks_ = nullptr;
   const gl::Program* propagateFirst_ = nullptr;
   const gl::Program* propagateFurther_ = nullptr;  ///< blocked where blocking is on
-  const gl::Program* finish_ = nullptr;            ///< only with the layered pass where nothing is joined
-  const gl::Program* balance_ = nullptr;           ///< only with several cascades, as join_
+  const gl::Program* finish_ = nullptr;            ///< only where nothing is joined
+  const gl::Program* balance_ = nullptr;           ///< only with several cascades, as the two of join
   const gl::Program* join_ = nullptr;
+  const gl::Program* joinCoarsest_ = nullptr;
   gl::Buffer constants_;
   gl::VertexArray noAttributes_;
-  Volume counts_;     ///< what atomics count in
+  Volume counts_;     ///< what atomics on half floats count in
   Volume injected_;
   Volume result_;     ///< what the lookup reads
-  Volume sum_;        ///< of the first steps, 32 bits; only with several cascades or the layered pass
-  Volume farSum_;     ///< of the steps after the hand-over, 32 bits; only with several cascades
-  gl::Texture balances_;  ///< of one cascade after the other with the next coarser, half its resolution
-  gl::Texture balanced_;  ///< band 0 of the first steps' light as joined
-  std::array<gl::Buffer, 2> fronts_;  ///< of the compute gather, as the two below: see lpv/propagate.comp
-  gl::Buffer sums_;
-  gl::Buffer faces_;        ///< potential at the faces across x, y, z
+  Volume sum_, farSum_;  ///< of the layered pass, 32 bits: of the first steps and of those after the hand-over
+  // Of the compute gather (lpv/propagate.comp). Three channels one after the other, as the three below.
+  std::array<gl::BufferTexture, 2> fronts_;  ///< atomics count in the first
+  gl::BufferTexture sums_, farSums_;  ///< as the layered pass' two; the second only with several cascades
+  gl::BufferTexture potential_;       ///< the geometry volume as atomics count it
+  gl::BufferTexture faces_;           ///< potential at the faces across x, y, z
+  gl::Buffer bricks_;                 ///< those that light has reached (lpv/bricks.glsl)
+  gl::BufferTexture received_;  ///< what a cascade has from the coarser ones and for the finer one; only with several cascades, as the two below
+  gl::BufferTexture balances_;  ///< of one cascade after the other with the next coarser, half its resolution
+  gl::BufferTexture balanced_;  ///< band 0 of the first steps' light as joined
+  gl::Buffer resultTexels_;     ///< the result before it is copied to the textures
   std::array<Volume, 2> layeredFronts_;
   gl::Framebuffer injectTarget_;
   std::optional<gl::Texture> geometryVolume_;

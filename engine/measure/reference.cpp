@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
-#include "measure/fingerprint.hpp"
+#include "scene/fingerprint.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,6 +1,7 @@
 #include "pathtracer/light_table.hpp"
 
 #include "base/error.hpp"
+#include "scene/texture_mean.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -57,9 +58,8 @@ AliasTable aliasTable(const std::vector<double>& weights) {
   return table;
 }
 
-LightTable lightTable(const Scene& scene, const glm::dvec3& origin, const std::vector<glm::vec3>& emissionMeans) {
+LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
   LightTable table;
-  table.pickDensity.assign(scene.materials.size(), 0.0);
   const auto place = [&](const glm::dvec3& p) { return glm::vec3(p - origin); };
   std::vector<double> powers;  // of each light
   const double radius = scene.bounds.empty() ? 1.0 : std::max(0.5 * glm::length(scene.bounds.extent()), 1e-300);
@@ -98,14 +98,20 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, const std::v
   std::vector<double> areas;
   for (const Mesh& mesh : scene.meshes) {
     const auto m = static_cast<std::size_t>(mesh.material);
-    glm::dvec3 emission(scene.materials[m].emission);
-    if (!emissionMeans.empty()) emission *= glm::dvec3(emissionMeans[m]);
-    if (!(worth(emission) > 0.0)) continue;
+    const Material& material = scene.materials[m];
+    if (!(worth(material.emission) > 0.0)) continue;
     for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; i += 3) {
       const auto corner = [&](std::uint32_t k) { return glm::dvec3(scene.vertices[scene.indices[i + k]].position); };
       const glm::dvec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
       const double area = 0.5 * glm::length(glm::cross(ab, ac));
       if (!(area > 0.0) || !std::isfinite(area)) continue;
+      double brightness = worth(material.emission);
+      if (material.emissionTexture >= 0) {
+        // By the mean over the triangle; a part of the picture's own, as what is looked up here at some points may have missed a bright spot.
+        const auto uv = [&](std::uint32_t k) { return scene.vertices[scene.indices[i + k]].texCoord; };
+        const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap;
+        brightness = 0.9 * worth(glm::dvec3(material.emissionScale) * meanTexture(bitmap, {uv(0), uv(1), uv(2)})) + 0.1 * brightness;
+      }
       shared::PathLight light{};
       light.kind = PATH_LIGHT_TRIANGLE;
       light.a = place(a);
@@ -114,7 +120,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, const std::v
       light.p = i / 3;
       light.q = static_cast<std::uint32_t>(mesh.material);
       const std::size_t before = table.lights.size();
-      add(light, worth(emission) * 2.0 * kPi * area);  // both sides shine
+      add(light, brightness * 2.0 * kPi * area);  // both sides shine
       if (table.lights.size() > before) areas.push_back(area);
     }
   }
@@ -144,7 +150,10 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, const std::v
     light.threshold = picks.threshold[i];
     light.alias = picks.alias[i];
     light.probability = static_cast<float>(picks.probability[i]);
-    if (light.kind == PATH_LIGHT_TRIANGLE) table.pickDensity[light.q] = picks.probability[i] / areas[i - lamps];
+    if (light.kind == PATH_LIGHT_TRIANGLE) {
+      table.pickDensity.resize(scene.triangleCount());
+      table.pickDensity[light.p] = static_cast<float>(picks.probability[i] / areas[i - lamps]);
+    }
   }
   if (environment) table.environmentPick = picks.probability.back();
   return table;

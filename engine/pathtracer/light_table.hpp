@@ -23,11 +23,10 @@ AliasTable aliasTable(const std::vector<double>& weights);
 
 struct LightTable {
   std::vector<shared::PathLight> lights;  ///< positions relative to `origin`; empty: nothing to ask
-  std::vector<double> pickDensity;        ///< a material: probability of asking a light sample for a point of it, per unit of area
+  std::vector<float> pickDensity;         ///< a triangle: probability of asking a light sample for a point of it, per unit of area; empty: nothing shines
   double environmentPick = 0.0;           ///< probability of asking the environment picture
 };
-/// emissionMeans: of each material's emission texture, a factor; empty: all 1.
-LightTable lightTable(const Scene& scene, const glm::dvec3& origin, const std::vector<glm::vec3>& emissionMeans = {});
+LightTable lightTable(const Scene& scene, const glm::dvec3& origin);
 
 /// An environment picture as the shader picks its texels: threshold, alias, density over solid angle in 1/sr.
 std::vector<glm::vec4> environmentTable(const Image& picture);

@@ -134,7 +134,11 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
   PackedBoundaries packed;
   for (std::size_t rank = 0; rank < keys.size(); ++rank) {
     const auto& [priority, dielectric, ior, medium] = keys[rank];
-    packed.interiors.push_back({ior, medium, 0, 0});
+    shared::InteriorRecord interior{};
+    interior.ior = ior;
+    interior.medium = medium;
+    interior.clearance = -1;
+    packed.interiors.push_back(interior);
     if (dielectric) packed.dielectricRanks[static_cast<int>(rank / 8)] |= 15u << (4 * (rank % 8));
   }
   for (const Material& material : scene.materials)
@@ -147,6 +151,16 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
       packed.triangles.push_back({corner(i), corner(i + 1), corner(i + 2), rank});
   }
   return packed;
+}
+
+bool boundariesMayTouch(const Scene& scene, const PackedBoundaries& boundaries) {
+  const auto rankOf = [&](const Mesh& mesh) { return boundaries.rankOfMaterial[static_cast<std::size_t>(mesh.material)]; };
+  for (const Mesh& a : scene.meshes) {
+    if (rankOf(a) < 0) continue;
+    for (const Mesh& b : scene.meshes)
+      if (rankOf(b) != rankOf(a) && glm::all(glm::lessThanEqual(a.bounds.min, b.bounds.max)) && glm::all(glm::lessThanEqual(b.bounds.min, a.bounds.max))) return true;
+  }
+  return false;
 }
 
 Surroundings surroundingsOf(const PackedBoundaries& boundaries, const glm::dvec3& point) {

@@ -44,6 +44,9 @@ struct PackedBoundaries {
 /// diffuseOnly: dielectrics bound nothing, as they are drawn as walls.
 PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly = false);
 
+/// Whether a boundary's mesh and another mesh, of anything but the same boundary, have boxes that share a point: their faces may coincide or cross.
+bool boundariesMayTouch(const Scene& scene, const PackedBoundaries& boundaries);
+
 /// The boundaries around a point, by the winding number of each rank's triangles [vanOosterom1983; Jacobson2013].
 struct Surroundings {
   InsideCounts inside{0u};

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "gl/pass.hpp"
+#include "pathtracer/clearance.hpp"
 #include "pathtracer/texture_atlas.hpp"
 
 #include <algorithm>
@@ -20,9 +21,13 @@ namespace {
 constexpr GLuint kConstantsBinding = 0;                                                               // GL_UNIFORM_BUFFER
 constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4, kStateBinding = 5, kMediaBinding = 6,
                  kInteriorsBinding = 7, kGridsBinding = 8, kDensitiesBinding = 9;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2;
+constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kClearancesUnit = 3;
 constexpr int kGroupSide = 8;
 constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
+constexpr int kClearanceCells = 64;
+// llvmpipe leaves all loops of a shader after 65,535 turns, those of all lanes of a vector (8, 16 at most) counted together. Far less is never
+// reached in 50 ms but by small pictures.
+constexpr int kSoftwareTurns = 3500;
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = 16, kVec4Bytes = 16;
 
 std::uint32_t kindOf(const Material& material) {
@@ -37,6 +42,35 @@ std::uint32_t kindOf(const Material& material) {
 }
 
 constexpr std::array<char, 8> kCheckpointMagic{'L', 'U', 'C', 'P', 'A', 'T', 'H', '1'};
+/// Whether every lamp is in the open, where the index is 1: triangles by boxes, so that some are taken for enclosed that are not.
+bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
+  const std::size_t ranks = boundaries.interiors.size();
+  const float inf = std::numeric_limits<float>::infinity();
+  std::vector<std::array<glm::vec3, 2>> boxes(ranks, {glm::vec3(inf), glm::vec3(-inf)});
+  const auto widen = [](std::array<glm::vec3, 2>& box, const glm::vec3& p) { box = {glm::min(box[0], p), glm::max(box[1], p)}; };
+  for (const BoundaryTriangle& t : boundaries.triangles) {
+    const int rank = t.rank;
+    if ((boundaries.dielectricRanks[rank / 8] >> (4 * (rank % 8)) & 15u) == 0) continue;
+    for (const glm::vec3* p : {&t.a, &t.b, &t.c}) widen(boxes[static_cast<std::size_t>(rank)], *p);
+  }
+  const auto isOutside = [&](const std::array<glm::vec3, 2>& lamp) {
+    return std::none_of(boxes.begin(), boxes.end(), [&](const std::array<glm::vec3, 2>& box) {
+      return glm::all(glm::lessThanEqual(lamp[0], box[1])) && glm::all(glm::lessThanEqual(box[0], lamp[1]));
+    });
+  };
+  for (const Mesh& mesh : scene.meshes) {
+    if (scene.materials[static_cast<std::size_t>(mesh.material)].emission == glm::vec3(0.0f)) continue;
+    for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3) {
+      std::array<glm::vec3, 2> box{glm::vec3(inf), glm::vec3(-inf)};
+      for (std::uint32_t k = i; k < i + 3; ++k) widen(box, scene.vertices[scene.indices[k]].position);
+      if (!isOutside(box)) return false;
+    }
+  }
+  const auto isPlaceOutside = [&](const glm::dvec3& place) { return isOutside({glm::vec3(place), glm::vec3(place)}); };
+  return std::all_of(scene.points.begin(), scene.points.end(), [&](const PointLight& light) { return isPlaceOutside(light.position); }) &&
+         std::all_of(scene.spots.begin(), scene.spots.end(), [&](const SpotLight& light) { return isPlaceOutside(light.position); });
+}
+
 struct CheckpointHeader {
   std::array<char, 8> magic = kCheckpointMagic;
   std::uint64_t identity = 0, filmHash = 0;
@@ -73,12 +107,18 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       rays_(scene, context.capabilities(), settings.rays),
       constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW),
       tileSide_(context.capabilities().softwareRenderer ? 128 : 512),
+      turns_(context.capabilities().softwareRenderer ? kSoftwareTurns : std::numeric_limits<int>::max()),
       clearTexture_(context.capabilities().clearTexture) {
   const gl::Capabilities& capabilities = context.capabilities();
   CHECK(settings.size.x > 0 && settings.size.y > 0, "{} x {} pixels", settings.size.x, settings.size.y);
   if (settings.diffuseOnly) needs_.mirrors = needs_.conductors = needs_.dielectrics = needs_.roughDielectrics = false;
 
   boundaries_ = rankBoundaries(scene, settings.diffuseOnly);
+  touching_ = boundariesMayTouch(scene, boundaries_);
+  lampsOutside_ = needs_.dielectrics && !settings.deviations.straightShadowRays && areLampsOutside(scene, boundaries_);
+  const bool published = settings.deviations.distanceWithoutPdf || settings.deviations.boostedInteraction;
+  needs_.denseMedia = needs_.denseMedia && needs_.dielectrics && settings.walks && !published && (!settings.nextEvent || lampsOutside_);
+  if (needs_.denseMedia) addClearances(scene);
   if (needs_.dielectrics || needs_.nullBoundaries) interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
   if (needs_.media) {
     const PackedMedia packed = packMedia(scene.media, rays_.origin());
@@ -101,25 +141,26 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     to.albedo = from.diffuse;
     to.specular = from.specular;
     to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
-    to.emission = from.emission;
+    to.emission = from.emissionTexture >= 0 ? from.emissionScale : from.emission;
     to.ior = from.ior;
     to.boundary = static_cast<std::uint32_t>(boundaries_.rankOfMaterial[i]);
     to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = PATH_NO_TEXTURE;
   }
-  const bool textured = needs_.diffuseTextures || needs_.alphaMasks;
+  const bool textured = needs_.diffuseTextures || needs_.alphaMasks || needs_.emissionTextures;
   if (textured) uploadTextures(scene, capabilities, materials);
 
+  std::vector<float> pickDensity;
   if (settings.nextEvent) {
     const LightTable table = lightTable(scene, rays_.origin());
+    pickDensity = table.pickDensity;
     lightCount_ = table.lights.size();
     if (lightCount_ > 0) lights_ = storage("path lights", table.lights, capabilities);
-    for (std::size_t i = 0; i < materials.size(); ++i) materials[i].pickDensity = static_cast<float>(table.pickDensity[i]);
     constants_.environmentPick = static_cast<float>(table.environmentPick);
   }
   sceneHash_.bytes(materials.data(), materials.size() * sizeof(shared::PathMaterial));
   materials_ = storage("path materials", materials, capabilities);
   triangleWords_ = 4 + (textured ? 1 : 0) + (needs_.smoothNormals ? 3 : 0);
-  uploadTriangles(scene, capabilities, needs_.smoothNormals, textured);
+  uploadTriangles(scene, capabilities, needs_.smoothNormals, textured, pickDensity);
 
   if (needs_.environment) {
     const Environment& environment = *scene.environment;
@@ -155,7 +196,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
 
   const glm::ivec2 tile = glm::min(settings.size, glm::ivec2(tileSide_));
   const std::size_t lanes = static_cast<std::size_t>(tile.x) * static_cast<std::size_t>(tile.y);
-  constants_.picture = glm::ivec4(settings.size, static_cast<int>(lanes), 0);
+  constants_.picture = glm::ivec4(settings.size, static_cast<int>(lanes), turns_);
   state_ = gl::Buffer("path state", kStateHeaderBytes + lanes * kStateWords * kVec4Bytes, nullptr, GL_DYNAMIC_COPY);
   filmMean_ = gl::Texture("film mean", GL_RGBA32UI, settings.size);
   filmSpread_ = gl::Texture("film spread", GL_RGBA32UI, settings.size);
@@ -166,14 +207,17 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
 
 gl::ShaderFlags PathTracer::flags() const {
   const bool asked = lightCount_ > 0;
-  return {{"TEXTURES", needs_.diffuseTextures},
+  return {{"TEXTURES", needs_.diffuseTextures || needs_.emissionTextures},
           {"ALPHA_MASKS", needs_.alphaMasks},
           {"SMOOTH_NORMALS", needs_.smoothNormals},
           {"TRIANGLE_WORDS", triangleWords_},
           {"MIRRORS", needs_.mirrors},
           {"DIELECTRICS", needs_.dielectrics},
           {"INTERIORS", hasInteriors()},
+          {"TOUCHING", hasInteriors() && touching_},
           {"MEDIA", needs_.media},
+          {"LAMPS_OUTSIDE", lampsOutside_},
+          {"WALKS", needs_.denseMedia},
           {"HETEROGENEOUS", needs_.heterogeneousMedia},
           {"VOLUME_EMISSION", needs_.volumeEmission},
           {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
@@ -200,6 +244,30 @@ gl::ShaderFlags PathTracer::flags() const {
           {"FRESNEL_SCHLICK", settings_.deviations.schlick}};
 }
 
+void PathTracer::addClearances(const Scene& scene) {
+  std::vector<Corners> triangles(scene.triangleCount());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) triangles[t][k] = glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - rays_.origin();
+  std::vector<float> radii;
+  for (std::size_t rank = 0; rank < boundaries_.interiors.size(); ++rank) {
+    shared::InteriorRecord& interior = boundaries_.interiors[rank];
+    glm::dvec3 min(std::numeric_limits<double>::infinity()), max(-min);
+    for (const BoundaryTriangle& t : boundaries_.triangles)
+      if (t.rank == static_cast<int>(rank))
+        for (const glm::vec3* p : {&t.a, &t.b, &t.c}) min = glm::min(min, glm::dvec3(*p)), max = glm::max(max, glm::dvec3(*p));
+    const double extent = glm::length(max - min);
+    if (interior.medium < 0 || !(extent > 0.0) || !isDense(scene.media[static_cast<std::size_t>(interior.medium)], extent)) continue;
+    const ClearanceGrid grid = clearanceGrid(triangles, min - rays_.origin(), max - rays_.origin(), kClearanceCells);
+    interior.clearance = static_cast<int>(radii.size());
+    interior.cell = static_cast<float>(grid.cell);
+    interior.min = glm::vec3(grid.min);
+    interior.size = glm::ivec4(grid.size, 0);
+    radii.insert(radii.end(), grid.radius.begin(), grid.radius.end());
+  }
+  needs_.denseMedia = !radii.empty();
+  if (needs_.denseMedia) clearances_ = gl::BufferTexture("path clearances", GL_R32F, radii.size() * sizeof(float), radii.data());
+}
+
 void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials) {
   // A picture may be in the atlas twice: as colour, and as mask in the alpha channel.
   struct Entry {
@@ -214,11 +282,12 @@ void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capa
     if (isNew) entries.push_back({texture, mask});
     return place->second;
   };
-  std::vector<std::array<std::size_t, 2>> used(materials.size(), {SIZE_MAX, SIZE_MAX});
+  std::vector<std::array<std::size_t, 3>> used(materials.size(), {SIZE_MAX, SIZE_MAX, SIZE_MAX});
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& material = scene.materials[i];
     if (needs_.diffuseTextures && material.diffuseTexture >= 0) used[i][0] = want(material.diffuseTexture, false);
     if (needs_.alphaMasks && material.alphaMasked) used[i][1] = want(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true);
+    if (needs_.emissionTextures && material.emissionTexture >= 0) used[i][2] = want(material.emissionTexture, false);
   }
   std::vector<glm::ivec2> sizes;
   for (const Entry& entry : entries) {
@@ -253,10 +322,12 @@ void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capa
   for (std::size_t i = 0; i < materials.size(); ++i) {
     place(used[i][0], materials[i].diffuseTexture);
     place(used[i][1], materials[i].maskTexture);
+    place(used[i][2], materials[i].emissionTexture);
   }
 }
 
-void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured) {
+void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured,
+                                 const std::vector<float>& pickDensity) {
   std::vector<std::uint32_t> words;
   words.reserve(scene.triangleCount() * static_cast<std::size_t>(triangleWords_) * 4);
   std::vector<std::uint32_t> materialOf(scene.triangleCount(), 0);
@@ -278,7 +349,7 @@ void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& cap
     add3(glm::vec3(place(2)));
     add(normal.y);
     add3({normal.z, corners[2]->texCoord.x, corners[2]->texCoord.y});
-    words.push_back(0);
+    add(pickDensity.empty() ? 0.0f : pickDensity[t]);
     if (textured)
       for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
     if (smoothNormals)
@@ -314,7 +385,7 @@ std::uint64_t PathTracer::identity() const {
   shared::PathConstants constants = constants_;
   constants.tile = glm::ivec4(0);
   constants.sampleTarget = constants.segments = 0;
-  constants.picture.z = 0;
+  constants.picture.z = constants.picture.w = 0;
   Hash hash = sceneHash_;
   hash.bytes(&constants, sizeof constants);
   for (const auto& [name, value] : flags()) {
@@ -423,6 +494,7 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
     program_->set("cameraInside", cameraInside_);
     program_->set("cameraIor", cameraIor_);
   }
+  if (needs_.denseMedia) clearances_.bind(kClearancesUnit);
   if (needs_.media) media_.bind(GL_SHADER_STORAGE_BUFFER, kMediaBinding);
   if (needs_.heterogeneousMedia) {
     grids_.bind(GL_SHADER_STORAGE_BUFFER, kGridsBinding);
@@ -498,7 +570,7 @@ PathTracer::Statistics PathTracer::statistics() const {
 }
 
 std::size_t PathTracer::gpuBytes() const {
-  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() +
+  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
                       filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
   for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_})
     if (*texture) bytes += (*texture)->bytes();

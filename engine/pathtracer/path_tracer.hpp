@@ -44,6 +44,7 @@ class PathTracer {
     Transport transport = Transport::all;
     std::uint32_t bounces = kUnlimited;  ///< scatterings at most; below kUnlimited longer paths are missing from the picture
     bool diffuseOnly = false;            ///< every surface that scatters is taken for Lambert with its `diffuse`, as forward shading takes it
+    bool walks = true;                   ///< in dense media without rays where no triangle is near; the picture is the same, bit by bit
     bool nextEvent = true;               ///< ask lights directly; without, only lights that rays can hit give light
     bool pixelCentres = false;           ///< camera rays through the centres of pixels, as raster techniques shade; else all over them, a box filter
     std::uint32_t seed = 0;              ///< pictures of different seeds are independent
@@ -92,9 +93,11 @@ class PathTracer {
   std::vector<Pixel> readFilm() const;
   std::uint64_t identity() const;  ///< of what decides the picture
   void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
-  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured);
+  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured, const std::vector<float>& pickDensity);
   gl::ShaderFlags flags() const;
   bool hasInteriors() const { return needs_.dielectrics || needs_.nullBoundaries || needs_.media; }
+  /// Grids of distances to the nearest triangle for the boundaries of dense media.
+  void addClearances(const Scene& scene);
   void dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target);
 
   Settings settings_;
@@ -105,15 +108,18 @@ class PathTracer {
   int triangleWords_ = 4;
   std::size_t lightCount_ = 0;
   PackedBoundaries boundaries_;
+  bool touching_ = false;  ///< a boundary may coincide with, or cross, another surface
   int outerMedium_ = -1;
   InsideCounts cameraInside_{0u};
   float cameraIor_ = 1.0f;
+  bool lampsOutside_ = false;  ///< none lies within a dielectric
   gl::Buffer media_, interiors_, grids_, densities_;
+  gl::BufferTexture clearances_;
   double leakedPaths_ = 0.0, wrongCrossings_ = 0.0;
   gl::Buffer triangles_, materials_, lights_, state_, constantsBuffer_;
   std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_;
   gl::Texture filmMean_, filmSpread_, filmRest_;
-  int tileSide_;
+  int tileSide_, turns_;
   bool clearTexture_;
   Hash sceneHash_;
 

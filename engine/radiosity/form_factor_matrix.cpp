@@ -47,7 +47,8 @@ std::vector<double> FormFactorMatrix::rowSums() const {
   return sums;
 }
 
-double FormFactorMatrix::repair(std::span<const double> areas, std::span<const double> sums) {
+double FormFactorMatrix::repair(std::span<const double> areas, std::span<const double> sums, std::span<const std::uint32_t> sources, double fewPixels) {
+  const auto isSource = [&](std::size_t i) { return !sources.empty() && sources[i] != 0; };
   const std::size_t n = rowCount();
   // The transposed matrix, its rows in order as the rows are visited in order.
   std::vector<std::size_t> starts(n + 1, 0);
@@ -65,28 +66,39 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
       }
   }
   FormFactorMatrix mean;  // of A F and its transpose
+  std::vector<double> wantedSums(sums.begin(), sums.end());
   std::vector<std::uint32_t> patches;
   std::vector<float> values;
   for (std::size_t i = 0; i < n; ++i) {
     patches.clear();
     values.clear();
+    double whole = 0.0, trust = 0.0;
     std::size_t a = starts_[i], b = starts[i];
     while (a < starts_[i + 1] || b < starts[i + 1]) {
       const std::uint32_t ja = a < starts_[i + 1] ? patches_[a] : ~0u, jb = b < starts[i + 1] ? from[b] : ~0u, j = std::min(ja, jb);
-      // In float as in the transposed copy, so that S_ij and S_ji have the same bits.
-      float sum = 0.0f;
-      const float own = ja == j ? static_cast<float>(areas[i] * static_cast<double>(factors_[a])) : 0.0f, other = jb == j ? flux[b] : 0.0f;
-      sum = 0.5f * (own + other);
+      // In float as in the transposed copy, and in the order of patches, so that S_ij and S_ji have the same bits.
+      const double own = ja == j ? static_cast<double>(static_cast<float>(areas[i] * static_cast<double>(factors_[a]))) : 0.0, other = jb == j ? static_cast<double>(flux[b]) : 0.0;
+      // Of the own one. Both sums are made of the same numbers in the same order.
+      double weight = areas[j] / (areas[i] + areas[j]), against = areas[i] / (areas[i] + areas[j]);
+      if (isSource(i) != isSource(j) && std::max(own, other) < fewPixels * areas[isSource(i) ? i : j]) weight = isSource(j) ? 1.0 : 0.0, against = 1.0 - weight;
+      const double sum = i < j ? weight * own + against * other : against * other + weight * own;
+      whole += sum;
+      trust += weight * sum;
       a += ja == j;
       b += jb == j;
       patches.push_back(j);
-      values.push_back(sum);
+      values.push_back(static_cast<float>(sum));
     }
     mean.appendRow(patches, values);
+    if (sums[i] < 1.0 && whole > 0.0) {
+      // Patches of one size: trust / whole = 1/2, and the row sums to what it did; a huge patch is known from those that it sees.
+      const double keep = std::min(1.0, 2.0 * trust / whole);
+      wantedSums[i] = std::min(1.0, keep * sums[i] + (1.0 - keep) * whole / areas[i]);
+    }
   }
   flux = {};
   from = {};
-  // d_i sum_j S_ij d_j = A_i sums_i.
+  // d_i sum_j S_ij d_j = A_i wantedSums_i.
   std::vector<double> d(n, 1.0), next(n);
   double worst = 0.0;
   constexpr int kMost = 200;
@@ -96,7 +108,7 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
     for (std::size_t i = 0; i < n; ++i) {
       double sum = 0.0;
       for (std::size_t k = mean.starts_[i]; k < mean.starts_[i + 1]; ++k) sum += static_cast<double>(mean.factors_[k]) * d[mean.patches_[k]];
-      const double wanted = areas[i] * sums[i], is = d[i] * sum;
+      const double wanted = areas[i] * wantedSums[i], is = d[i] * sum;
       if (is > 0.0 && wanted > 0.0) {
         next[i] = d[i] * std::sqrt(wanted / is);
         worst = std::max(worst, std::abs(wanted / is - 1.0));
@@ -114,7 +126,7 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
   });
   *this = std::move(mean);
   const std::vector<double> are = rowSums();
-  for (std::size_t i = 0; i < n; ++i) scales_[i] = are[i] > 0.0 ? sums[i] / are[i] : 1.0;
+  for (std::size_t i = 0; i < n; ++i) scales_[i] = are[i] > 0.0 ? wantedSums[i] / are[i] : 1.0;
   return worst;
 }
 

@@ -1,22 +1,53 @@
 #include "radiosity/hemicubes.hpp"
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "gl/pass.hpp"
+#include "pathtracer/ray_scene.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <numbers>
+#include <numeric>
 
 namespace lucerna {
 
 namespace {
 
-constexpr GLuint kCorners = 0, kFrames = 1, kKeys = 2, kDeltaFactors = 3, kFactors = 4, kSources = 5, kExactList = 6, kShares = 7, kLargeList = 8;
+constexpr GLuint kItemsUnit = 56, kKeysUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kKeys = 2, kFactors = 4, kSources = 5, kExactList = 6, kLargeList = 8;
 constexpr int kGroup = 64;
-constexpr int kTrianglesEach = 8;  // so that a hemicube's frame is read once for eight triangles
+constexpr int kHemicubesEach = 8;
+constexpr std::size_t kMostHemicubes = 256;  // of hemicube.glsl: their frames are 16 KiB, what every driver has
 constexpr double kSmallSources = 0.1;  // of the area: sources that cover more need no care, each pixel meets one
-constexpr double kWholeShare = 268435456.0;  // of hemicube_sum.comp
 constexpr int kExactGroups = 256;
+constexpr int kMeasured = 32;  // hemicubes of a batch that a cost is taken from
+
+constexpr std::array kVisibilities{
+    std::pair{HemicubeVisibility::automatic, "auto"},
+    std::pair{HemicubeVisibility::itemBuffer, "item-buffer"},
+    std::pair{HemicubeVisibility::raster, "raster"},
+    std::pair{HemicubeVisibility::rays, "rays"},
+};
+
+/// Patches as a scene of their own, in order, for a hierarchy.
+Scene sceneOf(const RadiosityMesh& mesh) {
+  Scene scene;
+  scene.materials.emplace_back();
+  for (const Patch& patch : mesh.patches)
+    for (const glm::dvec3& corner : mesh.corners(patch)) {
+      scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+      scene.vertices.emplace_back().position = glm::vec3(corner);
+      scene.bounds.add(glm::dvec3(scene.vertices.back().position));
+    }
+  Mesh& all = scene.meshes.emplace_back();
+  all.material = 0;
+  all.indexCount = static_cast<std::uint32_t>(scene.indices.size());
+  return scene;
+}
 
 /// The same for a seed and a patch in every run and batch; 0..1. [Steele2014], its finaliser.
 double hashed(std::uint32_t seed, std::uint32_t patch) {
@@ -30,9 +61,28 @@ gl::Buffer storage(const char* name, std::size_t bytes) { return gl::Buffer(name
 
 }  // namespace
 
+std::string_view nameOf(HemicubeVisibility visibility) {
+  for (const auto& [value, name] : kVisibilities)
+    if (value == visibility) return name;
+  CHECK(false, "visibility {}", static_cast<int>(visibility));
+  return {};
+}
+
+HemicubeVisibility parseHemicubeVisibility(std::string_view name) {
+  std::string known;
+  for (const auto& [value, text] : kVisibilities) {
+    if (name == text) return value;
+    known += (known.empty() ? "" : ", ") + std::string(text);
+  }
+  throwBadInput("visibility {}: unknown; there are {}", name, known);
+}
+
+Hemicubes::~Hemicubes() = default;
+
 Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh, const HemicubeSettings& settings)
     : mesh_(&mesh), settings_(settings), patchCount_(static_cast<int>(mesh.patches.size())) {
   CHECK(settings.resolution >= 2 && settings.resolution % 2 == 0, "hemicubes of {} pixels", settings.resolution);
+  if (settings_.visibility == HemicubeVisibility::automatic) choose(programs, capabilities);
   const auto patches = static_cast<std::size_t>(patchCount_);
   const auto limit = static_cast<std::size_t>(std::max(capabilities.maxShaderStorageBlockSize, 1 << 24));
   const std::size_t keyBytes = 3 * static_cast<std::size_t>(settings.resolution * settings.resolution) * sizeof(GLuint), factorBytes = patches * sizeof(float);
@@ -40,38 +90,81 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   if (9 * factorBytes > limit || each > limit)
     throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need storage blocks of {} bytes, this driver's end at {}: use longer edges or smaller hemicubes",
                            patches, settings.resolution, std::max(9 * factorBytes, each), limit);
+  const auto texels = static_cast<std::size_t>(std::max(capabilities.maxTextureBufferSize, 1 << 16));
+  if (3 * patches > texels || keyBytes / sizeof(GLuint) > texels)
+    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's end at {}", patches, settings.resolution,
+                           std::max(3 * patches, keyBytes / sizeof(GLuint)), texels);
   // A software renderer does best inside the processor's cache, a GPU with work for all of its cores.
   const std::size_t wanted = settings.batchBytes ? settings.batchBytes : std::size_t{capabilities.softwareRenderer ? 4u : 64u} << 20;
-  batch_ = static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1, std::min<std::size_t>(patches, 1024)));
+  batch_ = static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1, std::min({patches, kMostHemicubes, texels * sizeof(GLuint) / keyBytes})));
+  const bool items = settings_.visibility != HemicubeVisibility::raster;
+  if (settings_.visibility == HemicubeVisibility::itemBuffer) batch_ = std::clamp(std::min(batch_, capabilities.maxArrayTextureLayers / 5), 1, batch_);
 
-  std::vector<float> corners;
-  std::vector<GLuint> sources;
-  corners.reserve(9 * patches);
+  std::vector<glm::vec4> corners;
+  corners.reserve(3 * patches);
   double emitting = 0.0;
   for (const Patch& patch : mesh.patches) emitting += patch.emission != glm::dvec3(0.0) ? patch.area : 0.0;
   const bool smallSources = emitting < kSmallSources * mesh.area();
   for (const Patch& patch : mesh.patches) {
-    for (const glm::dvec3& corner : mesh.corners(patch))
-      for (int axis = 0; axis < 3; ++axis) corners.push_back(static_cast<float>(corner[axis]));
-    sources.push_back(smallSources && patch.emission != glm::dvec3(0.0));
+    for (const glm::dvec3& corner : mesh.corners(patch)) corners.emplace_back(glm::vec3(corner), 0.0f);
+    smallSources_.push_back(smallSources && patch.emission != glm::dvec3(0.0));
   }
   std::vector<float> deltas;
   for (const double d : deltaFormFactors(settings.resolution, settings.map)) deltas.push_back(static_cast<float>(d));
-  corners_ = gl::Buffer("radiosity corners", corners.size() * sizeof(float), corners.data(), GL_STATIC_DRAW);
-  sources_ = gl::Buffer("radiosity sources", sources.size() * sizeof(GLuint), sources.data(), GL_STATIC_DRAW);
-  deltaFactors_ = gl::Buffer("delta form factors", deltas.size() * sizeof(float), deltas.data(), GL_STATIC_DRAW);
+  corners_ = gl::BufferTexture("radiosity corners", GL_RGBA32F, corners.size() * sizeof(glm::vec4), corners.data());
+  sources_ = gl::Buffer("radiosity sources", smallSources_.size() * sizeof(GLuint), smallSources_.data(), GL_STATIC_DRAW);
+  deltaFactors_ = gl::BufferTexture("delta form factors", GL_R32F, deltas.size() * sizeof(float), deltas.data());
   const auto batch = static_cast<std::size_t>(batch_);
-  frames_ = storage("hemicube frames", batch * sizeof(Frame));
-  keys_ = storage("hemicube pixels", batch * keyBytes);
+  frames_ = gl::Buffer("hemicube frames", kMostHemicubes * sizeof(Frame), nullptr, GL_DYNAMIC_DRAW);
+  keys_ = gl::BufferTexture("hemicube pixels", GL_R32UI, batch * keyBytes, nullptr);
   factors_ = storage("form factors", batch * factorBytes);
   exactList_ = storage("exact form factors", 8 + batch * patches * sizeof(glm::uvec2));
-  shares_ = storage("hemicube shares", batch * sizeof(glm::uvec2));
   largeList_ = storage("large patches", 16 + batch * patches * sizeof(GLuint));
-  depth_ = &programs.loadCompute("hemicube depth", "radiosity/hemicube_depth.comp", {{"LARGE", 0}});
-  depthLarge_ = &programs.loadCompute("hemicube depth large", "radiosity/hemicube_depth.comp", {{"LARGE", 1}});
-  sum_ = &programs.loadCompute("hemicube sum", "radiosity/hemicube_sum.comp", {{"LARGE", 0}});
-  sumLarge_ = &programs.loadCompute("hemicube sum large", "radiosity/hemicube_sum.comp", {{"LARGE", 1}});
-  exact_ = &programs.loadCompute("hemicube exact", "radiosity/hemicube_exact.comp");
+  if (settings_.visibility == HemicubeVisibility::raster) {
+    depth_ = &programs.loadCompute("hemicube depth", "radiosity/hemicube_depth.comp", {{"LARGE", 0}});
+    depthLarge_ = &programs.loadCompute("hemicube depth large", "radiosity/hemicube_depth.comp", {{"LARGE", 1}});
+  } else if (settings_.visibility == HemicubeVisibility::rays) {
+    rays_ = std::make_unique<RayScene>(sceneOf(mesh), capabilities);
+    traceRays_ = &programs.loadCompute("hemicube rays", "radiosity/hemicube_rays.comp", {{"ALPHA_MASKS", 0}});
+  } else {
+    const glm::ivec3 layers(settings.resolution, settings.resolution, 5 * batch_);
+    ItemBuffer& buffer = itemBuffer_.emplace();
+    buffer.items = gl::Texture("hemicube items", GL_R32UI, layers, {}, 1, GL_TEXTURE_2D_ARRAY);
+    buffer.depth = gl::Texture("hemicube depth", GL_DEPTH_COMPONENT32F, layers, {}, 1, GL_TEXTURE_2D_ARRAY);
+    const std::array<const gl::Texture*, 1> colors{&buffer.items};
+    buffer.target = gl::Framebuffer("hemicube items", colors, &buffer.depth);
+    buffer.noAttributes = gl::VertexArray("hemicube items");
+    buffer.draw = &programs.loadRaster("hemicube items", "radiosity/hemicube_item.vert", "radiosity/hemicube_item.frag", {}, "radiosity/hemicube_item.geom");
+    buffer.sum = &programs.loadCompute("hemicube items sum", "radiosity/hemicube_items.comp");
+  }
+  sum_ = &programs.loadCompute("hemicube sum", "radiosity/hemicube_sum.comp", {{"LARGE", 0}, {"ITEMS", items}});
+  sumLarge_ = &programs.loadCompute("hemicube sum large", "radiosity/hemicube_sum.comp", {{"LARGE", 1}, {"ITEMS", items}});
+  exact_ = &programs.loadCompute("hemicube exact", "radiosity/hemicube_exact.comp", {{"ITEMS", items}});
+}
+
+void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities) {
+  // Raster first: where all the work takes it less time than compiling and measuring the others would, they are left out.
+  for (const HemicubeVisibility one : {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
+    if (!costs_.empty() && costs_[0].milliseconds * patchCount_ < 1000.0 * settings_.worthMeasuring) break;
+    HemicubeSettings settings = settings_;
+    settings.visibility = one;
+    Hemicubes hemicubes(programs, capabilities, *mesh_, settings);
+    const int count = std::min(hemicubes.batchSize(), kMeasured);
+    Cost cost{one, 0.0};
+    for (int k = 0; k < 3; ++k) {  // the first warms up; then the better of two places
+      const int first = static_cast<int>(static_cast<std::int64_t>(patchCount_ - count) * k / 2);
+      const auto start = std::chrono::steady_clock::now();
+      hemicubes.draw(first, count);
+      const double took = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / count;
+      if (k == 1 || (k == 2 && took < cost.milliseconds)) cost.milliseconds = took;
+    }
+    costs_.push_back(cost);
+  }
+  const auto best = std::min_element(costs_.begin(), costs_.end(), [](const Cost& a, const Cost& b) { return a.milliseconds < b.milliseconds; });
+  settings_.visibility = best->visibility;
+  std::string measured;
+  for (const Cost& cost : costs_) measured += fmt::format("{}{} {:.3g} ms", measured.empty() ? "" : ", ", nameOf(cost.visibility), cost.milliseconds);
+  logInfo("radiosity: hemicubes by {} (a hemicube: {}{})", nameOf(settings_.visibility), measured, costs_.size() == 1 ? "; too few to measure other ways" : "");
 }
 
 Hemicubes::Frame Hemicubes::frameOf(int index) const {
@@ -86,64 +179,145 @@ Hemicubes::Frame Hemicubes::frameOf(int index) const {
           glm::vec4(glm::vec3(patch.faceNormal), 0.0f)};
 }
 
-FormFactorRows Hemicubes::rows(int first, int count) {
+DrawnHemicubes Hemicubes::draw(int first, int count) {
   CHECK(first >= 0 && count > 0 && count <= batch_ && first + count <= patchCount_, "rows {} + {} of {}, at most {}", first, count, patchCount_, batch_);
   std::vector<Frame> frames;
   for (int i = 0; i < count; ++i) frames.push_back(frameOf(first + i));
   frames_.upload(0, frames.size() * sizeof(Frame), frames.data());
-  keys_.clear();
-  corners_.bind(GL_SHADER_STORAGE_BUFFER, kCorners);
-  frames_.bind(GL_SHADER_STORAGE_BUFFER, kFrames);
-  keys_.bind(GL_SHADER_STORAGE_BUFFER, kKeys);
-  deltaFactors_.bind(GL_SHADER_STORAGE_BUFFER, kDeltaFactors);
+  corners_.bind(kCornersUnit);
+  frames_.bind(GL_UNIFORM_BUFFER, kFrames);
+  keys_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kKeys);
+  keys_.bind(kKeysUnit);
+  deltaFactors_.bind(kDeltasUnit);
   factors_.bind(GL_SHADER_STORAGE_BUFFER, kFactors);
   sources_.bind(GL_SHADER_STORAGE_BUFFER, kSources);
-  shares_.clear();
-  shares_.bind(GL_SHADER_STORAGE_BUFFER, kShares);
   exactList_.bind(GL_SHADER_STORAGE_BUFFER, kExactList);
   constexpr GLuint kNone[2] = {0, 0};
   exactList_.upload(0, sizeof kNone, kNone);
   largeList_.bind(GL_SHADER_STORAGE_BUFFER, kLargeList);
   constexpr GLuint kNoGroups[4] = {0, 1, 1, 0};
   largeList_.upload(0, sizeof kNoGroups, kNoGroups);
-  const glm::ivec3 work((patchCount_ + kTrianglesEach - 1) / kTrianglesEach, count, 1), group(kGroup, 1, 1);
-  for (const gl::Program* program : {depth_, depthLarge_, sum_, sumLarge_, exact_}) {
-    const gl::ComputePass pass(program->name(), GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    program->use();
-    program->set("patchCount", patchCount_);
-    program->set("faceSize", settings_.resolution);
-    program->set("firstPatch", first);
-    program->set("trianglesEach", kTrianglesEach);
-    program->set("exactPixels", settings_.exactPixels);
-    program->set("nearDistance", settings_.nearDistance);
-    program->set("mostParts", settings_.mostParts);
-    if (program == depthLarge_ || program == sumLarge_)
-      pass.dispatchIndirect(largeList_);
-    else
-      pass.dispatch(program == exact_ ? glm::ivec3(kExactGroups * kGroup, 1, 1) : work, group);
+  constexpr GLbitfield kBarrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
+  const glm::ivec3 triangles((count + kHemicubesEach - 1) / kHemicubesEach, patchCount_, 1), trianglesGroup(1, kGroup, 1);
+  const glm::ivec3 pixels(3 * settings_.resolution * settings_.resolution, count, 1), pixelsGroup(kGroup, 1, 1);
+  if (settings_.visibility == HemicubeVisibility::raster) {
+    keys_.buffer().clear();
+    for (const gl::Program* program : {depth_, depthLarge_}) {
+      const gl::ComputePass pass(program->name(), kBarrier);
+      begin(*program, first, count);
+      if (program == depth_) pass.dispatch(triangles, trianglesGroup);
+      else pass.dispatchIndirect(largeList_);
+    }
+  } else {
+    factors_.clear();
+    if (itemBuffer_) {
+      gl::RasterState state;
+      state.depth = gl::Depth::lessWrite;
+      const gl::RasterPass pass("hemicube items", itemBuffer_->target, state);
+      constexpr GLuint kNothing[4] = {0, 0, 0, 0};
+      glClearBufferuiv(GL_COLOR, 0, kNothing);
+      pass.clearDepth();
+      begin(*itemBuffer_->draw, first, count);
+      itemBuffer_->draw->set("inverseFar", static_cast<float>(0.5 / mesh_->extent));
+      itemBuffer_->noAttributes.bind();
+      glDrawArraysInstanced(GL_TRIANGLES, 0, 3 * patchCount_, count);
+    }
+    const gl::Program& program = itemBuffer_ ? *itemBuffer_->sum : *traceRays_;
+    const gl::ComputePass pass(program.name(), kBarrier);
+    begin(program, first, count);
+    if (itemBuffer_) {
+      itemBuffer_->items.bind(kItemsUnit);
+    } else {
+      rays_->bind();
+      program.set("raysOrigin", glm::vec3(rays_->origin()));
+    }
+    pass.dispatch(pixels, pixelsGroup);
   }
-  const std::vector<float> dense = factors_.read<float>();
-  const std::vector<glm::uvec2> shares = shares_.read<glm::uvec2>();
+  for (const gl::Program* program : {sum_, sumLarge_, exact_}) {
+    const gl::ComputePass pass(program->name(), kBarrier);
+    begin(*program, first, count);
+    if (program == sum_) pass.dispatch(triangles, trianglesGroup);
+    else if (program == sumLarge_) pass.dispatchIndirect(largeList_);
+    else pass.dispatch(glm::ivec3(kExactGroups, 1, 1), glm::ivec3(1));
+  }
+  DrawnHemicubes drawn;
+  drawn.first = first;
+  drawn.count = count;
+  drawn.patchCount = patchCount_;
+  drawn.factors = factors_.read<float>(static_cast<std::size_t>(count) * static_cast<std::size_t>(patchCount_));
+  drawn.exact = exactList_.read<glm::uvec2>(1 + exactList_.readFirst<GLuint>());
+  drawn.exact.erase(drawn.exact.begin());
+  return drawn;
+}
+
+void Hemicubes::stream(int first, int end, const std::function<void(const FormFactorRows&)>& take, const std::function<bool(int done)>& goOn) {
+  std::future<void> taken;
+  for (bool stopped = false; first < end && !stopped;) {
+    DrawnHemicubes drawn = draw(first, std::min(end - first, batch_));
+    first += drawn.count;
+    if (taken.valid()) taken.get();
+    taken = std::async(std::launch::async, [&take, batch = std::move(drawn)]() mutable { take(rowsOf(std::move(batch))); });
+    stopped = goOn && !goOn(first);
+  }
+  if (taken.valid()) taken.get();
+}
+
+void Hemicubes::begin(const gl::Program& program, int first, int count) const {
+  program.use();
+  program.set("patchCount", patchCount_);
+  program.set("faceSize", settings_.resolution);
+  program.set("halfFacePixels", settings_.resolution * settings_.resolution / 2);
+  program.set("halfSize", 0.5f * static_cast<float>(settings_.resolution));
+  program.set("pixelSize", 2.0f / static_cast<float>(settings_.resolution));
+  program.set("firstPatch", first);
+  program.set("hemicubes", count);
+  program.set("hemicubesEach", kHemicubesEach);
+  program.set("exactPixels", settings_.exactPixels);
+  program.set("nearDistance", settings_.nearDistance);
+  program.set("mostParts", settings_.mostParts);
+}
+
+FormFactorRows rowsOf(DrawnHemicubes drawn) {
+  const auto patches = static_cast<std::size_t>(drawn.patchCount), rowCount = static_cast<std::size_t>(drawn.count);
   FormFactorRows result;
-  result.first = first;
-  for (int row = 0; row < count; ++row) {
-    const float* factors = dense.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(patchCount_);
-    const std::size_t before = result.patches.size();
-    for (int i = 0; i < patchCount_; ++i)
-      if (factors[i] > 0.0f) {
-        result.patches.push_back(static_cast<std::uint32_t>(i));
-        result.factors.push_back(factors[i]);
-      }
-    result.counts.push_back(static_cast<std::uint32_t>(result.patches.size() - before));
-    const glm::dvec2 share = glm::dvec2(shares[static_cast<std::size_t>(row)]) / kWholeShare;
-    result.fronts.push_back(static_cast<float>(share.x));
-    result.backs.push_back(static_cast<float>(share.y));
+  result.first = drawn.first;
+  std::size_t entries = 0;
+  for (std::size_t row = 0; row < rowCount; ++row) {
+    // Eight sums side by side, so that the processor adds them at once; always the same eight, so the same bits.
+    const float* factors = drawn.factors.data() + row * patches;
+    double fronts[8] = {}, backs[8] = {};
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < patches; ++i) {
+      fronts[i % 8] += static_cast<double>(std::max(factors[i], 0.0f));
+      backs[i % 8] += static_cast<double>(std::max(-factors[i], 0.0f));
+      seen += factors[i] > 0.0f;
+    }
+    entries += seen;
+    result.fronts.push_back(static_cast<float>(std::accumulate(fronts, fronts + 8, 0.0)));
+    result.backs.push_back(static_cast<float>(std::accumulate(backs, backs + 8, 0.0)));
   }
+  for (const glm::uvec2& exact : drawn.exact) drawn.factors[exact.x] = std::bit_cast<float>(exact.y);
+  result.patches.resize(entries + drawn.exact.size() + 1);
+  result.factors.resize(result.patches.size());
+  std::size_t at = 0;
+  for (std::size_t row = 0; row < rowCount; ++row) {
+    const float* factors = drawn.factors.data() + row * patches;
+    const std::size_t before = at;
+    for (std::size_t i = 0; i < patches; ++i) {  // written over by the next where there is none: no branch to guess wrong
+      result.patches[at] = static_cast<std::uint32_t>(i);
+      result.factors[at] = factors[i];
+      at += factors[i] > 0.0f;
+    }
+    result.counts.push_back(static_cast<std::uint32_t>(at - before));
+  }
+  result.patches.resize(at);
+  result.factors.resize(at);
   return result;
 }
 
 std::size_t Hemicubes::gpuBytes() const {
-  return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + keys_.bytes() + factors_.bytes() + exactList_.bytes() + shares_.bytes() + largeList_.bytes();
+  return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + keys_.bytes() + factors_.bytes() + exactList_.bytes() + largeList_.bytes() +
+         (rays_ ? rays_->gpuBytes() : 0) + (itemBuffer_ ? itemBuffer_->items.bytes() + itemBuffer_->depth.bytes() : 0);
 }
 
 }  // namespace lucerna

@@ -1,8 +1,8 @@
 // Form factors by hemicubes on the GPU, many a submission.
 //
 // Input: a RadiosityMesh. Output: rows of the form factor matrix, F[i][j] = the share of what patch i sends out that reaches patch j's
-// front = the part of its hemisphere that j fills, cosine-weighted. A rasteriser in compute shaders draws and adds them up without an item
-// buffer to sort (shaders/radiosity/hemicube.glsl); it has no near plane, and on software renderers all their cores.
+// front = the part of its hemisphere that j fills, cosine-weighted. Which patch a pixel sees is told by a rasteriser in compute shaders, by rays
+// or by an item buffer (shaders/radiosity/hemicube.glsl); none of them has a near plane.
 // Sources: shaders/REFERENCES.md [CohenGreenberg1985], [BaumRushmeierWinget1989], [Olano1997].
 #pragma once
 
@@ -13,11 +13,30 @@
 #include "radiosity/patches.hpp"
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 namespace lucerna {
 
+class RayScene;
+
+/// How pixels learn what they see. Rows differ by what lies within rounding of a pixel's centre, with the item buffer by what lies within 1/512 pixel.
+enum class HemicubeVisibility {
+  automatic,   ///< measured at start, where the whole work takes longer than measuring
+  itemBuffer,  ///< patches' numbers drawn to layers by the GPU's rasteriser
+  raster,      ///< a rasteriser in compute shaders
+  rays         ///< one through each pixel's centre
+};
+std::string_view nameOf(HemicubeVisibility visibility);
+/// "auto", "item-buffer", "raster" or "rays"; anything else throws Error(badInput).
+HemicubeVisibility parseHemicubeVisibility(std::string_view name);
+
 struct HemicubeSettings {
+  HemicubeVisibility visibility = HemicubeVisibility::automatic;
+  double worthMeasuring = 10.0;            ///< automatic: seconds that all hemicubes must take by raster for the others to be measured too
   int resolution = 64;                     ///< pixels a side of the full face; even
   DeltaMap map = DeltaMap::exact;
   bool randomRoll = true;                  ///< each turned about its normal by a hash of seed and patch; else towards the first corner
@@ -37,28 +56,68 @@ struct FormFactorRows {
   std::vector<float> factors;          ///< of each entry, > 0
 };
 
+/// What a batch left on the GPU, read back.
+struct DrawnHemicubes {
+  int first = 0, count = 0, patchCount = 0;
+  std::vector<float> factors;      ///< hemicube-major, by pixels; below 0 where a back was seen
+  std::vector<glm::uvec2> exact;   ///< hemicube * patchCount + patch; bits of the closed form, which replaces the pixels'
+};
+/// Touches no GL: a thread of its own may do it while the next batch is drawn.
+FormFactorRows rowsOf(DrawnHemicubes drawn);
+
 class Hemicubes {
  public:
   /// Throws Error(missingCapability) where the driver's storage blocks cannot hold the corners or one hemicube.
   Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh, const HemicubeSettings& settings);
 
+  ~Hemicubes();
+  Hemicubes(const Hemicubes&) = delete;
+  Hemicubes& operator=(const Hemicubes&) = delete;
+
+  /// The one that was asked for or chosen; never automatic.
+  HemicubeVisibility visibility() const { return settings_.visibility; }
+  /// What automatic measured, milliseconds a hemicube; empty where it was not asked.
+  struct Cost {
+    HemicubeVisibility visibility;
+    double milliseconds;
+  };
+  const std::vector<Cost>& costs() const { return costs_; }
   int batchSize() const { return batch_; }
   int patchCount() const { return patchCount_; }
-  /// At most batchSize() rows from `first` on; waits for them.
-  FormFactorRows rows(int first, int count);
-  std::size_t gpuBytes() const;
+  /// 1 for patches that shine and are small beside the scene: factors to them are closed forms, however few pixels they cover.
+  const std::vector<std::uint32_t>& smallSources() const { return smallSources_; }
+  /// At most batchSize() hemicubes from `first` on; waits for them.
+  DrawnHemicubes draw(int first, int count);
+  FormFactorRows rows(int first, int count) { return rowsOf(draw(first, count)); }
+  /// Rows first..end - 1, batch by batch: while the GPU draws one, a thread of its own makes rows of the one before and hands them to `take`, in order
+  /// and never two at once. `goOn` is asked on this thread after each batch, with the patches drawn so far; false stops.
+  void stream(int first, int end, const std::function<void(const FormFactorRows&)>& take, const std::function<bool(int done)>& goOn = {});
+  std::size_t gpuBytes() const;  ///< of what the chosen way needs
 
  private:
   struct Frame {
     glm::vec4 origin, u, v, n;
   };
+  struct ItemBuffer {
+    gl::Texture items, depth;
+    gl::Framebuffer target;
+    gl::VertexArray noAttributes;
+    const gl::Program *draw, *sum;
+  };
   Frame frameOf(int patch) const;
+  void choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities);
+  void begin(const gl::Program& program, int first, int count) const;
 
   const RadiosityMesh* mesh_;
   HemicubeSettings settings_;
   int patchCount_ = 0, batch_ = 0;
-  const gl::Program *depth_, *depthLarge_, *sum_, *sumLarge_, *exact_;
-  gl::Buffer corners_, sources_, deltaFactors_, frames_, keys_, factors_, exactList_, shares_, largeList_;
+  std::vector<std::uint32_t> smallSources_;
+  std::vector<Cost> costs_;
+  const gl::Program *depth_ = nullptr, *depthLarge_ = nullptr, *sum_ = nullptr, *sumLarge_ = nullptr, *exact_ = nullptr, *traceRays_ = nullptr;
+  std::unique_ptr<RayScene> rays_;
+  std::optional<ItemBuffer> itemBuffer_;
+  gl::BufferTexture corners_, deltaFactors_, keys_;
+  gl::Buffer sources_, frames_, factors_, exactList_, largeList_;
 };
 
 }  // namespace lucerna

@@ -1,6 +1,7 @@
 #include "radiosity/patches.hpp"
 
 #include "base/error.hpp"
+#include "scene/texture_mean.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,29 +59,6 @@ class Welder {
   double tolerance_, cell_;
 };
 
-/// Linear albedo of a texture where texture coordinates wrap; nearest texel.
-glm::dvec3 texelAt(const Bitmap& bitmap, const glm::dvec2& uv) {
-  const auto wrap = [](double t, int n) { return std::min(static_cast<int>((t - std::floor(t)) * n), n - 1); };
-  const int x = wrap(uv.x, bitmap.width), y = bitmap.height - 1 - wrap(uv.y, bitmap.height);
-  const std::uint8_t* texel = bitmap.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x));
-  glm::dvec3 value;
-  for (int c = 0; c < 3; ++c) value[c] = static_cast<double>(linearFromSrgb(static_cast<float>(texel[c]) / 255.0f));
-  return value;
-}
-
-/// Mean of the texture over the patch, at the centroids of 64 equal parts.
-glm::dvec3 meanTexture(const Bitmap& bitmap, const std::array<glm::vec2, 3>& uv) {
-  constexpr int kParts = 8;
-  glm::dvec3 sum(0.0);
-  for (int i = 0; i < kParts; ++i)
-    for (int j = 0; j < 2 * (kParts - i) - 1; ++j) {
-      const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
-      const double a = (i + third) / kParts, b = (j / 2 + third) / kParts;
-      sum += texelAt(bitmap, (1.0 - a - b) * glm::dvec2(uv[0]) + a * glm::dvec2(uv[1]) + b * glm::dvec2(uv[2]));
-    }
-  return sum / static_cast<double>(kParts * kParts);
-}
-
 /// Everything about a patch that follows from its corners and its material.
 void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
   const auto c = mesh.corners(patch);
@@ -93,6 +71,8 @@ void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
   if (material.diffuseTexture >= 0)
     patch.reflectance *= meanTexture(scene.textures[static_cast<std::size_t>(material.diffuseTexture)].bitmap, patch.texCoord);
   patch.emission = std::numbers::pi * glm::dvec3(material.emission);
+  if (material.emissionTexture >= 0)
+    patch.emission = std::numbers::pi * glm::dvec3(material.emissionScale) * meanTexture(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap, patch.texCoord);
 }
 
 /// Corners share a light vertex where point and material are the same and their normals differ by less than the crease.

@@ -1,19 +1,30 @@
 #include "radiosity/radiosity_view.hpp"
 
+#include "base/error.hpp"
 #include "base/log.hpp"
+
+#include <fmt/ranges.h>
 
 namespace lucerna {
 
 namespace {
 
-constexpr GLuint kLightBinding = 0;
+constexpr GLuint kLightBinding = 0, kFacesBinding = 2;  // 1: direct light
 
 RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiosityView::Settings& settings) {
-  if (!settings.file.empty() && std::filesystem::exists(settings.file)) return loadSolution(settings.file, scene);
+  if (!settings.file.empty() && std::filesystem::exists(settings.file)) {
+    RadiositySolution solution = loadSolution(settings.file, scene);
+    if (activeRadiosityDeviations(solution.deviations) != activeRadiosityDeviations(settings.solution.deviations))
+      throwBadInput("{}: solved with other deviations ({}): name another file", settings.file.string(), fmt::join(activeRadiosityDeviations(solution.deviations), ", "));
+    return solution;
+  }
   std::filesystem::path checkpoint = settings.file;
   if (!checkpoint.empty()) checkpoint += ".part";
   RadiositySolution solution = solveScene(context, programs, scene, settings.solution, checkpoint);
-  if (!settings.file.empty()) saveSolution(settings.file, scene, solution);
+  if (!settings.file.empty()) {
+    saveSolution(settings.file, scene, solution);
+    removeCheckpoints(checkpoint);
+  }
   return solution;
 }
 
@@ -29,12 +40,23 @@ std::string_view nameOf(RadiosityView::Mapping mapping) {
   return "?";
 }
 
+std::string_view nameOf(RadiosityView::Direct direct) {
+  switch (direct) {
+    case RadiosityView::Direct::automatic: return "auto";
+    case RadiosityView::Direct::patches: return "patches";
+    case RadiosityView::Direct::pixels: return "pixels";
+  }
+  return "?";
+}
+
 RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings)
     : settings_(settings), solution_(solveOrLoad(context, programs, scene, settings)), lit_(litScene(scene, solution_.mesh)) {
   std::vector<glm::dvec3> patchLight = solution_.irradiance;
   for (std::size_t i = 0; i < patchLight.size(); ++i) {
-    if (settings.light == Light::direct) patchLight[i] = solution_.direct[i];
-    if (settings.light == Light::indirect) patchLight[i] -= solution_.direct[i];
+    const glm::dvec3 direct = solution_.direct[i] + solution_.fromEmitters[i];
+    const bool byPixel = settings.direct == Direct::pixels;
+    if (settings.light == Light::direct) patchLight[i] = byPixel ? glm::dvec3(0.0) : direct;
+    else if (settings.light == Light::indirect || byPixel) patchLight[i] -= direct;
   }
   const std::vector<glm::vec3> atVertices = interpolatedToVertices(solution_, patchLight);
   std::vector<float> corners;
@@ -45,12 +67,17 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
       for (int c = 0; c < 3; ++c) corners.push_back(value[c]);
     }
   light_ = gl::Buffer("radiosity light", corners.size() * sizeof(float), corners.data(), GL_STATIC_DRAW);
+  if (settings.direct != Direct::pixels) return;
+  std::vector<float> faces;
+  for (const Patch& patch : solution_.mesh.patches)
+    for (int c = 0; c < 3; ++c) faces.push_back(static_cast<float>(patch.faceNormal[c]));
+  faces_ = gl::Buffer("radiosity faces", faces.size() * sizeof(float), faces.data(), GL_STATIC_DRAW);
 }
 
 SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene) const {
   const auto load = [&](const char* name, bool masked) {
     gl::ShaderFlags flags = gpuScene.materialFlags(masked);
-    flags.insert(flags.end(), {{"EMISSION", gpuScene.needs().emission && settings_.light != Light::indirect}, {"MESH", settings_.mesh}});
+    flags.insert(flags.end(), {{"EMISSION", gpuScene.needs().emission && settings_.light != Light::indirect}, {"MESH", settings_.mesh}, {"DIRECT_RAYS", takesDirectRays()}, {"ALPHA_MASKS", 0}});
     return &programs.loadRaster(name, "radiosity/view.vert", "radiosity/view.frag", flags);
   };
   SurfacePrograms result;
@@ -67,6 +94,9 @@ const gl::Program* RadiosityView::loadMapping(gl::ProgramLibrary& programs) cons
   return &program;
 }
 
-void RadiosityView::bind() const { light_.bind(GL_SHADER_STORAGE_BUFFER, kLightBinding); }
+void RadiosityView::bind() const {
+  light_.bind(GL_SHADER_STORAGE_BUFFER, kLightBinding);
+  if (faces_.bytes() > 0) faces_.bind(GL_SHADER_STORAGE_BUFFER, kFacesBinding);
+}
 
 }  // namespace lucerna

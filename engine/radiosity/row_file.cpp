@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -14,7 +15,7 @@ namespace lucerna {
 namespace {
 
 constexpr char kMagic[8] = {'L', 'U', 'C', 'R', 'O', 'W', 'S', '\n'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;  // 2: rows depend on how pixels learn what they see
 
 struct Header {
   char magic[8];
@@ -115,11 +116,22 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
   }
 }
 
+std::optional<std::uint64_t> RowFile::fingerprintOf(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Header header{};
+  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion) return std::nullopt;
+  return header.fingerprint;
+}
+
 RowFile::~RowFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void RowFile::append(const FormFactorRows& rows) {
+  struct stat here {}, there {};
+  if (::fstat(descriptor_, &here) != 0 || ::stat(file_.c_str(), &there) != 0 || here.st_ino != there.st_ino || here.st_dev != there.st_dev ||
+      static_cast<std::uint64_t>(here.st_size) != end_)
+    throwBadInput("{}: was changed or replaced by something else while rows were written to it; it is left as it is", file_.string());
   BlockHeader block{static_cast<std::uint32_t>(rows.first), static_cast<std::uint32_t>(rows.counts.size()), rows.patches.size(), 0};
   std::vector<std::uint8_t> bytes(sizeof block + dataBytes(block));
   std::uint8_t* at = bytes.data() + sizeof block;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 namespace lucerna {
 
@@ -18,6 +19,8 @@ class RowFile {
   /// another version, or of another scene or settings (`fingerprint`); it is left as it was then.
   RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches, const std::function<void(const FormFactorRows&)>& take);
   ~RowFile();
+  /// Of the file there is; nothing where it is none of ours or of another version.
+  static std::optional<std::uint64_t> fingerprintOf(const std::filesystem::path& file);
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;
 

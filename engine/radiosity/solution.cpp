@@ -7,12 +7,15 @@
 #include "radiosity/direct_light.hpp"
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/row_file.hpp"
+#include "scene/fingerprint.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <numbers>
+#include <numeric>
 #include <unistd.h>
 #include <unordered_map>
 
@@ -35,6 +38,7 @@ std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings&
     for (const glm::dvec3& corner : mesh.corners(patch)) f.add(corner);
     f.add(patch.emission != glm::dvec3(0.0));
   }
+  f.add(s.visibility);
   f.add(s.resolution);
   f.add(s.map);
   f.add(s.randomRoll);
@@ -67,81 +71,106 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   FormFactorMatrix matrix;
   solution.fronts.clear();
   solution.backs.clear();
+  std::vector<double> rowSums;  // as hemicubes have them
   const auto take = [&](const FormFactorRows& rows, bool keep) {
     if (keep) append(matrix, rows);
+    auto factor = rows.factors.begin();
+    for (const std::uint32_t count : rows.counts) rowSums.push_back(std::accumulate(factor, factor + count, 0.0)), factor += count;
     solution.fronts.insert(solution.fronts.end(), rows.fronts.begin(), rows.fronts.end());
     solution.backs.insert(solution.backs.end(), rows.backs.begin(), rows.backs.end());
   };
-  Hemicubes hemicubes(programs, context.capabilities(), mesh, settings.hemicubes);
+  // Rows by different ways differ in their last bits: a checkpoint is gone on with as it was begun.
+  HemicubeSettings asked = settings.hemicubes;
+  if (const auto begun = asked.visibility == HemicubeVisibility::automatic && !checkpoint.empty() ? RowFile::fingerprintOf(checkpoint) : std::nullopt)
+    for (const HemicubeVisibility one : {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
+      HemicubeSettings as = asked;
+      as.visibility = one;
+      if (rowsFingerprint(mesh, as) == *begun) asked.visibility = one;
+    }
+  Hemicubes hemicubes(programs, context.capabilities(), mesh, asked);
+  asked.visibility = hemicubes.visibility();
   const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
   std::unique_ptr<RowFile> file;
   if (!checkpoint.empty())
-    file = std::make_unique<RowFile>(checkpoint, rowsFingerprint(mesh, settings.hemicubes), static_cast<std::uint32_t>(n), [&](const FormFactorRows& rows) { take(rows, true); });
+    file = std::make_unique<RowFile>(checkpoint, rowsFingerprint(mesh, asked), static_cast<std::uint32_t>(n), [&](const FormFactorRows& rows) { take(rows, true); });
   bool kept = true, stopped = false;
+  std::size_t computed = 0;
   double start = now();
-  for (std::size_t first = solution.fronts.size(); first < n && !stopped;) {
-    const FormFactorRows rows = hemicubes.rows(static_cast<int>(first), static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
+  const std::size_t from = solution.fronts.size();
+  const auto keep = [&](const FormFactorRows& rows) {
     take(rows, kept);
     if (file && kept) file->append(rows);
-    first += rows.counts.size();
-    solution.hemicubes += rows.counts.size();
-    if (kept && static_cast<double>(matrix.entryCount()) * static_cast<double>(n) / static_cast<double>(first) * static_cast<double>(kBytesPerEntry) > static_cast<double>(memory)) {
-      logWarning("radiosity: the form factors of {} patches need about {} MiB, there are {}: they are computed anew for each product", n,
-                 static_cast<std::size_t>(static_cast<double>(matrix.entryCount()) / static_cast<double>(first) * static_cast<double>(n)) * kBytesPerEntry >> 20, memory >> 20);
+    const double perPatch = static_cast<double>(matrix.entryCount()) / static_cast<double>(solution.fronts.size()), bytes = perPatch * static_cast<double>(n) * static_cast<double>(kBytesPerEntry);
+    if (kept && bytes > static_cast<double>(memory)) {
+      logWarning("radiosity: the form factors of {} patches need about {} MiB, there are {}: they are computed anew for each product", n, static_cast<std::size_t>(bytes) >> 20, memory >> 20);
       kept = false;
       matrix = {};
     }
-    stopped = !stage(RadiosityStage::Kind::formFactors, first);
-  }
+  };
+  hemicubes.stream(static_cast<int>(from), static_cast<int>(n), keep, [&](int done) {
+    solution.hemicubes += static_cast<std::size_t>(done) - from - computed;
+    computed = static_cast<std::size_t>(done) - from;
+    stopped = !stage(RadiosityStage::Kind::formFactors, static_cast<std::size_t>(done));
+    return !stopped;
+  });
   solution.hemicubeSeconds += now() - start;
   solution.keptRows = kept;
+  solution.visibility = hemicubes.visibility();
   if (stopped) throwBadInput("radiosity: stopped after {} of {} patches{}", solution.fronts.size(), n, checkpoint.empty() ? "" : "; the next run goes on from there");
 
   start = now();
   RadiositySystem system;
-  std::vector<double> fronts;
+  std::vector<double> sums;
   for (std::size_t i = 0; i < n; ++i) {
     const Patch& patch = mesh.patches[i];
     system.areas.push_back(patch.area);
     system.reflectance.push_back(patch.reflectance);
     system.emission.push_back(patch.emission + patch.reflectance * solution.direct[i]);
-    // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed.
-    const double share = static_cast<double>(solution.fronts[i]);
-    fronts.push_back(share > 1.0 - 1e-5 ? 1.0 : share);
+    // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed. An open row sums to what its factors say: closed forms know of
+    // lights that no pixel meets.
+    sums.push_back(static_cast<double>(solution.fronts[i]) > 1.0 - 1e-5 ? 1.0 : std::min(1.0, rowSums[i]));
   }
   if (kept) {
-    const std::vector<double> before = matrix.rowSums();
     double off = 0.0;
-    for (std::size_t i = 0; i < n; ++i) off += std::abs(before[i] - fronts[i]);
+    for (std::size_t i = 0; i < n; ++i) off += std::abs(rowSums[i] - sums[i]);
     solution.repaired = off / static_cast<double>(n);
     if (settings.repair) {
-      matrix.repair(system.areas, fronts);
+      const double pixel = 4.0 / (std::numbers::pi * settings.hemicubes.resolution * settings.hemicubes.resolution);  // the largest delta form factor
+      matrix.repair(system.areas, sums, hemicubes.smallSources(), settings.hemicubes.exactPixels * pixel);
       system.reciprocal = true;
     }
     system.matrix = &matrix;
-    system.rowSums = settings.repair ? fronts : matrix.rowSums();
+    system.rowSums = matrix.rowSums();
     solution.entries = matrix.entryCount();
     system.product = [&](auto x, auto y) { matrix.multiply(x, y); };
   } else {
-    // Each product draws all hemicubes again; rows are scaled to their share of fronts, reciprocity is as hemicubes have it.
-    system.rowSums = fronts;
+    // Each product draws all hemicubes again. Of the repair rows get their sums; reciprocity stays as hemicubes have it.
+    system.rowSums = settings.repair ? sums : rowSums;
     system.product = [&](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
       for (std::size_t first = 0; first < n;) {
         const FormFactorRows rows = hemicubes.rows(static_cast<int>(first), static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
         std::size_t at = 0;
         for (std::size_t k = 0; k < rows.counts.size(); ++k) {
           glm::dvec3 sum(0.0);
-          double whole = 0.0;
-          for (std::size_t end = at + rows.counts[k]; at < end; ++at) {
-            sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
-            whole += static_cast<double>(rows.factors[at]);
-          }
-          y[first + k] = whole > 0.0 ? sum * (fronts[first + k] / whole) : glm::dvec3(0.0);
+          for (std::size_t end = at + rows.counts[k]; at < end; ++at) sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
+          y[first + k] = settings.repair && rowSums[first + k] > 0.0 ? sum * (sums[first + k] / rowSums[first + k]) : sum;
         }
         first += rows.counts.size();
         solution.hemicubes += rows.counts.size();
         if (!stage(RadiosityStage::Kind::formFactors, first)) throwBadInput("radiosity: stopped while rows were computed anew");
       }
+    };
+  }
+  // What comes from emitters straight, so that a view may put sharper shadows in its place.
+  solution.fromEmitters.assign(n, glm::dvec3(0.0));
+  std::vector<glm::dvec3> emission(n);
+  for (std::size_t i = 0; i < n; ++i) emission[i] = mesh.patches[i].emission;
+  if (std::any_of(emission.begin(), emission.end(), [](const glm::dvec3& e) { return e != glm::dvec3(0.0); })) {
+    system.product(emission, solution.fromEmitters);
+    // Solvers begin with this very product where there are no lamps besides: not a second time, which is dear where rows are computed anew.
+    system.product = [&, product = std::move(system.product)](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
+      if (std::ranges::equal(x, emission)) std::ranges::copy(solution.fromEmitters, y.begin());
+      else product(x, y);
     };
   }
   SolverSettings solver;
@@ -157,11 +186,6 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   solution.solver = solved.solver;
   solution.reached = solved.reached;
   solution.solveSeconds += now() - start;
-  if (file) {
-    file.reset();
-    std::error_code ignored;
-    std::filesystem::remove(checkpoint, ignored);
-  }
 }
 
 double mean3(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
@@ -195,20 +219,45 @@ RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution,
 
 }  // namespace
 
-RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& settings,
+namespace {
+
+/// What each deviation is in this solver. The published map knows neither closed forms nor a repair, which would hide it.
+RadiositySolutionSettings withDeviations(RadiositySolutionSettings settings) {
+  const RadiosityDeviations& d = settings.deviations;
+  if (d.values24Bit) throwBadInput("--deviation rad.24-bit=on: whole numbers are the published solver's; use lucerna radiosity solve --fidelity original");
+  if (d.publishedMap) settings.hemicubes.map = DeltaMap::published;
+  if (d.publishedMap || d.noNearField) settings.hemicubes.exactPixels = 0, settings.repair = false;
+  if (d.centroid) settings.hemicubes.nearDistance = 0.0f;
+  if (d.fixedOrientation) settings.hemicubes.randomRoll = false;
+  return settings;
+}
+
+std::filesystem::path checkpointOf(std::filesystem::path checkpoint, int refinement) {
+  if (!checkpoint.empty() && refinement > 0) checkpoint += fmt::format(".{}", refinement);
+  return checkpoint;
+}
+
+}  // namespace
+
+void removeCheckpoints(const std::filesystem::path& checkpoint) {
+  std::error_code ignored;
+  for (int refinement = 0; std::filesystem::remove(checkpointOf(checkpoint, refinement), ignored); ++refinement) continue;
+}
+
+RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& asked,
                              const std::filesystem::path& checkpoint, const std::function<bool(const RadiosityStage&)>& onStage) {
+  const RadiositySolutionSettings settings = withDeviations(asked);
   PatchSettings patches = settings.patches;
   const glm::dvec3 extent = scene.bounds.extent();
   const double largest = std::max({extent.x, extent.y, extent.z});
   if (patches.longestEdge <= 0.0) patches.longestEdge = largest / kEdges;
   if (settings.wholeTriangles) patches.longestEdge = 0.0;
   RadiositySolution solution;
+  solution.deviations = settings.deviations;
   solution.mesh = makePatches(scene, patches);
   const double shortest = (patches.longestEdge > 0.0 ? patches.longestEdge : largest / kEdges) / std::pow(2.0, settings.refinements + 1);
   for (int refinement = 0;; ++refinement) {
-    std::filesystem::path file = checkpoint;
-    if (!file.empty() && refinement > 0) file += fmt::format(".{}", refinement);
-    solveMesh(context, programs, scene, settings, refinement, file, onStage, solution);
+    solveMesh(context, programs, scene, settings, refinement, checkpointOf(checkpoint, refinement), onStage, solution);
     if (refinement >= settings.refinements) return solution;
     RadiosityMesh finer = refineSteep(scene, solution, patches, settings.steep, shortest);
     if (finer.patches.size() == solution.mesh.patches.size()) return solution;
@@ -263,11 +312,11 @@ Scene litScene(const Scene& scene, const RadiosityMesh& mesh) {
 namespace {
 
 constexpr char kMagic[8] = {'L', 'U', 'C', 'L', 'I', 'G', 'H', 'T'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 struct FileHeader {
   char magic[8];
-  std::uint32_t version, solver;
+  std::uint32_t version, solver, deviations, unused;
   std::uint64_t scene, points, patches, lightVertices, checksum;
   double products, residual, errorBound, energyBalance, extent;
 };
@@ -277,23 +326,26 @@ struct FilePatch {
   std::int32_t material;
   std::uint32_t triangle;
   float fronts, backs;
-  double centroid[3], faceNormal[3], area, reflectance[3], emission[3], direct[3], irradiance[3], exitance[3];
+  double centroid[3], faceNormal[3], area, reflectance[3], emission[3], direct[3], fromEmitters[3], irradiance[3], exitance[3];
 };
 
 }  // namespace
 
+namespace {
+
 std::uint64_t fingerprint(const Scene& scene) {
-  Hash f;
-  for (const Vertex& v : scene.vertices) f.add(v.position), f.add(v.texCoord);
-  f.bytes(scene.indices.data(), scene.indices.size() * sizeof(std::uint32_t));
-  for (const Mesh& mesh : scene.meshes) f.add(mesh.material), f.add(mesh.indexCount);
-  for (const Material& m : scene.materials) f.add(m.diffuse), f.add(m.emission);
-  for (const Texture& t : scene.textures) f.bytes(t.bitmap.rgba.data(), t.bitmap.rgba.size());
-  if (scene.sun) f.add(scene.sun->direction), f.add(scene.sun->irradiance);
-  for (const SpotLight& l : scene.spots) f.add(l.position), f.add(l.direction), f.add(l.intensity), f.add(l.innerAngle), f.add(l.outerAngle);
-  for (const PointLight& l : scene.points) f.add(l.position), f.add(l.intensity);
-  return f.value();
+  Hash hash;
+  addScene(hash, scene);
+  return hash.value();
 }
+
+std::uint32_t bitsOf(const RadiosityDeviations& deviations) {
+  std::uint32_t bits = 0, bit = 1;
+  for (const RadiosityDeviation& d : allRadiosityDeviations()) bits |= deviations.*d.member ? bit : 0, bit *= 2;
+  return bits;
+}
+
+}  // namespace
 
 void saveSolution(const std::filesystem::path& file, const Scene& scene, const RadiositySolution& s) {
   std::vector<FilePatch> patches(s.mesh.patches.size());
@@ -312,6 +364,7 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
       to.reflectance[k] = from.reflectance[axis];
       to.emission[k] = from.emission[axis];
       to.direct[k] = s.direct[i][axis];
+      to.fromEmitters[k] = s.fromEmitters[i][axis];
       to.irradiance[k] = s.irradiance[i][axis];
       to.exitance[k] = s.exitance[i][axis];
     }
@@ -325,6 +378,7 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
   std::memcpy(header.magic, kMagic, sizeof kMagic);
   header.version = kVersion;
   header.solver = static_cast<std::uint32_t>(s.solver);
+  header.deviations = bitsOf(s.deviations);
   header.scene = fingerprint(scene);
   header.points = s.mesh.points.size();
   header.patches = patches.size();
@@ -334,12 +388,15 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
   header.errorBound = s.progress.errorBound;
   header.energyBalance = s.progress.energyBalance;
   header.extent = s.mesh.extent;
-  std::vector<std::uint8_t> bytes(sizeof header + s.mesh.points.size() * sizeof(glm::dvec3) + patches.size() * sizeof(FilePatch));
-  std::uint8_t* at = bytes.data() + sizeof header;
-  std::memcpy(at, s.mesh.points.data(), s.mesh.points.size() * sizeof(glm::dvec3));
-  std::memcpy(at + s.mesh.points.size() * sizeof(glm::dvec3), patches.data(), patches.size() * sizeof(FilePatch));
-  header.checksum = Hash::of(at, bytes.size() - sizeof header);
-  std::memcpy(bytes.data(), &header, sizeof header);
+  std::vector<std::uint8_t> bytes;
+  const auto put = [&](const void* data, std::size_t size) { bytes.insert(bytes.end(), static_cast<const std::uint8_t*>(data), static_cast<const std::uint8_t*>(data) + size); };
+  Hash checksum;
+  checksum.bytes(s.mesh.points.data(), s.mesh.points.size() * sizeof(glm::dvec3));
+  checksum.bytes(patches.data(), patches.size() * sizeof(FilePatch));
+  header.checksum = checksum.value();
+  put(&header, sizeof header);
+  put(s.mesh.points.data(), s.mesh.points.size() * sizeof(glm::dvec3));
+  put(patches.data(), patches.size() * sizeof(FilePatch));
   writeFileAtomically(file, std::span<const std::uint8_t>(bytes));
 }
 
@@ -382,6 +439,7 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
     to.reflectance = vector(from.reflectance);
     to.emission = vector(from.emission);
     s.direct.push_back(vector(from.direct));
+    s.fromEmitters.push_back(vector(from.fromEmitters));
     s.irradiance.push_back(vector(from.irradiance));
     s.exitance.push_back(vector(from.exitance));
     s.fronts.push_back(from.fronts);
@@ -389,6 +447,8 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
   }
   s.progress = {header.products, header.residual, header.errorBound, header.energyBalance};
   s.solver = static_cast<RadiositySolver>(header.solver);
+  std::uint32_t bit = 1;
+  for (const RadiosityDeviation& d : allRadiosityDeviations()) s.deviations.*d.member = (header.deviations & bit) != 0, bit *= 2;
   s.reached = true;
   return s;
 }

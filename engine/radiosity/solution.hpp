@@ -21,6 +21,7 @@ struct RadiositySolutionSettings {
   PatchSettings patches;           ///< longestEdge 0: a 12th of the scene's largest extent
   bool wholeTriangles = false;     ///< patches are the scene's triangles, whatever longestEdge says
   HemicubeSettings hemicubes;
+  RadiosityDeviations deviations;  ///< of the original; values24Bit alone is refused: whole numbers are the published solver's
   RadiositySolver solver = RadiositySolver::automatic;
   double error = 1e-3;             ///< guaranteed: max |B - exact| over the mean of B
   int mostProducts = 100000;
@@ -39,7 +40,9 @@ struct RadiosityStage {
 
 struct RadiositySolution {
   RadiosityMesh mesh;
+  RadiosityDeviations deviations;
   std::vector<glm::dvec3> direct;      ///< irradiance by sun, spot and omnidirectional lights
+  std::vector<glm::dvec3> fromEmitters;  ///< irradiance by what patches emit, reflected nowhere
   std::vector<glm::dvec3> irradiance;  ///< in all
   std::vector<glm::dvec3> exitance;    ///< emission + reflectance * irradiance
   std::vector<float> fronts, backs;    ///< shares of each hemisphere
@@ -47,6 +50,7 @@ struct RadiositySolution {
   RadiositySolver solver = RadiositySolver::automatic;
   bool reached = false;
   bool keptRows = true;
+  HemicubeVisibility visibility = HemicubeVisibility::automatic;  ///< that this run's hemicubes were made by
   std::size_t hemicubes = 0;           ///< computed in this run
   double hemicubeSeconds = 0.0, solveSeconds = 0.0;
   std::size_t entries = 0;             ///< form factors kept
@@ -55,9 +59,12 @@ struct RadiositySolution {
 
 /// Throws Error(badInput) for scenes without a solution and for checkpoints of another scene, other settings or another version.
 /// `checkpoint`: every submission's rows are appended to it; a later run with the same scene and settings goes on from there, to the same bits.
-/// It is removed when all is done. `onStage`: false stops (what was computed stays in the checkpoint).
+/// It stays (and one more a refinement) until removeCheckpoints(). `onStage`: false stops (what was computed stays in the checkpoint).
 RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& settings,
                              const std::filesystem::path& checkpoint = {}, const std::function<bool(const RadiosityStage&)>& onStage = {});
+
+/// For when the solution has been saved.
+void removeCheckpoints(const std::filesystem::path& checkpoint);
 
 /// Values of patches at light vertices, for interpolation: means of the patches about them, by area; patches that see backs (they are inside something)
 /// count less.
@@ -66,11 +73,8 @@ std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution,
 /// The patches as a scene of their own, three vertices a patch in order, so that gl_VertexID finds a corner's light.
 Scene litScene(const Scene& scene, const RadiosityMesh& mesh);
 
-/// A finished solution. Versioned, checked, written whole or not at all; loading one of another scene throws Error(badInput).
+/// A finished solution. Versioned, checked, written whole or not at all; loading one of another scene, or damaged, throws Error(badInput).
 void saveSolution(const std::filesystem::path& file, const Scene& scene, const RadiositySolution& solution);
 RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& scene);
-
-/// A number that differs when anything differs that a solution depends on.
-std::uint64_t fingerprint(const Scene& scene);
 
 }  // namespace lucerna

@@ -15,6 +15,7 @@ namespace {
         [](RenderSettings& s, bool on) { s.member = on; }                               \
   }
 #define LPV_DEVIATION(name, meaning, inOriginal, member) SWITCH("lpv." name, meaning, inOriginal, lpv.deviations.member)
+#define RAD_DEVIATION(name, meaning, member) SWITCH("rad." name, meaning, true, radiosity.solution.deviations.member)
 
 const std::array kDeviations{
     SWITCH("rsm.flux-cosine", "flux of a texel times the cosine to the light", true, rsm.fluxCosine),
@@ -44,10 +45,15 @@ const std::array kDeviations{
     SWITCH("path.straight-shadow-rays", "shadow rays go straight through refracting boundaries", true, path.straightShadowRays),
     SWITCH("path.linear-seeds", "PCG seeded with the pixel's number", true, path.linearSeeds),
     SWITCH("path.fixed-epsilon", "rays start 0.001 scene units beside a surface", true, path.fixedEpsilon),
+    RAD_DEVIATION("published-map", "pixels weighted by 1/r^2 and b/r^2 instead of the delta form factor", publishedMap),
+    RAD_DEVIATION("centroid", "one hemicube a patch, at its centroid, whatever its size", centroid),
+    RAD_DEVIATION("fixed-orientation", "hemicubes turned towards the first corner, not rolled at random", fixedOrientation),
+    RAD_DEVIATION("no-near-field", "near pairs and small sources by pixels alone, without a repair", noNearField),
     LPV_DEVIATION("blocking-direction", "blocking potential evaluated in the direction of travel", true, blockingDirection),
 };
 
 #undef LPV_DEVIATION
+#undef RAD_DEVIATION
 #undef SWITCH
 
 }  // namespace
@@ -71,6 +77,7 @@ void applyDeviation(RenderSettings& settings, std::string_view assignment) {
   const std::string_view name = assignment.substr(0, equals);
   const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
   if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
+  if (name == "rad.24-bit") throwBadInput("--deviation {}: whole numbers are the published solver's alone; lucerna radiosity solve --fidelity original has them", assignment);
   const auto found = std::find_if(kDeviations.begin(), kDeviations.end(), [&](const Deviation& d) { return d.name == name; });
   if (found == kDeviations.end()) {
     std::string known;

@@ -55,6 +55,10 @@ std::unique_ptr<RadiosityView> makeRadiosity(const gl::Context& context, gl::Pro
   using Light = RadiosityView::Light;
   RadiosityView::Settings view = settings.radiosity;
   view.light = settings.component == Component::all ? Light::all : settings.component == Component::direct ? Light::direct : Light::indirect;
+  if (view.direct == RadiosityView::Direct::pixels && DirectRays::emitterCount(scene) > DirectRays::kMostEmitters) {
+    logWarning("radiosity: {} triangles emit, more than the {} that each pixel can ask by shadow rays: direct light is a value a patch", DirectRays::emitterCount(scene), DirectRays::kMostEmitters);
+    view.direct = RadiosityView::Direct::patches;
+  }
   return std::make_unique<RadiosityView>(context, programs, scene, view);
 }
 
@@ -155,6 +159,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     if (showsLpv_) flags.insert(flags.end(), lookup.begin(), lookup.end());
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
   };
+  if (radiosity_ && radiosity_->takesDirectRays()) directRays_.emplace(scene, context.capabilities(), settings.radiosity.shadowRays);
   if (radiosity_) {
     surfacePrograms_ = radiosity_->loadPrograms(programs, gpuScene_);
   } else {
@@ -324,6 +329,7 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     if (lpv_) lpv_->bindForLookup();
     if (gather_) gather_->irradiance().bind(kGatheredUnit);
     if (radiosity_) radiosity_->bind();
+    if (directRays_) directRays_->bind();
     gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
   }
 
@@ -377,6 +383,7 @@ std::size_t Renderer::gpuBytes() const {
   if (cameraMap_) bytes += cameraMap_->gpuBytes();
   if (gather_) bytes += gather_->gpuBytes();
   if (radiosity_) bytes += radiosity_->gpuBytes();
+  if (directRays_) bytes += directRays_->gpuBytes();
   return bytes;
 }
 
@@ -391,6 +398,7 @@ std::vector<std::string> Renderer::leftOut() const {
   if (rsms_.empty()) names.emplace_back("reflective shadow map");
   if (!gather_) names.emplace_back("rsm gather");
   if (!radiosity_) names.emplace_back("radiosity");
+  if (!directRays_) names.emplace_back("shadow rays");
   if (!lpv_) names.emplace_back("light propagation volume");
   else if (!lpv_->geometryVolume()) names.emplace_back("geometry volume");
   else {

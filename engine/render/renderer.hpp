@@ -14,6 +14,7 @@
 #include "lpv/light_propagation_volume.hpp"
 #include "pathtracer/path_deviations.hpp"
 #include "radiosity/radiosity_view.hpp"
+#include "render/direct_rays.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 #include "rsm/rsm_gather.hpp"
 #include "scene/needs.hpp"
@@ -93,6 +94,7 @@ class Renderer {
   float exposure_;
   gl::TimeQuery timer_;
   std::unique_ptr<RadiosityView> radiosity_;  ///< before gpuScene_, which draws its patches
+  std::optional<DirectRays> directRays_;      ///< direct light of radiosity by pixels
   GpuScene gpuScene_;
   SunFrustum sunFrustum_;
   gl::Buffer frameConstants_;

@@ -1,6 +1,10 @@
 // SceneNeeds from a scene: one pass over the drawn meshes.
 #include "scene/needs.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace lucerna {
 
 namespace {
@@ -21,7 +25,28 @@ bool isSmooth(const Scene& scene, const Mesh& mesh) {
   }
   return false;
 }
+/// Diagonal of a mesh's box.
+double extentOf(const Scene& scene, const Mesh& mesh) {
+  if (mesh.firstIndex + std::size_t{mesh.indexCount} > scene.indices.size()) return 0.0;
+  glm::dvec3 min(std::numeric_limits<double>::infinity()), max(-min);
+  for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; ++i) {
+    const glm::dvec3 p(scene.vertices[scene.indices[i]].position);
+    min = glm::min(min, p), max = glm::max(max, p);
+  }
+  return glm::length(max - min);
+}
 }  // namespace
+
+bool isDense(const Medium& medium, double extent) {
+  if (medium.grid) return false;
+  for (int c = 0; c < 3; ++c) {
+    const double scattering = medium.scattering[c], absorption = medium.absorption[c];
+    const double depth = (scattering + absorption) * extent, g = medium.phase == PhaseFunction::rayleigh ? 0.0 : static_cast<double>(medium.anisotropy[c]);
+    // Collisions before absorption; and before leaving, which is a random walk.
+    if (scattering > 31.0 * absorption && depth * std::max(1.0, depth * (1.0 - g)) > 32.0) return true;
+  }
+  return false;
+}
 
 std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
   return {
@@ -34,6 +59,7 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
       {"indirect", indirect},
       {"spotLights", spotLights},
       {"pointLights", pointLights},
+      {"emissionTextures", emissionTextures},
       {"smoothNormals", smoothNormals},
       {"mirrors", mirrors},
       {"conductors", conductors},
@@ -41,6 +67,7 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
       {"roughDielectrics", roughDielectrics},
       {"nullBoundaries", nullBoundaries},
       {"media", media},
+      {"denseMedia", denseMedia},
       {"heterogeneousMedia", heterogeneousMedia},
       {"volumeEmission", volumeEmission},
       {"environment", environment},
@@ -68,6 +95,7 @@ SceneNeeds analyse(const Scene& scene) {
     needs.alphaMasks |= material.alphaMasked;
     needs.specular |= anyPositive(material.specular);
     needs.emission |= anyPositive(material.emission);
+    needs.emissionTextures |= anyPositive(material.emission) && material.emissionTexture >= 0;
     needs.smoothNormals = needs.smoothNormals || isSmooth(scene, mesh);
     needs.mirrors |= material.bsdf == Bsdf::mirror;
     needs.conductors |= material.bsdf == Bsdf::conductor;
@@ -75,6 +103,8 @@ SceneNeeds analyse(const Scene& scene) {
     needs.roughDielectrics |= material.bsdf == Bsdf::dielectric && material.roughness > 0.0f;
     needs.nullBoundaries |= material.bsdf == Bsdf::none;
     if (material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::none) addMedium(material.interior);
+    if (material.bsdf == Bsdf::dielectric && material.interior >= 0 && material.interior < static_cast<int>(scene.media.size()))
+      needs.denseMedia = needs.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)], extentOf(scene, mesh));
     // A texture only scales the factor down, so the factor alone tells whether anything can be reflected.
     reflects |= anyPositive(material.diffuse);
   }

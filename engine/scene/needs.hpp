@@ -22,6 +22,7 @@ struct SceneNeeds {
   bool spotLights = false;       ///< a spot light with intensity > 0
   bool pointLights = false;      ///< an omnidirectional light with intensity > 0
   // Of the path tracer alone:
+  bool emissionTextures = false; ///< any drawn mesh emits by a picture
   bool smoothNormals = false;    ///< a vertex normal that is not its triangle's
   bool mirrors = false;
   bool conductors = false;
@@ -29,6 +30,7 @@ struct SceneNeeds {
   bool roughDielectrics = false;
   bool nullBoundaries = false;   ///< a boundary that changes nothing but the medium
   bool media = false;            ///< a medium that does anything, inside of a drawn boundary or around the camera
+  bool denseMedia = false;       ///< homogeneous inside of a drawn dielectric, where paths scatter many times (isDense)
   bool heterogeneousMedia = false;  ///< one of them has a density grid
   bool volumeEmission = false;   ///< one of them emits
   bool environment = false;      ///< light from all around
@@ -42,5 +44,8 @@ struct SceneNeeds {
 };
 
 SceneNeeds analyse(const Scene& scene);
+
+/// Whether light scatters some 32 times and more in a body of that extent: the path tracer then walks without rays where it can.
+bool isDense(const Medium& medium, double extent);
 
 }  // namespace lucerna

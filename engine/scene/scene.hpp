@@ -61,8 +61,10 @@ struct Material {
   glm::vec3 diffuse{0.5f};           ///< albedo factor (Kd), multiplies the texture
   glm::vec3 specular{0.0f};          ///< Ks
   float shininess = 1.0f;            ///< Blinn-Phong exponent (Ns)
-  glm::vec3 emission{0.0f};          ///< emitted radiance (Ke)
+  glm::vec3 emission{0.0f};          ///< emitted radiance (Ke); with a picture of it, its mean over the picture
+  glm::vec3 emissionScale{0.0f};     ///< with a picture: emitted radiance where that is white
   float opacity = 1.0f;              ///< d
+  int emissionTexture = -1;          ///< picture of the emission (map_Ke), sRGB-encoded: path tracer and radiosity read it, others take the mean
   int diffuseTexture = -1;           ///< index into Scene::textures, -1: none
   int alphaTexture = -1;             ///< mask in its own file (map_d); its red channel, or its alpha where it has one
                                      ///< (bitmap.hasAlpha); not sRGB-encoded, and never a diffuseTexture of this material

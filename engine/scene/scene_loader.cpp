@@ -25,6 +25,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "scene/key_frames.hpp"
+#include "scene/texture_mean.hpp"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/GltfMaterial.h>
@@ -124,17 +125,15 @@ class TextureLoader {
   }
 
   /// The mean of a picture that is not kept, encoded values in 0..1; 1 where there is none.
-  glm::vec3 mean(const aiMaterial& material, std::initializer_list<aiTextureType> types, bool srgb) {
+  glm::vec3 mean(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
     const std::string name = nameOf(material, types);
     if (name.empty()) return glm::vec3(1.0f);
     const std::optional<Texture> texture = read(name);
     if (!texture) return glm::vec3(1.0f);
-    std::array<float, 256> values{};
-    for (std::size_t i = 0; i < 256; ++i) values[i] = srgb ? linearFromSrgb(static_cast<float>(i) / 255.0f) : static_cast<float>(i) / 255.0f;
     glm::dvec3 sum(0.0);
     const std::vector<std::uint8_t>& rgba = texture->bitmap.rgba;
-    for (std::size_t i = 0; i < rgba.size(); i += 4) sum += glm::dvec3(values[rgba[i]], values[rgba[i + 1]], values[rgba[i + 2]]);
-    return glm::vec3(sum / static_cast<double>(rgba.size() / 4));
+    for (std::size_t i = 0; i < rgba.size(); i += 4) sum += glm::dvec3(rgba[i], rgba[i + 1], rgba[i + 2]);
+    return glm::vec3(sum / (255.0 * static_cast<double>(rgba.size() / 4)));
   }
 
  private:
@@ -240,7 +239,7 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, cons
   if (source.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS) {
     float roughness = number(AI_MATKEY_ROUGHNESS_FACTOR, 1.0f);
     // glTF: roughness in green, metallic in blue. Its own texture slot in Assimp 5.2.
-    const glm::vec3 map = textures.mean(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN}, false);
+    const glm::vec3 map = textures.mean(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN});
     metallic = clampedNumber(metallic * map.z, 0.0f, 1.0f, 0.0f);
     roughness = clampedNumber(roughness * map.y, 0.0f, 1.0f, 1.0f);
     glm::vec3 base = material.diffuse;
@@ -265,8 +264,12 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, cons
   }
 
   const float strength = number(AI_MATKEY_EMISSIVE_INTENSITY, 1.0f);
-  if (material.emission != glm::vec3(0.0f))
-    material.emission *= clampedNumber(strength, 0.0f, 1e30f, 1.0f) * textures.mean(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR}, true);
+  if (material.emission != glm::vec3(0.0f)) {
+    material.emissionScale = material.emission * clampedNumber(strength, 0.0f, 1e30f, 1.0f);
+    material.emissionTexture = textures.optional(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR});
+    material.emission = material.emissionScale;
+    if (material.emissionTexture >= 0) material.emission *= glm::vec3(meanColour(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap));
+  }
 
   material.opacity = clampedNumber(number(AI_MATKEY_OPACITY, 1.0f), 0.0f, 1.0f, 1.0f);
   if (material.opacity == 0.0f) {

@@ -6,15 +6,10 @@
 // the quotient beside them, which then no longer keeps a cell's mean (engine/lpv/README.md has the figures).
 #include "lpv/common.glsl"
 #include "lpv/stacked.glsl"
+#include "lpv/sums.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(binding = 0) uniform sampler3D farRed;  // F
-layout(binding = 1) uniform sampler3D farGreen;
-layout(binding = 2) uniform sampler3D farBlue;
-layout(binding = 3) uniform sampler3D sumRed;  // M
-layout(binding = 4) uniform sampler3D sumGreen;
-layout(binding = 5) uniform sampler3D sumBlue;
-layout(binding = 6) uniform sampler3D balanced;  // b M of the coarser cascade, band 0 of all channels
-layout(binding = 0, r32f) writeonly uniform image3D balance;
+layout(binding = 6) uniform samplerBuffer balanced;  // b M of the coarser cascade, band 0 of all channels
+layout(std430, binding = 3) writeonly buffer Balances { float balances[]; };
 uniform int cascade;
 
 const float kLargestBalance = 4.0;  // and its inverse the smallest: a guard where one of the grids sees no light at all
@@ -22,18 +17,19 @@ const float kDark = 1e-4;           // c / (E_ref s^2) below which there is no l
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
-  int cells = lpv.shape.x;
-  if (any(greaterThanEqual(at, ivec3((cells + 1) / 2)))) return;
+  int cells = lpv.shape.x, pairs = (cells + 1) / 2;
+  if (any(greaterThanEqual(at, ivec3(pairs)))) return;
   float own = 0.0;
   for (int i = 0; i < 8; ++i) {
     ivec3 cell = 2 * at + ivec3(i & 1, i >> 1 & 1, i >> 2);
     if (any(greaterThanEqual(cell, ivec3(cells)))) continue;  // with an odd number of cells the last pair reaches beyond the cascade
     cell.z += cascade * cells;
-    own += texelFetch(sumRed, cell, 0).x + texelFetch(sumGreen, cell, 0).x + texelFetch(sumBlue, cell, 0).x +
-           texelFetch(farRed, cell, 0).x + texelFetch(farGreen, cell, 0).x + texelFetch(farBlue, cell, 0).x;
+    own += SUM_AT(nearSums, cell, 0).x + SUM_AT(nearSums, cell, 1).x + SUM_AT(nearSums, cell, 2).x +
+           SUM_AT(farSums, cell, 0).x + SUM_AT(farSums, cell, 1).x + SUM_AT(farSums, cell, 2).x;
   }
-  StackedTexel coarser = stackedTexel(lpvCoarserTexel(vec3(2 * at + 1), cascade), cascade + 1);
-  float replaced = coarser.border * textureLod(balanced, coarser.uvw, 0.0).x;
+  StackedTexels coarser = stackedTexels(lpvCoarserTexel(vec3(2 * at + 1), cascade), cascade + 1);
+  float replaced = 0.0;
+  for (int i = 0; i < 8; ++i) replaced += coarser.weight[i] * texelFetch(balanced, coarser.at[i]).x;
   float b = (max(replaced, 0.0) + kDark) / (0.125 * own + kDark);
-  imageStore(balance, at, vec4(clamp(b, 1.0 / kLargestBalance, kLargestBalance)));
+  balances[(at.z * pairs + at.y) * pairs + at.x] = clamp(b, 1.0 / kLargestBalance, kLargestBalance);
 }

@@ -4,10 +4,21 @@
 #include "lpv/common.glsl"
 #include "lpv/stored_units.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
+#if FROM_BUFFER
+layout(binding = 0) uniform samplerBuffer geometryVolume;  // as atomics count it
+#else
 layout(binding = 0) uniform sampler3D geometryVolume;
+#endif
 layout(std430, binding = 3) writeonly buffer Faces { vec4 faces[]; };  // all of x before y before z
 
-vec4 potential(ivec3 corner) { return texelFetch(geometryVolume, corner, 0); }
+vec4 potential(ivec3 corner) {
+#if FROM_BUFFER
+  int corners = lpv.shape.x + 1;
+  return texelFetch(geometryVolume, (corner.z * corners + corner.y) * corners + corner.x);
+#else
+  return texelFetch(geometryVolume, corner, 0);
+#endif
+}
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);

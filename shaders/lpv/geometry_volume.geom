@@ -1,9 +1,9 @@
 // Blocking potential [Kaplanyan2010, section 4.2]: a surfel of area A and normal n adds A / s^2 * lobe(n) to the cell of the
 // geometry volume that it lies in. That volume is shifted half a cell, so that its centres lie on the grid's corners.
 // A is the surface's true area, which the reflective shadow map holds beside the flux.
-#include "lib/finite.glsl"
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
+#include "lpv/surfel.glsl"
 layout(points) in;
 layout(points, max_vertices = LPV_MAX_CASCADES) out;
 in vec4 gPosition[];
@@ -21,9 +21,7 @@ uniform float texelCount;  // 0: the light is a perspective one, which has true 
 
 void main() {
   vec3 normal = gNormal[0].xyz;
-  bool usable = gPosition[0].w > 0.5 && allFinite(gPosition[0].xyz) && allFinite(normal) && allFinite(gFlux[0].www) &&
-                dot(normal, normal) > 0.25 && dot(normal, normal) < 4.0;
-  if (!usable) return;
+  if (!isUsableSurfel(gPosition[0], normal, gFlux[0].w)) return;
   int corners = lpv.shape.x + 1;
   float area = gFlux[0].w;
 #if SURFEL_AREA
@@ -33,14 +31,8 @@ void main() {
 #endif
   for (int k = 0; k < lpv.shape.y; ++k) {
     float s = lpv.cascades[k].cellSize;
-    vec3 cornerPosition = (gPosition[0].xyz - lpv.cascades[k].minimum) / s + 0.5;
-    vec3 bounded = clamp(cornerPosition, -1.0, float(corners));  // the integer of a huge number is undefined
-#if TRUNCATE
-    ivec3 corner = ivec3(bounded);  // deviation lpv.truncate: what lies in (-1, 0) falls into cell 0
-#else
-    ivec3 corner = ivec3(floor(bounded));
-#endif
-    if (any(lessThan(corner, ivec3(LOWEST_CELL))) || any(greaterThanEqual(corner, ivec3(corners)))) continue;
+    ivec3 corner;
+    if (!surfelCorner(k, gPosition[0].xyz, corner)) continue;
     fPotential = area / (s * s) * shCosineLobe(normal);
 #if REFLECTS
     fReflectance = area / (s * s) * gAlbedo[0];

@@ -1,9 +1,8 @@
-// Injection by image atomics: one invocation a texel of the reflective shadow map. Coefficient i of cell (x, y, z) is counted at
-// (4 x + i, y, z) of its channel's image; lpv/resolve.comp brings the images into the form that blending gives.
-// FILL_FIXED: 32-bit integers, core OpenGL 4.3; `fixedScale` is derived from the largest flux that there can be, so that nothing overflows;
-// integer sums do not depend on their order, so every run gives the same bits. FILL_FLOAT: NV_shader_atomic_float.
-// FILL_HALF: NV_shader_atomic_fp16_vector, four half floats at once, as the published text has it, only where
-// there are no atomics on 32 bits; its image has one texel a cell.
+// Injection by atomics: one invocation a tile of the reflective shadow map. Coefficient i of a cell is counted in word 4 cell + i of the first front,
+// all of red before green before blue, in place: FILL_FIXED in 32-bit integers, core OpenGL 4.3, which lpv/resolve.comp turns into floats; `fixedScale`
+// is derived from the largest flux that there can be, so that nothing overflows; each light is rounded by itself and integer sums do not depend on
+// their order, so every run gives the same bits, and so does every order of the texels. FILL_FLOAT: NV_shader_atomic_float.
+// FILL_HALF: NV_shader_atomic_fp16_vector, four half floats at once in images, as the published text has it, only where there are no atomics on 32 bits.
 #if FILL_FLOAT
 #extension GL_NV_shader_atomic_float : require
 #endif
@@ -13,54 +12,70 @@
 #endif
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
+#include "lpv/fixed.glsl"
+#include "lpv/tile.glsl"
+#include "lpv/vpl.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 0) uniform sampler2DArray rsmPosition;
 layout(binding = 1) uniform sampler2DArray rsmNormal;
 layout(binding = 2) uniform sampler2DArray rsmFlux;
-#if FILL_FIXED
-#define FILL_FORMAT r32i
-#define FILL_IMAGE iimage3D
-#elif FILL_FLOAT
-#define FILL_FORMAT r32f
-#define FILL_IMAGE image3D
+#if FILL_HALF
+layout(binding = 0, rgba16f) coherent uniform image3D countRed;
+layout(binding = 1, rgba16f) coherent uniform image3D countGreen;
+layout(binding = 2, rgba16f) coherent uniform image3D countBlue;
 #else
-#define FILL_FORMAT rgba16f
-#define FILL_IMAGE image3D
+layout(std430, binding = 0) buffer Counts { WORD_TYPE words[]; };
 #endif
-layout(binding = 0, FILL_FORMAT) coherent uniform FILL_IMAGE countRed;
-layout(binding = 1, FILL_FORMAT) coherent uniform FILL_IMAGE countGreen;
-layout(binding = 2, FILL_FORMAT) coherent uniform FILL_IMAGE countBlue;
 uniform float fluxScale;   // 1, or without units 1 / texel area of the light's map
 uniform float fixedScale;  // integer steps a unit of a coefficient stored in the finest cascade, see lpv/fixed.glsl
 
-#if FILL_FIXED
-#define COUNT(image, at, c)                                                       \
-  for (int i = 0; i < 4; ++i)                                                     \
-    imageAtomicAdd(image, ivec3(4 * at.x + i, at.yz), int(round((c)[i] * stepsOfCascade(k, fixedScale))))
-#elif FILL_FLOAT
-#define COUNT(image, at, c) \
-  for (int i = 0; i < 4; ++i) imageAtomicAdd(image, ivec3(4 * at.x + i, at.yz), (c)[i])
-#else
-#define COUNT(image, at, c) imageAtomicAdd(image, at, f16vec4(c))
-#endif
+COUNT_TYPE run[3];  // of the texels since `runCell` was entered
+int runCell;        // in the stack of cascades; -1: none yet
 
-#include "lpv/fixed.glsl"
-#include "lpv/vpl.glsl"
+void addRun() {
+  if (runCell < 0) return;
+  int cells = lpv.shape.x;
+#if FILL_HALF
+  ivec3 at = ivec3(runCell % cells, runCell / cells % cells, runCell / (cells * cells));
+  imageAtomicAdd(countRed, at, f16vec4(run[0]));
+  imageAtomicAdd(countGreen, at, f16vec4(run[1]));
+  imageAtomicAdd(countBlue, at, f16vec4(run[2]));
+#else
+  int word = 4 * runCell, channel = 4 * cells * cells * cells * lpv.shape.y;
+  ADD_TO(word, run[0])
+  ADD_TO(word + channel, run[1])
+  ADD_TO(word + 2 * channel, run[2])
+#endif
+}
 
 void main() {
-  ivec3 texel = ivec3(gl_GlobalInvocationID);  // z: the map's layer
-  if (any(greaterThanEqual(texel, textureSize(rsmPosition, 0)))) return;
-  vec4 position = texelFetch(rsmPosition, texel, 0);
-  vec3 normal = texelFetch(rsmNormal, texel, 0).xyz;
-  vec3 flux = texelFetch(rsmFlux, texel, 0).rgb;
-  if (!isUsableVpl(position, normal, flux)) return;
+  ivec3 tile = ivec3(gl_GlobalInvocationID);  // z: the map's layer
+  ivec3 size = textureSize(rsmPosition, 0);
+  if (any(greaterThanEqual(ivec3(kTile * tile.xy, tile.z), size))) return;
+  int cells = lpv.shape.x;
   for (int k = 0; k < lpv.shape.y; ++k) {
-    ivec3 cell;
-    if (!vplCell(k, position.xyz, normal, cell)) continue;
-    ivec3 at = ivec3(cell.xy, k * lpv.shape.x + cell.z);
-    vec4 lobe = vplLobe(k, normal, fluxScale);
-    COUNT(countRed, at, flux.r * lobe);
-    COUNT(countGreen, at, flux.g * lobe);
-    COUNT(countBlue, at, flux.b * lobe);
+    float steps = stepsOfCascade(k, fixedScale);
+    runCell = -1;
+    run = COUNT_TYPE[3](COUNT_TYPE(0), COUNT_TYPE(0), COUNT_TYPE(0));
+    for (int i = 0; i < kTile * kTile; ++i) {
+      ivec3 texel = texelOfTile(tile, i);
+      if (any(greaterThanEqual(texel.xy, size.xy))) continue;
+      vec4 position = texelFetch(rsmPosition, texel, 0);
+      vec3 normal = texelFetch(rsmNormal, texel, 0).xyz;
+      vec3 flux = texelFetch(rsmFlux, texel, 0).rgb;
+      ivec3 cell;
+      if (!isUsableVpl(position, normal, flux) || !vplCell(k, position.xyz, normal, cell)) continue;
+      int at = ((k * cells + cell.z) * cells + cell.y) * cells + cell.x;
+      if (at != runCell) {
+        addRun();
+        run = COUNT_TYPE[3](COUNT_TYPE(0), COUNT_TYPE(0), COUNT_TYPE(0));
+        runCell = at;
+      }
+      vec4 lobe = vplLobe(k, normal, fluxScale);
+      run[0] += STEPS(flux.r * lobe, steps);
+      run[1] += STEPS(flux.g * lobe, steps);
+      run[2] += STEPS(flux.b * lobe, steps);
+    }
+    addRun();
   }
 }

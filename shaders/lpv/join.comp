@@ -8,49 +8,56 @@
 // as the M that it replaces, so that it adds detail and leaves the brightness alone.
 #include "lpv/common.glsl"
 #include "lpv/stacked.glsl"
-#include "lpv/storage.glsl"
+#include "lpv/sums.glsl"
+#include "lpv/result.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(binding = 0) uniform sampler3D farRed;  // F of this cascade, R of the next coarser one
-layout(binding = 1) uniform sampler3D farGreen;
-layout(binding = 2) uniform sampler3D farBlue;
-layout(binding = 3) uniform sampler3D nearRed;  // M
-layout(binding = 4) uniform sampler3D nearGreen;
-layout(binding = 5) uniform sampler3D nearBlue;
-layout(binding = 7) uniform sampler3D balances;  // of this cascade, one for 2x2x2 cells
-layout(binding = 0, rgba32f) writeonly uniform image3D farImageRed;  // becomes R
-layout(binding = 1, rgba32f) writeonly uniform image3D farImageGreen;
-layout(binding = 2, rgba32f) writeonly uniform image3D farImageBlue;
-layout(binding = 3, LPV_FORMAT) writeonly uniform image3D resultRed;  // C
-layout(binding = 4, LPV_FORMAT) writeonly uniform image3D resultGreen;
-layout(binding = 5, LPV_FORMAT) writeonly uniform image3D resultBlue;
-layout(binding = 6, r32f) writeonly uniform image3D balanced;  // band 0 of b M, the channels together, for lpv/balance.comp
+layout(binding = 6) uniform samplerBuffer coarserReceived;  // R of the next coarser cascade
+layout(binding = 7) uniform samplerBuffer balances;         // of this cascade, one for 2x2x2 cells
+layout(std430, binding = 0) writeonly buffer Received { vec4 received[]; };  // R of this one
+layout(std430, binding = 2) writeonly buffer Balanced { float balanced[]; };  // band 0 of b M, the channels together, for lpv/balance.comp
 uniform int cascade;
+
+// Between the balances of 2x2x2 cells each, at the border the nearest.
+float balanceAt(ivec3 cell) {
+  int pairs = (lpv.shape.x + 1) / 2;
+  vec3 texel = 0.5 * (vec3(cell) + 0.5) - 0.5;
+  ivec3 low = ivec3(floor(texel));
+  vec3 upper = texel - vec3(low);
+  float balance = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    ivec3 bit = ivec3(i & 1, i >> 1 & 1, i >> 2), at = clamp(low + bit, ivec3(0), ivec3(pairs - 1));
+    vec3 weight = mix(1.0 - upper, upper, vec3(bit));
+    balance += weight.x * weight.y * weight.z * texelFetch(balances, (at.z * pairs + at.y) * pairs + at.x).x;
+  }
+  return balance;
+}
 
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
   int cells = lpv.shape.x;
   if (any(greaterThanEqual(cell, ivec3(cells)))) return;
-  ivec3 at = ivec3(cell.xy, cascade * cells + cell.z);
+  ivec3 inStack = ivec3(cell.xy, cascade * cells + cell.z);
+  int at = (inStack.z * cells + cell.y) * cells + cell.x, channel = cells * cells * cells * lpv.shape.y;
 
-  vec4 coarserRed = vec4(0.0), coarserGreen = vec4(0.0), coarserBlue = vec4(0.0);
+  vec4 coarser[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
   float balance = 1.0;
-  if (cascade + 1 < lpv.shape.y) {
-    vec3 centre = vec3(cell) + 0.5;
-    StackedTexel coarser = stackedTexel(lpvCoarserTexel(centre, cascade), cascade + 1);
-    coarserRed = coarser.border * textureLod(farRed, coarser.uvw, 0.0);
-    coarserGreen = coarser.border * textureLod(farGreen, coarser.uvw, 0.0);
-    coarserBlue = coarser.border * textureLod(farBlue, coarser.uvw, 0.0);
-    balance = textureLod(balances, centre / float(2 * ((cells + 1) / 2)), 0.0).x;
+#if HAS_COARSER
+  StackedTexels around = stackedTexels(lpvCoarserTexel(vec3(cell) + 0.5, cascade), cascade + 1);
+  for (int i = 0; i < 8; ++i)
+    for (int c = 0; c < 3; ++c) coarser[c] += around.weight[i] * texelFetch(coarserReceived, around.at[i] + c * channel);
+  balance = balanceAt(cell);
+#endif
+  float brightness = 0.0;
+#define JOIN(c)                                                              \
+  {                                                                          \
+    vec4 nearLight = SUM_AT(nearSums, inStack, c);                           \
+    vec4 all = balance * SUM_AT(farSums, inStack, c) + coarser[c];           \
+    received[at + c * channel] = all;                                        \
+    texels[at + c * channel] = asTexel(balance * nearLight + all);           \
+    brightness += nearLight.x;                                               \
   }
-  vec4 nearLight[3] = vec4[3](texelFetch(nearRed, at, 0), texelFetch(nearGreen, at, 0), texelFetch(nearBlue, at, 0));
-#define JOIN(channel, farLight, farImage, result, coarser)                       \
-  {                                                                              \
-    vec4 received = balance * texelFetch(farLight, at, 0) + coarser;             \
-    imageStore(farImage, at, received);                                          \
-    imageStore(result, at, toTexel(balance * nearLight[channel] + received));    \
-  }
-  JOIN(0, farRed, farImageRed, resultRed, coarserRed)
-  JOIN(1, farGreen, farImageGreen, resultGreen, coarserGreen)
-  JOIN(2, farBlue, farImageBlue, resultBlue, coarserBlue)
-  imageStore(balanced, at, vec4(balance * (nearLight[0].x + nearLight[1].x + nearLight[2].x)));
+  JOIN(0)
+  JOIN(1)
+  JOIN(2)
+  balanced[at] = balance * brightness;
 }

@@ -1,22 +1,29 @@
-// One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels.
+// One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels. One work group a brick that
+// light has reached (lpv/bricks.glsl).
 //
-// A front lies in a buffer, cell by cell, x fastest, all of red before green before blue; the sum of fronts in another. No branches where a sum
-// begins or ends: a software rasteriser runs both sides of each.
+// A front lies in a buffer, cell by cell, x fastest, all of red before green before blue; the sum of fronts in another. They are read as texels: on
+// llvmpipe a gather from a storage block takes three times as long. No branches where a sum begins: a software rasteriser runs both sides of each.
 #include "lpv/common.glsl"
 #include "lpv/stored_units.glsl"
-layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(std430, binding = 0) readonly buffer Source { vec4 source[]; };
-layout(std430, binding = 1) writeonly buffer Next { vec4 next[]; };
-layout(std430, binding = 2) buffer Sums { vec4 sums[]; };
+#include "lpv/bricks.glsl"
+layout(local_size_x = 64) in;
+layout(binding = 0) uniform samplerBuffer source;
 #if BLOCKED
-layout(std430, binding = 3) readonly buffer Faces { vec4 faces[]; };  // lpv/geometry_faces.comp
+layout(binding = 1) uniform samplerBuffer faces;  // lpv/geometry_faces.comp
 #endif
-uniform bool sumBegins;  // the fronts of this step and of those that follow are a new sum: that of the later steps, with several cascades
+layout(binding = 2) uniform samplerBuffer sumBefore;
+layout(std430, binding = 1) writeonly buffer Next { vec4 next[]; };
+layout(std430, binding = 2) writeonly buffer Sums { vec4 sums[]; };
 
 #if BLOCKED
-#define POTENTIAL(face) faces[face]
+#define POTENTIAL(face) texelFetch(faces, face)
 #else
 #define POTENTIAL(face) vec4(0.0)
+#endif
+#if FIRST
+#define SOURCE(at) (kStoredUnits * texelFetch(source, at))  // the injected light, as coefficients
+#else
+#define SOURCE(at) texelFetch(source, at)
 #endif
 
 #if FACE_KERNEL
@@ -24,7 +31,7 @@ uniform bool sumBegins;  // the fronts of this step and of those that follow are
 #define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                    \
   if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
     int from = at - int(way) * stride;                                                                                 \
-    vec4 light[3] = vec4[3](source[from], source[from + channel], source[from + 2 * channel]);                         \
+    vec4 light[3] = vec4[3](SOURCE(from), SOURCE(from + channel), SOURCE(from + 2 * channel));                         \
     gatherFaces(light, way * offset, POTENTIAL(face), sum);                                                            \
   }
 
@@ -44,20 +51,23 @@ void gatherFaces(vec4 light[3], vec3 travel, vec4 potential, inout vec4 sum[3]) 
     const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                        \
     int from = at - int(way) * stride;                                                                                 \
     FaceValues openings = solidAngles(transmittanceTowardsFaces(POTENTIAL(face).toFrame * turn));                      \
-    sum[0] += (carry(source[from].toFrame * turn, openings) * turn).fromFrame;                                         \
-    sum[1] += (carry(source[from + channel].toFrame * turn, openings) * turn).fromFrame;                               \
-    sum[2] += (carry(source[from + 2 * channel].toFrame * turn, openings) * turn).fromFrame;                           \
+    sum[0] += (carry(SOURCE(from).toFrame * turn, openings) * turn).fromFrame;                                         \
+    sum[1] += (carry(SOURCE(from + channel).toFrame * turn, openings) * turn).fromFrame;                               \
+    sum[2] += (carry(SOURCE(from + 2 * channel).toFrame * turn, openings) * turn).fromFrame;                           \
   }
 #endif
 
 void main() {
-  ivec3 cell = ivec3(gl_GlobalInvocationID);
+  uint group = gl_WorkGroupID.y * kGroupsInRow + gl_WorkGroupID.x;
+  if (group >= count) return;
+  int brick = int(bricks[group]), ofAxis = bricksOfAxis(), row = brick / ofAxis, slice = row / ofAxis, cascade = slice / ofAxis;
+  int inBrick = int(gl_LocalInvocationID.x);
+  ivec3 local = kBrick * ivec3(brick - row * ofAxis, row - slice * ofAxis, slice - cascade * ofAxis) + ivec3(inBrick & 3, inBrick >> 2 & 3, inBrick >> 4);
   int cells = lpv.shape.x, layers = cells * lpv.shape.y;
-  if (any(greaterThanEqual(cell, ivec3(cells, cells, layers)))) return;
-  ivec3 local = ivec3(cell.xy, cell.z % cells);
-  int at = (cell.z * cells + cell.y) * cells + cell.x, layer = cells * cells, channel = layer * layers;
+  if (any(greaterThanEqual(local, ivec3(cells)))) return;
+  int layer = cells * cells, at = (cascade * cells + local.z) * layer + local.y * cells + local.x, channel = layer * layers;
   // The faces before this cell, at its lower corner in the geometry volume.
-  int corners = cells + 1, corner = ((cell.z / cells * corners + local.z) * corners + cell.y) * corners + cell.x;
+  int corners = cells + 1, corner = ((cascade * corners + local.z) * corners + local.y) * corners + local.x;
   int facesOfAxis = corners * corners * corners * lpv.shape.y;
   vec4 sum[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
 
@@ -68,9 +78,14 @@ void main() {
   GATHER(z, 1.0, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner)
   GATHER(z, -1.0, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner + corners * corners)
 
-  next[at] = kNextUnits * sum[0];
-  next[at + channel] = kNextUnits * sum[1];
-  next[at + 2 * channel] = kNextUnits * sum[2];
-
-  for (int i = 0; i < 3; ++i) sums[at + i * channel] = kSumUnits * sum[i] + (sumBegins ? vec4(0.0) : sums[at + i * channel]);
+  for (int i = 0; i < 3; ++i) {
+    next[at + i * channel] = kNextUnits * sum[i];
+    vec4 before = texelFetch(sumBefore, at + i * channel);
+#if FIRST && WITH_INJECTED
+    before = texelFetch(source, at + i * channel);  // the sum begins with G_0
+#endif
+    sums[at + i * channel] = kSumUnits * sum[i] + before;
+  }
+  // A flux is never negative: without band 0 there is none.
+  if (sum[0].x + sum[1].x + sum[2].x != 0.0) markNeighbours(local, brick);
 }

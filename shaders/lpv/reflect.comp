@@ -7,18 +7,11 @@
 // which is divided out. So a source of flux S comes back as rho S at most, and the sum of all bounces stays below S / (1 - rho).
 #include "lpv/common.glsl"
 #include "lpv/kernel.glsl"
+#include "lpv/sums.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(binding = 0) uniform sampler3D injectedRed;
-layout(binding = 1) uniform sampler3D injectedGreen;
-layout(binding = 2) uniform sampler3D injectedBlue;
-layout(binding = 3) uniform sampler3D sumRed;  // T; with several cascades that of the first steps alone
-layout(binding = 4) uniform sampler3D sumGreen;
-layout(binding = 5) uniform sampler3D sumBlue;
-#if JOINED
-layout(binding = 6) uniform sampler3D farRed;  // and that of the later ones
-layout(binding = 7) uniform sampler3D farGreen;
-layout(binding = 8) uniform sampler3D farBlue;
-#endif
+layout(binding = 6) uniform sampler3D injectedRed;
+layout(binding = 7) uniform sampler3D injectedGreen;
+layout(binding = 8) uniform sampler3D injectedBlue;
 layout(binding = 9) uniform sampler3D geometryVolume;
 layout(binding = 10) uniform sampler3D reflectance;
 layout(binding = 0, rgba32f) uniform image3D sourceRed;  // S, becomes the next one
@@ -67,11 +60,11 @@ void main() {
   vec4 injected[3] = vec4[3](texelFetch(injectedRed, cell, 0), texelFetch(injectedGreen, cell, 0), texelFetch(injectedBlue, cell, 0));
   vec4 source[3] = injected;
   if (!first) source = vec4[3](imageLoad(sourceRed, cell), imageLoad(sourceGreen, cell), imageLoad(sourceBlue, cell));
-  vec4 light[3] = vec4[3](texelFetch(sumRed, cell, 0), texelFetch(sumGreen, cell, 0), texelFetch(sumBlue, cell, 0));
+  vec4 light[3] = vec4[3](SUM_AT(nearSums, cell, 0), SUM_AT(nearSums, cell, 1), SUM_AT(nearSums, cell, 2));  // T
 #if JOINED
-  light[0] += texelFetch(farRed, cell, 0);
-  light[1] += texelFetch(farGreen, cell, 0);
-  light[2] += texelFetch(farBlue, cell, 0);
+  light[0] += SUM_AT(farSums, cell, 0);
+  light[1] += SUM_AT(farSums, cell, 1);
+  light[2] += SUM_AT(farSums, cell, 2);
 #endif
   for (int i = 0; i < 3; ++i) light[i] = kFaceUnits * (light[i] - sourceShare * source[i]);
 

@@ -1,41 +1,36 @@
-// Brings what atomics counted into the injected grid, one texel a cell.
+// Turns what atomics counted into coefficients: FILL_FIXED in place, integers into floats, of lights or of surfels; FILL_HALF from images into the
+// first front. FILL_FLOAT needs no such pass.
 #include "lpv/common.glsl"
+#include "lpv/fixed.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
+uniform float fixedScale;
 #if FILL_FIXED
-layout(binding = 0) uniform isampler3D countRed;
-layout(binding = 1) uniform isampler3D countGreen;
-layout(binding = 2) uniform isampler3D countBlue;
+layout(std430, binding = 0) buffer Counts { uvec4 counts[]; };
+uniform ivec3 size;    // of a stack of cascades
+uniform int channels;  // stacks one after the other
 #else
+layout(std430, binding = 0) writeonly buffer Front { vec4 front[]; };
 layout(binding = 0) uniform sampler3D countRed;
 layout(binding = 1) uniform sampler3D countGreen;
 layout(binding = 2) uniform sampler3D countBlue;
 #endif
-layout(binding = 0, rgba32f) writeonly uniform image3D injectedRed;
-layout(binding = 1, rgba32f) writeonly uniform image3D injectedGreen;
-layout(binding = 2, rgba32f) writeonly uniform image3D injectedBlue;
-uniform float fixedScale;
-
-#if FILL_FIXED
-#include "lpv/fixed.glsl"
-#else
-float stepsOfCascade(int k, float fixedScale) { return fixedScale; }
-#endif
-
-#if FILL_HALF
-#define RESOLVED(count) texelFetch(count, cell, 0)
-#else
-#define RESOLVED(count)                                                                                               \
-  vec4(texelFetch(count, first, 0).x, texelFetch(count, first + ivec3(1, 0, 0), 0).x,                                 \
-       texelFetch(count, first + ivec3(2, 0, 0), 0).x, texelFetch(count, first + ivec3(3, 0, 0), 0).x) / steps
-#endif
 
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
-  int cells = lpv.shape.x;
-  if (any(greaterThanEqual(cell, ivec3(cells, cells, cells * lpv.shape.y)))) return;
-  ivec3 first = ivec3(4 * cell.x, cell.yz);
-  float steps = stepsOfCascade(cell.z / cells, fixedScale);
-  imageStore(injectedRed, cell, RESOLVED(countRed));
-  imageStore(injectedGreen, cell, RESOLVED(countGreen));
-  imageStore(injectedBlue, cell, RESOLVED(countBlue));
+#if FILL_FIXED
+  if (any(greaterThanEqual(cell, size))) return;
+  float inverse = 1.0 / stepsOfCascade(cell.z * lpv.shape.y / size.z, fixedScale);
+  int at = (cell.z * size.y + cell.y) * size.x + cell.x;
+  for (int i = 0; i < channels; ++i) {
+    int word = at + i * size.x * size.y * size.z;
+    counts[word] = floatBitsToUint(vec4(ivec4(counts[word])) * inverse);
+  }
+#else
+  int cells = lpv.shape.x, layers = cells * lpv.shape.y;
+  if (any(greaterThanEqual(cell, ivec3(cells, cells, layers)))) return;
+  int at = (cell.z * cells + cell.y) * cells + cell.x, channel = cells * cells * layers;
+  front[at] = texelFetch(countRed, cell, 0);
+  front[at + channel] = texelFetch(countGreen, cell, 0);
+  front[at + 2 * channel] = texelFetch(countBlue, cell, 0);
+#endif
 }

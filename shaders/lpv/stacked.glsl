@@ -1,14 +1,23 @@
-// Trilinear reading of one cascade out of a stack: x and y end in the sampler's border of zeros, z by hand.
-struct StackedTexel {
-  vec3 uvw;
-  float border;
+// Trilinear reading of one cascade of a stack that lies in a buffer, x fastest; outside is dark, as where the lookup filters textures.
+struct StackedTexels {
+  int at[8];
+  float weight[8];
 };
 
-StackedTexel stackedTexel(vec3 texel, int index) {
-  float n = float(lpv.shape.x);
-  float border = clamp(min(texel.z, n - texel.z) + 0.5, 0.0, 1.0);
-  texel.z = clamp(texel.z, 0.5, n - 0.5) + float(index) * n;
-  return StackedTexel(texel / vec3(n, n, n * float(lpv.shape.y)), border);
+StackedTexels stackedTexels(vec3 texel, int index) {
+  int n = lpv.shape.x;
+  vec3 low = clamp(floor(texel - 0.5), -2.0, float(n) + 1.0);  // the integer of a huge number is undefined
+  vec3 upper = clamp(texel - 0.5 - low, 0.0, 1.0);
+  StackedTexels result;
+  for (int i = 0; i < 8; ++i) {
+    ivec3 bit = ivec3(i & 1, i >> 1 & 1, i >> 2), cell = ivec3(low) + bit;
+    vec3 weight = mix(1.0 - upper, upper, vec3(bit));
+    bool inside = all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(n)));
+    cell = clamp(cell, ivec3(0), ivec3(n - 1));
+    result.at[i] = ((index * n + cell.z) * n + cell.y) * n + cell.x;
+    result.weight[i] = inside ? weight.x * weight.y * weight.z : 0.0;
+  }
+  return result;
 }
 
 // Where a point of a cascade, in its cells, lies in the next coarser one.

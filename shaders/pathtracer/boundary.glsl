@@ -29,6 +29,8 @@ float iorInside(uvec4 inside) {
   return rank < 0 ? 1.0 : interiors[rank].ior;
 }
 
+bool isInsideOf(uvec4 inside, int rank) { return ((inside[rank >> 3] >> (4 * (rank & 7))) & 15u) != 0u; }
+
 // After crossing the boundary of a rank. False where it is left without having been entered (an open or turned mesh), or entered for the
 // sixteenth time: the counts stay as they are then.
 bool crossBoundary(inout uvec4 inside, int rank, bool entering) {

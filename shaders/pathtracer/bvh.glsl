@@ -118,6 +118,9 @@ struct BvhTraversal {
 
 uint bvhStackX[BVH_MAX_DEPTH], bvhStackY[BVH_MAX_DEPTH];
 
+// Of this invocation, so far: for kernels that must stop before a driver leaves all loops (llvmpipe does after 65,535 turns of a vector of lanes).
+uint loopTurns = 0u;
+
 BvhTraversal beginRay(Ray ray, uint skipTriangle) {
   // The root is the only child of nothing, in the place that is visited first.
   return BvhTraversal(bvhPrepare(ray), ray.tMin, skipTriangle, Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u), 0, 0);
@@ -127,6 +130,7 @@ bool isDone(BvhTraversal s) { return s.top < 0; }
 
 // Visits one node and tests the triangles of its leaves. any: the first hit ends the ray.
 void advanceRay(inout BvhTraversal s, bool any) {
+  ++loopTurns;
   int place = bvhHighest(s.siblings.y >> 24);
   s.siblings.y &= ~(0x01000000u << place);
   int node = BVH_NODE_TEXELS * int(s.siblings.x + uint(bitCount(s.siblings.y & ~(0xffffffffu << (uint(place) ^ s.ray.octant)) & 255u)));
@@ -151,6 +155,7 @@ void advanceRay(inout BvhTraversal s, bool any) {
     int k = bvhHighest(leaves);
     leaves &= ~(1u << k);
     ++s.tested;
+    ++loopTurns;
     int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(n1.y) + k);
     uvec4 a = texelFetch(bvhTriangles, triangle);
     vec3 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz), c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);

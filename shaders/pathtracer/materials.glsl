@@ -5,8 +5,8 @@ layout(binding = 0) uniform sampler2DArray textureAtlas;
 #endif
 
 // TRIANGLE_WORDS uvec4 a triangle, floats as their bits:
-// 0: first corner, material; 1: second corner, geometric normal x; 2: third corner, geometric normal y; 3: geometric normal z, then with
-// TEXTURES || ALPHA_MASKS the third corner's texture coordinates; after it with them the first's and second's; with SMOOTH_NORMALS the corners' normals.
+// 0: first corner, material; 1: second corner, geometric normal x; 2: third corner, geometric normal y; 3: geometric normal z, the third
+// corner's texture coordinates, pickDensity; after it with TEXTURES || ALPHA_MASKS the first's and second's; with SMOOTH_NORMALS the corners' normals.
 layout(std430, binding = 2) readonly restrict buffer TriangleBlock { uvec4 triangleData[]; };
 layout(std430, binding = 3) readonly restrict buffer MaterialBlock { PathMaterial materials[]; };
 
@@ -93,6 +93,9 @@ vec3 albedoAt(Surface surface) {
 }
 
 #if EMISSION
+// Probability a unit of area that a light sample goes to a point of the triangle.
+float pickDensity(uint triangle) { return uintBitsToFloat(triangleData[triangle * TRIANGLE_WORDS + 3u].w); }
+
 vec3 emissionAt(uint material, uint triangle, vec2 barycentrics) {
   vec3 emission = materials[material].emission;
 #if TEXTURES

@@ -44,9 +44,18 @@ struct Path {
   uint chain;           // smooth scatterings in a row up to here
 #if INTERIORS
   uvec4 inside;         // of which closed boundaries (boundary.glsl)
-  float head;           // length of the ray before its origin, which lies a little beside the surface that it starts on
+  float head;           // length of the ray before its origin, which lies a little beside a surface; negative: what the origin is too early
+  uint face;            // that surface, where head is not 0
 #endif
 };
+
+// Throughput below which roulette begins. In media many weak scatterings make up what is seen, and dying at each of them costs more in noise
+// than it saves in time: a slab of albedo 0.5 needs a third of the time for the same error with 1/4 as with 1.
+#if MEDIA
+const float kRouletteBelow = 0.25;
+#else
+const float kRouletteBelow = 1.0;
+#endif
 
 const uint kInFlight = 0x80000000u;  // in the saved event: there is a path to be gone on with
 
@@ -71,16 +80,19 @@ void addLight(inout Path path, vec3 light) {
 const float kBeside = 4.76837158203125e-7;  // 2^-21
 #endif
 
-// Where a ray starts that leaves a surface towards the side of `normal`.
-vec3 beside(Surface surface, vec3 normal) {
+// How far beside a surface rays start that leave it.
+float gapAt(Surface surface) {
 #if FIXED_EPSILON
-  return surface.position + 1e-3 * normal;  // scene units, whatever the scene's size [VPT2024]
+  return 1e-3;  // scene units, whatever the scene's size [VPT2024]
 #elif MEDIA
-  return surface.position + normal * (surface.magnitude * kBeside);
+  return surface.magnitude * kBeside;
 #else
-  return offsetRay(surface.position, normal, surface.magnitude);
+  return surface.magnitude * 3.814697265625e-6;  // as offsetRay
 #endif
 }
+
+// Where a ray starts that leaves a surface towards the side of `normal`.
+vec3 beside(Surface surface, vec3 normal) { return surface.position + normal * gapAt(surface); }
 
 // Starts the path's next ray on a surface.
 void startAt(inout Path path, Surface surface, uint triangle) {
@@ -89,6 +101,7 @@ void startAt(inout Path path, Surface surface, uint triangle) {
   path.skip = triangle;
 #if MEDIA
   path.head = surface.magnitude * kBeside / max(abs(cosine), 0.01);
+  path.face = triangle;
 #endif
 }
 
@@ -117,6 +130,7 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
 #if INTERIORS
   path.inside = cameraInside;
   path.head = 0.0;
+  path.face = 0u;
   path.ior = cameraIor;
 #endif
   return path;
@@ -253,6 +267,9 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
 #if MIS
   if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, pdf);
 #endif
+#if LAMPS_OUTSIDE
+  if (path.ior != 1.0) return;  // a lamp beyond a boundary that refracts lies on no straight line
+#endif
   if (all(equal(contribution, vec3(0.0)))) return;
   addLight(path, contribution * visibility(path, surface, triangle, light, numbers));
   radiance = path.radiance;
@@ -265,6 +282,9 @@ bool extend(inout Path path, PathNumbers numbers) {
   // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
   int medium = mediumInside(path.inside);
   float flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
+#if WALKS
+  if (medium >= 0 && !walk(path, media[medium], flight, numbers)) return false;
+#endif
   Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight + flightMargin()), path.skip);
   if (medium >= 0) {
     int became = crossMedium(path, media[medium], flight, hit, numbers);
@@ -288,6 +308,27 @@ bool extend(inout Path path, PathNumbers numbers) {
     return false;
   }
   Surface surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+  uvec4 beyond = uvec4(0u);  // of which closed boundaries the other side is
+#if INTERIORS
+  beyond = path.inside;
+  uvec4 before = path.inside;  // and the place where a reflected ray starts
+  int rank = int(materials[surface.material].boundary);
+  if (rank >= 0) {
+    bool right = crossBoundary(beyond, rank, surface.front);
+#if TOUCHING
+    // What else the step beyond crosses: a face that coincides with this one is of the same interface.
+    Hit opaque = crossBesides(beyond, before, surface.position, -gapAt(surface) * surface.geometricNormal, hit.triangle);
+    if (opaque.triangle != kNoHit) {  // a wall right behind is what the path has met, from where it is
+      rank = -1;
+      beyond = before = path.inside;
+      hit.triangle = opaque.triangle;
+      hit.barycentrics = opaque.barycentrics;
+      surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+    } else
+#endif
+    if (!right) atomicAdd(wrongCrossings, 1u);
+  }
+#endif
   PathMaterial material = materials[surface.material];
   path.travelled += hit.t;
   ++path.event;
@@ -296,20 +337,16 @@ bool extend(inout Path path, PathNumbers numbers) {
     vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
 #if NEXT_EVENT
     if (path.pdf > 0.0) {
-      float pdf = material.pickDensity * path.travelled * path.travelled / -dot(surface.geometricNormal, path.direction);
+      float pdf = pickDensity(hit.triangle) * path.travelled * path.travelled / -dot(surface.geometricNormal, path.direction);
       emission *= powerHeuristic(path.pdf, pdf);
     }
 #endif
     addLight(path, emission);
   }
 #endif
-  uvec4 beyond = uvec4(0u);  // of which closed boundaries the other side is
   float iorBeyond = path.ior;
 #if INTERIORS
-  beyond = path.inside;
-  int rank = int(material.boundary);
   if (rank >= 0) {
-    if (!crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
     iorBeyond = iorInside(beyond);
     if (iorBeyond == path.ior) {  // nothing refracts: another medium, or a boundary that a higher one covers
       path.inside = beyond;
@@ -342,7 +379,11 @@ bool extend(inout Path path, PathNumbers numbers) {
   if (path.scatterings >= tracer.maxScatterings && !isSmooth(facet)) return false;  // nothing more could be found
 #endif
   path.travelled = 0.0;
-  uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);
+#if DIELECTRICS
+  uvec2 choice = randomWordPair(numbers, path.event, kPurposeChoice);
+#else
+  uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);  // for roulette alone
+#endif
   if (!scatter(path, facet, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter), unitFloat(choice.x))) return false;
 #if DIELECTRICS
   if (dot(path.direction, surface.geometricNormal) < 0.0) {
@@ -353,16 +394,23 @@ bool extend(inout Path path, PathNumbers numbers) {
   // Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path ends. Total reflection
   // may catch paths in glass for ever, which hold next to no light: after many smooth scatterings in a row more of them die.
   path.chain = path.pdf == 0.0 ? min(path.chain + 1u, 255u) : 0u;
-  float most = path.chain > 32u ? 0.9 : path.event < 1024u ? 1.0 : 0.999;
-  float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), most);
+  float most = path.chain > 32u ? 0.99 : path.event < 1024u ? 1.0 : 0.999;
+  float largest = max(path.throughput.x, max(path.throughput.y, path.throughput.z));
 #if ROULETTE_WITHOUT_DIVISION
-  if (!(unitFloat(choice.y) < min(survival, 0.95))) return false;  // [VPT2024, algorithm 3]
+  if (!(unitFloat(choice.y) < min(largest, min(most, 0.95)))) return false;  // [VPT2024, algorithm 3]
 #else
+  float survival = min(largest / kRouletteBelow, most);
   if (path.scatterings < 2u) survival = survival > 0.0 ? 1.0 : 0.0;
   if (!(unitFloat(choice.y) < survival)) return false;
   path.throughput /= survival;
 #endif
   startAt(path, surface, hit.triangle);
+#if TOUCHING
+  if (dot(path.direction, surface.geometricNormal) > 0.0) {
+    path.inside = before;
+    path.ior = iorInside(before);
+  }
+#endif
   return true;
 }
 
@@ -394,7 +442,7 @@ void main() {
     path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz), uintBitsToFloat(w2.w),
                 uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, saved.x & ~kInFlight, uintBitsToFloat(saved.y), w3.w >> 24u
 #if INTERIORS
-                , state[slot + 5u * lanes], uintBitsToFloat(saved.z)
+                , state[slot + 5u * lanes], uintBitsToFloat(saved.z), saved.w
 #endif
                 );
   } else {
@@ -402,7 +450,8 @@ void main() {
   }
 
   bool inFlight = true;
-  for (uint segment = 0u; segment < tracer.segments; ++segment) {
+  for (uint segment = 0u; segment < tracer.segments && loopTurns < uint(tracer.picture.w); ++segment) {
+    loopTurns += 4u;
     if (extend(path, numbers)) continue;
     ++samples;
     vec3 difference = (path.radiance - mean) - rest;
@@ -421,7 +470,7 @@ void main() {
   imageStore(filmRest, pixel, uvec4(floatBitsToUint(rest), 0u));
   state[slot + 4u * lanes] = uvec4(inFlight ? path.event | kInFlight : 0u, floatBitsToUint(path.ior),
 #if INTERIORS
-                                   floatBitsToUint(path.head), 0u);
+                                   floatBitsToUint(path.head), path.face);
 #else
                                    0u, 0u);
 #endif

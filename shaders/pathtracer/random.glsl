@@ -98,13 +98,16 @@ uint sobolReversed(uint i) {
   return i;
 }
 
-// Two numbers in [0, 1).
-vec2 randomPair(PathNumbers numbers, uint event, uint purpose) {
+// Two numbers, all 32 bits.
+uvec2 randomWordPair(PathNumbers numbers, uint event, uint purpose) {
 #if LINEAR_SEEDS
-  return unitFloat(linearWords(numbers, event, purpose).xy);
+  return linearWords(numbers, event, purpose).xy;
 #endif
-  if (event >= kLowDiscrepancyEvents) return unitFloat(randomWords(numbers, event, purpose).xy);
+  if (event >= kLowDiscrepancyEvents) return randomWords(numbers, event, purpose).xy;
   uvec4 seeds = pcg4d(uvec4(numbers.pixel, 0xffffffffu, event, purpose ^ numbers.seed));
   uint i = bitfieldReverse(owenReversed(bitfieldReverse(numbers.sampleIndex), seeds.x));
-  return unitFloat(bitfieldReverse(uvec2(owenReversed(i, seeds.y), owenReversed(sobolReversed(i), seeds.z))));
+  return bitfieldReverse(uvec2(owenReversed(i, seeds.y), owenReversed(sobolReversed(i), seeds.z)));
 }
+
+// Two numbers in [0, 1).
+vec2 randomPair(PathNumbers numbers, uint event, uint purpose) { return unitFloat(randomWordPair(numbers, event, purpose)); }

@@ -1,8 +1,8 @@
 // A path through participating media: how far it flies, what it adds and where it goes on from a collision; and how much light a straight
 // line lets through. Hooks of path.comp, which declares Path, addLight, counts and the lights before this file is included.
 //
-// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION; deviations DISTANCE_WITHOUT_PDF,
-// BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, STRAIGHT_SHADOW_RAYS.
+// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION, LAMPS_OUTSIDE (no lamp is within
+// a dielectric), WALKS (dense media have clearance grids); deviations DISTANCE_WITHOUT_PDF, BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, STRAIGHT_SHADOW_RAYS.
 #include "pathtracer/boundary.glsl"
 #if MEDIA
 #include "pathtracer/media.glsl"
@@ -16,11 +16,49 @@ const uint kPurposeFlight = kFreePurpose;
 const uint kPurposePhase = kFreePurpose + 1u;
 const uint kPurposeMediumChoice = kFreePurpose + 2u;
 const uint kPurposeTransmittance = kFreePurpose + 3u;
+const uint kPurposeSeek = kFreePurpose + 4u;
 
 // What becomes of a ray in a medium.
 const int kArrives = 0;    // at what the ray was traced to
 const int kScattered = 1;  // or is in the midst of a long flight: goes on with a ray of its own
 const int kEnded = 2;
+
+int rankOf(uint triangle) { return int(materials[triangleData[triangle * TRIANGLE_WORDS].w].boundary); }
+
+vec3 normalOf(uint triangle) {
+  uint first = triangle * TRIANGLE_WORDS;
+  return uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
+}
+
+// Whether a ray comes from the triangle's front.
+bool facesAgainst(uint triangle, vec3 direction) { return dot(normalOf(triangle), direction) < 0.0; }
+
+#if TOUCHING
+// Crosses what lies within a gap of a surface, where rounding matters: `beyond` is what rays start in that go on behind the surface, `before`
+// in front of it. Faces that coincide with the surface may be met in any order, up to half a gap before it too, so that the counts decide: a
+// boundary can be entered where the path is outside of it and left where it is inside. ahead: a gap long, to behind the surface. The first
+// surface there that bounds nothing is given back, kNoHit where there is none.
+Hit crossBesides(inout uvec4 beyond, inout uvec4 before, vec3 position, vec3 ahead, uint skip) {
+  Ray ray = Ray(position - ahead, 0.0, 2.0 * ahead, 1.0);
+  Hit hit;
+  for (int i = 0; i < 8; ++i) {
+    hit = closestHit(ray, skip);
+    if (hit.triangle == kNoHit) return hit;
+    int rank = rankOf(hit.triangle);
+    bool front = facesAgainst(hit.triangle, ahead);
+    if (hit.t < 0.25) {
+      if (rank >= 0 && isInsideOf(before, rank) == front) crossBoundary(before, rank, !front);
+    } else {
+      if (rank < 0) return hit;
+      if (isInsideOf(beyond, rank) != front) crossBoundary(beyond, rank, front);
+    }
+    ray.tMin = hit.t;
+    skip = hit.triangle;
+  }
+  hit.triangle = kNoHit;
+  return hit;
+}
+#endif
 
 #if MEDIA
 vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float distance, inout uvec4 words) {
@@ -33,10 +71,12 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
     float bound;
     if (!densityMarchStart(g, origin, direction, distance, march)) return through;
     while (densityMarchNext(g, march, bound)) {
+      ++loopTurns;
       float rate = medium.majorant * bound;
       if (!(rate > 0.0)) continue;
       float t = march.near;
       for (;;) {
+        ++loopTurns;
         words = pcg4d(words);
         t += exponentialSample(words.x) / rate;
         if (t >= march.far) break;
@@ -66,33 +106,38 @@ vec3 straightTransmittance(vec3 start, vec3 end, bool infinite, uint skip, uvec4
 #endif
   float ior = iorInside(inside);
   vec3 through = vec3(1.0);
+  float from = 0.0;  // where the present medium begins
   for (uint i = 0u; i < 256u; ++i) {
     Hit hit = closestHit(ray, skip);
     int rank = -1;
     bool front = false;
     if (hit.triangle != kNoHit) {
-      uvec4 words0 = triangleData[hit.triangle * TRIANGLE_WORDS];
-      rank = int(materials[words0.w].boundary);
+      rank = rankOf(hit.triangle);
       if (rank < 0) return vec3(0.0);
-      uvec3 normal = uvec3(triangleData[hit.triangle * TRIANGLE_WORDS + 1u].w, triangleData[hit.triangle * TRIANGLE_WORDS + 2u].w,
-                           triangleData[hit.triangle * TRIANGLE_WORDS + 3u].x);
-      front = dot(uintBitsToFloat(normal), ray.direction) < 0.0;
+      front = facesAgainst(hit.triangle, ray.direction);
     }
 #if MEDIA
     int medium = mediumInside(inside);
     if (medium >= 0) {
       float far = hit.triangle == kNoHit ? (infinite ? kFar : 1.0) : hit.t;
-      through *= mediumTransmittance(media[medium], start + ray.tMin * ray.direction, direction, (far - ray.tMin) * unit, words);
+      through *= mediumTransmittance(media[medium], start + from * ray.direction, direction, (far - from) * unit, words);
       if (all(equal(through, vec3(0.0)))) return through;
     }
 #endif
     if (hit.triangle == kNoHit) return through;
     crossBoundary(inside, rank, front);
+    ray.tMin = from = hit.t;
+    skip = hit.triangle;
+#if TOUCHING
+    Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
+    vec3 ahead = -gapAt(surface) * surface.geometricNormal;
+    uvec4 before = inside;
+    if (crossBesides(inside, before, surface.position, ahead, hit.triangle).triangle != kNoHit) return vec3(0.0);
+    ray.tMin += dot(ahead, ahead) / max(dot(ahead, ray.direction), 0.01 * gapAt(surface) * length(ray.direction));
+#endif
 #if !STRAIGHT_SHADOW_RAYS
     if (iorInside(inside) != ior) return vec3(0.0);
 #endif
-    ray.tMin = hit.t;
-    skip = hit.triangle;
   }
   return vec3(0.0);
 }
@@ -109,10 +154,11 @@ bool leaked(Path path) {
 
 // Roulette by the throughput alone: a limit by depth would darken milk. False: the path ends.
 bool survives(inout Path path, float u) {
-  float survival = min(max(path.throughput.r, max(path.throughput.g, path.throughput.b)), 1.0);
+  float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
 #if ROULETTE_WITHOUT_DIVISION
-  return u < min(survival, 0.95);  // [VPT2024, 5.5]
+  return u < min(largest, 0.95);  // [VPT2024, 5.5]
 #else
+  float survival = min(largest / kRouletteBelow, 1.0);
   if (path.event > (1u << 20)) survival = min(survival, 0.999);  // in an endless medium without absorption nothing else would
   if (!(u < survival)) return false;
   path.throughput /= survival;
@@ -158,8 +204,40 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
 }
 #endif
 
-// At a collision: light from a lamp, then on in a direction of the phase function.
-int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
+#if NEXT_EVENT
+// A new direction, drawn from the phase function, and now and then instead towards the lamp that the next flight asks. A flight that passes
+// the lamp at a distance h finds light in proportion to 1/h; by directions of the phase function alone that has an infinite variance. Angles
+// to the lamp drawn uniformly have a density in proportion to 1/h themselves. The farther the lamp the more seldom, as the flight would hardly
+// get there, and since each such choice makes the path's weight a little more uneven.
+void seekLamp(inout Path path, MediumRecord medium, vec3 before, vec3 q, PathNumbers numbers, inout vec3 weight) {
+  uvec4 words = randomWords(numbers, path.event, kPurposePick), choice = randomWords(numbers, path.event, kPurposeSeek);
+  uint i = scaledWord(words.x, uint(lights.length()));
+  if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
+  vec3 to = lights[i].a - path.origin;
+  float r = length(to), share = 0.25 * exp(-r * min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b)));
+  if (!(r > 0.0)) return;
+  to /= r;
+  if (unitFloat(choice.x) < share) {
+    float angle = 3.14159265358979324 * unitFloat(choice.y);
+    path.direction = phaseDirection(to, sin(angle), cos(angle), unitFloat(choice.z));
+  }
+  vec3 p = phaseValue(medium, before, path.direction);
+  path.pdf = (1.0 - share) * dot(q, p) + share / (19.7392088 * max(length(cross(path.direction, to)), 1e-6));  // 2 pi^2
+  weight = p / path.pdf;
+}
+#endif
+
+// Whether a straight line from where the path is may reach a lamp at all: with all lamps outside, not from within anything that refracts.
+bool lampsReach(Path path) {
+#if LAMPS_OUTSIDE
+  return path.ior == 1.0;
+#else
+  return true;
+#endif
+}
+
+// At a collision: light from a lamp where `asks`, then on in a direction of the phase function.
+int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, bool asks) {
   path.skip = kNoHit;
   path.head = 0.0;
   path.chain = 0u;
@@ -174,11 +252,11 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
 #if NEXT_EVENT
   LightSample light;
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
-  bool asked = false;
+  const bool asked = false;
 #else
-  bool asked = medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));  // they have been, on the way here
+  bool asked = asks && medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));  // it has been, on the way here
 #endif
-  if (counts(path.scatterings) && !asked &&
+  if (counts(path.scatterings) && asks && !asked &&
       sampleLight(path.origin, randomPair(numbers, path.event, kPurposeLight), randomWords(numbers, path.event, kPurposePick), light)) {
     vec3 phase = phaseValue(medium, path.direction, light.direction);
     vec3 contribution = phase * light.value;
@@ -193,10 +271,12 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers) {
 #if !SCATTERED_LIGHT && !NEXT_EVENT
   return kEnded;
 #endif
-  uvec4 choice = randomWords(numbers, path.event, kPurposeMediumChoice);
-  vec3 weight;
-  path.direction = phaseSample(medium, path.direction, channelProbabilities(path.throughput), unitFloat(choice.x),
-                               randomPair(numbers, path.event, kPurposePhase), weight, path.pdf);
+  uvec2 choice = randomWordPair(numbers, path.event, kPurposeMediumChoice);
+  vec3 weight, before = path.direction, q = channelProbabilities(path.throughput);
+  path.direction = phaseSample(medium, before, q, unitFloat(choice.x), randomPair(numbers, path.event, kPurposePhase), weight, path.pdf);
+#if NEXT_EVENT && (POINTS || SPOTS)
+  if (asked) seekLamp(path, medium, before, q, numbers, weight);
+#endif
   path.throughput *= weight;
   return survives(path, unitFloat(choice.y)) ? kScattered : kEnded;
 }
@@ -212,10 +292,12 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   float bound;
   uint tries = 0u;
   while (densityMarchNext(g, march, bound)) {
+    ++loopTurns;
     float rate = medium.majorant * bound;
     if (!(rate > 0.0)) continue;
     float t = march.near;
     for (;;) {
+      ++loopTurns;
       words = pcg4d(words);
       t += exponentialSample(words.x) / rate;
       if (t >= march.far) break;
@@ -232,7 +314,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
         path.throughput *= collides ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
       if (collides || ++tries == 64u) {
         path.origin += t * path.direction;
-        if (collides) return scatterInMedium(path, medium, numbers);
+        if (collides) return scatterInMedium(path, medium, numbers, lampsReach(path));
         path.travelled += t;
         path.head = 0.0;
         ++path.event;
@@ -255,31 +337,25 @@ float interactionProbability(MediumRecord medium) {
 }
 #endif
 
-// How far the ray may go before it collides; with a density grid that is told once it is known where the ray ends.
+// How far the ray may go before it collides, negative where that is before its origin; with a density grid that is told once it is known where the ray ends.
 float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   if (medium.grid >= 0) return kFar;
-  uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
+  uvec2 words = randomWordPair(numbers, path.event, kPurposeFlight);
 #if DISTANCE_WITHOUT_PDF
   // [VPT2024, algorithm 4]: from the least of the extinctions, and only with the probability of an interaction.
   float least = min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b));
   if (unitFloat(words.y) >= interactionProbability(medium) || !(least > 0.0)) return kFar;
   return max(min(exponentialSample(words.x) / least, kFar) - path.head, 0.0);
 #endif
-  return max(flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x) - path.head, 0.0);
+  return flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x) - path.head;
 }
 
 // How far beyond a collision to look for a surface. Where one is so near, the next ray might miss it by the rounding of its distance, which
-// is that of the triangles' coordinates.
-float flightMargin() { return sceneMagnitude() * kBeside; }
+// is that of the triangles' coordinates: collisions keep a distance from it, and a ray may meet it at a grazing angle.
+float flightMargin() { return sceneMagnitude() * kBeside * 64.0; }
 
-// What happens on the way to `hit`, the first hit within `flight`.
-int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
-  bool arrives = hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar;
-#if HETEROGENEOUS
-  if (medium.grid >= 0) return trackDensity(path, medium, hit.triangle != kNoHit ? hit.t : kFar, numbers);
-#endif
-  float distance = path.head + (arrives && hit.triangle != kNoHit ? hit.t : flight);
-  vec3 q = channelProbabilities(path.throughput);
+// What a flight of that length adds, and leaves of the throughput.
+void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, bool arrives, PathNumbers numbers) {
 #if VOLUME_EMISSION
   if (counts(path.scatterings) && distance < 0.5 * kFar) {
     // By the length of the flight: one point of it stands for all. Where little collides that has hardly any noise.
@@ -287,30 +363,86 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
     addLight(path, distance * medium.emission * passageWeight(medium, q, x));
   }
 #endif
-#if NEXT_EVENT && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
-#if POINTS || SPOTS
-  addPointLight(path, medium, q, distance, numbers);
-#endif
-#endif
 #if DISTANCE_WITHOUT_PDF
   path.throughput *= exp(-medium.extinction * distance);  // neither the scattering coefficient nor a density
-  if (arrives) return kArrives;
 #else
-  if (arrives) {
-    path.throughput *= passageWeight(medium, q, distance);
-    return kArrives;
-  }
-  path.throughput *= scatteringWeight(medium, q, distance);
+  path.throughput *= arrives ? passageWeight(medium, q, distance) : scatteringWeight(medium, q, distance);
 #if BOOSTED_INTERACTION
   float albedo = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
-  path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
+  if (!arrives) path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
 #endif
 #endif
-  path.origin += flight * path.direction;
-  if (hit.triangle != kNoHit) {
-    Surface near = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
-    path.origin = beside(near, near.geometricNormal);
+}
+
+#if WALKS
+layout(binding = 3) uniform samplerBuffer clearances;  // distances from cells' centres to the nearest triangle of the scene
+const uint kWalkSteps = 64u;
+
+// From collision to collision as long as `flight`, the one drawn last, ends before it could meet any triangle: no ray is traced for such. Every
+// number drawn and every sum is that of a path that traces them all. Where a lamp might be asked there is no walk. False: the path ends.
+bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers numbers) {
+  int rank = topRank(path.inside);
+  if (rank < 0 || (NEXT_EVENT != 0 && lampsReach(path))) return true;
+  InteriorRecord interior = interiors[rank];
+  if (interior.clearance < 0) return true;
+  ivec3 last = interior.size.xyz - 1;
+  float margin = 2.0 * flightMargin();
+  if (flight < 0.0) return true;
+  for (uint step = 0u; step < kWalkSteps; ++step) {
+    ivec3 cell = clamp(ivec3((path.origin - interior.min) / interior.cell), ivec3(0), last);
+    float radius = texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
+    if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell))) return true;
+    ++loopTurns;
+    weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);
+    path.origin += flight * path.direction;
+    if (scatterInMedium(path, medium, numbers, false) != kScattered) return false;
+    flight = beginFlight(path, medium, numbers);
   }
-  return scatterInMedium(path, medium, numbers);
+  return true;
+}
+#endif
+
+// What happens on the way to `hit`, the first hit within `flight`.
+int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
+  bool arrives = hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar;
+#if HETEROGENEOUS
+  if (medium.grid >= 0) return trackDensity(path, medium, hit.triangle != kNoHit ? hit.t : kFar, numbers);
+#endif
+  float distance = max(path.head + (arrives && hit.triangle != kNoHit ? hit.t : flight), 0.0);
+  vec3 q = channelProbabilities(path.throughput);
+#if NEXT_EVENT && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
+#if POINTS || SPOTS
+  if (lampsReach(path)) addPointLight(path, medium, q, distance, numbers);
+#endif
+#endif
+  weighFlight(path, medium, q, distance, arrives, numbers);
+  if (arrives) return kArrives;
+  // Nearer to a face than a gap the path goes on from a gap beside it, and the flight that it does not make or makes twice, along the face's
+  // normal, is made good in the next: as if it had begun where it should have. Where a gap is no small part of a mean free path that is much.
+  vec3 inward = vec3(0.0);
+  if (flight < 0.0) {
+    vec3 normal = normalOf(path.face);
+    inward = -flight * abs(dot(normal, path.direction)) * (dot(normal, path.direction) < 0.0 ? -normal : normal);
+  } else {
+    path.origin += flight * path.direction;
+    if (hit.triangle != kNoHit) {
+      Surface near = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+      float depth = (hit.t - flight) * -dot(near.geometricNormal, path.direction);
+      if (depth < gapAt(near)) {
+        path.origin = beside(near, near.geometricNormal);
+        path.face = hit.triangle;
+        inward = (gapAt(near) - depth) * near.geometricNormal;
+      }
+    }
+  }
+  int became = scatterInMedium(path, medium, numbers, lampsReach(path));
+#if !FIXED_EPSILON  // published rays have no such thing
+  float shift = length(inward);
+  if (shift > 0.0) {
+    float cosine = dot(inward, path.direction) / shift;
+    path.head = shift / (abs(cosine) > 0.01 ? cosine : cosine < 0.0 ? -0.01 : 0.01);
+  }
+#endif
+  return became;
 }
 #endif

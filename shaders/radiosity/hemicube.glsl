@@ -2,47 +2,39 @@
 // a, b, c (seen from the hemicube's centre) where d . (a x b), d . (b x c) and d . (c x a) have the sign of det = a . (b x c), at the inverse
 // distance (their sum) / det along d [Olano1997]. So nothing is clipped, there is no near plane, and what touches the centre still blocks.
 //
-// One invocation takes one triangle and one hemicube. Pass 1 keeps each pixel's nearest surface (hemicube_depth.comp), pass 2 sums the delta
-// form factors of the pixels that a triangle kept (hemicube_sum.comp): no sorting, no histogram, and a sum's order never changes.
-// What spans more than kMostPixels of a face is listed for a pass of its own, a work group a triangle, a lane a row: lanes stay busy, and no
-// loop comes near the 65,535 turns after which Mesa's software renderer leaves any shader's loops.
+// Three ways tell which patch each pixel sees: raster (hemicube_depth.comp), rays (hemicube_rays.comp) and an item buffer (hemicube_item.*).
+// hemicube_sum.comp adds up what each patch has of the delta form factors; a sum's order never changes.
 // Layout of a hemicube's pixels: the full face N x N, then four half faces N x N/2, rows upwards from the horizon.
-#include "radiosity/patch.glsl"
-
-layout(local_size_x = 64) in;
+// Corners come from a buffer texture, which llvmpipe gathers from three times as fast as from a storage block.
+layout(binding = 59) uniform samplerBuffer corners;  // three texels a patch
+uniform int patchCount;
 
 struct Frame {
   vec4 origin;   // w: 1 / (distance below which a corner lies in the patch's plane)
   vec4 u, v, n;  // unit; n the patch's normal
 };
-layout(std430, binding = 1) readonly buffer Frames { Frame frames[]; };
-layout(std430, binding = 2) buffer Keys { uint keys[]; };
-layout(std430, binding = 8) buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };  // hemicube * patchCount + patch; begins with an indirect dispatch
-const int kMostPixels = 1024;
-const uint kMostGroups = 65535u;
+layout(std140, binding = 9) uniform Frames { Frame frames[256]; };
 
-uniform int faceSize;       // N, even
-uniform int firstPatch;     // of this batch
-uniform int trianglesEach;  // an invocation's share of them, a stride of gl_WorkGroupSize.x apart
-
-// The nearest surface has the largest key: inverse distance, its last bits taken for the front (which wins over a back at the same
-// place: sheets of two fronts) and for the patch, so that a tie is settled alike in every run.
-uint keyOf(float inverseDistance, bool front, uint patchIndex) {
-  return (floatBitsToUint(inverseDistance) & ~15u) | (front ? 8u : 0u) | (patchIndex & 7u);
-}
+uniform int faceSize;        // N, even
+uniform int halfFacePixels;  // N * N / 2
+uniform float halfSize;      // N / 2
+uniform float pixelSize;     // 2 / N
+uniform int firstPatch;      // of this batch
 
 struct Triangle {
   vec3 a, b, c;  // in the hemicube's frame: x along u, y along v, z along n
 };
+
+vec3 patchCorner(int patchIndex, int k) { return texelFetch(corners, 3 * patchIndex + k).xyz; }
 
 vec3 toFrame(Frame f, vec3 p) {
   vec3 d = p - f.origin.xyz;
   return vec3(dot(d, f.u.xyz), dot(d, f.v.xyz), dot(d, f.n.xyz));
 }
 
-Triangle triangleOf(Frame f, int index) {
-  return Triangle(toFrame(f, patchCorner(index, 0)), toFrame(f, patchCorner(index, 1)), toFrame(f, patchCorner(index, 2)));
-}
+Triangle toFrame(Frame f, Triangle world) { return Triangle(toFrame(f, world.a), toFrame(f, world.b), toFrame(f, world.c)); }
+Triangle worldTriangle(int index) { return Triangle(patchCorner(index, 0), patchCorner(index, 1), patchCorner(index, 2)); }
+Triangle triangleOf(Frame f, int index) { return toFrame(f, worldTriangle(index)); }
 
 // Not the patch itself, nor what lies in its plane or below.
 bool isAbove(Frame f, Triangle t, int index, int self) { return index != self && max(t.a.z, max(t.b.z, t.c.z)) * f.origin.w >= 1.0; }
@@ -70,90 +62,32 @@ uint facesOf(Triangle t) {
   return anyLess(none, z) ? faces : 0u;
 }
 
-int facePixels(int face) { return face == 0 ? 0 : faceSize * faceSize + (face - 1) * (faceSize * faceSize / 2); }
-int pixelsPerHemicube() { return 3 * faceSize * faceSize; }
+// The lowest of them; 0 where there is none.
+int lowestFace(uint faces) { return faces == 0u ? 0 : (floatBitsToInt(float(int(faces & -faces))) >> 23) - 127; }
 
-// A triangle as one face sees it: what a pixel needs.
-struct FaceTriangle {
-  vec3 e0, e1, e2;   // edge functions over (x, y, 1), positive inside
-  vec3 inverse;      // inverse distance over (x, y, 1)
-  ivec2 low, high;   // pixels to look at, inclusive
-  bool front;
-};
-
-// Neighbours take an edge in opposite senses; without contraction the products are the same, so no pixel falls between them.
-vec3 edge(vec3 a, vec3 b) {
-  precise vec3 across = vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-  return across;
-}
-
-FaceTriangle onFace(int face, Triangle t) {
-  FaceTriangle r;
-  vec3 a = toFace(face, t.a), b = toFace(face, t.b), c = toFace(face, t.c);
-  float bottom = face == 0 ? -1.0 : 0.0;  // half faces end at the horizon
-  vec3 x = vec3(a.x, b.x, c.x), y = vec3(a.y, b.y, c.y), z = vec3(a.z, b.z, c.z);
-  vec3 e0 = edge(b, c), e1 = edge(c, a), e2 = edge(a, b);
-  float det = dot(a, e0);
-  r.front = det < 0.0;
-  float s = r.front ? -1.0 : 1.0;
-  r.e0 = s * e0;
-  r.e1 = s * e1;
-  r.e2 = s * e2;
-  det = abs(det);
-  r.inverse = (r.e0 + r.e1 + r.e2) / det;
-  float half_ = 0.5 * float(faceSize);
-  vec2 low = vec2(-1.0, bottom), high = vec2(1.0);
-  if (min(z.x, min(z.y, z.z)) > 0.0) {
-    vec3 px = x / z, py = y / z;
-    low = max(low, vec2(min(px.x, min(px.y, px.z)), min(py.x, min(py.y, py.z))));
-    high = min(high, vec2(max(px.x, max(px.y, px.z)), max(py.x, max(py.y, py.z))));
-  }
-  // Centres are at (i + 1/2 - N/2) / (N/2); a hair wider, as the quotients are rounded.
-  r.low = ivec2(ceil((low - vec2(-1.0, bottom)) * half_ - 0.501));
-  r.high = ivec2(floor((high - vec2(-1.0, bottom)) * half_ - 0.499));
-  r.low = max(r.low, ivec2(0));
-  r.high = min(r.high, ivec2(faceSize - 1, face == 0 ? faceSize - 1 : faceSize / 2 - 1));
-  if (det <= 0.0) r.high = r.low - 1;
-  return r;
-}
-
-// A row of pixels: x goes over columns.x..columns.y; at a pixel's centre the edge functions are edges + ex * x, alike for the inverse distance.
-struct Row {
-  ivec2 columns;
-  vec4 atZero, slope;
-};
-
-// Columns inside all three edges: x >= -edges / ex where ex > 0, <= where ex < 0; a hair wider, as quotients are rounded.
-Row rowOf(FaceTriangle t, float y) {
-  Row r;
-  r.slope = vec4(t.e0.x, t.e1.x, t.e2.x, t.inverse.x);
-  r.atZero = vec4(t.e0.y, t.e1.y, t.e2.y, t.inverse.y) * y + vec4(t.e0.z, t.e1.z, t.e2.z, t.inverse.z);
-  vec3 at = -r.atZero.xyz / r.slope.xyz;
-  vec3 low = mix(vec3(-1.0), at, greaterThan(r.slope.xyz, vec3(0.0))), high = mix(vec3(1.0), at, lessThan(r.slope.xyz, vec3(0.0)));
-  vec2 span = clamp(vec2(max(low.x, max(low.y, low.z)), min(high.x, min(high.y, high.z))), -1.1, 1.1);
-  float half_ = 0.5 * float(faceSize);
-  r.columns = ivec2(max(t.low.x, int(ceil((span.x + 1.0) * half_ - 0.51))), min(t.high.x, int(floor((span.y + 1.0) * half_ - 0.49))));
-  return r;
-}
+int facePixels(int face) { return face == 0 ? 0 : (face + 1) * halfFacePixels; }
+int pixelsPerHemicube() { return 6 * halfFacePixels; }
 
 vec2 pixelCentre(int face, ivec2 pixel) {
-  return (vec2(pixel) + 0.5) * (2.0 / float(faceSize)) - vec2(1.0, face == 0 ? 1.0 : 0.0);
+  return (vec2(pixel) + 0.5) * pixelSize - vec2(1.0, face == 0 ? 1.0 : 0.0);
 }
 
-bool isLarge(FaceTriangle t) {
-  ivec2 size = t.high - t.low + 1;
-  return min(size.x, size.y) > 0 && size.x * size.y > kMostPixels;
+// The inverse of toFace for a pixel's direction, in the hemicube's frame.
+vec3 pixelDirection(int face, ivec2 pixel) {
+  vec2 at = pixelCentre(face, pixel);
+  vec2 level = face > 2 ? -vec2(at.x, 1.0) : vec2(at.x, 1.0);
+  return face == 0 ? vec3(at, 1.0) : vec3((face & 1) == 1 ? level.yx : vec2(-level.x, level.y), at.y);
 }
 
-void listLarge(int entry) {
-  uint slot = atomicAdd(largeCount, 1u);
-  large[slot] = uint(entry);
-  atomicMax(largeGroups, min(slot + 1u, kMostGroups));
+// Where a pixel of a hemicube lies: face, column, row.
+ivec3 placeOf(int pixel) {
+  int face = pixel < 2 * halfFacePixels ? 0 : pixel / halfFacePixels - 1;
+  int inFace = pixel - facePixels(face);
+  return ivec3(face, inFace % faceSize, inFace / faceSize);
 }
 
-// All rows of a hemicube, 3 N: which face and which row of it.
-int rowsPerHemicube() { return 3 * faceSize; }
-ivec2 faceAndRow(int row) {
-  int half_ = faceSize / 2;
-  return row < faceSize ? ivec2(0, row) : ivec2(1 + (row - faceSize) / half_, (row - faceSize) % half_);
+// The inverse distance of a triangle's plane along a direction.
+float inverseAlong(Triangle t, vec3 direction) {
+  vec3 normal = cross(t.b - t.a, t.c - t.a);
+  return dot(normal, direction) / dot(normal, t.a);
 }

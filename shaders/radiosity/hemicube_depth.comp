@@ -1,14 +1,16 @@
 // Hemicubes, pass 1: each pixel's nearest surface.
 // LARGE 0: x: triangles, y: hemicubes of the batch. LARGE 1: what that listed, a work group each.
-#include "radiosity/hemicube.glsl"
+#include "radiosity/hemicube_walk.glsl"
 
-void drawRow(FaceTriangle f, int face, int y, int firstPixel, int index) {
-  Row r = rowOf(f, pixelCentre(face, ivec2(0, y)).y);
-  int at = firstPixel + facePixels(face) + y * faceSize;
-  for (int x = r.columns.x; x <= r.columns.y; ++x) {
-    vec4 value = r.atZero + r.slope * pixelCentre(face, ivec2(x, y)).x;
-    if (all(greaterThanEqual(value.xyz, vec3(0.0))) && value.w > 0.0) atomicMax(keys[at + x], keyOf(value.w, f.front, uint(index)));
-  }
+layout(std430, binding = 2) buffer Keys { uint keys[]; };
+
+void draw(FaceTriangle f, int face, int firstPixel, int index) {
+  Walk w = beginWalk(f, face, firstPixel + facePixels(face));
+  do {
+    vec4 value = valueAt(w);
+    if (covers(w, value)) atomicMax(keys[w.rowStart + w.column], keyOf(value.w, f.front, uint(index)));
+    advance(w, f);
+  } while (w.row <= f.high.y);
 }
 
 void main() {
@@ -19,28 +21,31 @@ void main() {
     for (int row = int(gl_LocalInvocationID.x); row < rowsPerHemicube(); row += 64) {
       ivec2 place = faceAndRow(row);
       FaceTriangle f = onFace(place.x, t);
-      if (place.y >= f.low.y && place.y <= f.high.y) drawRow(f, place.x, place.y, hemicube * pixelsPerHemicube(), index);
+      f.low.y = max(f.low.y, place.y);
+      f.high.y = min(f.high.y, place.y);
+      draw(f, place.x, hemicube * pixelsPerHemicube(), index);
     }
   }
 #else
-  int hemicube = int(gl_WorkGroupID.y);
-  Frame frame = frames[hemicube];
-  int first = int(gl_WorkGroupID.x) * 64 * trianglesEach + int(gl_LocalInvocationID.x);
-  for (int i = 0; i < trianglesEach; ++i) {
-    int index = first + 64 * i;
-    if (index >= patchCount) break;
-    Triangle t = triangleOf(frame, index);
+  int index = int(gl_WorkGroupID.y * 64u + gl_LocalInvocationID.x);
+  if (index >= patchCount) return;
+  Triangle world = worldTriangle(index);
+  int hemicube = int(gl_WorkGroupID.x) * hemicubesEach, end = min(hemicube + hemicubesEach, hemicubes);
+  do {
+    Frame frame = frames[hemicube];
+    Triangle t = toFrame(frame, world);
+    uint faces = isAbove(frame, t, index, firstPatch + hemicube) ? facesOf(t) : 0u;
     bool tooLarge = false;
-    for (uint faces = isAbove(frame, t, index, firstPatch + hemicube) ? facesOf(t) : 0u; faces != 0u; faces &= faces - 1u) {
-      int face = findLSB(faces);
+    do {
+      int face = lowestFace(faces);
       FaceTriangle f = onFace(face, t);
-      if (isLarge(f)) {
-        tooLarge = true;
-        f.high.y = f.low.y - 1;
-      }
-      for (int y = f.low.y; y <= f.high.y; ++y) drawRow(f, face, y, hemicube * pixelsPerHemicube(), index);
-    }
+      bool large = isLarge(f) && faces != 0u;
+      tooLarge = tooLarge || large;
+      if (large || faces == 0u) f.high.y = -1;
+      draw(f, face, hemicube * pixelsPerHemicube(), index);
+      faces &= faces - 1u;
+    } while (faces != 0u);
     if (tooLarge) listLarge(hemicube * patchCount + index);
-  }
+  } while (++hemicube < end);
 #endif
 }

@@ -3,9 +3,10 @@
 // Each invocation takes entries of pass 2's list, a stride of the whole dispatch apart.
 #include "radiosity/hemicube.glsl"
 #include "radiosity/polygon.glsl"
+layout(local_size_x = 64) in;
 
-layout(std430, binding = 4) writeonly buffer Factors { float factors[]; };
-layout(std430, binding = 6) readonly buffer ExactList { uint listed; uint padding; uvec2 list[]; };
+layout(binding = 57) uniform usamplerBuffer keys;  // of pass 1
+layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };  // the share's place takes the form factor
 uniform float nearDistance;  // a receiver is divided so that (distance / size of a part) reaches this; 0: never
 uniform int mostParts;       // a side, at most
 
@@ -32,16 +33,21 @@ float receivedFrom(Frame frame, int self, Triangle t) {
 }
 
 // Whether a source that no pixel's centre met is the nearest at the pixel that its centroid falls in, were it to fill that pixel.
-bool nearestAtCentroid(Triangle t, int firstPixel) {
+bool nearestAtCentroid(Frame frame, Triangle t, int firstPixel) {
   vec3 m = (t.a + t.b + t.c) / 3.0;
   vec2 side = abs(m.xy);
   int face = m.z >= max(side.x, side.y) ? 0 : side.x >= side.y ? (m.x > 0.0 ? 1 : 3) : (m.y > 0.0 ? 2 : 4);
   vec3 p = toFace(face, m);
   vec2 low = vec2(-1.0, face == 0 ? -1.0 : 0.0);
-  ivec2 pixel = clamp(ivec2((p.xy / p.z - low) * (0.5 * float(faceSize))), ivec2(0), ivec2(faceSize - 1, face == 0 ? faceSize - 1 : faceSize / 2 - 1));
-  vec3 a = toFace(face, t.a), normal = cross(toFace(face, t.b) - a, toFace(face, t.c) - a);
-  float inverse = dot(normal, vec3(pixelCentre(face, pixel), 1.0)) / dot(normal, a);
-  return m.z > 0.0 && inverse * 1.001 >= uintBitsToFloat(keys[firstPixel + facePixels(face) + pixel.y * faceSize + pixel.x] & ~15u);
+  ivec2 pixel = clamp(ivec2((p.xy / p.z - low) * halfSize), ivec2(0), ivec2(faceSize - 1, face == 0 ? faceSize - 1 : faceSize / 2 - 1));
+  vec3 direction = pixelDirection(face, pixel);
+  uint seen = texelFetch(keys, firstPixel + facePixels(face) + pixel.y * faceSize + pixel.x).x;
+#if ITEMS
+  float nearest = seen == 0u ? 0.0 : inverseAlong(triangleOf(frame, int(seen) - 1), direction);
+#else
+  float nearest = uintBitsToFloat(seen & ~15u);
+#endif
+  return m.z > 0.0 && inverseAlong(t, direction) * 1.001 >= nearest;
 }
 
 void main() {
@@ -50,7 +56,7 @@ void main() {
     float share = uintBitsToFloat(list[i].y);
     Frame frame = frames[hemicube];
     Triangle t = triangleOf(frame, index);
-    if (share < 0.0) share = nearestAtCentroid(t, hemicube * pixelsPerHemicube()) ? 1.0 : 0.0;
-    factors[list[i].x] = share * receivedFrom(frame, firstPatch + hemicube, t);
+    if (share < 0.0) share = nearestAtCentroid(frame, t, hemicube * pixelsPerHemicube()) ? 1.0 : 0.0;
+    list[i].y = floatBitsToUint(share * receivedFrom(frame, firstPatch + hemicube, t));
   }
 }

@@ -1,45 +1,47 @@
 // Hemicubes, pass 2: form factors. A triangle's form factor is the sum of the delta form factors of the pixels that it kept in pass 1. Written:
 // the form factor, negative where a patch's back was seen. What pass 3 (hemicube_exact.comp) knows better is listed for it, with the share of
 // its pixels that was seen.
+// ITEMS 1: pixels name their patches, and hemicube_keep.glsl has summed already what each kept; sums here are of what it covers.
 // LARGE 0: x: triangles, y: hemicubes of the batch. LARGE 1: what pass 1 listed, a work group each; after it, as it writes over it.
-#include "radiosity/hemicube.glsl"
+#include "radiosity/hemicube_walk.glsl"
+#include "radiosity/hemicube_keep.glsl"
 
-layout(std430, binding = 3) readonly buffer DeltaFactors { float deltaFactors[]; };  // the full face, then one half face
-layout(std430, binding = 4) writeonly buffer Factors { float factors[]; };           // hemicube-major
+layout(binding = 57) uniform usamplerBuffer keys;          // of pass 1
+layout(binding = 58) uniform samplerBuffer deltaFactors;   // the full face, then one half face
+layout(std430, binding = 4) buffer Factors { uint factors[]; };  // bits of floats, hemicube-major; ITEMS: first whole numbers
 layout(std430, binding = 5) readonly buffer Sources { uint sources[]; };             // 1 where a patch is a small source
 layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };  // hemicube * patchCount + patch; share as bits, negative: no pixel
-layout(std430, binding = 7) buffer Shares { uvec2 shares[]; };  // of a hemicube that fronts and backs fill by pixels, in parts of 2^28
 uniform int exactPixels;  // as many covered pixels, and the closed form is taken; 0: never
 
-// Adds a row's delta form factors: x of the pixels that the triangle kept, y of all that it covers, z their count.
-vec3 sumRow(FaceTriangle f, int face, int y, int firstPixel, int index) {
+// The delta form factors: x of the pixels that the triangle kept, y of all that it covers, z their count.
+vec3 sumOf(FaceTriangle f, int face, int firstPixel, int index) {
   vec3 sum = vec3(0.0);
-  Row r = rowOf(f, pixelCentre(face, ivec2(0, y)).y);
-  int inFace = y * faceSize;
-  int at = firstPixel + facePixels(face) + inFace;
-  int weightAt = inFace + (face == 0 ? 0 : faceSize * faceSize);
-  for (int x = r.columns.x; x <= r.columns.y; ++x) {
-    vec4 value = r.atZero + r.slope * pixelCentre(face, ivec2(x, y)).x;
-    if (all(greaterThanEqual(value.xyz, vec3(0.0))) && value.w > 0.0) {
-      float delta = deltaFactors[weightAt + x];
-      sum += vec3(keys[at + x] == keyOf(value.w, f.front, uint(index)) ? delta : 0.0, delta, 1.0);
-    }
-  }
+  int start = firstPixel + facePixels(face), toDelta = (face == 0 ? 0 : 2 * halfFacePixels) - start;
+  Walk w = beginWalk(f, face, start);
+  do {
+    vec4 value = valueAt(w);
+    int pixel = w.rowStart + w.column;
+    float delta = covers(w, value) ? texelFetch(deltaFactors, toDelta + pixel).x : 0.0;
+#if ITEMS
+    sum.yz += vec2(delta, delta > 0.0 ? 1.0 : 0.0);
+#else
+    sum += vec3(texelFetch(keys, pixel).x == keyOf(value.w, f.front, uint(index)) ? delta : 0.0, delta, delta > 0.0 ? 1.0 : 0.0);
+#endif
+    advance(w, f);
+  } while (w.row <= f.high.y);
   return sum;
 }
 
 void write(int hemicube, int index, Triangle t, bool above, vec3 sum) {
   int entry = hemicube * patchCount + index;
+#if ITEMS
+  sum.x = float(factors[entry]) * (1.0 / KEPT_WHOLE);
+#endif
   bool front = dot(t.a, cross(t.b, t.c)) < 0.0;
-  factors[entry] = front ? sum.x : -sum.x;
-  uint share = uint(sum.x * 268435456.0 + 0.5);  // whole numbers: their sum does not depend on the order
-  if (share > 0u) {
-    if (front) atomicAdd(shares[hemicube].x, share);
-    else atomicAdd(shares[hemicube].y, share);
-  }
+  factors[entry] = floatBitsToUint(front ? sum.x : -sum.x);
   bool source = sources[index] != 0u && above && (sum.z == 0.0 || sum.x > 0.0);
   if (exactPixels > 0 && front && (source || (sum.z >= float(exactPixels) && sum.x > 0.0)))
-    list[atomicAdd(listed, 1u)] = uvec2(uint(entry), floatBitsToUint(sum.z > 0.0 ? sum.x / sum.y : -1.0));
+    list[atomicAdd(listed, 1u)] = uvec2(uint(entry), floatBitsToUint(sum.z > 0.0 ? min(sum.x / sum.y, 1.0) : -1.0));
 }
 
 #if LARGE
@@ -55,7 +57,9 @@ void main() {
     for (int row = int(gl_LocalInvocationID.x); row < rowsPerHemicube(); row += 64) {
       ivec2 place = faceAndRow(row);
       FaceTriangle f = onFace(place.x, t);
-      if (place.y >= f.low.y && place.y <= f.high.y) sum += sumRow(f, place.x, place.y, hemicube * pixelsPerHemicube(), index);
+      f.low.y = max(f.low.y, place.y);
+      f.high.y = min(f.high.y, place.y);
+      sum += sumOf(f, place.x, hemicube * pixelsPerHemicube(), index);
     }
     sums[gl_LocalInvocationID.x] = sum;
     barrier();
@@ -66,25 +70,35 @@ void main() {
     barrier();
   }
 #else
-  int hemicube = int(gl_WorkGroupID.y);
-  Frame frame = frames[hemicube];
-  int first = int(gl_WorkGroupID.x) * 64 * trianglesEach + int(gl_LocalInvocationID.x);
-  for (int i = 0; i < trianglesEach; ++i) {
-    int index = first + 64 * i;
-    if (index >= patchCount) break;
-    Triangle t = triangleOf(frame, index);
+  int index = int(gl_WorkGroupID.y * 64u + gl_LocalInvocationID.x);
+  if (index >= patchCount) return;
+  Triangle world = worldTriangle(index);
+  int hemicube = int(gl_WorkGroupID.x) * hemicubesEach, end = min(hemicube + hemicubesEach, hemicubes);
+  do {
+    Frame frame = frames[hemicube];
+    Triangle t = toFrame(frame, world);
     bool above = isAbove(frame, t, index, firstPatch + hemicube), tooLarge = false;
+#if ITEMS
+    int entry = hemicube * patchCount + index;
+    bool wanted = exactPixels > 0 && above && (sources[index] != 0u || factors[entry] != 0u);
+#else
+    bool wanted = above;
+#endif
+    uint faces = wanted ? facesOf(t) : 0u;
     vec3 sum = vec3(0.0);
-    for (uint faces = above ? facesOf(t) : 0u; faces != 0u; faces &= faces - 1u) {
-      int face = findLSB(faces);
+    do {
+      int face = lowestFace(faces);
       FaceTriangle f = onFace(face, t);
-      if (isLarge(f)) {
-        tooLarge = true;
-        f.high.y = f.low.y - 1;
-      }
-      for (int y = f.low.y; y <= f.high.y; ++y) sum += sumRow(f, face, y, hemicube * pixelsPerHemicube(), index);
-    }
+      bool large = isLarge(f) && faces != 0u;
+      tooLarge = tooLarge || large;
+      if (large || faces == 0u) f.high.y = -1;
+      sum += sumOf(f, face, hemicube * pixelsPerHemicube(), index);
+      faces &= faces - 1u;
+    } while (faces != 0u);
+#if ITEMS
+    if (tooLarge) listLarge(entry);  // else pass 1 has done so
+#endif
     if (!tooLarge) write(hemicube, index, t, above, sum);
-  }
+  } while (++hemicube < end);
 #endif
 }

@@ -7,6 +7,11 @@ in vec3 vPosition;
 in vec3 vIrradiance;
 in vec2 vTexCoord;
 in vec3 vCorner;
+#if DIRECT_RAYS
+#include "render/direct_rays.glsl"
+in vec3 vNormal;
+flat in vec3 vFace;
+#endif
 layout(location = 0) out vec4 radiance;
 #if EMISSION
 uniform vec3 materialEmission;
@@ -16,7 +21,13 @@ void main() {
   if (materialCutOut(vTexCoord)) discard;
   vec3 result = vec3(0.0);
   if (gl_FrontFacing) {
-    result = materialAlbedo(vTexCoord) * vIrradiance / kPi;
+    vec3 irradiance = vIrradiance;
+#if DIRECT_RAYS
+    // Where shading normals are none or turned away the face's own is taken, as in the solution.
+    vec3 normal = dot(vNormal, vFace) > 0.0 ? normalize(vNormal) : vFace;
+    irradiance += directIrradiance(vPosition, normal, vFace);
+#endif
+    result = materialAlbedo(vTexCoord) * irradiance / kPi;
 #if EMISSION
     result += materialEmission;
 #endif

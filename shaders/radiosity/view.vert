@@ -3,6 +3,12 @@
 invariant gl_Position;
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
+#if DIRECT_RAYS
+layout(location = 2) in vec3 normal;
+layout(std430, binding = 2) readonly buffer Faces { float faceNormals[]; };  // three floats a patch
+out vec3 vNormal;
+flat out vec3 vFace;
+#endif
 layout(std430, binding = 0) readonly buffer Light { float irradiances[]; };  // three floats a corner
 out vec3 vPosition;
 out vec3 vIrradiance;
@@ -15,5 +21,10 @@ void main() {
   vIrradiance = vec3(irradiances[at], irradiances[at + 1], irradiances[at + 2]);
   vTexCoord = texCoord;
   vCorner = vec3(gl_VertexID % 3 == 0, gl_VertexID % 3 == 1, gl_VertexID % 3 == 2);
+#if DIRECT_RAYS
+  int face = 3 * (gl_VertexID / 3);
+  vFace = vec3(faceNormals[face], faceNormals[face + 1], faceNormals[face + 2]);
+  vNormal = normal;
+#endif
   gl_Position = frame.clipFromWorld * vec4(position, 1.0);
 }

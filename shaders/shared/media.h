@@ -32,7 +32,11 @@ struct DensityRecord {
 struct InteriorRecord {
   float ior;        // of a dielectric; unused elsewhere
   int medium;       // -1: vacuum
-  int padding0, padding1;
+  int clearance;    // where its clearance grid begins among the radii, -1: it has none
+  float cell;       // edge of that grid's cells
+  vec3 min;         // corner of its first cell
+  int padding0;
+  ivec4 size;       // cells, x fastest; w unused
 };
 
 SHARED_END

@@ -36,7 +36,7 @@ struct PathConstants {
   float environmentPick;    // probability that a light sample goes to the environment
   vec4 environmentTurn;     // cosine and sine of its rotation
   ivec4 tile;               // its lower left pixel, its size
-  ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile
+  ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile; w: turns of loops a lane may take before it starts no other segment
 };
 
 // Where a texture lies in the atlas; layer is PATH_NO_TEXTURE where there is none.
@@ -53,7 +53,7 @@ struct PathMaterial {
   vec3 specular;
   float roughness;          // GGX alpha
   vec3 emission;
-  float pickDensity;        // probability a unit of area that a light sample goes to a point on it
+  float padding2;
   float ior;
   uint boundary;            // which closed boundary it is of: index of the material
   float padding0, padding1;

@@ -1,4 +1,5 @@
 // lucerna bench tables --original rad: the published figures stand in it as published, ratios are what they say.
+#include "base/image.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -52,11 +53,47 @@ TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
   }
   EXPECT_EQ(found, published.size());
 
+  // Both boxes, three ways to tell what pixels see; ratios to the library measured are of the medians.
+  ASSERT_EQ(json["closed_box"].size(), 6u);
+  for (const auto& row : json["closed_box"]) {
+    EXPECT_TRUE(row["triangles"] == 2028 || row["triangles"] == 25392) << row;
+    EXPECT_GE(row["hemicubes"].get<int>(), 64);
+    EXPECT_GT(row["least"].get<double>(), 0.0);
+    EXPECT_LE(row["least"].get<double>(), row["hemicubes_per_s"].get<double>());
+    EXPECT_LE(row["hemicubes_per_s"].get<double>(), row["most"].get<double>());
+  }
+
   std::map<std::string, double> nrmse;
   for (const auto& row : json["deviations"]) nrmse[row["name"]] = row["nrmse"];
   ASSERT_EQ(nrmse.size(), 7u);
   EXPECT_LT(nrmse["rad.published-map=off"], 0.9 * nrmse["as published"]);
   EXPECT_LT(nrmse["all off but rad.centroid"], nrmse["as published"]);
+}
+
+TEST(BenchRad, PicturesShowWhatTheFiguresShow) {
+  const TempFolder folder;
+  const std::string file = (folder / "p.json").string(), sheet = (folder / "p.png").string();
+  const RunResult result = RUN_LUCERNA("bench pictures --original rad --scale 0.05 --size 96x72 --host osmesa --quiet -o '" + sheet + "' --json '" + file + "'");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
+  EXPECT_EQ(json["pictures"].size(), 20u);
+  std::map<std::string, double> mean;  // by figure, the first word
+  for (const auto& picture : json["pictures"]) {
+    const std::string label = picture["picture"];
+    mean[label.substr(0, label.find(' '))] = picture["mean"];
+    EXPECT_GT(picture["mean"].get<double>(), 0.01) << label;
+    EXPECT_LT(picture["mean"].get<double>(), 0.95) << label;
+  }
+  EXPECT_GT(mean["4.5b"], 1.01 * mean["4.5a"]) << "a second sweep brings light";
+  EXPECT_NE(mean["3.10a"], mean["3.10b"]);
+  EXPECT_NE(mean["3.16a"], mean["3.16b"]) << "packed colours are not what is shown";
+  const lucerna::Bitmap bitmap = lucerna::readBitmap(sheet);
+  EXPECT_GE(bitmap.width, 4 * 96);
+  EXPECT_GE(bitmap.height, 5 * 72);
+  for (const char* wrong : {"--scale 0", "--scale 2", "--camera 0,0,0,1,0,0,60"}) {
+    const RunResult refused = RUN_LUCERNA("bench pictures --original rad --host osmesa -o '" + sheet + "' " + wrong);
+    EXPECT_EQ(refused.exitCode, 2) << wrong;
+  }
 }
 
 TEST(BenchRad, ScenesAreRefused) {

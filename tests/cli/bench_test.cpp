@@ -146,6 +146,33 @@ TEST_F(Bench, PicturesOfTheLpvOriginalAreOneSheet) {
   EXPECT_EQ(json("p.json").at("pictures").size(), 7u);
 }
 
+TEST_F(Bench, PicturesOfTheVptOriginalAreOneSheet) {
+  const RunResult result = RUN_LUCERNA("bench pictures --original vpt --scale 0.0005 --size 48x27 --host osmesa --quiet --json " + path("p.json") + " -o " + path("p.png"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(json("p.json").at("pictures").size(), 21u);
+  const lucerna::Bitmap sheet = lucerna::readBitmap(path("p.png"));
+  EXPECT_GE(sheet.width * sheet.height, 21 * 48 * 27);
+  // Every tile shows something.
+  std::set<std::array<int, 3>> colours;
+  for (std::size_t i = 0; i + 3 < sheet.rgba.size(); i += 4) colours.insert({sheet.rgba[i], sheet.rgba[i + 1], sheet.rgba[i + 2]});
+  EXPECT_GT(colours.size(), 1000u);
+}
+
+TEST_F(Bench, RaysHitWhatEmbreeHits) {
+  const RunResult result = RUN_LUCERNA("bench rays " + path("scene.obj") + " --rays 4096 --repeats 2 --host osmesa --quiet --json " + path("rays.json"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  if (result.out.find("Embree was not there") != std::string::npos) GTEST_SKIP() << "built without Embree";
+  const auto rays = json("rays.json");
+  ASSERT_EQ(rays.at("rows").size(), 3u);
+  for (const auto& row : rays.at("rows")) {
+    EXPECT_GT(row.at("count").get<int>(), 500) << row.dump();
+    EXPECT_GT(row.at("mrays_per_s").get<double>(), 0.0) << row.dump();
+    EXPECT_LE(row.at("differ").get<int>(), row.at("count").get<int>() / 100) << row.dump();  // rays that graze an edge
+  }
+  EXPECT_GT(rays.at("embree_mrays_per_s").get<double>(), 0.0);
+  EXPECT_GT(rays.at("ratio").get<double>(), 0.0);
+}
+
 TEST_F(Bench, WrongOptionsAreRefused) {
   const std::string scene = path("scene.obj");
   expectRefused("", {"subcommand", "bench --help"});
@@ -190,6 +217,19 @@ TEST_F(Bench, VptTablesHoldWhatWasPublished) {
     const double factor = samples * 1920 * 1080 / (picture.at("spp").get<double>() * 16 * 9);
     EXPECT_NEAR(rows[i].at("measured").get<double>(), picture.at("ms").get<double>() * factor, 1e-6 * rows[i].at("measured").get<double>());
   }
+  // The estimator: corrected, as published, and each deviation alone.
+  const auto& estimators = tables.at("estimators");
+  ASSERT_EQ(estimators.size(), 10u);
+  EXPECT_EQ(estimators[0].at("estimator"), "corrected");
+  EXPECT_EQ(estimators[0].at("time_ratio"), 1.0);
+  EXPECT_EQ(estimators[1].at("estimator"), "original");
+  for (const auto& estimator : estimators) {
+    EXPECT_GT(estimator.at("ms_a_sample").get<double>(), 0.0) << estimator.dump();
+    EXPECT_GT(estimator.at("nrmse").get<double>(), 0.0) << estimator.dump();
+    EXPECT_GT(estimator.at("bias_error").get<double>(), 0.0) << estimator.dump();
+  }
+  // Espresso's paths end early where survivors of roulette are not weighted: another picture from the same numbers.
+  EXPECT_NE(estimators[4].at("bias"), estimators[0].at("bias"));
 }
 
 }  // namespace

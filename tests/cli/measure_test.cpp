@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 namespace {
 
@@ -78,6 +79,11 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     EXPECT_EQ(row.contains("inside_model"), row.at("technique") == "rsm");
   }
   EXPECT_TRUE(pareto);
+  std::map<std::string, int> ofPath;
+  for (const auto& row : report.at("rows"))
+    if (row.at("technique") == "path") ++ofPath[row.at("fidelity").get<std::string>()];
+  EXPECT_GE(ofPath["corrected"], 3);
+  EXPECT_GE(ofPath["original"], 3);
   EXPECT_EQ(report.at("references").size(), 4u);
   EXPECT_EQ(report.at("model").size(), 3u);
   for (const char* file : {"report.html", "error.csv", "error.json"}) EXPECT_TRUE(fs::exists(path("out") + "/" + file)) << file;
@@ -89,7 +95,7 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   // One row is lost and one damaged: these are measured again, the others stay as they are.
   std::vector<fs::path> rows;
   for (const auto& entry : fs::directory_iterator(path("out") + "/rows"))
-    if (entry.path().extension() == ".json" && entry.path().filename() != "path.json") rows.push_back(entry.path());
+    if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with("path")) rows.push_back(entry.path());
   std::sort(rows.begin(), rows.end());
   fs::remove(rows[0]);
   std::ofstream(rows[1]) << "{ half";
@@ -104,6 +110,33 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
 
   // Another scene or size is another bench.
   expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --host osmesa --size 32x18 --reference-spp 16 --out '" + path("out") + "'"), 2, {"another bench", "out"});
+}
+
+TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
+  ASSERT_EQ(RUN_LUCERNA(benchError("--techniques radiosity")).exitCode, 0);
+  std::map<std::string, nlohmann::json> edges, resolutions;  // by the value of the setting that a series changes
+  const nlohmann::json ladder = json("error.json");
+  for (const auto& row : ladder.at("rows")) {
+    EXPECT_EQ(row.at("technique"), "radiosity");
+    for (const std::string setting : row.at("settings")) {
+      if (row.at("series") == "radiosity patches" && setting.starts_with("rad.edge=")) edges[setting.substr(9)] = row;
+      if (setting.starts_with("rad.resolution=")) resolutions[setting.substr(15)] = row;
+    }
+  }
+  ASSERT_EQ(edges.size(), 3u);
+  EXPECT_EQ(resolutions.size(), 3u);
+  // Solving is baking, and smaller patches take longer; the settings reach the solver: the errors differ.
+  const auto &coarse = edges.at("1.33333"), &fine = edges.at("0.333333");
+  EXPECT_GT(fine.at("setup_ms").get<double>(), coarse.at("setup_ms").get<double>());
+  EXPECT_NE(fine.at("nrmse"), coarse.at("nrmse"));
+
+  fs::remove_all(path("out"));
+  ASSERT_EQ(RUN_LUCERNA(benchError("--techniques radiosity --deviations")).exitCode, 0);
+  std::map<std::string, double> bias;
+  const nlohmann::json deviations = json("error.json");
+  for (const auto& row : deviations.at("rows")) bias[row.at("fidelity") == "original" ? "original" : row.at("deviations").empty() ? "" : row.at("deviations")[0].get<std::string>()] = row.at("bias");
+  for (const char* name : {"", "original", "rad.published-map=on", "rad.centroid=on", "rad.fixed-orientation=on", "rad.no-near-field=on"}) EXPECT_TRUE(bias.contains(name)) << name;
+  EXPECT_NE(bias[""], bias["rad.published-map=on"]);
 }
 
 TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {
@@ -127,6 +160,7 @@ TEST_F(Measure, WhatCannotBeIsOneLine) {
   expectOneLine(RUN_LUCERNA(benchError("--techniques magic")), 2, {"magic", "rsm"});
   expectOneLine(RUN_LUCERNA("bench stability --host osmesa --technique magic"), 2, {"magic", "lpv"});
   expectOneLine(RUN_LUCERNA("bench all --host osmesa --out '" + path("file") + "'"), 2, {"--out"});
+  expectOneLine(RUN_LUCERNA("bench all --host osmesa --parts magic --out '" + path("out") + "'"), 2, {"--parts", "magic", "stability"});
 }
 
 TEST_F(Measure, StabilityRowsSayWhatWasExpected) {
@@ -138,6 +172,61 @@ TEST_F(Measure, StabilityRowsSayWhatWasExpected) {
     for (const char* key : {"technique", "case", "parameter", "expected", "measured", "verdict"}) EXPECT_TRUE(row.contains(key)) << key;
     EXPECT_EQ(row.at("verdict"), "pass") << row.dump();
   }
+}
+
+TEST_F(Measure, StabilityIsComparedWithATableThatWasKept) {
+  const std::string run = "bench stability --host osmesa --quiet --technique direct ";
+  ASSERT_EQ(RUN_LUCERNA(run + "--json '" + path("kept.json") + "'").exitCode, 0);
+  const auto kept = json("kept.json");
+  const auto against = [&](const nlohmann::json& table) {
+    std::ofstream(path("old.json")) << table;
+    return RUN_LUCERNA(run + "--compare '" + path("old.json") + "' --json '" + path("now.json") + "'");
+  };
+  RunResult same = against(kept);
+  EXPECT_EQ(same.exitCode, 0) << same.out;
+  EXPECT_TRUE(json("now.json").at("worse").empty());
+
+  // A row that is gone, one that allowed less, one that expected something else, and one of another technique, which is not asked for.
+  auto stricter = kept;
+  auto gone = kept.at("rows")[0];
+  gone["case"] = "no such case";
+  stricter["rows"].push_back(gone);
+  gone["technique"] = "lpv";
+  stricter["rows"].push_back(gone);
+  stricter["rows"][0]["tolerance"] = 1e-9;
+  stricter["rows"][1]["expected"] = 7.0;
+  const RunResult worse = against(stricter);
+  EXPECT_EQ(worse.exitCode, 1) << worse.out;
+  EXPECT_EQ(json("now.json").at("worse").size(), 3u) << worse.out;
+  for (const char* part : {"no such case, sun 1e-09x: gone", "allows", "expects 1, was 7"}) EXPECT_NE(worse.out.find(part), std::string::npos) << part << " in " << worse.out;
+
+  expectOneLine(against({{"rows", {{{"case", 1}}}}}), 2, {"--compare", "old.json"});
+  expectOneLine(RUN_LUCERNA(run + "--compare '" + path("scene.obj") + "'"), 2, {"--compare", "scene.obj"});
+}
+
+// What continuous integration keeps: tests/stability.json, made by `lucerna bench stability --json tests/stability.json`.
+TEST_F(Measure, NoStabilityRowIsWorseThanTheKeptTable) {
+  const RunResult result = RUN_LUCERNA("bench stability --host osmesa --compare '" LUCERNA_SOURCE_DIR "/tests/stability.json' --json '" + path("s.json") + "'");
+  EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+  const auto table = json("s.json");
+  EXPECT_GE(table.at("rows").size(), 247u);
+  EXPECT_LT(table.at("seconds").get<double>(), 600.0);
+  std::map<std::string, int> rows;
+  for (const auto& row : table.at("rows")) ++rows[row.at("technique").get<std::string>()];
+  for (const char* technique : {"direct", "rsm", "lpv", "radiosity", "path"}) EXPECT_GE(rows[technique], 14) << technique;
+}
+
+TEST_F(Measure, AFullDiskIsOneLine) {
+  if (test::run("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'").exitCode != 0) GTEST_SKIP() << "no permission to mount a tmpfs";
+  fs::create_directory(path("small"));
+  const std::string small = path("small");
+  const RunResult result = test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench error '" + path("scene.obj") +
+                                "' --host osmesa --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --quiet --techniques direct,rsm --out '" + small + "/out'\"");
+  expectOneLine(result, 2, {"No space left on device", small});
+  // Nor a page half written, where the rows fit and the page does not.
+  const RunResult all = test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench all '" + path("scene.obj") + "' --host osmesa --scale 0.01 --quiet --out '" +
+                             small + "/out'; code=\\$?; test -e '" + small + "/out/index.html' && exit 99; exit \\$code\"");
+  expectOneLine(all, 2, {"No space left on device", small});
 }
 
 TEST_F(Measure, NeedsSayWhatLeavingOutSaves) {

@@ -95,6 +95,88 @@ TEST_F(LpvWays, LayeredPropagationIsTheComputeOne) {
 
 // ---- injection ---------------------------------------------------------------------------------------------------------
 
+// One light each in places that a brick of 4^3 cells could lose: a corner of the grid, both sides of a border between bricks, the last brick of a
+// cascade, which is cut off where cells are no multiple of 4; then several; then none.
+TEST_F(LpvWays, LeavingOutDarkBricksGivesTheSameBits) {
+  const auto light = [](const glm::vec3& cellOfFirst, const glm::vec3& normal, const Cascade& first) {
+    const glm::dvec3 p = first.minimum() + first.cellSize * (glm::dvec3(cellOfFirst) + 0.5) - 0.5 * first.cellSize * glm::dvec3(normal);
+    return RsmTexel{glm::vec4(glm::vec3(p), 1.0f), glm::vec4(normal, 1.0f), glm::vec3(1.0f, 0.5f, 0.25f)};
+  };
+  int lit = 0;
+  for (const int cells : {1, 3, 4, 9, 12})
+    for (const int cascades : {1, 3})
+      for (const int iterations : {1, 2, 5, 8}) {
+        LpvSettings s = settings(cells, cascades, iterations);
+        s.fill = LpvFill::fixed;
+        const std::vector<Cascade> placed = place(s);
+        const float last = static_cast<float>(cells - 1);
+        std::vector<std::vector<RsmTexel>> scenes{{}};
+        for (const glm::vec3& normal : {glm::vec3(1, 0, 0), glm::vec3(0, -1, 0), glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)})
+          for (const glm::vec3& cell : {glm::vec3(0.0f), glm::vec3(last), glm::vec3(3, 4, 7), glm::vec3(4, 3, 8)})
+            if (glm::all(glm::lessThanEqual(cell, glm::vec3(last)))) scenes.push_back({light(cell, normal, placed[0])});
+        scenes.push_back(randomTexels(6, 200));
+        for (std::size_t scene = 0; scene < scenes.size(); scene += cells == 12 || scene == 0 ? 1 : 5) {
+          const RsmTextures textures(scenes[scene], kTexelArea);
+          const LightPropagationVolume::Inputs inputs{{textures.outputs()}, placed, kIrradiance};
+          s.everyBrick = false;
+          const LightPropagationVolume few = run(s, inputs);
+          s.everyBrick = true;
+          const LightPropagationVolume all = run(s, inputs);
+          for (std::size_t channel = 0; channel < 3; ++channel) {
+            const std::vector<glm::vec4> expected = all.result()[channel].readRgba();
+            ASSERT_EQ(expected, few.result()[channel].readRgba()) << cells << " cells " << cascades << " cascades " << iterations << " steps, scene " << scene;
+            const bool dark = std::all_of(expected.begin(), expected.end(), [](const glm::vec4& c) { return c == glm::vec4(0.0f); });
+            if (scene == 0) {
+              EXPECT_TRUE(dark);
+            }
+            lit += dark ? 0 : 1;
+          }
+        }
+      }
+  EXPECT_GT(lit, 300);
+}
+
+// The bricks of one frame must not stay lit in the next, nor the light of its buffers.
+TEST_F(LpvWays, LightThatMovesLeavesNothingBehindInDarkBricks) {
+  LpvSettings s = settings(12, 2, 3);
+  for (const LpvFill fill : {LpvFill::layered, LpvFill::fixed}) {
+    s.fill = fill;
+    LightPropagationVolume kept(library(), capabilities(), s);
+    std::vector<Cascade> placed = place(s);
+    for (const float x : {-4.6f, 4.4f, 0.1f}) {
+      const RsmTextures textures(std::vector<RsmTexel>{{{x, x, -x, 1.0f}, {0, 1, 0, 1}, glm::vec3(2.0f)}}, kTexelArea);
+      for (const int shift : {0, 1, -3}) {  // the grid snaps on
+        for (Cascade& cascade : placed) cascade.firstCell += glm::i64vec3(shift, 0, 0);
+        const LightPropagationVolume::Inputs inputs{{textures.outputs()}, placed, kIrradiance};
+        kept.place(inputs);
+        kept.inject(inputs);
+        kept.fillGeometryVolume(inputs);
+        kept.propagate();
+        kept.join();
+        const LightPropagationVolume fresh = run(s, inputs);
+        for (std::size_t channel = 0; channel < 3; ++channel)
+          ASSERT_EQ(fresh.result()[channel].readRgba(), kept.result()[channel].readRgba()) << nameOf(fill) << " " << x << " " << shift;
+      }
+    }
+  }
+}
+
+// A second propagation of the same light: the first has overwritten the front that atomics count in.
+TEST_F(LpvWays, PropagatedAgainGivesTheSame) {
+  const std::vector<RsmTexel> texels = randomTexels(7, 300);
+  const RsmTextures textures(texels, kTexelArea);
+  LpvSettings s = settings(8, 2, 4);
+  s.fill = LpvFill::fixed;
+  const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
+  LightPropagationVolume lpv = run(s, inputs);
+  const std::vector<glm::vec4> first = lpv.result()[1].readRgba();
+  lpv.propagate();
+  lpv.join();
+  EXPECT_EQ(first, lpv.result()[1].readRgba());
+}
+
+// ---- filling -----------------------------------------------------------------------------------------------------------
+
 TEST_F(LpvWays, FixedPointGivesTheLayeredGridWithinItsQuantum) {
   const std::vector<RsmTexel> texels = randomTexels(2, 5000);
   const RsmTextures textures(texels, kTexelArea);
@@ -139,6 +221,66 @@ TEST_F(LpvWays, AtomicGivesTheLayeredGrid) {
   // Half vectors, as published, round each of a cell's some 10 lights to 11 bits.
   for (std::size_t k = 0; k < atomic.size(); ++k)
     EXPECT_LT(test::relativeError(layered[k], atomic[k]), capabilities().shaderAtomicFloat ? 1e-6 : 2e-2) << k;
+}
+
+// Surfels counted by atomics are those that blending draws: the geometry volume and what it does to the light.
+TEST_F(LpvWays, CountedSurfelsAreTheDrawnOnes) {
+  std::vector<RsmTexel> texels = randomTexels(8, 6000);
+  for (const int cascades : {1, 3}) {
+    LpvSettings s = settings(12, cascades, 4);
+    const std::vector<Cascade> placed = place(s);
+    const RsmTextures textures(texels, kTexelArea);
+    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, placed, kIrradiance};
+    const LightPropagationVolume drawn = run(s, inputs);
+    for (const LpvFill fill : {LpvFill::fixed, LpvFill::atomic}) {
+      if (fill == LpvFill::atomic && !capabilities().shaderAtomicFloat) continue;
+      s.fill = fill;
+      const LightPropagationVolume counted = run(s, inputs);
+      const std::vector<twin::Volume> expected = test::readGeometryVolume(drawn, inputs), actual = test::readGeometryVolume(counted, inputs);
+      double largest = 0.0;
+      for (std::size_t k = 0; k < expected.size(); ++k) {
+        // Steps for all texels at a cosine of 1/20 in one cell: half a step a surfel, some ten of them a cell.
+        EXPECT_LT(test::relativeError(expected[k], actual[k]), fill == LpvFill::fixed ? 2e-5 : 1e-6) << k << " " << nameOf(fill);
+        for (const twin::Sh& cell : actual[k].cells) largest = std::max(largest, cell.c0);
+      }
+      EXPECT_GT(largest, 0.01);
+      const std::vector<VolumeRgb> a = test::readVolume(drawn.result(), inputs), b = test::readVolume(counted.result(), inputs);
+      for (std::size_t k = 0; k < a.size(); ++k) EXPECT_LT(test::relativeError(a[k][1], b[k][1]), 1e-5) << k << " " << nameOf(fill);
+    }
+    s.fill = LpvFill::fixed;
+    const LightPropagationVolume before = run(s, inputs);
+    std::shuffle(texels.begin(), texels.end(), std::mt19937(9));
+    const RsmTextures shuffled(texels, kTexelArea);
+    const LightPropagationVolume after = run(s, {{shuffled.outputs()}, placed, kIrradiance});
+    EXPECT_EQ(before.geometryVolume()->readRgba(), after.geometryVolume()->readRgba());
+  }
+}
+
+TEST_F(LpvWays, CountedSurfelsNeverOverflow) {
+  // All texels of a map, as steep as they are counted, along an axis and in one cell of the finest cascade.
+  for (const int count : {64, 64 * 64, 256 * 256})
+    for (const bool fluxUnits : {false, true}) {
+      LpvSettings s = settings(4, 2, 2);
+      s.fill = LpvFill::fixed;
+      s.deviations.fluxUnits = fluxUnits;
+      const double area = 1e-3;
+      const RsmTexel steep{glm::vec4(0.2f, 0.2f, 0.2f, 1.0f), {0, 0, -1, 0.01f}, glm::vec3(1e-6f)};
+      const RsmTextures textures(std::vector<RsmTexel>(static_cast<std::size_t>(count), steep), area);
+      std::vector<Cascade> cascades(2);
+      for (std::size_t k = 0; k < 2; ++k) {
+        cascades[k].firstCell = glm::i64vec3(-2);
+        cascades[k].cellSize = k == 0 ? 0.5 : 1.0;
+      }
+      const LightPropagationVolume::Inputs inputs{{textures.outputs()}, cascades, kIrradiance};
+      const std::vector<twin::Volume> volumes = test::readGeometryVolume(run(s, inputs), inputs);
+      for (std::size_t k = 0; k < volumes.size(); ++k) {
+        double band0 = 0.0, band1 = 0.0;
+        for (const twin::Sh& cell : volumes[k].cells) band0 += cell.c0, band1 += cell.c1.z;
+        const double s2 = inputs.cascades[k].cellSize * inputs.cascades[k].cellSize, total = count * area * 20.0 / s2;
+        EXPECT_NEAR(band0 / (total * twin::kLobeBand0), 1.0, 1e-4) << count << " " << k;
+        EXPECT_NEAR(band1 / (total * -twin::kLobeBand1), 1.0, 1e-4) << count << " " << k;
+      }
+    }
 }
 
 TEST_F(LpvWays, FixedPointGivesTheSameBitsInAnyOrder) {

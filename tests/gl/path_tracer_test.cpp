@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string_view>
 
 namespace lucerna::test {
 namespace {
@@ -164,6 +166,44 @@ TEST_F(PathTracerTest, DirectLightIsThatOfForwardShading) {
   }
   EXPECT_LT(off, kSize * kSize / 20);
   EXPECT_NEAR(tracedSum / rasterSum, 1.0, 0.01);
+}
+
+// Each kind of lamp by itself, on Lambert's surfaces with a pillar and a shelf that cast shadows: the mean to 1 %, and where neither picture has a border of a shadow, pixel by pixel.
+TEST_F(PathTracerTest, DirectLightOfEachKindOfLampIsThatOfForwardShading) {
+  for (const char* kind : {"sun", "spot", "point"}) {
+    Scene scene = openBox();
+    SceneBuilder builder;
+    builder.scene() = scene;
+    builder.plate({-1.0, -3.0, 0.0}, {0, 0, 1.5}, {0, 4, 0}, 0);
+    builder.plate({1.5, 0.5, -1.0}, {2, 0, 0}, {0, 0, 2}, 0);
+    scene = builder.scene();
+    if (kind != std::string_view("sun")) scene.sun.reset();
+    if (kind == std::string_view("spot")) scene.spots.push_back({{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
+    if (kind == std::string_view("point")) scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
+    constexpr int kSize = 96;
+    RenderSettings forward;
+    forward.technique = Technique::direct;
+    forward.size = glm::ivec2(kSize);
+    forward.fullFloatTarget = true;
+    Renderer renderer(context(), library(), scene, forward);
+    renderer.render(openBoxCamera());
+    const Image raster = renderer.readRadiance();
+    PathTracer::Settings settings = sized(kSize);
+    settings.transport = Transport::direct;
+    settings.pixelCentres = settings.diffuseOnly = true;
+    const Image traced = tracer(scene, openBoxCamera(), settings, 16).mean();
+    double rasterSum = 0.0, tracedSum = 0.0;
+    int off = 0;
+    for (std::size_t i = 0; i < traced.pixels.size(); ++i) {
+      rasterSum += raster.pixels[i].y;
+      tracedSum += traced.pixels[i].y;
+      off += std::abs(traced.pixels[i].y - raster.pixels[i].y) > 1e-3f * traced.pixels[i].y + 1e-6f;
+    }
+    std::printf("%-6s forward over path traced %.5f, %d of %d pixels off by 0.1 %%\n", kind, rasterSum / tracedSum, off, kSize * kSize);
+    EXPECT_GT(tracedSum, 0.0);
+    EXPECT_NEAR(rasterSum / tracedSum, 1.0, 0.01) << kind;
+    EXPECT_LT(off, kSize * kSize / 25) << kind;
+  }
 }
 
 TEST_F(PathTracerTest, MasksAndBoundariesLetLightThrough) {

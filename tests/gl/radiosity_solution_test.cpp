@@ -158,6 +158,8 @@ TEST_F(RadiositySolutions, AResumedRunEqualsAnUninterruptedOne) {
   });
   EXPECT_GT(first, 48);  // three blocks of 16 were whole
   EXPECT_LT(resumed.hemicubes, uninterrupted.hemicubes);
+  EXPECT_TRUE(std::filesystem::exists(file)) << "the solution is not saved yet";
+  removeCheckpoints(file);
   EXPECT_FALSE(std::filesystem::exists(file));
   for (std::size_t i = 0; i < resumed.exitance.size(); ++i) ASSERT_EQ(resumed.exitance[i], uninterrupted.exitance[i]);
   // Another scene's, another setting's, or no checkpoint at all: refused and left as it is.
@@ -182,6 +184,7 @@ TEST_F(RadiositySolutions, FilesGiveBackWhatWasSaved) {
   const RadiositySolution loaded = loadSolution(file, scene);
   ASSERT_EQ(loaded.exitance.size(), s.exitance.size());
   for (std::size_t i = 0; i < s.exitance.size(); ++i) EXPECT_EQ(loaded.exitance[i], s.exitance[i]);
+  for (std::size_t i = 0; i < s.exitance.size(); ++i) EXPECT_EQ(loaded.fromEmitters[i], s.fromEmitters[i]);
   EXPECT_EQ(interpolatedToVertices(loaded, loaded.irradiance), interpolatedToVertices(s, s.irradiance));
   EXPECT_THROW(loadSolution(file, dark(cubeRoom(3, 0.7, 1.0))), Error);
   const auto size = std::filesystem::file_size(file);
@@ -193,6 +196,70 @@ TEST_F(RadiositySolutions, FilesGiveBackWhatWasSaved) {
   EXPECT_THROW(loadSolution(file, scene), Error);
   std::filesystem::resize_file(file, size - 100);
   EXPECT_THROW(loadSolution(file, scene), Error);
+}
+
+TEST_F(RadiositySolutions, AChangedSceneHasAnotherSolution) {
+  // What light depends on, not the corners alone: a mask, a medium, a texture's size. (One function knows it: scene/fingerprint.)
+  const test::TempFolder folder;
+  const Scene scene = dark(cubeRoom(2, 0.7, 1.0));
+  RadiositySolution s = solve(scene, whole());
+  s.deviations.centroid = true;
+  saveSolution(folder.path() / "s", scene, s);
+  EXPECT_TRUE(loadSolution(folder.path() / "s", scene).deviations.centroid);
+  const auto refused = [&](const std::function<void(Scene&)>& change) {
+    Scene other = scene;
+    change(other);
+    EXPECT_THROW(loadSolution(folder.path() / "s", other), Error);
+  };
+  refused([](Scene& o) { o.materials[0].alphaMasked = true; });
+  refused([](Scene& o) { o.materials[0].diffuse.x += 1e-4f; });
+  refused([](Scene& o) { o.media.emplace_back(); });
+  refused([](Scene& o) { o.vertices[3].normal = -o.vertices[3].normal; });
+  refused([](Scene& o) { o.points.push_back({{0, 0, 0}, glm::vec3(1.0f)}); });
+  Scene renamed = scene;
+  renamed.name = "elsewhere";
+  renamed.exposure = 7.0f;
+  EXPECT_NO_THROW(loadSolution(folder.path() / "s", renamed));
+}
+
+TEST_F(RadiositySolutions, EachDeviationDoesWhatItSays) {
+  int lit = -1, grey = -1;
+  const Scene scene = dark(cubeRoom(4, [&](SceneBuilder& b, int wall, double u, double v) {
+    if (lit < 0) lit = lambertian(b, 0.5, 1.0), grey = lambertian(b, 0.5);
+    return wall == 1 && std::abs(u - 0.5) < 0.3 && std::abs(v - 0.5) < 0.3 ? lit : grey;
+  }));
+  const RadiositySolution right = solve(scene, whole(1e-5));
+  const auto rms = [&](bool RadiosityDeviations::*member) {
+    RadiositySolutionSettings settings = whole(1e-5);
+    settings.deviations.*member = true;
+    const RadiositySolution s = solve(scene, settings);
+    EXPECT_TRUE(s.deviations.*member);
+    double squares = 0.0, mean = 0.0;
+    for (std::size_t i = 0; i < s.irradiance.size(); ++i) squares += std::pow(s.irradiance[i].x - right.irradiance[i].x, 2.0), mean += right.irradiance[i].x;
+    return std::sqrt(squares * static_cast<double>(s.irradiance.size())) / mean;
+  };
+  EXPECT_GT(rms(&RadiosityDeviations::publishedMap), 0.08);
+  const double centroid = rms(&RadiosityDeviations::centroid), roll = rms(&RadiosityDeviations::fixedOrientation), far = rms(&RadiosityDeviations::noNearField);
+  EXPECT_GT(centroid, 0.005);
+  EXPECT_LT(centroid, 0.2);
+  EXPECT_GT(roll, 0.0);
+  EXPECT_LT(roll, 0.03);  // noise of 32 pixels
+  EXPECT_GT(far, roll);
+  EXPECT_LT(far, 0.1);
+  RadiositySolutionSettings whole24 = whole();
+  whole24.deviations.values24Bit = true;
+  EXPECT_THROW(solve(scene, whole24), Error);
+  // What comes from emitters is part of all that comes, and nothing else is: without reflection it is all.
+  Scene black = scene;
+  for (Material& m : black.materials) m.diffuse = glm::vec3(0.0f);
+  const RadiositySolution once = solve(black, whole(1e-5));
+  double least = 1e300;
+  for (std::size_t i = 0; i < once.irradiance.size(); ++i) {
+    ASSERT_NEAR(once.fromEmitters[i].x, once.irradiance[i].x, 1e-9);
+    ASSERT_NEAR(once.fromEmitters[i].x, right.fromEmitters[i].x, 1e-9);
+    least = std::min(least, right.irradiance[i].x - right.fromEmitters[i].x);
+  }
+  EXPECT_GT(least, 0.0);
 }
 
 TEST_F(RadiositySolutions, WithoutMemoryRowsAreComputedAnewToTheSameAnswer) {

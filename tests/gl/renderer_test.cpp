@@ -204,12 +204,14 @@ TEST_F(RendererGl, GpuBytesIsTheSumOfWhatIsThere) {
   s.fullFloatTarget = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets - pixels * 8 + shadow + frame);
 
-  // One cascade of 16^3, the result in 16-bit floats; injected light, two fronts and their sum in 32, as potentials on corners and faces.
+  // One cascade of 16^3, the result in 16-bit floats, in a buffer and in textures; injected light, two fronts and their sum in 32, as potentials on
+  // corners and faces; of 4^3 bricks three words each after a dispatch's three and their count.
   s = settings(Component::indirect);
   s.lpv.storage = LightPropagationVolume::Storage::half;
   s.lpv.cascades.cascades = 1;
   const std::size_t cells = 16 * 16 * 16, corners = 17 * 17 * 17;
-  const std::size_t rsm = 256 * 256 * (16 + 8 + 16 + 4), lpv = 3 * cells * (8 + 4 * 16) + corners * 4 * 16 + sizeof(shared::LpvConstants);
+  const std::size_t rsm = 256 * 256 * (16 + 8 + 16 + 4), bricks = 16 + 3 * 4 * 4 * 4 * 4,
+                    lpv = 3 * cells * (8 + 8 + 4 * 16) + bricks + corners * 4 * 16 + sizeof(shared::LpvConstants);
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv);
   s.lpv.blocking = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv - corners * 4 * 16);

@@ -136,6 +136,32 @@ TEST_F(MediaDeviations, FixedEpsilon) {
   EXPECT_LT(wrong.mean.y, 0.02);
 }
 
+TEST_F(MediaDeviations, TheOriginalIsBiasedOnTheSlabAndTheCorrectedIsNot) {
+  // All that --fidelity original turns on, on slabs of known reflectance and transmittance [vandeHulst1980, volume 2, table 35], adding-doubling: more
+  // than 3 standard errors off, and far more, while the corrected estimator is within 3.
+  const PathDeviations original{true, true, true, true, false, true, true, true};
+  const struct {
+    double depth, ior, reflectance, transmittance;
+  } rows[] = {{2.0, 1.0, .0973946, .6609577}, {1.0, 1.5, .115171, .681242}};
+  for (const auto& row : rows) {
+    const Scene scene = slab(grey(.9, row.depth, .75), row.ior, 1.0);
+    for (const bool isOriginal : {false, true}) {
+      const auto s = measure(scene, isOriginal ? 512 : 1024, isOriginal ? original : PathDeviations{});
+      const double zR = (s.mean.x - row.reflectance) / s.meanError.x, zT = (s.mean.y - row.transmittance) / s.meanError.y;
+      std::printf("n %.1f %-9s R %.5f +- %.5f (%.5f, z %+.1f)  T %.5f +- %.5f (%.5f, z %+.1f)\n", row.ior, isOriginal ? "original" : "corrected", s.mean.x, s.meanError.x,
+                  row.reflectance, zR, s.mean.y, s.meanError.y, row.transmittance, zT);
+      if (isOriginal) {
+        EXPECT_GT(std::abs(zR), 3.0);
+        EXPECT_GT(std::abs(zT), 3.0);
+      } else {
+        EXPECT_LT(std::abs(zR), 3.0);
+        EXPECT_LT(std::abs(zT), 3.0);
+        EXPECT_LT(s.meanError.x, 0.01 * row.reflectance);
+      }
+    }
+  }
+}
+
 TEST_F(MediaDeviations, AllOfThemInTheWhiteFurnace) {
   // A ball of n 1.33 full of a medium without absorption, tau 4 across, in an environment of 1: 1 wherever one looks.
   Scene scene;

@@ -21,16 +21,15 @@ using namespace test;
 
 class MediaPhysics : public SharedProgramsTest {
  protected:
-  /// leaks: how many paths may be lost at cracks; overlapping boundaries cross each other in curves, where an offset may step over one.
-  PathTracer::Statistics measure(const Scene& scene, std::uint32_t samples, PathTracer::Settings settings = {}, int side = 16, double leaks = 0.0) {
+  PathTracer::Statistics measure(const Scene& scene, std::uint32_t samples, PathTracer::Settings settings = {}, int side = 16) {
     settings.size = {side, side};
     PathTracer tracer(context(), library(), scene, settings);
     const auto start = std::chrono::steady_clock::now();
     tracer.record(samples);
     seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto statistics = tracer.statistics();
-    EXPECT_LE(statistics.leakedPaths, leaks);
-    EXPECT_LE(statistics.wrongCrossings, leaks);
+    EXPECT_EQ(statistics.leakedPaths, 0.0);
+    EXPECT_EQ(statistics.wrongCrossings, 0.0);
     return statistics;
   }
 
@@ -45,10 +44,6 @@ class MediaPhysics : public SharedProgramsTest {
   double seconds_ = 0.0;
 };
 
-// A collision whose place rounds onto a face (2^-25 of the thickness, either face) may be followed by a ray that starts on it and misses it: with
-// some 60 collisions a path, as in the deepest slabs here, 0.5 to 1 of 262,144 paths.
-constexpr double kRoundingLeaks = 4.0;
-
 struct SlabRow {
   double albedo, depth, g, ior, cosine, reflectance, transmittance;
   std::uint32_t samples;
@@ -58,42 +53,11 @@ Medium grey(double albedo, double depth, double g) { return homogeneous(glm::dve
 
 std::string nameOf(const SlabRow& row) { return fmt::format("a {} tau {} g {} n {} mu {}", row.albedo, row.depth, row.g, row.ior, row.cosine); }
 
-TEST_F(MediaPhysics, SlabsReflectAndTransmitAsTabled) {
-  const SlabRow rows[] = {
-      {.9, 2, .75, 1, 1.0, .097395, .660958, 2048},    // [vandeHulst1980, volume 2, table 35]
-      {.99, 1, 0, 1, 0.5, .486518, .491628, 2048},      // [vandeHulst1980, volume 1, page 256]
-      {.5, 1, -.5, 1, 1.0, .164737, .404695, 2048},
-      {1, 10, 0, 1, 1.0, .853005, .146995, 1024},
-      {.99, 10, .75, 1, 1.0, .472571, .340012, 1024},
-      {.9, 1, .75, 1.5, 0.3, .32282, .40355, 2048},
-      {.9, 1, .75, 1.5, 1.0, .115171, .681242, 2048},
-      {.99, 10, 0, 1.33, 1.0, .64265, .10068, 1024},
-      {.5, 1, .9, 1.33, 0.5, .07545, .39517, 2048},
-      {0, 1, 0, 1.5, 1.0, .044990, .339111, 2048},      // Beer and Lambert between two boundaries
-      {1, 10, .75, 1.5, 1.0, .541999, .458001, 1024},
-  };
-  for (const SlabRow& row : rows) {
-    PathTracer::Settings settings;
-    settings.nextEvent = row.depth == 2.0;  // by either way of finding the light
-    const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine), row.samples, settings, 16, row.depth >= 10.0 ? kRoundingLeaks : 0.0);
-    expectExact("R " + nameOf(row), s.mean.x, s.meanError.x, row.reflectance, 0.0011);
-    expectExact("T " + nameOf(row), s.mean.y, s.meanError.y, row.transmittance, 0.0011);
-    if (row.albedo == 1.0) {
-      EXPECT_NEAR(s.mean.x + s.mean.y, 1.0, 2e-5) << nameOf(row);  // each path's throughput stays 1
-    }
-  }
-}
-
-TEST_F(MediaPhysics, HalfSpacesReflectAsTabled) {
-  // Giovanelli's 0.2600 and its exact value [Giovanelli1955]; Chandrasekhar's 1 - H(mu) sqrt(1 - a); regular milk's red, of which a limit of
-  // 64 scatterings would leave half.
-  const SlabRow rows[] = {{.9, 60, 0, 1.5, 1.0, .259919, 0, 1024}, {.9, 60, 0, 1, 0.5, .507938907, 0, 1024}, {.999, 600, 0, 1, 1.0, .912845335, 0, 256}, {.99992, 4000, .75, 1.33, 1.0, .92327, 0, 80}};
-  for (const SlabRow& row : rows) {
-    PathTracer::Settings settings;
-    settings.nextEvent = false;
-    const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine), row.samples, settings, 16, row.depth >= 10.0 ? kRoundingLeaks : 0.0);
-    expectExact("R " + nameOf(row), s.mean.x, s.meanError.x, row.reflectance, 0.002);
-  }
+TEST_F(MediaPhysics, ASlabWhoseLightIsAsked) {
+  // The slab of table 35 [vandeHulst1980] with next-event estimation towards the environment; media_precision_test.cpp has the other slabs without.
+  const auto s = measure(slab(grey(.9, 2.0, .75), 1.0, 1.0), 1024);
+  expectExact("R, lights asked", s.mean.x, s.meanError.x, .0973946, 0.0006);
+  expectExact("T, lights asked", s.mean.y, s.meanError.y, .6609577, 0.0011);
 }
 
 TEST_F(MediaPhysics, ChannelsOfAnyRatioAreUnbiased) {
@@ -122,7 +86,7 @@ TEST_F(MediaPhysics, FurnacesStayAtOne) {
   const auto furnace = [&](const char* what, Scene scene, double exact) {
     scene.environment = constantEnvironment(1.0);
     const bool white = scene.media[0].absorption == glm::vec3(0.0f);
-    const auto s = measure(scene, white ? 256 : 512, {}, 16, white ? 5.0 : 0.0);
+    const auto s = measure(scene, white ? 256 : 512);
     // Paths that total reflection catches in the shell of glass meet roulette, so that energy is 1 in the mean alone; without such a shell it
     // is in each path (SlabsReflectAndTransmitAsTabled, and the furnace in media_deviations_test.cpp).
     std::printf("%-44s %.6f %.6f %.6f +- %.1e  %.2f s\n", what, s.mean.x, s.mean.y, s.mean.z, s.meanError.x, seconds_);
@@ -207,24 +171,6 @@ TEST_F(MediaPhysics, MeanPathLengthInASphere) {
     const double perDisc = 2.2 * 2.2 / M_PI * ior * ior;
     for (int c = 0; c < 3; ++c)
       expectExact(fmt::format("mean path, n {} sigma_s {}", ior, medium.scattering[c]), s.mean[c] * perDisc, s.meanError[c] * perDisc, ior * ior * 4.0 / 3.0, 0.05);
-  }
-}
-
-TEST_F(MediaPhysics, PointSourceInAnInfiniteMedium) {
-  // Light and camera in a medium of a = 0.9, mean free path 1, 5 apart, looking 60 degrees off the source [CaseZweifel1967]: unit power.
-  const double exact = 2.672081e-4;
-  for (const bool sphere : {false, true}) {
-    Scene scene;
-    scene.media = {homogeneous(glm::dvec3(0.9), glm::dvec3(0.1), 0.0)};
-    if (sphere) addSphere(scene, glm::dvec3(0.0), 40.0, 2, addBoundary(scene, Bsdf::none, 1.0, 0));  // stands in for infinity
-    else scene.cameraMedium = 0;
-    PointLight light;
-    light.position = {0.0, 0.0, -2.5};
-    light.intensity = glm::vec3(static_cast<float>(1.0 / (4.0 * M_PI)));
-    scene.points = {light};
-    scene.cameras = {cameraAt({0.0, 0.0, 2.5}, {std::sin(M_PI / 3.0) * 10.0, 0.0, 2.5 - std::cos(M_PI / 3.0) * 10.0})};
-    const auto s = measure(scene, 1024);
-    expectExact(sphere ? "point source, sphere of 40 mean free paths" : "point source, endless medium", 1e4 * s.mean.x, 1e4 * s.meanError.x, 1e4 * exact, 0.2);
   }
 }
 

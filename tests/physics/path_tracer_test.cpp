@@ -1,5 +1,6 @@
 // The path tracer against exact answers. Statistical tests: seeds are fixed; a mean may be 4 standard errors from its expectation
 // (two-sided probability 6e-5 a channel).
+#include "scene/texture_mean.hpp"
 #include "support/path_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -146,6 +147,51 @@ TEST_F(PathDirectTest, ARectangleOfLight) {
     EXPECT_LT(deviations(result, expected * glm::dvec3(1, 2, 4)), kSignificant) << nextEvent;
     EXPECT_LT(result.meanError.x, 0.01 * expected);
   }
+}
+
+// A lamp of 4 by 2 texels of different colours, one triangle of it far brighter than the other. Its light is read bilinearly, repeated.
+TEST_F(PathDirectTest, ALampThatShinesByAPicture) {
+  const glm::dvec3 centre(0.4, 1.0, -0.2), u(1.2, 0.3, 0.0), v(0.0, 0.2, 0.9);
+  std::vector<std::uint8_t> rgba;
+  for (int i = 0; i < 8; ++i) rgba.insert(rgba.end(), {static_cast<std::uint8_t>(i < 3 ? 255 : 20 * i), static_cast<std::uint8_t>(30 * (i % 3)), i == 5 ? std::uint8_t{200} : std::uint8_t{0}, 255});
+  const auto texel = [&](int x, int y, int c) {  // rows from the bottom, repeated
+    return static_cast<double>(linearFromSrgb(static_cast<float>(rgba[static_cast<std::size_t>(4 * ((1 - (y & 1)) * 4 + (x & 3)) + c)]) / 255.0f));
+  };
+  const auto radiance = [&](double s, double t, int c) {
+    const double px = 4.0 * s - 0.5, py = 2.0 * t - 0.5, x0 = std::floor(px), y0 = std::floor(py);
+    const int x = static_cast<int>(x0), y = static_cast<int>(y0);
+    const double low = texel(x, y, c) + (px - x0) * (texel(x + 1, y, c) - texel(x, y, c));
+    const double high = texel(x, y + 1, c) + (px - x0) * (texel(x + 1, y + 1, c) - texel(x, y + 1, c));
+    return low + (py - y0) * (high - low);
+  };
+  constexpr int kSteps = 400;
+  const glm::dvec3 normal = glm::normalize(glm::cross(u, v)), scale(1.0, 2.0, 4.0);
+  glm::dvec3 expected(0.0);
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const double s = (i + 0.5) / kSteps, t = (j + 0.5) / kSteps;
+      const glm::dvec3 p = centre + (s - 0.5) * u + (t - 0.5) * v;
+      const double d2 = glm::dot(p, p);
+      for (int c = 0; c < 3; ++c)
+        expected[c] += 0.5 / kPi * scale[c] * radiance(s, t, c) * p.y * std::abs(glm::dot(normal, p)) / (d2 * d2) * glm::length(glm::cross(u, v)) / (kSteps * kSteps);
+    }
+  PathTracer::Statistics both[2];
+  for (const bool nextEvent : {true, false}) {
+    SceneBuilder builder = floor();
+    const int lamp = builder.material(glm::vec3(0.0f)), picture = builder.texture(4, 2, rgba);
+    builder.materialAt(lamp).emissionTexture = picture;
+    builder.materialAt(lamp).emissionScale = scale;
+    builder.materialAt(lamp).emission = glm::vec3(scale) * glm::vec3(meanColour(builder.scene().textures[static_cast<std::size_t>(picture)].bitmap));
+    builder.plate(centre, u, v, lamp);
+    PathTracer::Settings settings = sized(16);
+    settings.nextEvent = nextEvent;
+    both[nextEvent] = seen(builder.scene(), nextEvent ? 256 : 512, settings);
+    EXPECT_LT(deviations(both[nextEvent], expected), kSignificant) << nextEvent;
+    EXPECT_LT(both[nextEvent].meanError.x, 0.01 * expected.x);
+    std::printf("a lamp by a picture, %s: %.5f %.5f %.5f +- %.5f of %.5f %.5f %.5f\n", nextEvent ? "asked" : "found", both[nextEvent].mean.x, both[nextEvent].mean.y,
+                both[nextEvent].mean.z, both[nextEvent].meanError.x, expected.x, expected.y, expected.z);
+  }
+  EXPECT_LT(deviations(both[0], both[1]), kSignificant);
 }
 
 TEST_F(PathDirectTest, AnEnvironmentWithABrightSpot) {

@@ -26,7 +26,7 @@ std::vector<std::string> namesInOriginal() {
 /// Names begin with the technique's name on the command line; one folder is named otherwise.
 fs::path folderOf(const std::string& name) {
   const std::string technique = name.substr(0, name.find('.'));
-  return fs::path(LUCERNA_SOURCE_DIR) / "engine" / (technique == "path" ? "pathtracer" : technique);
+  return fs::path(LUCERNA_SOURCE_DIR) / "engine" / (technique == "path" ? "pathtracer" : technique == "rad" ? "radiosity" : technique);
 }
 
 TEST(Deviations, NamesAreDistinctAndBeginWithTheirTechniquesFolder) {

@@ -96,5 +96,27 @@ TEST(SurroundingsUnit, WindingNumbersCountNestedBoxes) {
   EXPECT_GT(surroundingsOf(rankBoundaries(scene), {-1.5, 0.0, 0.0}).openness, 0.05);
 }
 
+TEST(SurroundingsUnit, BoundariesThatMayTouchOtherSurfacesAreTold) {
+  Scene scene;
+  const int glass = addBoundary(scene, Bsdf::dielectric, 1.5f, -1, 0), water = addBoundary(scene, Bsdf::dielectric, 1.33f, -1, 0);
+  const int wall = addBoundary(scene, Bsdf::diffuse, 1.0f, -1, 0);
+  const auto touching = [&](const glm::vec3& min, int material) {
+    Scene with = scene;
+    addBox(with, min, min + glm::vec3(1.0f), material);
+    for (Mesh& mesh : with.meshes)
+      for (std::uint32_t i = 0; i < mesh.indexCount; ++i) mesh.bounds.add(glm::dvec3(with.vertices[with.indices[mesh.firstIndex + i]].position));
+    return boundariesMayTouch(with, rankBoundaries(with));
+  };
+  addBox(scene, glm::vec3(0.0f), glm::vec3(1.0f), glass);
+  EXPECT_TRUE(touching({1.0f, 0.0f, 0.0f}, water));   // a face of each
+  EXPECT_TRUE(touching({0.0f, -1.0f, 0.0f}, wall));   // stands on it
+  EXPECT_FALSE(touching({1.1f, 0.0f, 0.0f}, water));
+  EXPECT_FALSE(touching({1.0f, 0.0f, 0.0f}, glass));  // one and the same boundary
+  scene = Scene{};
+  addBoundary(scene, Bsdf::diffuse, 1.0f, -1, 0), addBoundary(scene, Bsdf::diffuse, 1.0f, -1, 0);
+  addBox(scene, glm::vec3(0.0f), glm::vec3(1.0f), 0);
+  EXPECT_FALSE(touching({1.0f, 0.0f, 0.0f}, 1));
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -116,6 +116,9 @@ TEST(RadiosityPatches, TexturesGiveEachPatchItsOwnMean) {
   SceneBuilder builder;
   const int m = lambertian(builder, 0.8);
   builder.materialAt(m).diffuseTexture = builder.texture(2, 1, {0, 0, 0, 255, 255, 255, 255, 255});  // left black, right white
+  builder.materialAt(m).emissionTexture = builder.materialAt(m).diffuseTexture;
+  builder.materialAt(m).emission = glm::vec3(0.5f);
+  builder.materialAt(m).emissionScale = glm::vec3(1.0f);
   builder.plate({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, m);
   PatchSettings settings;
   settings.longestEdge = 0.26;
@@ -123,6 +126,7 @@ TEST(RadiosityPatches, TexturesGiveEachPatchItsOwnMean) {
   double sum = 0.0;
   for (const Patch& p : mesh.patches) {
     EXPECT_NEAR(p.reflectance.x, p.centroid.x < 0.0 ? 0.0 : 0.8, 1e-6);
+    EXPECT_NEAR(p.emission.x, p.centroid.x < 0.0 ? 0.0 : std::numbers::pi, 1e-6);
     sum += p.area * p.reflectance.x;
   }
   EXPECT_NEAR(sum, 0.4, 1e-6);

@@ -1,6 +1,7 @@
 // Models through Assimp: geometry, materials, textures, and what broken or odd files lead to.
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "scene/needs.hpp"
 #include "scene/scene.hpp"
 #include "support/temp_folder.hpp"
 
@@ -225,9 +226,17 @@ TEST(SceneLoader, EmissionMapsCountByTheirMeanAndAreWarnedOfOnce) {
   const TempFolder folder;
   writePng(folder / "glow.png", Bitmap{1, 2, {255, 255, 255, 255, 0, 0, 0, 255}, false});
   const std::string faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
-  EXPECT_EQ(loadObj(folder, faces, "newmtl a\nKe 4 2 0\nmap_Ke glow.png\nnewmtl b\n").materials[0].emission, glm::vec3(2.0f, 1.0f, 0.0f));
+  const Scene glowing = loadObj(folder, faces, "newmtl a\nKe 4 2 0\nmap_Ke glow.png\nnewmtl b\n");
+  EXPECT_EQ(glowing.materials[0].emission, glm::vec3(2.0f, 1.0f, 0.0f));  // and the picture stays for those who read it texel by texel
+  EXPECT_EQ(glowing.materials[0].emissionScale, glm::vec3(4.0f, 2.0f, 0.0f));
+  ASSERT_EQ(glowing.materials[0].emissionTexture, 0);
+  EXPECT_EQ(glowing.textures.at(0).file.filename(), "glow.png");
+  EXPECT_TRUE(analyse(glowing).emissionTextures);
+  EXPECT_EQ(glowing.materials[1].emissionTexture, -1);
   const Scene scene = loadObj(folder, faces, "newmtl a\nKe 4 2 0\nmap_Ke none.png\nnewmtl b\nKe 1 1 1\nmap_Ke none.png\nmap_Kd none.png\n");
   EXPECT_EQ(scene.materials[0].emission, glm::vec3(4.0f, 2.0f, 0.0f));
+  EXPECT_EQ(scene.materials[0].emissionTexture, -1);
+  EXPECT_FALSE(analyse(scene).emissionTextures);
   EXPECT_EQ(warningsNaming("none.png"), 1u);
 }
 

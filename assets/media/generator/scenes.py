@@ -116,10 +116,10 @@ def build_gems(folder, paths):
         gems.gem("glass", "glass", gems.rose(), (6.2, 6.2, 6.2)).placed(rotation((0, 1, 0), 9), (11.2, 0.02, 3.0)),
     ]
     key, target = (-34.0, 58.0, 6.0), (0.0, 2.0, 0.0)
-    parts = stones + [backdrop("sweep", "paper", 160, 140, -70, 130, 40), softbox("key", key, target, 26, 26, "key"),
+    parts = stones + [backdrop("sweep", "paper", 160, 140, -70, 130, 40), softbox("key", key, target, 42, 42, "key"),
                       softbox("rim", (36, 34, -48), target, 14, 44, "rim"), softbox("window", (52, 46, 44), target, 40, 12, "window")]
     materials = {name: clear(CATALOGUE[name][3]) for name in ("emerald", "ruby", "sapphire", "glass")}
-    materials |= {"paper": {"Kd": (0.26, 0.255, 0.25)}, "key": lamp((22, 20.5, 18)), "rim": lamp((16, 18, 21)), "window": lamp((9, 9, 9))}
+    materials |= {"paper": {"Kd": (0.26, 0.255, 0.25)}, "key": lamp((8.4, 7.8, 6.9)), "rim": lamp((16, 18, 21)), "window": lamp((9, 9, 9))}
     count = write(folder, "gems", parts, materials, "Four gems.")
     view = camera("published", (1.0, 27.0, 48.0), (0.2, 1.4, 0.3), 27)
     scene = {"description": "Four gems as in the VPT original's series over samples: an emerald cut, an oval and a round brilliant and a rose cut, on a paper sweep.",
@@ -128,7 +128,7 @@ def build_gems(folder, paths):
              "sun": None, "exposure": 1.3, "environment": {"radiance": [0.1, 0.11, 0.13]}, "keyFrames": "../../../keyFrames/gems.txt",
              "materials": {name: {"interior": name} for name in ("emerald", "ruby", "sapphire", "glass")}}
     write_scene(folder, "gems", scene)
-    write_scene(folder, "gems_original", original(view, (-33.2, 56.5, 6.0), (1, 0.93, 0.82), 22 * 26 * 26, {n: CATALOGUE[n] for n in ("emerald", "ruby", "sapphire", "glass")}))
+    write_scene(folder, "gems_original", original(view, (-33.2, 56.5, 6.0), (1, 0.93, 0.82), 8.4 * 42 * 42, {n: CATALOGUE[n] for n in ("emerald", "ruby", "sapphire", "glass")}))
     walk(paths / "gems.txt", "Round the four gems", (0.0, 2.0, 0.0), view["position"], 150, 6, 0.35, 27)
     return count
 
@@ -138,18 +138,18 @@ def build_block(folder, paths):
     cube = rounded_box("block", "block", (6, 6, 6), 0.7, arc=5).placed(rotation((0, 1, 0), 27), (0, 6.02, 0))
     key, target = (-23.0, 28.0, -16.0), (0.0, 5.5, 0.0)
     parts = [cube, tiles("tile_light", 4.0, 15, 0), tiles("tile_dark", 4.0, 15, 1), quad("wall", "wall", (-60, 0, -36), (60, 0, -36), (60, 66, -36), (-60, 66, -36)),
-             softbox("key", key, target, 18, 18, "key"), softbox("fill", (26, 24, 24), target, 14, 14, "fill")]
+             softbox("key", key, target, 32, 32, "key"), softbox("fill", (26, 24, 24), target, 28, 28, "fill")]  # large: light from within is found by chance
     materials = {"block": clear(1.33), "tile_light": {"Kd": (0.72, 0.69, 0.63)}, "tile_dark": {"Kd": (0.1, 0.16, 0.24)}, "wall": {"Kd": (0.3, 0.4, 0.46)},
-                 "key": lamp((17, 16, 14.5)), "fill": lamp((6, 6.4, 7))}
+                 "key": lamp((5.4, 5.1, 4.6)), "fill": lamp((3.0, 3.2, 3.5))}
     count = write(folder, "block", parts, materials, "A block on a chequered floor.")
     view = camera("published", (9.5, 18.5, 33.5), (0.0, 5.6, 0.0), 28)
     for stem, medium, what in (("milk", "milk", "Milk"), ("juice", "grape juice", "Grape juice"), ("coffee", "espresso", "Espresso")):
         scene = {"description": f"{what} as a block of 12 mm: the VPT original's series over coefficients.", "model": "block.obj", "scale": 1,
                  "cameras": [view, camera("edge", (8.0, 10.5, 17.0), (1.2, 7.8, 3.0), 32)],
-                 "sun": None, "exposure": 1.3, "environment": {"radiance": [0.16, 0.17, 0.19]}, "keyFrames": "../../../keyFrames/block.txt",
+                 "sun": None, "exposure": 1.3, "environment": {"radiance": [0.2, 0.21, 0.23]}, "keyFrames": "../../../keyFrames/block.txt",
                  "materials": {"block": {"interior": medium}}}
         write_scene(folder, stem, scene)
-        write_scene(folder, f"{stem}_original", original(view, (-22.2, 27.0, -15.4), (1, 0.94, 0.85), 17 * 18 * 18, {"block": CATALOGUE[medium]}))
+        write_scene(folder, f"{stem}_original", original(view, (-22.2, 27.0, -15.4), (1, 0.94, 0.85), 5.4 * 32 * 32, {"block": CATALOGUE[medium]}))
     walk(paths / "block.txt", "Round the block", (0.0, 5.5, 0.0), view["position"], 120, 5, 0.3, 30)
     return count
 
@@ -190,7 +190,7 @@ def build_cola(folder, paths):
     glass = vessels.lathe("tumbler", "glass", profile, 88, crease=50.0)
     level = 100.0
     cola = vessels.liquid("cola", "cola", inner, level, 0.3, 1.5, 1.3, 88)
-    placed = vessels.ice_cubes(7, (12.0, 12.0, 12.0), lambda y: 25.2 + (32.0 - 25.2) * (y - 13.0) / 121.0, 40.0, 112.0, level, 11)
+    placed = vessels.ice_cubes(12, (8.6, 8.6, 8.6), lambda y: 25.2 + (32.0 - 25.2) * (y - 13.0) / 121.0, 50.0, 112.0, level, 11)
     ice = [vessels.ice_cube(f"ice_{i}", "ice", p, 100 + i) for i, p in enumerate(placed)]
     key, target = (-200.0, 350.0, -190.0), (0.0, 70.0, 0.0)
     parts = [glass, cola] + ice + planks(520, 300, -380, 85, sorted(WOODS)) + [
@@ -199,7 +199,7 @@ def build_cola(folder, paths):
     materials = {"glass": clear(1.5), "cola": clear(1.33, (0.2, 0.06, 0.02)), "ice": clear(1.5), **WOODS, "wall": {"Kd": (0.62, 0.6, 0.56)},
                  "key": lamp((9, 9, 9)), "side": lamp((6, 5.8, 5.4)), "glow": lamp((16, 14.8, 13))}
     count = write(folder, "cola", parts, materials, "Cola with ice in a tumbler.")
-    view = camera("published", (40.0, 150.0, 330.0), (0.0, 64.0, 0.0), 28)
+    view = camera("published", (40.0, 205.0, 290.0), (0.0, 69.0, 0.0), 28)
     scene = {"description": "Coca Cola with ice in a tumbler. Glass, ice and cola overlap, with priorities; the ice is the medium glass, as published.", "model": "cola.obj", "scale": 1,
              "cameras": [view, camera("ice", (30.0, 165.0, 120.0), (2.0, 100.0, 4.0), 30)],
              "sun": None, "exposure": 1.4, "environment": {"radiance": [0.14, 0.15, 0.17]}, "keyFrames": "../../../keyFrames/cola.txt",
@@ -218,7 +218,7 @@ def build_smoke(folder, paths, with_grid=True):
     def room():
         return [backdrop("sweep", "room", 1400, 900, -620, 1100, 200), softbox("key", key, target, 260, 260, "key"), softbox("rim", (-760, 330, -420), target, 160, 360, "rim")]
 
-    materials = {"room": {"Kd": (0.2, 0.21, 0.23)}, "key": lamp((60, 55, 47)), "rim": lamp((14, 18, 25))}
+    materials = {"room": {"Kd": (0.035, 0.038, 0.044)}, "key": lamp((60, 55, 47)), "rim": lamp((14, 18, 25))}
     bounds = box("bounds", "smoke", low, high)
     count = write(folder, "smoke", [bounds] + room(), {"smoke": clear(1.0), **materials}, "A box of smoke.")
     if with_grid:  # what takes long

@@ -150,26 +150,28 @@ def boxes_apart(a, b, gap):
 
 
 def ice_cubes(count, half, radius_at, low, high, level, seed):
-    """Cubes at random that touch neither each other nor the wall, as high as they fit: ice floats. (centre, matrix, half sizes) each."""
+    """Cubes at random that touch neither each other nor the wall, as high and as near the wall as they fit: ice floats, and through 1 cm of cola one
+    hardly sees. (centre, matrix, half sizes) each."""
     rng = random.Random(seed)
     placed = []
     for n in range(count):
-        best = None
+        best, best_score = None, 0.0
         for _ in range(6000):
             sizes = tuple(h * rng.uniform(0.9, 1.08) for h in half)
             m = rotation((rng.gauss(0, 1), rng.gauss(0, 1), rng.gauss(0, 1)), rng.uniform(0, 360) if n else rng.uniform(5, 40))
-            a, r = rng.uniform(0, 2 * math.pi), rng.uniform(0.0, 16.0)
+            a, r = rng.uniform(0, 2 * math.pi), rng.uniform(0.0, 24.0)
             c = (r * math.cos(a), rng.uniform(low, high), r * math.sin(a))
             corners = [add(c, turn(m, (sizes[0] * i, sizes[1] * j, sizes[2] * k))) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
             if any(math.hypot(p[0], p[2]) > radius_at(p[1]) - 0.2 for p in corners) or min(p[1] for p in corners) < 20.0:
                 continue
             above = sum(p[1] > level for p in corners)
-            if above > 3:
+            if above > 4:
                 continue
-            if best and c[1] <= best[0][1]:
+            score = c[1] + 0.6 * r
+            if best and score <= best_score:
                 continue
             if all(boxes_apart((c, m, sizes), other, 0.4) for other in placed):
-                best = (c, m, sizes)
+                best, best_score = (c, m, sizes), score
         if best:
             placed.append(best)
     return placed

@@ -1,12 +1,12 @@
-#include "measure/fingerprint.hpp"
+#include "scene/fingerprint.hpp"
 
-namespace lucerna::measure {
+namespace lucerna {
 
 namespace {
 
 // A field added to one of these changes its size: then add it below (or here, where light does not see it) and correct the figure.
 #if defined(__x86_64__) && defined(__GLIBCXX__)
-static_assert(sizeof(Material) == 112, "add what is new to the fingerprint");
+static_assert(sizeof(Material) == 128, "add what is new to the fingerprint");
 static_assert(sizeof(Medium) == 184, "add what is new to the fingerprint");
 static_assert(sizeof(Environment) == 64, "add what is new to the fingerprint");
 #endif
@@ -16,6 +16,7 @@ void add(Hash& h, const Material& m) {
   h.add(m.roughness), h.add(m.ior), h.add(m.interior), h.add(m.priority);
   h.add(m.diffuse), h.add(m.specular), h.add(m.emission);
   h.add(m.shininess), h.add(m.opacity), h.add(m.diffuseTexture), h.add(m.alphaTexture), h.add(m.alphaMasked);
+  if (m.emissionTexture >= 0) h.add(m.emissionTexture), h.add(m.emissionScale);
 }
 
 void add(Hash& h, const Image& image) {
@@ -63,4 +64,4 @@ void addCamera(Hash& h, const Camera& camera) {
   h.add(camera.verticalFov);
 }
 
-}  // namespace lucerna::measure
+}  // namespace lucerna

@@ -1,0 +1,29 @@
+// Direct light of a pixel by shadow rays, for the radiosity view: sharp shadows where patches hold one value each.
+//
+// Input: a Scene. Output, to fragment shaders that include shaders/render/direct_rays.glsl: irradiance by emissive triangles (their closed form
+// [Lambert1760] times the part of them that rays find free), sun, spot and omnidirectional lights (a ray each). Scene units.
+#pragma once
+
+#include "gl/objects.hpp"
+#include "pathtracer/ray_scene.hpp"
+#include "scene/scene.hpp"
+
+namespace lucerna {
+
+class DirectRays {
+ public:
+  /// Emissive triangles that it takes at most: each costs rays in every pixel.
+  static constexpr std::size_t kMostEmitters = 64;
+  static std::size_t emitterCount(const Scene& scene);
+
+  /// `rays`: a pixel, divided among the emissive triangles (at least one each).
+  DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays);
+  void bind() const;  ///< storage block 1, texture units 60 and 61
+  std::size_t gpuBytes() const { return rays_.gpuBytes() + lights_.bytes(); }
+
+ private:
+  RayScene rays_;
+  gl::Buffer lights_;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,17 @@
+// Means of pictures: what a technique takes that does not read texels one by one (no GL).
+#pragma once
+
+#include "base/image.hpp"
+
+#include <glm/glm.hpp>
+
+#include <array>
+
+namespace lucerna {
+
+/// Mean over all texels of an sRGB-encoded picture, linear.
+glm::dvec3 meanColour(const Bitmap& bitmap);
+/// Mean over a triangle of texture coordinates, which wrap: nearest texels at the centroids of 64 equal parts; linear.
+glm::dvec3 meanTexture(const Bitmap& bitmap, const std::array<glm::vec2, 3>& uv);
+
+}  // namespace lucerna

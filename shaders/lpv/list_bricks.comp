@@ -1,0 +1,13 @@
+// Adds the bricks that are newly marked to the list, in any order: no cell's light depends on it.
+#include "lpv/common.glsl"
+#include "lpv/bricks.glsl"
+layout(local_size_x = 64) in;
+
+void main() {
+  int brick = int(gl_GlobalInvocationID.x), all = brickCount();
+  if (brick >= all || bricks[all + brick] == 0u || bricks[2 * all + brick] != 0u) return;
+  bricks[2 * all + brick] = 1u;
+  uint at = atomicAdd(count, 1u);
+  bricks[at] = uint(brick);
+  atomicMax(groups[1], at / kGroupsInRow + 1u);
+}

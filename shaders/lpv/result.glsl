@@ -1,0 +1,13 @@
+// Where the result is written: a buffer, from which the engine copies it to the textures that the lookup filters, all of red before green before blue.
+// llvmpipe takes forty times as long to store a texel to an image as to store it to a buffer and copy it.
+#include "lpv/storage.glsl"
+#if LPV_FULL_FLOAT
+layout(std430, binding = 1) writeonly buffer Result { vec4 texels[]; };
+vec4 asTexel(vec4 value) { return toTexel(value); }
+#else
+layout(std430, binding = 1) writeonly buffer Result { uvec2 texels[]; };
+uvec2 asTexel(vec4 value) {
+  vec4 rounded = toTexel(value);
+  return uvec2(packHalf2x16(rounded.xy), packHalf2x16(rounded.zw));
+}
+#endif

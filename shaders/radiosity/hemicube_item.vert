@@ -1,0 +1,9 @@
+// Item buffer: three vertices a patch, an instance a hemicube; positions in the hemicube's frame.
+#include "radiosity/hemicube.glsl"
+out vec3 gPosition;
+flat out ivec2 gPatch;  // and hemicube
+
+void main() {
+  gPatch = ivec2(gl_VertexID / 3, gl_InstanceID);
+  gPosition = toFrame(frames[gl_InstanceID], patchCorner(gPatch.x, gl_VertexID % 3));
+}

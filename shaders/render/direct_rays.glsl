@@ -1,0 +1,80 @@
+// Direct irradiance at a point by shadow rays; see engine/render/direct_rays.hpp. Storage block 1, texture units 60 and 61.
+// What an emissive triangle sends to the point were nothing between is its closed form (radiosity/polygon.glsl); the part of it that is free is the
+// mean over points of the triangle, evenly spread by area and weighted by what each of them sends: without a blocker there is no noise.
+#include "lib/spot.glsl"
+#include "pathtracer/bvh.glsl"
+#include "radiosity/polygon.glsl"
+
+struct DirectLight {
+  vec4 a, b, c, d;  // Light in direct_rays.cpp
+};
+layout(std430, binding = 1) readonly buffer DirectLights {
+  ivec4 directHead;  // lights, rays a triangle
+  vec4 directOrigin;
+  DirectLight directLights[];
+};
+
+// 32 bits of a pixel [JarzynskiOlano2020, pcg2d], as two numbers in 0..1.
+vec2 directShift(uvec2 v) {
+  v = v * 1664525u + 1013904223u;
+  v.x += v.y * 1664525u;
+  v.y += v.x * 1664525u;
+  v ^= v >> 16;
+  v.x += v.y * 1664525u;
+  v.y += v.x * 1664525u;
+  v ^= v >> 16;
+  return vec2(v >> 8) * 5.9604645e-8;
+}
+
+// position: world; normal: of shading; face: of the geometry; both unit, to the front.
+vec3 directIrradiance(vec3 position, vec3 normal, vec3 face) {
+  vec3 p = position - directOrigin.xyz, start = offsetRay(p, face);
+  vec3 u = normalize(abs(normal.x) > 0.5 ? vec3(normal.y, -normal.x, 0.0) : vec3(0.0, normal.z, -normal.y)), v = cross(normal, u);
+  vec2 shift = directShift(uvec2(gl_FragCoord.xy));
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < directHead.x; ++i) {
+    DirectLight light = directLights[i];
+    int kind = int(light.a.w);
+    vec3 facing = kind == 0 ? cross(light.b.xyz, light.c.xyz) : vec3(0.0);
+    vec3 unblocked = vec3(0.0);
+    if (kind == 0) {
+      vec3 a = light.a.xyz - p, b = a + light.b.xyz, c = a + light.c.xyz;
+      if (dot(a, facing) < 0.0)
+        unblocked = light.d.xyz * pointToTriangle(vec3(dot(a, u), dot(a, v), dot(a, normal)), vec3(dot(b, u), dot(b, v), dot(b, normal)), vec3(dot(c, u), dot(c, v), dot(c, normal)));
+    } else {
+      vec3 to = kind == 1 ? light.a.xyz : light.a.xyz - p;
+      float distance2 = dot(to, to);
+      unblocked = light.d.xyz * max(dot(to, normal) * inversesqrt(distance2), 0.0);
+      if (kind > 1) unblocked /= distance2;
+      if (kind == 2) unblocked *= spotFalloff(-dot(to, light.b.xyz) * inversesqrt(distance2), light.b.w, light.c.w);
+    }
+    if (!any(greaterThan(unblocked, vec3(0.0)))) continue;
+    float open = 0.0, all = 0.0;
+    int rays = kind == 0 ? directHead.y : 1;
+    for (int k = 0; k < rays; ++k) {
+      // The plastic number's sequence [Roberts2018], shifted for each pixel, folded onto the triangle.
+      vec2 xi = fract(shift + float(k + 1) * vec2(0.7548776662, 0.5698402910));
+      if (xi.x + xi.y > 1.0) xi = 1.0 - xi;
+      Ray ray;
+      ray.origin = start;
+      ray.tMin = 0.0;
+      ray.tMax = 0.9999;
+      float weight = 1.0;
+      if (kind == 0) {
+        vec3 to = light.a.xyz + xi.x * light.b.xyz + xi.y * light.c.xyz - p;
+        float distance2 = dot(to, to);
+        weight = max(dot(to, normal), 0.0) * max(-dot(to, facing), 0.0) / (distance2 * distance2);
+        ray.direction = to + (p - start);
+      } else if (kind == 1) {
+        ray.direction = light.a.xyz;
+        ray.tMax = 3.0e38;
+      } else {
+        ray.direction = light.a.xyz - start;
+      }
+      all += weight;
+      if (weight > 0.0 && !anyHit(ray, kNoHit)) open += weight;
+    }
+    if (all > 0.0) sum += unblocked * (open / all);
+  }
+  return sum;
+}

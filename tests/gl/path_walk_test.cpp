@@ -1,0 +1,67 @@
+// Walks through dense media: the same picture, bit by bit, with and without asking the clearance grid, and however long a submission is.
+#include "pathtracer/path_tracer.hpp"
+#include "support/gl_fixture.hpp"
+#include "support/media_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lucerna {
+namespace {
+
+using namespace test;
+
+class PathWalkTest : public SharedProgramsTest {
+ protected:
+  Image picture(const Scene& scene, std::uint32_t samples, const PathTracer::Settings& settings) {
+    PathTracer tracer(context(), library(), scene, settings);
+    tracer.record(samples);
+    EXPECT_EQ(tracer.statistics().leakedPaths, 0.0);
+    return tracer.mean();
+  }
+};
+
+/// A ball of milk of refractive index n, 20 mean free paths in radius, in front of an open sky.
+Scene milkBall(double ior) {
+  Scene scene;
+  scene.media = {homogeneous({18.0, 20.0, 22.0}, {0.002, 0.005, 0.02}, 0.7)};
+  addSphere(scene, glm::dvec3(0.0), 1.0, 3, addBoundary(scene, ior == 1.0 ? Bsdf::none : Bsdf::dielectric, ior, 0));
+  scene.environment = halves();
+  scene.cameras = {cameraAt({0.3, 0.4, 4.0}, glm::dvec3(0.0), 0.6)};
+  return scene;
+}
+
+TEST_F(PathWalkTest, LongSubmissionsLoseNoLoopTurns) {
+  // llvmpipe leaves every loop of a shader after 65,535 turns in all: a submission of many segments must not get there.
+  PathTracer::Settings settings;
+  settings.size = {4, 4};
+  settings.walks = false;
+  settings.submissionSeconds = 0.002;
+  const Image cut = picture(milkBall(1.33), 400, settings);
+  settings.submissionSeconds = 20.0;
+  EXPECT_EQ(picture(milkBall(1.33), 400, settings).pixels, cut.pixels);
+}
+
+TEST_F(PathWalkTest, WalksAreThePathsThatTraceEveryFlight) {
+  // Also with lamps in the room, a body in the milk that absorbs, and a shell of glass around that overlaps it.
+  Scene scene = milkBall(1.33);
+  addSphere(scene, glm::dvec3(0.0), 1.2, 3, addBoundary(scene, Bsdf::dielectric, 1.5, -1, -1));
+  scene.materials.emplace_back().diffuse = glm::vec3(0.5f);
+  addBox(scene, glm::dvec3(-0.1), glm::dvec3(0.2), static_cast<int>(scene.materials.size()) - 1);
+  scene.materials.emplace_back().emission = glm::vec3(20.0f);
+  addBox(scene, {2.0, 2.0, 1.0}, {2.2, 2.3, 1.5}, static_cast<int>(scene.materials.size()) - 1);
+  scene.points.push_back({{0.0, 3.0, 3.0}, glm::vec3(9.0f)});
+  PathTracer::Settings settings;
+  settings.size = {24, 24};
+  PathTracer walking(context(), library(), scene, settings);
+  EXPECT_TRUE(walking.needs().denseMedia);
+  walking.record(8);
+  settings.walks = false;
+  PathTracer tracing(context(), library(), scene, settings);
+  EXPECT_FALSE(tracing.needs().denseMedia);
+  tracing.record(8);
+  EXPECT_EQ(walking.mean().pixels, tracing.mean().pixels);
+  EXPECT_EQ(walking.statistics().leakedPaths, 0.0);
+}
+
+}  // namespace
+}  // namespace lucerna

@@ -1,0 +1,168 @@
+// The path tracer in participating media to two parts in a thousand of the value: the same exact figures as in media_test.cpp and more, with so
+// many paths that the standard error is at most 0.2 % of each value. What takes minutes for that is done where LUCERNA_LONG_TESTS is set.
+//
+// Every pixel of a picture sees the same quantity with random numbers of its own, so that the pixels are independent estimates; the error stated is
+// that of their mean, from their spread. (The film's own standard errors take a pixel's samples for independent, and are too large where they are
+// spread by low-discrepancy points.) A figure passes within 3.5 of its standard errors; seeds are fixed.
+#include "pathtracer/path_tracer.hpp"
+#include "support/gl_fixture.hpp"
+#include "support/media_scenes.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+
+namespace lucerna {
+namespace {
+
+using namespace test;
+
+class MediaPrecision : public SharedProgramsTest {
+ protected:
+  struct Estimate {
+    glm::dvec3 mean{0.0}, error{0.0};
+  };
+  Estimate measure(const Scene& scene, std::uint32_t samples, PathTracer::Settings settings = {}, int side = 16) {
+    settings.size = {side, side};
+    PathTracer tracer(context(), library(), scene, settings);
+    const std::clock_t start = std::clock();
+    tracer.record(samples);
+    seconds_ = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const auto statistics = tracer.statistics();
+    EXPECT_EQ(statistics.leakedPaths, 0.0);
+    EXPECT_EQ(statistics.wrongCrossings, 0.0);
+    Estimate result;
+    const Image image = tracer.mean();
+    const double n = static_cast<double>(image.pixels.size());
+    for (const glm::vec3& p : image.pixels) result.mean += glm::dvec3(p) / n;
+    for (const glm::vec3& p : image.pixels) result.error += (glm::dvec3(p) - result.mean) * (glm::dvec3(p) - result.mean);
+    result.error = glm::sqrt(result.error / (n * (n - 1.0)));
+    return result;
+  }
+  /// worst: the largest standard error, as a part of the exact figure, with which the test still says what it should.
+  void expectExact(const std::string& what, double value, double error, double exact, double worst) {
+    const double z = (value - exact) / error;
+    std::printf("%-40s exact %.6g  measured %.6g +- %.2g (%.2f %%)  z %+.2f  %.1f s\n", what.c_str(), exact, value, error, 100.0 * error / exact, z, seconds_);
+    EXPECT_LT(std::abs(z), 3.5) << what;
+    EXPECT_LT(error, worst * exact) << what;
+  }
+  double seconds_ = 0.0;  ///< of the processor's, for the last measurement
+};
+
+/// In the suite: what takes a few seconds on two cores.
+bool isLong() { return std::getenv("LUCERNA_LONG_TESTS") != nullptr; }
+
+struct SlabRow {
+  double albedo, depth, g, ior, cosine, reflectance, transmittance;
+  double paths;  ///< in thousands, for 0.2 % of the smaller figure
+  bool costly = false;
+};
+Medium grey(double albedo, double depth, double g) { return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g); }
+std::string nameOf(const SlabRow& row) { return fmt::format("a {} tau {} g {} n {} mu {}", row.albedo, row.depth, row.g, row.ior, row.cosine); }
+
+// Reflectance and transmittance; [vandeHulst1980], adding-doubling, and Beer, Lambert and Fresnel for the one that does not scatter.
+const SlabRow kSlabs[] = {
+    {.9, 2, .75, 1, 1.0, .0973946, .6609577, 790},
+    {.99, 1, 0, 1, 0.5, .486518, .491628, 260},
+    {.5, 1, -.5, 1, 1.0, .164737, .404695, 262},
+    {.9, 1, .75, 1.5, 0.3, .32282, .40355, 400},
+    {.9, 1, .75, 1.5, 1.0, .115171, .681242, 790},
+    {.5, 1, .9, 1.33, 0.5, .07545, .39517, 790},
+    {0, 1, 0, 1.5, 1.0, .0449902, .339111, 600},
+    {1, 10, 0, 1, 1.0, .853005, .146995, 1750, true},
+    {.99, 10, .75, 1, 1.0, .472571, .340012, 400},
+    {.99, 10, 0, 1.33, 1.0, .642653, .100677, 1800, true},
+    {1, 10, .75, 1.5, 1.0, .541999, .458001, 330},
+};
+
+TEST_F(MediaPrecision, SlabsReflectAndTransmitAsTabled) {
+  double sum = 0.0;
+  for (const SlabRow& row : kSlabs) {
+    // Ten seconds and more of the processor's for 0.2 % of what little gets through: in the suite to twice or thrice that.
+    const bool less = row.costly && !isLong();
+    PathTracer::Settings settings;
+    settings.nextEvent = false;
+    const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine), static_cast<std::uint32_t>(row.paths * (less ? 0.1 : 1.0) * 1000.0 / 256.0), settings);
+    expectExact("R " + nameOf(row), s.mean.x, s.error.x, row.reflectance, 0.002);
+    expectExact("T " + nameOf(row), s.mean.y, s.error.y, row.transmittance, less ? 0.007 : 0.002);
+    if (row.albedo == 1.0) {
+      EXPECT_NEAR(s.mean.x + s.mean.y, 1.0, 2e-5) << nameOf(row);  // each path's throughput stays 1
+    }
+    sum += seconds_;
+  }
+  std::printf("%.1f s of processor time\n", sum);
+}
+
+TEST_F(MediaPrecision, NoCollisionRoundsThroughAFace) {
+  // Some 60 collisions a path between faces at +-1/2: with collisions left where they round to, one path in two million started beyond a face.
+  if (!isLong()) GTEST_SKIP() << "a minute; set LUCERNA_LONG_TESTS=1. SlabsReflectAndTransmitAsTabled counts leaks among fewer paths";
+  PathTracer::Settings settings;
+  settings.nextEvent = false;
+  const auto s = measure(slab(grey(1.0, 10.0, 0.0), 1.0, 1.0), 25000, settings);  // counts
+  expectExact("T of 6.4 million paths", s.mean.y, s.error.y, .146995, 0.0011);
+}
+
+TEST_F(MediaPrecision, HalfSpacesReflectAsTabled) {
+  // [Giovanelli1955] published 0.2600 of the first; Chandrasekhar's 1 - H(mu) sqrt(1 - a); regular milk's red.
+  const SlabRow rows[] = {
+      {.9, 60, 0, 1.5, 1.0, .259919, 0, 262},
+      {.9, 60, 0, 1, 0.5, .507938907, 0, 131},
+      {.999, 600, 0, 1, 1.0, .912845335, 0, 26},
+      {.99992, 4000, .75, 1.33, 1.0, .92327, 0, 24, true},
+  };
+  for (const SlabRow& row : rows) {
+    const bool less = row.costly && !isLong();
+    PathTracer::Settings settings;
+    settings.nextEvent = false;
+    const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine), static_cast<std::uint32_t>(row.paths * (less ? 0.2 : 1.0) * 1000.0 / 256.0), settings);
+    expectExact("R " + nameOf(row), s.mean.x, s.error.x, row.reflectance, less ? 0.005 : 0.002);
+  }
+}
+
+struct SourceRow {
+  double albedo, distance, degrees, radiance, paths, worst;
+  bool isLong = false;
+};
+
+TEST_F(MediaPrecision, PointSourceInAnInfiniteMedium) {
+  // Light of unit power and camera in an isotropic medium of mean free path 1, looking so many degrees off the source [CaseZweifel1967].
+  const SourceRow rows[] = {
+      {.5, 2, 30, 9.885653e-4, 650, 0.005},
+      {.9, 2, 30, 5.425945e-3, 400, 0.005},
+      {.9, 5, 60, 2.672081e-4, 6000, 0.005, true},
+      {.99, 2, 30, 1.07102e-2, 262, 0.006, true},
+      {.9, 2, 30, 5.425945e-3, 2000, 0.002, true},
+  };
+  for (const SourceRow& row : rows) {
+    if (row.isLong && !isLong()) continue;
+    Scene scene;
+    scene.media = {homogeneous(glm::dvec3(row.albedo), glm::dvec3(1.0 - row.albedo), 0.0)};
+    scene.cameraMedium = 0;
+    PointLight light;
+    light.position = {0.0, 0.0, -0.5 * row.distance};
+    light.intensity = glm::vec3(static_cast<float>(1.0 / (4.0 * M_PI)));
+    scene.points = {light};
+    const double angle = row.degrees * M_PI / 180.0;
+    const glm::dvec3 at(0.0, 0.0, 0.5 * row.distance);
+    scene.cameras = {cameraAt(at, at + glm::dvec3(std::sin(angle), 0.0, -std::cos(angle)))};
+    const auto s = measure(scene, static_cast<std::uint32_t>(row.paths * 1000.0 / 256.0));
+    expectExact(fmt::format("a {} D {} {} degrees", row.albedo, row.distance, row.degrees), s.mean.x, s.error.x, row.radiance, row.worst);
+  }
+  // A sphere of 40 mean free paths with a boundary stands in for infinity.
+  Scene scene;
+  scene.media = {homogeneous(glm::dvec3(0.9), glm::dvec3(0.1), 0.0)};
+  addSphere(scene, glm::dvec3(0.0), 40.0, 2, addBoundary(scene, Bsdf::none, 1.0, 0));
+  PointLight light;
+  light.position = {0.0, 0.0, -1.0};
+  light.intensity = glm::vec3(static_cast<float>(1.0 / (4.0 * M_PI)));
+  scene.points = {light};
+  scene.cameras = {cameraAt({0.0, 0.0, 1.0}, {std::sin(M_PI / 6.0), 0.0, 1.0 - std::cos(M_PI / 6.0)})};
+  const auto s = measure(scene, 256);
+  expectExact("a 0.9 D 2 30 degrees, sphere", s.mean.x, s.error.x, 5.425945e-3, 0.012);
+}
+
+}  // namespace
+}  // namespace lucerna
