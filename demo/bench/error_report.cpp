@@ -43,6 +43,7 @@ std::string errorText(const ErrorRow& row) {
 }
 std::string biasText(const ErrorRow& row) {
   const double mean = number(row, "bias") / number(row, "relative_bias"), error = 100.0 * number(row, "bias_error") / std::abs(mean);
+  if (!std::isfinite(error)) return fmt::format("{:+.3g} % +- ?", 100.0 * number(row, "relative_bias"));  // one sample has no spread
   return fmt::format("{:+.3g} % +- {:.2g}{}", 100.0 * number(row, "relative_bias"), error, flag(row, "bias_at_noise") ? " (0)" : "");
 }
 std::string insideText(const ErrorRow& row) {
@@ -97,12 +98,12 @@ struct PathSlope {
   double first = 0.0, last = 0.0;  ///< samples
 };
 
-/// None with fewer than three rows of 8 samples or more above the reference's noise.
+/// Those over time count from 32 samples on: in the first passes lanes wait for the longest path of so few. None with fewer than three such rows above the reference's noise.
 std::optional<PathSlope> pathSlope(const std::vector<ErrorRow>& rows) {
   std::vector<double> ms, cpuMs, samples, errors, errorsOverTime;
   for (const ErrorRow& row : rows) {
     if (text(row, "series") != "path" || flag(row, "at_noise") || !(number(row, "nrmse") > 0.0)) continue;
-    if (number(row, "spp") >= 8.0) {
+    if (number(row, "spp") >= 32.0) {
       ms.push_back(number(row, "ms"));
       cpuMs.push_back(number(row, "cpu_ms"));
       errorsOverTime.push_back(number(row, "nrmse"));
@@ -117,7 +118,7 @@ std::optional<PathSlope> pathSlope(const std::vector<ErrorRow>& rows) {
 std::string slopeText(const std::vector<ErrorRow>& rows) {
   const std::optional<PathSlope> s = pathSlope(rows);
   if (!s) return "";
-  return fmt::format("Path tracing: error ~ samples^({:.3f} +- {:.3f}), time^({:.3f} +- {:.3f}), processor time^({:.3f} +- {:.3f}) from {:g} to {:g} samples, by time from 8 on; -1/2 is what independent samples give.",
+  return fmt::format("Path tracing: error ~ samples^({:.3f} +- {:.3f}), time^({:.3f} +- {:.3f}), processor time^({:.3f} +- {:.3f}) from {:g} to {:g} samples, by time from 32 on; -1/2 is what independent samples give.",
                      s->samples.slope, s->samples.error, s->time.slope, s->time.error, s->processor.slope, s->processor.error, s->first, s->last);
 }
 
@@ -243,7 +244,7 @@ bool plotRows(const fs::path& folder, const ErrorReport& report) {
 }
 
 void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report) {
-  page.section(report.isDeviationStudy ? "Deviations" : "Error against run time");
+  page.section(fmt::format("{}: {}", report.isDeviationStudy ? "Deviations" : "Error against run time", report.title));
   page.preformatted(notes(report));
   if (fs::exists(folder / "error.svg")) page.svg(folder / "error.svg");
   HtmlPage::Table table;

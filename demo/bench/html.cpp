@@ -31,13 +31,13 @@ nav { background: #f5f5f7; padding: .6em 1.2em; border-radius: 6px; } nav a { ma
 table { border-collapse: collapse; font-size: 11.5px; font-variant-numeric: tabular-nums; margin: .8em 0; }
 th, td { padding: .22em .4em; border-bottom: 1px solid #e4e4e8; text-align: right; white-space: nowrap; }
 th { background: #f5f5f7; position: sticky; top: 0; } th:first-child, td:first-child { text-align: left; }
-td.text { text-align: left; } tr.marked { background: #fff6d6; font-weight: 600; }
+td.text, th.text { text-align: left; } tr.marked { background: #fff6d6; font-weight: 600; }
 figure { display: inline-block; margin: .4em .8em .8em 0; vertical-align: top; } figcaption { font-size: 12px; color: #555; max-width: 340px; }
 figure img { width: 340px; image-rendering: pixelated; border: 1px solid #ccc; }
 pre { background: #f5f5f7; padding: .8em; overflow-x: auto; font-size: 12px; } .plot svg { max-width: 100%; height: auto; }
 )";
 
-bool isNumber(const std::string& text) { return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' || text[0] == '+' || text[0] == '<'); }
+bool isNumber(const std::string& text) { return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' || text[0] == '+' || text[0] == '<' || text[0] == '>'); }
 
 }  // namespace
 
@@ -64,12 +64,19 @@ void HtmlPage::paragraph(const std::string& text) { body_ += fmt::format("<p>{}<
 void HtmlPage::preformatted(const std::string& text) { body_ += fmt::format("<pre>{}</pre>\n", escapeHtml(text)); }
 
 void HtmlPage::table(const Table& table) {
+  // A column of numbers stands to the right; one that has words in it to the left, whatever its cells begin with.
+  std::vector<bool> words(table.columns.size(), false);
+  for (const auto& row : table.rows)
+    for (std::size_t c = 0; c < row.size() && c < words.size(); ++c) words[c] = words[c] || (!row[c].empty() && !isNumber(row[c]));
+  const auto cell = [&](const char* tag, std::size_t column, const std::string& text) {
+    body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, column < words.size() && words[column] ? " class=\"text\"" : "", escapeHtml(text));
+  };
   body_ += "<div class=\"scroll\"><table><tr>";
-  for (const std::string& column : table.columns) body_ += "<th>" + escapeHtml(column) + "</th>";
+  for (std::size_t c = 0; c < table.columns.size(); ++c) cell("th", c, table.columns[c]);
   body_ += "</tr>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     body_ += r < table.marked.size() && table.marked[r] ? "<tr class=\"marked\">" : "<tr>";
-    for (const std::string& cell : table.rows[r]) body_ += (isNumber(cell) ? "<td>" : "<td class=\"text\">") + escapeHtml(cell) + "</td>";
+    for (std::size_t c = 0; c < table.rows[r].size(); ++c) cell("td", c, table.rows[r][c]);
     body_ += "</tr>\n";
   }
   body_ += "</table></div>\n";

@@ -78,7 +78,7 @@ std::string script(const std::string& stem, const LogLogPlot& plot, int& leftOut
       continue;
     }
     const char* rgb = kColours[colour % 12];
-    const int mark = kMarks[colour % 12];
+    const int mark = kMarks[(colour + 5 * (colour / 12)) % 12];  // a colour that comes again has another mark
     ++colour;
     line(fmt::format("{} using 1:2 with {} lw 1.5 pt {} ps 0.9 lc rgb '{}' title {}", name, series.joined ? "linespoints" : "points", mark, rgb, quoted(series.name)));
   }

@@ -52,7 +52,7 @@ bool readAll(int descriptor, void* data, std::size_t bytes) {
 
 }  // namespace
 
-RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches, const std::function<void(const FormFactorRows&)>& take) : file_(file) {
+RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches, const std::function<void(const FormFactorRows&)>& take) : file_(file), patches_(patches) {
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) throwBadInput("{}: cannot be opened for writing: {}", file.string(), std::strerror(errno));
   const auto refuse = [&](const char* why) {
@@ -79,29 +79,9 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
   end_ = header.version ? sizeof(Header) : 0;
   if (end_ > 0) {
     std::uint32_t expected = 0;
-    for (;;) {
-      BlockHeader block{};
-      if (!readAll(descriptor_, &block, sizeof block) || block.first != expected || block.rows == 0 || block.rows > patches - expected ||
-          block.entries > static_cast<std::uint64_t>(block.rows) * patches || end_ + sizeof block + dataBytes(block) > static_cast<std::uint64_t>(status.st_size))
-        break;
-      std::vector<std::uint8_t> data(dataBytes(block));
-      if (!readAll(descriptor_, data.data(), data.size()) || checksumOf(block, data) != block.checksum) break;
-      FormFactorRows rows;
-      rows.first = static_cast<int>(block.first);
-      const std::uint8_t* at = data.data();
-      const auto get = [&](auto& values, std::size_t count) {
-        values.resize(count);
-        std::memcpy(values.data(), at, 4 * count);
-        at += 4 * count;
-      };
-      get(rows.counts, block.rows);
-      get(rows.fronts, block.rows);
-      get(rows.backs, block.rows);
-      get(rows.patches, block.entries);
-      get(rows.factors, block.entries);
-      take(rows);
-      expected += block.rows;
-      end_ += sizeof block + data.size();
+    while (const auto rows = readBlock(expected, end_)) {
+      take(*rows);
+      expected += static_cast<std::uint32_t>(rows->counts.size());
     }
   }
   if (::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) throwBadInput("{}: {}", file.string(), std::strerror(errno));
@@ -113,6 +93,42 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
     header.fingerprint = fingerprint;
     if (::write(descriptor_, &header, sizeof header) != static_cast<ssize_t>(sizeof header)) refuse("cannot be written: is the disk full?");
     end_ = sizeof header;
+  }
+}
+
+std::optional<FormFactorRows> RowFile::readBlock(std::uint32_t expected, std::uint64_t& end) {
+  struct stat status {};
+  BlockHeader block{};
+  if (::fstat(descriptor_, &status) != 0 || !readAll(descriptor_, &block, sizeof block) || block.first != expected || block.rows == 0 || block.rows > patches_ - expected ||
+      block.entries > static_cast<std::uint64_t>(block.rows) * patches_ || end + sizeof block + dataBytes(block) > static_cast<std::uint64_t>(status.st_size))
+    return std::nullopt;
+  std::vector<std::uint8_t> data(dataBytes(block));
+  if (!readAll(descriptor_, data.data(), data.size()) || checksumOf(block, data) != block.checksum) return std::nullopt;
+  FormFactorRows rows;
+  rows.first = static_cast<int>(block.first);
+  const std::uint8_t* at = data.data();
+  const auto get = [&](auto& values, std::size_t count) {
+    values.resize(count);
+    std::memcpy(values.data(), at, 4 * count);
+    at += 4 * count;
+  };
+  get(rows.counts, block.rows);
+  get(rows.fronts, block.rows);
+  get(rows.backs, block.rows);
+  get(rows.patches, block.entries);
+  get(rows.factors, block.entries);
+  end += sizeof block + data.size();
+  return rows;
+}
+
+void RowFile::forEach(const std::function<void(const FormFactorRows&)>& take) {
+  ::lseek(descriptor_, sizeof(Header), SEEK_SET);
+  std::uint32_t expected = 0;
+  for (std::uint64_t at = sizeof(Header); at < end_;) {
+    const auto rows = readBlock(expected, at);
+    if (!rows) throwBadInput("{}: was changed or damaged by something else while rows were read from it", file_.string());
+    expected += static_cast<std::uint32_t>(rows->counts.size());
+    take(*rows);
   }
 }
 

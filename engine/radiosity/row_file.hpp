@@ -26,10 +26,16 @@ class RowFile {
 
   /// Rows must follow those before. On a full disk the file is cut back to its last whole block and Error(badInput) says so.
   void append(const FormFactorRows& rows);
+  /// All rows that are in it, block by block, in order. Throws Error(badInput) where they no longer are.
+  void forEach(const std::function<void(const FormFactorRows&)>& take);
 
  private:
+  /// The block at the file's position, whose first row is `expected`, if it is whole; ends at `end`.
+  std::optional<FormFactorRows> readBlock(std::uint32_t expected, std::uint64_t& end);
+
   std::filesystem::path file_;
   int descriptor_ = -1;
+  std::uint32_t patches_ = 0;
   std::uint64_t end_ = 0;  ///< of the last whole block
 };
 

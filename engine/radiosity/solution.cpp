@@ -72,12 +72,21 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   solution.fronts.clear();
   solution.backs.clear();
   std::vector<double> rowSums;  // as hemicubes have them
-  const auto take = [&](const FormFactorRows& rows, bool keep) {
-    if (keep) append(matrix, rows);
+  const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
+  bool kept = true, stopped = false;
+  const auto take = [&](const FormFactorRows& rows) {
+    if (kept) append(matrix, rows);
     auto factor = rows.factors.begin();
     for (const std::uint32_t count : rows.counts) rowSums.push_back(std::accumulate(factor, factor + count, 0.0)), factor += count;
     solution.fronts.insert(solution.fronts.end(), rows.fronts.begin(), rows.fronts.end());
     solution.backs.insert(solution.backs.end(), rows.backs.begin(), rows.backs.end());
+    const double perPatch = static_cast<double>(matrix.entryCount()) / static_cast<double>(solution.fronts.size()), bytes = perPatch * static_cast<double>(n) * static_cast<double>(kBytesPerEntry);
+    if (kept && bytes > static_cast<double>(memory)) {
+      logWarning("radiosity: the form factors of {} patches need about {} MiB, there are {}: they are {} for each product", n, static_cast<std::size_t>(bytes) >> 20, memory >> 20,
+                 checkpoint.empty() ? "computed anew" : "read from " + checkpoint.string());
+      kept = false;
+      matrix = {};
+    }
   };
   // Rows by different ways differ in their last bits: a checkpoint is gone on with as it was begun.
   HemicubeSettings asked = settings.hemicubes;
@@ -89,23 +98,15 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     }
   Hemicubes hemicubes(programs, context.capabilities(), mesh, asked);
   asked.visibility = hemicubes.visibility();
-  const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
   std::unique_ptr<RowFile> file;
   if (!checkpoint.empty())
-    file = std::make_unique<RowFile>(checkpoint, rowsFingerprint(mesh, asked), static_cast<std::uint32_t>(n), [&](const FormFactorRows& rows) { take(rows, true); });
-  bool kept = true, stopped = false;
+    file = std::make_unique<RowFile>(checkpoint, rowsFingerprint(mesh, asked), static_cast<std::uint32_t>(n), take);
   std::size_t computed = 0;
   double start = now();
   const std::size_t from = solution.fronts.size();
   const auto keep = [&](const FormFactorRows& rows) {
-    take(rows, kept);
-    if (file && kept) file->append(rows);
-    const double perPatch = static_cast<double>(matrix.entryCount()) / static_cast<double>(solution.fronts.size()), bytes = perPatch * static_cast<double>(n) * static_cast<double>(kBytesPerEntry);
-    if (kept && bytes > static_cast<double>(memory)) {
-      logWarning("radiosity: the form factors of {} patches need about {} MiB, there are {}: they are computed anew for each product", n, static_cast<std::size_t>(bytes) >> 20, memory >> 20);
-      kept = false;
-      matrix = {};
-    }
+    take(rows);
+    if (file) file->append(rows);
   };
   hemicubes.stream(static_cast<int>(from), static_cast<int>(n), keep, [&](int done) {
     solution.hemicubes += static_cast<std::size_t>(done) - from - computed;
@@ -144,17 +145,23 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     solution.entries = matrix.entryCount();
     system.product = [&](auto x, auto y) { matrix.multiply(x, y); };
   } else {
-    // Each product draws all hemicubes again. Of the repair rows get their sums; reciprocity stays as hemicubes have it.
+    // Each product reads all rows from the checkpoint, or draws all hemicubes again where there is none. Of the repair rows get their sums; reciprocity stays as
+    // hemicubes have it.
     system.rowSums = settings.repair ? sums : rowSums;
     system.product = [&](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
+      const auto multiply = [&](const FormFactorRows& rows) {
+        std::size_t at = 0, row = static_cast<std::size_t>(rows.first);
+        for (const std::uint32_t count : rows.counts) {
+          glm::dvec3 sum(0.0);
+          for (const std::size_t end = at + count; at < end; ++at) sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
+          y[row] = settings.repair && rowSums[row] > 0.0 ? sum * (sums[row] / rowSums[row]) : sum;
+          ++row;
+        }
+      };
+      if (file) return file->forEach(multiply);
       for (std::size_t first = 0; first < n;) {
         const FormFactorRows rows = hemicubes.rows(static_cast<int>(first), static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
-        std::size_t at = 0;
-        for (std::size_t k = 0; k < rows.counts.size(); ++k) {
-          glm::dvec3 sum(0.0);
-          for (std::size_t end = at + rows.counts[k]; at < end; ++at) sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
-          y[first + k] = settings.repair && rowSums[first + k] > 0.0 ? sum * (sums[first + k] / rowSums[first + k]) : sum;
-        }
+        multiply(rows);
         first += rows.counts.size();
         solution.hemicubes += rows.counts.size();
         if (!stage(RadiosityStage::Kind::formFactors, first)) throwBadInput("radiosity: stopped while rows were computed anew");

@@ -28,7 +28,7 @@ struct RadiositySolutionSettings {
   bool repair = true;              ///< reciprocity and row sums
   int refinements = 0;             ///< times that patches are halved where light changes steeply
   double steep = 0.1;              ///< change from patch to patch, in parts of the mean irradiance, that is refined
-  std::size_t memoryBytes = 0;     ///< for form factors; more are computed anew for each product. 0: half of what the machine has free
+  std::size_t memoryBytes = 0;     ///< for form factors; more are read from the checkpoint for each product, or computed anew. 0: half of what the machine has free
 };
 
 struct RadiosityStage {
