@@ -28,7 +28,7 @@ std::string_view nameOf(LpvFill fill) {
   return fill == LpvFill::layered ? "layered" : fill == LpvFill::atomic ? "atomic" : "fixed";
 }
 
-std::string_view nameOf(LpvPropagate propagate) { 
+std::string_view nameOf(LpvPropagate propagate) {
   return propagate == LpvPropagate::compute ? "compute" : propagate == LpvPropagate::layered ? "layered" : "slices";
 }
 

@@ -153,12 +153,21 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
   return packed;
 }
 
+std::vector<Bounds> boundsOfRanks(const PackedBoundaries& boundaries) {
+  std::vector<Bounds> bounds(boundaries.interiors.size());
+  for (const BoundaryTriangle& t : boundaries.triangles)
+    for (const glm::vec3* p : {&t.a, &t.b, &t.c}) bounds[static_cast<std::size_t>(t.rank)].add(glm::dvec3(*p));
+  return bounds;
+}
+
+bool overlap(const Bounds& a, const Bounds& b) { return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max)); }
+
 bool boundariesMayTouch(const Scene& scene, const PackedBoundaries& boundaries) {
   const auto rankOf = [&](const Mesh& mesh) { return boundaries.rankOfMaterial[static_cast<std::size_t>(mesh.material)]; };
   for (const Mesh& a : scene.meshes) {
     if (rankOf(a) < 0) continue;
     for (const Mesh& b : scene.meshes)
-      if (rankOf(b) != rankOf(a) && glm::all(glm::lessThanEqual(a.bounds.min, b.bounds.max)) && glm::all(glm::lessThanEqual(b.bounds.min, a.bounds.max))) return true;
+      if (rankOf(b) != rankOf(a) && overlap(a.bounds, b.bounds)) return true;
   }
   return false;
 }

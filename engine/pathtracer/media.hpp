@@ -44,6 +44,11 @@ struct PackedBoundaries {
 /// diffuseOnly: dielectrics bound nothing, as they are drawn as walls.
 PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly = false);
 
+/// The box around each rank's triangles; empty where it has none.
+std::vector<Bounds> boundsOfRanks(const PackedBoundaries& boundaries);
+/// Whether two boxes share a point.
+bool overlap(const Bounds& a, const Bounds& b);
+
 /// Whether a boundary's mesh and another mesh, of anything but the same boundary, have boxes that share a point: their faces may coincide or cross.
 bool boundariesMayTouch(const Scene& scene, const PackedBoundaries& boundaries);
 

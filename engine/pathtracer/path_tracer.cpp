@@ -41,36 +41,26 @@ std::uint32_t kindOf(const Material& material) {
   return PATH_DIFFUSE;
 }
 
-constexpr std::array<char, 8> kCheckpointMagic{'L', 'U', 'C', 'P', 'A', 'T', 'H', '1'};
 /// Whether every lamp is in the open, where the index is 1: triangles by boxes, so that some are taken for enclosed that are not.
 bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
-  const std::size_t ranks = boundaries.interiors.size();
-  const float inf = std::numeric_limits<float>::infinity();
-  std::vector<std::array<glm::vec3, 2>> boxes(ranks, {glm::vec3(inf), glm::vec3(-inf)});
-  const auto widen = [](std::array<glm::vec3, 2>& box, const glm::vec3& p) { box = {glm::min(box[0], p), glm::max(box[1], p)}; };
-  for (const BoundaryTriangle& t : boundaries.triangles) {
-    const int rank = t.rank;
-    if ((boundaries.dielectricRanks[rank / 8] >> (4 * (rank % 8)) & 15u) == 0) continue;
-    for (const glm::vec3* p : {&t.a, &t.b, &t.c}) widen(boxes[static_cast<std::size_t>(rank)], *p);
-  }
-  const auto isOutside = [&](const std::array<glm::vec3, 2>& lamp) {
-    return std::none_of(boxes.begin(), boxes.end(), [&](const std::array<glm::vec3, 2>& box) {
-      return glm::all(glm::lessThanEqual(lamp[0], box[1])) && glm::all(glm::lessThanEqual(box[0], lamp[1]));
-    });
-  };
+  std::vector<Bounds> refracting = boundsOfRanks(boundaries);
+  for (std::size_t rank = 0; rank < refracting.size(); ++rank)
+    if ((boundaries.dielectricRanks[static_cast<int>(rank / 8)] >> (4 * (rank % 8)) & 15u) == 0) refracting[rank] = {};
+  const auto isOutside = [&](const Bounds& lamp) { return std::none_of(refracting.begin(), refracting.end(), [&](const Bounds& box) { return overlap(lamp, box); }); };
   for (const Mesh& mesh : scene.meshes) {
     if (scene.materials[static_cast<std::size_t>(mesh.material)].emission == glm::vec3(0.0f)) continue;
     for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3) {
-      std::array<glm::vec3, 2> box{glm::vec3(inf), glm::vec3(-inf)};
-      for (std::uint32_t k = i; k < i + 3; ++k) widen(box, scene.vertices[scene.indices[k]].position);
+      Bounds box;
+      for (std::uint32_t k = i; k < i + 3; ++k) box.add(glm::dvec3(scene.vertices[scene.indices[k]].position));
       if (!isOutside(box)) return false;
     }
   }
-  const auto isPlaceOutside = [&](const glm::dvec3& place) { return isOutside({glm::vec3(place), glm::vec3(place)}); };
+  const auto isPlaceOutside = [&](const glm::dvec3& place) { return isOutside({glm::dvec3(glm::vec3(place)), glm::dvec3(glm::vec3(place))}); };
   return std::all_of(scene.points.begin(), scene.points.end(), [&](const PointLight& light) { return isPlaceOutside(light.position); }) &&
          std::all_of(scene.spots.begin(), scene.spots.end(), [&](const SpotLight& light) { return isPlaceOutside(light.position); });
 }
 
+constexpr std::array<char, 8> kCheckpointMagic{'L', 'U', 'C', 'P', 'A', 'T', 'H', '1'};
 struct CheckpointHeader {
   std::array<char, 8> magic = kCheckpointMagic;
   std::uint64_t identity = 0, filmHash = 0;
@@ -249,15 +239,12 @@ void PathTracer::addClearances(const Scene& scene) {
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) triangles[t][k] = glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - rays_.origin();
   std::vector<float> radii;
+  const std::vector<Bounds> bounds = boundsOfRanks(boundaries_);
   for (std::size_t rank = 0; rank < boundaries_.interiors.size(); ++rank) {
     shared::InteriorRecord& interior = boundaries_.interiors[rank];
-    glm::dvec3 min(std::numeric_limits<double>::infinity()), max(-min);
-    for (const BoundaryTriangle& t : boundaries_.triangles)
-      if (t.rank == static_cast<int>(rank))
-        for (const glm::vec3* p : {&t.a, &t.b, &t.c}) min = glm::min(min, glm::dvec3(*p)), max = glm::max(max, glm::dvec3(*p));
-    const double extent = glm::length(max - min);
+    const double extent = glm::length(bounds[rank].extent());
     if (interior.medium < 0 || !(extent > 0.0) || !isDense(scene.media[static_cast<std::size_t>(interior.medium)], extent)) continue;
-    const ClearanceGrid grid = clearanceGrid(triangles, min - rays_.origin(), max - rays_.origin(), kClearanceCells);
+    const ClearanceGrid grid = clearanceGrid(triangles, bounds[rank].min - rays_.origin(), bounds[rank].max - rays_.origin(), kClearanceCells);
     interior.clearance = static_cast<int>(radii.size());
     interior.cell = static_cast<float>(grid.cell);
     interior.min = glm::vec3(grid.min);

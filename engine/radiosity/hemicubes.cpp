@@ -1,6 +1,7 @@
 #include "radiosity/hemicubes.hpp"
 
 #include "base/error.hpp"
+#include "base/named_values.hpp"
 #include "base/log.hpp"
 #include "gl/pass.hpp"
 #include "pathtracer/ray_scene.hpp"
@@ -61,21 +62,9 @@ gl::Buffer storage(const char* name, std::size_t bytes) { return gl::Buffer(name
 
 }  // namespace
 
-std::string_view nameOf(HemicubeVisibility visibility) {
-  for (const auto& [value, name] : kVisibilities)
-    if (value == visibility) return name;
-  CHECK(false, "visibility {}", static_cast<int>(visibility));
-  return {};
-}
+std::string_view nameOf(HemicubeVisibility visibility) { return nameIn(kVisibilities, visibility); }
 
-HemicubeVisibility parseHemicubeVisibility(std::string_view name) {
-  std::string known;
-  for (const auto& [value, text] : kVisibilities) {
-    if (name == text) return value;
-    known += (known.empty() ? "" : ", ") + std::string(text);
-  }
-  throwBadInput("visibility {}: unknown; there are {}", name, known);
-}
+HemicubeVisibility parseHemicubeVisibility(std::string_view name) { return valueIn(kVisibilities, name, "visibility"); }
 
 Hemicubes::~Hemicubes() = default;
 

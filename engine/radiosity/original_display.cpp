@@ -1,6 +1,7 @@
 #include "radiosity/original_display.hpp"
 
 #include "base/error.hpp"
+#include "base/named_values.hpp"
 #include "gl/pass.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -45,21 +46,9 @@ glm::vec3 bytesOf(const RadTriangle& t) {
 
 }  // namespace
 
-std::string_view nameOf(RadMapping mapping) {
-  for (const auto& [value, name] : kMappings)
-    if (value == mapping) return name;
-  CHECK(false, "mapping {}", static_cast<int>(mapping));
-  return {};
-}
+std::string_view nameOf(RadMapping mapping) { return nameIn(kMappings, mapping); }
 
-RadMapping parseRadMapping(std::string_view name) {
-  std::string known;
-  for (const auto& [value, text] : kMappings) {
-    if (name == text) return value;
-    known += (known.empty() ? "" : ", ") + std::string(text);
-  }
-  throwBadInput("--mapping {}: unknown; there are {}", name, known);
-}
+RadMapping parseRadMapping(std::string_view name) { return valueIn(kMappings, name, "--mapping"); }
 
 double exposureOf(std::span<const RadTriangle> triangles) {
   std::vector<std::size_t> order(triangles.size());

@@ -1,6 +1,7 @@
 #include "radiosity/settings.hpp"
 
 #include "base/error.hpp"
+#include "base/named_values.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,21 +31,9 @@ constexpr std::array kDeviations{
 
 }  // namespace
 
-std::string_view nameOf(RadiositySolver solver) {
-  for (const auto& [value, name] : kSolvers)
-    if (value == solver) return name;
-  CHECK(false, "solver {}", static_cast<int>(solver));
-  return {};
-}
+std::string_view nameOf(RadiositySolver solver) { return nameIn(kSolvers, solver); }
 
-RadiositySolver parseRadiositySolver(std::string_view name) {
-  std::string known;
-  for (const auto& [value, text] : kSolvers) {
-    if (name == text) return value;
-    known += (known.empty() ? "" : ", ") + std::string(text);
-  }
-  throwBadInput("--solver {}: unknown; there are {}", name, known);
-}
+RadiositySolver parseRadiositySolver(std::string_view name) { return valueIn(kSolvers, name, "--solver"); }
 
 std::span<const RadiosityDeviation> allRadiosityDeviations() { return kDeviations; }
 

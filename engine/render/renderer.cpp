@@ -46,18 +46,16 @@ T parseNamed(std::string_view name, std::string_view option, std::initializer_li
   throwBadInput("--{} {}: unknown; there are {}", option, name, known);
 }
 
-}  // namespace
-
-namespace {
-
 std::unique_ptr<RadiosityView> makeRadiosity(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings) {
   if (settings.technique != Technique::radiosity) return nullptr;
   using Light = RadiosityView::Light;
   RadiosityView::Settings view = settings.radiosity;
   view.light = settings.component == Component::all ? Light::all : settings.component == Component::direct ? Light::direct : Light::indirect;
-  if (view.direct == RadiosityView::Direct::pixels && DirectRays::emitterCount(scene) > DirectRays::kMostEmitters) {
-    logWarning("radiosity: {} triangles emit, more than the {} that each pixel can ask by shadow rays: direct light is a value a patch", DirectRays::emitterCount(scene), DirectRays::kMostEmitters);
-    view.direct = RadiosityView::Direct::patches;
+  if (view.direct == RadiosityView::Direct::pixels) {
+    if (const std::size_t emitters = DirectRays::emitterCount(scene); emitters > DirectRays::kMostEmitters) {
+      logWarning("radiosity: {} triangles emit, more than the {} that each pixel can ask by shadow rays: direct light is a value a patch", emitters, DirectRays::kMostEmitters);
+      view.direct = RadiosityView::Direct::patches;
+    }
   }
   return std::make_unique<RadiosityView>(context, programs, scene, view);
 }

@@ -17,6 +17,7 @@ namespace {
 
 using test::cubeRoom;
 using test::lambertian;
+using test::pixelsAlone;
 using test::SceneBuilder;
 
 class Hemicube : public test::SharedProgramsTest {
@@ -53,12 +54,6 @@ class Hemicube : public test::SharedProgramsTest {
     }
     for (const Patch& p : c.mesh.patches) c.areas.push_back(p.area);
     return c;
-  }
-  static HemicubeSettings pixelsAlone(int resolution) {
-    HemicubeSettings settings;
-    settings.resolution = resolution;
-    settings.exactPixels = 0;
-    return settings;
   }
 };
 

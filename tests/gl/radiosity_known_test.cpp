@@ -21,6 +21,7 @@ namespace {
 using test::cubeRoom;
 using test::lambertian;
 using test::SceneBuilder;
+using test::wholeTriangles;
 
 struct Rows {
   RadiosityMesh mesh;
@@ -56,13 +57,6 @@ class RadiosityKnownOnGl : public test::SharedProgramsTest {
   static RadiositySolution solve(Scene scene, const RadiositySolutionSettings& settings) {
     scene.sun.reset();
     return solveScene(context(), library(), scene, settings);
-  }
-  static RadiositySolutionSettings whole(double error = 1e-6) {
-    RadiositySolutionSettings settings;
-    settings.wholeTriangles = true;
-    settings.hemicubes.resolution = 32;
-    settings.error = error;
-    return settings;
   }
 };
 
@@ -115,7 +109,7 @@ TEST_F(RadiosityKnownOnGl, ThroughADoorAsMuchGoesOneWayAsTheOther) {
     if (lit < 0) lit = lambertian(b, 0.8, 1.0), dark = lambertian(b, 0.8);
     return room == 0 && wall == 1 ? lit : dark;
   });
-  RadiositySolutionSettings fine = whole();
+  RadiositySolutionSettings fine = wholeTriangles();
   const RadiositySolution s = solve(lamp, fine);
   const Rows f = rowsOf(lamp, fine.hemicubes);
   double there = 0.0, back = 0.0, absorbed = 0.0, through[2] = {};
@@ -144,10 +138,10 @@ TEST_F(RadiosityKnownOnGl, TwoRoomsAreCorrectedRoomByRoom) {
     if (lit < 0) lit = lambertian(b, 0.95, 1.0), grey = lambertian(b, 0.95);
     return room == 0 && wall == 1 ? lit : grey;
   });
-  RadiositySolutionSettings settings = whole(1e-8);
+  RadiositySolutionSettings settings = wholeTriangles(1e-8);
   const RadiositySolution best = solve(scene, settings);
   const auto products = [&](RadiositySolver solver, double error) {
-    RadiositySolutionSettings one = whole(error);
+    RadiositySolutionSettings one = wholeTriangles(error);
     one.solver = solver;
     const RadiositySolution s = solve(scene, one);
     EXPECT_TRUE(s.reached);
@@ -201,7 +195,7 @@ TEST_F(RadiosityKnownOnGl, AnyClosedMeshIsAFurnace) {
     v.position *= it->second;
     v.normal = glm::vec3(0.0f);  // the winding says where fronts are
   }
-  const RadiositySolution s = solve(scene, whole());
+  const RadiositySolution s = solve(scene, wholeTriangles());
   double hidden = 0.0;
   for (std::size_t i = 0; i < s.exitance.size(); ++i) {
     ASSERT_NEAR(s.exitance[i].x, 10.0, 3e-3) << i;
@@ -257,7 +251,7 @@ TEST_F(RadiosityKnownOnGl, ABowlIsLitAlikeEverywhereWhateverShines) {
   addSphere(builder, 1.0, 2, true, [&](const glm::dvec3& c) { return c.y > 0.3 ? none : c.x > 0.5 ? lit : grey; });
   Scene scene = builder.scene();
   std::erase_if(scene.meshes, [&](const Mesh& mesh) { return mesh.material == none; });
-  const RadiositySolution s = solve(scene, whole());
+  const RadiositySolution s = solve(scene, wholeTriangles());
   double area = 0.0, emitted = 0.0;
   for (const Patch& p : s.mesh.patches) area += p.area, emitted += p.area * p.emission.x;
   const double f = area / (4.0 * std::numbers::pi), exact = 0.6 * f * (emitted / area) / (1.0 - 0.6 * f);
@@ -288,7 +282,7 @@ TEST_F(RadiosityKnownOnGl, RepairGivesReciprocityAndEnergyThatHemicubesLack) {
   // sum A E = sum A (1 - rho) H with the ceiling lit.
   const auto balance = [&](bool repair) {
     int lit = -1, grey = -1;
-    RadiositySolutionSettings settings = whole(1e-8);
+    RadiositySolutionSettings settings = wholeTriangles(1e-8);
     settings.hemicubes = plain;
     settings.repair = repair;
     settings.solver = RadiositySolver::anderson;
@@ -381,7 +375,7 @@ TEST_F(RadiosityKnownOnGl, LightIsLinearAndColoursDoNotMix) {
       return wall == 1 ? lit : grey;
     });
   };
-  const RadiositySolution one = solve(room(glm::vec3(1.0f)), whole(1e-9)), scaled = solve(room(glm::vec3(1024.0f, 1.0f / 1024.0f, 0.0f)), whole(1e-9));
+  const RadiositySolution one = solve(room(glm::vec3(1.0f)), wholeTriangles(1e-9)), scaled = solve(room(glm::vec3(1024.0f, 1.0f / 1024.0f, 0.0f)), wholeTriangles(1e-9));
   for (std::size_t i = 0; i < one.exitance.size(); ++i) {
     EXPECT_NEAR(scaled.exitance[i].x / one.exitance[i].x, 1024.0, 1e-4);
     EXPECT_NEAR(scaled.exitance[i].y / one.exitance[i].y, 1.0 / 1024.0, 1e-10);

@@ -18,19 +18,13 @@ namespace {
 using test::cubeRoom;
 using test::lambertian;
 using test::SceneBuilder;
+using test::wholeTriangles;
 
 class RadiositySolutions : public test::SharedProgramsTest {
  protected:
   static RadiositySolution solve(const Scene& scene, const RadiositySolutionSettings& settings, const std::filesystem::path& checkpoint = {},
                                  const std::function<bool(const RadiosityStage&)>& onStage = {}) {
     return solveScene(context(), library(), scene, settings, checkpoint, onStage);
-  }
-  static RadiositySolutionSettings whole(double error = 1e-6) {
-    RadiositySolutionSettings settings;
-    settings.wholeTriangles = true;
-    settings.hemicubes.resolution = 32;
-    settings.error = error;
-    return settings;
   }
   /// Without a sun.
   static Scene dark(Scene scene) {
@@ -47,7 +41,7 @@ class RadiositySolutions : public test::SharedProgramsTest {
 TEST_F(RadiositySolutions, Furnaces) {
   for (const double rho : {0.0, 0.5, 0.9, 0.999})
     for (const Scene& scene : {dark(cubeRoom(2, rho, 1.0)), sphere(1, [rho, m = -1](SceneBuilder& b, const glm::dvec3&) mutable { return m < 0 ? m = lambertian(b, rho, 1.0) : m; })}) {
-      const RadiositySolution s = solve(scene, whole());
+      const RadiositySolution s = solve(scene, wholeTriangles());
       const double exact = 1.0 / (1.0 - static_cast<double>(static_cast<float>(rho)));
       EXPECT_TRUE(s.reached);
       for (const glm::dvec3& b : s.exitance)
@@ -74,10 +68,10 @@ TEST_F(RadiositySolutions, ASphereWithOneLitPatchIsLitAlikeEverywhere) {
     return std::sqrt(squares);
   };
   double mean = 0.0;
-  const double exact = spread(whole(), mean);
+  const double exact = spread(wholeTriangles(), mean);
   EXPECT_LT(exact, 0.03);
   EXPECT_NEAR(mean, 1.0, 0.02);  // rho / (1 - rho) of the mean emission
-  RadiositySolutionSettings published = whole();
+  RadiositySolutionSettings published = wholeTriangles();
   published.hemicubes.map = DeltaMap::published;
   published.hemicubes.exactPixels = 0;
   published.repair = false;
@@ -89,7 +83,7 @@ TEST_F(RadiositySolutions, ConcentricSpheresAndABowl) {
   const int inner = lambertian(builder, 0.5, 1.0), outer = lambertian(builder, 0.8);
   addSphere(builder, 1.0, 2, false, [&](const glm::dvec3&) { return inner; });
   addSphere(builder, 2.0, 2, true, [&](const glm::dvec3&) { return outer; });
-  const RadiositySolution s = solve(dark(builder.scene()), whole());
+  const RadiositySolution s = solve(dark(builder.scene()), wholeTriangles());
   double sum[2] = {}, area[2] = {};
   for (std::size_t i = 0; i < s.exitance.size(); ++i) {
     const int k = s.mesh.patches[i].material == inner ? 0 : 1;
@@ -105,7 +99,7 @@ TEST_F(RadiositySolutions, ConcentricSpheresAndABowl) {
   addSphere(bowl, 1.0, 2, true, [&](const glm::dvec3& c) { return c.y < 0.0 ? m : -1; });
   Scene open = dark(bowl.scene());
   std::erase_if(open.meshes, [](const Mesh& mesh) { return mesh.material < 0; });
-  const RadiositySolution b = solve(open, whole());
+  const RadiositySolution b = solve(open, wholeTriangles());
   double mean = 0.0;
   for (std::size_t i = 0; i < b.exitance.size(); ++i) mean += b.mesh.patches[i].area * b.exitance[i].x / b.mesh.area();
   const double fraction = b.mesh.area() / (4.0 * std::numbers::pi);
@@ -120,7 +114,7 @@ TEST_F(RadiositySolutions, TheCubeWithALitCeilingAndThePublishedMap) {
     if (lit < 0) lit = lambertian(b, 0.5, 1.0), grey = lambertian(b, 0.5);
     return wall == 1 && std::abs(u - 0.5) < 0.17 && std::abs(v - 0.5) < 0.17 ? lit : grey;
   }));
-  RadiositySolutionSettings fine = whole(), plain = whole(), published = whole();
+  RadiositySolutionSettings fine = wholeTriangles(), plain = wholeTriangles(), published = wholeTriangles();
   fine.hemicubes.resolution = 128;
   fine.hemicubes.exactPixels = 1;
   fine.hemicubes.nearDistance = 12.0f;
@@ -141,7 +135,7 @@ TEST_F(RadiositySolutions, TheCubeWithALitCeilingAndThePublishedMap) {
 TEST_F(RadiositySolutions, AResumedRunEqualsAnUninterruptedOne) {
   const test::TempFolder folder;
   const Scene scene = dark(cubeRoom(4, 0.7, 1.0));
-  RadiositySolutionSettings settings = whole(1e-4);
+  RadiositySolutionSettings settings = wholeTriangles(1e-4);
   settings.hemicubes.batchBytes = 3 * 32 * 32 * 4 * 16;
   const RadiositySolution uninterrupted = solve(scene, settings);
   const auto file = folder.path() / "rows";
@@ -178,7 +172,7 @@ TEST_F(RadiositySolutions, AResumedRunEqualsAnUninterruptedOne) {
 TEST_F(RadiositySolutions, FilesGiveBackWhatWasSaved) {
   const test::TempFolder folder;
   const Scene scene = dark(cubeRoom(2, 0.7, 1.0));
-  const RadiositySolution s = solve(scene, whole());
+  const RadiositySolution s = solve(scene, wholeTriangles());
   const auto file = folder.path() / "solution";
   saveSolution(file, scene, s);
   const RadiositySolution loaded = loadSolution(file, scene);
@@ -202,7 +196,7 @@ TEST_F(RadiositySolutions, AChangedSceneHasAnotherSolution) {
   // What light depends on, not the corners alone: a mask, a medium, a texture's size. (One function knows it: scene/fingerprint.)
   const test::TempFolder folder;
   const Scene scene = dark(cubeRoom(2, 0.7, 1.0));
-  RadiositySolution s = solve(scene, whole());
+  RadiositySolution s = solve(scene, wholeTriangles());
   s.deviations.centroid = true;
   saveSolution(folder.path() / "s", scene, s);
   EXPECT_TRUE(loadSolution(folder.path() / "s", scene).deviations.centroid);
@@ -228,9 +222,9 @@ TEST_F(RadiositySolutions, EachDeviationDoesWhatItSays) {
     if (lit < 0) lit = lambertian(b, 0.5, 1.0), grey = lambertian(b, 0.5);
     return wall == 1 && std::abs(u - 0.5) < 0.3 && std::abs(v - 0.5) < 0.3 ? lit : grey;
   }));
-  const RadiositySolution right = solve(scene, whole(1e-5));
+  const RadiositySolution right = solve(scene, wholeTriangles(1e-5));
   const auto rms = [&](bool RadiosityDeviations::*member) {
-    RadiositySolutionSettings settings = whole(1e-5);
+    RadiositySolutionSettings settings = wholeTriangles(1e-5);
     settings.deviations.*member = true;
     const RadiositySolution s = solve(scene, settings);
     EXPECT_TRUE(s.deviations.*member);
@@ -246,13 +240,13 @@ TEST_F(RadiositySolutions, EachDeviationDoesWhatItSays) {
   EXPECT_LT(roll, 0.03);  // noise of 32 pixels
   EXPECT_GT(far, roll);
   EXPECT_LT(far, 0.1);
-  RadiositySolutionSettings whole24 = whole();
+  RadiositySolutionSettings whole24 = wholeTriangles();
   whole24.deviations.values24Bit = true;
   EXPECT_THROW(solve(scene, whole24), Error);
   // What comes from emitters is part of all that comes, and nothing else is: without reflection it is all.
   Scene black = scene;
   for (Material& m : black.materials) m.diffuse = glm::vec3(0.0f);
-  const RadiositySolution once = solve(black, whole(1e-5));
+  const RadiositySolution once = solve(black, wholeTriangles(1e-5));
   double least = 1e300;
   for (std::size_t i = 0; i < once.irradiance.size(); ++i) {
     ASSERT_NEAR(once.fromEmitters[i].x, once.irradiance[i].x, 1e-9);
@@ -264,7 +258,7 @@ TEST_F(RadiositySolutions, EachDeviationDoesWhatItSays) {
 
 TEST_F(RadiositySolutions, WithoutMemoryRowsAreComputedAnewToTheSameAnswer) {
   const Scene scene = dark(cubeRoom(3, 0.6, 1.0));
-  RadiositySolutionSettings settings = whole(1e-5), little = whole(1e-5);
+  RadiositySolutionSettings settings = wholeTriangles(1e-5), little = wholeTriangles(1e-5);
   little.memoryBytes = 1000;
   const RadiositySolution kept = solve(scene, settings), anew = solve(scene, little);
   EXPECT_TRUE(kept.keptRows);
@@ -276,7 +270,7 @@ TEST_F(RadiositySolutions, WithoutMemoryRowsAreComputedAnewToTheSameAnswer) {
 
 TEST_F(RadiositySolutions, ReflectanceOneInAClosedRoomIsRefused) {
   try {
-    solve(dark(cubeRoom(2, 1.0, 1.0)), whole());
+    solve(dark(cubeRoom(2, 1.0, 1.0)), wholeTriangles());
     ADD_FAILURE() << "solved";
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), ErrorKind::badInput);

@@ -17,6 +17,7 @@ namespace {
 
 using test::cubeRoom;
 using test::lambertian;
+using test::pixelsAlone;
 using test::SceneBuilder;
 
 constexpr HemicubeVisibility kWays[] = {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer};
@@ -45,12 +46,6 @@ class HemicubeVisibilityTest : public test::SharedProgramsTest {
       }
     }
     return all;
-  }
-  static HemicubeSettings pixelsAlone(int resolution) {
-    HemicubeSettings settings;
-    settings.resolution = resolution;
-    settings.exactPixels = 0;
-    return settings;
   }
   static Scene litCube(int n) {
     return cubeRoom(n, [](SceneBuilder& builder, int wall, double u, double v) {

@@ -61,8 +61,8 @@ class BenchProof : public test::SharedProgramsTest {
 
 // The Cornell box, whose light comes by paths of many random numbers. Where two numbers decide nearly all (the open box under the sun) the low-discrepancy points of the first
 // events do better than independent samples: there the slope was -0.586 +- 0.009. Time is the processor's, so that what else the machine does is not counted, from a tracer that
-// has run before: compiling and the first submissions are baking, as `bench error` has it. From 32 samples on: a pass doubles what there is, and in the first ones lanes wait for the
-// longest path of so few (a sample alone costs 1.6 times what one of a hundred does; with those the slope by time is -0.57).
+// has run before: compiling and the first submissions are baking, as `bench error` has it. At the end of a run lanes wait for its longest path, a cost that does not grow with the
+// samples: over 64x64 pixels it is small from 32 samples on (over 32x32 these cost 1.4 times what they do in a long run, and the slope by time was -0.52 to -0.56).
 TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
   struct Painted {
@@ -71,7 +71,7 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   };
   const auto paint = [&](std::uint32_t seed, std::uint32_t samples) {
     PathTracer::Settings settings;
-    settings.size = {32, 32};
+    settings.size = {64, 64};
     settings.diffuseOnly = settings.pixelCentres = true;
     settings.seed = seed;
     PathTracer t(context(), library(), scene, settings);
@@ -89,7 +89,7 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   for (std::uint32_t n : {32u, 64u, 128u, 256u, 512u, 1024u, 2048u, 4096u}) {
     double mse = 0.0;
     std::vector<double> times;
-    const std::uint32_t seeds = std::max(1u, 256u / n);  // few samples have the widest spread of errors
+    const std::uint32_t seeds = std::max(1u, 128u / n);  // few samples have the widest spread of errors
     for (std::uint32_t seed = 0; seed < seeds; ++seed) {
       const Painted painted = paint(100 * n + seed, n);
       const double nrmse = measure::lessNoise(measure::errorsOf(painted.mean, truth.mean()), noise).nrmse;
@@ -105,11 +105,8 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   for (std::size_t i = 0; i < errors.size(); ++i) rungs += fmt::format(" {:.4f} in {:.4f} s,", errors[i], seconds[i]);
   std::printf("samples^(%.3f +- %.3f), seconds^(%.3f +- %.3f): NRMSE%s\n", bySamples.slope, bySamples.error, byTime.slope, byTime.error, rungs.c_str());
   EXPECT_NEAR(bySamples.slope, -0.5, 0.05) << "+- " << bySamples.error << ", NRMSE" << rungs;
-  // Processor time of the same work swings by a tenth or two where others share the machine, which the exponent by samples does not feel: -0.520 over a factor
-  // of 129 in one run, -0.546 over 93 and -0.555 over 95 in others. What time has over samples is allowed half as much again.
-  EXPECT_NEAR(byTime.slope, -0.5, 0.075) << "+- " << byTime.error << ", NRMSE" << rungs;
-  EXPECT_GE(samples.back() / samples.front(), 100.0);
-  EXPECT_GE(seconds.back() / seconds.front(), 64.0) << rungs;
+  EXPECT_NEAR(byTime.slope, -0.5, 0.05) << "+- " << byTime.error << ", NRMSE" << rungs;
+  EXPECT_GE(seconds.back() / seconds.front(), 100.0) << rungs;
 }
 
 // Six seeds, each within 3 standard errors: all of them fail to be with probability 6 * 0.0027 = 1.6 %; the seeds are fixed.

@@ -54,4 +54,19 @@ void addSphere(SceneBuilder& builder, double radius, int level, bool inside, con
   for (const auto& f : faces) divide(glm::normalize(p[static_cast<std::size_t>(f[0])]), glm::normalize(p[static_cast<std::size_t>(f[1])]), glm::normalize(p[static_cast<std::size_t>(f[2])]), level);
 }
 
+RadiositySolutionSettings wholeTriangles(double error) {
+  RadiositySolutionSettings settings;
+  settings.wholeTriangles = true;
+  settings.hemicubes.resolution = 32;
+  settings.error = error;
+  return settings;
+}
+
+HemicubeSettings pixelsAlone(int resolution) {
+  HemicubeSettings settings;
+  settings.resolution = resolution;
+  settings.exactPixels = 0;
+  return settings;
+}
+
 }  // namespace lucerna::test

@@ -1,7 +1,7 @@
 // Closed and open scenes for radiosity, as patches made in memory.
 #pragma once
 
-#include "radiosity/patches.hpp"
+#include "radiosity/solution.hpp"
 #include "support/small_scenes.hpp"
 
 #include <functional>
@@ -16,6 +16,11 @@ int lambertian(SceneBuilder& builder, double reflectance, double exitance = 0.0)
 Scene cubeRoom(int n, const std::function<int(SceneBuilder&, int wall, double u, double v)>& material);
 /// The same, all of one material.
 Scene cubeRoom(int n, double reflectance, double exitance);
+
+/// A triangle a patch, hemicubes of 32 pixels, solved to a guaranteed `error`.
+RadiositySolutionSettings wholeTriangles(double error = 1e-6);
+/// Form factors by pixels alone, without closed forms.
+HemicubeSettings pixelsAlone(int resolution);
 
 /// A sphere of triangles from a subdivided icosahedron, seen from inside (front within) or outside.
 void addSphere(SceneBuilder& builder, double radius, int level, bool inside, const std::function<int(const glm::dvec3& centroid)>& material);
