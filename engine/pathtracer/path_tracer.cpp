@@ -426,11 +426,12 @@ void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::strin
   tileBegun_ = false;
 }
 
-bool PathTracer::advance(std::uint32_t samples) {
+bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   if (done_ >= samples) return false;
   if (passTarget_ == done_ || passTarget_ > samples) {
-    // A pass doubles the samples, so that pictures come early and lanes seldom wait for the last path of a tile.
-    passTarget_ = done_ + std::min(samples - done_, std::clamp(done_, 1u, needs_.media ? 1024u : 64u));
+    // At the end of a pass lanes wait for the last path of a tile. A pass that doubles the samples lets them wait seldom and yet pictures come early.
+    const std::uint32_t most = needs_.media ? 1024 : 64;
+    passTarget_ = done_ + std::min(samples - done_, passes == Passes::whole ? most : std::clamp(done_, 1u, most));
     if (!tileBegun_) tile_ = 0;
   }
   const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_, rows = (settings_.size.y + tileSide_ - 1) / tileSide_;

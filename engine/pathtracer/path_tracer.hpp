@@ -70,9 +70,9 @@ class PathTracer {
   /// Sets the view and empties the film.
   void setCamera(const Camera& camera);
   /// One submission towards `samples` samples in every pixel, waited for. False once all have them.
-  bool advance(std::uint32_t samples);
-  /// All that is missing.
-  void record(std::uint32_t samples) { while (advance(samples)) {} }
+  bool advance(std::uint32_t samples) { return submit(samples, Passes::doubling); }
+  /// All that is missing, in as few passes as may be: nobody looks at the picture on the way.
+  void record(std::uint32_t samples) { while (submit(samples, Passes::whole)) {} }
 
   Image mean() const;           ///< radiance, linear, scene units, top row first; pixels without a sample are 0
   Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
@@ -98,6 +98,8 @@ class PathTracer {
   bool hasInteriors() const { return needs_.dielectrics || needs_.nullBoundaries || needs_.media; }
   /// Grids of distances to the nearest triangle for the boundaries of dense media.
   void addClearances(const Scene& scene);
+  enum class Passes { doubling, whole };
+  bool submit(std::uint32_t samples, Passes passes);
   void dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target);
 
   Settings settings_;

@@ -1,6 +1,7 @@
 #include "radiosity/direct_light.hpp"
 
 #include "gl/pass.hpp"
+#include "pathtracer/ray_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +10,11 @@ namespace lucerna {
 
 namespace {
 
+/// As blocked.comp reads it.
 struct Ray {
-  glm::vec4 origin, direction;
+  glm::vec4 origin;     ///< in the hierarchy's space; w: the patch
+  glm::vec4 direction;  ///< to the light, its length the distance
+  glm::vec4 normal;     ///< of the patch; w: the largest of its coordinates
 };
 
 /// What arrives at a point if nothing is between: the way to the light, and irradiance across it.
@@ -36,26 +40,20 @@ std::vector<Arrival> arrivals(const Scene& scene, const glm::dvec3& point, doubl
 
 }  // namespace
 
-std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const Scene& scene, const RadiosityMesh& mesh, std::size_t rays) {
+std::vector<glm::dvec3> directLight(const gl::Capabilities& capabilities, gl::ProgramLibrary& programs, const Scene& scene, const RadiosityMesh& mesh, std::size_t rays) {
   std::vector<glm::dvec3> irradiance(mesh.patches.size(), glm::dvec3(0.0));
   const std::size_t lights = (scene.sun ? 1 : 0) + scene.spots.size() + scene.points.size();
   if (lights == 0) return irradiance;
   const int parts = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(rays) / static_cast<double>(lights * mesh.patches.size()))), 1, 4);
   const double beyond = 4.0 * mesh.extent;
 
-  std::vector<float> corners;
-  for (const Patch& patch : mesh.patches)
-    for (const glm::dvec3& corner : mesh.corners(patch))
-      for (int axis = 0; axis < 3; ++axis) corners.push_back(static_cast<float>(corner[axis]));
-  const gl::Buffer cornerBuffer("direct light corners", corners.size() * sizeof(float), corners.data(), GL_STATIC_DRAW);
-  const gl::Program& program = programs.loadCompute("direct light", "radiosity/blocked.comp");
+  const RayScene rayScene(sceneOf(mesh), capabilities);
+  const gl::Program& program = programs.loadCompute("direct light", "radiosity/blocked.comp", {{"ALPHA_MASKS", 0}});
 
   // Patches in runs whose rays fill one submission.
   constexpr std::size_t kRaysEach = 1 << 16;
-  constexpr int kTrianglesEach = 16384;  // well below the turns that software renderers allow a loop
   const std::size_t raysOfPatch = static_cast<std::size_t>(parts * parts) * lights;
   const std::size_t patchesEach = std::max<std::size_t>(kRaysEach / raysOfPatch, 1);
-  const int count = static_cast<int>(mesh.patches.size());
   for (std::size_t first = 0; first < mesh.patches.size(); first += patchesEach) {
     std::vector<Ray> batch;
     struct Sample {
@@ -66,6 +64,9 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const Scene& s
     for (std::size_t p = first; p < std::min(first + patchesEach, mesh.patches.size()); ++p) {
       const Patch& patch = mesh.patches[p];
       const auto c = mesh.corners(patch);
+      double largest = 0.0;
+      for (const glm::dvec3& corner : c) largest = std::max({largest, std::abs(corner.x - rayScene.origin().x), std::abs(corner.y - rayScene.origin().y), std::abs(corner.z - rayScene.origin().z)});
+      const glm::vec4 normal(glm::vec3(patch.faceNormal), static_cast<float>(largest));
       for (int i = 0; i < parts; ++i)
         for (int j = 0; j < 2 * (parts - i) - 1; ++j) {
           const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0, u = (i + third) / parts, v = (j / 2 + third) / parts;
@@ -73,22 +74,19 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const Scene& s
           for (const Arrival& arrival : arrivals(scene, point, beyond)) {
             const double cosine = glm::dot(glm::normalize(arrival.toLight), patch.faceNormal);
             if (cosine <= 0.0 || arrival.irradiance == glm::dvec3(0.0)) continue;
-            batch.push_back({glm::vec4(glm::vec3(point), static_cast<float>(p)), glm::vec4(glm::vec3(arrival.toLight), 0.0f)});
+            batch.push_back({glm::vec4(glm::vec3(point - rayScene.origin()), static_cast<float>(p)), glm::vec4(glm::vec3(arrival.toLight), 0.0f), normal});
             samples.push_back({p, arrival.irradiance * (cosine / (parts * parts))});
           }
         }
     }
     if (batch.empty()) continue;
     const gl::Buffer rayBuffer("direct light rays", batch.size() * sizeof(Ray), batch.data(), GL_STREAM_DRAW);
-    gl::Buffer blocked("direct light blocked", batch.size() * sizeof(GLuint), nullptr, GL_DYNAMIC_READ);
-    blocked.clear();
-    for (int triangle = 0; triangle < count; triangle += kTrianglesEach) {
+    const gl::Buffer blocked("direct light blocked", batch.size() * sizeof(GLuint), nullptr, GL_DYNAMIC_READ);
+    {
       const gl::ComputePass pass("direct light", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
       program.use();
       program.set("rayCount", static_cast<int>(batch.size()));
-      program.set("firstTriangle", triangle);
-      program.set("lastTriangle", std::min(triangle + kTrianglesEach, count));
-      cornerBuffer.bind(GL_SHADER_STORAGE_BUFFER, 0);
+      rayScene.bind();
       rayBuffer.bind(GL_SHADER_STORAGE_BUFFER, 1);
       blocked.bind(GL_SHADER_STORAGE_BUFFER, 2);
       pass.dispatch({static_cast<int>(batch.size()), 1, 1}, {64, 1, 1});

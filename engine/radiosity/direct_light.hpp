@@ -1,6 +1,7 @@
-// Irradiance of patches by what is no patch: the sun, spot and omnidirectional lights. Rays on the GPU, one a light and part of a patch.
+// Irradiance of patches by what is no patch: the sun, spot and omnidirectional lights. Rays through the path tracer's hierarchy, one a light and part of a patch.
 #pragma once
 
+#include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "radiosity/patches.hpp"
 
@@ -9,7 +10,7 @@
 namespace lucerna {
 
 /// Mean over each patch, scene units; zeros where the scene has no such light. A patch is sampled at the centroids of parts x parts equal
-/// triangles, `parts` chosen so that the rays stay about `rays`.
-std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const Scene& scene, const RadiosityMesh& mesh, std::size_t rays = 400000);
+/// triangles, `parts` from 4 down so that the rays stay about `rays`.
+std::vector<glm::dvec3> directLight(const gl::Capabilities& capabilities, gl::ProgramLibrary& programs, const Scene& scene, const RadiosityMesh& mesh, std::size_t rays = 5'000'000);
 
 }  // namespace lucerna

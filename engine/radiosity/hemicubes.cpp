@@ -1,8 +1,8 @@
 #include "radiosity/hemicubes.hpp"
 
 #include "base/error.hpp"
-#include "base/named_values.hpp"
 #include "base/log.hpp"
+#include "base/named_values.hpp"
 #include "gl/pass.hpp"
 #include "pathtracer/ray_scene.hpp"
 
@@ -19,7 +19,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kItemsUnit = 56, kKeysUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kKeys = 2, kFactors = 4, kSources = 5, kExactList = 6, kLargeList = 8;
+constexpr GLuint kItemsUnit = 56, kKeysUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kKeys = 2, kFactors = 4, kSources = 5, kExactList = 6, kKeptList = 7, kLargeList = 8;
 constexpr int kGroup = 64;
 constexpr int kHemicubesEach = 8;
 constexpr std::size_t kMostHemicubes = 256;  // of hemicube.glsl: their frames are 16 KiB, what every driver has
@@ -33,22 +33,6 @@ constexpr std::array kVisibilities{
     std::pair{HemicubeVisibility::raster, "raster"},
     std::pair{HemicubeVisibility::rays, "rays"},
 };
-
-/// Patches as a scene of their own, in order, for a hierarchy.
-Scene sceneOf(const RadiosityMesh& mesh) {
-  Scene scene;
-  scene.materials.emplace_back();
-  for (const Patch& patch : mesh.patches)
-    for (const glm::dvec3& corner : mesh.corners(patch)) {
-      scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
-      scene.vertices.emplace_back().position = glm::vec3(corner);
-      scene.bounds.add(glm::dvec3(scene.vertices.back().position));
-    }
-  Mesh& all = scene.meshes.emplace_back();
-  all.material = 0;
-  all.indexCount = static_cast<std::uint32_t>(scene.indices.size());
-  return scene;
-}
 
 /// The same for a seed and a patch in every run and batch; 0..1. [Steele2014], its finaliser.
 double hashed(std::uint32_t seed, std::uint32_t patch) {
@@ -75,40 +59,48 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   const auto patches = static_cast<std::size_t>(patchCount_);
   const auto limit = static_cast<std::size_t>(std::max(capabilities.maxShaderStorageBlockSize, 1 << 24));
   const std::size_t keyBytes = 3 * static_cast<std::size_t>(settings.resolution * settings.resolution) * sizeof(GLuint), factorBytes = patches * sizeof(float);
-  const std::size_t each = std::max(keyBytes, 2 * factorBytes + 8);
-  if (9 * factorBytes > limit || each > limit)
+  const bool items = settings_.visibility != HemicubeVisibility::raster;
+  double emitting = 0.0;
+  for (const Patch& patch : mesh.patches) emitting += patch.emission != glm::dvec3(0.0) ? patch.area : 0.0;
+  const bool smallSources = emitting < kSmallSources * mesh.area();
+  for (const Patch& patch : mesh.patches) smallSources_.push_back(smallSources && patch.emission != glm::dvec3(0.0));
+  std::vector<std::uint32_t> sources = smallSources_;
+  for (std::uint32_t i = 0; i < patches; ++i)
+    if (smallSources_[i]) sources.push_back(i);
+  sourceCount_ = static_cast<int>(sources.size() - patches);
+  // Pixels that name their patches name so many at most, beside the small sources.
+  const std::size_t listed = items ? std::min(patches, keyBytes / sizeof(GLuint)) + sources.size() - patches : patches;
+  const std::size_t each = std::max({keyBytes, factorBytes, listed * sizeof(glm::uvec2) + 16});
+  if (each > limit)
     throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need storage blocks of {} bytes, this driver's end at {}: use longer edges or smaller hemicubes",
-                           patches, settings.resolution, std::max(9 * factorBytes, each), limit);
+                           patches, settings.resolution, each, limit);
   const auto texels = static_cast<std::size_t>(std::max(capabilities.maxTextureBufferSize, 1 << 16));
   if (3 * patches > texels || keyBytes / sizeof(GLuint) > texels)
     throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's end at {}", patches, settings.resolution,
                            std::max(3 * patches, keyBytes / sizeof(GLuint)), texels);
-  // A software renderer does best inside the processor's cache, a GPU with work for all of its cores.
-  const std::size_t wanted = settings.batchBytes ? settings.batchBytes : std::size_t{capabilities.softwareRenderer ? 4u : 64u} << 20;
+  // A software renderer does best inside the processor's cache, a GPU with work for all of its cores. Rays touch little of what they have.
+  const bool inCache = capabilities.softwareRenderer && settings_.visibility != HemicubeVisibility::rays;
+  const std::size_t wanted = settings.batchBytes ? settings.batchBytes : std::size_t{inCache ? 4u : 64u} << 20;
   batch_ = static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1, std::min({patches, kMostHemicubes, texels * sizeof(GLuint) / keyBytes})));
-  const bool items = settings_.visibility != HemicubeVisibility::raster;
   if (settings_.visibility == HemicubeVisibility::itemBuffer) batch_ = std::clamp(std::min(batch_, capabilities.maxArrayTextureLayers / 5), 1, batch_);
 
   std::vector<glm::vec4> corners;
   corners.reserve(3 * patches);
-  double emitting = 0.0;
-  for (const Patch& patch : mesh.patches) emitting += patch.emission != glm::dvec3(0.0) ? patch.area : 0.0;
-  const bool smallSources = emitting < kSmallSources * mesh.area();
-  for (const Patch& patch : mesh.patches) {
+  for (const Patch& patch : mesh.patches)
     for (const glm::dvec3& corner : mesh.corners(patch)) corners.emplace_back(glm::vec3(corner), 0.0f);
-    smallSources_.push_back(smallSources && patch.emission != glm::dvec3(0.0));
-  }
   std::vector<float> deltas;
   for (const double d : deltaFormFactors(settings.resolution, settings.map)) deltas.push_back(static_cast<float>(d));
   corners_ = gl::BufferTexture("radiosity corners", GL_RGBA32F, corners.size() * sizeof(glm::vec4), corners.data());
-  sources_ = gl::Buffer("radiosity sources", smallSources_.size() * sizeof(GLuint), smallSources_.data(), GL_STATIC_DRAW);
+  sources_ = gl::Buffer("radiosity sources", sources.size() * sizeof(GLuint), sources.data(), GL_STATIC_DRAW);
   deltaFactors_ = gl::BufferTexture("delta form factors", GL_R32F, deltas.size() * sizeof(float), deltas.data());
   const auto batch = static_cast<std::size_t>(batch_);
   frames_ = gl::Buffer("hemicube frames", kMostHemicubes * sizeof(Frame), nullptr, GL_DYNAMIC_DRAW);
   keys_ = gl::BufferTexture("hemicube pixels", GL_R32UI, batch * keyBytes, nullptr);
   factors_ = storage("form factors", batch * factorBytes);
-  exactList_ = storage("exact form factors", 8 + batch * patches * sizeof(glm::uvec2));
-  largeList_ = storage("large patches", 16 + batch * patches * sizeof(GLuint));
+  factors_.clear();
+  if (items) keptList_ = storage("kept patches", 16 + batch * listed * sizeof(glm::uvec2));
+  exactList_ = storage("exact form factors", 8 + batch * listed * sizeof(glm::uvec2));
+  largeList_ = storage("large patches", 16 + batch * listed * sizeof(GLuint));
   if (settings_.visibility == HemicubeVisibility::raster) {
     depth_ = &programs.loadCompute("hemicube depth", "radiosity/hemicube_depth.comp", {{"LARGE", 0}});
     depthLarge_ = &programs.loadCompute("hemicube depth large", "radiosity/hemicube_depth.comp", {{"LARGE", 1}});
@@ -198,7 +190,10 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
       else pass.dispatchIndirect(largeList_);
     }
   } else {
-    factors_.clear();
+    const auto sources = static_cast<GLuint>(count * sourceCount_);
+    const GLuint begun[4] = {(sources + kGroup - 1) / kGroup, 1, 1, sources};
+    keptList_.upload(0, sizeof begun, begun);
+    keptList_.bind(GL_SHADER_STORAGE_BUFFER, kKeptList);
     if (itemBuffer_) {
       gl::RasterState state;
       state.depth = gl::Depth::lessWrite;
@@ -222,10 +217,12 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
     }
     pass.dispatch(pixels, pixelsGroup);
   }
+  const bool listed = settings_.visibility != HemicubeVisibility::raster;
   for (const gl::Program* program : {sum_, sumLarge_, exact_}) {
     const gl::ComputePass pass(program->name(), kBarrier);
     begin(*program, first, count);
-    if (program == sum_) pass.dispatch(triangles, trianglesGroup);
+    if (program == sum_ && listed) pass.dispatchIndirect(keptList_);
+    else if (program == sum_) pass.dispatch(triangles, trianglesGroup);
     else if (program == sumLarge_) pass.dispatchIndirect(largeList_);
     else pass.dispatch(glm::ivec3(kExactGroups, 1, 1), glm::ivec3(1));
   }
@@ -233,7 +230,14 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   drawn.first = first;
   drawn.count = count;
   drawn.patchCount = patchCount_;
-  drawn.factors = factors_.read<float>(static_cast<std::size_t>(count) * static_cast<std::size_t>(patchCount_));
+  drawn.listed = listed;
+  if (listed) {
+    constexpr std::size_t kHead = 2;  // the list begins with a dispatch
+    drawn.kept = keptList_.read<glm::uvec2>(kHead + keptList_.readFirst<std::array<GLuint, 4>>()[3]);
+    drawn.kept.erase(drawn.kept.begin(), drawn.kept.begin() + kHead);
+  } else {
+    drawn.factors = factors_.read<float>(static_cast<std::size_t>(count) * static_cast<std::size_t>(patchCount_));
+  }
   drawn.exact = exactList_.read<glm::uvec2>(1 + exactList_.readFirst<GLuint>());
   drawn.exact.erase(drawn.exact.begin());
   return drawn;
@@ -261,12 +265,48 @@ void Hemicubes::begin(const gl::Program& program, int first, int count) const {
   program.set("firstPatch", first);
   program.set("hemicubes", count);
   program.set("hemicubesEach", kHemicubesEach);
+  program.set("sourceCount", sourceCount_);
   program.set("exactPixels", settings_.exactPixels);
   program.set("nearDistance", settings_.nearDistance);
   program.set("mostParts", settings_.mostParts);
 }
 
+namespace {
+
+FormFactorRows rowsOfListed(const DrawnHemicubes& drawn) {
+  struct Entry {
+    std::uint32_t at;
+    float byPixels, factor;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(drawn.kept.size());
+  for (const glm::uvec2& kept : drawn.kept) entries.push_back({kept.x, std::bit_cast<float>(kept.y), std::bit_cast<float>(kept.y)});
+  for (const glm::uvec2& exact : drawn.exact) entries[exact.x].factor = std::bit_cast<float>(exact.y);
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.at < b.at; });
+  FormFactorRows result;
+  result.first = drawn.first;
+  auto entry = entries.begin();
+  for (int row = 0; row < drawn.count; ++row) {
+    const auto begin = static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(drawn.patchCount);
+    const std::size_t before = result.patches.size();
+    double front = 0.0, back = 0.0;
+    for (; entry != entries.end() && entry->at - begin < static_cast<std::uint32_t>(drawn.patchCount); ++entry) {
+      (entry->byPixels > 0.0f ? front : back) += std::abs(static_cast<double>(entry->byPixels));
+      if (!(entry->factor > 0.0f)) continue;
+      result.patches.push_back(entry->at - begin);
+      result.factors.push_back(entry->factor);
+    }
+    result.fronts.push_back(static_cast<float>(front));
+    result.backs.push_back(static_cast<float>(back));
+    result.counts.push_back(static_cast<std::uint32_t>(result.patches.size() - before));
+  }
+  return result;
+}
+
+}  // namespace
+
 FormFactorRows rowsOf(DrawnHemicubes drawn) {
+  if (drawn.listed) return rowsOfListed(drawn);
   const auto patches = static_cast<std::size_t>(drawn.patchCount), rowCount = static_cast<std::size_t>(drawn.count);
   FormFactorRows result;
   result.first = drawn.first;
@@ -305,7 +345,7 @@ FormFactorRows rowsOf(DrawnHemicubes drawn) {
 }
 
 std::size_t Hemicubes::gpuBytes() const {
-  return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + keys_.bytes() + factors_.bytes() + exactList_.bytes() + largeList_.bytes() +
+  return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + keys_.bytes() + factors_.bytes() + keptList_.bytes() + exactList_.bytes() + largeList_.bytes() +
          (rays_ ? rays_->gpuBytes() : 0) + (itemBuffer_ ? itemBuffer_->items.bytes() + itemBuffer_->depth.bytes() : 0);
 }
 

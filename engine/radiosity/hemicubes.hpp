@@ -59,8 +59,10 @@ struct FormFactorRows {
 /// What a batch left on the GPU, read back.
 struct DrawnHemicubes {
   int first = 0, count = 0, patchCount = 0;
+  bool listed = false;             ///< rays, item buffer: what pixels saw is in `kept`; raster: in `factors`
   std::vector<float> factors;      ///< hemicube-major, by pixels; below 0 where a back was seen
-  std::vector<glm::uvec2> exact;   ///< hemicube * patchCount + patch; bits of the closed form, which replaces the pixels'
+  std::vector<glm::uvec2> kept;    ///< hemicube * patchCount + patch, in no order; bits of such a factor
+  std::vector<glm::uvec2> exact;   ///< place in `factors` or `kept`; bits of the closed form, which replaces the pixels'
 };
 /// Touches no GL: a thread of its own may do it while the next batch is drawn.
 FormFactorRows rowsOf(DrawnHemicubes drawn);
@@ -117,7 +119,8 @@ class Hemicubes {
   std::unique_ptr<RayScene> rays_;
   std::optional<ItemBuffer> itemBuffer_;
   gl::BufferTexture corners_, deltaFactors_, keys_;
-  gl::Buffer sources_, frames_, factors_, exactList_, largeList_;
+  gl::Buffer sources_, frames_, factors_, keptList_, exactList_, largeList_;
+  int sourceCount_ = 0;
 };
 
 }  // namespace lucerna

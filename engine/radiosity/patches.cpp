@@ -274,6 +274,21 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
   return mesh;
 }
 
+Scene sceneOf(const RadiosityMesh& mesh) {
+  Scene scene;
+  scene.materials.emplace_back();
+  for (const Patch& patch : mesh.patches)
+    for (const glm::dvec3& corner : mesh.corners(patch)) {
+      scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+      scene.vertices.emplace_back().position = glm::vec3(corner);
+      scene.bounds.add(glm::dvec3(scene.vertices.back().position));
+    }
+  Mesh& all = scene.meshes.emplace_back();
+  all.material = 0;
+  all.indexCount = static_cast<std::uint32_t>(scene.indices.size());
+  return scene;
+}
+
 std::size_t countTJunctions(const RadiosityMesh& mesh) {
   std::vector<bool> used(mesh.points.size(), false);
   for (const Patch& patch : mesh.patches)

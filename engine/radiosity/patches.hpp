@@ -60,6 +60,9 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings);
 RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const PatchSettings& settings,
                       const std::function<bool(std::size_t, int)>& marked, std::vector<std::uint32_t>* parent = nullptr);
 
+/// Patches as a scene of their own, in order and of one material, for a hierarchy.
+Scene sceneOf(const RadiosityMesh& mesh);
+
 /// Vertices that lie inside another patch's edge: where light is lost through cracks. Counts each such vertex once; quadratic, for tests.
 std::size_t countTJunctions(const RadiosityMesh& mesh);
 

@@ -66,7 +66,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     return !onStage || onStage({kind, refinement, done, n, progress});
   };
   stage(RadiosityStage::Kind::direct, 0);
-  solution.direct = directLight(programs, scene, mesh);
+  solution.direct = directLight(context.capabilities(), programs, scene, mesh);
 
   FormFactorMatrix matrix;
   solution.fronts.clear();

@@ -6,6 +6,9 @@
 layout(local_size_x = 64) in;
 
 layout(binding = 57) uniform usamplerBuffer keys;  // of pass 1
+#if ITEMS
+#include "radiosity/hemicube_keep.glsl"
+#endif
 layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };  // the share's place takes the form factor
 uniform float nearDistance;  // a receiver is divided so that (distance / size of a part) reaches this; 0: never
 uniform int mostParts;       // a side, at most
@@ -52,7 +55,12 @@ bool nearestAtCentroid(Frame frame, Triangle t, int firstPixel) {
 
 void main() {
   for (uint i = gl_GlobalInvocationID.x; i < listed; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
-    int hemicube = int(list[i].x) / patchCount, index = int(list[i].x) % patchCount;
+#if ITEMS
+    int entry = int(keptList[list[i].x].x);
+#else
+    int entry = int(list[i].x);
+#endif
+    int hemicube = entry / patchCount, index = entry % patchCount;
     float share = uintBitsToFloat(list[i].y);
     Frame frame = frames[hemicube];
     Triangle t = triangleOf(frame, index);

@@ -1,5 +1,5 @@
 // Item buffer, second pass: its layers become one row of pixels a hemicube, as the other ways write them, and each patch's share of the
-// hemisphere is summed. x: pixels, y: hemicubes of the batch.
+// hemisphere is summed (hemicube_keep.glsl). x: pixels, y: hemicubes of the batch.
 #include "radiosity/hemicube.glsl"
 #include "radiosity/hemicube_keep.glsl"
 
@@ -7,7 +7,6 @@ layout(local_size_x = 64) in;
 layout(binding = 56) uniform usampler2DArray drawn;       // a layer a face, half faces in the upper half
 layout(binding = 58) uniform samplerBuffer deltaFactors;  // the full face, then one half face
 layout(std430, binding = 2) writeonly buffer Items { uint items[]; };
-layout(std430, binding = 4) buffer Kept { uint kept[]; };  // hemicube-major
 
 void main() {
   int pixel = int(gl_GlobalInvocationID.x), hemicube = int(gl_WorkGroupID.y);
@@ -16,5 +15,5 @@ void main() {
   uint item = texelFetch(drawn, ivec3(place.y, place.z + (place.x == 0 ? 0 : faceSize / 2), 5 * hemicube + place.x), 0).x;
   items[hemicube * pixelsPerHemicube() + pixel] = item;
   float delta = texelFetch(deltaFactors, pixel - facePixels(place.x) + (place.x == 0 ? 0 : 2 * halfFacePixels)).x;
-  if (item > 0u) atomicAdd(kept[hemicube * patchCount + int(item) - 1], uint(delta * KEPT_WHOLE + 0.5));
+  if (item > 0u) keep(hemicube, int(item) - 1, delta);
 }

@@ -1,5 +1,5 @@
 // Hemicubes by rays: one through each pixel's centre, through the hierarchy of the path tracer. x: pixels, y: hemicubes of the batch.
-// Written: the pixel's patch + 1, 0 where there is none; each patch's share of the hemisphere is summed.
+// Written: the pixel's patch + 1, 0 where there is none; each patch's share of the hemisphere is summed (hemicube_keep.glsl).
 #include "radiosity/hemicube.glsl"
 #include "radiosity/hemicube_keep.glsl"
 #include "pathtracer/bvh.glsl"
@@ -7,7 +7,6 @@
 layout(local_size_x = 64) in;
 layout(binding = 58) uniform samplerBuffer deltaFactors;  // the full face, then one half face
 layout(std430, binding = 2) writeonly buffer Items { uint items[]; };
-layout(std430, binding = 4) buffer Kept { uint kept[]; };  // hemicube-major
 uniform vec3 raysOrigin;  // of the hierarchy's space
 
 uint firstMet(Ray ray, uint skip) {
@@ -44,5 +43,5 @@ void main() {
   bool met = patchIndex != kNoHit;
   items[hemicube * pixelsPerHemicube() + pixel] = met ? patchIndex + 1u : 0u;
   float delta = texelFetch(deltaFactors, pixel - facePixels(place.x) + (place.x == 0 ? 0 : 2 * halfFacePixels)).x;
-  if (met) atomicAdd(kept[hemicube * patchCount + int(patchIndex)], uint(delta * KEPT_WHOLE + 0.5));
+  if (met) keep(hemicube, int(patchIndex), delta);
 }

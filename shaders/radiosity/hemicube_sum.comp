@@ -2,15 +2,19 @@
 // the form factor, negative where a patch's back was seen. What pass 3 (hemicube_exact.comp) knows better is listed for it, with the share of
 // its pixels that was seen.
 // ITEMS 1: pixels name their patches, and hemicube_keep.glsl has summed already what each kept; sums here are of what it covers.
-// LARGE 0: x: triangles, y: hemicubes of the batch. LARGE 1: what pass 1 listed, a work group each; after it, as it writes over it.
+// LARGE 0: x: hemicubes of the batch, y: triangles; ITEMS: x: what was listed as kept. LARGE 1: what is listed as large, a work group each; after pass 1, as it writes over it.
 #include "radiosity/hemicube_walk.glsl"
-#include "radiosity/hemicube_keep.glsl"
 
 layout(binding = 57) uniform usamplerBuffer keys;          // of pass 1
 layout(binding = 58) uniform samplerBuffer deltaFactors;   // the full face, then one half face
-layout(std430, binding = 4) buffer Factors { uint factors[]; };  // bits of floats, hemicube-major; ITEMS: first whole numbers
-layout(std430, binding = 5) readonly buffer Sources { uint sources[]; };             // 1 where a patch is a small source
-layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };  // hemicube * patchCount + patch; share as bits, negative: no pixel
+#if ITEMS
+#include "radiosity/hemicube_keep.glsl"
+uniform int sourceCount;  // small sources
+#else
+layout(std430, binding = 4) writeonly buffer Factors { float factors[]; };  // hemicube-major
+layout(std430, binding = 5) readonly buffer Sources { uint sources[]; };    // 1 where a patch is a small source
+#endif
+layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };  // place of the form factor; share as bits, negative: no pixel
 uniform int exactPixels;  // as many covered pixels, and the closed form is taken; 0: never
 
 // The delta form factors: x of the pixels that the triangle kept, y of all that it covers, z their count.
@@ -32,16 +36,20 @@ vec3 sumOf(FaceTriangle f, int face, int firstPixel, int index) {
   return sum;
 }
 
-void write(int hemicube, int index, Triangle t, bool above, vec3 sum) {
-  int entry = hemicube * patchCount + index;
-#if ITEMS
-  sum.x = float(factors[entry]) * (1.0 / KEPT_WHOLE);
-#endif
+// place: hemicube * patchCount + patch; ITEMS: in the list of what was kept.
+void write(int place, int hemicube, int index, Triangle t, bool above, vec3 sum) {
   bool front = dot(t.a, cross(t.b, t.c)) < 0.0;
-  factors[entry] = floatBitsToUint(front ? sum.x : -sum.x);
+#if ITEMS
+  int entry = hemicube * patchCount + index;
+  sum.x = float(kept[entry]) * (1.0 / KEPT_WHOLE);
+  kept[entry] = 0u;
+  keptList[place].y = floatBitsToUint(front ? sum.x : -sum.x);
+#else
+  factors[place] = front ? sum.x : -sum.x;
+#endif
   bool source = sources[index] != 0u && above && (sum.z == 0.0 || sum.x > 0.0);
   if (exactPixels > 0 && front && (source || (sum.z >= float(exactPixels) && sum.x > 0.0)))
-    list[atomicAdd(listed, 1u)] = uvec2(uint(entry), floatBitsToUint(sum.z > 0.0 ? min(sum.x / sum.y, 1.0) : -1.0));
+    list[atomicAdd(listed, 1u)] = uvec2(uint(place), floatBitsToUint(sum.z > 0.0 ? min(sum.x / sum.y, 1.0) : -1.0));
 }
 
 #if LARGE
@@ -51,7 +59,13 @@ shared vec3 sums[64];
 void main() {
 #if LARGE
   for (uint item = gl_WorkGroupID.x; item < largeCount; item += gl_NumWorkGroups.x) {
-    int hemicube = int(large[item]) / patchCount, index = int(large[item]) % patchCount;
+    int place = int(large[item]);
+#if ITEMS
+    int entry = int(keptList[place].x);
+#else
+    int entry = place;
+#endif
+    int hemicube = entry / patchCount, index = entry % patchCount;
     Triangle t = triangleOf(frames[hemicube], index);
     vec3 sum = vec3(0.0);
     for (int row = int(gl_LocalInvocationID.x); row < rowsPerHemicube(); row += 64) {
@@ -65,23 +79,30 @@ void main() {
     barrier();
     if (gl_LocalInvocationID.x == 0u) {
       for (int k = 1; k < 64; ++k) sum += sums[k];
-      write(hemicube, index, t, true, sum);
+      write(place, hemicube, index, t, true, sum);
     }
     barrier();
   }
 #else
+#if ITEMS
+  int place = int(gl_GlobalInvocationID.x);
+  if (place >= int(keptCount)) return;
+  if (place < hemicubes * sourceCount) keptList[place].x = uint(place / sourceCount * patchCount) + sources[patchCount + place % sourceCount];
+  int entry = int(keptList[place].x), hemicube = entry / patchCount, index = entry % patchCount, end = hemicube + 1;
+#else
   int index = int(gl_WorkGroupID.y * 64u + gl_LocalInvocationID.x);
   if (index >= patchCount) return;
-  Triangle world = worldTriangle(index);
   int hemicube = int(gl_WorkGroupID.x) * hemicubesEach, end = min(hemicube + hemicubesEach, hemicubes);
+#endif
+  Triangle world = worldTriangle(index);
   do {
     Frame frame = frames[hemicube];
     Triangle t = toFrame(frame, world);
     bool above = isAbove(frame, t, index, firstPatch + hemicube), tooLarge = false;
 #if ITEMS
-    int entry = hemicube * patchCount + index;
-    bool wanted = exactPixels > 0 && above && (sources[index] != 0u || factors[entry] != 0u);
+    bool wanted = exactPixels > 0 && above;
 #else
+    int place = hemicube * patchCount + index;
     bool wanted = above;
 #endif
     uint faces = wanted ? facesOf(t) : 0u;
@@ -96,9 +117,9 @@ void main() {
       faces &= faces - 1u;
     } while (faces != 0u);
 #if ITEMS
-    if (tooLarge) listLarge(entry);  // else pass 1 has done so
+    if (tooLarge) listLarge(place);  // else pass 1 has done so
 #endif
-    if (!tooLarge) write(hemicube, index, t, above, sum);
+    if (!tooLarge) write(place, hemicube, index, t, above, sum);
   } while (++hemicube < end);
 #endif
 }

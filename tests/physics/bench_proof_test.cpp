@@ -62,7 +62,7 @@ class BenchProof : public test::SharedProgramsTest {
 // The Cornell box, whose light comes by paths of many random numbers. Where two numbers decide nearly all (the open box under the sun) the low-discrepancy points of the first
 // events do better than independent samples: there the slope was -0.586 +- 0.009. Time is the processor's, so that what else the machine does is not counted, from a tracer that
 // has run before: compiling and the first submissions are baking, as `bench error` has it. At the end of a run lanes wait for its longest path, a cost that does not grow with the
-// samples: over 64x64 pixels it is small from 32 samples on (over 32x32 these cost 1.4 times what they do in a long run, and the slope by time was -0.52 to -0.56).
+// samples: over 64x64 pixels it is small from 16 samples on (over 32x32 and in passes that double, 32 cost 1.4 times what they do in a long run, and the slope by time was -0.52 to -0.56).
 TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
   struct Painted {
@@ -86,7 +86,7 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   for (std::uint32_t batch = 0; batch < 16; ++batch) truth.add(paint(1000000 + batch, 512).mean);
   const measure::ReferenceNoise noise = measure::noiseOf(truth.mean(), truth.standardError(), truth.meanError());
   std::vector<double> samples, seconds, errors;
-  for (std::uint32_t n : {32u, 64u, 128u, 256u, 512u, 1024u, 2048u, 4096u}) {
+  for (std::uint32_t n : {16u, 32u, 64u, 128u, 256u, 512u, 1024u, 2048u, 4096u}) {
     double mse = 0.0;
     std::vector<double> times;
     const std::uint32_t seeds = std::max(1u, 128u / n);  // few samples have the widest spread of errors
