@@ -78,9 +78,9 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   if (3 * patches > texels || keyBytes / sizeof(GLuint) > texels)
     throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's end at {}", patches, settings.resolution,
                            std::max(3 * patches, keyBytes / sizeof(GLuint)), texels);
-  // A software renderer does best inside the processor's cache, a GPU with work for all of its cores. Rays touch little of what they have.
-  const bool inCache = capabilities.softwareRenderer && settings_.visibility != HemicubeVisibility::rays;
-  const std::size_t wanted = settings.batchBytes ? settings.batchBytes : std::size_t{inCache ? 4u : 64u} << 20;
+  // A software renderer does best inside the processor's cache, a GPU with work for all of its cores. Of what they have rays touch little: some hemicubes at once even so.
+  const std::size_t some = settings_.visibility == HemicubeVisibility::rays ? 16 * each : 0;
+  const std::size_t wanted = settings.batchBytes ? settings.batchBytes : std::max(some, std::size_t{capabilities.softwareRenderer ? 4u : 64u} << 20);
   batch_ = static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1, std::min({patches, kMostHemicubes, texels * sizeof(GLuint) / keyBytes})));
   if (settings_.visibility == HemicubeVisibility::itemBuffer) batch_ = std::clamp(std::min(batch_, capabilities.maxArrayTextureLayers / 5), 1, batch_);
 

@@ -159,7 +159,9 @@ bool survives(inout Path path, float u) {
   return u < min(largest, 0.95);  // [VPT2024, 5.5]
 #else
   float survival = min(largest / kRouletteBelow, 1.0);
-  if (path.event > (1u << 20)) survival = min(survival, 0.999);  // in an endless medium without absorption nothing else would
+  // In an endless medium without absorption nothing else ends a path. So seldom that who crosses a slab of optical depth 1000 (slowest mode: 3.3e-6 a collision) is seldom lost:
+  // once weights grew faster than half of that, all would be lost that is found late.
+  if (path.event > (1u << 20)) survival = min(survival, 1.0 - exp2(-20.0));
   if (!(u < survival)) return false;
   path.throughput /= survival;
   return true;

@@ -12,5 +12,5 @@ void keep(int hemicube, int patchIndex, float delta) {
   if (atomicAdd(kept[entry], max(uint(delta * KEPT_WHOLE + 0.5), 1u)) != 0u || sources[patchIndex] != 0u) return;
   uint slot = atomicAdd(keptCount, 1u);
   keptList[slot].x = uint(entry);
-  atomicMax(keptGroups, slot / 64u + 1u);
+  if (slot % 64u == 0u) atomicMax(keptGroups, slot / 64u + 1u);
 }

@@ -90,8 +90,8 @@ TEST_F(MediaExtremes, OpticalDepthsOfAHundredAndAThousand) {
   expectExact("T tau 100, a 1", hundred.mean.y, hundred.error.y, .016553, 0.06);
   EXPECT_NEAR(hundred.mean.x + hundred.mean.y, 1.0, 1e-5);
   if (isLong()) {
-    const Estimate thousand = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 512, found()));
-    expectExact("T tau 1000, a 1", thousand.mean.y, thousand.error.y, 1.67644315e-3, 0.08);
+    const Estimate thousand = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 2048, found()));
+    expectExact("T tau 1000, a 1", thousand.mean.y, thousand.error.y, 1.67644315e-3, 0.04);
     EXPECT_NEAR(thousand.mean.x + thousand.mean.y, 1.0, 3.5 * std::hypot(thousand.error.x, thousand.error.y));  // a path of a million events meets roulette
   } else {
     // 256 paths, of which 0.43 are expected below: more than 4 come once in ten thousand seeds.
