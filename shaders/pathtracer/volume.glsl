@@ -279,8 +279,10 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
 #if NEXT_EVENT && (POINTS || SPOTS)
   if (asked) seekLamp(path, medium, before, q, numbers, weight);
 #endif
+  // Roulette by what the path is worth, not by the weight of a direction that seeks a lamp: that is small where the flight finds much.
+  if (!survives(path, unitFloat(choice.y))) return kEnded;
   path.throughput *= weight;
-  return survives(path, unitFloat(choice.y)) ? kScattered : kEnded;
+  return kScattered;
 }
 
 #if HETEROGENEOUS

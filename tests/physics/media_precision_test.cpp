@@ -134,7 +134,7 @@ TEST_F(MediaPrecision, PointSourceInAnInfiniteMedium) {
       {.9, 2, 30, 5.425945e-3, 400, 0.005},
       {.9, 5, 60, 2.672081e-4, 6000, 0.005, true},
       {.99, 2, 30, 1.07102e-2, 262, 0.006, true},
-      {.9, 2, 30, 5.425945e-3, 2000, 0.002, true},  // not met: 0.69 %, by one sample in 2 million (engine/pathtracer/README.md)
+      {.9, 2, 30, 5.425945e-3, 2000, 0.002, true},
   };
   for (const SourceRow& row : rows) {
     if (row.isLong && !isLong()) continue;
