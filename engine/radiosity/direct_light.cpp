@@ -1,7 +1,7 @@
 #include "radiosity/direct_light.hpp"
 
 #include "gl/pass.hpp"
-#include "pathtracer/ray_scene.hpp"
+#include "scene/triangle_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,14 +40,14 @@ std::vector<Arrival> arrivals(const Scene& scene, const glm::dvec3& point, doubl
 
 }  // namespace
 
-std::vector<glm::dvec3> directLight(const gl::Capabilities& capabilities, gl::ProgramLibrary& programs, const Scene& scene, const RadiosityMesh& mesh, std::size_t rays) {
+std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene, const RadiosityMesh& mesh, std::size_t most) {
   std::vector<glm::dvec3> irradiance(mesh.patches.size(), glm::dvec3(0.0));
   const std::size_t lights = (scene.sun ? 1 : 0) + scene.spots.size() + scene.points.size();
   if (lights == 0) return irradiance;
-  const int parts = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(rays) / static_cast<double>(lights * mesh.patches.size()))), 1, 4);
+  const int parts = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(most) / static_cast<double>(lights * mesh.patches.size()))), 1, 4);
   const double beyond = 4.0 * mesh.extent;
+  const std::vector<glm::dvec2> centroids = partCentroids(parts);
 
-  const RayScene rayScene(sceneOf(mesh), capabilities);
   const gl::Program& program = programs.loadCompute("direct light", "radiosity/blocked.comp", {{"ALPHA_MASKS", 0}});
 
   // Patches in runs whose rays fill one submission.
@@ -65,18 +65,18 @@ std::vector<glm::dvec3> directLight(const gl::Capabilities& capabilities, gl::Pr
       const Patch& patch = mesh.patches[p];
       const auto c = mesh.corners(patch);
       double largest = 0.0;
-      for (const glm::dvec3& corner : c) largest = std::max({largest, std::abs(corner.x - rayScene.origin().x), std::abs(corner.y - rayScene.origin().y), std::abs(corner.z - rayScene.origin().z)});
+      for (const glm::dvec3& corner : c) largest = std::max({largest, std::abs(corner.x - rays.origin().x), std::abs(corner.y - rays.origin().y), std::abs(corner.z - rays.origin().z)});
       const glm::vec4 normal(glm::vec3(patch.faceNormal), static_cast<float>(largest));
-      for (int i = 0; i < parts; ++i)
-        for (int j = 0; j < 2 * (parts - i) - 1; ++j) {
-          const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0, u = (i + third) / parts, v = (j / 2 + third) / parts;
-          const glm::dvec3 point = c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0]);
-          for (const Arrival& arrival : arrivals(scene, point, beyond)) {
-            const double cosine = glm::dot(glm::normalize(arrival.toLight), patch.faceNormal);
-            if (cosine <= 0.0 || arrival.irradiance == glm::dvec3(0.0)) continue;
-            batch.push_back({glm::vec4(glm::vec3(point - rayScene.origin()), static_cast<float>(p)), glm::vec4(glm::vec3(arrival.toLight), 0.0f), normal});
-            samples.push_back({p, arrival.irradiance * (cosine / (parts * parts))});
-          }
+      std::vector<glm::dvec3> points;
+      for (const glm::dvec2& w : centroids)
+        if (!(patch.hidden >> partAt(kPatchParts, w) & 1)) points.push_back(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]));
+      if (points.empty()) points.push_back(patch.centroid);
+      for (const glm::dvec3& point : points)
+        for (const Arrival& arrival : arrivals(scene, point, beyond)) {
+          const double cosine = glm::dot(glm::normalize(arrival.toLight), patch.faceNormal);
+          if (cosine <= 0.0 || arrival.irradiance == glm::dvec3(0.0)) continue;
+          batch.push_back({glm::vec4(glm::vec3(point - rays.origin()), static_cast<float>(p)), glm::vec4(glm::vec3(arrival.toLight), 0.0f), normal});
+          samples.push_back({p, arrival.irradiance * (cosine / static_cast<double>(points.size()))});
         }
     }
     if (batch.empty()) continue;
@@ -86,7 +86,7 @@ std::vector<glm::dvec3> directLight(const gl::Capabilities& capabilities, gl::Pr
       const gl::ComputePass pass("direct light", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
       program.use();
       program.set("rayCount", static_cast<int>(batch.size()));
-      rayScene.bind();
+      rays.bind();
       rayBuffer.bind(GL_SHADER_STORAGE_BUFFER, 1);
       blocked.bind(GL_SHADER_STORAGE_BUFFER, 2);
       pass.dispatch({static_cast<int>(batch.size()), 1, 1}, {64, 1, 1});

@@ -66,13 +66,13 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
       }
   }
   FormFactorMatrix mean;  // of A F and its transpose
-  std::vector<double> wantedSums(sums.begin(), sums.end());
+  std::vector<bool> known(n);  // the sum: where it is closed
   std::vector<std::uint32_t> patches;
   std::vector<float> values;
   for (std::size_t i = 0; i < n; ++i) {
     patches.clear();
     values.clear();
-    double whole = 0.0, trust = 0.0;
+    double whole = 0.0;
     std::size_t a = starts_[i], b = starts[i];
     while (a < starts_[i + 1] || b < starts[i + 1]) {
       const std::uint32_t ja = a < starts_[i + 1] ? patches_[a] : ~0u, jb = b < starts[i + 1] ? from[b] : ~0u, j = std::min(ja, jb);
@@ -83,22 +83,17 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
       if (isSource(i) != isSource(j) && std::max(own, other) < fewPixels * areas[isSource(i) ? i : j]) weight = isSource(j) ? 1.0 : 0.0, against = 1.0 - weight;
       const double sum = i < j ? weight * own + against * other : against * other + weight * own;
       whole += sum;
-      trust += weight * sum;
       a += ja == j;
       b += jb == j;
       patches.push_back(j);
       values.push_back(static_cast<float>(sum));
     }
     mean.appendRow(patches, values);
-    if (sums[i] < 1.0 && whole > 0.0) {
-      // Patches of one size: trust / whole = 1/2, and the row sums to what it did; a huge patch is known from those that it sees.
-      const double keep = std::min(1.0, 2.0 * trust / whole);
-      wantedSums[i] = std::min(1.0, keep * sums[i] + (1.0 - keep) * whole / areas[i]);
-    }
+    known[i] = sums[i] >= 1.0 || whole > areas[i];
   }
   flux = {};
   from = {};
-  // d_i sum_j S_ij d_j = A_i wantedSums_i.
+  // d_i sum_j S_ij d_j = A_i where the sum is known, else d_i = 1.
   std::vector<double> d(n, 1.0), next(n);
   double worst = 0.0;
   constexpr int kMost = 200;
@@ -106,15 +101,13 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
   for (int step = 0; step < kMost; ++step) {
     worst = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
+      next[i] = d[i];
+      if (!known[i]) continue;
       double sum = 0.0;
       for (std::size_t k = mean.starts_[i]; k < mean.starts_[i + 1]; ++k) sum += static_cast<double>(mean.factors_[k]) * d[mean.patches_[k]];
-      const double wanted = areas[i] * wantedSums[i], is = d[i] * sum;
-      if (is > 0.0 && wanted > 0.0) {
-        next[i] = d[i] * std::sqrt(wanted / is);
-        worst = std::max(worst, std::abs(wanted / is - 1.0));
-      } else {
-        next[i] = is > 0.0 ? 0.0 : d[i];  // a row that should be empty
-      }
+      if (sum <= 0.0) continue;
+      next[i] = std::sqrt(d[i] * areas[i] / sum);
+      worst = std::max(worst, std::abs(areas[i] / (d[i] * sum) - 1.0));
     }
     if (worst < kEnough) break;
     d = next;
@@ -126,7 +119,7 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
   });
   *this = std::move(mean);
   const std::vector<double> are = rowSums();
-  for (std::size_t i = 0; i < n; ++i) scales_[i] = are[i] > 0.0 ? wantedSums[i] / are[i] : 1.0;
+  for (std::size_t i = 0; i < n; ++i) scales_[i] = are[i] > 0.0 && (known[i] || are[i] > 1.0) ? 1.0 / are[i] : 1.0;
   return worst;
 }
 

@@ -35,8 +35,8 @@ class FormFactorMatrix {
   std::vector<double> rowSums() const;
 
   /// What hemicubes get wrong, put right: A_i F_ij = A_j F_ji for all pairs, both taken to be their mean, in which the smaller patch's factor counts by the larger one's
-  /// area: its centre stands for it, and what it sees covers pixels. Row i sums to `sums[i]`: 1 where it is closed, else what the row has, which of a patch much larger
-  /// than what it sees gives way to what the mean says. By a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]. Returns the largest relative error of a sum before
+  /// area: its centre stands for it, and what it sees covers pixels. Rows that are closed, `sums[i]` = 1, then sum to 1; of open ones nobody knows the sum better than those
+  /// means (a sum that were held where near factors are off would be paid for by far ones). By a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]. Returns the largest relative error of a sum before
   /// the last rounding; that is then put right row by row in double (reciprocity holds to the floats' 1e-7), since light in a white room counts it 1 / (1 - rho) times.
   /// `sources`, where given, marks columns whose factors are closed forms: what a source sees below `fewPixels` of its hemisphere is known from the other row alone.
   double repair(std::span<const double> areas, std::span<const double> sums, std::span<const std::uint32_t> sources = {}, double fewPixels = 0.0);

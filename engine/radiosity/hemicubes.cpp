@@ -59,7 +59,7 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   const auto patches = static_cast<std::size_t>(patchCount_);
   const auto limit = static_cast<std::size_t>(std::max(capabilities.maxShaderStorageBlockSize, 1 << 24));
   const std::size_t keyBytes = 3 * static_cast<std::size_t>(settings.resolution * settings.resolution) * sizeof(GLuint), factorBytes = patches * sizeof(float);
-  const bool items = settings_.visibility != HemicubeVisibility::raster;
+  const bool items = listsKept();
   double emitting = 0.0;
   for (const Patch& patch : mesh.patches) emitting += patch.emission != glm::dvec3(0.0) ? patch.area : 0.0;
   const bool smallSources = emitting < kSmallSources * mesh.area();
@@ -156,7 +156,7 @@ Hemicubes::Frame Hemicubes::frameOf(int index) const {
   const double roll = settings_.randomRoll ? 2.0 * std::numbers::pi * hashed(settings_.seed, static_cast<std::uint32_t>(index)) : 0.0;
   const glm::dvec3 u = std::cos(roll) * u0 + std::sin(roll) * v0, v = glm::cross(patch.faceNormal, u);
   const double inPlane = std::max(1e-4 * std::sqrt(patch.area), 4e-7 * mesh_->extent);
-  return {glm::vec4(glm::vec3(patch.centroid), static_cast<float>(1.0 / inPlane)), glm::vec4(glm::vec3(u), 0.0f), glm::vec4(glm::vec3(v), 0.0f),
+  return {glm::vec4(glm::vec3(patch.centroid), static_cast<float>(1.0 / inPlane)), glm::vec4(glm::vec3(u), patch.hidden), glm::vec4(glm::vec3(v), 0.0f),
           glm::vec4(glm::vec3(patch.faceNormal), 0.0f)};
 }
 
@@ -181,7 +181,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   constexpr GLbitfield kBarrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
   const glm::ivec3 triangles((count + kHemicubesEach - 1) / kHemicubesEach, patchCount_, 1), trianglesGroup(1, kGroup, 1);
   const glm::ivec3 pixels(3 * settings_.resolution * settings_.resolution, count, 1), pixelsGroup(kGroup, 1, 1);
-  if (settings_.visibility == HemicubeVisibility::raster) {
+  if (!listsKept()) {
     keys_.buffer().clear();
     for (const gl::Program* program : {depth_, depthLarge_}) {
       const gl::ComputePass pass(program->name(), kBarrier);
@@ -217,11 +217,10 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
     }
     pass.dispatch(pixels, pixelsGroup);
   }
-  const bool listed = settings_.visibility != HemicubeVisibility::raster;
   for (const gl::Program* program : {sum_, sumLarge_, exact_}) {
     const gl::ComputePass pass(program->name(), kBarrier);
     begin(*program, first, count);
-    if (program == sum_ && listed) pass.dispatchIndirect(keptList_);
+    if (program == sum_ && listsKept()) pass.dispatchIndirect(keptList_);
     else if (program == sum_) pass.dispatch(triangles, trianglesGroup);
     else if (program == sumLarge_) pass.dispatchIndirect(largeList_);
     else pass.dispatch(glm::ivec3(kExactGroups, 1, 1), glm::ivec3(1));
@@ -230,8 +229,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   drawn.first = first;
   drawn.count = count;
   drawn.patchCount = patchCount_;
-  drawn.listed = listed;
-  if (listed) {
+  if (listsKept()) {
     constexpr std::size_t kHead = 2;  // the list begins with a dispatch
     drawn.kept = keptList_.read<glm::uvec2>(kHead + keptList_.readFirst<std::array<GLuint, 4>>()[3]);
     drawn.kept.erase(drawn.kept.begin(), drawn.kept.begin() + kHead);
@@ -306,7 +304,7 @@ FormFactorRows rowsOfListed(const DrawnHemicubes& drawn) {
 }  // namespace
 
 FormFactorRows rowsOf(DrawnHemicubes drawn) {
-  if (drawn.listed) return rowsOfListed(drawn);
+  if (drawn.factors.empty()) return rowsOfListed(drawn);
   const auto patches = static_cast<std::size_t>(drawn.patchCount), rowCount = static_cast<std::size_t>(drawn.count);
   FormFactorRows result;
   result.first = drawn.first;

@@ -59,9 +59,8 @@ struct FormFactorRows {
 /// What a batch left on the GPU, read back.
 struct DrawnHemicubes {
   int first = 0, count = 0, patchCount = 0;
-  bool listed = false;             ///< rays, item buffer: what pixels saw is in `kept`; raster: in `factors`
-  std::vector<float> factors;      ///< hemicube-major, by pixels; below 0 where a back was seen
-  std::vector<glm::uvec2> kept;    ///< hemicube * patchCount + patch, in no order; bits of such a factor
+  std::vector<float> factors;      ///< raster: hemicube-major, by pixels; below 0 where a back was seen
+  std::vector<glm::uvec2> kept;    ///< rays, item buffer, which leave `factors` empty: hemicube * patchCount + patch, in no order; bits of such a factor
   std::vector<glm::uvec2> exact;   ///< place in `factors` or `kept`; bits of the closed form, which replaces the pixels'
 };
 /// Touches no GL: a thread of its own may do it while the next batch is drawn.
@@ -106,6 +105,7 @@ class Hemicubes {
     gl::VertexArray noAttributes;
     const gl::Program *draw, *sum;
   };
+  bool listsKept() const { return settings_.visibility != HemicubeVisibility::raster; }
   Frame frameOf(int patch) const;
   void choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities);
   void begin(const gl::Program& program, int first, int count) const;

@@ -66,6 +66,7 @@ void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
   patch.area = 0.5 * glm::length(doubled);
   patch.faceNormal = doubled / (2.0 * patch.area);
   patch.centroid = (c[0] + c[1] + c[2]) / 3.0;
+  patch.hidden = 0;
   const Material& material = scene.materials[static_cast<std::size_t>(patch.material)];
   patch.reflectance = glm::dvec3(material.diffuse);
   if (material.diffuseTexture >= 0)

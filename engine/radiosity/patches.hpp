@@ -16,6 +16,8 @@
 
 namespace lucerna {
 
+constexpr int kPatchParts = 4;  ///< a side, of those that may be hidden
+
 struct Patch {
   std::array<std::uint32_t, 3> point{};  ///< into RadiosityMesh::points, counterclockwise seen from the front
   std::array<std::uint32_t, 3> light{};  ///< light vertices: what corners share that light is interpolated across
@@ -23,6 +25,7 @@ struct Patch {
   std::array<glm::vec3, 3> normal{};     ///< shading normals, on the front side
   glm::dvec3 centroid{0.0}, faceNormal{0.0};
   double area = 0.0;                     ///< scene units squared
+  std::uint16_t hidden = 0;              ///< a bit for each of its kPatchParts x kPatchParts parts (scene/triangle_parts.hpp) that takes no part: hidden_parts.hpp
   glm::dvec3 reflectance{0.0};           ///< mean over the patch, 0..1
   glm::dvec3 emission{0.0};              ///< exitance that is its own, pi times the material's radiance
   int material = 0;

@@ -6,6 +6,7 @@
 #include "base/log.hpp"
 #include "radiosity/direct_light.hpp"
 #include "radiosity/form_factor_matrix.hpp"
+#include "radiosity/hidden_parts.hpp"
 #include "radiosity/row_file.hpp"
 #include "scene/fingerprint.hpp"
 
@@ -37,6 +38,7 @@ std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings&
   for (const Patch& patch : mesh.patches) {
     for (const glm::dvec3& corner : mesh.corners(patch)) f.add(corner);
     f.add(patch.emission != glm::dvec3(0.0));
+    f.add(patch.hidden);
   }
   f.add(s.visibility);
   f.add(s.resolution);
@@ -66,7 +68,11 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     return !onStage || onStage({kind, refinement, done, n, progress});
   };
   stage(RadiosityStage::Kind::direct, 0);
-  solution.direct = directLight(context.capabilities(), programs, scene, mesh);
+  {
+    const RayScene rays(sceneOf(mesh), context.capabilities());
+    if (!settings.deviations.centroid) cutHiddenParts(programs, rays, solution.mesh);
+    solution.direct = directLight(programs, rays, scene, mesh);
+  }
 
   FormFactorMatrix matrix;
   solution.fronts.clear();
@@ -224,10 +230,6 @@ RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution,
   });
 }
 
-}  // namespace
-
-namespace {
-
 /// What each deviation is in this solver. The published map knows neither closed forms nor a repair, which would hide it.
 RadiositySolutionSettings withDeviations(RadiositySolutionSettings settings) {
   const RadiosityDeviations& d = settings.deviations;
@@ -335,10 +337,6 @@ struct FilePatch {
   float fronts, backs;
   double centroid[3], faceNormal[3], area, reflectance[3], emission[3], direct[3], fromEmitters[3], irradiance[3], exitance[3];
 };
-
-}  // namespace
-
-namespace {
 
 std::uint64_t fingerprint(const Scene& scene) {
   Hash hash;

@@ -1,5 +1,7 @@
 #include "scene/texture_mean.hpp"
 
+#include "scene/triangle_parts.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,15 +29,10 @@ glm::dvec3 meanColour(const Bitmap& bitmap) {
 }
 
 glm::dvec3 meanTexture(const Bitmap& bitmap, const std::array<glm::vec2, 3>& uv) {
-  constexpr int kParts = 8;
+  static const std::vector<glm::dvec2> centroids = partCentroids(8);
   glm::dvec3 sum(0.0);
-  for (int i = 0; i < kParts; ++i)
-    for (int j = 0; j < 2 * (kParts - i) - 1; ++j) {
-      const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
-      const double a = (i + third) / kParts, b = (j / 2 + third) / kParts;
-      sum += texelAt(bitmap, (1.0 - a - b) * glm::dvec2(uv[0]) + a * glm::dvec2(uv[1]) + b * glm::dvec2(uv[2]));
-    }
-  return sum / static_cast<double>(kParts * kParts);
+  for (const glm::dvec2& w : centroids) sum += texelAt(bitmap, (1.0 - w.x - w.y) * glm::dvec2(uv[0]) + w.x * glm::dvec2(uv[1]) + w.y * glm::dvec2(uv[2]));
+  return sum / static_cast<double>(centroids.size());
 }
 
 }  // namespace lucerna

@@ -11,7 +11,7 @@ uniform int patchCount;
 
 struct Frame {
   vec4 origin;   // w: 1 / (distance below which a corner lies in the patch's plane)
-  vec4 u, v, n;  // unit; n the patch's normal
+  vec4 u, v, n;  // unit; n the patch's normal. u's w: a bit for each of the patch's parts that is hidden
 };
 layout(std140, binding = 9) uniform Frames { Frame frames[256]; };
 

@@ -3,6 +3,7 @@
 // Each invocation takes entries of pass 2's list, a stride of the whole dispatch apart.
 #include "radiosity/hemicube.glsl"
 #include "radiosity/polygon.glsl"
+#include "radiosity/triangle_parts.glsl"
 layout(local_size_x = 64) in;
 
 layout(binding = 57) uniform usamplerBuffer keys;  // of pass 1
@@ -13,7 +14,7 @@ layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 
 uniform float nearDistance;  // a receiver is divided so that (distance / size of a part) reaches this; 0: never
 uniform int mostParts;       // a side, at most
 
-// Mean over the receiver of the closed form, from the centroids of parts x parts equal triangles.
+// Mean over what is not hidden of the receiver, of the closed form, from the centroids of parts x parts equal triangles.
 float receivedFrom(Frame frame, int self, Triangle t) {
   vec3 r0 = toFrame(frame, patchCorner(self, 0)), r1 = toFrame(frame, patchCorner(self, 1)), r2 = toFrame(frame, patchCorner(self, 2));
   float size = sqrt(0.5 * length(cross(r1 - r0, r2 - r0)));
@@ -21,18 +22,21 @@ float receivedFrom(Frame frame, int self, Triangle t) {
   float wanted = nearDistance * size / max(away, 1e-3 * size);
   int parts = clamp(int(ceil(wanted)), 1, mostParts);
   if (nearDistance <= 0.0) parts = 1;
-  float sum = 0.0;
+  uint hidden = uint(frame.u.w);
+  float sum = 0.0, open = 0.0;
   float side = 1.0 / float(parts);
   int i = 0, j = 0;  // strip and place in it: 2 (parts - i) - 1 parts, every second upside down
   for (int k = 0; k < parts * parts; ++k) {
     float third = (j & 1) == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
     float u = (float(i) + third) * side, v = (float(j / 2) + third) * side;
-    vec3 at = r0 + u * (r1 - r0) + v * (r2 - r0);
-    sum += pointToTriangle(t.a - at, t.b - at, t.c - at);
+    vec3 at = parts == 1 ? vec3(0.0) : r0 + u * (r1 - r0) + v * (r2 - r0);  // where the hemicube stands
+    float counts = parts > 1 && ((hidden >> partAt(vec2(u, v))) & 1u) != 0u ? 0.0 : 1.0;
+    sum += counts * pointToTriangle(t.a - at, t.b - at, t.c - at);
+    open += counts;
     ++j;
     if (j >= 2 * (parts - i) - 1) ++i, j = 0;
   }
-  return sum * side * side;
+  return open > 0.0 ? sum / open : pointToTriangle(t.a, t.b, t.c);
 }
 
 // Whether a source that no pixel's centre met is the nearest at the pixel that its centroid falls in, were it to fill that pixel.

@@ -1,0 +1,121 @@
+#include "radiosity/hidden_parts.hpp"
+
+#include "gl/pass.hpp"
+#include "radiosity/form_factor_matrix.hpp"
+#include "scene/triangle_parts.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::size_t kParts = kPatchParts * kPatchParts, kRaysEach = 8, kSteps = 16, kRaysASubmission = 1 << 16;
+constexpr float kHidden = 0.3f, kOpen = 0.3f;
+constexpr GLuint kNothing = 0, kBack = ~0u;
+
+/// As hidden_parts.comp reads it.
+struct Receiver {
+  glm::vec4 a, b, c, normal;
+};
+
+/// For each part of the patches what `raysEach` rays meet: kNothing, kBack, or a part + 1.
+std::vector<GLuint> seenFrom(const gl::Program& program, const RayScene& rays, const RadiosityMesh& mesh, std::span<const std::uint32_t> patches, std::size_t raysEach) {
+  std::vector<GLuint> seen;
+  seen.reserve(patches.size() * kParts * raysEach);
+  const std::size_t patchesEach = kRaysASubmission / (kParts * raysEach);
+  for (std::size_t first = 0; first < patches.size(); first += patchesEach) {
+    std::vector<Receiver> receivers;
+    for (const std::uint32_t p : patches.subspan(first, std::min(patchesEach, patches.size() - first))) {
+      auto corners = mesh.corners(mesh.patches[p]);
+      glm::dvec3 largest(0.0);
+      for (glm::dvec3& corner : corners) corner -= rays.origin(), largest = glm::max(largest, glm::abs(corner));
+      receivers.push_back({glm::vec4(glm::vec3(corners[0]), static_cast<float>(p)), glm::vec4(glm::vec3(corners[1]), 0.0f), glm::vec4(glm::vec3(corners[2]), 0.0f),
+                           glm::vec4(glm::vec3(mesh.patches[p].faceNormal), static_cast<float>(std::max({largest.x, largest.y, largest.z})))});
+    }
+    const std::size_t rayCount = receivers.size() * kParts * raysEach;
+    const gl::Buffer in("hidden parts receivers", receivers.size() * sizeof(Receiver), receivers.data(), GL_STREAM_DRAW);
+    const gl::Buffer out("hidden parts seen", rayCount * sizeof(GLuint), nullptr, GL_DYNAMIC_READ);
+    {
+      const gl::ComputePass pass("hidden parts", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+      program.use();
+      program.set("receiverCount", static_cast<int>(receivers.size()));
+      program.set("raysEach", static_cast<int>(raysEach));
+      rays.bind();
+      in.bind(GL_SHADER_STORAGE_BUFFER, 1);
+      out.bind(GL_SHADER_STORAGE_BUFFER, 2);
+      pass.dispatch({static_cast<int>(rayCount), 1, 1}, {64, 1, 1});
+    }
+    const std::vector<GLuint> read = out.read<GLuint>();
+    seen.insert(seen.end(), read.begin(), read.end());
+  }
+  return seen;
+}
+
+void cut(Patch& patch, const RadiosityMesh& mesh, std::uint16_t hidden) {
+  const std::vector<glm::dvec2> centroids = partCentroids(kPatchParts);
+  const auto corners = mesh.corners(patch);
+  glm::dvec2 mean(0.0);
+  const double open = static_cast<double>(kParts) - std::popcount(hidden);
+  for (std::size_t k = 0; k < kParts; ++k)
+    if (!(hidden >> k & 1)) mean += centroids[k] / open;
+  // A hemicube stands at the middle of what is open or, where that is itself hidden, at the nearest part that is not.
+  glm::dvec2 place = mean;
+  if (hidden >> partAt(kPatchParts, mean) & 1) {
+    double least = 1e300;
+    for (std::size_t k = 0; k < kParts; ++k) {
+      const glm::dvec2 away = centroids[k] - mean;
+      const double distance = glm::length(away.x * (corners[1] - corners[0]) + away.y * (corners[2] - corners[0]));
+      if (!(hidden >> k & 1) && distance < least) least = distance, place = centroids[k];
+    }
+  }
+  patch.hidden = hidden;
+  patch.area *= open / static_cast<double>(kParts);
+  patch.centroid = corners[0] + place.x * (corners[1] - corners[0]) + place.y * (corners[2] - corners[0]);
+}
+
+}  // namespace
+
+double cutHiddenParts(gl::ProgramLibrary& programs, const RayScene& rays, RadiosityMesh& mesh) {
+  const gl::Program& program = programs.loadCompute("hidden parts", "radiosity/hidden_parts.comp", {{"ALPHA_MASKS", 0}});
+  // One ray a part finds the patches that may have hidden parts; most scenes have none.
+  std::vector<std::uint32_t> suspects(mesh.patches.size());
+  std::iota(suspects.begin(), suspects.end(), 0u);
+  {
+    const std::vector<GLuint> seen = seenFrom(program, rays, mesh, suspects, 1);
+    std::erase_if(suspects, [&](std::uint32_t p) { return std::find(seen.begin() + kParts * p, seen.begin() + kParts * (p + 1), kBack) == seen.begin() + kParts * (p + 1); });
+  }
+  if (suspects.empty()) return 0.0;
+  const std::vector<GLuint> seen = seenFrom(program, rays, mesh, suspects, kRaysEach);
+  std::vector<float> open(mesh.patches.size() * kParts, 1.0f), next = open;
+  for (std::size_t step = 0; step < kSteps; ++step) {
+    onAllCores(suspects.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s)
+        for (std::size_t part = 0; part < kParts; ++part) {
+          const auto met = std::span(seen).subspan((s * kParts + part) * kRaysEach, kRaysEach);
+          float sum = 0.0f;
+          for (const GLuint one : met) sum += one == kNothing ? static_cast<float>(kRaysEach) : one == kBack ? 0.0f : open[one - 1];
+          next[suspects[s] * kParts + part] = std::min(sum / static_cast<float>(kRaysEach), 1.0f);
+        }
+    });
+    std::swap(open, next);
+  }
+  double area = 0.0;
+  for (const std::uint32_t p : suspects) {
+    const auto parts = std::span(open).subspan(p * kParts, kParts);
+    const float most = std::ranges::max(parts);
+    if (most < kOpen) continue;
+    std::uint16_t hidden = 0;
+    for (std::size_t part = 0; part < kParts; ++part)
+      if (parts[part] < kHidden * most) hidden = static_cast<std::uint16_t>(hidden | 1u << part);
+    const double before = mesh.patches[p].area;
+    if (hidden) cut(mesh.patches[p], mesh, hidden);
+    area += before - mesh.patches[p].area;
+  }
+  return area;
+}
+
+}  // namespace lucerna
