@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace lucerna {
 
@@ -24,16 +23,6 @@ bool isSmooth(const Scene& scene, const Mesh& mesh) {
       if (!(glm::length(glm::dvec3(corner(k).normal) - cross / length) < 1e-5)) return true;
   }
   return false;
-}
-/// Diagonal of a mesh's box.
-double extentOf(const Scene& scene, const Mesh& mesh) {
-  if (mesh.firstIndex + std::size_t{mesh.indexCount} > scene.indices.size()) return 0.0;
-  glm::dvec3 min(std::numeric_limits<double>::infinity()), max(-min);
-  for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; ++i) {
-    const glm::dvec3 p(scene.vertices[scene.indices[i]].position);
-    min = glm::min(min, p), max = glm::max(max, p);
-  }
-  return glm::length(max - min);
 }
 }  // namespace
 
@@ -104,7 +93,7 @@ SceneNeeds analyse(const Scene& scene) {
     needs.nullBoundaries |= material.bsdf == Bsdf::none;
     if (material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::none) addMedium(material.interior);
     if (material.bsdf == Bsdf::dielectric && material.interior >= 0 && material.interior < static_cast<int>(scene.media.size()))
-      needs.denseMedia = needs.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)], extentOf(scene, mesh));
+      needs.denseMedia = needs.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)], glm::length(mesh.bounds.extent()));
     // A texture only scales the factor down, so the factor alone tells whether anything can be reflected.
     reflects |= anyPositive(material.diffuse);
   }

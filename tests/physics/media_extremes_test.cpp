@@ -3,15 +3,13 @@
 //
 // Others of the kind: tests/physics/media_test.cpp (|g| 0.99, ratios of 1000 between channels, no extinction, n 1.0001, bounded submissions),
 // tests/gl/media_functions_test.cpp (functions at the ends of their range), tests/gl/ray_caster_test.cpp (slivers, giants, far places).
-#include "pathtracer/path_tracer.hpp"
-#include "support/gl_fixture.hpp"
+#include "support/media_fixture.hpp"
 #include "support/media_scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 namespace lucerna {
@@ -19,33 +17,13 @@ namespace {
 
 using namespace test;
 
-class MediaExtremes : public SharedProgramsTest {
+class MediaExtremes : public MediaTest {
  protected:
-  struct Estimate {
-    glm::dvec3 mean{0.0}, error{0.0};
-  };
-  Image picture(const Scene& scene, std::uint32_t samples, PathTracer::Settings settings = {}, int side = 16) {
-    settings.size = {side, side};
-    PathTracer tracer(context(), library(), scene, settings);
-    tracer.record(samples);
-    EXPECT_EQ(tracer.statistics().leakedPaths, 0.0);
-    EXPECT_EQ(tracer.statistics().wrongCrossings, 0.0);
-    return tracer.mean();
-  }
-  static Estimate estimate(const Image& image) {
-    Estimate e;
-    const double n = static_cast<double>(image.pixels.size());
-    for (const glm::vec3& p : image.pixels) e.mean += glm::dvec3(p) / n;
-    for (const glm::vec3& p : image.pixels) e.error += (glm::dvec3(p) - e.mean) * (glm::dvec3(p) - e.mean) / (n * (n - 1.0));
-    e.error = glm::sqrt(e.error);
-    return e;
-  }
   static void expectExact(const char* what, double value, double error, double exact, double worst) {
     std::printf("%-44s exact %.7g  measured %.7g +- %.2g (%.2f %%)  z %+.2f\n", what, exact, value, error, 100.0 * error / exact, (value - exact) / error);
     EXPECT_NEAR(value, exact, 3.5 * error) << what;
     EXPECT_LT(error, worst * std::abs(exact)) << what;
   }
-  static bool isLong() { return std::getenv("LUCERNA_LONG_TESTS") != nullptr; }
 };
 
 Medium grey(double albedo, double depth, double g) { return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g); }
@@ -72,30 +50,30 @@ TEST_F(MediaExtremes, OpticalDepthOfAMillionth) {
     }
     PathTracer::Settings settings;
     settings.bounces = 1;
-    const Estimate e = estimate(picture(scene, 256, settings));
+    const PixelEstimate e = estimate(picture(scene, 256, settings));
     std::printf("lamp on tau %g: %.7g +- %.1g (%.7g)\n", depth, e.mean.x, e.error.x, exact);
     EXPECT_NEAR(e.mean.x, exact, 3.5 * e.error.x + 1e-4 * exact);  // hardly any noise; places are rounded
   }
 }
 
 TEST_F(MediaExtremes, OpticalDepthOfAThousandth) {
-  const Estimate e = estimate(picture(slab(grey(1.0, 1e-3, 0.0), 1.0, 1.0), isLong() ? 131072 : 8192, found()));
+  const PixelEstimate e = estimate(picture(slab(grey(1.0, 1e-3, 0.0), 1.0, 1.0), isLong() ? 131072 : 8192, found()));
   expectExact("R tau 1e-3, a 1", e.mean.x, e.error.x, 4.9975038e-4, isLong() ? 0.007 : 0.03);
   EXPECT_NEAR(e.mean.x + e.mean.y, 1.0, 2e-6);
 }
 
 TEST_F(MediaExtremes, OpticalDepthsOfAHundredAndAThousand) {
   // 200 and 2000 collisions a path, of which one in 60 or 600 gets through: UT1 = UTU sqrt(3)/4 H(1), UTU = 4/3 / (tau + 2 * 0.7104461).
-  const Estimate hundred = estimate(picture(slab(grey(1.0, 100.0, 0.0), 1.0, 1.0), 100, found()));
+  const PixelEstimate hundred = estimate(picture(slab(grey(1.0, 100.0, 0.0), 1.0, 1.0), 100, found()));
   expectExact("T tau 100, a 1", hundred.mean.y, hundred.error.y, .016553, 0.06);
   EXPECT_NEAR(hundred.mean.x + hundred.mean.y, 1.0, 1e-5);
   if (isLong()) {
-    const Estimate thousand = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 2048, found()));
+    const PixelEstimate thousand = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 2048, found()));
     expectExact("T tau 1000, a 1", thousand.mean.y, thousand.error.y, 1.67644315e-3, 0.04);
     EXPECT_NEAR(thousand.mean.x + thousand.mean.y, 1.0, 3.5 * std::hypot(thousand.error.x, thousand.error.y));  // a path of a million events meets roulette
   } else {
     // 256 paths, of which 0.43 are expected below: more than 4 come once in ten thousand seeds.
-    const Estimate thousand = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 1, found()));
+    const PixelEstimate thousand = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 1, found()));
     std::printf("tau 1000: R %.6f T %.6f\n", thousand.mean.x, thousand.mean.y);
     EXPECT_LE(thousand.mean.y, 4.0 / 256.0);
     EXPECT_NEAR(thousand.mean.x + thousand.mean.y, 1.0, 1e-5);
@@ -104,7 +82,7 @@ TEST_F(MediaExtremes, OpticalDepthsOfAHundredAndAThousand) {
 
 TEST_F(MediaExtremes, HardlyAnyAbsorptionBehindGlass) {
   // a 0.99999, g 0.9, n 1.5: thousands of collisions a path, all inside of total reflection.
-  const Estimate e = estimate(picture(slab(grey(.99999, 30000.0, .9), 1.5, 1.0), isLong() ? 64 : 1, found()));
+  const PixelEstimate e = estimate(picture(slab(grey(.99999, 30000.0, .9), 1.5, 1.0), isLong() ? 64 : 1, found()));
   expectExact("R a 0.99999, g 0.9, n 1.5", e.mean.x, e.error.x, .945706, isLong() ? 0.002 : 0.02);
 }
 
@@ -114,7 +92,7 @@ TEST_F(MediaExtremes, ALimitOfScatteringsLeavesOutWhatItShould) {
   for (const auto& [bounces, share] : rows) {
     PathTracer::Settings settings = found();
     settings.bounces = bounces;
-    const Estimate e = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 512, settings));
+    const PixelEstimate e = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 512, settings));
     std::printf("not back after %u scatterings: %.5f +- %.5f (%.4f)\n", bounces, 1.0 - e.mean.x, e.error.x, share);
     EXPECT_NEAR(1.0 - e.mean.x, share, 3.5 * e.error.x + 5e-5);
     EXPECT_LT(e.error.x, 0.0015);
@@ -127,7 +105,7 @@ TEST_F(MediaExtremes, AThousandthOfAnisotropyIsNotTakenForNone) {
   const Image none = picture(slab(grey(.9, 1.0, 0.0), 1.0, 1.0), 2048, found()), little = picture(slab(grey(.9, 1.0, .001), 1.0, 1.0), 2048, found());
   Image difference = none;
   for (std::size_t i = 0; i < none.pixels.size(); ++i) difference.pixels[i] = none.pixels[i] - little.pixels[i];
-  const Estimate e = estimate(difference);
+  const PixelEstimate e = estimate(difference);
   expectExact("R(g 0) - R(g 0.001)", e.mean.x, e.error.x, .267410 - .267168, 0.25);
 }
 
@@ -141,9 +119,9 @@ TEST_F(MediaExtremes, FarFromTheOriginThePictureIsTheSame) {
     for (Camera& camera : scene.cameras) camera.position += shift;
     return estimate(picture(scene, 256, found()));
   };
-  const Estimate here = moved(0.0);
+  const PixelEstimate here = moved(0.0);
   for (const double by : {16384.0, 1048576.0}) {  // where floats still have the slab's corners
-    const Estimate there = moved(by);
+    const PixelEstimate there = moved(by);
     EXPECT_NEAR(there.mean.x, here.mean.x, 3.5 * std::hypot(here.error.x, there.error.x)) << by;
     EXPECT_NEAR(there.mean.y, here.mean.y, 3.5 * std::hypot(here.error.y, there.error.y)) << by;
     EXPECT_LT(there.error.x, 0.01 * here.mean.x);
@@ -167,7 +145,7 @@ TEST_F(MediaExtremes, ALampExactlyOnABoundary) {
     scene.cameras = {cameraAt({0.4, -1.0, 0.0}, {0.0, -2.0, 0.0}, 1e-5)};
     PathTracer::Settings settings;
     settings.bounces = 1;
-    const Estimate e = estimate(picture(scene, 4, settings, 4));
+    const PixelEstimate e = estimate(picture(scene, 4, settings, 4));
     const double r = y + 2.0;
     for (int c = 0; c < 3; ++c) {
       const double depth = y > 0.0 ? std::array{1.0, 2.0, 0.0}[static_cast<std::size_t>(c)] : 0.0;

@@ -1,8 +1,7 @@
 // Where two media or dielectrics touch with faces exactly on each other, and where boundaries cross: one interface of the relative index, no leak.
 //
 // Seeds are fixed; statistical figures pass within 3.5 of their standard errors.
-#include "pathtracer/path_tracer.hpp"
-#include "support/gl_fixture.hpp"
+#include "support/media_fixture.hpp"
 #include "support/media_scenes.hpp"
 #include "support/media_twin.hpp"
 
@@ -17,34 +16,8 @@ namespace {
 
 using namespace test;
 
-class MediaInterfaces : public SharedProgramsTest {
+class MediaInterfaces : public MediaTest {
  protected:
-  /// Mean, and its standard error from the spread of pixels, which are independent of each other; `energy` is that of the channels' mean.
-  struct Estimate {
-    glm::dvec3 mean{0.0}, error{0.0};
-    double energy = 0.0, energyError = 0.0;
-  };
-  Estimate measure(const Scene& scene, std::uint32_t samples, int side = 16, PathTracer::Settings settings = {}) {
-    settings.size = {side, side};
-    PathTracer tracer(context(), library(), scene, settings);
-    tracer.record(samples);
-    const auto statistics = tracer.statistics();
-    EXPECT_EQ(statistics.leakedPaths, 0.0);
-    EXPECT_EQ(statistics.wrongCrossings, 0.0);
-    const Image image = tracer.mean();
-    const double n = static_cast<double>(image.pixels.size());
-    const auto mean = [](const glm::dvec3& p) { return (p.x + p.y + p.z) / 3.0; };
-    Estimate e;
-    for (const glm::vec3& p : image.pixels) e.mean += glm::dvec3(p) / n;
-    e.energy = mean(e.mean);
-    for (const glm::vec3& p : image.pixels) {
-      e.error += (glm::dvec3(p) - e.mean) * (glm::dvec3(p) - e.mean) / (n * (n - 1.0));
-      e.energyError += (mean(p) - e.energy) * (mean(p) - e.energy) / (n * (n - 1.0));
-    }
-    e.error = glm::sqrt(e.error);
-    e.energyError = std::sqrt(e.energyError);
-    return e;
-  }
   /// Turns the last mesh's faces over; `otherDiagonal`: and a box's quads are cut along their other diagonals.
   static void turnLast(Scene& scene, bool otherDiagonal) {
     const Mesh& mesh = scene.meshes.back();
@@ -76,7 +49,7 @@ TEST_F(MediaInterfaces, MilkThatFillsGlassExactlyIsAWhiteFurnace) {
       scene.environment = constantEnvironment(1.0);
       scene.cameras = {inside ? cameraAt({0.1, 0.2, 0.3}, {1.0, 0.4, -0.3}, 0.9) : cameraAt({2.0, 1.7, 4.0}, glm::dvec3(0.0), 0.5)};
       const double exact = inside ? 1.33 * 1.33 : 1.0;
-      const Estimate e = measure(scene, 128);
+      const PixelEstimate e = estimate(picture(scene, 128));
       std::printf("milk in glass, %s diagonals, camera %s: %.6f +- %.6f\n", otherDiagonal ? "other" : "the same", inside ? "inside" : "outside", e.energy, e.energyError);
       EXPECT_NEAR(e.energy, exact, 3.5 * e.energyError + 2e-5 * exact);
       EXPECT_LT(e.energyError, 3e-4 * exact);
@@ -106,7 +79,7 @@ TEST_F(MediaInterfaces, ReflectanceIsThatOfTheRelativeIndex) {
       const double exact = both(both(top, between), bottom);
       PathTracer::Settings settings;
       settings.nextEvent = false;
-      const Estimate e = measure(scene, 512, 16, settings);
+      const PixelEstimate e = estimate(picture(scene, 512, settings));
       std::printf("glass on water, mu %.1f: R %.6f +- %.6f (%.6f), R + T %.6f\n", mu, e.mean.x, e.error.x, exact, e.mean.x + e.mean.y);
       EXPECT_NEAR(e.mean.x, exact, 3.5 * e.error.x);
       EXPECT_LT(e.error.x, 0.005 * exact);
@@ -140,7 +113,7 @@ TEST_F(MediaInterfaces, AbsorbersOnEachOtherAndOnTheFloor) {
     lit.cameras = {cameraAt({0.013, 3.0, 0.007}, {0.013, -0.5, 0.007}, 1e-5)};
     PathTracer::Settings settings;
     settings.bounces = 1;
-    const Estimate e = measure(lit, 256, 16, settings);
+    const PixelEstimate e = estimate(picture(lit, 256, settings));
     for (int c = 0; c < 3; ++c) {
       const double depth = 0.5 * (lit.media[0].absorption[c] + lit.media[1].absorption[c]);
       const double exact = 0.5 / M_PI * 0.8 * std::exp(-depth * (1.0 + 1.0 / 0.8));
@@ -164,7 +137,7 @@ TEST_F(MediaInterfaces, NestedAndOverlappingDielectricsKeepEnergy) {
       scene.cameras = {inside ? cameraAt({0.1, 0.0, 0.0}, {1.0, 0.2, 0.3}, 0.8) : cameraAt({0.2, 0.3, 5.0}, glm::dvec3(0.2, 0.1, 0.0), 0.4)};
       scene.environment = constantEnvironment(1.0);
       const double exact = inside ? 1.33 * 1.33 : 1.0;
-      const Estimate e = measure(scene, 256);
+      const PixelEstimate e = estimate(picture(scene, 256));
       std::printf("nested, %s, camera %s: %.6f +- %.6f of %.4f\n", grey ? "grey" : "coloured", inside ? "inside" : "outside", e.energy, e.energyError, exact);
       EXPECT_NEAR(e.energy, exact, 3.5 * e.energyError + 2e-5 * exact);
       EXPECT_LT(e.energyError, 2.5e-4 * exact);

@@ -4,15 +4,13 @@
 // Every pixel of a picture sees the same quantity with random numbers of its own, so that the pixels are independent estimates; the error stated is
 // that of their mean, from their spread. (The film's own standard errors take a pixel's samples for independent, and are too large where they are
 // spread by low-discrepancy points.) A figure passes within 3.5 of its standard errors; seeds are fixed.
-#include "pathtracer/path_tracer.hpp"
-#include "support/gl_fixture.hpp"
+#include "support/media_fixture.hpp"
 #include "support/media_scenes.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
 
 namespace lucerna {
@@ -20,27 +18,13 @@ namespace {
 
 using namespace test;
 
-class MediaPrecision : public SharedProgramsTest {
+class MediaPrecision : public MediaTest {
  protected:
-  struct Estimate {
-    glm::dvec3 mean{0.0}, error{0.0};
-  };
-  Estimate measure(const Scene& scene, std::uint32_t samples, PathTracer::Settings settings = {}, int side = 16) {
-    settings.size = {side, side};
-    PathTracer tracer(context(), library(), scene, settings);
+  PixelEstimate measure(const Scene& scene, std::uint32_t samples, PathTracer::Settings settings = {}, int side = 16) {
     const std::clock_t start = std::clock();
-    tracer.record(samples);
+    const Image image = picture(scene, samples, settings, side);
     seconds_ = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    const auto statistics = tracer.statistics();
-    EXPECT_EQ(statistics.leakedPaths, 0.0);
-    EXPECT_EQ(statistics.wrongCrossings, 0.0);
-    Estimate result;
-    const Image image = tracer.mean();
-    const double n = static_cast<double>(image.pixels.size());
-    for (const glm::vec3& p : image.pixels) result.mean += glm::dvec3(p) / n;
-    for (const glm::vec3& p : image.pixels) result.error += (glm::dvec3(p) - result.mean) * (glm::dvec3(p) - result.mean);
-    result.error = glm::sqrt(result.error / (n * (n - 1.0)));
-    return result;
+    return estimate(image);
   }
   /// worst: the largest standard error, as a part of the exact figure, with which the test still says what it should.
   void expectExact(const std::string& what, double value, double error, double exact, double worst) {
@@ -51,9 +35,6 @@ class MediaPrecision : public SharedProgramsTest {
   }
   double seconds_ = 0.0;  ///< of the processor's, for the last measurement
 };
-
-/// In the suite: what takes a few seconds on two cores.
-bool isLong() { return std::getenv("LUCERNA_LONG_TESTS") != nullptr; }
 
 struct SlabRow {
   double albedo, depth, g, ior, cosine, reflectance, transmittance;
