@@ -8,13 +8,16 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::size_t kParts = kPatchParts * kPatchParts, kRaysEach = 8, kSteps = 16, kRaysASubmission = 1 << 16;
-constexpr float kHidden = 0.3f, kOpen = 0.3f;
+constexpr std::size_t kParts = kPatchParts * kPatchParts, kRaysEach = 8, kRaysASubmission = 1 << 16;
+constexpr std::size_t kSteps = 16;     // of walks: what has not met a back by then is in the open
+constexpr float kHidden = 0.3f;        // of the most open part. Of 0.1 to 0.5 Sponza's sunlight agrees best at 0.3 and 0.5
+constexpr float kOpen = 0.3f;
 constexpr GLuint kNothing = 0, kBack = ~0u;
 
 /// As hidden_parts.comp reads it.
@@ -86,7 +89,7 @@ double cutHiddenParts(gl::ProgramLibrary& programs, const RayScene& rays, Radios
   std::iota(suspects.begin(), suspects.end(), 0u);
   {
     const std::vector<GLuint> seen = seenFrom(program, rays, mesh, suspects, 1);
-    std::erase_if(suspects, [&](std::uint32_t p) { return std::find(seen.begin() + kParts * p, seen.begin() + kParts * (p + 1), kBack) == seen.begin() + kParts * (p + 1); });
+    std::erase_if(suspects, [&](std::uint32_t p) { return std::ranges::count(std::span(seen).subspan(kParts * p, kParts), kBack) == 0; });
   }
   if (suspects.empty()) return 0.0;
   const std::vector<GLuint> seen = seenFrom(program, rays, mesh, suspects, kRaysEach);

@@ -1,7 +1,7 @@
 // Parts of patches that lie inside of something: a floor goes on under a column, a beam inside of the wall that it rests on.
 //
 // A patch has one exitance. Were hidden parts counted, it would be the mean with what nobody sees, and too dark wherever it is seen (Sponza at edges of a 37th of
-// its size: 19 % of the sunlight seen from the gallery). So patches are cut to the parts that take part.
+// its size: a tenth of the sunlight seen from the gallery). So patches are cut to the parts that take part.
 //
 // A part is hidden where walks from it soon end on a back, in numbers: its openness is the mean, over eight directions, of the openness of what is seen there, 0 for a
 // back. Inside of solids it falls to 0. In the open it does not, but for places close behind a sheet of one side, which get hardly any light either. What sees
@@ -9,7 +9,6 @@
 // patch whose most open part has less than 0.3 stays whole.
 #pragma once
 
-#include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "pathtracer/ray_scene.hpp"
 #include "radiosity/patches.hpp"
