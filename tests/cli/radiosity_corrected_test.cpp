@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -271,6 +272,44 @@ TEST_F(RadiosityCorrected, WithLittleMemoryTheAnswerIsTheSame) {
     fs::remove(path("k.lit"));
   }
   EXPECT_GT(saved, 0);
+}
+
+TEST_F(RadiosityCorrected, AgreesWithThePathTracer) {
+  const auto bias = [&](const std::string& scene, const std::string& radiosity, const std::string& path_) {
+    const std::string picture = "'" LUCERNA_BINARY "' render '" + scene + "' --component indirect --size 64x64 --host osmesa --quiet ";
+    expectWorks(picture + "--technique radiosity -o '" + path("radiosity.pfm") + "' " + radiosity);
+    expectWorks(picture + "--technique path -o '" + path("path.pfm") + "' " + path_);
+    expectWorks("'" LUCERNA_BINARY "' compare '" + path("radiosity.pfm") + "' '" + path("path.pfm") + "' --json '" + path("c.json") + "'");
+    return json("c.json")["relative_bias"].get<double>();
+  };
+  EXPECT_LT(std::abs(bias(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json", "--set rad.edge=0.1 --set rad.resolution=32", "--spp 512")), 0.012);
+
+  // A court under the sun: pillars go on under its floor, beams lie in them and end in its walls. What runs on inside of something must not darken what is seen of it.
+  std::ofstream(path("court.mtl")) << "newmtl stone\nKd 0.7 0.65 0.6\n";
+  std::ofstream obj(path("court.obj"));
+  obj << "mtllib court.mtl\nusemtl stone\n";
+  int vertices = 0;
+  const auto box = [&](const std::array<double, 3>& low, const std::array<double, 3>& high, bool inside, bool lid) {
+    for (int corner = 0; corner < 8; ++corner) obj << "v " << (corner & 1 ? high : low)[0] << " " << (corner & 2 ? high : low)[1] << " " << (corner & 4 ? high : low)[2] << "\n";
+    constexpr int kFaces[6][4] = {{0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}, {0, 2, 3, 1}, {4, 5, 7, 6}};  // outwards; the second is the lid
+    for (int face = 0; face < 6; ++face) {
+      if (face == 1 && !lid) continue;
+      obj << "f";
+      for (int k = 0; k < 4; ++k) obj << " " << vertices + 1 + kFaces[face][inside ? 3 - k : k];
+      obj << "\n";
+    }
+    vertices += 8;
+  };
+  box({-2, 0, -2}, {2, 2, 2}, true, false);
+  box({-2.4, -0.5, -2.4}, {2.4, 2, 2.4}, false, false);
+  constexpr double kPillars[5][2] = {{-1.1, -1.2}, {0.9, -1.05}, {-1.0, 0.8}, {1.15, 1.1}, {0.1, -0.1}};
+  for (const auto& [x, z] : kPillars) box({x - 0.31, -0.3, z - 0.27}, {x + 0.29, 1.2, z + 0.33}, false, true);
+  box({-2.2, 1.2, -1.3}, {2.2, 1.45, -1.05}, false, true);
+  box({0.75, 1.2, -2.2}, {1.0, 1.5, 2.2}, false, true);
+  obj.close();
+  const std::string camera = "--camera -1.8,1.9,1.8,1,0,-1,70 ", coarse = camera + "--set rad.edge=0.4 --set rad.resolution=32 ";
+  EXPECT_LT(std::abs(bias(path("court.obj"), coarse, camera + "--spp 512")), 0.02);
+  EXPECT_LT(bias(path("court.obj"), coarse + "--deviation rad.centroid=on", camera + "--spp 512"), -0.035);
 }
 
 }  // namespace
