@@ -27,7 +27,7 @@ RasterPass::RasterPass(const std::string& name, const Framebuffer& target, const
   glDepthFunc(state.depth == Depth::equalReadOnly ? GL_EQUAL : GL_LESS);
   if (state.depth == Depth::equalReadOnly) glDepthMask(GL_FALSE);
   enable(GL_CULL_FACE, state.cull != Cull::none);
-  glCullFace(GL_BACK);
+  glCullFace(state.cull == Cull::front ? GL_FRONT : GL_BACK);
   glFrontFace(GL_CCW);
   enable(GL_BLEND, state.blend != Blend::none);
   for (GLuint attachment = 0; attachment < state.firstBlended; ++attachment) glDisablei(GL_BLEND, attachment);

@@ -9,7 +9,7 @@
 
 namespace lucerna::gl {
 
-enum class Cull { none, back };
+enum class Cull { none, back, front };
 enum class Blend { none, add };                       ///< add: GL_ONE, GL_ONE, GL_FUNC_ADD
 enum class Depth { off, lessWrite, equalReadOnly };   ///< test and write
 

@@ -309,18 +309,24 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
 
   {
     const gl::TimeQuery::Scope stage(timer_, "shading");
-    if (!gather_) {  // its geometry pass has drawn depth
+    // Radiosity's backs are black. On edge at a silhouette, where rounding of its depth could bring one before the front that it hides behind, it is drawn
+    // apart and pushed away by its slope.
+    struct Sides {
+      gl::Cull cull = gl::Cull::none;
+      glm::vec2 polygonOffset{0.0f};
+    };
+    std::vector<Sides> all(1);
+    if (radiosity_) all = {{gl::Cull::back, glm::vec2(0.0f)}, {gl::Cull::front, glm::vec2(1.0f)}};
+    for (const Sides& sides : all) {
+      if (gather_) break;  // its geometry pass has drawn depth
       gl::RasterState state;
       state.depth = gl::Depth::lessWrite;
+      state.cull = sides.cull;
+      state.polygonOffset = sides.polygonOffset;
       const gl::RasterPass pass("depth", depthTarget_, state);
-      pass.clearDepth();
+      if (&sides == &all.front()) pass.clearDepth();
       gpuScene_.draw(depthPrograms_, {&cameraClip, &viewPoint});
     }
-    gl::RasterState state;
-    state.depth = gl::Depth::equalReadOnly;
-    const gl::RasterPass pass("surfaces", radianceTarget_, state);
-    const bool showsBackground = settings_.component != Component::indirect;
-    pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
     if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
     if (sunCascades_) sunCascades_->depth().bind(kShadowUnit);
     if (localLights_) localLights_->bindForShading();
@@ -328,7 +334,16 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
     if (gather_) gather_->irradiance().bind(kGatheredUnit);
     if (radiosity_) radiosity_->bind();
     if (directRays_) directRays_->bind();
-    gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
+    for (const Sides& sides : all) {
+      gl::RasterState state;
+      state.depth = gl::Depth::equalReadOnly;
+      state.cull = sides.cull;
+      state.polygonOffset = sides.polygonOffset;
+      const gl::RasterPass pass("surfaces", radianceTarget_, state);
+      const bool showsBackground = settings_.component != Component::indirect;
+      if (&sides == &all.front()) pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
+      gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
+    }
   }
 
   {

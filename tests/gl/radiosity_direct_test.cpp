@@ -153,5 +153,32 @@ TEST_F(RadiosityDirect, TheSunsShadowIsSharpAndPartsAddUp) {
   EXPECT_GT(bounced, 0.005 * mean);
 }
 
+TEST_F(RadiosityDirect, NoBackShowsAtASilhouette) {
+  // All that can be seen shines with radiance 1. A back is black; a face on edge, just hidden, must not come through by the rounding of its depth.
+  SceneBuilder builder;
+  const int m = lambertian(builder, 0.0, std::numbers::pi);
+  test::addBox(builder, {{-2, -1, -2}, {2, 1, 2}}, m, true);
+  for (const double x : {-0.9, 0.1, 0.8}) test::addBox(builder, {{x - 0.2, -1, x * x - 0.5}, {x + 0.21, 0.3 * x, x * x - 0.1}}, m);
+  builder.scene().sun.reset();
+  RenderSettings settings;
+  settings.technique = Technique::radiosity;
+  settings.size = {512, 512};
+  settings.fullFloatTarget = true;
+  settings.radiosity.direct = RadiosityView::Direct::patches;
+  settings.radiosity.solution.hemicubes.resolution = 16;
+  settings.radiosity.solution.patches.longestEdge = 0.3;
+  Renderer renderer(context(), library(), builder.scene(), settings);
+  int black = 0;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / 12;
+    renderer.render(test::lookingAt({1.8 * std::sin(angle), 0.4, 1.8 * std::cos(angle)}, {0, -0.4, 0}));
+    for (const glm::vec3& p : renderer.readRadiance().pixels) black += std::abs(p.x - 1.0f) > 1e-5f;
+  }
+  EXPECT_EQ(black, 0);
+  // From inside of a box backs are all there is to see.
+  renderer.render(test::lookingAt({0.1, -0.5, -0.3}, {0, -0.5, 5}));
+  for (const glm::vec3& p : renderer.readRadiance().pixels) ASSERT_EQ(p, glm::vec3(0.0f));
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -15,29 +15,11 @@
 namespace lucerna {
 namespace {
 
+using test::addBox;
+using test::Box;
 using test::cubeRoom;
 using test::lambertian;
 using test::SceneBuilder;
-
-struct Box {
-  glm::dvec3 low, high;
-  bool holds(const glm::dvec3& p) const { return glm::all(glm::greaterThan(p, low)) && glm::all(glm::lessThan(p, high)); }
-};
-
-/// Fronts outwards or inwards; its bottom may lack.
-void addBox(SceneBuilder& builder, const Box& box, int material, bool inside = false, bool bottom = true) {
-  const glm::dvec3 centre = 0.5 * (box.low + box.high), size = box.high - box.low;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      if (axis == 1 && side < 0.0 && !bottom) continue;
-      glm::dvec3 at = centre, u(0.0), v(0.0);
-      at[axis] += 0.5 * side * size[axis];
-      u[(axis + 1) % 3] = size[(axis + 1) % 3];
-      v[(axis + 2) % 3] = size[(axis + 2) % 3];
-      if ((side > 0.0) == inside) std::swap(u, v);
-      builder.plate(at, u, v, material);
-    }
-}
 
 class HiddenParts : public test::SharedProgramsTest {
  protected:

@@ -69,4 +69,18 @@ HemicubeSettings pixelsAlone(int resolution) {
   return settings;
 }
 
+void addBox(SceneBuilder& builder, const Box& box, int material, bool inside, bool bottom) {
+  const glm::dvec3 centre = 0.5 * (box.low + box.high), size = box.high - box.low;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      if (axis == 1 && side < 0.0 && !bottom) continue;
+      glm::dvec3 at = centre, u(0.0), v(0.0);
+      at[axis] += 0.5 * side * size[axis];
+      u[(axis + 1) % 3] = size[(axis + 1) % 3];
+      v[(axis + 2) % 3] = size[(axis + 2) % 3];
+      if ((side > 0.0) == inside) std::swap(u, v);
+      builder.plate(at, u, v, material);
+    }
+}
+
 }  // namespace lucerna::test

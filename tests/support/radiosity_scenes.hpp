@@ -25,4 +25,11 @@ HemicubeSettings pixelsAlone(int resolution);
 /// A sphere of triangles from a subdivided icosahedron, seen from inside (front within) or outside.
 void addSphere(SceneBuilder& builder, double radius, int level, bool inside, const std::function<int(const glm::dvec3& centroid)>& material);
 
+struct Box {
+  glm::dvec3 low, high;
+  bool holds(const glm::dvec3& p) const { return glm::all(glm::greaterThan(p, low)) && glm::all(glm::lessThan(p, high)); }
+};
+/// Six plates, fronts outwards or inwards; the bottom may lack.
+void addBox(SceneBuilder& builder, const Box& box, int material, bool inside = false, bool bottom = true);
+
 }  // namespace lucerna::test
