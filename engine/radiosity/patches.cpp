@@ -186,7 +186,8 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
         const auto halves = halved(patch, cut, *middle);
         open.insert(open.end(), halves.rbegin(), halves.rend());
       } else {
-        complete(patch, result, scene);
+        // One that was not cut is complete: means of textures are dear.
+        if (patch.point != mesh.patches[i].point || patch.hidden) complete(patch, result, scene);
         result.patches.push_back(patch);
         if (parent) parent->push_back(static_cast<std::uint32_t>(i));
       }
