@@ -56,6 +56,7 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
   const std::size_t patchesEach = std::max<std::size_t>(kRaysEach / raysOfPatch, 1);
   for (std::size_t first = 0; first < mesh.patches.size(); first += patchesEach) {
     std::vector<Ray> batch;
+    std::vector<glm::dvec3> points;  // of a patch
     struct Sample {
       std::size_t patch;
       glm::dvec3 irradiance;
@@ -67,7 +68,7 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
       double largest = 0.0;
       for (const glm::dvec3& corner : c) largest = std::max({largest, std::abs(corner.x - rays.origin().x), std::abs(corner.y - rays.origin().y), std::abs(corner.z - rays.origin().z)});
       const glm::vec4 normal(glm::vec3(patch.faceNormal), static_cast<float>(largest));
-      std::vector<glm::dvec3> points;
+      points.clear();
       for (const glm::dvec2& w : centroids)
         if (!(patch.hidden >> partAt(kPatchParts, w) & 1)) points.push_back(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]));
       if (points.empty()) points.push_back(patch.centroid);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace lucerna {
 
@@ -315,18 +316,18 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
       gl::Cull cull = gl::Cull::none;
       glm::vec2 polygonOffset{0.0f};
     };
-    std::vector<Sides> all(1);
-    if (radiosity_) all = {{gl::Cull::back, glm::vec2(0.0f)}, {gl::Cull::front, glm::vec2(1.0f)}};
-    for (const Sides& sides : all) {
-      if (gather_) break;  // its geometry pass has drawn depth
-      gl::RasterState state;
-      state.depth = gl::Depth::lessWrite;
-      state.cull = sides.cull;
-      state.polygonOffset = sides.polygonOffset;
-      const gl::RasterPass pass("depth", depthTarget_, state);
-      if (&sides == &all.front()) pass.clearDepth();
-      gpuScene_.draw(depthPrograms_, {&cameraClip, &viewPoint});
-    }
+    const Sides both, apart[] = {{gl::Cull::back, glm::vec2(0.0f)}, {gl::Cull::front, glm::vec2(1.0f)}};
+    const auto all = radiosity_ ? std::span<const Sides>(apart) : std::span<const Sides>(&both, 1);
+    if (!gather_)  // its geometry pass has drawn depth
+      for (const Sides& sides : all) {
+        gl::RasterState state;
+        state.depth = gl::Depth::lessWrite;
+        state.cull = sides.cull;
+        state.polygonOffset = sides.polygonOffset;
+        const gl::RasterPass pass("depth", depthTarget_, state);
+        if (&sides == &all.front()) pass.clearDepth();
+        gpuScene_.draw(depthPrograms_, {&cameraClip, &viewPoint});
+      }
     if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
     if (sunCascades_) sunCascades_->depth().bind(kShadowUnit);
     if (localLights_) localLights_->bindForShading();

@@ -26,17 +26,18 @@ float receivedFrom(Frame frame, int self, Triangle t) {
   float sum = 0.0, open = 0.0;
   float side = 1.0 / float(parts);
   int i = 0, j = 0;  // strip and place in it: 2 (parts - i) - 1 parts, every second upside down
-  for (int k = 0; k < parts * parts; ++k) {
+  for (int k = 0; k < parts * parts || open == 0.0; ++k) {
+    bool own = parts == 1 || k == parts * parts;  // where the hemicube stands; also where each centroid lies in what is hidden
     float third = (j & 1) == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
     float u = (float(i) + third) * side, v = (float(j / 2) + third) * side;
-    vec3 at = parts == 1 ? vec3(0.0) : r0 + u * (r1 - r0) + v * (r2 - r0);  // where the hemicube stands
-    float counts = parts > 1 && ((hidden >> partAt(vec2(u, v))) & 1u) != 0u ? 0.0 : 1.0;
+    vec3 at = own ? vec3(0.0) : r0 + u * (r1 - r0) + v * (r2 - r0);
+    float counts = !own && ((hidden >> partAt(vec2(u, v))) & 1u) != 0u ? 0.0 : 1.0;
     sum += counts * pointToTriangle(t.a - at, t.b - at, t.c - at);
     open += counts;
     ++j;
     if (j >= 2 * (parts - i) - 1) ++i, j = 0;
   }
-  return open > 0.0 ? sum / open : pointToTriangle(t.a, t.b, t.c);
+  return sum / open;
 }
 
 // Whether a source that no pixel's centre met is the nearest at the pixel that its centroid falls in, were it to fill that pixel.

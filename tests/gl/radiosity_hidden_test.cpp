@@ -18,6 +18,7 @@ namespace {
 using test::addBox;
 using test::Box;
 using test::cubeRoom;
+using test::dark;
 using test::lambertian;
 using test::SceneBuilder;
 
@@ -27,11 +28,6 @@ class HiddenParts : public test::SharedProgramsTest {
     RadiosityMesh mesh = makePatches(scene, settings);
     area = cutHiddenParts(library(), RayScene(sceneOf(mesh), capabilities()), mesh);
     return mesh;
-  }
-  /// Without a sun.
-  static Scene dark(Scene scene) {
-    scene.sun.reset();
-    return scene;
   }
 };
 

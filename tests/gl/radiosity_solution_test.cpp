@@ -16,6 +16,7 @@ namespace lucerna {
 namespace {
 
 using test::cubeRoom;
+using test::dark;
 using test::lambertian;
 using test::SceneBuilder;
 using test::wholeTriangles;
@@ -25,11 +26,6 @@ class RadiositySolutions : public test::SharedProgramsTest {
   static RadiositySolution solve(const Scene& scene, const RadiositySolutionSettings& settings, const std::filesystem::path& checkpoint = {},
                                  const std::function<bool(const RadiosityStage&)>& onStage = {}) {
     return solveScene(context(), library(), scene, settings, checkpoint, onStage);
-  }
-  /// Without a sun.
-  static Scene dark(Scene scene) {
-    scene.sun.reset();
-    return scene;
   }
   static Scene sphere(int level, const std::function<int(SceneBuilder&, const glm::dvec3&)>& material) {
     SceneBuilder builder;

@@ -69,6 +69,11 @@ HemicubeSettings pixelsAlone(int resolution) {
   return settings;
 }
 
+Scene dark(Scene scene) {
+  scene.sun.reset();
+  return scene;
+}
+
 void addBox(SceneBuilder& builder, const Box& box, int material, bool inside, bool bottom) {
   const glm::dvec3 centre = 0.5 * (box.low + box.high), size = box.high - box.low;
   for (int axis = 0; axis < 3; ++axis)

@@ -17,6 +17,9 @@ Scene cubeRoom(int n, const std::function<int(SceneBuilder&, int wall, double u,
 /// The same, all of one material.
 Scene cubeRoom(int n, double reflectance, double exitance);
 
+/// Without a sun.
+Scene dark(Scene scene);
+
 /// A triangle a patch, hemicubes of 32 pixels, solved to a guaranteed `error`.
 RadiositySolutionSettings wholeTriangles(double error = 1e-6);
 /// Form factors by pixels alone, without closed forms.
