@@ -2,14 +2,20 @@
 
 #include "base/error.hpp"
 
+#ifdef LUCERNA_EMBREE
 #include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <atomic>
 #include <thread>
 #include <vector>
+#endif
 
 namespace lucerna {
+
+#ifdef LUCERNA_EMBREE
+
+bool EmbreeRays::isBuilt() { return true; }
 
 struct EmbreeRays::Handles {
   RTCDevice device = nullptr;
@@ -72,5 +78,18 @@ void EmbreeRays::trace(std::span<const PlainRay> rays, std::span<PlainHit> hits,
   share();
   for (std::thread& thread : others) thread.join();
 }
+
+#else
+
+struct EmbreeRays::Handles {};
+
+bool EmbreeRays::isBuilt() { return false; }
+EmbreeRays::EmbreeRays(const Scene&, const glm::dvec3&) {
+  throwMissingCapability("Embree was not there when this was built (Debian: libembree-dev)");
+}
+EmbreeRays::~EmbreeRays() = default;
+void EmbreeRays::trace(std::span<const PlainRay>, std::span<PlainHit>, bool) const {}
+
+#endif
 
 }  // namespace lucerna

@@ -1,4 +1,4 @@
-// Embree 3 traces the same rays: a yardstick for benchmarks and tests, never for the engine. Built where Embree is there (LUCERNA_EMBREE).
+// Embree 3 traces the same rays: a yardstick for benchmarks and tests, never for the engine. Optional: see isBuilt().
 #pragma once
 
 #include "scene/scene.hpp"
@@ -25,6 +25,9 @@ struct PlainHit {
 
 class EmbreeRays {
  public:
+  /// Whether Embree was there when this was built (LUCERNA_EMBREE); else the constructor throws Error(missingCapability).
+  static bool isBuilt();
+
   /// The scene moved by -origin. Embree's robust mode, its best build quality.
   EmbreeRays(const Scene& scene, const glm::dvec3& origin);
   ~EmbreeRays();

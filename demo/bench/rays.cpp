@@ -176,10 +176,9 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
   const RayScene rayScene(scene, context.capabilities(), settings);
   const auto count = static_cast<std::size_t>(options.rays);
   Tracer tracer(programs, rayScene, count);
-#ifdef LUCERNA_EMBREE
   std::optional<EmbreeRays> embree;
-  const double embreeBuild = secondsOf([&] { embree.emplace(scene, rayScene.origin()); });
-#endif
+  double embreeBuild = 0.0;
+  if (EmbreeRays::isBuilt()) embreeBuild = secondsOf([&] { embree.emplace(scene, rayScene.origin()); });
 
   const auto hitsOf = [&](const std::vector<PlainRay>& rays) {
     tracer.upload(rays);
@@ -205,17 +204,17 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
     countWork(tracer, kind);
     tracer.trace(program, kind.rays.size());  // warms up
     const std::vector<PlainHit> ours = tracer.hits(kind.rays.size());
-#ifdef LUCERNA_EMBREE
     std::vector<PlainHit> theirs(kind.rays.size());
-    embree->trace(kind.rays, theirs, kind.anyHit);
-    kind.differ = countDifferences(ours, theirs, kind.anyHit);
-#endif
+    if (embree) {
+      embree->trace(kind.rays, theirs, kind.anyHit);
+      kind.differ = countDifferences(ours, theirs, kind.anyHit);
+    }
     for (int r = 0; r < options.repeats && !interrupted(); ++r) {
       kind.ours.push_back(million / secondsOf([&] { tracer.trace(program, kind.rays.size()); }));
-#ifdef LUCERNA_EMBREE
-      kind.embree.push_back(million / secondsOf([&] { embree->trace(kind.rays, theirs, kind.anyHit); }));
-      kind.ratios.push_back(kind.ours.back() / kind.embree.back());
-#endif
+      if (embree) {
+        kind.embree.push_back(million / secondsOf([&] { embree->trace(kind.rays, theirs, kind.anyHit); }));
+        kind.ratios.push_back(kind.ours.back() / kind.embree.back());
+      }
       progress.update(++done);
     }
   }
@@ -228,9 +227,7 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
   json["mrays_per_s"] = number(kinds[2].ours);
   json["embree_mrays_per_s"] = number(kinds[2].embree);
   json["ratio"] = number(kinds[2].ratios);
-#ifdef LUCERNA_EMBREE
-  json["embree_build_seconds"] = embreeBuild;
-#endif
+  if (embree) json["embree_build_seconds"] = embreeBuild;
   RaysResult result;
   result.text = fmt::format("{}: {} triangles ({} degenerate dropped), {} references, {} nodes, depth {}, {:.1f} MB, built in {:.2f} s\non {}\n", scene.name, s.triangles, s.degenerate,
              s.references, s.nodes, s.depth, 1e-6 * static_cast<double>(rayScene.gpuBytes()), s.seconds, context.capabilities().renderer);
@@ -243,9 +240,7 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
                             {"ratio", number(k.ratios)}, {"samples", k.ours}, {"embree_samples", k.embree}, {"differ", k.differ}, {"nodes_per_ray", k.nodes},
                             {"triangles_per_ray", k.triangles}, {"bytes_per_ray", bytes}, {"lane_utilisation", k.utilisation}});
   }
-#ifndef LUCERNA_EMBREE
-  result.text += fmt::format("Embree was not there when this was built (Debian: libembree-dev): no comparison\n");
-#endif
+  if (!embree) result.text += "Embree was not there when this was built (Debian: libembree-dev): no comparison\n";
   result.json = std::move(json);
   return result;
 }

@@ -1,11 +1,9 @@
 // Rays in GLSL against brute force in double, and against Embree where it is there.
+#include "bench/embree_rays.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/rays_on_gl.hpp"
 #include "support/small_scenes.hpp"
 
-#ifdef LUCERNA_EMBREE
-#include "bench/embree_rays.hpp"
-#endif
 
 #include <cmath>
 #include <filesystem>
@@ -359,7 +357,6 @@ TEST_F(RayCasterOnGl, FollowsWhatMoves) {
   check();
 }
 
-#ifdef LUCERNA_EMBREE
 const std::filesystem::path kShared = std::filesystem::path(LUCERNA_SOURCE_DIR).parent_path() / "shared/assets";
 
 /// Random, along axes, grazing, at edges, at corners: a fifth each.
@@ -414,12 +411,14 @@ Scene sharedScene(const char* file) {
 }
 
 TEST_F(RayCasterOnGl, AgreesWithEmbreeInSponza) {
+  if (!EmbreeRays::isBuilt()) GTEST_SKIP() << "built without Embree";
   const Scene scene = sharedScene("crytek-sponza/sponza.obj");
   if (scene.indices.empty()) GTEST_SKIP() << "no ../shared/assets/crytek-sponza";
   agreeWithEmbree(library(), capabilities(), scene, 400000);
 }
 
 TEST_F(RayCasterOnGl, AgreesWithEmbreeOnADragonNearAndFar) {
+  if (!EmbreeRays::isBuilt()) GTEST_SKIP() << "built without Embree";
   Scene scene = sharedScene("stanford/dragon_100k.obj");
   if (scene.indices.empty()) GTEST_SKIP() << "no ../shared/assets/stanford";
   agreeWithEmbree(library(), capabilities(), scene, 400000);
@@ -433,7 +432,6 @@ TEST_F(RayCasterOnGl, AgreesWithEmbreeOnADragonNearAndFar) {
   scene.name += ", far from the origin";
   agreeWithEmbree(library(), capabilities(), scene, 200000);
 }
-#endif
 
 }  // namespace
 }  // namespace lucerna
