@@ -1,9 +1,8 @@
 // lucerna bench tables|pictures|rays: published results of the originals, made again.
 #include "bench/bench.hpp"
 
+#include "base/data.hpp"
 #include "base/error.hpp"
-
-#include <filesystem>
 
 namespace lucerna::demo {
 
@@ -13,7 +12,7 @@ void checkOriginal(const std::string& name) {
   if (name != "lpv" && name != "rad" && name != "vpt") throwBadInput("--original {}: unknown; there are lpv, rad, vpt", name);
 }
 
-std::string asset(const std::string& file) { return (std::filesystem::path(LUCERNA_SOURCE_DIR) / "assets" / file).string(); }
+std::string asset(const std::string& file) { return (dataFolder() / "assets" / file).string(); }
 
 std::string sceneOrAtrium(const std::string& scene) {
   return scene.empty() ? asset("atrium/atrium.json") : scene;

@@ -1,5 +1,7 @@
 #include "bench/vpt_series.hpp"
 
+#include "base/data.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -36,7 +38,7 @@ const std::vector<VptPicture>& vptPictures() {
 }
 
 Scene loadVptScene(const VptPicture& picture) {
-  Scene scene = loadScene(std::filesystem::path(LUCERNA_SOURCE_DIR) / "assets/media" / picture.scene);
+  Scene scene = loadScene(dataFolder() / "assets/media" / picture.scene);
   for (Medium& medium : scene.media) {
     medium.scattering *= static_cast<float>(picture.scattering);
     medium.absorption *= static_cast<float>(picture.absorption);

@@ -1,5 +1,6 @@
 // lucerna walk [SCENE]: the walkthrough. In a window the path plays in real time, views are skipped where drawing is slow, and it
 // ends by itself; without one, or with --record, views spread over the path are drawn and written, with the time of every stage.
+#include "base/data.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
@@ -216,7 +217,7 @@ int run(Options options) {
   options.picture.readSettingsFile();
   std::optional<float> exposure;
   const RenderSettings settings = options.picture.parse(exposure);
-  if (options.scene.empty()) options.scene = (fs::path(LUCERNA_SOURCE_DIR) / "assets/atrium/atrium.json").string();
+  if (options.scene.empty()) options.scene = (dataFolder() / "assets/atrium/atrium.json").string();
   if (!options.record.empty() && fs::exists(options.record) && !fs::is_directory(options.record))
     throwBadInput("--record {}: there is a file of that name; a folder is wanted", options.record);
   const Scene scene = loadScene(options.scene);

@@ -1,5 +1,6 @@
 #include "gl/program.hpp"
 
+#include "base/data.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 
@@ -76,7 +77,7 @@ std::vector<std::string> Program::activeResources() const {
 ProgramLibrary::ProgramLibrary(fs::path root) : root_(std::move(root)) {
   if (!root_.empty()) return;
   const char* environment = std::getenv("LUCERNA_SHADERS");
-  root_ = environment && *environment ? fs::path(environment) : fs::path(LUCERNA_SOURCE_DIR) / "shaders";
+  root_ = environment && *environment ? fs::path(environment) : dataFolder() / "shaders";
   if (!fs::is_directory(root_)) throwBadInput("{}: the shaders folder is missing (LUCERNA_SHADERS names another)", root_.string());
 }
 

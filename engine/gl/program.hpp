@@ -89,7 +89,7 @@ class Program {
 /// Builds programs, keeps each (files, flags) once, reloads those whose files changed.
 class ProgramLibrary {
  public:
-  /// `root`: the shaders folder; empty: the project's own (or LUCERNA_SHADERS in the environment).
+  /// `root`: the shaders folder; empty: LUCERNA_SHADERS in the environment, else the one beside the assets (base/data.hpp).
   explicit ProgramLibrary(std::filesystem::path root = {});
 
   /// Throws Error(badInput) with the rewritten log when it does not compile or link.

@@ -21,6 +21,7 @@
 //   view from outside that frames the bounding sphere.
 #include "scene/scene_file.hpp"
 
+#include "base/data.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
@@ -545,8 +546,10 @@ Scene loadModel(const fs::path& file) {
 
   appendLights(scene, *source);
   appendCameras(scene, *source);
-  const fs::path walk = fs::path(LUCERNA_SOURCE_DIR) / "keyFrames" / (scene.name + ".txt");
-  if (fs::exists(walk)) setKeyFrames(scene, walk);
+  if (const auto data = findDataFolder()) {
+    const fs::path walk = *data / "keyFrames" / (scene.name + ".txt");
+    if (fs::exists(walk)) setKeyFrames(scene, walk);
+  }
   if (scene.cameras.empty()) scene.cameras.push_back(outsideView(scene.bounds));
   return scene;
 }
