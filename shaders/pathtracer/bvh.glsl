@@ -5,6 +5,7 @@
 // Method: eight quantised boxes a node and their order after [Ylitie2017], a watertight triangle test after [Woop2013], boxes widened by the
 // rounding of their distances after [Ize2013]. Buffer textures, since llvmpipe gathers from those three times as fast as from storage blocks.
 #include "shared/bvh.h"
+#include "lib/float_pairs.glsl"
 
 layout(binding = 60) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS a BvhNode
 layout(binding = 61) uniform usamplerBuffer bvhTriangles;  // one with the magnitude, then BVH_TRIANGLE_TEXELS a BvhTriangle
@@ -174,21 +175,25 @@ void advanceRay(inout BvhTraversal s, bool any) {
   }
 }
 
-// What a ray that is done has hit. Edge functions in float tell exactly whether, but in a sliver their ratios hardly tell where: distance and
-// barycentrics are computed once more, in double, from the plane and the areas in it.
+// What a ray that is done has hit. Edge functions in float tell exactly whether, but in a sliver their ratios hardly tell where: distance and barycentrics
+// are computed once more from the plane and the areas in it, in pairs of floats (not double, which many GPUs lack and emulate). With the edges e1 and e2
+// from the corner a (seen from the origin), n = e1 x e2 and m = d x a: t = n.a / n.d, the second corner's weight -e2.m / n.d, the third's e1.m / n.d.
 Hit finishRay(BvhTraversal s, vec3 direction) {
-  Hit hit = s.hit;
-  bool met = hit.triangle != kNoHit;
-  int triangle = met ? int(hit.triangle) : 0;
+  bool met = s.hit.triangle != kNoHit;
+  int triangle = met ? int(s.hit.triangle) : 0;
   uvec4 first = texelFetch(bvhTriangles, triangle);
-  dvec3 a = dvec3(uintBitsToFloat(first.xyz)) - dvec3(s.ray.origin);
-  dvec3 b = dvec3(uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz)) - dvec3(s.ray.origin);
-  dvec3 c = dvec3(uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz)) - dvec3(s.ray.origin);
-  dvec3 normal = cross(b - a, c - a), d = dvec3(direction);
-  double v = dot(d, cross(a, c)), w = dot(d, cross(b, a)), along = -dot(normal, d);
-  if (along != 0.0LF) {
-    hit.t = float(-dot(normal, a) / along);
-    hit.barycentrics = clamp(vec2(v / along, w / along), vec2(0.0), vec2(1.0));
+  vec3 a = uintBitsToFloat(first.xyz), b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz), c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
+  // Edges and direction are scaled by powers of two to a length near 1, so that no product leaves the range of floats.
+  float scale = inversePowerOfTwo(max(largestOf(b - a), largestOf(c - a))), directionScale = inversePowerOfTwo(largestOf(direction));
+  a *= scale, b *= scale, c *= scale;
+  Pairs e1 = pairsDifference(b, a), e2 = pairsDifference(c, a), corner = pairsDifference(a, s.ray.origin * scale), d = Pairs(direction * directionScale, vec3(0.0));
+  Pairs n = pairsCross(e1, e2), m = pairsCross(d, corner);
+  vec2 along = pairsDot(n, d), distance = pairsDot(n, corner), v = pairsDot(e2, m), w = pairsDot(e1, m);
+  Hit hit = s.hit;
+  if (along.x != 0.0) {
+    vec3 ratios = pairsOver(Pairs(vec3(distance.x, -v.x, w.x), vec3(distance.y, -v.y, w.y)), along);
+    hit.t = ratios.x * directionScale * inversePowerOfTwo(scale);
+    hit.barycentrics = clamp(ratios.yz, vec2(0.0), vec2(1.0));
   }
   hit.triangle = met ? first.w & BVH_TRIANGLE_ID_MASK : kNoHit;
   hit.t = met ? hit.t : s.hit.t;

@@ -220,6 +220,51 @@ TEST_F(RayCasterOnGl, MeetsTheGiantAndTheTinyTheSliverAndTheDuplicate) {
   EXPECT_GT(slivers, 300u);
 }
 
+// Slivers a 2^-16 of their length wide, at scales whose squares and cubes leave the range of floats: edge functions in float are off by 1e-3 or so there.
+TEST_F(RayCasterOnGl, MeetsSliversWhereDoubleArithmeticDoes) {
+  for (const double scale : {1.0, 1e-13, 1e13}) {
+    SceneBuilder builder;
+    const int material = builder.material(glm::vec3(0.5f));
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> in(-1.0, 1.0);
+    const auto point = [&] { return glm::dvec3(in(random), in(random), in(random)); };
+    std::vector<glm::dvec3> aims;
+    for (int i = 0; i < 500; ++i) {
+      const glm::dvec3 a = 4.0 * point(), along = point(), across = 0x1p-16 * point();
+      builder.triangle(scale * a, scale * (a + along), scale * (a + 0.3 * along + across), material);
+      aims.push_back(a + 0.31 * along + 0.4 * across);
+    }
+    const Scene& scene = builder.scene();
+    const RayScene rayScene(scene, capabilities());
+    std::vector<GlRay> rays;
+    for (std::size_t i = 0; i < 40 * aims.size(); ++i) {
+      const glm::dvec3 origin = scale * 4.0 * point();
+      const glm::vec3 o = glm::vec3(origin - rayScene.origin());
+      const glm::dvec3 to = scale * (aims[i % aims.size()] + 2e-6 * point()) - rayScene.origin();
+      rays.push_back({o, 0.0f, glm::vec3((to - glm::dvec3(o)) * std::pow(10.0, 3.0 * in(random)))});
+    }
+    const std::vector<GlHit> hits = trace(library(), rayScene, rays);
+    double worst = 0.0, worstWeight = 0.0;
+    int met = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (hits[i].triangle == kNoHit) continue;
+      ++met;
+      const glm::dvec3 o(rays[i].origin), d(rays[i].direction);
+      const auto corner = [&](std::size_t k) { return glm::dvec3(scene.vertices[scene.indices[3 * hits[i].triangle + k]].position) - rayScene.origin() - o; };
+      const glm::dvec3 a = corner(0), e1 = corner(1) - a, e2 = corner(2) - a, n = glm::cross(e1, e2), m = glm::cross(d, a);
+      const double facing = glm::dot(n, d);
+      if (std::abs(facing) < 0.05 * glm::length(n) * glm::length(d)) continue;  // grazing: both are off
+      worst = std::max(worst, std::abs(hits[i].t / (glm::dot(n, a) / facing) - 1.0));
+      const glm::dvec2 weights = glm::clamp(glm::dvec2(-glm::dot(e2, m), glm::dot(e1, m)) / facing, 0.0, 1.0);
+      worstWeight = std::max({worstWeight, std::abs(hits[i].barycentrics.x - weights.x), std::abs(hits[i].barycentrics.y - weights.y)});
+    }
+    EXPECT_GT(met, 1000) << scale;
+    EXPECT_LT(worst, 0x1p-22) << scale;
+    EXPECT_LT(worstWeight, 0x1p-22) << scale;
+    std::cout << "scale " << scale << ": " << met << " met, distance off by " << worst << " of it, weights by " << worstWeight << '\n';
+  }
+}
+
 TEST_F(RayCasterOnGl, OutlivesFansAndNestedBoxes) {
   // A hundred thousand triangles about one corner: all boxes overlap there.
   SceneBuilder fan, nested;
