@@ -1,0 +1,219 @@
+// What must not matter: which side of a face is its front, and which of the three channels light is in. And form factors that a horizon cuts.
+#include "support/form_factor_twin.hpp"
+#include "support/gl_fixture.hpp"
+#include "support/radiosity_scenes.hpp"
+#include "support/pixel_rays.hpp"
+#include "support/small_scenes.hpp"
+
+#include "gl/pass.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "render/renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace lucerna {
+namespace {
+
+using test::openBox;
+using test::openBoxCamera;
+using test::SceneBuilder;
+
+class SidesAndChannels : public test::SharedProgramsTest {
+ protected:
+  static RenderSettings settings(Technique technique) {
+    RenderSettings s;
+    s.technique = technique;
+    s.size = {32, 24};
+    s.fullFloatTarget = true;
+    s.shadow.size = 512;
+    s.rsm.size = 64;
+    s.lpv.cascades.cells = 16;
+    s.lpv.storage = LightPropagationVolume::Storage::full;
+    return s;
+  }
+  static Image render(const Scene& scene, const Camera& camera, const RenderSettings& s) {
+    Renderer renderer(context(), library(), scene, s);
+    renderer.render(camera);
+    return renderer.readRadiance();
+  }
+};
+
+Scene turnedAround(Scene scene) {
+  for (std::size_t i = 0; i + 2 < scene.indices.size(); i += 3) std::swap(scene.indices[i], scene.indices[i + 1]);
+  for (Vertex& vertex : scene.vertices) vertex.normal = -vertex.normal;
+  return scene;
+}
+
+/// A box with the lamps of every kind that rasterisers know.
+Scene litBox() {
+  Scene scene = openBox();
+  scene.spots.push_back({{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
+  scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
+  return scene;
+}
+
+double largestDifference(const Image& a, const Image& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
+  return largest;
+}
+
+TEST_F(SidesAndChannels, TurningEveryFaceAroundChangesNoPicture) {
+  for (const Technique technique : {Technique::direct, Technique::rsm, Technique::lpv}) {
+    const Scene scene = technique == Technique::rsm ? openBox() : litBox(), turned = turnedAround(scene);
+    const Image front = render(scene, openBoxCamera(), settings(technique));
+    const Image back = render(turned, openBoxCamera(), settings(technique));
+    EXPECT_GT(meanOf(front).y, 0.1);
+    // The two windings may round differently: places and depths of texels move by a rounding.
+    EXPECT_LT(largestDifference(front, back), (technique == Technique::rsm ? 1e-2 : 2e-3) * meanOf(front).y) << nameOf(technique);
+  }
+  PathTracer::Settings path;
+  path.size = {32, 24};
+  const auto traced = [&](const Scene& scene) {
+    PathTracer tracer(context(), library(), scene, path);
+    tracer.setCamera(openBoxCamera());
+    tracer.record(4);
+    return tracer.mean();
+  };
+  const Image front = traced(litBox()), back = traced(turnedAround(litBox()));
+  int different = 0;
+  for (std::size_t i = 0; i < front.pixels.size(); ++i) different += glm::length(front.pixels[i] - back.pixels[i]) > 1e-3f * glm::length(front.pixels[i]);
+  EXPECT_LT(different, 8);  // where a ray meets an edge
+}
+
+TEST_F(SidesAndChannels, LightOfEachChannelIsCarriedAlike) {
+  struct Way {
+    const char* name;
+    RenderSettings settings;
+  };
+  std::vector<Way> ways{{"direct", settings(Technique::direct)}, {"rsm", settings(Technique::rsm)}, {"lpv", settings(Technique::lpv)}};
+  ways.push_back(ways.back());
+  ways.back().name = "lpv, 3 bounces";
+  ways.back().settings.lpv.bounces = 3;
+  for (const auto fill : {LpvFill::layered, LpvFill::fixed, LpvFill::atomic})
+    for (const auto propagation : {LpvPropagate::layered, LpvPropagate::compute}) {
+      ways.push_back({"lpv, fills and propagations", settings(Technique::lpv)});
+      ways.back().settings.lpv.fill = fill;
+      ways.back().settings.lpv.propagate = propagation;
+    }
+  const auto lit = [&](const glm::vec3& colour) {
+    Scene scene = litBox();
+    for (Material& material : scene.materials) material.diffuse = glm::vec3(material.diffuse.y);
+    scene.sun->irradiance = 3.0f * colour;
+    scene.spots[0].intensity = 50.0f * colour;
+    scene.points[0].intensity = 9.0f * colour;
+    return scene;
+  };
+  for (const Way& way : ways) {
+    if (way.settings.lpv.fill == LpvFill::atomic && !capabilities().shaderAtomicFloat && !capabilities().shaderAtomicFp16Vector) continue;
+    const Image white = render(lit(glm::vec3(1.0f)), openBoxCamera(), way.settings);
+    for (int c = 0; c < 3; ++c) {
+      glm::vec3 colour(0.0f);
+      colour[c] = 1.0f;
+      const Image one = render(lit(colour), openBoxCamera(), way.settings);
+      double worst = 0.0;
+      for (std::size_t i = 0; i < one.pixels.size(); ++i) {
+        worst = std::max(worst, static_cast<double>(std::abs(one.pixels[i][c] - white.pixels[i][c])));
+        EXPECT_EQ(one.pixels[i][(c + 1) % 3], 0.0f);
+        EXPECT_EQ(one.pixels[i][(c + 2) % 3], 0.0f);
+      }
+      EXPECT_LT(worst, 2e-4 * meanOf(white).y) << way.name << ", channel " << c;
+    }
+  }
+}
+
+TEST_F(SidesAndChannels, FormFactorsOfTrianglesThatTheHorizonCuts) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::vector<glm::vec4> corners;
+  std::vector<double> expected;
+  std::array<int, 4> below{};
+  for (int i = 0; i < 4096; ++i) {
+    std::array<glm::dvec3, 3> triangle;
+    const glm::dvec3 centre(normal(random), normal(random), 0.5 * normal(random));
+    const double size = std::pow(10.0, -1.0 + 1.5 * (i % 64) / 64.0);
+    int under = 0;
+    for (glm::dvec3& p : triangle) {
+      p = glm::dvec3(glm::vec3(centre + size * glm::dvec3(normal(random), normal(random), normal(random))));
+      under += p.z <= 0.0;
+      corners.emplace_back(glm::vec3(p), 0.0f);
+    }
+    ++below[static_cast<std::size_t>(under)];
+    expected.push_back(twin::pointToPolygon({0, 0, 0}, {0, 0, 1}, triangle));
+  }
+  for (const int count : below) EXPECT_GT(count, 300);
+  const gl::Program& program = library().loadCompute("polygon probe", "radiosity/polygon_probe.comp", {});
+  const gl::Buffer in("corners", corners.size() * sizeof(glm::vec4), corners.data(), GL_STATIC_DRAW);
+  const gl::Buffer out("form factors", expected.size() * sizeof(float), nullptr, GL_DYNAMIC_READ);
+  in.bind(GL_SHADER_STORAGE_BUFFER, 0);
+  out.bind(GL_SHADER_STORAGE_BUFFER, 1);
+  {
+    const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
+    program.use();
+    pass.dispatch({static_cast<int>(expected.size()), 1, 1}, {64, 1, 1});
+  }
+  const std::vector<float> found = out.read<float>();
+  for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(found[i], expected[i], 2e-5 + 1e-4 * expected[i]) << i;
+}
+
+// ------------------------------------------------------------------------------------------- lamps in radiosity's pictures
+
+/// A black floor's reflectance 1/2 seen from above, lit by one lamp; direct light in each pixel or by patches.
+Image radiosityPicture(const gl::Context& context, gl::ProgramLibrary& library, const Scene& scene, const Camera& camera, RadiosityView::Direct direct) {
+  RenderSettings settings;
+  settings.technique = Technique::radiosity;
+  settings.component = Component::direct;
+  settings.size = {16, 16};
+  settings.fullFloatTarget = true;
+  settings.radiosity.direct = direct;
+  settings.radiosity.solution.hemicubes.resolution = 16;
+  settings.radiosity.solution.patches.longestEdge = 0.25;
+  Renderer renderer(context, library, scene, settings);
+  renderer.render(camera);
+  return renderer.readRadiance();
+}
+
+TEST_F(SidesAndChannels, LampsOfEveryKindLightRadiositysPicturesAndAreBlockedByWhatLiesBeforeThemAlone) {
+  const Camera camera = test::lookingAt({0.0, 1.0, 0.01}, {0, 0, 0}, 0.5);
+  const double height = 2.0;
+  for (const char* kind : {"spot", "point", "sun"})
+    for (const double screen : {0.0, 0.02, 0.98, 1.02}) {  // place of a screen between floor and lamp, in parts of the distance; 0: none
+      if (screen > 1.0 && std::string(kind) == "sun") continue;
+      SceneBuilder builder;
+      const int grey = test::lambertian(builder, 0.5), black = test::lambertian(builder, 0.0);
+      builder.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, grey);
+      if (screen > 0.5) builder.plate({0, screen * height, 0}, {0, 0, 2}, {2, 0, 0}, black);
+      Scene scene = builder.scene();
+      scene.sun.reset();
+      if (std::string(kind) == "sun") scene.sun = DirectionalLight{{0, -1, 0}, glm::vec3(2.0f)};
+      if (std::string(kind) == "point") scene.points.push_back({{0, height, 0}, glm::vec3(8.0f)});
+      if (std::string(kind) == "spot") scene.spots.push_back({{0, height, 0}, {0, -1, 0}, glm::vec3(8.0f), 0.3, 1.0});
+      for (const auto direct : {RadiosityView::Direct::pixels, RadiosityView::Direct::patches}) {
+        const Image image = radiosityPicture(context(), library(), scene, camera, direct);
+        double worst = 0.0;
+        for (int y = 0; y < 16; ++y)
+          for (int x = 0; x < 16; ++x) {
+            const glm::dvec3 p = test::onPlane(camera, test::pixelRay(camera, x, y, {16, 16}), 0.0);
+            const double d2 = p.x * p.x + p.z * p.z + height * height, cosine = height / std::sqrt(d2);
+            double e = std::string(kind) == "sun" ? 2.0 : 8.0 * cosine / d2;
+            if (std::string(kind) == "spot") {
+              const double t = std::clamp((cosine - std::cos(1.0)) / (std::cos(0.3) - std::cos(1.0)), 0.0, 1.0);
+              e *= t * t * (3.0 - 2.0 * t);
+            }
+            if (screen > 0.5 && screen < 1.0) e = 0.0;
+            worst = std::max(worst, std::abs(static_cast<double>(image.at(x, y).y) - 0.5 / std::numbers::pi * e));
+          }
+        // Patches of a quarter: their means, interpolated.
+        EXPECT_LT(worst, direct == RadiosityView::Direct::pixels ? 1e-4 : 6e-3) << kind << ", screen at " << screen << ", " << nameOf(direct);
+      }
+    }
+}
+
+}  // namespace
+}  // namespace lucerna
