@@ -2,6 +2,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
+#include "offers.hpp"
 #include "render/deviations.hpp"
 
 #include <fmt/core.h>
@@ -19,7 +20,8 @@ namespace lucerna::demo {
 // ---------------------------------------------------------------------------------------------------- options
 
 void CommonOptions::declare(CLI::App& app) {
-  app.add_option("--host", host, "who makes the OpenGL context: window, egl or osmesa (default: see README)");
+  offer(app.add_option("--host", host, "who makes the OpenGL context: window, egl or osmesa (default: see README)"),
+        {"window", "egl", "osmesa"});
   app.add_option("--json", json, "write machine-readable results to this file");
   app.add_flag("--quiet", quiet, "no warnings, no progress");
 }
@@ -184,6 +186,11 @@ const Setting kSettings[] = {
 /// What concerns the picture of a solution, not the solution.
 constexpr std::string_view kViewOfSolution[] = {"rad.file", "rad.mapping", "rad.decades", "rad.mesh", "rad.flat", "rad.direct", "rad.shadow-rays"};
 
+bool isOfSolution(const Setting& setting) {
+  const std::string_view name = setting.key;
+  return name.starts_with("rad.") && std::find(std::begin(kViewOfSolution), std::end(kViewOfSolution), name) == std::end(kViewOfSolution);
+}
+
 }  // namespace
 
 namespace {
@@ -207,6 +214,13 @@ std::string settingsHelp() {
   return text;
 }
 
+std::vector<std::string> offeredSettings(bool ofSolutions) {
+  std::vector<std::string> keys;
+  for (const Setting& setting : kSettings)
+    if (!ofSolutions || isOfSolution(setting)) keys.push_back(std::string(setting.key) + "=");
+  return keys;
+}
+
 std::string deviationsHelp() {
   std::string text = "\nDeviations (--deviation NAME=on|off; * are on with --fidelity original):\n";
   for (const Deviation& deviation : allDeviations())
@@ -215,12 +229,16 @@ std::string deviationsHelp() {
 }
 
 void PictureOptions::declare(CLI::App& app) {
-  app.add_option("--technique", technique, "direct, rsm, lpv, radiosity or, for render, path")->capture_default_str();
-  app.add_option("--component", component, "all, direct or indirect")->capture_default_str();
-  app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str();
-  app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated");
+  offer(app.add_option("--technique", technique, "direct, rsm, lpv, radiosity or, for render, path")->capture_default_str(),
+        {"direct", "rsm", "lpv", "radiosity"});
+  offer(app.add_option("--component", component, "all, direct or indirect")->capture_default_str(), {"all", "direct", "indirect"});
+  offer(app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str(), {"corrected", "original"});
+  std::vector<std::string> switches;
+  for (const Deviation& deviation : allDeviations())
+    for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
+  offer(app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated"), switches);
   app.add_option("--size", size, "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for --fidelity original")->capture_default_str();
-  app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated");
+  offer(app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated"), offeredSettings());
   app.add_option("--settings", settingsFile, "a settings file, such as `lucerna tune` writes; what else is given here comes after it");
   app.footer(settingsHelp() + deviationsHelp());
 }
@@ -270,14 +288,10 @@ RenderSettings PictureOptions::parse(std::optional<float>& exposure) const {
 
 void applySolutionSetting(RadiositySolutionSettings& settings, const std::string& assignment) {
   const auto [key, value] = splitAssignment("--set", assignment);
-  const auto solves = [](const Setting& s) {
-    const std::string_view name = s.key;
-    return name.starts_with("rad.") && std::find(std::begin(kViewOfSolution), std::end(kViewOfSolution), name) == std::end(kViewOfSolution);
-  };
   RenderSettings all;
   all.radiosity.solution = settings;
   std::optional<float> exposure;
-  findSetting(assignment, key, solves).apply(all, exposure, "--set " + key, value);
+  findSetting(assignment, key, isOfSolution).apply(all, exposure, "--set " + key, value);
   settings = all.radiosity.solution;
 }
 

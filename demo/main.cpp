@@ -1,6 +1,7 @@
 // lucerna: one executable, one subcommand a file. Errors become one line and an exit code: 2 bad input, 3 missing
 // capability, 1 a fault of ours.
 #include "base/error.hpp"
+#include "command_tree.hpp"
 #include "commands.hpp"
 
 #include <fmt/core.h>
@@ -25,6 +26,8 @@ int main(int argc, char** argv) {
   add("bench", "Measure: error over time, stability, what is left out; published tables and pictures made again", lucerna::demo::addBench);
   add("compare", "Errors between two HDR pictures, with heat maps", lucerna::demo::addCompare);
   add("tune", "Measure a scene, and choose the technique and settings that meet a frame time or an error", lucerna::demo::addTune);
+  add("completion", "Print a completion script for a shell", lucerna::demo::addCompletion);
+  add("manual", "Print the manual page, in roff", lucerna::demo::addManual);
 
   try {
     app.parse(argc, argv);

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "offers.hpp"
 #include "radiosity/rad_file.hpp"
 #include "radiosity/rad_models.hpp"
 
@@ -63,7 +64,7 @@ int generate(const Generate& options) {
 Work addGenerate(CLI::App& app) {
   auto options = std::make_shared<Generate>();
   app.add_option("FILE", options->file, "the triangle file to write")->required();
-  app.add_option("MODEL", options->model, "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle")->required();
+  offer(app.add_option("MODEL", options->model, "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle")->required(), {"1", "2", "3"});
   app.add_option("NUMBERS", options->numbers, "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until below the area; 0 to 1; 0 to 16777215")
       ->expected(0, 3);
   app.footer("As published: lucerna radiosity generate model1.out 1 2.5 0.15 100000");
@@ -95,9 +96,13 @@ Work addSolve(CLI::App& app) {
   app.add_option("IN", options->in, "a triangle file; corrected: or any scene")->required();
   app.add_option("OUT", options->out, "where every sweep is saved; may be IN. Ctrl-C stops at any time, the same command goes on")->required();
   const CLI::Option* view = app.add_option("VIEW", options->settings.view, "pixels a side of a hemicube's face (original 500, corrected 64)");
-  app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str();
-  app.add_option("--solver", options->solver, "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room, cg");
-  app.add_option("--deviation", options->deviations, "NAME=on|off: one deviation of the published original; may be repeated");
+  offer(app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str(), {"corrected", "original"});
+  offer(app.add_option("--solver", options->solver, "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room, cg"),
+        {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "per-room", "cg"});
+  std::vector<std::string> switches;
+  for (const RadiosityDeviation& deviation : allRadiosityDeviations())
+    for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
+  offer(app.add_option("--deviation", options->deviations, "NAME=on|off: one deviation of the published original; may be repeated"), switches);
   app.add_option("--max-sweeps", options->settings.maxSweeps, "stop after so many sweeps (0: when nothing changes)")->capture_default_str();
   app.add_option("--near", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
   app.add_option("--seed", options->settings.seed, "of the random roll with rad.fixed-orientation=off")->capture_default_str();
@@ -108,8 +113,9 @@ Work addSolve(CLI::App& app) {
                                   "corrected: MiB for form factors; more are read from OUT.rows for each product (half of what is free)");
   app.add_option("--edge", options->edge, "corrected: longest edge of a scene's patches in scene units (a 12th of the scene)")->check(CLI::NonNegativeNumber);
   app.add_option("--refinements", options->refinements, "corrected: times that a scene's patches are halved where light changes steeply (0)")->check(CLI::Range(0, 8));
-  app.add_option("--set", options->set, "corrected: rad.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated");
-  app.add_option("--visibility", options->visibility, "corrected: what tells pixels what they see: auto (measured at start), raster, rays, item-buffer");
+  offer(app.add_option("--set", options->set, "corrected: rad.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated"), offeredSettings(true));
+  offer(app.add_option("--visibility", options->visibility, "corrected: what tells pixels what they see: auto (measured at start), raster, rays, item-buffer"),
+        {"auto", "raster", "rays", "item-buffer"});
   app.footer(radiosityDeviationsHelp());
   options->common.declare(app);
   return [options, view] {

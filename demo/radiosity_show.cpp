@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "offers.hpp"
 #include "radiosity/original_display.hpp"
 #include "scene/scene.hpp"
 #include "walk/free_camera.hpp"
@@ -116,9 +117,10 @@ int run(const Options& options) {
 Work addRadiosityShow(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("FILE", options->file, "a triangle file")->required();
-  app.add_option("MODE", options->mode, "s: triangles turned away shown too, by their corners; c: the 24-bit colours that the computation draws");
+  offer(app.add_option("MODE", options->mode, "s: triangles turned away shown too, by their corners; c: the 24-bit colours that the computation draws"), {"s", "c"});
   app.add_option("-o,--output", options->output, "OUT.png: a picture instead of a window");
-  app.add_option("--mapping", options->mapping, "log (as published, default), linear (times a constant), filmic (the engine's), false (colours), bits (as c)");
+  offer(app.add_option("--mapping", options->mapping, "log (as published, default), linear (times a constant), filmic (the engine's), false (colours), bits (as c)"),
+        {"log", "linear", "filmic", "false", "bits"});
   app.add_option("--constant", options->constant, "linear and filmic: what a value is multiplied by, 1 being white (0: from the scene)")->capture_default_str();
   app.add_flag("--mesh", options->mesh, "draw the triangles' edges");
   app.add_flag("--false-colours", options->falseColours, "the same as --mapping false");

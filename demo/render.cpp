@@ -2,6 +2,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "commands.hpp"
+#include "offers.hpp"
 #include "render/deviations.hpp"
 #include "render_path.hpp"
 
@@ -101,6 +102,7 @@ Work addRender(CLI::App& app) {
   app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")->required();
   app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")->check(CLI::Range(1, 100000))->capture_default_str();
   options->picture.declare(app);
+  offer(app.get_option("--technique"), {"direct", "rsm", "lpv", "radiosity", "path"});
   options->path.declare(app);
   options->common.declare(app);
   return [options, size = app.get_option("--size")] {

@@ -6,6 +6,7 @@
 #include "bench/needs_bench.hpp"
 #include "bench/rays_bench.hpp"
 #include "bench/stability.hpp"
+#include "offers.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>
@@ -214,7 +215,8 @@ Work addBenchAll(CLI::App& app) {
   auto options = std::make_shared<bench::AllOptions>();
   app.add_option("SCENE", options->scenes, "scene files for error and needs (default: the Cornell box and the atrium)");
   app.add_option("--out", options->out, "folder of the report; an interrupted one goes on")->required();
-  app.add_option("--parts", options->parts, "of error, deviations, stability, needs, rays, tables; default: all")->delimiter(',');
+  offer(app.add_option("--parts", options->parts, "of error, deviations, stability, needs, rays, tables; default: all")->delimiter(','),
+        {std::begin(bench::kParts), std::end(bench::kParts)});
   app.add_option("--scale", options->scale, "how much work: pixels and seconds; 1 takes four times as long as the default")->capture_default_str();
   options->common.declare(app);
   return [options] { return bench::run(*options); };

@@ -5,6 +5,7 @@
 #include "bench/error_bench.hpp"
 #include "base/hash.hpp"
 #include "measure/tone_map.hpp"
+#include "offers.hpp"
 
 #include <fmt/core.h>
 
@@ -63,7 +64,7 @@ void ErrorBenchOptions::declare(CLI::App& app) {
   app.add_option("--budget", budget, "seconds for references and path tracing; known references are used again")->capture_default_str()->check(CLI::Range(0.01, 1e6));
   app.add_option("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")->check(CLI::Range(2, 1 << 30));
   app.add_option("--references", references, "folder of kept references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
-  app.add_option("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all")->delimiter(',');
+  offer(app.add_option("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all")->delimiter(','), {"direct", "rsm", "lpv", "radiosity", "path"});
   app.add_option("--frames", frames, "pictures a rung at least")->capture_default_str()->check(CLI::Range(1, 10000));
   app.add_flag("--small", small, "without the most expensive rungs");
   app.add_option("--out", out, "folder of the report; an interrupted bench goes on where it was");

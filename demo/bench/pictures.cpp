@@ -4,6 +4,7 @@
 #include "bench/bench.hpp"
 #include "bench/contact_sheet.hpp"
 #include "bench/rad.hpp"
+#include "offers.hpp"
 #include "render/deviations.hpp"
 
 #include <fmt/core.h>
@@ -164,10 +165,10 @@ int run(const Options& options) {
 Work addBenchPictures(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  app.add_option("--original", options->original, "whose pictures: lpv, rad or vpt")->required();
+  offer(app.add_option("--original", options->original, "whose pictures: lpv, rad or vpt")->required(), {"lpv", "rad", "vpt"});
   app.add_option("-o,--output", options->output, "FILE.png")->required();
   app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str();
+  offer(app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str(), {"corrected", "original"});
   app.add_option("--size", options->size, "WIDTHxHEIGHT of a tile in pixels (lpv and rad 640x360, vpt 320x180)");
   app.add_option("--scale", options->scale, "vpt: the published samples times this (0.02); rad: triangles over and pixels times this (1); above 0, at most 1");
   app.add_option("--exposure", options->exposure, "multiplies radiance before tone mapping (the scene's)");

@@ -3,6 +3,7 @@
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
 #include "bench/rad.hpp"
+#include "offers.hpp"
 
 #include <fmt/core.h>
 
@@ -150,7 +151,7 @@ int run(Options options) {
 Work addBenchTables(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  app.add_option("--original", options->original, "whose tables: lpv, rad or vpt")->required();
+  offer(app.add_option("--original", options->original, "whose tables: lpv, rad or vpt")->required(), {"lpv", "rad", "vpt"});
   app.add_option("--scale", options->scale, "less work on a slow machine, above 0, at most 1. lpv and rad (1): fewer frames or hemicubes; below 0.5 also smaller "
                                            "grids and models. vpt (0.05): each side and the samples of the published pictures times this");
   options->common.declare(app);

@@ -1,0 +1,41 @@
+// The values are the description of a validator that is never active: CLI11 has no other place in an option for what its users add.
+#include "offers.hpp"
+
+#include <sstream>
+#include <utility>
+
+namespace lucerna::demo {
+
+namespace {
+
+constexpr const char* kName = "offers";
+
+}  // namespace
+
+CLI::Option* offer(CLI::Option* option, const std::vector<std::string>& values) {
+  try {
+    option->get_validator(kName)->description(joined(values));
+  } catch (const CLI::OptionNotFound&) {
+    CLI::Validator validator([](std::string&) { return std::string(); }, joined(values), kName);
+    option->check(validator.active(false));
+  }
+  return option;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text.append(text.empty() ? "" : " ").append(word);
+  return text;
+}
+
+std::vector<std::string> offered(CLI::Option& option) {
+  std::vector<std::string> values;
+  try {
+    std::istringstream text(std::as_const(*option.get_validator(kName)).active(true).get_description());
+    for (std::string value; text >> value;) values.push_back(value);
+  } catch (const CLI::OptionNotFound&) {
+  }
+  return values;
+}
+
+}  // namespace lucerna::demo
