@@ -96,6 +96,7 @@ nlohmann::ordered_json resultJson(const Options& options, const Host& host, cons
   json["deviations"] = activeDeviations(renderer.settings());
   json["settings"] = options.picture.settings;
   json["size"] = {renderer.size().x, renderer.size().y};
+  if (host.swapInterval()) json["swap_interval"] = *host.swapInterval();
   json["frames"] = frames;
   json["seconds"] = seconds;
   json["stages"] = stagesJson(renderer.timer().statistics());
@@ -227,6 +228,7 @@ int run(Options options) {
   HostOptions hostOptions;
   hostOptions.windowSize = settings.size;
   hostOptions.windowTitle = "Lucerna - " + scene.name;
+  hostOptions.swapAtRefresh = options.common.json.empty();  // with --json frames are measured
   const auto host = options.common.makeHost(options.record.empty(), hostOptions);
   const gl::Context context;
   gl::ProgramLibrary programs;

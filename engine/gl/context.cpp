@@ -1,5 +1,6 @@
 #include "gl/context.hpp"
 
+#include "base/error.hpp"
 #include "base/log.hpp"
 #include "host/host.hpp"
 
@@ -28,6 +29,7 @@ void GLAPIENTRY onDebugMessage(GLenum, GLenum type, GLuint, GLenum severity, GLs
 std::vector<std::pair<std::string, bool>> Capabilities::probedExtensions() const {
   return {{"ARB_clear_texture", clearTexture},
           {"texture_filter_anisotropic", anisotropicFilter},
+          {"reset notification", resetNotification},
           {"NV_shader_atomic_float", shaderAtomicFloat},
           {"NV_shader_atomic_fp16_vector", shaderAtomicFp16Vector}};
 }
@@ -48,7 +50,19 @@ std::vector<std::pair<std::string, long>> Capabilities::limits() const {
           {"anisotropy", static_cast<long>(maxAnisotropy)}};
 }
 
-Context::Context() {
+void throwIfReset() {
+  if (!glGetGraphicsResetStatusARB) return;
+  const GLenum status = glGetGraphicsResetStatusARB();
+  if (status == GL_NO_ERROR) return;
+  const bool ours = status == GL_GUILTY_CONTEXT_RESET_ARB;
+  const char* whose = ours ? "for work of this program that took too long or went wrong"
+                           : status == GL_INNOCENT_CONTEXT_RESET_ARB ? "for work of another program" : "and does not say for whose work";
+  throw Error(ours ? ErrorKind::fault : ErrorKind::missingCapability, fmt::format("the driver reset the GPU {}: nothing more can be drawn in this run", whose));
+}
+
+DebugOutput defaultDebugOutput() { return logLevel() == LogLevel::verbose ? DebugOutput::synchronous : DebugOutput::off; }
+
+Context::Context(DebugOutput debugOutput) {
   Capabilities& c = capabilities_;
   c.vendor = string(GL_VENDOR);
   c.renderer = string(GL_RENDERER);
@@ -66,6 +80,12 @@ Context::Context() {
   c.shaderAtomicFloat = has("GL_NV_shader_atomic_float");
   c.shaderAtomicFp16Vector = has("GL_NV_shader_atomic_fp16_vector");
 
+  if (has("GL_ARB_robustness") && glGetGraphicsResetStatusARB) {
+    GLint strategy = 0;
+    glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY_ARB, &strategy);
+    c.resetNotification = strategy == GL_LOSE_CONTEXT_ON_RESET_ARB;
+  }
+
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &c.maxTextureSize);
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &c.max3dTextureSize);
   glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &c.maxArrayTextureLayers);
@@ -80,9 +100,14 @@ Context::Context() {
   glGetIntegerv(GL_MAX_GEOMETRY_OUTPUT_VERTICES, &c.maxGeometryOutputVertices);
   if (c.anisotropicFilter) glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &c.maxAnisotropy);
 
-  glEnable(GL_DEBUG_OUTPUT);
-  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-  glDebugMessageCallback(onDebugMessage, &errors_);
+  if (debugOutput == DebugOutput::synchronous) {
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(onDebugMessage, &errors_);
+  } else {
+    glDisable(GL_DEBUG_OUTPUT);  // on by default in a debug context
+    glDisable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  }
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
 }

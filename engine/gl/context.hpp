@@ -18,6 +18,7 @@ struct Capabilities {
   bool clearTexture = false;        ///< ARB_clear_texture; else glTexSubImage3D of zeros
   bool anisotropicFilter = false;   ///< EXT/ARB_texture_filter_anisotropic; else trilinear
   bool shaderAtomicFloat = false;   ///< NV_shader_atomic_float: atomic LPV injection on r32f
+  bool resetNotification = false;   ///< ARB_robustness, in a context that tells of resets: see throwIfReset
   bool shaderAtomicFp16Vector = false;  ///< NV_shader_atomic_fp16_vector: atomic LPV injection on rgba16f
 
   GLint maxTextureSize = 0, max3dTextureSize = 0, maxArrayTextureLayers = 0, maxTextureBufferSize = 0;
@@ -32,18 +33,28 @@ struct Capabilities {
   std::vector<std::pair<std::string, long>> limits() const;
 };
 
-/// The context of the current host, as the engine sees it: probes it and listens to its debug output.
+/// Whether the driver tells of errors and hazards as they happen, by KHR_debug. It does so within the call at fault (GL_DEBUG_OUTPUT_SYNCHRONOUS), for
+/// which drivers give up their own threads: for tests and verbose runs, not where anything is timed.
+enum class DebugOutput { off, synchronous };
+/// synchronous in a verbose run (LogLevel::verbose), else off.
+DebugOutput defaultDebugOutput();
+
+/// Throws where the driver has reset the GPU: from then on calls do nothing and pictures would be of nothing. To be asked when a submission that was waited
+/// for is over, and once a frame. Needs a context that tells of resets (the hosts ask for one); else there is nothing to be known.
+void throwIfReset();
+
+/// The context of the current host, as the engine sees it: probes it and listens to its debug output, where that is asked for.
 /// Must outlive every gl object; one at a time.
 class Context {
  public:
-  Context();
+  explicit Context(DebugOutput debugOutput = defaultDebugOutput());
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
   const Capabilities& capabilities() const { return capabilities_; }
 
-  /// GL errors reported by the driver since the last call (KHR_debug type error, and glGetError). Tests fail on any.
+  /// GL errors reported by the driver since the last call (KHR_debug type error where it is listened to, and glGetError). Tests fail on any.
   std::vector<std::string> takeErrors();
 
  private:

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace lucerna::gl {
@@ -9,10 +10,6 @@ namespace lucerna::gl {
 namespace {
 
 constexpr GLuint kEditUnit = 79;  // the last of the 80 combined units that 4.3 guarantees is 79; editing binds there
-
-void label(GLenum identifier, GLuint id, const std::string& name) {
-  glObjectLabel(identifier, id, static_cast<GLsizei>(name.size()), name.c_str());
-}
 
 struct Format {
   GLenum internal, format, type;
@@ -43,6 +40,12 @@ const Format& formatOf(GLenum internalFormat) {
 
 }  // namespace
 
+void label(GLenum identifier, GLuint id, const std::string& name) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_LABEL_LENGTH, &most);
+  glObjectLabel(identifier, id, std::min(static_cast<GLint>(name.size()), most - 1), name.c_str());
+}
+
 std::size_t bytesPerTexel(GLenum internalFormat) { return formatOf(internalFormat).bytes; }
 
 namespace detail {
@@ -65,20 +68,38 @@ Buffer::Buffer(const std::string& name, std::size_t bytes, const void* data, GLe
 
 void Buffer::upload(std::size_t offset, std::size_t bytes, const void* data) {
   CHECK(offset + bytes <= bytes_, "offset {} + {} bytes > {}", offset, bytes, bytes_);
+  settle(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_WRITE_BUFFER, id());
   glBufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
 }
 
 void Buffer::clear(GLuint value) {
+  settle(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_WRITE_BUFFER, id());
   glClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 
-void Buffer::bind(GLenum target, GLuint index) const { glBindBufferBase(target, index, id()); }
+void Buffer::bind(GLenum target, GLuint index) const {
+  shadersMayWrite_ = shadersMayWrite_ || target == GL_SHADER_STORAGE_BUFFER;
+  glBindBufferBase(target, index, id());
+}
+
+void Buffer::settle(GLbitfield barrier) const {
+  if (shadersMayWrite_) glMemoryBarrier(barrier);
+}
+
+void Buffer::copyTo(Buffer& target, std::size_t bytes) const {
+  CHECK(bytes <= bytes_ && bytes <= target.bytes_, "{} bytes of {} into {}", bytes, bytes_, target.bytes_);
+  settle(GL_BUFFER_UPDATE_BARRIER_BIT);
+  target.settle(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glBindBuffer(GL_COPY_READ_BUFFER, id());
+  glBindBuffer(GL_COPY_WRITE_BUFFER, target.id());
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes));
+}
 
 void Buffer::readBytes(void* data, std::size_t bytes) const {
   CHECK(bytes <= bytes_, "{} bytes of {}", bytes, bytes_);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  settle(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_READ_BUFFER, id());
   glGetBufferSubData(GL_COPY_READ_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
 }
@@ -139,6 +160,7 @@ std::size_t Texture::bytes() const {
 }
 
 void Texture::upload(GLenum format, GLenum type, const void* data, int level) {
+  settle(GL_TEXTURE_UPDATE_BARRIER_BIT);
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   const glm::ivec3 size = levelSize(level);
@@ -151,12 +173,14 @@ void Texture::upload(GLenum format, GLenum type, const void* data, int level) {
 void Texture::copyFrom(const Buffer& buffer, std::size_t offset) {
   const Format& format = formatOf(format_);
   CHECK(levels_ == 1 && offset + bytes() <= buffer.bytes(), "{} bytes at {} of {}", bytes(), offset, buffer.bytes());
+  buffer.settle(GL_PIXEL_BUFFER_BARRIER_BIT);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer.id());
   upload(format.format, format.type, reinterpret_cast<const void*>(offset));
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }
 
 void Texture::generateMipmaps() {
+  settle(GL_TEXTURE_UPDATE_BARRIER_BIT);
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   glGenerateMipmap(target_);
@@ -168,11 +192,16 @@ void Texture::bind(GLuint unit) const {
 }
 
 void Texture::bindImage(GLuint unit, GLenum access, int level) const {
+  shadersMayWrite_ = shadersMayWrite_ || access != GL_READ_ONLY;
   glBindImageTexture(unit, id(), level, target_ == GL_TEXTURE_2D ? GL_FALSE : GL_TRUE, 0, access, format_);
 }
 
+void Texture::settle(GLbitfield barrier) const {
+  if (shadersMayWrite_) glMemoryBarrier(barrier);
+}
+
 std::vector<glm::vec4> Texture::readRgba(int level) const {
-  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  settle(GL_TEXTURE_UPDATE_BARRIER_BIT);
   const glm::ivec3 size = levelSize(level);
   std::vector<glm::vec4> texels(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
@@ -191,7 +220,7 @@ std::vector<float> Texture::readDepth() const {
 
 std::vector<glm::uvec4> Texture::readWords() const {
   CHECK(format_ == GL_RGBA32UI, "format {:#x}", format_);
-  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  settle(GL_TEXTURE_UPDATE_BARRIER_BIT);
   std::vector<glm::uvec4> words(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
@@ -219,6 +248,7 @@ void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture
   std::vector<std::byte> zeros;
   for (const Texture* texture : textures) {
     const Format& format = formatOf(texture->format());
+    texture->settle(GL_TEXTURE_UPDATE_BARRIER_BIT);
     if (!haveClearTexture) zeros.resize(std::max(zeros.size(), texture->bytes()), std::byte{0});
     for (int level = 0; level < texture->levels(); ++level) {
       if (haveClearTexture)

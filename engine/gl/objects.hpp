@@ -1,6 +1,10 @@
 // Move-only owners of OpenGL objects. Every object carries a debug name (KHR_debug), so that RenderDoc, apitrace and Nsight
 // show it, and knows its size in bytes. OpenGL 4.3 has no direct state access: buffers are edited through
 // GL_COPY_WRITE_BUFFER, textures through the last texture unit, so that nobody's bindings are disturbed.
+//
+// Shader writes to storage blocks and images are ordered by barriers alone [OpenGL 4.3, 7.12.2]. Between shaders that is a pass's business
+// (pass.hpp); between a shader and the API's own reads and writes it is done here: an object that was ever bound for shaders to write issues
+// the barrier itself before it is uploaded to, cleared, copied or read.
 #pragma once
 
 #include "gl/api.hpp"
@@ -21,6 +25,9 @@ void deleteTexture(GLuint id);
 void deleteFramebuffer(GLuint id);
 void deleteVertexArray(GLuint id);
 }  // namespace detail
+
+/// Names the object for debuggers, cut at the driver's GL_MAX_LABEL_LENGTH: a longer one is an error [OpenGL 4.3, 20.9].
+void label(GLenum identifier, GLuint id, const std::string& name);
 
 /// Owns the name of a GL object; zero when moved from.
 template <void (*Delete)(GLuint)>
@@ -58,6 +65,10 @@ class Buffer {
   void clear(GLuint value = 0);
   /// Binds to an indexed target: GL_UNIFORM_BUFFER, GL_SHADER_STORAGE_BUFFER.
   void bind(GLenum target, GLuint index) const;
+  /// Copies this buffer's first bytes into the beginning of `target`.
+  void copyTo(Buffer& target, std::size_t bytes) const;
+  /// Issues a barrier where shaders may have written this buffer: GL_BUFFER_UPDATE_BARRIER_BIT before the API changes or reads it.
+  void settle(GLbitfield barrier) const;
   template <class T>
   std::vector<T> read() const {
     std::vector<T> values(bytes_ / sizeof(T));
@@ -83,6 +94,7 @@ class Buffer {
   void readBytes(void* data, std::size_t bytes) const;
   Handle<detail::deleteBuffer> handle_;
   std::size_t bytes_ = 0;
+  mutable bool shadersMayWrite_ = false;  ///< it was bound as a storage block
 };
 
 /// How a texture is read. Defaults: nearest, clamped to the edge.
@@ -114,12 +126,13 @@ class Texture {
   std::size_t bytes() const;  ///< of all levels; zero when moved from
 
   void upload(GLenum format, GLenum type, const void* data, int level = 0);
-  /// Level 0 from a buffer that holds the texels as the texture keeps them, beginning at `offset`. What shaders wrote there needs
-  /// GL_PIXEL_BUFFER_BARRIER_BIT before.
+  /// Level 0 from a buffer that holds the texels as the texture keeps them, beginning at `offset`.
   void copyFrom(const Buffer& buffer, std::size_t offset);
   void generateMipmaps();
   void bind(GLuint unit) const;
   void bindImage(GLuint unit, GLenum access, int level = 0) const;
+  /// Issues a barrier where shaders may have stored into this texture: GL_TEXTURE_UPDATE_BARRIER_BIT before the API changes or reads it.
+  void settle(GLbitfield barrier) const;
   /// All texels of a level as float RGBA (depth textures: as float, one a texel).
   std::vector<glm::vec4> readRgba(int level = 0) const;
   std::vector<float> readDepth() const;
@@ -133,6 +146,7 @@ class Texture {
   GLenum format_ = GL_RGBA8;
   glm::ivec3 size_{0};
   int levels_ = 1;
+  mutable bool shadersMayWrite_ = false;  ///< it was bound as an image to write
 };
 
 /// A buffer that shaders read as texels (samplerBuffer): on llvmpipe three times as fast to gather from as a shader storage block.

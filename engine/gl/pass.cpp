@@ -1,10 +1,19 @@
 #include "gl/pass.hpp"
 
+#include <algorithm>
+
 namespace lucerna::gl {
 
-DebugGroup::DebugGroup(const std::string& name) {
-  glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(name.size()), name.c_str());
+void pushDebugGroup(const std::string& name) {
+  static const GLint most = [] {  // asked once: groups are pushed all the time, and a driver with threads of its own stops for a query
+    GLint length = 0;
+    glGetIntegerv(GL_MAX_DEBUG_MESSAGE_LENGTH, &length);  // counts the terminating zero
+    return length;
+  }();
+  glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, std::min(static_cast<GLint>(name.size()), most - 1), name.c_str());
 }
+
+DebugGroup::DebugGroup(const std::string& name) { pushDebugGroup(name); }
 
 DebugGroup::~DebugGroup() { glPopDebugGroup(); }
 
@@ -41,6 +50,11 @@ RasterPass::RasterPass(const std::string& name, const Framebuffer& target, const
 void RasterPass::clearColor(int attachment, const glm::vec4& value) const { glClearBufferfv(GL_COLOR, attachment, &value.x); }
 
 void RasterPass::clearDepth(float value) const { glClearBufferfv(GL_DEPTH, 0, &value); }
+
+void RasterPass::restrictTo(const glm::ivec2& corner, const glm::ivec2& size) const {
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(corner.x, corner.y, size.x, size.y);
+}
 
 void ComputePass::dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const {
   const glm::uvec3 groups((size + groupSize - 1) / groupSize);

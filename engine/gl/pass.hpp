@@ -22,6 +22,9 @@ struct RasterState {
   bool depthClamp = false;
 };
 
+/// Opens a KHR_debug group; its name is cut at the driver's GL_MAX_DEBUG_MESSAGE_LENGTH. glPopDebugGroup closes it.
+void pushDebugGroup(const std::string& name);
+
 /// A KHR_debug group for its lifetime.
 class DebugGroup {
  public:
@@ -37,6 +40,8 @@ class RasterPass {
   RasterPass(const std::string& name, const Framebuffer& target, const RasterState& state);
   void clearColor(int attachment, const glm::vec4& value) const;
   void clearDepth(float value = 1.0f) const;
+  /// From now on only these pixels are drawn.
+  void restrictTo(const glm::ivec2& corner, const glm::ivec2& size) const;
 
  private:
   DebugGroup group_;

@@ -3,6 +3,7 @@
 #include "base/data.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "gl/objects.hpp"
 
 #include <chrono>
 #include <cstdlib>
@@ -156,7 +157,7 @@ void ProgramLibrary::build(Program& program) {
     glDetachShader(id, shader);
     glDeleteShader(shader);
   }
-  glObjectLabel(GL_PROGRAM, id, static_cast<GLsizei>(description.name.size()), description.name.c_str());
+  label(GL_PROGRAM, id, description.name);
   if (program.id_) glDeleteProgram(program.id_);
   program.id_ = id;
   program.locations_.clear();

@@ -13,10 +13,7 @@ ReadBackRing::~ReadBackRing() {
 
 void ReadBackRing::copy(const Buffer& source) {
   if (fences_[next_]) return;
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glBindBuffer(GL_COPY_READ_BUFFER, source.id());
-  glBindBuffer(GL_COPY_WRITE_BUFFER, buffers_[next_].id());
-  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes_));
+  source.copyTo(buffers_[next_], bytes_);
   fences_[next_] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   next_ = (next_ + 1) % kRing;
 }
@@ -33,6 +30,11 @@ std::vector<GLuint> ReadBackRing::fetch(bool wait) {
   const std::vector<GLuint> words = buffers_[oldest_].read<GLuint>();
   oldest_ = (oldest_ + 1) % kRing;
   return words;
+}
+
+void Staging::copy(const Buffer& source, std::size_t bytes) {
+  if (buffer_.bytes() < bytes) buffer_ = Buffer(name_, bytes, nullptr, GL_STREAM_READ);
+  source.copyTo(buffer_, bytes);
 }
 
 }  // namespace lucerna::gl

@@ -1,4 +1,6 @@
-// Small buffers read back without waiting: copied into a ring as the frame goes, fetched when the GPU has got there.
+// What shaders have counted or listed, read by the CPU through buffers that no shader sees: a driver moves a buffer that the CPU reads again and again
+// into host memory, where a shader that goes on writing it is slow.
+// ReadBackRing: small buffers without waiting, copied into a ring as the frame goes, fetched when the GPU has got there. Staging: waited for.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -28,6 +30,32 @@ class ReadBackRing {
   std::array<Buffer, kRing> buffers_;
   std::array<GLsync, kRing> fences_{};
   std::size_t next_ = 0, oldest_ = 0, bytes_ = 0;
+};
+
+class Staging {
+ public:
+  Staging() = default;
+  explicit Staging(const std::string& name) : name_(name) {}
+
+  /// The first `count` values of a buffer, behind all work recorded so far, which is waited for.
+  template <class T>
+  std::vector<T> read(const Buffer& source, std::size_t count) {
+    std::vector<T> values;
+    if (count == 0) return values;
+    copy(source, count * sizeof(T));
+    return buffer_.read<T>(count);
+  }
+  template <class T>
+  T readFirst(const Buffer& source) {
+    copy(source, sizeof(T));
+    return buffer_.readFirst<T>();
+  }
+  std::size_t bytes() const { return buffer_.bytes(); }
+
+ private:
+  void copy(const Buffer& source, std::size_t bytes);  // grows to what was asked for at most
+  std::string name_;
+  Buffer buffer_;
 };
 
 }  // namespace lucerna::gl

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/statistics.hpp"
+#include "gl/pass.hpp"
 
 namespace lucerna::gl {
 
@@ -21,7 +22,7 @@ TimeQuery::Stage& TimeQuery::stage(const std::string& name) {
 void TimeQuery::begin(const std::string& name) {
   CHECK(!current_, "stage {} begun inside stage {}", name, current_->name);
   current_ = &stage(name);
-  glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(name.size()), name.c_str());
+  pushDebugGroup(name);
   if (finishStages_) glFinish();
   start_ = std::chrono::steady_clock::now();
   fetch(*current_, false);

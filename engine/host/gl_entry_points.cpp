@@ -45,6 +45,7 @@ enum class Slot {
   GetError,
   GetFloatv,
   GetIntegerv,
+  GetPointerv,
   GetString,
   GetTexImage,
   GetTexLevelParameterfv,
@@ -107,6 +108,7 @@ constexpr const char* kNames[] = {
   "glGetError",
   "glGetFloatv",
   "glGetIntegerv",
+  "glGetPointerv",
   "glGetString",
   "glGetTexImage",
   "glGetTexLevelParameterfv",
@@ -194,6 +196,7 @@ void GLAPIENTRY glGetDoublev(GLenum a0, GLdouble* a1) { entry<Slot::GetDoublev, 
 GLenum GLAPIENTRY glGetError(void) { return entry<Slot::GetError, GLenum>(); }
 void GLAPIENTRY glGetFloatv(GLenum a0, GLfloat* a1) { entry<Slot::GetFloatv, void, GLenum, GLfloat*>(a0, a1); }
 void GLAPIENTRY glGetIntegerv(GLenum a0, GLint* a1) { entry<Slot::GetIntegerv, void, GLenum, GLint*>(a0, a1); }
+void GLAPIENTRY glGetPointerv(GLenum a0, void** a1) { entry<Slot::GetPointerv, void, GLenum, void**>(a0, a1); }
 const GLubyte* GLAPIENTRY glGetString(GLenum a0) { return entry<Slot::GetString, const GLubyte*, GLenum>(a0); }
 void GLAPIENTRY glGetTexImage(GLenum a0, GLint a1, GLenum a2, GLenum a3, void* a4) { entry<Slot::GetTexImage, void, GLenum, GLint, GLenum, GLenum, void*>(a0, a1, a2, a3, a4); }
 void GLAPIENTRY glGetTexLevelParameterfv(GLenum a0, GLint a1, GLenum a2, GLfloat* a3) { entry<Slot::GetTexLevelParameterfv, void, GLenum, GLint, GLenum, GLfloat*>(a0, a1, a2, a3); }

@@ -24,6 +24,7 @@ struct HostOptions {
   glm::ivec2 windowSize{1280, 720};
   std::string windowTitle = "Lucerna";
   bool windowVisible = true;
+  bool swapAtRefresh = true;  ///< a window waits for the display's refresh; off where frames a second are measured, which would be the display's
   bool debugContext = false;  ///< ask for a debug context where the host can
 };
 
@@ -56,6 +57,8 @@ class Host {
   virtual HostInput poll() { return {}; }
   virtual glm::ivec2 framebufferSize() const = 0;
   virtual void setTitle(const std::string&) {}
+  /// Refreshes of the display that present() waits for; none without a window.
+  virtual std::optional<int> swapInterval() const { return {}; }
 
   /// Whether the renderer string names a software rasteriser (llvmpipe, softpipe): stage times then need glFinish.
   static bool isSoftwareRenderer(std::string_view renderer);

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lucerna::detail {
@@ -88,10 +89,18 @@ class EglHost final : public Host {
       if (!hasExtension(extensions, "EGL_KHR_no_config_context")) return false;
       config = nullptr;  // EGL_NO_CONFIG_KHR
     }
-    const EGLint contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
-                                        EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                        EGL_CONTEXT_OPENGL_DEBUG, options.debugContext ? EGL_TRUE : EGL_FALSE, EGL_NONE};
-    const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextAttributes);
+    // A context that tells of resets where that can be had: by EGL 1.5 or EGL_KHR_create_context, else by EGL_EXT_create_context_robustness.
+    EGLContext context = EGL_NO_CONTEXT;
+    for (const auto& [reset, strategy] : {std::pair<EGLint, EGLint>{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET},
+                                          {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT},
+                                          {EGL_NONE, EGL_NONE}}) {
+      if (reset == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT && !hasExtension(extensions, "EGL_EXT_create_context_robustness")) continue;
+      const EGLint contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
+                                          EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                          EGL_CONTEXT_OPENGL_DEBUG, options.debugContext ? EGL_TRUE : EGL_FALSE, reset, strategy, EGL_NONE};
+      context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextAttributes);
+      if (context != EGL_NO_CONTEXT) break;
+    }
     if (context == EGL_NO_CONTEXT) return false;
     if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
       eglDestroyContext(display, context);

@@ -16,7 +16,7 @@ std::string g_lastGlfwError;
 
 class WindowHost final : public Host {
  public:
-  explicit WindowHost(const HostOptions& options) {
+  explicit WindowHost(const HostOptions& options) : swapInterval_(options.swapAtRefresh ? 1 : 0) {
     if (!displayAvailable()) throwMissingCapability("host window: no display (neither DISPLAY nor WAYLAND_DISPLAY is set); try --host osmesa");
     glfwSetErrorCallback([](int, const char* text) { g_lastGlfwError = text; });
     if (!glfwInit()) throwMissingCapability("host window: {}", g_lastGlfwError);
@@ -27,13 +27,17 @@ class WindowHost final : public Host {
     glfwWindowHint(GLFW_VISIBLE, options.windowVisible ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    window_ = glfwCreateWindow(options.windowSize.x, options.windowSize.y, options.windowTitle.c_str(), nullptr, nullptr);
+    for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {  // a context that tells of resets, where that can be had
+      glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
+      window_ = glfwCreateWindow(options.windowSize.x, options.windowSize.y, options.windowTitle.c_str(), nullptr, nullptr);
+      if (window_) break;
+    }
     if (!window_) {
       glfwTerminate();
       throwMissingCapability("host window: {}", g_lastGlfwError);
     }
     glfwMakeContextCurrent(window_);
-    glfwSwapInterval(1);
+    glfwSwapInterval(swapInterval_);
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
       if (action != GLFW_PRESS) return;
@@ -82,10 +86,12 @@ class WindowHost final : public Host {
     return size;
   }
 
+  std::optional<int> swapInterval() const override { return swapInterval_; }
   void setTitle(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
 
  private:
   GLFWwindow* window_ = nullptr;
+  int swapInterval_;
   std::string pressed_;
   glm::dvec2 mouse_{0.0};
   bool dragging_ = false;

@@ -25,9 +25,9 @@ constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2
 constexpr int kGroupSide = 8;
 constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
 constexpr int kClearanceCells = 64;
-// llvmpipe leaves all loops of a shader after 65,535 turns, those of all lanes of a vector (8, 16 at most) counted together. Far less is never
-// reached in 50 ms but by small pictures.
-constexpr int kSoftwareTurns = 3500;
+// llvmpipe leaves all loops of a shader after 65,535 turns, those of all lanes of a vector (8, 16 at most) counted together.
+constexpr std::uint32_t kSoftwareTurns = 3500, kMostTurns = 1u << 16;
+constexpr double kLanesOfTile = 512.0 * 512.0;  // on a GPU; a smaller tile, a software renderer's too, begins with as many turns a lane
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = 16, kVec4Bytes = 16;
 
 std::uint32_t kindOf(const Material& material) {
@@ -97,8 +97,9 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       rays_(scene, context.capabilities(), settings.rays),
       constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW),
       tileSide_(context.capabilities().softwareRenderer ? 128 : 512),
-      turns_(context.capabilities().softwareRenderer ? kSoftwareTurns : std::numeric_limits<int>::max()),
-      clearTexture_(context.capabilities().clearTexture) {
+      mostTurns_(context.capabilities().softwareRenderer ? kSoftwareTurns : kMostTurns),
+      clearTexture_(context.capabilities().clearTexture),
+      turns_(settings.submissionSeconds, kLanesOfTile, mostTurns_) {
   const gl::Capabilities& capabilities = context.capabilities();
   CHECK(settings.size.x > 0 && settings.size.y > 0, "{} x {} pixels", settings.size.x, settings.size.y);
   if (settings.diffuseOnly) needs_.mirrors = needs_.conductors = needs_.dielectrics = needs_.roughDielectrics = false;
@@ -186,7 +187,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
 
   const glm::ivec2 tile = glm::min(settings.size, glm::ivec2(tileSide_));
   const std::size_t lanes = static_cast<std::size_t>(tile.x) * static_cast<std::size_t>(tile.y);
-  constants_.picture = glm::ivec4(settings.size, static_cast<int>(lanes), turns_);
+  constants_.picture = glm::ivec4(settings.size, static_cast<int>(lanes), 0);
   state_ = gl::Buffer("path state", kStateHeaderBytes + lanes * kStateWords * kVec4Bytes, nullptr, GL_DYNAMIC_COPY);
   filmMean_ = gl::Texture("film mean", GL_RGBA32UI, settings.size);
   filmSpread_ = gl::Texture("film spread", GL_RGBA32UI, settings.size);
@@ -371,8 +372,8 @@ void PathTracer::setCamera(const Camera& camera) {
 std::uint64_t PathTracer::identity() const {
   shared::PathConstants constants = constants_;
   constants.tile = glm::ivec4(0);
-  constants.sampleTarget = constants.segments = 0;
-  constants.picture.z = constants.picture.w = 0;
+  constants.sampleTarget = constants.turns = 0;
+  constants.picture.z = 0;
   Hash hash = sceneHash_;
   hash.bytes(&constants, sizeof constants);
   for (const auto& [name, value] : flags()) {
@@ -437,22 +438,29 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_, rows = (settings_.size.y + tileSide_ - 1) / tileSide_;
   const glm::ivec2 corner = tileSide_ * glm::ivec2(tile_ % columns, tile_ / columns);
   const glm::ivec2 size = glm::min(glm::ivec2(tileSide_), settings_.size - corner);
-  if (!tileBegun_) state_.clear();
+  const double lanes = static_cast<double>(size.x) * size.y;
+  const bool begins = !tileBegun_;
+  if (begins) {
+    state_.clear();
+    turns_.restart();
+    turns_.setTurnsOfUnit(lanes);
+  }
   const std::array<std::uint32_t, 4> zeros{};
   state_.upload(0, sizeof zeros, zeros.data());
 
   const auto start = std::chrono::steady_clock::now();
   dispatch(corner, size, passTarget_);
-  const auto header = state_.readFirst<std::array<std::uint32_t, 4>>();
+  const auto header = counters_.readFirst<std::array<std::uint32_t, 4>>(state_);
   const std::uint32_t unfinished = header[0];
   leakedPaths_ += header[1];
   wrongCrossings_ += header[2];
+  gl::throwIfReset();
+  const auto taken = static_cast<std::uint64_t>(lanes) * header[3];
+  largest_ = std::max(largest_, taken);
+  if (begins) largestBegun_ = std::max(largestBegun_, taken);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  // Measured while most lanes are at work: later submissions of a tile are shorter, and the next tile's must not be long for that.
-  if (!tileBegun_ || 2 * unfinished > static_cast<std::uint32_t>(size.x * size.y)) {
-    const double factor = std::clamp(settings_.submissionSeconds / std::max(seconds, 1e-9), 0.25, 2.0);
-    segments_ = std::clamp(static_cast<std::uint32_t>(std::lround(factor * segments_)), 1u, 1u << 16);
-  }
+  turns_.setTurnsOfUnit(std::max(unfinished, 1u));  // the others have nothing left to do
+  turns_.took(turns_.units(), seconds);
   tileBegun_ = unfinished > 0;
   if (!tileBegun_ && ++tile_ == columns * rows) {
     done_ = passTarget_;
@@ -464,7 +472,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
 void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target) {
   constants_.tile = glm::ivec4(corner, size);
   constants_.sampleTarget = target;
-  constants_.segments = segments_;
+  constants_.turns = turns_.units();
   constantsBuffer_.upload(0, sizeof constants_, &constants_);
   const gl::ComputePass pass("path tracing", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                                  GL_TEXTURE_UPDATE_BARRIER_BIT);
@@ -558,7 +566,7 @@ PathTracer::Statistics PathTracer::statistics() const {
 }
 
 std::size_t PathTracer::gpuBytes() const {
-  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
+  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
                       filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
   for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_})
     if (*texture) bytes += (*texture)->bytes();

@@ -9,7 +9,9 @@
 #include "base/image.hpp"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
+#include "gl/pieces.hpp"
 #include "gl/program.hpp"
+#include "gl/read_back.hpp"
 #include "pathtracer/light_table.hpp"
 #include "pathtracer/media.hpp"
 #include "pathtracer/path_deviations.hpp"
@@ -84,6 +86,12 @@ class PathTracer {
   const Settings& settings() const { return settings_; }
   const SceneNeeds& needs() const { return needs_; }
   std::size_t gpuBytes() const;
+  /// Lanes times turns of the lane that took most, of the submission that took most of all so far; `begun`: among those that each began a tile, of which
+  /// nothing was known. A lane begins no segment after its share of turns, so that it takes more by one segment at most.
+  struct Submissions {
+    std::uint64_t largest = 0, begun = 0;
+  };
+  Submissions submissions() const { return {largest_, largestBegun_}; }
 
  private:
   struct Pixel {
@@ -120,8 +128,10 @@ class PathTracer {
   double leakedPaths_ = 0.0, wrongCrossings_ = 0.0;
   gl::Buffer triangles_, materials_, lights_, state_, constantsBuffer_;
   std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_;
+  gl::Staging counters_{"path counters"};
   gl::Texture filmMean_, filmSpread_, filmRest_;
-  int tileSide_, turns_;
+  int tileSide_;
+  std::uint32_t mostTurns_;  ///< a lane, in a submission
   bool clearTexture_;
   Hash sceneHash_;
 
@@ -129,7 +139,8 @@ class PathTracer {
   std::uint32_t done_ = 0, passTarget_ = 0;
   int tile_ = 0;
   bool tileBegun_ = false;
-  std::uint32_t segments_ = 4;
+  gl::PieceSize turns_;  ///< a lane, in the next submission
+  std::uint64_t largestBegun_ = 0, largest_ = 0;
 };
 
 }  // namespace lucerna

@@ -25,6 +25,7 @@ constexpr int kHemicubesEach = 8;
 constexpr std::size_t kMostHemicubes = 256;  // of hemicube.glsl: their frames are 16 KiB, what every driver has
 constexpr double kSmallSources = 0.1;  // of the area: sources that cover more need no care, each pixel meets one
 constexpr int kExactGroups = 256;
+constexpr double kSecondsOfPiece = 0.25, kTurnsOfPatch = 8.0, kTurnsOfPixel = 32.0;  // by raster: a patch's setting up; a pixel's layers
 constexpr int kMeasured = 32;  // hemicubes of a batch that a cost is taken from
 
 constexpr std::array kVisibilities{
@@ -50,10 +51,19 @@ std::string_view nameOf(HemicubeVisibility visibility) { return nameIn(kVisibili
 
 HemicubeVisibility parseHemicubeVisibility(std::string_view name) { return valueIn(kVisibilities, name, "visibility"); }
 
+namespace {
+/// Work of a hemicube, about: gl/pieces.hpp. By rays at least, which is more than by raster but for very many patches.
+double turnsOfHemicube(const RadiosityMesh& mesh, int resolution) {
+  const double pixels = 3.0 * resolution * resolution, patches = static_cast<double>(mesh.patches.size());
+  return std::max(gl::kTurnsOfRay * pixels, kTurnsOfPatch * patches + kTurnsOfPixel * pixels);
+}
+}  // namespace
+
 Hemicubes::~Hemicubes() = default;
 
 Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh, const HemicubeSettings& settings)
-    : mesh_(&mesh), settings_(settings), patchCount_(static_cast<int>(mesh.patches.size())) {
+    : mesh_(&mesh), settings_(settings), patchCount_(static_cast<int>(mesh.patches.size())),
+      pieces_(kSecondsOfPiece, turnsOfHemicube(mesh, settings.resolution), kMostHemicubes, settings.unmeasuredTurns) {
   CHECK(settings.resolution >= 2 && settings.resolution % 2 == 0, "hemicubes of {} pixels", settings.resolution);
   if (settings_.visibility == HemicubeVisibility::automatic) choose(programs, capabilities);
   const auto patches = static_cast<std::size_t>(patchCount_);
@@ -130,7 +140,7 @@ void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& cap
     HemicubeSettings settings = settings_;
     settings.visibility = one;
     Hemicubes hemicubes(programs, capabilities, *mesh_, settings);
-    const int count = std::min(hemicubes.batchSize(), kMeasured);
+    const int count = std::min(hemicubes.pieceSize(), kMeasured);
     Cost cost{one, 0.0};
     for (int k = 0; k < 3; ++k) {  // the first warms up; then the better of two places
       const int first = static_cast<int>(static_cast<std::int64_t>(patchCount_ - count) * k / 2);
@@ -162,6 +172,7 @@ Hemicubes::Frame Hemicubes::frameOf(int index) const {
 
 DrawnHemicubes Hemicubes::draw(int first, int count) {
   CHECK(first >= 0 && count > 0 && count <= batch_ && first + count <= patchCount_, "rows {} + {} of {}, at most {}", first, count, patchCount_, batch_);
+  const auto start = std::chrono::steady_clock::now();
   std::vector<Frame> frames;
   for (int i = 0; i < count; ++i) frames.push_back(frameOf(first + i));
   frames_.upload(0, frames.size() * sizeof(Frame), frames.data());
@@ -231,20 +242,38 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   drawn.patchCount = patchCount_;
   if (listsKept()) {
     constexpr std::size_t kHead = 2;  // the list begins with a dispatch
-    drawn.kept = keptList_.read<glm::uvec2>(kHead + keptList_.readFirst<std::array<GLuint, 4>>()[3]);
+    drawn.kept = staging_.read<glm::uvec2>(keptList_, kHead + staging_.readFirst<std::array<GLuint, 4>>(keptList_)[3]);
     drawn.kept.erase(drawn.kept.begin(), drawn.kept.begin() + kHead);
   } else {
-    drawn.factors = factors_.read<float>(static_cast<std::size_t>(count) * static_cast<std::size_t>(patchCount_));
+    drawn.factors = staging_.read<float>(factors_, static_cast<std::size_t>(count) * static_cast<std::size_t>(patchCount_));
   }
-  drawn.exact = exactList_.read<glm::uvec2>(1 + exactList_.readFirst<GLuint>());
+  drawn.exact = staging_.read<glm::uvec2>(exactList_, 1 + staging_.readFirst<GLuint>(exactList_));
   drawn.exact.erase(drawn.exact.begin());
+  gl::throwIfReset();
+  pieces_.took(static_cast<std::uint32_t>(count), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return drawn;
+}
+
+int Hemicubes::pieceSize() const { return std::min(batch_, static_cast<int>(pieces_.units())); }
+
+FormFactorRows Hemicubes::rows(int first, int count) {
+  CHECK(count > 0 && count <= batch_, "{} hemicubes, at most {}", count, batch_);
+  FormFactorRows all;
+  all.first = first;
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  for (const int end = first + count; first < end;) {
+    const FormFactorRows piece = rowsOf(draw(first, std::min(end - first, pieceSize())));
+    append(all.counts, piece.counts), append(all.fronts, piece.fronts), append(all.backs, piece.backs);
+    append(all.patches, piece.patches), append(all.factors, piece.factors);
+    first += static_cast<int>(piece.counts.size());
+  }
+  return all;
 }
 
 void Hemicubes::stream(int first, int end, const std::function<void(const FormFactorRows&)>& take, const std::function<bool(int done)>& goOn) {
   std::future<void> taken;
   for (bool stopped = false; first < end && !stopped;) {
-    DrawnHemicubes drawn = draw(first, std::min(end - first, batch_));
+    DrawnHemicubes drawn = draw(first, std::min(end - first, pieceSize()));
     first += drawn.count;
     if (taken.valid()) taken.get();
     taken = std::async(std::launch::async, [&take, batch = std::move(drawn)]() mutable { take(rowsOf(std::move(batch))); });
@@ -343,7 +372,7 @@ FormFactorRows rowsOf(DrawnHemicubes drawn) {
 }
 
 std::size_t Hemicubes::gpuBytes() const {
-  return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + keys_.bytes() + factors_.bytes() + keptList_.bytes() + exactList_.bytes() + largeList_.bytes() +
+  return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + keys_.bytes() + factors_.bytes() + keptList_.bytes() + exactList_.bytes() + largeList_.bytes() + staging_.bytes() +
          (rays_ ? rays_->gpuBytes() : 0) + (itemBuffer_ ? itemBuffer_->items.bytes() + itemBuffer_->depth.bytes() : 0);
 }
 

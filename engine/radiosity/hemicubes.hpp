@@ -8,7 +8,9 @@
 
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
+#include "gl/pieces.hpp"
 #include "gl/program.hpp"
+#include "gl/read_back.hpp"
 #include "radiosity/hemicube_map.hpp"
 #include "radiosity/patches.hpp"
 
@@ -44,6 +46,7 @@ struct HemicubeSettings {
   int exactPixels = 12;                    ///< what covers at least as many pixels takes its closed form; 0: never
   float nearDistance = 3.0f;               ///< receivers are divided until (distance / size of a part) is this; 0: never
   int mostParts = 8;                       ///< a side of a receiver, at most
+  double unmeasuredTurns = gl::kUnmeasuredTurns;  ///< of a submission of which nothing is known (gl/pieces.hpp); the rows are the same, bit by bit
   std::size_t batchBytes = 0;              ///< of GPU memory a batch may take in one buffer; 0: what suits the renderer
 };
 
@@ -87,15 +90,18 @@ class Hemicubes {
   int patchCount() const { return patchCount_; }
   /// 1 for patches that shine and are small beside the scene: factors to them are closed forms, however few pixels they cover.
   const std::vector<std::uint32_t>& smallSources() const { return smallSources_; }
-  /// At most batchSize() hemicubes from `first` on; waits for them.
-  DrawnHemicubes draw(int first, int count);
-  FormFactorRows rows(int first, int count) { return rowsOf(draw(first, count)); }
-  /// Rows first..end - 1, batch by batch: while the GPU draws one, a thread of its own makes rows of the one before and hands them to `take`, in order
-  /// and never two at once. `goOn` is asked on this thread after each batch, with the patches drawn so far; false stops.
+  /// Rows of `count` hemicubes from `first` on, at most batchSize(); waits for them.
+  FormFactorRows rows(int first, int count);
+  /// Submissions so far, of which the largest had about so many turns (gl/pieces.hpp).
+  double largestTurns() const { return pieces_.largestTurns(); }
+  /// Rows first..end - 1, piece by piece: while the GPU draws one, a thread of its own makes rows of the one before and hands them to `take`, in order
+  /// and never two at once. `goOn` is asked on this thread after each piece, with the patches drawn so far; false stops.
   void stream(int first, int end, const std::function<void(const FormFactorRows&)>& take, const std::function<bool(int done)>& goOn = {});
   std::size_t gpuBytes() const;  ///< of what the chosen way needs
 
  private:
+  DrawnHemicubes draw(int first, int count);  ///< one submission; waits for it
+  int pieceSize() const;
   struct Frame {
     glm::vec4 origin, u, v, n;
   };
@@ -120,6 +126,8 @@ class Hemicubes {
   std::optional<ItemBuffer> itemBuffer_;
   gl::BufferTexture corners_, deltaFactors_, keys_;
   gl::Buffer sources_, frames_, factors_, keptList_, exactList_, largeList_;
+  gl::Staging staging_{"hemicube results"};
+  gl::PieceSize pieces_;  ///< hemicubes a submission
   int sourceCount_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "render/direct_rays.hpp"
 
+#include "gl/pieces.hpp"
 #include "radiosity/patches.hpp"
 
 #include <algorithm>
@@ -53,6 +54,8 @@ DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities,
   for (const PointLight& l : scene.points) lights.push_back({vec(l.position - origin, kPoint), {}, {}, vec(glm::dvec3(l.intensity))});
   const int each = std::max(1, rays / static_cast<int>(std::max<std::size_t>(emitters.size(), 1)));
   // One light that is none where there is none: no buffer is empty. Its count is in the head.
+  const double raysOfPixel = static_cast<double>(emitters.size()) * each + static_cast<double>(lights.size() - emitters.size());
+  turnsOfPixel_ = gl::kTurnsOfRay * std::max(raysOfPixel, 1.0);
   const int head[4] = {static_cast<int>(lights.size()), each, 0, 0};
   std::vector<std::uint8_t> bytes;
   const auto put = [&](const void* data, std::size_t size) { bytes.insert(bytes.end(), static_cast<const std::uint8_t*>(data), static_cast<const std::uint8_t*>(data) + size); };

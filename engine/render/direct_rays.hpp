@@ -19,11 +19,14 @@ class DirectRays {
   /// `rays`: a pixel, divided among the emissive triangles (at least one each).
   DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays);
   void bind() const;  ///< storage block 1, texture units 60 and 61
+  /// Work of a pixel, about: gl/pieces.hpp.
+  double turnsOfPixel() const { return turnsOfPixel_; }
   std::size_t gpuBytes() const { return rays_.gpuBytes() + lights_.bytes(); }
 
  private:
   RayScene rays_;
   gl::Buffer lights_;
+  double turnsOfPixel_ = 1.0;
 };
 
 }  // namespace lucerna

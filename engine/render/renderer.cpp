@@ -21,6 +21,8 @@ constexpr GLuint kSunCascadeBinding = 4;
 constexpr GLuint kShadowUnit = 2, kGatheredUnit = 7;
 constexpr float kShadowNormalOffset = 1.5f;  // texels of the sun's shadow map
 
+constexpr double kSecondsOfPiece = 0.1;  // of a frame's shadow rays
+
 double nearPlane(const Bounds& bounds) { return 5e-4 * std::max(glm::length(bounds.extent()), 1e-6); }
 
 // Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal.
@@ -343,7 +345,20 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
       const gl::RasterPass pass("surfaces", radianceTarget_, state);
       const bool showsBackground = settings_.component != Component::indirect;
       if (&sides == &all.front()) pass.clearColor(0, glm::vec4(showsBackground ? scene.background : glm::vec3(0.0f), 1.0f));
-      gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
+      if (!directRays_) {
+        gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
+        continue;
+      }
+      // Some shadow rays a pixel keep a small GPU busy for seconds: rows of pixels in pieces, each waited for.
+      pieces_.emplace(kSecondsOfPiece, settings_.size.x * directRays_->turnsOfPixel(), static_cast<std::uint32_t>(settings_.size.y), settings_.unmeasuredTurns);
+      for (int row = 0; row < settings_.size.y;) {
+        const int rows = std::min(static_cast<int>(pieces_->units()), settings_.size.y - row);
+        const gl::PieceClock clock;
+        pass.restrictTo({0, row}, {settings_.size.x, rows});
+        gpuScene_.draw(surfacePrograms_, {&cameraClip, &viewPoint});
+        pieces_->took(static_cast<std::uint32_t>(rows), clock.seconds());
+        row += rows;
+      }
     }
   }
 
@@ -356,6 +371,7 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   }
   timer_.collect();
   if (gather_) gather_->collect();
+  gl::throwIfReset();
 }
 
 void Renderer::drain() {

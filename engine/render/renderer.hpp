@@ -9,6 +9,7 @@
 #include "forward/sun_cascades.hpp"
 #include "forward/sun_frustum.hpp"
 #include "gl/context.hpp"
+#include "gl/pieces.hpp"
 #include "gl/program.hpp"
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
@@ -49,6 +50,7 @@ struct RenderSettings {
   LightPropagationVolume::Settings lpv;
   PathDeviations path;                 ///< of the path tracer, which renders by itself
   RadiosityView::Settings radiosity;   ///< `light` is not read: the component says it
+  double unmeasuredTurns = gl::kUnmeasuredTurns;  ///< of a piece of radiosity's shadow rays of which nothing is known (gl/pieces.hpp)
 };
 
 class Renderer {
@@ -75,6 +77,8 @@ class Renderer {
   const RenderSettings& settings() const { return settings_; }
   const LightPropagationVolume* lpv() const { return lpv_ ? &*lpv_ : nullptr; }
   const RadiosityView* radiosity() const { return radiosity_.get(); }
+  /// Turns, about, of the largest submission of the last frame's shadow rays; 0 without any.
+  double largestTurns() const { return pieces_ ? pieces_->largestTurns() : 0.0; }
   const RsmGather* gather() const { return gather_ ? &*gather_ : nullptr; }
   /// Waits for everything still on its way, times and counts; for the end of a run, not for a frame.
   void drain();
@@ -94,6 +98,7 @@ class Renderer {
   float exposure_;
   gl::TimeQuery timer_;
   std::unique_ptr<RadiosityView> radiosity_;  ///< before gpuScene_, which draws its patches
+  std::optional<gl::PieceSize> pieces_;       ///< rows of pixels a submission, of the last frame's shadow rays
   std::optional<DirectRays> directRays_;      ///< direct light of radiosity by pixels
   GpuScene gpuScene_;
   SunFrustum sunFrustum_;

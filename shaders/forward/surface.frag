@@ -44,11 +44,11 @@ vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
 }
 
 void main() {
+  vec3 albedo = materialAlbedo(vTexCoord);
   if (materialCutOut(vTexCoord)) discard;
   vec3 toCamera = normalize(frame.cameraPosition - vPosition);
   // Surfaces have two sides: the normal is turned to the viewer by the face's own side, not by the interpolated normal.
   vec3 normal = normalize(gl_FrontFacing ? vNormal : -vNormal);
-  vec3 albedo = materialAlbedo(vTexCoord);
   vec3 result = vec3(0.0);
 #if DIRECT
   float cosine = dot(normal, -frame.sunDirection);

@@ -12,9 +12,8 @@ float cellDensity(DensityRecord g, ivec3 cell) {
   return densities[g.firstDensity + c.x + g.size.x * (c.y + g.size.y * c.z)];
 }
 
-// p: in cells from the box's least corner.
-float densityAt(DensityRecord g, vec3 p) {
-  if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(g.size.xyz)))) return 0.0;
+// p: in cells from the box's least corner, within the box.
+float densityInside(DensityRecord g, vec3 p) {
   vec3 base = floor(p - 0.5), f = p - 0.5 - base;
   ivec3 c = ivec3(base);
   float z0 = mix(mix(cellDensity(g, c), cellDensity(g, c + ivec3(1, 0, 0)), f.x),
@@ -22,6 +21,40 @@ float densityAt(DensityRecord g, vec3 p) {
   float z1 = mix(mix(cellDensity(g, c + ivec3(0, 0, 1)), cellDensity(g, c + ivec3(1, 0, 1)), f.x),
                  mix(cellDensity(g, c + ivec3(0, 1, 1)), cellDensity(g, c + ivec3(1, 1, 1)), f.x), f.y);
   return mix(z0, z1, f.z);
+}
+
+float densityAt(DensityRecord g, vec3 p) {
+  if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(g.size.xyz)))) return 0.0;
+  return densityInside(g, p);
+}
+
+// The density's integral from `near` to `far` along origin + t direction, in cells and inside of the box, over t. Exact but for rounding: between two of the
+// planes through cells' centres it is a cubic in t, for which Simpson's rule is exact. So many turns as planes are crossed, one more, and no more.
+float densityIntegral(DensityRecord g, vec3 origin, vec3 direction, float near, float far) {
+  vec3 start = origin + near * direction, towards = mix(vec3(-1.0), vec3(1.0), greaterThanEqual(direction, vec3(0.0)));
+  vec3 plane = mix(ceil(start - 0.5), floor(start - 0.5), greaterThanEqual(direction, vec3(0.0))) + 0.5;  // the last one passed
+  float from = near, sum = 0.0, atFrom = densityInside(g, start);
+  int most = g.size.x + g.size.y + g.size.z + 3;
+  for (int i = 0; i < most && from < far; ++i) {
+    ++loopTurns;
+    float to = far;
+    int axis = -1;
+    for (int k = 0; k < 3; ++k) {
+      if (abs(direction[k]) < 1e-20) continue;
+      float t = (plane[k] + towards[k] - origin[k]) / direction[k];
+      if (t < to) {
+        to = t;
+        axis = k;
+      }
+    }
+    if (axis >= 0) plane[axis] += towards[axis];
+    to = max(to, from);
+    float atTo = densityInside(g, origin + to * direction);
+    sum += (to - from) * (atFrom + 4.0 * densityInside(g, origin + 0.5 * (from + to) * direction) + atTo) / 6.0;
+    from = to;
+    atFrom = atTo;
+  }
+  return sum;
 }
 
 // The parts of a ray in which a bound holds, front to back. Distances along the ray in scene units, positions in cells.

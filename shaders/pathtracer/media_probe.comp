@@ -1,4 +1,5 @@
 // The path tracer's functions for media and their boundaries at given arguments: for tests.
+uint loopTurns = 0u;  // turns of loops so far: as in bvh.glsl
 #include "pathtracer/density.glsl"
 #include "pathtracer/boundary.glsl"
 #include "pathtracer/fresnel.glsl"
@@ -62,6 +63,10 @@ void main() {
         parts += 1.0;
       }
     r.a = vec4(inBox, slack, parts, depth);
+  } else if (what == 9) {
+    DensityRecord g = densityRecords[p.k.x];
+    DensityMarch march;
+    if (densityMarchStart(g, p.a.xyz, p.b.xyz, p.a.w, march)) r.a = vec4(densityIntegral(g, march.origin, march.direction, march.near, march.last), float(loopTurns), 0.0, 0.0);
   } else if (what == 8) {
     // k.x: entries, least rank first, 8 bits each; k.y: how many of them; k.z: left again, likewise; k.w: how many.
     uvec4 inside = uvec4(0u);

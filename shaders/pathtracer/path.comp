@@ -1,5 +1,5 @@
 // Path tracing: one invocation a pixel follows its paths one after the other, segment by segment, and starts the next as soon as one has
-// ended, until the pixel has its samples or this submission's segments are used up; the unfinished path then waits in the state buffer.
+// ended, until the pixel has its samples or this submission's turns of loops are used up; the unfinished path then waits in the state buffer.
 // So every submission is bounded however long paths get, and no path is dropped: dropping the long ones would bias the picture.
 //
 // A path: camera ray, then at each surface next-event estimation towards one light and a new direction drawn from the surface, weighted
@@ -26,7 +26,7 @@ layout(std430, binding = 5) restrict buffer StateBlock {
   uint unfinished;      // pixels of the tile that do not have their samples yet
   uint leakedPaths;     // ended, since they were found outside of the scene, yet inside of a closed boundary
   uint wrongCrossings;  // of boundaries left without having been entered: open or turned meshes
-  uint padding;
+  uint longest;         // turns of loops that a lane took
   uvec4 state[];        // STATE_WORDS a lane, lane by lane within each
 };
 
@@ -450,7 +450,7 @@ void main() {
   }
 
   bool inFlight = true;
-  for (uint segment = 0u; segment < tracer.segments && loopTurns < uint(tracer.picture.w); ++segment) {
+  while (loopTurns < tracer.turns) {
     loopTurns += 4u;
     if (extend(path, numbers)) continue;
     ++samples;
@@ -465,6 +465,7 @@ void main() {
     path = startPath(pixel, numbers);
   }
 
+  atomicMax(longest, loopTurns);
   imageStore(filmMean, pixel, uvec4(floatBitsToUint(mean), samples));
   imageStore(filmSpread, pixel, uvec4(floatBitsToUint(spread), 0u));
   imageStore(filmRest, pixel, uvec4(floatBitsToUint(rest), 0u));

@@ -61,14 +61,19 @@ Hit crossBesides(inout uvec4 beyond, inout uvec4 before, vec3 position, vec3 ahe
 #endif
 
 #if MEDIA
+const uint kMostTries = 256u;  // tentative collisions of a straight line through a grid
+
 vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float distance, inout uvec4 words) {
 #if HETEROGENEOUS
   if (medium.grid >= 0) {
-    // Ratio tracking [Novak2014]: at each tentative collision what is null of it. Roulette from a tenth on.
+    // Ratio tracking [Novak2014]: at each tentative collision what is null of it. Roulette from a tenth on. Where a bound lies far above the density there is
+    // no end of null collisions: after some the rest of the way is integrated, cell by cell. That leaves the mean as it is, as what is found up to a
+    // collision, times the transmittance from there on, has the whole way's for its mean at every collision.
     DensityRecord g = densityRecords[medium.grid];
     DensityMarch march;
     vec3 through = vec3(1.0);
     float bound;
+    uint tries = 0u;
     if (!densityMarchStart(g, origin, direction, distance, march)) return through;
     while (densityMarchNext(g, march, bound)) {
       ++loopTurns;
@@ -77,6 +82,7 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
       float t = march.near;
       for (;;) {
         ++loopTurns;
+        if (++tries > kMostTries) return through * exp(-medium.extinction * densityIntegral(g, march.origin, march.direction, t, march.last));
         words = pcg4d(words);
         t += exponentialSample(words.x) / rate;
         if (t >= march.far) break;

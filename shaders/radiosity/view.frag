@@ -18,6 +18,10 @@ uniform vec3 materialEmission;
 #endif
 
 void main() {
+  vec3 albedo = materialAlbedo(vTexCoord);
+#if MESH
+  vec3 width = fwidth(vCorner);
+#endif
   if (materialCutOut(vTexCoord)) discard;
   vec3 result = vec3(0.0);
   if (gl_FrontFacing) {
@@ -27,13 +31,12 @@ void main() {
     vec3 normal = dot(vNormal, vFace) > 0.0 ? normalize(vNormal) : vFace;
     irradiance += directIrradiance(vPosition, normal, vFace);
 #endif
-    result = materialAlbedo(vTexCoord) * irradiance / kPi;
+    result = albedo * irradiance / kPi;
 #if EMISSION
     result += materialEmission;
 #endif
   }
 #if MESH
-  vec3 width = fwidth(vCorner);
   vec3 inside = smoothstep(0.5 * width, 1.5 * width, vCorner);
   float line = 1.0 - min(inside.x, min(inside.y, inside.z));
   result = mix(result, vec3(0.0, 0.35, 0.6) / frame.exposure, 0.6 * line);

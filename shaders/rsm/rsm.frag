@@ -33,6 +33,7 @@ uniform float texelArea;      // world units squared, across the rays
 #endif
 
 void main() {
+  vec3 albedo = materialAlbedo(vTexCoord);
   if (materialCutOut(vTexCoord)) discard;
   vec3 normal = normalize(gl_FrontFacing ? vNormal : -vNormal);
 #if PERSPECTIVE
@@ -59,7 +60,6 @@ void main() {
   }
   outPosition = vec4(vPosition, 1.0);
   outNormal = vec4(normal, cosine);
-  vec3 albedo = materialAlbedo(vTexCoord);
   outFlux = vec4(incoming * albedo, across / max(cosine, 0.05));
 #if ALBEDO
   outAlbedo = vec4(albedo, 1.0);

@@ -27,7 +27,7 @@ struct PathConstants {
   vec3 pixelRight;          // one pixel to the right, at distance 1 along the view
   uint sampleTarget;        // samples that every pixel of the tile shall have
   vec3 pixelUp;             // one pixel up
-  uint segments;            // rays a lane follows in this submission, at most
+  uint turns;               // of loops that a lane may take before it begins no other segment in this submission
   vec3 firstPixel;          // from the camera to the lower left corner of the picture at distance 1
   uint minScatterings;      // light counts that was scattered so often on its way to the camera
   vec3 background;
@@ -36,7 +36,7 @@ struct PathConstants {
   float environmentPick;    // probability that a light sample goes to the environment
   vec4 environmentTurn;     // cosine and sine of its rotation
   ivec4 tile;               // its lower left pixel, its size
-  ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile; w: turns of loops a lane may take before it starts no other segment
+  ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile
 };
 
 // Where a texture lies in the atlas; layer is PATH_NO_TEXTURE where there is none.

@@ -3,8 +3,10 @@
 #include "support/temp_folder.hpp"
 
 #include "base/files.hpp"
+#include "base/log.hpp"
 #include "base/statistics.hpp"
 #include "gl/pass.hpp"
+#include "gl/read_back.hpp"
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "shared/frame.h"
@@ -19,6 +21,7 @@
 #include <filesystem>
 #include <iostream>
 #include <type_traits>
+#include <utility>
 
 namespace lucerna::gl {
 namespace {
@@ -112,6 +115,148 @@ TEST_F(GlObjects, CarryTheirNames) {
   EXPECT_EQ(labelOf(GL_FRAMEBUFFER, framebuffer.id()), "my framebuffer");
   EXPECT_EQ(labelOf(GL_VERTEX_ARRAY, vertexArray.id()), "my vertex array");
   EXPECT_EQ(labelOf(GL_PROGRAM, programs().loadRaster("my program", "lib/fullscreen.vert", "forward/tonemap.frag").id()), "my program");
+}
+
+TEST_F(GlObjects, NamesAreCutAtTheDriversLength) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_LABEL_LENGTH, &most);
+  ASSERT_GE(most, 256);  // [OpenGL 4.3, table 23.61]
+  const std::string name(static_cast<std::size_t>(most) + 1000, 'n');
+  const Buffer buffer(name, 16, nullptr, GL_STATIC_DRAW);
+  const Texture texture = small(name);
+  GLsizei length = 0;
+  glGetObjectLabel(GL_BUFFER, buffer.id(), 0, &length, nullptr);
+  EXPECT_EQ(length, most - 1);  // less than the limit [OpenGL 4.3, 20.7]
+  EXPECT_TRUE(context().takeErrors().empty());
+  GLint longest = 0;
+  glGetIntegerv(GL_MAX_DEBUG_MESSAGE_LENGTH, &longest);
+  { const DebugGroup group(std::string(static_cast<std::size_t>(longest) + 1, 'g')); }
+  EXPECT_TRUE(context().takeErrors().empty());
+}
+
+/// Stands in for glMemoryBarrier and keeps what it was asked for.
+struct BarrierSpy {
+  BarrierSpy() { seen() = 0, __glewMemoryBarrier = [](GLbitfield bits) { seen() |= bits; }; }
+  ~BarrierSpy() { __glewMemoryBarrier = real_; }
+  static GLbitfield take() { return std::exchange(seen(), 0); }
+
+ private:
+  static GLbitfield& seen() {
+    static GLbitfield bits = 0;
+    return bits;
+  }
+  PFNGLMEMORYBARRIERPROC real_ = __glewMemoryBarrier;
+};
+
+TEST_F(GlObjects, BuffersThatShadersMayWriteAreSettledBeforeTheApiTouchesThem) {
+  const std::array<GLuint, 4> words{1, 2, 3, 4};
+  Buffer buffer("words", sizeof words, words.data(), GL_DYNAMIC_COPY), other("other", sizeof words, nullptr, GL_STREAM_READ);
+  BufferTexture texels("texels", GL_R32UI, sizeof words, words.data());
+  Texture copy("copy", GL_R32UI, glm::ivec2(2));
+  const BarrierSpy spy;
+  const auto touchAll = [&](GLbitfield expected, GLbitfield expectedOfPixels) {
+    buffer.upload(0, sizeof words, words.data());
+    EXPECT_EQ(spy.take(), expected);
+    buffer.copyTo(other, sizeof words);
+    EXPECT_EQ(spy.take(), expected);
+    EXPECT_EQ(buffer.read<GLuint>()[3], 4u);
+    EXPECT_EQ(spy.take(), expected);
+    copy.copyFrom(buffer, 0);
+    EXPECT_EQ(spy.take(), expectedOfPixels);
+    buffer.clear();
+    EXPECT_EQ(spy.take(), expected);
+    texels.clear();
+    EXPECT_EQ(spy.take(), expected);
+  };
+  buffer.bind(GL_UNIFORM_BUFFER, 0);  // which shaders only read
+  texels.bind(0);
+  touchAll(0, 0);
+  buffer.bind(GL_SHADER_STORAGE_BUFFER, 0);
+  texels.buffer().bind(GL_SHADER_STORAGE_BUFFER, 0);
+  touchAll(GL_BUFFER_UPDATE_BARRIER_BIT, GL_PIXEL_BUFFER_BARRIER_BIT);
+  const Buffer moved = std::move(buffer);  // takes along that it may have been written
+  EXPECT_EQ(moved.read<GLuint>().size(), 4u);
+  EXPECT_EQ(spy.take(), static_cast<GLbitfield>(GL_BUFFER_UPDATE_BARRIER_BIT));
+}
+
+TEST_F(GlObjects, TexturesThatShadersMayWriteAreSettledBeforeTheApiTouchesThem) {
+  const std::array<GLfloat, 16> texels{};
+  Texture texture("image", GL_RGBA32F, glm::ivec2(2));
+  const BarrierSpy spy;
+  const auto touchAll = [&](GLbitfield expected) {
+    texture.upload(GL_RGBA, GL_FLOAT, texels.data());
+    EXPECT_EQ(spy.take(), expected);
+    texture.readRgba();
+    EXPECT_EQ(spy.take(), expected);
+    texture.generateMipmaps();
+    EXPECT_EQ(spy.take(), expected);
+    for (const bool extension : {false, true}) {
+      if (extension && !capabilities().clearTexture) continue;
+      const std::array<const Texture*, 1> cleared{&texture};
+      clearToZero(cleared, extension);
+      EXPECT_EQ(spy.take(), expected);
+    }
+  };
+  texture.bindImage(0, GL_READ_ONLY);
+  touchAll(0);
+  texture.bindImage(0, GL_READ_WRITE);
+  touchAll(GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+TEST_F(GlObjects, WhatIsReadBackEachFrameIsReadFromABufferThatNoShaderSees) {
+  const std::array<GLuint, 4> words{1, 2, 3, 4};
+  const Buffer counters("counters", sizeof words, words.data(), GL_DYNAMIC_COPY);
+  counters.bind(GL_SHADER_STORAGE_BUFFER, 0);
+  static GLuint readFrom;
+  const auto real = __glewGetBufferSubData;
+  __glewGetBufferSubData = [](GLenum target, GLintptr, GLsizeiptr, void*) {
+    GLint bound = 0;
+    glGetIntegerv(target == GL_COPY_READ_BUFFER ? GL_COPY_READ_BUFFER_BINDING : GL_COPY_WRITE_BUFFER_BINDING, &bound);
+    readFrom = static_cast<GLuint>(bound);
+  };
+  Staging staging("staging");
+  staging.readFirst<GLuint>(counters);
+  __glewGetBufferSubData = real;
+  EXPECT_NE(readFrom, 0u);
+  EXPECT_NE(readFrom, counters.id());
+  EXPECT_EQ(staging.readFirst<GLuint>(counters), 1u);
+  EXPECT_EQ(staging.read<GLuint>(counters, 4), (std::vector<GLuint>{1, 2, 3, 4}));  // it grows
+  EXPECT_TRUE(staging.read<GLuint>(counters, 0).empty());
+  EXPECT_EQ(staging.bytes(), sizeof words);
+}
+
+class GlDebugOutput : public test::GlTest {
+ protected:
+  void SetUp() override {
+    GlTest::SetUp();
+    glGetPointerv(GL_DEBUG_CALLBACK_FUNCTION, &listener_);
+    glGetPointerv(GL_DEBUG_CALLBACK_USER_PARAM, &user_);
+  }
+  /// The fixture's context listens again.
+  void TearDown() override {
+    setLogLevel(level_);
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(reinterpret_cast<GLDEBUGPROC>(listener_), user_);
+    GlTest::TearDown();
+  }
+
+ private:
+  LogLevel level_ = logLevel();
+  void *listener_ = nullptr, *user_ = nullptr;
+};
+
+TEST_F(GlDebugOutput, IsOffUnlessTheRunIsVerbose) {
+  for (const LogLevel level : {LogLevel::quiet, LogLevel::warnings, LogLevel::info, LogLevel::verbose}) {
+    setLogLevel(level);
+    Context quietOrNot;
+    const GLboolean verbose = level == LogLevel::verbose;
+    EXPECT_EQ(glIsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS), verbose);
+    EXPECT_EQ(glIsEnabled(GL_DEBUG_OUTPUT), verbose);
+    setLogLevel(LogLevel::quiet);
+    glEnable(GL_STATIC_DRAW);  // no capability
+    EXPECT_EQ(quietOrNot.takeErrors().size(), 1u);  // either way
+  }
 }
 
 TEST_F(GlObjects, BuffersKeepWhatIsUploaded) {
@@ -513,6 +658,37 @@ TEST_F(GlPasses, ComputeCoversWhatIsAskedForAndMakesItVisible) {
 }
 
 // ---- timer queries -------------------------------------------------------------------------------------------------------
+
+TEST_F(GlPasses, AUniformThatBranchesDependOnIsThatOfItsDispatch) {
+  // Dispatches of two programs in turns, each with other values: zink, as it is by default over a software Vulkan, runs one of them with stale ones.
+  write("choose.comp", "layout(local_size_x = 1) in;\nlayout(std430, binding = 0) buffer Seen { int last; int seen[]; };\n"
+                       "uniform bool first;\nuniform float share;\nuniform int slot;\n"
+                       "void main() {\n  int value = 7;\n  if (!first) value = seen[30] + 1;\n  seen[slot] = value + (share > 0.5 ? 100 : 0);\n}\n");
+  write("other.comp", "layout(local_size_x = 1) in;\nlayout(std430, binding = 0) buffer Seen { int last; int seen[]; };\nuniform int number;\n"
+                      "void main() { if (number > 0) last = number; }\n");
+  std::array<GLint, 32> words{};
+  words[31] = 40;
+  const Buffer seen("seen", sizeof words, words.data(), GL_DYNAMIC_COPY);
+  const Program &choose = library().loadCompute("choose", "choose.comp"), &other = library().loadCompute("other", "other.comp");
+  const std::array<bool, 8> firsts{true, false, false, true, false, true, true, false};
+  seen.bind(GL_SHADER_STORAGE_BUFFER, 0);
+  for (int k = 0; k < 8; ++k) {
+    {
+      const ComputePass pass("other", GL_SHADER_STORAGE_BARRIER_BIT);
+      other.use();
+      other.set("number", k);
+      pass.dispatch({1, 1, 1}, {1, 1, 1});
+    }
+    const ComputePass pass("choose", GL_SHADER_STORAGE_BARRIER_BIT);
+    choose.use();
+    choose.set("first", firsts[static_cast<std::size_t>(k)] ? 1 : 0);
+    choose.set("share", 1.0f);
+    choose.set("slot", k);
+    pass.dispatch({1, 1, 1}, {1, 1, 1});
+  }
+  const std::vector<GLint> back = seen.read<GLint>();
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(back[1 + k], firsts[k] ? 107 : 141) << k;
+}
 
 class GlTimeQuery : public GlPrograms {};
 

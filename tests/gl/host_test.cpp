@@ -2,11 +2,13 @@
 #include "host/host.hpp"
 
 #include "base/error.hpp"
+#include "base/files.hpp"
 #include "base/image.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -78,6 +80,9 @@ class HostPictures : public ::testing::Test {
     EXPECT_LE(off, reference.pixels.size() / 1000);
   }
 
+  std::string scene() const { return (folder_ / "room.json").string(); }
+  std::string json() const { return (folder_ / "walk.json").string(); }
+
  private:
   TempFolder folder_;
 };
@@ -91,6 +96,18 @@ TEST_F(HostPictures, AWindowDrawsWhatOsmesaDraws) {
     prefix = "xvfb-run -a ";
   }
   expectSamePicture("window", prefix);
+}
+
+TEST_F(HostPictures, AWindowDoesNotWaitForTheDisplayWhereFramesAreMeasured) {
+  std::string prefix;
+  if (!displayAvailable()) {
+    if (test::run("command -v xvfb-run").exitCode != 0) GTEST_SKIP() << "no display, and xvfb-run is missing (Debian package xvfb)";
+    prefix = "xvfb-run -a ";
+  }
+  const RunResult result = test::run(prefix + "'" LUCERNA_BINARY "' walk '" + scene() + "' --host window --technique direct --size 64x64 --frames 2 --json '" + json() + "'");
+  if (result.exitCode == 3) GTEST_SKIP() << result.err;
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(readFileText(json())).at("swap_interval"), 0);
 }
 
 TEST_F(HostPictures, OsmesaRepeatsToTheBit) {

@@ -13,7 +13,7 @@
 namespace lucerna {
 namespace {
 
-enum What { numeric, hgSample, phasePdf, rayleigh, fresnel, weights, density, march, counts };
+enum What { numeric, hgSample, phasePdf, rayleigh, fresnel, weights, density, march, counts, integral };
 
 struct Probe {
   glm::vec4 a{0.0f}, b{0.0f};
@@ -336,6 +336,47 @@ TEST_F(MediaFunctions, DensityIsInterpolatedAndBoundedBlockByBlock) {
     crossed += marches[i].a.z > 1.0f;
   }
   EXPECT_GT(crossed, 300);
+}
+
+TEST_F(MediaFunctions, TheDensitysIntegralIsExactAndEndsByItself) {
+  Medium medium = mediumOf(glm::vec3(1.0f), glm::vec3(0.0f));
+  medium.grid = unevenGrid();
+  const glm::dvec3 extent = medium.grid->max - medium.grid->min;
+  std::mt19937 random(10);
+  std::uniform_real_distribution<double> unit(-0.1, 1.1);
+  std::vector<Probe> rays;
+  for (int i = 0; i < 1000; ++i) {
+    Probe p;
+    p.a = glm::vec4(glm::vec3(medium.grid->min + extent * glm::dvec3(unit(random), unit(random), unit(random))), 3.0f);
+    glm::dvec3 d = unitVector(random);
+    if (i % 10 == 0) d = glm::dvec3(i % 3 == 0, i % 3 == 1, i % 3 == 2) * (i % 20 == 0 ? 1.0 : -1.0);  // along an axis, and along planes between cells
+    p.b = glm::vec4(glm::vec3(d), 0.0f);
+    rays.push_back(p);
+  }
+  const auto answers = probe(integral, rays, {medium});
+  double worst = 0.0, most = 0.0, deepest = 0.0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const glm::dvec3 o(glm::vec3(rays[i].a)), d(glm::vec3(rays[i].b));
+    double near = 0.0, far = 3.0;  // in the box
+    for (int k = 0; k < 3; ++k) {
+      if (d[k] == 0.0) {
+        if (o[k] < medium.grid->min[k] || o[k] > medium.grid->max[k]) far = -1.0;
+        continue;
+      }
+      const double a = (medium.grid->min[k] - o[k]) / d[k], b = (medium.grid->max[k] - o[k]) / d[k];
+      near = std::max(near, std::min(a, b));
+      far = std::min(far, std::max(a, b));
+    }
+    const double exact = far > near ? twin::densityIntegral(*medium.grid, o + near * d, d, far - near, 4000) : 0.0;
+    worst = std::max(worst, std::abs(answers[i].a.x - exact));
+    most = std::max(most, static_cast<double>(answers[i].a.y));
+    deepest = std::max(deepest, exact);
+  }
+  std::printf("[ measured ] optical depths to %.3g off by %.1e at most; %.0f turns at most\n", deepest, worst, most);
+  EXPECT_GT(deepest, 5.0);
+  EXPECT_LT(worst, 1e-4);
+  EXPECT_LE(most, 19 + 8 + 13 + 3);
+  EXPECT_GT(most, 10);
 }
 
 TEST_F(MediaFunctions, BoundariesNestOverlapAndTouchByPriority) {

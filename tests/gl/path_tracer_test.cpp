@@ -43,6 +43,54 @@ TEST_F(PathTracerTest, ThePictureDoesNotDependOnHowWorkIsCut) {
   EXPECT_NE(tracer(scene, openBoxCamera(), settings, 12).mean().pixels, whole.pixels);
 }
 
+TEST_F(PathTracerTest, NoSubmissionTakesMoreTurnsThanIsSafeHoweverEmptyThePictureIs) {
+  // Three tiles of sky, one with a box in its midst: what the sky's clock says must not be granted to the box. Nothing ever seems slow here.
+  Scene scene = litBox();
+  scene.environment = Environment{};
+  scene.environment->radiance = glm::vec3(0.3f);
+  PathTracer::Settings settings = sized(256);
+  settings.submissionSeconds = 1000.0;
+  PathTracer picture(context(), library(), scene, settings);
+  Camera camera = lookingAt({0, 1, 60}, {7, -6, 0});
+  picture.setCamera(camera);
+  picture.record(24);
+  const PathTracer::Submissions submissions = picture.submissions();
+  const std::uint64_t lanes = capabilities().softwareRenderer ? 128u * 128u : 256u * 256u;
+  // A tile's first: the share of each lane, 256 turns, and one segment more; here some 200.
+  std::printf("[ measured ] largest submission %.3g turns; of those that begin a tile %.3g\n", static_cast<double>(submissions.largest), static_cast<double>(submissions.begun));
+  EXPECT_GE(submissions.begun, lanes * 200);  // the box took its share
+  EXPECT_LE(submissions.begun, lanes * 512);
+  EXPECT_LE(static_cast<double>(submissions.largest), gl::kMostOverUnmeasured * gl::kUnmeasuredTurns);
+  EXPECT_GT(submissions.largest, submissions.begun);
+}
+
+TEST_F(PathTracerTest, AResetOfTheGpuIsSaid) {
+  PathTracer picture(context(), library(), litBox(), sized(16));
+  picture.setCamera(openBoxCamera());
+  const auto real = __glewGetGraphicsResetStatusARB;
+  static GLenum status;
+  __glewGetGraphicsResetStatusARB = [] { return status; };
+  struct Case {
+    GLenum status;
+    int exitCode;
+    const char* says;
+  };
+  for (const Case& c : {Case{GL_GUILTY_CONTEXT_RESET_ARB, 1, "of this program"}, Case{GL_INNOCENT_CONTEXT_RESET_ARB, 3, "of another program"},
+                        Case{GL_UNKNOWN_CONTEXT_RESET_ARB, 3, "does not say"}}) {
+    status = c.status;
+    try {
+      picture.advance(100);
+      ADD_FAILURE() << c.says;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.exitCode(), c.exitCode);
+      EXPECT_NE(std::string_view(error.what()).find("reset the GPU"), std::string_view::npos) << error.what();
+      EXPECT_NE(std::string_view(error.what()).find(c.says), std::string_view::npos) << error.what();
+    }
+  }
+  __glewGetGraphicsResetStatusARB = real;
+  EXPECT_TRUE(picture.advance(100));
+}
+
 TEST_F(PathTracerTest, AResumedPictureIsTheUninterruptedOne) {
   const Scene scene = litBox();
   const PathTracer::Settings settings = sized(24);

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lucerna {
 namespace {
 
@@ -39,6 +41,32 @@ TEST_F(PathWalkTest, LongSubmissionsLoseNoLoopTurns) {
   const Image cut = picture(milkBall(1.33), 400, settings);
   settings.submissionSeconds = 20.0;
   EXPECT_EQ(picture(milkBall(1.33), 400, settings).pixels, cut.pixels);
+}
+
+TEST_F(PathWalkTest, ShadowRaysEndHoweverFarABoundLiesAboveTheDensity) {
+  // A floor under a block of smoke that is thin where the sun shines through, and a million times as dense beside that: a million null collisions a ray.
+  Scene scene;
+  Medium smoke = homogeneous(glm::dvec3(0.0), glm::dvec3(1.0), 0.0);
+  DensityGrid grid;
+  grid.size = {8, 8, 8};
+  grid.min = {-1.0, -0.5, -1.0};
+  grid.max = {1.0, 0.5, 1.0};
+  for (int i = 0; i < 512; ++i) grid.density.push_back(i % 8 < 6 ? 0.4f : 1e6f);
+  smoke.grid = grid;
+  scene.media = {smoke};
+  addBox(scene, grid.min, grid.max, addBoundary(scene, Bsdf::none, 1.0, 0));
+  scene.materials.emplace_back().diffuse = glm::vec3(1.0f);
+  addBox(scene, {-3.0, -1.2, -3.0}, {3.0, -1.0, 3.0}, static_cast<int>(scene.materials.size()) - 1);
+  scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(M_PI))};
+  scene.cameras = {cameraAt({-0.5, -0.7, 2.5}, {-0.5, -1.0, 0.0})};
+  PathTracer::Settings settings;
+  settings.size = {8, 8};
+  settings.transport = Transport::direct;
+  PathTracer tracer(context(), library(), scene, settings);
+  tracer.record(4);
+  for (const glm::vec3& pixel : tracer.mean().pixels) EXPECT_NEAR(pixel.x, std::exp(-0.4), 5e-4);
+  // A ray from the camera, a shadow ray with 256 tentative collisions and the planes of 8 cells.
+  EXPECT_LT(tracer.submissions().largest, 64u * (256 + 1000));
 }
 
 TEST_F(PathWalkTest, WalksAreThePathsThatTraceEveryFlight) {

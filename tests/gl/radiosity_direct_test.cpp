@@ -19,7 +19,8 @@ using test::SceneBuilder;
 
 class RadiosityDirect : public test::SharedProgramsTest {
  protected:
-  static Image picture(const Scene& scene, const Camera& camera, Component component, RadiosityView::Direct direct, int size = 48) {
+  static Image picture(const Scene& scene, const Camera& camera, Component component, RadiosityView::Direct direct, int size = 48,
+                       double unmeasuredTurns = gl::kUnmeasuredTurns, double* largestTurns = nullptr) {
     RenderSettings settings;
     settings.technique = Technique::radiosity;
     settings.component = component;
@@ -29,8 +30,10 @@ class RadiosityDirect : public test::SharedProgramsTest {
     settings.radiosity.shadowRays = 64;
     settings.radiosity.solution.hemicubes.resolution = 32;
     settings.radiosity.solution.patches.longestEdge = 0.8;
+    settings.unmeasuredTurns = unmeasuredTurns;
     Renderer renderer(context(), library(), scene, settings);
     renderer.render(camera);
+    if (largestTurns) *largestTurns = renderer.largestTurns();
     return renderer.readRadiance();
   }
   static glm::dvec3 rayOf(const Camera& camera, int x, int y, int size) {
@@ -100,6 +103,16 @@ TEST_F(RadiosityDirect, ALampsShadowIsThatOfManyRays) {
   // 64 points in two triangles, of low discrepancy: below the noise of 64 random rays, 0.0625 at most; and no bias beyond three of its standard errors.
   EXPECT_LT(std::sqrt(squares / between), 0.04);
   EXPECT_LT(std::abs(bias / between), 3.0 * 0.04 / std::sqrt(between) + 0.5 / (24 * 24));
+}
+
+TEST_F(RadiosityDirect, ThePictureDoesNotDependOnHowRowsAreCut) {
+  const Scene scene = tableScene();
+  double all = 0.0, cut = 0.0;
+  const Image whole = picture(scene, kAbove, Component::all, RadiosityView::Direct::pixels, 48, gl::kUnmeasuredTurns, &all);
+  EXPECT_EQ(all, 48 * 48 * 64 * gl::kTurnsOfRay);  // one piece
+  EXPECT_EQ(picture(scene, kAbove, Component::all, RadiosityView::Direct::pixels, 48, 1e6, &cut).pixels, whole.pixels);
+  EXPECT_LE(cut, gl::kMostOverUnmeasured * 1e6);
+  EXPECT_GT(cut, 0.0);
 }
 
 TEST_F(RadiosityDirect, TheSunsShadowIsSharpAndPartsAddUp) {

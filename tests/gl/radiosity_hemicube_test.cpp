@@ -105,6 +105,46 @@ TEST_F(Hemicube, NothingIsLostInAClosedRoomAndNoPixelFallsBetweenPatches) {
   EXPECT_NEAR(c.fronts[24], 1.0 - twin::pointToPolygon(c.mesh.patches[24].centroid, {0, 1, 0}, std::vector<glm::dvec3>{{.5, -.5, -.5}, {.5, -.5, .5}, {.5, .5, .5}, {.5, .5, -.5}}), 0.003);
 }
 
+TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {
+  const Scene scene = cubeRoom(4, 0.5, 1.0);
+  const RadiosityMesh mesh = makePatches(scene, {});
+  for (const HemicubeVisibility visibility : {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
+    HemicubeSettings settings;
+    settings.visibility = visibility;
+    settings.resolution = 32;
+    const auto rowsBy = [&](double unmeasuredTurns, bool streamed, double& largest) {
+      settings.unmeasuredTurns = unmeasuredTurns;
+      Hemicubes hemicubes(library(), capabilities(), mesh, settings);
+      std::vector<FormFactorRows> all;
+      if (streamed)
+        hemicubes.stream(0, hemicubes.patchCount(), [&](const FormFactorRows& rows) { all.push_back(rows); });
+      else
+        for (int first = 0, count = hemicubes.batchSize(); first < hemicubes.patchCount(); first += count) all.push_back(hemicubes.rows(first, std::min(count, hemicubes.patchCount() - first)));
+      largest = hemicubes.largestTurns();
+      std::vector<float> values;
+      for (const FormFactorRows& rows : all) {
+        EXPECT_EQ(rows.counts.size(), rows.fronts.size());
+        values.insert(values.end(), rows.counts.begin(), rows.counts.end());
+        values.insert(values.end(), rows.fronts.begin(), rows.fronts.end());
+        values.insert(values.end(), rows.backs.begin(), rows.backs.end());
+        values.insert(values.end(), rows.patches.begin(), rows.patches.end());
+        values.insert(values.end(), rows.factors.begin(), rows.factors.end());
+      }
+      std::sort(values.begin(), values.end());  // rows are cut otherwise
+      return values;
+    };
+    double whole = 0.0, cut = 0.0;
+    const std::vector<float> expected = rowsBy(gl::kUnmeasuredTurns, false, whole);
+    const double hemicube = 3.0 * 32 * 32 * gl::kTurnsOfRay;
+    EXPECT_GT(whole, 20 * hemicube) << nameOf(visibility);
+    for (const bool streamed : {false, true}) {
+      EXPECT_EQ(rowsBy(2.5 * hemicube, streamed, cut), expected) << nameOf(visibility);
+      EXPECT_LE(cut, 10 * hemicube);
+      EXPECT_GE(cut, hemicube);
+    }
+  }
+}
+
 TEST_F(Hemicube, PixelsSeeWhatRaysSee) {
   // A room with two boxes of fronts and a thin sheet: every pixel's patch by a ray from the CPU caster, weights from the map.
   SceneBuilder builder;

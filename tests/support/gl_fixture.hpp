@@ -16,7 +16,7 @@ class GlTest : public ::testing::Test {
   static void SetUpTestSuite() {
     if (host()) return;
     host() = Host::create(HostKind::osmesa);
-    context_() = std::make_unique<gl::Context>();
+    context_() = std::make_unique<gl::Context>(gl::DebugOutput::synchronous);
     ::testing::UnitTest::GetInstance()->listeners().Append(new EndOfProgram);
   }
   void SetUp() override { context().takeErrors(); }

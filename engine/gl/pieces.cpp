@@ -1,0 +1,48 @@
+#include "gl/pieces.hpp"
+
+#include "base/error.hpp"
+#include "gl/api.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::gl {
+
+namespace {
+
+std::uint32_t unitsOf(double turns, double turnsOfUnit, std::uint32_t most) {
+  return static_cast<std::uint32_t>(std::clamp(std::floor(turns / turnsOfUnit), 1.0, static_cast<double>(most)));
+}
+
+}  // namespace
+
+PieceSize::PieceSize(double seconds, double turnsOfUnit, std::uint32_t most, double unmeasured)
+    : seconds_(seconds), turnsOfUnit_(turnsOfUnit), mostTurns_(kMostOverUnmeasured * unmeasured), most_(most) {
+  CHECK(seconds > 0.0 && turnsOfUnit > 0.0 && most > 0, "{} s, {} turns, {} units", seconds, turnsOfUnit, most);
+  units_ = first_ = unitsOf(unmeasured, turnsOfUnit, most);
+}
+
+void PieceSize::took(std::uint32_t units, double seconds) {
+  largestTurns_ = std::max(largestTurns_, units * turnsOfUnit_);
+  const double factor = std::clamp(seconds_ / std::max(seconds, 1e-9), 0.25, 2.0);
+  const double most = unitsOf(mostTurns_, turnsOfUnit_, most_);
+  double next = std::floor(factor * units);
+  if (factor >= 1.0) next = std::max(next, static_cast<double>(units_));  // of a last, smaller piece
+  units_ = static_cast<std::uint32_t>(std::clamp(next, 1.0, most));
+}
+
+void PieceSize::restart() { units_ = std::min(units_, first_); }
+
+void PieceSize::setTurnsOfUnit(double turnsOfUnit) { turnsOfUnit_ = turnsOfUnit; }
+
+PieceClock::PieceClock() {
+  glFinish();
+  start_ = std::chrono::steady_clock::now();
+}
+
+double PieceClock::seconds() const {
+  glFinish();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+}  // namespace lucerna::gl
