@@ -40,6 +40,7 @@ RenderSettings settingsOf(const ErrorBench& bench, const Rung& rung, Component c
   settings.component = component;
   settings.size = bench.size;
   settings.fullFloatTarget = true;
+  settings.textures.anisotropy = 1.0f;  // how textures are filtered anisotropically is each driver's own
   return settings;
 }
 

@@ -59,6 +59,11 @@ bool Host::isSoftwareRenderer(std::string_view renderer) {
 }
 
 std::unique_ptr<Host> Host::create(HostKind kind, const HostOptions& options) {
+  // Two faults of Mesa's zink, seen in 25.0 over a software Vulkan (docs/drivers.md); what is set in the environment already is kept. It compiles uniforms
+  // that branches depend on into the shader and runs a dispatch with another's (GlPasses.AUniformThatBranchesDependOnIsThatOfItsDispatch); and with
+  // descriptor buffers the first light propagation volume of a process reads what it should not (LpvBounces.AgainstTheTwin).
+  ::setenv("ZINK_INLINE_UNIFORMS", "0", 0);
+  ::setenv("ZINK_DESCRIPTORS", "lazy", 0);
   std::unique_ptr<Host> host;
   switch (kind) {
     case HostKind::window: host = detail::createWindowHost(options); break;

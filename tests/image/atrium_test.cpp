@@ -23,6 +23,7 @@ class Pictures : public test::GlTest {
     s.component = component;
     s.size = size;
     s.fullFloatTarget = true;
+    s.textures.anisotropy = 1.0f;  // how textures are filtered anisotropically is each driver's own
     s.shadow.size = 512;
     s.rsm.size = 128;
     return s;
