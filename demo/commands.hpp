@@ -44,6 +44,7 @@ struct CommonOptions {
 struct PictureOptions {
   std::string technique = "lpv", component = "all", fidelity = "corrected", size = "1280x720";
   std::vector<std::string> deviations, settings;
+  std::string readBy;        ///< the technique that reads the settings where that is not `technique`: path, which Renderer does not know
   std::string settingsFile;  ///< --settings: what it says counts as given before the command line
 
   void declare(CLI::App& app);

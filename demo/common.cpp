@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "offers.hpp"
 #include "render/deviations.hpp"
+#include "settings_file.hpp"
 
 #include <fmt/core.h>
 
@@ -183,6 +184,19 @@ const Setting kSettings[] = {
 
 #undef SETTING
 
+/// What each technique reads, by the beginning of the key.
+bool isRead(const std::string& technique, std::string_view key) {
+  const auto reads = [&](std::initializer_list<std::string_view> beginnings) {
+    return std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view beginning) { return key.starts_with(beginning); });
+  };
+  if (key == "exposure") return true;
+  if (technique == "direct") return reads({"shadow.", "texture."});
+  if (technique == "lpv") return reads({"lpv.", "rsm.size", "shadow.", "texture."});
+  if (technique == "rsm") return reads({"rsm.", "shadow.", "texture."});
+  if (technique == "radiosity") return reads({"rad.", "shadow.", "texture."});
+  return false;  // path: its own options
+}
+
 /// What concerns the picture of a solution, not the solution.
 constexpr std::string_view kViewOfSolution[] = {"rad.file", "rad.mapping", "rad.decades", "rad.mesh", "rad.flat", "rad.direct", "rad.shadow-rays"};
 
@@ -209,7 +223,7 @@ const Setting& findSetting(const std::string& assignment, const std::string& key
 }  // namespace
 
 std::string settingsHelp() {
-  std::string text = "Settings (--set KEY=VALUE):\n";
+  std::string text = "Settings (--set KEY=VALUE; one that the technique does not read is a warning):\n";
   for (const Setting& setting : kSettings) text += fmt::format("  {:<20} {}\n", setting.key, setting.meaning);
   return text;
 }
@@ -246,25 +260,13 @@ void PictureOptions::declare(CLI::App& app) {
 void PictureOptions::readSettingsFile() {
   if (settingsFile.empty()) return;
   const PictureOptions usual;
-  nlohmann::json json;
-  try {
-    json = nlohmann::json::parse(readFileText(settingsFile));
-    const auto take = [&](const char* key, std::string& value, const std::string& default_) {
-      if (json.contains(key) && value == default_) value = json.at(key).get<std::string>();
-    };
-    const auto prepend = [&](const char* key, std::vector<std::string>& values) {
-      if (!json.contains(key)) return;
-      const auto more = json.at(key).get<std::vector<std::string>>();
-      values.insert(values.begin(), more.begin(), more.end());
-    };
-    take("technique", technique, usual.technique);
-    take("fidelity", fidelity, usual.fidelity);
-    prepend("deviations", deviations);
-    prepend("settings", settings);
-    if (json.contains("spp")) settingsSpp = json.at("spp").get<std::uint32_t>();
-  } catch (const nlohmann::json::exception& error) {
-    throwBadInput("--settings {}: not a settings file (technique, fidelity, deviations, settings): {}", settingsFile, error.what());
-  }
+  const SettingsFile file = demo::readSettingsFile(settingsFile);
+  if (file.technique && technique == usual.technique) technique = *file.technique;
+  if (file.fidelity && fidelity == usual.fidelity) fidelity = *file.fidelity;
+  deviations.insert(deviations.begin(), file.deviations.begin(), file.deviations.end());
+  settings.insert(settings.begin(), file.settings.begin(), file.settings.end());
+  settingsSpp = file.spp;
+  if (settingsSpp && technique != "path") throwBadInput("--settings {}: key \"spp\": samples a pixel belong to technique path, not to {}", settingsFile, technique);
 }
 
 nlohmann::ordered_json PictureOptions::toJson() const {
@@ -279,10 +281,13 @@ RenderSettings PictureOptions::parse(std::optional<float>& exposure) const {
   applyFidelity(result, fidelity == "original" ? Fidelity::original : Fidelity::corrected);
   for (const std::string& deviation : deviations) applyDeviation(result, deviation);
   result.size = parseSize(size);
+  std::string unread;
   for (const std::string& assignment : settings) {
     const auto [key, value] = splitAssignment("--set", assignment);
     findSetting(assignment, key, [](const Setting&) { return true; }).apply(result, exposure, "--set " + key, value);
+    if (!isRead(readBy.empty() ? technique : readBy, key)) unread += (unread.empty() ? "" : ", ") + key;
   }
+  if (!unread.empty()) logWarning("--set {}: technique {} does not read that", unread, readBy.empty() ? technique : readBy);
   return result;
 }
 

@@ -71,7 +71,7 @@ int run(const Options& options) {
 
 Work addCompare(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("A", options->image, "a picture: hdr, exr, pfm, or an 8-bit one taken as sRGB")->required();
+  app.add_option("A", options->image, "a picture: hdr, exr, pfm, or png, jpg, tga, bmp taken as sRGB")->required();
   app.add_option("B", options->reference, "the reference, of the same size")->required();
   app.add_option("--heatmap", options->heatMap, "OUT.png: absolute and signed differences side by side");
   options->common.declare(app);

@@ -6,8 +6,47 @@
 
 #include <fmt/core.h>
 
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
 #include <string>
+#include <system_error>
 #include <vector>
+
+namespace {
+
+/// One line of an error, whatever files and options put into it; the driver's log of a program keeps its lines.
+void printError(std::string message) {
+  const bool keepsLines = message.starts_with("program ");
+  for (char& c : message)
+    if ((static_cast<unsigned char>(c) < ' ' && !(keepsLines && c == '\n')) || c == '\x7f') c = ' ';
+  fmt::print(stderr, "lucerna: {}\n", message);
+}
+
+/// Results that did not arrive are no results: a full disk behind standard output is told only here.
+int flushed(int code) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.flush()) return code;
+  printError(fmt::format("standard output cannot be written: {}", std::strerror(errno)));
+  return code != 0 ? code : static_cast<int>(lucerna::ErrorKind::missingCapability);
+}
+
+/// One kind in one place: numbers of options that are not finite, or beyond any use, are refused before a command sees them.
+void checkNumbers(const CLI::App& app) {
+  constexpr double kMost = 1e12;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
+    for (const std::string& text : option->results()) {
+      const double value = std::strtod(text.c_str(), nullptr);
+      if (!(std::abs(value) <= kMost)) lucerna::throwBadInput("{}: '{}' is not a number from {:g} to {:g}", option->get_name(), text, -kMost, kMost);
+    }
+  }
+  for (const CLI::App* command : app.get_subcommands()) checkNumbers(*command);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"Lucerna: real-time global illumination, measured.\nStart with: lucerna walk", "lucerna"};
@@ -32,7 +71,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) return flushed(app.exit(error));  // --help, --version
     std::string used;
     const CLI::App* deepest = &app;
     while (!deepest->get_subcommands().empty()) {
@@ -41,23 +80,28 @@ int main(int argc, char** argv) {
     }
     const std::vector<std::string> rest = deepest->remaining();
     if (deepest->get_require_subcommand_min() > 0 && !rest.empty() && rest[0][0] != '-') {
-      fmt::print(stderr, "lucerna: {}: no such subcommand (lucerna {}--help lists them)\n", rest[0], used);
+      printError(fmt::format("{}: no such subcommand (lucerna {}--help lists them)", rest[0], used));
       return static_cast<int>(lucerna::ErrorKind::badInput);
     }
-    fmt::print(stderr, "lucerna: {} (lucerna {}--help lists the options)\n", error.what(), used);
+    printError(fmt::format("{} (lucerna {}--help lists the options)", error.what(), used));
     return static_cast<int>(lucerna::ErrorKind::badInput);
   }
   try {
+    checkNumbers(app);
     for (auto& [command, work] : commands)
-      if (command->parsed()) return work();
+      if (command->parsed()) return flushed(work());
   } catch (const lucerna::Error& error) {
-    fmt::print(stderr, "lucerna: {}\n", error.what());
+    printError(error.what());
     return error.exitCode();
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "lucerna: out of memory\n");
+    printError("out of memory");
+    return static_cast<int>(lucerna::ErrorKind::missingCapability);
+  } catch (const std::system_error& error) {
+    // The system's own refusals: standard output that is full, threads that cannot be made.
+    printError(error.what());
     return static_cast<int>(lucerna::ErrorKind::missingCapability);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "lucerna: {}\n", error.what());
+    printError(error.what());
     return static_cast<int>(lucerna::ErrorKind::fault);
   }
   return 0;

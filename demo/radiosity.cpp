@@ -108,9 +108,10 @@ Work addSolve(CLI::App& app) {
   app.add_option("--seed", options->settings.seed, "of the random roll with rad.fixed-orientation=off")->capture_default_str();
   app.add_option("--save-every", options->saveEvery, "seconds between checkpoints within a sweep")->capture_default_str();
   app.add_flag("--restart", options->restart, "begin anew where a stopped run could go on");
-  app.add_option("--error", options->settings.error, "corrected: stop at this guaranteed relative error (0.001)");
+  app.add_option("--error", options->settings.error, "corrected: stop at this guaranteed relative error (0.001)")->check(CLI::Range(1e-12, 10.0));
   app.add_option_function<double>("--memory", [options](double mib) { options->settings.memoryBytes = static_cast<std::size_t>(std::max(mib, 0.0) * 1048576.0); },
-                                  "corrected: MiB for form factors; more are read from OUT.rows for each product (half of what is free)");
+                                  "corrected: MiB for form factors; more are read from OUT.rows for each product (half of what is free)")
+      ->check(CLI::Range(0.0, 1e9));
   app.add_option("--edge", options->edge, "corrected: longest edge of a scene's patches in scene units (a 12th of the scene)")->check(CLI::NonNegativeNumber);
   app.add_option("--refinements", options->refinements, "corrected: times that a scene's patches are halved where light changes steeply (0)")->check(CLI::Range(0, 8));
   offer(app.add_option("--set", options->set, "corrected: rad.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated"), offeredSettings(true));

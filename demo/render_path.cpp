@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/json.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/deviations.hpp"
 
@@ -34,7 +35,7 @@ constexpr const char* kPublishedSize = "1920x1080";
 /// Whether a scene file is the original's JSON, which has a key "scene".
 bool isOriginalScene(const std::string& file) {
   if (lowerExtension(file) != ".json") return false;
-  const nlohmann::json json = nlohmann::json::parse(readFileText(file), nullptr, false, true);
+  const nlohmann::json json = parseJson(readFileText(file), file);
   return json.is_object() && json.contains("scene");
 }
 
@@ -60,6 +61,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     if (!deviation.starts_with("path.")) throwBadInput("--deviation {}: --technique path has those that begin with path.", deviation);
   PictureOptions rest = picture;
   rest.technique = "direct";
+  rest.readBy = "path";
   if (!path.sizeGiven && (picture.fidelity == "original" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
   std::optional<float> exposure;
   const RenderSettings shared = rest.parse(exposure);

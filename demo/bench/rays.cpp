@@ -276,7 +276,7 @@ Work addBenchRays(CLI::App& app) {
   app.add_option("--rays", options->bench.rays, "rays of each kind")->capture_default_str();
   app.add_option("--repeats", options->bench.repeats, "measurements of each kind, after one to warm up")->capture_default_str();
   app.add_option("--camera", options->bench.camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("--split-budget", options->bench.splitBudget, "references that spatial splits may add, a fraction")->capture_default_str();
+  app.add_option("--split-budget", options->bench.splitBudget, "references that spatial splits may add, a fraction")->check(CLI::Range(0.0, 10.0))->capture_default_str();
   app.footer("Medians with least and most. Lanes: how much of the work of eight rays side by side is not waiting for the slowest of them, by nodes.\n"
              "Differ: rays that Embree answers otherwise, by more than 1e-4 of the distance. All of this machine's cores work for either.");
   options->common.declare(app);

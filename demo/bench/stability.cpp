@@ -2,7 +2,6 @@
 #include "bench/stability.hpp"
 
 #include "base/error.hpp"
-#include "base/files.hpp"
 #include "bench/bench.hpp"
 
 #include <fmt/core.h>
@@ -10,7 +9,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 
 namespace lucerna::demo {
 
@@ -94,37 +92,6 @@ nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows) {
   return json;
 }
 
-std::vector<std::string> worseRows(const nlohmann::ordered_json& now, const nlohmann::ordered_json& kept, const std::string& technique, const std::string& file) {
-  std::vector<std::string> worse;
-  try {
-    const auto key = [](const nlohmann::ordered_json& row) {
-      return fmt::format("{}: {}, {}", row.at("technique").get<std::string>(), row.at("case").get<std::string>(), row.at("parameter").get<std::string>());
-    };
-    std::map<std::string, const nlohmann::ordered_json*> rows;
-    for (const auto& row : now) rows.emplace(key(row), &row);
-    for (const auto& before : kept) {
-      const std::string name = key(before);
-      if (!technique.empty() && before.at("technique") != technique) continue;
-      const auto found = rows.find(name);
-      if (found == rows.end()) {
-        worse.push_back(name + ": gone");
-        continue;
-      }
-      const auto& row = *found->second;
-      if (before.at("verdict") == "pass" && row.at("verdict") != "pass") worse.push_back(fmt::format("{}: measured {}, was {}", name, row.at("measured").dump(), before.at("measured").dump()));
-      if (before.at("rule") != row.at("rule")) worse.push_back(fmt::format("{}: the rule is {}, was {}", name, row.at("rule").dump(), before.at("rule").dump()));
-      // Statistical rows allow multiples of their own standard error, which differs a little from processor to processor.
-      const double allowed = row.at("tolerance"), allowedBefore = before.at("tolerance");
-      if (!(allowed <= 1.05 * allowedBefore)) worse.push_back(fmt::format("{}: allows {}, was {}", name, allowed, allowedBefore));
-      const double expected = row.at("expected"), expectedBefore = before.at("expected");
-      if (!(std::abs(expected - expectedBefore) <= 1e-9 * std::abs(expectedBefore))) worse.push_back(fmt::format("{}: expects {}, was {}", name, expected, expectedBefore));
-    }
-  } catch (const nlohmann::json::exception& error) {
-    throwBadInput("--compare {}: no table of bench stability --json ({})", file, error.what());
-  }
-  return worse;
-}
-
 }  // namespace bench
 
 namespace {
@@ -134,16 +101,9 @@ struct Options {
   std::string technique, compare;
 };
 
-/// The rows of a table that was kept. Throws Error(badInput).
-nlohmann::ordered_json readKept(const std::string& file) {
-  const auto json = nlohmann::ordered_json::parse(readFileText(file), nullptr, false);
-  if (!json.is_object() || !json.contains("rows")) throwBadInput("--compare {}: no table of bench stability --json", file);
-  return json.at("rows");
-}
-
 int run(const Options& options) {
   options.common.apply();
-  const nlohmann::ordered_json kept = options.compare.empty() ? nlohmann::ordered_json() : readKept(options.compare);
+  const nlohmann::ordered_json kept = options.compare.empty() ? nlohmann::ordered_json() : bench::readKept(options.compare);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;

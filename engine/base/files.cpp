@@ -3,14 +3,20 @@
 #include "base/files.hpp"
 
 #include "base/error.hpp"
+#include "base/hash.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <system_error>
 
 namespace lucerna {
@@ -22,23 +28,55 @@ namespace {
 template <class Container>
 Container readWhole(const fs::path& file) {
   std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) throwBadInput("{}: no such file", file.string());
-  if (fs::is_directory(status)) throwBadInput("{}: is a folder, expected a file", file.string());
+  if (fs::is_directory(file, error)) throwBadInput("{}: is a folder, expected a file", file.string());
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throwBadInput("{}: cannot be opened: {}", file.string(), std::strerror(errno));
+  if (!stream) throwCannotOpen(file, errno);
   Container content;
-  // Pieces rather than the size asked beforehand: pipes and the like have none.
-  constexpr std::size_t kPiece = 1u << 20;
-  std::size_t used = 0;
-  while (stream) {
-    content.resize(used + kPiece);
-    stream.read(reinterpret_cast<char*>(content.data()) + used, static_cast<std::streamsize>(kPiece));
+  // Piece by piece, as pipes and the like have no size; of a plain file the first piece is all of it, and one byte that ends the reading.
+  std::size_t piece = 1u << 20, used = 0;
+  if (const std::uintmax_t size = fs::file_size(file, error); !error) piece = static_cast<std::size_t>(size) + 1;
+  for (; stream; piece = 1u << 20) {
+    content.resize(used + piece);
+    stream.read(reinterpret_cast<char*>(content.data()) + used, static_cast<std::streamsize>(piece));
     used += static_cast<std::size_t>(stream.gcount());
   }
   if (stream.bad()) throwBadInput("{}: cannot be read: {}", file.string(), std::strerror(errno));
   content.resize(used);
   return content;
+}
+
+/// What the temporary files of this machine begin with: process numbers mean nothing on another one, or in another container.
+const std::string& temporaryPrefix() {
+  static const std::string prefix = [] {
+    char name[256] = {};
+    ::gethostname(name, sizeof name - 1);
+    struct stat processes {};
+    ::stat("/proc/self/ns/pid", &processes);
+    Hash hash;
+    hash.add(std::string_view(name));
+    hash.add(static_cast<std::uint64_t>(processes.st_ino));
+    return fmt::format(".lucerna-{:08x}-", hash.value() & 0xffffffffu);
+  }();
+  return prefix;
+}
+
+/// Removes the temporary files that killed processes of this machine left in a folder; once a folder and run, before the first file is written to it.
+void sweepOnce(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<std::string> swept;
+  const std::lock_guard lock(mutex);
+  std::error_code error;
+  if (!swept.insert(fs::absolute(folder, error).string()).second) return;
+  const std::string& prefix = temporaryPrefix();
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(prefix) || !name.ends_with(".tmp")) continue;
+    pid_t process = 0;
+    const auto [stop, failure] = std::from_chars(name.data() + prefix.size(), name.data() + name.size(), process);
+    if (failure != std::errc() || *stop != '-' || process <= 0) continue;
+    if (::kill(process, 0) == 0 || errno != ESRCH) continue;  // it lives, and may be writing
+    ::unlink(entry->path().c_str());
+  }
 }
 
 /// Writes and closes; returns 0 or the errno of what failed first.
@@ -61,11 +99,15 @@ void replaceFile(const fs::path& file, std::span<const std::uint8_t> bytes, bool
   if (!file.has_filename()) throwBadInput("'{}': cannot be written: expected a file name", file.string());
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   std::error_code error;
-  if (!fs::is_directory(folder, error)) throwBadInput("{}: cannot be written: there is no folder {}", file.string(), folder.string());
+  const bool isFolder = fs::is_directory(folder, error);
+  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
+    throwBadInput("{}: cannot be written: {}", file.string(), error.message());
+  if (!isFolder) throwBadInput("{}: cannot be written: there is no folder {}", file.string(), folder.string());
   if (fs::is_directory(file, error)) throwBadInput("{}: cannot be written: it is a folder", file.string());
 
+  sweepOnce(folder);
   static std::atomic<unsigned> counter{0};
-  const fs::path temporary = folder / fmt::format(".lucerna-{}-{}.tmp", ::getpid(), counter++);
+  const fs::path temporary = folder / fmt::format("{}{}-{}.tmp", temporaryPrefix(), ::getpid(), counter++);
   int failure = writeAll(temporary, bytes, durably);
   if (failure == 0 && std::rename(temporary.c_str(), file.c_str()) != 0) failure = errno;
   if (failure != 0) {
@@ -81,6 +123,12 @@ void replaceFile(const fs::path& file, std::span<const std::uint8_t> bytes, bool
 }
 
 }  // namespace
+
+void throwCannotOpen(const fs::path& file, int reason) {
+  if (reason == ENOENT) throwBadInput("{}: no such file", file.string());
+  if (reason == EMFILE || reason == ENFILE || reason == ENOMEM) throwMissingCapability("{}: cannot be opened: {}", file.string(), std::strerror(reason));
+  throwBadInput("{}: cannot be opened: {}", file.string(), std::strerror(reason));
+}
 
 std::vector<std::uint8_t> readFileBytes(const fs::path& file) { return readWhole<std::vector<std::uint8_t>>(file); }
 

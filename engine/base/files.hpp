@@ -10,13 +10,18 @@
 
 namespace lucerna {
 
+/// Throws what is to be said of a file that could not be opened for reading, by errno: too few descriptors or too little memory is a missing
+/// capability, all else (missing, no permission) bad input.
+[[noreturn]] void throwCannotOpen(const std::filesystem::path& file, int reason);
+
 /// The bytes of a file. Throws Error(badInput) naming the file when it is missing, a folder or unreadable.
 std::vector<std::uint8_t> readFileBytes(const std::filesystem::path& file);
 
 /// The same as text.
 std::string readFileText(const std::filesystem::path& file);
 
-/// Writes a file whole or not at all: into a temporary file in the same folder, which is then renamed.
+/// Writes a file whole or not at all: into a temporary file in the same folder, which is then renamed. The temporary files that killed processes left
+/// in that folder are removed first.
 /// On failure (no such folder, no permission, disk full) nothing new is left behind, an older file of that name stays as it
 /// was, and Error(badInput) names the file and the reason.
 void writeFileAtomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);

@@ -1,5 +1,6 @@
 // Images on disk. Which library does what, and why:
-// - 8-bit pictures and png: DevIL. It keeps its current image, error stack and modes in globals, so one mutex guards it all.
+// - 8-bit pictures (png, jpg, tga, bmp): DevIL, which sees none that base/picture_header.hpp has not checked. It keeps its current image, error
+//   stack and modes in globals, so one mutex guards it all.
 // - Radiance hdr: here. DevIL 1.7.8 reads every value 256/255 times too large (0.4 %), cuts mantissas off instead of rounding
 //   them when writing, and takes truncated files for whole; our comparisons measure bias far below that.
 // - exr: OpenEXR, as Debian's DevIL has none. pfm: a header and raw floats.
@@ -9,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "base/picture_header.hpp"
 
 #include <IL/il.h>
 #include <ImathBox.h>
@@ -27,6 +29,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <mutex>
 #include <span>
 #include <string>
@@ -37,16 +40,6 @@ namespace lucerna {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// 2^28 pixels are 3 GiB as float RGB: larger sizes come from broken headers. Small enough that no product below overflows.
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
-constexpr std::int64_t kMaxSide = std::int64_t{1} << 20;
-
-void checkFileSize(const fs::path& file, std::int64_t width, std::int64_t height) {
-  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide || width * height > kMaxPixels)
-    throwBadInput("{}: a picture of {} x {} pixels; sides must be 1 to {} and the whole at most {} pixels", file.string(), width,
-                  height, kMaxSide, kMaxPixels);
-}
 
 std::size_t pixelCount(int width, int height) { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 
@@ -75,24 +68,18 @@ class DevilImage {
   DevilImage(const DevilImage&) = delete;
   DevilImage& operator=(const DevilImage&) = delete;
 
-  /// Decodes into the bound image, or throws. Truncated files may "succeed" with read errors on the stack: those are refused.
+  /// Decodes into the bound image, or throws. Pictures that are damaged may "succeed" with read errors on the stack: those are refused.
   void decode(std::span<const std::uint8_t> bytes, const fs::path& file) {
-    ILenum type = ilDetermineTypeL(bytes.data(), static_cast<ILuint>(bytes.size()));
-    drainErrors();
-    if (type == IL_TYPE_UNKNOWN) type = ilTypeFromExt(file.c_str());  // Targa, for one, has no magic number
-    drainErrors();
-    if (type == IL_PNM) throwBadInput("{}: portable anymaps are not read (DevIL 1.7.8 crashes on damaged ones); convert it to png", file.string());
-    if (type == IL_PNG && bytes.size() >= 24) {  // before DevIL allocates what a damaged header asks for
-      const auto bigEndian = [&](std::size_t at) { return std::int64_t{bytes[at]} << 24 | bytes[at + 1] << 16 | bytes[at + 2] << 8 | bytes[at + 3]; };
-      checkFileSize(file, bigEndian(16), bigEndian(20));
-    }
-    const bool known = type != IL_TYPE_UNKNOWN && !bytes.empty();
-    const bool loaded = known && ilLoadL(type, bytes.data(), static_cast<ILuint>(bytes.size())) != IL_FALSE;
+    const PictureHeader header = checkPicture(bytes, file);
+    constexpr ILenum kTypes[] = {IL_PNG, IL_JPG, IL_TGA, IL_BMP};
+    const ILenum type = kTypes[static_cast<std::size_t>(header.format)];
+    const bool loaded = bytes.size() <= std::numeric_limits<ILuint>::max() && ilLoadL(type, bytes.data(), static_cast<ILuint>(bytes.size())) != IL_FALSE;
     const ILenum error = drainErrors();
-    if (!known) throwBadInput("{}: not a picture of a known format", file.string());
     if (!loaded) throwBadInput("{}: a broken picture: {}", file.string(), describe(error));
     if (error == IL_FILE_READ_ERROR) throwBadInput("{}: a truncated picture: the file ends too early", file.string());
-    checkFileSize(file, ilGetInteger(IL_IMAGE_WIDTH), ilGetInteger(IL_IMAGE_HEIGHT));
+    if (ilGetInteger(IL_IMAGE_WIDTH) != header.width || ilGetInteger(IL_IMAGE_HEIGHT) != header.height)
+      throwBadInput("{}: a broken picture: {} x {} pixels decoded, its header says {} x {}", file.string(), ilGetInteger(IL_IMAGE_WIDTH), ilGetInteger(IL_IMAGE_HEIGHT), header.width,
+                    header.height);
   }
 
   /// The bound image as RGBA, 8 bits a channel.
@@ -118,7 +105,6 @@ class DevilImage {
       case IL_FILE_READ_ERROR: return "the file ends too early";
       case IL_LIB_PNG_ERROR: return "libpng refuses it as damaged or truncated";
       case IL_LIB_JPEG_ERROR: return "libjpeg refuses it as damaged or truncated";
-      case IL_LIB_TIFF_ERROR: return "libtiff refuses it as damaged or truncated";
       default: return fmt::format("DevIL error 0x{:x}", error);
     }
   }
@@ -212,6 +198,7 @@ class HdrBytes {
  public:
   HdrBytes(std::span<const std::uint8_t> bytes, const fs::path& file) : bytes_(bytes), file_(file) {}
 
+  std::size_t left() const { return bytes_.size(); }
   std::uint8_t next() { return take(1)[0]; }
   std::span<const std::uint8_t> take(std::size_t count) {
     if (count > bytes_.size()) throwBadInput("{}: truncated: an hdr file that ends within its pixels or header", file_.string());
@@ -283,7 +270,8 @@ Image decodeHdr(std::span<const std::uint8_t> content, const fs::path& file) {
   long long width = 0, height = 0;
   if (std::sscanf(resolution.c_str(), "%cY %lld %cX %lld", &signY, &height, &signX, &width) != 4)
     throwBadInput("{}: an hdr file with the size '{}', expected one like '-Y 512 +X 1024'", file.string(), resolution);
-  checkFileSize(file, width, height);
+  checkPictureSize(file, width, height, content.size(), kFreeFloatPixels);
+  if (bytes.left() / 4 < static_cast<std::size_t>(height)) throwBadInput("{}: truncated: {} bytes of pixels for {} rows", file.string(), bytes.left(), height);
 
   Image image(static_cast<int>(width), static_cast<int>(height));
   std::vector<std::array<std::uint8_t, 4>> row(static_cast<std::size_t>(width));
@@ -360,13 +348,45 @@ std::vector<std::uint8_t> encodeExr(const Image& image, const fs::path& file) {
   return std::move(stream.bytes);
 }
 
+/// OpenEXR makes room for as many bytes as an attribute of the header says it has: those left are counted first. An attribute is its name and its type,
+/// each ended by a zero byte, its size in four bytes and its value; an empty name ends a part's header, and of a file of several parts another the last one's.
+void checkExrHeader(std::span<const std::uint8_t> bytes, const fs::path& file) {
+  constexpr std::size_t kAttributes = 8;          // behind magic number and version
+  constexpr std::uint8_t kSeveralParts = 0x10;  // of the version's second byte
+  std::size_t at = kAttributes;
+  const auto truncated = [&] { throwBadInput("{}: truncated: an EXR picture that ends within its header", file.string()); };
+  const auto skipText = [&] {
+    const std::size_t begin = at;
+    while (at < bytes.size() && bytes[at] != 0) ++at;
+    if (at == bytes.size()) truncated();
+    return at++ > begin;
+  };
+  if (bytes.size() < kAttributes) truncated();
+  bool ended = false;
+  for (;;) {
+    if (!skipText()) {
+      if (ended || !(bytes[5] & kSeveralParts)) return;
+      ended = true;
+      continue;
+    }
+    ended = false;
+    skipText();
+    if (bytes.size() - at < 4) truncated();
+    const std::uint32_t size = std::uint32_t{bytes[at]} | std::uint32_t{bytes[at + 1]} << 8 | std::uint32_t{bytes[at + 2]} << 16 | std::uint32_t{bytes[at + 3]} << 24;
+    at += 4;
+    if (size > bytes.size() - at) truncated();
+    at += size;
+  }
+}
+
 Image decodeExr(std::span<const std::uint8_t> bytes, const fs::path& file) {
+  checkExrHeader(bytes, file);
   MemoryInput stream(file.string(), bytes);
   Imf::InputFile input(stream);
   const Imath::Box2i window = input.header().dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  checkFileSize(file, width, height);
+  checkPictureSize(file, width, height, bytes.size(), kFreeFloatPixels);
   const Imf::ChannelList& channels = input.header().channels();
   const bool colour = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
   if (!colour && !channels.findChannel("Y")) throwBadInput("{}: an EXR without channels R, G, B or Y", file.string());
@@ -413,16 +433,16 @@ Image decodePfm(std::span<const std::uint8_t> bytes, const fs::path& file) {
   nextNumber(width);
   nextNumber(height);
   nextNumber(scale);
-  checkFileSize(file, width, height);
+  checkPictureSize(file, width, height);
   if (!(scale != 0.0) || at >= text.size() || !isBlank(text[at]))
     throwBadInput("{}: a PFM header must end with a scale other than 0 and one white space", file.string());
   ++at;
 
   const std::size_t channels = text[1] == 'F' ? 3 : 1;
-  Image image(static_cast<int>(width), static_cast<int>(height));
-  const std::size_t needed = image.pixels.size() * channels * sizeof(float);
+  const std::size_t needed = static_cast<std::size_t>(width * height) * channels * sizeof(float);
   if (text.size() - at < needed)
     throwBadInput("{}: truncated: {} bytes of pixels, {} x {} pixels need {}", file.string(), text.size() - at, width, height, needed);
+  Image image(static_cast<int>(width), static_cast<int>(height));
   const bool swap = (scale < 0.0) != (std::endian::native == std::endian::little);
   for (int y = image.height - 1; y >= 0; --y) {
     for (int x = 0; x < image.width; ++x) {
@@ -444,7 +464,7 @@ bool startsWith(std::span<const std::uint8_t> bytes, std::string_view magic) {
 }  // namespace
 
 Image::Image(int width_, int height_, glm::vec3 value) : width(width_), height(height_) {
-  CHECK(width_ >= 0 && height_ >= 0 && std::int64_t{width_} * height_ <= kMaxPixels, "{} x {} pixels", width_, height_);
+  CHECK(width_ >= 0 && height_ >= 0 && std::int64_t{width_} * height_ <= kMostPixels, "{} x {} pixels", width_, height_);
   pixels.assign(pixelCount(width_, height_), value);
 }
 
@@ -516,7 +536,7 @@ Image readImage(const fs::path& file) {
 void writeImage(const fs::path& file, const Image& image) {
   CHECK(image.pixels.size() == pixelCount(image.width, image.height), "{} pixels for {} x {}", image.pixels.size(), image.width,
         image.height);
-  checkFileSize(file, image.width, image.height);
+  checkPictureSize(file, image.width, image.height);
   const std::string extension = lowerExtension(file);
   if (extension == ".pfm") return writeFileAtomically(file, encodePfm(image));
   if (extension == ".hdr") return writeFileAtomically(file, encodeHdr(image, file));
@@ -527,7 +547,7 @@ void writeImage(const fs::path& file, const Image& image) {
 void writePng(const fs::path& file, const Bitmap& bitmap) {
   CHECK(bitmap.rgba.size() == 4 * pixelCount(bitmap.width, bitmap.height), "{} bytes for {} x {}", bitmap.rgba.size(), bitmap.width,
         bitmap.height);
-  checkFileSize(file, bitmap.width, bitmap.height);
+  checkPictureSize(file, bitmap.width, bitmap.height);
   if (lowerExtension(file) != ".png") throwBadInput("{}: 8-bit pictures are written as .png", file.string());
   const std::size_t count = pixelCount(bitmap.width, bitmap.height);
   std::vector<std::uint8_t> rgb(3 * count);

@@ -4,7 +4,7 @@
 // - Image: linear RGB in 32-bit float, scene units (radiance, W/(m^2 sr) up to the scene's own scale); row 0 is the TOP row.
 // - Bitmap: 8-bit RGBA as read from a texture file or written to a PNG, sRGB-encoded unless its user says otherwise;
 //   row 0 is the TOP row.
-// Formats: png, jpg, tga, bmp, ... are read and png is written through DevIL; exr through OpenEXR; hdr (Radiance RGBE; why not
+// Formats: png, jpg, tga and bmp are read and png is written through DevIL, after a check of every byte count (picture_header.hpp); exr through OpenEXR; hdr (Radiance RGBE; why not
 // through DevIL: image.cpp) and pfm (Debevec's format: bottom row first) are small enough to be done here.
 #pragma once
 
@@ -45,7 +45,7 @@ float linearFromSrgb(float encoded);
 /// Radiance as shown: exposure, the filmic curve of shaders/forward/tonemap.frag, sRGB encoding.
 Bitmap toneMapped(const Image& radiance, float exposure);
 
-/// Reads any picture DevIL knows as 8-bit RGBA. Throws Error(badInput) naming the file when it is missing, a folder, or no image.
+/// Reads png, jpg, tga or bmp as 8-bit RGBA. Throws Error(badInput) naming the file when it is missing, a folder, none of these, or damaged.
 Bitmap readBitmap(const std::filesystem::path& file);
 
 /// The same from a file's bytes in memory (textures embedded in models); `file` only names it in messages.

@@ -117,7 +117,7 @@ void ProgramLibrary::build(Program& program) {
   std::map<fs::path, fs::file_time_type> dependencies;
   const GLuint id = glCreateProgram();
   std::vector<GLuint> shaders;
-  const auto fail = [&](const std::string& message) {
+  const auto fail = [&](const std::string& message, ErrorKind kind = ErrorKind::badInput) {
     for (GLuint shader : shaders) glDeleteShader(shader);
     glDeleteProgram(id);
     // So that mending a file is noticed, and the same failure not met again until then: the files of old, as they are now, and those
@@ -127,14 +127,14 @@ void ProgramLibrary::build(Program& program) {
       if (const auto now = fs::last_write_time(root_ / file, gone); !gone) time = now;
     }
     for (const auto& [file, time] : dependencies) program.dependencies_[file] = time;
-    throw Error(ErrorKind::badInput, fmt::format("program {}: {}", description.name, message));
+    throw Error(kind, fmt::format("program {}: {}", description.name, message));
   };
   for (const ShaderStage& stage : description.stages) {
     ExpandedSource source;
     try {
       source = expandShader(root_, stage.file, description.flags);
     } catch (const Error& error) {
-      fail(error.what());
+      fail(error.what(), error.kind());
     }
     for (const fs::path& file : source.files) dependencies[file] = fs::last_write_time(root_ / file);
     const GLuint shader = glCreateShader(stage.type);

@@ -1,9 +1,11 @@
 // The preprocessor that stands before the driver's: includes, declared flags, line map, readable logs. No GL calls.
 #include "base/error.hpp"
+#include "base/files.hpp"
 #include "gl/program.hpp"
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -47,6 +49,7 @@ class Expander {
     if (std::find(files.begin(), files.end(), fs::path(file)) != files.end()) return;  // include once
 
     std::ifstream stream(root_ / file);
+    if (!stream && errno != ENOENT) throwCannotOpen(root_ / file, errno);
     if (!stream || fs::is_directory(root_ / file))
       throwBadInput("{}shader file shaders/{} is missing", from.empty() ? "" : from + ": ", file);
     open_.push_back(file);

@@ -170,17 +170,23 @@ std::optional<Reference> decode(const ReferenceKey& key, const std::vector<std::
   std::memcpy(&header, bytes.data(), sizeof header);
   if (stored != check.value() || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.key != key.value) return std::nullopt;
   Reference r;
-  r.transport = static_cast<Transport>(header.transport);
   r.samples = header.samples;
   r.seconds = header.seconds;
   r.meanError = header.meanError;
+  const std::size_t rest = bytes.size() - sizeof header - sizeof stored;
+  if (header.width < 1 || header.height < 1 || header.rendererLength < 0 || static_cast<std::size_t>(header.rendererLength) > rest ||
+      static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.height) > rest / (2 * sizeof(glm::vec3)))
+    return std::nullopt;
+  const std::size_t size = static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height) * sizeof(glm::vec3);
+  if (rest != static_cast<std::size_t>(header.rendererLength) + 2 * size) return std::nullopt;
+  if (header.samples < 1 || !(header.seconds >= 0.0) || !(header.meanError >= 0.0) || !std::isfinite(header.seconds + header.meanError)) return std::nullopt;
+  if (header.transport < 0 || header.transport > static_cast<std::int32_t>(Transport::all)) return std::nullopt;
+  r.transport = static_cast<Transport>(header.transport);
   r.mean = Image(header.width, header.height);
   r.standardError = r.mean;
   const std::uint8_t* at = bytes.data() + sizeof header;
   r.renderer.assign(reinterpret_cast<const char*>(at), static_cast<std::size_t>(header.rendererLength));
   at += header.rendererLength;
-  const std::size_t size = r.mean.pixels.size() * sizeof(glm::vec3);
-  if (r.mean.pixels.empty() || bytes.size() != sizeof header + r.renderer.size() + 2 * size + sizeof stored) return std::nullopt;
   std::memcpy(&r.mean.pixels[0].x, at, size);
   std::memcpy(&r.standardError.pixels[0].x, at + size, size);
   return r;

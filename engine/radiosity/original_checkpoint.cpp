@@ -61,7 +61,7 @@ OriginalCheckpoint readCheckpoint(const std::filesystem::path& file) {
   if (std::memcmp(head.magic, kMagic, sizeof kMagic) != 0) throwBadInput("{}: is no checkpoint of this program", file.string());
   if (head.version != kVersion) throwBadInput("{}: is a checkpoint of version {}, expected {}", file.string(), head.version, kVersion);
   const std::size_t rest = bytes.size() - sizeof head - sizeof(std::uint64_t);
-  if (head.count > rest || head.done > head.count || (head.count + head.done) * sizeof(float) != rest)
+  if (head.count == 0 || head.count > rest || head.done > head.count || (head.count + head.done) * sizeof(float) != rest)
     throwBadInput("{}: says {} values and {} done, which does not fit its {} bytes", file.string(), head.count, head.done, bytes.size());
   std::uint64_t digest = 0;
   std::memcpy(&digest, bytes.data() + bytes.size() - sizeof digest, sizeof digest);

@@ -16,6 +16,7 @@ RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& pr
     RadiositySolution solution = loadSolution(settings.file, scene);
     if (activeRadiosityDeviations(solution.deviations) != activeRadiosityDeviations(settings.solution.deviations))
       throwBadInput("{}: solved with other deviations ({}): name another file", settings.file.string(), fmt::join(activeRadiosityDeviations(solution.deviations), ", "));
+    checkSettings(settings.file, solution, settings.solution);
     return solution;
   }
   std::filesystem::path checkpoint = settings.file;

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -16,6 +17,8 @@ namespace {
 
 constexpr char kMagic[8] = {'L', 'U', 'C', 'R', 'O', 'W', 'S', '\n'};
 constexpr std::uint32_t kVersion = 2;  // 2: rows depend on how pixels learn what they see
+
+constexpr float kMostFactor = 1.01f;      // shares of a hemisphere, with rounding
 
 struct Header {
   char magic[8];
@@ -100,7 +103,7 @@ std::optional<FormFactorRows> RowFile::readBlock(std::uint32_t expected, std::ui
   struct stat status {};
   BlockHeader block{};
   if (::fstat(descriptor_, &status) != 0 || !readAll(descriptor_, &block, sizeof block) || block.first != expected || block.rows == 0 || block.rows > patches_ - expected ||
-      block.entries > static_cast<std::uint64_t>(block.rows) * patches_ || end + sizeof block + dataBytes(block) > static_cast<std::uint64_t>(status.st_size))
+      block.entries > static_cast<std::uint64_t>(status.st_size) || block.entries > static_cast<std::uint64_t>(block.rows) * patches_ || end + sizeof block + dataBytes(block) > static_cast<std::uint64_t>(status.st_size))
     return std::nullopt;
   std::vector<std::uint8_t> data(dataBytes(block));
   if (!readAll(descriptor_, data.data(), data.size()) || checksumOf(block, data) != block.checksum) return std::nullopt;
@@ -109,7 +112,7 @@ std::optional<FormFactorRows> RowFile::readBlock(std::uint32_t expected, std::ui
   const std::uint8_t* at = data.data();
   const auto get = [&](auto& values, std::size_t count) {
     values.resize(count);
-    std::memcpy(values.data(), at, 4 * count);
+    if (count > 0) std::memcpy(values.data(), at, 4 * count);
     at += 4 * count;
   };
   get(rows.counts, block.rows);
@@ -117,6 +120,12 @@ std::optional<FormFactorRows> RowFile::readBlock(std::uint32_t expected, std::ui
   get(rows.backs, block.rows);
   get(rows.patches, block.entries);
   get(rows.factors, block.entries);
+  // The checksum finds damage; what was written by something else is found here.
+  if (std::accumulate(rows.counts.begin(), rows.counts.end(), std::uint64_t{0}) != block.entries) return std::nullopt;
+  for (std::size_t i = 0; i < rows.patches.size(); ++i)
+    if (rows.patches[i] >= patches_ || !(rows.factors[i] >= 0.0f && rows.factors[i] <= kMostFactor)) return std::nullopt;
+  for (std::size_t i = 0; i < rows.fronts.size(); ++i)
+    if (!(rows.fronts[i] >= 0.0f && rows.backs[i] >= 0.0f && rows.fronts[i] + rows.backs[i] <= kMostFactor)) return std::nullopt;
   end += sizeof block + data.size();
   return rows;
 }
@@ -152,7 +161,7 @@ void RowFile::append(const FormFactorRows& rows) {
   std::vector<std::uint8_t> bytes(sizeof block + dataBytes(block));
   std::uint8_t* at = bytes.data() + sizeof block;
   const auto put = [&](const auto& values) {
-    std::memcpy(at, values.data(), 4 * values.size());
+    if (!values.empty()) std::memcpy(at, values.data(), 4 * values.size());
     at += 4 * values.size();
   };
   put(rows.counts);

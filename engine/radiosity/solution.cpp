@@ -8,12 +8,10 @@
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/hidden_parts.hpp"
 #include "radiosity/row_file.hpp"
-#include "scene/fingerprint.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <numbers>
 #include <numeric>
@@ -263,6 +261,7 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
   if (settings.wholeTriangles) patches.longestEdge = 0.0;
   RadiositySolution solution;
   solution.deviations = settings.deviations;
+  solution.settings = textOf(asked);
   solution.mesh = makePatches(scene, patches);
   const double shortest = (patches.longestEdge > 0.0 ? patches.longestEdge : largest / kEdges) / std::pow(2.0, settings.refinements + 1);
   for (int refinement = 0;; ++refinement) {
@@ -314,148 +313,6 @@ Scene litScene(const Scene& scene, const RadiosityMesh& mesh) {
       }
   }
   return lit;
-}
-
-// ---------------------------------------------------------------------------------------------------- files
-
-namespace {
-
-constexpr char kMagic[8] = {'L', 'U', 'C', 'L', 'I', 'G', 'H', 'T'};
-constexpr std::uint32_t kVersion = 2;
-
-struct FileHeader {
-  char magic[8];
-  std::uint32_t version, solver, deviations, unused;
-  std::uint64_t scene, points, patches, lightVertices, checksum;
-  double products, residual, errorBound, energyBalance, extent;
-};
-struct FilePatch {
-  std::uint32_t point[3], light[3];
-  float texCoord[6], normal[9];
-  std::int32_t material;
-  std::uint32_t triangle;
-  float fronts, backs;
-  double centroid[3], faceNormal[3], area, reflectance[3], emission[3], direct[3], fromEmitters[3], irradiance[3], exitance[3];
-};
-
-std::uint64_t fingerprint(const Scene& scene) {
-  Hash hash;
-  addScene(hash, scene);
-  return hash.value();
-}
-
-std::uint32_t bitsOf(const RadiosityDeviations& deviations) {
-  std::uint32_t bits = 0, bit = 1;
-  for (const RadiosityDeviation& d : allRadiosityDeviations()) bits |= deviations.*d.member ? bit : 0, bit *= 2;
-  return bits;
-}
-
-}  // namespace
-
-void saveSolution(const std::filesystem::path& file, const Scene& scene, const RadiositySolution& s) {
-  std::vector<FilePatch> patches(s.mesh.patches.size());
-  std::memset(static_cast<void*>(patches.data()), 0, patches.size() * sizeof(FilePatch));
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Patch& from = s.mesh.patches[i];
-    FilePatch& to = patches[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int axis = static_cast<int>(k);
-      to.point[k] = from.point[k];
-      to.light[k] = from.light[k];
-      for (int c = 0; c < 2; ++c) to.texCoord[2 * k + static_cast<std::size_t>(c)] = from.texCoord[k][c];
-      for (int c = 0; c < 3; ++c) to.normal[3 * k + static_cast<std::size_t>(c)] = from.normal[k][c];
-      to.centroid[k] = from.centroid[axis];
-      to.faceNormal[k] = from.faceNormal[axis];
-      to.reflectance[k] = from.reflectance[axis];
-      to.emission[k] = from.emission[axis];
-      to.direct[k] = s.direct[i][axis];
-      to.fromEmitters[k] = s.fromEmitters[i][axis];
-      to.irradiance[k] = s.irradiance[i][axis];
-      to.exitance[k] = s.exitance[i][axis];
-    }
-    to.material = from.material;
-    to.triangle = from.triangle;
-    to.area = from.area;
-    to.fronts = s.fronts[i];
-    to.backs = s.backs[i];
-  }
-  FileHeader header{};
-  std::memcpy(header.magic, kMagic, sizeof kMagic);
-  header.version = kVersion;
-  header.solver = static_cast<std::uint32_t>(s.solver);
-  header.deviations = bitsOf(s.deviations);
-  header.scene = fingerprint(scene);
-  header.points = s.mesh.points.size();
-  header.patches = patches.size();
-  header.lightVertices = s.mesh.lightVertices;
-  header.products = s.progress.products;
-  header.residual = s.progress.residual;
-  header.errorBound = s.progress.errorBound;
-  header.energyBalance = s.progress.energyBalance;
-  header.extent = s.mesh.extent;
-  std::vector<std::uint8_t> bytes;
-  const auto put = [&](const void* data, std::size_t size) { bytes.insert(bytes.end(), static_cast<const std::uint8_t*>(data), static_cast<const std::uint8_t*>(data) + size); };
-  Hash checksum;
-  checksum.bytes(s.mesh.points.data(), s.mesh.points.size() * sizeof(glm::dvec3));
-  checksum.bytes(patches.data(), patches.size() * sizeof(FilePatch));
-  header.checksum = checksum.value();
-  put(&header, sizeof header);
-  put(s.mesh.points.data(), s.mesh.points.size() * sizeof(glm::dvec3));
-  put(patches.data(), patches.size() * sizeof(FilePatch));
-  writeFileAtomically(file, std::span<const std::uint8_t>(bytes));
-}
-
-RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& scene) {
-  const std::vector<std::uint8_t> bytes = readFileBytes(file);
-  FileHeader header{};
-  if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) throwBadInput("{}: is no radiosity solution", file.string());
-  std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.version != kVersion) throwBadInput("{}: a solution of version {}, this program reads {}: solve anew", file.string(), header.version, kVersion);
-  if (header.scene != fingerprint(scene)) throwBadInput("{}: the solution of another scene, or of this one before it was changed: solve anew", file.string());
-  const std::size_t most = bytes.size() / sizeof(glm::dvec3) + 1;
-  if (header.points > most || header.patches > most || bytes.size() != sizeof header + header.points * sizeof(glm::dvec3) + header.patches * sizeof(FilePatch))
-    throwBadInput("{}: {} bytes do not fit {} points and {} patches: was it cut short?", file.string(), bytes.size(), header.points, header.patches);
-  const std::uint8_t* at = bytes.data() + sizeof header;
-  if (Hash::of(at, bytes.size() - sizeof header) != header.checksum) throwBadInput("{}: its checksum is wrong: it is damaged", file.string());
-  RadiositySolution s;
-  s.mesh.points.resize(header.points);
-  std::memcpy(static_cast<void*>(s.mesh.points.data()), at, header.points * sizeof(glm::dvec3));
-  s.mesh.lightVertices = header.lightVertices;
-  s.mesh.extent = header.extent;
-  at += header.points * sizeof(glm::dvec3);
-  const auto vector = [](const double* v) { return glm::dvec3(v[0], v[1], v[2]); };
-  for (std::size_t i = 0; i < header.patches; ++i) {
-    FilePatch from;
-    std::memcpy(&from, at + i * sizeof from, sizeof from);
-    Patch& to = s.mesh.patches.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (from.point[k] >= header.points || from.light[k] >= header.lightVertices) throwBadInput("{}: patch {} has no such corner", file.string(), i);
-      to.point[k] = from.point[k];
-      to.light[k] = from.light[k];
-      to.texCoord[k] = {from.texCoord[2 * k], from.texCoord[2 * k + 1]};
-      to.normal[k] = {from.normal[3 * k], from.normal[3 * k + 1], from.normal[3 * k + 2]};
-    }
-    if (from.material < 0 || static_cast<std::size_t>(from.material) >= scene.materials.size()) throwBadInput("{}: patch {} has no such material", file.string(), i);
-    to.material = from.material;
-    to.triangle = from.triangle;
-    to.area = from.area;
-    to.centroid = vector(from.centroid);
-    to.faceNormal = vector(from.faceNormal);
-    to.reflectance = vector(from.reflectance);
-    to.emission = vector(from.emission);
-    s.direct.push_back(vector(from.direct));
-    s.fromEmitters.push_back(vector(from.fromEmitters));
-    s.irradiance.push_back(vector(from.irradiance));
-    s.exitance.push_back(vector(from.exitance));
-    s.fronts.push_back(from.fronts);
-    s.backs.push_back(from.backs);
-  }
-  s.progress = {header.products, header.residual, header.errorBound, header.energyBalance};
-  s.solver = static_cast<RadiositySolver>(header.solver);
-  std::uint32_t bit = 1;
-  for (const RadiosityDeviation& d : allRadiosityDeviations()) s.deviations.*d.member = (header.deviations & bit) != 0, bit *= 2;
-  s.reached = true;
-  return s;
 }
 
 }  // namespace lucerna

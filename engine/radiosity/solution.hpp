@@ -31,6 +31,10 @@ struct RadiositySolutionSettings {
   std::size_t memoryBytes = 0;     ///< for form factors; more are read from the checkpoint for each product, or computed anew. 0: half of what the machine has free
 };
 
+/// What decides a solution, as on the command line: "rad.edge=0 rad.resolution=64 ...". Solver, memory and visibility are no part of it: with them a solution
+/// differs within its error at most.
+std::string textOf(const RadiositySolutionSettings& settings);
+
 struct RadiosityStage {
   enum class Kind { direct, formFactors, solving } kind = Kind::formFactors;
   int refinement = 0;
@@ -41,6 +45,7 @@ struct RadiosityStage {
 struct RadiositySolution {
   RadiosityMesh mesh;
   RadiosityDeviations deviations;
+  std::string settings;                ///< textOf() the settings it was solved with
   std::vector<glm::dvec3> direct;      ///< irradiance by sun, spot and omnidirectional lights
   std::vector<glm::dvec3> fromEmitters;  ///< irradiance by what patches emit, reflected nowhere
   std::vector<glm::dvec3> irradiance;  ///< in all
@@ -76,5 +81,9 @@ Scene litScene(const Scene& scene, const RadiosityMesh& mesh);
 /// A finished solution. Versioned, checked, written whole or not at all; loading one of another scene, or damaged, throws Error(badInput).
 void saveSolution(const std::filesystem::path& file, const Scene& scene, const RadiositySolution& solution);
 RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& scene);
+
+/// Compares what a solution was solved with to what is asked for now. Throws Error(badInput) naming `file` and all that differs where something was asked
+/// for (is not the default) and is not so in the solution; what differs by default alone is one warning.
+void checkSettings(const std::filesystem::path& file, const RadiositySolution& solution, const RadiositySolutionSettings& asked);
 
 }  // namespace lucerna

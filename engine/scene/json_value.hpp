@@ -101,7 +101,8 @@ struct Key {
 /// Gives each member of an object to the entry of its name; an unknown one is an error.
 inline void readObject(const Value& object, const std::vector<Key>& keys) {
   if (!object.json.is_object()) object.fail("an object {...}");
-  for (const auto& [name, json] : object.json.items()) {
+  for (const auto& member : object.json.items()) {
+    const std::string& name = member.key();
     const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
     if (key == keys.end()) {
       std::string known;

@@ -97,7 +97,7 @@ class ObjChecker {
           long index = 0;
           const auto [stop, error] = std::from_chars(next, end, index);
           if (error != std::errc() || index == 0 || (stop != end && *stop != '/')) fail(fmt::format("'{}' in a face, expected index, index/index or index/index/index from 1 up or from -1 down", text));
-          if (index < 0 && -index > counts_[part]) fail(fmt::format("a face refers to {} number {}, only {} come before it", kPartNames[part], index, counts_[part]));
+          if (index < 0 && index < -counts_[part]) fail(fmt::format("a face refers to {} number {}, only {} come before it", kPartNames[part], index, counts_[part]));
           if (index > highest_[part]) {
             highest_[part] = index;
             highestLine_[part] = line_;
@@ -144,5 +144,26 @@ class ObjChecker {
 }  // namespace
 
 void checkObj(const std::filesystem::path& file, std::string_view text) { ObjChecker(file, text).run(); }
+
+std::string repairedObj(std::string_view obj) {
+  std::string text;
+  text.reserve(obj.size() + obj.size() / 16);
+  const auto isBlank = [](char c) { return c == ' ' || c == '\t'; };
+  bool vertex = false, continued = false;  // within a line of v, vt or vn; whether the line goes on one that a backslash ended
+  for (std::size_t i = 0; i < obj.size(); ++i) {
+    if (i == 0 || obj[i - 1] == '\n') {
+      const std::size_t end = obj.substr(0, i).find_last_not_of("\r\n");
+      continued = i > 0 && end != std::string_view::npos && obj[end] == '\\';
+      if (!continued) {
+        while (i < obj.size() && isBlank(obj[i])) ++i;
+        if (i == obj.size()) break;
+        vertex = obj[i] == 'v';
+      }
+    }
+    if (vertex && obj[i] == '.' && i > 0 && (isBlank(obj[i - 1]) || obj[i - 1] == '\n')) text += '0';
+    text += obj[i];
+  }
+  return text;
+}
 
 }  // namespace lucerna

@@ -20,6 +20,7 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/json.hpp"
 #include "scene/json_value.hpp"
 #include "scene/original_scene_file.hpp"
 #include "scene/scene_media.hpp"
@@ -149,11 +150,7 @@ Environment readEnvironment(const Value& object) {
 }  // namespace
 
 Json readJson(const std::filesystem::path& file) {
-  try {
-    return Json::parse(readFileText(file));
-  } catch (const Json::exception& e) {
-    throwBadInput("{}: not valid JSON: {}", file.string(), e.what());
-  }
+  return parseJson(readFileText(file), file.string());
 }
 
 Scene loadSceneFile(const std::filesystem::path& file) {
@@ -207,6 +204,7 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   if (background) scene.background = *background;
   scene.environment = std::move(environment);
   readSceneMedia(root, scale, scene);
+  if (!cameras.empty() || !keyFrames.empty()) useChosenView(scene);
   if (!cameras.empty()) scene.cameras = std::move(cameras);
   if (!keyFrames.empty()) {
     if (!root.has("camera") && !root.has("cameras")) scene.cameras.clear();

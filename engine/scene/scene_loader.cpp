@@ -11,13 +11,16 @@
 // - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic), Blinn-Phong
 //   exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). Textures of metallic,
 //   roughness and emission become their mean, which keeps a surface's total.
+// - glTF 2 by its own JSON where Assimp 5.2.5 leaves things out (gltf_file.hpp): KHR_texture_transform goes into the texture coordinates, alphaCutoff over
+//   baseColorFactor's alpha into the mask, KHR_materials_emissive_strength into the emission, KHR_materials_volume into a medium, colours that all vertices
+//   of a mesh share into its material. What is not shown is one warning a material. Occlusion textures are light that techniques find themselves: not read.
 // - How surfaces scatter in the path tracer (Material::bsdf; the real-time techniques do not read it). MTL: illum 5 is a mirror of Ks;
 //   illum 4, 6, 7 and 9 with an Ni are a smooth dielectric of that index (Ni 1: a boundary that does nothing). glTF: transmission
 //   above 0.5 a dielectric of index 1.5, else metallic above 0.5 a conductor of the base colour; alpha = roughness^2. All else is Lambert.
 // - Lights: a directional light's colour is its irradiance, that of a spot or point light its radiant intensity in W/sr, as
 //   the file has it (glTF's candela are not divided by a luminous efficacy); where other formats give a quadratic attenuation
 //   q, colour / q. Constant and linear attenuation are no physics and are ignored.
-// - No light in the file: kDefaultSun. No camera: the first key of keyFrames/<stem>.txt where the repository has one, else a
+// - No light in the file: a sun, over the shoulder of a view that we chose, else slanted as suits courts and halls. No camera: the first key of keyFrames/<stem>.txt where the repository has one, else a
 //   view from outside that frames the bounding sphere.
 #include "scene/scene_file.hpp"
 
@@ -25,11 +28,14 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "scene/gltf_file.hpp"
+#include "scene/import_guard.hpp"
 #include "scene/key_frames.hpp"
 #include "scene/texture_mean.hpp"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/GltfMaterial.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
@@ -38,9 +44,11 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <limits>
 #include <map>
+#include <memory>
+#include <span>
+#include <sstream>
 #include <string>
 #include <unordered_map>
 
@@ -56,6 +64,8 @@ constexpr double kDefaultFov = 50.0 * kPi / 180.0;
 
 /// Slanted, so that walls are lit too. In Crytek Sponza it reaches a quarter of the court's floor and the curtains on +z.
 const glm::dvec3 kDefaultSunDirection = glm::normalize(glm::dvec3(0.12, -1.0, 0.2));
+/// For the view from outside, which nobody chose: over its right shoulder, so that all sides of a box that are seen are lit, and a sheet that faces +z is.
+const glm::dvec3 kSunOverShoulder = glm::normalize(glm::dvec3(-0.3, -1.0, -0.6));
 const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
 /// Goes with that sun: bright where it shines, still readable where only its reflection comes.
 const float kDefaultExposure = 3.0f;
@@ -75,11 +85,15 @@ std::string withForwardSlashes(std::string path) {
   return path;
 }
 
-/// Files for Assimp: back slashes turned, and the material libraries that are missing remembered (Assimp only logs them).
+/// Files for Assimp: back slashes turned, the model itself from memory as it was checked, and the material libraries that are missing remembered
+/// (Assimp only logs them).
 class ModelFiles : public Assimp::DefaultIOSystem {
  public:
+  ModelFiles(std::string model, std::span<const std::uint8_t> content) : model_(std::move(model)), content_(content) {}
+
   bool Exists(const char* file) const override { return DefaultIOSystem::Exists(withForwardSlashes(file).c_str()); }
   Assimp::IOStream* Open(const char* file, const char* mode = "rb") override {
+    if (model_ == file) return new Assimp::MemoryIOStream(content_.data(), content_.size());
     const std::string path = withForwardSlashes(file);
     Assimp::IOStream* stream = DefaultIOSystem::Open(path.c_str(), mode);
     if (lowerExtension(path) == ".mtl") {
@@ -91,6 +105,10 @@ class ModelFiles : public Assimp::DefaultIOSystem {
 
   bool foundMaterials = false;
   std::vector<std::string> missingMaterials;
+
+ private:
+  std::string model_;
+  std::span<const std::uint8_t> content_;
 };
 
 // ------------------------------------------------------------------------------------------------------------- textures
@@ -117,6 +135,19 @@ class TextureLoader {
     if (name.empty()) return -1;
     const int index = load(name);
     return index >= 0 ? index : checker();
+  }
+
+  /// An albedo map whose alpha is moved so that what lay at `threshold` lies at 0.5, where masks are cut: to the same texture coordinates, as moving
+  /// by a constant and interpolating may be exchanged.
+  int withThreshold(int texture, double threshold) {
+    const auto [known, isNew] = moved_.try_emplace({texture, threshold}, static_cast<int>(scene_.textures.size()));
+    if (!isNew) return known->second;
+    Texture copy = scene_.textures[static_cast<std::size_t>(texture)];
+    const double shift = 255.0 * (0.5 - threshold);
+    for (std::size_t i = 3; i < copy.bitmap.rgba.size(); i += 4)
+      copy.bitmap.rgba[i] = static_cast<std::uint8_t>(std::clamp(std::lround(copy.bitmap.rgba[i] + shift), 0l, 255l));
+    scene_.textures.push_back(std::move(copy));
+    return known->second;
   }
 
   /// Index of a picture that only refines the material: -1 also where it cannot be read.
@@ -208,6 +239,7 @@ class TextureLoader {
   const aiScene& source_;
   fs::path folder_;
   std::map<std::string, int> indices_;
+  std::map<std::pair<int, double>, int> moved_;
   std::vector<std::string> unreadable_;
   int checker_ = -1;
 };
@@ -218,9 +250,10 @@ float clampedNumber(float value, float low, float high, float fallback) {
   return std::isfinite(value) ? std::clamp(value, low, high) : fallback;
 }
 
-Material convertMaterial(const aiMaterial& source, TextureLoader& textures, const Scene& scene) {
+/// `gltf`: where the file is one, what Assimp does not hand on. `tint`: the vertices' colour, a factor on the base colour.
+Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scene& scene, const GltfMaterial* gltf, const glm::vec3& tint) {
   Material material;
-  material.name = source.GetName().C_Str();
+  material.name = gltf ? gltf->name : source.GetName().C_Str();
   const auto colour = [&](const char* key, unsigned type, unsigned index, glm::vec3& value, float highest) {
     aiColor3D read;
     if (source.Get(key, type, index, read) != aiReturn_SUCCESS) return;
@@ -232,6 +265,7 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, cons
   };
 
   colour(AI_MATKEY_COLOR_DIFFUSE, material.diffuse, 1.0f);
+  material.diffuse *= tint;
   colour(AI_MATKEY_COLOR_SPECULAR, material.specular, 1.0f);
   colour(AI_MATKEY_COLOR_EMISSIVE, material.emission, std::numeric_limits<float>::max());
   material.shininess = clampedNumber(number(AI_MATKEY_SHININESS, 1.0f), 1.0f, 1e6f, 1.0f);
@@ -244,13 +278,17 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, cons
     metallic = clampedNumber(metallic * map.z, 0.0f, 1.0f, 0.0f);
     roughness = clampedNumber(roughness * map.y, 0.0f, 1.0f, 1.0f);
     glm::vec3 base = material.diffuse;
-    colour(AI_MATKEY_BASE_COLOR, base, 1.0f);
+    aiColor3D baseFactor;
+    if (source.Get(AI_MATKEY_BASE_COLOR, baseFactor) == aiReturn_SUCCESS) {
+      colour(AI_MATKEY_BASE_COLOR, base, 1.0f);
+      base *= tint;
+    }
     material.diffuse = base * (1.0f - metallic);
     material.specular = glm::mix(glm::vec3(0.04f), base, metallic);
     const float alpha2 = std::pow(std::max(roughness, 0.03f), 4.0f);
     material.shininess = std::max(2.0f / alpha2 - 2.0f, 1.0f);
     material.roughness = roughness * roughness;
-    if (number(AI_MATKEY_TRANSMISSION_FACTOR, 0.0f) > 0.5f) material.bsdf = Bsdf::dielectric;
+    if ((gltf ? static_cast<float>(gltf->transmission) : number(AI_MATKEY_TRANSMISSION_FACTOR, 0.0f)) > 0.5f) material.bsdf = Bsdf::dielectric;
     else if (metallic > 0.5f) material.bsdf = Bsdf::conductor;
   }
 
@@ -264,7 +302,18 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, cons
     }
   }
 
-  const float strength = number(AI_MATKEY_EMISSIVE_INTENSITY, 1.0f);
+  if (gltf && material.bsdf == Bsdf::dielectric) {
+    material.ior = gltf->ior;
+    if (gltf->thickness > 0.0 && gltf->absorption != glm::vec3(0.0f)) {
+      Medium medium;
+      medium.name = material.name;
+      medium.absorption = gltf->absorption;
+      material.interior = static_cast<int>(scene.media.size());
+      scene.media.push_back(std::move(medium));
+    }
+  }
+
+  const float strength = gltf ? gltf->emissiveStrength : number(AI_MATKEY_EMISSIVE_INTENSITY, 1.0f);
   if (material.emission != glm::vec3(0.0f)) {
     material.emissionScale = material.emission * clampedNumber(strength, 0.0f, 1e30f, 1.0f);
     material.emissionTexture = textures.optional(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR});
@@ -273,7 +322,7 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, cons
   }
 
   material.opacity = clampedNumber(number(AI_MATKEY_OPACITY, 1.0f), 0.0f, 1.0f, 1.0f);
-  if (material.opacity == 0.0f) {
+  if (material.opacity == 0.0f && !gltf) {
     logWarning("{}: material '{}' has opacity 0; taken as 1", scene.file.string(), material.name);
     material.opacity = 1.0f;
   }
@@ -284,10 +333,37 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, cons
   // A colour picture named as its own mask means its alpha channel; without one it masks nothing.
   if (material.alphaTexture >= 0 && material.alphaTexture == material.diffuseTexture) material.alphaTexture = -1;
   material.alphaMasked = material.alphaTexture >= 0 || hasAlpha(material.diffuseTexture);
-  aiString alphaMode;
-  if (source.Get(AI_MATKEY_GLTF_ALPHAMODE, alphaMode) == aiReturn_SUCCESS && std::string_view(alphaMode.C_Str()) == "OPAQUE")
-    material.alphaMasked = false;
+  if (!gltf) return material;
+  material.opacity = 1.0f;
+  if (gltf->alpha == GltfMaterial::Alpha::opaque) material.alphaMasked = false;
+  // Nothing is blended: what alpha leaves is cut at the cut-off, or at a half.
+  if (gltf->alpha == GltfMaterial::Alpha::opaque) return material;
+  const double cutoff = gltf->alpha == GltfMaterial::Alpha::mask ? gltf->alphaCutoff : 0.5;
+  const double threshold = gltf->alpha == GltfMaterial::Alpha::blend ? 0.5 : gltf->baseAlpha > 0.0 ? cutoff / gltf->baseAlpha : cutoff > 0.0 ? 2.0 : 0.0;
+  if (threshold > 1.0) material.opacity = 0.0f;  // cut out everywhere
+  else if (threshold <= 0.0) material.alphaMasked = false;
+  else if (material.alphaMasked && threshold != 0.5) material.diffuseTexture = textures.withThreshold(material.diffuseTexture, threshold);
   return material;
+}
+
+/// The colour that a mesh's vertices have, a factor on the base colour: its mean over the surface, and whether all have that one.
+std::pair<glm::vec3, bool> vertexColour(const aiMesh& mesh) {
+  if (!mesh.HasVertexColors(0)) return {glm::vec3(1.0f), true};
+  const auto at = [&](unsigned i) { return glm::dvec3(mesh.mColors[0][i].r, mesh.mColors[0][i].g, mesh.mColors[0][i].b); };
+  glm::dvec3 sum(0.0);
+  double area = 0.0;
+  bool same = true;
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    const unsigned a = face.mIndices[0], b = face.mIndices[1], c = face.mIndices[2];
+    const double weight = glm::length(glm::cross(toGlm(mesh.mVertices[b]) - toGlm(mesh.mVertices[a]), toGlm(mesh.mVertices[c]) - toGlm(mesh.mVertices[a])));
+    if (!std::isfinite(weight) || !isFinite(at(a) + at(b) + at(c))) continue;
+    sum += weight * (at(a) + at(b) + at(c)) / 3.0;
+    area += weight;
+    same = same && at(a) == at(mesh.mFaces[0].mIndices[0]) && at(b) == at(a) && at(c) == at(a);
+  }
+  return {area > 0.0 ? glm::clamp(glm::vec3(sum / area), 0.0f, 1.0f) : glm::vec3(1.0f), same};
 }
 
 // ------------------------------------------------------------------------------------------------------------- geometry
@@ -303,6 +379,31 @@ struct VertexHash {
   }
 };
 static_assert(sizeof(Vertex) == 8 * sizeof(float), "compared bit by bit, so without padding");
+
+/// Assimp makes room for as many vertices as an OFF file says it has, whatever its size. A vertex or face takes two bytes at least.
+void checkOff(const fs::path& file, std::span<const std::uint8_t> content) {
+  std::istringstream text(std::string(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(content.size(), 4096))));
+  std::string word;
+  double vertices = 0.0, faces = 0.0;
+  text >> word;
+  if (text >> vertices >> faces && vertices + faces > static_cast<double>(content.size()) / 2.0)
+    throwBadInput("{}: {:.0f} vertices and {:.0f} faces in {} bytes; is the file cut off?", file.string(), vertices, faces, content.size());
+}
+
+/// Assimp hands on whatever its readers made: RAW files leave nodes that are not there, and any mesh number may be wrong.
+void checkNodes(const aiScene& source, const fs::path& file) {
+  std::vector<std::pair<const aiNode*, int>> open = {{source.mRootNode, 0}};
+  while (!open.empty()) {
+    const auto [node, depth] = open.back();
+    open.pop_back();
+    if (!node) throwBadInput("{}: cannot be read as a model: a node of it is missing", file.string());
+    if (depth > kMostNodeDepth) throwBadInput("{}: nodes below more than {} others", file.string(), kMostNodeDepth);
+    for (unsigned i = 0; i < node->mNumMeshes; ++i)
+      if (node->mMeshes[i] >= source.mNumMeshes || !source.mMeshes[node->mMeshes[i]])
+        throwBadInput("{}: a node names mesh {}, the file holds {}", file.string(), node->mMeshes[i], source.mNumMeshes);
+    for (unsigned i = 0; i < node->mNumChildren; ++i) open.emplace_back(node->mChildren[i], depth + 1);
+  }
+}
 
 /// Assimp's post-processing trusts faces blindly: an index out of range is undefined behaviour, a face without vertices
 /// (truncated PLY) aborts the program in Debian's build, as does a mesh called polygonal that has no polygon.
@@ -323,8 +424,26 @@ void checkFaces(const aiScene& source, const fs::path& file) {
   }
 }
 
+/// The transform is glTF's, whose v runs downwards.
+glm::vec2 texCoordOf(const aiMesh& mesh, unsigned vertex, const TextureTransform& transform) {
+  const aiVector3D& uv = mesh.mTextureCoords[transform.texCoord][vertex];
+  if (transform == TextureTransform{.texCoord = transform.texCoord}) return {uv.x, uv.y};
+  const glm::dvec2 moved = transform.apply({uv.x, 1.0 - uv.y});
+  return {static_cast<float>(moved.x), static_cast<float>(1.0 - moved.y)};
+}
+
+/// Whether any texture coordinate lies outside of the picture, by more than rounding.
+bool leavesPicture(const aiMesh& mesh, const TextureTransform& transform) {
+  constexpr float kRounding = 1e-4f;
+  for (unsigned i = 0; mesh.HasTextureCoords(transform.texCoord) && i < mesh.mNumVertices; ++i) {
+    const glm::vec2 uv = texCoordOf(mesh, i, transform);
+    if (!(std::min(uv.x, uv.y) >= -kRounding && std::max(uv.x, uv.y) <= 1.0f + kRounding)) return true;
+  }
+  return false;
+}
+
 /// Appends one mesh as placed by one node.
-void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromNode, int material, const std::string& name) {
+void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromNode, int material, const TextureTransform& transform, const std::string& name) {
   const glm::dmat3 linear(worldFromNode);
   const bool mirrored = glm::determinant(linear) < 0.0;
   // Normals go with the inverse transpose; the cofactor matrix is that times the determinant, and exists for flat scalings too.
@@ -334,7 +453,7 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
   for (unsigned i = 0; i < source.mNumVertices; ++i) {
     Vertex& vertex = vertices[i];
     vertex.position = glm::vec3(worldFromNode * glm::dvec4(toGlm(source.mVertices[i]), 1.0));
-    if (source.HasTextureCoords(0)) vertex.texCoord = {source.mTextureCoords[0][i].x, source.mTextureCoords[0][i].y};
+    if (source.HasTextureCoords(transform.texCoord)) vertex.texCoord = texCoordOf(source, i, transform);
     if (!std::isfinite(vertex.texCoord.x) || !std::isfinite(vertex.texCoord.y)) vertex.texCoord = glm::vec2(0.0f);
     const glm::dvec3 normal = source.HasNormals() ? cofactor * toGlm(source.mNormals[i]) * (mirrored ? -1.0 : 1.0) : glm::dvec3(0.0);
     const double length = glm::length(normal);
@@ -344,6 +463,7 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
   std::vector<std::array<unsigned, 3>> triangles;
   triangles.reserve(source.mNumFaces);
   std::vector<glm::dvec3> lentNormals(source.mNumVertices, glm::dvec3(0.0));  // area-weighted, for vertices that have none
+  double agreement = 0.0;  // of faces' sides with vertices' normals, by area
   for (unsigned f = 0; f < source.mNumFaces; ++f) {
     const aiFace& face = source.mFaces[f];
     if (face.mNumIndices != 3) continue;  // points and lines
@@ -358,10 +478,16 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
     }
     // Exact up to rounding in double: float corners in one line give 0, or 1e-16 of the square built on the longest side.
     if (!(glm::length(cross) > 1e-14 * longest2)) ++scene.degenerateTriangles;
-    for (const unsigned i : t) lentNormals[i] += cross;
+    for (const unsigned i : t) lentNormals[i] += cross, agreement += glm::dot(cross, glm::dvec3(vertices[i].normal));
     triangles.push_back(t);
   }
   if (triangles.empty()) return;
+  // A mesh that turns its backs to where its normals point was written for another handedness. Its normals are what was looked at: faces follow them, as
+  // shading turns normals to the viewer by the side of the face.
+  if (agreement < 0.0) {
+    for (std::array<unsigned, 3>& t : triangles) std::swap(t[1], t[2]);
+    for (glm::dvec3& normal : lentNormals) normal = -normal;
+  }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const double length = glm::length(lentNormals[i]);
     if (vertices[i].normal == glm::vec3(0.0f)) vertices[i].normal = length > 0.0 ? glm::vec3(lentNormals[i] / length) : glm::vec3(0.0f, 1.0f, 0.0f);
@@ -440,6 +566,7 @@ void appendLights(Scene& scene, const aiScene& source) {
     const glm::dvec3 position(world * glm::dvec4(toGlm(light.mPosition), 1.0));
     const glm::dvec3 direction = glm::dmat3(world) * toGlm(light.mDirection);
     const glm::vec3 colour = glm::max(toGlm(light.mColorDiffuse), glm::vec3(0.0f));
+    if (colour == glm::vec3(0.0f)) continue;  // no light: no reason to go without the default sun
     const bool aimed = isFinite(direction) && glm::length(direction) > 0.0;
     const float attenuation = gltf || !(light.mAttenuationQuadratic > 0.0f) ? 1.0f : light.mAttenuationQuadratic;
     const glm::vec3 intensity = colour / attenuation;
@@ -469,6 +596,15 @@ void appendLights(Scene& scene, const aiScene& source) {
   scene.exposure = kDefaultExposure;
 }
 
+/// Whether the ball about the bounds reaches into the cone about the view's corners, of a picture of 16 to 9.
+bool seesAnything(const Camera& camera, const Bounds& bounds) {
+  const glm::dvec3 away = bounds.centre() - camera.position;
+  const double distance = glm::length(away), radius = 0.5 * glm::length(bounds.extent());
+  if (distance <= radius) return true;
+  const double corner = std::atan(std::tan(0.5 * camera.verticalFov) * std::hypot(1.0, 16.0 / 9.0));
+  return std::acos(std::clamp(glm::dot(away, camera.direction) / distance, -1.0, 1.0)) - std::asin(radius / distance) < corner;
+}
+
 Camera outsideView(const Bounds& bounds) {
   Camera camera;
   camera.name = "default";
@@ -496,49 +632,87 @@ Scene loadModel(const fs::path& file) {
   scene.name = file.stem().string();
   scene.file = file;
 
-  // Also tells a missing file or a folder.
-  if (lowerExtension(file) == ".obj") checkObj(file, readFileText(file));
-  else if (readFileBytes(file).empty()) throwBadInput("{}: the file is empty", file.string());
+  const std::string extension = lowerExtension(file);
+  std::vector<std::uint8_t> content = readFileBytes(file);  // also tells a missing file or a folder
+  if (extension == ".obj") {
+    const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
+    checkObj(file, text);
+    const std::string repaired = repairedObj(text);
+    content.assign(repaired.begin(), repaired.end());
+  }
+  if (content.empty()) throwBadInput("{}: the file is empty", file.string());
+  Json gltf;
+  if (extension == ".gltf" || extension == ".glb") gltf = checkedGltf(file, content);
+  if (extension == ".off") checkOff(file, content);
+  const bool isGltf2 = gltf.is_object() && gltf.contains("materials") && gltf.at("materials").is_array();
+  if (isGltf2) content = withNumberedMaterials(gltf, content);
 
-  Assimp::Importer importer;
-  auto* files = new ModelFiles;  // owned by the importer
-  importer.SetIOHandler(files);
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngle);
+  const auto end = [&](Assimp::Importer* ended) {
+    const ImportGuard guard(file);
+    delete ended;
+  };
+  const std::unique_ptr<Assimp::Importer, decltype(end)> importer(new Assimp::Importer, end);
+  auto* files = new ModelFiles(file.string(), content);  // owned by the importer
+  importer->SetIOHandler(files);
+  importer->SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngle);
   const aiScene* source = nullptr;
   try {
-    source = importer.ReadFile(file.string(), 0);
+    const ImportGuard guard(file);
+    source = importer->ReadFile(file.string(), 0);
+    if (source) checkNodes(*source, file);
     if (source) checkFaces(*source, file);
-    if (source) source = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
+    if (source) source = importer->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
     throwBadInput("{}: cannot be read as a model: {}", file.string(), e.what());
   }
-  if (!source || !source->mRootNode) throwBadInput("{}: cannot be read as a model: {}", file.string(), importer.GetErrorString());
+  if (!source || !source->mRootNode) throwBadInput("{}: cannot be read as a model: {}", file.string(), importer->GetErrorString());
   if (!files->foundMaterials && !files->missingMaterials.empty())
     logWarning("{}: material library {} is missing; default materials stand in", file.string(), files->missingMaterials.front());
 
   TextureLoader textures(scene, *source);
-  std::vector<int> materialOf(source->mNumMaterials, -1);  // only those in use are converted
-  const auto convertedMaterial = [&](unsigned index) {
-    if (index >= source->mNumMaterials) throwBadInput("{}: a mesh names material {}, the file holds {}", file.string(), index, source->mNumMaterials);
-    if (materialOf[index] < 0) {
-      scene.materials.push_back(convertMaterial(*source->mMaterials[index], textures, scene));
-      materialOf[index] = static_cast<int>(scene.materials.size()) - 1;
-    }
-    return materialOf[index];
+  // Only those in use are converted; of glTF once for each colour that vertices give it.
+  std::map<std::pair<unsigned, std::array<float, 3>>, int> materialOf;
+  std::map<unsigned, GltfMaterial> gltfMaterials;
+  const auto convertedMaterial = [&](unsigned index, const glm::vec3& tint, const GltfMaterial* gltfMaterial) {
+    const auto [known, isNew] = materialOf.try_emplace({index, {tint.x, tint.y, tint.z}}, static_cast<int>(scene.materials.size()));
+    if (isNew) scene.materials.push_back(convertMaterial(*source->mMaterials[index], textures, scene, gltfMaterial, tint));
+    return known->second;
   };
-  const std::function<void(const aiNode&, const glm::dmat4&)> appendNode = [&](const aiNode& node, const glm::dmat4& worldFromParent) {
-    const glm::dmat4 worldFromNode = worldFromParent * toGlm(node.mTransformation);
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-      const aiMesh& mesh = *source->mMeshes[node.mMeshes[i]];
+  std::vector<std::pair<const aiNode*, glm::dmat4>> open = {{source->mRootNode, glm::dmat4(1.0)}};
+  while (!open.empty()) {
+    const auto [node, worldFromParent] = open.back();
+    open.pop_back();
+    const glm::dmat4 worldFromNode = worldFromParent * toGlm(node->mTransformation);
+    for (unsigned i = 0; i < node->mNumMeshes; ++i) {
+      const aiMesh& mesh = *source->mMeshes[node->mMeshes[i]];
       if (!(mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) continue;
-      const std::string name = mesh.mName.length > 0 ? mesh.mName.C_Str() : node.mName.C_Str();
-      appendMesh(scene, mesh, worldFromNode, convertedMaterial(mesh.mMaterialIndex), name);
+      const std::string name = mesh.mName.length > 0 ? mesh.mName.C_Str() : node->mName.C_Str();
+      const unsigned index = mesh.mMaterialIndex;
+      if (index >= source->mNumMaterials) throwBadInput("{}: a mesh names material {}, the file holds {}", file.string(), index, source->mNumMaterials);
+      if (!isGltf2) {
+        appendMesh(scene, mesh, worldFromNode, convertedMaterial(index, glm::vec3(1.0f), nullptr), {}, name);
+        continue;
+      }
+      const auto [known, isNew] = gltfMaterials.try_emplace(index);
+      GltfMaterial& rest = known->second;
+      if (const auto number = numberOfMaterial(source->mMaterials[index]->GetName().C_Str()); isNew && number) rest = gltfMaterial(gltf, file, *number);
+      const auto [tint, same] = vertexColour(mesh);
+      const auto lacks = [&](std::string_view what) {
+        if (rest.notDone.find(what) == std::string::npos) rest.notDone += fmt::format("{}{}", rest.notDone.empty() ? "" : ", ", what);
+      };
+      if (!same) lacks("vertex colours are their mean");
+      if (rest.clamped && leavesPicture(mesh, rest.transform)) lacks("its texture repeats where it should be clamped or mirrored");
+      const int material = convertedMaterial(index, tint, &rest);
+      if (scene.materials[static_cast<std::size_t>(material)].opacity > 0.0f) appendMesh(scene, mesh, worldFromNode, material, rest.transform, name);
     }
-    for (unsigned i = 0; i < node.mNumChildren; ++i) appendNode(*node.mChildren[i], worldFromNode);
-  };
-  appendNode(*source->mRootNode, glm::dmat4(1.0));
+    for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], worldFromNode);
+  }
+  for (const auto& [index, rest] : gltfMaterials)
+    if (!rest.notDone.empty()) logWarning("{}: material '{}': {}", file.string(), rest.name, rest.notDone);
+  if (const std::string ranged = gltfLightsWithRange(gltf); !ranged.empty())
+    logWarning("{}: lights {}: their range is not read, as light falls with the square of the distance without an end", file.string(), ranged);
   if (scene.indices.empty())
     throwBadInput("{}: nothing to draw: no triangles ({} dropped as not finite)", file.string(), scene.droppedTriangles);
   if (scene.degenerateTriangles == scene.triangleCount()) throwBadInput("{}: nothing to draw: all triangles have zero area", file.string());
@@ -550,8 +724,18 @@ Scene loadModel(const fs::path& file) {
     const fs::path walk = *data / "keyFrames" / (scene.name + ".txt");
     if (fs::exists(walk)) setKeyFrames(scene, walk);
   }
-  if (scene.cameras.empty()) scene.cameras.push_back(outsideView(scene.bounds));
+  // Cameras that animations would have turned, or that were read with the other handedness, may see nothing at all: then they do not come first.
+  const bool blind = !scene.cameras.empty() && !seesAnything(scene.cameras.front(), scene.bounds);
+  if (blind) logWarning("{}: camera '{}' sees nothing of the scene; a view from outside comes first", file.string(), scene.cameras.front().name);
+  if (scene.cameras.empty() || blind) {
+    scene.cameras.insert(scene.cameras.begin(), outsideView(scene.bounds));
+    if (scene.defaultSun) scene.sun->direction = kSunOverShoulder;
+  }
   return scene;
+}
+
+void useChosenView(Scene& scene) {
+  if (scene.defaultSun) scene.sun->direction = kDefaultSunDirection;
 }
 
 Scene loadScene(const fs::path& file) { return lowerExtension(file) == ".json" ? loadSceneFile(file) : loadModel(file); }

@@ -180,8 +180,10 @@ TEST_F(RadiositySolutions, FilesGiveBackWhatWasSaved) {
   const auto size = std::filesystem::file_size(file);
   {
     std::fstream damaged(file, std::ios::in | std::ios::out | std::ios::binary);
+    damaged.seekg(static_cast<std::streamoff>(size / 2));
+    const int byte = damaged.get();
     damaged.seekp(static_cast<std::streamoff>(size / 2));
-    damaged.put('?');
+    damaged.put(static_cast<char>(byte ^ 0x55));
   }
   EXPECT_THROW(loadSolution(file, scene), Error);
   std::filesystem::resize_file(file, size - 100);

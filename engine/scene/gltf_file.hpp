@@ -1,0 +1,62 @@
+// What is asked of a glTF file before Assimp reads it, and its JSON, for what Assimp 5.2.5 leaves out (no GL; private to engine/scene).
+// Source: glTF 2.0 specification, Khronos Group, 2021.
+#pragma once
+
+#include "scene/json_value.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lucerna {
+
+/// Nodes below each other at most: importers call themselves once a level.
+inline constexpr int kMostNodeDepth = 1000;
+
+/// The JSON of a .gltf or .glb file. Throws Error(badInput) naming `file` where it is none, where nodes are no trees (a node below two others or
+/// below itself makes an importer run for ever, or exponentially long), or nested deeper than kMostNodeDepth, and where an accessor has more elements
+/// than its bytes hold.
+Json checkedGltf(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
+
+/// The file with the number of each material before its name, "3#paint": Assimp hands materials on in the order of their first use. `root` is its JSON.
+std::vector<std::uint8_t> withNumberedMaterials(const Json& root, std::span<const std::uint8_t> bytes);
+
+/// The number before such a name; nothing where there is none (the material that Assimp makes for meshes without one).
+std::optional<std::size_t> numberOfMaterial(std::string_view name);
+
+/// KHR_texture_transform: where a texture is looked up for texture coordinates (u, v), v = 0 being its top row.
+struct TextureTransform {
+  glm::dvec2 offset{0.0}, scale{1.0};
+  double rotation = 0.0;  ///< radians, counter-clockwise as seen with u to the right and v down
+  unsigned texCoord = 0;  ///< which coordinates
+  bool operator==(const TextureTransform&) const = default;
+  glm::dvec2 apply(const glm::dvec2& uv) const;
+};
+
+/// What Assimp 5.2.5 does not hand on of a material of glTF 2, or not as it is meant.
+struct GltfMaterial {
+  std::string name;
+  enum class Alpha { opaque, mask, blend };
+  Alpha alpha = Alpha::opaque;
+  double alphaCutoff = 0.5, baseAlpha = 1.0;  ///< cut out where baseAlpha * texture's alpha * vertex's alpha is below alphaCutoff (mask)
+  float emissiveStrength = 1.0f;              ///< KHR_materials_emissive_strength
+  float ior = 1.5f;                           ///< KHR_materials_ior
+  double transmission = 0.0;                  ///< KHR_materials_transmission
+  double thickness = 0.0;                     ///< KHR_materials_volume; 0: a thin wall
+  glm::vec3 absorption{0.0f};                 ///< of what fills it, 1 / scene unit: -ln(attenuationColor) / attenuationDistance
+  TextureTransform transform;                 ///< of the base colour's texture; the emission's where there is none
+  bool clamped = false;                       ///< the base colour's texture is to be clamped or mirrored beyond its edge; it repeats here
+  std::string notDone;                        ///< what of it no technique shows, for one warning; empty: nothing
+};
+
+/// Material `index` of a glTF 2; the default one where there is none of that number. Throws Error(badInput) naming file and key.
+GltfMaterial gltfMaterial(const Json& root, const std::filesystem::path& file, std::size_t index);
+
+/// Names of lights (KHR_lights_punctual) that have a range, which ends them against the law of their distance; empty: none.
+std::string gltfLightsWithRange(const Json& root);
+
+}  // namespace lucerna

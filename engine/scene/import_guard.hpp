@@ -1,0 +1,25 @@
+// A last line of defence around the model library (no GL; private to engine/scene). Assimp 5.2.5 calls itself once a level of nesting in most of its
+// readers, and Debian's build aborts where its own assumptions fail: a small broken file ends the process without a word. While a guard lives, such an end
+// of the thread that made it is one line on standard error and exit code 2, as for every other file that cannot be read.
+#pragma once
+
+#include <csignal>
+#include <filesystem>
+#include <vector>
+
+namespace lucerna {
+
+class ImportGuard {
+ public:
+  explicit ImportGuard(const std::filesystem::path& file);
+  ~ImportGuard();
+  ImportGuard(const ImportGuard&) = delete;
+  ImportGuard& operator=(const ImportGuard&) = delete;
+
+ private:
+  std::vector<char> stack_;  ///< that the handler runs on: the thread's own may be what ran out
+  stack_t stackBefore_{};
+  struct sigaction before_[4] {};
+};
+
+}  // namespace lucerna
