@@ -30,7 +30,7 @@ Work addTune(CLI::App& app);
 
 /// --host, --json, --quiet: every subcommand has them.
 struct CommonOptions {
-  std::string host;  ///< empty: the default
+  std::string host;  ///< empty: LUCERNA_HOST, else the default
   std::string json;  ///< empty: none
   bool quiet = false;
 

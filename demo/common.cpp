@@ -21,7 +21,7 @@ namespace lucerna::demo {
 // ---------------------------------------------------------------------------------------------------- options
 
 void CommonOptions::declare(CLI::App& app) {
-  offer(app.add_option("--host", host, "who makes the OpenGL context: window, egl or osmesa (default: see README)"),
+  offer(app.add_option("--host", host, "who makes the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)")->envname("LUCERNA_HOST"),
         {"window", "egl", "osmesa"});
   app.add_option("--json", json, "write machine-readable results to this file");
   app.add_flag("--quiet", quiet, "no warnings, no progress");

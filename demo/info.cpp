@@ -1,8 +1,11 @@
 // lucerna info [SCENE]: host, driver, limits, extensions; a scene's counts and needs.
+#include "base/error.hpp"
 #include "commands.hpp"
 #include "scene/scene.hpp"
 
 #include <fmt/core.h>
+
+#include <cstdlib>
 
 namespace lucerna::demo {
 
@@ -11,10 +14,39 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string scene;
+  bool devices = false;
 };
+
+/// EGL's devices, and what each draws with. The first that host egl would try is marked.
+int listDevices(const Options& options) {
+  const std::vector<EglDevice> devices = eglDevices();
+  const std::vector<std::size_t> order = eglPreference(devices);
+  nlohmann::ordered_json json{{"devices", nlohmann::ordered_json::array()}};
+  fmt::print("EGL devices; LUCERNA_EGL_DEVICE=N chooses one, else the one marked * is tried first\n");
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const EglDevice& device = devices[i];
+    std::string renderer, fault;
+    setenv("LUCERNA_EGL_DEVICE", std::to_string(i).c_str(), 1);
+    try {
+      const auto host = Host::create(HostKind::egl);
+      renderer = gl::Context().capabilities().renderer;
+    } catch (const Error& error) {
+      fault = error.what();
+    }
+    fmt::print("{} {:<3}{:<11} {}\n", i == order[0] ? '*' : ' ', i, nameOf(device.kind), renderer.empty() ? fault : renderer);
+    fmt::print("       driver {}, PCI {}, node {}\n", device.driver.empty() ? "unknown" : device.driver, device.pci.empty() ? "none" : device.pci,
+               device.node.empty() ? "none" : device.node);
+    json["devices"].push_back({{"index", i}, {"kind", nameOf(device.kind)}, {"first", i == order[0]}, {"renderer", renderer}, {"fault", fault},
+                               {"driver", device.driver}, {"pci", device.pci}, {"node", device.node}, {"video_bytes", device.videoBytes}});
+  }
+  if (devices.empty()) fmt::print("  none: EGL is missing or enumerates no devices\n");
+  options.common.writeJson(json);
+  return 0;
+}
 
 int run(const Options& options) {
   options.common.apply();
+  if (options.devices) return listDevices(options);
   nlohmann::ordered_json json;
   std::optional<Scene> scene;
   if (!options.scene.empty()) scene = loadScene(options.scene);
@@ -72,6 +104,7 @@ int run(const Options& options) {
 Work addInfo(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...");
+  app.add_flag("--devices", options->devices, "list the devices that EGL knows, and which is tried first");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

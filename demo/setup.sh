@@ -1,29 +1,97 @@
-# Sourced by demo/run and tests/run: installs the Debian packages that are missing, and builds with a preset.
+# Sourced by demo/run, tests/run and the turns: installs the Debian packages that are missing, and builds with a preset.
 
-run_packages="g++ cmake ninja-build pkg-config libglew-dev libglfw3-dev libglm-dev libassimp-dev libdevil-dev libosmesa6-dev
-  libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev gnuplot-nox"
-test_packages="libgtest-dev xvfb xauth libembree-dev"
+run_packages="g++ cmake ninja-build pkg-config libglew-dev libglfw3-dev libglm-dev libassimp-dev libdevil-dev
+  libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev"
+test_packages="libgtest-dev xvfb xauth"
+# What is done without where it is not to be had: the host osmesa, plots, and a yardstick for rays.
+optional_run_packages="libosmesa6-dev gnuplot-nox"
+optional_test_packages="libembree-dev"
 
-# install_packages NAME...: those that are missing, all at once.
-install_packages() {
-  local missing="" name
-  for name in "$@"; do
-    dpkg-query -W -f='${Status}' "$name" 2>/dev/null | grep -q 'ok installed' || missing="$missing $name"
+is_installed() {
+  dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed'
+}
+
+# show_progress WHAT LOG: copies lines to the log; those that begin with [N/M] show on a terminal as one line that changes,
+# elsewhere as a line every 20 seconds.
+show_progress() {
+  local what="$1" log="$2" line step now last=0
+  while IFS= read -r line; do
+    printf '%s\n' "$line" >>"$log"
+    case "$line" in "["[0-9]*/[0-9]*"]"*) ;; *) continue ;; esac
+    step="${line%%]*}"
+    step="${step#\[}"
+    if [ -t 2 ]; then
+      printf '\r\033[Klucerna: %s %s of %s' "$what" "${step%/*}" "${step#*/}" >&2
+    else
+      now="$(date +%s)"
+      [ $((now - last)) -lt 20 ] || { last="$now"; echo "lucerna: $what ${step%/*} of ${step#*/}" >&2; }
+    fi
   done
-  [ -n "$missing" ] || return 0
-  local become=""
+  [ ! -t 2 ] || printf '\r\033[K' >&2
+}
+
+# logged WHAT LOG COMMAND...: runs it with show_progress; its exit status.
+logged() {
+  local what="$1" log="$2"
+  shift 2
+  rm -f "$log.ok"
+  { "$@" 2>&1 && : >"$log.ok" || :; } | show_progress "$what" "$log"
+  [ -e "$log.ok" ] && rm "$log.ok"
+}
+
+# apt_install NAME...: as root; counts the packages that are set up.
+apt_install() {
+  local total
+  total="$($become apt-get install -s --no-install-recommends "$@" 2>/dev/null | grep -c '^Inst ')" || :
+  DEBIAN_FRONTEND=noninteractive $become apt-get install -y -q --no-install-recommends -o Dpkg::Use-Pty=0 "$@" </dev/null 2>&1 |
+    { count=0
+      while IFS= read -r line; do
+        case "$line" in "Setting up "*) count=$((count + 1)); line="[$count/$total] $line" ;; esac
+        printf '%s\n' "$line"
+      done; }
+}
+
+# install_packages NAME... [-- OPTIONAL NAME...]: those that are missing, all at once. Optional ones that there are none of, or
+# that cannot be installed for want of rights, are done without.
+install_packages() {
+  local missing="" optional="" name needed=1 become=""
+  for name in "$@"; do
+    if [ "$name" = -- ]; then needed=""
+    elif is_installed "$name"; then :
+    elif [ "$needed" ]; then missing="$missing $name"
+    else optional="$optional $name"
+    fi
+  done
+  [ -n "$missing$optional" ] || return 0
   if [ "$(id -u)" != 0 ]; then
-    if command -v sudo >/dev/null 2>&1; then
+    if [ -z "$missing" ]; then
+      echo "lucerna: going on without$optional" >&2
+      return 0
+    elif command -v sudo >/dev/null 2>&1; then
       become="sudo"
     else
       echo "lucerna: these Debian packages are missing, and neither root nor sudo is there to install them:$missing" >&2
       exit 3
     fi
   fi
-  echo "lucerna: installing$missing" >&2
   $become apt-get update -qq || { echo "lucerna: apt-get update fails" >&2; exit 3; }
-  DEBIAN_FRONTEND=noninteractive $become apt-get install -y -qq --no-install-recommends $missing >/dev/null ||
-    { echo "lucerna: apt-get install fails for:$missing" >&2; exit 3; }
+  for name in $optional; do
+    if [ -n "$(apt-cache madison "$name" 2>/dev/null)" ]; then missing="$missing $name"
+    else echo "lucerna: there is no package $name here; going on without" >&2
+    fi
+  done
+  [ -n "$missing" ] || return 0
+  echo "lucerna: installing$missing" >&2
+  mkdir -p build
+  : >build/packages.log
+  logged "installing package" build/packages.log apt_install $missing || :
+  for name in $missing; do
+    is_installed "$name" || {
+      tail -n 20 build/packages.log >&2
+      echo "lucerna: apt-get install fails for $name (log: build/packages.log)" >&2
+      exit 3
+    }
+  done
 }
 
 # build PRESET [CMAKE OPTION]...: configures and builds into build/PRESET.
@@ -33,7 +101,7 @@ build() {
   log="build/$preset.log"
   mkdir -p build
   echo "lucerna: building (log: $log)" >&2
-  if ! { cmake --preset "$preset" "$@" && cmake --build --preset "$preset"; } >"$log" 2>&1; then
+  if ! { cmake --preset "$preset" "$@" >"$log" 2>&1 && logged "building" "$log" cmake --build --preset "$preset"; }; then
     tail -n 40 "$log" >&2
     exit 1
   fi

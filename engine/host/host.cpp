@@ -82,13 +82,23 @@ std::unique_ptr<Host> Host::createDefault(bool wantsWindow, const HostOptions& o
       logWarning("{}; going on without a window", error.what());
     }
   }
+  if (detail::chosenEglDevice()) return create(HostKind::egl, options);
+  std::unique_ptr<Host> egl;
+  std::string reason;
   try {
-    auto host = create(HostKind::egl, options);
-    if (!isSoftwareRenderer(reinterpret_cast<const char*>(glGetString(GL_RENDERER)))) return host;
+    egl = create(HostKind::egl, options);
   } catch (const Error& error) {
-    logVerbose("{}", error.what());
+    reason = error.what();
+    logVerbose("{}", reason);
   }
-  return create(HostKind::osmesa, options);
+  if (egl && !isSoftwareRenderer(reinterpret_cast<const char*>(glGetString(GL_RENDERER)))) return egl;
+  if (egl && !osmesaAvailable()) return egl;
+  egl.reset();  // one host at a time
+  try {
+    return create(HostKind::osmesa, options);
+  } catch (const Error& error) {
+    throwMissingCapability("no OpenGL without a window: {}; {}", reason.empty() ? "host egl: software alone" : reason, error.what());
+  }
 }
 
 }  // namespace lucerna

@@ -6,11 +6,13 @@
 
 #include <glm/glm.hpp>
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lucerna {
 
@@ -48,7 +50,7 @@ class Host {
   static std::unique_ptr<Host> create(HostKind kind, const HostOptions& options = {});
 
   /// The default where none is asked for: a window if `wantsWindow` and there is a display, else EGL where it gives a
-  /// hardware renderer, else OSMesa.
+  /// hardware renderer or LUCERNA_EGL_DEVICE chooses a device, else OSMesa, else EGL with a software renderer.
   static std::unique_ptr<Host> createDefault(bool wantsWindow, const HostOptions& options = {});
 
   virtual HostKind kind() const = 0;
@@ -66,6 +68,34 @@ class Host {
  protected:
   Host() = default;
 };
+
+/// Whether OSMesa was built in and its library is there.
+bool osmesaAvailable();
+
+/// A device as EGL enumerates them, told without a context.
+struct EglDevice {
+  enum class Kind { discrete, unknown, integrated, software };
+  Kind kind = Kind::unknown;
+  std::string driver;      ///< of the kernel or of EGL: "amdgpu", "i915", "swrast"; empty where nothing tells
+  std::string node;        ///< "/dev/dri/renderD128"; empty where there is none
+  std::string pci;         ///< vendor:device, "1002:73bf"; empty where it is none of PCI's
+  double videoBytes = 0.0; ///< memory of its own, where the kernel tells (amdgpu)
+};
+
+std::string_view nameOf(EglDevice::Kind kind);
+
+/// In EGL's order, by which LUCERNA_EGL_DEVICE=N counts. Empty without EGL or its extension for devices.
+std::vector<EglDevice> eglDevices();
+
+/// Indices into eglDevices() in the order in which host egl tries them: discrete, unknown, integrated, software; among equals
+/// the one with more memory of its own first, then EGL's order.
+std::vector<std::size_t> eglPreference(const std::vector<EglDevice>& devices);
+
+/// What is known of a device's render node; `sys` is /sys but in tests. Rules, since no interface says "discrete":
+/// NVIDIA (PCI vendor 10de): discrete. Intel (8086): integrated on PCI bus 0, else discrete. AMD (1002): discrete from 2 GiB of
+/// video memory on; an APU has less, as long as its firmware is not told otherwise. No PCI device: integrated (a chip's
+/// own). Others, virtual ones too: unknown.
+EglDevice describeRenderNode(const std::filesystem::path& node, const std::filesystem::path& sys = "/sys");
 
 /// Whether a window could be opened at all (DISPLAY or WAYLAND_DISPLAY set).
 bool displayAvailable();

@@ -12,6 +12,9 @@ using GlProcLoader = GlProc (*)(const char* name);
 /// begin with glX may be answered.
 void setGlLoader(GlProcLoader loader, bool inWindow);
 
+/// LUCERNA_EGL_DEVICE, where it is set and not empty.
+std::optional<std::string> chosenEglDevice();
+
 std::unique_ptr<Host> createWindowHost(const HostOptions& options);
 std::unique_ptr<Host> createEglHost(const HostOptions& options);
 std::unique_ptr<Host> createOsmesaHost(const HostOptions& options);

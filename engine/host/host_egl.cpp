@@ -1,13 +1,18 @@
 // EGL without a surface: a context on a GPU (or on Mesa's software driver) without a display server.
-// Devices are enumerated first, hardware before software (a vendor's driver gives no surfaceless platform); Mesa's surfaceless
-// platform is the fall-back.
+// Devices are enumerated (a vendor's driver gives no surfaceless platform) and tried in the order of eglPreference, or the one
+// that LUCERNA_EGL_DEVICE names alone; Mesa's surfaceless platform comes before software.
 #include "base/error.hpp"
 #include "host/host_backends.hpp"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
-#include <array>
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <fstream>
+#include <numeric>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -25,31 +30,97 @@ bool hasExtension(const char* list, std::string_view name) {
   return false;
 }
 
-std::vector<EGLDisplay> candidateDisplays() {
-  std::vector<EGLDisplay> hardware, software;
-  const char* clientExtensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-  const auto getPlatformDisplay =
-      reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
-  if (!getPlatformDisplay) return {};
-  if (hasExtension(clientExtensions, "EGL_EXT_device_enumeration") || hasExtension(clientExtensions, "EGL_EXT_device_base")) {
-    const auto queryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
-    const auto queryString = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(eglGetProcAddress("eglQueryDeviceStringEXT"));
-    std::array<EGLDeviceEXT, 32> devices{};
+/// Of EGL without a display: what enumerates devices.
+struct DeviceFunctions {
+  PFNEGLGETPLATFORMDISPLAYEXTPROC getPlatformDisplay = nullptr;
+  PFNEGLQUERYDEVICESEXTPROC queryDevices = nullptr;
+  PFNEGLQUERYDEVICESTRINGEXTPROC queryString = nullptr;
+
+  DeviceFunctions() {
+    const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    getPlatformDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    if (!hasExtension(extensions, "EGL_EXT_device_enumeration") && !hasExtension(extensions, "EGL_EXT_device_base")) return;
+    queryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+    queryString = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(eglGetProcAddress("eglQueryDeviceStringEXT"));
+  }
+  std::vector<EGLDeviceEXT> devices() const {
     EGLint count = 0;
-    if (queryDevices && queryDevices(static_cast<EGLint>(devices.size()), devices.data(), &count))
-      for (EGLint i = 0; i < count; ++i) {
-        const EGLDisplay display = getPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr);
-        if (display == EGL_NO_DISPLAY) continue;
-        const char* extensions = queryString ? queryString(devices[static_cast<std::size_t>(i)], EGL_EXTENSIONS) : nullptr;
-        (hasExtension(extensions, "EGL_MESA_device_software") ? software : hardware).push_back(display);
-      }
+    if (!queryDevices || !queryDevices(0, nullptr, &count)) return {};
+    std::vector<EGLDeviceEXT> all(static_cast<std::size_t>(count));
+    if (!queryDevices(count, all.data(), &count)) return {};
+    all.resize(static_cast<std::size_t>(count));
+    return all;
   }
-  if (hasExtension(clientExtensions, "EGL_MESA_platform_surfaceless")) {
-    const EGLDisplay display = getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    if (display != EGL_NO_DISPLAY) hardware.push_back(display);
+  EGLDisplay display(EGLDeviceEXT device) const {
+    return getPlatformDisplay ? getPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, device, nullptr) : EGL_NO_DISPLAY;
   }
-  hardware.insert(hardware.end(), software.begin(), software.end());
-  return hardware;
+  EglDevice describe(EGLDeviceEXT device) const {
+    const char* extensions = queryString ? queryString(device, EGL_EXTENSIONS) : nullptr;
+    EglDevice result;
+    if (hasExtension(extensions, "EGL_MESA_device_software")) {
+      result.kind = EglDevice::Kind::software;
+      result.driver = "Mesa's software rasteriser";
+      return result;
+    }
+    const char* node = nullptr;
+    if (hasExtension(extensions, "EGL_EXT_device_drm_render_node")) node = queryString(device, EGL_DRM_RENDER_NODE_FILE_EXT);
+    if (!node && hasExtension(extensions, "EGL_EXT_device_drm")) node = queryString(device, EGL_DRM_DEVICE_FILE_EXT);
+    if (node) result = describeRenderNode(node);
+    // NVIDIA's own driver, where its module gives no node.
+    if (!node && hasExtension(extensions, "EGL_NV_device_cuda")) result.kind = EglDevice::Kind::discrete, result.driver = "nvidia";
+    return result;
+  }
+};
+
+std::string firstLine(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+/// "0x1002" without its 0x.
+std::string hexDigits(const std::filesystem::path& file) {
+  const std::string line = firstLine(file);
+  return line.starts_with("0x") ? line.substr(2) : line;
+}
+
+/// One line for messages: "0 discrete amdgpu 1002:73bf /dev/dri/renderD128; 1 ...".
+std::string listed(const std::vector<EglDevice>& devices) {
+  std::string text;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    text += fmt::format("{}{} {}", i ? "; " : "", i, nameOf(devices[i].kind));
+    for (const std::string& part : {devices[i].driver, devices[i].pci, devices[i].node})
+      if (!part.empty()) text += " " + part;
+  }
+  return text.empty() ? "none" : text;
+}
+
+/// The displays to try, one after the other. Throws Error(badInput) for a LUCERNA_EGL_DEVICE that is none.
+std::vector<EGLDisplay> candidateDisplays() {
+  const DeviceFunctions egl;
+  const std::vector<EGLDeviceEXT> handles = egl.devices();
+  std::vector<EglDevice> devices;
+  for (EGLDeviceEXT device : handles) devices.push_back(egl.describe(device));
+
+  if (const auto chosen = chosenEglDevice()) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(chosen->data(), chosen->data() + chosen->size(), index);
+    if (error != std::errc() || end != chosen->data() + chosen->size() || index >= handles.size())
+      throwBadInput("LUCERNA_EGL_DEVICE={}: no such device; EGL lists: {}", *chosen, listed(devices));
+    return {egl.display(handles[index])};
+  }
+
+  // Mesa's surfaceless platform comes after the devices and before software: it may know hardware that is not enumerated.
+  EGLDisplay surfaceless = EGL_NO_DISPLAY;
+  if (egl.getPlatformDisplay && hasExtension(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_MESA_platform_surfaceless"))
+    surfaceless = egl.getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  std::vector<EGLDisplay> displays, software;
+  for (std::size_t i : eglPreference(devices))
+    (devices[i].kind == EglDevice::Kind::software ? software : displays).push_back(egl.display(handles[i]));
+  displays.push_back(surfaceless);
+  displays.insert(displays.end(), software.begin(), software.end());
+  return displays;
 }
 
 class EglHost final : public Host {
@@ -57,6 +128,7 @@ class EglHost final : public Host {
   explicit EglHost(const HostOptions& options) {
     std::string reason = "no EGL display";
     for (EGLDisplay display : candidateDisplays()) {
+      if (display == EGL_NO_DISPLAY) continue;
       if (!eglInitialize(display, nullptr, nullptr)) {
         reason = "eglInitialize fails";
         continue;
@@ -65,6 +137,7 @@ class EglHost final : public Host {
       reason = "no OpenGL 4.3 core context without a surface";
       eglTerminate(display);
     }
+    if (const auto chosen = chosenEglDevice()) throwMissingCapability("host egl: device {} (LUCERNA_EGL_DEVICE): {}", *chosen, reason);
     throwMissingCapability("host egl: {}", reason);
   }
   ~EglHost() override {
@@ -118,6 +191,63 @@ class EglHost final : public Host {
 
 }  // namespace
 
+std::optional<std::string> chosenEglDevice() {
+  const char* value = std::getenv("LUCERNA_EGL_DEVICE");
+  return value && *value ? std::optional<std::string>(value) : std::nullopt;
+}
+
 std::unique_ptr<Host> createEglHost(const HostOptions& options) { return std::make_unique<EglHost>(options); }
 
 }  // namespace lucerna::detail
+
+namespace lucerna {
+
+std::string_view nameOf(EglDevice::Kind kind) {
+  switch (kind) {
+    case EglDevice::Kind::discrete: return "discrete";
+    case EglDevice::Kind::unknown: return "unknown";
+    case EglDevice::Kind::integrated: return "integrated";
+    case EglDevice::Kind::software: return "software";
+  }
+  return "?";
+}
+
+std::vector<EglDevice> eglDevices() {
+  const detail::DeviceFunctions egl;
+  std::vector<EglDevice> devices;
+  for (EGLDeviceEXT device : egl.devices()) devices.push_back(egl.describe(device));
+  return devices;
+}
+
+std::vector<std::size_t> eglPreference(const std::vector<EglDevice>& devices) {
+  std::vector<std::size_t> order(devices.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (devices[a].kind != devices[b].kind) return devices[a].kind < devices[b].kind;
+    return devices[a].videoBytes > devices[b].videoBytes;
+  });
+  return order;
+}
+
+EglDevice describeRenderNode(const std::filesystem::path& node, const std::filesystem::path& sys) {
+  EglDevice device;
+  device.node = node.string();
+  std::error_code missing;
+  const std::filesystem::path entry = std::filesystem::canonical(sys / "class/drm" / node.filename() / "device", missing);
+  if (missing) return device;
+  device.driver = std::filesystem::read_symlink(entry / "driver", missing).filename().string();
+  const std::string vendor = detail::hexDigits(entry / "vendor");
+  if (vendor.empty()) {
+    device.kind = EglDevice::Kind::integrated;
+    return device;
+  }
+  device.pci = vendor + ":" + detail::hexDigits(entry / "device");
+  device.videoBytes = std::strtod(detail::firstLine(entry / "mem_info_vram_total").c_str(), nullptr);
+  const std::string slot = entry.filename().string();  // domain:bus:device.function
+  if (vendor == "10de") device.kind = EglDevice::Kind::discrete;
+  if (vendor == "8086") device.kind = slot.starts_with("0000:00:") ? EglDevice::Kind::integrated : EglDevice::Kind::discrete;
+  if (vendor == "1002") device.kind = device.videoBytes >= 0x1p31 ? EglDevice::Kind::discrete : EglDevice::Kind::integrated;
+  return device;
+}
+
+}  // namespace lucerna

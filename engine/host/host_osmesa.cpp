@@ -3,6 +3,8 @@
 #include "base/error.hpp"
 #include "host/host_backends.hpp"
 
+#ifdef LUCERNA_OSMESA
+
 // glew.h takes GLAPI away, osmesa.h needs it: GLEW must not be included in this file.
 #include <GL/osmesa.h>
 
@@ -10,7 +12,15 @@
 
 #include <array>
 
-namespace lucerna::detail {
+namespace lucerna {
+
+namespace {
+constexpr const char* kLibrary = "libOSMesa.so.8";
+}
+
+bool osmesaAvailable() { return dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL) != nullptr; }  // stays loaded: it is used next
+
+namespace detail {
 
 namespace {
 
@@ -25,11 +35,11 @@ struct OsmesaLibrary {
 OsmesaLibrary& library() {
   static OsmesaLibrary osmesa = [] {
     OsmesaLibrary l;
-    l.handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-    if (!l.handle) throwMissingCapability("host osmesa: {} (Debian package libosmesa6)", dlerror());
+    l.handle = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL);
+    if (!l.handle) throwMissingCapability("host osmesa: {} (Debian package libosmesa6); try --host egl", dlerror());
     const auto load = [&](auto& function, const char* name) {
       function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(l.handle, name));
-      if (!function) throwMissingCapability("host osmesa: libOSMesa.so.8 has no {}", name);
+      if (!function) throwMissingCapability("host osmesa: {} has no {}", kLibrary, name);
     };
     load(l.createContextAttribs, "OSMesaCreateContextAttribs");
     load(l.destroyContext, "OSMesaDestroyContext");
@@ -72,4 +82,19 @@ class OsmesaHost final : public Host {
 
 std::unique_ptr<Host> createOsmesaHost(const HostOptions&) { return std::make_unique<OsmesaHost>(); }
 
-}  // namespace lucerna::detail
+}  // namespace detail
+}  // namespace lucerna
+
+#else
+
+namespace lucerna {
+
+bool osmesaAvailable() { return false; }
+
+std::unique_ptr<Host> detail::createOsmesaHost(const HostOptions&) {
+  throwMissingCapability("host osmesa: OSMesa was not there when this was built (Debian package libosmesa6-dev); try --host egl");
+}
+
+}  // namespace lucerna
+
+#endif

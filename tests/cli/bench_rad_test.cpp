@@ -18,7 +18,7 @@ using lucerna::test::TempFolder;
 TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
   const TempFolder folder;
   const std::string file = (folder / "t.json").string();
-  const RunResult result = RUN_LUCERNA("bench tables --original rad --scale 0.005 --host osmesa --quiet --json '" + file + "'");
+  const RunResult result = RUN_LUCERNA("bench tables --original rad --scale 0.005 --quiet --json '" + file + "'");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
   EXPECT_NE(result.out.find("extrapolated"), std::string::npos);
@@ -73,7 +73,7 @@ TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
 TEST(BenchRad, PicturesShowWhatTheFiguresShow) {
   const TempFolder folder;
   const std::string file = (folder / "p.json").string(), sheet = (folder / "p.png").string();
-  const RunResult result = RUN_LUCERNA("bench pictures --original rad --scale 0.05 --size 96x72 --host osmesa --quiet -o '" + sheet + "' --json '" + file + "'");
+  const RunResult result = RUN_LUCERNA("bench pictures --original rad --scale 0.05 --size 96x72 --quiet -o '" + sheet + "' --json '" + file + "'");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
   EXPECT_EQ(json["pictures"].size(), 20u);
@@ -91,7 +91,7 @@ TEST(BenchRad, PicturesShowWhatTheFiguresShow) {
   EXPECT_GE(bitmap.width, 4 * 96);
   EXPECT_GE(bitmap.height, 5 * 72);
   for (const char* wrong : {"--scale 0", "--scale 2", "--camera 0,0,0,1,0,0,60"}) {
-    const RunResult refused = RUN_LUCERNA("bench pictures --original rad --host osmesa -o '" + sheet + "' " + wrong);
+    const RunResult refused = RUN_LUCERNA("bench pictures --original rad -o '" + sheet + "' " + wrong);
     EXPECT_EQ(refused.exitCode, 2) << wrong;
   }
 }

@@ -96,7 +96,7 @@ std::vector<PublishedFigure> publishedFigures() {
 }
 
 TEST_F(Bench, TablesOfTheLpvOriginalStandBesideOurs) {
-  const RunResult result = RUN_LUCERNA("bench tables --original lpv " + path("scene.obj") + " --scale 0.05 --host osmesa --quiet --json " + path("tables.json"));
+  const RunResult result = RUN_LUCERNA("bench tables --original lpv " + path("scene.obj") + " --scale 0.05 --quiet --json " + path("tables.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   for (const char* text : {"llvmpipe", "Scale    0.05", "16^3", "Crytek Sponza", "Speed:", "Bound:"}) EXPECT_NE(result.out.find(text), std::string::npos) << text;
   const auto tables = json("tables.json");
@@ -137,7 +137,7 @@ TEST_F(Bench, TablesOfTheLpvOriginalStandBesideOurs) {
 }
 
 TEST_F(Bench, PicturesOfTheLpvOriginalAreOneSheet) {
-  const RunResult result = RUN_LUCERNA("bench pictures --original lpv " + path("scene.obj") + " --size 96x54 --host osmesa --json " + path("p.json") + " -o " + path("p.png"));
+  const RunResult result = RUN_LUCERNA("bench pictures --original lpv " + path("scene.obj") + " --size 96x54 --json " + path("p.json") + " -o " + path("p.png"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const lucerna::Bitmap sheet = lucerna::readBitmap(path("p.png"));
   EXPECT_GT(sheet.width, 3 * 96);
@@ -147,7 +147,7 @@ TEST_F(Bench, PicturesOfTheLpvOriginalAreOneSheet) {
 }
 
 TEST_F(Bench, PicturesOfTheVptOriginalAreOneSheet) {
-  const RunResult result = RUN_LUCERNA("bench pictures --original vpt --scale 0.0005 --size 48x27 --host osmesa --quiet --json " + path("p.json") + " -o " + path("p.png"));
+  const RunResult result = RUN_LUCERNA("bench pictures --original vpt --scale 0.0005 --size 48x27 --quiet --json " + path("p.json") + " -o " + path("p.png"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(json("p.json").at("pictures").size(), 21u);
   const lucerna::Bitmap sheet = lucerna::readBitmap(path("p.png"));
@@ -159,7 +159,7 @@ TEST_F(Bench, PicturesOfTheVptOriginalAreOneSheet) {
 }
 
 TEST_F(Bench, RaysHitWhatEmbreeHits) {
-  const RunResult result = RUN_LUCERNA("bench rays " + path("scene.obj") + " --rays 4096 --repeats 2 --host osmesa --quiet --json " + path("rays.json"));
+  const RunResult result = RUN_LUCERNA("bench rays " + path("scene.obj") + " --rays 4096 --repeats 2 --quiet --json " + path("rays.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   if (result.out.find("Embree was not there") != std::string::npos) GTEST_SKIP() << "built without Embree";
   const auto rays = json("rays.json");
@@ -199,7 +199,7 @@ TEST_F(Bench, WrongOptionsAreRefused) {
 }
 
 TEST_F(Bench, VptTablesHoldWhatWasPublished) {
-  const RunResult result = RUN_LUCERNA("bench tables --original vpt --scale 0.001 --host osmesa --quiet --json " + path("vpt.json"));
+  const RunResult result = RUN_LUCERNA("bench tables --original vpt --scale 0.001 --quiet --json " + path("vpt.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_NE(result.out.find("Scaled by 0.001: 16x9 pixels instead of 1920x1080"), std::string::npos) << result.out;
   const double published[] = {14,    61,    445,   3619,  7289,  14580, 15500, 23300, 36500, 38000, 14500,

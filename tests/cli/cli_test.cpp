@@ -3,6 +3,7 @@
 #include "base/image.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
+#include "support/test_host.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -64,10 +65,10 @@ TEST_F(CommandLine, HelpListsEverySubcommandAndTheirOptions) {
 }
 
 TEST_F(CommandLine, InfoReportsHostAndScene) {
-  const RunResult result = RUN_LUCERNA("info " + scene() + " --host osmesa --json " + path("info.json"));
+  const RunResult result = RUN_LUCERNA("info " + scene() + " --json " + path("info.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto info = json("info.json");
-  EXPECT_EQ(info.at("host"), "osmesa");
+  EXPECT_EQ(info.at("host"), lucerna::nameOf(lucerna::test::testHost()));
   EXPECT_EQ(info.at("triangles"), 4);
   EXPECT_GE(info.at("vertices"), 6);
   EXPECT_EQ(info.at("materials"), 2);
@@ -80,7 +81,7 @@ TEST_F(CommandLine, RenderWritesEveryFormatWithTheSameMean) {
   for (const char* extension : {"png", "hdr", "exr", "pfm"}) {
     const std::string out = path(std::string("picture.") + extension);
     const RunResult result =
-        RUN_LUCERNA("render " + scene() + " --host osmesa --size 48x32 --set lpv.cells=8 -o " + out + " --json " + path("render.json"));
+        RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.cells=8 -o " + out + " --json " + path("render.json"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const auto render = json("render.json");
     EXPECT_EQ(render.at("technique"), "lpv");
@@ -100,7 +101,7 @@ TEST_F(CommandLine, ComponentsAddUp) {
   glm::dvec3 means[3];
   const char* names[] = {"all", "direct", "indirect"};
   for (int i = 0; i < 3; ++i) {
-    const RunResult result = RUN_LUCERNA("render " + scene() + " --host osmesa --size 48x32 --set lpv.cells=8 --component " + names[i] + " -o " + path("x.pfm"));
+    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.cells=8 --component " + names[i] + " -o " + path("x.pfm"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     means[i] = lucerna::meanOf(lucerna::readImage(path("x.pfm")));
   }
@@ -110,7 +111,7 @@ TEST_F(CommandLine, ComponentsAddUp) {
 
 TEST_F(CommandLine, DeviationsAreReported) {
   const auto deviations = [&](const std::string& arguments) {
-    const RunResult result = RUN_LUCERNA("render " + scene() + " --host osmesa --size 32x24 --set lpv.cells=8 -o " + path("x.pfm") + " --json " +
+    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 32x24 --set lpv.cells=8 -o " + path("x.pfm") + " --json " +
                                          path("render.json") + arguments);
     EXPECT_EQ(result.exitCode, 0) << result.err;
     const auto render = json("render.json");
@@ -142,12 +143,12 @@ TEST_F(CommandLine, DeviationsAreReported) {
   Names without = marked;
   std::erase(without, "lpv.truncate");
   EXPECT_EQ(deviations(" --fidelity original --deviation lpv.truncate=off").second, without);
-  expectRefused("render " + scene() + " --host osmesa --deviation lpv.nothing=on -o " + path("y.pfm"), 2, {"lpv.nothing", "lpv.side-directions"}, "y.pfm");
-  expectRefused("render " + scene() + " --host osmesa --deviation lpv.truncate=maybe -o " + path("y.pfm"), 2, {"lpv.truncate=maybe", "=on or"}, "y.pfm");
+  expectRefused("render " + scene() + " --deviation lpv.nothing=on -o " + path("y.pfm"), 2, {"lpv.nothing", "lpv.side-directions"}, "y.pfm");
+  expectRefused("render " + scene() + " --deviation lpv.truncate=maybe -o " + path("y.pfm"), 2, {"lpv.truncate=maybe", "=on or"}, "y.pfm");
 }
 
 TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
-  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --host osmesa --record " + path("out") +
+  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --record " + path("out") +
                                        " --frames 3 --size 64x36 --json " + path("walk.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), 3);
@@ -163,7 +164,7 @@ TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
 }
 
 TEST_F(CommandLine, DirectLightLeavesTheIndirectStagesOut) {
-  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --technique direct --host osmesa --record " + path("out") +
+  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --technique direct --record " + path("out") +
                                        " --frames 1 --size 64x36 --json " + path("walk.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto walk = json("walk.json");
@@ -175,7 +176,7 @@ TEST_F(CommandLine, DirectLightLeavesTheIndirectStagesOut) {
 TEST_F(CommandLine, RsmReportsWhatInterpolationSaved) {
   for (const char* command : {"render ", "walk "}) {
     const bool walks = std::string(command) == "walk ";
-    const RunResult result = RUN_LUCERNA(command + scene() + " --technique rsm --host osmesa --size 64x36 --json " + path("rsm.json") +
+    const RunResult result = RUN_LUCERNA(command + scene() + " --technique rsm --size 64x36 --json " + path("rsm.json") +
                                          (walks ? " --frames 2 --keys " + path("path.txt") + " --record " + path("out") : " -o " + path("x.pfm")));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_NE(result.out.find("refused by interpolation"), std::string::npos) << result.out;
@@ -190,7 +191,7 @@ TEST_F(CommandLine, RsmReportsWhatInterpolationSaved) {
       EXPECT_TRUE(report.at("stages").contains(stage)) << stage;
   }
   // Other techniques have nothing of it.
-  ASSERT_EQ(RUN_LUCERNA("render " + scene() + " --technique direct --host osmesa --size 32x32 --json " + path("direct.json") + " -o " + path("x.pfm")).exitCode, 0);
+  ASSERT_EQ(RUN_LUCERNA("render " + scene() + " --technique direct --size 32x32 --json " + path("direct.json") + " -o " + path("x.pfm")).exitCode, 0);
   const auto direct = json("direct.json");
   EXPECT_FALSE(direct.contains("rsm"));
   const auto& left = direct.at("left_out");
@@ -223,7 +224,7 @@ TEST_F(CommandLine, WrongOptionsAreRefused) {
 }
 
 TEST_F(CommandLine, WrongFilesAreRefused) {
-  const std::string tail = " --host osmesa --size 32x32 -o " + path("x.png");
+  const std::string tail = " --size 32x32 -o " + path("x.png");
   expectRefused("render " + path("nothing.obj") + tail, 2, {"nothing.obj"}, "x.png");
   fs::create_directory(path("folder"));
   expectRefused("render " + path("folder") + tail, 2, {"folder"}, "x.png");
@@ -232,27 +233,27 @@ TEST_F(CommandLine, WrongFilesAreRefused) {
   write("noise.obj", std::string("\0\1\2\xff\xfe garbage", 14));
   expectRefused("render " + path("noise.obj") + tail, 2, {"noise.obj"}, "x.png");
   write("bad.txt", "p 4 2 4 d -1 -0.3 -1 u 0 1 0\np 3 2 5 d -0.8 -0.3 u 0 1 0\n");
-  expectRefused("walk " + scene() + " --keys " + path("bad.txt") + " --host osmesa --record " + path("w"), 2, {"bad.txt", "2"}, "w");
+  expectRefused("walk " + scene() + " --keys " + path("bad.txt") + " --record " + path("w"), 2, {"bad.txt", "2"}, "w");
   write("file", "in the way");
-  expectRefused("walk " + scene() + " --host osmesa --record " + path("file"), 2, {"file", "folder"});
-  expectRefused("render " + scene() + " --host osmesa --size 32x32 -o " + path("no/such/folder/x.png"), 2, {"x.png"});
-  expectRefused("render " + scene() + " --host osmesa --size 32x32 -o " + path("y.png") + " --json " + path("no/such/x.json"), 2, {"x.json"});
+  expectRefused("walk " + scene() + " --record " + path("file"), 2, {"file", "folder"});
+  expectRefused("render " + scene() + " --size 32x32 -o " + path("no/such/folder/x.png"), 2, {"x.png"});
+  expectRefused("render " + scene() + " --size 32x32 -o " + path("y.png") + " --json " + path("no/such/x.json"), 2, {"x.json"});
 }
 
 TEST_F(CommandLine, ATextureThatIsNoImageIsOneWarning) {
   write("scene.mtl", "newmtl white\nKd 0.8 0.8 0.8\nmap_Kd broken.png\nnewmtl red\nKd 0.7 0.1 0.1\nmap_Kd textures\\\\missing.png\n");
   write("broken.png", "this is no picture");
-  const RunResult result = RUN_LUCERNA("render " + scene() + " --host osmesa --size 32x32 --set lpv.cells=8 -o " + path("x.png"));
+  const RunResult result = RUN_LUCERNA("render " + scene() + " --size 32x32 --set lpv.cells=8 -o " + path("x.png"));
   EXPECT_EQ(result.exitCode, 0) << result.err;
   EXPECT_TRUE(fs::exists(path("x.png")));
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 2) << result.err;
   EXPECT_NE(result.err.find("broken.png"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("missing.png"), std::string::npos) << result.err;
-  EXPECT_EQ(RUN_LUCERNA("render " + scene() + " --quiet --host osmesa --size 32x32 --set lpv.cells=8 -o " + path("x.png")).err, "");
+  EXPECT_EQ(RUN_LUCERNA("render " + scene() + " --quiet --size 32x32 --set lpv.cells=8 -o " + path("x.png")).err, "");
 }
 
 TEST_F(CommandLine, AnOldDriverIsAMissingCapability) {
-  const RunResult result = run("MESA_GL_VERSION_OVERRIDE=3.3 '" LUCERNA_BINARY "' render " + scene() + " --host osmesa --size 32x32 -o " + path("x.png"));
+  const RunResult result = run("MESA_GL_VERSION_OVERRIDE=3.3 '" LUCERNA_BINARY "' render " + scene() + " --size 32x32 -o " + path("x.png"));
   EXPECT_EQ(result.exitCode, 3) << result.err;
   EXPECT_NE(result.err.find("4.3"), std::string::npos) << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
@@ -266,7 +267,7 @@ TEST_F(CommandLine, AWindowWithoutADisplayIsAMissingCapability) {
 }
 
 TEST_F(CommandLine, InterruptedWalkKeepsWholePicturesAndItsTable) {
-  const RunResult result = run("timeout --signal=INT 3 '" LUCERNA_BINARY "' walk " + scene() + " --keys " + path("path.txt") + " --host osmesa --record " +
+  const RunResult result = run("timeout --signal=INT 3 '" LUCERNA_BINARY "' walk " + scene() + " --keys " + path("path.txt") + " --record " +
                                path("out") + " --frames 100000 --size 320x180 --json " + path("walk.json"));
   EXPECT_EQ(result.exitCode, 124) << result.err;  // timeout's own code; the program ends by itself after the signal
   ASSERT_TRUE(fs::exists(path("walk.json"))) << result.err;
@@ -277,7 +278,7 @@ TEST_F(CommandLine, InterruptedWalkKeepsWholePicturesAndItsTable) {
 }
 
 TEST_F(CommandLine, PathTracingSaysHowGoodThePictureIs) {
-  const std::string common = "render " + scene() + " --technique path --host osmesa --size 8x8 ";
+  const std::string common = "render " + scene() + " --technique path --size 8x8 ";
   ASSERT_EQ(RUN_LUCERNA(common + "--spp 6 -o " + path("whole.pfm") + " --json " + path("whole.json")).exitCode, 0);
   const auto whole = json("whole.json");
   EXPECT_EQ(whole.at("spp"), 6.0);
@@ -299,7 +300,7 @@ TEST_F(CommandLine, PathTracingSaysHowGoodThePictureIs) {
 }
 
 TEST_F(CommandLine, PathTracingAsPublishedNamesItsDeviations) {
-  const std::string common = "render " + scene() + " --host osmesa --technique path --size 16x12 --spp 4 ";
+  const std::string common = "render " + scene() + " --technique path --size 16x12 --spp 4 ";
   ASSERT_EQ(RUN_LUCERNA(common + "--fidelity original -o " + path("o.pfm") + " --json " + path("original.json")).exitCode, 0);
   EXPECT_EQ(json("original.json").at("fidelity"), "original");
   EXPECT_EQ(json("original.json").at("deviations").size(), 7u);  // all but path.schlick, which is a switch of the original's

@@ -15,7 +15,7 @@ using lucerna::test::RunResult;
 using lucerna::test::TempFolder;
 
 // Shaders, a scene and no more: draws a picture of the Cornell box that comes with the program.
-const char* kRender = " render cornell.obj --technique direct --size 16x16 --host osmesa --quiet -o ";
+const char* kRender = " render cornell.obj --technique direct --size 16x16 --quiet -o ";
 
 class DataFolder : public ::testing::Test {
  protected:

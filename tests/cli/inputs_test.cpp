@@ -24,7 +24,7 @@ class Inputs : public ::testing::Test {
     folder_.write("m.mtl", "newmtl w\nKd 0.5 0.5 0.5\n");
   }
   std::string path(const std::string& name) const { return "'" + (folder_.path() / name).string() + "'"; }
-  std::string render(const std::string& more) const { return "render " + path("m.obj") + " --host osmesa --size 8x6 -o " + path("x.pfm") + " " + more; }
+  std::string render(const std::string& more) const { return "render " + path("m.obj") + " --size 8x6 -o " + path("x.pfm") + " " + more; }
   const TempFolder& folder() const { return folder_; }
 
   void expectRefused(const std::string& arguments, int exitCode, const std::vector<std::string>& parts) const {
@@ -64,19 +64,19 @@ TEST_F(Inputs, NumbersThatAreNoneAreRefused) {
   for (const char* value : {"nan", "NAN", "inf", "-inf", "1e300", "-1e300"}) {
     expectRefused(render(std::string("--technique path --seconds ") + value), 2, {"--seconds"});
     expectRefused(render(std::string("--technique path --error ") + value), 2, {"--error"});
-    expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --host osmesa --edge " + value, 2, {"--edge"});
-    expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --host osmesa --memory " + value, 2, {"--memory"});
-    expectRefused(std::string("tune ") + path("m.obj") + " --host osmesa -o " + path("x.pfm") + " --frame-time " + value, 2, {"--frame-time"});
+    expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --edge " + value, 2, {"--edge"});
+    expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --memory " + value, 2, {"--memory"});
+    expectRefused(std::string("tune ") + path("m.obj") + " -o " + path("x.pfm") + " --frame-time " + value, 2, {"--frame-time"});
     expectRefused(render(std::string("--set rad.edge=") + value + " --technique radiosity"), 2, {"rad.edge"});
   }
 }
 
 TEST_F(Inputs, NumbersBeyondTheirRangeAreRefused) {
-  const std::string solve = "radiosity solve " + path("m.obj") + " " + path("x.pfm") + " --host osmesa ";
+  const std::string solve = "radiosity solve " + path("m.obj") + " " + path("x.pfm") + " ";
   for (const char* option : {"--error 0", "--error -1", "--memory -5", "--near -1", "--edge -1", "--save-every -1", "--max-sweeps -1", "--refinements 99"})
     expectRefused(solve + option, 2, {std::string(option).substr(0, std::string(option).find(' '))});
-  expectRefused("bench rays " + path("m.obj") + " --host osmesa --split-budget -1", 2, {"--split-budget"});
-  expectRefused("tune " + path("m.obj") + " --host osmesa -o " + path("x.pfm") + " --frame-time 0", 2, {"--frame-time"});
+  expectRefused("bench rays " + path("m.obj") + " --split-budget -1", 2, {"--split-budget"});
+  expectRefused("tune " + path("m.obj") + " -o " + path("x.pfm") + " --frame-time 0", 2, {"--frame-time"});
 }
 
 TEST_F(Inputs, SettingsThatATechniqueDoesNotReadAreOneWarning) {
@@ -120,11 +120,11 @@ TEST_F(Inputs, ModelsNestedWithoutEndAreOneLine) {
   folder().write("a.ac", "AC3Db\nMATERIAL \"\" rgb 1 1 1  amb 0 0 0  emis 0 0 0  spec 0 0 0  shi 0  trans 0\n" + repeated("OBJECT group\nkids 1\n") + "OBJECT poly\nkids 0\n");
   folder().write("a.gltf", "{\"extras\":" + repeated("[") + repeated("]") + "}");
   folder().write("a.json", "{\"model\":" + repeated("[") + repeated("]") + "}");
-  for (const char* name : {"a.dae", "a.x", "a.ogex", "a.ac", "a.gltf", "a.json"}) expectRefused("info --host osmesa " + path(name), 2, {name});
+  for (const char* name : {"a.dae", "a.x", "a.ogex", "a.ac", "a.gltf", "a.json"}) expectRefused("info " + path(name), 2, {name});
 }
 
 TEST_F(Inputs, AFullStandardOutputIsNoSuccess) {
-  for (const std::string command : {"info --host osmesa", "media list", "--help", "render --help"}) {
+  for (const std::string command : {"info", "media list", "--help", "render --help"}) {
     const RunResult result = run("'" LUCERNA_BINARY "' " + command + " > /dev/full");
     EXPECT_EQ(result.exitCode, 3) << command << result.err;
     EXPECT_NE(result.err.find("No space left"), std::string::npos) << command << result.err;

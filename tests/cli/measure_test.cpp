@@ -33,7 +33,7 @@ class Measure : public ::testing::Test {
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(std::ifstream(path(name))); }
   std::string benchError(const std::string& more) const {
-    return "bench error '" + path("scene.obj") + "' --host osmesa --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --out '" + path("out") + "' --json '" + path("error.json") + "' " + more;
+    return "bench error '" + path("scene.obj") + "' --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --out '" + path("out") + "' --json '" + path("error.json") + "' " + more;
   }
   void expectOneLine(const RunResult& result, int exitCode, const std::vector<std::string>& parts) const {
     EXPECT_EQ(result.exitCode, exitCode) << result.err;
@@ -109,7 +109,7 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   EXPECT_EQ(json("error.json").at("rows").size(), report.at("rows").size());
 
   // Another scene or size is another bench.
-  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --host osmesa --size 32x18 --reference-spp 16 --out '" + path("out") + "'"), 2, {"another bench", "out"});
+  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --size 32x18 --reference-spp 16 --out '" + path("out") + "'"), 2, {"another bench", "out"});
 }
 
 TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
@@ -140,11 +140,11 @@ TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
 }
 
 TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {
-  const std::string common = "tune '" + path("scene.obj") + "' --host osmesa --size 32x16 --reference-spp 16 --budget 1 --frames 1 --small --techniques direct,rsm --out '" + path("out") + "' ";
+  const std::string common = "tune '" + path("scene.obj") + "' --size 32x16 --reference-spp 16 --budget 1 --frames 1 --small --techniques direct,rsm --out '" + path("out") + "' ";
   ASSERT_EQ(RUN_LUCERNA(common + "--frame-time 100000 -o '" + path("s.json") + "'").exitCode, 0);
   const auto settings = json("s.json");
   EXPECT_TRUE(settings.contains("technique"));
-  const RunResult picture = RUN_LUCERNA("render '" + path("scene.obj") + "' --host osmesa --size 32x16 --settings '" + path("s.json") + "' -o '" + path("p.pfm") + "' --json '" + path("p.json") + "'");
+  const RunResult picture = RUN_LUCERNA("render '" + path("scene.obj") + "' --size 32x16 --settings '" + path("s.json") + "' -o '" + path("p.pfm") + "' --json '" + path("p.json") + "'");
   ASSERT_EQ(picture.exitCode, 0) << picture.err;
   EXPECT_EQ(json("p.json").at("technique"), settings.at("technique"));
   EXPECT_EQ(json("p.json").at("settings"), settings.at("settings"));
@@ -156,15 +156,15 @@ TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {
 
 TEST_F(Measure, WhatCannotBeIsOneLine) {
   std::ofstream(path("file")) << "x";
-  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --host osmesa --out '" + path("file") + "'"), 2, {"--out", "file"});
+  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --out '" + path("file") + "'"), 2, {"--out", "file"});
   expectOneLine(RUN_LUCERNA(benchError("--techniques magic")), 2, {"magic", "rsm"});
-  expectOneLine(RUN_LUCERNA("bench stability --host osmesa --technique magic"), 2, {"magic", "lpv"});
-  expectOneLine(RUN_LUCERNA("bench all --host osmesa --out '" + path("file") + "'"), 2, {"--out"});
-  expectOneLine(RUN_LUCERNA("bench all --host osmesa --parts magic --out '" + path("out") + "'"), 2, {"--parts", "magic", "stability"});
+  expectOneLine(RUN_LUCERNA("bench stability --technique magic"), 2, {"magic", "lpv"});
+  expectOneLine(RUN_LUCERNA("bench all --out '" + path("file") + "'"), 2, {"--out"});
+  expectOneLine(RUN_LUCERNA("bench all --parts magic --out '" + path("out") + "'"), 2, {"--parts", "magic", "stability"});
 }
 
 TEST_F(Measure, StabilityRowsSayWhatWasExpected) {
-  const RunResult result = RUN_LUCERNA("bench stability --host osmesa --technique direct --json '" + path("s.json") + "'");
+  const RunResult result = RUN_LUCERNA("bench stability --technique direct --json '" + path("s.json") + "'");
   EXPECT_EQ(result.exitCode, 0) << result.out;
   const auto rows = json("s.json").at("rows");
   EXPECT_GE(rows.size(), 10u);
@@ -175,7 +175,7 @@ TEST_F(Measure, StabilityRowsSayWhatWasExpected) {
 }
 
 TEST_F(Measure, StabilityIsComparedWithATableThatWasKept) {
-  const std::string run = "bench stability --host osmesa --quiet --technique direct ";
+  const std::string run = "bench stability --quiet --technique direct ";
   ASSERT_EQ(RUN_LUCERNA(run + "--json '" + path("kept.json") + "'").exitCode, 0);
   const auto kept = json("kept.json");
   const auto against = [&](const nlohmann::json& table) {
@@ -206,7 +206,7 @@ TEST_F(Measure, StabilityIsComparedWithATableThatWasKept) {
 
 // What continuous integration keeps: tests/stability.json, made by `lucerna bench stability --json tests/stability.json`.
 TEST_F(Measure, NoStabilityRowIsWorseThanTheKeptTable) {
-  const RunResult result = RUN_LUCERNA("bench stability --host osmesa --compare '" LUCERNA_SOURCE_DIR "/tests/stability.json' --json '" + path("s.json") + "'");
+  const RunResult result = RUN_LUCERNA("bench stability --compare '" LUCERNA_SOURCE_DIR "/tests/stability.json' --json '" + path("s.json") + "'");
   EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
   const auto table = json("s.json");
   EXPECT_GE(table.at("rows").size(), 247u);
@@ -221,16 +221,16 @@ TEST_F(Measure, AFullDiskIsOneLine) {
   fs::create_directory(path("small"));
   const std::string small = path("small");
   const RunResult result = test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench error '" + path("scene.obj") +
-                                "' --host osmesa --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --quiet --techniques direct,rsm --out '" + small + "/out'\"");
+                                "' --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --quiet --techniques direct,rsm --out '" + small + "/out'\"");
   expectOneLine(result, 2, {"No space left on device", small});
   // Nor a page half written, where the rows fit and the page does not.
-  const RunResult all = test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench all '" + path("scene.obj") + "' --host osmesa --scale 0.01 --quiet --out '" +
+  const RunResult all = test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench all '" + path("scene.obj") + "' --scale 0.01 --quiet --out '" +
                              small + "/out'; code=\\$?; test -e '" + small + "/out/index.html' && exit 99; exit \\$code\"");
   expectOneLine(all, 2, {"No space left on device", small});
 }
 
 TEST_F(Measure, NeedsSayWhatLeavingOutSaves) {
-  const RunResult result = RUN_LUCERNA("bench needs '" + path("scene.obj") + "' --host osmesa --size 32x16 --frames 1 --technique direct --json '" + path("n.json") + "'");
+  const RunResult result = RUN_LUCERNA("bench needs '" + path("scene.obj") + "' --size 32x16 --frames 1 --technique direct --json '" + path("n.json") + "'");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto n = json("n.json");
   for (const char* key : {"left_out", "gpu_bytes_with", "gpu_bytes_without", "ms_with", "ms_without", "max_difference"}) ASSERT_TRUE(n.contains(key)) << key;

@@ -53,7 +53,7 @@ TEST_F(MediaCommand, DraftBecomesASceneThatLoads) {
   EXPECT_NE(draft.err.find("wall: resembles no medium"), std::string::npos) << draft.err;
   EXPECT_EQ(json("cup.json").at("Milk.001").at("ior"), 1.33);
   EXPECT_TRUE(json("cup.json").contains("// wall"));
-  const RunResult info = RUN_LUCERNA("info " + path("cup.json") + " --host osmesa --quiet --json " + path("info.json"));
+  const RunResult info = RUN_LUCERNA("info " + path("cup.json") + " --quiet --json " + path("info.json"));
   ASSERT_EQ(info.exitCode, 0) << info.err;
   EXPECT_EQ(json("info.json").at("triangles"), 5);
   const RunResult printed = RUN_LUCERNA("media draft " + path("cup.mtl") + " --quiet");
@@ -64,7 +64,7 @@ TEST_F(MediaCommand, TheOriginalsFilesHaveItsSize) {
   write("a.mtl", "newmtl wall\nKd 0.5 0.5 0.5\n");
   write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wall\nf 1 2 3\n");
   write("a.json", R"({"scene": {"camera": [0, 0, 900], "cameraLookAt": [0, 0, 0], "fov": 30, "lightPos": [1, 1, 3], "lightColor": [1, 1, 1], "lightIntensity": 9, "scale": 1}})");
-  const std::string options = " --technique path --spp 1 --bounces 0 --host osmesa --quiet --json " + path("r.json") + " -o " + path("r.hdr");
+  const std::string options = " --technique path --spp 1 --bounces 0 --quiet --json " + path("r.json") + " -o " + path("r.hdr");
   ASSERT_EQ(RUN_LUCERNA("render " + path("a.json") + options).exitCode, 0);
   EXPECT_EQ(json("r.json").at("size"), (std::vector<int>{1920, 1080}));
   ASSERT_EQ(RUN_LUCERNA("render " + path("a.json") + " --size 40x20" + options).exitCode, 0);

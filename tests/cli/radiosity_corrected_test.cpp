@@ -36,10 +36,10 @@ class RadiosityCorrected : public ::testing::Test {
   }
   // Pixels learn what they see in one way: automatic chooses by time, and ways differ in their last bits.
   std::string solve(const std::string& in, const std::string& out, const std::string& more = "") const {
-    return "'" LUCERNA_BINARY "' radiosity solve '" + path(in) + "' '" + path(out) + "' 16 --host osmesa --set rad.edge=0.5 --set rad.visibility=raster " + more;
+    return "'" LUCERNA_BINARY "' radiosity solve '" + path(in) + "' '" + path(out) + "' 16 --set rad.edge=0.5 --set rad.visibility=raster " + more;
   }
   std::string render(const std::string& more, const std::string& out = "p.pfm") const {
-    return "'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique radiosity --set rad.visibility=raster --size 24x16 --host osmesa --camera 0,0,0.9,0,0,-1,70 --json '" + path("r.json") + "' -o '" + path(out) + "' " + more;
+    return "'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique radiosity --set rad.visibility=raster --size 24x16 --camera 0,0,0.9,0,0,-1,70 --json '" + path("r.json") + "' -o '" + path(out) + "' " + more;
   }
   void expectRefused(const std::string& command, const std::vector<std::string>& parts, int exitCode = 2) const {
     const RunResult result = run(command);
@@ -276,7 +276,7 @@ TEST_F(RadiosityCorrected, WithLittleMemoryTheAnswerIsTheSame) {
 
 TEST_F(RadiosityCorrected, AgreesWithThePathTracer) {
   const auto bias = [&](const std::string& scene, const std::string& radiosity, const std::string& path_) {
-    const std::string picture = "'" LUCERNA_BINARY "' render '" + scene + "' --component indirect --size 64x64 --host osmesa --quiet ";
+    const std::string picture = "'" LUCERNA_BINARY "' render '" + scene + "' --component indirect --size 64x64 --quiet ";
     expectWorks(picture + "--technique radiosity -o '" + path("radiosity.pfm") + "' " + radiosity);
     expectWorks(picture + "--technique path -o '" + path("path.pfm") + "' " + path_);
     expectWorks("'" LUCERNA_BINARY "' compare '" + path("radiosity.pfm") + "' '" + path("path.pfm") + "' --json '" + path("c.json") + "'");

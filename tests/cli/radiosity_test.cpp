@@ -32,7 +32,7 @@ class Radiosity : public ::testing::Test {
     ASSERT_EQ(result.exitCode, 0) << result.err;
   }
   static std::string solve(const std::string& in, const std::string& out, const std::string& more = "") {
-    return "'" LUCERNA_BINARY "' radiosity solve '" + in + "' '" + out + "' 16 --fidelity original --host osmesa " + more;
+    return "'" LUCERNA_BINARY "' radiosity solve '" + in + "' '" + out + "' 16 --fidelity original " + more;
   }
   void expectRefused(const std::string& command, const std::vector<std::string>& parts, int exitCode = 2) const {
     const RunResult result = run(command);
@@ -80,7 +80,7 @@ TEST_F(Radiosity, GenerateSolveShow) {
   EXPECT_EQ(lucerna::encodeRadFile(after), bytes("s.rad"));
 
   for (const char* mode : {"", "s", "c", "--mapping linear", "--mapping filmic", "--false-colours", "--mesh"}) {
-    const RunResult shown = RUN_LUCERNA("radiosity show '" + path("s.rad") + "' " + mode + " -o '" + path("s.png") + "' --size 80x60 --host osmesa");
+    const RunResult shown = RUN_LUCERNA("radiosity show '" + path("s.rad") + "' " + mode + " -o '" + path("s.png") + "' --size 80x60");
     EXPECT_EQ(shown.exitCode, 0) << mode << shown.err;
     EXPECT_EQ(lucerna::readBitmap(path("s.png")).width, 80);
     fs::remove(path("s.png"));

@@ -6,12 +6,15 @@
 #include "base/image.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
+#include "support/test_host.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 
 namespace lucerna {
@@ -62,6 +65,7 @@ class HostPictures : public ::testing::Test {
   /// Mesa's software hosts differ in nothing but who holds the context; a GPU may round otherwise and move an edge by a pixel.
   void expectSamePicture(const std::string& host, const std::string& prefix = {}) {
     const Image reference = picture("osmesa");
+    if (reference.pixels.empty()) GTEST_SKIP() << "no OSMesa to compare with";
     ASSERT_EQ(reference.pixels.size(), 64u * 64);
     const glm::dvec3 mean = meanOf(reference);
     EXPECT_GT(mean.x, 0.05);
@@ -83,7 +87,6 @@ class HostPictures : public ::testing::Test {
   std::string scene() const { return (folder_ / "room.json").string(); }
   std::string json() const { return (folder_ / "walk.json").string(); }
 
- private:
   TempFolder folder_;
 };
 
@@ -110,8 +113,9 @@ TEST_F(HostPictures, AWindowDoesNotWaitForTheDisplayWhereFramesAreMeasured) {
   EXPECT_EQ(nlohmann::json::parse(readFileText(json())).at("swap_interval"), 0);
 }
 
-TEST_F(HostPictures, OsmesaRepeatsToTheBit) {
-  const Image first = picture("osmesa"), second = picture("osmesa");
+TEST_F(HostPictures, RepeatsToTheBit) {
+  const std::string host(nameOf(test::testHost()));
+  const Image first = picture(host), second = picture(host);
   ASSERT_FALSE(first.pixels.empty());
   EXPECT_TRUE(first.pixels == second.pixels);
 }
@@ -120,6 +124,94 @@ TEST_F(HostPictures, WithoutADisplayAWindowIsAMissingCapability) {
   const RunResult result = test::run("env -u DISPLAY -u WAYLAND_DISPLAY '" LUCERNA_BINARY "' info --host window");
   EXPECT_EQ(result.exitCode, 3);
   EXPECT_NE(result.err.find("no display"), std::string::npos) << result.err;
+}
+
+TEST_F(HostPictures, ADeviceOfEglIsChosenByItsNumberOrRefusedWithAList) {
+  const RunResult list = RUN_LUCERNA("info --devices --json '" + (folder_ / "devices.json").string() + "'");
+  ASSERT_EQ(list.exitCode, 0) << list.err;
+  std::ifstream file(folder_ / "devices.json");
+  const auto devices = nlohmann::json::parse(file).at("devices");
+  for (const char* wrong : {"99", "-1", "0x", "first", "1.5"}) {
+    const RunResult refused = test::run(std::string("LUCERNA_EGL_DEVICE=") + wrong + " '" LUCERNA_BINARY "' info --host egl");
+    EXPECT_EQ(refused.exitCode, 2) << wrong << ": " << refused.err;
+    EXPECT_NE(refused.err.find(wrong), std::string::npos) << refused.err;
+    for (const auto& device : devices) EXPECT_NE(refused.err.find(device.at("kind").get<std::string>()), std::string::npos) << refused.err;
+  }
+  if (devices.empty()) GTEST_SKIP() << "EGL lists no devices";
+  std::size_t firsts = 0;
+  for (const auto& device : devices) {
+    firsts += device.at("first").get<bool>();
+    if (!device.at("fault").get<std::string>().empty()) continue;
+    const RunResult info = test::run(fmt::format("LUCERNA_EGL_DEVICE={} '{}' info --host egl --quiet", device.at("index").get<int>(), LUCERNA_BINARY));
+    EXPECT_EQ(info.exitCode, 0) << info.err;
+    EXPECT_NE(info.out.find(device.at("renderer").get<std::string>()), std::string::npos) << info.out;
+  }
+  EXPECT_EQ(firsts, 1u);
+}
+
+TEST_F(HostPictures, WithoutItsLibraryOsmesaIsAMissingCapabilityAndEglServes) {
+  // An empty file that stands before the library on the loader's path.
+  folder_.write("libOSMesa.so.8", "");
+  const std::string program = "env -u LUCERNA_HOST -u DISPLAY -u WAYLAND_DISPLAY LD_LIBRARY_PATH='" + folder_.path().string() + "' '" LUCERNA_BINARY "' info --quiet";
+  const RunResult osmesa = test::run(program + " --host osmesa");
+  EXPECT_EQ(osmesa.exitCode, 3) << osmesa.err;
+  EXPECT_NE(osmesa.err.find("libosmesa6"), std::string::npos) << osmesa.err;
+  if (test::run("'" LUCERNA_BINARY "' info --quiet --host egl").exitCode != 0) GTEST_SKIP() << "no EGL here";
+  const RunResult any = test::run(program);
+  EXPECT_EQ(any.exitCode, 0) << any.err;
+  EXPECT_NE(any.out.find("host        egl"), std::string::npos) << any.out;
+}
+
+/// A /sys of our own: a render node a device, as Linux shows them.
+class RenderNodes : public ::testing::Test {
+ protected:
+  struct Files {
+    const char *slot, *vendor, *device, *driver, *videoBytes;
+  };
+  EglDevice describe(const std::string& node, const Files& files) {
+    namespace fs = std::filesystem;
+    const fs::path device = folder_ / "devices" / files.slot;
+    fs::create_directories(device);
+    fs::create_directories(folder_ / "drivers" / files.driver);
+    fs::create_directory_symlink(folder_ / "drivers" / files.driver, device / "driver");
+    const auto write = [&](const char* name, const char* text) {
+      if (*text) std::ofstream(device / name) << text << "\n";
+    };
+    write("vendor", files.vendor), write("device", files.device), write("mem_info_vram_total", files.videoBytes);
+    fs::create_directories(folder_ / "class/drm" / node);
+    fs::create_directory_symlink(device, folder_ / "class/drm" / node / "device");
+    return describeRenderNode("/dev/dri/" + node, folder_.path());
+  }
+  TempFolder folder_;
+};
+
+TEST_F(RenderNodes, AreToldApartByVendorBusAndMemory) {
+  using Kind = EglDevice::Kind;
+  const EglDevice iris = describe("renderD128", {"0000:00:02.0", "0x8086", "0x9a49", "i915", ""});
+  const EglDevice arc = describe("renderD129", {"0000:03:00.0", "0x8086", "0x56a0", "i915", ""});
+  const EglDevice apu = describe("renderD130", {"0000:04:00.0", "0x1002", "0x1636", "amdgpu", "536870912"});
+  const EglDevice small = describe("renderD131", {"0000:05:00.0", "0x1002", "0x67df", "amdgpu", "8589934592"});
+  const EglDevice large = describe("renderD132", {"0000:06:00.0", "0x1002", "0x73bf", "amdgpu", "17163091968"});
+  const EglDevice geforce = describe("renderD133", {"0000:07:00.0", "0x10de", "0x2204", "nvidia", ""});
+  const EglDevice mali = describe("renderD134", {"ff9a0000.gpu", "", "", "panfrost", ""});
+  const EglDevice virtual_ = describe("renderD135", {"0000:00:01.0", "0x1af4", "0x1050", "virtio-pci", ""});
+  const EglDevice nothing = describeRenderNode("/dev/dri/renderD199", folder_.path());
+  EglDevice software;
+  software.kind = Kind::software;
+  EXPECT_EQ(iris.kind, Kind::integrated);
+  EXPECT_EQ(arc.kind, Kind::discrete);
+  EXPECT_EQ(apu.kind, Kind::integrated);
+  EXPECT_EQ(small.kind, Kind::discrete);
+  EXPECT_EQ(large.kind, Kind::discrete);
+  EXPECT_EQ(geforce.kind, Kind::discrete);
+  EXPECT_EQ(mali.kind, Kind::integrated);
+  EXPECT_EQ(virtual_.kind, Kind::unknown);
+  EXPECT_EQ(nothing.kind, Kind::unknown);
+  EXPECT_EQ(large.driver, "amdgpu");
+  EXPECT_EQ(large.pci, "1002:73bf");
+  EXPECT_EQ(large.node, "/dev/dri/renderD132");
+  EXPECT_EQ(eglPreference({software, iris, nothing, small, large, apu, arc}), (std::vector<std::size_t>{4, 3, 6, 2, 5, 1, 0}));
+  EXPECT_TRUE(eglPreference({}).empty());
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-// A GL context for tests: OSMesa, made once an executable. Any OpenGL error fails the test in which it happens.
+// A GL context for tests: by testHost(), made once an executable. Any OpenGL error fails the test in which it happens.
 #pragma once
 
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "host/host.hpp"
+#include "support/test_host.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ class GlTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     if (host()) return;
-    host() = Host::create(HostKind::osmesa);
+    host() = Host::create(testHost(), {.windowVisible = false});
     context_() = std::make_unique<gl::Context>(gl::DebugOutput::synchronous);
     ::testing::UnitTest::GetInstance()->listeners().Append(new EndOfProgram);
   }

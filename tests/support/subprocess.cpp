@@ -1,6 +1,7 @@
 #include "support/subprocess.hpp"
 
 #include "support/temp_folder.hpp"
+#include "support/test_host.hpp"
 
 #include <cstdlib>
 #include <fstream>
@@ -18,6 +19,7 @@ std::string contents(const std::filesystem::path& file) {
 }  // namespace
 
 RunResult run(const std::string& command) {
+  setenv("LUCERNA_HOST", std::string(nameOf(testHost())).c_str(), 1);  // the program draws where the tests do
   const TempFolder folder;
   const auto out = folder.path() / "out", err = folder.path() / "err";
   const int status = std::system(("{ " + command + "\n} >'" + out.string() + "' 2>'" + err.string() + "'").c_str());

@@ -10,7 +10,7 @@ struct RunResult {
   std::string out, err;
 };
 
-/// Runs a shell command and waits for it.
+/// Runs a shell command and waits for it, with LUCERNA_HOST set to testHost().
 RunResult run(const std::string& command);
 
 /// The built executable with arguments; LUCERNA_BINARY is set by the build.
