@@ -17,7 +17,7 @@ show_progress() {
   local what="$1" log="$2" line step now last=0
   while IFS= read -r line; do
     printf '%s\n' "$line" >>"$log"
-    case "$line" in "["[0-9]*/[0-9]*"]"*) ;; *) continue ;; esac
+    case "$line" in "[0/"*) continue ;; "["[0-9]*/[0-9]*"]"*) ;; *) continue ;; esac
     step="${line%%]*}"
     step="${step#\[}"
     if [ -t 2 ]; then
