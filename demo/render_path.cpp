@@ -108,6 +108,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     stopped = stopped || interrupted() || (path.seconds && elapsed() >= *path.seconds) ||
               (path.error && done >= 4 && tracer.statistics().relativeError <= *path.error);
   }
+  tracer.dropUnfinishedPass();
   const double seconds = elapsed();
   save();
 

@@ -244,6 +244,11 @@ void BufferTexture::bind(GLuint unit) const {
   glBindTexture(GL_TEXTURE_BUFFER, texture_.id());
 }
 
+void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, glm::ivec2 toCorner, glm::ivec2 size) {
+  CHECK(from.format() == to.format(), "formats {:#x} and {:#x}", from.format(), to.format());
+  glCopyImageSubData(from.id(), from.target(), 0, fromCorner.x, fromCorner.y, 0, to.id(), to.target(), 0, toCorner.x, toCorner.y, 0, size.x, size.y, 1);
+}
+
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture) {
   std::vector<std::byte> zeros;
   for (const Texture* texture : textures) {

@@ -171,6 +171,9 @@ class BufferTexture {
   Handle<detail::deleteTexture> texture_;
 };
 
+/// Texels of level 0 of a 2D texture into one of the same format. What shaders wrote there needs GL_TEXTURE_UPDATE_BARRIER_BIT before.
+void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, glm::ivec2 toCorner, glm::ivec2 size);
+
 /// Sets every texel of every level of every listed texture to zero: ARB_clear_texture where there is, else an upload of zeros.
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture);
 

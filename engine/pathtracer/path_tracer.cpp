@@ -192,6 +192,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   filmMean_ = gl::Texture("film mean", GL_RGBA32UI, settings.size);
   filmSpread_ = gl::Texture("film spread", GL_RGBA32UI, settings.size);
   filmRest_ = gl::Texture("film rest", GL_RGBA32UI, settings.size);
+  for (gl::Texture& texture : kept_) texture = gl::Texture("film kept", GL_RGBA32UI, tile);
   program_ = &programs.loadCompute("path tracing", "pathtracer/path.comp", flags());
   setCamera(scene.cameras.empty() ? Camera{} : scene.cameras.front());
 }
@@ -389,8 +390,16 @@ std::vector<std::uint8_t> PathTracer::checkpoint() const {
   header.width = static_cast<std::uint32_t>(settings_.size.x);
   header.height = static_cast<std::uint32_t>(settings_.size.y);
   std::vector<std::uint8_t> bytes(sizeof header);
-  for (const gl::Texture* film : {&filmMean_, &filmSpread_, &filmRest_}) {
-    const std::vector<glm::uvec4> words = film->readWords();
+  const std::array<const gl::Texture*, 3> films{&filmMean_, &filmSpread_, &filmRest_};
+  for (std::size_t f = 0; f < films.size(); ++f) {
+    std::vector<glm::uvec4> words = films[f]->readWords();
+    if (tileBegun_) {
+      const auto [corner, size] = tile();
+      const std::vector<glm::uvec4> before = kept_[f].readWords();
+      for (int y = 0; y < size.y; ++y)
+        std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(y) * kept_[f].size().x, size.x,
+                    words.begin() + static_cast<std::ptrdiff_t>(corner.y + y) * settings_.size.x + corner.x);
+    }
     const auto* begin = reinterpret_cast<const std::uint8_t*>(words.data());
     bytes.insert(bytes.end(), begin, begin + words.size() * sizeof(glm::uvec4));
   }
@@ -427,6 +436,21 @@ void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::strin
   tileBegun_ = false;
 }
 
+PathTracer::Tile PathTracer::tile() const {
+  const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_;
+  const glm::ivec2 corner = tileSide_ * glm::ivec2(tile_ % columns, tile_ / columns);
+  return {corner, glm::min(glm::ivec2(tileSide_), settings_.size - corner)};
+}
+
+void PathTracer::dropUnfinishedPass() {
+  if (!tileBegun_) return;
+  const auto [corner, size] = tile();
+  gl::copyTexels(kept_[0], {0, 0}, filmMean_, corner, size);
+  gl::copyTexels(kept_[1], {0, 0}, filmSpread_, corner, size);
+  gl::copyTexels(kept_[2], {0, 0}, filmRest_, corner, size);
+  tileBegun_ = false;
+}
+
 bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   if (done_ >= samples) return false;
   if (passTarget_ == done_ || passTarget_ > samples) {
@@ -435,15 +459,16 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
     passTarget_ = done_ + std::min(samples - done_, passes == Passes::whole ? most : std::clamp(done_, 1u, most));
     if (!tileBegun_) tile_ = 0;
   }
-  const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_, rows = (settings_.size.y + tileSide_ - 1) / tileSide_;
-  const glm::ivec2 corner = tileSide_ * glm::ivec2(tile_ % columns, tile_ / columns);
-  const glm::ivec2 size = glm::min(glm::ivec2(tileSide_), settings_.size - corner);
+  const auto [corner, size] = tile();
   const double lanes = static_cast<double>(size.x) * size.y;
   const bool begins = !tileBegun_;
   if (begins) {
     state_.clear();
     turns_.restart();
     turns_.setTurnsOfUnit(lanes);
+    gl::copyTexels(filmMean_, corner, kept_[0], {0, 0}, size);
+    gl::copyTexels(filmSpread_, corner, kept_[1], {0, 0}, size);
+    gl::copyTexels(filmRest_, corner, kept_[2], {0, 0}, size);
   }
   const std::array<std::uint32_t, 4> zeros{};
   state_.upload(0, sizeof zeros, zeros.data());
@@ -462,7 +487,8 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   turns_.setTurnsOfUnit(std::max(unfinished, 1u));  // the others have nothing left to do
   turns_.took(turns_.units(), seconds);
   tileBegun_ = unfinished > 0;
-  if (!tileBegun_ && ++tile_ == columns * rows) {
+  const glm::ivec2 tiles = (settings_.size + tileSide_ - 1) / tileSide_;
+  if (!tileBegun_ && ++tile_ == tiles.x * tiles.y) {
     done_ = passTarget_;
     tile_ = 0;
   }
@@ -568,6 +594,7 @@ PathTracer::Statistics PathTracer::statistics() const {
 std::size_t PathTracer::gpuBytes() const {
   std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
                       filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
+  for (const gl::Texture& texture : kept_) bytes += texture.bytes();
   for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_})
     if (*texture) bytes += (*texture)->bytes();
   return bytes;

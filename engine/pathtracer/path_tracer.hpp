@@ -19,6 +19,7 @@
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -76,10 +77,14 @@ class PathTracer {
   /// All that is missing, in as few passes as may be: nobody looks at the picture on the way.
   void record(std::uint32_t samples) { while (submit(samples, Passes::whole)) {} }
 
+  /// Takes a tile that is in the middle of a pass back to where that pass began. Paths under way are the long ones: a picture of those that have ended
+  /// alone would be too dark, so whoever stops between two calls of advance() calls this before looking at the film.
+  void dropUnfinishedPass();
+
   Image mean() const;           ///< radiance, linear, scene units, top row first; pixels without a sample are 0
   Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
   Statistics statistics() const;
-  /// The film and what it belongs to; resume() goes on from it to the same picture, bit by bit, as if there had been no break.
+  /// The film, without what a pass under way has added, and what it belongs to; resume() goes on from it to the same picture, bit by bit, as if there had been no break.
   std::vector<std::uint8_t> checkpoint() const;
   /// `name` is for messages. Throws Error(badInput) where the bytes are damaged or of another scene, view, size or setting.
   void resume(const std::vector<std::uint8_t>& bytes, const std::string& name);
@@ -109,6 +114,10 @@ class PathTracer {
   enum class Passes { doubling, whole };
   bool submit(std::uint32_t samples, Passes passes);
   void dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target);
+  struct Tile {
+    glm::ivec2 corner, size;
+  };
+  Tile tile() const;  ///< the one that is next, or under way
 
   Settings settings_;
   SceneNeeds needs_;
@@ -130,6 +139,7 @@ class PathTracer {
   std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_;
   gl::Staging counters_{"path counters"};
   gl::Texture filmMean_, filmSpread_, filmRest_;
+  std::array<gl::Texture, 3> kept_;  ///< the same of the tile under way, as it was before the pass
   int tileSide_;
   std::uint32_t mostTurns_;  ///< a lane, in a submission
   bool clearTexture_;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -297,6 +298,12 @@ TEST_F(CommandLine, PathTracingSaysHowGoodThePictureIs) {
   ASSERT_EQ(RUN_LUCERNA(common + "--seconds 0.01 -o " + path("d.png") + " --json " + path("seconds.json")).exitCode, 0);
   EXPECT_GE(json("seconds.json").at("spp"), 1.0);
   EXPECT_LT(json("seconds.json").at("seconds"), 20.0);
+  // Of whole passes, whenever it is stopped: this picture is one tile, so all pixels have the same samples.
+  for (const char* seconds : {"0.05", "0.11", "0.17", "0.23", "0.31"}) {
+    ASSERT_EQ(RUN_LUCERNA(common + "--seconds " + std::string(seconds) + " -o " + path("d.png") + " --json " + path("seconds.json")).exitCode, 0);
+    const double samples = json("seconds.json").at("spp");
+    EXPECT_EQ(samples, std::round(samples)) << seconds;
+  }
 }
 
 TEST_F(CommandLine, PathTracingAsPublishedNamesItsDeviations) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <string_view>
 
 namespace lucerna::test {
@@ -113,6 +114,53 @@ TEST_F(PathTracerTest, AResumedPictureIsTheUninterruptedOne) {
   std::vector<std::uint8_t> damaged = bytes;
   damaged[damaged.size() / 2] ^= 1;
   EXPECT_THROW(second.resume(damaged, "memory"), Error);
+}
+
+// Stopped anywhere, the film is that of whole passes: the paths that are under way then are the long ones, and must not be missing beside short ones that
+// have ended.
+TEST_F(PathTracerTest, AStoppedPictureIsOneOfWholePasses) {
+  SceneBuilder room;  // a bright closed room: paths of very different lengths
+  addBox(room, 1.0, room.material(glm::vec3(0.9f)), true);
+  room.materialAt(0).emission = glm::vec3(1.0f);
+  Scene scene = room.scene();
+  scene.sun.reset();
+  const Camera camera = lookingAt({0, 0, 0.9}, {0, 0, 0});
+  PathTracer::Settings settings = sized(150);  // four tiles
+  settings.submissionSeconds = 1e-9;           // a segment a submission: a pass takes many
+  std::map<std::uint32_t, Image> whole;
+  const auto afterPasses = [&](std::uint32_t samples) -> const Image& {
+    Image& image = whole[samples];
+    if (image.pixels.empty()) image = tracer(scene, camera, sized(150), samples).mean();
+    return image;
+  };
+  int cut = 0;
+  for (const int submissions : {150, 151, 160, 200, 290, 460}) {
+    PathTracer stopped(context(), library(), scene, settings);
+    stopped.setCamera(camera);
+    for (int i = 0; i < submissions; ++i) stopped.advance(3);
+    PathTracer resumed(context(), library(), scene, settings);
+    resumed.resume(stopped.checkpoint(), "memory");
+    const Image raw = stopped.mean();
+    stopped.dropUnfinishedPass();
+    const Image mean = stopped.mean();
+    cut += raw.pixels != mean.pixels;
+    EXPECT_EQ(resumed.mean().pixels, mean.pixels) << submissions;  // so is what a checkpoint holds
+    const PathTracer::Statistics statistics = stopped.statistics();
+    for (const glm::ivec2 tile : {glm::ivec2(0, 0), glm::ivec2(128, 0), glm::ivec2(0, 128), glm::ivec2(128, 128)}) {
+      int samples = -1;  // that all pixels of the tile have
+      for (int n = 0; n <= 3 && samples < 0; ++n) {
+        bool same = true;
+        for (int y = tile.y; y < std::min(tile.y + 128, 150); ++y)
+          for (int x = tile.x; x < std::min(tile.x + 128, 150); ++x)
+            same = same && mean.at(x, 149 - y) == (n == 0 ? glm::vec3(0.0f) : afterPasses(static_cast<std::uint32_t>(n)).at(x, 149 - y));
+        if (same) samples = n;
+      }
+      EXPECT_GE(samples, 0) << submissions << ": tile " << tile.x << ", " << tile.y << " of " << statistics.fewestSamples << " to " << statistics.mostSamples << " samples";
+    }
+    stopped.record(3);
+    EXPECT_EQ(stopped.mean().pixels, afterPasses(3).pixels) << submissions;
+  }
+  EXPECT_GE(cut, 3);  // some were in the middle of a pass
 }
 
 TEST_F(PathTracerTest, SmallestPicturesAndScenes) {
