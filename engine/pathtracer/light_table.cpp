@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace lucerna {
 
@@ -169,18 +170,28 @@ glm::dvec3 meanRadiance(const Image& picture) {
   return sum / (4.0 * kPi);
 }
 
-std::vector<glm::vec4> environmentTable(const Image& picture) {
-  std::vector<double> weights(picture.pixels.size());
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x)
-      weights[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x)] =
-          worth(glm::dvec3(picture.at(x, y))) * texelSolidAngle(picture, y);
-  const AliasTable picks = aliasTable(weights);
-  std::vector<glm::vec4> table(weights.size());
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const int y = static_cast<int>(i / static_cast<std::size_t>(picture.width));
-    table[i] = glm::vec4(picks.threshold[i], static_cast<float>(picks.alias[i]),
-                         static_cast<float>(picks.probability[i] / texelSolidAngle(picture, y)), 0.0f);
+EnvironmentTable environmentTable(const Image& picture) {
+  const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
+  // A number below 2^32 is below the threshold with its probability; all of them where that is 1, as the alias then is the entry itself.
+  const auto wordOf = [](float threshold) { return static_cast<std::uint32_t>(std::min(static_cast<double>(threshold) * 4294967296.0, 4294967295.0)); };
+  EnvironmentTable table;
+  table.texels.resize(width * height);
+  std::vector<double> weights(width), ofRows(height);
+  for (std::size_t y = 0; y < height; ++y) {
+    const int row = static_cast<int>(y);
+    for (std::size_t x = 0; x < width; ++x) weights[x] = worth(glm::dvec3(picture.at(static_cast<int>(x), row)));
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    ofRows[y] = sum * texelSolidAngle(picture, row);
+    if (!(sum > 0.0)) continue;  // is never picked
+    const AliasTable picks = aliasTable(weights);
+    for (std::size_t x = 0; x < width; ++x) table.texels[y * width + x] = glm::uvec4(wordOf(picks.threshold[x]), picks.alias[x], 0u, 0u);
+  }
+  const double all = std::accumulate(ofRows.begin(), ofRows.end(), 0.0);
+  const AliasTable picks = aliasTable(ofRows);
+  for (std::size_t y = 0; y < height; ++y) {
+    table.rows.emplace_back(wordOf(picks.threshold[y]), picks.alias[y], 0u, 0u);
+    for (std::size_t x = 0; x < width; ++x)  // the solid angle cancels
+      table.texels[y * width + x].z = std::bit_cast<std::uint32_t>(static_cast<float>(worth(glm::dvec3(picture.at(static_cast<int>(x), static_cast<int>(y)))) / all));
   }
   return table;
 }

@@ -28,8 +28,13 @@ struct LightTable {
 };
 LightTable lightTable(const Scene& scene, const glm::dvec3& origin);
 
-/// An environment picture as the shader picks its texels: threshold, alias, density over solid angle in 1/sr.
-std::vector<glm::vec4> environmentTable(const Image& picture);
+/// An environment picture as the shader picks its texels: a row, then a texel of it, each by an alias table [Vose1991] in whole numbers, so that pictures of any size are picked
+/// texel by texel (a float counts to 2^24). The picture must not be black.
+struct EnvironmentTable {
+  std::vector<glm::uvec4> texels;  ///< row by row: threshold of 2^32, alias (a column), bits of the density over solid angle in 1/sr
+  std::vector<glm::uvec4> rows;    ///< threshold of 2^32, alias (a row)
+};
+EnvironmentTable environmentTable(const Image& picture);
 /// Mean radiance over all directions, without Environment::radiance.
 glm::dvec3 meanRadiance(const Image& picture);
 

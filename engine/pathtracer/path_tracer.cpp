@@ -21,7 +21,7 @@ namespace {
 constexpr GLuint kConstantsBinding = 0;                                                               // GL_UNIFORM_BUFFER
 constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4, kStateBinding = 5, kMediaBinding = 6,
                  kInteriorsBinding = 7, kGridsBinding = 8, kDensitiesBinding = 9;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kClearancesUnit = 3;
+constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kClearancesUnit = 3, kEnvironmentRowsUnit = 4;
 constexpr int kGroupSide = 8;
 constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
 constexpr int kClearanceCells = 64;
@@ -165,9 +165,12 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       for (const glm::vec3& p : picture.pixels) texels.emplace_back(p, 0.0f);
       environmentPicture_.emplace("environment", static_cast<GLenum>(GL_RGBA32F), size);
       environmentPicture_->upload(GL_RGBA, GL_FLOAT, texels.data());
-      texels = environmentTable(picture);
-      environmentTable_.emplace("environment table", static_cast<GLenum>(GL_RGBA32F), size);
-      environmentTable_->upload(GL_RGBA, GL_FLOAT, texels.data());
+      texels = {};
+      const EnvironmentTable table = environmentTable(picture);
+      environmentTable_.emplace("environment table", static_cast<GLenum>(GL_RGBA32UI), size);
+      environmentTable_->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.texels.data());
+      environmentRows_.emplace("environment rows", static_cast<GLenum>(GL_RGBA32UI), glm::ivec2(1, picture.height));
+      environmentRows_->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.rows.data());
     }
   }
   constants_.background = scene.background;
@@ -525,6 +528,7 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
   if (atlas_) atlas_->bind(kAtlasUnit);
   if (environmentPicture_) environmentPicture_->bind(kEnvironmentUnit);
   if (environmentTable_) environmentTable_->bind(kEnvironmentTableUnit);
+  if (environmentRows_) environmentRows_->bind(kEnvironmentRowsUnit);
   filmMean_.bindImage(0, GL_READ_WRITE);
   filmSpread_.bindImage(1, GL_READ_WRITE);
   filmRest_.bindImage(2, GL_READ_WRITE);
@@ -595,7 +599,7 @@ std::size_t PathTracer::gpuBytes() const {
   std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
                       filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
   for (const gl::Texture& texture : kept_) bytes += texture.bytes();
-  for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_})
+  for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_, &environmentRows_})
     if (*texture) bytes += (*texture)->bytes();
   return bytes;
 }

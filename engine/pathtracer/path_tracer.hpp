@@ -136,7 +136,7 @@ class PathTracer {
   gl::BufferTexture clearances_;
   double leakedPaths_ = 0.0, wrongCrossings_ = 0.0;
   gl::Buffer triangles_, materials_, lights_, state_, constantsBuffer_;
-  std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_;
+  std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_, environmentRows_;
   gl::Staging counters_{"path counters"};
   gl::Texture filmMean_, filmSpread_, filmRest_;
   std::array<gl::Texture, 3> kept_;  ///< the same of the tile under way, as it was before the pass

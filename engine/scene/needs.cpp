@@ -8,6 +8,9 @@ namespace lucerna {
 
 namespace {
 bool anyPositive(const glm::vec3& v) { return v.x > 0.0f || v.y > 0.0f || v.z > 0.0f; }
+bool anyPositive(const Image& picture) {
+  return std::any_of(picture.pixels.begin(), picture.pixels.end(), [](const glm::vec3& v) { return anyPositive(v); });
+}
 
 /// Whether a corner's normal is not that of the triangle, by more than its rounding; which way round the normals look counts too, as
 /// surfaces are turned by the triangle's side.
@@ -101,7 +104,7 @@ SceneNeeds analyse(const Scene& scene) {
   needs.background = anyPositive(scene.background);
   for (const SpotLight& light : scene.spots) needs.spotLights |= anyPositive(light.intensity);
   for (const PointLight& light : scene.points) needs.pointLights |= anyPositive(light.intensity);
-  needs.environment = scene.environment && anyPositive(scene.environment->radiance);
+  needs.environment = scene.environment && anyPositive(scene.environment->radiance) && (!scene.environment->picture || anyPositive(*scene.environment->picture));
   needs.environmentPicture = needs.environment && scene.environment->picture.has_value();
   needs.indirect = reflects && (needs.anyLight() || needs.emission);
   return needs;

@@ -21,6 +21,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "scene/json_value.hpp"
 #include "scene/original_scene_file.hpp"
 #include "scene/scene_media.hpp"
@@ -134,16 +135,34 @@ std::vector<Light> readLights(const Value& array, std::size_t most, Light (*read
   return lights;
 }
 
+/// Whether the picture lights anything; throws where a texel is no radiance.
+bool checkRadiance(const Image& picture, const std::filesystem::path& file, const glm::vec3& factor) {
+  bool lights = false;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const glm::vec3& texel = picture.at(x, y);
+      const auto isRadiance = [](float v) { return v >= 0.0f && std::isfinite(v); };
+      for (int c = 0; c < 3; ++c)
+        if (!isRadiance(texel[c]) || !isRadiance(texel[c] * factor[c]))
+          throwBadInput("{}: texel {}, {} (column and row, from the upper left) is {} {} {}: radiance must be finite and at least 0{}", file.string(), x, y, texel.x, texel.y, texel.z,
+                        factor == glm::vec3(1.0f) ? "" : ", also times the environment's \"radiance\"");
+      lights = lights || texel * factor != glm::vec3(0.0f);
+    }
+  return lights;
+}
+
 Environment readEnvironment(const Value& object) {
   Environment environment;
   std::optional<glm::vec3> radiance;
+  std::filesystem::path file;
   readObject(object, {
       {"radiance", [&](const Value& v) { radiance = v.light(); }},
-      {"picture", [&](const Value& v) { environment.picture = readImage(v.path()); }},
+      {"picture", [&](const Value& v) { environment.picture = readImage(file = v.path()); }},
       {"rotation", [&](const Value& v) { environment.rotation = v.number("degrees") * kPi / 180.0; }},
   });
   if (!radiance && !environment.picture) object.fail("an environment with \"radiance\" or \"picture\"");
   environment.radiance = radiance.value_or(glm::vec3(1.0f));
+  if (environment.picture && !checkRadiance(*environment.picture, file, environment.radiance)) logWarning("{}: the environment is black: it lights nothing", file.string());
   return environment;
 }
 

@@ -1,8 +1,9 @@
 // Light from infinitely far all around: constant, or a latitude-longitude picture (top row +y, u from atan2(x, -z)) turned about +y.
-// The picture's texels are picked by an alias table [Vose1991] in proportion to what they send, uniformly over each texel's solid angle.
+// The picture's texels are picked in proportion to what they send, a row first, by alias tables [Vose1991]; uniformly over each texel's solid angle.
 #if ENVIRONMENT_PICTURE
 layout(binding = 1) uniform sampler2D environmentPicture;  // radiance without the factor
-layout(binding = 2) uniform sampler2D environmentTable;    // threshold, alias (a whole number), density over solid angle, 1/sr
+layout(binding = 2) uniform usampler2D environmentTable;   // of each row: threshold of 2^32, alias (a column); bits of the density over solid angle, 1/sr
+layout(binding = 4) uniform usampler2D environmentRows;    // threshold of 2^32, alias (a row)
 
 const float kTwoPi = 6.28318530717958648;
 
@@ -26,17 +27,20 @@ vec3 environmentRadiance(vec3 direction) {
 float environmentPdf(vec3 direction) {
   ivec2 size = textureSize(environmentPicture, 0);
   ivec2 texel = clamp(ivec2(environmentTexel(direction, size)), ivec2(0), size - 1);
-  return texelFetch(environmentTable, texel, 0).z;
+  return uintBitsToFloat(texelFetch(environmentTable, texel, 0).z);
 }
 
 // words: which texel; xi: where in it. Gives radiance and density.
 vec3 environmentSample(vec2 xi, uvec2 words, out vec3 radiance, out float pdf) {
   ivec2 size = textureSize(environmentPicture, 0);
-  int i = int(scaledWord(words.x, uint(size.x * size.y)));
-  vec4 entry = texelFetch(environmentTable, ivec2(i % size.x, i / size.x), 0);
-  if (unitFloat(words.y) >= entry.x) i = int(entry.y);
-  ivec2 texel = ivec2(i % size.x, i / size.x);
-  pdf = texelFetch(environmentTable, texel, 0).z;
+  uvec4 choice = pcg4d(uvec4(words, 0u, 0u));
+  ivec2 texel = ivec2(0, scaledWord(choice.x, uint(size.y)));
+  uvec2 entry = texelFetch(environmentRows, texel, 0).xy;
+  if (choice.y >= entry.x) texel.y = int(entry.y);
+  texel.x = int(scaledWord(choice.z, uint(size.x)));
+  entry = texelFetch(environmentTable, texel, 0).xy;
+  if (choice.w >= entry.x) texel.x = int(entry.y);
+  pdf = uintBitsToFloat(texelFetch(environmentTable, texel, 0).z);
   radiance = tracer.environment * texelFetch(environmentPicture, texel, 0).rgb;
   float azimuth = kTwoPi * ((float(texel.x) + xi.x) / float(size.x) - 0.5);
   float top = cos(0.5 * kTwoPi * float(texel.y) / float(size.y)), bottom = cos(0.5 * kTwoPi * float(texel.y + 1) / float(size.y));

@@ -163,6 +163,28 @@ TEST_F(PathTracerTest, AStoppedPictureIsOneOfWholePasses) {
   EXPECT_GE(cut, 3);  // some were in the middle of a pass
 }
 
+// One lit texel, at an odd place beyond 2^24, where a float counts in twos. Looked at by its light on a floor.
+TEST_F(PathTracerTest, EveryTexelOfALargeEnvironmentIsPicked) {
+  SceneBuilder builder;
+  builder.plate({0, 0, 0}, {0, 0, 10}, {10, 0, 0}, builder.material(glm::vec3(0.5f)));
+  Scene scene = builder.scene();
+  scene.sun.reset();
+  constexpr int kWidth = 8192, kHeight = 2064;
+  for (const glm::ivec2 texel : {glm::ivec2(4097, 700), glm::ivec2(4097, 2055), glm::ivec2(kWidth - 1, kHeight - 8)}) {
+    scene.environment = Environment{glm::vec3(1.0f), Image(kWidth, kHeight), 0.0};
+    scene.environment->picture->at(texel.x, texel.y) = glm::vec3(1e6f);
+    const double pi = 3.14159265358979324, top = pi * texel.y / kHeight, bottom = pi * (texel.y + 1) / kHeight;
+    // Irradiance on a plate that faces it from above or from below: the integral of cos over the texel.
+    const double expected = 0.5 / pi * 1e6 * 2.0 * pi / kWidth * 0.5 * std::abs(std::pow(std::sin(bottom), 2) - std::pow(std::sin(top), 2));
+    const double side = 2 * texel.y < kHeight ? 1.0 : -1.0;
+    Camera camera = lookingAt({0.0, 3.0 * side, 0.01}, {0, 0, 0}, 0.6);
+    PathTracer::Settings settings = sized(4);
+    settings.transport = Transport::direct;
+    const PathTracer picture = tracer(scene, camera, settings, 4);
+    EXPECT_NEAR(picture.statistics().mean.x / expected, 1.0, 1e-3) << texel.x << ", " << texel.y;
+  }
+}
+
 TEST_F(PathTracerTest, SmallestPicturesAndScenes) {
   SceneBuilder empty;
   EXPECT_EQ(tracer(empty.scene(), lookingAt({0, 0, 1}, {0, 0, 0}), 1, 1).mean().pixels, std::vector<glm::vec3>{glm::vec3(0.0f)});

@@ -1,10 +1,13 @@
 // Scene JSON: each key, and that whatever is wrong is named by file and key.
+#include "base/image.hpp"
+#include "scene/needs.hpp"
 #include "scene/scene.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace lucerna {
 namespace {
@@ -122,6 +125,25 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
     EXPECT_TRUE(contains(message, "room.json")) << keys << "\n" << message;
     EXPECT_TRUE(contains(message, expected)) << keys << "\n" << message;
   }
+}
+
+TEST(SceneFile, AnEnvironmentIsRadianceOrRefusedByItsTexel) {
+  const SceneFolder folder;
+  const auto load = [&](const glm::vec3& texel, const char* more = "") {
+    Image picture(3, 2, glm::vec3(texel == glm::vec3(0.0f) ? 0.0f : 1.0f));
+    picture.at(1, 0) = texel;
+    writeImage(folder.path() / "sky.pfm", picture);
+    return folder.load(R"(, "environment": {"picture": "sky.pfm")" + std::string(more) + "}");
+  };
+  EXPECT_EQ(load({0.5f, 0.0f, 3.0f}).environment->picture->at(1, 0), glm::vec3(0.5f, 0.0f, 3.0f));
+  EXPECT_FALSE(analyse(load({0.0f, 0.0f, 0.0f})).environment);  // black: lights nothing, which is no error
+  EXPECT_TRUE(analyse(load({0.0f, 0.0f, 3.0f})).environmentPicture);
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const glm::vec3& texel : {glm::vec3(1.0f, std::nanf(""), 1.0f), glm::vec3(infinity, 1.0f, 1.0f), glm::vec3(1.0f, 1.0f, -1e-6f)}) {
+    const std::string message = badInputMessage([&] { load(texel); });
+    EXPECT_TRUE(contains(message, "sky.pfm: texel 1, 0 ")) << message;
+  }
+  EXPECT_TRUE(contains(badInputMessage([&] { load({1e20f, 1.0f, 1.0f}, R"(, "radiance": [1e20, 1, 1])"); }), "sky.pfm: texel 1, 0 "));  // their product is infinite
 }
 
 TEST(SceneFile, FilesThatAreMissingOrNoSceneAreErrors) {
