@@ -56,6 +56,7 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
   std::vector<StabilityCase> cases;
   addLpvCases(cases);
   addPictureCases(cases);
+  addPlaceCases(cases);
   addRadiosityCases(cases);
   addPathCases(cases);
   addMediaCases(cases);

@@ -40,6 +40,8 @@ struct StabilityCase {
 void addLpvCases(std::vector<StabilityCase>& cases);
 /// Of the techniques that Renderer draws: units, scale, place, size, nothing to light.
 void addPictureCases(std::vector<StabilityCase>& cases);
+/// Of all techniques and lights: far from the origin, large faces.
+void addPlaceCases(std::vector<StabilityCase>& cases);
 void addPathCases(std::vector<StabilityCase>& cases);
 void addMediaCases(std::vector<StabilityCase>& cases);
 void addRadiosityCases(std::vector<StabilityCase>& cases);

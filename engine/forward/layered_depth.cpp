@@ -23,8 +23,8 @@ LayeredDepth::LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, 
   framebuffer_ = gl::Framebuffer(name, {}, &depth_);
 }
 
-void LayeredDepth::record(const GpuScene& scene, std::span<const glm::dmat4> clipFromWorld) const {
-  CHECK(static_cast<int>(clipFromWorld.size()) == shape_.layers, "{} views for {} layers", clipFromWorld.size(), shape_.layers);
+void LayeredDepth::record(const GpuScene& scene, std::span<const View> views) const {
+  CHECK(static_cast<int>(views.size()) == shape_.layers, "{} views for {} layers", views.size(), shape_.layers);
   gl::RasterState state;
   state.depth = gl::Depth::lessWrite;
   state.polygonOffset = {1.5f, 2.0f};
@@ -35,8 +35,11 @@ void LayeredDepth::record(const GpuScene& scene, std::span<const glm::dmat4> cli
     for (const gl::Program* program : {programs_.opaque, programs_.masked}) {
       if (!program) continue;
       program->set("firstLayer", first);
-      for (int i = 0; i < shape_.layersPerDraw; ++i)
-        program->set(fmt::format("clipFromWorld[{}]", i), glm::mat4(clipFromWorld[static_cast<std::size_t>(first + i)]));
+      for (int i = 0; i < shape_.layersPerDraw; ++i) {
+        const View& view = views[static_cast<std::size_t>(first + i)];
+        program->set(fmt::format("clipFromPlace[{}]", i), view.clipFromPlace);
+        program->set(fmt::format("viewPlace[{}]", i), view.place);
+      }
     }
     scene.drawDepth(programs_);
   }

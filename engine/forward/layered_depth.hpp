@@ -20,8 +20,13 @@ class LayeredDepth {
   };
   LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, const std::string& name, const Shape& shape);
 
+  /// A view's matrix for positions relative to `place`.
+  struct View {
+    glm::mat4 clipFromPlace;
+    glm::vec3 place;
+  };
   /// Draws the scene from every view, one a layer. What lies before a near plane is kept, at depth 0.
-  void record(const GpuScene& scene, std::span<const glm::dmat4> clipFromWorld) const;
+  void record(const GpuScene& scene, std::span<const View> views) const;
   /// Depth in [0,1], comparison on: sampler2DArrayShadow or samplerCubeArrayShadow. Beyond a 2D map is lit.
   const gl::Texture& depth() const { return depth_; }
   int size() const { return shape_.size; }

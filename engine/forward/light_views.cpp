@@ -37,6 +37,8 @@ glm::dmat4 view(const LightViews& views, const glm::dvec3& axis, const glm::dvec
 
 }  // namespace
 
+glm::mat4 LightViews::clipFromPlace(std::size_t view) const { return glm::mat4(glm::translate(clipFromWorld[view], glm::dvec3(place()))); }
+
 double LightViews::largestSolidAngle(int size) const {
   // A square pyramid of half opening angle with the tangent t has 4 asin(t^2 / (1 + t^2)) sr. The shader sums w^2 f at the texels' middles,
   // f = (1 + x^2 + y^2)^(-3/2), which bends down nowhere by more than 3: each texel is above its integral by

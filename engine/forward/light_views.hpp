@@ -21,6 +21,9 @@ struct LightViews {
   double tangent = 1.0;                    ///< of half the opening angle of each view
   double near = 0.0, far = 1.0;
 
+  /// Where the light is in float, and a view's matrix for positions relative to there: rounded by what the light sees, not by where it stands.
+  glm::vec3 place() const { return glm::vec3(position); }
+  glm::mat4 clipFromPlace(std::size_t view) const;
   bool omnidirectional() const { return clipFromWorld.size() == 6; }
   /// Width of a texel at depth 1 along the view's axis, for a map of size x size texels a view.
   double texelWidth(int size) const { return 2.0 * tangent / size; }

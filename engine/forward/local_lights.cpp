@@ -16,21 +16,21 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
   shared::LightConstants constants{};
   for (std::size_t i = 0; i < spots.size(); ++i) {
     const LightViews& light = spots[i];
-    spotClip_.push_back(light.clipFromWorld.front());
-    constants.spots[i] = {glm::mat4(light.clipFromWorld.front()), glm::vec3(light.position), static_cast<float>(light.cosInner),
+    spotViews_.push_back({light.clipFromPlace(0), light.place()});
+    constants.spots[i] = {light.clipFromPlace(0), light.place(), static_cast<float>(light.cosInner),
                           glm::vec3(light.direction), static_cast<float>(light.cosOuter), light.intensity,
                           static_cast<float>(light.texelWidth(settings.spotSize))};
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const LightViews& light = points[i];
-    pointClip_.insert(pointClip_.end(), light.clipFromWorld.begin(), light.clipFromWorld.end());
+    for (std::size_t face = 0; face < light.clipFromWorld.size(); ++face) pointViews_.push_back({light.clipFromPlace(face), light.place()});
     // Window depth of a perspective view at the distance m along its axis: f / (f - n) - f n / ((f - n) m).
     const double span = light.far - light.near;
-    constants.points[i] = {glm::vec3(light.position), static_cast<float>(light.texelWidth(settings.pointSize)), light.intensity,
+    constants.points[i] = {light.place(), static_cast<float>(light.texelWidth(settings.pointSize)), light.intensity,
                            static_cast<float>(light.far * light.near / span), glm::vec3(0.0f), static_cast<float>(light.far / span)};
   }
   constants_ = gl::Buffer("lights", sizeof constants, &constants, GL_STATIC_DRAW);
-  const int spotLayers = static_cast<int>(spotClip_.size()), pointLayers = static_cast<int>(pointClip_.size());
+  const int spotLayers = static_cast<int>(spotViews_.size()), pointLayers = static_cast<int>(pointViews_.size());
   if (spotLayers > 0)
     spotShadows_.emplace(programs, scene, "spot shadows",
                          LayeredDepth::Shape{GL_TEXTURE_2D_ARRAY, settings.spotSize, spotLayers, spotLayers});

@@ -22,14 +22,14 @@ class LocalLights {
 
   bool hasSpots() const { return spotShadows_.has_value(); }
   bool hasPoints() const { return pointShadows_.has_value(); }
-  void recordSpots(const GpuScene& scene) const { spotShadows_->record(scene, spotClip_); }
-  void recordPoints(const GpuScene& scene) const { pointShadows_->record(scene, pointClip_); }
+  void recordSpots(const GpuScene& scene) const { spotShadows_->record(scene, spotViews_); }
+  void recordPoints(const GpuScene& scene) const { pointShadows_->record(scene, pointViews_); }
   /// Binds block 3 and units 10 (spots) and 11 (points) for shaders/forward/lights.glsl.
   void bindForShading() const;
   std::size_t gpuBytes() const;
 
  private:
-  std::vector<glm::dmat4> spotClip_, pointClip_;
+  std::vector<LayeredDepth::View> spotViews_, pointViews_;
   std::optional<LayeredDepth> spotShadows_;   ///< a layer a spot
   std::optional<LayeredDepth> pointShadows_;  ///< six layers a light, a cube map
   gl::Buffer constants_;

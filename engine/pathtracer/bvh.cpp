@@ -1,5 +1,7 @@
 #include "pathtracer/bvh.hpp"
 
+#include "scene/place.hpp"
+
 #include "base/error.hpp"
 
 #include <algorithm>
@@ -57,17 +59,6 @@ bool hasArea(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return std::isfinite(sum) && sum > 0.0;
 }
 
-// Along an axis where the scene lies between m and 2 m from the origin, x - c is exact in float for every x in it [Sterbenz1974].
-glm::dvec3 chooseOrigin(const Box& bounds) {
-  glm::dvec3 origin(0.0);
-  for (int k = 0; k < 3; ++k) {
-    const float low = bounds.min[k], high = bounds.max[k];
-    if (low <= high && (low > 0.0f || high < 0.0f) && std::max(std::abs(low), std::abs(high)) <= 2.0f * std::min(std::abs(low), std::abs(high)))
-      origin[k] = 0.5f * low + 0.5f * high;
-  }
-  return origin;
-}
-
 // The triangles that rays can hit, in the space of the hierarchy, in the order of the scene.
 struct Triangles {
   std::vector<BvhTriangle> kept;
@@ -91,7 +82,7 @@ Triangles collect(const Scene& scene) {
     bounds.add(boxOf(triangle));
     result.kept.push_back(triangle);
   }
-  result.origin = chooseOrigin(bounds);
+  result.origin = exactOrigin({glm::dvec3(bounds.min), glm::dvec3(bounds.max)});
   for (BvhTriangle& triangle : result.kept)
     for (glm::vec3* corner : {&triangle.a, &triangle.b, &triangle.c}) {
       *corner = glm::vec3(glm::dvec3(*corner) - result.origin);

@@ -5,6 +5,8 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace lucerna {
 
 namespace {
@@ -50,8 +52,8 @@ std::string_view nameOf(RadiosityView::Direct direct) {
   return "?";
 }
 
-RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings)
-    : settings_(settings), solution_(solveOrLoad(context, programs, scene, settings)), lit_(litScene(scene, solution_.mesh)) {
+RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings, const glm::dvec3& origin)
+    : settings_(settings), solution_(solveOrLoad(context, programs, scene, settings)), lit_(litScene(scene, solution_.mesh, origin)) {
   std::vector<glm::dvec3> patchLight = solution_.irradiance;
   for (std::size_t i = 0; i < patchLight.size(); ++i) {
     const glm::dvec3 direct = solution_.direct[i] + solution_.fromEmitters[i];
@@ -69,9 +71,15 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
     }
   light_ = gl::Buffer("radiosity light", corners.size() * sizeof(float), corners.data(), GL_STATIC_DRAW);
   if (settings.direct != Direct::pixels) return;
+  // A face's plane, and the largest coordinate of the triangle that it is part of: that is what rounds where rays meet it.
   std::vector<float> faces;
-  for (const Patch& patch : solution_.mesh.patches)
-    for (int c = 0; c < 3; ++c) faces.push_back(static_cast<float>(patch.faceNormal[c]));
+  for (const Patch& patch : solution_.mesh.patches) {
+    const glm::vec3 normal(patch.faceNormal);
+    glm::dvec3 largest(0.0);
+    for (std::size_t k = 0; k < 3; ++k) largest = glm::max(largest, glm::abs(glm::dvec3(scene.vertices[scene.indices[3 * patch.triangle + k]].position) - origin));
+    faces.insert(faces.end(), {normal.x, normal.y, normal.z, static_cast<float>(glm::dot(glm::dvec3(normal), solution_.mesh.corners(patch)[0] - origin)),
+                               static_cast<float>(std::max({largest.x, largest.y, largest.z}))});
+  }
   faces_ = gl::Buffer("radiosity faces", faces.size() * sizeof(float), faces.data(), GL_STATIC_DRAW);
 }
 

@@ -34,8 +34,8 @@ class RadiosityView {
     int shadowRays = 32;         ///< a pixel, divided among the emissive triangles; not read here
   };
 
-  /// Solves or loads; throws as solveScene and loadSolution do.
-  RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings);
+  /// Solves or loads; throws as solveScene and loadSolution do. scene() is drawn about `origin`.
+  RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings, const glm::dvec3& origin = glm::dvec3(0.0));
 
   /// What GpuScene is to draw: the patches.
   const Scene& scene() const { return lit_; }

@@ -8,6 +8,7 @@
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/hidden_parts.hpp"
 #include "radiosity/row_file.hpp"
+#include "scene/place.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -253,6 +254,13 @@ void removeCheckpoints(const std::filesystem::path& checkpoint) {
 
 RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& asked,
                              const std::filesystem::path& checkpoint, const std::function<bool(const RadiosityStage&)>& onStage) {
+  // Far from the origin float would not hold the patches: solved near it, told in the scene's own coordinates.
+  if (const glm::dvec3 origin = exactOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
+    RadiositySolution solution = solveScene(context, programs, movedTo(scene, origin), asked, checkpoint, onStage);
+    for (glm::dvec3& point : solution.mesh.points) point += origin;
+    for (Patch& patch : solution.mesh.patches) patch.centroid += origin;
+    return solution;
+  }
   const RadiositySolutionSettings settings = withDeviations(asked);
   PatchSettings patches = settings.patches;
   const glm::dvec3 extent = scene.bounds.extent();
@@ -290,13 +298,13 @@ std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution,
   return values;
 }
 
-Scene litScene(const Scene& scene, const RadiosityMesh& mesh) {
-  Scene lit = scene;
+Scene litScene(const Scene& scene, const RadiosityMesh& mesh, const glm::dvec3& origin) {
+  Scene lit = movedTo(scene, origin);
   lit.vertices.clear();
   lit.indices.clear();
   lit.meshes.clear();
   for (const Patch& patch : mesh.patches)
-    for (std::size_t k = 0; k < 3; ++k) lit.vertices.push_back({glm::vec3(mesh.points[patch.point[k]]), patch.texCoord[k], patch.normal[k]});
+    for (std::size_t k = 0; k < 3; ++k) lit.vertices.push_back({glm::vec3(mesh.points[patch.point[k]] - origin), patch.texCoord[k], patch.normal[k]});
   std::vector<std::vector<std::uint32_t>> ofMaterial(scene.materials.size());
   for (std::uint32_t i = 0; i < mesh.patches.size(); ++i) ofMaterial[static_cast<std::size_t>(mesh.patches[i].material)].push_back(i);
   for (std::size_t m = 0; m < ofMaterial.size(); ++m) {

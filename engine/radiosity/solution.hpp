@@ -75,8 +75,8 @@ void removeCheckpoints(const std::filesystem::path& checkpoint);
 /// count less.
 std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution, std::span<const glm::dvec3> ofPatches);
 
-/// The patches as a scene of their own, three vertices a patch in order, so that gl_VertexID finds a corner's light.
-Scene litScene(const Scene& scene, const RadiosityMesh& mesh);
+/// The patches as a scene of their own, three vertices a patch in order, so that gl_VertexID finds a corner's light; about `origin`.
+Scene litScene(const Scene& scene, const RadiosityMesh& mesh, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// A finished solution. Versioned, checked, written whole or not at all; loading one of another scene, or damaged, throws Error(badInput).
 void saveSolution(const std::filesystem::path& file, const Scene& scene, const RadiositySolution& solution);

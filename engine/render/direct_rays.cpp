@@ -38,7 +38,7 @@ std::size_t DirectRays::emitterCount(const Scene& scene) {
   return emittersOf(scene, mesh).size();
 }
 
-DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays) : rays_(scene, capabilities) {
+DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays, const glm::dvec3& pixelOrigin) : rays_(scene, capabilities) {
   RadiosityMesh mesh;
   const std::vector<Patch> emitters = emittersOf(scene, mesh);
   const glm::dvec3 origin = rays_.origin();
@@ -60,7 +60,7 @@ DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities,
   std::vector<std::uint8_t> bytes;
   const auto put = [&](const void* data, std::size_t size) { bytes.insert(bytes.end(), static_cast<const std::uint8_t*>(data), static_cast<const std::uint8_t*>(data) + size); };
   put(head, sizeof head);
-  const glm::vec4 start = vec(origin);
+  const glm::vec4 start = vec(origin - pixelOrigin);
   put(&start, sizeof start);
   if (lights.empty()) lights.emplace_back();
   put(lights.data(), lights.size() * sizeof(Light));

@@ -16,8 +16,8 @@ class DirectRays {
   static constexpr std::size_t kMostEmitters = 64;
   static std::size_t emitterCount(const Scene& scene);
 
-  /// `rays`: a pixel, divided among the emissive triangles (at least one each).
-  DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays);
+  /// `rays`: a pixel, divided among the emissive triangles (at least one each). `origin`: of the positions that pixels ask from, in the scene's coordinates.
+  DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays, const glm::dvec3& origin = glm::dvec3(0.0));
   void bind() const;  ///< storage block 1, texture units 60 and 61
   /// Work of a pixel, about: gl/pieces.hpp.
   double turnsOfPixel() const { return turnsOfPixel_; }

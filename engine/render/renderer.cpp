@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "scene/place.hpp"
 #include "shared/frame.h"
 #include "shared/sun_cascades.h"
 
@@ -49,7 +50,8 @@ T parseNamed(std::string_view name, std::string_view option, std::initializer_li
   throwBadInput("--{} {}: unknown; there are {}", option, name, known);
 }
 
-std::unique_ptr<RadiosityView> makeRadiosity(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings) {
+std::unique_ptr<RadiosityView> makeRadiosity(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings,
+                                             const glm::dvec3& origin) {
   if (settings.technique != Technique::radiosity) return nullptr;
   using Light = RadiosityView::Light;
   RadiosityView::Settings view = settings.radiosity;
@@ -60,7 +62,7 @@ std::unique_ptr<RadiosityView> makeRadiosity(const gl::Context& context, gl::Pro
       view.direct = RadiosityView::Direct::patches;
     }
   }
-  return std::make_unique<RadiosityView>(context, programs, scene, view);
+  return std::make_unique<RadiosityView>(context, programs, scene, view, origin);
 }
 
 }  // namespace
@@ -95,18 +97,21 @@ Component parseComponent(std::string_view name) {
 Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings)
     : settings_(settings),
       needs_(analyse(scene)),
+      origin_(exactOrigin(scene.bounds)),
       showsDirect_(needs_.anyLight() && settings.component != Component::indirect && settings.technique != Technique::radiosity),
       showsLpv_(settings.technique == Technique::lpv && settings.component != Component::direct && LightPropagationVolume::isNeeded(needs_)),
       showsGather_(settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs_)),
       exposure_(scene.exposure),
       timer_(context.capabilities().softwareRenderer),
-      radiosity_(makeRadiosity(context, programs, scene, settings)),
-      gpuScene_(radiosity_ ? radiosity_->scene() : scene, needs_, context.capabilities(), settings.textures),
+      radiosity_(makeRadiosity(context, programs, scene, settings, origin_)),
+      gpuScene_(radiosity_ ? radiosity_->scene() : aboutOrigin(scene), needs_, context.capabilities(), settings.textures),
       frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, GL_DYNAMIC_DRAW),
       noAttributes_("full screen") {
-  if (scene.sun) sunFrustum_ = fitSunFrustum(scene, scene.sun->direction);
-  spots_ = spotViews(scene);
-  points_ = pointViews(scene);
+  if (moved_) moved_->textures.clear();  // they are on the GPU
+  const Scene& drawn = gpuScene_.scene();
+  if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
+  spots_ = spotViews(drawn);
+  points_ = pointViews(drawn);
   const bool showsSun = showsDirect_ && ShadowMap::isNeeded(needs_);
   const int cascades = settings.sunCascades.cascades > 1 && showsSun ? settings.sunCascades.cascades : 0;
   if (cascades > 0) {
@@ -160,7 +165,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     if (showsLpv_) flags.insert(flags.end(), lookup.begin(), lookup.end());
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
   };
-  if (radiosity_ && radiosity_->takesDirectRays()) directRays_.emplace(scene, context.capabilities(), settings.radiosity.shadowRays);
+  if (radiosity_ && radiosity_->takesDirectRays()) directRays_.emplace(scene, context.capabilities(), settings.radiosity.shadowRays, origin_);
   if (radiosity_) {
     surfacePrograms_ = radiosity_->loadPrograms(programs, gpuScene_);
   } else {
@@ -174,6 +179,10 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   if (!toneMap_) toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
   allocateTargets();
   if (showsGather_) gather_.emplace(programs, gpuScene_, settings.gather, depth_);
+}
+
+const Scene& Renderer::aboutOrigin(const Scene& scene) {
+  return origin_ == glm::dvec3(0.0) ? scene : moved_.emplace(movedTo(scene, origin_));
 }
 
 void Renderer::allocateTargets() {
@@ -203,16 +212,16 @@ void Renderer::recordShadows(const Camera& camera) {
     const Scene& scene = gpuScene_.scene();
     const double aspect = static_cast<double>(settings_.size.x) / settings_.size.y;
     shared::SunCascadeConstants constants{};
-    std::vector<glm::dmat4> clip;
+    std::vector<LayeredDepth::View> views;
     for (const SunCascade& cascade : placeSunCascades(settings_.sunCascades, scene, scene.sun->direction, sunFrustum_, camera, aspect,
                                                       nearPlane(scene.bounds), sunCascades_->size())) {
-      constants.clipFromWorld[clip.size()] = glm::mat4(cascade.clipFromWorld);
-      constants.normalOffset[static_cast<int>(clip.size())] = kShadowNormalOffset * static_cast<float>(cascade.texel);
-      clip.push_back(cascade.clipFromWorld);
+      constants.clipFromWorld[views.size()] = glm::mat4(cascade.clipFromWorld);
+      constants.normalOffset[static_cast<int>(views.size())] = kShadowNormalOffset * static_cast<float>(cascade.texel);
+      views.push_back({glm::mat4(cascade.clipFromWorld), glm::vec3(0.0f)});
     }
     sunCascadeConstants_.upload(0, sizeof constants, &constants);
     sunCascadeConstants_.bind(GL_UNIFORM_BUFFER, kSunCascadeBinding);
-    sunCascades_->record(gpuScene_, clip);
+    sunCascades_->record(gpuScene_, views);
   }
   if (localLights_ && localLights_->hasSpots()) {
     const gl::TimeQuery::Scope stage(timer_, "spot shadows");
@@ -249,7 +258,10 @@ std::vector<ReflectiveShadowMap::Outputs> Renderer::recordCameraMap(const Camera
   return {cameraMap_->record(gpuScene_, lightViews(eye, gpuScene_.scene().bounds))};
 }
 
-void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
+void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInScene) {
+  Camera camera = cameraInScene, volumeCamera = volumeCameraInScene;
+  camera.position -= origin_;
+  volumeCamera.position -= origin_;
   const Scene& scene = gpuScene_.scene();
   const glm::dmat4 exactClip = clipFromWorld(camera, scene.bounds, settings_.size);
   const glm::mat4 cameraClip(exactClip);

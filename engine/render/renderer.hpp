@@ -56,6 +56,7 @@ struct RenderSettings {
 class Renderer {
  public:
   /// Compiles and allocates what `scene` and `settings` need, and nothing else. The scene must outlive the renderer.
+  /// A scene far from the origin is drawn moved to it (scene/place.hpp), with cameras and lamps, so that its picture is that of the same scene near it.
   Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings);
 
   /// One frame: the HDR picture, then the display picture. Stages are timed.
@@ -86,6 +87,7 @@ class Renderer {
   std::vector<std::string> leftOut() const;
 
  private:
+  const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ where that is another
   void allocateTargets();
   void recordShadows(const Camera& camera);
   std::vector<ReflectiveShadowMap::Outputs> recordReflectiveShadowMaps();
@@ -93,6 +95,8 @@ class Renderer {
 
   RenderSettings settings_;
   SceneNeeds needs_;
+  glm::dvec3 origin_;                ///< of what is drawn, in the scene's coordinates
+  std::optional<Scene> moved_;       ///< the scene about it, where that is not 0
   bool showsDirect_;  ///< direct light of any kind
   bool showsLpv_, showsGather_;
   float exposure_;

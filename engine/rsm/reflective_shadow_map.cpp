@@ -68,9 +68,11 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, 
   CHECK(light_ == (light.omnidirectional() ? Light::point : Light::spot), "a map of light kind {}", static_cast<int>(light_));
   for (const gl::Program* program : {programs_.opaque, programs_.masked}) {
     if (!program) continue;
-    for (std::size_t i = 0; i < light.clipFromWorld.size(); ++i)
-      program->set(fmt::format("clipFromWorld[{}]", i), glm::mat4(light.clipFromWorld[i]));
-    program->set("lightPosition", glm::vec3(light.position));
+    for (std::size_t i = 0; i < light.clipFromWorld.size(); ++i) {
+      program->set(fmt::format("clipFromPlace[{}]", i), light.clipFromPlace(i));
+      program->set(fmt::format("viewPlace[{}]", i), light.place());
+    }
+    program->set("lightPosition", light.place());
     program->set("lightIntensity", light.intensity);
     program->set("lightTangent", static_cast<float>(light.tangent));
     program->set("texelWidth", static_cast<float>(light.texelWidth(size())));

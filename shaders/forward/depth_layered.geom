@@ -10,7 +10,7 @@ out vec2 vTexCoord;
 
 void main() {
   vec4 clip[3];
-  for (int i = 0; i < 3; ++i) clip[i] = clipFromWorld[gl_InvocationID] * gl_in[i].gl_Position;
+  for (int i = 0; i < 3; ++i) clip[i] = clipOf(gl_in[i].gl_Position, gl_InvocationID);
   if (beyondOneSide(clip[0], clip[1], clip[2])) return;
   for (int i = 0; i < 3; ++i) {
     gl_Position = clip[i];

@@ -25,7 +25,7 @@ Arriving spotLight(int i, vec3 position, vec3 normal) {
   float falloff = spotFalloff(-dot(result.toLight, lights.spots[i].direction), lights.spots[i].cosInner, lights.spots[i].cosOuter);
   if (result.cosine <= 0.0 || falloff <= 0.0) return result;
   float depth = -dot(away, lights.spots[i].direction);
-  vec4 clip = lights.spots[i].clipFromWorld * vec4(position + normal * (kNormalOffset * lights.spots[i].shadowTexel * depth), 1.0);
+  vec4 clip = lights.spots[i].clipFromPlace * vec4(normal * (kNormalOffset * lights.spots[i].shadowTexel * depth) - away, 1.0);
   float visible = clip.w > 0.0 ? shadowTent(spotShadows, float(i), 0.5 * clip.xyz / clip.w + 0.5) : 1.0;
   result.irradiance = lights.spots[i].intensity * (falloff * result.cosine / distance2 * visible);
   return result;

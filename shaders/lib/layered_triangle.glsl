@@ -1,6 +1,9 @@
 // A triangle sent to several views of a layered target, an instance of the geometry shader each. Triangles wholly beyond one
 // side of a view's frustum are dropped here: of the six views of a cube most see few.
-uniform mat4 clipFromWorld[LAYERS];
+uniform mat4 clipFromPlace[LAYERS];  // of positions relative to viewPlace
+uniform vec3 viewPlace[LAYERS];
+
+vec4 clipOf(vec4 position, int layer) { return clipFromPlace[layer] * vec4(position.xyz - viewPlace[layer], 1.0); }
 
 bool beyondOneSide(vec4 a, vec4 b, vec4 c) {
   vec3 x = vec3(a.x, b.x, c.x), y = vec3(a.y, b.y, c.y), z = vec3(a.z, b.z, c.z), w = vec3(a.w, b.w, c.w);

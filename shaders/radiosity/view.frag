@@ -11,6 +11,7 @@ in vec3 vCorner;
 #include "render/direct_rays.glsl"
 in vec3 vNormal;
 flat in vec3 vFace;
+flat in vec2 vFacePlace;
 #endif
 layout(location = 0) out vec4 radiance;
 #if EMISSION
@@ -29,7 +30,7 @@ void main() {
 #if DIRECT_RAYS
     // Where shading normals are none or turned away the face's own is taken, as in the solution.
     vec3 normal = dot(vNormal, vFace) > 0.0 ? normalize(vNormal) : vFace;
-    irradiance += directIrradiance(vPosition, normal, vFace);
+    irradiance += directIrradiance(vPosition, normal, vFace, vFacePlace.x, vFacePlace.y);
 #endif
     result = albedo * irradiance / kPi;
 #if EMISSION

@@ -5,9 +5,10 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
 #if DIRECT_RAYS
 layout(location = 2) in vec3 normal;
-layout(std430, binding = 2) readonly buffer Faces { float faceNormals[]; };  // three floats a patch
+layout(std430, binding = 2) readonly buffer Faces { float faces[]; };  // five floats a patch: normal, distance of its plane, largest coordinate
 out vec3 vNormal;
 flat out vec3 vFace;
+flat out vec2 vFacePlace;
 #endif
 layout(std430, binding = 0) readonly buffer Light { float irradiances[]; };  // three floats a corner
 out vec3 vPosition;
@@ -22,8 +23,9 @@ void main() {
   vTexCoord = texCoord;
   vCorner = vec3(gl_VertexID % 3 == 0, gl_VertexID % 3 == 1, gl_VertexID % 3 == 2);
 #if DIRECT_RAYS
-  int face = 3 * (gl_VertexID / 3);
-  vFace = vec3(faceNormals[face], faceNormals[face + 1], faceNormals[face + 2]);
+  int face = 5 * (gl_VertexID / 3);
+  vFace = vec3(faces[face], faces[face + 1], faces[face + 2]);
+  vFacePlace = vec2(faces[face + 3], faces[face + 4]);
   vNormal = normal;
 #endif
   gl_Position = frame.clipFromWorld * vec4(position, 1.0);

@@ -11,7 +11,8 @@ out vec3 vPosition;
 out vec3 vNormal;
 out vec2 vTexCoord;
 #if PERSPECTIVE
-uniform mat4 clipFromWorld[1];
+uniform mat4 clipFromPlace[1];  // of positions relative to viewPlace
+uniform vec3 viewPlace[1];
 #endif
 #endif
 
@@ -25,7 +26,7 @@ void main() {
   vNormal = normal;
   vTexCoord = texCoord;
 #if PERSPECTIVE
-  gl_Position = clipFromWorld[0] * vec4(position, 1.0);
+  gl_Position = clipFromPlace[0] * vec4(position - viewPlace[0], 1.0);
 #else
   gl_Position = frame.sunClipFromWorld * vec4(position, 1.0);
 #endif

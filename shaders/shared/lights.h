@@ -8,7 +8,7 @@ SHARED_BEGIN
 #define LIGHTS_MAX_POINTS 4
 
 struct SpotLightConstants {
-  mat4 clipFromWorld;  // perspective, of its shadow map
+  mat4 clipFromPlace;  // perspective, of its shadow map, for positions relative to `position`
   vec3 position;
   float cosInner;      // of the half angle of the cone of full intensity
   vec3 direction;      // unit, along the axis
