@@ -67,15 +67,21 @@ LightViews lightViews(const PointLight& light, const Bounds& scene) {
 
 std::vector<LightViews> spotViews(const Scene& scene) {
   std::vector<LightViews> views;
-  for (const SpotLight& light : scene.spots)
-    if (largest(light.intensity) > 0.0f) views.push_back(lightViews(light, scene.bounds));
+  for (std::size_t i = 0; i < scene.spots.size(); ++i)
+    if (largest(scene.spots[i].intensity) > 0.0f) {
+      views.push_back(lightViews(scene.spots[i], scene.bounds));
+      views.back().index = i;
+    }
   return views;
 }
 
 std::vector<LightViews> pointViews(const Scene& scene) {
   std::vector<LightViews> views;
-  for (const PointLight& light : scene.points)
-    if (largest(light.intensity) > 0.0f) views.push_back(lightViews(light, scene.bounds));
+  for (std::size_t i = 0; i < scene.points.size(); ++i)
+    if (largest(scene.points[i].intensity) > 0.0f) {
+      views.push_back(lightViews(scene.points[i], scene.bounds));
+      views.back().index = i;
+    }
   return views;
 }
 

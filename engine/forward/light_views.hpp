@@ -20,6 +20,7 @@ struct LightViews {
   std::vector<glm::dmat4> clipFromWorld;   ///< 1 or 6
   double tangent = 1.0;                    ///< of half the opening angle of each view
   double near = 0.0, far = 1.0;
+  std::size_t index = 0;                   ///< in the scene's list of its kind
 
   /// Where the light is in float, and a view's matrix for positions relative to there: rounded by what the light sees, not by where it stands.
   glm::vec3 place() const { return glm::vec3(position); }

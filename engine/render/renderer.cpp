@@ -112,6 +112,10 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   spots_ = spotViews(drawn);
   points_ = pointViews(drawn);
+  if ((showsDirect_ || showsLpv_) && LocalLights::isNeeded(needs_)) {
+    keepMostImportant(programs, gpuScene_, spots_, kMaxSpotLights);
+    keepMostImportant(programs, gpuScene_, points_, kMaxPointLights);
+  }
   const bool showsSun = showsDirect_ && ShadowMap::isNeeded(needs_);
   const int cascades = settings.sunCascades.cascades > 1 && showsSun ? settings.sunCascades.cascades : 0;
   if (cascades > 0) {

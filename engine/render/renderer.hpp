@@ -16,6 +16,7 @@
 #include "pathtracer/path_deviations.hpp"
 #include "radiosity/radiosity_view.hpp"
 #include "render/direct_rays.hpp"
+#include "rsm/lamp_choice.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 #include "rsm/rsm_gather.hpp"
 #include "scene/needs.hpp"

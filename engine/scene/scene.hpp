@@ -106,7 +106,7 @@ struct PointLight {
 
 /// One perspective shadow map serves a spot light, so its cone must stay clear of a half space: 80 degrees.
 inline constexpr double kLargestSpotAngle = 80.0 * 3.14159265358979323846 / 180.0;
-/// How many of a kind a scene may have: what the shaders' arrays hold.
+/// How many of a kind are drawn with shadow maps: what the shaders' arrays hold. A scene may have more (rsm/lamp_choice.hpp).
 inline constexpr std::size_t kMaxSpotLights = LIGHTS_MAX_SPOTS;
 inline constexpr std::size_t kMaxPointLights = LIGHTS_MAX_POINTS;
 
@@ -136,8 +136,8 @@ struct Scene {
   std::vector<Texture> textures;
   std::optional<DirectionalLight> sun;
   bool defaultSun = false;             ///< no file named a light, so the sun is ours
-  std::vector<SpotLight> spots;        ///< at most kMaxSpotLights
-  std::vector<PointLight> points;      ///< at most kMaxPointLights
+  std::vector<SpotLight> spots;
+  std::vector<PointLight> points;
   std::vector<Medium> media;
   int cameraMedium = -1;               ///< index of the medium that the camera is in where no boundary tells; -1: vacuum
   std::optional<Environment> environment;  ///< lights the scene in the path tracer and is seen behind it

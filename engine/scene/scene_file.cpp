@@ -6,8 +6,8 @@
 //   "cameras":     an array of such, each with a "name"; instead of "camera"
 //   "sun":         {"direction": [x,y,z] along which the light travels, "irradiance": [r,g,b]}, or null for none
 //   "spots":       [{"position": [x,y,z], "direction": [x,y,z] or "target": [x,y,z], "intensity": [r,g,b] on the axis, W/sr,
-//                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula}], at most 4
-//   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr}], at most 4
+//                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula}]
+//   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr}]
 //                  Where one of these is given and "sun" is not, there is no default sun.
 //   "background":  [r,g,b], radiance
 //   "exposure":    factor before tone mapping
@@ -127,9 +127,8 @@ PointLight readPoint(const Value& object) {
 }
 
 template <class Light>
-std::vector<Light> readLights(const Value& array, std::size_t most, Light (*read)(const Value&)) {
-  const std::string expected = fmt::format("an array of at most {} lights", most);
-  if (!array.json.is_array() || array.json.size() > most) array.fail(expected);
+std::vector<Light> readLights(const Value& array, Light (*read)(const Value&)) {
+  if (!array.json.is_array()) array.fail("an array of lights");
   std::vector<Light> lights;
   for (std::size_t i = 0; i < array.json.size(); ++i) lights.push_back(read(array.at(i)));
   return lights;
@@ -194,8 +193,8 @@ Scene loadSceneFile(const std::filesystem::path& file) {
       {"camera", [&](const Value& v) { cameras = {readCamera(v)}; }},
       {"cameras", [&](const Value& v) { cameras = readCameras(v); }},
       {"sun", [&](const Value& v) { sun = v.json.is_null() ? std::nullopt : std::optional(readSun(v)); }},
-      {"spots", [&](const Value& v) { spots = readLights(v, kMaxSpotLights, readSpot); }},
-      {"points", [&](const Value& v) { points = readLights(v, kMaxPointLights, readPoint); }},
+      {"spots", [&](const Value& v) { spots = readLights(v, readSpot); }},
+      {"points", [&](const Value& v) { points = readLights(v, readPoint); }},
       {"background", [&](const Value& v) { background = v.light(); }},
       {"exposure", [&](const Value& v) { exposure = v.positiveNumber(); }},
       {"keyFrames", [&](const Value& v) { keyFrames = v.path(); }},

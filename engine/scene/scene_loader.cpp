@@ -573,9 +573,9 @@ void appendLights(Scene& scene, const aiScene& source) {
     const bool placed = isFinite(position) && isFinite(intensity);
     if (light.mType == aiLightSource_DIRECTIONAL && aimed && isFinite(colour) && !scene.sun) {
       scene.sun = DirectionalLight{glm::normalize(direction), colour};
-    } else if (light.mType == aiLightSource_POINT && placed && scene.points.size() < kMaxPointLights) {
+    } else if (light.mType == aiLightSource_POINT && placed) {
       scene.points.push_back({position, intensity});
-    } else if (light.mType == aiLightSource_SPOT && placed && aimed && light.mAngleOuterCone > 0.0f && scene.spots.size() < kMaxSpotLights) {
+    } else if (light.mType == aiLightSource_SPOT && placed && aimed && light.mAngleOuterCone > 0.0f) {
       // Assimp's angles are whole cones, but its glTF reader hands on that format's half angles.
       const double half = gltf ? 1.0 : 0.5;
       const double outer = std::min(half * light.mAngleOuterCone, kLargestSpotAngle);
@@ -588,8 +588,7 @@ void appendLights(Scene& scene, const aiScene& source) {
     }
   }
   if (others > 0)
-    logWarning("{}: {} lights are left out; one directional, {} spot and {} point lights and emissive surfaces are read", scene.file.string(),
-               others, kMaxSpotLights, kMaxPointLights);
+    logWarning("{}: {} lights are left out; one directional, spot and point lights and emissive surfaces are read", scene.file.string(), others);
   if (scene.sun || !scene.spots.empty() || !scene.points.empty()) return;
   scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
   scene.defaultSun = true;

@@ -630,6 +630,40 @@ TEST_F(LightsGl, CascadesShowTheShadowOfOneMapOnASmallScene) {
   }
 }
 
+// Six of each kind: the first is faint, the second bright but lights nothing of the room.
+TEST_F(LightsGl, OfManyLampsThoseThatLightTheSceneMostAreDrawn) {
+  LitScene few;
+  few.room(2.0);
+  for (int i = 0; i < 4; ++i) {
+    const glm::dvec3 at(0.8 * (i & 1 ? 1.0 : -1.0), 0.5, 0.8 * (i & 2 ? 1.0 : -1.0));
+    few.points.push_back({at, glm::vec3(1.0f + static_cast<float>(i))});
+    few.spots.push_back({at, glm::normalize(glm::dvec3(0.2 * i, -1.0, 0.1)), glm::vec3(3.0f), 0.3, 0.6});
+  }
+  LitScene many = few;
+  many.points.insert(many.points.begin(), {{{0.0, 0.0, 0.0}, glm::vec3(0.01f)}, {{0.0, 1e4, 0.0}, glm::vec3(1000.0f)}});
+  many.spots.insert(many.spots.begin() + 1, {{{0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(0.01f), 0.3, 0.6}, {{0.0, 3.0, 0.0}, {0.0, 1.0, 0.0}, glm::vec3(1000.0f), 0.3, 0.6}});
+  for (const Technique technique : {Technique::direct, Technique::lpv}) {
+    const auto picture = [&](const LitScene& scene) {
+      Renderer renderer(context(), programs(), scene, settings(technique, {48, 48}));
+      renderer.render(viewFrom({0, 1.5, 1.8}, {0, -0.6, -1}, 1.2));
+      return renderer.readRadiance();
+    };
+    ::testing::internal::CaptureStderr();
+    const Image ofMany = picture(many);
+    const std::string said = ::testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find("points[0, 1]"), std::string::npos) << said;
+    EXPECT_NE(said.find("spots[1, 2]"), std::string::npos) << said;
+    const Image ofFew = picture(few);
+    double largest = 0.0, mean = 0.0;
+    for (std::size_t i = 0; i < ofFew.pixels.size(); ++i) {
+      largest = std::max(largest, static_cast<double>(std::abs(ofMany.pixels[i].x - ofFew.pixels[i].x)));
+      mean += static_cast<double>(ofFew.pixels[i].x) / static_cast<double>(ofFew.pixels.size());
+    }
+    // The volume stores light in a unit that knows all lamps; direct light is the same bit by bit.
+    EXPECT_LE(largest, technique == Technique::direct ? 0.0 : 2e-3 * mean);
+  }
+}
+
 TEST_F(LightsGl, CascadesAreSharperNearTheCameraOfALargeScene) {
   const LitScene scene = columns(200.0, 4.0);
   const RenderSettings s = settings(Technique::direct, {160, 160});

@@ -185,6 +185,29 @@ TEST_F(PathTracerTest, EveryTexelOfALargeEnvironmentIsPicked) {
   }
 }
 
+// More than a raster picture draws.
+TEST_F(PathTracerTest, EveryLampOfManyGivesItsLight) {
+  Scene dark = openBox();
+  dark.sun.reset();
+  Scene all = dark;
+  PathTracer::Settings settings = sized(16);
+  settings.transport = Transport::direct;
+  PathTracer::Statistics sum;
+  for (int i = 0; i < 9; ++i) {
+    Scene one = dark;
+    const PointLight point{{i - 4.0, 3.0, 2.0 - 0.5 * i}, glm::vec3(2.0f + static_cast<float>(i))};
+    const SpotLight spot{{4.0 - i, 4.0, 1.0}, glm::normalize(glm::dvec3(0.1 * i, -1.0, -0.5)), glm::vec3(9.0f), 0.4, 0.7};
+    one.points.push_back(point), one.spots.push_back(spot);
+    all.points.push_back(point), all.spots.push_back(spot);
+    settings.seed = static_cast<std::uint32_t>(i + 1);
+    const PathTracer::Statistics s = tracer(one, openBoxCamera(), settings, 64).statistics();
+    sum.mean += s.mean;
+    sum.meanError = glm::sqrt(sum.meanError * sum.meanError + s.meanError * s.meanError);
+  }
+  settings.seed = 0;
+  EXPECT_LT(deviations(tracer(all, openBoxCamera(), settings, 256).statistics(), sum), 4.0);
+}
+
 TEST_F(PathTracerTest, SmallestPicturesAndScenes) {
   SceneBuilder empty;
   EXPECT_EQ(tracer(empty.scene(), lookingAt({0, 0, 1}, {0, 0, 0}), 1, 1).mean().pixels, std::vector<glm::vec3>{glm::vec3(0.0f)});
