@@ -26,11 +26,11 @@ vec2 directShift(uvec2 v) {
   return vec2(v >> 8) * 5.9604645e-8;
 }
 
-// position: of the pixel; normal: of shading; face: of the geometry; both unit, to the front. distance, magnitude: of the face's plane from the origin
-// along `face`, and the largest coordinate of the triangle that rays know it by. Interpolated over a large face, a position is off it by more
+// position: of the pixel; normal: of shading; face: of the geometry; both unit, to the front. plane, magnitude: the distance of the face's plane from the origin
+// along `face`, the largest coordinate of the triangle that rays know it by. Interpolated over a large face, a position is off it by more
 // than its own rounding: it is brought back to the plane, and a ray then starts beyond the rounding of that triangle, as a path's does.
-vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float distance, float magnitude) {
-  vec3 p = position - directOrigin.xyz - face * (dot(position, face) - distance), start = offsetRay(p, face, magnitude);
+vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float magnitude) {
+  vec3 p = position - directOrigin.xyz - face * (dot(position, face) - plane), start = offsetRay(p, face, magnitude);
   vec3 u = normalize(abs(normal.x) > 0.5 ? vec3(normal.y, -normal.x, 0.0) : vec3(0.0, normal.z, -normal.y)), v = cross(normal, u);
   vec2 shift = directShift(uvec2(gl_FragCoord.xy));
   vec3 sum = vec3(0.0);

@@ -139,6 +139,7 @@ TEST_F(PathTracerTest, AStoppedPictureIsOneOfWholePasses) {
     stopped.setCamera(camera);
     for (int i = 0; i < submissions; ++i) stopped.advance(3);
     PathTracer resumed(context(), library(), scene, settings);
+    resumed.setCamera(camera);
     resumed.resume(stopped.checkpoint(), "memory");
     const Image raw = stopped.mean();
     stopped.dropUnfinishedPass();
