@@ -2,11 +2,13 @@
 
 #include "base/data.hpp"
 #include "base/error.hpp"
+#include "base/hash.hpp"
 #include "base/log.hpp"
 #include "gl/objects.hpp"
 
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 
 namespace lucerna::gl {
 
@@ -30,6 +32,26 @@ std::string programLog(GLuint program) {
   glGetProgramInfoLog(program, length, nullptr, log.data());
   log.resize(log.find('\0') == std::string::npos ? log.size() : log.find('\0'));
   return log;
+}
+
+const char* suffixOf(GLenum stage) {
+  return stage == GL_VERTEX_SHADER ? "vert" : stage == GL_GEOMETRY_SHADER ? "geom" : stage == GL_FRAGMENT_SHADER ? "frag" : "comp";
+}
+
+/// LUCERNA_DUMP_PROGRAMS=FOLDER keeps what drivers are given, for other drivers and validators: FOLDER/HASH.vert .geom .frag .comp a stage, HASH.name the
+/// program's name. Programs of the same text are kept once.
+void dump(const std::string& name, const std::vector<std::pair<GLenum, std::string>>& texts) {
+  const char* folder = std::getenv("LUCERNA_DUMP_PROGRAMS");
+  if (!folder || !*folder) return;
+  Hash hash;
+  for (const auto& [stage, text] : texts) hash.bytes(text.data(), text.size());
+  fs::create_directories(folder);
+  const auto keep = [&](const char* suffix, const std::string& text) {
+    const fs::path file = fs::path(folder) / fmt::format("{:016x}.{}", hash.value(), suffix);
+    if (!(std::ofstream(file) << text)) throwBadInput("LUCERNA_DUMP_PROGRAMS={}: cannot write {}", folder, file.filename().string());
+  };
+  for (const auto& [stage, text] : texts) keep(suffixOf(stage), text);
+  keep("name", name + "\n");
 }
 
 }  // namespace
@@ -117,6 +139,7 @@ void ProgramLibrary::build(Program& program) {
   std::map<fs::path, fs::file_time_type> dependencies;
   const GLuint id = glCreateProgram();
   std::vector<GLuint> shaders;
+  std::vector<std::pair<GLenum, std::string>> texts;
   const auto fail = [&](const std::string& message, ErrorKind kind = ErrorKind::badInput) {
     for (GLuint shader : shaders) glDeleteShader(shader);
     glDeleteProgram(id);
@@ -140,6 +163,7 @@ void ProgramLibrary::build(Program& program) {
     const GLuint shader = glCreateShader(stage.type);
     shaders.push_back(shader);
     const char* text = source.text.c_str();
+    texts.emplace_back(stage.type, source.text);
     glShaderSource(shader, 1, &text, nullptr);
     glCompileShader(shader);
     GLint compiled = GL_FALSE;
@@ -153,6 +177,7 @@ void ProgramLibrary::build(Program& program) {
   GLint linked = GL_FALSE;
   glGetProgramiv(id, GL_LINK_STATUS, &linked);
   if (!linked) fail(fmt::format("does not link:\n{}", programLog(id)));
+  dump(description.name, texts);
   for (GLuint shader : shaders) {
     glDetachShader(id, shader);
     glDeleteShader(shader);

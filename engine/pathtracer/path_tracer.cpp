@@ -196,7 +196,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   filmSpread_ = gl::Texture("film spread", GL_RGBA32UI, settings.size);
   filmRest_ = gl::Texture("film rest", GL_RGBA32UI, settings.size);
   for (gl::Texture& texture : kept_) texture = gl::Texture("film kept", GL_RGBA32UI, tile);
-  program_ = &programs.loadCompute("path tracing", "pathtracer/path.comp", flags());
+  program_ = &programs.loadCompute("path tracing", "pathtracer/path.comp", kernelFlags());
   setCamera(scene.cameras.empty() ? Camera{} : scene.cameras.front());
 }
 
@@ -237,6 +237,12 @@ gl::ShaderFlags PathTracer::flags() const {
           {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
           {"FRESNEL_AMPLITUDES", settings_.deviations.fresnelAmplitudes},
           {"FRESNEL_SCHLICK", settings_.deviations.schlick}};
+}
+
+gl::ShaderFlags PathTracer::kernelFlags() const {
+  gl::ShaderFlags all = flags();
+  all.insert(all.end(), {{"SHARED_STACK", rays_.sharedStack()}, {"SHADOW_AT_ONCE", rays_.sharedStack() == 0 && !hasInteriors()}});
+  return all;
 }
 
 void PathTracer::addClearances(const Scene& scene) {

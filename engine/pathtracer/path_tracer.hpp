@@ -108,6 +108,8 @@ class PathTracer {
   void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
   void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured, const std::vector<float>& pickDensity);
   gl::ShaderFlags flags() const;
+  /// With those that do not decide the picture, but how it is made.
+  gl::ShaderFlags kernelFlags() const;
   bool hasInteriors() const { return needs_.dielectrics || needs_.nullBoundaries || needs_.media; }
   /// Grids of distances to the nearest triangle for the boundaries of dense media.
   void addClearances(const Scene& scene);

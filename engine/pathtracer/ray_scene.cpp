@@ -10,7 +10,8 @@ namespace lucerna {
 static_assert(sizeof(shared::BvhNode) == 16 * BVH_NODE_TEXELS && sizeof(shared::BvhTriangle) == 16 * BVH_TRIANGLE_TEXELS);
 
 RayScene::RayScene(const Scene& scene, const gl::Capabilities& capabilities, const Settings& settings)
-    : settings_(settings), limit_(16 * static_cast<std::size_t>(capabilities.maxTextureBufferSize)) {
+    : settings_(settings), limit_(16 * static_cast<std::size_t>(capabilities.maxTextureBufferSize)),
+      sharedStack_(settings.sharedStack.value_or(!capabilities.softwareRenderer)) {
   Bvh bvh = buildBvh(scene, settings_.bvh);
   upload(scene, bvh);
   if (settings_.moves) bvh_ = std::move(bvh);
@@ -39,6 +40,11 @@ void RayScene::upload(const Scene& scene, const Bvh& bvh) {
   put(triangles_, "bvh triangles", triangleBytes, words.data());
   origin_ = bvh.origin;
   statistics_ = bvh.statistics;
+}
+
+int RayScene::sharedStack() const {
+  if (!sharedStack_) return 0;
+  return settings_.moves ? BVH_MAX_DEPTH : std::min((std::max(statistics_.depth, 1) + 3) / 4 * 4, BVH_MAX_DEPTH);
 }
 
 void RayScene::bind() const {

@@ -14,6 +14,7 @@ namespace lucerna {
 struct RaySceneSettings {
   BvhSettings bvh;
   bool moves = false;  ///< update() will be called: the hierarchy is kept in main memory too
+  std::optional<bool> sharedStack;  ///< compute programs keep the stack of a traversal in shared memory; not set: they do but on software renderers
 };
 
 class RayScene {
@@ -29,6 +30,8 @@ class RayScene {
   void update(const Scene& scene);
 
   void bind() const;
+  /// Flag SHARED_STACK for compute programs of at most 64 invocations a group: entries of the stack, 0 where it is a local array.
+  int sharedStack() const;
   const glm::dvec3& origin() const { return origin_; }
   const BvhStatistics& statistics() const { return statistics_; }
   std::size_t gpuBytes() const { return nodes_.bytes() + triangles_.bytes(); }
@@ -38,6 +41,7 @@ class RayScene {
 
   Settings settings_;
   std::size_t limit_;  // bytes of a buffer texture
+  bool sharedStack_;
   std::optional<Bvh> bvh_;
   gl::BufferTexture nodes_, triangles_;
   glm::dvec3 origin_{0.0};

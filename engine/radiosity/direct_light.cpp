@@ -48,7 +48,7 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
   const double beyond = 4.0 * mesh.extent;
   const std::vector<glm::dvec2> centroids = partCentroids(parts);
 
-  const gl::Program& program = programs.loadCompute("direct light", "radiosity/blocked.comp", {{"ALPHA_MASKS", 0}});
+  const gl::Program& program = programs.loadCompute("direct light", "radiosity/blocked.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
 
   // Patches in runs whose rays fill one submission.
   constexpr std::size_t kRaysEach = 1 << 16;

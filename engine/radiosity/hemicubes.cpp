@@ -116,7 +116,7 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
     depthLarge_ = &programs.loadCompute("hemicube depth large", "radiosity/hemicube_depth.comp", {{"LARGE", 1}});
   } else if (settings_.visibility == HemicubeVisibility::rays) {
     rays_ = std::make_unique<RayScene>(sceneOf(mesh), capabilities);
-    traceRays_ = &programs.loadCompute("hemicube rays", "radiosity/hemicube_rays.comp", {{"ALPHA_MASKS", 0}});
+    traceRays_ = &programs.loadCompute("hemicube rays", "radiosity/hemicube_rays.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays_->sharedStack()}});
   } else {
     const glm::ivec3 layers(settings.resolution, settings.resolution, 5 * batch_);
     ItemBuffer& buffer = itemBuffer_.emplace();

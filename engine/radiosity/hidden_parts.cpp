@@ -83,7 +83,7 @@ void cut(Patch& patch, const RadiosityMesh& mesh, std::uint16_t hidden) {
 }  // namespace
 
 double cutHiddenParts(gl::ProgramLibrary& programs, const RayScene& rays, RadiosityMesh& mesh) {
-  const gl::Program& program = programs.loadCompute("hidden parts", "radiosity/hidden_parts.comp", {{"ALPHA_MASKS", 0}});
+  const gl::Program& program = programs.loadCompute("hidden parts", "radiosity/hidden_parts.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
   // One ray a part finds the patches that may have hidden parts; most scenes have none.
   std::vector<std::uint32_t> suspects(mesh.patches.size());
   std::iota(suspects.begin(), suspects.end(), 0u);

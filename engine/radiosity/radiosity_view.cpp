@@ -86,7 +86,7 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
 SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene) const {
   const auto load = [&](const char* name, bool masked) {
     gl::ShaderFlags flags = gpuScene.materialFlags(masked);
-    flags.insert(flags.end(), {{"EMISSION", gpuScene.needs().emission && settings_.light != Light::indirect}, {"MESH", settings_.mesh}, {"DIRECT_RAYS", takesDirectRays()}, {"ALPHA_MASKS", 0}});
+    flags.insert(flags.end(), {{"EMISSION", gpuScene.needs().emission && settings_.light != Light::indirect}, {"MESH", settings_.mesh}, {"DIRECT_RAYS", takesDirectRays()}, {"ALPHA_MASKS", 0}, {"SHARED_STACK", 0}});
     return &programs.loadRaster(name, "radiosity/view.vert", "radiosity/view.frag", flags);
   };
   SurfacePrograms result;

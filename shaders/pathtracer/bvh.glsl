@@ -117,7 +117,16 @@ struct BvhTraversal {
   int tested;      // triangles, for statistics
 };
 
+// Flag SHARED_STACK: entries of a stack in shared memory, as many as the hierarchy is deep (compute programs alone, after their local_size). On GPUs a local
+// array takes 64 registers a lane or lies in memory; 0: a local array, which software renderers are faster with.
+#if SHARED_STACK
+const uint kBvhLanes = gl_WorkGroupSize.x * gl_WorkGroupSize.y;
+shared uint bvhStackX[SHARED_STACK * kBvhLanes], bvhStackY[SHARED_STACK * kBvhLanes];
+uint bvhStackPlace(int entry) { return uint(entry) * kBvhLanes + gl_LocalInvocationIndex; }
+#else
 uint bvhStackX[BVH_MAX_DEPTH], bvhStackY[BVH_MAX_DEPTH];
+int bvhStackPlace(int entry) { return entry; }
+#endif
 
 // Of this invocation, so far: for kernels that must stop before a driver leaves all loops (llvmpipe does after 65,535 turns of a vector of lanes).
 uint loopTurns = 0u;
@@ -136,8 +145,8 @@ void advanceRay(inout BvhTraversal s, bool any) {
   s.siblings.y &= ~(0x01000000u << place);
   int node = BVH_NODE_TEXELS * int(s.siblings.x + uint(bitCount(s.siblings.y & ~(0xffffffffu << (uint(place) ^ s.ray.octant)) & 255u)));
   if (s.siblings.y > 0x00ffffffu) {
-    bvhStackX[s.top] = s.siblings.x;
-    bvhStackY[s.top] = s.siblings.y;
+    bvhStackX[bvhStackPlace(s.top)] = s.siblings.x;
+    bvhStackY[bvhStackPlace(s.top)] = s.siblings.y;
     ++s.top;
   }
   uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2), n3 = texelFetch(bvhNodes, node + 3),
@@ -171,7 +180,7 @@ void advanceRay(inout BvhTraversal s, bool any) {
   bool ended = any && s.hit.triangle != kNoHit;
   if (s.siblings.y <= 0x00ffffffu || ended) {
     s.top = ended ? -1 : s.top - 1;
-    if (s.top >= 0) s.siblings = uvec2(bvhStackX[s.top], bvhStackY[s.top]);
+    if (s.top >= 0) s.siblings = uvec2(bvhStackX[bvhStackPlace(s.top)], bvhStackY[bvhStackPlace(s.top)]);
   }
 }
 

@@ -67,11 +67,53 @@ uniform float cameraIor;     // and the index of refraction there
 #endif
 
 // What a light adds where the path now is.
-void addLight(inout Path path, vec3 light) {
+vec3 lightOf(Path path, vec3 light) {
 #if DIELECTRICS
   light *= cameraIor * cameraIor / (path.ior * path.ior);
 #endif
-  path.radiance += path.throughput * light;
+  return path.throughput * light;
+}
+void addLight(inout Path path, vec3 light) { path.radiance += lightOf(path, light); }
+
+// A lamp that was asked: its ray waits to be traced.
+struct Shadow {
+  bool waits;
+  bool infinite;
+  uint skip;
+  vec3 light;      // what it adds to the path's radiance where nothing is in the way
+  vec3 origin;
+  vec3 direction;  // to the lamp, its length the distance; unit to one at infinity
+#if INTERIORS
+  float tMin;
+  float from;      // where the present medium begins
+  float ior;
+  uint crossed;    // boundaries
+  uvec4 inside;    // of which closed boundaries
+  uvec4 words;     // random
+#endif
+};
+Shadow shadow;
+
+#if INTERIORS
+#include "pathtracer/boundary.glsl"
+const uint kPurposeTransmittance = kFreePurpose + 3u;
+#endif
+
+// start: where the ray begins, on the triangle `skip`.
+void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint skip, PathNumbers numbers) {
+  shadow.waits = true;
+  shadow.infinite = light.infinite;
+  shadow.skip = skip;
+  shadow.light = lightOf(path, contribution);
+  shadow.origin = start;
+  shadow.direction = light.infinite ? light.direction : light.end - start;
+#if INTERIORS
+  shadow.tMin = shadow.from = 0.0;
+  shadow.ior = iorInside(path.inside);
+  shadow.crossed = 0u;
+  shadow.inside = path.inside;
+  shadow.words = randomWords(numbers, path.event, kPurposeTransmittance);
+#endif
 }
 
 #if MEDIA
@@ -134,19 +176,6 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   path.ior = cameraIor;
 #endif
   return path;
-}
-
-// How much light gets through on a straight line; nothing that refracts lets any through.
-vec3 visibility(Path path, Surface surface, uint triangle, LightSample light, PathNumbers numbers) {
-  float side = dot(light.direction, surface.geometricNormal) > 0.0 ? 1.0 : -1.0;
-  vec3 start = beside(surface, side * surface.geometricNormal);
-#if INTERIORS
-  return straightTransmittance(start, light.infinite ? light.direction : light.end, light.infinite, triangle, path.inside,
-                               randomWords(numbers, path.event, kPurposeTransmittance));
-#else
-  Ray ray = light.infinite ? Ray(start, 0.0, light.direction, 3e38) : Ray(start, 0.0, light.end - start, 1.0);
-  return anyHit(ray, triangle) ? vec3(0.0) : vec3(1.0);
-#endif
 }
 
 // What a surface does to light where a path has met it. Lambert: `albedo` is its reflectance; mirrors, conductors: reflectance at normal incidence.
@@ -249,7 +278,7 @@ bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float 
 
 #if NEXT_EVENT
 // iorBeyond, beyond: refractive index behind the surface, and the boundaries around that side.
-void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float iorBeyond, uvec4 beyond, PathNumbers numbers, inout vec3 radiance) {
+void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float iorBeyond, uvec4 beyond, PathNumbers numbers) {
   LightSample light;
   if (!sampleLight(surface.position, randomPair(numbers, path.event, kPurposeLight), randomWords(numbers, path.event, kPurposePick), light)) return;
   float side = dot(light.direction, surface.geometricNormal), pdf;
@@ -271,27 +300,15 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
   if (path.ior != 1.0) return;  // a lamp beyond a boundary that refracts lies on no straight line
 #endif
   if (all(equal(contribution, vec3(0.0)))) return;
-  addLight(path, contribution * visibility(path, surface, triangle, light, numbers));
-  radiance = path.radiance;
+  askLight(path, contribution, beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal), light, triangle, numbers);
 }
 #endif
 
-// Follows the path's ray to what it meets and on from there; false where the path has ended.
-bool extend(inout Path path, PathNumbers numbers) {
-#if MEDIA
-  // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
-  int medium = mediumInside(path.inside);
-  float flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
-#if WALKS
-  if (medium >= 0 && !walk(path, media[medium], flight, numbers)) return false;
-#endif
-  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, flight + flightMargin()), path.skip);
-  if (medium >= 0) {
-    int became = crossMedium(path, media[medium], flight, hit, numbers);
-    if (became != kArrives) return became == kScattered;
-  }
+// What the path's ray has met, and on from there; false where the path has ended.
+#if TOUCHING
+bool meet(inout Path path, Hit hit, uvec4 beyond, uvec4 before, PathNumbers numbers) {
 #else
-  Hit hit = closestHit(Ray(path.origin, 0.0, path.direction, 3e38), path.skip);
+bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #endif
   if (hit.triangle == kNoHit) {
 #if ENVIRONMENT
@@ -308,26 +325,15 @@ bool extend(inout Path path, PathNumbers numbers) {
     return false;
   }
   Surface surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+#if INTERIORS
+  int rank = int(materials[surface.material].boundary);
+#endif
+#if !TOUCHING
   uvec4 beyond = uvec4(0u);  // of which closed boundaries the other side is
 #if INTERIORS
   beyond = path.inside;
-  uvec4 before = path.inside;  // and the place where a reflected ray starts
-  int rank = int(materials[surface.material].boundary);
-  if (rank >= 0) {
-    bool right = crossBoundary(beyond, rank, surface.front);
-#if TOUCHING
-    // What else the step beyond crosses: a face that coincides with this one is of the same interface.
-    Hit opaque = crossBesides(beyond, before, surface.position, -gapAt(surface) * surface.geometricNormal, hit.triangle);
-    if (opaque.triangle != kNoHit) {  // a wall right behind is what the path has met, from where it is
-      rank = -1;
-      beyond = before = path.inside;
-      hit.triangle = opaque.triangle;
-      hit.barycentrics = opaque.barycentrics;
-      surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
-    } else
+  if (rank >= 0 && !crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
 #endif
-    if (!right) atomicAdd(wrongCrossings, 1u);
-  }
 #endif
   PathMaterial material = materials[surface.material];
   path.travelled += hit.t;
@@ -365,7 +371,7 @@ bool extend(inout Path path, PathNumbers numbers) {
 #endif
   ++path.scatterings;
 #if NEXT_EVENT
-  if (!isSmooth(facet) && counts(path.scatterings)) addNextEvent(path, surface, hit.triangle, facet, iorBeyond, beyond, numbers, path.radiance);
+  if (!isSmooth(facet) && counts(path.scatterings)) addNextEvent(path, surface, hit.triangle, facet, iorBeyond, beyond, numbers);
 #endif
 #if UNOCCLUDED
   if (path.scatterings == 2u && facet.kind == PATH_DIFFUSE) {  // nothing is in the way: on to the surfaces behind
@@ -423,6 +429,21 @@ vec3 twoSum(vec3 a, vec3 b, out vec3 rest) {
   return sum;
 }
 
+// A lane's job: which ray it traces.
+const uint kPathRay = 0u;
+const uint kShadowRay = 1u;
+const uint kBesidesRay = 2u;  // the short one across a boundary
+
+// Its stages: what is to be done next.
+const int kTraces = 0;
+const int kLit = 1;      // a shadow ray has been followed to its end
+const int kFlies = 2;    // the path's ray was traced
+const int kFlown = 3;    // and lamps beside it were asked
+const int kArrives = 4;  // at a surface, or far away
+const int kMeets = 5;    // all boundaries there are known
+const int kEnds = 6;
+const int kGoesOn = 7;   // with the next ray
+
 void main() {
   ivec2 lane = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(lane, tracer.tile.zw))) return;
@@ -449,20 +470,193 @@ void main() {
     path = startPath(pixel, numbers);
   }
 
+  // One traversal serves all rays, since drivers inline every function: each further call site costs registers and minutes of compiling. What is to be
+  // traced next is the lane's job; what is to be done with a hit its stages, each of which follows from those above it.
   bool inFlight = true;
-  while (loopTurns < tracer.turns) {
-    loopTurns += 4u;
-    if (extend(path, numbers)) continue;
-    ++samples;
-    vec3 difference = (path.radiance - mean) - rest;
-    mean = twoSum(mean, rest + difference / float(samples), rest);
-    spread += difference * ((path.radiance - mean) - rest);
-    numbers.sampleIndex = samples;
-    if (samples >= tracer.sampleTarget) {
-      inFlight = false;
-      break;
+  uint job = kPathRay;
+  int after = kGoesOn;  // the stage to go on with once a shadow ray has been followed to its end
+  Hit arrival;          // what the path's ray has met
+  shadow.waits = false;
+#if MEDIA
+  float flight = 3e38;  // length of the path's present flight
+#endif
+#if TOUCHING
+  Hit crossed;          // the boundary that a shadow ray crosses
+  Besides besides;
+  bool right = true;    // whether the path was where it can cross the boundary
+#endif
+  for (;;) {
+    int stage = kTraces;
+    Ray ray = Ray(path.origin, 0.0, path.direction, 3e38);
+    uint skip = path.skip;
+    if (job == kPathRay) {
+      if (loopTurns >= tracer.turns) break;
+      loopTurns += 4u;
+#if MEDIA
+      // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
+      int medium = mediumInside(path.inside);
+      flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
+#if WALKS
+      if (medium >= 0 && !walk(path, media[medium], flight, numbers)) stage = kEnds;
+      skip = path.skip;
+#endif
+      ray = Ray(path.origin, 0.0, path.direction, flight + flightMargin());
+#endif
     }
-    path = startPath(pixel, numbers);
+#if !SHADOW_AT_ONCE
+    if (job == kShadowRay) {
+#if INTERIORS
+      ray = Ray(shadow.origin, shadow.tMin, shadow.direction, shadow.infinite ? 3e38 : 1.0);
+#else
+      ray = Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0);
+#endif
+      skip = shadow.skip;
+    }
+#endif
+#if TOUCHING
+    vec3 ahead = vec3(0.0);
+    float besidesGap = 0.0;
+    if (job == kBesidesRay) {
+      Surface surface;
+      if (shadow.waits) surface = surfaceAt(crossed.triangle, crossed.barycentrics, shadow.direction);
+      else surface = surfaceAt(arrival.triangle, arrival.barycentrics, path.direction);
+      besidesGap = gapAt(surface);
+      ahead = -besidesGap * surface.geometricNormal;
+      ray = besidesRay(besides, surface.position, ahead);
+      skip = besides.skip;
+    }
+#endif
+
+    BvhTraversal traversal = beginRay(ray, skip);
+    if (stage == kEnds) traversal.top = -1;
+#if INTERIORS || SHADOW_AT_ONCE
+    const bool any = false;  // boundaries may let light through
+#else
+    bool any = job == kShadowRay;
+#endif
+    while (!isDone(traversal)) advanceRay(traversal, any);
+    Hit hit = traversal.hit;
+    if (!any) hit = finishRay(traversal, ray.direction);
+
+    if (job == kPathRay && stage == kTraces) {
+      arrival = hit;
+      stage = kFlies;
+    }
+#if TOUCHING
+    if (job == kBesidesRay && !crossBesides(besides, hit, ahead)) {
+      if (shadow.waits) {
+        shadow.inside = besides.beyond;
+        if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
+        shadow.tMin += dot(ahead, ahead) / max(dot(ahead, shadow.direction), 0.01 * besidesGap * length(shadow.direction));
+        job = kShadowRay;
+        if (!shadowGoesOn()) stage = kLit;
+      } else {
+        job = kPathRay;
+        stage = kMeets;
+        if (hit.triangle != kNoHit) {  // a wall right behind is what the path has met, from where it is
+          besides.beyond = besides.before = path.inside;
+          arrival.triangle = hit.triangle;
+          arrival.barycentrics = hit.barycentrics;
+        } else if (!right) {
+          atomicAdd(wrongCrossings, 1u);
+        }
+      }
+    } else
+#endif
+    if (job == kShadowRay) {
+#if INTERIORS
+      bool goesOn = crossShadow(hit);
+#if TOUCHING
+      if (goesOn) {
+        job = kBesidesRay;
+        crossed = hit;
+        besides = Besides(shadow.inside, shadow.inside, 0.0, hit.triangle, 0u);
+      }
+#else
+      goesOn = goesOn && shadowGoesOn();
+#endif
+      if (!goesOn) stage = kLit;
+#else
+      if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
+      stage = kLit;
+#endif
+    }
+    if (stage == kLit) {
+      path.radiance += shadow.light;
+      shadow.waits = false;
+      job = kPathRay;
+      stage = after;
+    }
+
+#if MEDIA
+    if (stage == kFlies) {
+      int medium = mediumInside(path.inside);
+      stage = medium < 0 ? kArrives : kFlown;
+#if NEXT_EVENT && (POINTS || SPOTS) && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
+      if (medium >= 0 && media[medium].grid < 0 && lampsReach(path)) {
+        addPointLight(path, media[medium], channelProbabilities(path.throughput), flownDistance(path, arrival, flight), numbers);
+        if (shadow.waits) {
+          job = kShadowRay;
+          after = kFlown;
+          stage = kTraces;
+        }
+      }
+#endif
+    }
+    if (stage == kFlown) {
+      int became = crossMedium(path, media[mediumInside(path.inside)], flight, arrival, numbers);
+      stage = became == kFlightArrives ? kArrives : became == kScattered ? kGoesOn : kEnds;
+      if (stage != kArrives && shadow.waits) {
+        job = kShadowRay;
+        after = stage;
+        stage = kTraces;
+      }
+    }
+#else
+    if (stage == kFlies) stage = kArrives;
+#endif
+    if (stage == kArrives) {
+      stage = kMeets;
+#if TOUCHING
+      // What else the step beyond crosses: a face that coincides with this one is of the same interface.
+      besides = Besides(path.inside, path.inside, 0.0, arrival.triangle, 0u);
+      int rank = arrival.triangle != kNoHit ? rankOf(arrival.triangle) : -1;
+      if (rank >= 0) {
+        right = crossBoundary(besides.beyond, rank, facesAgainst(arrival.triangle, path.direction));
+        job = kBesidesRay;
+        stage = kTraces;
+      }
+#endif
+    }
+    if (stage == kMeets) {
+#if TOUCHING
+      stage = meet(path, arrival, besides.beyond, besides.before, numbers) ? kGoesOn : kEnds;
+#else
+      stage = meet(path, arrival, numbers) ? kGoesOn : kEnds;
+#endif
+#if SHADOW_AT_ONCE
+      if (shadow.waits && !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip)) path.radiance += shadow.light;
+      shadow.waits = false;
+#else
+      if (shadow.waits) {
+        job = kShadowRay;
+        after = stage;
+        stage = kTraces;
+      }
+#endif
+    }
+    if (stage == kEnds) {
+      ++samples;
+      vec3 difference = (path.radiance - mean) - rest;
+      mean = twoSum(mean, rest + difference / float(samples), rest);
+      spread += difference * ((path.radiance - mean) - rest);
+      numbers.sampleIndex = samples;
+      if (samples >= tracer.sampleTarget) {
+        inFlight = false;
+        break;
+      }
+      path = startPath(pixel, numbers);
+    }
   }
 
   atomicMax(longest, loopTurns);

@@ -1,5 +1,5 @@
 // A path through participating media: how far it flies, what it adds and where it goes on from a collision; and how much light a straight
-// line lets through. Hooks of path.comp, which declares Path, addLight, counts and the lights before this file is included.
+// line lets through. Hooks of path.comp, which declares Path, shadow, addLight, askLight, counts and the lights before this file is included.
 //
 // Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION, LAMPS_OUTSIDE (no lamp is within
 // a dielectric), WALKS (dense media have clearance grids); deviations DISTANCE_WITHOUT_PDF, BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, STRAIGHT_SHADOW_RAYS.
@@ -15,11 +15,10 @@ layout(std430, binding = 6) restrict readonly buffer MediumBlock { MediumRecord 
 const uint kPurposeFlight = kFreePurpose;
 const uint kPurposePhase = kFreePurpose + 1u;
 const uint kPurposeMediumChoice = kFreePurpose + 2u;
-const uint kPurposeTransmittance = kFreePurpose + 3u;
 const uint kPurposeSeek = kFreePurpose + 4u;
 
 // What becomes of a ray in a medium.
-const int kArrives = 0;    // at what the ray was traced to
+const int kFlightArrives = 0;    // at what the ray was traced to
 const int kScattered = 1;  // or is in the midst of a long flight: goes on with a ray of its own
 const int kEnded = 2;
 
@@ -36,27 +35,34 @@ bool facesAgainst(uint triangle, vec3 direction) { return dot(normalOf(triangle)
 #if TOUCHING
 // Crosses what lies within a gap of a surface, where rounding matters: `beyond` is what rays start in that go on behind the surface, `before`
 // in front of it. Faces that coincide with the surface may be met in any order, up to half a gap before it too, so that the counts decide: a
-// boundary can be entered where the path is outside of it and left where it is inside. ahead: a gap long, to behind the surface. The first
-// surface there that bounds nothing is given back, kNoHit where there is none.
-Hit crossBesides(inout uvec4 beyond, inout uvec4 before, vec3 position, vec3 ahead, uint skip) {
-  Ray ray = Ray(position - ahead, 0.0, 2.0 * ahead, 1.0);
-  Hit hit;
-  for (int i = 0; i < 8; ++i) {
-    hit = closestHit(ray, skip);
-    if (hit.triangle == kNoHit) return hit;
-    int rank = rankOf(hit.triangle);
-    bool front = facesAgainst(hit.triangle, ahead);
-    if (hit.t < 0.25) {
-      if (rank >= 0 && isInsideOf(before, rank) == front) crossBoundary(before, rank, !front);
-    } else {
-      if (rank < 0) return hit;
-      if (isInsideOf(beyond, rank) != front) crossBoundary(beyond, rank, front);
-    }
-    ray.tMin = hit.t;
-    skip = hit.triangle;
+// boundary can be entered where the path is outside of it and left where it is inside. A short ray looks for them, hit after hit.
+struct Besides {
+  uvec4 beyond, before;
+  float tMin;
+  uint skip;
+  uint crossed;
+};
+const uint kMostBesides = 8u;
+
+// ahead: a gap long, to behind the surface.
+Ray besidesRay(Besides b, vec3 position, vec3 ahead) { return Ray(position - ahead, b.tMin, 2.0 * ahead, 1.0); }
+
+// What the short ray has hit. False: there is nothing more, but perhaps the first surface there that bounds nothing, then in `hit`, else kNoHit.
+bool crossBesides(inout Besides b, inout Hit hit, vec3 ahead) {
+  if (hit.triangle == kNoHit) return false;
+  int rank = rankOf(hit.triangle);
+  bool front = facesAgainst(hit.triangle, ahead);
+  if (hit.t < 0.25) {
+    if (rank >= 0 && isInsideOf(b.before, rank) == front) crossBoundary(b.before, rank, !front);
+  } else {
+    if (rank < 0) return false;
+    if (isInsideOf(b.beyond, rank) != front) crossBoundary(b.beyond, rank, front);
   }
+  b.tMin = hit.t;
+  b.skip = hit.triangle;
+  if (++b.crossed < kMostBesides) return true;
   hit.triangle = kNoHit;
-  return hit;
+  return false;
 }
 #endif
 
@@ -102,50 +108,39 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
 }
 #endif
 
-// The part of the light from `start` towards `end` (or, at infinity, along `end`) that arrives. Index-matched boundaries are crossed;
-// one that refracts stops the light, since the straight line is no path of light then. skip: the triangle that `start` lies on.
-vec3 straightTransmittance(vec3 start, vec3 end, bool infinite, uint skip, uvec4 inside, uvec4 words) {
-  Ray ray = infinite ? Ray(start, 0.0, end, 3e38) : Ray(start, 0.0, end - start, 1.0);
-#if MEDIA
-  float unit = infinite ? 1.0 : length(ray.direction);
-  vec3 direction = ray.direction / unit;
-#endif
-  float ior = iorInside(inside);
-  vec3 through = vec3(1.0);
-  float from = 0.0;  // where the present medium begins
-  for (uint i = 0u; i < 256u; ++i) {
-    Hit hit = closestHit(ray, skip);
-    int rank = -1;
-    bool front = false;
-    if (hit.triangle != kNoHit) {
-      rank = rankOf(hit.triangle);
-      if (rank < 0) return vec3(0.0);
-      front = facesAgainst(hit.triangle, ray.direction);
+// What a shadow ray has hit. Index-matched boundaries are crossed; one that refracts stops the light, since the straight line is no path of light
+// then. True: it goes on behind. Else what is left of shadow.light arrives.
+bool crossShadow(Hit hit) {
+  int rank = -1;
+  bool front = false;
+  if (hit.triangle != kNoHit) {
+    rank = rankOf(hit.triangle);
+    front = facesAgainst(hit.triangle, shadow.direction);
+    if (rank < 0 || ++shadow.crossed >= 256u) {
+      shadow.light = vec3(0.0);
+      return false;
     }
-#if MEDIA
-    int medium = mediumInside(inside);
-    if (medium >= 0) {
-      float far = hit.triangle == kNoHit ? (infinite ? kFar : 1.0) : hit.t;
-      through *= mediumTransmittance(media[medium], start + from * ray.direction, direction, (far - from) * unit, words);
-      if (all(equal(through, vec3(0.0)))) return through;
-    }
-#endif
-    if (hit.triangle == kNoHit) return through;
-    crossBoundary(inside, rank, front);
-    ray.tMin = from = hit.t;
-    skip = hit.triangle;
-#if TOUCHING
-    Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
-    vec3 ahead = -gapAt(surface) * surface.geometricNormal;
-    uvec4 before = inside;
-    if (crossBesides(inside, before, surface.position, ahead, hit.triangle).triangle != kNoHit) return vec3(0.0);
-    ray.tMin += dot(ahead, ahead) / max(dot(ahead, ray.direction), 0.01 * gapAt(surface) * length(ray.direction));
-#endif
-#if !STRAIGHT_SHADOW_RAYS
-    if (iorInside(inside) != ior) return vec3(0.0);
-#endif
   }
-  return vec3(0.0);
+#if MEDIA
+  int medium = mediumInside(shadow.inside);
+  if (medium >= 0) {
+    float unit = shadow.infinite ? 1.0 : length(shadow.direction), far = hit.triangle == kNoHit ? (shadow.infinite ? kFar : 1.0) : hit.t;
+    shadow.light *= mediumTransmittance(media[medium], shadow.origin + shadow.from * shadow.direction, shadow.direction / unit, (far - shadow.from) * unit, shadow.words);
+  }
+#endif
+  if (hit.triangle == kNoHit || all(equal(shadow.light, vec3(0.0)))) return false;
+  crossBoundary(shadow.inside, rank, front);
+  shadow.tMin = shadow.from = hit.t;
+  shadow.skip = hit.triangle;
+  return true;
+}
+
+// Whether a shadow ray that has crossed a boundary still is in the index that it began in.
+bool shadowGoesOn() {
+#if !STRAIGHT_SHADOW_RAYS
+  if (iorInside(shadow.inside) != shadow.ior) shadow.light = vec3(0.0);
+#endif
+  return any(greaterThan(shadow.light, vec3(0.0)));
 }
 
 #if MEDIA
@@ -208,7 +203,7 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
   if (!sampleLight(place, xi, words, light)) return;
   vec3 contribution = medium.albedo * medium.extinction * passageWeight(medium, q, x) * phaseValue(medium, path.direction, light.direction) * light.value / density;
   if (any(greaterThan(contribution, vec3(0.0))))
-    addLight(path, contribution * straightTransmittance(place, light.end, false, kNoHit, path.inside, randomWords(numbers, path.event, kPurposeTransmittance)));
+    askLight(path, contribution, place, light, kNoHit, numbers);
 }
 #endif
 
@@ -272,8 +267,7 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
     if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, dot(channelProbabilities(path.throughput), phase));
 #endif
     if (any(greaterThan(contribution, vec3(0.0))))
-      addLight(path, contribution * straightTransmittance(path.origin, light.infinite ? light.direction : light.end, light.infinite, kNoHit, path.inside,
-                                                          randomWords(numbers, path.event, kPurposeTransmittance)));
+      askLight(path, contribution, path.origin, light, kNoHit, numbers);
   }
 #endif
 #if !SCATTERED_LIGHT && !NEXT_EVENT
@@ -294,10 +288,11 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
 #if HETEROGENEOUS
 // Delta tracking over the part of the ray that is free. After some tentative collisions the flight is broken off where it is and goes on
 // with the next ray: exponential flights have no memory, and no submission is held up.
-int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbers numbers) {
+int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbers numbers, out bool collided) {
+  collided = false;
   DensityRecord g = densityRecords[medium.grid];
   DensityMarch march;
-  if (!densityMarchStart(g, path.origin, path.direction, distance, march)) return kArrives;
+  if (!densityMarchStart(g, path.origin, path.direction, distance, march)) return kFlightArrives;
   uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
   float bound;
   uint tries = 0u;
@@ -324,7 +319,10 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
         path.throughput *= collides ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
       if (collides || ++tries == 64u) {
         path.origin += t * path.direction;
-        if (collides) return scatterInMedium(path, medium, numbers, lampsReach(path));
+        if (collides) {
+          collided = true;
+          return kScattered;
+        }
         path.travelled += t;
         path.head = 0.0;
         ++path.event;
@@ -332,7 +330,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
       }
     }
   }
-  return kArrives;
+  return kFlightArrives;
 }
 #endif
 
@@ -412,36 +410,42 @@ bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers 
 }
 #endif
 
+bool arrivesAt(Hit hit, float flight) { return hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar; }
+
+// Of the flight before what it meets: that through the gap behind the ray's start counts too.
+float flownDistance(Path path, Hit hit, float flight) {
+  return max(path.head + (hit.triangle != kNoHit && arrivesAt(hit, flight) ? hit.t : flight), 0.0);
+}
+
 // What happens on the way to `hit`, the first hit within `flight`.
 int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
-  bool arrives = hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar;
-#if HETEROGENEOUS
-  if (medium.grid >= 0) return trackDensity(path, medium, hit.triangle != kNoHit ? hit.t : kFar, numbers);
-#endif
-  float distance = max(path.head + (arrives && hit.triangle != kNoHit ? hit.t : flight), 0.0);
-  vec3 q = channelProbabilities(path.throughput);
-#if NEXT_EVENT && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
-#if POINTS || SPOTS
-  if (lampsReach(path)) addPointLight(path, medium, q, distance, numbers);
-#endif
-#endif
-  weighFlight(path, medium, q, distance, arrives, numbers);
-  if (arrives) return kArrives;
-  // Nearer to a face than a gap the path goes on from a gap beside it, and the flight that it does not make or makes twice, along the face's
-  // normal, is made good in the next: as if it had begun where it should have. Where a gap is no small part of a mean free path that is much.
   vec3 inward = vec3(0.0);
-  if (flight < 0.0) {
-    vec3 normal = normalOf(path.face);
-    inward = -flight * abs(dot(normal, path.direction)) * (dot(normal, path.direction) < 0.0 ? -normal : normal);
-  } else {
-    path.origin += flight * path.direction;
-    if (hit.triangle != kNoHit) {
-      Surface near = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
-      float depth = (hit.t - flight) * -dot(near.geometricNormal, path.direction);
-      if (depth < gapAt(near)) {
-        path.origin = beside(near, near.geometricNormal);
-        path.face = hit.triangle;
-        inward = (gapAt(near) - depth) * near.geometricNormal;
+#if HETEROGENEOUS
+  if (medium.grid >= 0) {
+    bool collided;
+    int became = trackDensity(path, medium, hit.triangle != kNoHit ? hit.t : kFar, numbers, collided);
+    if (!collided) return became;
+  } else
+#endif
+  {
+    bool arrives = arrivesAt(hit, flight);
+    weighFlight(path, medium, channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives, numbers);
+    if (arrives) return kFlightArrives;
+    // Nearer to a face than a gap the path goes on from a gap beside it, and the flight that it does not make or makes twice, along the face's
+    // normal, is made good in the next: as if it had begun where it should have. Where a gap is no small part of a mean free path that is much.
+    if (flight < 0.0) {
+      vec3 normal = normalOf(path.face);
+      inward = -flight * abs(dot(normal, path.direction)) * (dot(normal, path.direction) < 0.0 ? -normal : normal);
+    } else {
+      path.origin += flight * path.direction;
+      if (hit.triangle != kNoHit) {
+        Surface near = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+        float depth = (hit.t - flight) * -dot(near.geometricNormal, path.direction);
+        if (depth < gapAt(near)) {
+          path.origin = beside(near, near.geometricNormal);
+          path.face = hit.triangle;
+          inward = (gapAt(near) - depth) * near.geometricNormal;
+        }
       }
     }
   }

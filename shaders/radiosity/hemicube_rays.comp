@@ -1,10 +1,10 @@
 // Hemicubes by rays: one through each pixel's centre, through the hierarchy of the path tracer. x: pixels, y: hemicubes of the batch.
 // Written: the pixel's patch + 1, 0 where there is none; each patch's share of the hemisphere is summed (hemicube_keep.glsl).
+layout(local_size_x = 64) in;
 #include "radiosity/hemicube.glsl"
 #include "radiosity/hemicube_keep.glsl"
 #include "radiosity/patch_rays.glsl"
 
-layout(local_size_x = 64) in;
 layout(binding = 58) uniform samplerBuffer deltaFactors;  // the full face, then one half face
 layout(std430, binding = 2) writeonly buffer Items { uint items[]; };
 uniform vec3 raysOrigin;  // of the hierarchy's space

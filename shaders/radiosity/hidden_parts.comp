@@ -1,7 +1,7 @@
 // What is seen from the parts of patches (engine/radiosity/hidden_parts.hpp). x: rays, raysEach a part.
+layout(local_size_x = 64) in;
 #include "radiosity/patch_rays.glsl"
 #include "radiosity/triangle_parts.glsl"
-layout(local_size_x = 64) in;
 struct Receiver {
   vec4 a, b, c;  // corners, in the hierarchy's space; a's w: the patch
   vec4 normal;   // w: the largest of the coordinates

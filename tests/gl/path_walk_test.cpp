@@ -91,5 +91,27 @@ TEST_F(PathWalkTest, WalksAreThePathsThatTraceEveryFlight) {
   EXPECT_EQ(walking.statistics().leakedPaths, 0.0);
 }
 
+TEST_F(PathWalkTest, TheKernelForGpusDrawsTheSamePicture) {
+  // Stack in shared memory, shadow rays in the same loop as the path's: bit by bit what software renderers get.
+  Scene milk = milkBall(1.33);
+  addSphere(milk, glm::dvec3(0.0), 1.2, 3, addBoundary(milk, Bsdf::dielectric, 1.5, -1, -1));
+  Scene room;
+  room.environment = milk.environment;
+  room.cameras = milk.cameras;
+  for (Scene* scene : {&milk, &room}) {
+    scene->materials.emplace_back().diffuse = glm::vec3(0.5f);
+    addBox(*scene, glm::dvec3(-1.0), glm::dvec3(0.2), static_cast<int>(scene->materials.size()) - 1);
+    scene->points.push_back({{0.0, 3.0, 3.0}, glm::vec3(9.0f)});
+    PathTracer::Settings settings;
+    settings.size = {24, 24};
+    settings.rays.sharedStack = false;
+    const Image software = picture(*scene, 8, settings);
+    settings.rays.sharedStack = true;
+    settings.submissionSeconds = 0.001;
+    EXPECT_EQ(picture(*scene, 8, settings).pixels, software.pixels);
+    EXPECT_GT(software.at(12, 12).x, 0.0f);
+  }
+}
+
 }  // namespace
 }  // namespace lucerna
