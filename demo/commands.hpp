@@ -85,9 +85,11 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// Set by Ctrl-C after watchForInterrupt(): long work then ends after what it is doing, keeping what is there.
+/// One rule for every command after watchForInterrupt(): on Ctrl-C (SIGINT) and SIGTERM long work ends after what it is
+/// doing, keeps its state, writes no final file and ends with exitCode(); the same command goes on from there.
 void watchForInterrupt();
 bool interrupted();
+int exitCode();  ///< 0, or 128 and the signal's number: 130 after Ctrl-C, 143 after SIGTERM
 
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages);
 /// What the gather of the reflective shadow map saved: pixels a frame.

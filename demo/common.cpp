@@ -361,16 +361,17 @@ void Progress::update(int done) {
 }
 
 namespace {
-volatile std::sig_atomic_t g_interrupted = 0;
+volatile std::sig_atomic_t g_interrupted = 0;  // the signal
 volatile std::time_t g_interruptedAt = 0;
 
-void onInterrupt(int) {
+void onInterrupt(int signal) {
   // A second Ctrl-C does not wait for the work to end; one that comes with the first (timeout signals a whole group) is the same.
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  if (g_interrupted && now.tv_sec > g_interruptedAt + 1) std::_Exit(130);
-  if (!g_interrupted) g_interruptedAt = now.tv_sec;
-  g_interrupted = 1;
+  if (g_interrupted && now.tv_sec > g_interruptedAt + 1) std::_Exit(128 + signal);
+  if (g_interrupted) return;
+  g_interruptedAt = now.tv_sec;
+  g_interrupted = signal;
 }
 }  // namespace
 
@@ -380,6 +381,8 @@ void watchForInterrupt() {
 }
 
 bool interrupted() { return g_interrupted != 0; }
+
+int exitCode() { return g_interrupted ? 128 + g_interrupted : 0; }
 
 // ---------------------------------------------------------------------------------------------------- stage times
 

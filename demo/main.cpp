@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "command_tree.hpp"
 #include "commands.hpp"
+#include "gl/context.hpp"
 
 #include <fmt/core.h>
 
@@ -89,10 +90,19 @@ int main(int argc, char** argv) {
   try {
     checkNumbers(app);
     for (auto& [command, work] : commands)
-      if (command->parsed()) return flushed(work());
+      if (command->parsed()) {
+        const int code = flushed(work());
+        const std::string errors = lucerna::gl::takePendingErrors();
+        if (errors.empty()) return code;
+        printError(fmt::format("internal error: OpenGL reports {} at the end of the command", errors));
+        return static_cast<int>(lucerna::ErrorKind::fault);
+      }
   } catch (const lucerna::Error& error) {
     printError(error.what());
     return error.exitCode();
+  } catch (const lucerna::Stopped& stopped) {
+    fmt::print(stderr, "lucerna: {}\n", stopped.what());
+    return lucerna::demo::exitCode();
   } catch (const std::bad_alloc&) {
     printError("out of memory");
     return static_cast<int>(lucerna::ErrorKind::missingCapability);

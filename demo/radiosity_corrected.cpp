@@ -97,19 +97,12 @@ int solveCorrected(const RadiositySolve& options) {
   const auto before = stampOf(options.out);
   watchForInterrupt();
   Progress progress("hemicubes", 1000, options.common.quiet);
-  RadiositySolution solution;
-  try {
-    solution = solveScene(context, programs, scene, settings, checkpoint, [&](const RadiosityStage& stage) {
-      if (stage.total > 0) progress.update(static_cast<int>(1000 * stage.done / stage.total));
-      if (stage.kind == RadiosityStage::Kind::solving && !options.common.quiet)
-        fmt::print("{:6.1f} products: residual {:.3g}, error at most {:.3g}, energy balance {:.3g}\n", stage.solve.products, stage.solve.residual, stage.solve.errorBound, stage.solve.energyBalance);
-      return !interrupted();
-    });
-  } catch (const Error&) {
-    if (!interrupted()) throw;
-    fmt::print("stopped; the same command goes on from {}\n", checkpoint.string());
-    return 0;
-  }
+  const RadiositySolution solution = solveScene(context, programs, scene, settings, checkpoint, [&](const RadiosityStage& stage) {
+    if (stage.total > 0) progress.update(static_cast<int>(1000 * stage.done / stage.total));
+    if (stage.kind == RadiosityStage::Kind::solving && !options.common.quiet)
+      fmt::print("{:6.1f} products: residual {:.3g}, error at most {:.3g}, energy balance {:.3g}\n", stage.solve.products, stage.solve.residual, stage.solve.errorBound, stage.solve.energyBalance);
+    return !interrupted();
+  });
   if (stampOf(options.out) != before)
     throwBadInput("{}: was changed by something else while it was being solved; it is left as it is. The same command takes the form factors from {}", options.out, checkpoint.string());
   if (rad) {

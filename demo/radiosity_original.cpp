@@ -221,7 +221,7 @@ int solveOriginal(const RadiositySolve& options) {
   json["overflows"] = solver.overflows();
   json["gpu_bytes"] = solver.gpuBytes();
   options.common.writeJson(json);
-  return stopped ? 130 : 0;
+  return stopped ? exitCode() : 0;
 }
 
 }  // namespace lucerna::demo

@@ -109,7 +109,7 @@ int run(const Options& options) {
   json["constant"] = display.constant > 0.0 ? display.constant : exposureOf(triangles);
   json["size"] = {size.x, size.y};
   options.common.writeJson(json);
-  return interrupted() ? 130 : 0;
+  return exitCode();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/deviations.hpp"
 
@@ -46,7 +47,7 @@ void PathOptions::declare(CLI::App& app) {
   app.add_option("--seconds", seconds, "path: stop after this time; every pixel has one sample at least")->check(CLI::PositiveNumber);
   app.add_option("--error", error, "path: stop where the pixels' standard error, root mean square, is this fraction of the mean radiance")->check(CLI::PositiveNumber);
   app.add_option("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
-  app.add_option("--checkpoint", checkpoint, "path: go on from this file if it is there; it is written every minute and at the end");
+  app.add_option("--checkpoint", checkpoint, "path: go on from this file if it is there; it is written every minute and at the end. Without it a stopped picture is kept in OUT.film, from which the same command goes on");
   app.add_option("--seed", seed, "path: of the random numbers")->capture_default_str();
 }
 
@@ -82,10 +83,10 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   gl::ProgramLibrary programs;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
-  if (!path.checkpoint.empty() && std::filesystem::exists(path.checkpoint)) tracer.resume(readFileBytes(path.checkpoint), path.checkpoint);
-  const auto save = [&] {
-    if (!path.checkpoint.empty()) writeFileAtomically(path.checkpoint, tracer.checkpoint());
-  };
+  // Without --checkpoint the film is kept beside the picture, only where the work was stopped.
+  const std::string checkpoint = path.checkpoint.empty() ? output + ".film" : path.checkpoint;
+  if (std::filesystem::exists(checkpoint)) tracer.resume(readFileBytes(checkpoint), checkpoint);
+  const auto save = [&] { writeFileAtomically(checkpoint, tracer.checkpoint()); };
   watchForInterrupt();
 
   const std::uint32_t target = path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : kDefaultSamples);
@@ -100,8 +101,12 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     const std::uint32_t next = std::min(target, done + std::max(1u, done / 4));
     while (!stopped && tracer.advance(next)) stopped = interrupted() || (done > 0 && path.seconds && elapsed() >= *path.seconds);
     if (!stopped) done = next;
-    if (elapsed() > saved + 60.0) {
-      save();
+    if (!path.checkpoint.empty() && elapsed() > saved + 60.0) {
+      try {
+        save();
+      } catch (const Error& error) {
+        logWarning("--checkpoint {}; the picture goes on without it", error.what());
+      }
       saved = elapsed();
     }
     progress.update(static_cast<int>(std::min(done, 1000000000u)));
@@ -110,7 +115,10 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   }
   tracer.dropUnfinishedPass();
   const double seconds = elapsed();
-  save();
+  if (interrupted()) {
+    save();
+    throw Stopped(fmt::format("stopped at {:.6g} samples a pixel; the same command goes on from {}", tracer.statistics().samples, checkpoint));
+  }
 
   const PathTracer::Statistics statistics = tracer.statistics();
   const Image image = tracer.mean();
@@ -118,6 +126,9 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     writePng(output, toneMapped(image, exposure.value_or(scene.exposure)));
   else
     writeImage(output, image);
+  // After the picture: a disk that is full does not cost it.
+  if (!path.checkpoint.empty()) save();
+  else std::filesystem::remove(checkpoint);
   if (!common.quiet)
     fmt::print("{}: {}x{}, path, {}, {:.6g} samples a pixel, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} ({:.3g} of the mean), {:.3f} s on {}\n",
                output, image.width, image.height, picture.component, statistics.samples, statistics.mean.x, statistics.mean.y, statistics.mean.z,
@@ -143,7 +154,6 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   json["standard_error"] = finiteOrNull(statistics.standardError);
   json["relative_error"] = finiteOrNull(statistics.relativeError);
   json["bounces"] = path.bounces ? nlohmann::ordered_json(*path.bounces) : nlohmann::ordered_json(nullptr);
-  json["interrupted"] = interrupted();
   json["gpu_bytes"] = tracer.gpuBytes();
   json["left_out"] = nlohmann::ordered_json::array();
   for (const auto& [name, needed] : tracer.needs().named())

@@ -194,7 +194,7 @@ int run(AllOptions options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (interrupted()) {
     fmt::print(stderr, "lucerna: interrupted; the same command with --out {} goes on\n", options.out);
-    return 130;
+    return exitCode();
   }
   report.write(seconds);
   if (!options.common.quiet) fmt::print("{}/index.html, {:.0f} s\n", options.out, seconds);

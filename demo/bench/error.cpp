@@ -176,7 +176,7 @@ struct Options {
 int run(Options options) {
   if (options.bench.out.empty()) options.bench.out = options.bench.deviations ? "bench-deviations" : "bench-error";
   const auto result = bench::benchScene(options.common, options.bench);
-  if (!result) return 130;
+  if (!result) return exitCode();
   if (!options.common.quiet) fmt::print("{}\n{}/report.html\n", bench::terminalTable(result->report), options.bench.out);
   options.common.writeJson(bench::errorBenchJson(*result, options.bench));
   return 0;

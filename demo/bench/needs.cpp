@@ -128,7 +128,7 @@ int run(Options options) {
   for (const std::string& file : options.scenes) {
     const Scene scene = loadScene(file);
     const bench::NeedsResult result = bench::measureNeeds(context, scene, chooseCamera(scene, options.camera), settings, options.frames);
-    if (interrupted()) return 130;
+    if (interrupted()) return exitCode();
     if (!options.common.quiet) fmt::print("{}", bench::needsText(result));
     results.push_back(bench::needsJson(result));
   }

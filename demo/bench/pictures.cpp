@@ -53,7 +53,7 @@ int runVpt(const Options& options) {
   gl::ProgramLibrary programs;
   watchForInterrupt();
   const bench::VptSheet sheet = bench::drawVptPictures({context, programs, scale, options.common.quiet}, size, options.exposure);
-  if (interrupted()) return 130;
+  if (interrupted()) return exitCode();
   writePng(options.output, sheet.sheet);
   if (!options.common.quiet) fmt::print("{}: {} tiles of {}x{}, on {}\n", options.output, sheet.tiles, size.x, size.y, context.capabilities().renderer);
   nlohmann::ordered_json json;
@@ -113,7 +113,7 @@ int run(const Options& options) {
   watchForInterrupt();
   Progress progress("bench pictures", static_cast<int>(pictures.size()), options.common.quiet);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
-    if (interrupted()) return 130;
+    if (interrupted()) return exitCode();
     Renderer renderer(context, programs, scene, pictures[i].settings);
     if (options.exposure) renderer.setExposure(static_cast<float>(*options.exposure));
     renderer.render(camera);

@@ -63,11 +63,11 @@ int runRadPictures(const CommonOptions& common, const std::string& output, glm::
   Settings far = settingsOf(48);
   far.nearPlane = 4.0;
   add("3.13 near plane too far: bright seams along the wall", solve(model(3, 5.0, 0.3, 10000000), far, 2));
-  if (interrupted()) return 130;
+  if (interrupted()) return exitCode();
 
   const std::vector<RadTriangle> hall = model(2, 100.0, 0.3, 1000000);
   const std::vector<RadTriangle> once = solve(hall, settingsOf(32), 1), twice = solve(once, settingsOf(32), 1);
-  if (interrupted()) return 130;
+  if (interrupted()) return exitCode();
   add("4.1 model 2, mesh", hall, with(RadMapping::logarithmic, true));
   add("4.5a model 2 after sweep 1", once);
   add("4.5b after sweep 2", twice);
@@ -79,12 +79,12 @@ int runRadPictures(const CommonOptions& common, const std::string& output, glm::
   add("3.18 triangles turned away, by their corners", twice, with(RadMapping::logarithmic, false, true));
 
   for (int pixels : {25, 50, 100, 200}) add(fmt::format("4.6 {} x {} px", viewOf(pixels), viewOf(pixels)), pixels == 100 ? lit : solve(cube, settingsOf(pixels), 3), constant);
-  if (interrupted()) return 130;
+  if (interrupted()) return exitCode();
   for (double threshold : {80.0, 20.0, 5.0})
     add(fmt::format("4.4 model 3, triangles below {:.4g} units", threshold / scale), solve(model(3, threshold, 0.3, 10000000), settingsOf(32), threshold > 5.0 ? 5 : 3));
   const std::vector<RadTriangle> bent = model(3, 10.0, 0.3, 10000000);
   add("model 3, light round the wall, false colours", solve(bent, settingsOf(48), 4), with(RadMapping::falseColours));
-  if (interrupted()) return 130;
+  if (interrupted()) return exitCode();
 
   writePng(output, contactSheet(std::string("RAD original, its figures on our models 1 to 3 (1 where no number is given), published solver; views 25 to 200 px, few sweeps; 800 px of 4.6 left out") + (scale < 1.0 ? fmt::format("; --scale {}: triangles larger and pixels fewer by it", scale) : ""), tiles, 4));
   if (!common.quiet) fmt::print("{}: {} tiles of {}x{}, on {}\n", output, tiles.size(), size.x, size.y, context.capabilities().renderer);

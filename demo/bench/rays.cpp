@@ -265,7 +265,7 @@ int run(const Options& options) {
   const bench::RaysResult result = bench::measureRays(context, programs, scene, options.bench, options.common.quiet);
   fmt::print("{}", result.text);
   options.common.writeJson(result.json);
-  return interrupted() ? 130 : 0;
+  return exitCode();
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ int run(const Options& options) {
                             {"failed", failed},
                             {"worse", worse},
                             {"seconds", seconds}});
-  if (interrupted()) return 130;
+  if (interrupted()) return exitCode();
   // Beside a table that was kept, a defect that it knows of is no news.
   return (options.compare.empty() ? failed > 0 : !worse.empty()) ? 1 : 0;
 }

@@ -143,7 +143,7 @@ int run(Options options) {
   json["rows"] = rowsJson(tables, renderer);
   json.update(tables.json);
   options.common.writeJson(json);
-  return interrupted() ? 130 : 0;
+  return exitCode();
 }
 
 }  // namespace

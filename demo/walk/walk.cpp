@@ -153,7 +153,7 @@ int record(const Options& options, const Host& host, const gl::Context& context,
   json["frames_per_second"] = done / seconds;
   if (options.flicker) json["flicker"] = {{"mean", largest.mean}, {"block", largest.block}};
   options.common.writeJson(json);
-  return interrupted() ? 130 : 0;
+  return exitCode();
 }
 
 int play(const Options& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, Renderer& renderer, const Spline& path,
@@ -210,7 +210,7 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
   if (!options.common.quiet)
     fmt::print("{} frames in {:.1f} s\n{}", frames, seconds, stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
   options.common.writeJson(resultJson(options, host, context, renderer, frames, seconds));
-  return interrupted() ? 130 : 0;
+  return exitCode();
 }
 
 int run(Options options) {

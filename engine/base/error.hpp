@@ -1,9 +1,10 @@
 // Errors and checks (no GL).
 //
-// Two kinds:
+// Three kinds:
 // - CHECK(condition, ...) for programmer errors: prints the condition, the values given and the place, then aborts.
 // - Error for files, options, shaders and contexts: its message names the file, the line or key, what was wrong and what
 //   would be right. The command line prints that message and ends with exitCode().
+// - Stopped for work that ends early because its caller asked for it (Ctrl-C).
 #pragma once
 
 #include <fmt/format.h>
@@ -29,6 +30,12 @@ class Error : public std::runtime_error {
 
  private:
   ErrorKind kind_;
+};
+
+/// Work that its caller stopped. What was finished is kept; the message says where.
+class Stopped : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 template <class... Args>

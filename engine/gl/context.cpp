@@ -24,7 +24,45 @@ void GLAPIENTRY onDebugMessage(GLenum, GLenum type, GLuint, GLenum severity, GLs
   }
 }
 
+std::string g_pendingErrors;
+
+const char* nameOfError(GLenum error) {
+  switch (error) {
+    case GL_INVALID_ENUM: return "GL_INVALID_ENUM";
+    case GL_INVALID_VALUE: return "GL_INVALID_VALUE";
+    case GL_INVALID_OPERATION: return "GL_INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION: return "GL_INVALID_FRAMEBUFFER_OPERATION";
+    case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY";
+    case GL_STACK_OVERFLOW: return "GL_STACK_OVERFLOW";
+    case GL_STACK_UNDERFLOW: return "GL_STACK_UNDERFLOW";
+    default: return "an unknown error";
+  }
+}
+
+/// The first error since the last look, GL_OUT_OF_MEMORY before others. A lost context reports one for ever.
+GLenum firstError() {
+  GLenum first = GL_NO_ERROR;
+  GLenum error = glGetError();
+  for (int i = 0; error != GL_NO_ERROR && i < 16; ++i, error = glGetError())
+    if (first == GL_NO_ERROR || error == GL_OUT_OF_MEMORY) first = error;
+  return first;
+}
+
 }  // namespace
+
+void throwIfError(const std::string& after) {
+  const GLenum error = firstError();
+  if (error == GL_OUT_OF_MEMORY) throwMissingCapability("the driver is out of memory ({})", after);
+  if (error != GL_NO_ERROR) throw Error(ErrorKind::fault, fmt::format("internal error: OpenGL reports {} ({})", nameOfError(error), after));
+}
+
+void throwIfNotAllocated(const std::string& name, std::size_t bytes) {
+  const GLenum error = firstError();
+  if (error == GL_OUT_OF_MEMORY) throwMissingCapability("{}: the driver has no {} bytes of memory for it", name, bytes);
+  if (error != GL_NO_ERROR) throw Error(ErrorKind::fault, fmt::format("internal error: OpenGL reports {} ({}, {} bytes)", nameOfError(error), name, bytes));
+}
+
+std::string takePendingErrors() { return std::exchange(g_pendingErrors, {}); }
 
 std::vector<std::pair<std::string, bool>> Capabilities::probedExtensions() const {
   return {{"ARB_clear_texture", clearTexture},
@@ -112,7 +150,10 @@ Context::Context(DebugOutput debugOutput) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
 }
 
-Context::~Context() { glDebugMessageCallback(nullptr, nullptr); }
+Context::~Context() {
+  glDebugMessageCallback(nullptr, nullptr);
+  if (const GLenum error = firstError(); error != GL_NO_ERROR) g_pendingErrors = nameOfError(error);
+}
 
 std::vector<std::string> Context::takeErrors() {
   for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError())

@@ -43,6 +43,15 @@ DebugOutput defaultDebugOutput();
 /// for is over, and once a frame. Needs a context that tells of resets (the hosts ask for one); else there is nothing to be known.
 void throwIfReset();
 
+/// Throws where a GL call failed since the last look: Error(missingCapability) where memory ran out, else Error(fault), with the error's name and
+/// `after`, what was done last. Asked where something is allocated, where a result is read back and now and then in a frame: what goes wrong on the GPU is
+/// never a black picture and exit code 0.
+void throwIfError(const std::string& after);
+/// The same for `bytes` of storage that were just asked for.
+void throwIfNotAllocated(const std::string& name, std::size_t bytes);
+/// Errors that were pending when the last context ended, empty where there were none; for the end of a command.
+std::string takePendingErrors();
+
 /// The context of the current host, as the engine sees it: probes it and listens to its debug output, where that is asked for.
 /// Must outlive every gl object; one at a time.
 class Context {

@@ -1,6 +1,7 @@
 #include "gl/objects.hpp"
 
 #include "base/error.hpp"
+#include "gl/context.hpp"
 
 #include <algorithm>
 #include <array>
@@ -38,6 +39,19 @@ const Format& formatOf(GLenum internalFormat) {
   return kFormats[0];
 }
 
+/// Throws Error(missingCapability) where a texture is larger than the driver's limits.
+void checkLimits(const std::string& name, GLenum target, const glm::ivec3& size) {
+  const auto limit = [](GLenum key) {
+    GLint most = 0;
+    glGetIntegerv(key, &most);
+    return most;
+  };
+  const GLint side = limit(target == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE);
+  const GLint layers = target == GL_TEXTURE_3D ? side : target == GL_TEXTURE_2D ? 1 : limit(GL_MAX_ARRAY_TEXTURE_LAYERS);
+  if (size.x > side || size.y > side || size.z > layers)
+    throwMissingCapability("{}: a texture of {}x{}x{}; this driver's end at {}x{}x{}", name, size.x, size.y, size.z, side, side, layers);
+}
+
 }  // namespace
 
 void label(GLenum identifier, GLuint id, const std::string& name) {
@@ -63,7 +77,9 @@ Buffer::Buffer(const std::string& name, std::size_t bytes, const void* data, GLe
   handle_ = decltype(handle_)(id);
   glBindBuffer(GL_COPY_WRITE_BUFFER, id);
   label(GL_BUFFER, id, name);
+  throwIfError("before " + name);
   glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes), data, usage);
+  throwIfNotAllocated(name, bytes);
 }
 
 void Buffer::upload(std::size_t offset, std::size_t bytes, const void* data) {
@@ -102,6 +118,7 @@ void Buffer::readBytes(void* data, std::size_t bytes) const {
   settle(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_READ_BUFFER, id());
   glGetBufferSubData(GL_COPY_READ_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
+  throwIfError("a buffer was read back");
 }
 
 // ---------------------------------------------------------------------------------------------------- Texture
@@ -119,6 +136,8 @@ Texture::Texture(const std::string& name, GLenum internalFormat, glm::ivec3 size
 
 void Texture::create(const std::string& name, const Sampling& s) {
   CHECK(size_.x > 0 && size_.y > 0 && size_.z > 0, "texture {}: {}x{}x{}", name, size_.x, size_.y, size_.z);
+  checkLimits(name, target_, size_);
+  throwIfError("before " + name);
   GLuint id = 0;
   glGenTextures(1, &id);
   handle_ = decltype(handle_)(id);
@@ -129,6 +148,7 @@ void Texture::create(const std::string& name, const Sampling& s) {
     glTexStorage2D(target_, levels_, format_, size_.x, size_.y);
   else
     glTexStorage3D(target_, levels_, format_, size_.x, size_.y, size_.z);
+  throwIfNotAllocated(name, bytes());
   const auto parameter = [&](GLenum key, GLenum value) { glTexParameteri(target_, key, static_cast<GLint>(value)); };
   parameter(GL_TEXTURE_MIN_FILTER, s.minFilter);
   parameter(GL_TEXTURE_MAG_FILTER, s.magFilter);
@@ -207,6 +227,7 @@ std::vector<glm::vec4> Texture::readRgba(int level) const {
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   glGetTexImage(target_, level, GL_RGBA, GL_FLOAT, texels.data());
+  throwIfError("a texture was read back");
   return texels;
 }
 
@@ -215,6 +236,7 @@ std::vector<float> Texture::readDepth() const {
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   glGetTexImage(target_, 0, GL_DEPTH_COMPONENT, GL_FLOAT, texels.data());
+  throwIfError("a depth texture was read back");
   return texels;
 }
 
@@ -225,6 +247,7 @@ std::vector<glm::uvec4> Texture::readWords() const {
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   glGetTexImage(target_, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, words.data());
+  throwIfError("a film was read back");
   return words;
 }
 
@@ -237,6 +260,11 @@ BufferTexture::BufferTexture(const std::string& name, GLenum format, std::size_t
   glBindTexture(GL_TEXTURE_BUFFER, id);
   label(GL_TEXTURE, id, name);
   glTexBuffer(GL_TEXTURE_BUFFER, format, buffer_.id());
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (const std::size_t texels = bytes / bytesPerTexel(format); texels > static_cast<std::size_t>(most))
+    throwMissingCapability("{}: {} texels; this driver's buffer textures end at {}", name, texels, most);
+  throwIfError(name);
 }
 
 void BufferTexture::bind(GLuint unit) const {
@@ -290,7 +318,8 @@ Framebuffer::Framebuffer(const std::string& name, std::span<const Texture* const
     glDrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
   }
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
-  CHECK(status == GL_FRAMEBUFFER_COMPLETE, "framebuffer {}: status {:#x}", name, status);
+  throwIfError(name);
+  if (status != GL_FRAMEBUFFER_COMPLETE) throwMissingCapability("framebuffer {}: this driver cannot draw into it (status {:#x})", name, status);
 }
 
 // ---------------------------------------------------------------------------------------------------- VertexArray

@@ -489,6 +489,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   leakedPaths_ += header[1];
   wrongCrossings_ += header[2];
   gl::throwIfReset();
+  gl::throwIfError("path tracing");
   const auto taken = static_cast<std::uint64_t>(lanes) * header[3];
   largest_ = std::max(largest_, taken);
   if (begins) largestBegun_ = std::max(largestBegun_, taken);

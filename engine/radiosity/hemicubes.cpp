@@ -22,6 +22,7 @@ namespace {
 constexpr GLuint kItemsUnit = 56, kKeysUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kKeys = 2, kFactors = 4, kSources = 5, kExactList = 6, kKeptList = 7, kLargeList = 8;
 constexpr int kGroup = 64;
 constexpr int kHemicubesEach = 8;
+constexpr std::size_t kMostKept = std::size_t{65535} * kGroup;  // what an indirect dispatch reaches that has a lane an entry
 constexpr std::size_t kMostHemicubes = 256;  // of hemicube.glsl: their frames are 16 KiB, what every driver has
 constexpr double kSmallSources = 0.1;  // of the area: sources that cover more need no care, each pixel meets one
 constexpr int kExactGroups = 256;
@@ -91,7 +92,7 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   // A software renderer does best inside the processor's cache, a GPU with work for all of its cores. Of what they have rays touch little: some hemicubes at once even so.
   const std::size_t some = settings_.visibility == HemicubeVisibility::rays ? 16 * each : 0;
   const std::size_t wanted = settings.batchBytes ? settings.batchBytes : std::max(some, std::size_t{capabilities.softwareRenderer ? 4u : 64u} << 20);
-  batch_ = static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1, std::min({patches, kMostHemicubes, texels * sizeof(GLuint) / keyBytes})));
+  batch_ = static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1, std::min({patches, kMostHemicubes, texels * sizeof(GLuint) / keyBytes, std::max<std::size_t>(kMostKept / listed, 1)})));
   if (settings_.visibility == HemicubeVisibility::itemBuffer) batch_ = std::clamp(std::min(batch_, capabilities.maxArrayTextureLayers / 5), 1, batch_);
 
   std::vector<glm::vec4> corners;
@@ -191,7 +192,10 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   largeList_.upload(0, sizeof kNoGroups, kNoGroups);
   constexpr GLbitfield kBarrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
   const glm::ivec3 triangles((count + kHemicubesEach - 1) / kHemicubesEach, patchCount_, 1), trianglesGroup(1, kGroup, 1);
-  const glm::ivec3 pixels(3 * settings_.resolution * settings_.resolution, count, 1), pixelsGroup(kGroup, 1, 1);
+  // Pixels in rows along z: an axis has 65,535 groups.
+  constexpr int kRow = 1024 * kGroup;
+  const int all = 3 * settings_.resolution * settings_.resolution;
+  const glm::ivec3 pixels(std::min(all, kRow), count, (all + kRow - 1) / kRow), pixelsGroup(kGroup, 1, 1);
   if (!listsKept()) {
     keys_.buffer().clear();
     for (const gl::Program* program : {depth_, depthLarge_}) {
@@ -250,6 +254,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   drawn.exact = staging_.read<glm::uvec2>(exactList_, 1 + staging_.readFirst<GLuint>(exactList_));
   drawn.exact.erase(drawn.exact.begin());
   gl::throwIfReset();
+  gl::throwIfError("hemicubes");
   pieces_.took(static_cast<std::uint32_t>(count), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return drawn;
 }

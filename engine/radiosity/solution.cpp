@@ -79,6 +79,10 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   std::vector<double> rowSums;  // as hemicubes have them
   const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
   bool kept = true, stopped = false;
+  const auto stop = [&] [[noreturn]] {
+    throw Stopped(fmt::format("stopped with {} of {} hemicubes made{}", solution.fronts.size(), n,
+                              checkpoint.empty() ? std::string() : fmt::format("; the same command goes on from {}", checkpoint.string())));
+  };
   const auto take = [&](const FormFactorRows& rows) {
     if (kept) append(matrix, rows);
     auto factor = rows.factors.begin();
@@ -122,7 +126,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   solution.hemicubeSeconds += now() - start;
   solution.keptRows = kept;
   solution.visibility = hemicubes.visibility();
-  if (stopped) throwBadInput("radiosity: stopped after {} of {} patches{}", solution.fronts.size(), n, checkpoint.empty() ? "" : "; the next run goes on from there");
+  if (stopped) stop();
 
   start = now();
   RadiositySystem system;
@@ -169,7 +173,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
         multiply(rows);
         first += rows.counts.size();
         solution.hemicubes += rows.counts.size();
-        if (!stage(RadiosityStage::Kind::formFactors, first)) throwBadInput("radiosity: stopped while rows were computed anew");
+        if (!stage(RadiosityStage::Kind::formFactors, first)) stop();
       }
     };
   }
@@ -189,8 +193,12 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   solver.solver = settings.solver;
   solver.error = settings.error;
   solver.mostProducts = settings.mostProducts;
-  solver.onStep = [&](const RadiosityProgress& p) { return stage(RadiosityStage::Kind::solving, n, p); };
+  solver.onStep = [&](const RadiosityProgress& p) {
+    stopped = !stage(RadiosityStage::Kind::solving, n, p);
+    return !stopped;
+  };
   RadiositySolved solved = solveRadiosity(system, solver);
+  if (stopped) stop();
   solution.exitance = std::move(solved.exitance);
   solution.irradiance = std::move(solved.irradiance);
   for (std::size_t i = 0; i < n; ++i) solution.irradiance[i] += solution.direct[i];

@@ -64,7 +64,8 @@ struct RadiositySolution {
 
 /// Throws Error(badInput) for scenes without a solution and for checkpoints of another scene, other settings or another version.
 /// `checkpoint`: every submission's rows are appended to it; a later run with the same scene and settings goes on from there, to the same bits.
-/// It stays (and one more a refinement) until removeCheckpoints(). `onStage`: false stops (what was computed stays in the checkpoint).
+/// It stays (and one more a refinement) until removeCheckpoints(). `onStage`: false stops: throws Stopped, and what
+/// was computed stays in the checkpoint.
 RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& settings,
                              const std::filesystem::path& checkpoint = {}, const std::function<bool(const RadiosityStage&)>& onStage = {});
 

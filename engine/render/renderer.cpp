@@ -388,6 +388,9 @@ void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInS
   timer_.collect();
   if (gather_) gather_->collect();
   gl::throwIfReset();
+  // Now and then: asking stops drivers that have threads of their own. Whoever reads a result asks again.
+  constexpr std::uint64_t kFramesBetweenLooks = 64;
+  if (++frames_ % kFramesBetweenLooks == 1) gl::throwIfError("a frame");
 }
 
 void Renderer::drain() {

@@ -21,6 +21,7 @@
 #include "rsm/rsm_gather.hpp"
 #include "scene/needs.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -95,6 +96,7 @@ class Renderer {
   std::vector<ReflectiveShadowMap::Outputs> recordCameraMap(const Camera& camera);  ///< empty where none is needed
 
   RenderSettings settings_;
+  std::uint64_t frames_ = 0;
   SceneNeeds needs_;
   glm::dvec3 origin_;                ///< of what is drawn, in the scene's coordinates
   std::optional<Scene> moved_;       ///< the scene about it, where that is not 0

@@ -1,4 +1,4 @@
-// Hemicubes by rays: one through each pixel's centre, through the hierarchy of the path tracer. x: pixels, y: hemicubes of the batch.
+// Hemicubes by rays: one through each pixel's centre, through the hierarchy of the path tracer. x, z: pixels, y: hemicubes of the batch.
 // Written: the pixel's patch + 1, 0 where there is none; each patch's share of the hemisphere is summed (hemicube_keep.glsl).
 layout(local_size_x = 64) in;
 #include "radiosity/hemicube.glsl"
@@ -10,7 +10,7 @@ layout(std430, binding = 2) writeonly buffer Items { uint items[]; };
 uniform vec3 raysOrigin;  // of the hierarchy's space
 
 void main() {
-  int pixel = int(gl_GlobalInvocationID.x), hemicube = int(gl_WorkGroupID.y);
+  int pixel = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x * 64u), hemicube = int(gl_WorkGroupID.y);
   if (pixel >= pixelsPerHemicube()) return;
   ivec3 place = placeOf(pixel);
   Frame f = frames[hemicube];

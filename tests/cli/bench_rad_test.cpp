@@ -53,11 +53,12 @@ TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
   }
   EXPECT_EQ(found, published.size());
 
-  // Both boxes, three ways to tell what pixels see; ratios to the library measured are of the medians.
+  // Both boxes, three ways to tell what pixels see; nothing is compared with figures from elsewhere.
   ASSERT_EQ(json["closed_box"].size(), 6u);
   for (const auto& row : json["closed_box"]) {
     EXPECT_TRUE(row["triangles"] == 2028 || row["triangles"] == 25392) << row;
     EXPECT_GE(row["hemicubes"].get<int>(), 64);
+    EXPECT_FALSE(row.contains("library_per_s"));
     EXPECT_GT(row["least"].get<double>(), 0.0);
     EXPECT_LE(row["least"].get<double>(), row["hemicubes_per_s"].get<double>());
     EXPECT_LE(row["hemicubes_per_s"].get<double>(), row["most"].get<double>());

@@ -144,11 +144,13 @@ TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {
   ASSERT_EQ(RUN_LUCERNA(common + "--frame-time 100000 -o '" + path("s.json") + "'").exitCode, 0);
   const auto settings = json("s.json");
   EXPECT_TRUE(settings.contains("technique"));
+  EXPECT_GT(settings.at("measured").at("setup_ms").get<double>(), 0.0);
   const RunResult picture = RUN_LUCERNA("render '" + path("scene.obj") + "' --size 32x16 --settings '" + path("s.json") + "' -o '" + path("p.pfm") + "' --json '" + path("p.json") + "'");
   ASSERT_EQ(picture.exitCode, 0) << picture.err;
   EXPECT_EQ(json("p.json").at("technique"), settings.at("technique"));
   EXPECT_EQ(json("p.json").at("settings"), settings.at("settings"));
-  expectOneLine(RUN_LUCERNA(common + "--quiet --error 1e-9 -o '" + path("s.json") + "'"), 2, {"nothing meets", "nearest"});
+  expectOneLine(RUN_LUCERNA(common + "--quiet --error 1e-9 -o '" + path("s.json") + "'"), 2, {"nothing meets", "nearest", "set-up"});
+  expectOneLine(RUN_LUCERNA(common + "--quiet --frame-time 100000 --setup-time 1e-6 -o '" + path("s.json") + "'"), 2, {"--setup-time", "soonest"});
   expectOneLine(RUN_LUCERNA(common + "-o '" + path("s.json") + "'"), 2, {"--frame-time", "--error"});
   std::ofstream(path("bad.json")) << "[1, 2";
   expectOneLine(RUN_LUCERNA("render '" + path("scene.obj") + "' --settings '" + path("bad.json") + "' -o '" + path("p.pfm") + "'"), 2, {"--settings", "bad.json"});

@@ -1,0 +1,107 @@
+// One rule for every command that is stopped by Ctrl-C or SIGTERM: state is kept, no final file is written, the exit code is 130 or 143, and the same
+// command ends with the file that an undisturbed run writes, bit by bit.
+#include "base/files.hpp"
+#include "support/subprocess.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace lucerna::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Interrupt : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(path("room.obj")) << R"(mtllib room.mtl
+v -1 0 -1
+v 1 0 -1
+v 1 0 1
+v -1 0 1
+v -1 2 -1
+v 1 2 -1
+v 1 2 1
+v -1 2 1
+v -0.3 1.99 -0.3
+v 0.3 1.99 -0.3
+v 0.3 1.99 0.3
+v -0.3 1.99 0.3
+usemtl grey
+f 1 4 3 2
+f 5 6 7 8
+f 1 2 6 5
+f 4 8 7 3
+f 1 5 8 4
+f 2 3 7 6
+usemtl lamp
+f 9 10 11 12
+)";
+    std::ofstream(path("room.mtl")) << "newmtl grey\nKd 0.9 0.9 0.9\nnewmtl lamp\nKd 0 0 0\nKe 5 5 5\n";
+  }
+  std::string path(const char* name) const { return (folder_ / name).string(); }
+
+  /// Runs `command` undisturbed for its file and its time; then stops it again and again at a share of that time until it ends by itself.
+  void expectGoesOn(const std::string& command, const std::string& out, const char* signal, int code, bool cleanStart) {
+    const auto begun = std::chrono::steady_clock::now();
+    const RunResult whole = run(command);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    ASSERT_EQ(whole.exitCode, 0) << whole.err;
+    const auto expected = readFileBytes(out);
+    int stops = 0;
+    for (const double share : {0.5, 0.7, 0.85}) {
+      fs::remove(out);
+      const RunResult stopped = run("timeout --preserve-status --signal=" + std::string(signal) + " " + std::to_string(share * seconds) + " " + command);
+      if (stopped.exitCode == 0) continue;  // a quiet moment: it had ended
+      ++stops;
+      // Before it watches, in the first tenths of a second, the signal ends it in its own way.
+      EXPECT_TRUE(stopped.exitCode == code) << stopped.exitCode << stopped.err;
+      EXPECT_FALSE(fs::exists(out)) << "a final file of unfinished work";
+      if (cleanStart) {
+        EXPECT_NE(stopped.err.find("goes on from"), std::string::npos) << stopped.err;
+      }
+      const RunResult rest = run(command);
+      ASSERT_EQ(rest.exitCode, 0) << rest.err;
+      EXPECT_EQ(readFileBytes(out), expected) << signal << " at " << share;
+    }
+    EXPECT_GT(stops, 0) << "it was never stopped: " << seconds << " s";
+    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(out).parent_path()))
+      EXPECT_TRUE(entry.path() == out || entry.path().extension() == ".obj" || entry.path().extension() == ".mtl") << entry.path() << " is left over";
+  }
+
+ private:
+  TempFolder folder_;
+};
+
+TEST_F(Interrupt, ASolutionIsNotWrittenBeforeItIsOne) {
+  // Products one by one from the rows' file: most of the time goes into the solver.
+  expectGoesOn("'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.sol") +
+                   "' 16 --edge 0.14 --memory 0.01 --visibility rays --solver jacobi --error 1e-6 --quiet",
+               path("o.sol"), "INT", 130, true);
+}
+
+TEST_F(Interrupt, ARefinedSolutionTakesUpItsOwnRows) {
+  expectGoesOn("'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.sol") +
+                   "' 16 --edge 0.3 --memory 0.01 --refinements 1 --visibility rays --solver jacobi --error 1e-5 --quiet",
+               path("o.sol"), "TERM", 143, true);
+}
+
+TEST_F(Interrupt, APathTracedPictureGoesOnFromItsFilm) {
+  expectGoesOn("'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique path --camera 0,1,0.9,0,1,0,70 --size 64x64 --spp 192 --quiet -o '" + path("o.pfm") + "'",
+               path("o.pfm"), "INT", 130, true);
+}
+
+TEST_F(Interrupt, AFullDiskDoesNotCostTheFinishedPicture) {
+  const RunResult result = run("'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique path --camera 0,1,0.9,0,1,0,70 --size 16x16 --spp 2 --quiet --checkpoint /dev/full/none -o '" +
+                               path("o.pfm") + "'");
+  EXPECT_EQ(result.exitCode, 2) << result.err;
+  EXPECT_TRUE(fs::exists(path("o.pfm")));
+}
+
+}  // namespace
+}  // namespace lucerna::test
