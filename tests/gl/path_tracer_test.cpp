@@ -147,7 +147,7 @@ TEST_F(PathTracerTest, AStoppedPictureIsOneOfWholePasses) {
     cut += raw.pixels != mean.pixels;
     EXPECT_EQ(resumed.mean().pixels, mean.pixels) << submissions;  // so is what a checkpoint holds
     const PathTracer::Statistics statistics = stopped.statistics();
-    for (const glm::ivec2 tile : {glm::ivec2(0, 0), glm::ivec2(128, 0), glm::ivec2(0, 128), glm::ivec2(128, 128)}) {
+    for (const glm::ivec2& tile : {glm::ivec2(0, 0), glm::ivec2(128, 0), glm::ivec2(0, 128), glm::ivec2(128, 128)}) {
       int samples = -1;  // that all pixels of the tile have
       for (int n = 0; n <= 3 && samples < 0; ++n) {
         bool same = true;
@@ -171,7 +171,7 @@ TEST_F(PathTracerTest, EveryTexelOfALargeEnvironmentIsPicked) {
   Scene scene = builder.scene();
   scene.sun.reset();
   constexpr int kWidth = 8192, kHeight = 2064;
-  for (const glm::ivec2 texel : {glm::ivec2(4097, 700), glm::ivec2(4097, 2055), glm::ivec2(kWidth - 1, kHeight - 8)}) {
+  for (const glm::ivec2& texel : {glm::ivec2(4097, 700), glm::ivec2(4097, 2055), glm::ivec2(kWidth - 1, kHeight - 8)}) {
     scene.environment = Environment{glm::vec3(1.0f), Image(kWidth, kHeight), 0.0};
     scene.environment->picture->at(texel.x, texel.y) = glm::vec3(1e6f);
     const double pi = 3.14159265358979324, top = pi * texel.y / kHeight, bottom = pi * (texel.y + 1) / kHeight;
