@@ -136,7 +136,7 @@ TEST_F(RadiositySolutions, AResumedRunEqualsAnUninterruptedOne) {
   const RadiositySolution uninterrupted = solve(scene, settings);
   const auto file = folder.path() / "rows";
   int submissions = 0;
-  EXPECT_THROW(solve(scene, settings, file, [&](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors || ++submissions < 4; }), Error);
+  EXPECT_THROW(solve(scene, settings, file, [&](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors || ++submissions < 4; }), Stopped);
   ASSERT_TRUE(std::filesystem::exists(file));
   // As a kill in the middle of a write leaves it.
   const auto bytes = std::filesystem::file_size(file);
@@ -153,7 +153,7 @@ TEST_F(RadiositySolutions, AResumedRunEqualsAnUninterruptedOne) {
   EXPECT_FALSE(std::filesystem::exists(file));
   for (std::size_t i = 0; i < resumed.exitance.size(); ++i) ASSERT_EQ(resumed.exitance[i], uninterrupted.exitance[i]);
   // Another scene's, another setting's, or no checkpoint at all: refused and left as it is.
-  EXPECT_THROW(solve(scene, settings, file, [&](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors; }), Error);
+  EXPECT_THROW(solve(scene, settings, file, [&](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors; }), Stopped);
   const auto kept = std::filesystem::file_size(file);
   RadiositySolutionSettings other = settings;
   other.hemicubes.seed = 2;
