@@ -35,7 +35,8 @@ struct CommonOptions {
   bool quiet = false;
 
   void declare(CLI::App& app);
-  void apply() const;  ///< checks --host and sets the log level
+  void apply() const;  ///< checks the host asked for and sets the log level
+  std::string askedHost() const;  ///< by the option, else by LUCERNA_HOST; empty: neither
   std::unique_ptr<Host> makeHost(bool wantsWindow, const HostOptions& options = {}) const;
   void writeJson(const nlohmann::ordered_json& json) const;  ///< no effect without --json
 };

@@ -21,20 +21,26 @@ namespace lucerna::demo {
 // ---------------------------------------------------------------------------------------------------- options
 
 void CommonOptions::declare(CLI::App& app) {
-  offer(app.add_option("--host", host, "who makes the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)")->envname("LUCERNA_HOST"),
+  offer(app.add_option("--host", host, "who makes the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
         {"window", "egl", "osmesa"});
   app.add_option("--json", json, "write machine-readable results to this file");
   app.add_flag("--quiet", quiet, "no warnings, no progress");
 }
 
+std::string CommonOptions::askedHost() const {
+  const char* environment = std::getenv("LUCERNA_HOST");
+  return !host.empty() ? host : environment ? environment : "";
+}
+
 void CommonOptions::apply() const {
-  if (!host.empty()) parseHostKind(host);
+  if (const std::string asked = askedHost(); !asked.empty()) parseHostKind(asked);
   if (quiet) setLogLevel(LogLevel::quiet);
   if (const char* verbose = std::getenv("LUCERNA_VERBOSE"); verbose && *verbose) setLogLevel(LogLevel::verbose);
 }
 
 std::unique_ptr<Host> CommonOptions::makeHost(bool wantsWindow, const HostOptions& options) const {
-  return host.empty() ? Host::createDefault(wantsWindow, options) : Host::create(parseHostKind(host), options);
+  const std::string asked = askedHost();
+  return asked.empty() ? Host::createDefault(wantsWindow, options) : Host::create(parseHostKind(asked), options);
 }
 
 void CommonOptions::writeJson(const nlohmann::ordered_json& value) const {
