@@ -79,6 +79,8 @@ const char* kEnvironment[][2] = {
                      "in the folders of XDG_DATA_DIRS."},
     {"LUCERNA_SHADERS", "Another folder of shaders, such as one in which they are being changed."},
     {"LUCERNA_REFERENCES", "Where path-traced references are kept (default: lucerna in XDG_CACHE_HOME or ~/.cache)."},
+    {"LUCERNA_DUMP_PROGRAMS", "A folder for the sources of all shader programs and what they need of the driver, for validators and other compilers."},
+    {"LUCERNA_GL_MINIMA", "1: the driver's limits are taken for no more than OpenGL 4.3 guarantees, to see what is said on the least of drivers."},
     {"LUCERNA_VERBOSE", "If not empty: more messages on standard error."},
     {"DISPLAY, WAYLAND_DISPLAY", "Where one of them is set, walk opens a window."},
 };

@@ -5,7 +5,7 @@ run_packages="g++ cmake ninja-build pkg-config libglew-dev libglfw3-dev libglm-d
 test_packages="libgtest-dev xvfb xauth"
 # What is done without where it is not to be had: the host osmesa, plots, and a yardstick for rays.
 optional_run_packages="libosmesa6-dev gnuplot-nox"
-optional_test_packages="libembree-dev"
+optional_test_packages="libembree-dev glslang-tools"
 
 is_installed() {
   dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed'

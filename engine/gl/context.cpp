@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "gl/limits.hpp"
 #include "host/host.hpp"
 
 #include <set>
@@ -124,18 +125,18 @@ Context::Context(DebugOutput debugOutput) {
     c.resetNotification = strategy == GL_LOSE_CONTEXT_ON_RESET_ARB;
   }
 
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &c.maxTextureSize);
-  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &c.max3dTextureSize);
-  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &c.maxArrayTextureLayers);
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &c.maxTextureBufferSize);
-  glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &c.maxShaderStorageBlockSize);
-  glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &c.maxComputeSharedMemory);
-  glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &c.maxComputeInvocations);
-  glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &c.maxTextureImageUnits);
-  glGetIntegerv(GL_MAX_IMAGE_UNITS, &c.maxImageUnits);
-  glGetIntegerv(GL_MAX_COLOR_ATTACHMENTS, &c.maxColorAttachments);
-  glGetIntegerv(GL_MAX_SAMPLES, &c.maxSamples);
-  glGetIntegerv(GL_MAX_GEOMETRY_OUTPUT_VERTICES, &c.maxGeometryOutputVertices);
+  c.maxTextureSize = limit(GL_MAX_TEXTURE_SIZE);
+  c.max3dTextureSize = limit(GL_MAX_3D_TEXTURE_SIZE);
+  c.maxArrayTextureLayers = limit(GL_MAX_ARRAY_TEXTURE_LAYERS);
+  c.maxTextureBufferSize = limit(GL_MAX_TEXTURE_BUFFER_SIZE);
+  c.maxShaderStorageBlockSize = limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+  c.maxComputeSharedMemory = limit(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
+  c.maxComputeInvocations = limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
+  c.maxTextureImageUnits = limit(GL_MAX_TEXTURE_IMAGE_UNITS);
+  c.maxImageUnits = limit(GL_MAX_IMAGE_UNITS);
+  c.maxColorAttachments = limit(GL_MAX_COLOR_ATTACHMENTS);
+  c.maxSamples = limit(GL_MAX_SAMPLES);
+  c.maxGeometryOutputVertices = limit(GL_MAX_GEOMETRY_OUTPUT_VERTICES);
   if (c.anisotropicFilter) glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &c.maxAnisotropy);
 
   if (debugOutput == DebugOutput::synchronous) {

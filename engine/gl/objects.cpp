@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "gl/context.hpp"
+#include "gl/limits.hpp"
 
 #include <algorithm>
 #include <array>
@@ -37,19 +38,6 @@ const Format& formatOf(GLenum internalFormat) {
     if (f.internal == internalFormat) return f;
   CHECK(false, "format {:#x} is not in the engine's table", internalFormat);
   return kFormats[0];
-}
-
-/// Throws Error(missingCapability) where a texture is larger than the driver's limits.
-void checkLimits(const std::string& name, GLenum target, const glm::ivec3& size) {
-  const auto limit = [](GLenum key) {
-    GLint most = 0;
-    glGetIntegerv(key, &most);
-    return most;
-  };
-  const GLint side = limit(target == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE);
-  const GLint layers = target == GL_TEXTURE_3D ? side : target == GL_TEXTURE_2D ? 1 : limit(GL_MAX_ARRAY_TEXTURE_LAYERS);
-  if (size.x > side || size.y > side || size.z > layers)
-    throwMissingCapability("{}: a texture of {}x{}x{}; this driver's end at {}x{}x{}", name, size.x, size.y, size.z, side, side, layers);
 }
 
 }  // namespace
@@ -96,6 +84,8 @@ void Buffer::clear(GLuint value) {
 }
 
 void Buffer::bind(GLenum target, GLuint index) const {
+  if (target == GL_SHADER_STORAGE_BUFFER) requireWithin(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, bytes_, GL_BUFFER, id());
+  if (target == GL_UNIFORM_BUFFER) requireWithin(GL_MAX_UNIFORM_BLOCK_SIZE, bytes_, GL_BUFFER, id());
   shadersMayWrite_ = shadersMayWrite_ || target == GL_SHADER_STORAGE_BUFFER;
   glBindBufferBase(target, index, id());
 }
@@ -136,7 +126,9 @@ Texture::Texture(const std::string& name, GLenum internalFormat, glm::ivec3 size
 
 void Texture::create(const std::string& name, const Sampling& s) {
   CHECK(size_.x > 0 && size_.y > 0 && size_.z > 0, "texture {}: {}x{}x{}", name, size_.x, size_.y, size_.z);
-  checkLimits(name, target_, size_);
+  requireWithin(target_ == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE, static_cast<std::size_t>(std::max(size_.x, size_.y)), name);
+  if (target_ != GL_TEXTURE_2D)
+    requireWithin(target_ == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_ARRAY_TEXTURE_LAYERS, static_cast<std::size_t>(size_.z), name);
   throwIfError("before " + name);
   GLuint id = 0;
   glGenTextures(1, &id);
@@ -253,6 +245,7 @@ std::vector<glm::uvec4> Texture::readWords() const {
 
 BufferTexture::BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data, GLenum usage)
     : buffer_(name, bytes, data, usage) {
+  requireWithin(GL_MAX_TEXTURE_BUFFER_SIZE, bytes / bytesPerTexel(format), name);
   GLuint id = 0;
   glGenTextures(1, &id);
   texture_ = decltype(texture_)(id);
@@ -260,10 +253,6 @@ BufferTexture::BufferTexture(const std::string& name, GLenum format, std::size_t
   glBindTexture(GL_TEXTURE_BUFFER, id);
   label(GL_TEXTURE, id, name);
   glTexBuffer(GL_TEXTURE_BUFFER, format, buffer_.id());
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-  if (const std::size_t texels = bytes / bytesPerTexel(format); texels > static_cast<std::size_t>(most))
-    throwMissingCapability("{}: {} texels; this driver's buffer textures end at {}", name, texels, most);
   throwIfError(name);
 }
 

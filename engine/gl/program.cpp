@@ -6,9 +6,12 @@
 #include "base/log.hpp"
 #include "gl/objects.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 
 namespace lucerna::gl {
 
@@ -38,9 +41,68 @@ const char* suffixOf(GLenum stage) {
   return stage == GL_VERTEX_SHADER ? "vert" : stage == GL_GEOMETRY_SHADER ? "geom" : stage == GL_FRAGMENT_SHADER ? "frag" : "comp";
 }
 
+/// What a linked program takes of the limits of OpenGL: lines "NAME VALUE", NAME of GL_MAX_NAME, zeros left out. Shared memory cannot be asked for.
+std::string needsOf(GLuint program, bool compute) {
+  struct Stage {
+    GLenum referenced;
+    const char* name;
+  };
+  constexpr std::array kStages{Stage{GL_REFERENCED_BY_VERTEX_SHADER, "VERTEX"}, Stage{GL_REFERENCED_BY_GEOMETRY_SHADER, "GEOMETRY"},
+                               Stage{GL_REFERENCED_BY_FRAGMENT_SHADER, "FRAGMENT"}, Stage{GL_REFERENCED_BY_COMPUTE_SHADER, "COMPUTE"}};
+  std::map<std::string, GLint> needs;
+  const auto property = [&](GLenum interface, GLuint resource, GLenum key) {
+    GLint value = 0;
+    glGetProgramResourceiv(program, interface, resource, 1, &key, 1, nullptr, &value);
+    return value;
+  };
+  const auto countOf = [&](GLenum interface) {
+    GLint count = 0;
+    glGetProgramInterfaceiv(program, interface, GL_ACTIVE_RESOURCES, &count);
+    return static_cast<GLuint>(count);
+  };
+  const auto add = [&](GLenum interface, GLuint resource, const std::string& what, GLint count) {
+    for (const Stage& stage : kStages)
+      if (property(interface, resource, stage.referenced) != 0) {
+        needs[fmt::format("{}_{}", stage.name, what)] += count;
+        needs["COMBINED_" + what] += count;
+      }
+  };
+  const auto raise = [&](const std::string& what, GLint value) { needs[what] = std::max(needs[what], value); };
+  for (GLuint i = 0; i < countOf(GL_SHADER_STORAGE_BLOCK); ++i) {
+    add(GL_SHADER_STORAGE_BLOCK, i, "SHADER_STORAGE_BLOCKS", 1);
+    raise("SHADER_STORAGE_BUFFER_BINDINGS", property(GL_SHADER_STORAGE_BLOCK, i, GL_BUFFER_BINDING) + 1);
+  }
+  for (GLuint i = 0; i < countOf(GL_UNIFORM_BLOCK); ++i) {
+    add(GL_UNIFORM_BLOCK, i, "UNIFORM_BLOCKS", 1);
+    raise("UNIFORM_BUFFER_BINDINGS", property(GL_UNIFORM_BLOCK, i, GL_BUFFER_BINDING) + 1);
+    raise("UNIFORM_BLOCK_SIZE", property(GL_UNIFORM_BLOCK, i, GL_BUFFER_DATA_SIZE));
+  }
+  for (GLuint i = 0; i < countOf(GL_UNIFORM); ++i) {
+    const GLint location = property(GL_UNIFORM, i, GL_LOCATION), count = property(GL_UNIFORM, i, GL_ARRAY_SIZE);
+    if (location < 0) continue;  // in a block
+    const auto type = static_cast<GLenum>(property(GL_UNIFORM, i, GL_TYPE));
+    const bool image = type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
+    const bool sampler = (type >= GL_SAMPLER_1D && type <= GL_SAMPLER_2D_RECT_SHADOW) || (type >= GL_SAMPLER_1D_ARRAY && type <= GL_SAMPLER_CUBE_SHADOW) ||
+                         (type >= GL_INT_SAMPLER_1D && type <= GL_UNSIGNED_INT_SAMPLER_BUFFER);
+    if (!image && !sampler) continue;
+    GLint unit = 0;
+    glGetUniformiv(program, location, &unit);
+    add(GL_UNIFORM, i, image ? "IMAGE_UNIFORMS" : "TEXTURE_IMAGE_UNITS", count);
+    raise(image ? "IMAGE_UNITS" : "TEXTURE_UNITS", unit + count);
+  }
+  if (compute) {
+    std::array<GLint, 3> group{};
+    glGetProgramiv(program, GL_COMPUTE_WORK_GROUP_SIZE, group.data());
+    raise("COMPUTE_WORK_GROUP_INVOCATIONS", group[0] * group[1] * group[2]);
+  }
+  std::string text;
+  for (const auto& [name, value] : needs) text += fmt::format("{} {}\n", name, value);
+  return text;
+}
+
 /// LUCERNA_DUMP_PROGRAMS=FOLDER keeps what drivers are given, for other drivers and validators: FOLDER/HASH.vert .geom .frag .comp a stage, HASH.name the
-/// program's name. Programs of the same text are kept once.
-void dump(const std::string& name, const std::vector<std::pair<GLenum, std::string>>& texts) {
+/// program's name and its flags, HASH.needs what it needs. Programs of the same text are kept once.
+void dump(const std::string& name, GLuint program, const std::vector<std::pair<GLenum, std::string>>& texts) {
   const char* folder = std::getenv("LUCERNA_DUMP_PROGRAMS");
   if (!folder || !*folder) return;
   Hash hash;
@@ -51,6 +113,7 @@ void dump(const std::string& name, const std::vector<std::pair<GLenum, std::stri
     if (!(std::ofstream(file) << text)) throwBadInput("LUCERNA_DUMP_PROGRAMS={}: cannot write {}", folder, file.filename().string());
   };
   for (const auto& [stage, text] : texts) keep(suffixOf(stage), text);
+  keep("needs", needsOf(program, texts.front().first == GL_COMPUTE_SHADER));
   keep("name", name + "\n");
 }
 
@@ -177,7 +240,10 @@ void ProgramLibrary::build(Program& program) {
   GLint linked = GL_FALSE;
   glGetProgramiv(id, GL_LINK_STATUS, &linked);
   if (!linked) fail(fmt::format("does not link:\n{}", programLog(id)));
-  dump(description.name, texts);
+  std::string name = description.name;
+  for (const auto& [flag, value] : description.flags)
+    if (value != 0) name += value == 1 ? " " + flag : fmt::format(" {}={}", flag, value);
+  dump(name, id, texts);
   for (GLuint shader : shaders) {
     glDetachShader(id, shader);
     glDeleteShader(shader);

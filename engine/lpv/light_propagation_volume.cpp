@@ -60,7 +60,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   };
   const auto buffer = [&](const std::string& name, GLenum texelFormat, std::size_t bytes) {
     if (bytes / gl::bytesPerTexel(texelFormat) > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
-      throwMissingCapability("{}: {} bytes; the largest texture buffer of the driver has {} texels", name, bytes, capabilities.maxTextureBufferSize);
+      throwMissingCapability("{}: {} bytes; the largest texture buffer of the driver has {} texels (GL_MAX_TEXTURE_BUFFER_SIZE)", name, bytes, capabilities.maxTextureBufferSize);
     return gl::BufferTexture(name, texelFormat, bytes, nullptr, GL_DYNAMIC_COPY);
   };
   const gl::ShaderFlags group{{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}};

@@ -20,7 +20,7 @@ namespace {
 
 constexpr GLuint kConstantsBinding = 0;                                                               // GL_UNIFORM_BUFFER
 constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4, kStateBinding = 5, kMediaBinding = 6,
-                 kInteriorsBinding = 7, kGridsBinding = 8, kDensitiesBinding = 9;  // GL_SHADER_STORAGE_BUFFER
+                 kInteriorsBinding = 7, kGridsBinding = 0, kDensitiesBinding = 1;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kClearancesUnit = 3, kEnvironmentRowsUnit = 4;
 constexpr int kGroupSide = 8;
 constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
@@ -67,12 +67,20 @@ struct CheckpointHeader {
   std::uint32_t width = 0, height = 0;
 };
 
+/// The state of a tile's lanes fits in a storage block.
+int tileSideOn(const gl::Capabilities& capabilities) {
+  int side = capabilities.softwareRenderer ? 128 : 512;
+  const auto bytes = [&] { return kStateHeaderBytes + static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * kStateWords * kVec4Bytes; };
+  while (bytes() > static_cast<std::size_t>(capabilities.maxShaderStorageBlockSize)) side /= 2;
+  return side;
+}
+
 /// A buffer is never of no size.
 template <class T>
 gl::Buffer storage(const std::string& name, const std::vector<T>& values, const gl::Capabilities& capabilities) {
   const std::size_t bytes = std::max(values.size(), std::size_t{1}) * sizeof(T);
   if (bytes > static_cast<std::size_t>(capabilities.maxShaderStorageBlockSize))
-    throwMissingCapability("{}: {} bytes; this driver's storage blocks have at most {}", name, bytes, capabilities.maxShaderStorageBlockSize);
+    throwMissingCapability("{}: {} bytes; this driver's storage blocks have at most {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE)", name, bytes, capabilities.maxShaderStorageBlockSize);
   gl::Buffer buffer(name, bytes, nullptr, GL_STATIC_DRAW);
   if (!values.empty()) buffer.upload(0, values.size() * sizeof(T), values.data());
   return buffer;
@@ -96,7 +104,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       needs_(analyse(scene)),
       rays_(scene, context.capabilities(), settings.rays),
       constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW),
-      tileSide_(context.capabilities().softwareRenderer ? 128 : 512),
+      tileSide_(tileSideOn(context.capabilities())),
       mostTurns_(context.capabilities().softwareRenderer ? kSoftwareTurns : kMostTurns),
       clearTexture_(context.capabilities().clearTexture),
       turns_(settings.submissionSeconds, kLanesOfTile, mostTurns_) {
@@ -292,12 +300,12 @@ void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capa
     const Texture& texture = scene.textures[static_cast<std::size_t>(entry.texture)];
     sizes.emplace_back(texture.bitmap.width, texture.bitmap.height);
     if (std::max(sizes.back().x, sizes.back().y) > capabilities.maxTextureSize)
-      throwMissingCapability("{}: {} x {} texels; this driver's textures have at most {}", texture.file.string(), sizes.back().x, sizes.back().y,
+      throwMissingCapability("{}: {} x {} texels; this driver's textures have at most {} (GL_MAX_TEXTURE_SIZE)", texture.file.string(), sizes.back().x, sizes.back().y,
                              capabilities.maxTextureSize);
   }
   const AtlasLayout layout = layOutAtlas(sizes, std::min(capabilities.maxTextureSize, 8192));
   if (layout.size.z > capabilities.maxArrayTextureLayers)
-    throwMissingCapability("{} layers of textures; this driver has at most {}", layout.size.z, capabilities.maxArrayTextureLayers);
+    throwMissingCapability("{} layers of textures; this driver has at most {} (GL_MAX_ARRAY_TEXTURE_LAYERS)", layout.size.z, capabilities.maxArrayTextureLayers);
   std::vector<std::uint8_t> texels(4 * static_cast<std::size_t>(layout.size.x) * static_cast<std::size_t>(layout.size.y) * static_cast<std::size_t>(layout.size.z));
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(entries[i].texture)].bitmap;

@@ -19,7 +19,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kItemsUnit = 56, kKeysUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kKeys = 2, kFactors = 4, kSources = 5, kExactList = 6, kKeptList = 7, kLargeList = 8;
+constexpr GLuint kItemsUnit = 56, kKeysUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kKeys = 2, kFactors = 4, kSources = 5, kExactList = 6, kKeptList = 7, kLargeList = 3;
 constexpr int kGroup = 64;
 constexpr int kHemicubesEach = 8;
 constexpr std::size_t kMostKept = std::size_t{65535} * kGroup;  // what an indirect dispatch reaches that has a lane an entry
@@ -83,11 +83,11 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   const std::size_t listed = items ? std::min(patches, keyBytes / sizeof(GLuint)) + sources.size() - patches : patches;
   const std::size_t each = std::max({keyBytes, factorBytes, listed * sizeof(glm::uvec2) + 16});
   if (each > limit)
-    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need storage blocks of {} bytes, this driver's end at {}: use longer edges or smaller hemicubes",
+    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need storage blocks of {} bytes, this driver's end at {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE): use longer edges or smaller hemicubes",
                            patches, settings.resolution, each, limit);
   const auto texels = static_cast<std::size_t>(std::max(capabilities.maxTextureBufferSize, 1 << 16));
   if (3 * patches > texels || keyBytes / sizeof(GLuint) > texels)
-    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's end at {}", patches, settings.resolution,
+    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's end at {} (GL_MAX_TEXTURE_BUFFER_SIZE)", patches, settings.resolution,
                            std::max(3 * patches, keyBytes / sizeof(GLuint)), texels);
   // A software renderer does best inside the processor's cache, a GPU with work for all of its cores. Of what they have rays touch little: some hemicubes at once even so.
   const std::size_t some = settings_.visibility == HemicubeVisibility::rays ? 16 * each : 0;

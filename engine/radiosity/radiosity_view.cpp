@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "gl/limits.hpp"
 
 #include <fmt/ranges.h>
 
@@ -14,6 +15,7 @@ namespace {
 constexpr GLuint kLightBinding = 0, kFacesBinding = 2;  // 1: direct light
 
 RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiosityView::Settings& settings) {
+  gl::requireWithin(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, 2, "the view of a radiosity solution");
   if (!settings.file.empty() && std::filesystem::exists(settings.file)) {
     RadiositySolution solution = loadSolution(settings.file, scene);
     if (activeRadiosityDeviations(solution.deviations) != activeRadiosityDeviations(settings.solution.deviations))

@@ -4,8 +4,8 @@
 // The channel that decides is chosen as in media.glsl, so that here too no weight exceeds the number of channels.
 #include "pathtracer/media.glsl"
 
-layout(std430, binding = 8) restrict readonly buffer DensityRecords { DensityRecord densityRecords[]; };
-layout(std430, binding = 9) restrict readonly buffer Densities { float densities[]; };
+layout(std430, binding = 0) restrict readonly buffer DensityRecords { DensityRecord densityRecords[]; };
+layout(std430, binding = 1) restrict readonly buffer Densities { float densities[]; };
 
 float cellDensity(DensityRecord g, ivec3 cell) {
   ivec3 c = clamp(cell, ivec3(0), g.size.xyz - 1);

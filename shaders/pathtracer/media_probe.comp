@@ -11,8 +11,8 @@ struct Probe {
 struct Answer {
   vec4 a, b;
 };
-layout(std430, binding = 0) readonly buffer Probes { Probe probes[]; };
-layout(std430, binding = 1) writeonly buffer Answers { Answer answers[]; };
+layout(std430, binding = 3) readonly buffer Probes { Probe probes[]; };
+layout(std430, binding = 4) writeonly buffer Answers { Answer answers[]; };
 layout(std430, binding = 2) readonly buffer Media { MediumRecord media[]; };
 uniform int what;
 

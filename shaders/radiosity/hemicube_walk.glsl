@@ -4,7 +4,7 @@
 #include "radiosity/hemicube.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 8) buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };  // places of form factors (hemicube_sum.comp); begins with an indirect dispatch
+layout(std430, binding = 3) buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };  // places of form factors (hemicube_sum.comp); begins with an indirect dispatch
 uniform int hemicubes;      // in this batch
 uniform int hemicubesEach;  // an invocation's share of them: a triangle's corners are read once for them
 const int kMostPixels = 1024;

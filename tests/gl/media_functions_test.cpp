@@ -43,8 +43,8 @@ class MediaFunctions : public test::SharedProgramsTest {
                             int outerMedium = -1, const gl::ShaderFlags& deviations = {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}}) {
     const gl::Program& program = library().loadCompute("media probe", "pathtracer/media_probe.comp", deviations);
     const PackedMedia packed = packMedia(media);
-    const gl::Buffer in = bufferOf(probes, 0), out = bufferOf(std::vector<Answer>(probes.size()), 1), records = bufferOf(packed.media, 2),
-                     grids = bufferOf(packed.grids, 8), densities = bufferOf(packed.densities, 9), interiors = bufferOf(boundaries.interiors, 7);
+    const gl::Buffer in = bufferOf(probes, 3), out = bufferOf(std::vector<Answer>(probes.size()), 4), records = bufferOf(packed.media, 2),
+                     grids = bufferOf(packed.grids, 0), densities = bufferOf(packed.densities, 1), interiors = bufferOf(boundaries.interiors, 7);
     {
       const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
       program.use();
