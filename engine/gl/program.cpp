@@ -42,7 +42,7 @@ const char* suffixOf(GLenum stage) {
 }
 
 /// What a linked program takes of the limits of OpenGL: lines "NAME VALUE", NAME of GL_MAX_NAME, zeros left out. Shared memory cannot be asked for.
-std::string needsOf(GLuint program, bool compute) {
+std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::string>>& texts) {
   struct Stage {
     GLenum referenced;
     const char* name;
@@ -69,7 +69,15 @@ std::string needsOf(GLuint program, bool compute) {
   };
   const auto raise = [&](const std::string& what, GLint value) { needs[what] = std::max(needs[what], value); };
   for (GLuint i = 0; i < countOf(GL_SHADER_STORAGE_BLOCK); ++i) {
-    add(GL_SHADER_STORAGE_BLOCK, i, "SHADER_STORAGE_BLOCKS", 1);
+    // Mesa does not say which stages refer to most of them: those whose text declares an active block.
+    std::array<char, 128> block{};
+    glGetProgramResourceName(program, GL_SHADER_STORAGE_BLOCK, i, static_cast<GLsizei>(block.size()), nullptr, block.data());
+    for (const auto& [stage, text] : texts)
+      if (text.find(fmt::format("buffer {} {{", block.data())) != std::string::npos) {
+        const char* name = stage == GL_VERTEX_SHADER ? "VERTEX" : stage == GL_GEOMETRY_SHADER ? "GEOMETRY" : stage == GL_FRAGMENT_SHADER ? "FRAGMENT" : "COMPUTE";
+        ++needs[fmt::format("{}_SHADER_STORAGE_BLOCKS", name)];
+        ++needs["COMBINED_SHADER_STORAGE_BLOCKS"];
+      }
     raise("SHADER_STORAGE_BUFFER_BINDINGS", property(GL_SHADER_STORAGE_BLOCK, i, GL_BUFFER_BINDING) + 1);
   }
   for (GLuint i = 0; i < countOf(GL_UNIFORM_BLOCK); ++i) {
@@ -90,7 +98,7 @@ std::string needsOf(GLuint program, bool compute) {
     add(GL_UNIFORM, i, image ? "IMAGE_UNIFORMS" : "TEXTURE_IMAGE_UNITS", count);
     raise(image ? "IMAGE_UNITS" : "TEXTURE_UNITS", unit + count);
   }
-  if (compute) {
+  if (texts.front().first == GL_COMPUTE_SHADER) {
     std::array<GLint, 3> group{};
     glGetProgramiv(program, GL_COMPUTE_WORK_GROUP_SIZE, group.data());
     raise("COMPUTE_WORK_GROUP_INVOCATIONS", group[0] * group[1] * group[2]);
@@ -113,7 +121,7 @@ void dump(const std::string& name, GLuint program, const std::vector<std::pair<G
     if (!(std::ofstream(file) << text)) throwBadInput("LUCERNA_DUMP_PROGRAMS={}: cannot write {}", folder, file.filename().string());
   };
   for (const auto& [stage, text] : texts) keep(suffixOf(stage), text);
-  keep("needs", needsOf(program, texts.front().first == GL_COMPUTE_SHADER));
+  keep("needs", needsOf(program, texts));
   keep("name", name + "\n");
 }
 
