@@ -62,8 +62,8 @@ double turnsOfHemicube(const RadiosityMesh& mesh, int resolution) {
 
 Hemicubes::~Hemicubes() = default;
 
-Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh, const HemicubeSettings& settings)
-    : mesh_(&mesh), settings_(settings), patchCount_(static_cast<int>(mesh.patches.size())),
+Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh, const HemicubeSettings& settings, const RayScene* rays)
+    : mesh_(&mesh), settings_(settings), patchCount_(static_cast<int>(mesh.patches.size())), rays_(rays),
       pieces_(kSecondsOfPiece, turnsOfHemicube(mesh, settings.resolution), kMostHemicubes, settings.unmeasuredTurns) {
   CHECK(settings.resolution >= 2 && settings.resolution % 2 == 0, "hemicubes of {} pixels", settings.resolution);
   if (settings_.visibility == HemicubeVisibility::automatic) choose(programs, capabilities);
@@ -112,11 +112,16 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   if (items) keptList_ = storage("kept patches", 16 + batch * listed * sizeof(glm::uvec2));
   exactList_ = storage("exact form factors", 8 + batch * listed * sizeof(glm::uvec2));
   largeList_ = storage("large patches", 16 + batch * listed * sizeof(GLuint));
+  // What no pixel meets of the small sources is asked for by a ray.
+  const bool asksForSources = sourceCount_ > 0 && settings_.exactPixels > 0;
+  if (!rays_ && (asksForSources || settings_.visibility == HemicubeVisibility::rays)) {
+    ownRays_ = std::make_unique<RayScene>(sceneOf(mesh), capabilities);
+    rays_ = ownRays_.get();
+  }
   if (settings_.visibility == HemicubeVisibility::raster) {
     depth_ = &programs.loadCompute("hemicube depth", "radiosity/hemicube_depth.comp", {{"LARGE", 0}});
     depthLarge_ = &programs.loadCompute("hemicube depth large", "radiosity/hemicube_depth.comp", {{"LARGE", 1}});
   } else if (settings_.visibility == HemicubeVisibility::rays) {
-    rays_ = std::make_unique<RayScene>(sceneOf(mesh), capabilities);
     traceRays_ = &programs.loadCompute("hemicube rays", "radiosity/hemicube_rays.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays_->sharedStack()}});
   } else {
     const glm::ivec3 layers(settings.resolution, settings.resolution, 5 * batch_);
@@ -129,9 +134,11 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
     buffer.draw = &programs.loadRaster("hemicube items", "radiosity/hemicube_item.vert", "radiosity/hemicube_item.frag", {}, "radiosity/hemicube_item.geom");
     buffer.sum = &programs.loadCompute("hemicube items sum", "radiosity/hemicube_items.comp");
   }
-  sum_ = &programs.loadCompute("hemicube sum", "radiosity/hemicube_sum.comp", {{"LARGE", 0}, {"ITEMS", items}});
-  sumLarge_ = &programs.loadCompute("hemicube sum large", "radiosity/hemicube_sum.comp", {{"LARGE", 1}, {"ITEMS", items}});
-  exact_ = &programs.loadCompute("hemicube exact", "radiosity/hemicube_exact.comp", {{"ITEMS", items}});
+  const bool drawn = settings_.visibility == HemicubeVisibility::itemBuffer;
+  sum_ = &programs.loadCompute("hemicube sum", "radiosity/hemicube_sum.comp", {{"LARGE", 0}, {"ITEMS", items}, {"DRAWN", drawn}});
+  sumLarge_ = &programs.loadCompute("hemicube sum large", "radiosity/hemicube_sum.comp", {{"LARGE", 1}, {"ITEMS", items}, {"DRAWN", drawn}});
+  exact_ = &programs.loadCompute("hemicube exact", "radiosity/hemicube_exact.comp",
+                                 {{"ITEMS", items}, {"SOURCES", asksForSources}, {"ALPHA_MASKS", 0}, {"SHARED_STACK", asksForSources ? rays_->sharedStack() : 0}});
 }
 
 void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities) {
@@ -140,7 +147,7 @@ void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& cap
     if (!costs_.empty() && costs_[0].milliseconds * patchCount_ < 1000.0 * settings_.worthMeasuring) break;
     HemicubeSettings settings = settings_;
     settings.visibility = one;
-    Hemicubes hemicubes(programs, capabilities, *mesh_, settings);
+    Hemicubes hemicubes(programs, capabilities, *mesh_, settings, rays_);
     const int count = std::min(hemicubes.pieceSize(), kMeasured);
     Cost cost{one, 0.0};
     for (int k = 0; k < 3; ++k) {  // the first warms up; then the better of two places
@@ -235,6 +242,10 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   for (const gl::Program* program : {sum_, sumLarge_, exact_}) {
     const gl::ComputePass pass(program->name(), kBarrier);
     begin(*program, first, count);
+    if (program == exact_ && rays_) {
+      rays_->bind();
+      program->set("raysOrigin", glm::vec3(rays_->origin()));
+    }
     if (program == sum_ && listsKept()) pass.dispatchIndirect(keptList_);
     else if (program == sum_) pass.dispatch(triangles, trianglesGroup);
     else if (program == sumLarge_) pass.dispatchIndirect(largeList_);
@@ -378,7 +389,7 @@ FormFactorRows rowsOf(DrawnHemicubes drawn) {
 
 std::size_t Hemicubes::gpuBytes() const {
   return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + keys_.bytes() + factors_.bytes() + keptList_.bytes() + exactList_.bytes() + largeList_.bytes() + staging_.bytes() +
-         (rays_ ? rays_->gpuBytes() : 0) + (itemBuffer_ ? itemBuffer_->items.bytes() + itemBuffer_->depth.bytes() : 0);
+         (ownRays_ ? ownRays_->gpuBytes() : 0) + (itemBuffer_ ? itemBuffer_->items.bytes() + itemBuffer_->depth.bytes() : 0);
 }
 
 }  // namespace lucerna

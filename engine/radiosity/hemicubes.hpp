@@ -43,7 +43,7 @@ struct HemicubeSettings {
   DeltaMap map = DeltaMap::exact;
   bool randomRoll = true;                  ///< each turned about its normal by a hash of seed and patch; else towards the first corner
   std::uint32_t seed = 1;
-  int exactPixels = 12;                    ///< what covers at least as many pixels takes its closed form; 0: never
+  int exactPixels = 12;                    ///< what is large enough to cover as many pixels takes its closed form; 0: never
   float nearDistance = 3.0f;               ///< receivers are divided until (distance / size of a part) is this; 0: never
   int mostParts = 8;                       ///< a side of a receiver, at most
   double unmeasuredTurns = gl::kUnmeasuredTurns;  ///< of a submission of which nothing is known (gl/pieces.hpp); the rows are the same, bit by bit
@@ -71,8 +71,9 @@ FormFactorRows rowsOf(DrawnHemicubes drawn);
 
 class Hemicubes {
  public:
-  /// Throws Error(missingCapability) where the driver's storage blocks cannot hold the corners or one hemicube.
-  Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh, const HemicubeSettings& settings);
+  /// Throws Error(missingCapability) where the driver's storage blocks cannot hold the corners or one hemicube. `rays`: of sceneOf(mesh), where the caller
+  /// has them already; must outlive this.
+  Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh, const HemicubeSettings& settings, const RayScene* rays = nullptr);
 
   ~Hemicubes();
   Hemicubes(const Hemicubes&) = delete;
@@ -122,7 +123,8 @@ class Hemicubes {
   std::vector<std::uint32_t> smallSources_;
   std::vector<Cost> costs_;
   const gl::Program *depth_ = nullptr, *depthLarge_ = nullptr, *sum_ = nullptr, *sumLarge_ = nullptr, *exact_ = nullptr, *traceRays_ = nullptr;
-  std::unique_ptr<RayScene> rays_;
+  std::unique_ptr<RayScene> ownRays_;
+  const RayScene* rays_ = nullptr;  ///< where pixels or small sources are seen by rays
   std::optional<ItemBuffer> itemBuffer_;
   gl::BufferTexture corners_, deltaFactors_, keys_;
   gl::Buffer sources_, frames_, factors_, keptList_, exactList_, largeList_;

@@ -34,6 +34,7 @@ std::size_t freeMemory() {
 
 std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings& s) {
   Hash f;
+  f.add(std::uint32_t{2});  // of the way rows are made
   for (const Patch& patch : mesh.patches) {
     for (const glm::dvec3& corner : mesh.corners(patch)) f.add(corner);
     f.add(patch.emission != glm::dvec3(0.0));
@@ -67,11 +68,9 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     return !onStage || onStage({kind, refinement, done, n, progress});
   };
   stage(RadiosityStage::Kind::direct, 0);
-  {
-    const RayScene rays(sceneOf(mesh), context.capabilities());
-    if (!settings.deviations.centroid) cutHiddenParts(programs, rays, solution.mesh);
-    solution.direct = directLight(programs, rays, scene, mesh);
-  }
+  const RayScene rays(sceneOf(mesh), context.capabilities());
+  if (!settings.deviations.centroid) cutHiddenParts(programs, rays, solution.mesh);
+  solution.direct = directLight(programs, rays, scene, mesh);
 
   FormFactorMatrix matrix;
   solution.fronts.clear();
@@ -105,7 +104,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
       as.visibility = one;
       if (rowsFingerprint(mesh, as) == *begun) asked.visibility = one;
     }
-  Hemicubes hemicubes(programs, context.capabilities(), mesh, asked);
+  Hemicubes hemicubes(programs, context.capabilities(), mesh, asked, &rays);
   asked.visibility = hemicubes.visibility();
   std::unique_ptr<RowFile> file;
   if (!checkpoint.empty())

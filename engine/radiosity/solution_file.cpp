@@ -181,6 +181,7 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
     }
     if (from.material < 0 || static_cast<std::size_t>(from.material) >= scene.materials.size()) throwBadInput("{}: patch {} has no such material", file.string(), i);
     to.material = from.material;
+    if (from.triangle >= scene.triangleCount()) throwBadInput("{}: patch {} has no such triangle", file.string(), i);
     to.triangle = from.triangle;
     to.area = from.area;
     to.centroid = vector(from.centroid);
