@@ -69,7 +69,7 @@ def cases(lucerna, scenes):
     return [
         Case("solve", solve + ["--edge", "0.2", "--error", "1e-6", "--solver", "jacobi"], "o.sol"),
         Case("refine", solve + ["--edge", "0.4", "--refinements", "2"], "o.sol"),
-        Case("original", ["radiosity", "solve", rad, "o.rad", "16", "--fidelity", "original", "--save-every", "0.05", "--sweeps", "2"],
+        Case("original", ["radiosity", "solve", rad, "o.rad", "16", "--fidelity", "original", "--save-every", "0.05", "--max-sweeps", "2"],
              "o.rad", grows=True),
         Case("path", ["render", room, "--technique", "path", "--camera", "0,1,0.9,0,1,0,70", "--size", "48x48", "--spp", "256", "-o", "o.pfm"],
              "o.pfm"),
