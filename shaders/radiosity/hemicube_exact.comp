@@ -21,6 +21,7 @@ uniform int mostParts;       // a side, at most
 // point to the other's centroid, N its normal; the receiver's own cosine cancels) and the second moments M of the triangle, the sum of c c^T / 12 over its
 // corners c from its centroid, it is 1 + tr(M f'') / (2 f). At a distance of ten sizes the centroid alone is off by 0.3 %.
 float spread(vec3 v, vec3 n, mat3 c) {
+  n /= max(max(abs(n.x), max(abs(n.y), abs(n.z))), 1e-30);  // its length drops out; in a scene of 1e6 units its square would overflow
   vec3 alongV = v * c, alongN = n * c;
   float squares = dot(c[0], c[0]) + dot(c[1], c[1]) + dot(c[2], c[2]), r2 = dot(v, v), nv = dot(n, v), least = 1e-2 * sqrt(dot(n, n) * r2);
   nv = abs(nv) < least ? (nv < 0.0 ? -least : least) : nv;
