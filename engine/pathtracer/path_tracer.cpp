@@ -4,7 +4,6 @@
 #include "base/log.hpp"
 #include "gl/pass.hpp"
 #include "pathtracer/clearance.hpp"
-#include "pathtracer/texture_atlas.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,27 +18,14 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kConstantsBinding = 0;                                                               // GL_UNIFORM_BUFFER
-constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4, kStateBinding = 5, kMediaBinding = 6,
-                 kInteriorsBinding = 7, kGridsBinding = 0, kDensitiesBinding = 1;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kClearancesUnit = 3, kEnvironmentRowsUnit = 4;
+constexpr GLuint kStateBinding = 5, kMediaBinding = 6, kInteriorsBinding = 7, kGridsBinding = 0, kDensitiesBinding = 1;  // GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kClearancesUnit = 3;
 constexpr int kGroupSide = 8;
-constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
 constexpr int kClearanceCells = 64;
 // llvmpipe leaves all loops of a shader after 65,535 turns, those of all lanes of a vector (8, 16 at most) counted together.
 constexpr std::uint32_t kSoftwareTurns = 3500, kMostTurns = 1u << 16;
 constexpr double kLanesOfTile = 512.0 * 512.0;  // on a GPU; a smaller tile, a software renderer's too, begins with as many turns a lane
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = 16, kVec4Bytes = 16;
-
-std::uint32_t kindOf(const Material& material) {
-  switch (material.bsdf) {
-    case Bsdf::diffuse: return PATH_DIFFUSE;
-    case Bsdf::mirror: return PATH_MIRROR;
-    case Bsdf::conductor: return PATH_CONDUCTOR;
-    case Bsdf::dielectric: return PATH_DIELECTRIC;
-    case Bsdf::none: return PATH_NONE;
-  }
-  return PATH_DIFFUSE;
-}
 
 /// Whether every lamp is in the open, where the index is 1: triangles by boxes, so that some are taken for enclosed that are not.
 bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
@@ -75,17 +61,6 @@ int tileSideOn(const gl::Capabilities& capabilities) {
   return side;
 }
 
-/// A buffer is never of no size.
-template <class T>
-gl::Buffer storage(const std::string& name, const std::vector<T>& values, const gl::Capabilities& capabilities) {
-  const std::size_t bytes = std::max(values.size(), std::size_t{1}) * sizeof(T);
-  if (bytes > static_cast<std::size_t>(capabilities.maxShaderStorageBlockSize))
-    throwMissingCapability("{}: {} bytes; this driver's storage blocks have at most {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE)", name, bytes, capabilities.maxShaderStorageBlockSize);
-  gl::Buffer buffer(name, bytes, nullptr, GL_STATIC_DRAW);
-  if (!values.empty()) buffer.upload(0, values.size() * sizeof(T), values.data());
-  return buffer;
-}
-
 }  // namespace
 
 std::string_view nameOf(Transport transport) {
@@ -102,7 +77,6 @@ std::string_view nameOf(Transport transport) {
 PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings)
     : settings_(settings),
       needs_(analyse(scene)),
-      rays_(scene, context.capabilities(), settings.rays),
       constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW),
       tileSide_(tileSideOn(context.capabilities())),
       mostTurns_(context.capabilities().softwareRenderer ? kSoftwareTurns : kMostTurns),
@@ -117,68 +91,21 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   lampsOutside_ = needs_.dielectrics && !settings.deviations.straightShadowRays && areLampsOutside(scene, boundaries_);
   const bool published = settings.deviations.distanceWithoutPdf || settings.deviations.boostedInteraction;
   needs_.denseMedia = needs_.denseMedia && needs_.dielectrics && settings.walks && !published && (!settings.nextEvent || lampsOutside_);
+  scene_.emplace(scene, needs_, capabilities, PathScene::Settings{settings.diffuseOnly, settings.nextEvent, settings.rays}, boundaries_.rankOfMaterial);
+  scene_->fill(constants_);
+  sceneHash_ = scene_->hash();
   if (needs_.denseMedia) addClearances(scene);
-  if (needs_.dielectrics || needs_.nullBoundaries) interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
+  if (needs_.dielectrics || needs_.nullBoundaries) interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
   if (needs_.media) {
-    const PackedMedia packed = packMedia(scene.media, rays_.origin());
-    media_ = storage("path media", packed.media, capabilities);
-    interiors_ = storage("path interiors", boundaries_.interiors, capabilities);
+    const PackedMedia packed = packMedia(scene.media, scene_->origin());
+    media_ = storageOf("path media", packed.media, capabilities);
+    interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
     outerMedium_ = scene.cameraMedium;
     const auto add = [&](const auto& values) { sceneHash_.bytes(values.data(), values.size() * sizeof values[0]); };
     add(packed.media), add(packed.grids), add(packed.densities);
     if (needs_.heterogeneousMedia) {
-      grids_ = storage("path density grids", packed.grids, capabilities);
-      densities_ = storage("path densities", packed.densities, capabilities);
-    }
-  }
-  std::vector<shared::PathMaterial> materials(scene.materials.size());
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    const Material& from = scene.materials[i];
-    shared::PathMaterial& to = materials[i];
-    to.kind = kindOf(from);
-    if (settings.diffuseOnly && to.kind != PATH_NONE) to.kind = PATH_DIFFUSE;
-    to.albedo = from.diffuse;
-    to.specular = from.specular;
-    to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
-    to.emission = from.emissionTexture >= 0 ? from.emissionScale : from.emission;
-    to.ior = from.ior;
-    to.boundary = static_cast<std::uint32_t>(boundaries_.rankOfMaterial[i]);
-    to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = PATH_NO_TEXTURE;
-  }
-  const bool textured = needs_.diffuseTextures || needs_.alphaMasks || needs_.emissionTextures;
-  if (textured) uploadTextures(scene, capabilities, materials);
-
-  std::vector<float> pickDensity;
-  if (settings.nextEvent) {
-    const LightTable table = lightTable(scene, rays_.origin());
-    pickDensity = table.pickDensity;
-    lightCount_ = table.lights.size();
-    if (lightCount_ > 0) lights_ = storage("path lights", table.lights, capabilities);
-    constants_.environmentPick = static_cast<float>(table.environmentPick);
-  }
-  sceneHash_.bytes(materials.data(), materials.size() * sizeof(shared::PathMaterial));
-  materials_ = storage("path materials", materials, capabilities);
-  triangleWords_ = 4 + (textured ? 1 : 0) + (needs_.smoothNormals ? 3 : 0);
-  uploadTriangles(scene, capabilities, needs_.smoothNormals, textured, pickDensity);
-
-  if (needs_.environment) {
-    const Environment& environment = *scene.environment;
-    constants_.environment = environment.radiance;
-    constants_.environmentTurn = glm::vec4(std::cos(environment.rotation), std::sin(environment.rotation), 0.0, 0.0);
-    if (needs_.environmentPicture) {
-      const Image& picture = *environment.picture;
-      const glm::ivec2 size(picture.width, picture.height);
-      std::vector<glm::vec4> texels;
-      texels.reserve(picture.pixels.size());
-      for (const glm::vec3& p : picture.pixels) texels.emplace_back(p, 0.0f);
-      environmentPicture_.emplace("environment", static_cast<GLenum>(GL_RGBA32F), size);
-      environmentPicture_->upload(GL_RGBA, GL_FLOAT, texels.data());
-      texels = {};
-      const EnvironmentTable table = environmentTable(picture);
-      environmentTable_.emplace("environment table", static_cast<GLenum>(GL_RGBA32UI), size);
-      environmentTable_->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.texels.data());
-      environmentRows_.emplace("environment rows", static_cast<GLenum>(GL_RGBA32UI), glm::ivec2(1, picture.height));
-      environmentRows_->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.rows.data());
+      grids_ = storageOf("path density grids", packed.grids, capabilities);
+      densities_ = storageOf("path densities", packed.densities, capabilities);
     }
   }
   constants_.background = scene.background;
@@ -209,61 +136,52 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
 }
 
 gl::ShaderFlags PathTracer::flags() const {
-  const bool asked = lightCount_ > 0;
-  return {{"TEXTURES", needs_.diffuseTextures || needs_.emissionTextures},
-          {"ALPHA_MASKS", needs_.alphaMasks},
-          {"SMOOTH_NORMALS", needs_.smoothNormals},
-          {"TRIANGLE_WORDS", triangleWords_},
-          {"MIRRORS", needs_.mirrors},
-          {"DIELECTRICS", needs_.dielectrics},
-          {"INTERIORS", hasInteriors()},
-          {"TOUCHING", hasInteriors() && touching_},
-          {"MEDIA", needs_.media},
-          {"LAMPS_OUTSIDE", lampsOutside_},
-          {"WALKS", needs_.denseMedia},
-          {"HETEROGENEOUS", needs_.heterogeneousMedia},
-          {"VOLUME_EMISSION", needs_.volumeEmission},
-          {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
-          {"ROUGH_DIELECTRICS", needs_.roughDielectrics},
-          {"EMISSION", needs_.emission},
-          {"SUN", asked && needs_.directionalLight},
-          {"SPOTS", asked && needs_.spotLights},
-          {"POINTS", asked && needs_.pointLights},
-          {"ENVIRONMENT", needs_.environment},
-          {"ENVIRONMENT_PICTURE", needs_.environmentPicture},
-          {"BACKGROUND", needs_.background},
-          {"NEXT_EVENT", asked},
-          {"MIS", asked && (needs_.emission || needs_.environmentPicture) && settings_.transport != Transport::oneBounceUnoccluded},
-          {"SCATTERED_LIGHT", needs_.emission || needs_.environment || needs_.volumeEmission},
-          {"DISTANCE_WITHOUT_PDF", settings_.deviations.distanceWithoutPdf},
-          {"BOOSTED_INTERACTION", settings_.deviations.boostedInteraction},
-          {"ROULETTE_WITHOUT_DIVISION", settings_.deviations.rouletteWithoutDivision},
-          {"STRAIGHT_SHADOW_RAYS", settings_.deviations.straightShadowRays},
-          {"LINEAR_SEEDS", settings_.deviations.linearSeeds},
-          {"FIXED_EPSILON", settings_.deviations.fixedEpsilon},
-          {"PIXEL_CENTRES", settings_.pixelCentres},
-          {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
-          {"FRESNEL_AMPLITUDES", settings_.deviations.fresnelAmplitudes},
-          {"FRESNEL_SCHLICK", settings_.deviations.schlick}};
+  const bool asked = scene_->hasLights();
+  gl::ShaderFlags all = scene_->flags();
+  all.insert(all.end(), {{"MIRRORS", needs_.mirrors},
+                         {"DIELECTRICS", needs_.dielectrics},
+                         {"INTERIORS", hasInteriors()},
+                         {"TOUCHING", hasInteriors() && touching_},
+                         {"MEDIA", needs_.media},
+                         {"LAMPS_OUTSIDE", lampsOutside_},
+                         {"WALKS", needs_.denseMedia},
+                         {"HETEROGENEOUS", needs_.heterogeneousMedia},
+                         {"VOLUME_EMISSION", needs_.volumeEmission},
+                         {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
+                         {"ROUGH_DIELECTRICS", needs_.roughDielectrics},
+                         {"BACKGROUND", needs_.background},
+                         {"MIS", asked && (needs_.emission || needs_.environmentPicture) && settings_.transport != Transport::oneBounceUnoccluded},
+                         {"SCATTERED_LIGHT", needs_.emission || needs_.environment || needs_.volumeEmission},
+                         {"DISTANCE_WITHOUT_PDF", settings_.deviations.distanceWithoutPdf},
+                         {"BOOSTED_INTERACTION", settings_.deviations.boostedInteraction},
+                         {"ROULETTE_WITHOUT_DIVISION", settings_.deviations.rouletteWithoutDivision},
+                         {"STRAIGHT_SHADOW_RAYS", settings_.deviations.straightShadowRays},
+                         {"LINEAR_SEEDS", settings_.deviations.linearSeeds},
+                         {"FIXED_EPSILON", settings_.deviations.fixedEpsilon},
+                         {"PIXEL_CENTRES", settings_.pixelCentres},
+                         {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
+                         {"FRESNEL_AMPLITUDES", settings_.deviations.fresnelAmplitudes},
+                         {"FRESNEL_SCHLICK", settings_.deviations.schlick}});
+  return all;
 }
 
 gl::ShaderFlags PathTracer::kernelFlags() const {
   gl::ShaderFlags all = flags();
-  all.insert(all.end(), {{"SHARED_STACK", rays_.sharedStack()}, {"SHADOW_AT_ONCE", rays_.sharedStack() == 0 && !hasInteriors()}});
+  all.insert(all.end(), {{"SHARED_STACK", scene_->rays().sharedStack()}, {"SHADOW_AT_ONCE", scene_->rays().sharedStack() == 0 && !hasInteriors()}});
   return all;
 }
 
 void PathTracer::addClearances(const Scene& scene) {
   std::vector<Corners> triangles(scene.triangleCount());
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) triangles[t][k] = glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - rays_.origin();
+    for (std::size_t k = 0; k < 3; ++k) triangles[t][k] = glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - scene_->origin();
   std::vector<float> radii;
   const std::vector<Bounds> bounds = boundsOfRanks(boundaries_);
   for (std::size_t rank = 0; rank < boundaries_.interiors.size(); ++rank) {
     shared::InteriorRecord& interior = boundaries_.interiors[rank];
     const double extent = glm::length(bounds[rank].extent());
     if (interior.medium < 0 || !(extent > 0.0) || !isDense(scene.media[static_cast<std::size_t>(interior.medium)], extent)) continue;
-    const ClearanceGrid grid = clearanceGrid(triangles, bounds[rank].min - rays_.origin(), bounds[rank].max - rays_.origin(), kClearanceCells);
+    const ClearanceGrid grid = clearanceGrid(triangles, bounds[rank].min - scene_->origin(), bounds[rank].max - scene_->origin(), kClearanceCells);
     interior.clearance = static_cast<int>(radii.size());
     interior.cell = static_cast<float>(grid.cell);
     interior.min = glm::vec3(grid.min);
@@ -274,101 +192,10 @@ void PathTracer::addClearances(const Scene& scene) {
   if (needs_.denseMedia) clearances_ = gl::BufferTexture("path clearances", GL_R32F, radii.size() * sizeof(float), radii.data());
 }
 
-void PathTracer::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials) {
-  // A picture may be in the atlas twice: as colour, and as mask in the alpha channel.
-  struct Entry {
-    int texture;
-    bool mask;
-    auto operator<=>(const Entry&) const = default;
-  };
-  std::map<Entry, std::size_t> index;
-  std::vector<Entry> entries;
-  const auto want = [&](int texture, bool mask) {
-    const auto [place, isNew] = index.try_emplace({texture, mask}, entries.size());
-    if (isNew) entries.push_back({texture, mask});
-    return place->second;
-  };
-  std::vector<std::array<std::size_t, 3>> used(materials.size(), {SIZE_MAX, SIZE_MAX, SIZE_MAX});
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    const Material& material = scene.materials[i];
-    if (needs_.diffuseTextures && material.diffuseTexture >= 0) used[i][0] = want(material.diffuseTexture, false);
-    if (needs_.alphaMasks && material.alphaMasked) used[i][1] = want(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true);
-    if (needs_.emissionTextures && material.emissionTexture >= 0) used[i][2] = want(material.emissionTexture, false);
-  }
-  std::vector<glm::ivec2> sizes;
-  for (const Entry& entry : entries) {
-    const Texture& texture = scene.textures[static_cast<std::size_t>(entry.texture)];
-    sizes.emplace_back(texture.bitmap.width, texture.bitmap.height);
-    if (std::max(sizes.back().x, sizes.back().y) > capabilities.maxTextureSize)
-      throwMissingCapability("{}: {} x {} texels; this driver's textures have at most {} (GL_MAX_TEXTURE_SIZE)", texture.file.string(), sizes.back().x, sizes.back().y,
-                             capabilities.maxTextureSize);
-  }
-  const AtlasLayout layout = layOutAtlas(sizes, std::min(capabilities.maxTextureSize, 8192));
-  if (layout.size.z > capabilities.maxArrayTextureLayers)
-    throwMissingCapability("{} layers of textures; this driver has at most {} (GL_MAX_ARRAY_TEXTURE_LAYERS)", layout.size.z, capabilities.maxArrayTextureLayers);
-  std::vector<std::uint8_t> texels(4 * static_cast<std::size_t>(layout.size.x) * static_cast<std::size_t>(layout.size.y) * static_cast<std::size_t>(layout.size.z));
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(entries[i].texture)].bitmap;
-    const AtlasPlace& place = layout.places[i];
-    for (int y = 0; y < sizes[i].y; ++y) {  // rows bottom first, as v = 0 is the bottom row
-      const std::uint8_t* from = bitmap.rgba.data() + 4 * static_cast<std::size_t>(sizes[i].y - 1 - y) * static_cast<std::size_t>(sizes[i].x);
-      std::uint8_t* to = texels.data() + 4 * ((static_cast<std::size_t>(place.layer) * static_cast<std::size_t>(layout.size.y) + static_cast<std::size_t>(place.corner.y + y)) *
-                                                  static_cast<std::size_t>(layout.size.x) + static_cast<std::size_t>(place.corner.x));
-      std::copy_n(from, 4 * static_cast<std::size_t>(sizes[i].x), to);
-      if (entries[i].mask && !bitmap.hasAlpha)
-        for (int x = 0; x < sizes[i].x; ++x) to[4 * x + 3] = from[4 * x];
-    }
-  }
-  atlas_.emplace("texture atlas", static_cast<GLenum>(GL_SRGB8_ALPHA8), layout.size, gl::Sampling{}, 1, static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
-  atlas_->upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-  const auto place = [&](std::size_t entry, shared::PathTexture& to) {
-    if (entry == SIZE_MAX) return;
-    to = {layout.places[entry].layer, layout.places[entry].corner.x, layout.places[entry].corner.y, sizes[entry].x, sizes[entry].y, 0, 0, 0};
-  };
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    place(used[i][0], materials[i].diffuseTexture);
-    place(used[i][1], materials[i].maskTexture);
-    place(used[i][2], materials[i].emissionTexture);
-  }
-}
-
-void PathTracer::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured,
-                                 const std::vector<float>& pickDensity) {
-  std::vector<std::uint32_t> words;
-  words.reserve(scene.triangleCount() * static_cast<std::size_t>(triangleWords_) * 4);
-  std::vector<std::uint32_t> materialOf(scene.triangleCount(), 0);
-  for (const Mesh& mesh : scene.meshes)
-    std::fill_n(materialOf.begin() + mesh.firstIndex / 3, mesh.indexCount / 3, static_cast<std::uint32_t>(mesh.material));
-  const auto add = [&](float value) { words.push_back(std::bit_cast<std::uint32_t>(value)); };
-  const auto add3 = [&](const glm::vec3& v) { add(v.x), add(v.y), add(v.z); };
-  for (std::size_t t = 0; t < scene.triangleCount(); ++t) {
-    const Vertex* corners[3];
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = &scene.vertices[scene.indices[3 * t + k]];
-    const auto place = [&](int k) { return glm::dvec3(corners[k]->position) - rays_.origin(); };
-    const glm::dvec3 cross = glm::cross(place(1) - place(0), place(2) - place(0));
-    const double length = glm::length(cross);
-    const glm::vec3 normal = length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0f);  // rays meet no triangle without area
-    add3(glm::vec3(place(0)));
-    words.push_back(materialOf[t]);
-    add3(glm::vec3(place(1)));
-    add(normal.x);
-    add3(glm::vec3(place(2)));
-    add(normal.y);
-    add3({normal.z, corners[2]->texCoord.x, corners[2]->texCoord.y});
-    add(pickDensity.empty() ? 0.0f : pickDensity[t]);
-    if (textured)
-      for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
-    if (smoothNormals)
-      for (const Vertex* corner : corners) add3(corner->normal), words.push_back(0);
-  }
-  sceneHash_.bytes(words.data(), words.size() * sizeof(std::uint32_t));
-  triangles_ = storage("path triangles", words, capabilities);
-}
-
 void PathTracer::setCamera(const Camera& camera) {
   const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)), up = glm::cross(right, camera.direction);
   const double pixel = 2.0 * std::tan(0.5 * camera.verticalFov) / settings_.size.y;
-  constants_.cameraPosition = glm::vec3(camera.position - rays_.origin());
+  constants_.cameraPosition = glm::vec3(camera.position - scene_->origin());
   constants_.pixelRight = glm::vec3(pixel * right);
   constants_.pixelUp = glm::vec3(pixel * up);
   constants_.firstPixel = glm::vec3(camera.direction - 0.5 * settings_.size.x * pixel * right - 0.5 * settings_.size.y * pixel * up);
@@ -521,11 +348,8 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
   const gl::ComputePass pass("path tracing", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                                  GL_TEXTURE_UPDATE_BARRIER_BIT);
   program_->use();
-  rays_.bind();
+  scene_->bind();
   constantsBuffer_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
-  triangles_.bind(GL_SHADER_STORAGE_BUFFER, kTrianglesBinding);
-  materials_.bind(GL_SHADER_STORAGE_BUFFER, kMaterialsBinding);
-  if (lightCount_ > 0) lights_.bind(GL_SHADER_STORAGE_BUFFER, kLightsBinding);
   state_.bind(GL_SHADER_STORAGE_BUFFER, kStateBinding);
   if (hasInteriors()) {
     interiors_.bind(GL_SHADER_STORAGE_BUFFER, kInteriorsBinding);
@@ -540,10 +364,6 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
     grids_.bind(GL_SHADER_STORAGE_BUFFER, kGridsBinding);
     densities_.bind(GL_SHADER_STORAGE_BUFFER, kDensitiesBinding);
   }
-  if (atlas_) atlas_->bind(kAtlasUnit);
-  if (environmentPicture_) environmentPicture_->bind(kEnvironmentUnit);
-  if (environmentTable_) environmentTable_->bind(kEnvironmentTableUnit);
-  if (environmentRows_) environmentRows_->bind(kEnvironmentRowsUnit);
   filmMean_.bindImage(0, GL_READ_WRITE);
   filmSpread_.bindImage(1, GL_READ_WRITE);
   filmRest_.bindImage(2, GL_READ_WRITE);
@@ -611,11 +431,9 @@ PathTracer::Statistics PathTracer::statistics() const {
 }
 
 std::size_t PathTracer::gpuBytes() const {
-  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
+  std::size_t bytes = scene_->gpuBytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
                       filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
   for (const gl::Texture& texture : kept_) bytes += texture.bytes();
-  for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_, &environmentRows_})
-    if (*texture) bytes += (*texture)->bytes();
   return bytes;
 }
 

@@ -12,10 +12,9 @@
 #include "gl/pieces.hpp"
 #include "gl/program.hpp"
 #include "gl/read_back.hpp"
-#include "pathtracer/light_table.hpp"
 #include "pathtracer/media.hpp"
 #include "pathtracer/path_deviations.hpp"
-#include "pathtracer/ray_scene.hpp"
+#include "pathtracer/path_scene.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
 
@@ -105,8 +104,6 @@ class PathTracer {
   };
   std::vector<Pixel> readFilm() const;
   std::uint64_t identity() const;  ///< of what decides the picture
-  void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
-  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool smoothNormals, bool textured, const std::vector<float>& pickDensity);
   gl::ShaderFlags flags() const;
   /// With those that do not decide the picture, but how it is made.
   gl::ShaderFlags kernelFlags() const;
@@ -123,11 +120,9 @@ class PathTracer {
 
   Settings settings_;
   SceneNeeds needs_;
-  RayScene rays_;
+  std::optional<PathScene> scene_;  ///< always there after construction
   shared::PathConstants constants_{};
   const gl::Program* program_ = nullptr;
-  int triangleWords_ = 4;
-  std::size_t lightCount_ = 0;
   PackedBoundaries boundaries_;
   bool touching_ = false;  ///< a boundary may coincide with, or cross, another surface
   int outerMedium_ = -1;
@@ -137,8 +132,7 @@ class PathTracer {
   gl::Buffer media_, interiors_, grids_, densities_;
   gl::BufferTexture clearances_;
   double leakedPaths_ = 0.0, wrongCrossings_ = 0.0;
-  gl::Buffer triangles_, materials_, lights_, state_, constantsBuffer_;
-  std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_, environmentRows_;
+  gl::Buffer state_, constantsBuffer_;
   gl::Staging counters_{"path counters"};
   gl::Texture filmMean_, filmSpread_, filmRest_;
   std::array<gl::Texture, 3> kept_;  ///< the same of the tile under way, as it was before the pass

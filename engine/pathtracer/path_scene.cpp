@@ -1,0 +1,214 @@
+#include "pathtracer/path_scene.hpp"
+
+#include "pathtracer/light_table.hpp"
+#include "pathtracer/texture_atlas.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <map>
+
+namespace lucerna {
+
+namespace {
+
+constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4;  // GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kEnvironmentRowsUnit = 4;
+constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
+
+std::uint32_t kindOf(const Material& material) {
+  switch (material.bsdf) {
+    case Bsdf::diffuse: return PATH_DIFFUSE;
+    case Bsdf::mirror: return PATH_MIRROR;
+    case Bsdf::conductor: return PATH_CONDUCTOR;
+    case Bsdf::dielectric: return PATH_DIELECTRIC;
+    case Bsdf::none: return PATH_NONE;
+  }
+  return PATH_DIFFUSE;
+}
+
+}  // namespace
+
+PathScene::PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const Settings& settings,
+                     const std::vector<int>& rankOfMaterial)
+    : needs_(needs), rays_(scene, capabilities, settings.rays) {
+  std::vector<shared::PathMaterial> materials(scene.materials.size());
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& from = scene.materials[i];
+    shared::PathMaterial& to = materials[i];
+    to.kind = kindOf(from);
+    if (settings.diffuseOnly && to.kind != PATH_NONE) to.kind = PATH_DIFFUSE;
+    to.albedo = from.diffuse;
+    to.specular = from.specular;
+    to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
+    to.emission = from.emissionTexture >= 0 ? from.emissionScale : from.emission;
+    to.ior = from.ior;
+    to.boundary = static_cast<std::uint32_t>(rankOfMaterial.empty() ? -1 : rankOfMaterial[i]);
+    to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = PATH_NO_TEXTURE;
+  }
+  const bool textured = needs_.diffuseTextures || needs_.alphaMasks || needs_.emissionTextures;
+  if (textured) uploadTextures(scene, capabilities, materials);
+
+  std::vector<float> pickDensity;
+  if (settings.nextEvent) {
+    const LightTable table = lightTable(scene, rays_.origin());
+    pickDensity = table.pickDensity;
+    lightCount_ = table.lights.size();
+    if (lightCount_ > 0) lights_ = storageOf("path lights", table.lights, capabilities);
+    constants_.environmentPick = static_cast<float>(table.environmentPick);
+  }
+  hash_.bytes(materials.data(), materials.size() * sizeof(shared::PathMaterial));
+  materials_ = storageOf("path materials", materials, capabilities);
+  triangleWords_ = 4 + (textured ? 1 : 0) + (needs_.smoothNormals ? 3 : 0);
+  uploadTriangles(scene, capabilities, textured, pickDensity);
+  if (needs_.environment) uploadEnvironment(*scene.environment);
+}
+
+void PathScene::uploadEnvironment(const Environment& environment) {
+  constants_.environment = environment.radiance;
+  constants_.environmentTurn = glm::vec4(std::cos(environment.rotation), std::sin(environment.rotation), 0.0, 0.0);
+  if (!needs_.environmentPicture) return;
+  const Image& picture = *environment.picture;
+  const glm::ivec2 size(picture.width, picture.height);
+  std::vector<glm::vec4> texels;
+  texels.reserve(picture.pixels.size());
+  for (const glm::vec3& p : picture.pixels) texels.emplace_back(p, 0.0f);
+  environmentPicture_.emplace("environment", static_cast<GLenum>(GL_RGBA32F), size);
+  environmentPicture_->upload(GL_RGBA, GL_FLOAT, texels.data());
+  texels = {};
+  const EnvironmentTable table = environmentTable(picture);
+  environmentTable_.emplace("environment table", static_cast<GLenum>(GL_RGBA32UI), size);
+  environmentTable_->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.texels.data());
+  environmentRows_.emplace("environment rows", static_cast<GLenum>(GL_RGBA32UI), glm::ivec2(1, picture.height));
+  environmentRows_->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.rows.data());
+}
+
+void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials) {
+  // A picture may be in the atlas twice: as colour, and as mask in the alpha channel.
+  struct Entry {
+    int texture;
+    bool mask;
+    auto operator<=>(const Entry&) const = default;
+  };
+  std::map<Entry, std::size_t> index;
+  std::vector<Entry> entries;
+  const auto want = [&](int texture, bool mask) {
+    const auto [place, isNew] = index.try_emplace({texture, mask}, entries.size());
+    if (isNew) entries.push_back({texture, mask});
+    return place->second;
+  };
+  std::vector<std::array<std::size_t, 3>> used(materials.size(), {SIZE_MAX, SIZE_MAX, SIZE_MAX});
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& material = scene.materials[i];
+    if (needs_.diffuseTextures && material.diffuseTexture >= 0) used[i][0] = want(material.diffuseTexture, false);
+    if (needs_.alphaMasks && material.alphaMasked) used[i][1] = want(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true);
+    if (needs_.emissionTextures && material.emissionTexture >= 0) used[i][2] = want(material.emissionTexture, false);
+  }
+  std::vector<glm::ivec2> sizes;
+  for (const Entry& entry : entries) {
+    const Texture& texture = scene.textures[static_cast<std::size_t>(entry.texture)];
+    sizes.emplace_back(texture.bitmap.width, texture.bitmap.height);
+    if (std::max(sizes.back().x, sizes.back().y) > capabilities.maxTextureSize)
+      throwMissingCapability("{}: {} x {} texels; this driver's textures have at most {} (GL_MAX_TEXTURE_SIZE)", texture.file.string(), sizes.back().x, sizes.back().y,
+                             capabilities.maxTextureSize);
+  }
+  const AtlasLayout layout = layOutAtlas(sizes, std::min(capabilities.maxTextureSize, 8192));
+  if (layout.size.z > capabilities.maxArrayTextureLayers)
+    throwMissingCapability("{} layers of textures; this driver has at most {} (GL_MAX_ARRAY_TEXTURE_LAYERS)", layout.size.z, capabilities.maxArrayTextureLayers);
+  std::vector<std::uint8_t> texels(4 * static_cast<std::size_t>(layout.size.x) * static_cast<std::size_t>(layout.size.y) * static_cast<std::size_t>(layout.size.z));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(entries[i].texture)].bitmap;
+    const AtlasPlace& place = layout.places[i];
+    for (int y = 0; y < sizes[i].y; ++y) {  // rows bottom first, as v = 0 is the bottom row
+      const std::uint8_t* from = bitmap.rgba.data() + 4 * static_cast<std::size_t>(sizes[i].y - 1 - y) * static_cast<std::size_t>(sizes[i].x);
+      std::uint8_t* to = texels.data() + 4 * ((static_cast<std::size_t>(place.layer) * static_cast<std::size_t>(layout.size.y) + static_cast<std::size_t>(place.corner.y + y)) *
+                                                  static_cast<std::size_t>(layout.size.x) + static_cast<std::size_t>(place.corner.x));
+      std::copy_n(from, 4 * static_cast<std::size_t>(sizes[i].x), to);
+      if (entries[i].mask && !bitmap.hasAlpha)
+        for (int x = 0; x < sizes[i].x; ++x) to[4 * x + 3] = from[4 * x];
+    }
+  }
+  atlas_.emplace("texture atlas", static_cast<GLenum>(GL_SRGB8_ALPHA8), layout.size, gl::Sampling{}, 1, static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
+  atlas_->upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  const auto place = [&](std::size_t entry, shared::PathTexture& to) {
+    if (entry == SIZE_MAX) return;
+    to = {layout.places[entry].layer, layout.places[entry].corner.x, layout.places[entry].corner.y, sizes[entry].x, sizes[entry].y, 0, 0, 0};
+  };
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    place(used[i][0], materials[i].diffuseTexture);
+    place(used[i][1], materials[i].maskTexture);
+    place(used[i][2], materials[i].emissionTexture);
+  }
+}
+
+void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured, const std::vector<float>& pickDensity) {
+  std::vector<std::uint32_t> words;
+  words.reserve(scene.triangleCount() * static_cast<std::size_t>(triangleWords_) * 4);
+  std::vector<std::uint32_t> materialOf(scene.triangleCount(), 0);
+  for (const Mesh& mesh : scene.meshes)
+    std::fill_n(materialOf.begin() + mesh.firstIndex / 3, mesh.indexCount / 3, static_cast<std::uint32_t>(mesh.material));
+  const auto add = [&](float value) { words.push_back(std::bit_cast<std::uint32_t>(value)); };
+  const auto add3 = [&](const glm::vec3& v) { add(v.x), add(v.y), add(v.z); };
+  for (std::size_t t = 0; t < scene.triangleCount(); ++t) {
+    const Vertex* corners[3];
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = &scene.vertices[scene.indices[3 * t + k]];
+    const auto place = [&](int k) { return glm::dvec3(corners[k]->position) - rays_.origin(); };
+    const glm::dvec3 cross = glm::cross(place(1) - place(0), place(2) - place(0));
+    const double length = glm::length(cross);
+    const glm::vec3 normal = length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0f);  // rays meet no triangle without area
+    add3(glm::vec3(place(0)));
+    words.push_back(materialOf[t]);
+    add3(glm::vec3(place(1)));
+    add(normal.x);
+    add3(glm::vec3(place(2)));
+    add(normal.y);
+    add3({normal.z, corners[2]->texCoord.x, corners[2]->texCoord.y});
+    add(pickDensity.empty() ? 0.0f : pickDensity[t]);
+    if (textured)
+      for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
+    if (needs_.smoothNormals)
+      for (const Vertex* corner : corners) add3(corner->normal), words.push_back(0);
+  }
+  hash_.bytes(words.data(), words.size() * sizeof(std::uint32_t));
+  triangles_ = storageOf("path triangles", words, capabilities);
+}
+
+void PathScene::bind() const {
+  rays_.bind();
+  triangles_.bind(GL_SHADER_STORAGE_BUFFER, kTrianglesBinding);
+  materials_.bind(GL_SHADER_STORAGE_BUFFER, kMaterialsBinding);
+  if (hasLights()) lights_.bind(GL_SHADER_STORAGE_BUFFER, kLightsBinding);
+  if (atlas_) atlas_->bind(kAtlasUnit);
+  if (environmentPicture_) environmentPicture_->bind(kEnvironmentUnit);
+  if (environmentTable_) environmentTable_->bind(kEnvironmentTableUnit);
+  if (environmentRows_) environmentRows_->bind(kEnvironmentRowsUnit);
+}
+
+gl::ShaderFlags PathScene::flags() const {
+  return {{"TEXTURES", needs_.diffuseTextures || needs_.emissionTextures},
+          {"ALPHA_MASKS", needs_.alphaMasks},
+          {"SMOOTH_NORMALS", needs_.smoothNormals},
+          {"TRIANGLE_WORDS", triangleWords_},
+          {"EMISSION", needs_.emission},
+          {"SUN", hasLights() && needs_.directionalLight},
+          {"SPOTS", hasLights() && needs_.spotLights},
+          {"POINTS", hasLights() && needs_.pointLights},
+          {"ENVIRONMENT", needs_.environment},
+          {"ENVIRONMENT_PICTURE", needs_.environmentPicture},
+          {"NEXT_EVENT", hasLights()}};
+}
+
+void PathScene::fill(shared::PathConstants& constants) const {
+  constants.environment = constants_.environment;
+  constants.environmentPick = constants_.environmentPick;
+  constants.environmentTurn = constants_.environmentTurn;
+}
+
+std::size_t PathScene::gpuBytes() const {
+  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes();
+  for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_, &environmentRows_})
+    if (*texture) bytes += (*texture)->bytes();
+  return bytes;
+}
+
+}  // namespace lucerna

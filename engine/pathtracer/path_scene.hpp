@@ -1,0 +1,75 @@
+// A scene on the GPU as paths need it: triangles and their hierarchy, materials and textures in one atlas, lights and environment, for programs
+// that include shaders/pathtracer/{materials,bvh,environment,lights}.glsl. The path tracer follows paths from a camera in it, the light
+// propagation volume's receivers from points of surfaces (lpv/receivers.hpp).
+//
+// Space: the scene moved by -origin() (ray_scene.hpp). Units: scene units.
+#pragma once
+
+#include "base/error.hpp"
+#include "base/hash.hpp"
+#include "gl/context.hpp"
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+#include "pathtracer/ray_scene.hpp"
+#include "scene/needs.hpp"
+#include "scene/scene.hpp"
+#include "shared/path_tracer.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lucerna {
+
+/// A storage block of `values`, never of no size. Throws Error(missingCapability) where it is larger than the driver's storage blocks.
+template <class T>
+gl::Buffer storageOf(const std::string& name, const std::vector<T>& values, const gl::Capabilities& capabilities) {
+  const std::size_t bytes = std::max(values.size(), std::size_t{1}) * sizeof(T);
+  if (bytes > static_cast<std::size_t>(capabilities.maxShaderStorageBlockSize))
+    throwMissingCapability("{}: {} bytes; this driver's storage blocks have at most {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE)", name, bytes,
+                           capabilities.maxShaderStorageBlockSize);
+  gl::Buffer buffer(name, bytes, nullptr, GL_STATIC_DRAW);
+  if (!values.empty()) buffer.upload(0, values.size() * sizeof(T), values.data());
+  return buffer;
+}
+
+class PathScene {
+ public:
+  struct Settings {
+    bool diffuseOnly = false;  ///< every surface that scatters is taken for Lambert with its `diffuse`, as forward shading takes it
+    bool nextEvent = true;     ///< with a table of lights to be asked
+    RaySceneSettings rays;
+  };
+  /// `needs`: of the scene, less what is left out of the programs. rankOfMaterial: of closed boundaries (media.hpp); empty: there are none.
+  /// Throws Error(missingCapability) where the driver's limits are too small for the scene.
+  PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const Settings& settings, const std::vector<int>& rankOfMaterial = {});
+
+  /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61.
+  void bind() const;
+  /// Those of the shaders named above.
+  gl::ShaderFlags flags() const;
+  /// Environment and the probability of asking it, of the block that they read.
+  void fill(shared::PathConstants& constants) const;
+  bool hasLights() const { return lightCount_ > 0; }
+  const RayScene& rays() const { return rays_; }
+  const glm::dvec3& origin() const { return rays_.origin(); }
+  const Hash& hash() const { return hash_; }  ///< of all that decides what paths find
+  std::size_t gpuBytes() const;
+
+ private:
+  void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
+  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured, const std::vector<float>& pickDensity);
+  void uploadEnvironment(const Environment& environment);
+
+  SceneNeeds needs_;
+  RayScene rays_;
+  int triangleWords_ = 4;
+  std::size_t lightCount_ = 0;
+  shared::PathConstants constants_{};
+  gl::Buffer triangles_, materials_, lights_;
+  std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_, environmentRows_;
+  Hash hash_;
+};
+
+}  // namespace lucerna
