@@ -41,11 +41,19 @@ int run(const Options& options) {
   if (!options.heatMap.empty() && lowerExtension(options.heatMap) != ".png") throwBadInput("--heatmap {}: the extension must be png", options.heatMap);
   const Image image = readImage(options.image), reference = readImage(options.reference);
   const measure::ImageErrors e = measure::errorsOf(image, reference);
+  const int side = measure::blockSide(reference.width);
+  const measure::ImageErrors blocks =
+      measure::errorsOf(measure::blockMeans(image, side), measure::blockMeans(reference, side));
+  const double blackNrmse = std::sqrt(e.referenceSquare) / e.referenceMean;
   const double flip = e.notFinite > 0 ? NAN : measure::flipHdr(image, reference).mean;
   if (!options.heatMap.empty()) writeHeatMaps(options.heatMap, image, reference, measure::heatMapScale(image, reference));
   if (!options.common.quiet) {
     fmt::print("{} against {}, {}x{}, linear radiance, mean of the reference {:.6g}\n", options.image, options.reference, image.width, image.height, e.referenceMean);
-    fmt::print("RMSE {:.6g}   NRMSE {:.4f} %   relative MSE {:.6g} (epsilon {} mean^2)\n", e.rmse, 100.0 * e.nrmse, e.relmse, measure::kRelativeEpsilon);
+    fmt::print("relative L2 {:.4f} % (a black picture has 100 %), averaged over blocks of {}x{} pixels {:.4f} %\n",
+               100.0 * e.l2, side, side, 100.0 * blocks.l2);
+    fmt::print(
+        "RMSE {:.6g}   NRMSE {:.4f} % (a black picture has {:.4f} %)   relative MSE {:.6g} (epsilon {} mean^2)\n",
+        e.rmse, 100.0 * e.nrmse, 100.0 * blackNrmse, e.relmse, measure::kRelativeEpsilon);
     fmt::print("bias {:+.6g} ({:+.4f} %)   99th percentile {:.6g}   largest {:.6g}   HDR-FLIP {:.4f}\n", e.bias, 100.0 * e.relativeBias, e.p99, e.max, flip);
     if (e.notFinite > 0) fmt::print("{} pixels are not finite, so no figure is\n", e.notFinite);
   }
@@ -54,6 +62,11 @@ int run(const Options& options) {
                             {"size", {image.width, image.height}},
                             {"rmse", e.rmse},
                             {"nrmse", e.nrmse},
+                            {"nrmse_black", blackNrmse},
+                            {"nrmse_blocks", blocks.nrmse},
+                            {"l2", e.l2},
+                            {"l2_blocks", blocks.l2},
+                            {"block_side", side},
                             {"relmse", e.relmse},
                             {"relmse_epsilon", measure::kRelativeEpsilon},
                             {"bias", e.bias},

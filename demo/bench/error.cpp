@@ -85,12 +85,21 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
 
   auto result = std::make_unique<ErrorBenchResult>();
   const bool withPath = std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
-  auto references = obtainReferences({context, programs, scene, camera, size, (withPath ? 0.7 : 1.0) * options.budget, options.referenceSamples, options.references, options.quiet, withPath, folder / "references"});
+  std::vector<TechniqueModel> models;
+  for (const Rung& rung : rungs)
+    if (const TechniqueModel model = modelOf(rung, measure::kindsOf(scene));
+        std::find(models.begin(), models.end(), model) == models.end())
+      models.push_back(model);
+  auto references =
+      obtainReferences({context, programs, scene, camera, size, (withPath ? 0.7 : 1.0) * options.budget, models,
+                        options.referenceSamples, options.references, options.quiet, withPath, folder / "references"});
   if (!references) return result;
   result->references = std::move(*references);
   // Rows are judged by the reference that there was: a better one is another bench.
-  claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", title, options.deviations ? "deviations" : "ladders", context.capabilities().renderer,
-                                  measure::keyOf(scene, camera, size, measure::Transport::all, "rows").name(), result->references.all().samples));
+  claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", title,
+                                  options.deviations ? "deviations" : "ladders", context.capabilities().renderer,
+                                  measure::keyOf(scene, camera, size, measure::Transport::all, "rows 2").name(),
+                                  result->references.all().samples));
 
   const ErrorBench bench{context, programs, scene, camera, size, result->references, folder, 0.3 * options.budget, options.frames};
   writePng(folder / "pictures/reference.png", measure::toneMapped(result->references.all().mean, scene.exposure));
@@ -118,10 +127,12 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   report.cpu = cpuName();
   report.rows = std::move(rows);
   report.model = modelErrors(result->references);
+  report.yardsticks = yardsticks(result->references);
+  report.inside = insideModels(result->references);
   report.references = &result->references;
   report.isDeviationStudy = options.deviations;
   report.leftOut = leftOut;
-  writeFileAtomically(folder / "error.csv", csvOf(report.rows));
+  writeFileAtomically(folder / "error.csv", csvOf(report));
   writeFileAtomically(folder / "error.json", errorBenchJson(*result, options).dump(2) + "\n");
   plotRows(folder, report);
   HtmlPage page("Lucerna: " + title);
@@ -157,9 +168,11 @@ nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const Erro
   json["size"] = options.size;
   json["references"] = referencesJson(result.references);
   json["model"] = modelJson(report.model);
+  json["inside_models"] = insideModelsJson(report.inside);
   json["left_out"] = report.leftOut;
   json["relmse_epsilon"] = measure::kRelativeEpsilon;
   json["path_slope"] = pathSlopeJson(report.rows);
+  json["yardsticks"] = report.yardsticks;
   json["rows"] = report.rows;
   return json;
 }

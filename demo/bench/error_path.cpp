@@ -70,7 +70,7 @@ std::vector<PathSeries> seriesOf(const ErrorBench& bench, bool deviations) {
 
 struct Observation {
   std::vector<double> ms, cpuMs;
-  std::vector<measure::JudgedErrors> errors;
+  std::vector<JudgedPicture> errors;
   std::size_t gpuBytes = 0;
   double setupMs = 0.0;
   Image picture;  // of the first seed
@@ -116,7 +116,7 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed, std::v
     const glm::dvec3 own = tracer.statistics().meanError;
     // Channels share their paths: their errors add up as if wholly dependent.
     const double ownError = samples > 1 ? (own.x + own.y + own.z) / 3.0 : INFINITY;
-    o.errors.push_back(measure::lessNoise(measure::errorsOf(picture, truth.mean), bench.references.noise(truth), ownError));
+    o.errors.push_back(bench.references.judge(picture, truth, false, ownError));
     if (seed == 0) {
       o.picture = picture;
       o.setupMs = setup;
@@ -125,15 +125,14 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed, std::v
   }
 }
 
-double medianOf(const std::vector<measure::JudgedErrors>& errors, double (*of)(const measure::JudgedErrors&)) {
+double medianOf(const std::vector<JudgedPicture>& errors, double (*of)(const JudgedPicture&)) {
   std::vector<double> values;
-  for (const measure::JudgedErrors& e : errors) values.push_back(of(e));
+  for (const JudgedPicture& e : errors) values.push_back(of(e));
   return median(values);
 }
 
 ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t samples, const Observation& o) {
-  using measure::JudgedErrors;
-  const JudgedErrors& first = o.errors.front();
+  const JudgedPicture& first = o.errors.front();
   ErrorRow row;
   row["technique"] = "path";
   row["fidelity"] = series.fidelity;
@@ -149,21 +148,18 @@ ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t 
   row["frames"] = o.ms.size();
   row["setup_ms"] = o.setupMs;
   row["gpu_bytes"] = o.gpuBytes;
-  row["nrmse"] = medianOf(o.errors, [](const JudgedErrors& e) { return e.nrmse; });
-  row["rmse"] = medianOf(o.errors, [](const JudgedErrors& e) { return e.rmse; });
-  row["relmse"] = medianOf(o.errors, [](const JudgedErrors& e) { return e.relmse; });
-  // Of one seed, with its own standard error; a median of biases has none that is so simple.
-  row["bias"] = first.measured.bias;
-  row["bias_error"] = first.biasError;
-  row["relative_bias"] = first.measured.relativeBias;
-  row["p99"] = first.measured.p99;
-  row["max"] = first.measured.max;
-  row["at_noise"] = first.atNoise;
-  row["bias_at_noise"] = first.biasAtNoise;
-  row["noise_nrmse"] = first.noiseNrmse;
-  row["measured_nrmse"] = first.measured.nrmse;
-  row["not_finite"] = first.measured.notFinite;
-  row["flip"] = first.measured.notFinite > 0 ? NAN : measure::flipHdr(o.picture, bench.references.path().mean).mean;
+  // Medians of all seeds; biases of one seed, with its own standard error: a median of biases has none that is so
+  // simple.
+  row.update(errorsJson(first));
+  row["l2"] = medianOf(o.errors, [](const JudgedPicture& e) { return e.scattered.l2; });
+  row["nrmse"] = medianOf(o.errors, [](const JudgedPicture& e) { return e.pixels.nrmse; });
+  row["rmse"] = medianOf(o.errors, [](const JudgedPicture& e) { return e.pixels.rmse; });
+  row["relmse"] = medianOf(o.errors, [](const JudgedPicture& e) { return e.pixels.relmse; });
+  row["blocks"]["l2"] = medianOf(o.errors, [](const JudgedPicture& e) { return e.blocks.l2; });
+  row["blocks"]["nrmse"] =
+      medianOf(o.errors, [](const JudgedPicture& e) { return e.blocks.rmse / e.pixels.measured.referenceMean; });
+  row["flip"] =
+      first.pixels.measured.notFinite > 0 ? NAN : measure::flipHdr(o.picture, bench.references.path().mean).mean;
   row["picture"] = writePictures(bench, fmt::format("{} spp={}", series.label(), samples), o.picture, bench.references.path());
   return row;
 }

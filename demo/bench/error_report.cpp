@@ -14,6 +14,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <span>
 #include <thread>
 
 namespace lucerna::demo::bench {
@@ -35,22 +36,36 @@ double spread(const ErrorRow& row, std::size_t i) {
   return found == row.end() || !found->is_array() || !(*found)[i].is_number() ? NAN : (*found)[i].get<double>();
 }
 
-/// 12.3 %, or "< 0.4 % (noise)" where the reference cannot tell.
-std::string errorText(const ErrorRow& row) {
-  if (number(row, "not_finite") > 0) return "not finite";
-  if (flag(row, "at_noise")) return fmt::format("< {:.3g} % (noise)", 300.0 * number(row, "noise_nrmse"));
-  return fmt::format("{:.3g} %", 100.0 * number(row, "nrmse"));
+/// "12.3 %", or "< 0.4 % (noise)" where the reference cannot tell. measure: l2 or nrmse.
+std::string errorText(const ErrorRow& errors, const char* measure) {
+  const auto notFinite = errors.find("not_finite");
+  if (notFinite != errors.end() && notFinite->is_number() && notFinite->get<double>() > 0) return "not finite";
+  if (flag(errors, "at_noise"))
+    return fmt::format("< {:.3g} % (noise)", 300.0 * number(errors, (std::string("noise_") + measure).c_str()));
+  const double value = 100.0 * number(errors, measure);
+  return std::isfinite(value) ? fmt::format("{:.3g} %", value) : "";
+}
+/// Of "blocks", "lit", "other" or "inside_model"; an empty row where there is none.
+const ErrorRow& part(const ErrorRow& row, const char* key) {
+  static const ErrorRow kNone = ErrorRow::object();
+  const auto found = row.find(key);
+  return found == row.end() || !found->is_object() ? kNone : *found;
 }
 std::string biasText(const ErrorRow& row) {
   const double mean = number(row, "bias") / number(row, "relative_bias"), error = 100.0 * number(row, "bias_error") / std::abs(mean);
   if (!std::isfinite(error)) return fmt::format("{:+.3g} % +- ?", 100.0 * number(row, "relative_bias"));  // one sample has no spread
   return fmt::format("{:+.3g} % +- {:.2g}{}", 100.0 * number(row, "relative_bias"), error, flag(row, "bias_at_noise") ? " (0)" : "");
 }
-std::string insideText(const ErrorRow& row) {
-  const auto found = row.find("inside_model");
-  return found == row.end() ? "" : errorText(*found);
+/// The bias of lit pixels, or of the others: "+275 %"; (0) below three standard errors.
+std::string partBiasText(const ErrorRow& errors, const char* key) {
+  const ErrorRow& p = part(errors, key);
+  const double bias = number(p, "relative_bias"), error = number(p, "bias_error");
+  if (!std::isfinite(bias)) return "";
+  return fmt::format("{:+.3g} %{}", 100.0 * bias, std::abs(bias) < 3.0 * error ? " (0)" : "");
 }
-std::string bytesText(double bytes) { return fmt::format("{:.2f} MiB", bytes / 1048576.0); }
+std::string bytesText(double bytes) { return std::isnan(bytes) ? "" : fmt::format("{:.2f} MiB", bytes / 1048576.0); }
+/// Nothing where there is no figure: yardsticks take no time.
+std::string fixed(double value, int digits) { return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits); }
 
 struct Column {
   const char* title;
@@ -59,36 +74,124 @@ struct Column {
 const Column kColumns[] = {
     {"technique and settings", [](const ErrorRow& r) { return text(r, "label"); }},
     {"front", [](const ErrorRow& r) { return flag(r, "pareto") ? fmt::format("{:g}", number(r, "front")) : ""; }},
-    {"ms", [](const ErrorRow& r) { return fmt::format("{:.2f}", number(r, "ms")); }},
-    {"5..95 %", [](const ErrorRow& r) { return fmt::format("{:.2f}..{:.2f}", spread(r, 0), spread(r, 1)); }},
-    {"query ms", [](const ErrorRow& r) { return std::isnan(number(r, "query_ms")) ? "" : fmt::format("{:.2f}", number(r, "query_ms")); }},
-    {"set-up ms", [](const ErrorRow& r) { return fmt::format("{:.0f}", number(r, "setup_ms")); }},
-    {"NRMSE", errorText},
-    {"inside model", insideText},
+    {"ms", [](const ErrorRow& r) { return fixed(number(r, "ms"), 2); }},
+    {"5..95 %",
+     [](const ErrorRow& r) {
+       return std::isnan(spread(r, 0)) ? "" : fmt::format("{:.2f}..{:.2f}", spread(r, 0), spread(r, 1));
+     }},
+    {"query ms", [](const ErrorRow& r) { return fixed(number(r, "query_ms"), 2); }},
+    {"set-up ms", [](const ErrorRow& r) { return fixed(number(r, "setup_ms"), 0); }},
+    {"rel. L2", [](const ErrorRow& r) { return errorText(r, "l2"); }},
+    {"in blocks", [](const ErrorRow& r) { return errorText(part(r, "blocks"), "l2"); }},
+    {"bias, lit", [](const ErrorRow& r) { return partBiasText(r, "lit"); }},
+    {"bias, other", [](const ErrorRow& r) { return partBiasText(r, "other"); }},
+    {"inside model", [](const ErrorRow& r) { return errorText(part(r, "inside_model"), "l2"); }},
+    {"NRMSE", [](const ErrorRow& r) { return errorText(r, "nrmse"); }},
     {"bias", biasText},
     {"rel. MSE", [](const ErrorRow& r) { return fmt::format("{:.3g}", number(r, "relmse")); }},
     {"99 %", [](const ErrorRow& r) { return fmt::format("{:.3g}", number(r, "p99")); }},
-    {"FLIP", [](const ErrorRow& r) { return fmt::format("{:.3f}", number(r, "flip")); }},
+    {"FLIP", [](const ErrorRow& r) { return fixed(number(r, "flip"), 3); }},
     {"GPU memory", [](const ErrorRow& r) { return bytesText(number(r, "gpu_bytes")); }},
 };
+
+/// Inside the model: the figures of row["inside_model"].
+const Column kInsideColumns[] = {
+    {"technique and settings", [](const ErrorRow& r) { return text(r, "label"); }},
+    {"ms", [](const ErrorRow& r) { return fixed(number(r, "ms"), 2); }},
+    {"rel. L2", [](const ErrorRow& r) { return errorText(part(r, "inside_model"), "l2"); }},
+    {"in blocks", [](const ErrorRow& r) { return errorText(part(part(r, "inside_model"), "blocks"), "l2"); }},
+    {"bias, lit", [](const ErrorRow& r) { return partBiasText(part(r, "inside_model"), "lit"); }},
+    {"bias, other", [](const ErrorRow& r) { return partBiasText(part(r, "inside_model"), "other"); }},
+    {"squares in lit",
+     [](const ErrorRow& r) {
+       return fmt::format("{:.0f} %", 100.0 * number(part(part(r, "inside_model"), "lit"), "squares"));
+     }},
+    {"bias", [](const ErrorRow& r) { return biasText(part(r, "inside_model")); }},
+    {"NRMSE", [](const ErrorRow& r) { return errorText(part(r, "inside_model"), "nrmse"); }},
+    {"NRMSE in blocks", [](const ErrorRow& r) { return errorText(part(part(r, "inside_model"), "blocks"), "nrmse"); }},
+};
+
+/// Cells of rows, a line each.
+HtmlPage::Table tableOf(std::span<const Column> columns, const std::vector<const ErrorRow*>& rows, const char* marked) {
+  HtmlPage::Table table;
+  for (const Column& column : columns) table.columns.push_back(column.title);
+  for (const ErrorRow* row : rows) {
+    table.rows.emplace_back();
+    for (const Column& column : columns) table.rows.back().push_back(column.of(*row));
+    table.marked.push_back(flag(*row, marked));
+  }
+  return table;
+}
+
+std::string textOf(const HtmlPage::Table& table) {
+  std::vector<std::size_t> widths;
+  for (const std::string& title : table.columns) widths.push_back(title.size());
+  for (const auto& cells : table.rows)
+    for (std::size_t c = 0; c < widths.size(); ++c) widths[c] = std::max(widths[c], cells[c].size());
+  const auto line = [&](const std::vector<std::string>& cells, bool isMarked) {
+    std::string result = isMarked ? "* " : "  ";
+    for (std::size_t c = 0; c < widths.size(); ++c)
+      result += c == 0 ? fmt::format("{:<{}}", cells[c], widths[c]) : fmt::format("  {:>{}}", cells[c], widths[c]);
+    return result + "\n";
+  };
+  std::string result = line(table.columns, false);
+  for (std::size_t r = 0; r < table.rows.size(); ++r) result += line(table.rows[r], table.marked[r]);
+  return result;
+}
+
+HtmlPage::Table allLightTable(const ErrorReport& report) {
+  std::vector<const ErrorRow*> rows;
+  for (const ErrorRow& row : report.yardsticks) rows.push_back(&row);
+  for (const ErrorRow& row : report.rows) rows.push_back(&row);
+  return tableOf(kColumns, rows, "pareto");
+}
+
+/// Yardsticks, then the model's rows, the best first.
+HtmlPage::Table insideTable(const ErrorReport& report, const InsideModel& model) {
+  std::vector<const ErrorRow*> rows;
+  for (const ErrorRow& row : report.rows)
+    if (text(part(row, "inside_model"), "model") == model.name) rows.push_back(&row);
+  std::stable_sort(rows.begin(), rows.end(), [](const ErrorRow* a, const ErrorRow* b) {
+    const double x = rankedError(part(*a, "inside_model"), "l2"), y = rankedError(part(*b, "inside_model"), "l2");
+    return std::isnan(y) ? !std::isnan(x) : x < y;
+  });
+  rows.insert(rows.begin(), {&model.black, &model.constant});
+  return tableOf(kInsideColumns, rows, "inside_front");
+}
+
+constexpr const char* kInsideHeading =
+    "Inside the model: the light that the technique promises, of the lights that it knows";
+constexpr const char* kInsideNote =
+    "Settings of a technique are ranked here, never by the error of all light, where errors of the model and of the "
+    "settings may cancel. Marked: on the front of their technique by time and error. "
+    "squares in lit: share of sum d^2 in directly lit pixels. Which of the error is the reflective shadow map's (all "
+    "its points gathered with true visibility) and which is storage's and lookup's "
+    "(exact radiance in the cells) is not measured: the bench has no such floors.";
 
 std::string notes(const ErrorReport& report) {
   std::string line = fmt::format("Renderer {}\nHost     {}, {}\nBench    {}\n", report.renderer, report.host, report.cpu, report.title);
   for (const std::string& left : report.leftOut) line += left + "\n";
-  for (const auto& [transport, r] : report.references->of) {
+  for (const auto& [paths, r] : report.references->of) {
     const measure::ReferenceNoise noise = report.references->noise(r);
     const glm::dvec3 mean = meanOf(r.mean);
     const double m = (mean.x + mean.y + mean.z) / 3.0;
-    line += fmt::format("Reference {:<20} {} samples a pixel, {:.1f} s; mean {:.6g} +- {:.2g}; noise of a pixel {:.3g} % of the mean\n", measure::nameOf(transport), r.samples,
-                        r.seconds, m, r.meanError, 100.0 * std::sqrt(noise.variance) / m);
+    line += fmt::format(
+        "Reference {:<44} {} samples a pixel, {:.1f} s; mean {:.6g} +- {:.2g}; noise of a pixel {:.3g} % of the mean\n",
+        nameOf(paths), r.samples, r.seconds, m, r.meanError, 100.0 * std::sqrt(noise.variance) / m);
   }
   return line;
 }
 
+std::string modelErrorText(const ModelError& m) {
+  return m.errors.atNoise ? fmt::format("< {:.3g} % (noise)", 300.0 * m.errors.noiseL2)
+                          : fmt::format("{:.3g} %", 100.0 * m.errors.l2);
+}
+std::string modelBiasText(const ModelError& m) {
+  return fmt::format("{:+.3g} % +- {:.2g}{}", 100.0 * m.errors.measured.relativeBias,
+                     100.0 * m.errors.biasError / m.errors.measured.referenceMean, m.errors.biasAtNoise ? " (0)" : "");
+}
 std::string modelText(const ModelError& m) {
-  const std::string error = m.errors.atNoise ? fmt::format("< {:.3g} % (noise)", 300.0 * m.errors.noiseNrmse) : fmt::format("{:.3g} %", 100.0 * m.errors.nrmse);
-  return fmt::format("{:<44}NRMSE {}, bias {:+.3g} % +- {:.2g} of indirect light", m.name, error, 100.0 * m.errors.measured.relativeBias,
-                     100.0 * m.errors.biasError / m.errors.measured.referenceMean);
+  return fmt::format("{:<64}relative L2 {}, bias {} of {}", m.name, modelErrorText(m), modelBiasText(m), m.of);
 }
 
 /// How the path tracer's error falls by samples, and from the eighth on by wall clock and processor time: a pass doubles what there is, and in the first ones lanes wait for
@@ -136,42 +239,44 @@ std::string cpuName() {
 }
 
 std::string terminalTable(const ErrorReport& report) {
-  std::vector<std::vector<std::string>> cells;
-  std::vector<std::size_t> widths;
-  for (const Column& column : kColumns) widths.push_back(std::string_view(column.title).size());
-  for (const ErrorRow& row : report.rows) {
-    cells.emplace_back();
-    for (const Column& column : kColumns) cells.back().push_back(column.of(row));
-    for (std::size_t c = 0; c < widths.size(); ++c) widths[c] = std::max(widths[c], cells.back()[c].size());
-  }
-  std::string result = notes(report) + "\n  ";
-  for (std::size_t c = 0; c < widths.size(); ++c) result += c == 0 ? fmt::format("{:<{}}", kColumns[c].title, widths[c]) : fmt::format("  {:>{}}", kColumns[c].title, widths[c]);
-  result += "\n";
-  for (std::size_t r = 0; r < cells.size(); ++r) {
-    result += flag(report.rows[r], "pareto") ? "* " : "  ";
-    for (std::size_t c = 0; c < widths.size(); ++c) result += c == 0 ? fmt::format("{:<{}}", cells[r][c], widths[c]) : fmt::format("  {:>{}}", cells[r][c], widths[c]);
-    result += "\n";
-  }
-  result += "* nothing measured here is better in both time and error (Pareto front)\n";
+  std::string result = notes(report) + "\nAll light:\n" + textOf(allLightTable(report));
+  result +=
+      "* nothing measured here is better in both time and relative L2 (Pareto front; rel. L2: a black picture has 100 "
+      "%)\n";
   if (const std::string slope = slopeText(report.rows); !slope.empty()) result += slope + "\n";
+  if (!report.inside.empty()) result += fmt::format("\n{}.\n{}\n", kInsideHeading, kInsideNote);
+  for (const InsideModel& model : report.inside)
+    result += fmt::format("\n{}\n{}", model.name, textOf(insideTable(report, model)));
   if (!report.model.empty()) result += "\nWhat the models leave out, whatever the settings:\n";
   for (const ModelError& m : report.model) result += "  " + modelText(m) + "\n";
   return result;
 }
 
-std::string csvOf(const std::vector<ErrorRow>& rows) {
-  const char* kKeys[] = {"ms",   "wall_ms", "query_ms", "setup_ms", "frames", "gpu_bytes", "nrmse",       "rmse",           "relmse",
-                         "bias", "bias_error", "relative_bias", "p99", "max", "flip", "noise_nrmse", "measured_nrmse", "not_finite"};
-  std::string csv = "technique,fidelity,series,settings,pareto,at_noise";
+std::string csvOf(const ErrorReport& report) {
+  const char* kKeys[] = {"ms",    "wall_ms", "query_ms", "setup_ms",    "frames",         "gpu_bytes",     "l2",
+                         "nrmse", "rmse",    "relmse",   "bias",        "bias_error",     "relative_bias", "p99",
+                         "max",   "flip",    "noise_l2", "noise_nrmse", "measured_nrmse", "not_finite"};
+  std::string csv = "technique,fidelity,series,settings,pareto,inside_front,at_noise";
   for (const char* key : kKeys) csv += std::string(",") + key;
-  csv += ",inside_nrmse\n";
-  for (const ErrorRow& row : rows) {
-    csv += fmt::format("{},{},{},\"{}\",{},{}", text(row, "technique"), text(row, "fidelity"), text(row, "series"), text(row, "label"), flag(row, "pareto") ? 1 : 0,
-                       flag(row, "at_noise") ? 1 : 0);
-    for (const char* key : kKeys) csv += std::isnan(number(row, key)) ? "," : fmt::format(",{:.9g}", number(row, key));
-    const auto inside = row.find("inside_model");
-    csv += inside == row.end() ? ",\n" : fmt::format(",{:.9g}\n", number(*inside, "nrmse"));
-  }
+  csv +=
+      ",blocks_l2,lit_bias,other_bias,inside_l2,inside_blocks_l2,inside_lit_bias,inside_other_bias,inside_nrmse,inside_"
+      "blocks_nrmse\n";
+  const auto figure = [](double value) { return std::isnan(value) ? std::string(",") : fmt::format(",{:.9g}", value); };
+  const auto add = [&](const ErrorRow& row) {
+    csv += fmt::format("{},{},{},\"{}\",{:d},{:d},{:d}", text(row, "technique"), text(row, "fidelity"),
+                       text(row, "series"), text(row, "label"), flag(row, "pareto"), flag(row, "inside_front"),
+                       flag(row, "at_noise"));
+    for (const char* key : kKeys) csv += figure(number(row, key));
+    const ErrorRow& inside = part(row, "inside_model");
+    for (const ErrorRow* errors : {&row, &inside}) {
+      if (errors == &inside) csv += figure(number(inside, "l2"));
+      csv += figure(number(part(*errors, "blocks"), "l2")) + figure(number(part(*errors, "lit"), "relative_bias")) +
+             figure(number(part(*errors, "other"), "relative_bias"));
+    }
+    csv += figure(number(inside, "nrmse")) + figure(number(part(inside, "blocks"), "nrmse")) + "\n";
+  };
+  for (const ErrorRow& row : report.yardsticks) add(row);
+  for (const ErrorRow& row : report.rows) add(row);
   return csv;
 }
 
@@ -185,15 +290,31 @@ nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows) {
 nlohmann::ordered_json modelJson(const std::vector<ModelError>& model) {
   auto json = nlohmann::ordered_json::array();
   for (const ModelError& m : model)
-    json.push_back({{"leaves_out", m.name}, {"nrmse", m.errors.nrmse}, {"relative_bias", m.errors.measured.relativeBias}, {"at_noise", m.errors.atNoise}});
+    json.push_back({{"leaves_out", m.name},
+                    {"of", m.of},
+                    {"l2", m.errors.l2},
+                    {"nrmse", m.errors.nrmse},
+                    {"relative_bias", m.errors.measured.relativeBias},
+                    {"at_noise", m.errors.atNoise}});
+  return json;
+}
+
+nlohmann::ordered_json insideModelsJson(const std::vector<InsideModel>& inside) {
+  auto json = nlohmann::ordered_json::array();
+  for (const InsideModel& model : inside)
+    json.push_back({{"model", model.name},
+                    {"black", model.black.at("inside_model")},
+                    {"constant", model.constant.at("inside_model")}});
   return json;
 }
 
 nlohmann::ordered_json referencesJson(const References& references) {
   auto json = nlohmann::ordered_json::array();
-  for (const auto& [transport, r] : references.of) {
+  for (const auto& [paths, r] : references.of) {
     const glm::dvec3 mean = meanOf(r.mean);
-    json.push_back({{"transport", std::string(measure::nameOf(transport))},
+    json.push_back({{"transport", std::string(measure::nameOf(paths.transport))},
+                    {"lights", measure::nameOf(paths.lights)},
+                    {"bounces", paths.bounces},
                     {"samples", r.samples},
                     {"seconds", r.seconds},
                     {"mean", {mean.x, mean.y, mean.z}},
@@ -204,37 +325,16 @@ nlohmann::ordered_json referencesJson(const References& references) {
   return json;
 }
 
-bool plotRows(const fs::path& folder, const ErrorReport& report) {
-  LogLogPlot plot;
-  plot.title = report.title;
-  plot.xLabel = "time of a picture, ms";
-  plot.yLabel = "NRMSE against path tracing, %";
-  Series front{"Pareto front", {}, true, true};
-  std::map<std::string, std::size_t> index;
-  for (const ErrorRow& row : report.rows) {
-    const std::string name = text(row, "series");
-    const auto [found, isNew] = index.try_emplace(name, plot.series.size());
-    if (isNew) plot.series.push_back({name, {}, true, false});
-    if (!flag(row, "at_noise")) plot.series[found->second].points.push_back({number(row, "ms"), 100.0 * number(row, "nrmse"), ""});
-    if (flag(row, "pareto") && !flag(row, "at_noise")) front.points.push_back({number(row, "ms"), 100.0 * number(row, "nrmse"), fmt::format("{:g}", number(row, "front"))});
-  }
-  std::sort(front.points.begin(), front.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
-  for (Series& series : plot.series) std::sort(series.points.begin(), series.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
-  plot.series.insert(plot.series.begin(), front);
-  const measure::Reference& all = report.references->all();
-  const glm::dvec3 mean = meanOf(all.mean);
-  plot.floor = 300.0 * std::sqrt(report.references->noise(all).variance) / ((mean.x + mean.y + mean.z) / 3.0);
-  plot.floorLabel = "3 x noise of the reference";
-  if (index.contains("path")) {
-    plot.guideSlope = -0.5;
-    std::swap(plot.series[index["path"] + 1], plot.series.back());
-  }
+namespace {
+
+/// Writes the plot; a warning and false where nothing can be drawn or gnuplot is missing.
+bool draw(const fs::path& folder, const std::string& stem, const LogLogPlot& plot) {
   if (std::all_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.points.empty(); })) {
-    logWarning("no plot: every row is at the reference's noise; give it more --budget");
+    logWarning("no plot {}: every row is at the reference's noise; give it more --budget", stem);
     return false;
   }
   try {
-    writeLogLogPlot(folder, "error", plot);
+    writeLogLogPlot(folder, stem, plot);
     return true;
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::missingCapability) throw;
@@ -243,27 +343,102 @@ bool plotRows(const fs::path& folder, const ErrorReport& report) {
   }
 }
 
+/// Points of one series in the order of time.
+void sortByTime(LogLogPlot& plot) {
+  for (Series& series : plot.series)
+    std::sort(series.points.begin(), series.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+}
+
+bool plotAllLight(const fs::path& folder, const ErrorReport& report) {
+  LogLogPlot plot;
+  plot.title = report.title + ": all light";
+  plot.xLabel = "time of a picture, ms";
+  plot.yLabel = "relative L2 error against path tracing, % (black = 100 %)";
+  Series front{"Pareto front", {}, true, true};
+  std::map<std::string, std::size_t> index;
+  for (const ErrorRow& row : report.rows) {
+    const std::string name = text(row, "series");
+    const auto [found, isNew] = index.try_emplace(name, plot.series.size());
+    if (isNew) plot.series.push_back({name, {}, true, false});
+    if (!flag(row, "at_noise"))
+      plot.series[found->second].points.push_back({number(row, "ms"), 100.0 * number(row, "l2"), ""});
+    if (flag(row, "pareto") && !flag(row, "at_noise"))
+      front.points.push_back({number(row, "ms"), 100.0 * number(row, "l2"), fmt::format("{:g}", number(row, "front"))});
+  }
+  plot.series.insert(plot.series.begin(), front);
+  sortByTime(plot);
+  for (const ErrorRow& row : report.yardsticks) plot.levels.push_back({100.0 * number(row, "l2"), text(row, "label")});
+  plot.levels.push_back({300.0 * number(report.yardsticks.front(), "noise_l2"), "3 x noise of the reference"});
+  if (index.contains("path")) {
+    plot.guideSlope = -0.5;
+    std::swap(plot.series[index["path"] + 1], plot.series.back());
+  }
+  return draw(folder, "error", plot);
+}
+
+/// Indirect light of each technique inside its model; direct light, and models of all light, stay in their tables.
+bool plotInside(const fs::path& folder, const ErrorReport& report) {
+  LogLogPlot plot;
+  plot.title = report.title + ": indirect light inside each model";
+  plot.xLabel = "time of a picture (of all light), ms";
+  plot.yLabel = "relative L2 error inside the model, % (black = 100 %)";
+  std::map<std::string, std::size_t> index;
+  std::map<std::string, std::string> models;  // a short name of each that is drawn
+  for (const ErrorRow& row : report.rows) {
+    const ErrorRow& inside = part(row, "inside_model");
+    if (inside.empty() || text(inside, "transport") == "direct" || text(inside, "transport") == "all") continue;
+    models[text(inside, "model")];
+    const auto [found, isNew] = index.try_emplace(text(row, "series"), plot.series.size());
+    if (isNew) plot.series.push_back({text(row, "series"), {}, true, false});
+    if (!flag(inside, "at_noise"))
+      plot.series[found->second].points.push_back({number(row, "ms"), 100.0 * number(inside, "l2"), ""});
+  }
+  if (models.empty()) return false;
+  sortByTime(plot);
+  plot.levels.push_back({100.0, "black"});
+  for (const InsideModel& model : report.inside)
+    if (models.contains(model.name))
+      plot.levels.push_back({100.0 * number(part(model.constant, "inside_model"), "l2"), "constant, " + model.name});
+  return draw(folder, "error_inside", plot);
+}
+
+}  // namespace
+
+bool plotRows(const fs::path& folder, const ErrorReport& report) {
+  const bool all = plotAllLight(folder, report), inside = plotInside(folder, report);
+  return all || inside;
+}
+
 void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report) {
   page.section(fmt::format("{}: {}", report.isDeviationStudy ? "Deviations" : "Error against run time", report.title));
   page.preformatted(notes(report));
   if (fs::exists(folder / "error.svg")) page.svg(folder / "error.svg");
-  HtmlPage::Table table;
-  for (const Column& column : kColumns) table.columns.push_back(column.title);
-  for (const ErrorRow& row : report.rows) {
-    table.rows.emplace_back();
-    for (const Column& column : kColumns) table.rows.back().push_back(column.of(row));
-    table.marked.push_back(flag(row, "pareto"));
-  }
-  page.table(table);
-  page.paragraph("Marked: nothing measured here is better in both time and error; their numbers (front) are those of the plot. ms: the median of a picture, wall clock on software renderers, GPU timer queries else; 5..95 % of the wall clock. NRMSE: root mean square "
-                 "error over the reference's mean, linear radiance, less the reference's own noise; \"noise\": cannot be told from it. bias: signed, of the mean, with its standard error; "
-                 "(0): within 3 of it. Relative MSE: epsilon 0.01 mean^2. Inside model: indirect light against a reference of the technique's own transport.");
+  page.table(allLightTable(report));
+  page.paragraph(
+      "Marked: nothing measured here is better in both time and relative L2; their numbers (front) are those of the "
+      "plot. Of the settings of one technique only those take part that are on its front inside its "
+      "model (below). ms: the median of a picture, wall clock on software renderers, GPU timer queries else; 5..95 % "
+      "of the wall clock. rel. L2: sqrt(sum d^2 / sum r^2) of the light that surfaces scatter (what is seen of lights "
+      "and background themselves is taken off), linear radiance, less the reference's own noise. black: nothing "
+      "scattered, 100 %; constant: albedo times one constant irradiance over pi, chosen by least squares. \"noise\": "
+      "cannot be told from it. "
+      "In blocks: after averaging over blocks of 1/16 of the width. Bias, lit and other: of surface pixels with and "
+      "without direct light of sun and lamps. NRMSE: root mean square error over the "
+      "reference's mean, for comparison with others' figures. bias: signed, of the mean, with its standard error; (0): "
+      "within 3 of it. Relative MSE: epsilon 0.01 mean^2.");
   if (const std::string slope = slopeText(report.rows); !slope.empty()) page.paragraph(slope);
+  if (!report.inside.empty()) {
+    page.heading(kInsideHeading);
+    page.paragraph(kInsideNote);
+    if (fs::exists(folder / "error_inside.svg")) page.svg(folder / "error_inside.svg");
+  }
+  for (const InsideModel& model : report.inside) {
+    page.paragraph(model.name);
+    page.table(insideTable(report, model));
+  }
   if (!report.model.empty()) {
-    HtmlPage::Table model{{"left out", "NRMSE of indirect light", "bias"}, {}, {}};
-    for (const ModelError& m : report.model)
-      model.rows.push_back({m.name, m.errors.atNoise ? fmt::format("< {:.3g} % (noise)", 300.0 * m.errors.noiseNrmse) : fmt::format("{:.3g} %", 100.0 * m.errors.nrmse),
-                            fmt::format("{:+.3g} % +- {:.2g}", 100.0 * m.errors.measured.relativeBias, 100.0 * m.errors.biasError / m.errors.measured.referenceMean)});
+    HtmlPage::Table model{{"left out", "of", "relative L2", "bias"}, {}, {}};
+    for (const ModelError& m : report.model) model.rows.push_back({m.name, m.of, modelErrorText(m), modelBiasText(m)});
     page.heading("What the models leave out, whatever the settings");
     page.table(model);
   }
@@ -278,7 +453,7 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
     if (!flag(row, "pareto") && !isLastOfSeries) continue;
     const std::string stem = text(row, "picture");
     page.pictures({{folder / (stem + ".png"), text(row, "label")},
-                   {folder / (stem + ".absolute.png"), "absolute error, NRMSE " + errorText(row)},
+                   {folder / (stem + ".absolute.png"), "absolute error, relative L2 " + errorText(row, "l2")},
                    {folder / (stem + ".signed.png"), "signed error, bias " + biasText(row)}});
   }
 }

@@ -14,6 +14,8 @@
 
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <set>
 
 namespace lucerna::demo::bench {
 
@@ -77,34 +79,9 @@ Timed render(const ErrorBench& bench, const RenderSettings& settings, int frames
   return timed;
 }
 
-nlohmann::ordered_json errorsJson(const measure::JudgedErrors& e) {
-  return {{"nrmse", e.nrmse},
-          {"rmse", e.rmse},
-          {"relmse", e.relmse},
-          {"bias", e.measured.bias},
-          {"bias_error", e.biasError},
-          {"relative_bias", e.measured.relativeBias},
-          {"p99", e.measured.p99},
-          {"max", e.measured.max},
-          {"at_noise", e.atNoise},
-          {"bias_at_noise", e.biasAtNoise},
-          {"noise_nrmse", e.noiseNrmse},
-          {"measured_nrmse", e.measured.nrmse},
-          {"not_finite", e.measured.notFinite}};
+void keep(const ErrorBench& bench, const std::string& name, const ErrorRow& row) {
+  writeFileAtomically(rowFile(bench.folder, name), row.dump(1) + "\n");
 }
-
-measure::JudgedErrors judge(const Image& picture, const measure::Reference& reference, double ownError = 0.0) {
-  return measure::lessNoise(measure::errorsOf(picture, reference.mean), measure::noiseOf(reference.mean, reference.standardError, reference.meanError), ownError);
-}
-
-/// RSM and LPV: what they get wrong inside their model, against the reference of the model itself.
-const measure::Reference* modelOf(const References& references, Technique technique, const RenderSettings& settings) {
-  if (technique == Technique::rsm) return &references.of.at(measure::Transport::oneBounceUnoccluded);
-  if (technique == Technique::lpv) return &references.of.at(settings.lpv.blocking ? measure::Transport::oneBounce : measure::Transport::oneBounceUnoccluded);
-  return nullptr;
-}
-
-void keep(const ErrorBench& bench, const std::string& name, const ErrorRow& row) { writeFileAtomically(rowFile(bench.folder, name), row.dump(1) + "\n"); }
 
 std::optional<ErrorRow> readRow(const fs::path& file) {
   if (!fs::exists(file)) return std::nullopt;
@@ -116,7 +93,90 @@ std::optional<ErrorRow> readRow(const fs::path& file) {
   return row;
 }
 
+nlohmann::ordered_json partJson(const measure::PartErrors& part) {
+  return {{"pixels", part.pixels},
+          {"relative_bias", part.relativeBias},
+          {"bias_error", part.biasError},
+          {"squares", part.squares}};
+}
+
+/// Pixels of surfaces alone, where lights themselves are seen; indirect light has none.
+bool onSurfacesAlone(const LightPaths& model) { return showsLights(model.transport); }
+
+/// A picture that costs nothing: what techniques must beat.
+ErrorRow yardstick(const References& references, const std::string& name, const Image& picture) {
+  ErrorRow row;
+  row["technique"] = row["series"] = row["label"] = name;
+  row["fidelity"] = "";
+  row["settings"] = row["deviations"] = nlohmann::ordered_json::array();
+  for (const char* key : {"ms", "wall_ms", "setup_ms", "gpu_bytes"}) row[key] = nullptr;
+  row.update(errorsJson(references.judge(picture, references.all())));
+  row["flip"] = measure::flipHdr(picture, references.all().mean).mean;
+  return row;
+}
+
 }  // namespace
+
+nlohmann::ordered_json errorsJson(const JudgedPicture& judged) {
+  const measure::JudgedErrors& e = judged.pixels;
+  const double mean = e.measured.referenceMean;
+  return {{"l2", judged.scattered.l2},
+          {"nrmse", e.nrmse},
+          {"rmse", e.rmse},
+          {"relmse", e.relmse},
+          {"bias", e.measured.bias},
+          {"bias_error", e.biasError},
+          {"relative_bias", e.measured.relativeBias},
+          {"p99", e.measured.p99},
+          {"max", e.measured.max},
+          {"at_noise", e.atNoise},
+          {"bias_at_noise", e.biasAtNoise},
+          {"noise_l2", judged.scattered.noiseL2},
+          {"noise_nrmse", e.noiseNrmse},
+          {"measured_nrmse", e.measured.nrmse},
+          {"not_finite", e.measured.notFinite},
+          {"blocks",
+           {{"l2", judged.blocks.l2},
+            {"nrmse", judged.blocks.rmse / mean},
+            {"at_noise", judged.blocks.atNoise},
+            {"noise_l2", judged.blocks.noiseL2}}},
+          {"lit", partJson(judged.lit)},
+          {"other", partJson(judged.other)}};
+}
+
+std::vector<ErrorRow> yardsticks(const References& references) {
+  const measure::Reference& all = references.all();
+  return {yardstick(references, "black", references.blackPicture(all)),
+          yardstick(references, "constant", references.constantPicture(all))};
+}
+
+std::vector<InsideModel> insideModels(const References& references) {
+  std::vector<InsideModel> result;
+  std::set<LightPaths> made;
+  for (const TechniqueModel& m : references.models) {
+    if (!m.paths.lights.any() || m.paths == LightPaths{measure::Transport::all, references.lights} ||
+        !made.insert(m.paths).second)
+      continue;
+    const measure::Reference truth = references.inside(m.paths);
+    const auto row = [&](const char* name, const Image& picture) {
+      ErrorRow r{{"label", name}, {"technique", name}};
+      r["inside_model"] = errorsJson(references.judge(picture, truth, onSurfacesAlone(m.paths)));
+      r["inside_model"]["model"] = nameOf(m.paths);
+      return r;
+    };
+    result.push_back({nameOf(m.paths), row("black", references.blackPicture(truth)),
+                      row("constant", references.constantPicture(truth))});
+  }
+  return result;
+}
+
+TechniqueModel modelOf(const Rung& rung, measure::LightKinds scene) {
+  std::optional<float> exposure;
+  const RenderSettings settings = rung.picture.parse(exposure);
+  LightPaths paths = modelOf(settings);
+  paths.lights = paths.lights & scene;
+  return {rung.picture.technique, paths, directLightsOf(settings) & scene};
+}
 
 fs::path rowFile(const fs::path& folder, const std::string& name) { return folder / "rows" / (fileStem(name) + ".json"); }
 
@@ -132,9 +192,11 @@ std::string writePictures(const ErrorBench& bench, const std::string& name, cons
   return stem;
 }
 
-double rankedError(const ErrorRow& row) {
+double rankedError(const ErrorRow& row, const char* measure) {
   const auto noise = row.find("at_noise");
-  return noise != row.end() && noise->is_boolean() && noise->get<bool>() ? 3.0 * number(row, "noise_nrmse") : number(row, "nrmse");
+  return noise != row.end() && noise->is_boolean() && noise->get<bool>()
+             ? 3.0 * number(row, ("noise_" + std::string(measure)).c_str())
+             : number(row, measure);
 }
 
 double number(const ErrorRow& row, const char* key) {
@@ -182,13 +244,21 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
   row["frames"] = timed.wallMs.size();
   row["setup_ms"] = timed.setupMs;
   row["gpu_bytes"] = timed.gpuBytes;
-  const measure::JudgedErrors errors = judge(timed.picture, bench.references.all());
+  const JudgedPicture errors = bench.references.judge(timed.picture, bench.references.all());
   row.update(errorsJson(errors));
-  row["flip"] = errors.measured.notFinite > 0 ? NAN : measure::flipHdr(timed.picture, bench.references.all().mean).mean;
-  if (const measure::Reference* model = modelOf(bench.references, settings.technique, settings)) {
-    const Image indirect = render(bench, settingsOf(bench, rung, Component::indirect), 1).picture;
-    row["inside_model"] = errorsJson(judge(indirect, *model));
-    row["inside_model"]["transport"] = std::string(measure::nameOf(model->transport));
+  row["flip"] =
+      errors.pixels.measured.notFinite > 0 ? NAN : measure::flipHdr(timed.picture, bench.references.all().mean).mean;
+  // Inside its model: the light that it promises, of the lights that it knows. That of all light is above.
+  const LightPaths model = modelOf(rung, bench.references.lights).paths;
+  if (model.lights.any() && model != LightPaths{measure::Transport::all, bench.references.lights}) {
+    const bool whole = showsLights(model.transport);
+    const Image picture =
+        whole ? timed.picture : render(bench, settingsOf(bench, rung, Component::indirect), 1).picture;
+    row["inside_model"] =
+        errorsJson(bench.references.judge(picture, bench.references.inside(model), onSurfacesAlone(model)));
+    row["inside_model"]["model"] = nameOf(model);
+    row["inside_model"]["transport"] = std::string(measure::nameOf(model.transport));
+    row["inside_model"]["lights"] = measure::nameOf(model.lights);
   }
   row["picture"] = writePictures(bench, rung.name(), timed.picture, bench.references.all());
   keep(bench, rung.name(), row);
@@ -196,8 +266,26 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
 }
 
 void markFront(std::vector<ErrorRow>& rows) {
+  // Settings of one technique are ranked inside their model: against all light, errors of the model and of the settings
+  // may cancel.
+  std::map<std::string, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i]["inside_front"] = !rows[i].contains("inside_model");
+    if (rows[i].contains("inside_model"))
+      groups[rows[i].at("technique").get<std::string>() + rows[i].at("inside_model").at("model").get<std::string>()]
+          .push_back(i);
+  }
+  for (const auto& [name, group] : groups) {
+    std::vector<measure::CostAndError> points;
+    for (const std::size_t i : group)
+      points.push_back({number(rows[i], "ms"), rankedError(rows[i].at("inside_model"), "l2")});
+    const std::vector<bool> front = measure::paretoFront(points);
+    for (std::size_t k = 0; k < group.size(); ++k) rows[group[k]]["inside_front"] = static_cast<bool>(front[k]);
+  }
+  // What is left is ranked by all light.
   std::vector<measure::CostAndError> points;
-  for (const ErrorRow& row : rows) points.push_back({number(row, "ms"), rankedError(row)});
+  for (const ErrorRow& row : rows)
+    points.push_back({row.at("inside_front").get<bool>() ? number(row, "ms") : NAN, rankedError(row, "l2")});
   const std::vector<bool> front = measure::paretoFront(points);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     int rank = 0;  // how many of the front are at most as slow

@@ -41,10 +41,24 @@ std::string writePictures(const ErrorBench& bench, const std::string& name, cons
 /// Where the row of that name is kept.
 std::filesystem::path rowFile(const std::filesystem::path& folder, const std::string& name);
 
-/// Fills "pareto" by `ms` and `nrmse`, and "front", 1 for the fastest of it, 0 off it.
+/// The fields of a row, or of its "inside_model".
+nlohmann::ordered_json errorsJson(const JudgedPicture& judged);
+/// Rows "black" and "constant", against all light: pictures that cost nothing, without time.
+std::vector<ErrorRow> yardsticks(const References& references);
+/// The same inside each model that a technique is judged by.
+struct InsideModel {
+  std::string name;
+  ErrorRow black, constant;
+};
+std::vector<InsideModel> insideModels(const References& references);
+/// What the rung's technique promises, of the lights that the scene has.
+TechniqueModel modelOf(const Rung& rung, measure::LightKinds scene);
+
+/// Fills "inside_front": on the front of its technique and model by `ms` and the l2 inside the model (true without a
+/// model); then "pareto" by `ms` and `l2` among those, and "front", 1 for the fastest of it, 0 off it.
 void markFront(std::vector<ErrorRow>& rows);
-/// What the row is ranked by: its NRMSE, or the least that the reference can tell.
-double rankedError(const ErrorRow& row);
+/// What the row is ranked by: its l2 or nrmse, or the least that the reference can tell.
+double rankedError(const ErrorRow& row, const char* measure);
 /// A number of a row, NaN where it is null or missing.
 double number(const ErrorRow& row, const char* key);
 

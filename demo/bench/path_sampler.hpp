@@ -5,6 +5,7 @@
 #include "measure/reference.hpp"
 
 #include <memory>
+#include <string>
 
 namespace lucerna { class PathTracer; }
 
@@ -13,16 +14,19 @@ namespace lucerna::demo::bench {
 class PathSampler {
  public:
   /// Part of the references' key: raised when the path tracer's answer changes.
-  static constexpr std::string_view kVersion = "path tracer 1, pixel centres, lambert";
-  static constexpr std::string_view kVersionOfAllMaterials = "path tracer 1, pixel centres, all materials";
+  static constexpr std::string_view kVersion = "path tracer 2, pixel centres, lambert";
+  static constexpr std::string_view kVersionOfAllMaterials = "path tracer 2, pixel centres, all materials";
 
+  /// bounces: of indirect light at most; 0: any number.
   PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera, glm::ivec2 size, measure::Transport transport,
-              bool allMaterials = false);
+              bool allMaterials = false, int bounces = 0);
   ~PathSampler();
   PathSampler(const PathSampler&) = delete;
   PathSampler& operator=(const PathSampler&) = delete;
 
   measure::Sampler asSampler();
+  /// kVersion or kVersionOfAllMaterials, and the bounces: what a reference's key says of its sampler.
+  std::string version() const;
 
  private:
   Image sample(std::uint64_t first, std::uint32_t samples);
@@ -35,9 +39,17 @@ class PathSampler {
   glm::ivec2 size_;
   measure::Transport transport_;
   bool allMaterials_;
+  int bounces_;
   std::unique_ptr<PathTracer> tracer_;
   std::uint64_t begin_ = 0, next_ = 0;  ///< paths of the running session
   Image sum_;                           ///< mean of those so far
 };
+
+/// What is seen of lights alone, nothing scattered: emissive surfaces, environment, background.
+Image seenLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
+                 glm::ivec2 size);
+/// The albedo of what is seen through the pixels' centres; 0 where nothing is.
+Image albedoPicture(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
+                    glm::ivec2 size);
 
 }  // namespace lucerna::demo::bench

@@ -82,9 +82,16 @@ std::string script(const std::string& stem, const LogLogPlot& plot, int& leftOut
     ++colour;
     line(fmt::format("{} using 1:2 with {} lw 1.5 pt {} ps 0.9 lc rgb '{}' title {}", name, series.joined ? "linespoints" : "points", mark, rgb, quoted(series.name)));
   }
-  if (plot.floor > 0.0) y.add(plot.floor);
   if (block == 0) return "";
-  if (plot.floor > 0.0) line(fmt::format("{:.9g} with lines dt 2 lw 1.5 lc rgb '#777777' title {}", plot.floor, quoted(plot.floorLabel)));
+  constexpr const char* kGreys[] = {"#000000", "#777777", "#aaaaaa"};
+  int level = 0;
+  for (const auto& [height, label] : plot.levels) {
+    if (!std::isfinite(height) || height <= 0.0) continue;
+    y.add(height);
+    line(fmt::format("{:.9g} with lines dt {} lw 1.5 lc rgb '{}' title {}", height, 2 + level % 4, kGreys[level % 3],
+                     quoted(label)));
+    ++level;
+  }
   if (plot.guideSlope != 0.0) {
     const Series& last = plot.series.back();
     const auto first = std::find_if(last.points.begin(), last.points.end(), drawable);

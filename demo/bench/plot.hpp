@@ -21,8 +21,11 @@ struct Series {
 struct LogLogPlot {
   std::string title, xLabel, yLabel;  ///< labels with units
   std::vector<Series> series;
-  double floor = 0.0;                 ///< a horizontal line, such as the reference's noise; 0: none
-  std::string floorLabel;
+  struct Level {
+    double y;           ///< above 0; others are left out
+    std::string label;
+  };
+  std::vector<Level> levels;          ///< horizontal lines, such as a black picture's error and the reference's noise
   double guideSlope = 0.0;            ///< a thin line of that slope through the first point of the last series; 0: none
 };
 

@@ -7,13 +7,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace lucerna::demo::bench {
 
+using measure::LightKinds;
 using measure::Reference;
 using measure::Transport;
 
 namespace {
+
+constexpr LightKinds kDeltaLights{true, true, false, false};
 
 Reference difference(const Reference& a, const Reference& b) {
   Reference result = a;
@@ -26,42 +30,145 @@ Reference difference(const Reference& a, const Reference& b) {
   return result;
 }
 
+Image less(Image a, const Image& b) {
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) a.pixels[i] -= b.pixels[i];
+  return a;
+}
+
+/// Which references a bench needs: those of the techniques' models, and those that tell how much a model leaves out.
+std::set<LightPaths> wantedOf(const std::vector<TechniqueModel>& models, LightKinds scene) {
+  std::set<LightPaths> wanted{{Transport::all, scene},
+                              {Transport::direct, scene},
+                              {Transport::oneBounce, scene},
+                              {Transport::direct, scene & kDeltaLights}};
+  for (const TechniqueModel& m : models) {
+    wanted.insert({Transport::direct, m.direct});
+    if (!m.paths.lights.any()) continue;  // such a technique gives nothing that could be judged
+    wanted.insert(m.paths);
+    const bool leavesOut = m.paths.lights != scene || m.paths.transport == Transport::oneBounceUnoccluded;
+    if (leavesOut && m.paths.transport != Transport::direct) wanted.insert({Transport::oneBounce, m.paths.lights});
+  }
+  return wanted;
+}
+
+/// Shares of the time; direct light of sun and lamps alone has next to no noise through pixels' centres.
+double weightOf(const LightPaths& paths, LightKinds scene) {
+  if (paths.transport != Transport::direct) return 2.0;
+  return paths.lights != scene && paths.lights == (scene & kDeltaLights) ? 0.2 : 1.0;
+}
+
 }  // namespace
+
+Reference References::inside(const LightPaths& paths) const {
+  Reference reference = of.at(paths);
+  if (!showsLights(paths.transport) || paths.lights == lights) return reference;
+  const Image &all = seen.at(lights), &own_ = seen.at(paths.lights);
+  for (std::size_t i = 0; i < reference.mean.pixels.size(); ++i)
+    reference.mean.pixels[i] += all.pixels[i] - own_.pixels[i];
+  return reference;
+}
+
+Image References::blackPicture(const Reference& reference) const {
+  return showsLights(reference.transport) ? seen.at(lights) : Image(reference.mean.width, reference.mean.height);
+}
+
+Image References::constantPicture(const Reference& reference) const {
+  const Image black = blackPicture(reference);
+  Image picture = measure::litByConstant(albedo, measure::constantIrradiance(albedo, less(reference.mean, black)));
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i] += black.pixels[i];
+  return picture;
+}
+
+JudgedPicture References::judge(const Image& original, const Reference& reference, bool surfacesAlone,
+                                double ownError) const {
+  const Image black = blackPicture(reference);
+  Image picture = original, truth = reference.mean, error = reference.standardError;
+  if (surfacesAlone)
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+      if (!lit[i] && !other[i])
+        picture.pixels[i] = truth.pixels[i] = black.pixels[i], error.pixels[i] = glm::vec3(0.0f);
+  const auto errors = [&](const Image& p, const Image& t, const Image& e) {
+    return measure::lessNoise(measure::errorsOf(p, t), measure::noiseOf(t, e, reference.meanError), ownError);
+  };
+  JudgedPicture judged;
+  judged.pixels = errors(picture, truth, error);
+  picture = less(picture, black), truth = less(truth, black);
+  const int side = measure::blockSide(truth.width);
+  judged.scattered = errors(picture, truth, error);
+  judged.blocks = errors(measure::blockMeans(picture, side), measure::blockMeans(truth, side),
+                         measure::blockStandardErrors(error, side));
+  judged.lit = measure::partErrorsOf(picture, truth, error, lit, ownError);
+  judged.other = measure::partErrorsOf(picture, truth, error, other, ownError);
+  return judged;
+}
 
 std::optional<References> obtainReferences(const ReferenceRequest& request) {
   const measure::ReferenceCache cache(request.folder.empty() ? measure::ReferenceCache::defaultFolder() : request.folder);
   const bool own = request.path && std::any_of(request.scene.materials.begin(), request.scene.materials.end(),
                                                [](const Material& m) { return m.bsdf != Bsdf::diffuse && m.bsdf != Bsdf::none; });
-  // Shares of the time: all light is the noisiest and judges every row.
+  References result;
+  result.lights = measure::kindsOf(request.scene);
+  result.models = request.models;
+  const LightPaths all{Transport::all, result.lights}, delta{Transport::direct, result.lights & kDeltaLights};
+
+  // Half of the time for what judges every row, the rest by weight.
   struct Share {
-    Transport transport;
+    LightPaths paths;
     bool allMaterials;
     double time;
   };
-  std::vector<Share> shares{{Transport::all, false, 0.5}, {Transport::direct, false, 0.1}, {Transport::oneBounce, false, 0.2}, {Transport::oneBounceUnoccluded, false, 0.2}};
-  if (own) shares = {{Transport::all, false, 0.25}, {Transport::direct, false, 0.1}, {Transport::oneBounce, false, 0.1}, {Transport::oneBounceUnoccluded, false, 0.1}, {Transport::all, true, 0.45}};
-  References result;
+  std::vector<Share> shares{{all, false, own ? 0.25 : 0.5}};
+  if (own) shares.push_back({all, true, 0.4});
+  std::set<LightPaths> others = wantedOf(request.models, result.lights);
+  others.erase(all);
+  double weights = 0.0;
+  for (const LightPaths& paths : others) weights += weightOf(paths, result.lights);
+  for (const LightPaths& paths : others)
+    shares.push_back({paths, false, (own ? 0.35 : 0.5) * weightOf(paths, result.lights) / weights});
+
   Progress progress("references", static_cast<int>(shares.size()), request.quiet);
   int done = 0;
-  for (const auto& [transport, allMaterials, share] : shares) {
-    PathSampler sampler(request.context, request.programs, request.scene, request.camera, request.size, transport, allMaterials);
-    const measure::ReferenceKey key = measure::keyOf(request.scene, request.camera, request.size, transport, allMaterials ? PathSampler::kVersionOfAllMaterials : PathSampler::kVersion);
+  for (const auto& [paths, allMaterials, share] : shares) {
+    std::optional<Scene> lessLight;
+    if (paths.lights != result.lights) lessLight = measure::litBy(request.scene, paths.lights);
+    const Scene& scene = lessLight ? *lessLight : request.scene;
+    PathSampler sampler(request.context, request.programs, scene, request.camera, request.size, paths.transport,
+                        allMaterials, paths.bounces);
+    const measure::ReferenceKey key =
+        measure::keyOf(scene, request.camera, request.size, paths.transport, sampler.version());
     measure::SamplingGoal goal;
     goal.seconds = share * request.seconds;
     goal.samples = request.samples;
     std::optional<Reference> reference;
     if (!request.own.empty()) reference = measure::ReferenceCache(request.own).load(key);
     const bool isOwn = reference.has_value();
-    if (!isOwn) reference = measure::obtainReference(cache, key, sampler.asSampler(), transport, goal, request.context.capabilities().renderer, interrupted);
+    if (!isOwn)
+      reference = measure::obtainReference(cache, key, sampler.asSampler(), paths.transport, goal,
+                                           request.context.capabilities().renderer, interrupted);
     if (!reference || interrupted()) return std::nullopt;
     if (!isOwn && !request.own.empty()) measure::ReferenceCache(request.own).store(key, *reference);
+    if (!result.seen.contains(paths.lights))
+      result.seen.emplace(paths.lights,
+                          seenLights(request.context, request.programs, scene, request.camera, request.size));
     if (allMaterials)
       result.own = std::move(*reference);
     else
-      result.of.emplace(transport, std::move(*reference));
+      result.of.emplace(paths, std::move(*reference));
     progress.update(++done);
   }
-  result.indirect_ = difference(result.all(), result.of.at(Transport::direct));
+  result.indirect_ = difference(result.all(), result.of.at({Transport::direct, result.lights}));
+  result.indirect_.transport = Transport::indirect;
+
+  // Surfaces, and which of them sun and lamps light. Without such lights none is lit.
+  result.albedo = albedoPicture(request.context, request.programs, request.scene, request.camera, request.size);
+  const auto directly = result.of.find(delta);
+  for (std::size_t i = 0; i < result.albedo.pixels.size(); ++i) {
+    const auto positive = [](const glm::vec3& v) { return v.x > 0.0f || v.y > 0.0f || v.z > 0.0f; };
+    const bool isSurface = positive(result.albedo.pixels[i]),
+               isLit = isSurface && directly != result.of.end() && positive(directly->second.mean.pixels[i]);
+    result.lit.push_back(isLit);
+    result.other.push_back(isSurface && !isLit);
+  }
   return result;
 }
 
@@ -70,10 +177,66 @@ std::vector<ModelError> modelErrors(const References& r) {
     const Reference d = difference(truth, model);
     return measure::lessNoise(measure::errorsOf(model.mean, truth.mean), measure::noiseOf(truth.mean, d.standardError, d.meanError));
   };
-  const Reference &one = r.of.at(Transport::oneBounce), &unoccluded = r.of.at(Transport::oneBounceUnoccluded);
-  return {{"no visibility between surfaces (RSM)", judge(unoccluded, one)},
-          {"one bounce only (RSM, LPV)", judge(one, r.indirect())},
-          {"both (RSM)", judge(unoccluded, r.indirect())}};
+  const auto addName = [](std::string& names, const std::string& name) {
+    if ((", " + names + ",").find(", " + name + ",") == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+  };
+  const auto techniques = [&](auto isOf) {
+    std::string names;
+    for (const TechniqueModel& m : r.models)
+      if (isOf(m.paths)) addName(names, m.technique);
+    return names;
+  };
+  const auto black = [](Reference like) {
+    like.mean = like.standardError = Image(like.mean.width, like.mean.height);
+    like.meanError = 0.0;
+    return like;
+  };
+  const auto oneBounce = [&](LightKinds lights) -> const Reference& { return r.of.at({Transport::oneBounce, lights}); };
+  const auto isOne = [](const LightPaths& p) {
+    return p.transport == Transport::oneBounce || p.transport == Transport::oneBounceUnoccluded;
+  };
+  std::vector<ModelError> lines;
+  std::set<LightKinds> kinds;
+  for (const TechniqueModel& m : r.models) kinds.insert(m.paths.lights);
+
+  // Visibility, for each choice of lights that is gathered without it.
+  for (const LightKinds k : kinds) {
+    const LightPaths unoccluded{Transport::oneBounceUnoccluded, k};
+    if (const auto found = r.of.find(unoccluded); found != r.of.end())
+      lines.push_back({fmt::format("no visibility between surfaces ({})",
+                                   techniques([&](const LightPaths& p) { return p == unoccluded; })),
+                       fmt::format("one bounce of {}", measure::nameOf(k)), judge(found->second, oneBounce(k))});
+  }
+  // Bounces, with all lights.
+  if (const std::string names = techniques(isOne); !names.empty())
+    lines.push_back(
+        {fmt::format("one bounce only ({})", names), "indirect light", judge(oneBounce(r.lights), r.indirect())});
+  // Lights that a technique has not: in its direct light, and in what it reflects.
+  std::set<LightKinds> directKinds;
+  for (const TechniqueModel& m : r.models) directKinds.insert(m.direct);
+  const auto noLightOf = [&](LightKinds k) { return "no light of: " + measure::nameOf(measure::without(r.lights, k)); };
+  for (const LightKinds k : directKinds) {
+    if (k == r.lights) continue;
+    std::string names;
+    for (const TechniqueModel& m : r.models)
+      if (m.direct == k) addName(names, m.technique);
+    lines.push_back({fmt::format("{} ({})", noLightOf(k), names), "direct light",
+                     judge(r.inside({Transport::direct, k}), r.of.at({Transport::direct, r.lights}))});
+  }
+  for (const LightKinds k : kinds) {
+    const std::string names =
+        techniques([&](const LightPaths& p) { return p.lights == k && p.transport != Transport::direct; });
+    if (k == r.lights || names.empty()) continue;
+    lines.push_back({fmt::format("{} ({})", noLightOf(k), names), "one bounce of all lights",
+                     judge(k.any() ? oneBounce(k) : black(oneBounce(r.lights)), oneBounce(r.lights))});
+  }
+  // All of it together.
+  std::set<LightPaths> seen;
+  for (const TechniqueModel& m : r.models)
+    if (isOne(m.paths) && m.paths.lights.any() && seen.insert(m.paths).second)
+      lines.push_back({fmt::format("all of these ({})", techniques([&](const LightPaths& p) { return p == m.paths; })),
+                       "indirect light", judge(r.of.at(m.paths), r.indirect())});
+  return lines;
 }
 
 }  // namespace lucerna::demo::bench

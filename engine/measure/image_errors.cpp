@@ -34,26 +34,30 @@ ImageErrors errorsOf(const Image& image, const Image& reference) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) result.notFinite += !finite(image.pixels[i]) || !finite(reference.pixels[i]);
   if (result.notFinite > 0) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    result.rmse = result.nrmse = result.relmse = result.bias = result.relativeBias = result.p99 = result.max = result.referenceMean = nan;
+    result.rmse = result.nrmse = result.l2 = result.relmse = result.bias = result.relativeBias = result.p99 =
+        result.max = result.referenceMean = result.referenceSquare = nan;
     result.channelBias = glm::dvec3(nan);
     return result;
   }
   const double pixels = static_cast<double>(image.pixels.size());
   result.referenceMean = sum(meanOf(reference)) / 3.0;
   const double floor = relativeFloor(result.referenceMean);
-  double squares = 0.0, relative = 0.0;
+  double squares = 0.0, relative = 0.0, referenceSquares = 0.0;
   std::vector<double> largest;
   largest.reserve(image.pixels.size());
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const glm::dvec3 r(reference.pixels[i]), d = glm::dvec3(image.pixels[i]) - r;
     const glm::dvec3 square = d * d;
     squares += sum(square);
+    referenceSquares += sum(r * r);
     for (int c = 0; c < 3; ++c) relative += ratio(square[c], r[c] * r[c] + floor);
     result.channelBias += d / pixels;
     largest.push_back(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
   }
   result.rmse = std::sqrt(squares / (3.0 * pixels));
   result.nrmse = ratio(result.rmse, result.referenceMean);
+  result.referenceSquare = referenceSquares / (3.0 * pixels);
+  result.l2 = std::sqrt(ratio(squares, referenceSquares));
   result.relmse = relative / (3.0 * pixels);
   result.bias = sum(result.channelBias) / 3.0;
   result.relativeBias = ratio(result.bias, result.referenceMean);
@@ -82,12 +86,108 @@ JudgedErrors lessNoise(const ImageErrors& measured, const ReferenceNoise& noise,
   judged.rmse = std::sqrt(std::max(0.0, measured.rmse * measured.rmse - noise.variance));
   judged.nrmse = ratio(judged.rmse, measured.referenceMean);
   judged.relmse = std::max(0.0, measured.relmse - noise.relativeVariance);
+  // sum r^2 holds the reference's variance as sum d^2 does: without both a black picture has 1 exactly.
+  judged.l2 = ratio(judged.rmse, std::sqrt(std::max(0.0, measured.referenceSquare - noise.variance)));
+  judged.noiseL2 = ratio(std::sqrt(noise.variance), std::sqrt(measured.referenceSquare));
   judged.noiseNrmse = ratio(std::sqrt(noise.variance), measured.referenceMean);
   judged.biasError = std::hypot(noise.meanError, ownBiasError);
   judged.atNoise = measured.rmse < 3.0 * std::sqrt(noise.variance);
   judged.biasAtNoise = std::abs(measured.bias) < 3.0 * judged.biasError;
-  if (measured.notFinite > 0) judged.rmse = judged.nrmse = judged.relmse = measured.rmse;  // max(0, NaN) would be 0
+  if (measured.notFinite > 0)
+    judged.rmse = judged.nrmse = judged.l2 = judged.relmse = measured.rmse;  // max(0, NaN) would be 0
   return judged;
+}
+
+int blockSide(int width) { return std::max(1, static_cast<int>(std::lround(width / 16.0))); }
+
+namespace {
+
+/// Calls f(first, end) for each block: the corners of its pixels.
+template <typename F>
+void forBlocks(const Image& image, int side, F f) {
+  CHECK(side >= 1, "blocks of {} pixels", side);
+  for (int y = 0; y < image.height; y += side)
+    for (int x = 0; x < image.width; x += side)
+      f(glm::ivec2(x, y), glm::ivec2(std::min(x + side, image.width), std::min(y + side, image.height)));
+}
+
+/// Every pixel of a block gets what `of` makes of the block's pixels' sum of values, and their count.
+template <typename Value, typename Of>
+Image overBlocks(const Image& image, int side, Value value, Of of) {
+  Image result(image.width, image.height);
+  forBlocks(image, side, [&](glm::ivec2 first, glm::ivec2 end) {
+    glm::dvec3 total(0.0);
+    for (int y = first.y; y < end.y; ++y)
+      for (int x = first.x; x < end.x; ++x) total += value(glm::dvec3(image.at(x, y)));
+    const glm::vec3 filled(of(total, static_cast<double>((end.x - first.x) * (end.y - first.y))));
+    for (int y = first.y; y < end.y; ++y)
+      for (int x = first.x; x < end.x; ++x) result.at(x, y) = filled;
+  });
+  return result;
+}
+
+}  // namespace
+
+Image blockMeans(const Image& image, int side) {
+  return overBlocks(
+      image, side, [](const glm::dvec3& v) { return v; }, [](const glm::dvec3& total, double n) { return total / n; });
+}
+
+Image blockStandardErrors(const Image& standardError, int side) {
+  return overBlocks(
+      standardError, side, [](const glm::dvec3& e) { return e * e; },
+      [](const glm::dvec3& total, double n) { return glm::sqrt(total) / n; });
+}
+
+PartErrors partErrorsOf(const Image& image, const Image& reference, const Image& standardError,
+                        const std::vector<bool>& isPart, double ownBiasError) {
+  checkSizes(image, reference);
+  checkSizes(reference, standardError);
+  CHECK(isPart.size() == image.pixels.size(), "{} marks for {} pixels", isPart.size(), image.pixels.size());
+  double count = 0.0, difference = 0.0, truth = 0.0, variance = 0.0, squares = 0.0, allSquares = 0.0;
+  for (std::size_t i = 0; i < isPart.size(); ++i) {
+    const glm::dvec3 r(reference.pixels[i]), d = glm::dvec3(image.pixels[i]) - r, e(standardError.pixels[i]);
+    allSquares += sum(d * d);
+    if (!isPart[i]) continue;
+    count += 1.0;
+    difference += sum(d) / 3.0;
+    truth += sum(r) / 3.0;
+    squares += sum(d * d);
+    const double error = sum(e) / 3.0;  // channels share their paths: their errors add up as if wholly dependent
+    variance += error * error;
+  }
+  PartErrors part;
+  const double pixels = static_cast<double>(isPart.size());
+  part.pixels = count / pixels;
+  part.squares = ratio(squares, allSquares);
+  if (count == 0.0) {
+    part.bias = part.relativeBias = part.biasError = std::numeric_limits<double>::quiet_NaN();
+    return part;
+  }
+  part.bias = difference / count;
+  part.relativeBias = ratio(difference, truth);
+  part.biasError = ratio(std::hypot(std::sqrt(variance), ownBiasError * std::sqrt(pixels * count)), truth);
+  return part;
+}
+
+glm::dvec3 constantIrradiance(const Image& albedo, const Image& picture) {
+  checkSizes(albedo, picture);
+  constexpr double kPi = 3.14159265358979323846;
+  glm::dvec3 products(0.0), squares(0.0), irradiance(0.0);
+  for (std::size_t i = 0; i < albedo.pixels.size(); ++i) {
+    const glm::dvec3 a(albedo.pixels[i]);
+    products += a * glm::dvec3(picture.pixels[i]);
+    squares += a * a;
+  }
+  for (int c = 0; c < 3; ++c) irradiance[c] = std::max(0.0, kPi * ratio(products[c], squares[c]));
+  return irradiance;
+}
+
+Image litByConstant(const Image& albedo, const glm::dvec3& irradiance) {
+  constexpr double kPi = 3.14159265358979323846;
+  Image result = albedo;
+  for (glm::vec3& p : result.pixels) p = glm::vec3(glm::dvec3(p) * irradiance / kPi);
+  return result;
 }
 
 }  // namespace lucerna::measure

@@ -3,27 +3,34 @@
 // d = image - reference, over all pixels and the three channels alike unless said otherwise; m = mean of the reference.
 //   rmse    sqrt(mean d^2), radiance
 //   nrmse   rmse / m
-//   relmse  mean d^2 / (r^2 + kRelativeEpsilon m^2): the epsilon follows the scene's brightness, so that units do not matter
-//   bias    mean d, signed, radiance; relativeBias = bias / m
-//   p99     99th percentile, and max, of a pixel's largest |d| over its channels
+//   l2      sqrt(sum d^2 / sum r^2): a black picture has 1, whatever share of the picture is background
+//   relmse  mean d^2 / (r^2 + kRelativeEpsilon m^2): the epsilon follows the scene's brightness, so that units do not
+//   matter bias    mean d, signed, radiance; relativeBias = bias / m p99     99th percentile, and max, of a pixel's
+//   largest |d| over its channels
 // A pixel that is not finite makes every figure NaN and is counted: nothing is clamped away.
 //
-// A reference that was sampled has noise of its own: E[measured mse] = mse + mean variance of the reference. lessNoise() takes it off, and says
-// where a figure cannot be told from it (below three standard errors).
+// Averaged over blocks (blockMeans) the same figures say what is wrong beyond single pixels; PartErrors says which
+// pixels are too bright and which too dark; constantIrradiance() is the picture to beat: one irradiance everywhere,
+// chosen as well as can be.
+//
+// A reference that was sampled has noise of its own: E[measured mse] = mse + mean variance of the reference.
+// lessNoise() takes it off, and says where a figure cannot be told from it (below three standard errors).
 #pragma once
 
 #include "base/image.hpp"
 
 #include <cstddef>
+#include <vector>
 
 namespace lucerna::measure {
 
 inline constexpr double kRelativeEpsilon = 0.01;
 
 struct ImageErrors {
-  double rmse = 0.0, nrmse = 0.0, relmse = 0.0, bias = 0.0, relativeBias = 0.0, p99 = 0.0, max = 0.0;
+  double rmse = 0.0, nrmse = 0.0, l2 = 0.0, relmse = 0.0, bias = 0.0, relativeBias = 0.0, p99 = 0.0, max = 0.0;
   glm::dvec3 channelBias{0.0};    ///< mean d of each channel
   double referenceMean = 0.0;     ///< m
+  double referenceSquare = 0.0;   ///< mean r^2 over pixels and channels
   std::size_t notFinite = 0;      ///< pixels, in either picture
 };
 
@@ -41,13 +48,42 @@ ReferenceNoise noiseOf(const Image& reference, const Image& standardError, doubl
 
 struct JudgedErrors {
   ImageErrors measured;
-  double rmse = 0.0, nrmse = 0.0, relmse = 0.0;  ///< less the reference's share, at least 0
+  double rmse = 0.0, nrmse = 0.0, l2 = 0.0,
+         relmse = 0.0;  ///< less the reference's share, at least 0; l2 over sum r^2 less its share too
   double noiseNrmse = 0.0;                       ///< that share: sqrt(variance) / m
+  double noiseL2 = 0.0;                          ///< the same over sqrt(mean r^2)
   double biasError = 0.0;                        ///< standard error of the bias
   bool atNoise = false;                          ///< measured rmse is below 3 standard errors of the reference
   bool biasAtNoise = false;                      ///< |bias| is below 3 biasError
 };
 /// ownBiasError: the image's own standard error of its mean, where it is sampled too.
 JudgedErrors lessNoise(const ImageErrors& measured, const ReferenceNoise& noise, double ownBiasError = 0.0);
+
+/// Side of a block in pixels: a sixteenth of the width, rounded, at least 1.
+int blockSide(int width);
+/// Every pixel replaced by the mean of its block of side x side pixels, cut off at the picture's edge: errorsOf() two
+/// of these weighs blocks by their pixels.
+Image blockMeans(const Image& image, int side);
+/// Standard errors of those means, the pixels' own being independent.
+Image blockStandardErrors(const Image& standardError, int side);
+
+/// Some of the pixels alone, such as those that the sun lights.
+struct PartErrors {
+  double pixels = 0.0;        ///< their share of the picture, 0..1
+  double bias = 0.0;          ///< mean d of them, radiance
+  double relativeBias = 0.0;  ///< over their mean r; NaN without pixels
+  double biasError = 0.0;     ///< standard error of the relative bias
+  double squares = 0.0;       ///< their share of sum d^2, 0..1; 0 where that is 0
+};
+/// isPart: a value a pixel. ownBiasError: as in lessNoise(), of the whole picture; a part of its pixels is taken to be
+/// as noisy as all of them.
+PartErrors partErrorsOf(const Image& image, const Image& reference, const Image& standardError,
+                        const std::vector<bool>& isPart, double ownBiasError = 0.0);
+
+/// The irradiance E, channel by channel, at least 0, for which albedo E / pi comes nearest to the picture by least
+/// squares: E = pi sum(a r) / sum(a^2).
+glm::dvec3 constantIrradiance(const Image& albedo, const Image& picture);
+/// albedo E / pi: Lambert's surfaces under the same irradiance everywhere.
+Image litByConstant(const Image& albedo, const glm::dvec3& irradiance);
 
 }  // namespace lucerna::measure

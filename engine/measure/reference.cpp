@@ -21,6 +21,7 @@ std::string_view nameOf(Transport transport) {
     case Transport::oneBounce: return "oneBounce";
     case Transport::oneBounceUnoccluded: return "oneBounceUnoccluded";
     case Transport::all: return "all";
+    case Transport::indirect: return "indirect";
   }
   return "?";
 }
@@ -180,7 +181,7 @@ std::optional<Reference> decode(const ReferenceKey& key, const std::vector<std::
   const std::size_t size = static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height) * sizeof(glm::vec3);
   if (rest != static_cast<std::size_t>(header.rendererLength) + 2 * size) return std::nullopt;
   if (header.samples < 1 || !(header.seconds >= 0.0) || !(header.meanError >= 0.0) || !std::isfinite(header.seconds + header.meanError)) return std::nullopt;
-  if (header.transport < 0 || header.transport > static_cast<std::int32_t>(Transport::all)) return std::nullopt;
+  if (header.transport < 0 || header.transport > static_cast<std::int32_t>(Transport::indirect)) return std::nullopt;
   r.transport = static_cast<Transport>(header.transport);
   r.mean = Image(header.width, header.height);
   r.standardError = r.mean;

@@ -15,8 +15,8 @@ namespace lucerna::measure {
 
 /// Which light a picture holds.
 /// direct: emitted, and scattered once. oneBounce: after exactly one diffuse reflection more, without `direct`; unoccluded: where nothing stands between the two
-/// surfaces. all: everything.
-enum class Transport { direct, oneBounce, oneBounceUnoccluded, all };
+/// surfaces. all: everything. indirect: all without direct; the sampler may bound its bounces.
+enum class Transport { direct, oneBounce, oneBounceUnoccluded, all, indirect };  // kept in files: new ones at the end
 std::string_view nameOf(Transport transport);
 
 /// The mean picture of `samples` paths a pixel, the paths number `first`, first + 1, ...: other numbers are independent, the same ones give the same picture.

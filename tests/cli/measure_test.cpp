@@ -55,6 +55,9 @@ TEST_F(Measure, CompareSaysHowFarTwoPicturesAreApart) {
   const auto c = json("c.json");
   EXPECT_NEAR(c.at("rmse"), std::sqrt((0.04 * 599 + 9.0) / 600.0), 1e-6);
   EXPECT_NEAR(c.at("nrmse"), c.at("rmse").get<double>() / 2.0, 1e-12);
+  EXPECT_NEAR(c.at("l2"), c.at("rmse").get<double>() / 2.0, 1e-12);
+  EXPECT_NEAR(c.at("nrmse_black"), 1.0, 1e-6);
+  EXPECT_EQ(c.at("block_side"), 1);  // a sixteenth of 20
   EXPECT_NEAR(c.at("bias"), 0.2 + 2.8 / 600.0, 1e-6);
   EXPECT_NEAR(c.at("max"), 3.0, 1e-6);
   EXPECT_NEAR(c.at("p99"), 0.2, 1e-6);
@@ -73,10 +76,12 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   ASSERT_GT(report.at("rows").size(), 10u);
   bool pareto = false;
   for (const auto& row : report.at("rows")) {
-    for (const char* key : {"technique", "fidelity", "settings", "ms", "nrmse", "bias", "bias_error", "pareto", "gpu_bytes", "wall_ms", "setup_ms", "relmse", "p99", "flip", "at_noise"})
+    for (const char* key : {"technique", "fidelity",  "settings", "ms",       "nrmse",  "bias",        "bias_error",
+                            "pareto",    "gpu_bytes", "wall_ms",  "setup_ms", "relmse", "p99",         "flip",
+                            "at_noise",  "l2",        "blocks",   "lit",      "other",  "inside_front"})
       EXPECT_TRUE(row.contains(key)) << key;
     pareto |= row.at("pareto").get<bool>();
-    EXPECT_EQ(row.contains("inside_model"), row.at("technique") == "rsm");
+    EXPECT_EQ(row.contains("inside_model"), row.at("technique") != "path");
   }
   EXPECT_TRUE(pareto);
   std::map<std::string, int> ofPath;
@@ -86,6 +91,18 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   EXPECT_GE(ofPath["original"], 3);
   EXPECT_EQ(report.at("references").size(), 4u);
   EXPECT_EQ(report.at("model").size(), 3u);
+  // What techniques must beat stands beside them: nothing scattered has 100 %, by pixels and in blocks, of all light
+  // and inside each model.
+  ASSERT_EQ(report.at("yardsticks").size(), 2u);
+  const auto expectYardsticks = [](const nlohmann::json& black, const nlohmann::json& constant) {
+    EXPECT_NEAR(black.at("l2"), 1.0, 1e-5);
+    EXPECT_NEAR(black.at("blocks").at("l2"), 1.0, 1e-5);
+    EXPECT_GT(constant.at("l2").get<double>(), 0.0);
+    EXPECT_LT(constant.at("l2").get<double>(), 1.0);
+  };
+  expectYardsticks(report.at("yardsticks")[0], report.at("yardsticks")[1]);
+  ASSERT_EQ(report.at("inside_models").size(), 2u);  // direct light, and the gather's
+  for (const auto& model : report.at("inside_models")) expectYardsticks(model.at("black"), model.at("constant"));
   for (const char* file : {"report.html", "error.csv", "error.json"}) EXPECT_TRUE(fs::exists(path("out") + "/" + file)) << file;
   // A page of its own: nothing is fetched.
   const std::string page = readFileText(path("out") + "/report.html");
@@ -110,6 +127,71 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
 
   // Another scene or size is another bench.
   expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --size 32x18 --reference-spp 16 --out '" + path("out") + "'"), 2, {"another bench", "out"});
+}
+
+// A sun and an emissive lamp. RSM and LPV know no emissive surfaces: what they are judged by holds none of the lamp's
+// light, as if it were off. Radiosity has it.
+TEST_F(Measure, TechniquesAreJudgedByTheLightThatTheyAreGiven) {
+  const auto bench = [&](const char* emission) {
+    std::ofstream(path("scene.mtl"))
+        << "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0.1\nnewmtl lamp\nKd 0.5 0.5 0.5\nKe " << emission
+        << "\n";
+    std::ofstream(path("lit.obj")) << kScene
+                                   << "v -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\nusemtl lamp\nf -4/1 -3/2 -2/3 -1/4\n";
+    std::ofstream(path("lit.json"))
+        << R"({"model": "lit.obj", "sun": {"direction": [0.2, -1, -0.3], "irradiance": [3, 3, 3]}})";
+    fs::remove_all(path("out"));
+    const RunResult result = RUN_LUCERNA(
+        "bench error '" + path("lit.json") +
+        "' --size 32x16 --reference-spp 256 --budget 1 --frames 1 --small --techniques direct,rsm,radiosity --out '" +
+        path("out") + "' --json '" + path("error.json") + "'");
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return json("error.json");
+  };
+  struct Mean {
+    double value = 0.0, error = 0.0;
+  };
+  const auto mean = [](const nlohmann::json& report, const std::string& transport, const std::string& lights) {
+    for (const auto& r : report.at("references"))
+      if (r.at("transport") == transport && r.at("lights") == lights)
+        return Mean{
+            (r.at("mean")[0].get<double>() + r.at("mean")[1].get<double>() + r.at("mean")[2].get<double>()) / 3.0,
+            r.at("mean_error")};
+    ADD_FAILURE() << "no reference " << transport << " of " << lights;
+    return Mean{};
+  };
+  const auto on = bench("20 20 20"), off = bench("0 0 0");
+  for (const char* transport : {"direct", "oneBounce", "oneBounceUnoccluded"}) {
+    const Mean given = mean(on, transport, "sun"), asIfOff = mean(off, transport, "sun");
+    EXPECT_NEAR(given.value, asIfOff.value, 5.0 * std::hypot(given.error, asIfOff.error) + 1e-6 * asIfOff.value)
+        << transport;
+    EXPECT_GT(given.value, 0.0);
+  }
+  for (const char* transport : {"direct", "oneBounce"})
+    EXPECT_GT(mean(on, transport, "sun, emissive surfaces").value, 1.5 * mean(on, transport, "sun").value) << transport;
+  // What they have not is a line of its own, of direct light and of what is reflected; nothing where there is no such
+  // lamp.
+  std::map<std::string, double> lines;
+  for (const auto& line : on.at("model"))
+    if (line.at("leaves_out").get<std::string>().starts_with("no light of: emissive surfaces"))
+      lines[line.at("leaves_out").get<std::string>() + " " + line.at("of").get<std::string>()] =
+          line.at("relative_bias");
+  ASSERT_EQ(lines.size(), 2u) << on.at("model").dump(1);
+  EXPECT_LT(lines.at("no light of: emissive surfaces (direct, rsm) direct light"), -0.3);
+  EXPECT_LT(lines.at("no light of: emissive surfaces (rsm) one bounce of all lights"), -0.3);
+  for (const auto& line : off.at("model"))
+    EXPECT_FALSE(line.at("leaves_out").get<std::string>().starts_with("no light of")) << line.dump();
+  for (const auto& row : on.at("rows")) {
+    EXPECT_EQ(row.contains("inside_model"), row.at("technique") != "radiosity") << "it has all of this scene's lights";
+    if (row.contains("inside_model")) {
+      EXPECT_EQ(row.at("inside_model").at("lights"), "sun");
+    }
+    // Forward shading of the sun is right inside its model, and far off all light.
+    if (row.at("technique") == "direct") {
+      EXPECT_LT(row.at("inside_model").at("l2").get<double>(), 0.15);
+      EXPECT_GT(row.at("l2").get<double>(), 0.3);
+    }
+  }
 }
 
 TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {

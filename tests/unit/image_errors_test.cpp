@@ -89,6 +89,114 @@ TEST(ImageErrors, TheReferencesNoiseIsTakenOff) {
   EXPECT_FALSE(judged.biasAtNoise);  // 0.5 > 3 * 0.13
 }
 
+// d^2: 1 + 4; r^2: 3 (1) and 4 + 16 + 9.
+TEST(RelativeL2, IsThatOfTheFormula) {
+  const Image reference = picture({{1, 1, 1}, {2, 4, 3}}), image = picture({{2, 1, 1}, {2, 2, 3}});
+  EXPECT_NEAR(errorsOf(image, reference).l2, std::sqrt(5.0 / 32.0), 1e-12);
+  EXPECT_NEAR(errorsOf(image, reference).referenceSquare, 32.0 / 6.0, 1e-12);
+}
+
+// A black picture has 1, whatever part of the picture is background; NRMSE has sqrt(2) with half of it, and 2 with
+// three quarters.
+TEST(RelativeL2, OfABlackPictureIsOneWhateverTheBackground) {
+  const glm::vec3 grey(0.4f), none(0.0f);
+  for (const Image& reference :
+       {picture({grey}), picture({grey, none}), picture({grey, none, none, none}), picture({{1, 2, 3}, {4, 0, 1}})}) {
+    const Image black(reference.width, 1);
+    EXPECT_NEAR(errorsOf(black, reference).l2, 1.0, 1e-12);
+    // Nor does the reference's noise change that.
+    const Image standardError(reference.width, 1, glm::vec3(0.1f));
+    const JudgedErrors judged = lessNoise(errorsOf(black, reference), noiseOf(reference, standardError, 0.0));
+    EXPECT_NEAR(judged.l2, 1.0, 1e-12);
+    EXPECT_NEAR(judged.noiseL2, 0.1 / std::sqrt(errorsOf(black, reference).referenceSquare), 1e-7);
+  }
+  EXPECT_NEAR(errorsOf(Image(2, 1), picture({grey, none})).nrmse, std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(errorsOf(Image(4, 1), picture({grey, none, none, none})).nrmse, 2.0, 1e-6);
+  EXPECT_EQ(errorsOf(Image(2, 1), Image(2, 1)).l2, 0.0);
+}
+
+TEST(Blocks, HaveASixteenthOfTheWidth) {
+  EXPECT_EQ(blockSide(160), 10);
+  EXPECT_EQ(blockSide(96), 6);
+  EXPECT_EQ(blockSide(5), 1);
+}
+
+// An error that alternates within blocks is gone in their means; one that is the same everywhere stays.
+TEST(Blocks, OfACheckerboardHaveNoError) {
+  const Image reference(32, 18, glm::vec3(2.0f));
+  Image checkerboard = reference, brighter(32, 18, glm::vec3(2.5f));
+  for (int y = 0; y < 18; ++y)
+    for (int x = 0; x < 32; ++x) checkerboard.at(x, y) += glm::vec3((x + y) % 2 ? 0.5f : -0.5f);
+  EXPECT_NEAR(errorsOf(checkerboard, reference).l2, 0.25, 1e-12);
+  EXPECT_EQ(errorsOf(blockMeans(checkerboard, 2), blockMeans(reference, 2)).l2, 0.0);
+  EXPECT_NEAR(errorsOf(blockMeans(brighter, 2), blockMeans(reference, 2)).l2, 0.25, 1e-12);
+}
+
+// 3x2 in blocks of 2x2: the last is cut off at the edge and has two pixels.
+TEST(Blocks, AreCutOffAtTheEdgeAndKeepTheMean) {
+  Image image(3, 2);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x) image.at(x, y) = glm::vec3(static_cast<float>(x + 3 * y));
+  const Image blocks = blockMeans(image, 2);
+  EXPECT_FLOAT_EQ(blocks.at(0, 0).x, 2.0f);  // 0 1 3 4
+  EXPECT_FLOAT_EQ(blocks.at(1, 1).x, 2.0f);
+  EXPECT_FLOAT_EQ(blocks.at(2, 0).x, 3.5f);  // 2 5
+  EXPECT_NEAR(meanOf(blocks).x, meanOf(image).x, 1e-6);
+  const Image errors = blockStandardErrors(Image(3, 2, glm::vec3(0.6f)), 2);
+  EXPECT_FLOAT_EQ(errors.at(0, 0).y, 0.3f);
+  EXPECT_FLOAT_EQ(errors.at(2, 1).y, static_cast<float>(0.6 / std::sqrt(2.0)));
+}
+
+// Lit pixels 1 -> 3, the others 2 -> 1: one figure (mean -> +14 %) would hide +200 % and -50 %. Squares: 3 * 4 against
+// 3 * 2 * 1.
+TEST(Parts, HaveTheirOwnBiases) {
+  const Image reference = picture({glm::vec3(1), glm::vec3(2), glm::vec3(2), glm::vec3(2)}),
+              image = picture({glm::vec3(3), glm::vec3(1), glm::vec3(1), glm::vec3(2)});
+  const Image standardError(4, 1, glm::vec3(0.3f));
+  const PartErrors lit = partErrorsOf(image, reference, standardError, {true, false, false, false}),
+                   other = partErrorsOf(image, reference, standardError, {false, true, true, false});
+  EXPECT_NEAR(lit.relativeBias, 2.0, 1e-12);
+  EXPECT_NEAR(other.relativeBias, -0.5, 1e-12);
+  EXPECT_NEAR(lit.squares, 12.0 / 18.0, 1e-12);
+  EXPECT_NEAR(other.squares, 6.0 / 18.0, 1e-12);
+  EXPECT_NEAR(lit.pixels, 0.25, 1e-12);
+  EXPECT_NEAR(other.pixels, 0.5, 1e-12);
+  EXPECT_NEAR(lit.biasError, 0.3, 1e-7);                               // over 1
+  EXPECT_NEAR(other.biasError, 0.3 * std::sqrt(2.0) / 4.0, 1e-7);      // over 2 + 2
+  // A picture with a mean error of 0.1 over four pixels: 0.2 a pixel, as if all were as noisy.
+  EXPECT_NEAR(partErrorsOf(image, reference, standardError, {true, false, false, false}, 0.1).biasError,
+              std::hypot(0.3, 0.2), 1e-7);
+  const PartErrors none = partErrorsOf(image, reference, standardError, {false, false, false, false});
+  EXPECT_TRUE(std::isnan(none.relativeBias));
+  EXPECT_EQ(none.squares, 0.0);
+}
+
+TEST(ConstantIrradiance, OfAPictureThatIsOneIsFound) {
+  const Image albedo = picture({{0.8f, 0.5f, 0.1f}, {0.3f, 0.3f, 0.3f}, {0, 0, 0}});
+  const Image lit = litByConstant(albedo, {3.0, 2.0, 1.0});
+  const glm::dvec3 found = constantIrradiance(albedo, lit);
+  EXPECT_NEAR(found.x, 3.0, 1e-6);
+  EXPECT_NEAR(found.y, 2.0, 1e-6);
+  EXPECT_NEAR(found.z, 1.0, 1e-6);
+  EXPECT_NEAR(errorsOf(litByConstant(albedo, found), lit).l2, 0.0, 1e-7);
+  EXPECT_NEAR(lit.pixels[0].x, 0.8 * 3.0 / 3.14159265358979323846, 1e-6);
+}
+
+// Albedo 1 and 2 (as numbers go), pictures 1 and 1: E / pi = 3/5, what is left 4/25 + 1/25 of 2. No other constant
+// comes nearer.
+TEST(ConstantIrradiance, IsTheLeastSquares) {
+  const Image albedo = picture({glm::vec3(1), glm::vec3(2)}), reference = picture({glm::vec3(1), glm::vec3(1)});
+  const glm::dvec3 best = constantIrradiance(albedo, reference);
+  EXPECT_NEAR(best.x, 3.14159265358979323846 * 0.6, 1e-9);
+  const double error = errorsOf(litByConstant(albedo, best), reference).l2;
+  EXPECT_NEAR(error, std::sqrt(0.2 / 2.0), 1e-6);
+  for (const double factor : {0.95, 1.05})
+    EXPECT_GT(errorsOf(litByConstant(albedo, factor * best), reference).l2, error);
+  // Never below 0, and nothing where there is no surface.
+  EXPECT_EQ(constantIrradiance(albedo, picture({glm::vec3(-1), glm::vec3(-1)})).x, 0.0);
+  EXPECT_EQ(constantIrradiance(Image(2, 1), reference).x, 0.0);
+}
+
 TEST(ParetoFront, IsWhatNothingBeatsInBoth) {
   const double nan = std::nan("");
   const std::vector<CostAndError> points{{1, 9}, {2, 5}, {2, 6}, {3, 5}, {4, 1}, {9, 1}, {nan, 0}, {0, nan}, {4, 1}};

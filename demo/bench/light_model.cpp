@@ -1,0 +1,52 @@
+#include "bench/light_model.hpp"
+
+#include <fmt/format.h>
+
+namespace lucerna::demo::bench {
+
+using measure::LightKinds;
+using measure::Transport;
+
+std::string nameOf(const LightPaths& paths) {
+  const std::string lights = measure::nameOf(paths.lights);
+  switch (paths.transport) {
+    case Transport::direct: return "direct light of " + lights;
+    case Transport::oneBounce: return "one bounce of " + lights;
+    case Transport::oneBounceUnoccluded: return "one bounce, unoccluded, of " + lights;
+    case Transport::all: return "all light of " + lights;
+    case Transport::indirect:
+      return paths.bounces > 0 ? fmt::format("up to {} bounces of {}", paths.bounces, lights)
+                               : "all bounces of " + lights;
+  }
+  return "?";
+}
+
+bool showsLights(Transport transport) { return transport == Transport::all || transport == Transport::direct; }
+
+LightKinds directLightsOf(const RenderSettings& settings) {
+  LightKinds kinds{true, true, false, false};  // forward shading's
+  if (settings.technique == Technique::radiosity) kinds.surfaces = true;
+  return kinds;
+}
+
+LightKinds lightsOf(const RenderSettings& settings) {
+  LightKinds kinds = directLightsOf(settings);
+  if (settings.technique == Technique::rsm) kinds.lamps = false;  // its gather places samples by parallel projection
+  return kinds;
+}
+
+LightPaths modelOf(const RenderSettings& settings) {
+  LightPaths model{Transport::all, lightsOf(settings), 0};
+  switch (settings.technique) {
+    case Technique::direct: model.transport = Transport::direct; break;
+    case Technique::rsm: model.transport = Transport::oneBounceUnoccluded; break;
+    case Technique::lpv:
+      model.transport = settings.lpv.blocking ? Transport::oneBounce : Transport::oneBounceUnoccluded;
+      if (settings.lpv.bounces > 1) model = {Transport::indirect, model.lights, settings.lpv.bounces};
+      break;
+    case Technique::radiosity: break;
+  }
+  return model;
+}
+
+}  // namespace lucerna::demo::bench
