@@ -28,7 +28,8 @@ RasterPass::RasterPass(const std::string& name, const Framebuffer& target, const
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_STENCIL_TEST);
   glDisable(GL_FRAMEBUFFER_SRGB);
-  for (GLenum never : {GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DITHER, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_MASK, GL_PRIMITIVE_RESTART})
+  for (const GLenum never : std::initializer_list<GLenum>{GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DITHER, GL_SAMPLE_ALPHA_TO_COVERAGE,
+                                                          GL_SAMPLE_MASK, GL_PRIMITIVE_RESTART})
     glDisable(never);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glDepthRange(0.0, 1.0);

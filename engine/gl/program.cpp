@@ -152,7 +152,7 @@ void Program::set(std::string_view u, const glm::mat4& v) const { glProgramUnifo
 
 std::vector<std::string> Program::activeResources() const {
   std::vector<std::string> names;
-  for (GLenum interface : {GL_UNIFORM, GL_UNIFORM_BLOCK, GL_SHADER_STORAGE_BLOCK}) {
+  for (const GLenum interface : std::initializer_list<GLenum>{GL_UNIFORM, GL_UNIFORM_BLOCK, GL_SHADER_STORAGE_BLOCK}) {
     GLint count = 0, longest = 0;
     glGetProgramInterfaceiv(id_, interface, GL_ACTIVE_RESOURCES, &count);
     glGetProgramInterfaceiv(id_, interface, GL_MAX_NAME_LENGTH, &longest);

@@ -78,7 +78,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   std::vector<double> rowSums;  // as hemicubes have them
   const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
   bool kept = true, stopped = false;
-  const auto stop = [&] [[noreturn]] {
+  const auto stop = [&] {
     throw Stopped(fmt::format("stopped with {} of {} hemicubes made{}", solution.fronts.size(), n,
                               checkpoint.empty() ? std::string() : fmt::format("; the same command goes on from {}", checkpoint.string())));
   };

@@ -285,7 +285,7 @@ TEST_F(GlObjectsDeathTest, AnUploadBeyondTheEndAborts) {
 TEST_F(GlObjects, TexturesKeepWhatIsUploaded) {
   std::vector<glm::vec4> values;
   for (int i = 0; i < 12; ++i) values.emplace_back(0.25 * i, -1.5, 0.125 * i * i, 1.0);  // exact in 16-bit floats
-  for (const GLenum format : {GL_RGBA32F, GL_RGBA16F}) {
+  for (const GLenum format : std::initializer_list<GLenum>{GL_RGBA32F, GL_RGBA16F}) {
     Texture flat("2d", format, glm::ivec2(4, 3));
     flat.upload(GL_RGBA, GL_FLOAT, values.data());
     EXPECT_EQ(flat.readRgba(), values);
@@ -322,7 +322,7 @@ TEST_F(GlObjects, TexturesKeepWhatIsUploaded) {
   const auto readMask = mask.readRgba();
   for (std::size_t i = 0; i < bytes.size(); ++i) EXPECT_FLOAT_EQ(readMask[i].x, static_cast<float>(bytes[i]) / 255.0f);
   const std::array<std::uint8_t, 8> colours{255, 0, 51, 255, 1, 2, 3, 4};
-  for (const GLenum format : {GL_RGBA8, GL_SRGB8_ALPHA8}) {
+  for (const GLenum format : std::initializer_list<GLenum>{GL_RGBA8, GL_SRGB8_ALPHA8}) {
     Texture colour("colour", format, glm::ivec2(2, 1));
     colour.upload(GL_RGBA, GL_UNSIGNED_BYTE, colours.data());
     std::array<std::uint8_t, 8> back{};

@@ -174,7 +174,7 @@ TEST_F(PathFunctionsTest, MicrofacetsAndFresnelAreTheTwins) {
   }
   const std::vector<Pair> results = probe(1, inputs);
   for (std::size_t k = 0; k < inputs.size(); ++k) {
-    const auto& [a, b] = inputs[k];
+    const glm::vec4 &a = inputs[k][0], &b = inputs[k][1];
     const glm::dvec3 o = glm::normalize(glm::dvec3(a)), i = glm::normalize(glm::dvec3(b));
     const Ggx ggx{a.w};
     const auto near = [&](double measured, double expected, double scale) {

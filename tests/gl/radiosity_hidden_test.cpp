@@ -42,7 +42,7 @@ TEST_F(HiddenParts, AreThoseInsideOfSolidsOrOutsideOfTheRoom) {
     const glm::dvec3 place = scale * glm::dvec3(3.0, -1.0, 7.0);
     SceneBuilder builder;
     const int m = lambertian(builder, 0.5);
-    const auto moved = [&](const Box& box) { return Box{place + scale * box.low, place + scale * box.high}; };
+    const auto moved = [&, by = scale](const Box& box) { return Box{place + by * box.low, place + by * box.high}; };
     addBox(builder, moved(room), m, true);
     if (building) addBox(builder, moved({{-3, -1, -3}, {3, 4, 3}}), m);
     for (const Box& solid : solids) addBox(builder, moved(solid), m, false, &solid != &solids[1]);

@@ -121,7 +121,7 @@ TEST(SceneLights, WhatIsWrongIsNamedByKey) {
       {R"(, "spots": [{"position": [0,0,0], "target": [0,0,0], "intensity": [1,1,1], "innerAngle": 1, "outerAngle": 40}])", "\"target\" is not"},
   };
   for (const auto& [keys, expected] : cases) {
-    const std::string message = badInputMessage([&] { folder.load(keys); });
+    const std::string message = badInputMessage([&, &text = keys] { folder.load(text); });
     EXPECT_NE(message.find(expected), std::string::npos) << keys << "\n" << message;
     EXPECT_NE(message.find("room.json"), std::string::npos) << message;
   }

@@ -315,7 +315,7 @@ TEST(OriginalSceneFile, WhatIsWrongIsNamedByFileAndKey) {
       {std::string("{") + kSceneKeys + ", \"3\": " + kMilk + "}", "no material of that name or number"},
   };
   for (const auto& [text, expected] : cases) {
-    const std::string message = badInputMessage([&] { folder.load(text); });
+    const std::string message = badInputMessage([&, &json = text] { folder.load(json); });
     EXPECT_TRUE(contains(message, "cup.json")) << text << "\n" << message;
     EXPECT_TRUE(contains(message, expected)) << text << "\n" << message;
   }
@@ -434,7 +434,7 @@ TEST(SceneMedia, WhatIsWrongIsNamedByFileAndKey) {
       {R"("environment": {"radiance": [1, 1, 1], "rotation": "half"})", "\"environment.rotation\""},
   };
   for (const auto& [keys, expected] : cases) {
-    const std::string message = badInputMessage([&] { folder.load(keys); });
+    const std::string message = badInputMessage([&, &text = keys] { folder.load(text); });
     EXPECT_TRUE(contains(message, expected)) << keys << "\n" << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }

@@ -126,7 +126,8 @@ TEST(PictureHeader, PicturesCutAnywhereAreRefused) {
   const std::pair<std::string, std::string> whole[] = {
       {"a.png", readFileText(folder / "a.png")},       {"a.jpg", fromHex(kJpegHex)},         {"a.tga", tga(2, 8, 4, 24, std::string(96, 'x'))},
       {"b.tga", tga(10, 100, 1, 24, "\xe3" "xyz")},    {"a.bmp", bmp(8, 4, 24, "", std::string(96, 'x'))}};
-  for (const auto& [name, content] : whole) {
+  for (const auto& picture : whole) {
+    const std::string &name = picture.first, &content = picture.second;
     EXPECT_EQ(badInputMessage([&] { readBitmap(folder.write(name, content)); }), "") << name;
     for (std::size_t size = 0; size < content.size(); size += content.size() > 600 ? 7 : 1) {
       const std::string message = badInputMessage([&] { checkPicture(std::span(reinterpret_cast<const std::uint8_t*>(content.data()), size), folder / name); });

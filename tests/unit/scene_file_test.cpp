@@ -121,7 +121,7 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
       {R"(, "scale": 1,)", "JSON"},
   };
   for (const auto& [keys, expected] : cases) {
-    const std::string message = badInputMessage([&] { folder.load(keys); });
+    const std::string message = badInputMessage([&, &text = keys] { folder.load(text); });
     EXPECT_TRUE(contains(message, "room.json")) << keys << "\n" << message;
     EXPECT_TRUE(contains(message, expected)) << keys << "\n" << message;
   }
