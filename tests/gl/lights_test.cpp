@@ -234,6 +234,31 @@ TEST_F(LightsGl, TotalFluxAndAreaOfAnOmnidirectionalLightAreTheRooms) {
   }
 }
 
+// A plate below an omnidirectional lamp, a quarter of its texture white: its flux is that of the solid angle, a quarter of it.
+TEST_F(LightsGl, AnOmnidirectionalLightsFluxIsTexturedAllOverATriangle) {
+  LitScene scene;
+  scene.quad({-0.9, -0.9, 0}, {0.9, -0.9, 0}, {0.9, 0.9, 0}, {-0.9, 0.9, 0});
+  // Short of the border, where filtering would mix in the opposite side.
+  for (Vertex& vertex : scene.vertices) vertex.texCoord = {vertex.position.x > 0.0f ? 0.875f : 0.125f, vertex.position.y > 0.0f ? 0.875f : 0.125f};
+  constexpr int kTexels = 8;
+  scene.textures.push_back({"quarter.png", {}});
+  Bitmap& bitmap = scene.textures[0].bitmap;
+  bitmap.width = bitmap.height = kTexels;
+  for (int y = 0; y < kTexels; ++y)
+    for (int x = 0; x < kTexels; ++x) {
+      const std::uint8_t shade = x >= kTexels / 2 && y >= kTexels / 2 ? 255 : 0;
+      bitmap.rgba.insert(bitmap.rgba.end(), {shade, shade, shade, 255});
+    }
+  scene.materials[0].diffuseTexture = 0;
+  const PointLight light{{0.0, 0.0, 1.0}, glm::vec3(3.0f)};
+  scene.points = {light};
+  const GpuScene gpuScene(scene, analyse(scene), capabilities());
+  ReflectiveShadowMap rsm(programs(), gpuScene, {256, ReflectiveShadowMap::Light::point});
+  const double solidAngle = 4.0 * std::asin(0.81 / 1.81);  // of a square pyramid
+  const double expected = static_cast<double>(kAlbedo) * 3.0 * solidAngle / 4.0;
+  EXPECT_NEAR(totals(rsm.record(gpuScene, lightViews(light, scene.bounds))).flux / expected, 1.0, 0.01);
+}
+
 TEST_F(LightsGl, TheSunsFluxCountsProjectedAreaAndItsSurfelsTrueArea) {
   LitScene scene;
   const glm::dvec3 u(2, 0, 0), v(0, 1.0, 1.0 * std::sqrt(3.0));  // tilted by 60 degrees; 4 x 4

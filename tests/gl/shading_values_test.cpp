@@ -142,8 +142,8 @@ SceneBuilder plateOverFloor() {
 }
 
 /// Fraction seen by 2x2 bilinear comparisons half a texel apart, from a map whose texels the plate covers or not.
-/// `clip`: of the receiver, moved along its normal; `w` positive.
-double tent(const glm::dmat4& clipFromWorld, const glm::dvec3& receiver) {
+/// `clip`: of the receiver, moved along its normal; `w` positive. `tap`: of the comparisons, in texels from there.
+double tent(const glm::dmat4& clipFromWorld, const glm::dvec3& receiver, double tap = 0.5) {
   const glm::dvec4 clip = clipFromWorld * glm::dvec4(receiver, 1.0);
   const glm::dvec2 place = (0.5 * glm::dvec2(clip) / clip.w + 0.5) * static_cast<double>(kMap);
   const glm::dmat4 worldFromClip = glm::inverse(clipFromWorld);
@@ -157,8 +157,8 @@ double tent(const glm::dmat4& clipFromWorld, const glm::dvec3& receiver) {
     return onPlate(a + (kHeight - a.y) / (b.y - a.y) * (b - a)) ? 0.0 : 1.0;
   };
   double sum = 0.0;
-  for (const double dx : {-0.5, 0.5})
-    for (const double dy : {-0.5, 0.5}) {
+  for (const double dx : {-tap, tap})
+    for (const double dy : {-tap, tap}) {
       const glm::dvec2 q = place + glm::dvec2(dx, dy) - 0.5, low = glm::floor(q), f = q - low;
       sum += 0.25 * ((1 - f.x) * (1 - f.y) * texel(low.x, low.y) + f.x * (1 - f.y) * texel(low.x + 1, low.y) +
                      (1 - f.x) * f.y * texel(low.x, low.y + 1) + f.x * f.y * texel(low.x + 1, low.y + 1));
@@ -187,7 +187,7 @@ void expectFilter(const Image& image, const Camera& camera, const char* name,
 TEST_F(ShadingValues, ShadowsAreFilteredByATentOfThreeTexels) {
   const Camera camera = lookingAt({0.01, 1.5, 0.02}, {0.01, 0, 0.01}, 1.9);  // below the plate
   RenderSettings s = settings();
-  s.shadow.size = s.lights.spotSize = kMap;
+  s.shadow.size = s.lights.spotSize = s.lights.pointSize = kMap;
   {
     SceneBuilder builder = plateOverFloor();
     builder.sun({0.1, -1.0, 0.2}, glm::vec3(2.0f));
@@ -211,6 +211,20 @@ TEST_F(ShadingValues, ShadowsAreFilteredByATentOfThreeTexels) {
       const double depth = glm::dot(p - lamp, axis);
       return tent(views.clipFromWorld[0], p + glm::dvec3(0, 1.5 * views.texelWidth(kMap) * depth, 0));
     });
+  }
+  {
+    // The floor lies in one face of an omnidirectional lamp's cube. Its taps are half a texel apart where the receiver is, and so a little more where it is moved to.
+    SceneBuilder builder = plateOverFloor();
+    const glm::dvec3 lamp{0.3, 5.0, 0.2};
+    builder.scene().points.push_back({lamp, glm::vec3(50.0f)});
+    const LightViews views = lightViews(builder.scene().points[0], builder.scene().bounds);
+    constexpr int kDown = 3;  // of OpenGL's faces: -y
+    const double offset = 1.5 * views.texelWidth(kMap) * lamp.y;
+    expectFilter(render(builder.scene(), camera, s), camera, "omnidirectional",
+                 [&](const glm::dvec3& p) { return 50.0 * lamp.y / std::pow(glm::length(lamp - p), 3.0); },
+                 [&](const glm::dvec3& p) {
+                   return tent(views.clipFromWorld[kDown], p + glm::dvec3(0, offset, 0), 0.5 * lamp.y / (lamp.y - offset));
+                 });
   }
 }
 
