@@ -7,6 +7,9 @@ test_packages="libgtest-dev xvfb xauth"
 optional_run_packages="libosmesa6-dev gnuplot-nox"
 optional_test_packages="libembree-dev glslang-tools"
 
+# ctest runs as many tests at once as there are processors; its -j says otherwise.
+export CTEST_PARALLEL_LEVEL="${CTEST_PARALLEL_LEVEL:-$(nproc)}"
+
 is_installed() {
   dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed'
 }
@@ -94,14 +97,14 @@ install_packages() {
   done
 }
 
-# build PRESET [CMAKE OPTION]...: configures and builds into build/PRESET.
+# build PRESET [CMAKE OPTION]...: configures and builds into build/PRESET: everything, or the targets that $targets names.
 build() {
   local preset="$1" log
   shift
   log="build/$preset.log"
   mkdir -p build
   echo "lucerna: building (log: $log)" >&2
-  if ! { cmake --preset "$preset" "$@" >"$log" 2>&1 && logged "building" "$log" cmake --build --preset "$preset"; }; then
+  if ! { cmake --preset "$preset" "$@" >"$log" 2>&1 && logged "building" "$log" cmake --build --preset "$preset" ${targets:+--target $targets}; }; then
     tail -n 40 "$log" >&2
     exit 1
   fi

@@ -3,9 +3,9 @@
 
 #include "pathtracer/path_tracer.hpp"
 #include "support/gl_fixture.hpp"
+#include "support/long_tests.hpp"
 
 #include <cmath>
-#include <cstdlib>
 
 namespace lucerna::test {
 
@@ -16,8 +16,7 @@ struct PixelEstimate {
 
 class MediaTest : public SharedProgramsTest {
  protected:
-  /// What takes minutes is done where it is set.
-  static bool isLong() { return std::getenv("LUCERNA_LONG_TESTS") != nullptr; }
+  static bool isLong() { return longTests(); }
 
   /// side x side pixels; not one path that leaks or loses count of the media it is in.
   static Image picture(const Scene& scene, std::uint32_t samples, PathTracer::Settings settings = {}, int side = 16) {
