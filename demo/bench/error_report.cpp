@@ -177,7 +177,7 @@ std::string notes(const ErrorReport& report) {
     const double m = (mean.x + mean.y + mean.z) / 3.0;
     line += fmt::format(
         "Reference {:<44} {} samples a pixel, {:.1f} s; mean {:.6g} +- {:.2g}; noise of a pixel {:.3g} % of the mean\n",
-        nameOf(paths), r.samples, r.seconds, m, r.meanError, 100.0 * std::sqrt(noise.variance) / m);
+        nameOf(paths), r.samples, r.seconds, m, r.meanError, m > 0.0 ? 100.0 * std::sqrt(noise.variance) / m : 0.0);
   }
   return line;
 }

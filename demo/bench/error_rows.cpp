@@ -139,7 +139,8 @@ nlohmann::ordered_json errorsJson(const JudgedPicture& judged) {
            {{"l2", judged.blocks.l2},
             {"nrmse", judged.blocks.rmse / mean},
             {"at_noise", judged.blocks.atNoise},
-            {"noise_l2", judged.blocks.noiseL2}}},
+            {"noise_l2", judged.blocks.noiseL2},
+            {"noise_nrmse", judged.blocks.noiseNrmse * judged.blocks.measured.referenceMean / mean}}},
           {"lit", partJson(judged.lit)},
           {"other", partJson(judged.other)}};
 }

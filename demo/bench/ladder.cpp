@@ -37,7 +37,9 @@ std::vector<Rung> lpvLadder(bool shrink) {
     if (!shrink || cells < 64) rungs.push_back(rung("lpv", "cells", {fmt::format("lpv.cells={}", cells)}));
   for (int cascades : {1, 2, 3, 4}) rungs.push_back(rung("lpv", "cascades", {fmt::format("lpv.cascades={}", cascades)}));
   for (int iterations : {2, 4, 8, 16, 32}) rungs.push_back(rung("lpv", "iterations", {fmt::format("lpv.iterations={}", iterations)}));
-  for (int bounces : {1, 2, 4}) rungs.push_back(rung("lpv", "bounces", {fmt::format("lpv.bounces={}", bounces)}));
+  // Each number of bounces has a reference of its own.
+  for (int bounces : {1, 2, 4})
+    if (!shrink || bounces != 2) rungs.push_back(rung("lpv", "bounces", {fmt::format("lpv.bounces={}", bounces)}));
   for (int iterations : {8, 12}) rungs.push_back(rung("lpv", "", {fmt::format("lpv.iterations={}", iterations)}, "original"));
   return rungs;
 }

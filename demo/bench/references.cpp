@@ -53,6 +53,7 @@ std::set<LightPaths> wantedOf(const std::vector<TechniqueModel>& models, LightKi
 
 /// Shares of the time; direct light of sun and lamps alone has next to no noise through pixels' centres.
 double weightOf(const LightPaths& paths, LightKinds scene) {
+  if (paths.transport == Transport::indirect) return 1.0;
   if (paths.transport != Transport::direct) return 2.0;
   return paths.lights != scene && paths.lights == (scene & kDeltaLights) ? 0.2 : 1.0;
 }
@@ -121,6 +122,8 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
   if (own) shares.push_back({all, true, 0.4});
   std::set<LightPaths> others = wantedOf(request.models, result.lights);
   others.erase(all);
+  const LightPaths indirect{Transport::indirect, result.lights};
+  const bool wantsIndirect = others.erase(indirect) > 0;  // is the difference below
   double weights = 0.0;
   for (const LightPaths& paths : others) weights += weightOf(paths, result.lights);
   for (const LightPaths& paths : others)
@@ -158,6 +161,7 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
   }
   result.indirect_ = difference(result.all(), result.of.at({Transport::direct, result.lights}));
   result.indirect_.transport = Transport::indirect;
+  if (wantsIndirect) result.of.emplace(indirect, result.indirect_);
 
   // Surfaces, and which of them sun and lamps light. Without such lights none is lit.
   result.albedo = albedoPicture(request.context, request.programs, request.scene, request.camera, request.size);

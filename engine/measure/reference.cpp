@@ -93,6 +93,7 @@ std::optional<Reference> sampleReference(const Sampler& sampler, Transport trans
   // By time: the batch doubles until a sixteenth of the time is spent on one; then all begin again at that size, so that they are equal.
   std::uint32_t size = byCount ? static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (goal.samples + SamplingGoal::kBatches - 1) / SamplingGoal::kBatches)) : 1;
   std::uint64_t next = first;
+  if (!byCount) sampler(next, 1);  // what is made once, such as programs, says nothing of a batch's time
   if (!byCount)
     for (double last = 0.0;;) {
       const double before = elapsed();

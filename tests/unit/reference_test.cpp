@@ -7,9 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <random>
+#include <thread>
 
 namespace {
 
@@ -108,6 +110,20 @@ TEST(Reference, StopsWhenAskedAndNeedsTwoBatches) {
   const auto cut = sampleReference(noisy(1.0, &calls), Transport::all, 0, goal, [&] { return calls >= 3; });
   ASSERT_TRUE(cut);
   EXPECT_EQ(cut->samples, 12u);  // batches of 4
+}
+
+// What is made once, such as programs: 60 ms of 200 that say nothing of how long a batch takes, 1 ms a sample. Batches have 8 samples then, not 1.
+TEST(Reference, ByTimeTheFirstCallDecidesNoBatch) {
+  int calls = 0;
+  const Sampler slow = [&](std::uint64_t, std::uint32_t samples) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(++calls == 1 ? 60 : samples));
+    return Image(2, 2, glm::vec3(1.0f));
+  };
+  SamplingGoal goal;
+  goal.seconds = 0.2;
+  ASSERT_TRUE(sampleReference(slow, Transport::direct, 0, goal));
+  EXPECT_GE(calls, 16 + 1);
+  EXPECT_LT(calls, 60);
 }
 
 TEST(Reference, ByTimeItMakesBatchesEnough) {
