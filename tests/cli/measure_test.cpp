@@ -85,6 +85,21 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     EXPECT_EQ(row.contains("inside_model"), row.at("technique") != "path");
   }
   EXPECT_TRUE(pareto);
+  // Settings of a technique are ranked inside its model: what is not on that front is beaten there, and is on no other.
+  const auto number = [](const nlohmann::json& row, const char* key) { return row.at("inside_model").at(key).get<double>(); };
+  int beaten = 0;
+  for (const auto& row : report.at("rows")) {
+    if (row.at("inside_front")) continue;
+    ++beaten;
+    EXPECT_FALSE(row.at("pareto")) << row.at("label");
+    bool isBeaten = false;
+    for (const auto& other : report.at("rows"))
+      isBeaten |= other.contains("inside_model") && other.at("inside_model").at("model") == row.at("inside_model").at("model") &&
+                  other != row && other.at("ms") <= row.at("ms") &&
+                  number(other, "l2") <= std::max(number(row, "l2"), 3.0 * number(row, "noise_l2"));
+    EXPECT_TRUE(isBeaten) << row.at("label");
+  }
+  EXPECT_GT(beaten, 0);
   std::map<std::string, int> ofPath;
   for (const auto& row : report.at("rows"))
     if (row.at("technique") == "path") ++ofPath[row.at("fidelity").get<std::string>()];
