@@ -113,6 +113,7 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   const auto expectYardsticks = [](const nlohmann::json& black, const nlohmann::json& constant) {
     EXPECT_NEAR(black.at("l2"), 1.0, 1e-5);
     EXPECT_NEAR(black.at("blocks").at("l2"), 1.0, 1e-5);
+    EXPECT_FALSE(black.at("at_noise"));
     EXPECT_GE(black.at("blocks").at("noise_nrmse").get<double>(), 0.0);
     EXPECT_GT(constant.at("l2").get<double>(), 0.0);
     EXPECT_LT(constant.at("l2").get<double>(), 1.0);
