@@ -66,6 +66,14 @@ def plant(fault, root):
     return file, text
 
 
+def exists(build, test):
+    """A filter that no test's name fits passes whatever is planted."""
+    label, pattern = test
+    listed = subprocess.run([build / "tests" / f"{label}_tests", "--gtest_list_tests", f"--gtest_filter={pattern}"],
+                            capture_output=True, text=True).stdout
+    return "\n  " in listed
+
+
 def passes(build, test, environment, seconds=900):
     """Whether the tests pass; a hang, a crash and a failure are all noticed."""
     label, pattern = test
@@ -153,7 +161,9 @@ def main():
         for number, fault in enumerate(faults, 1):
             if fault.engine not in trials:
                 trials[fault.engine] = (EngineTrial if fault.engine else ShaderTrial)(arguments.build, pathlib.Path(folder))
-            # Tests that fail without a fault would notice every one.
+            # Tests that fail without a fault would notice every one, no tests none.
+            if not exists(arguments.build, fault.test):
+                sys.exit(f"there are no tests {fault.test[0]} {fault.test[1]}")
             if fault.test not in passed and not passes(arguments.build, fault.test, dict(os.environ)):
                 sys.exit(f"{fault.test[0]} {fault.test[1]} fails without any fault")
             passed.add(fault.test)
