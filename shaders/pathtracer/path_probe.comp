@@ -27,12 +27,13 @@ void main() {
   vec3 h;
   second.x = ggxRefract(a.xyz, vec3(b.xy, -b.z), a.w, b.w, h, pdf);
   second.y = pdf;
+  second.zw = schlick(vec3(0.04, 0.9, 0.0), a.z).xy;
 #elif PROBE == 2
   // a: o, alpha; b: two numbers. A direction reflected by a facet, and its density; a direction about the normal.
   vec3 h = ggxSample(a.xyz, a.w, b.xy), r = reflect(-a.xyz, h);
   ggxReflect(a.xyz, r, a.w, pdf);
   first = vec4(r, pdf);
-  second = vec4(cosineSample(normalize(a.xyz), b.xy), powerHeuristic(b.x, b.y) + powerHeuristic(b.y, b.x));
+  second = vec4(cosineSample(normalize(a.xyz), b.xy), powerHeuristic(b.x, b.y));
 #endif
   outputs[2u * i] = first;
   outputs[2u * i + 1u] = second;

@@ -187,6 +187,8 @@ TEST_F(PathFunctionsTest, MicrofacetsAndFresnelAreTheTwins) {
     const double value = ggx.refract(o, {i.x, i.y, -i.z}, b.w, pdf);
     near(results[k][1].x, value, 1.0);
     near(results[k][1].y, pdf, 1.0);
+    near(results[k][1].z, 0.04 + 0.96 * std::pow(1.0 - o.z, 5.0), 1.0);  // [Schlick1994]
+    near(results[k][1].w, 0.9 + 0.1 * std::pow(1.0 - o.z, 5.0), 1.0);
     // Reciprocity of the reflection, and of the refraction over n^2: f(o, i) = f(i, o), where value is f times a cosine.
     EXPECT_NEAR(ggx.reflect(o, i) / i.z, ggx.reflect(i, o) / o.z, 1e-9 * ggx.reflect(o, i) / i.z);
     double other = 0.0;
@@ -212,8 +214,10 @@ TEST_F(PathFunctionsTest, DrawnDirectionsHaveTheirDensity) {
                         glm::vec4(static_cast<float>(std::min(uniform(), 0.99999997)), static_cast<float>(std::min(uniform(), 0.99999997)), 0, 0)});
     const std::vector<Pair> results = probe(2, inputs);
     std::vector<double> counts(kRows * kColumns + 1, 0.0);  // the last: below
-    for (const Pair& r : results) {
-      EXPECT_NEAR(r[1].w, 1.0, 1e-6);  // weights of both ways sum to 1
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      const Pair& r = results[k];
+      const double way = inputs[k][1].x, other = inputs[k][1].y;
+      EXPECT_NEAR(r[1].w, way * way / (way * way + other * other), 1e-6);  // [Veach1997]
       const glm::dvec3 d = c.alpha > 0.0 ? glm::dvec3(r[0]) : glm::dvec3(r[1]);
       if (c.alpha > 0.0 && d.z > 1e-3) {
         EXPECT_NEAR(r[0].w, Ggx{c.alpha}.reflectPdf(c.o, glm::normalize(d)), 1e-3 * r[0].w + 1e-5);
