@@ -106,6 +106,64 @@ TEST_F(PathShading, ASmoothMirrorSphereShowsTheEnvironmentWhereItsNormalsSay) {
   EXPECT_GT(down, 150);
 }
 
+// A boundary whose interpolated normal turns away from the sun though its face does not: what would pass by it is not counted.
+TEST_F(PathShading, ARoughBoundaryIsNotLitFromBehindItsNormal) {
+  SmoothTriangle triangle;
+  triangle.normal.fill(glm::normalize(glm::dvec3(2.0, 1.0, 0.0)));
+  PathTracer::Settings settings = sized(8);
+  settings.transport = Transport::direct;
+  for (const double towards : {-1.0, 1.0}) {
+    Scene scene = triangle.scene(glm::normalize(glm::dvec3(-towards, -0.27, 0.0)));
+    Material& material = scene.materials[0];
+    material.bsdf = Bsdf::dielectric;
+    material.ior = 1.5f;
+    material.roughness = 0.5f;
+    const double light = meanOf(tracer(scene, lookingAt({6.0, 1.0, 0.1}, {0.1, 0.0, 0.1}, 0.1), settings, 4).mean()).y;
+    EXPECT_EQ(light > 1e-3, towards > 0.0) << light;
+    EXPECT_TRUE(towards > 0.0 || light == 0.0) << light;
+  }
+}
+
+// -------------------------------------------------------------------------------------------------------------- metals
+
+// Reflectance by Schlick [Schlick1994]: of a constant sky in a smooth one, of the sun in a rough one (GGX with height-correlated shadowing
+// [Walter2007], [Heitz2014]).
+TEST_F(PathShading, MetalsReflectByTheirAngle) {
+  const glm::dvec3 f0{0.04f, 0.5, 0.9f};
+  for (const float alpha : {0.0f, 0.4f})
+    for (const glm::dvec3& eye : {glm::dvec3(0.0, 3.0, 0.1), glm::dvec3(3.0, 1.5, 0.0), glm::dvec3(-3.0, 0.4, 1.0)}) {
+      SceneBuilder builder;
+      const int metal = builder.material(glm::vec3(0.0f));
+      builder.materialAt(metal).bsdf = Bsdf::conductor;
+      builder.materialAt(metal).specular = glm::vec3(f0);
+      builder.materialAt(metal).roughness = alpha;
+      builder.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, metal);
+      const glm::dvec3 toSun = glm::normalize(glm::dvec3(0.4, 1.0, 0.3));
+      builder.sun(-toSun, glm::vec3(2.0f));
+      if (alpha == 0.0f) {
+        builder.scene().sun.reset();
+        builder.scene().environment.emplace().radiance = glm::vec3(2.0f);
+      }
+      PathTracer::Settings settings = sized(8);
+      settings.pixelCentres = true;
+      const Camera camera = lookingAt(eye, {0, 0, 0}, 0.05);
+      const Image image = tracer(builder.scene(), camera, settings, 1).mean();
+      for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) {
+          const glm::dvec3 o = -glm::normalize(pixelRay(camera, x, y, glm::ivec2(8)));
+          const glm::dvec3 h = alpha > 0.0f ? glm::normalize(o + toSun) : glm::dvec3(0, 1, 0);
+          const glm::dvec3 schlick = f0 + (1.0 - f0) * std::pow(1.0 - glm::dot(o, h), 5.0);
+          double times = 2.0;
+          if (alpha > 0.0f) {
+            const double a2 = static_cast<double>(alpha) * static_cast<double>(alpha), t = (1.0 - h.y * h.y) / a2 + h.y * h.y;
+            const auto lambda = [&](const glm::dvec3& w) { return 0.5 * (std::sqrt(1.0 + a2 * (1.0 / (w.y * w.y) - 1.0)) - 1.0); };
+            times *= 1.0 / (kPi * a2 * t * t) / (1.0 + lambda(o) + lambda(toSun)) / (4.0 * o.y);
+          }
+          for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(x, y)[c], times * schlick[c], 2e-4 * times * schlick[c]) << alpha << " from " << eye.y << ", channel " << c;
+        }
+    }
+}
+
 // ------------------------------------------------------------------------------------------------------ pairs of lights
 
 /// A floor of albedo 0.6, 0.5, 0.4, seen from above in a small part of it.
