@@ -73,6 +73,24 @@ TEST_F(HemicubeVisibilityTest, EachMeetsClosedForms) {
   }
 }
 
+// Two sheets in one place, back to back: the one that shows its front is met, whichever comes first in the scene.
+TEST_F(HemicubeVisibilityTest, OfTwoSheetsInOnePlaceTheFrontIsMet) {
+  const glm::dvec3 u{1, 0, 0}, v{0, 0, 1};
+  for (const HemicubeVisibility way : kWays)
+    for (const bool frontFirst : {true, false}) {
+      SceneBuilder builder;
+      const int m = lambertian(builder, 0.5);
+      builder.triangle({-1e-4, 0, 1e-4}, {1e-4, 0, 1e-4}, {0, 0, -2e-4}, m);
+      builder.plate({0, 1, 0}, frontFirst ? u : v, frontFirst ? v : u, m);
+      builder.plate({0, 1, 0}, frontFirst ? v : u, frontFirst ? u : v, m);
+      const Rows rows = rowsBy(way, builder.scene(), pixelsAlone(256));
+      const double first = rows.factors[0][1] + rows.factors[0][2], second = rows.factors[0][3] + rows.factors[0][4];
+      EXPECT_NEAR((frontFirst ? first : second) / 0.239456470460774, 1.0, 0.004) << nameOf(way) << ", front first: " << frontFirst;
+      EXPECT_EQ(frontFirst ? second : first, 0.0) << nameOf(way);
+      EXPECT_EQ(rows.backs[0], 0.0) << nameOf(way);
+    }
+}
+
 TEST_F(HemicubeVisibilityTest, NothingIsLostInAClosedRoom) {
   for (const HemicubeVisibility way : kWays)
     for (const int n : {16, 64}) {
