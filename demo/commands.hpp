@@ -96,6 +96,8 @@ nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages
 /// What the gather of the reflective shadow map saved: pixels a frame.
 nlohmann::ordered_json gatherJson(const RsmGather& gather);
 std::string gatherLine(const RsmGather& gather);
+nlohmann::ordered_json receiversJson(const LpvReceivers& receivers);
+std::string receiversLine(const LpvReceivers& receivers);
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer);
 
 }  // namespace lucerna::demo

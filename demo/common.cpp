@@ -64,6 +64,12 @@ bool parseSwitch(const std::string& option, const std::string& text) {
   throwBadInput("{}: '{}' is neither on nor off", option, text);
 }
 
+int parsePowerOfTwo(const std::string& option, const std::string& text, int most) {
+  const int value = parseNumber(option, text, 1, most);
+  if ((value & (value - 1)) != 0) throwBadInput("{}: {} is no power of two", option, value);
+  return value;
+}
+
 /// Whether there is a geometry volume, and from whose surfels.
 bool parseBlocking(const std::string& option, const std::string& text, LpvSurfels& surfels) {
   surfels = text == "camera" ? LpvSurfels::camera : text == "both" ? LpvSurfels::both : LpvSurfels::rsm;
@@ -108,6 +114,13 @@ struct Setting {
 const Setting kSettings[] = {
     SETTING("lpv.cells", "cells a side of every cascade (32)", s.lpv.cascades.cells = parseNumber(k, v, 1, 128)),
     SETTING("lpv.cascades", "nested grids (3)", s.lpv.cascades.cascades = parseNumber(k, v, 1, LPV_MAX_CASCADES)),
+    SETTING("lpv.transport", "how light gets to what is looked up: propagate, through the grids' cells; rays, along paths to points of surfaces (propagate)",
+            s.lpv.transport = parseChoice(k, v, {LpvTransport::propagate, LpvTransport::rays})),
+    SETTING("lpv.lookup", "irradiance from propagated light: flux, as the kernel sends it; published, 1.91 times as much (flux)",
+            s.lpv.lookup = parseChoice(k, v, {LpvLookup::flux, LpvLookup::published})),
+    SETTING("lpv.rays", "with transport rays: paths of a receiver and frame, 1, 2, 4, ... 64 (16)", s.lpv.rays = parsePowerOfTwo(k, v, 64)),
+    SETTING("lpv.least-rays", "with transport rays: paths of a receiver in its first frame, at least (64)", s.lpv.leastRays = parseNumber(k, v, 1, 1 << 20)),
+    SETTING("lpv.samples", "with transport rays: paths of a receiver while light and geometry stand still (512)", s.lpv.samples = parseNumber(k, v, 1, 1 << 24)),
     SETTING("lpv.iterations", "propagation steps (8)", s.lpv.iterations = parseNumber(k, v, 0, 100000)),
     SETTING("lpv.cell-size", "cell size of the coarsest cascade in scene units (0: half the cells span the scene)",
             s.lpv.cascades.cellSize = parseNumber(k, v, 0.0, 1e12)),
@@ -120,12 +133,13 @@ const Setting kSettings[] = {
     SETTING("lpv.amplifier", "factor of the deviating 4 pi kernel; 4 conserves (1)", s.lpv.amplifier = parseNumber(k, v, 0.0f, 100.0f)),
     SETTING("lpv.blocking", "geometry volume from rsm (or on), camera, both, or off (rsm)",
             s.lpv.blocking = parseBlocking(k, v, s.lpv.surfels)),
-    SETTING("lpv.bounces", "times that light is reflected (1)", s.lpv.bounces = parseNumber(k, v, 1, 64)),
+    SETTING("lpv.bounces", "times that light is reflected, with transport rays also all (1)",
+            s.lpv.bounces = v == "all" ? LightPropagationVolume::kAllBounces : parseNumber(k, v, 1, 64)),
     SETTING("lpv.blend", "fraction of a cascade over which it fades into the next (0.25)",
             s.lpv.blendBand = parseNumber(k, v, 0.001f, 1.0f)),
     SETTING("lpv.hand-over", "steps after which finer cascades take a coarser one's light (0: from iterations and ratio)",
             s.lpv.handOver = parseNumber(k, v, 0, 100000)),
-    SETTING("lpv.lookup-offset", "cells along the normal that a receiver is moved (0.5)",
+    SETTING("lpv.lookup-offset", "cells along the normal that a point is moved before the lookup (0; 0.5 with lookup published)",
             s.lpv.lookupOffset = parseNumber(k, v, 0.0f, 4.0f)),
     SETTING("rsm.size", "texels a side of the reflective shadow map (256)", s.rsm.size = parseNumber(k, v, 1, 8192)),
     SETTING("rsm.samples", "samples of the map a gathered point (400)", s.gather.samples = parseNumber(k, v, 1, 65536)),
@@ -185,6 +199,7 @@ const Setting kSettings[] = {
     SETTING("shadow.point-size", "texels a side of each face of an omnidirectional light's shadow map (512)",
             s.lights.pointSize = parseNumber(k, v, 1, 16384)),
     SETTING("texture.anisotropy", "anisotropic filtering, at most (4)", s.textures.anisotropy = parseNumber(k, v, 1.0f, 16.0f)),
+    SETTING("frame.reuse", "what has not changed since the frame before is not made again: maps, volume, receivers (on)", s.reuse = parseSwitch(k, v)),
     SETTING("exposure", "multiplies radiance before tone mapping (the scene's)", exposure = parseNumber(k, v, 1e-12f, 1e12f)),
 };
 
@@ -195,7 +210,7 @@ bool isRead(const std::string& technique, std::string_view key) {
   const auto reads = [&](std::initializer_list<std::string_view> beginnings) {
     return std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view beginning) { return key.starts_with(beginning); });
   };
-  if (key == "exposure") return true;
+  if (key == "exposure" || key == "frame.reuse") return true;
   if (technique == "direct") return reads({"shadow.", "texture."});
   if (technique == "lpv") return reads({"lpv.", "rsm.size", "shadow.", "texture."});
   if (technique == "rsm") return reads({"rsm.", "shadow.", "texture."});
@@ -395,7 +410,7 @@ int exitCode() { return g_interrupted ? 128 + g_interrupted : 0; }
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const auto& s : stages) {
-    json[s.name] = {{"median_ms", s.medianMs}, {"p95_ms", s.p95Ms}, {"count", s.count}, {"query_median_ms", s.queryMedianMs}};
+    json[s.name] = {{"median_ms", s.medianMs}, {"p95_ms", s.p95Ms}, {"count", s.count}, {"query_median_ms", s.queryMedianMs}, {"ran", s.ran}, {"frames", s.frames}, {"saved_ms", s.savedMs()}};
     if (!std::isnan(s.wallMedianMs)) json[s.name]["wall_median_ms"] = s.wallMedianMs;
   }
   return json;
@@ -415,15 +430,30 @@ std::string gatherLine(const RsmGather& gather) {
                      100.0 * gather.counts().saving());
 }
 
+nlohmann::ordered_json receiversJson(const LpvReceivers& receivers) {
+  const LpvReceivers::Counts& c = receivers.counts();
+  return {{"receivers", c.receivers}, {"waiting", c.waiting}, {"without_room", c.left}, {"paths_of_each", receivers.settings().samples}};
+}
+
+std::string receiversLine(const LpvReceivers& receivers) {
+  const LpvReceivers::Counts& c = receivers.counts();
+  std::string line = fmt::format("{} receivers, {} paths each", c.receivers, receivers.settings().samples);
+  if (c.waiting > 0) line += fmt::format("; {} lack some", c.waiting);
+  if (c.left > 0) line += fmt::format("; {} found no room (lpv.cells)", c.left);
+  return line + "\n";
+}
+
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer) {
-  std::string text = fmt::format("Stage times on {}\n{:<18}{:>12}{:>12}{:>8}{:>16}\n", renderer, "stage", "median ms", "95 % ms", "count",
-                                 "query median ms");
-  double total = 0.0;
+  std::string text = fmt::format("Stage times on {}\n{:<18}{:>12}{:>12}{:>8}{:>16}{:>16}{:>14}\n", renderer, "stage", "median ms", "95 % ms", "count",
+                                 "query median ms", "ran in frames", "saved ms");
+  double total = 0.0, saved = 0.0;
   for (const auto& s : stages) {
-    text += fmt::format("{:<18}{:>12.3f}{:>12.3f}{:>8}{:>16.3f}\n", s.name, s.medianMs, s.p95Ms, s.count, s.queryMedianMs);
-    total += std::isnan(s.medianMs) ? 0.0 : s.medianMs;
+    text += fmt::format("{:<18}{:>12.3f}{:>12.3f}{:>8}{:>16.3f}{:>16}{:>14.3f}\n", s.name, s.medianMs, s.p95Ms, s.count, s.queryMedianMs,
+                        fmt::format("{} of {}", s.ran, s.frames), s.savedMs());
+    total += std::isnan(s.medianMs) ? 0.0 : s.medianMs - s.savedMs();
+    saved += s.savedMs();
   }
-  return text + fmt::format("{:<18}{:>12.3f}\n", "all stages", total);
+  return text + fmt::format("{:<18}{:>12.3f}{:>66.3f}\n", "a frame", total, saved);
 }
 
 }  // namespace lucerna::demo

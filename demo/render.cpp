@@ -46,7 +46,7 @@ int run(Options options) {
   Renderer renderer(context, programs, scene, settings);
   if (exposure) renderer.setExposure(*exposure);
   const auto start = std::chrono::steady_clock::now();
-  for (int i = 0; i < options.repeat; ++i) renderer.render(camera);
+  for (int i = 0; i < options.repeat; ++i) renderer.renderToTheEnd(camera);
   glFinish();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / options.repeat;
   renderer.drain();
@@ -61,6 +61,7 @@ int run(Options options) {
     fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s a frame on {}\n", options.output, image.width, image.height,
                options.picture.technique, options.picture.component, mean.x, mean.y, mean.z, seconds, context.capabilities().renderer);
     if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
+    if (renderer.receivers()) fmt::print("{}", receiversLine(*renderer.receivers()));
     if (options.repeat > 1) fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
   }
   nlohmann::ordered_json json;
@@ -78,6 +79,7 @@ int run(Options options) {
   json["gpu_bytes"] = renderer.gpuBytes();
   json["left_out"] = renderer.leftOut();
   if (renderer.gather()) json["rsm"] = gatherJson(*renderer.gather());
+  if (renderer.receivers()) json["lpv"] = receiversJson(*renderer.receivers());
   if (options.repeat > 1) json["stages"] = stagesJson(renderer.timer().statistics());
   if (const RadiosityView* view = renderer.radiosity()) {
     const RadiositySolution& s = view->solution();

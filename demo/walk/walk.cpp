@@ -103,6 +103,7 @@ nlohmann::ordered_json resultJson(const Options& options, const Host& host, cons
   json["gpu_bytes"] = renderer.gpuBytes();
   json["left_out"] = renderer.leftOut();
   if (renderer.gather()) json["rsm"] = gatherJson(*renderer.gather());
+  if (renderer.receivers()) json["lpv"] = receiversJson(*renderer.receivers());
   return json;
 }
 

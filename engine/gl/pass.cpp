@@ -71,9 +71,9 @@ void ComputePass::dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) 
   glDispatchCompute(groups.x, groups.y, groups.z);
 }
 
-void ComputePass::dispatchIndirect(const Buffer& groups) const {
+void ComputePass::dispatchIndirect(const Buffer& groups, std::size_t offset) const {
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.id());
-  glDispatchComputeIndirect(0);
+  glDispatchComputeIndirect(static_cast<GLintptr>(offset));
 }
 
 void drawFullScreen(const VertexArray& emptyVertexArray) {

@@ -54,8 +54,8 @@ class ComputePass {
   ~ComputePass() { glMemoryBarrier(barrier_); }
   /// Enough groups of `groupSize` to cover `size`.
   void dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const;
-  /// As many groups as the buffer's first three words say, written by a pass before with GL_COMMAND_BARRIER_BIT at its end.
-  void dispatchIndirect(const Buffer& groups) const;
+  /// As many groups as three words of the buffer from `offset` (bytes) say, written by a pass before with GL_COMMAND_BARRIER_BIT at its end.
+  void dispatchIndirect(const Buffer& groups, std::size_t offset = 0) const;
 
  private:
   DebugGroup group_;

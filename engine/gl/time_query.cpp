@@ -22,6 +22,7 @@ TimeQuery::Stage& TimeQuery::stage(const std::string& name) {
 void TimeQuery::begin(const std::string& name) {
   CHECK(!current_, "stage {} begun inside stage {}", name, current_->name);
   current_ = &stage(name);
+  ++current_->ran;
   pushDebugGroup(name);
   if (finishStages_) glFinish();
   start_ = std::chrono::steady_clock::now();
@@ -45,6 +46,7 @@ void TimeQuery::end() {
     glFinish();
     const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
     if (s.warmWall) s.wallMs.push_back(ms);
+    else s.firstWallMs = ms;
     s.warmWall = true;
   }
   glPopDebugGroup();
@@ -62,6 +64,7 @@ void TimeQuery::fetch(Stage& s, bool wait) {
     GLuint64 nanoseconds = 0;
     glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
     if (s.warmQuery) s.queryMs.push_back(static_cast<double>(nanoseconds) * 1e-6);
+    else s.firstQueryMs = static_cast<double>(nanoseconds) * 1e-6;
     s.warmQuery = true;
     s.pending[s.oldest] = false;
     s.oldest = (s.oldest + 1) % kRing;
@@ -69,12 +72,15 @@ void TimeQuery::fetch(Stage& s, bool wait) {
 }
 
 void TimeQuery::collect() {
+  ++frames_;
   for (Stage& s : stages_) fetch(s, false);
 }
 
 void TimeQuery::drain() {
   for (Stage& s : stages_) fetch(s, true);
 }
+
+double StageStatistics::savedMs() const { return ran < frames ? medianMs * static_cast<double>(frames - ran) / static_cast<double>(frames) : 0.0; }
 
 std::vector<StageStatistics> TimeQuery::statistics() const {
   std::vector<StageStatistics> result;
@@ -88,6 +94,9 @@ std::vector<StageStatistics> TimeQuery::statistics() const {
     r.medianMs = finishStages_ ? r.wallMedianMs : r.queryMedianMs;
     r.p95Ms = finishStages_ ? r.wallP95Ms : r.queryP95Ms;
     r.count = finishStages_ ? s.wallMs.size() : s.queryMs.size();
+    r.ran = s.ran;
+    r.frames = frames_;
+    if (r.count == 0) r.medianMs = finishStages_ ? s.firstWallMs : s.firstQueryMs;
     result.push_back(r);
   }
   return result;
@@ -114,7 +123,9 @@ void TimeQuery::reset() {
   for (Stage& s : stages_) {
     s.queryMs.clear();
     s.wallMs.clear();
+    s.ran = 0;
   }
+  frames_ = 0;
 }
 
 }  // namespace lucerna::gl

@@ -22,6 +22,9 @@ struct StageStatistics {
   double medianMs = 0.0, p95Ms = 0.0;          ///< the figure to read: query on hardware, wall clock on software
   double queryMedianMs = 0.0, queryP95Ms = 0.0;
   double wallMedianMs = 0.0, wallP95Ms = 0.0;  ///< NaN unless stages are finished
+  std::size_t ran = 0, frames = 0;  ///< how often it ran, in how many frames; a stage whose inputs stay as they are runs once
+  /// Of a frame, on the average, because it did not run in every frame. A stage whose only run was the warm-up takes that one's time.
+  double savedMs() const;
 };
 
 class TimeQuery {
@@ -69,6 +72,8 @@ class TimeQuery {
     std::array<bool, kRing> pending{};
     std::size_t next = 0, oldest = 0;
     bool warmQuery = false, warmWall = false;
+    double firstQueryMs = 0.0, firstWallMs = 0.0;  ///< the warm-up
+    std::size_t ran = 0;
     std::vector<double> queryMs, wallMs;
   };
   Stage& stage(const std::string& name);
@@ -79,7 +84,7 @@ class TimeQuery {
   Stage* current_ = nullptr;
   bool currentQuery_ = false;
   std::chrono::steady_clock::time_point start_;
-  std::size_t dropped_ = 0;
+  std::size_t dropped_ = 0, frames_ = 0;
 };
 
 }  // namespace lucerna::gl

@@ -28,6 +28,9 @@ std::string_view nameOf(LpvFill fill) {
   return fill == LpvFill::layered ? "layered" : fill == LpvFill::atomic ? "atomic" : "fixed";
 }
 
+std::string_view nameOf(LpvLookup lookup) { return lookup == LpvLookup::flux ? "flux" : "published"; }
+std::string_view nameOf(LpvTransport transport) { return transport == LpvTransport::propagate ? "propagate" : "rays"; }
+
 std::string_view nameOf(LpvPropagate propagate) {
   return propagate == LpvPropagate::compute ? "compute" : propagate == LpvPropagate::layered ? "layered" : "slices";
 }
@@ -91,6 +94,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     fronts_[0] = buffer("lpv front even", GL_RGBA32F, volumeBytes);
   }
 
+  if (settings.bounces == kAllBounces) throwBadInput("lpv.bounces=all: lpv.transport=propagate reflects light a number of times");
   if (settings.bounces > 1 && (!settings.blocking || steps_ < 2))
     throwBadInput("lpv.bounces={}: light is reflected by the geometry volume; that needs lpv.blocking other than off and two iterations",
                   settings.bounces);
@@ -201,6 +205,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
 gl::ShaderFlags LightPropagationVolume::lookupFlags(const Settings& settings) {
   return {{"LPV_FULL_FLOAT", settings.storage == Storage::full},
           {"FLUX_UNITS", settings.deviations.fluxUnits},
+          {"FLUX_LOOKUP", settings.lookup == LpvLookup::flux && !settings.deviations.fluxUnits},
           {"UNWINDOWED", settings.deviations.unwindowed},
           {"SUM_CASCADES", settings.deviations.sumCascades}};
 }
@@ -254,16 +259,17 @@ void LightPropagationVolume::join() {
   copyResult();
 }
 
-void LightPropagationVolume::place(const Inputs& inputs) {
-  CHECK(inputs.referenceIrradiance > 0.0f, "E_ref = {}", inputs.referenceIrradiance);
-  CHECK(static_cast<int>(inputs.cascades.size()) == settings_.cascades.cascades, "{} cascades", inputs.cascades.size());
+shared::LpvConstants lpvConstants(const LightPropagationVolume::Settings& settings, const std::vector<Cascade>& cascades, float referenceIrradiance) {
+  CHECK(referenceIrradiance > 0.0f, "E_ref = {}", referenceIrradiance);
+  CHECK(static_cast<int>(cascades.size()) == settings.cascades.cascades, "{} cascades", cascades.size());
   shared::LpvConstants constants{};
-  const int cells = settings_.cascades.cells;
-  for (std::size_t k = 0; k < inputs.cascades.size(); ++k) {
-    const Cascade& cascade = inputs.cascades[k];
+  const int cells = settings.cascades.cells;
+  const float offset = LightPropagationVolume::offsetOf(settings);
+  for (std::size_t k = 0; k < cascades.size(); ++k) {
+    const Cascade& cascade = cascades[k];
     auto& target = constants.cascades[k];
     target.minimum = glm::vec3(cascade.minimum());
-    if (settings_.deviations.truncate) {
+    if (settings.deviations.truncate) {
       // int(x + 0.5) cells from the world's origin, wrong where negative; then whole world units, off the raster of cells.
       const glm::dvec3 inCells = (cascade.centre - 0.5 * cells * cascade.cellSize) / cascade.cellSize;
       target.minimum = glm::vec3(glm::trunc(glm::trunc(inCells + 0.5) * cascade.cellSize));
@@ -271,14 +277,19 @@ void LightPropagationVolume::place(const Inputs& inputs) {
     target.cellSize = static_cast<float>(cascade.cellSize);
     target.blendCentre = glm::vec3(cascade.centre);
     // Snapping moves the grid by up to two cells and the trilinear lookup needs half a cell more.
-    const bool coarsest = k + 1 == inputs.cascades.size();
-    target.blendHalf = coarsest ? 1e30f : static_cast<float>((0.5 * cells - 2.5 - settings_.lookupOffset) * cascade.cellSize);
+    const bool coarsest = k + 1 == cascades.size();
+    target.blendHalf = coarsest ? 1e30f : static_cast<float>((0.5 * cells - 2.5 - offset) * cascade.cellSize);
     if (!coarsest && target.blendHalf <= 0.0f) target.blendHalf = 1e-30f;  // too few cells to blend: never used
   }
-  constants.shape = {cells, settings_.cascades.cascades, 0, 0};
-  constants.referenceIrradiance = inputs.referenceIrradiance;
-  constants.blendBand = settings_.blendBand;
-  constants.lookupOffset = settings_.lookupOffset;
+  constants.shape = {cells, settings.cascades.cascades, 0, 0};
+  constants.referenceIrradiance = referenceIrradiance;
+  constants.blendBand = settings.blendBand;
+  constants.lookupOffset = offset;
+  return constants;
+}
+
+void LightPropagationVolume::place(const Inputs& inputs) {
+  const shared::LpvConstants constants = lpvConstants(settings_, inputs.cascades, inputs.referenceIrradiance);
   constants_.upload(0, sizeof constants, &constants);
   constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
 }

@@ -25,6 +25,16 @@ std::string_view nameOf(LpvFill fill);
 enum class LpvPropagate { compute, layered, slices };
 std::string_view nameOf(LpvPropagate propagate);
 
+/// How irradiance at a surface follows from the propagated coefficients. `flux`: what the propagation kernel itself would send through a face there. `published`: the light of
+/// one source half a cell away [Kaplanyan2010], 1.91 times too much for light in transit.
+enum class LpvLookup { flux, published };
+std::string_view nameOf(LpvLookup lookup);
+
+/// How light gets from what is lit to what is looked up. `propagate`: through the grids' cells, step by step, as published. `rays`: to receivers, points of
+/// surfaces, along paths (receivers.hpp).
+enum class LpvTransport { propagate, rays };
+std::string_view nameOf(LpvTransport transport);
+
 /// Whose surfels fill the geometry volume: those that the lights' maps see, those that the camera sees, or both.
 enum class LpvSurfels { rsm, camera, both };
 
@@ -50,8 +60,11 @@ class LightPropagationVolume {
     bool kernel() const { return sideDirections || sideSolidAngle || fourPiKernel || blockingDirection; }
     bool operator==(const Deviations&) const = default;
   };
+  static constexpr int kAllBounces = 0;
   struct Settings {
     CascadeSettings cascades;
+    LpvTransport transport = LpvTransport::propagate;
+    LpvLookup lookup = LpvLookup::flux;
     LpvFill fill = LpvFill::layered;
     LpvPropagate propagate = LpvPropagate::compute;
     Deviations deviations;
@@ -60,13 +73,18 @@ class LightPropagationVolume {
     bool blocking = true;       ///< geometry volume
     LpvSurfels surfels = LpvSurfels::rsm;
     bool mergeViews = false;    ///< several maps see surfels: of one seen twice the longer vector counts. Else all are summed
-    int bounces = 1;            ///< more than 1 need blocking, two iterations and maps with albedo
+    int bounces = 1;            ///< with propagate more than 1 need blocking, two iterations and maps with albedo; with rays kAllBounces too
     float blendBand = 0.25f;    ///< fraction of a cascade's half extent over which it fades into the next
     int handOver = 0;           ///< steps after which a finer cascade takes light from the coarser one; 0: handOverStep()
-    float lookupOffset = 0.5f;  ///< cells along the normal by which a receiver is moved before the lookup
+    std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not set: as the lookup was meant
+    int rays = 16;              ///< of LpvTransport::rays: paths of a receiver and frame, 1, 2, 4 ... 64
+    int leastRays = 64;         ///< the same: paths that a receiver has in the frame in which it is first needed, at least
+    int samples = 512;          ///< the same: paths of a receiver while light and geometry stand still
     Storage storage = Storage::half;
     bool everyBrick = false;    ///< the compute gather does not leave out what light has not reached; the same bits, for tests and to measure it
   };
+  /// In cells along the normal.
+  static float offsetOf(const Settings& settings) { return settings.lookupOffset.value_or(settings.lookup == LpvLookup::published ? 0.5f : 0.0f); }
   struct Inputs {
     std::vector<ReflectiveShadowMap::Outputs> rsms;  ///< one a light; all are added up
     std::vector<Cascade> cascades;                   ///< finest first, as many as in the settings
@@ -171,5 +189,8 @@ class LightPropagationVolume {
   gl::Framebuffer geometryTarget_;
   std::array<std::array<gl::Framebuffer, 2>, 2> layeredTargets_;  ///< front x (sum, far sum); only for the layered pass
 };
+
+/// Where the cascades lie and what the stored values are relative to, as shaders read it.
+shared::LpvConstants lpvConstants(const LightPropagationVolume::Settings& settings, const std::vector<Cascade>& cascades, float referenceIrradiance);
 
 }  // namespace lucerna

@@ -65,6 +65,8 @@ void applyFidelity(RenderSettings& settings, Fidelity fidelity) {
   for (const Deviation& deviation : kDeviations) deviation.turn(settings, original && deviation.inOriginal);
   if (!original) return;
   settings.lpv.propagate = LpvPropagate::layered;
+  settings.lpv.transport = LpvTransport::propagate;
+  settings.lpv.lookup = LpvLookup::published;
   settings.lpv.lookupOffset = 0.0f;
   // Cells 2.5, 1.625 and 1.0 units, and a coarsest grid of 80 units in a scene of some 112: not held inside the scene.
   settings.lpv.cascades.ratio = 1.58;

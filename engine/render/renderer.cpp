@@ -65,6 +65,10 @@ std::unique_ptr<RadiosityView> makeRadiosity(const gl::Context& context, gl::Pro
   return std::make_unique<RadiosityView>(context, programs, scene, view, origin);
 }
 
+LpvReceivers::Light receivedLight(Component component) {
+  return component == Component::direct ? LpvReceivers::Light::direct : component == Component::indirect ? LpvReceivers::Light::indirect : LpvReceivers::Light::all;
+}
+
 }  // namespace
 
 std::string_view nameOf(Technique technique) {
@@ -99,7 +103,9 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       needs_(analyse(scene)),
       origin_(exactOrigin(scene.bounds)),
       showsDirect_(needs_.anyLight() && settings.component != Component::indirect && settings.technique != Technique::radiosity),
-      showsLpv_(settings.technique == Technique::lpv && settings.component != Component::direct && LightPropagationVolume::isNeeded(needs_)),
+      showsLpv_(settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::propagate && settings.component != Component::direct && LightPropagationVolume::isNeeded(needs_)),
+      showsReceivers_(settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::rays &&
+                      LpvReceivers::isNeeded(needs_, receivedLight(settings.component))),
       showsGather_(settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs_)),
       exposure_(scene.exposure),
       timer_(context.capabilities().softwareRenderer),
@@ -161,12 +167,13 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
                                {"SPOT_LIGHTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
                                {"POINT_LIGHTS", localLights_ ? static_cast<int>(points_.size()) : 0},
                                {"INDIRECT", showsLpv_},
+                               {"RECEIVED", showsReceivers_},
                                {"GATHERED", showsGather_},
                                {"SHOW_REFUSED", showsGather_ && settings.gather.showRefused},
                                {"SPECULAR", needs_.specular && showsDirect_},
                                {"EMISSION", needs_.emission && showsRest}});
     const gl::ShaderFlags lookup = LightPropagationVolume::lookupFlags(settings.lpv);
-    if (showsLpv_) flags.insert(flags.end(), lookup.begin(), lookup.end());
+    if (showsLpv_ || showsReceivers_) flags.insert(flags.end(), lookup.begin(), lookup.end());
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
   };
   if (radiosity_ && radiosity_->takesDirectRays()) directRays_.emplace(scene, context.capabilities(), settings.radiosity.shadowRays, origin_);
@@ -182,7 +189,9 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   toneMap_ = radiosity_ ? radiosity_->loadMapping(programs) : nullptr;
   if (!toneMap_) toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
   allocateTargets();
-  if (showsGather_) gather_.emplace(programs, gpuScene_, settings.gather, depth_);
+  if (showsGather_ || showsReceivers_) visible_.emplace(programs, gpuScene_, depth_);
+  if (showsGather_) gather_.emplace(programs, settings.gather, *visible_);
+  if (showsReceivers_) receivers_.emplace(programs, context.capabilities(), scene, origin_, settings.lpv, receivedLight(settings.component));
 }
 
 const Scene& Renderer::aboutOrigin(const Scene& scene) {
@@ -203,11 +212,12 @@ void Renderer::resize(glm::ivec2 size) {
   if (size == settings_.size || size.x <= 0 || size.y <= 0) return;
   settings_.size = size;
   allocateTargets();
-  if (gather_) gather_->resize(depth_);
+  if (visible_) visible_->resize(depth_);
+  if (gather_) gather_->resize();
 }
 
 void Renderer::recordShadows(const Camera& camera) {
-  if (shadowMap_) {
+  if (shadowMap_ && !mapsAreMade()) {
     const gl::TimeQuery::Scope stage(timer_, "shadow");
     shadowMap_->record(gpuScene_);
   }
@@ -227,26 +237,27 @@ void Renderer::recordShadows(const Camera& camera) {
     sunCascadeConstants_.bind(GL_UNIFORM_BUFFER, kSunCascadeBinding);
     sunCascades_->record(gpuScene_, views);
   }
-  if (localLights_ && localLights_->hasSpots()) {
+  if (localLights_ && localLights_->hasSpots() && !mapsAreMade()) {
     const gl::TimeQuery::Scope stage(timer_, "spot shadows");
     localLights_->recordSpots(gpuScene_);
   }
-  if (localLights_ && localLights_->hasPoints()) {
+  if (localLights_ && localLights_->hasPoints() && !mapsAreMade()) {
     const gl::TimeQuery::Scope stage(timer_, "point shadows");
     localLights_->recordPoints(gpuScene_);
   }
 }
 
-std::vector<ReflectiveShadowMap::Outputs> Renderer::recordReflectiveShadowMaps() {
+const std::vector<ReflectiveShadowMap::Outputs>& Renderer::recordReflectiveShadowMaps() {
+  if (mapsAreMade()) return rsmOutputs_;
   const gl::TimeQuery::Scope stage(timer_, "rsm");
-  std::vector<ReflectiveShadowMap::Outputs> outputs;
+  rsmOutputs_.clear();
   auto spot = spots_.begin(), point = points_.begin();
   for (ReflectiveShadowMap& rsm : rsms_) switch (rsm.light()) {
-      case ReflectiveShadowMap::Light::sun: outputs.push_back(rsm.record(gpuScene_, sunFrustum_.texelArea(rsm.size()))); break;
-      case ReflectiveShadowMap::Light::spot: outputs.push_back(rsm.record(gpuScene_, *spot++)); break;
-      case ReflectiveShadowMap::Light::point: outputs.push_back(rsm.record(gpuScene_, *point++)); break;
+      case ReflectiveShadowMap::Light::sun: rsmOutputs_.push_back(rsm.record(gpuScene_, sunFrustum_.texelArea(rsm.size()))); break;
+      case ReflectiveShadowMap::Light::spot: rsmOutputs_.push_back(rsm.record(gpuScene_, *spot++)); break;
+      case ReflectiveShadowMap::Light::point: rsmOutputs_.push_back(rsm.record(gpuScene_, *point++)); break;
     }
-  return outputs;
+  return rsmOutputs_;
 }
 
 // The camera as a lamp without light: the map's texels hold position, normal and area of what it sees.
@@ -260,6 +271,81 @@ std::vector<ReflectiveShadowMap::Outputs> Renderer::recordCameraMap(const Camera
   eye.outerAngle = std::min(std::atan(std::tan(0.5 * camera.verticalFov) * std::max(aspect, 1.0)), kLargestSpotAngle);
   eye.innerAngle = 0.0;
   return {cameraMap_->record(gpuScene_, lightViews(eye, gpuScene_.scene().bounds))};
+}
+
+void Renderer::renderToTheEnd(const Camera& camera) {
+  if (receivers_) rounds_ = (settings_.lpv.samples + settings_.lpv.rays - 1) / settings_.lpv.rays;
+  render(camera);
+  rounds_ = 1;
+  if (!receivers_) return;
+  receivers_->collect(true);
+  while (receivers_->counts().waiting > 0) {
+    render(camera);
+    receivers_->collect(true);
+  }
+}
+
+void Renderer::forget() {
+  mapsMade_ = false;
+  volumeCascades_.clear();
+  if (!receivers_) return;
+  receivers_->forget();
+  settled_ = false;
+  receivedClip_ = glm::dmat4(0.0);
+}
+
+// Nothing is done for a view whose receivers have all their paths.
+bool Renderer::recordReceivers(const Camera& camera, const Camera& volumeCamera, const glm::dmat4& clip) {
+  receivers_->collect();
+  const bool sameView = clip == receivedClip_ && volumeCamera.position == receivedVolumePosition_ && volumeCamera.direction == receivedVolumeDirection_;
+  if (!sameView) {
+    receivedClip_ = clip;
+    receivedVolumePosition_ = volumeCamera.position;
+    receivedVolumeDirection_ = volumeCamera.direction;
+    receivedSince_ = receivers_->frame() + 1;
+  }
+  const LpvReceivers::Counts& counts = receivers_->counts();
+  settled_ = sameView && counts.frame >= receivedSince_ && counts.waiting == 0;
+  if (settled_ && settings_.reuse) return false;
+  {
+    const gl::TimeQuery::Scope stage(timer_, "geometry");
+    const glm::mat4 cameraClip(clip);
+    const glm::vec3 viewPoint(camera.position);
+    visible_->record(gpuScene_, {&cameraClip, &viewPoint});
+  }
+  const gl::TimeQuery::Scope stage(timer_, "receivers");
+  receivers_->update({placeCascades(settings_.lpv.cascades, gpuScene_.scene().bounds, volumeCamera.position, volumeCamera.direction), camera,
+                      glm::mat4(glm::inverse(clip)), *visible_}, rounds_);
+  return true;
+}
+
+// The volume's light is kept while its grids lie where they did, unless surfels come from what the camera sees.
+void Renderer::recordVolume(const Camera& volumeCamera) {
+  const Scene& scene = gpuScene_.scene();
+  const glm::dvec4 lightPosition = glm::inverse(sunFrustum_.clipFromWorld) * glm::dvec4(0.0, 0.0, -1.0, 1.0);
+  const LightPropagationVolume::Inputs inputs{
+      recordReflectiveShadowMaps(), placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction),
+      typicalIrradiance(scene), glm::vec3(lightPosition), recordCameraMap(volumeCamera)};
+  const shared::LpvConstants constants = lpvConstants(settings_.lpv, inputs.cascades, inputs.referenceIrradiance);
+  const auto liesWhere = [](const shared::LpvCascade& a, const shared::LpvCascade& b) { return a.minimum == b.minimum && a.cellSize == b.cellSize; };
+  const bool same = settings_.reuse && !cameraMap_ && volumeCascades_.size() == inputs.cascades.size() &&
+                    std::equal(volumeCascades_.begin(), volumeCascades_.end(), constants.cascades, liesWhere);
+  if (same) {
+    lpv_->place(inputs);  // where cascades fade into each other follows the camera
+    return;
+  }
+  volumeCascades_.assign(constants.cascades, constants.cascades + inputs.cascades.size());
+  timer_.begin("injection");
+  lpv_->place(inputs);
+  lpv_->inject(inputs);
+  timer_.end();
+  if (lpv_->geometryVolume()) {
+    const gl::TimeQuery::Scope stage(timer_, "geometry volume");
+    lpv_->fillGeometryVolume(inputs);
+  }
+  const gl::TimeQuery::Scope stage(timer_, "propagation");
+  lpv_->propagate();
+  lpv_->join();
 }
 
 void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInScene) {
@@ -293,7 +379,7 @@ void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInS
     const ReflectiveShadowMap::Outputs rsm = recordReflectiveShadowMaps().front();  // the sun's is the only one
     {
       const gl::TimeQuery::Scope stage(timer_, "geometry");
-      gather_->recordGeometry(gpuScene_, {&cameraClip, &viewPoint});
+      visible_->record(gpuScene_, {&cameraClip, &viewPoint});
     }
     const RsmGather::Inputs inputs{rsm, glm::mat4(glm::inverse(exactClip)),
                                    static_cast<float>(2.0 * std::tan(0.5 * camera.verticalFov) / settings_.size.y)};
@@ -308,23 +394,10 @@ void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInS
     gather_->gatherFull(inputs);
   }
 
-  if (lpv_) {
-    const glm::dvec4 lightPosition = glm::inverse(sunFrustum_.clipFromWorld) * glm::dvec4(0.0, 0.0, -1.0, 1.0);
-    const LightPropagationVolume::Inputs inputs{
-        recordReflectiveShadowMaps(), placeCascades(settings_.lpv.cascades, scene.bounds, volumeCamera.position, volumeCamera.direction),
-        typicalIrradiance(scene), glm::vec3(lightPosition), recordCameraMap(volumeCamera)};
-    timer_.begin("injection");
-    lpv_->place(inputs);
-    lpv_->inject(inputs);
-    timer_.end();
-    if (lpv_->geometryVolume()) {
-      const gl::TimeQuery::Scope stage(timer_, "geometry volume");
-      lpv_->fillGeometryVolume(inputs);
-    }
-    const gl::TimeQuery::Scope stage(timer_, "propagation");
-    lpv_->propagate();
-    lpv_->join();
-  }
+  const bool depthIsDrawn = (receivers_ && recordReceivers(camera, volumeCamera, exactClip)) || gather_;
+
+  if (lpv_) recordVolume(volumeCamera);
+  mapsMade_ = true;
 
   {
     const gl::TimeQuery::Scope stage(timer_, "shading");
@@ -336,7 +409,7 @@ void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInS
     };
     const Sides both, apart[] = {{gl::Cull::back, glm::vec2(0.0f)}, {gl::Cull::front, glm::vec2(1.0f)}};
     const auto all = radiosity_ ? std::span<const Sides>(apart) : std::span<const Sides>(&both, 1);
-    if (!gather_)  // its geometry pass has drawn depth
+    if (!depthIsDrawn)
       for (const Sides& sides : all) {
         gl::RasterState state;
         state.depth = gl::Depth::lessWrite;
@@ -350,6 +423,7 @@ void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInS
     if (sunCascades_) sunCascades_->depth().bind(kShadowUnit);
     if (localLights_) localLights_->bindForShading();
     if (lpv_) lpv_->bindForLookup();
+    if (receivers_) receivers_->bindForLookup();
     if (gather_) gather_->irradiance().bind(kGatheredUnit);
     if (radiosity_) radiosity_->bind();
     if (directRays_) directRays_->bind();
@@ -396,6 +470,7 @@ void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInS
 void Renderer::drain() {
   timer_.drain();
   if (gather_) gather_->collect(true);
+  if (receivers_) receivers_->collect(true);
 }
 
 Image Renderer::readRadiance() const {
@@ -430,7 +505,9 @@ std::size_t Renderer::gpuBytes() const {
   for (const ReflectiveShadowMap& rsm : rsms_) bytes += rsm.gpuBytes();
   if (lpv_) bytes += lpv_->gpuBytes();
   if (cameraMap_) bytes += cameraMap_->gpuBytes();
+  if (visible_) bytes += visible_->gpuBytes();
   if (gather_) bytes += gather_->gpuBytes();
+  if (receivers_) bytes += receivers_->gpuBytes();
   if (radiosity_) bytes += radiosity_->gpuBytes();
   if (directRays_) bytes += directRays_->gpuBytes();
   return bytes;
@@ -448,6 +525,7 @@ std::vector<std::string> Renderer::leftOut() const {
   if (!gather_) names.emplace_back("rsm gather");
   if (!radiosity_) names.emplace_back("radiosity");
   if (!directRays_) names.emplace_back("shadow rays");
+  if (!receivers_) names.emplace_back("receivers");
   if (!lpv_) names.emplace_back("light propagation volume");
   else if (!lpv_->geometryVolume()) names.emplace_back("geometry volume");
   else {

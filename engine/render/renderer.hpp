@@ -8,11 +8,13 @@
 #include "forward/shadow_map.hpp"
 #include "forward/sun_cascades.hpp"
 #include "forward/sun_frustum.hpp"
+#include "forward/visible_surfaces.hpp"
 #include "gl/context.hpp"
 #include "gl/pieces.hpp"
 #include "gl/program.hpp"
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
+#include "lpv/receivers.hpp"
 #include "pathtracer/path_deviations.hpp"
 #include "radiosity/radiosity_view.hpp"
 #include "render/direct_rays.hpp"
@@ -42,6 +44,7 @@ struct RenderSettings {
   Technique technique = Technique::lpv;
   Component component = Component::all;
   glm::ivec2 size{1280, 720};
+  bool reuse = true;             ///< stages whose inputs are those of the frame before are not run again; the same picture, bit by bit
   bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits: for pictures that are measured
   GpuSceneSettings textures;
   ShadowMap::Settings shadow;          ///< of the sun; the size is that of each cascade where there are several
@@ -66,6 +69,9 @@ class Renderer {
   /// The same with the light propagation volume placed for another view: what changes then is flicker, not motion.
   void render(const Camera& camera, const Camera& volumeCamera);
 
+  /// The picture that frames of this view come to: all that is added up over frames, at once.
+  void renderToTheEnd(const Camera& camera);
+
   Image readRadiance() const;   ///< linear, scene units, top row first
   Bitmap readDisplay() const;   ///< tone mapped, sRGB, top row first
   const gl::Framebuffer& displayFramebuffer() const { return displayTarget_; }
@@ -78,6 +84,11 @@ class Renderer {
   std::size_t gpuBytes() const;
   const SceneNeeds& needs() const { return needs_; }
   const RenderSettings& settings() const { return settings_; }
+  const LpvReceivers* receivers() const { return receivers_ ? &*receivers_ : nullptr; }
+  /// Whether more frames of the same view would show the same: nothing is added up any more.
+  bool isSettled() const { return !receivers_ || settled_; }
+  /// All that is kept from frame to frame is dropped: the next one begins as the first did.
+  void forget();
   const LightPropagationVolume* lpv() const { return lpv_ ? &*lpv_ : nullptr; }
   const RadiosityView* radiosity() const { return radiosity_.get(); }
   /// Turns, about, of the largest submission of the last frame's shadow rays; 0 without any.
@@ -91,8 +102,12 @@ class Renderer {
  private:
   const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ where that is another
   void allocateTargets();
+  /// Shadow maps and reflective shadow maps do not depend on the camera: lights and geometry stand still.
+  bool mapsAreMade() const { return settings_.reuse && mapsMade_; }
   void recordShadows(const Camera& camera);
-  std::vector<ReflectiveShadowMap::Outputs> recordReflectiveShadowMaps();
+  void recordVolume(const Camera& volumeCamera);
+  bool recordReceivers(const Camera& camera, const Camera& volumeCamera, const glm::dmat4& clip);  ///< whether depth was drawn
+  const std::vector<ReflectiveShadowMap::Outputs>& recordReflectiveShadowMaps();
   std::vector<ReflectiveShadowMap::Outputs> recordCameraMap(const Camera& camera);  ///< empty where none is needed
 
   RenderSettings settings_;
@@ -101,7 +116,7 @@ class Renderer {
   glm::dvec3 origin_;                ///< of what is drawn, in the scene's coordinates
   std::optional<Scene> moved_;       ///< the scene about it, where that is not 0
   bool showsDirect_;  ///< direct light of any kind
-  bool showsLpv_, showsGather_;
+  bool showsLpv_, showsReceivers_, showsGather_;
   float exposure_;
   gl::TimeQuery timer_;
   std::unique_ptr<RadiosityView> radiosity_;  ///< before gpuScene_, which draws its patches
@@ -119,8 +134,19 @@ class Renderer {
   std::vector<LightViews> spots_, points_;
   std::optional<LocalLights> localLights_;
   std::vector<ReflectiveShadowMap> rsms_;    ///< one a light: the sun, the spots, the points
+  std::vector<ReflectiveShadowMap::Outputs> rsmOutputs_;  ///< since they were last drawn
+  bool mapsMade_ = false;
+  std::vector<shared::LpvCascade> volumeCascades_;  ///< that the propagated light is of
   std::optional<ReflectiveShadowMap> cameraMap_;  ///< what the camera sees, for the geometry volume
   std::optional<LightPropagationVolume> lpv_;
+  std::optional<LpvReceivers> receivers_;
+  /// Of the receivers: the view that they were brought up to date for, since which frame, and whether nothing of it waits any more.
+  glm::dmat4 receivedClip_{0.0};
+  glm::dvec3 receivedVolumePosition_{0.0}, receivedVolumeDirection_{0.0};
+  std::uint32_t receivedSince_ = 0;
+  bool settled_ = false;
+  int rounds_ = 1;  ///< of paths in a frame
+  std::optional<VisibleSurfaces> visible_;  ///< of techniques that start from pixels
   std::optional<RsmGather> gather_;
   gl::Texture radiance_, depth_, display_;
   gl::Framebuffer depthTarget_, radianceTarget_, displayTarget_;

@@ -9,7 +9,7 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kPatternBinding = 0, kWorkBinding = 1, kRefusedBinding = 2;
-constexpr GLuint kDepthUnit = 3, kNormalUnit = 4, kLowUnit = 5;
+constexpr GLuint kLowUnit = 5;
 
 // The Work block of shaders/rsm/work.glsl.
 struct GatherCounts {
@@ -55,13 +55,8 @@ gl::ShaderFlags RsmGather::flags(const Settings& settings) {
   return {{"NEAR", static_cast<int>(settings.nearField)}, {"ROTATION", settings.rotation == Rotation::noise}};
 }
 
-RsmGather::RsmGather(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings, const gl::Texture& depth)
-    : settings_(settings) {
-  const auto loadGeometry = [&](const char* name, bool masked) {
-    return &programs.loadRaster(name, "forward/surface.vert", "rsm/visible.frag", scene.materialFlags(masked));
-  };
-  geometryPrograms_.opaque = loadGeometry("gather geometry opaque", false);
-  if (scene.needs().alphaMasks) geometryPrograms_.masked = loadGeometry("gather geometry masked", true);
+RsmGather::RsmGather(gl::ProgramLibrary& programs, const Settings& settings, const VisibleSurfaces& visible)
+    : settings_(settings), visible_(&visible) {
   if (settings.interpolates()) {
     low_ = &programs.loadCompute("rsm gather low", "rsm/gather_low.comp", flags(settings));
     interpolate_ = &programs.loadCompute("rsm interpolate", "rsm/interpolate.comp");
@@ -73,29 +68,17 @@ RsmGather::RsmGather(gl::ProgramLibrary& programs, const GpuScene& scene, const 
   pattern_ = gl::Buffer("rsm gather pattern", samples.size() * sizeof(glm::vec4), samples.data(), GL_STATIC_DRAW);
   work_ = gl::Buffer("rsm gather work", sizeof(GatherCounts), nullptr, GL_DYNAMIC_COPY);
   ring_ = std::make_unique<gl::ReadBackRing>("rsm gather counts", sizeof(GatherCounts));
-  resize(depth);
+  resize();
 }
 
-void RsmGather::resize(const gl::Texture& depth) {
-  const glm::ivec2 size = depth.size2d();
-  depth_ = &depth;
-  normal_ = gl::Texture("gather normal", GL_RGBA16F, size);
+void RsmGather::resize() {
+  const glm::ivec2 size = visible_->size();
   irradiance_ = gl::Texture("gathered irradiance", GL_RGBA32F, size);
   if (settings_.interpolates()) {
     lowIrradiance_ = gl::Texture("gathered irradiance low", GL_RGBA32F, lowSize(size, settings_.lowResolution));
     refused_ = gl::Buffer("refused pixels", static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * sizeof(GLuint), nullptr,
                           GL_DYNAMIC_COPY);
   }
-  const std::array<const gl::Texture*, 1> colors{&normal_};
-  geometry_ = gl::Framebuffer("gather geometry", colors, &depth);
-}
-
-void RsmGather::recordGeometry(const GpuScene& scene, const GpuScene::View& view) const {
-  gl::RasterState state;
-  state.depth = gl::Depth::lessWrite;
-  const gl::RasterPass pass("gather geometry", geometry_, state);
-  pass.clearDepth();  // normals are read where depth says that there is a surface
-  scene.draw(geometryPrograms_, view);
 }
 
 void RsmGather::bindMap(const gl::Program& program, const Settings& settings, const ReflectiveShadowMap::Outputs& rsm) {
@@ -107,9 +90,7 @@ void RsmGather::bindMap(const gl::Program& program, const Settings& settings, co
 
 void RsmGather::bindVisible(const gl::Program& program, const Inputs& inputs) const {
   program.use();
-  depth_->bind(kDepthUnit);
-  normal_.bind(kNormalUnit);
-  program.set("worldFromClip", inputs.worldFromClip);
+  visible_->bind(program, inputs.worldFromClip);
   if (settings_.interpolates()) program.set("lowStep", settings_.lowResolution);
   pattern_.bind(GL_SHADER_STORAGE_BUFFER, kPatternBinding);
   work_.bind(GL_SHADER_STORAGE_BUFFER, kWorkBinding);
@@ -167,7 +148,7 @@ void RsmGather::collect(bool wait) {
 }
 
 std::size_t RsmGather::gpuBytes() const {
-  std::size_t bytes = pattern_.bytes() + work_.bytes() + ring_->bytes() + normal_.bytes() + irradiance_.bytes();
+  std::size_t bytes = pattern_.bytes() + work_.bytes() + ring_->bytes() + irradiance_.bytes();
   if (settings_.interpolates()) bytes += lowIrradiance_.bytes() + refused_.bytes();
   return bytes;
 }

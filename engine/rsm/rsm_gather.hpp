@@ -3,6 +3,7 @@
 // See README.md in this folder for inputs, outputs, units, sources, deviations and measurements.
 #pragma once
 
+#include "forward/visible_surfaces.hpp"
 #include "gl/pass.hpp"
 #include "gl/read_back.hpp"
 #include "rsm/reflective_shadow_map.hpp"
@@ -46,13 +47,11 @@ class RsmGather {
   /// Only parallel light can be gathered: samples are placed by its projection.
   static bool isNeeded(const SceneNeeds& needs) { return needs.directionalLight && ReflectiveShadowMap::isNeeded(needs); }
 
-  /// depth: of the picture's size; recordGeometry draws it, the gather and then shading read it.
-  RsmGather(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings, const gl::Texture& depth);
-  void resize(const gl::Texture& depth);
+  /// Gathers at the pixels of `visible`, which outlives it and is drawn before.
+  RsmGather(gl::ProgramLibrary& programs, const Settings& settings, const VisibleSurfaces& visible);
+  void resize();  ///< to the size that the visible surfaces have now
 
-  /// Draws depth and normals with forward/surface.vert; the frame's uniform block must be bound.
-  void recordGeometry(const GpuScene& scene, const GpuScene::View& view) const;
-  // Then, in this order; the first two only where settings().interpolates().
+  // In this order; the first two only where settings().interpolates().
   void gatherLow(const Inputs& inputs);
   void interpolate(const Inputs& inputs);
   void gatherFull(const Inputs& inputs);
@@ -74,14 +73,12 @@ class RsmGather {
   void bindVisible(const gl::Program& program, const Inputs& inputs) const;
 
   Settings settings_;
-  SurfacePrograms geometryPrograms_;
   const gl::Program* low_ = nullptr;
   const gl::Program* interpolate_ = nullptr;
   const gl::Program* full_ = nullptr;
   gl::Buffer pattern_, work_, refused_;
-  const gl::Texture* depth_ = nullptr;
-  gl::Texture normal_, lowIrradiance_, irradiance_;
-  gl::Framebuffer geometry_;
+  const VisibleSurfaces* visible_;
+  gl::Texture lowIrradiance_, irradiance_;
   std::unique_ptr<gl::ReadBackRing> ring_;
   Counts counts_;
 };

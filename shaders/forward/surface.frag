@@ -9,6 +9,9 @@
 #if INDIRECT
 #include "lpv/lookup.glsl"
 #endif
+#if RECEIVED
+#include "lpv/receivers/lookup.glsl"
+#endif
 #if GATHERED
 layout(binding = 7) uniform sampler2D gatheredIrradiance;  // w = 2: interpolation refused the pixel
 #endif
@@ -71,6 +74,10 @@ void main() {
 #endif
 #if INDIRECT
   result += albedo / kPi * lpvIrradiance(vPosition, normal);
+#endif
+#if RECEIVED
+  bool found;
+  result += albedo / kPi * receivedIrradiance(vPosition, normal, found);
 #endif
 #if GATHERED
   vec4 gathered = texelFetch(gatheredIrradiance, ivec2(gl_FragCoord.xy), 0);

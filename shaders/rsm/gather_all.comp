@@ -1,6 +1,6 @@
 // The full gather of every pixel: what there is without interpolation.
 #include "rsm/gather.glsl"
-#include "rsm/visible.glsl"
+#include "forward/visible.glsl"
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;

@@ -1,6 +1,6 @@
 // Indirect irradiance at every Nth pixel each way [Dachsbacher2005, screen-space interpolation].
 #include "rsm/gather.glsl"
-#include "rsm/visible.glsl"
+#include "forward/visible.glsl"
 #include "rsm/low.glsl"
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

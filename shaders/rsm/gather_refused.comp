@@ -1,7 +1,7 @@
 // The full gather of the pixels in the list that interpolation left. Dispatched indirectly; where the list is longer than the
 // groups that a dispatch may have, each takes several.
 #include "rsm/gather.glsl"
-#include "rsm/visible.glsl"
+#include "forward/visible.glsl"
 #include "rsm/work.glsl"
 layout(local_size_x = WORK_GROUP) in;
 layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;

@@ -2,7 +2,7 @@
 // tangent plane, not far away [Dachsbacher2005]. Bilinear weights of those that fit. Every other pixel goes into the list that
 // the full gather works through.
 #include "lib/frame.glsl"
-#include "rsm/visible.glsl"
+#include "forward/visible.glsl"
 #include "rsm/low.glsl"
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,0 +1,43 @@
+#include "forward/visible_surfaces.hpp"
+
+#include "gl/pass.hpp"
+
+#include <array>
+
+namespace lucerna {
+
+namespace {
+constexpr GLuint kDepthUnit = 3, kNormalUnit = 4;
+}
+
+VisibleSurfaces::VisibleSurfaces(gl::ProgramLibrary& programs, const GpuScene& scene, const gl::Texture& depth) {
+  const auto load = [&](const char* name, bool masked) {
+    return &programs.loadRaster(name, "forward/surface.vert", "forward/visible.frag", scene.materialFlags(masked));
+  };
+  programs_.opaque = load("visible surfaces opaque", false);
+  if (scene.needs().alphaMasks) programs_.masked = load("visible surfaces masked", true);
+  resize(depth);
+}
+
+void VisibleSurfaces::resize(const gl::Texture& depth) {
+  depth_ = &depth;
+  normal_ = gl::Texture("visible normals", GL_RGBA16F, depth.size2d());
+  const std::array<const gl::Texture*, 1> colors{&normal_};
+  target_ = gl::Framebuffer("visible surfaces", colors, &depth);
+}
+
+void VisibleSurfaces::record(const GpuScene& scene, const GpuScene::View& view) const {
+  gl::RasterState state;
+  state.depth = gl::Depth::lessWrite;
+  const gl::RasterPass pass("visible surfaces", target_, state);
+  pass.clearDepth();  // normals are read where depth says that there is a surface
+  scene.draw(programs_, view);
+}
+
+void VisibleSurfaces::bind(const gl::Program& program, const glm::mat4& worldFromClip) const {
+  depth_->bind(kDepthUnit);
+  normal_.bind(kNormalUnit);
+  program.set("worldFromClip", worldFromClip);
+}
+
+}  // namespace lucerna

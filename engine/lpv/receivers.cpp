@@ -1,0 +1,265 @@
+#include "lpv/receivers.hpp"
+
+#include "base/error.hpp"
+#include "forward/light_views.hpp"
+#include "gl/pass.hpp"
+#include "pathtracer/light_table.hpp"
+#include "shared/lpv_receivers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna {
+
+namespace {
+
+constexpr GLuint kLpvBinding = 1, kPathBinding = 5, kConstantsBinding = 6;  // GL_UNIFORM_BUFFER
+constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kIrradianceUnit = 5, kSeenUnit = 6;
+constexpr std::uint32_t kSegmentsOfAll = 8;  // of a path that finds no receivers to end at
+constexpr float kFullPaths = 256.0f;  // from which a receiver counts fully
+constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // as the path tracer's, less a segment's
+constexpr std::array<GLuint, 9> kNoWork{0, 1, 1, 0, 0, 1, 1, 0, 0};
+constexpr std::size_t kTurnsOfPath = 256;  // about: gl/pieces.hpp
+constexpr std::size_t kMostPaths = (std::size_t{1} << 28) / kTurnsOfPath;  // paths of a submission
+constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // that a key tells apart
+
+float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+
+/// What lamps, emissive surfaces and the sky typically make.
+float typicalOf(const Scene& scene) {
+  constexpr float kPi = 3.14159265f;
+  float result = analyse(scene).anyLight() ? typicalIrradiance(scene) : 0.0f;
+  for (const Material& material : scene.materials) result = std::max(result, kPi * largest(material.emission));
+  if (scene.environment) {
+    const glm::dvec3 mean = scene.environment->picture ? meanRadiance(*scene.environment->picture) : glm::dvec3(1.0);
+    result = std::max(result, kPi * largest(scene.environment->radiance * glm::vec3(mean)));
+  }
+  return result > 0.0f ? std::clamp(result, 1e-30f, 1e30f) : 1.0f;
+}
+
+}  // namespace
+
+bool LpvReceivers::isNeeded(const SceneNeeds& needs, Light light) {
+  const bool extended = needs.emission || needs.environment;
+  return light == Light::direct ? extended : needs.indirect || extended;
+}
+
+LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene, const glm::dvec3& origin,
+                           const LightPropagationVolume::Settings& settings, Light light)
+    : settings_(settings),
+      scene_(scene, analyse(scene), capabilities, PathScene::Settings{true, true, {}}),
+      rayOrigin_(scene_.origin() - origin),
+      referenceIrradiance_(typicalOf(scene)),
+      clearTexture_(capabilities.clearTexture),
+      cached_(settings.bounces == LightPropagationVolume::kAllBounces && light != Light::direct) {
+  CHECK(settings.rays >= 1 && settings.rays <= LPV_LANES && LPV_LANES % settings.rays == 0, "rays = {}", settings.rays);
+  const auto cells = static_cast<std::size_t>(settings.cascades.cells), cascades = static_cast<std::size_t>(settings.cascades.cascades);
+  const int layers = settings.cascades.cells * settings.cascades.cascades * LPV_FACES;
+  if (layers > capabilities.max3dTextureSize)
+    throwMissingCapability("lpv.cells={}: receivers take {} layers of a 3D texture; this driver has at most {} (GL_MAX_3D_TEXTURE_SIZE)", settings.cascades.cells,
+                           layers, capabilities.max3dTextureSize);
+  slots_ = cells * cells * cells * cascades * LPV_FACES;
+  // Surfaces cross a grid in some cells^2 cells; four times that, each with the faces that it leans to.
+  capacity_ = std::min(slots_, 24 * cells * cells * cascades);
+
+  const auto words = [&](const std::string& name, std::size_t count) {
+    if (count > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
+      throwMissingCapability("{}: {} texels; this driver's texture buffers have at most {} (GL_MAX_TEXTURE_BUFFER_SIZE)", name, count, capabilities.maxTextureBufferSize);
+    return gl::BufferTexture(name, GL_R32UI, count * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
+  };
+  slotTable_ = words("lpv slots", slots_);
+  keys_ = words("lpv keys", slots_);
+  seen_ = words("lpv seen", capacity_);
+  for (gl::Buffer& buffer : receivers_)
+    buffer = gl::Buffer("lpv receivers", capacity_ * sizeof(shared::LpvReceiver), nullptr, GL_DYNAMIC_COPY);
+  for (gl::Buffer& buffer : work_) buffer = gl::Buffer("lpv receivers' work", sizeof kNoWork, nullptr, GL_DYNAMIC_COPY);
+  lit_ = gl::Buffer("lpv lit receivers", std::min(capacity_, kMostPaths / static_cast<std::size_t>(settings.rays)) * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
+  lpvConstants_ = gl::Buffer("lpv constants", sizeof(shared::LpvConstants), nullptr, GL_DYNAMIC_DRAW);
+  constants_ = gl::Buffer("lpv receiver constants", sizeof(shared::LpvReceiverConstants), nullptr, GL_DYNAMIC_DRAW);
+  pathConstants_ = gl::Buffer("lpv path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW);
+  const gl::Sampling linear{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};
+  irradiance_ = gl::Texture("lpv received irradiance", settings.storage == LightPropagationVolume::Storage::full ? GL_RGBA32F : GL_RGBA16F,
+                            glm::ivec3(settings.cascades.cells, settings.cascades.cells, layers), linear);
+  ring_ = std::make_unique<gl::ReadBackRing>("lpv receiver counts", sizeof kNoWork);
+
+  scene_.fill(path_);
+  path_.minScatterings = light == Light::indirect ? 2 : 1;
+  path_.maxScatterings = light == Light::direct ? 1 : settings.bounces == LightPropagationVolume::kAllBounces ? 0xffffu : static_cast<std::uint32_t>(settings.bounces) + 1;
+  path_.turns = capabilities.softwareRenderer ? kSoftwareTurns : kMostTurns;
+
+  const gl::ShaderFlags common = lookupFlags(settings);
+  const auto with = [](gl::ShaderFlags flags, const gl::ShaderFlags& more) {
+    flags.insert(flags.end(), more.begin(), more.end());
+    return flags;
+  };
+  const gl::ShaderFlags rays = with(with(common, scene_.flags()), {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", settings.rays}});
+  mark_ = &programs.loadCompute("lpv mark receivers", "lpv/receivers/mark.comp", with(common, {{"CLAIM", 0}}));
+  claim_ = &programs.loadCompute("lpv claim receivers", "lpv/receivers/mark.comp", with(common, {{"CLAIM", 1}}));
+  keep_ = &programs.loadCompute("lpv keep receivers", "lpv/receivers/keep.comp", common);
+  list_ = &programs.loadCompute("lpv list receivers", "lpv/receivers/list.comp", rays);
+  paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
+  store_ = &programs.loadCompute("lpv store receivers", "lpv/receivers/store.comp", common);
+  forget();
+}
+
+gl::ShaderFlags LpvReceivers::lookupFlags(const LightPropagationVolume::Settings& settings) {
+  return {{"LPV_FULL_FLOAT", settings.storage == LightPropagationVolume::Storage::full}};
+}
+
+void LpvReceivers::forget() {
+  slotTable_.clear();
+  seen_.clear();
+  for (gl::Buffer& buffer : work_) buffer.upload(0, sizeof kNoWork, kNoWork.data());
+  const std::array<const gl::Texture*, 1> textures{&irradiance_};
+  gl::clearToZero(textures, clearTexture_);
+  cascades_.clear();
+  counts_ = {};
+}
+
+void LpvReceivers::place(const Inputs& inputs) {
+  const shared::LpvConstants lpv = lpvConstants(settings_, inputs.cascades, referenceIrradiance_);
+  lpvConstants_.upload(0, sizeof lpv, &lpv);
+  shared::LpvReceiverConstants constants{};
+  for (std::size_t k = 0; k < inputs.cascades.size(); ++k) constants.firstCell[k] = glm::ivec4(glm::ivec3(inputs.cascades[k].firstCell), 0);
+  constants.rayOrigin = glm::vec3(rayOrigin_);
+  constants.frame = ++frame_;
+  constants.capacity = static_cast<std::uint32_t>(capacity_);
+  constants.mostSegments = std::min(path_.maxScatterings, settings_.bounces == LightPropagationVolume::kAllBounces ? kSegmentsOfAll : path_.maxScatterings);
+  const glm::ivec2 size = inputs.visible.size();
+  const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  constants.markEvery = static_cast<std::uint32_t>((pixels + kKeyPixels - 1) / kKeyPixels);
+  constants_.upload(0, sizeof constants, &constants);
+
+  const Camera& camera = inputs.camera;
+  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)), up = glm::cross(right, camera.direction);
+  const double pixel = 2.0 * std::tan(0.5 * camera.verticalFov) / size.y;
+  path_.cameraPosition = glm::vec3(camera.position - rayOrigin_);
+  path_.pixelRight = glm::vec3(pixel * right);
+  path_.pixelUp = glm::vec3(pixel * up);
+  path_.firstPixel = glm::vec3(camera.direction - 0.5 * size.x * pixel * right - 0.5 * size.y * pixel * up);
+  path_.picture = glm::ivec4(size, 0, 0);
+  pathConstants_.upload(0, sizeof path_, &path_);
+}
+
+void LpvReceivers::bindReceivers() const {
+  lpvConstants_.bind(GL_UNIFORM_BUFFER, kLpvBinding);
+  constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
+  pathConstants_.bind(GL_UNIFORM_BUFFER, kPathBinding);
+  receivers_[0].bind(GL_SHADER_STORAGE_BUFFER, kReceiversBuffer);
+  work_[0].bind(GL_SHADER_STORAGE_BUFFER, kWorkBuffer);
+}
+
+// The grids have moved: what still lies in them is written to a new list, entered in the slots.
+void LpvReceivers::keep() {
+  std::swap(receivers_[0], receivers_[1]);
+  std::swap(work_[0], work_[1]);
+  work_[0].upload(0, sizeof kNoWork, kNoWork.data());
+  slotTable_.clear();
+  const gl::ComputePass pass("lpv keep receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  keep_->use();
+  bindReceivers();
+  receivers_[1].bind(GL_SHADER_STORAGE_BUFFER, kReceiversBuffer);
+  receivers_[0].bind(GL_SHADER_STORAGE_BUFFER, kKeptBuffer);
+  slotTable_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
+  work_[1].bind(GL_SHADER_STORAGE_BUFFER, kWorkBeforeBuffer);
+  pass.dispatchIndirect(work_[1]);
+}
+
+void LpvReceivers::mark(const Inputs& inputs) {
+  keys_.buffer().clear(0xffffffffu);
+  const glm::ivec3 size(inputs.visible.size(), 1), group(8, 8, 1);
+  {
+    const gl::ComputePass pass("lpv mark receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    mark_->use();
+    bindReceivers();
+    inputs.visible.bind(*mark_, inputs.worldFromClip);
+    slotTable_.bind(kSlotsUnit);
+    seen_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kReceiversBuffer);
+    keys_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
+    pass.dispatch(size, group);
+  }
+  const gl::ComputePass pass("lpv claim receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  claim_->use();
+  bindReceivers();
+  inputs.visible.bind(*claim_, inputs.worldFromClip);
+  slotTable_.bind(kSlotsUnit);
+  keys_.bind(kKeysUnit);
+  slotTable_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
+  pass.dispatch(size, group);
+}
+
+// Of receivers that are needed those that have fewer paths than `target`.
+void LpvReceivers::list(int target) {
+  const std::array<GLuint, 5> none{0, 1, 1, 0, frame_};
+  work_[0].upload(4 * sizeof(GLuint), sizeof none, none.data());
+  bindReceivers();
+  scene_.bind();
+  lit_.bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
+  const gl::ComputePass pass("lpv list receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  list_->use();
+  list_->set("mostLit", static_cast<unsigned>(lit_.bytes() / sizeof(GLuint)));
+  list_->set("pathTarget", static_cast<unsigned>(target));
+  seen_.bind(kSeenUnit);
+  pass.dispatchIndirect(work_[0]);
+}
+
+void LpvReceivers::light(int target) {
+  list(target);
+  const gl::ComputePass pass("lpv paths", GL_SHADER_STORAGE_BARRIER_BIT);
+  paths_->use();
+  irradiance_.bind(kIrradianceUnit);
+  pass.dispatchIndirect(work_[0], 4 * sizeof(GLuint));
+}
+
+void LpvReceivers::store() {
+  const std::array<const gl::Texture*, 1> textures{&irradiance_};
+  gl::clearToZero(textures, clearTexture_);
+  const gl::ComputePass pass("lpv store receivers", GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  store_->use();
+  store_->set("fullPaths", kFullPaths);
+  bindReceivers();
+  irradiance_.bindImage(0, GL_WRITE_ONLY);
+  pass.dispatchIndirect(work_[0]);
+}
+
+void LpvReceivers::update(const Inputs& inputs, int rounds) {
+  const bool moved = !cascades_.empty() && !std::equal(cascades_.begin(), cascades_.end(), inputs.cascades.begin(), inputs.cascades.end(),
+                                                       [](const Cascade& a, const Cascade& b) { return a.firstCell == b.firstCell; });
+  cascades_ = inputs.cascades;
+  place(inputs);
+  if (moved) keep();
+  mark(inputs);
+  for (int round = 0; round < rounds; ++round) {
+    if (cached_ && round > 0) store();
+    light(settings_.samples);
+  }
+  for (int paths = rounds * settings_.rays; paths < std::min(settings_.leastRays, settings_.samples); paths += settings_.rays) light(settings_.leastRays);
+  store();
+  list(settings_.samples);  // what is still to be done
+  ring_->copy(work_[0]);
+}
+
+void LpvReceivers::bindForLookup() const {
+  lpvConstants_.bind(GL_UNIFORM_BUFFER, kLpvBinding);
+  constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
+  irradiance_.bind(kIrradianceUnit);
+}
+
+void LpvReceivers::collect(bool wait) {
+  for (std::vector<GLuint> words = ring_->fetch(wait); !words.empty(); words = ring_->fetch(wait)) {
+    counts_.receivers = std::min<std::uint64_t>(words[3], capacity_);
+    counts_.left = words[3] - counts_.receivers;
+    counts_.waiting = words[7];
+    counts_.frame = words[8];
+  }
+}
+
+std::size_t LpvReceivers::gpuBytes() const {
+  std::size_t bytes = scene_.gpuBytes() + lpvConstants_.bytes() + constants_.bytes() + pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() +
+                      seen_.bytes() + irradiance_.bytes() + ring_->bytes();
+  for (std::size_t i = 0; i < 2; ++i) bytes += receivers_[i].bytes() + work_[i].bytes();
+  return bytes;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,97 @@
+// Receivers: irradiance kept at points of surfaces, in the cascades of the light propagation volume, found by paths.
+//
+// Irradiance along a surface is smooth even in a corner, where a field of radiance in space is not; so what is interpolated here are surface points. Each cell of
+// each cascade has six slots, an axis and a sign each; a slot holds one real point that the camera has seen and whose surface leans that way. Points
+// are kept while the camera moves, and their paths are added up while light and geometry stand still.
+//
+// In: a scene (PathScene), cascades, what the camera sees. Out: a layered 3D texture that shaders/lpv/receivers/lookup.glsl interpolates: irradiance in W per square scene
+// unit. Which light: emissive surfaces, the sky, and all that is scattered `bounces` times; sun and lamps light surfaces directly in forward shading.
+// Errors: Error(missingCapability) where a texture or buffer is larger than the driver's.
+// Source: README.md in this folder, section "Receivers".
+#pragma once
+
+#include "forward/visible_surfaces.hpp"
+#include "gl/context.hpp"
+#include "gl/program.hpp"
+#include "gl/read_back.hpp"
+#include "lpv/cascades.hpp"
+#include "lpv/light_propagation_volume.hpp"
+#include "pathtracer/path_scene.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace lucerna {
+
+class LpvReceivers {
+ public:
+  /// Light that is kept: what sun and lamps do not give by themselves. `direct`: of emissive surfaces and the sky, once scattered.
+  enum class Light { all, direct, indirect };
+  struct Inputs {
+    std::vector<Cascade> cascades;  ///< finest first, as many as in the settings
+    Camera camera;                  ///< of the visible surfaces, among the frame's positions
+    glm::mat4 worldFromClip;        ///< the same
+    const VisibleSurfaces& visible;
+  };
+  /// Of the last frame whose counts have arrived.
+  struct Counts {
+    std::uint64_t receivers = 0;  ///< that there are
+    std::uint64_t waiting = 0;    ///< of those that are needed, still lack paths
+    std::uint64_t left = 0;       ///< without room
+    std::uint32_t frame = 0;      ///< as frame() counts them
+  };
+
+  /// `scene`: as loaded. `origin`: of the frame's positions, in the scene's coordinates.
+  LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene, const glm::dvec3& origin,
+               const LightPropagationVolume::Settings& settings, Light light);
+
+  static bool isNeeded(const SceneNeeds& needs, Light light);
+
+  /// A frame: finds receivers for what is visible, and gives those that lack paths Settings::rays of them, new ones Settings::leastRays.
+  /// rounds: as many frames' paths at once.
+  void update(const Inputs& inputs, int rounds = 1);
+  /// All that is kept is dropped, as before the first frame.
+  void forget();
+
+  /// Binds blocks 1 and 6 and unit 5 for shaders/lpv/receivers/lookup.glsl.
+  void bindForLookup() const;
+  static gl::ShaderFlags lookupFlags(const LightPropagationVolume::Settings& settings);
+
+  void collect(bool wait = false);
+  const Counts& counts() const { return counts_; }
+  const LightPropagationVolume::Settings& settings() const { return settings_; }
+  std::uint32_t frame() const { return frame_; }  ///< the last update's number
+  const gl::Texture& irradiance() const { return irradiance_; }
+  std::size_t gpuBytes() const;
+
+ private:
+  void place(const Inputs& inputs);
+  void keep();
+  void mark(const Inputs& inputs);
+  void list(int target);
+  void light(int target);
+  void store();
+  void bindReceivers() const;
+
+  LightPropagationVolume::Settings settings_;
+  PathScene scene_;
+  glm::dvec3 rayOrigin_;  ///< among the frame's positions
+  float referenceIrradiance_;  ///< of the order of what there is; only scales the stored values
+  bool clearTexture_;
+  bool cached_;  ///< paths end at receivers
+  std::size_t slots_, capacity_;
+  std::uint32_t frame_ = 0;
+  std::vector<Cascade> cascades_;  ///< of the frame before
+  shared::PathConstants path_{};
+  const gl::Program *mark_, *claim_, *keep_, *list_, *paths_, *store_;
+  gl::Buffer lpvConstants_, constants_, pathConstants_, lit_;
+  std::array<gl::Buffer, 2> receivers_, work_;  ///< the second of each: before the cascades moved
+  gl::BufferTexture slotTable_, keys_, seen_;
+  gl::Texture irradiance_;
+  std::unique_ptr<gl::ReadBackRing> ring_;
+  Counts counts_;
+};
+
+}  // namespace lucerna

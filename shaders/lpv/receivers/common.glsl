@@ -1,0 +1,16 @@
+// Receivers: each cell of each cascade has six slots, one a direction of axis and sign; a slot holds one real point of a surface that faces that way.
+// Slots are addressed by the cell's number from the origin, modulo the cascade's cells, so that a receiver keeps its slot while the grid moves.
+#include "lpv/common.glsl"
+#include "shared/lpv_receivers.h"
+layout(std140, binding = 6) uniform LpvReceiverBlock { LpvReceiverConstants receiving; };
+
+int faceOf(int axis, float component) { return 2 * axis + (component < 0.0 ? 1 : 0); }
+
+// cell: counted from the origin.
+int slotOf(int cascade, int face, ivec3 cell) {
+  int cells = lpv.shape.x;
+  ivec3 place = cell - cells * ivec3(floor(vec3(cell) / float(cells)));
+  place -= cells * ivec3(greaterThanEqual(place, ivec3(cells)));
+  place += cells * ivec3(lessThan(place, ivec3(0)));
+  return ((((cascade * LPV_FACES + face) * cells) + place.z) * cells + place.y) * cells + place.x;
+}

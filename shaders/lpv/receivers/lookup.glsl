@@ -1,0 +1,37 @@
+// Irradiance at a surface from the receivers around it: for each axis the receivers whose surface leans the way of the normal, trilinear among those that
+// there are, weighted by the square of the normal's component. Alpha is how much a receiver counts, 0 in empty cells.
+#include "lpv/receivers/common.glsl"
+#include "lpv/cascade_weight.glsl"
+layout(binding = 5) uniform sampler3D lpvReceived;  // faces of cascades stacked along z
+
+// xyz: irradiance over E_ref, times w; w: how much there is to interpolate from.
+vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
+  float cells = float(lpv.shape.x);
+  vec3 texel = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize;
+  texel.z = clamp(texel.z, 0.5, cells - 0.5);  // the next face's layers follow
+  vec3 uvw = texel / vec3(cells, cells, cells * float(lpv.shape.y * LPV_FACES));
+  vec4 sum = vec4(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    float layer = float(k * LPV_FACES + faceOf(axis, normal[axis])) / float(lpv.shape.y * LPV_FACES);
+    sum += normal[axis] * normal[axis] * textureLod(lpvReceived, uvw + vec3(0.0, 0.0, layer), 0.0);
+  }
+  return sum;
+}
+
+// From the finest cascade to the coarsest, each blended into the next near its border; where one has nothing the next takes its place.
+// found: false where none has anything.
+vec3 receivedIrradiance(vec3 position, vec3 normal, out bool found) {
+  const float kLeast = 1.0 / 64.0;
+  vec3 irradiance = vec3(0.0);
+  float left = 1.0;
+  for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
+    float weight = left * lpvCascadeWeight(k, position);
+    if (!(weight > 0.0)) continue;
+    vec4 here = receivedInCascade(k, position, normal);
+    if (here.w < kLeast) continue;
+    irradiance += weight * here.rgb / here.w;
+    left -= weight;
+  }
+  found = left < 1.0;
+  return found ? irradiance * (lpv.referenceIrradiance / (1.0 - left)) : vec3(0.0);
+}

@@ -1,0 +1,60 @@
+// Which slots the camera needs: each pixel names those of its cell, in every cascade that counts there, for each axis that its normal leans to. Slots that hold
+// a receiver keep it. For an empty one the pixel nearest to its cell's centre and most along its axis wins: a real point, never a mean of several, which
+// would lie buried in edges and corners. First pass: the best key of each empty slot; second pass, CLAIM: the winner makes the receiver.
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "lpv/receivers/common.glsl"
+#include "lpv/receivers/work.glsl"
+#include "lpv/cascade_weight.glsl"
+#include "forward/visible.glsl"
+layout(binding = 0) uniform usamplerBuffer lpvSlots;  // 0: empty, else the receiver's index and 1
+#if CLAIM
+layout(binding = 1) uniform usamplerBuffer lpvKeys;
+layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
+layout(std430, binding = 1) restrict buffer LpvSlots { uint slots[]; };
+#else
+layout(std430, binding = 0) restrict buffer LpvSeen { uint seen[]; };
+layout(std430, binding = 1) restrict buffer LpvKeys { uint keys[]; };
+#endif
+
+const float kLeans = 0.02;  // square of the component from which a normal's slot is filled
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(visibleDepth, 0);
+  if (any(greaterThanEqual(pixel, size)) || !isVisibleSurface(pixel)) return;
+  uint number = uint(pixel.y * size.x + pixel.x);
+  if (number % receiving.markEvery != 0u) return;
+  vec3 position = visiblePosition(pixel), normal = visibleUnitNormal(pixel);
+  float left = 1.0;
+  for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
+    float weight = left * lpvCascadeWeight(k, position);
+    if (!(weight > 0.0)) continue;
+    left -= weight;
+    vec3 inCells = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize;
+    ivec3 cell = ivec3(floor(inCells));
+    if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(lpv.shape.x)))) continue;
+    float offCentre = length(inCells - vec3(cell) - 0.5);
+    cell += receiving.firstCell[k].xyz;
+    for (int axis = 0; axis < 3; ++axis) {
+      float lean = normal[axis] * normal[axis];
+      if (lean < kLeans) continue;
+      int face = faceOf(axis, normal[axis]);
+      int slot = slotOf(k, face, cell);
+      uint holds = texelFetch(lpvSlots, slot).x;
+      uint score = uint(min((offCentre + 0.5 * (1.0 - lean)) * (511.0 / 1.5), 511.0));
+      uint key = score << 23u | number / receiving.markEvery;
+#if CLAIM
+      if (holds != 0u || texelFetch(lpvKeys, slot).x != key) continue;
+      uint index = atomicAdd(work.wanted, 1u);
+      if (index >= receiving.capacity) continue;
+      atomicMax(work.allGroupsX, index / uint(LPV_LANES) + 1u);
+      receivers[index] = LpvReceiver(ivec4(cell, k * LPV_FACES + face), LPV_UNPLACED, 0u, 0.0, 0.0, vec3(0.0), 0u, receiving.frame, number, 0u, 0u);
+      slots[slot] = index + 1u;
+#else
+      if (holds != 0u)
+        seen[holds - 1u] = receiving.frame;
+      else
+        atomicMin(keys[slot], key);
+#endif
+    }
+  }
+}

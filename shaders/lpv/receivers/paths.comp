@@ -1,0 +1,157 @@
+// Irradiance at receivers by paths: PATHS lanes follow one each from a receiver, and their mean is added to what the receiver has.
+//
+// A path leaves the receiver by the cosine and asks one light at each surface, weighted against each other [Veach1997], as the path tracer's do
+// (pathtracer/path.comp), whose triangles, materials, lights and random numbers these are. Every surface is Lambert's, as forward shading takes it. Sun, spots
+// and omnidirectional lamps do not light the receiver itself: forward shading does that in each pixel.
+// CACHED: where a path's hit lies among receivers, their irradiance of the frame before stands for all that would follow, so that one bounce a frame adds up to all of them;
+// elsewhere the path goes on.
+layout(local_size_x = 64) in;  // LPV_LANES; GLSL 4.30 takes literals alone
+#include "shared/path_tracer.h"
+layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
+#include "pathtracer/random.glsl"
+#include "pathtracer/bsdf.glsl"
+#include "pathtracer/materials.glsl"
+#include "pathtracer/bvh.glsl"
+#include "pathtracer/environment.glsl"
+#if NEXT_EVENT
+#include "pathtracer/lights.glsl"
+#endif
+#if CACHED
+#include "lpv/receivers/lookup.glsl"
+#else
+#include "lpv/receivers/common.glsl"
+#endif
+layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
+#include "lpv/receivers/work.glsl"
+layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
+shared vec3 found[LPV_LANES];
+
+bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
+
+// Light that the receiver itself is given by emissive surfaces and the sky is part of what is kept, and so of what is looked up.
+bool keepsDirectLight() { return tracer.minScatterings <= 1u; }
+
+struct Shadow {
+  bool waits;
+  vec3 light;  // what it adds where nothing is in the way
+  Ray ray;
+};
+
+#if NEXT_EVENT
+// One light asked from a surface of reflectance `throughput` * pi over irradiance; scatterings: those at and before it.
+Shadow askLight(Surface surface, vec3 throughput, uint scatterings, bool lampsAlone, PathNumbers numbers) {
+  Shadow shadow = Shadow(false, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0));
+  LightSample light;
+  if (!sampleLight(surface.position, randomPair(numbers, scatterings, kPurposeLight), randomWords(numbers, scatterings, kPurposePick), light)) return shadow;
+  bool isLamp = light.pdf == 0.0;
+  if (isLamp ? scatterings == 1u : lampsAlone) return shadow;
+  float cosine = dot(light.direction, surface.normal);
+  if (!(cosine > 0.0 && dot(light.direction, surface.geometricNormal) > 0.0)) return shadow;
+  shadow.light = throughput * light.value * (cosine / kPi);
+  if (!isLamp) shadow.light *= powerHeuristic(light.pdf, cosine / kPi);
+  vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
+  shadow.ray = Ray(start, 0.0, light.infinite ? light.direction : light.end - start, light.infinite ? 3e38 : 1.0);
+  shadow.waits = any(greaterThan(shadow.light, vec3(0.0)));
+  return shadow;
+}
+#endif
+
+// Radiance that reaches the receiver along one path, drawn by the cosine: irradiance is pi times its mean.
+vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
+  vec3 radiance = vec3(0.0), throughput = vec3(1.0);
+  Shadow shadow;
+  shadow.waits = false;
+  Ray ray;
+  float pdf = 0.0;
+  uint scatterings = 0u;
+  bool arrives = true, ends = false;  // at `surface`; after the shadow ray that waits
+  for (;;) {
+    if (arrives) {
+      arrives = false;
+      ++scatterings;
+      bool cached = false;
+#if CACHED
+      if (scatterings > 1u) {
+        vec3 kept = receivedIrradiance(surface.position + receiving.rayOrigin, surface.normal, cached);
+        radiance += throughput * kept / kPi;
+        ends = cached;
+      }
+#endif
+#if NEXT_EVENT
+      if (counts(scatterings)) shadow = askLight(surface, throughput, scatterings, cached && keepsDirectLight(), numbers);
+#endif
+      if (!ends) {
+        vec3 direction = cosineSample(surface.normal, randomPair(numbers, scatterings, kPurposeScatter));
+        pdf = dot(direction, surface.normal) / kPi;
+        ray = Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
+        ends = !(dot(direction, surface.geometricNormal) > 0.0) || scatterings >= receiving.mostSegments + 1u || loopTurns >= tracer.turns;
+      }
+      if (ends && !shadow.waits) break;
+    }
+    // One traversal for both kinds of rays, since drivers inline every call.
+    bool isShadow = shadow.waits;
+    Ray traced = ray;
+    if (isShadow) traced = shadow.ray;
+    BvhTraversal traversal = beginRay(traced, triangle);
+    while (!isDone(traversal)) advanceRay(traversal, isShadow);
+    if (isShadow) {
+      if (traversal.hit.triangle == kNoHit) radiance += shadow.light;
+      shadow.waits = false;
+      if (ends) break;
+      continue;
+    }
+    Hit hit = finishRay(traversal, traced.direction);
+    if (hit.triangle == kNoHit) {
+#if ENVIRONMENT
+      if (counts(scatterings)) {
+        vec3 sky = environmentRadiance(ray.direction);
+#if ENVIRONMENT_PICTURE && NEXT_EVENT
+        sky *= powerHeuristic(pdf, tracer.environmentPick * environmentPdf(ray.direction));
+#endif
+        radiance += throughput * sky;
+      }
+#endif
+      break;
+    }
+    surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
+    triangle = hit.triangle;
+#if EMISSION
+    if (counts(scatterings)) {
+      vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
+#if NEXT_EVENT
+      emission *= powerHeuristic(pdf, pickDensity(hit.triangle) * hit.t * hit.t / -dot(surface.geometricNormal, ray.direction));
+#endif
+      radiance += throughput * emission;
+    }
+#endif
+    if (scatterings >= tracer.maxScatterings) break;
+    throughput *= albedoAt(surface);
+    float survival = scatterings < 3u ? 1.0 : min(max(throughput.x, max(throughput.y, throughput.z)), 1.0);  // roulette [Arvo1990]
+    if (!(unitFloat(randomWords(numbers, scatterings, kPurposeChoice).x) < survival)) break;
+    throughput /= survival;
+    arrives = true;
+  }
+  return radiance;
+}
+
+void main() {
+  uint lane = gl_LocalInvocationID.x, place = (gl_WorkGroupID.x * uint(LPV_LANES) + lane) / uint(PATHS);
+  bool there = place < min(work.waiting, uint(lit.length()));
+  uint index = lit[there ? place : 0u];
+  LpvReceiver receiver = receivers[index];
+  found[lane] = vec3(0.0);
+  if (there) {
+    uint first = receiver.triangle * TRIANGLE_WORDS;
+    vec3 normal = uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
+    Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third), receiver.front != 0u ? -normal : normal);
+    // The place decides the numbers, not the order in which receivers were found.
+    found[lane] = followPath(surface, receiver.triangle, PathNumbers(pcg4d(uvec4(receiver.cell)).x, receiver.paths + lane % uint(PATHS), tracer.seed));
+  }
+  barrier();
+  if (!there || lane % uint(PATHS) != 0u) return;
+  vec3 sum = vec3(0.0);
+  for (uint i = lane; i < lane + uint(PATHS); ++i) sum += found[i];
+  uint paths = receiver.paths + uint(PATHS);
+  receivers[index].irradiance = receiver.irradiance + (kPi * sum - float(PATHS) * receiver.irradiance) / float(paths);
+  receivers[index].paths = paths;
+}
