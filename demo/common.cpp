@@ -114,8 +114,10 @@ struct Setting {
 const Setting kSettings[] = {
     SETTING("lpv.cells", "cells a side of every cascade (32)", s.lpv.cascades.cells = parseNumber(k, v, 1, 128)),
     SETTING("lpv.cascades", "nested grids (3)", s.lpv.cascades.cascades = parseNumber(k, v, 1, LPV_MAX_CASCADES)),
-    SETTING("lpv.transport", "how light gets to what is looked up: propagate, through the grids' cells; rays, along paths to points of surfaces (propagate)",
-            s.lpv.transport = parseChoice(k, v, {LpvTransport::propagate, LpvTransport::rays})),
+    SETTING("lpv.transport", "how light gets to what is looked up: propagate, through the grids' cells; to points of surfaces: gather, from the lights' maps; rays, along paths (propagate)",
+            s.lpv.transport = parseChoice(k, v, {LpvTransport::propagate, LpvTransport::gather, LpvTransport::rays})),
+    SETTING("lpv.visibility", "of gathered light: voxels or none (voxels)", s.lpv.visibility = parseChoice(k, v, {LpvVisibility::voxels, LpvVisibility::none})),
+    SETTING("lpv.voxels", "of gathered light: voxels along the longest side of the scene (256)", s.lpv.voxels = parseNumber(k, v, 1, 1024)),
     SETTING("lpv.lookup", "irradiance from propagated light: flux, as the kernel sends it; published, 1.91 times as much (flux)",
             s.lpv.lookup = parseChoice(k, v, {LpvLookup::flux, LpvLookup::published})),
     SETTING("lpv.rays", "with transport rays: paths of a receiver and frame, 1, 2, 4, ... 64 (16)", s.lpv.rays = parsePowerOfTwo(k, v, 64)),

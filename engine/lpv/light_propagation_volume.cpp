@@ -29,7 +29,10 @@ std::string_view nameOf(LpvFill fill) {
 }
 
 std::string_view nameOf(LpvLookup lookup) { return lookup == LpvLookup::flux ? "flux" : "published"; }
-std::string_view nameOf(LpvTransport transport) { return transport == LpvTransport::propagate ? "propagate" : "rays"; }
+std::string_view nameOf(LpvTransport transport) {
+  return transport == LpvTransport::propagate ? "propagate" : transport == LpvTransport::gather ? "gather" : "rays";
+}
+std::string_view nameOf(LpvVisibility visibility) { return visibility == LpvVisibility::none ? "none" : "voxels"; }
 
 std::string_view nameOf(LpvPropagate propagate) {
   return propagate == LpvPropagate::compute ? "compute" : propagate == LpvPropagate::layered ? "layered" : "slices";

@@ -30,10 +30,14 @@ std::string_view nameOf(LpvPropagate propagate);
 enum class LpvLookup { flux, published };
 std::string_view nameOf(LpvLookup lookup);
 
-/// How light gets from what is lit to what is looked up. `propagate`: through the grids' cells, step by step, as published. `rays`: to receivers, points of
-/// surfaces, along paths (receivers.hpp).
-enum class LpvTransport { propagate, rays };
+/// How light gets from what is lit to what is looked up. `propagate`: through the grids' cells, step by step, as published. The others to receivers, points of
+/// surfaces (receivers.hpp): `gather` from the lights' maps, one bounce; `rays` along paths.
+enum class LpvTransport { propagate, gather, rays };
 std::string_view nameOf(LpvTransport transport);
+
+/// What light that is gathered passes through: everything, or everything but the voxels in which surfaces lie.
+enum class LpvVisibility { none, voxels };
+std::string_view nameOf(LpvVisibility visibility);
 
 /// Whose surfels fill the geometry volume: those that the lights' maps see, those that the camera sees, or both.
 enum class LpvSurfels { rsm, camera, both };
@@ -77,6 +81,8 @@ class LightPropagationVolume {
     float blendBand = 0.25f;    ///< fraction of a cascade's half extent over which it fades into the next
     int handOver = 0;           ///< steps after which a finer cascade takes light from the coarser one; 0: handOverStep()
     std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not set: as the lookup was meant
+    LpvVisibility visibility = LpvVisibility::voxels;  ///< of LpvTransport::gather
+    int voxels = 256;           ///< the same: along the longest side of the scene
     int rays = 16;              ///< of LpvTransport::rays: paths of a receiver and frame, 1, 2, 4 ... 64
     int leastRays = 64;         ///< the same: paths that a receiver has in the frame in which it is first needed, at least
     int samples = 512;          ///< the same: paths of a receiver while light and geometry stand still

@@ -3,6 +3,8 @@
 #include "base/error.hpp"
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
+#include "lpv/surface_voxels.hpp"
+#include "rsm/rsm_gather.hpp"
 #include "pathtracer/light_table.hpp"
 #include "shared/lpv_receivers.h"
 
@@ -15,7 +17,7 @@ namespace {
 
 constexpr GLuint kLpvBinding = 1, kPathBinding = 5, kConstantsBinding = 6;  // GL_UNIFORM_BUFFER
 constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kIrradianceUnit = 5, kSeenUnit = 6;
+constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kIrradianceUnit = 5, kSeenUnit = 6, kVoxelsUnit = 6, kTreeUnit = 7;
 constexpr std::uint32_t kSegmentsOfAll = 8;  // of a path that finds no receivers to end at
 constexpr float kFullPaths = 256.0f;  // from which a receiver counts fully
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // as the path tracer's, less a segment's
@@ -40,14 +42,16 @@ float typicalOf(const Scene& scene) {
 
 }  // namespace
 
-bool LpvReceivers::isNeeded(const SceneNeeds& needs, Light light) {
-  const bool extended = needs.emission || needs.environment;
+bool LpvReceivers::isNeeded(const SceneNeeds& needs, LpvTransport transport, Light light) {
+  const bool extended = (needs.emission && transport == LpvTransport::rays) || needs.environment;
   return light == Light::direct ? extended : needs.indirect || extended;
 }
 
 LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene, const glm::dvec3& origin,
                            const LightPropagationVolume::Settings& settings, Light light)
     : settings_(settings),
+      programs_(&programs),
+      capabilities_(&capabilities),
       scene_(scene, analyse(scene), capabilities, PathScene::Settings{true, true, {}}),
       rayOrigin_(scene_.origin() - origin),
       referenceIrradiance_(typicalOf(scene)),
@@ -59,6 +63,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   if (layers > capabilities.max3dTextureSize)
     throwMissingCapability("lpv.cells={}: receivers take {} layers of a 3D texture; this driver has at most {} (GL_MAX_3D_TEXTURE_SIZE)", settings.cascades.cells,
                            layers, capabilities.max3dTextureSize);
+  const int lanes = settings.transport == LpvTransport::rays ? settings.rays : LPV_LANES;  // of a receiver
   slots_ = cells * cells * cells * cascades * LPV_FACES;
   // Surfaces cross a grid in some cells^2 cells; four times that, each with the faces that it leans to.
   capacity_ = std::min(slots_, 24 * cells * cells * cascades);
@@ -74,7 +79,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   for (gl::Buffer& buffer : receivers_)
     buffer = gl::Buffer("lpv receivers", capacity_ * sizeof(shared::LpvReceiver), nullptr, GL_DYNAMIC_COPY);
   for (gl::Buffer& buffer : work_) buffer = gl::Buffer("lpv receivers' work", sizeof kNoWork, nullptr, GL_DYNAMIC_COPY);
-  lit_ = gl::Buffer("lpv lit receivers", std::min(capacity_, kMostPaths / static_cast<std::size_t>(settings.rays)) * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
+  lit_ = gl::Buffer("lpv lit receivers", std::min(capacity_, kMostPaths / static_cast<std::size_t>(lanes)) * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
   lpvConstants_ = gl::Buffer("lpv constants", sizeof(shared::LpvConstants), nullptr, GL_DYNAMIC_DRAW);
   constants_ = gl::Buffer("lpv receiver constants", sizeof(shared::LpvReceiverConstants), nullptr, GL_DYNAMIC_DRAW);
   pathConstants_ = gl::Buffer("lpv path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW);
@@ -93,13 +98,33 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
     flags.insert(flags.end(), more.begin(), more.end());
     return flags;
   };
-  const gl::ShaderFlags rays = with(with(common, scene_.flags()), {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", settings.rays}});
+  const gl::ShaderFlags rays = with(with(common, scene_.flags()), {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", lanes}});
   mark_ = &programs.loadCompute("lpv mark receivers", "lpv/receivers/mark.comp", with(common, {{"CLAIM", 0}}));
   claim_ = &programs.loadCompute("lpv claim receivers", "lpv/receivers/mark.comp", with(common, {{"CLAIM", 1}}));
   keep_ = &programs.loadCompute("lpv keep receivers", "lpv/receivers/keep.comp", common);
   list_ = &programs.loadCompute("lpv list receivers", "lpv/receivers/list.comp", rays);
-  paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
+  if (settings.transport == LpvTransport::rays) paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
   store_ = &programs.loadCompute("lpv store receivers", "lpv/receivers/store.comp", common);
+  if (settings.transport == LpvTransport::gather) {
+    if (settings.bounces != 1) throwBadInput("lpv.bounces={}: lpv.transport=gather gathers one bounce; rays has more", settings.bounces == LightPropagationVolume::kAllBounces ? "all" : std::to_string(settings.bounces));
+    const SceneNeeds needs = analyse(scene);
+    const bool voxels = settings.visibility == LpvVisibility::voxels;
+    const auto load = [&](const char* name, bool sky, bool perspective) {
+      return &programs.loadCompute(name, "lpv/gather/gather.comp",
+                                   with(common, {{"SKY", sky}, {"PERSPECTIVE", perspective}, {"VOXELS", voxels}, {"NEAR", static_cast<int>(RsmGather::Near::quad)}, {"LINEAR_SEEDS", 0}, {"GLOSSY", 0},
+                                                 {"ENVIRONMENT", needs.environment}, {"ENVIRONMENT_PICTURE", needs.environmentPicture}}));
+    };
+    if (needs.directionalLight && light != Light::direct) gatherSun_ = load("lpv gather sun", false, false);
+    if ((needs.spotLights || needs.pointLights) && light != Light::direct) gatherLamp_ = load("lpv gather lamp", false, true);
+    if (needs.environment && light != Light::indirect) gatherSky_ = load("lpv gather sky", true, false);
+    if (voxels) {
+      const SurfaceVoxels surfaces = surfaceVoxels(scene, settings.voxels);
+      voxelMinimum_ = glm::vec3(surfaces.minimum - origin);
+      voxelSize_ = static_cast<float>(surfaces.size);
+      voxelBricks_ = surfaces.bricks;
+      voxels_ = gl::BufferTexture("lpv voxels", GL_RG32UI, surfaces.bits.size() * sizeof(glm::uvec2), surfaces.bits.data());
+    }
+  }
   forget();
 }
 
@@ -212,6 +237,38 @@ void LpvReceivers::light(int target) {
   pass.dispatchIndirect(work_[0], 4 * sizeof(GLuint));
 }
 
+// Receivers that are new gather from every map and from the sky; those that have gathered are done while the maps stay.
+void LpvReceivers::gather(const Inputs& inputs) {
+  if (gatherSun_ || gatherLamp_) {
+    const bool first = trees_.empty();
+    for (std::size_t i = 0; i < inputs.maps.size(); ++i) {
+      const ReflectiveShadowMap::Outputs& map = inputs.maps[i];
+      if (first) trees_.emplace_back(*programs_, *capabilities_, map.position.size().x, map.position.size().z);
+      if (first || inputs.mapsAreNew) trees_[i].build(map);
+    }
+  }
+  list(1);
+  std::vector<const gl::Program*> todo;
+  if (gatherSun_ || gatherLamp_)
+    for (const ReflectiveShadowMap::Outputs& map : inputs.maps) todo.push_back(map.light == ReflectiveShadowMap::Light::sun ? gatherSun_ : gatherLamp_);
+  if (gatherSky_) todo.push_back(gatherSky_);
+  for (std::size_t i = 0; i < todo.size(); ++i) {
+    const gl::ComputePass pass("lpv gather", GL_SHADER_STORAGE_BARRIER_BIT);
+    const gl::Program& program = *todo[i];
+    program.use();
+    program.set("last", i + 1 == todo.size() ? 1u : 0u);
+    program.set("voxelMinimum", voxelMinimum_);
+    program.set("voxelSize", voxelSize_);
+    program.set("voxelBrickCount", voxelBricks_);
+    if (voxels_.bytes() > 0) voxels_.bind(kVoxelsUnit);
+    if (&program != gatherSky_) {
+      inputs.maps[i].bind();
+      trees_[i].bind(program, kTreeUnit);
+    }
+    pass.dispatchIndirect(work_[0], 4 * sizeof(GLuint));
+  }
+}
+
 void LpvReceivers::store() {
   const std::array<const gl::Texture*, 1> textures{&irradiance_};
   gl::clearToZero(textures, clearTexture_);
@@ -230,6 +287,13 @@ void LpvReceivers::update(const Inputs& inputs, int rounds) {
   place(inputs);
   if (moved) keep();
   mark(inputs);
+  if (settings_.transport == LpvTransport::gather) {
+    gather(inputs);
+    store();
+    list(1);
+    ring_->copy(work_[0]);
+    return;
+  }
   for (int round = 0; round < rounds; ++round) {
     if (cached_ && round > 0) store();
     light(settings_.samples);
@@ -257,7 +321,8 @@ void LpvReceivers::collect(bool wait) {
 
 std::size_t LpvReceivers::gpuBytes() const {
   std::size_t bytes = scene_.gpuBytes() + lpvConstants_.bytes() + constants_.bytes() + pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() +
-                      seen_.bytes() + irradiance_.bytes() + ring_->bytes();
+                      seen_.bytes() + irradiance_.bytes() + ring_->bytes() + voxels_.bytes();
+  for (const LightTree& tree : trees_) bytes += tree.gpuBytes();
   for (std::size_t i = 0; i < 2; ++i) bytes += receivers_[i].bytes() + work_[i].bytes();
   return bytes;
 }

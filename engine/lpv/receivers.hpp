@@ -1,10 +1,10 @@
-// Receivers: irradiance kept at points of surfaces, in the cascades of the light propagation volume, found by paths.
+// Receivers: irradiance kept at points of surfaces, in the cascades of the light propagation volume, gathered from the lights' maps or found by paths.
 //
 // Irradiance along a surface is smooth even in a corner, where a field of radiance in space is not; so what is interpolated here are surface points. Each cell of
 // each cascade has six slots, an axis and a sign each; a slot holds one real point that the camera has seen and whose surface leans that way. Points
 // are kept while the camera moves, and their paths are added up while light and geometry stand still.
 //
-// In: a scene (PathScene), cascades, what the camera sees. Out: a layered 3D texture that shaders/lpv/receivers/lookup.glsl interpolates: irradiance in W per square scene
+// In: a scene (PathScene), cascades, what the camera sees, maps of lights where their light is gathered. Out: a layered 3D texture that shaders/lpv/receivers/lookup.glsl interpolates: irradiance in W per square scene
 // unit. Which light: emissive surfaces, the sky, and all that is scattered `bounces` times; sun and lamps light surfaces directly in forward shading.
 // Errors: Error(missingCapability) where a texture or buffer is larger than the driver's.
 // Source: README.md in this folder, section "Receivers".
@@ -16,6 +16,7 @@
 #include "gl/read_back.hpp"
 #include "lpv/cascades.hpp"
 #include "lpv/light_propagation_volume.hpp"
+#include "lpv/light_tree.hpp"
 #include "pathtracer/path_scene.hpp"
 
 #include <array>
@@ -34,6 +35,9 @@ class LpvReceivers {
     Camera camera;                  ///< of the visible surfaces, among the frame's positions
     glm::mat4 worldFromClip;        ///< the same
     const VisibleSurfaces& visible;
+    /// Of LpvTransport::gather, one a light; the same ones every frame. Read where `mapsAreNew`, and by receivers that are new.
+    const std::vector<ReflectiveShadowMap::Outputs>& maps;
+    bool mapsAreNew;
   };
   /// Of the last frame whose counts have arrived.
   struct Counts {
@@ -47,7 +51,7 @@ class LpvReceivers {
   LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene, const glm::dvec3& origin,
                const LightPropagationVolume::Settings& settings, Light light);
 
-  static bool isNeeded(const SceneNeeds& needs, Light light);
+  static bool isNeeded(const SceneNeeds& needs, LpvTransport transport, Light light);
 
   /// A frame: finds receivers for what is visible, and gives those that lack paths Settings::rays of them, new ones Settings::leastRays.
   /// rounds: as many frames' paths at once.
@@ -72,10 +76,13 @@ class LpvReceivers {
   void mark(const Inputs& inputs);
   void list(int target);
   void light(int target);
+  void gather(const Inputs& inputs);
   void store();
   void bindReceivers() const;
 
   LightPropagationVolume::Settings settings_;
+  gl::ProgramLibrary* programs_;
+  const gl::Capabilities* capabilities_;
   PathScene scene_;
   glm::dvec3 rayOrigin_;  ///< among the frame's positions
   float referenceIrradiance_;  ///< of the order of what there is; only scales the stored values
@@ -85,7 +92,14 @@ class LpvReceivers {
   std::uint32_t frame_ = 0;
   std::vector<Cascade> cascades_;  ///< of the frame before
   shared::PathConstants path_{};
-  const gl::Program *mark_, *claim_, *keep_, *list_, *paths_, *store_;
+  const gl::Program *mark_, *claim_, *keep_, *list_, *store_;
+  const gl::Program* paths_ = nullptr;  ///< of rays alone; what follows of gather
+  const gl::Program *gatherSun_ = nullptr, *gatherLamp_ = nullptr, *gatherSky_ = nullptr;
+  std::vector<LightTree> trees_;        ///< of each map, built as they come
+  glm::vec3 voxelMinimum_{0.0f};        ///< among the frame's positions
+  float voxelSize_ = 1.0f;
+  glm::ivec3 voxelBricks_{1};
+  gl::BufferTexture voxels_;
   gl::Buffer lpvConstants_, constants_, pathConstants_, lit_;
   std::array<gl::Buffer, 2> receivers_, work_;  ///< the second of each: before the cascades moved
   gl::BufferTexture slotTable_, keys_, seen_;

@@ -104,8 +104,8 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       origin_(exactOrigin(scene.bounds)),
       showsDirect_(needs_.anyLight() && settings.component != Component::indirect && settings.technique != Technique::radiosity),
       showsLpv_(settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::propagate && settings.component != Component::direct && LightPropagationVolume::isNeeded(needs_)),
-      showsReceivers_(settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::rays &&
-                      LpvReceivers::isNeeded(needs_, receivedLight(settings.component))),
+      showsReceivers_(settings.technique == Technique::lpv && settings.lpv.transport != LpvTransport::propagate &&
+                      LpvReceivers::isNeeded(needs_, settings.lpv.transport, receivedLight(settings.component))),
       showsGather_(settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs_)),
       exposure_(scene.exposure),
       timer_(context.capabilities().softwareRenderer),
@@ -118,7 +118,8 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   spots_ = spotViews(drawn);
   points_ = pointViews(drawn);
-  if ((showsDirect_ || showsLpv_) && LocalLights::isNeeded(needs_)) {
+  const bool showsGatheredMaps = showsReceivers_ && settings.lpv.transport == LpvTransport::gather && settings.component != Component::direct;
+  if ((showsDirect_ || showsLpv_ || showsGatheredMaps) && LocalLights::isNeeded(needs_)) {
     keepMostImportant(programs, gpuScene_, spots_, kMaxSpotLights);
     keepMostImportant(programs, gpuScene_, points_, kMaxPointLights);
   }
@@ -140,10 +141,13 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     if (light == Light::point) map.size = std::max(map.size / 2, 1);
     rsms_.emplace_back(programs, gpuScene_, map);
   };
-  if ((showsLpv_ || showsGather_) && needs_.directionalLight) addMap(Light::sun);
-  if (showsLpv_) {
+  if ((showsLpv_ || showsGather_ || showsGatheredMaps) && needs_.directionalLight) addMap(Light::sun);
+  if (showsLpv_ || showsGatheredMaps) {
     for (std::size_t i = 0; i < spots_.size(); ++i) addMap(Light::spot);
     for (std::size_t i = 0; i < points_.size(); ++i) addMap(Light::point);
+  }
+  if (showsGatheredMaps && needs_.emission) logWarning("lpv.transport=gather: emissive surfaces light nothing (rays has them)");
+  if (showsLpv_) {
     LightPropagationVolume::Settings volume = settings.lpv;
     if (volume.blocking && volume.iterations > 1 && volume.surfels != LpvSurfels::rsm) {
       ReflectiveShadowMap::Settings map;
@@ -307,6 +311,9 @@ bool Renderer::recordReceivers(const Camera& camera, const Camera& volumeCamera,
   const LpvReceivers::Counts& counts = receivers_->counts();
   settled_ = sameView && counts.frame >= receivedSince_ && counts.waiting == 0;
   if (settled_ && settings_.reuse) return false;
+  const bool mapsAreNew = !mapsAreMade();
+  const std::vector<ReflectiveShadowMap::Outputs> none;
+  const std::vector<ReflectiveShadowMap::Outputs>& maps = rsms_.empty() ? none : recordReflectiveShadowMaps();
   {
     const gl::TimeQuery::Scope stage(timer_, "geometry");
     const glm::mat4 cameraClip(clip);
@@ -315,7 +322,7 @@ bool Renderer::recordReceivers(const Camera& camera, const Camera& volumeCamera,
   }
   const gl::TimeQuery::Scope stage(timer_, "receivers");
   receivers_->update({placeCascades(settings_.lpv.cascades, gpuScene_.scene().bounds, volumeCamera.position, volumeCamera.direction), camera,
-                      glm::mat4(glm::inverse(clip)), *visible_}, rounds_);
+                      glm::mat4(glm::inverse(clip)), *visible_, maps, mapsAreNew}, rounds_);
   return true;
 }
 

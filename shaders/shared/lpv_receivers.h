@@ -8,6 +8,7 @@ SHARED_BEGIN
 #define LPV_FACES 6           // of a cell: 2 * axis + (1 where the normal points down the axis)
 #define LPV_UNPLACED 0xffffffffu  // a receiver's triangle before the ray of its pixel was traced
 #define LPV_NOWHERE 0xfffffffeu   // where that ray met nothing
+#define LPV_GATHERED 0xffffffu  // paths of a receiver whose light was gathered at once
 #define LPV_LANES 64          // of a work group, a path each
 
 struct LpvReceiver {
@@ -18,9 +19,10 @@ struct LpvReceiver {
   float third;
   vec3 irradiance;      // mean of all paths so far, W per square scene unit
   uint paths;
+  vec3 position;        // among the frame's positions
   uint born;            // frame in which a pixel found it
-  uint pixel;           // which
-  uint padding0, padding1;
+  vec3 normal;          // for shading, unit, on the side that is seen
+  uint pixel;           // that found it
 };
 
 struct LpvReceiverConstants {

@@ -27,7 +27,10 @@ void main() {
     triangle = hit.triangle == kNoHit ? LPV_NOWHERE : hit.triangle;
     receivers[index].triangle = triangle;
     if (triangle != LPV_NOWHERE) {
-      receivers[index].front = surfaceAt(hit.triangle, hit.barycentrics, ray.direction).front ? 1u : 0u;
+      Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
+      receivers[index].front = surface.front ? 1u : 0u;
+      receivers[index].position = surface.position + receiving.rayOrigin;
+      receivers[index].normal = surface.normal;
       receivers[index].second = hit.barycentrics.x;
       receivers[index].third = hit.barycentrics.y;
     }

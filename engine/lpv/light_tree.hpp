@@ -1,0 +1,32 @@
+// A hierarchy over the texels of a reflective shadow map, for gathering from all of them: a quadtree in a buffer, each node the mean of four
+// (shaders/lpv/gather/tree.glsl). In: a map. Out: nodes, in the units of the map: W, scene units.
+#pragma once
+
+#include "gl/context.hpp"
+#include "gl/program.hpp"
+#include "rsm/reflective_shadow_map.hpp"
+
+namespace lucerna {
+
+class LightTree {
+ public:
+  static constexpr int kTop = 32;  ///< nodes a side of the coarsest level, at most
+  /// size, layers: of the map.
+  LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers);
+
+  void build(const ReflectiveShadowMap::Outputs& map);
+  /// For a program in use that includes tree.glsl; the nodes as texels to `unit`.
+  void bind(const gl::Program& program, GLuint unit) const;
+  int levels() const { return levels_; }
+  std::size_t gpuBytes() const { return nodes_.bytes(); }
+  /// 12 words a node, level by level, the finest first; for tests.
+  std::vector<GLuint> readNodes() const { return nodes_.buffer().read<GLuint>(); }
+
+ private:
+  void setShape(const gl::Program& program) const;
+  int size_, layers_, levels_ = 1;
+  const gl::Program *fromTexels_, *fromNodes_;
+  gl::BufferTexture nodes_;
+};
+
+}  // namespace lucerna

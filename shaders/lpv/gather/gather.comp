@@ -1,0 +1,164 @@
+// Irradiance at receivers from a reflective shadow map, by a hierarchy over its texels (tree.glsl): a group of lanes gathers at one receiver.
+//
+// From a receiver at x with normal n a node of flux Phi, area A and mean normal n_p at p gives
+//   E = Phi c1 c2 / (pi (r^2 + A c2 / pi)),  c1 = <n, p - x>+ / r,  c2 = <n_p, x - p>+ / r:
+// a point [Dachsbacher2005] far away, a disc near by. What is nearer than OPEN radii is opened; what lies behind is passed over. Texels that are near take the outline that they
+// have in the sun's map (rsm/transfer.glsl).
+// Visibility: each lane keeps up to four of its nodes, drawn in proportion to what they give (reservoirs [Chao1982]); lanes that gave more send more rays, so that some 64 to 100
+// rays through voxels stand for all nodes. SKY: no map; each lane looks for the sky in one direction drawn by the cosine.
+layout(local_size_x = 64) in;  // LPV_LANES
+#include "shared/path_tracer.h"
+layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
+#include "pathtracer/random.glsl"
+#include "lpv/receivers/common.glsl"
+#include "lpv/receivers/work.glsl"
+#if VOXELS
+#include "lpv/gather/voxels.glsl"
+#endif
+#if SKY
+#include "pathtracer/bsdf.glsl"
+#include "pathtracer/environment.glsl"
+#else
+#include "rsm/transfer.glsl"
+#include "lpv/gather/tree.glsl"
+layout(binding = 7) uniform usamplerBuffer treeNodes;
+#endif
+layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
+layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
+uniform uint last;  // 1: after this dispatch receivers have all their light
+shared vec3 sums[LPV_LANES];
+shared float weights[LPV_LANES];
+
+const float kOff = 2.0;  // voxels that both ends of a ray lie off their surfaces
+
+#if !SKY
+const float kOpen = 2.0;     // radii
+const int kReservoirs = 4;
+const int kStack = 40;       // three siblings a level wait, and the levels are at most nine
+
+struct Candidate {
+  vec3 position, normal;
+};
+
+Candidate candidateOf(int layer, uint texel) {
+  ivec3 at = ivec3(int(texel & 0xffffu), int(texel >> 16u), layer);
+  return Candidate(texelFetch(rsmPosition, at, 0).xyz, texelFetch(rsmNormal, at, 0).xyz);
+}
+#endif
+
+vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share) {
+  vec3 sum = vec3(0.0);
+  share = 1.0;
+#if SKY
+  PathNumbers numbers = PathNumbers(pcg4d(cell).x, lane, tracer.seed);
+  vec3 direction = cosineSample(normal, randomPair(numbers, 1u, kPurposeScatter));
+#if VOXELS
+  vec3 from = position + kOff * voxelSize * normal;
+  if (isBlocked(from, from + direction * voxelSize, true)) direction = vec3(0.0);
+#endif
+  if (direction != vec3(0.0)) sum = environmentRadiance(direction) * (kPi / float(LPV_LANES));
+  weights[lane] = 0.0;
+  barrier();
+#else
+  uint chosen[kReservoirs];
+  int chosenLayer[kReservoirs];
+  for (int i = 0; i < kReservoirs; ++i) {
+    chosen[i] = 0u;
+    chosenLayer[i] = 0;
+  }
+  float weight = 0.0;
+  uvec4 numbers = pcg4d(cell ^ uvec4(0u, 0u, lane << 8u, 0x9e3779b9u));
+  ivec2 stack[kStack];  // x | y << 16, level | layer << 8
+  int width = treeWidth(treeLevels), top = treeLayers * width * width;
+  for (int first = int(lane); first < top; first += LPV_LANES) {
+    int inLayer = first % (width * width);
+    int depth = 0;
+    stack[depth++] = ivec2(inLayer % width | (inLayer / width) << 16, treeLevels | (first / (width * width)) << 8);
+    while (depth > 0) {
+      ivec2 entry = stack[--depth];
+      ivec2 place = ivec2(entry.x & 0xffff, entry.x >> 16);
+      int level = entry.y & 0xff, layer = entry.y >> 8;
+      vec3 given = vec3(0.0);
+      uint texel;
+      if (level == 0) {
+        texel = uint(place.x) | uint(place.y) << 16u;
+#if PERSPECTIVE
+        vec4 p = texelFetch(rsmPosition, ivec3(place, layer), 0), flux = texelFetch(rsmFlux, ivec3(place, layer), 0);
+        if (!(p.w > 0.5)) continue;
+        vec3 away = p.xyz - position;
+        float r2 = dot(away, away), r = sqrt(r2);
+        float c1 = dot(normal, away) / r, c2 = -dot(texelFetch(rsmNormal, ivec3(place, layer), 0).xyz, away) / r;
+        if (!(c1 > 0.0 && c2 > 0.0)) continue;
+        given = flux.rgb * (c1 * c2 / (kPi * r2 + flux.w * c2));
+#else
+        RsmSurfel surfel = rsmSurfel(place);
+        if (!surfel.lit) continue;
+        given = surfelIrradiance(surfel, position, normal);
+#endif
+      } else {
+        int at = treeNode(level, layer, place);
+        uvec4 a = texelFetch(treeNodes, at);
+        float radius = uintBitsToFloat(a.w);
+        if (radius < 0.0) continue;
+        vec3 away = uintBitsToFloat(a.xyz) - position;
+        if (dot(normal, away) < -radius) continue;
+        float r2 = dot(away, away);
+        if (r2 < kOpen * kOpen * radius * radius) {
+          ivec2 below = ivec2(treeWidth(level - 1));
+          for (int i = 0; i < 4; ++i) {
+            ivec2 childPlace = 2 * place + ivec2(i & 1, i >> 1);
+            if (all(lessThan(childPlace, below)) && depth < kStack) stack[depth++] = ivec2(childPlace.x | childPlace.y << 16, level - 1 | layer << 8);
+          }
+          continue;
+        }
+        uvec4 b = texelFetch(treeNodes, at + 1), c = texelFetch(treeNodes, at + 2);
+        float r = sqrt(r2), c1 = dot(normal, away) / r, c2 = -dot(uintBitsToFloat(b.xyz), away) / r;
+        if (!(c1 > 0.0 && c2 > 0.0)) continue;
+        given = uintBitsToFloat(c.xyz) * (c1 * c2 / (kPi * r2 + uintBitsToFloat(b.w) * c2));
+        texel = c.w;
+      }
+      float w = given.r + given.g + given.b;
+      if (!(w > 0.0)) continue;
+      sum += given;
+      weight += w;
+      numbers = pcg4d(numbers);
+      for (int i = 0; i < kReservoirs; ++i)
+        if (unitFloat(numbers[i]) * weight < w) {
+          chosen[i] = texel;
+          chosenLayer[i] = layer;
+        }
+    }
+  }
+  weights[lane] = weight;
+  barrier();
+  float all = 0.0;
+  for (int i = 0; i < LPV_LANES; ++i) all += weights[i];
+#if VOXELS
+  if (weight > 0.0) {
+    int rays = clamp(int(round(float(LPV_LANES) * weight / all)), 1, kReservoirs);
+    vec3 from = position + kOff * voxelSize * normal;
+    float open = 0.0;
+    for (int i = 0; i < rays; ++i) {
+      Candidate target = candidateOf(chosenLayer[i], chosen[i]);
+      if (!isBlocked(from, target.position + kOff * voxelSize * target.normal, false)) open += 1.0;
+    }
+    share = open / float(rays);
+  }
+#endif
+#endif
+  return sum;
+}
+
+void main() {
+  uint lane = gl_LocalInvocationID.x, index = lit[gl_WorkGroupID.x];
+  LpvReceiver receiver = receivers[index];
+  float share;
+  vec3 sum = gatherAt(receiver.position, receiver.normal, uvec4(receiver.cell), lane, share);
+  sums[lane] = share * sum;
+  barrier();
+  if (lane != 0u) return;
+  vec3 all = vec3(0.0);
+  for (int i = 0; i < LPV_LANES; ++i) all += sums[i];
+  receivers[index].irradiance = receiver.irradiance + all;
+  if (last != 0u) receivers[index].paths = LPV_GATHERED;
+}
