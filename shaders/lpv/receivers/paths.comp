@@ -65,6 +65,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
   float pdf = 0.0;
   uint scatterings = 0u;
   bool arrives = true, ends = false;  // at `surface`; after the shadow ray that waits
+  bool last = false;                  // where the next ray ends light is seen, nothing is scattered
   for (;;) {
     if (arrives) {
       arrives = false;
@@ -75,6 +76,11 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
         vec3 kept = receivedIrradiance(surface.position + receiving.rayOrigin, surface.normal, cached);
         radiance += throughput * kept / kPi;
         ends = cached;
+#if EMISSION || ENVIRONMENT
+        // What is kept without the direct light of shining surfaces and the sky lacks it at this surface, too: the other half of what asking a light finds is one more ray.
+        last = cached && !keepsDirectLight();
+        ends = cached && !last;
+#endif
       }
 #endif
 #if NEXT_EVENT
@@ -124,7 +130,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
       radiance += throughput * emission;
     }
 #endif
-    if (scatterings >= tracer.maxScatterings) break;
+    if (last || scatterings >= tracer.maxScatterings) break;
     throughput *= albedoAt(surface);
     float survival = scatterings < 3u ? 1.0 : min(max(throughput.x, max(throughput.y, throughput.z)), 1.0);  // roulette [Arvo1990]
     if (!(unitFloat(randomWords(numbers, scatterings, kPurposeChoice).x) < survival)) break;
