@@ -15,6 +15,7 @@ void main() {
   int cascade = receiver.cell.w / LPV_FACES;
   ivec3 place = receiver.cell.xyz - receiving.firstCell[cascade].xyz;
   if (any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(lpv.shape.x)))) return;
-  float counts = min(float(receiver.paths) / fullPaths, 1.0);
+  // No less than a quarter: times 1/8, the least share of a point's own cell, that is still more than the lookup asks for. Else what few paths have found would stay black.
+  float counts = clamp(float(receiver.paths) / fullPaths, 0.25, 1.0);
   imageStore(lpvReceived, ivec3(place.xy, receiver.cell.w * lpv.shape.x + place.z), counts * vec4(receiver.irradiance / lpv.referenceIrradiance, 1.0));
 }
