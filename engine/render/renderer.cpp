@@ -218,6 +218,7 @@ void Renderer::resize(glm::ivec2 size) {
   allocateTargets();
   if (visible_) visible_->resize(depth_);
   if (gather_) gather_->resize();
+  receivedClip_ = glm::dmat4(0.0);  // other pixels of the same view see other points
 }
 
 void Renderer::recordShadows(const Camera& camera) {
