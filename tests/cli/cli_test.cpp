@@ -199,6 +199,61 @@ TEST_F(CommandLine, RsmReportsWhatInterpolationSaved) {
   EXPECT_NE(std::find(left.begin(), left.end(), "rsm gather"), left.end());
 }
 
+TEST_F(CommandLine, HowLightIsTransportedAndLookedUpIsChosenByName) {
+  const std::string common = "render " + scene() + " --size 32x24 --set lpv.cells=8 --component indirect --json " + path("lpv.json") + " -o " + path("x.pfm");
+  const auto mean = [&](const std::string& arguments) {
+    const RunResult result = RUN_LUCERNA(common + arguments);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return lucerna::meanOf(lucerna::readImage(path("x.pfm"))).x;
+  };
+  const double usual = mean(""), flux = mean(" --set lpv.lookup=flux --set lpv.transport=propagate --set lpv.lookup-offset=0");
+  EXPECT_EQ(usual, flux);
+  EXPECT_FALSE(json("lpv.json").contains("lpv"));
+  EXPECT_GT(mean(" --set lpv.lookup=published"), 1.2 * flux);
+  EXPECT_EQ(mean(" --set lpv.lookup=published"), mean(" --set lpv.lookup=published --set lpv.lookup-offset=0.5"));
+  for (const char* bounces : {"1", "all"}) {
+    const RunResult result = RUN_LUCERNA(common + " --set lpv.transport=rays --set lpv.samples=32 --set lpv.rays=8 --set lpv.bounces=" + bounces);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_NE(result.out.find("receivers, 32 paths each"), std::string::npos) << result.out;
+    const auto report = json("lpv.json");
+    EXPECT_GT(report.at("lpv").at("receivers"), 10);
+    EXPECT_EQ(report.at("lpv").at("waiting"), 0);
+    EXPECT_EQ(report.at("lpv").at("without_room"), 0);
+    EXPECT_EQ(report.at("lpv").at("paths_of_each"), 32);
+    const auto& left = report.at("left_out");
+    EXPECT_NE(std::find(left.begin(), left.end(), "reflective shadow map"), left.end());
+  }
+  const std::string end = " -o " + path("y.pfm"), begin = "render " + scene() + " --size 32x24 ";
+  expectRefused(begin + "--set lpv.transport=rain" + end, 2, {"lpv.transport", "rain", "propagate", "rays"}, "y.pfm");
+  expectRefused(begin + "--set lpv.lookup=none" + end, 2, {"lpv.lookup", "none", "flux", "published"}, "y.pfm");
+  for (const char* rays : {"3", "0", "128", "-1", "many"}) expectRefused(begin + "--set lpv.transport=rays --set lpv.rays=" + rays + end, 2, {"lpv.rays", rays}, "y.pfm");
+  for (const char* samples : {"0", "nan"}) expectRefused(begin + "--set lpv.transport=rays --set lpv.samples=" + samples + end, 2, {"lpv.samples", samples}, "y.pfm");
+  expectRefused(begin + "--set lpv.bounces=all" + end, 2, {"lpv.bounces=all", "lpv.transport=propagate"}, "y.pfm");
+  expectRefused(begin + "--set lpv.bounces=0 --set lpv.transport=rays" + end, 2, {"lpv.bounces", "0"}, "y.pfm");
+  expectRefused(begin + "--set frame.reuse=maybe" + end, 2, {"frame.reuse", "maybe"}, "y.pfm");
+}
+
+TEST_F(CommandLine, AWalkSaysWhatIsMadeOnce) {
+  for (const char* reuse : {"on", "off"}) {
+    const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --set frame.reuse=" + reuse + " --record " + path("out") +
+                                         " --frames 3 --size 64x36 --json " + path("walk.json"));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const auto stages = json("walk.json").at("stages");
+    EXPECT_EQ(stages.at("shading").at("ran"), stages.at("shading").at("frames"));
+    EXPECT_EQ(stages.at("shading").at("saved_ms"), 0.0);
+    const int frames = stages.at("shadow").at("frames");
+    EXPECT_GE(frames, 3);
+    if (reuse == std::string("off")) {
+      EXPECT_EQ(stages.at("shadow").at("ran"), frames);
+      EXPECT_EQ(stages.at("shadow").at("saved_ms"), 0.0);
+    } else {
+      EXPECT_LE(stages.at("shadow").at("ran"), 1);
+      EXPECT_GT(stages.at("shadow").at("saved_ms"), 0.0);
+    }
+    EXPECT_NE(result.out.find("ran in frames"), std::string::npos) << result.out;
+  }
+}
+
 // ---------------------------------------------------------------------------------------------------- wrong input
 
 TEST_F(CommandLine, WrongOptionsAreRefused) {

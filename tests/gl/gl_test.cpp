@@ -723,9 +723,45 @@ TEST_F(GlTimeQuery, DropsTheWarmUpAndCountsTheRest) {
     for (const double ms : timer.querySamples("fill")) EXPECT_TRUE(ms >= 0.0 && ms < 10000.0) << ms;
     timer.reset();
     EXPECT_EQ(timer.statistics()[0].count, 0u);
-    EXPECT_TRUE(std::isnan(timer.statistics()[0].medianMs));
+    EXPECT_TRUE(std::isfinite(timer.statistics()[0].medianMs));  // the warm-up's time is kept: what a stage that runs no more would take
+    EXPECT_TRUE(std::isnan(timer.statistics()[0].queryMedianMs));
     EXPECT_TRUE(timer.querySamples("no such stage").empty());
   }
+}
+
+TEST_F(GlTimeQuery, CountsFramesAndWhatStagesThatDidNotRunInThemSaved) {
+  TimeQuery timer(true);
+  for (int frame = 0; frame < 8; ++frame) {
+    if (frame < 2) {
+      const TimeQuery::Scope stage(timer, "at first");
+      filled(fill());
+    }
+    if (frame == 0) {
+      const TimeQuery::Scope stage(timer, "once");
+      filled(fill());
+    }
+    {
+      const TimeQuery::Scope stage(timer, "each");
+      filled(fill());
+    }
+    timer.collect();
+  }
+  timer.drain();
+  const auto statistics = timer.statistics();
+  ASSERT_EQ(statistics.size(), 3u);
+  for (const StageStatistics& s : statistics) EXPECT_EQ(s.frames, 8u);
+  EXPECT_EQ(statistics[0].ran, 2u);
+  EXPECT_EQ(statistics[1].ran, 1u);
+  EXPECT_EQ(statistics[2].ran, 8u);
+  EXPECT_EQ(statistics[1].count, 0u);  // it was the warm-up, whose time stands for what it saved
+  EXPECT_GT(statistics[1].medianMs, 0.0);
+  EXPECT_DOUBLE_EQ(statistics[0].savedMs(), statistics[0].medianMs * 6.0 / 8.0);
+  EXPECT_DOUBLE_EQ(statistics[1].savedMs(), statistics[1].medianMs * 7.0 / 8.0);
+  EXPECT_EQ(statistics[2].savedMs(), 0.0);
+  timer.reset();
+  EXPECT_EQ(timer.statistics()[2].ran, 0u);
+  EXPECT_EQ(timer.statistics()[2].frames, 0u);
+  EXPECT_EQ(timer.statistics()[2].savedMs(), 0.0);
 }
 
 TEST_F(GlTimeQuery, NeverMorePendingThanTheRingAndEverySampleIsAccountedFor) {

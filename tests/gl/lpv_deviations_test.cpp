@@ -423,6 +423,7 @@ TEST_F(LpvDeviations, FluxUnits) {
       }
       const Lights lights(texels, unitCascade(static_cast<int>(8.0 / cellSize), cellSize), area, 3.0f);
       LpvSettings s = settings(static_cast<int>(8.0 / cellSize), 0);
+      s.lookup = LpvLookup::published;
       s.lookupOffset = 0.0f;
       const auto middle = static_cast<float>(4.0 + 0.5 * cellSize);
       const Probe probe{{middle, middle, middle}, {0, 0, -1}};
@@ -482,6 +483,7 @@ TEST_F(LpvDeviations, Unjoined) {
   // A grid of half the cell size gathers light from half as far. Blended as they are, each cascade more nearly halves the picture (not quite: the
   // coarsest grid's border takes some light of the one that is compared with); joined it stays; summed it is all of these together.
   LpvSettings s = settings(SmoothField::kCells, 8, false, 3);
+  s.lookup = LpvLookup::published;
   s.cascades.cellSize = 2.0;
   const SmoothField field(s.cascades);
   const RsmTextures textures(field.texels, 0.0);
@@ -532,6 +534,7 @@ TEST_F(LpvDeviations, Unwindowed) {
   const RsmTexel towards = lightIn(glm::ivec3(2), {1, 0, 0}, glm::vec3(1.0f)), away = lightIn(glm::ivec3(2), {-1, 0, 0}, glm::vec3(1.0f));
   const Lights one({towards}, unitCascade(5)), two({towards, away}, unitCascade(5)), behind({away}, unitCascade(5));
   LpvSettings s = settings(5, 0);
+  s.lookup = LpvLookup::published;
   s.lookupOffset = 0.0f;
   const Probe probe{glm::vec3(2.5f), {-1, 0, 0}};
   EXPECT_NEAR(seen(s, one, probe), 2.0 / kPi, 1e-5);

@@ -258,7 +258,8 @@ TEST_F(LpvAgainstTwin, PropagationAndLookup) {
     for (const bool blocking : {false, true})
       for (const int iterations : {1, 2, 8}) {
         const TwinRun expected = runTwin(inputs, c.cells, iterations, blocking);
-        const LightPropagationVolume lpv = run(settings(c.cells, c.cascades, iterations, blocking), inputs.inputs);
+        LightPropagationVolume::Settings s = settings(c.cells, c.cascades, iterations, blocking);
+        const LightPropagationVolume lpv = run(s, inputs.inputs);
         const std::vector<VolumeRgb> actual = test::readVolume(lpv.result(), inputs.inputs);
         for (std::size_t k = 0; k < actual.size(); ++k) {
           const double error = test::relativeError(expected.result[k], actual[k]);
@@ -274,20 +275,25 @@ TEST_F(LpvAgainstTwin, PropagationAndLookup) {
           probes.push_back({static_cast<float>(reach) * glm::vec3(uniform(random), uniform(random), uniform(random)) +
                                 glm::vec3(inputs.cascades[0].minimum() + 0.5 * c.cells * c.cellSize),
                             glm::normalize(glm::vec3(uniform(random), uniform(random), uniform(random)))});
-        const std::vector<glm::vec3> seen = test::probeIrradiance(library(), lpv, probes);
-        glm::dvec3 largest(0.0);
-        std::vector<glm::dvec3> all;
-        for (const Probe& probe : probes) {
-          all.push_back(twin::irradiance(expected.result[0], glm::dvec3(probe.position), glm::dvec3(probe.normal)));
-          largest = glm::max(largest, all.back());
-        }
-        for (std::size_t i = 0; i < probes.size(); ++i)
-          for (int channel = 0; channel < 3; ++channel) {
-            const double error = std::abs(all[i][channel] - static_cast<double>(seen[i][channel])) / largest[channel];
-            EXPECT_LT(error, kFullTolerance) << "probe " << i;
-            EXPECT_GE(seen[i][channel], 0.0f);
-            worstLookup = std::max(worstLookup, error);
+        for (const LpvLookup lookup : {LpvLookup::flux, LpvLookup::published}) {
+          s.lookup = lookup;
+          const bool flux = lookup == LpvLookup::flux;
+          const twin::LookupOptions options{flux ? twin::Lookup::flux : twin::Lookup::windowed, flux ? 0.0 : 0.5};
+          const std::vector<glm::vec3> seen = test::probeIrradiance(library(), run(s, inputs.inputs), probes);
+          glm::dvec3 largest(0.0);
+          std::vector<glm::dvec3> all;
+          for (const Probe& probe : probes) {
+            all.push_back(twin::irradiance(expected.result[0], glm::dvec3(probe.position), glm::dvec3(probe.normal), options));
+            largest = glm::max(largest, all.back());
           }
+          for (std::size_t i = 0; i < probes.size(); ++i)
+            for (int channel = 0; channel < 3; ++channel) {
+              const double error = std::abs(all[i][channel] - static_cast<double>(seen[i][channel])) / largest[channel];
+              EXPECT_LT(error, kFullTolerance) << "probe " << i << ", " << nameOf(lookup);
+              EXPECT_GE(seen[i][channel], 0.0f);
+              worstLookup = std::max(worstLookup, error);
+            }
+        }
       }
   }
   report("1 step", worst[1]);
@@ -356,19 +362,22 @@ TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
         probes.push_back({glm::vec3(around.centre) + reach * glm::vec3(uniform(random), uniform(random), uniform(random)),
                           glm::normalize(glm::vec3(uniform(random), uniform(random), uniform(random)))});
       }
-      const std::vector<glm::vec3> seen = test::probeIrradiance(library(), lpv, probes);
-      const twin::LookupOptions lookup{twin::Lookup::windowed, static_cast<double>(s.lookupOffset)};
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        std::vector<twin::Volume> cascades;
-        for (const VolumeRgb& cascade : expected) cascades.push_back(cascade[channel]);
-        std::vector<double> all;
-        for (const Probe& probe : probes)
-          all.push_back(twin::blendedIrradiance(cascades, blend, glm::dvec3(probe.position), glm::dvec3(probe.normal), lookup));
-        const double largest = *std::max_element(all.begin(), all.end());
-        for (std::size_t i = 0; i < probes.size(); ++i) {
-          const double error = std::abs(all[i] - static_cast<double>(seen[i][static_cast<int>(channel)])) / largest;
-          EXPECT_LT(error, tolerance) << c.cells << "^3, " << c.cascades << " cascades, probe " << i;
-          worstLookup = std::max(worstLookup, error);
+      for (const LpvLookup lookup : {LpvLookup::flux, LpvLookup::published}) {
+        s.lookup = lookup;
+        const twin::LookupOptions options{lookup == LpvLookup::flux ? twin::Lookup::flux : twin::Lookup::windowed, static_cast<double>(*s.lookupOffset)};
+        const std::vector<glm::vec3> seen = test::probeIrradiance(library(), run(s, inputs.inputs, true), probes);
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+          std::vector<twin::Volume> cascades;
+          for (const VolumeRgb& cascade : expected) cascades.push_back(cascade[channel]);
+          std::vector<double> all;
+          for (const Probe& probe : probes)
+            all.push_back(twin::blendedIrradiance(cascades, blend, glm::dvec3(probe.position), glm::dvec3(probe.normal), options));
+          const double largest = *std::max_element(all.begin(), all.end());
+          for (std::size_t i = 0; i < probes.size(); ++i) {
+            const double error = std::abs(all[i] - static_cast<double>(seen[i][static_cast<int>(channel)])) / largest;
+            EXPECT_LT(error, tolerance) << c.cells << "^3, " << c.cascades << " cascades, probe " << i << ", " << nameOf(lookup);
+            worstLookup = std::max(worstLookup, error);
+          }
         }
       }
     }
@@ -469,6 +478,7 @@ TEST_F(LpvKnownAnswers, LightFromAheadIsSeenAndFromBehindIsNot) {
   const std::vector<Probe> probes{{glm::vec3(2.5f), -axis}, {glm::vec3(2.5f), axis}, {glm::vec3(2.5f), across}};
   for (const bool unwindowed : {false, true}) {
     LightPropagationVolume::Settings s = settings(5, 1, 0);
+    s.lookup = LpvLookup::published;
     s.lookupOffset = 0.0f;
     s.deviations.unwindowed = unwindowed;
     const LightPropagationVolume lpv = run(s, field.inputs);
@@ -477,6 +487,43 @@ TEST_F(LpvKnownAnswers, LightFromAheadIsSeenAndFromBehindIsNot) {
     EXPECT_NEAR(seen[1].x, 0.0, 1e-6);
     EXPECT_GE(seen[1].x, 0.0f);
     EXPECT_NEAR(seen[2].x, 1.0 / twin::kPi, 1e-5);
+  }
+}
+
+TEST_F(LpvKnownAnswers, AnIsotropicFillGivesTwoThirdsOfPiTimesItsIntensity) {
+  // Two opposite lobes of flux 1 in each cell of size 1 are isotropic, I = 2 / (4 pi). The kernel sends 2 pi / 3 I through a face, whatever way it looks; the
+  // published lookup reports 4 I, 6 / pi times as much.
+  const Field field(isotropic(5), 5);
+  std::vector<Probe> probes;
+  for (const glm::vec3& axis : kAxes) probes.push_back({{2.4f, 2.6f, 2.3f}, axis});
+  probes.push_back({glm::vec3(2.5f), glm::normalize(glm::vec3(1, -2, 3))});
+  constexpr double kIntensity = 2.0 / (4.0 * twin::kPi);
+  LightPropagationVolume::Settings s = settings(5, 1, 0);
+  for (const glm::vec3& seen : test::probeIrradiance(library(), run(s, field.inputs), probes)) EXPECT_NEAR(seen.x, 2.0 * twin::kPi / 3.0 * kIntensity, 2e-6);
+  s.lookup = LpvLookup::published;
+  for (const glm::vec3& seen : test::probeIrradiance(library(), run(s, field.inputs), probes)) EXPECT_NEAR(seen.x, 4.0 * kIntensity, 2e-6);
+}
+
+TEST_F(LpvKnownAnswers, AlongAnAxisTheLookupIsWhatTheKernelSendsThroughThatFace) {
+  // Isotropic light and two oblique lobes a cell: no direction is negative, so that what is propagated through a face is linear. A volume of two cells of size 1, the light in
+  // one: its front in the other, by the twin, is what crossed their face (all lobes of the gather have the flux that they were given).
+  std::mt19937 random(11);
+  std::normal_distribution<float> gauss;
+  for (int trial = 0; trial < 6; ++trial) {
+    std::vector<RsmTexel> texels{lightIn(glm::ivec3(2), {0, 0, 1}, glm::vec3(1.0f)), lightIn(glm::ivec3(2), {0, 0, -1}, glm::vec3(1.0f))};
+    for (const float flux : {0.4f, 0.25f}) texels.push_back(lightIn(glm::ivec3(2), {gauss(random), gauss(random), gauss(random)}, glm::vec3(flux)));
+    const Field field(texels, 5);
+    const twin::Volume injected = resultOf(field, 5, 0)[0];
+    const twin::Sh light = injected.at(glm::ivec3(2));
+    ASSERT_GT(twin::kY00 * light.c0, twin::kY1 * glm::length(light.c1));  // no negative intensity
+    const twin::Volume front = twin::propagateStep(injected);
+    std::vector<Probe> probes;
+    for (const glm::vec3& axis : kAxes) probes.push_back({glm::vec3(2.5f), -axis});
+    const std::vector<glm::vec3> seen = test::probeIrradiance(library(), run(settings(5, 1, 0), field.inputs), probes);
+    for (std::size_t i = 0; i < kAxes.size(); ++i) {
+      const double sent = twin::flux(front.at(glm::ivec3(2) + glm::ivec3(kAxes[i])));
+      EXPECT_NEAR(seen[i].x / sent, 1.0, 1e-5) << trial << ", axis " << i;
+    }
   }
 }
 

@@ -100,4 +100,82 @@ TEST_F(NeedsOff, LeavesNothingBehindAndChangesNothing) {
   }
 }
 
+// How light is transported decides what else there is.
+TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
+  struct Made {
+    std::string programs, stages;
+    std::vector<std::string> leftOut;
+    bool receivers, volume;
+    std::size_t gpuBytes;
+  };
+  const auto draw = [](LpvTransport transport, Component component, const Scene& scene) {
+    gl::ProgramLibrary library;
+    RenderSettings settings;
+    settings.technique = Technique::lpv;
+    settings.component = component;
+    settings.size = {48, 32};
+    settings.shadow.size = 256;
+    settings.rsm.size = 64;
+    settings.lpv.cascades.cells = 8;
+    settings.lpv.transport = transport;
+    settings.lpv.samples = 16;
+    Renderer renderer(context(), library, scene, settings);
+    renderer.renderToTheEnd(test::openBoxCamera());
+    Made drawn;
+    for (const std::string& name : library.names()) drawn.programs += name + "\n";
+    for (const auto& program : library.programs())
+      for (const std::string& resource : program->activeResources()) drawn.programs += program->name() + ":" + resource + "\n";
+    for (const gl::StageStatistics& stage : renderer.timer().statistics()) drawn.stages += stage.name + "\n";
+    drawn.leftOut = renderer.leftOut();
+    drawn.receivers = renderer.receivers() != nullptr;
+    drawn.volume = renderer.lpv() != nullptr;
+    drawn.gpuBytes = renderer.gpuBytes();
+    return drawn;
+  };
+  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  const auto leaves = [](const Made& drawn, const char* name) { return std::count(drawn.leftOut.begin(), drawn.leftOut.end(), name) > 0; };
+  Scene scene = test::openBox();
+  const Made propagated = draw(LpvTransport::propagate, Component::all, scene), traced = draw(LpvTransport::rays, Component::all, scene);
+  for (const char* part : {"receivers", "lpv paths", "lpvReceived", "TriangleBlock", "visibleDepth", "PathBlock"}) {
+    EXPECT_FALSE(has(propagated.programs, part)) << part << " in\n" << propagated.programs;
+    EXPECT_TRUE(has(traced.programs, part)) << part << " in\n" << traced.programs;
+  }
+  for (const char* part : {"rsm", "lpv inject", "lpv propagate", "lpv join", "geometry volume", "lpvRed"}) {
+    EXPECT_FALSE(has(traced.programs, part)) << part << " in\n" << traced.programs;
+    EXPECT_TRUE(has(propagated.programs, part)) << part << " in\n" << propagated.programs;
+  }
+  for (const char* stage : {"receivers", "geometry\n"}) {
+    EXPECT_FALSE(has(propagated.stages, stage)) << stage;
+    EXPECT_TRUE(has(traced.stages, stage)) << stage;
+  }
+  for (const char* stage : {"rsm", "injection", "geometry volume", "propagation"}) {
+    EXPECT_FALSE(has(traced.stages, stage)) << stage;
+    EXPECT_TRUE(has(propagated.stages, stage)) << stage;
+  }
+  EXPECT_FALSE(propagated.receivers);
+  EXPECT_TRUE(propagated.volume);
+  EXPECT_TRUE(traced.receivers);
+  EXPECT_FALSE(traced.volume);
+  EXPECT_TRUE(leaves(propagated, "receivers"));
+  EXPECT_FALSE(leaves(traced, "receivers"));
+  for (const char* name : {"reflective shadow map", "light propagation volume"}) {
+    EXPECT_TRUE(leaves(traced, name)) << name;
+    EXPECT_FALSE(leaves(propagated, name)) << name;
+  }
+
+  // Direct light of a scene without emissive surfaces and sky is shadow maps alone: no receivers, and as many bytes as direct light has.
+  const Made direct = draw(LpvTransport::rays, Component::direct, scene);
+  EXPECT_FALSE(direct.receivers);
+  EXPECT_FALSE(has(direct.programs, "lpv")) << direct.programs;
+  EXPECT_FALSE(has(direct.stages, "receivers"));
+  EXPECT_EQ(direct.gpuBytes, draw(LpvTransport::propagate, Component::direct, scene).gpuBytes);
+  scene.environment = Environment{};
+  scene.environment->radiance = glm::vec3(1.0f);
+  EXPECT_TRUE(draw(LpvTransport::rays, Component::direct, scene).receivers);
+  // And of one without any light there is nothing to keep.
+  scene.environment.reset();
+  scene.sun.reset();
+  EXPECT_FALSE(draw(LpvTransport::rays, Component::all, scene).receivers);
+}
+
 }  // namespace

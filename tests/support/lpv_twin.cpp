@@ -266,6 +266,15 @@ Sh potentialAtFace(const Volume& geometry, const glm::ivec3& destination, const 
                  geometry.at(corner + across[0] + across[1]));
 }
 
+double fluxThroughFace(const Sh& intensity, const glm::dvec3& direction, bool clamped) {
+  const glm::dvec3 helper = std::abs(direction.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 across = glm::normalize(glm::cross(direction, helper)), other = glm::cross(direction, across);
+  const auto towards = [&](const glm::dvec3& w) { return clamped ? std::max(0.0, evaluate(intensity, w)) : evaluate(intensity, w); };
+  double sum = frontSolidAngle() * towards(direction);
+  for (const glm::dvec3& side : {across, -across, other, -other}) sum += sideSolidAngle() * towards(glm::normalize(2.0 * direction + side));
+  return sum;
+}
+
 Volume propagateStep(const Volume& source, const KernelOptions& options, const Volume* geometry) {
   const GridSpec& grid = source.grid;
   if (geometry != nullptr && !(geometry->grid == geometryGrid(grid))) {
@@ -420,6 +429,7 @@ Sh sampleTrilinear(const Volume& volume, const glm::dvec3& point) {
 }
 
 double irradiance(const Sh& sh, const glm::dvec3& normal, double cellSize, Lookup lookup) {
+  if (lookup == Lookup::flux) return std::max(0.0, fluxThroughFace(sh, -normal, false)) / (cellSize * cellSize);
   // [Kaplanyan2010]: the light is taken to sit half a cell away, E = I / (s/2)^2. The cosine lookup takes the mean of
   // I under the receiver's cosine, (1/pi) * integral of I * max(0, <-n|w>).
   // Windowed: two cosine lobes give pi/4 + window * pi/3 cos, negative behind for a window of 1, zero at 3/4.

@@ -184,6 +184,10 @@ double transmittance(const Sh& potential, const glm::dvec3& direction, const Ker
 /// enters `destination`: the mean of the four geometry-volume cells at that face's corners.
 Sh potentialAtFace(const Volume& geometry, const glm::ivec3& destination, const glm::ivec3& axis);
 
+/// What the exact kernel sends through the face of a cell that looks along the unit `direction`, without blocking: to the far face of the next cell and
+/// its four sides. For directions between the axes the cell is turned along. `clamped`: a face that looks at negative intensity gets nothing.
+double fluxThroughFace(const Sh& intensity, const glm::dvec3& direction, bool clamped);
+
 /// One step, as a gather over 6 neighbours and 5 faces, with zero beyond the border. `geometry` may be null.
 Volume propagateStep(const Volume& source, const KernelOptions& options = {}, const Volume* geometry = nullptr);
 
@@ -222,6 +226,7 @@ enum class Lookup {
   cosine,  ///< E = 4/(pi s^2) * <c | lobe(-n)>
   direct,  ///< E = 4/s^2 * I(-n)
   windowed,  ///< cosine with the receiver's band 1 times 3/4: no sum of cosine lobes gives negative light
+  flux,      ///< E = what the kernel sends through a face across the normal, / s^2; offset 0 goes with it
 };
 struct LookupOptions {
   Lookup lookup = Lookup::windowed;

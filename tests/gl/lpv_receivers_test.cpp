@@ -1,0 +1,544 @@
+// Receivers of the light propagation volume (lpv.transport=rays): irradiance at points of surfaces against exact answers and the path tracer, what
+// must not change it, what is kept from frame to frame and what happens when there is no room.
+//
+// Noise: a pixel is filtered from some four receivers of as many paths as the settings say, so that the pixels' standard deviation over the root of a quarter of the receivers
+// bounds the error of a picture's mean where the picture is of one value; kSignificant of these are allowed.
+#include "pathtracer/path_tracer.hpp"
+#include "render/renderer.hpp"
+#include "support/form_factor_twin.hpp"
+#include "support/path_scenes.hpp"
+#include "support/pixel_rays.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <numbers>
+#include <random>
+
+namespace lucerna {
+namespace {
+
+using test::lookingAt;
+using test::SceneBuilder;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSignificant = 4.0;
+constexpr int kAll = LightPropagationVolume::kAllBounces;
+
+class LpvReceiversGl : public test::SharedProgramsTest {
+ protected:
+  static RenderSettings settings(int bounces, int samples, Component component = Component::all, int size = 64) {
+    RenderSettings s;
+    s.component = component;
+    s.size = glm::ivec2(size);
+    s.fullFloatTarget = true;
+    s.shadow.size = s.lights.spotSize = s.lights.pointSize = 512;
+    s.lpv.transport = LpvTransport::rays;
+    s.lpv.cascades.cells = 16;
+    s.lpv.cascades.cascades = 2;
+    s.lpv.bounces = bounces;
+    s.lpv.samples = samples;
+    s.lpv.storage = LightPropagationVolume::Storage::full;
+    return s;
+  }
+  struct Picture {
+    Image image;
+    LpvReceivers::Counts counts;
+  };
+  static Picture picture(const Scene& scene, const Camera& camera, const RenderSettings& s) {
+    Renderer renderer(context(), library(), scene, s);
+    renderer.renderToTheEnd(camera);
+    renderer.drain();
+    EXPECT_EQ(renderer.receivers()->counts().waiting, 0u);
+    return {renderer.readRadiance(), renderer.receivers()->counts()};
+  }
+  static void report(const std::string& what, double value) { std::cout << "[ measured ] " << what << ": " << value << "\n"; }
+
+  /// Of a picture that ought to show one value: how many standard errors of its mean it is off, in the worst channel.
+  static double deviationsFrom(const Picture& seen, const glm::dvec3& expected) {
+    const glm::dvec3 mean = meanOf(seen.image);
+    double worst = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      double square = 0.0;
+      for (const glm::vec3& p : seen.image.pixels) square += std::pow(static_cast<double>(p[c]) - mean[c], 2.0);
+      const double deviation = std::sqrt(square / static_cast<double>(seen.image.pixels.size()));
+      const double error = deviation / std::sqrt(0.25 * static_cast<double>(seen.counts.receivers));
+      worst = std::max(worst, std::abs(mean[c] - expected[c]) / std::max(error, 1e-5 * std::abs(expected[c]) + 1e-30));
+    }
+    return worst;
+  }
+};
+
+double largestDifference(const Image& a, const Image& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
+  return largest;
+}
+double largestValue(const Image& image) { return largestDifference(image, Image(image.width, image.height)); }
+
+/// sqrt(sum d^2 / sum r^2): a black picture has 1.
+double relativeError(const Image& seen, const Image& reference) {
+  double difference = 0.0, scale = 0.0;
+  for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
+    const glm::dvec3 d = glm::dvec3(seen.pixels[i]) - glm::dvec3(reference.pixels[i]), r(reference.pixels[i]);
+    difference += glm::dot(d, d);
+    scale += glm::dot(r, r);
+  }
+  return std::sqrt(difference / scale);
+}
+
+// ---- exact answers -----------------------------------------------------------------------------------------------------
+
+/// A closed room whose walls all shine alike.
+Scene furnace(const glm::vec3& albedo, const glm::vec3& emission) {
+  SceneBuilder builder;
+  builder.scene().sun.reset();
+  const int wall = builder.material(albedo);
+  builder.materialAt(wall).emission = emission;
+  test::addBox(builder, 1.0, wall, true);
+  return builder.scene();
+}
+const Camera kInside = lookingAt({0.2, 0.1, 0.3}, {1.0, 0.7, -0.9}, 1.0);
+
+TEST_F(LpvReceiversGl, AClosedRoomThatShines) {
+  // L = emission (1 + a + ... + a^(N + 1)): seen itself, its light, and that reflected up to N times; emission / (1 - a) with all.
+  const Scene scene = furnace({0.8f, 0.5f, 0.0f}, {1.0f, 2.0f, 3.0f});
+  for (const int bounces : {1, 2, 5, kAll}) {
+    const Picture seen = picture(scene, kInside, settings(bounces, 256));
+    glm::dvec3 expected;
+    const glm::dvec3 albedo(0.8f, 0.5f, 0.0f), emission(1.0, 2.0, 3.0);
+    for (int c = 0; c < 3; ++c) expected[c] = emission[c] * (bounces == kAll ? 1.0 : 1.0 - std::pow(albedo[c], bounces + 2.0)) / (1.0 - albedo[c]);
+    const glm::dvec3 mean = meanOf(seen.image);
+    report(fmt::format("furnace, bounces {}: red over expected", bounces == kAll ? "all" : std::to_string(bounces)), mean.x / expected.x);
+    report("green", mean.y / expected.y);
+    // Receivers that give each other light pass their noise on as they do light: up to 1 / (1 - albedo) times.
+    const double errors = deviationsFrom(seen, expected) * (bounces == kAll ? 1.0 - albedo.x : 1.0);
+    report("standard errors off", errors);
+    EXPECT_LT(errors, kSignificant) << bounces;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c] / expected[c], 1.0, 0.01) << bounces << ", channel " << c;
+  }
+}
+
+TEST_F(LpvReceiversGl, ARoomThatReflectsNearlyEverythingIsBoundedAndBrightens) {
+  constexpr double kAlbedo = 1.0 - 1e-6;
+  const Scene scene = furnace(glm::vec3(static_cast<float>(kAlbedo)), glm::vec3(1.0f));
+  const auto mean = [&](int bounces, int samples) {
+    const Image image = picture(scene, kInside, settings(bounces, samples)).image;
+    for (const glm::vec3& p : image.pixels) EXPECT_TRUE(std::isfinite(p.x + p.y + p.z));
+    return meanOf(image).x;
+  };
+  // emission once for each time that it may be reflected.
+  double before = 0.0;
+  for (const int bounces : {1, 4, 16}) {
+    const double now = mean(bounces, 64);
+    EXPECT_NEAR(now / (bounces + 2.0), 1.0, 0.02) << bounces;
+    EXPECT_GT(now, before);
+    before = now;
+  }
+  // All: more with every frame that is added, never more than there is.
+  double few = mean(kAll, 64), more = mean(kAll, 256), most = mean(kAll, 1024);
+  report("all bounces, 64, 256, 1024 paths", few);
+  report("", more);
+  report("", most);
+  EXPECT_GT(more, 1.05 * few);
+  EXPECT_GT(most, 1.05 * more);
+  EXPECT_LT(most, 1.0 / (1.0 - kAlbedo));
+}
+
+/// A floor of albedo 1/2 alone.
+SceneBuilder floorAlone() {
+  SceneBuilder builder = test::inEnvironment(1.0f);
+  builder.plate({0, 0, 0}, {0, 0, 8}, {8, 0, 0}, builder.material(glm::vec3(0.5f)));
+  return builder;
+}
+const Camera kAboveFloor = lookingAt({0, 4, 0}, {0, 0, 0}, 0.6);
+
+TEST_F(LpvReceiversGl, AFloorUnderAConstantSky) {
+  // E = pi L, whatever is drawn: radiance L / 2.
+  SceneBuilder builder = floorAlone();
+  builder.scene().environment->radiance = {2.0f, 0.5f, 1e-3f};
+  for (const Component component : {Component::all, Component::direct}) {
+    const Picture seen = picture(builder.scene(), kAboveFloor, settings(1, 16, component));
+    EXPECT_GT(seen.counts.receivers, 16u);
+    for (const glm::vec3& p : seen.image.pixels)
+      for (int c = 0; c < 3; ++c) ASSERT_NEAR(p[c] / (0.5f * builder.scene().environment->radiance[c]), 1.0f, 1e-5f);
+  }
+  EXPECT_EQ(largestValue(picture(builder.scene(), kAboveFloor, settings(1, 16, Component::indirect)).image), 0.0);
+}
+
+TEST_F(LpvReceiversGl, AFloorUnderAPictureOfTheSky) {
+  // Rows of radiance 8, 2, 1, 1/2 above the horizon, of equal height each: E = sum of L pi (sin^2 of the angle to the zenith, from border to border). And in one column
+  // of eight a lamp ten times as bright.
+  SceneBuilder builder = floorAlone();
+  Image sky(8, 8, glm::vec3(100.0f));  // below the horizon nothing counts
+  const float rows[] = {8.0f, 2.0f, 1.0f, 0.5f};
+  double expected = 0.0;
+  for (int y = 0; y < 4; ++y) {
+    const double share = std::pow(std::sin(kPi * (y + 1) / 8.0), 2.0) - std::pow(std::sin(kPi * y / 8.0), 2.0);
+    for (int x = 0; x < 8; ++x) {
+      const float value = x == 3 ? 10.0f * rows[y] : rows[y];
+      sky.at(x, y) = glm::vec3(value, 1.0f, 0.0f);
+      expected += static_cast<double>(value) / 8.0 * kPi * share;
+    }
+  }
+  builder.scene().environment->radiance = glm::vec3(0.5f);
+  builder.scene().environment->picture = sky;
+  const Picture seen = picture(builder.scene(), kAboveFloor, settings(1, 1024));
+  report("sky's picture: standard errors off", deviationsFrom(seen, {0.25 * expected / kPi, 0.25, 0.0}));
+  EXPECT_LT(deviationsFrom(seen, {0.25 * expected / kPi, 0.25, 0.0}), kSignificant);
+  EXPECT_NEAR(meanOf(seen.image).x / (0.25 * expected / kPi), 1.0, 0.005);
+}
+
+/// A lit plate in the plane y = 0 and a wall that rises from its edge, in the plane x = 0; albedos 0.8 and 0.5.
+struct FloorAndWall {
+  SceneBuilder builder;
+  Camera camera = lookingAt({3.5, 1.2, 0.3}, {0.0, 0.9, 0.0}, 0.5);  // the wall alone fills the view
+  FloorAndWall() {
+    builder.scene().sun.reset();
+    builder.plate({1.0, 0.0, 0.0}, {0, 0, 2}, {2, 0, 0}, builder.material(glm::vec3(0.8f)));
+    builder.plate({0.0, 1.5, 0.0}, {0, 3, 0}, {0, 0, 4}, builder.material(glm::vec3(0.5f)));
+  }
+  /// Cells fine enough for what is interpolated between receivers to be well below what is allowed.
+  static RenderSettings fine(RenderSettings s) {
+    s.lpv.cascades.cells = 32;
+    return s;
+  }
+  /// Irradiance of a point of the wall from a floor of `radiance(x, z)`, by midpoints in double.
+  static double irradiance(const glm::dvec3& p, const std::function<double(double, double)>& radiance) {
+    constexpr int kSteps = 120;
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j) {
+        const glm::dvec3 q((i + 0.5) * 2.0 / kSteps, 0.0, (j + 0.5) * 2.0 / kSteps - 1.0), d = q - p;
+        const double d2 = glm::dot(d, d);
+        sum += radiance(q.x, q.z) * d.x * -d.y / (d2 * d2);
+      }
+    return sum * 4.0 / (kSteps * kSteps);
+  }
+  /// The picture's pixels that show the wall at least 0.1 above the plate, beside what is expected there.
+  void expect(const Image& seen, const std::function<double(const glm::dvec3&)>& irradianceAt, const char* what) const {
+    Image expected(seen.width, seen.height), shown(seen.width, seen.height);
+    double sum = 0.0, expectedSum = 0.0;
+    int count = 0;
+    for (int y = 0; y < seen.height; ++y)
+      for (int x = 0; x < seen.width; ++x) {
+        const glm::dvec3 ray = test::pixelRay(camera, x, y, {seen.width, seen.height});
+        const glm::dvec3 p = camera.position - camera.position.x / ray.x * ray;
+        if (p.y < 0.1 || p.y > 2.95 || std::abs(p.z) > 1.95) continue;
+        shown.at(x, y) = glm::vec3(seen.at(x, y).x);
+        expected.at(x, y) = glm::vec3(static_cast<float>(0.5 / kPi * irradianceAt(p)));
+        sum += shown.at(x, y).x;
+        expectedSum += expected.at(x, y).x;
+        ++count;
+      }
+    ASSERT_GT(count, seen.width * seen.height / 2);
+    std::cout << "[ measured ] wall beside " << what << ": mean over the exact one " << sum / expectedSum << ", relative error " << relativeError(shown, expected) << "\n";
+    EXPECT_NEAR(sum / expectedSum, 1.0, 0.01) << what;
+    EXPECT_LT(relativeError(shown, expected), 0.06) << what;
+  }
+};
+
+TEST_F(LpvReceiversGl, AWallBesideASunlitFloor) {
+  FloorAndWall room;
+  room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));  // along the wall: it has no light but the floor's, radiance 0.8
+  const Picture seen = picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
+  const glm::dvec3 plate[] = {{0, 0, -1}, {2, 0, -1}, {2, 0, 1}, {0, 0, 1}};
+  room.expect(seen.image, [&](const glm::dvec3& p) { return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate); }, "a sunlit floor");
+}
+
+TEST_F(LpvReceiversGl, AWallBesideAFloorUnderALamp) {
+  {
+    FloorAndWall room;
+    room.builder.scene().points.push_back({{1.2, 1.0, 0.3}, glm::vec3(5.0f)});
+    const auto radiance = [](double x, double z) {
+      const double d2 = (x - 1.2) * (x - 1.2) + 1.0 + (z - 0.3) * (z - 0.3);
+      return 0.8 / kPi * 5.0 / (d2 * std::sqrt(d2));
+    };
+    // The floor gives a millimetre of itself back by the wall: that is on the floor, which the wall does not see again with one bounce.
+    const Picture seen = picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
+    room.expect(seen.image, [&](const glm::dvec3& p) { return FloorAndWall::irradiance(p, radiance); }, "a floor under an omnidirectional lamp");
+  }
+  FloorAndWall room;
+  room.builder.scene().spots.push_back({{1.0, 2.0, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(9.0f), 0.2, 0.4});
+  const auto radiance = [](double x, double z) {
+    const double d2 = (x - 1.0) * (x - 1.0) + 4.0 + z * z, cosine = 2.0 / std::sqrt(d2);
+    const double t = std::clamp((cosine - std::cos(0.4)) / (std::cos(0.2) - std::cos(0.4)), 0.0, 1.0);
+    return 0.8 / kPi * 9.0 * t * t * (3.0 - 2.0 * t) * cosine / d2;
+  };
+  const Picture seen = picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
+  room.expect(seen.image, [&](const glm::dvec3& p) { return FloorAndWall::irradiance(p, radiance); }, "a floor under a spot");
+}
+
+TEST_F(LpvReceiversGl, AWallBesideAPlateThatShines) {
+  // The plate itself shines: its light is direct, and there is nothing that reflects it back but what the plate's own albedo does.
+  FloorAndWall room;
+  room.builder.materialAt(0).emission = glm::vec3(1.5f);
+  room.builder.materialAt(0).diffuse = glm::vec3(0.0f);
+  const glm::dvec3 plate[] = {{0, 0, -1}, {2, 0, -1}, {2, 0, 1}, {0, 0, 1}};
+  for (const Component component : {Component::all, Component::direct}) {
+    const Picture seen = picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 256, component)));
+    room.expect(seen.image, [&](const glm::dvec3& p) { return 1.5 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate); }, "a plate that shines");
+  }
+  EXPECT_EQ(largestValue(picture(room.builder.scene(), room.camera, settings(1, 64, Component::indirect)).image), 0.0);
+}
+
+// ---- against the path tracer ---------------------------------------------------------------------------------------------
+
+/// A closed room with all kinds of light: a sun through a window, a lamp, a shining square and a sky.
+Scene richRoom() {
+  SceneBuilder builder;
+  builder.scene() = test::openBox();
+  Scene& scene = builder.scene();
+  scene.environment = Environment{};
+  scene.environment->radiance = {0.2f, 0.3f, 0.6f};
+  scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
+  scene.spots.push_back({{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
+  const int lamp = builder.material(glm::vec3(0.3f));
+  builder.materialAt(lamp).emission = {6.0f, 5.0f, 3.0f};
+  builder.plate({1.5, 3.0, -2.0}, {2, 0, 0}, {0, 0, 2}, lamp);
+  return builder.scene();
+}
+
+TEST_F(LpvReceiversGl, ComponentsAddUp) {
+  const Scene scene = richRoom();
+  for (const int bounces : {1, kAll}) {
+    const auto of = [&](Component component) { return picture(scene, test::openBoxCamera(), settings(bounces, 512, component)).image; };
+    const Image all = of(Component::all), direct = of(Component::direct), indirect = of(Component::indirect);
+    Image sum = direct;
+    for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += indirect.pixels[i];
+    const glm::dvec3 ratio = meanOf(sum) / meanOf(all);
+    report(fmt::format("direct and indirect over all, {} bounces", bounces == kAll ? "all" : "1"), ratio.x);
+    report("relative difference", relativeError(sum, all));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(ratio[c], 1.0, 0.005) << bounces;
+    EXPECT_LT(relativeError(sum, all), 0.04) << bounces;
+    EXPECT_GT(meanOf(indirect).x, 0.05 * meanOf(all).x);
+  }
+}
+
+class LpvReceiversAgainstPaths : public LpvReceiversGl {
+ protected:
+  /// What the path tracer makes of just these scatterings, of Lambert's surfaces, in the centres of pixels.
+  static Image traced(const Scene& scene, const Camera& camera, Transport transport, std::uint32_t scatterings, std::uint32_t samples) {
+    PathTracer::Settings s;
+    s.size = glm::ivec2(64);
+    s.transport = transport;
+    s.bounces = scatterings;
+    s.diffuseOnly = s.pixelCentres = true;
+    PathTracer result(context(), library(), scene, s);
+    result.setCamera(camera);
+    result.record(samples);
+    std::cout << "[ measured ] the reference's own standard error over its mean: " << result.statistics().relativeError << "\n";
+    return result.mean();
+  }
+};
+
+TEST_F(LpvReceiversAgainstPaths, CornellBox) {
+  const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
+  const Camera camera = scene.cameras.front();
+  struct Row {
+    int bounces;
+    Component component;
+    Transport transport;
+    std::uint32_t scatterings;
+  };
+  for (const Row& row : {Row{1, Component::indirect, Transport::oneBounce, PathTracer::kUnlimited}, Row{2, Component::indirect, Transport::indirect, 3},
+                         Row{kAll, Component::indirect, Transport::indirect, PathTracer::kUnlimited}, Row{kAll, Component::all, Transport::all, PathTracer::kUnlimited}}) {
+    const Image reference = traced(scene, camera, row.transport, row.scatterings, 256);
+    RenderSettings s = settings(row.bounces, 512, row.component);
+    s.lpv.cascades.cells = 32;
+    s.lpv.cascades.cascades = 3;
+    const Image seen = picture(scene, camera, s).image;
+    const glm::dvec3 ratio = meanOf(seen) / meanOf(reference);
+    std::cout << "[ measured ] Cornell box, " << nameOf(row.component) << ", bounces " << row.bounces << ": mean over the path traced one " << ratio.x << " " << ratio.y << " "
+              << ratio.z << ", relative error " << relativeError(seen, reference) << "\n";
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(ratio[c], 1.0, 0.03) << row.bounces;
+    EXPECT_LT(relativeError(seen, reference), 0.2) << row.bounces;
+  }
+}
+
+TEST_F(LpvReceiversAgainstPaths, ARoomWithEveryKindOfLight) {
+  const Scene scene = richRoom();
+  for (const auto& [bounces, scatterings] : {std::pair{1, 2u}, std::pair{kAll, PathTracer::kUnlimited}}) {
+    Image reference = traced(scene, test::openBoxCamera(), Transport::all, scatterings, 256);
+    const Image seen = picture(scene, test::openBoxCamera(), settings(bounces, 512)).image;
+    // What the path tracer shows of the sky itself is the background's business in forward shading.
+    Image shown = seen;
+    for (std::size_t i = 0; i < shown.pixels.size(); ++i)
+      if (seen.pixels[i] == scene.background) reference.pixels[i] = shown.pixels[i] = glm::vec3(0.0f);
+    const glm::dvec3 ratio = meanOf(shown) / meanOf(reference);
+    std::cout << "[ measured ] room, " << bounces << " bounces: mean over the path traced one " << ratio.x << " " << ratio.y << " " << ratio.z << ", relative error "
+              << relativeError(shown, reference) << "\n";
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(ratio[c], 1.0, 0.02) << bounces;
+    EXPECT_LT(relativeError(shown, reference), 0.1) << bounces;
+  }
+}
+
+// ---- what must not change the picture -------------------------------------------------------------------------------------
+
+TEST_F(LpvReceiversGl, FarFromTheOriginThePictureIsTheSame) {
+  const Scene near = richRoom();
+  const Image reference = picture(near, test::openBoxCamera(), settings(2, 64)).image;
+  for (const glm::dvec3& offset : {glm::dvec3(1024.0, 0.0, 0.0), glm::dvec3(-65536.0, 32768.0, 65536.0)}) {
+    Scene far = near;
+    // Powers of two and a room of side 10: the corners' coordinates are exact in 32 bits.
+    for (Vertex& vertex : far.vertices) vertex.position += glm::vec3(offset);
+    far.bounds = {};
+    for (Mesh& mesh : far.meshes) {
+      mesh.bounds.min += offset;
+      mesh.bounds.max += offset;
+      far.bounds.add(mesh.bounds);
+    }
+    for (PointLight& lamp : far.points) lamp.position += offset;
+    for (SpotLight& lamp : far.spots) lamp.position += offset;
+    Camera camera = test::openBoxCamera();
+    camera.position += offset;
+    const Image seen = picture(far, camera, settings(2, 64)).image;
+    report(fmt::format("{:g} away: relative difference", offset.x), relativeError(seen, reference));
+    EXPECT_LT(relativeError(seen, reference), 1e-6) << offset.x;
+  }
+}
+
+TEST_F(LpvReceiversGl, UnitsOfLengthDoNotMatter) {
+  const Image reference = picture(test::openBox(), test::openBoxCamera(), settings(2, 128)).image;
+  for (const double scale : {0.01, 100.0}) {
+    const Image seen = picture(test::openBox(scale), test::openBoxCamera(scale), settings(2, 128)).image;
+    report(fmt::format("scale {:g}: relative difference", scale), relativeError(seen, reference));
+    EXPECT_NEAR(meanOf(seen).x / meanOf(reference).x, 1.0, 0.01) << scale;
+    EXPECT_LT(relativeError(seen, reference), 0.05) << scale;
+  }
+}
+
+TEST_F(LpvReceiversGl, UnitsOfLightDoNotMatter) {
+  RenderSettings s = settings(2, 64);
+  s.lpv.storage = LightPropagationVolume::Storage::half;
+  const Image reference = picture(richRoom(), test::openBoxCamera(), s).image;
+  for (const float factor : {1e-3f, 1e5f}) {
+    Scene scene = richRoom();
+    scene.sun->irradiance *= factor;
+    for (PointLight& lamp : scene.points) lamp.intensity *= factor;
+    for (SpotLight& lamp : scene.spots) lamp.intensity *= factor;
+    scene.environment->radiance *= factor;
+    for (Material& material : scene.materials) material.emission *= factor;
+    Image seen = picture(scene, test::openBoxCamera(), s).image;
+    for (glm::vec3& p : seen.pixels) p /= factor;
+    EXPECT_LT(largestDifference(seen, reference), 1e-3 * largestValue(reference)) << factor;
+  }
+}
+
+// ---- what is kept ------------------------------------------------------------------------------------------------------
+
+class LpvReceiversKept : public LpvReceiversGl {
+ protected:
+  static LpvReceivers::Counts frame(Renderer& renderer, const Camera& camera) {
+    renderer.render(camera);
+    renderer.drain();
+    return renderer.receivers()->counts();
+  }
+};
+
+TEST_F(LpvReceiversKept, PathsGoOnWhereTheCameraHasBeen) {
+  const Scene scene = test::openBox();
+  RenderSettings s = settings(1, 256);
+  s.lpv.leastRays = 16;
+  const Camera here = test::openBoxCamera(), there = lookingAt({1.5, 1.0, 11.0}, {0.5, -1.0, 0.0}, 0.9);
+  Renderer renderer(context(), library(), scene, s);
+  const LpvReceivers::Counts first = frame(renderer, here);
+  EXPECT_GT(first.receivers, 100u);
+  EXPECT_EQ(first.left, 0u);
+  EXPECT_GT(first.waiting, first.receivers / 2);
+  EXPECT_FALSE(renderer.isSettled());
+  // Sixteen frames of 16 paths: all have their 256.
+  int frames = 1;
+  for (LpvReceivers::Counts now = first; now.waiting > 0 && frames < 100; ++frames) now = frame(renderer, here);
+  EXPECT_EQ(frames, 256 / s.lpv.rays);
+  renderer.render(here);
+  EXPECT_TRUE(renderer.isSettled());
+  const Image before = renderer.readRadiance();
+
+  // A step aside: most of what is needed there is there already, with all its paths.
+  const LpvReceivers::Counts moved = frame(renderer, there);
+  EXPECT_FALSE(renderer.isSettled());
+  Renderer fresh(context(), library(), scene, s);
+  const LpvReceivers::Counts alone = frame(fresh, there);
+  std::cout << "[ measured ] after a step aside " << moved.waiting << " receivers wait, " << alone.waiting << " without those kept\n";
+  EXPECT_GT(moved.waiting, 0u);
+  EXPECT_LT(moved.waiting, alone.waiting / 2);
+  // And back: none waits.
+  EXPECT_EQ(frame(renderer, here).waiting, 0u);
+  // Those found on the way are neighbours of some, so the picture may change by noise, no more.
+  EXPECT_LT(relativeError(renderer.readRadiance(), before), 0.05);
+
+  renderer.forget();
+  EXPECT_FALSE(renderer.isSettled());
+  const LpvReceivers::Counts again = frame(renderer, here);
+  EXPECT_EQ(again.receivers, first.receivers);
+  EXPECT_EQ(again.waiting, first.waiting);
+  Renderer other(context(), library(), scene, s);
+  other.render(here);
+  EXPECT_EQ(largestDifference(renderer.readRadiance(), other.readRadiance()), 0.0);
+}
+
+TEST_F(LpvReceiversKept, WhatIsSeenAfterAMoveIsWhatIsSeenFromTheStart) {
+  // Grids move by whole cells, receivers with them: none may turn up in another place, however far the way. Constant light shows it to the last digit.
+  SceneBuilder builder = floorAlone();
+  builder.plate({0, 2, -4}, {8, 0, 0}, {0, 4, 0}, builder.material(glm::vec3(0.5f)));
+  builder.scene().environment->radiance = glm::vec3(1.0f);
+  RenderSettings s = settings(1, 16, Component::direct);
+  s.lpv.cascades.cellSize = 0.5;
+  s.lpv.cascades.heldInScene = false;
+  Renderer renderer(context(), library(), builder.scene(), s);
+  for (int i = 0; i < 12; ++i) {
+    const Camera camera = lookingAt({-3.0 + 0.5 * i, 2.0, 3.0 - 0.4 * i}, {-3.0 + 0.5 * i, 0.0, 2.0 - 0.4 * i}, 0.7);
+    renderer.render(camera);
+    for (const glm::vec3& p : renderer.readRadiance().pixels) ASSERT_LE(p.x, 0.5f + 1e-5f) << i;
+  }
+  renderer.drain();
+  EXPECT_EQ(renderer.receivers()->counts().left, 0u);
+}
+
+TEST_F(LpvReceiversKept, WithoutRoomReceiversAreLeftOutAndCounted) {
+  // Triangles that face every way in every cell of a small grid, seen from all sides: more slots are asked for than there is room (24 of a grid's 6 cells^3 by cells^2).
+  SceneBuilder builder = test::inEnvironment(1.0f);
+  const int grey = builder.material(glm::vec3(0.5f));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int i = 0; i < 4000; ++i) {
+    const glm::dvec3 p(uniform(random), uniform(random), uniform(random));
+    const auto corner = [&] { return p + 0.035 * glm::dvec3(uniform(random), uniform(random), uniform(random)); };
+    builder.triangle(corner(), corner(), corner(), grey);
+  }
+  RenderSettings s = settings(1, 16, Component::all, 128);
+  s.lpv.cascades.cells = 12;
+  s.lpv.cascades.cascades = 1;
+  s.lpv.cascades.cellSize = 2.1 / 12.0;
+  Renderer renderer(context(), library(), builder.scene(), s);
+  LpvReceivers::Counts counts;
+  for (const glm::dvec3& from : {glm::dvec3(4, 0, 0), glm::dvec3(-4, 0.1, 0), glm::dvec3(0, 4, 0), glm::dvec3(0, -4, 0.1), glm::dvec3(0.1, 0, 4), glm::dvec3(0, 0.1, -4)}) {
+    counts = frame(renderer, lookingAt(from, {0, 0, 0}, 0.55));
+    for (const glm::vec3& p : renderer.readRadiance().pixels) {
+      ASSERT_TRUE(std::isfinite(p.x));
+      ASSERT_LE(p.x, 0.5f + 1e-4f);
+    }
+  }
+  report("receivers", static_cast<double>(counts.receivers));
+  report("without room", static_cast<double>(counts.left));
+  EXPECT_EQ(counts.receivers, 24u * 12u * 12u);
+  EXPECT_GT(counts.left, 0u);
+}
+
+TEST_F(LpvReceiversKept, TinyAndHugeGridsAreDrawn) {
+  for (const auto& [cells, cascades] : {std::pair{2, 4}, std::pair{3, 3}, std::pair{64, 1}}) {
+    SceneBuilder builder = floorAlone();
+    RenderSettings s = settings(1, 16, Component::direct);
+    s.lpv.cascades.cells = cells;
+    s.lpv.cascades.cascades = cascades;
+    for (const glm::vec3& p : picture(builder.scene(), kAboveFloor, s).image.pixels) ASSERT_NEAR(p.x, 0.5f, 1e-5f) << cells << " " << cascades;
+  }
+}
+
+}  // namespace
+}  // namespace lucerna
