@@ -29,7 +29,7 @@ bool isNeeded(const Scene& scene, std::string_view need) {
 }  // namespace
 
 const std::vector<std::string>& neutralNeeds() {
-  static const std::vector<std::string> names{"diffuseTextures", "alphaMasks", "specular", "emission", "background", "spotLights", "pointLights"};
+  static const std::vector<std::string> names{"diffuseTextures", "alphaMasks", "specular", "emission", "background", "environment", "environmentPicture", "spotLights", "pointLights"};
   return names;
 }
 
@@ -47,6 +47,11 @@ void addNeutral(Scene& scene, std::string_view need) {
     material.emission = glm::vec3(kNothing);
   } else if (need == "background") {
     scene.background = glm::vec3(kNothing);
+  } else if (need == "environment") {
+    scene.environment = Environment{glm::vec3(kNothing), {}, 0.0};
+  } else if (need == "environmentPicture") {
+    if (!scene.environment) scene.environment = Environment{glm::vec3(kNothing), {}, 0.0};
+    scene.environment->picture = Image(2, 1, glm::vec3(1.0f));
   } else if (need == "spotLights") {
     scene.spots.push_back({scene.bounds.centre(), {0.0, -1.0, 0.0}, glm::vec3(kNothing), 0.4, 0.6});
   } else if (need == "pointLights") {

@@ -163,6 +163,10 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   if (settings.technique == Technique::rsm && settings.component != Component::direct && LocalLights::isNeeded(needs_))
     logWarning("technique rsm gathers the sun's light alone: spot and omnidirectional lights give direct light only (lpv takes all)");
 
+  if (needs_.environment && !showsReceivers_)
+    logWarning("technique {}{}: the environment lights nothing (path does, and lpv with lpv.transport=rays)", nameOf(settings.technique),
+               settings.technique == Technique::lpv ? " with lpv.transport=propagate" : "");
+
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_.materialFlags(masked);
     const bool showsRest = settings.component != Component::indirect;  // specular and emission belong to direct light
@@ -193,6 +197,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   toneMap_ = radiosity_ ? radiosity_->loadMapping(programs) : nullptr;
   if (!toneMap_) toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
   allocateTargets();
+  if (EnvironmentView::isNeeded(needs_) && settings.component != Component::indirect) environmentView_.emplace(programs, scene);
   if (showsGather_ || showsReceivers_) visible_.emplace(programs, gpuScene_, depth_);
   if (showsGather_) gather_.emplace(programs, settings.gather, *visible_);
   if (showsReceivers_) receivers_.emplace(programs, context.capabilities(), scene, origin_, settings.lpv, receivedLight(settings.component));
@@ -460,6 +465,11 @@ void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInS
     }
   }
 
+  if (environmentView_) {
+    const gl::TimeQuery::Scope stage(timer_, "environment");
+    environmentView_->record(radianceTarget_, noAttributes_, camera, settings_.size);
+  }
+
   {
     const gl::TimeQuery::Scope stage(timer_, "tone mapping");
     const gl::RasterPass pass("tone map", displayTarget_, {});
@@ -515,6 +525,7 @@ std::size_t Renderer::gpuBytes() const {
   if (cameraMap_) bytes += cameraMap_->gpuBytes();
   if (visible_) bytes += visible_->gpuBytes();
   if (gather_) bytes += gather_->gpuBytes();
+  if (environmentView_) bytes += environmentView_->gpuBytes();
   if (receivers_) bytes += receivers_->gpuBytes();
   if (radiosity_) bytes += radiosity_->gpuBytes();
   if (directRays_) bytes += directRays_->gpuBytes();
@@ -530,6 +541,7 @@ std::vector<std::string> Renderer::leftOut() const {
   if (!localLights_ || !localLights_->hasSpots()) names.emplace_back("spot shadow maps");
   if (!localLights_ || !localLights_->hasPoints()) names.emplace_back("point shadow maps");
   if (rsms_.empty()) names.emplace_back("reflective shadow map");
+  if (!environmentView_) names.emplace_back("environment behind surfaces");
   if (!gather_) names.emplace_back("rsm gather");
   if (!radiosity_) names.emplace_back("radiosity");
   if (!directRays_) names.emplace_back("shadow rays");

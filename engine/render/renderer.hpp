@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/image.hpp"
+#include "forward/environment_view.hpp"
 #include "forward/gpu_scene.hpp"
 #include "forward/layered_depth.hpp"
 #include "forward/local_lights.hpp"
@@ -148,6 +149,7 @@ class Renderer {
   int rounds_ = 1;  ///< of paths in a frame
   std::optional<VisibleSurfaces> visible_;  ///< of techniques that start from pixels
   std::optional<RsmGather> gather_;
+  std::optional<EnvironmentView> environmentView_;
   gl::Texture radiance_, depth_, display_;
   gl::Framebuffer depthTarget_, radianceTarget_, displayTarget_;
 };

@@ -51,6 +51,8 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
       {"indirect", indirect},
       {"spotLights", spotLights},
       {"pointLights", pointLights},
+      {"environment", environment},
+      {"environmentPicture", environmentPicture},
       {"emissionTextures", emissionTextures},
       {"smoothNormals", smoothNormals},
       {"mirrors", mirrors},
@@ -62,8 +64,6 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
       {"denseMedia", denseMedia},
       {"heterogeneousMedia", heterogeneousMedia},
       {"volumeEmission", volumeEmission},
-      {"environment", environment},
-      {"environmentPicture", environmentPicture},
   };
 }
 

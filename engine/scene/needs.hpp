@@ -21,6 +21,8 @@ struct SceneNeeds {
   bool indirect = false;         ///< something to light it with and something to reflect: a light and an albedo > 0
   bool spotLights = false;       ///< a spot light with intensity > 0
   bool pointLights = false;      ///< an omnidirectional light with intensity > 0
+  bool environment = false;      ///< light from all around, seen behind surfaces; whoever does not let it light them says so
+  bool environmentPicture = false;
   // Of the path tracer alone:
   bool emissionTextures = false; ///< any drawn mesh emits by a picture
   bool smoothNormals = false;    ///< a vertex normal that is not its triangle's
@@ -33,8 +35,6 @@ struct SceneNeeds {
   bool denseMedia = false;       ///< homogeneous inside of a drawn dielectric, where paths scatter many times (isDense)
   bool heterogeneousMedia = false;  ///< one of them has a density grid
   bool volumeEmission = false;   ///< one of them emits
-  bool environment = false;      ///< light from all around
-  bool environmentPicture = false;
 
   /// (name, needed) in declaration order, for `info` and reports.
   std::vector<std::pair<std::string, bool>> named() const;

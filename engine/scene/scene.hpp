@@ -140,11 +140,11 @@ struct Scene {
   std::vector<PointLight> points;
   std::vector<Medium> media;
   int cameraMedium = -1;               ///< index of the medium that the camera is in where no boundary tells; -1: vacuum
-  std::optional<Environment> environment;  ///< lights the scene in the path tracer and is seen behind it
+  std::optional<Environment> environment;  ///< seen behind the scene; lights it in the path tracer and with lpv.transport=rays
   std::vector<Camera> cameras;         ///< never empty after loading: the first is the default view
   Bounds bounds;
   double metresPerUnit = 1.0;
-  glm::vec3 background{0.0f};          ///< radiance seen where there is no surface; it lights nothing
+  glm::vec3 background{0.0f};          ///< radiance seen where there is neither surface nor environment; it lights nothing
   float exposure = 1.0f;               ///< multiplies radiance before tone mapping; 3 with the default sun
   std::filesystem::path keyFrames;     ///< the walk's camera path; empty: none named
   std::size_t degenerateTriangles = 0; ///< of zero area. They stay, so that counts agree with the file's (Crytek Sponza has one):

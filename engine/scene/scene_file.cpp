@@ -9,10 +9,12 @@
 //                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula}]
 //   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr}]
 //                  Where one of these is given and "sun" is not, there is no default sun.
-//   "background":  [r,g,b], radiance
+//   "background":  [r,g,b], radiance seen where there is no environment
 //   "exposure":    factor before tone mapping
 //   "keyFrames":   path of the camera path, relative to the JSON
-//   "environment": {"radiance": [r,g,b], constant or a factor (1) on "picture": path of a latitude-longitude hdr, exr or pfm; "rotation": degrees about +y}
+//   "environment": {"radiance": [r,g,b], constant or a factor (1) on "picture": path of a latitude-longitude hdr, exr or pfm; "rotation": degrees about +y},
+//                  or {"sky": {"turbidity": 1.7 to 10 (3), "ground": albedo below the horizon (0.2)}, "radiance": a factor (1)}: a clear sky as the sun asks for,
+//                  which must stand above the horizon (scene/clear_sky.hpp); or null for none. Not given, the default sun has its clear sky.
 //   "media", "materials", "cameraMedium": see scene_media.hpp
 // A top-level key "scene" marks the JSON of the VPT original instead: see original_scene_file.cpp.
 // Unknown keys are errors. A new key is one more entry in the table in loadSceneFile.
@@ -22,6 +24,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "scene/clear_sky.hpp"
 #include "scene/json_value.hpp"
 #include "scene/original_scene_file.hpp"
 #include "scene/scene_media.hpp"
@@ -150,17 +153,34 @@ bool checkRadiance(const Image& picture, const std::filesystem::path& file, cons
   return lights;
 }
 
-Environment readEnvironment(const Value& object) {
+ClearSky readSky(const Value& object) {
+  ClearSky sky;
+  readObject(object, {
+      {"turbidity", [&](const Value& v) { sky.turbidity = v.numberBetween(ClearSky::kLeastTurbidity, ClearSky::kMostTurbidity, "a turbidity from 1.7 to 10"); }},
+      {"ground", [&](const Value& v) { sky.ground = v.numberBetween(0.0, 1.0, "an albedo from 0 to 1"); }},
+  });
+  return sky;
+}
+
+Environment readEnvironment(const Value& object, const std::optional<DirectionalLight>& sun) {
   Environment environment;
   std::optional<glm::vec3> radiance;
+  std::optional<ClearSky> sky;
   std::filesystem::path file;
   readObject(object, {
       {"radiance", [&](const Value& v) { radiance = v.light(); }},
       {"picture", [&](const Value& v) { environment.picture = readImage(file = v.path()); }},
+      {"sky", [&](const Value& v) { sky = readSky(v); }},
       {"rotation", [&](const Value& v) { environment.rotation = v.number("degrees") * kPi / 180.0; }},
   });
-  if (!radiance && !environment.picture) object.fail("an environment with \"radiance\" or \"picture\"");
+  if (!radiance && !environment.picture && !sky) object.fail("an environment with \"radiance\", \"picture\" or \"sky\"");
   environment.radiance = radiance.value_or(glm::vec3(1.0f));
+  if (sky) {
+    if (environment.picture || object.has("rotation")) object.fail("a \"sky\" without \"picture\" and \"rotation\": the sun says how it lies");
+    if (!sun || !(sun->direction.y <= 0.0)) object.at("sky").fail("a scene with a sun above the horizon, whose sky it is");
+    environment.picture = clearSkyPicture(*sky, *sun);
+    file = object.file;
+  }
   if (environment.picture && !checkRadiance(*environment.picture, file, environment.radiance)) logWarning("{}: the environment is black: it lights nothing", file.string());
   return environment;
 }
@@ -185,7 +205,6 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   std::optional<std::vector<SpotLight>> spots;
   std::optional<std::vector<PointLight>> points;
   std::optional<glm::vec3> background;
-  std::optional<Environment> environment;
   readObject(root, {
       {"description", [&](const Value& v) { static_cast<void>(v.text()); }},
       {"model", [&](const Value& v) { model = v.path(); }},
@@ -198,8 +217,8 @@ Scene loadSceneFile(const std::filesystem::path& file) {
       {"background", [&](const Value& v) { background = v.light(); }},
       {"exposure", [&](const Value& v) { exposure = v.positiveNumber(); }},
       {"keyFrames", [&](const Value& v) { keyFrames = v.path(); }},
-      {"environment", [&](const Value& v) { environment = readEnvironment(v); }},
-      {"media", [](const Value&) {}},  // these three by readSceneMedia, once the model is there
+      {"environment", [](const Value&) {}},  // once it is known where the sun stands
+      {"media", [](const Value&) {}},        // these three by readSceneMedia, once the model is there
       {"materials", [](const Value&) {}},
       {"cameraMedium", [](const Value&) {}},
   });
@@ -220,7 +239,6 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   }
   if (exposure) scene.exposure = static_cast<float>(*exposure);
   if (background) scene.background = *background;
-  scene.environment = std::move(environment);
   readSceneMedia(root, scale, scene);
   if (!cameras.empty() || !keyFrames.empty()) useChosenView(scene);
   if (!cameras.empty()) scene.cameras = std::move(cameras);
@@ -228,6 +246,8 @@ Scene loadSceneFile(const std::filesystem::path& file) {
     if (!root.has("camera") && !root.has("cameras")) scene.cameras.clear();
     setKeyFrames(scene, keyFrames);
   }
+  if (!root.has("environment")) setDefaultSky(scene);
+  else if (const Value environment = root.at("environment"); !environment.json.is_null()) scene.environment = readEnvironment(environment, scene.sun);
   return scene;
 }
 

@@ -25,6 +25,9 @@ std::string repairedObj(std::string_view obj);
 /// Where the sun is ours and a view has been chosen after all: the sun no longer follows the view from outside.
 void useChosenView(Scene& scene);
 
+/// Where the sun is ours: the clear sky that goes with it, as it stands now.
+void setDefaultSky(Scene& scene);
+
 /// Makes `file` the scene's camera path and, where no camera is known yet, its first key the first camera.
 void setKeyFrames(Scene& scene, const std::filesystem::path& file);
 

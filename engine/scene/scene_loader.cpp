@@ -20,7 +20,7 @@
 // - Lights: a directional light's colour is its irradiance, that of a spot or point light its radiant intensity in W/sr, as
 //   the file has it (glTF's candela are not divided by a luminous efficacy); where other formats give a quadratic attenuation
 //   q, colour / q. Constant and linear attenuation are no physics and are ignored.
-// - No light in the file: a sun, over the shoulder of a view that we chose, else slanted as suits courts and halls. No camera: the first key of keyFrames/<stem>.txt where the repository has one, else a
+// - No light in the file: a sun, over the shoulder of a view that we chose, else slanted as suits courts and halls, and its clear sky (loadScene, as the sun may still be turned). No camera: the first key of keyFrames/<stem>.txt where the repository has one, else a
 //   view from outside that frames the bounding sphere.
 #include "scene/scene_file.hpp"
 
@@ -28,6 +28,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "scene/clear_sky.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/import_guard.hpp"
 #include "scene/key_frames.hpp"
@@ -737,6 +738,15 @@ void useChosenView(Scene& scene) {
   if (scene.defaultSun) scene.sun->direction = kDefaultSunDirection;
 }
 
-Scene loadScene(const fs::path& file) { return lowerExtension(file) == ".json" ? loadSceneFile(file) : loadModel(file); }
+void setDefaultSky(Scene& scene) {
+  if (scene.defaultSun) scene.environment = Environment{glm::vec3(1.0f), clearSkyPicture({}, *scene.sun), 0.0};
+}
+
+Scene loadScene(const fs::path& file) {
+  if (lowerExtension(file) == ".json") return loadSceneFile(file);
+  Scene scene = loadModel(file);
+  setDefaultSky(scene);
+  return scene;
+}
 
 }  // namespace lucerna

@@ -1,19 +1,14 @@
-// Light from infinitely far all around: constant, or a latitude-longitude picture (top row +y, u from atan2(x, -z)) turned about +y.
+// Light from infinitely far all around: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl) turned about +y.
 // The picture's texels are picked in proportion to what they send, a row first, by alias tables [Vose1991]; uniformly over each texel's solid angle.
 #if ENVIRONMENT_PICTURE
+#include "lib/latitude_longitude.glsl"
 layout(binding = 1) uniform sampler2D environmentPicture;  // radiance without the factor
 layout(binding = 2) uniform usampler2D environmentTable;   // of each row: threshold of 2^32, alias (a column); bits of the density over solid angle, 1/sr
 layout(binding = 4) uniform usampler2D environmentRows;    // threshold of 2^32, alias (a row)
 
-const float kTwoPi = 6.28318530717958648;
-
-vec3 turnAboutY(vec3 d, vec2 turn) { return vec3(d.x * turn.x + d.z * turn.y, d.y, d.z * turn.x - d.x * turn.y); }
-
 // Texel coordinates of a direction, 0..size.
 vec2 environmentTexel(vec3 direction, ivec2 size) {
-  vec3 d = turnAboutY(direction, tracer.environmentTurn.xy * vec2(1.0, -1.0));
-  float u = 0.5 + atan(d.x, -d.z) / kTwoPi, v = 0.5 - atan(d.y, length(d.xz)) / (0.5 * kTwoPi);
-  return vec2(u, v) * vec2(size);
+  return latitudeLongitude(turnAboutY(direction, tracer.environmentTurn.xy * vec2(1.0, -1.0))) * vec2(size);
 }
 
 // A texel's value wherever a direction falls into it: what is picked is what is seen.

@@ -22,6 +22,8 @@ const Need kNeeds[] = {{"diffuseTextures", {"diffuseTexture"}, {}},
                        {"specular", {"materialSpecular", "materialShininess"}, {}},
                        {"emission", {"materialEmission"}, {}},
                        {"background", {}, {}},
+                       {"environment", {"environmentRadiance"}, {"environment"}},
+                       {"environmentPicture", {"environmentTexture", "environmentTurn"}, {"environment"}},
                        {"spotLights", {"spotShadows"}, {"spot shadows"}},
                        {"pointLights", {"pointShadows"}, {"point shadows"}}};
 
@@ -88,7 +90,8 @@ TEST_F(NeedsOff, LeavesNothingBehindAndChangesNothing) {
       EXPECT_TRUE(contains(on.stages, stage)) << stage;
     }
     // A uniform has no bytes of its own; what has a texture or a buffer does.
-    if (!need.stages.empty() || std::string_view(need.name) == "diffuseTextures" || std::string_view(need.name) == "alphaMasks") {
+    const bool isConstant = std::string_view(need.name) == "environment";
+    if ((!need.stages.empty() && !isConstant) || std::string_view(need.name) == "diffuseTextures" || std::string_view(need.name) == "alphaMasks") {
       EXPECT_LT(off.gpuBytes, on.gpuBytes);
     } else {
       EXPECT_EQ(off.gpuBytes, on.gpuBytes);

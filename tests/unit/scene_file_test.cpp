@@ -1,5 +1,6 @@
 // Scene JSON: each key, and that whatever is wrong is named by file and key.
 #include "base/image.hpp"
+#include "scene/clear_sky.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
 #include "support/temp_folder.hpp"
@@ -119,12 +120,47 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
       {R"(, "description": 3)", "\"description\""},
       {R"(, "scene": {})", "no \"camera\""},
       {R"(, "scale": 1,)", "JSON"},
+      {R"(, "environment": {})", "\"sky\""},
+      {R"(, "environment": {"sky": 3})", "\"environment.sky\""},
+      {R"(, "environment": {"sky": {"turbidity": 1}})", "\"environment.sky.turbidity\""},
+      {R"(, "environment": {"sky": {"turbidity": 11}})", "\"environment.sky.turbidity\""},
+      {R"(, "environment": {"sky": {"ground": 1.5}})", "\"environment.sky.ground\""},
+      {R"(, "environment": {"sky": {"clouds": 1}})", "\"environment.sky.clouds\""},
+      {R"(, "environment": {"sky": {}, "rotation": 0})", "without \"picture\" and \"rotation\""},
+      {R"(, "sun": null, "environment": {"sky": {}})", "a sun above the horizon"},
+      {R"(, "sun": {"direction": [0,1,0], "irradiance": [1,1,1]}, "environment": {"sky": {}})", "a sun above the horizon"},
   };
   for (const auto& [keys, expected] : cases) {
     const std::string message = badInputMessage([&, &text = keys] { folder.load(text); });
     EXPECT_TRUE(contains(message, "room.json")) << keys << "\n" << message;
     EXPECT_TRUE(contains(message, expected)) << keys << "\n" << message;
   }
+}
+
+TEST(SceneFile, TheDefaultSunHasItsSkyUnlessAnotherWordIsSaid) {
+  const SceneFolder folder;
+  const Scene scene = folder.load("");
+  ASSERT_TRUE(scene.environment && scene.environment->picture);
+  EXPECT_EQ(scene.environment->picture->pixels, clearSkyPicture({}, *scene.sun).pixels);
+  const Scene viewed = folder.load(R"(, "camera": {"position": [0,0,5], "direction": [0,0,-1]})");  // the default sun stands elsewhere then
+  ASSERT_NE(viewed.sun->direction, scene.sun->direction);
+  EXPECT_EQ(viewed.environment->picture->pixels, clearSkyPicture({}, *viewed.sun).pixels);
+  EXPECT_TRUE(loadScene(folder.path() / "models/box.obj").environment);
+  EXPECT_FALSE(folder.load(R"(, "environment": null)").environment);
+  EXPECT_FALSE(folder.load(R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,1]})").environment);
+  EXPECT_FALSE(folder.load(R"(, "sun": null)").environment);
+  EXPECT_FALSE(folder.load(R"(, "points": [])").environment);
+}
+
+TEST(SceneFile, ASkyIsTheSunsByTurbidityAndGround) {
+  const SceneFolder folder;
+  const std::string sun = R"(, "sun": {"direction": [1,-1,0], "irradiance": [3,2,1]}, "environment": )";
+  const Scene plain = folder.load(sun + R"({"sky": {}})"), hazy = folder.load(sun + R"({"sky": {"turbidity": 6, "ground": 0.5}, "radiance": [2,2,1]})");
+  EXPECT_EQ(plain.environment->radiance, glm::vec3(1.0f));
+  EXPECT_EQ(plain.environment->picture->pixels, clearSkyPicture({}, *plain.sun).pixels);
+  EXPECT_EQ(hazy.environment->radiance, glm::vec3(2.0f, 2.0f, 1.0f));
+  EXPECT_EQ(hazy.environment->picture->pixels, clearSkyPicture({6.0, 0.5}, *plain.sun).pixels);
+  EXPECT_TRUE(analyse(plain).environmentPicture);
 }
 
 TEST(SceneFile, AnEnvironmentIsRadianceOrRefusedByItsTexel) {

@@ -1,0 +1,45 @@
+#include "forward/environment_view.hpp"
+
+#include "gl/pass.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace lucerna {
+
+namespace {
+constexpr GLuint kPictureUnit = 0;
+}
+
+EnvironmentView::EnvironmentView(gl::ProgramLibrary& programs, const Scene& scene)
+    : radiance_(scene.environment->radiance), turn_(std::cos(scene.environment->rotation), std::sin(scene.environment->rotation)) {
+  if (scene.environment->picture) {
+    const Image& picture = *scene.environment->picture;
+    std::vector<glm::vec4> texels;
+    texels.reserve(picture.pixels.size());
+    for (const glm::vec3& p : picture.pixels) texels.emplace_back(p, 0.0f);
+    picture_.emplace("environment behind surfaces", static_cast<GLenum>(GL_RGBA32F), glm::ivec2(picture.width, picture.height));
+    picture_->upload(GL_RGBA, GL_FLOAT, texels.data());
+  }
+  program_ = &programs.loadRaster("environment", "forward/environment.vert", "forward/environment.frag", {{"ENVIRONMENT_PICTURE", picture_.has_value()}});
+}
+
+void EnvironmentView::record(const gl::Framebuffer& target, const gl::VertexArray& noAttributes, const Camera& camera, glm::ivec2 size) const {
+  gl::RasterState state;
+  state.depth = gl::Depth::equalReadOnly;
+  const gl::RasterPass pass("environment", target, state);
+  program_->use();
+  program_->set("environmentRadiance", radiance_);
+  if (picture_) {
+    const double high = std::tan(0.5 * camera.verticalFov), wide = high * size.x / size.y;
+    const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up));
+    program_->set("viewForward", glm::vec3(camera.direction));
+    program_->set("viewRight", glm::vec3(wide * right));
+    program_->set("viewUp", glm::vec3(high * glm::cross(right, camera.direction)));
+    program_->set("environmentTurn", turn_);
+    picture_->bind(kPictureUnit);
+  }
+  gl::drawFullScreen(noAttributes);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,32 @@
+// The environment behind the surfaces, as the path tracer sees it: radiance where the depth is still that of nothing, 1.
+//
+// In: a camera, a target with the scene's depth. Out: radiance in the target's first attachment. A picture is read bilinearly, where paths take the texel that a
+// direction falls into; so both are the same at texels' centres, and in between differ by no more than neighbouring texels do.
+#pragma once
+
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+#include "scene/needs.hpp"
+
+#include <optional>
+
+namespace lucerna {
+
+class EnvironmentView {
+ public:
+  EnvironmentView(gl::ProgramLibrary& programs, const Scene& scene);
+
+  static bool isNeeded(const SceneNeeds& needs) { return needs.environment; }
+
+  /// `size` of the target, whose depth has been drawn through the same camera.
+  void record(const gl::Framebuffer& target, const gl::VertexArray& noAttributes, const Camera& camera, glm::ivec2 size) const;
+  std::size_t gpuBytes() const { return picture_ ? picture_->bytes() : 0; }
+
+ private:
+  std::optional<gl::Texture> picture_;
+  glm::vec3 radiance_;
+  glm::vec2 turn_;  ///< cosine and sine of the rotation
+  const gl::Program* program_;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,31 @@
+// The environment where no surface is: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl), bilinear.
+uniform vec3 environmentRadiance;  // or a factor on the picture
+layout(location = 0) out vec4 radiance;
+
+#if ENVIRONMENT_PICTURE
+#include "lib/latitude_longitude.glsl"
+layout(binding = 0) uniform sampler2D environmentTexture;
+uniform vec2 environmentTurn;  // cosine and sine of its rotation
+in vec3 vDirection;
+
+// By hand: its left edge joins its right one, its upper and lower edge do not join.
+vec3 pictureRadiance(vec3 direction) {
+  ivec2 size = textureSize(environmentTexture, 0);
+  vec2 uv = latitudeLongitude(turnAboutY(direction, environmentTurn * vec2(1.0, -1.0)));
+  float x = uv.x * float(size.x) - 0.5, left = floor(x);
+  int first = (int(left) + size.x) % size.x, second = (first + 1) % size.x;
+  float y = clamp(uv.y * float(size.y) - 0.5, 0.0, float(size.y - 1));
+  int top = int(y), bottom = min(top + 1, size.y - 1);
+  vec3 upper = mix(texelFetch(environmentTexture, ivec2(first, top), 0).rgb, texelFetch(environmentTexture, ivec2(second, top), 0).rgb, x - left);
+  vec3 lower = mix(texelFetch(environmentTexture, ivec2(first, bottom), 0).rgb, texelFetch(environmentTexture, ivec2(second, bottom), 0).rgb, x - left);
+  return mix(upper, lower, y - float(top));
+}
+#endif
+
+void main() {
+  vec3 result = environmentRadiance;
+#if ENVIRONMENT_PICTURE
+  result *= pictureRadiance(vDirection);
+#endif
+  radiance = vec4(result, 1.0);
+}
