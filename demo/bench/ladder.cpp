@@ -41,6 +41,22 @@ std::vector<Rung> lpvLadder(bool shrink) {
   for (int bounces : {1, 2, 4})
     if (!shrink || bounces != 2) rungs.push_back(rung("lpv", "bounces", {fmt::format("lpv.bounces={}", bounces)}));
   for (int iterations : {8, 12}) rungs.push_back(rung("lpv", "", {fmt::format("lpv.iterations={}", iterations)}, "original"));
+  for (int cells : {16, 32, 64})
+    if (!shrink || cells < 64) rungs.push_back(rung("lpv", "gather cells", {"lpv.transport=gather", fmt::format("lpv.cells={}", cells)}));
+  for (int size : {64, 128, 256, 512})
+    if (!shrink || size < 512) rungs.push_back(rung("lpv", "gather map", {"lpv.transport=gather", fmt::format("rsm.size={}", size)}));
+  // Paths to receivers: all light but in the ladder of bounces itself.
+  const auto rays = [&](const char* series, std::string setting, bool allBounces = true) {
+    std::vector<std::string> settings{"lpv.transport=rays", std::move(setting)};
+    if (allBounces) settings.emplace_back("lpv.bounces=all");
+    rungs.push_back(rung("lpv", std::string("rays ") + series, std::move(settings)));
+  };
+  for (int samples : {16, 64, 256, 1024})
+    if (!shrink || samples < 1024) rays("samples", fmt::format("lpv.samples={}", samples));
+  for (int cells : {16, 32, 64})
+    if (!shrink || cells < 64) rays("cells", fmt::format("lpv.cells={}", cells));
+  for (const char* bounces : {"1", "2", "all"})
+    if (!shrink || bounces[0] != '2') rays("bounces", fmt::format("lpv.bounces={}", bounces), false);
   return rungs;
 }
 

@@ -26,12 +26,18 @@ bool showsLights(Transport transport) { return transport == Transport::all || tr
 LightKinds directLightsOf(const RenderSettings& settings) {
   LightKinds kinds{true, true, false, false};  // forward shading's
   if (settings.technique == Technique::radiosity) kinds.surfaces = true;
+  if (settings.technique == Technique::lpv) {
+    if (settings.lpv.transport == LpvTransport::rays) kinds.surfaces = true;
+    if (settings.lpv.transport != LpvTransport::propagate) kinds.environment = true;
+  }
   return kinds;
 }
 
 LightKinds lightsOf(const RenderSettings& settings) {
   LightKinds kinds = directLightsOf(settings);
   if (settings.technique == Technique::rsm) kinds.lamps = false;  // its gather places samples by parallel projection
+  // Gathered from lights' maps, in which the sky's light is not; it has the sky's direct light.
+  if (settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::gather) kinds.environment = false;
   return kinds;
 }
 
@@ -42,7 +48,10 @@ LightPaths modelOf(const RenderSettings& settings) {
     case Technique::rsm: model.transport = Transport::oneBounceUnoccluded; break;
     case Technique::lpv:
       model.transport = settings.lpv.blocking ? Transport::oneBounce : Transport::oneBounceUnoccluded;
-      if (settings.lpv.bounces > 1) model = {Transport::indirect, model.lights, settings.lpv.bounces};
+      if (settings.lpv.transport == LpvTransport::gather)
+        model.transport = settings.lpv.visibility == LpvVisibility::none ? Transport::oneBounceUnoccluded : Transport::oneBounce;
+      if (settings.lpv.transport == LpvTransport::rays) model.transport = Transport::oneBounce;
+      if (settings.lpv.bounces != 1) model = {Transport::indirect, model.lights, settings.lpv.bounces};
       break;
     case Technique::radiosity: break;
   }

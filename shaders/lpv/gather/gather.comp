@@ -2,7 +2,7 @@
 //
 // From a receiver at x with normal n a node of flux Phi, area A and mean normal n_p at p gives
 //   E = Phi c1 c2 / (pi (r^2 + A c2 / pi)),  c1 = <n, p - x>+ / r,  c2 = <n_p, x - p>+ / r:
-// a point [Dachsbacher2005] far away, a disc near by. What is nearer than OPEN radii is opened; what lies behind is passed over. Texels that are near take the outline that they
+// a point [Dachsbacher2005] far away, a disc near by. What is near is opened; what lies behind is passed over. Texels that are near take the outline that they
 // have in the sun's map (rsm/transfer.glsl).
 // Visibility: each lane keeps up to four of its nodes, drawn in proportion to what they give (reservoirs [Chao1982]); lanes that gave more send more rays, so that some 64 to 100
 // rays through voxels stand for all nodes. SKY: no map; each lane looks for the sky in one direction drawn by the cosine.
@@ -32,7 +32,9 @@ shared float weights[LPV_LANES];
 const float kOff = 2.0;  // voxels that both ends of a ray lie off their surfaces
 
 #if !SKY
-const float kOpen = 2.0;     // radii
+const float kOpen = 2.0;         // radii
+const float kOpenTurning = 8.0;  // of nodes whose surfaces turn: the mean normal tells too little of what they give
+const float kFlat = 0.98;        // square of the mean normal's length from which they do not
 const int kReservoirs = 4;
 const int kStack = 40;       // three siblings a level wait, and the levels are at most nine
 
@@ -103,7 +105,10 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
         vec3 away = uintBitsToFloat(a.xyz) - position;
         if (dot(normal, away) < -radius) continue;
         float r2 = dot(away, away);
-        if (r2 < kOpen * kOpen * radius * radius) {
+        uvec4 b = texelFetch(treeNodes, at + 1);
+        vec3 facing = uintBitsToFloat(b.xyz);
+        float open = dot(facing, facing) < kFlat ? kOpenTurning : kOpen;
+        if (r2 < open * open * radius * radius) {
           ivec2 below = ivec2(treeWidth(level - 1));
           for (int i = 0; i < 4; ++i) {
             ivec2 childPlace = 2 * place + ivec2(i & 1, i >> 1);
@@ -111,8 +116,8 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
           }
           continue;
         }
-        uvec4 b = texelFetch(treeNodes, at + 1), c = texelFetch(treeNodes, at + 2);
-        float r = sqrt(r2), c1 = dot(normal, away) / r, c2 = -dot(uintBitsToFloat(b.xyz), away) / r;
+        uvec4 c = texelFetch(treeNodes, at + 2);
+        float r = sqrt(r2), c1 = dot(normal, away) / r, c2 = -dot(facing, away) / r;
         if (!(c1 > 0.0 && c2 > 0.0)) continue;
         given = uintBitsToFloat(c.xyz) * (c1 * c2 / (kPi * r2 + uintBitsToFloat(b.w) * c2));
         texel = c.w;
