@@ -50,6 +50,7 @@ Scene withEverything(const Scene& scene, const RenderSettings& settings) {
 
 NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings, int frames) {
   settings.fullFloatTarget = true;
+  settings.reuse = false;  // what each frame would cost
   const Scene full = withEverything(scene, settings);
   NeedsResult result;
   // Libraries of their own: each compiles what it needs and nothing is found ready.

@@ -55,6 +55,7 @@ StabilityRow runCase(const StabilityCase& c, const StabilityContext& context) {
 std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet) {
   std::vector<StabilityCase> cases;
   addLpvCases(cases);
+  addReceiverCases(cases);
   addPictureCases(cases);
   addPlaceCases(cases);
   addRadiosityCases(cases);

@@ -38,6 +38,8 @@ struct StabilityCase {
 };
 
 void addLpvCases(std::vector<StabilityCase>& cases);
+/// Of lpv.transport=rays.
+void addReceiverCases(std::vector<StabilityCase>& cases);
 /// Of the techniques that Renderer draws: units, scale, place, size, nothing to light.
 void addPictureCases(std::vector<StabilityCase>& cases);
 /// Of all techniques and lights: far from the origin, large faces.

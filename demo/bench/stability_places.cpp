@@ -77,14 +77,15 @@ Scene tiltedFloor(Lamp lamp, bool large) {
   return std::move(parts.scene());
 }
 
-enum class How { direct, rsm, lpv, patches, pixels, path };
-constexpr std::array kHows{How::direct, How::rsm, How::lpv, How::patches, How::pixels, How::path};
+enum class How { direct, rsm, lpv, rays, patches, pixels, path };
+constexpr std::array kHows{How::direct, How::rsm, How::lpv, How::rays, How::patches, How::pixels, How::path};
 
 const char* techniqueOf(How how) {
   switch (how) {
     case How::direct: return "direct";
     case How::rsm: return "rsm";
-    case How::lpv: return "lpv";
+    case How::lpv:
+    case How::rays: return "lpv";
     case How::patches:
     case How::pixels: return "radiosity";
     case How::path: return "path";
@@ -110,11 +111,13 @@ Image picture(const StabilityContext& c, const Scene& scene, How how, Component 
   settings.fullFloatTarget = true;
   settings.shadow.size = 512;
   settings.rsm.size = 128;
+  settings.lpv.transport = how == How::rays ? LpvTransport::rays : LpvTransport::propagate;
+  settings.lpv.samples = 64;
   settings.radiosity.solution.patches.longestEdge = scene.bounds.extent().x > 100.0 ? 500.0 : 2.5;
   settings.radiosity.solution.hemicubes.resolution = 32;
   settings.radiosity.direct = how == How::pixels ? RadiosityView::Direct::pixels : RadiosityView::Direct::patches;
   Renderer renderer(c.context, c.programs, scene, settings);
-  renderer.render(scene.cameras.front());
+  renderer.renderToTheEnd(scene.cameras.front());
   return renderer.readRadiance();
 }
 
@@ -131,7 +134,7 @@ double difference(const Image& a, const Image& b) {
 }
 
 std::string nameOf(How how, Lamp lamp, const char* what) {
-  return fmt::format("{}, {}{}", what, nameOf(lamp), how == How::pixels ? " by rad.direct=pixels" : "");
+  return fmt::format("{}, {}{}", what, nameOf(lamp), how == How::pixels ? " by rad.direct=pixels" : how == How::rays ? " by rays" : "");
 }
 
 }  // namespace
@@ -139,13 +142,14 @@ std::string nameOf(How how, Lamp lamp, const char* what) {
 void addPlaceCases(std::vector<StabilityCase>& cases) {
   for (const How how : kHows)
     for (const Lamp lamp : kLamps) {
-      if (lamp == Lamp::environment && how != How::path) continue;  // lights in the path tracer alone
+      if (lamp == Lamp::environment && how != How::path && how != How::rays) continue;  // others have none
       for (const double sides : {1e3, 1e4})
         cases.push_back({techniqueOf(how), nameOf(how, lamp, "room far away against near"), fmt::format("{:g} sides", sides), [how, lamp, sides](const StabilityContext& c) {
                            const glm::dvec3 place = 10.0 * sides * glm::dvec3(1.0, -0.5, 0.75);
                            return Measurement{1e-3, difference(picture(c, farRoom(lamp, place), how, Component::all), picture(c, farRoom(lamp, {}), how, Component::all)), 0.0, Rule::atMost};
                          }});
-      if (how == How::rsm || how == How::lpv || how == How::patches) continue;  // direct light is technique direct's; patches are as large as the floor
+      // Direct light is technique direct's; patches and the cells of receivers are as large as the floor.
+      if (how == How::rsm || how == How::lpv || how == How::rays || how == How::patches) continue;
       cases.push_back({techniqueOf(how), nameOf(how, lamp, "tilted floor, large against small"), "+-1000 units", [how, lamp](const StabilityContext& c) {
                          return Measurement{1e-3, difference(picture(c, tiltedFloor(lamp, true), how, Component::direct), picture(c, tiltedFloor(lamp, false), how, Component::direct)), 0.0, Rule::atMost};
                        }});
