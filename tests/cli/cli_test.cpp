@@ -149,7 +149,7 @@ TEST_F(CommandLine, DeviationsAreReported) {
 }
 
 TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
-  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --record " + path("out") +
+  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --set frame.reuse=off --record " + path("out") +
                                        " --frames 3 --size 64x36 --json " + path("walk.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), 3);
