@@ -114,7 +114,7 @@ struct Setting {
 const Setting kSettings[] = {
     SETTING("lpv.cells", "cells a side of every cascade (32)", s.lpv.cascades.cells = parseNumber(k, v, 1, 128)),
     SETTING("lpv.cascades", "nested grids (3)", s.lpv.cascades.cascades = parseNumber(k, v, 1, LPV_MAX_CASCADES)),
-    SETTING("lpv.transport", "how light gets to what is looked up: propagate, through the grids' cells; to points of surfaces: gather, from the lights' maps; rays, along paths (propagate)",
+    SETTING("lpv.transport", "how light gets to what is looked up: propagate, through the grids' cells; to points of surfaces: gather, from the lights' maps; rays, along paths (rays, unless a setting or deviation is given that another alone reads)",
             s.lpv.transport = parseChoice(k, v, {LpvTransport::propagate, LpvTransport::gather, LpvTransport::rays})),
     SETTING("lpv.visibility", "of gathered light: voxels or none (voxels)", s.lpv.visibility = parseChoice(k, v, {LpvVisibility::voxels, LpvVisibility::none})),
     SETTING("lpv.voxels", "of gathered light: voxels along the longest side of the scene (256)", s.lpv.voxels = parseNumber(k, v, 1, 1024)),
@@ -135,7 +135,7 @@ const Setting kSettings[] = {
     SETTING("lpv.amplifier", "factor of the deviating 4 pi kernel; 4 conserves (1)", s.lpv.amplifier = parseNumber(k, v, 0.0f, 100.0f)),
     SETTING("lpv.blocking", "geometry volume from rsm (or on), camera, both, or off (rsm)",
             s.lpv.blocking = parseBlocking(k, v, s.lpv.surfels)),
-    SETTING("lpv.bounces", "times that light is reflected, with transport rays also all (1)",
+    SETTING("lpv.bounces", "times that light is reflected, with transport rays also all (all with rays, else 1)",
             s.lpv.bounces = v == "all" ? LightPropagationVolume::kAllBounces : parseNumber(k, v, 1, 64)),
     SETTING("lpv.blend", "fraction of a cascade over which it fades into the next (0.25)",
             s.lpv.blendBand = parseNumber(k, v, 0.001f, 1.0f)),
@@ -296,6 +296,37 @@ nlohmann::ordered_json PictureOptions::toJson() const {
   return {{"technique", technique}, {"fidelity", fidelity}, {"deviations", deviations}, {"settings", settings}};
 }
 
+namespace {
+
+/// Which transport reads a setting of the light propagation volume; nothing where several do.
+std::optional<LpvTransport> transportOf(std::string_view key) {
+  for (const char* k : {"lpv.iterations", "lpv.propagate", "lpv.fill", "lpv.amplifier", "lpv.blocking", "lpv.hand-over", "lpv.lookup", "lpv.lookup-offset"})
+    if (key == k) return LpvTransport::propagate;
+  for (const char* k : {"lpv.visibility", "lpv.voxels"})
+    if (key == k) return LpvTransport::gather;
+  for (const char* k : {"lpv.rays", "lpv.least-rays", "lpv.samples"})
+    if (key == k) return LpvTransport::rays;
+  return {};
+}
+
+/// The transport where none is named: that of the first setting or deviation that one transport alone reads, else paths, which have all light.
+void chooseTransport(RenderSettings& settings, const PictureOptions& options, const std::vector<std::string>& keys) {
+  const auto isSet = [&](std::string_view key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
+  if (!isSet("lpv.transport")) {
+    settings.lpv.transport = LpvTransport::rays;
+    if (options.fidelity == "original" || settings.rsm.fluxCosine || settings.lpv.deviations != LightPropagationVolume::Deviations{}) settings.lpv.transport = LpvTransport::propagate;
+    for (const std::string& key : keys)
+      if (const auto transport = transportOf(key)) {
+        settings.lpv.transport = *transport;
+        if (*transport != LpvTransport::rays) logInfo("{}: lpv.transport={}, which alone reads it", key, nameOf(*transport));
+        break;
+      }
+  }
+  if (!isSet("lpv.bounces") && settings.lpv.transport == LpvTransport::rays) settings.lpv.bounces = LightPropagationVolume::kAllBounces;
+}
+
+}  // namespace
+
 RenderSettings PictureOptions::parse(std::optional<float>& exposure) const {
   RenderSettings result;
   result.technique = parseTechnique(technique);
@@ -305,10 +336,18 @@ RenderSettings PictureOptions::parse(std::optional<float>& exposure) const {
   for (const std::string& deviation : deviations) applyDeviation(result, deviation);
   result.size = parseSize(size);
   std::string unread;
+  std::vector<std::string> keys;
   for (const std::string& assignment : settings) {
     const auto [key, value] = splitAssignment("--set", assignment);
+    keys.push_back(key);
     findSetting(assignment, key, [](const Setting&) { return true; }).apply(result, exposure, "--set " + key, value);
     if (!isRead(readBy.empty() ? technique : readBy, key)) unread += (unread.empty() ? "" : ", ") + key;
+  }
+  if (result.technique == Technique::lpv) {
+    chooseTransport(result, *this, keys);
+    for (const std::string& key : keys)
+      if (const auto transport = transportOf(key); transport && *transport != result.lpv.transport)
+        logWarning("--set {}: lpv.transport={} does not read that, {} does", key, nameOf(result.lpv.transport), nameOf(*transport));
   }
   if (!unread.empty()) logWarning("--set {}: technique {} does not read that", unread, readBy.empty() ? technique : readBy);
   return result;

@@ -34,12 +34,12 @@ std::vector<Rung> rsmLadder(bool shrink) {
 std::vector<Rung> lpvLadder(bool shrink) {
   std::vector<Rung> rungs;
   for (int cells : {8, 16, 32, 64})
-    if (!shrink || cells < 64) rungs.push_back(rung("lpv", "cells", {fmt::format("lpv.cells={}", cells)}));
-  for (int cascades : {1, 2, 3, 4}) rungs.push_back(rung("lpv", "cascades", {fmt::format("lpv.cascades={}", cascades)}));
-  for (int iterations : {2, 4, 8, 16, 32}) rungs.push_back(rung("lpv", "iterations", {fmt::format("lpv.iterations={}", iterations)}));
+    if (!shrink || cells < 64) rungs.push_back(rung("lpv", "cells", {"lpv.transport=propagate", fmt::format("lpv.cells={}", cells)}));
+  for (int cascades : {1, 2, 3, 4}) rungs.push_back(rung("lpv", "cascades", {"lpv.transport=propagate", fmt::format("lpv.cascades={}", cascades)}));
+  for (int iterations : {2, 4, 8, 16, 32}) rungs.push_back(rung("lpv", "iterations", {"lpv.transport=propagate", fmt::format("lpv.iterations={}", iterations)}));
   // Each number of bounces has a reference of its own.
   for (int bounces : {1, 2, 4})
-    if (!shrink || bounces != 2) rungs.push_back(rung("lpv", "bounces", {fmt::format("lpv.bounces={}", bounces)}));
+    if (!shrink || bounces != 2) rungs.push_back(rung("lpv", "bounces", {"lpv.transport=propagate", fmt::format("lpv.bounces={}", bounces)}));
   for (int iterations : {8, 12}) rungs.push_back(rung("lpv", "", {fmt::format("lpv.iterations={}", iterations)}, "original"));
   for (int cells : {16, 32, 64})
     if (!shrink || cells < 64) rungs.push_back(rung("lpv", "gather cells", {"lpv.transport=gather", fmt::format("lpv.cells={}", cells)}));
@@ -117,7 +117,7 @@ std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
   std::vector<Rung> rungs;
   for (const std::string& technique : techniques) {
     if (technique == "direct") continue;
-    rungs.push_back(rung(technique, "corrected", {}));
+    rungs.push_back(rung(technique, "corrected", technique == "lpv" ? std::vector<std::string>{"lpv.transport=propagate"} : std::vector<std::string>{}));
     for (const Deviation& deviation : allDeviations()) {
       // A deviation's name begins with the technique that it belongs to; the light propagation volume reads the reflective shadow map's flux too.
       const std::string name(deviation.name);
