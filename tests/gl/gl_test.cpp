@@ -11,6 +11,7 @@
 #include "lpv/light_propagation_volume.hpp"
 #include "shared/frame.h"
 #include "shared/lpv.h"
+#include "shared/lpv_receivers.h"
 
 #include <algorithm>
 #include <array>
@@ -846,6 +847,39 @@ TEST_F(GlSharedStructs, LpvBlock) {
   EXPECT_EQ(offsetOf(program, "lpv.blendBand"), static_cast<GLint>(offsetof(LpvConstants, blendBand)));
   EXPECT_EQ(offsetOf(program, "lpv.lookupOffset"), static_cast<GLint>(offsetof(LpvConstants, lookupOffset)));
   EXPECT_EQ(sizeOf(program, "LpvBlock"), static_cast<GLint>(sizeof(LpvConstants)));
+}
+
+TEST_F(GlSharedStructs, ReceiverBlockAndBuffer) {
+  using shared::LpvReceiver;
+  using shared::LpvReceiverConstants;
+  const Program& program = programs().loadCompute("keep", "lpv/receivers/keep.comp", {{"LPV_FULL_FLOAT", 0}});
+#define EXPECT_OFFSET(member) EXPECT_EQ(offsetOf(program, "receiving." #member), static_cast<GLint>(offsetof(LpvReceiverConstants, member))) << #member
+  EXPECT_EQ(offsetOf(program, "receiving.firstCell[0]"), static_cast<GLint>(offsetof(LpvReceiverConstants, firstCell)));
+  EXPECT_OFFSET(rayOrigin);
+  EXPECT_OFFSET(frame);
+  EXPECT_OFFSET(capacity);
+  EXPECT_OFFSET(mostSegments);
+  EXPECT_OFFSET(markEvery);
+#undef EXPECT_OFFSET
+  EXPECT_EQ(sizeOf(program, "LpvReceiverBlock"), static_cast<GLint>(sizeof(LpvReceiverConstants)));
+  const auto property = [&](const char* name, GLenum which) {
+    const GLuint index = glGetProgramResourceIndex(program.id(), GL_BUFFER_VARIABLE, name);
+    GLint value = -1;
+    if (index != GL_INVALID_INDEX) glGetProgramResourceiv(program.id(), GL_BUFFER_VARIABLE, index, 1, &which, 1, nullptr, &value);
+    return value;
+  };
+#define EXPECT_OFFSET(member) EXPECT_EQ(property("before[0]." #member, GL_OFFSET), static_cast<GLint>(offsetof(LpvReceiver, member))) << #member
+  EXPECT_OFFSET(cell);
+  EXPECT_OFFSET(triangle);
+  EXPECT_OFFSET(front);
+  EXPECT_OFFSET(second);
+  EXPECT_OFFSET(third);
+  EXPECT_OFFSET(irradiance);
+  EXPECT_OFFSET(paths);
+  EXPECT_OFFSET(born);
+  EXPECT_OFFSET(pixel);
+#undef EXPECT_OFFSET
+  EXPECT_EQ(property("before[0].cell", GL_TOP_LEVEL_ARRAY_STRIDE), static_cast<GLint>(sizeof(LpvReceiver)));
 }
 
 }  // namespace
