@@ -116,7 +116,7 @@ int run(const Options& options) {
     if (interrupted()) return exitCode();
     Renderer renderer(context, programs, scene, pictures[i].settings);
     if (options.exposure) renderer.setExposure(static_cast<float>(*options.exposure));
-    renderer.render(camera);
+    renderer.renderToTheEnd(camera);
     pictures[i].display = renderer.readDisplay();
     pictures[i].mean = meanOf(renderer.readRadiance());
     progress.update(static_cast<int>(i) + 1);

@@ -181,6 +181,7 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
       if (key == '-') renderer.setExposure(renderer.exposure() / 1.25f);
       if (key == 'L') {
         const auto reload = programs.reloadChanged();
+        renderer.forget();  // what was made by the programs before
         fmt::print(stderr, "{} programs reloaded\n", reload.reloaded);
         for (const std::string& failure : reload.failures) fmt::print(stderr, "{}\n", failure);
       }

@@ -208,7 +208,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
 gl::ShaderFlags LightPropagationVolume::lookupFlags(const Settings& settings) {
   return {{"LPV_FULL_FLOAT", settings.storage == Storage::full},
           {"FLUX_UNITS", settings.deviations.fluxUnits},
-          {"FLUX_LOOKUP", settings.lookup == LpvLookup::flux && !settings.deviations.fluxUnits},
+          {"FLUX_LOOKUP", lookupOf(settings) == LpvLookup::flux},
           {"UNWINDOWED", settings.deviations.unwindowed},
           {"SUM_CASCADES", settings.deviations.sumCascades}};
 }

@@ -89,8 +89,10 @@ class LightPropagationVolume {
     Storage storage = Storage::half;
     bool everyBrick = false;    ///< the compute gather does not leave out what light has not reached; the same bits, for tests and to measure it
   };
+  /// Deviations of the published lookup are deviations of that one alone.
+  static LpvLookup lookupOf(const Settings& settings) { return settings.deviations.fluxUnits || settings.deviations.unwindowed ? LpvLookup::published : settings.lookup; }
   /// In cells along the normal.
-  static float offsetOf(const Settings& settings) { return settings.lookupOffset.value_or(settings.lookup == LpvLookup::published ? 0.5f : 0.0f); }
+  static float offsetOf(const Settings& settings) { return settings.lookupOffset.value_or(lookupOf(settings) == LpvLookup::published ? 0.5f : 0.0f); }
   struct Inputs {
     std::vector<ReflectiveShadowMap::Outputs> rsms;  ///< one a light; all are added up
     std::vector<Cascade> cascades;                   ///< finest first, as many as in the settings

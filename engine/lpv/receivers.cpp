@@ -19,7 +19,7 @@ constexpr GLuint kLpvBinding = 1, kPathBinding = 5, kConstantsBinding = 6;  // G
 constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kIrradianceUnit = 5, kSeenUnit = 6, kVoxelsUnit = 6, kTreeUnit = 7;
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that finds no receivers to end at: what it misses by that is albedo^64
-constexpr float kFullPaths = 256.0f;  // from which a receiver counts fully
+constexpr float kFullPaths = 256.0f;  // from which a receiver counts fully, and alone
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // as the path tracer's, less a segment's
 constexpr std::array<GLuint, 9> kNoWork{0, 1, 1, 0, 0, 1, 1, 0, 0};
 constexpr std::size_t kTurnsOfPath = 256;  // about: gl/pieces.hpp
@@ -276,6 +276,7 @@ void LpvReceivers::store() {
   store_->use();
   store_->set("fullPaths", kFullPaths);
   bindReceivers();
+  slotTable_.bind(kSlotsUnit);
   irradiance_.bindImage(0, GL_WRITE_ONLY);
   pass.dispatchIndirect(work_[0]);
 }

@@ -536,7 +536,9 @@ TEST_F(LpvReceiversKept, WithoutRoomReceiversAreLeftOutAndCounted) {
     counts = frame(renderer, lookingAt(from, {0, 0, 0}, 0.55));
     for (const glm::vec3& p : renderer.readRadiance().pixels) {
       ASSERT_TRUE(std::isfinite(p.x));
-      ASSERT_LE(p.x, 0.5f + 1e-4f);
+      if (p.x != 1.0f) {  // the sky itself
+        ASSERT_LE(p.x, 0.5f + 1e-4f);
+      }
     }
   }
   report("receivers", static_cast<double>(counts.receivers));

@@ -1,11 +1,33 @@
 // What the lookup filters: each receiver's irradiance at its cell and face, times how much it counts. A receiver counts more the more paths it has, so that new
-// ones fade in among those that are there.
+// ones fade in among those that are there. While it has few it takes its neighbours' in, those of the same face whose surfaces lean the same way, weighted by
+// their paths: noise gives way to a little blur, and both to what is right, since with all its paths it stands for itself.
 layout(local_size_x = 64) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
 layout(std430, binding = 0) readonly restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(LPV_FORMAT, binding = 0) writeonly uniform image3D lpvReceived;
-uniform float fullPaths;  // from which it counts fully
+layout(binding = 0) uniform usamplerBuffer lpvSlots;
+uniform float fullPaths;  // from which it counts fully, and alone
+
+vec3 withNeighbours(LpvReceiver receiver) {
+  float share = 1.0 - float(receiver.paths) / fullPaths;
+  if (share <= 0.0) return receiver.irradiance;
+  int cascade = receiver.cell.w / LPV_FACES;
+  vec3 sum = float(receiver.paths) * receiver.irradiance;
+  float weights = float(receiver.paths);
+  for (int i = 0; i < 27; ++i) {
+    ivec3 cell = receiver.cell.xyz + ivec3(i % 3, i / 3 % 3, i / 9) - 1, place = cell - receiving.firstCell[cascade].xyz;
+    if (i == 13 || any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(lpv.shape.x)))) continue;
+    uint holds = texelFetch(lpvSlots, slotOf(cascade, receiver.cell.w % LPV_FACES, cell)).x;
+    if (holds == 0u) continue;
+    uint paths = receivers[holds - 1u].paths;
+    float weight = share * float(paths) * smoothstep(0.5, 1.0, dot(receivers[holds - 1u].normal, receiver.normal));
+    if (paths == 0u || !(weight > 0.0)) continue;
+    sum += weight * receivers[holds - 1u].irradiance;
+    weights += weight;
+  }
+  return sum / weights;
+}
 
 void main() {
   uint index = gl_GlobalInvocationID.x;
@@ -17,5 +39,5 @@ void main() {
   if (any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(lpv.shape.x)))) return;
   // No less than a quarter: times 1/8, the least share of a point's own cell, that is still more than the lookup asks for. Else what few paths have found would stay black.
   float counts = clamp(float(receiver.paths) / fullPaths, 0.25, 1.0);
-  imageStore(lpvReceived, ivec3(place.xy, receiver.cell.w * lpv.shape.x + place.z), counts * vec4(receiver.irradiance / lpv.referenceIrradiance, 1.0));
+  imageStore(lpvReceived, ivec3(place.xy, receiver.cell.w * lpv.shape.x + place.z), counts * vec4(withNeighbours(receiver) / lpv.referenceIrradiance, 1.0));
 }
