@@ -10,6 +10,8 @@ namespace lucerna {
 
 namespace {
 
+constexpr double kPi = 3.14159265358979323846;
+
 /// As blocked.comp reads it.
 struct Ray {
   glm::vec4 origin;     ///< in the hierarchy's space; w: the patch
@@ -38,6 +40,64 @@ std::vector<Arrival> arrivals(const Scene& scene, const glm::dvec3& point, doubl
   return result;
 }
 
+/// Radiance of the texel that a direction falls into, as paths see it (shaders/pathtracer/environment.glsl).
+glm::dvec3 radianceOf(const Environment& environment, const glm::dvec3& direction) {
+  if (!environment.picture) return glm::dvec3(environment.radiance);
+  const Image& picture = *environment.picture;
+  const double turns = 0.5 + (std::atan2(direction.x, -direction.z) + environment.rotation) / (2.0 * kPi);
+  const double v = std::acos(std::clamp(direction.y, -1.0, 1.0)) / kPi;
+  const int x = std::min(static_cast<int>((turns - std::floor(turns)) * picture.width), picture.width - 1);
+  const int y = std::min(static_cast<int>(v * picture.height), picture.height - 1);
+  return glm::dvec3(environment.radiance) * glm::dvec3(picture.at(x, y));
+}
+
+/// Asks for rays, so many a submission.
+class ShadowRays {
+ public:
+  static constexpr std::size_t kEach = 1 << 16;
+
+  ShadowRays(gl::ProgramLibrary& programs, const RayScene& rays)
+      : program_(programs.loadCompute("direct light", "radiosity/blocked.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}})), rays_(rays) {}
+
+  /// Not 0 where something lies between.
+  std::vector<GLuint> blocked(const std::vector<Ray>& batch) const {
+    if (batch.empty()) return {};
+    const gl::Buffer rayBuffer("direct light rays", batch.size() * sizeof(Ray), batch.data(), GL_STREAM_DRAW);
+    const gl::Buffer flags("direct light blocked", batch.size() * sizeof(GLuint), nullptr, GL_DYNAMIC_READ);
+    {
+      const gl::ComputePass pass("direct light", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+      program_.use();
+      program_.set("rayCount", static_cast<int>(batch.size()));
+      rays_.bind();
+      rayBuffer.bind(GL_SHADER_STORAGE_BUFFER, 1);
+      flags.bind(GL_SHADER_STORAGE_BUFFER, 2);
+      pass.dispatch({static_cast<int>(batch.size()), 1, 1}, {64, 1, 1});
+    }
+    return flags.read<GLuint>();
+  }
+
+ private:
+  const gl::Program& program_;
+  const RayScene& rays_;
+};
+
+/// A patch's normal, and the largest coordinate of its corners in the hierarchy's space, which is what rounds.
+glm::vec4 faceOf(const RadiosityMesh& mesh, const Patch& patch, const glm::dvec3& origin) {
+  double largest = 0.0;
+  for (const glm::dvec3& corner : mesh.corners(patch)) largest = std::max({largest, std::abs(corner.x - origin.x), std::abs(corner.y - origin.y), std::abs(corner.z - origin.z)});
+  return glm::vec4(glm::vec3(patch.faceNormal), static_cast<float>(largest));
+}
+
+/// Of those that are not hidden; at least one.
+std::vector<glm::dvec3> pointsOf(const RadiosityMesh& mesh, const Patch& patch, const std::vector<glm::dvec2>& centroids) {
+  const auto c = mesh.corners(patch);
+  std::vector<glm::dvec3> points;
+  for (const glm::dvec2& w : centroids)
+    if (!(patch.hidden >> partAt(kPatchParts, w) & 1)) points.push_back(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]));
+  if (points.empty()) points.push_back(patch.centroid);
+  return points;
+}
+
 }  // namespace
 
 std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene, const RadiosityMesh& mesh, std::size_t most) {
@@ -47,16 +107,13 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
   const int parts = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(most) / static_cast<double>(lights * mesh.patches.size()))), 1, 4);
   const double beyond = 4.0 * mesh.extent;
   const std::vector<glm::dvec2> centroids = partCentroids(parts);
-
-  const gl::Program& program = programs.loadCompute("direct light", "radiosity/blocked.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
+  const ShadowRays shadowRays(programs, rays);
 
   // Patches in runs whose rays fill one submission.
-  constexpr std::size_t kRaysEach = 1 << 16;
   const std::size_t raysOfPatch = static_cast<std::size_t>(parts * parts) * lights;
-  const std::size_t patchesEach = std::max<std::size_t>(kRaysEach / raysOfPatch, 1);
+  const std::size_t patchesEach = std::max<std::size_t>(ShadowRays::kEach / raysOfPatch, 1);
   for (std::size_t first = 0; first < mesh.patches.size(); first += patchesEach) {
     std::vector<Ray> batch;
-    std::vector<glm::dvec3> points;  // of a patch
     struct Sample {
       std::size_t patch;
       glm::dvec3 irradiance;
@@ -64,14 +121,8 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
     std::vector<Sample> samples;
     for (std::size_t p = first; p < std::min(first + patchesEach, mesh.patches.size()); ++p) {
       const Patch& patch = mesh.patches[p];
-      const auto c = mesh.corners(patch);
-      double largest = 0.0;
-      for (const glm::dvec3& corner : c) largest = std::max({largest, std::abs(corner.x - rays.origin().x), std::abs(corner.y - rays.origin().y), std::abs(corner.z - rays.origin().z)});
-      const glm::vec4 normal(glm::vec3(patch.faceNormal), static_cast<float>(largest));
-      points.clear();
-      for (const glm::dvec2& w : centroids)
-        if (!(patch.hidden >> partAt(kPatchParts, w) & 1)) points.push_back(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]));
-      if (points.empty()) points.push_back(patch.centroid);
+      const glm::vec4 normal = faceOf(mesh, patch, rays.origin());
+      const std::vector<glm::dvec3> points = pointsOf(mesh, patch, centroids);
       for (const glm::dvec3& point : points)
         for (const Arrival& arrival : arrivals(scene, point, beyond)) {
           const double cosine = glm::dot(glm::normalize(arrival.toLight), patch.faceNormal);
@@ -80,21 +131,42 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
           samples.push_back({p, arrival.irradiance * (cosine / static_cast<double>(points.size()))});
         }
     }
-    if (batch.empty()) continue;
-    const gl::Buffer rayBuffer("direct light rays", batch.size() * sizeof(Ray), batch.data(), GL_STREAM_DRAW);
-    const gl::Buffer blocked("direct light blocked", batch.size() * sizeof(GLuint), nullptr, GL_DYNAMIC_READ);
-    {
-      const gl::ComputePass pass("direct light", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-      program.use();
-      program.set("rayCount", static_cast<int>(batch.size()));
-      rays.bind();
-      rayBuffer.bind(GL_SHADER_STORAGE_BUFFER, 1);
-      blocked.bind(GL_SHADER_STORAGE_BUFFER, 2);
-      pass.dispatch({static_cast<int>(batch.size()), 1, 1}, {64, 1, 1});
-    }
-    const std::vector<GLuint> flags = blocked.read<GLuint>();
+    const std::vector<GLuint> flags = shadowRays.blocked(batch);
     for (std::size_t k = 0; k < samples.size(); ++k)
       if (!flags[k]) irradiance[samples[k].patch] += samples[k].irradiance;
+  }
+  return irradiance;
+}
+
+std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene, const RadiosityMesh& mesh, std::size_t most) {
+  constexpr double kPlastic = 0.75487766624669276;  // 1 / the plastic number: with its square the steps of a lattice in two more dimensions, angle and point
+  std::vector<glm::dvec3> irradiance(mesh.patches.size(), glm::dvec3(0.0));
+  const std::size_t raysOfPatch = std::clamp<std::size_t>(most / std::max<std::size_t>(mesh.patches.size(), 1), 64, 1024);
+  const double beyond = 4.0 * mesh.extent;
+  const std::vector<glm::dvec2> centroids = partCentroids(4);
+  const ShadowRays shadowRays(programs, rays);
+  for (std::size_t first = 0; first < mesh.patches.size(); first += ShadowRays::kEach / raysOfPatch) {
+    const std::size_t end = std::min(first + ShadowRays::kEach / raysOfPatch, mesh.patches.size());
+    std::vector<Ray> batch;
+    std::vector<glm::dvec3> radiance;
+    for (std::size_t p = first; p < end; ++p) {
+      const Patch& patch = mesh.patches[p];
+      const glm::vec4 face = faceOf(mesh, patch, rays.origin());
+      const std::vector<glm::dvec3> points = pointsOf(mesh, patch, centroids);
+      const glm::dvec3 n = patch.faceNormal, u = glm::normalize(std::abs(n.x) < 0.5 ? glm::cross(n, glm::dvec3(1, 0, 0)) : glm::cross(n, glm::dvec3(0, 1, 0))), v = glm::cross(n, u);
+      for (std::size_t k = 0; k < raysOfPatch; ++k) {
+        // What is uniform on the unit disc is the cosine's on the hemisphere above it. Each patch's is turned.
+        const double r2 = (static_cast<double>(k) + 0.5) / static_cast<double>(raysOfPatch), angle = 2.0 * kPi * kPlastic * static_cast<double>(k + p);
+        const double which = kPlastic * kPlastic * static_cast<double>(k);
+        const glm::dvec3& point = points[static_cast<std::size_t>((which - std::floor(which)) * static_cast<double>(points.size()))];
+        const glm::dvec3 direction = std::sqrt(r2) * (std::cos(angle) * u + std::sin(angle) * v) + std::sqrt(1.0 - r2) * n;
+        batch.push_back({glm::vec4(glm::vec3(point - rays.origin()), static_cast<float>(p)), glm::vec4(glm::vec3(beyond * direction), 0.0f), face});
+        radiance.push_back(radianceOf(*scene.environment, direction));
+      }
+    }
+    const std::vector<GLuint> flags = shadowRays.blocked(batch);
+    for (std::size_t k = 0; k < batch.size(); ++k)
+      if (!flags[k]) irradiance[first + k / raysOfPatch] += kPi / static_cast<double>(raysOfPatch) * radiance[k];
   }
   return irradiance;
 }

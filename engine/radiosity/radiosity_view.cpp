@@ -58,10 +58,12 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
     : settings_(settings), solution_(solveOrLoad(context, programs, scene, settings)), lit_(litScene(scene, solution_.mesh, origin)) {
   std::vector<glm::dvec3> patchLight = solution_.irradiance;
   for (std::size_t i = 0; i < patchLight.size(); ++i) {
-    const glm::dvec3 direct = solution_.direct[i] + solution_.fromEmitters[i];
+    // Pixels ask for what may have sharp shadows; the sky's light is always that of the patches.
+    const glm::dvec3 lamps = solution_.direct[i] + solution_.fromEmitters[i], sky = solution_.fromSky[i];
     const bool byPixel = settings.direct == Direct::pixels;
-    if (settings.light == Light::direct) patchLight[i] = byPixel ? glm::dvec3(0.0) : direct;
-    else if (settings.light == Light::indirect || byPixel) patchLight[i] -= direct;
+    if (settings.light == Light::direct) patchLight[i] = byPixel ? sky : lamps + sky;
+    else if (settings.light == Light::indirect) patchLight[i] -= lamps + sky;
+    else if (byPixel) patchLight[i] -= lamps;
   }
   const std::vector<glm::vec3> atVertices = interpolatedToVertices(solution_, patchLight);
   std::vector<float> corners;

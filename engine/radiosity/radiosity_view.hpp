@@ -19,7 +19,7 @@ namespace lucerna {
 class RadiosityView {
  public:
   enum class Mapping { tone, linear, logarithmic, falseColours };  ///< tone: the engine's own
-  enum class Light { all, direct, indirect };                      ///< direct: of lamps and of what patches emit
+  enum class Light { all, direct, indirect };                      ///< direct: of lamps, of the sky and of what patches emit
   enum class Direct { automatic, patches, pixels };                ///< pixels: shadow rays in each pixel instead of a value a patch; automatic: patches
 
   struct Settings {

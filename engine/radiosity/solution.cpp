@@ -8,6 +8,7 @@
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/hidden_parts.hpp"
 #include "radiosity/row_file.hpp"
+#include "scene/needs.hpp"
 #include "scene/place.hpp"
 
 #include <algorithm>
@@ -71,6 +72,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   const RayScene rays(sceneOf(mesh), context.capabilities());
   if (!settings.deviations.centroid) cutHiddenParts(programs, rays, solution.mesh);
   solution.direct = directLight(programs, rays, scene, mesh);
+  solution.fromSky = analyse(scene).environment ? skyLight(programs, rays, scene, mesh) : std::vector<glm::dvec3>(n, glm::dvec3(0.0));
 
   FormFactorMatrix matrix;
   solution.fronts.clear();
@@ -134,7 +136,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     const Patch& patch = mesh.patches[i];
     system.areas.push_back(patch.area);
     system.reflectance.push_back(patch.reflectance);
-    system.emission.push_back(patch.emission + patch.reflectance * solution.direct[i]);
+    system.emission.push_back(patch.emission + patch.reflectance * (solution.direct[i] + solution.fromSky[i]));
     // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed. An open row sums to what its factors say: closed forms know of
     // lights that no pixel meets.
     sums.push_back(static_cast<double>(solution.fronts[i]) > 1.0 - 1e-5 ? 1.0 : std::min(1.0, rowSums[i]));
@@ -200,7 +202,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   if (stopped) stop();
   solution.exitance = std::move(solved.exitance);
   solution.irradiance = std::move(solved.irradiance);
-  for (std::size_t i = 0; i < n; ++i) solution.irradiance[i] += solution.direct[i];
+  for (std::size_t i = 0; i < n; ++i) solution.irradiance[i] += solution.direct[i] + solution.fromSky[i];
   solution.progress = solved.progress;
   solution.solver = solved.solver;
   solution.reached = solved.reached;

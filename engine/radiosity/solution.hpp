@@ -48,6 +48,7 @@ struct RadiositySolution {
   std::string settings;                ///< textOf() the settings it was solved with
   std::vector<glm::dvec3> direct;      ///< irradiance by sun, spot and omnidirectional lights
   std::vector<glm::dvec3> fromEmitters;  ///< irradiance by what patches emit, reflected nowhere
+  std::vector<glm::dvec3> fromSky;     ///< irradiance by the environment, reflected nowhere
   std::vector<glm::dvec3> irradiance;  ///< in all
   std::vector<glm::dvec3> exitance;    ///< emission + reflectance * irradiance
   std::vector<float> fronts, backs;    ///< shares of each hemisphere

@@ -19,7 +19,7 @@ namespace lucerna {
 namespace {
 
 constexpr char kMagic[8] = {'L', 'U', 'C', 'L', 'I', 'G', 'H', 'T'};
-constexpr std::uint32_t kVersion = 3;  // 3: the settings it was solved with
+constexpr std::uint32_t kVersion = 4;  // 4: what the sky gives
 
 struct FileHeader {
   char magic[8];
@@ -33,7 +33,7 @@ struct FilePatch {
   std::int32_t material;
   std::uint32_t triangle;
   float fronts, backs;
-  double centroid[3], faceNormal[3], area, reflectance[3], emission[3], direct[3], fromEmitters[3], irradiance[3], exitance[3];
+  double centroid[3], faceNormal[3], area, reflectance[3], emission[3], direct[3], fromEmitters[3], fromSky[3], irradiance[3], exitance[3];
 };
 
 std::uint64_t fingerprint(const Scene& scene) {
@@ -100,6 +100,7 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
       to.emission[k] = from.emission[axis];
       to.direct[k] = s.direct[i][axis];
       to.fromEmitters[k] = s.fromEmitters[i][axis];
+      to.fromSky[k] = s.fromSky[i][axis];
       to.irradiance[k] = s.irradiance[i][axis];
       to.exitance[k] = s.exitance[i][axis];
     }
@@ -190,12 +191,13 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
     to.emission = vector(from.emission);
     s.direct.push_back(vector(from.direct));
     s.fromEmitters.push_back(vector(from.fromEmitters));
+    s.fromSky.push_back(vector(from.fromSky));
     s.irradiance.push_back(vector(from.irradiance));
     s.exitance.push_back(vector(from.exitance));
     s.fronts.push_back(from.fronts);
     s.backs.push_back(from.backs);
     double sum = from.area + from.fronts + from.backs;
-    for (const auto& values : {from.centroid, from.faceNormal, from.reflectance, from.emission, from.direct, from.fromEmitters, from.irradiance, from.exitance})
+    for (const auto& values : {from.centroid, from.faceNormal, from.reflectance, from.emission, from.direct, from.fromEmitters, from.fromSky, from.irradiance, from.exitance})
       for (int c = 0; c < 3; ++c) sum += values[c];
     for (const float value : from.texCoord) sum += value;
     for (const float value : from.normal) sum += value;

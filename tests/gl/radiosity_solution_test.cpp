@@ -167,14 +167,17 @@ TEST_F(RadiositySolutions, AResumedRunEqualsAnUninterruptedOne) {
 
 TEST_F(RadiositySolutions, FilesGiveBackWhatWasSaved) {
   const test::TempFolder folder;
-  const Scene scene = dark(cubeRoom(2, 0.7, 1.0));
-  const RadiositySolution s = solve(scene, wholeTriangles());
+  Scene scene = dark(cubeRoom(2, 0.7, 1.0));
+  scene.environment = Environment{{0.1f, 0.2f, 0.3f}, {}, 0.0};
+  RadiositySolution s = solve(scene, wholeTriangles());
+  s.fromSky[3] = {0.4, 0.5, 0.6};  // the room is closed: no sky
   const auto file = folder.path() / "solution";
   saveSolution(file, scene, s);
   const RadiositySolution loaded = loadSolution(file, scene);
   ASSERT_EQ(loaded.exitance.size(), s.exitance.size());
   for (std::size_t i = 0; i < s.exitance.size(); ++i) EXPECT_EQ(loaded.exitance[i], s.exitance[i]);
   for (std::size_t i = 0; i < s.exitance.size(); ++i) EXPECT_EQ(loaded.fromEmitters[i], s.fromEmitters[i]);
+  for (std::size_t i = 0; i < s.exitance.size(); ++i) EXPECT_EQ(loaded.fromSky[i], s.fromSky[i]);
   EXPECT_EQ(interpolatedToVertices(loaded, loaded.irradiance), interpolatedToVertices(s, s.irradiance));
   EXPECT_THROW(loadSolution(file, dark(cubeRoom(3, 0.7, 1.0))), Error);
   const auto size = std::filesystem::file_size(file);

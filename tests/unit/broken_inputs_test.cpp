@@ -228,7 +228,7 @@ TEST(BrokenInputs, ForgedSolutionsAreRefused) {
   RadiositySolution s;
   s.mesh = makePatches(scene, {});
   const std::size_t n = s.mesh.patches.size();
-  s.direct = s.fromEmitters = s.irradiance = s.exitance = std::vector<glm::dvec3>(n, glm::dvec3(1.0));
+  s.direct = s.fromEmitters = s.fromSky = s.irradiance = s.exitance = std::vector<glm::dvec3>(n, glm::dvec3(1.0));
   s.fronts = s.backs = std::vector<float>(n, 0.0f);
   saveSolution(folder / "solution", scene, s);
   const std::string whole = readFileText(folder / "solution");
