@@ -102,7 +102,7 @@ TEST_F(CommandLine, ComponentsAddUp) {
   glm::dvec3 means[3];
   const char* names[] = {"all", "direct", "indirect"};
   for (int i = 0; i < 3; ++i) {
-    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.cells=8 --component " + names[i] + " -o " + path("x.pfm"));
+    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.transport=propagate --set lpv.cells=8 --component " + names[i] + " -o " + path("x.pfm"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     means[i] = lucerna::meanOf(lucerna::readImage(path("x.pfm")));
   }
@@ -149,7 +149,7 @@ TEST_F(CommandLine, DeviationsAreReported) {
 }
 
 TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
-  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --set frame.reuse=off --record " + path("out") +
+  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --set lpv.transport=propagate --set frame.reuse=off --record " + path("out") +
                                        " --frames 3 --size 64x36 --json " + path("walk.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), 3);
@@ -206,9 +206,13 @@ TEST_F(CommandLine, HowLightIsTransportedAndLookedUpIsChosenByName) {
     EXPECT_EQ(result.exitCode, 0) << result.err;
     return lucerna::meanOf(lucerna::readImage(path("x.pfm"))).x;
   };
-  const double usual = mean(""), flux = mean(" --set lpv.lookup=flux --set lpv.transport=propagate --set lpv.lookup-offset=0");
+  const double usual = mean(" --set lpv.transport=propagate"), flux = mean(" --set lpv.lookup=flux --set lpv.transport=propagate --set lpv.lookup-offset=0");
   EXPECT_EQ(usual, flux);
+  EXPECT_EQ(mean(" --set lpv.iterations=8"), flux);  // a setting of one transport alone chooses it
   EXPECT_FALSE(json("lpv.json").contains("lpv"));
+  EXPECT_EQ(mean(""), mean(" --set lpv.transport=rays --set lpv.bounces=all"));
+  EXPECT_TRUE(json("lpv.json").contains("lpv"));
+  EXPECT_EQ(mean(" --set lpv.voxels=256"), mean(" --set lpv.transport=gather"));
   EXPECT_GT(mean(" --set lpv.lookup=published"), 1.2 * flux);
   EXPECT_EQ(mean(" --set lpv.lookup=published"), mean(" --set lpv.lookup=published --set lpv.lookup-offset=0.5"));
   for (const char* bounces : {"1", "all"}) {
@@ -228,7 +232,7 @@ TEST_F(CommandLine, HowLightIsTransportedAndLookedUpIsChosenByName) {
   expectRefused(begin + "--set lpv.lookup=none" + end, 2, {"lpv.lookup", "none", "flux", "published"}, "y.pfm");
   for (const char* rays : {"3", "0", "128", "-1", "many"}) expectRefused(begin + "--set lpv.transport=rays --set lpv.rays=" + rays + end, 2, {"lpv.rays", rays}, "y.pfm");
   for (const char* samples : {"0", "nan"}) expectRefused(begin + "--set lpv.transport=rays --set lpv.samples=" + samples + end, 2, {"lpv.samples", samples}, "y.pfm");
-  expectRefused(begin + "--set lpv.bounces=all" + end, 2, {"lpv.bounces=all", "lpv.transport=propagate"}, "y.pfm");
+  expectRefused(begin + "--set lpv.transport=propagate --set lpv.bounces=all" + end, 2, {"lpv.bounces=all", "lpv.transport=propagate"}, "y.pfm");
   expectRefused(begin + "--set lpv.bounces=0 --set lpv.transport=rays" + end, 2, {"lpv.bounces", "0"}, "y.pfm");
   expectRefused(begin + "--set frame.reuse=maybe" + end, 2, {"frame.reuse", "maybe"}, "y.pfm");
 }

@@ -40,7 +40,7 @@ class Minima : public ::testing::Test {
 TEST_F(Minima, WhatFitsIsRendered) {
   expectRendered("--technique direct");
   expectRendered("--technique rsm");
-  expectRendered("--technique lpv --set lpv.cells=16");
+  expectRendered("--technique lpv --set lpv.transport=propagate --set lpv.cells=16");
   expectRendered("--technique path --spp 1");
 }
 

@@ -129,9 +129,13 @@ TEST_F(RadiosityCorrected, WrongInputIsOneClearLine) {
 const std::string kLong = "--set rad.edge=0.5 --set rad.refinements=1 --set rad.steep=0.3 --set rad.batch=0.05 --quiet ";
 
 TEST_F(RadiosityCorrected, KilledRunsGoOnToTheSameBits) {
-  const auto start = std::chrono::steady_clock::now();
-  expectWorks(solve("room.obj", "whole.lit", kLong + "--json '" + path("w.json") + "'"));
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  double seconds = 1e9;  // the shorter of two runs: on a busy machine one alone may say too much, and every kill would come too late
+  for (int i = 0; i < 2; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    expectWorks(solve("room.obj", "whole.lit", kLong + "--json '" + path("w.json") + "'"));
+    seconds = std::min(seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (i == 0) fs::remove(path("whole.lit"));
+  }
   const int all = json("w.json")["hemicubes"];
   int killed = 0, savedAny = 0, refinedRows = 0;
   for (const double share : {0.3, 0.5, 0.7, 0.85, 0.95}) {

@@ -3,6 +3,7 @@
 //
 // Noise: a pixel is filtered from some four receivers of as many paths as the settings say, so that the pixels' standard deviation over the root of a quarter of the receivers
 // bounds the error of a picture's mean where the picture is of one value; kSignificant of these are allowed.
+#include "base/error.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
 #include "support/form_factor_twin.hpp"
@@ -284,6 +285,72 @@ TEST_F(LpvReceiversGl, AWallBesideAPlateThatShines) {
     room.expect(seen.image, [&](const glm::dvec3& p) { return 1.5 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate); }, "a plate that shines");
   }
   EXPECT_EQ(largestValue(picture(room.builder.scene(), room.camera, settings(1, 64, Component::indirect)).image), 0.0);
+}
+
+// ---- gathered from the lights' maps ------------------------------------------------------------------------------------
+
+RenderSettings gathered(RenderSettings s, LpvVisibility visibility = LpvVisibility::voxels) {
+  s.lpv.transport = LpvTransport::gather;
+  s.lpv.visibility = visibility;
+  return s;
+}
+
+class LpvGatherGl : public LpvReceiversGl {};
+
+TEST_F(LpvGatherGl, AWallBesideAFloorUnderTheSunALampAndASpot) {
+  const glm::dvec3 plate[] = {{0, 0, -1}, {2, 0, -1}, {2, 0, 1}, {0, 0, 1}};
+  for (const LpvVisibility visibility : {LpvVisibility::none, LpvVisibility::voxels}) {
+    const RenderSettings s = gathered(FloorAndWall::fine(settings(1, 1, Component::indirect)), visibility);
+    {
+      FloorAndWall room;
+      room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));
+      room.expect(picture(room.builder.scene(), room.camera, s).image, [&](const glm::dvec3& p) { return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate); },
+                  "a sunlit floor, gathered");
+    }
+    FloorAndWall room;
+    room.builder.scene().points.push_back({{1.2, 1.0, 0.3}, glm::vec3(5.0f)});
+    room.expect(picture(room.builder.scene(), room.camera, s).image,
+                [&](const glm::dvec3& p) {
+                  return FloorAndWall::irradiance(p, [](double x, double z) {
+                    const double d2 = (x - 1.2) * (x - 1.2) + 1.0 + (z - 0.3) * (z - 0.3);
+                    return 0.8 / kPi * 5.0 / (d2 * std::sqrt(d2));
+                  });
+                },
+                "a floor under an omnidirectional lamp, gathered");
+  }
+}
+
+TEST_F(LpvGatherGl, AScreenBlocksWhatVoxelsSee) {
+  // A screen between the plate and the wall, higher than the wall: what the plate sends to it is blocked, and seen where there is no visibility. The screen's own
+  // sunlit edge has no area.
+  const auto mean = [](LpvVisibility visibility) {
+    FloorAndWall room;
+    room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));
+    room.builder.plate({-0.6, 1.5, 0.0}, {0, 3, 0}, {0, 0, 4}, room.builder.material(glm::vec3(0.5f)));
+    room.camera = lookingAt({-0.2, 1.2, 0.3}, {-0.6, 1.2, 0.3}, 1.0);  // at the screen's side that faces the wall's back
+    return meanOf(picture(room.builder.scene(), room.camera, gathered(FloorAndWall::fine(settings(1, 1, Component::indirect)), visibility)).image).x;
+  };
+  EXPECT_GT(mean(LpvVisibility::none), 0.01);
+  EXPECT_LT(mean(LpvVisibility::voxels), 0.02 * mean(LpvVisibility::none));
+}
+
+TEST_F(LpvGatherGl, TheSkyAboveAFloorAndInAPit) {
+  SceneBuilder builder = floorAlone();
+  builder.scene().environment->radiance = {2.0f, 0.5f, 1e-3f};
+  const Picture seen = picture(builder.scene(), kAboveFloor, gathered(settings(1, 1)));
+  for (const glm::vec3& p : seen.image.pixels)
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(p[c] / (0.5f * builder.scene().environment->radiance[c]), 1.0f, 1e-5f);
+  // Under a lid that is as wide as the floor and 0.2 above it the middle is dark.
+  builder.plate({0.0, 0.2, 0.0}, {0, 0, 8}, {8, 0, 0}, builder.material(glm::vec3(0.5f)));
+  const Picture dark = picture(builder.scene(), lookingAt({0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, 0.5), gathered(settings(1, 1)));
+  EXPECT_LT(meanOf(dark.image).x, 0.1);
+}
+
+TEST_F(LpvGatherGl, OneBounceAloneIsTaken) {
+  FloorAndWall room;
+  room.builder.sun({0, -1, 0}, glm::vec3(1.0f));
+  EXPECT_THROW(Renderer(context(), library(), room.builder.scene(), gathered(settings(2, 1))), Error);
+  EXPECT_THROW(Renderer(context(), library(), room.builder.scene(), gathered(settings(kAll, 1))), Error);
 }
 
 // ---- against the path tracer ---------------------------------------------------------------------------------------------
