@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace lucerna {
@@ -20,8 +21,10 @@ void clearLoggedWarnings() { g_warnings.clear(); }
 namespace detail {
 
 void writeLog(LogLevel level, const std::string& message) {
+  // The same warning of every rung of a bench, every frame of a walk, says nothing new.
+  const bool known = level == LogLevel::warnings && std::find(g_warnings.begin(), g_warnings.end(), message) != g_warnings.end();
   if (level == LogLevel::warnings) g_warnings.push_back(message);
-  if (level > g_level) return;
+  if (level > g_level || known) return;
   fmt::print(stderr, "{}{}\n", level == LogLevel::warnings ? "lucerna: warning: " : "lucerna: ", message);
 }
 

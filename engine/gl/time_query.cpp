@@ -96,7 +96,7 @@ std::vector<StageStatistics> TimeQuery::statistics() const {
     r.count = finishStages_ ? s.wallMs.size() : s.queryMs.size();
     r.ran = s.ran;
     r.frames = frames_;
-    if (r.count == 0) r.medianMs = finishStages_ ? s.firstWallMs : s.firstQueryMs;
+    if (r.count == 0) r.medianMs = r.p95Ms = finishStages_ ? s.firstWallMs : s.firstQueryMs;
     result.push_back(r);
   }
   return result;

@@ -164,7 +164,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     logWarning("technique rsm gathers the sun's light alone: spot and omnidirectional lights give direct light only (lpv takes all)");
 
   if (needs_.environment && !showsReceivers_ && !radiosity_)
-    logWarning("technique {}{}: the environment lights nothing (path and radiosity have its light, and lpv with lpv.transport=rays)", nameOf(settings.technique),
+    logWarning("technique {}{}: the environment lights nothing (path and radiosity have its light, and lpv with lpv.transport=gather or rays)", nameOf(settings.technique),
                settings.technique == Technique::lpv ? " with lpv.transport=propagate" : "");
 
   const auto loadSurface = [&](const std::string& name, bool masked) {

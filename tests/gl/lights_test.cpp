@@ -1,4 +1,5 @@
 // Spot, omnidirectional and cascaded lights on GL: irradiance, shadows, flux and area of reflective shadow maps, what is left out.
+#include "base/log.hpp"
 #include "render/renderer.hpp"
 #include "shared/frame.h"
 #include "support/gl_fixture.hpp"
@@ -673,6 +674,7 @@ TEST_F(LightsGl, OfManyLampsThoseThatLightTheSceneMostAreDrawn) {
       renderer.render(viewFrom({0, 1.5, 1.8}, {0, -0.6, -1}, 1.2));
       return renderer.readRadiance();
     };
+    clearLoggedWarnings();  // what was said before is not said again
     ::testing::internal::CaptureStderr();
     const Image ofMany = picture(many);
     const std::string said = ::testing::internal::GetCapturedStderr();
