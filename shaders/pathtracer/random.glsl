@@ -1,7 +1,7 @@
 // Random numbers by their place alone: (pixel, sample, event on the path, purpose). Nothing is carried along, so any path can be
 // followed again by itself, and the order in which paths are followed does not matter.
 //
-// Numbers in general are hashes, pcg4d [Jarzynski2020]. The first events' pairs of numbers come from Sobol's (0,2)-sequence, its order
+// Numbers in general are hashes, pcg4d [JarzynskiOlano2020]. The first events' pairs of numbers come from Sobol's (0,2)-sequence, its order
 // shuffled and its points scrambled after Owen a pixel and purpose by hashes [Burley2020].
 
 const uint kLowDiscrepancyEvents = 4u;

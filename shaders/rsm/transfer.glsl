@@ -21,7 +21,7 @@ float edgeIntegral(vec3 a, vec3 b, vec3 n) {
 }
 
 // Form factor from a point with normal n to the parallelogram centre +- u/2 +- v/2 (seen from the point), cut at the point's
-// horizon: F = 1/(2 pi) |sum over edges| [Lambert 1760; Baum1989 eq 10]. A convex outline crosses the horizon twice at most; the
+// horizon: F = 1/(2 pi) |sum over edges| [Lambert 1760; BaumRushmeierWinget1989 eq 10]. A convex outline crosses the horizon twice at most; the
 // piece of the horizon between the crossings closes it.
 float quadFormFactor(vec3 centre, vec3 u, vec3 v, vec3 n) {
   vec3 corners[4] = vec3[4](centre + 0.5 * (u + v), centre + 0.5 * (v - u), centre - 0.5 * (u + v), centre + 0.5 * (u - v));

@@ -21,7 +21,7 @@ constexpr double kPi = std::numbers::pi;
 
 // ------------------------------------------------------------------------------------------------------------- the twins
 
-std::array<std::uint32_t, 4> pcg4d(std::array<std::uint32_t, 4> v) {  // [Jarzynski2020]
+std::array<std::uint32_t, 4> pcg4d(std::array<std::uint32_t, 4> v) {  // [JarzynskiOlano2020]
   for (auto& x : v) x = x * 1664525u + 1013904223u;
   const auto mix = [&] { v[0] += v[1] * v[3], v[1] += v[2] * v[0], v[2] += v[0] * v[1], v[3] += v[1] * v[2]; };
   mix();
