@@ -9,7 +9,7 @@
 
 namespace lucerna::demo::bench {
 
-/// A finished measurement as it is written: the fields of DESIGN.md section 5 and more. NaN is null.
+/// A finished measurement as it is written to JSON. NaN becomes null.
 using ErrorRow = nlohmann::ordered_json;
 
 struct ErrorBench {

@@ -1,7 +1,7 @@
 // Each deviation of engine/render/deviations.cpp by its own known figure: what is right without it, and what it does when it is on.
 //
 // Switches are turned by name, as on the command line. Where the twin has the matching option, the GL is held against it too.
-// Figures: reference notes on LPV, sections 2.3 to 2.7; the formulas stand beside each.
+// Expected values follow from the formulas beside them [Kaplanyan2010; Kirsch2010].
 #include "render/deviations.hpp"
 #include "shared/frame.h"
 #include "support/gl_fixture.hpp"

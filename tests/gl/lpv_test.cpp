@@ -387,7 +387,7 @@ TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
 }
 
 TEST_F(LpvAgainstTwin, HandOverStepFollowsTheSpreadOfLight) {
-  // Root mean square distances after 1, 2, 4, 8, 16, 24 steps [reference notes 2.3]: the step whose distance times the ratio is nearest.
+  // Root mean square distances after 1, 2, 4, 8, 16, 24 steps (tests/physics, LpvTransport.MeanDisplacementAndRms): the step whose distance times the ratio is nearest.
   EXPECT_EQ(LightPropagationVolume::handOverStep(8, 2.0), 2);    // 3.222 / 2 = 1.611 beside 1.496
   EXPECT_EQ(LightPropagationVolume::handOverStep(16, 2.0), 4);   // 4.619 / 2 = 2.310 beside 2.216
   EXPECT_EQ(LightPropagationVolume::handOverStep(8, 1.0), 8);
@@ -396,7 +396,7 @@ TEST_F(LpvAgainstTwin, HandOverStepFollowsTheSpreadOfLight) {
   EXPECT_EQ(LightPropagationVolume::handOverStep(8, 16.0), 1);
 }
 
-// ---- known answers (reference notes 2.3, 2.6, 5.3 to 5.7) --------------------------------------------------------------
+// ---- known answers ------------------------------------------------------------------------------------------------------
 
 class LpvKnownAnswers : public LpvGlTest {
  protected:

@@ -66,7 +66,7 @@ SceneBuilder probeScene(double size = 1e-3) {
 }
 
 TEST_F(Hemicube, PointToOpposedSquareAndToWall) {
-  // T3: centre to area, tolerances from the aliasing of N pixels; the closed form where patches cover enough of them.
+  // Centre to area: tolerances from the aliasing of N pixels; the closed form where patches cover enough of them.
   const double opposed[][2] = {{0.1, 0.968339556974040}, {0.5, 0.554126423979572}, {1, 0.239456470460774}, {2, 0.0734776348125214}, {4, 0.0194887650518050}, {10, 0.0031725255325526}};
   for (const auto& [d, exact] : opposed) {
     SceneBuilder builder = probeScene();
@@ -200,7 +200,7 @@ TEST_F(Hemicube, AreaFactorsOfACube) {
     EXPECT_NEAR(up / 0.199824895698387, 1.0, 0.004);
     EXPECT_NEAR(side / 0.200043776075403, 1.0, 0.01);
   }
-  settings.nearDistance = 0.0f;  // T4: with the centroid alone it is another number
+  settings.nearDistance = 0.0f;  // the centroid alone gives another number
   const Computed centroid = compute(cubeRoom(1, 0.5, 1.0), settings);
   EXPECT_GT(std::abs(0.5 * (centroid.sum(0, 2, 3) + centroid.sum(1, 2, 3)) / 0.199824895698387 - 1.0), 0.03);
 }
@@ -267,7 +267,7 @@ TEST_F(Hemicube, BacksBlockAndSendNothing) {
 }
 
 TEST_F(Hemicube, WhatTouchesThePatchBlocks) {
-  // T15: a wall a millionth of the room away from the patch's centre: no near plane lets light past.
+  // A wall a millionth of the room away from the patch's centre: no near plane lets light past.
   SceneBuilder builder;
   const int m = lambertian(builder, 0.5);
   builder.triangle({-1e-3, 0, 1e-3}, {1e-3, 0, 1e-3}, {0, 0, -2e-3}, m);
@@ -289,8 +289,8 @@ TEST_F(Hemicube, BatchesScaleAndPlaceChangeNothing) {
   const Computed a = compute(scene, settings), b = compute(scene, small);
   ASSERT_EQ(a.matrix.entryCount(), b.matrix.entryCount());
   for (std::size_t i = 0; i < a.areas.size(); ++i)
-    for (std::size_t k = 0; k < a.matrix.row(i).factors.size(); ++k) ASSERT_EQ(a.matrix.row(i).factors[k], b.matrix.row(i).factors[k]);  // T18: to the bit
-  // T19: the same up to rounding a thousand times as large, and moved.
+    for (std::size_t k = 0; k < a.matrix.row(i).factors.size(); ++k) ASSERT_EQ(a.matrix.row(i).factors[k], b.matrix.row(i).factors[k]);  // to the bit
+  // The same up to rounding when scaled by a thousand, and moved.
   for (const double scale : {1e-3, 1e3}) {
     Scene moved = scene;
     for (Vertex& v : moved.vertices) v.position = glm::vec3(scale * (glm::dvec3(v.position) + glm::dvec3(1, 2, 3)));

@@ -1,5 +1,4 @@
-// Form factors and solutions from the GPU against what is known of rooms, bowls and doors: the tests T4, T5, T7, T9, T10, T14, T19, T20 and T21 of the
-// list that the other radiosity tests began.
+// Form factors and solutions from the GPU against known answers of rooms, bowls and doors.
 #include "base/error.hpp"
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/solution.hpp"
@@ -82,7 +81,8 @@ Scene twoRooms(int n, const std::function<int(SceneBuilder&, int room, int wall)
 }
 
 TEST_F(RadiosityKnownOnGl, ThroughADoorAsMuchGoesOneWayAsTheOther) {
-  // T21. Rooms are convex, so what a patch sends into the other room is its closed form factor to the door; summed over a room that is the door's own area.
+  // Rooms are convex, so a patch sends its closed form factor to the door into the other room; summed over a room that
+  // is the door's own area.
   int grey = -1;
   const Scene scene = twoRooms(3, [&](SceneBuilder& b, int, int) { return grey < 0 ? grey = lambertian(b, 0.5) : grey; });
   HemicubeSettings settings;
@@ -134,7 +134,8 @@ TEST_F(RadiosityKnownOnGl, ThroughADoorAsMuchGoesOneWayAsTheOther) {
 }
 
 TEST_F(RadiosityKnownOnGl, TwoRoomsAreCorrectedRoomByRoom) {
-  // T21: light goes to and fro through the door, the slowest mode tells the rooms apart, and one unknown a room takes it away.
+  // Light goes back and forth through the door. The slowest mode is the difference between the rooms; one unknown per room
+  // removes it.
   int lit = -1, grey = -1;
   const Scene scene = twoRooms(3, [&](SceneBuilder& b, int room, int wall) {
     if (lit < 0) lit = lambertian(b, 0.95, 1.0), grey = lambertian(b, 0.95);
@@ -162,7 +163,7 @@ TEST_F(RadiosityKnownOnGl, TwoRoomsAreCorrectedRoomByRoom) {
 }
 
 TEST_F(RadiosityKnownOnGl, ReceiverErrorFallsWithTheSquareOfItsPartsAtRightAngles) {
-  // T4, its other half: unit squares with a common edge.
+  // Unit squares with a common edge.
   double error[3] = {};
   for (int k = 0; k < 3; ++k) {
     HemicubeSettings settings;
@@ -184,7 +185,7 @@ TEST_F(RadiosityKnownOnGl, ReceiverErrorFallsWithTheSquareOfItsPartsAtRightAngle
 }
 
 TEST_F(RadiosityKnownOnGl, AnyClosedMeshIsAFurnace) {
-  // T5 on a ball with dents and bumps: not convex, so patches hide one another.
+  // A ball with dents and bumps is not convex, so patches occlude one another.
   SceneBuilder builder;
   const int m = lambertian(builder, 0.9, 1.0);
   addSphere(builder, 1.0, 2, true, [&](const glm::dvec3&) { return m; });
@@ -207,7 +208,7 @@ TEST_F(RadiosityKnownOnGl, AnyClosedMeshIsAFurnace) {
 }
 
 TEST_F(RadiosityKnownOnGl, TheSixWallsOfACube) {
-  // T7: factors of the GPU, two triangles a wall, put together to those of walls, whose exitances are known.
+  // The GPU's factors, two triangles per wall, summed to those of walls, whose exitances are known.
   HemicubeSettings settings;
   settings.resolution = 64;
   settings.nearDistance = 8.0f;
@@ -245,7 +246,7 @@ TEST_F(RadiosityKnownOnGl, TheSixWallsOfACube) {
 }
 
 TEST_F(RadiosityKnownOnGl, ABowlIsLitAlikeEverywhereWhateverShines) {
-  // T9: B = E + rho f <E> / (1 - rho f) inside a cap of the fraction f of its sphere; E on one side of it alone.
+  // B = E + rho f <E> / (1 - rho f) inside a cap that is the fraction f of its sphere; E on one side only.
   SceneBuilder builder;
   const int lit = lambertian(builder, 0.6, 1.0), grey = lambertian(builder, 0.6), none = lambertian(builder, 0.0);
   addSphere(builder, 1.0, 2, true, [&](const glm::dvec3& c) { return c.y > 0.3 ? none : c.x > 0.5 ? lit : grey; });
@@ -270,7 +271,6 @@ TEST_F(RadiosityKnownOnGl, ABowlIsLitAlikeEverywhereWhateverShines) {
 }
 
 TEST_F(RadiosityKnownOnGl, RepairGivesReciprocityAndEnergyThatHemicubesLack) {
-  // T10 on rows from the GPU.
   const Scene scene = cubeRoom(4, 0.5, 1.0);
   HemicubeSettings plain;
   plain.resolution = 32;
@@ -304,7 +304,7 @@ TEST_F(RadiosityKnownOnGl, RepairGivesReciprocityAndEnergyThatHemicubesLack) {
 }
 
 TEST_F(RadiosityKnownOnGl, AGapAtATJunctionIsSeenAsBackground) {
-  // T14: a corner that lies on a neighbour's edge, a hundredth of the room beside it.
+  // A corner on a neighbour's edge, and a hundredth of the room off it.
   const auto open = [](double gap) {
     SceneBuilder builder;
     const int m = lambertian(builder, 0.5, 1.0);
@@ -341,7 +341,7 @@ TEST_F(RadiosityKnownOnGl, AGapAtATJunctionIsSeenAsBackground) {
 }
 
 TEST_F(RadiosityKnownOnGl, TurningTheSceneTurnsNoFactor) {
-  // T19: rolls follow the patch, not the axes.
+  // Rolls follow the patch, not the axes.
   SceneBuilder builder;
   const int m = lambertian(builder, 0.5), light = lambertian(builder, 0.1, 5.0);
   addSphere(builder, 2.0, 1, true, [&](const glm::dvec3& p) { return p.y > 1.8 ? light : m; });
@@ -365,7 +365,6 @@ TEST_F(RadiosityKnownOnGl, TurningTheSceneTurnsNoFactor) {
 }
 
 TEST_F(RadiosityKnownOnGl, LightIsLinearAndColoursDoNotMix) {
-  // T20, the whole way.
   const auto room = [](const glm::vec3& factor) {
     int lit = -1, grey = -1;
     return cubeRoom(3, [&, factor](SceneBuilder& b, int wall, double, double) mutable {

@@ -1,14 +1,10 @@
-// Known answers of the light-propagation-volume pipeline, held against its double-precision CPU twin (no GL).
+// Known answers of the light propagation volume, from its double-precision twin (no GL).
 //
-// The numbers come from the project's reference notes on LPV, sections 2 (correctness facts) and 5 (what a serious
-// suite checks), which computed them from the formulas of [Kaplanyan2010] and [Kirsch2010]; where a figure is ours or
-// follows in closed form, the test says so. A figure of the notes is compared to the last digit that is printed there.
-//
-// Four places where the notes do not say all that is needed, or are not reproduced:
-// - "no further gain" after the first clamped step is exact for a lobe along an axis only (test LaterStepsClamped);
-// - the "cosine-convolved" accumulated irradiances are <c | lobe(-n)>, pi/4 of our 4/(pi s^2) <c | lobe(-n)>;
-// - the degenerate side directions were computed with the slipped side constant too, as in the kernel they are from;
-// - swapped constants give 0.967396 a step, not the 0.966075 that is printed (test SwappedConstants).
+// Expected values were computed from the formulas of [Kaplanyan2010] and [Kirsch2010] and are compared to their last
+// printed digit. Where a value follows in closed form, the test says so.
+// - After the first clamped step only a lobe along an axis gains nothing more (test LaterStepsClamped).
+// - "cosine" irradiances are <c | lobe(-n)>, pi/4 of our 4/(pi s^2) <c | lobe(-n)>.
+// - Values for the degenerate side directions include the slipped side constant, as in the kernel they are from.
 #include "support/lpv_twin.hpp"
 
 #include <gtest/gtest.h>
@@ -141,7 +137,7 @@ bool allFinite(const Volume& volume) {
   });
 }
 
-// ---- spherical harmonics (notes 2.1) -------------------------------------------------------------------------------
+// ---- spherical harmonics --------------------------------------------------------------------------------------------
 
 TEST(LpvSh, BasisConstants) {
   EXPECT_PRINTED("0.2820947918", kY00);
@@ -213,7 +209,7 @@ TEST(LpvSh, FlatLobeDeviation) {
   EXPECT_PRINTED("0.58", moment / (2.0 * kPi / 3.0));
 }
 
-// ---- solid angles (notes 2.2) --------------------------------------------------------------------------------------
+// ---- solid angles ---------------------------------------------------------------------------------------------------
 
 TEST(LpvSolidAngle, Analytic) {
   EXPECT_PRINTED("0.4006696846462392", frontSolidAngle());
@@ -242,7 +238,7 @@ TEST(LpvSolidAngle, Quadrature) {
   EXPECT_NEAR(sideSolidAngle(), side, 1e-12);
 }
 
-// ---- gains of the kernel (notes 2.3) -------------------------------------------------------------------------------
+// ---- gains of the kernel --------------------------------------------------------------------------------------------
 
 TEST(LpvKernel, HomogeneousGains) {
   const Sh isotropic = homogeneousStep(unitIsotropic());
@@ -294,9 +290,8 @@ TEST(LpvKernel, FirstStepClamped) {
 }
 
 TEST(LpvKernel, LaterStepsClamped) {
-  // Along an axis, later steps gain nothing, to rounding. Off the axis the notes' "all later steps, clamped: no
-  // further gain" is not exact: the field of a cell can still be sharp enough for the clamp to act once or twice more.
-  // Ours: (110) ends at 1.126017 after step 2, (111) at 1.128353 after step 3, and both stay there.
+  // Along an axis, later steps gain nothing, to rounding. Off the axis the field of a cell can still be sharp enough for
+  // the clamp to act once or twice more: (110) ends at 1.126017 after step 2, (111) at 1.128353 after step 3, and both stay there.
   const auto gains = [](const glm::dvec3& axis) {
     std::vector<double> result;
     Volume volume = centralSource(21, unitLobe(axis));
@@ -436,7 +431,7 @@ TEST(LpvBorder, NonCubic) {
   EXPECT_GT(totalFlux(fromB.accumulated), totalFlux(b));
 }
 
-// ---- diffusion, not transport (notes 2.3) --------------------------------------------------------------------------
+// ---- diffusion, not transport ---------------------------------------------------------------------------------------
 
 TEST(LpvTransport, MeanDisplacementAndRms) {
   struct Row {
@@ -471,13 +466,13 @@ TEST(LpvTransport, MeanDisplacementAndRms) {
 }
 
 TEST(LpvTransport, AccumulatedIrradianceStraightAhead) {
-  // Over the analytic Phi/(pi d^2). The convention that reproduces the notes: 32^3 and s = 1; a VPL of unit flux half a
+  // Over the analytic Phi/(pi d^2). The convention of these values: 32^3 and s = 1; a VPL of unit flux half a
   // cell below the centre of cell 16, so that injection moves it there; d counts from that cell's centre; the receiver
   // faces the source and the lookup is not moved along its normal.
   struct Row {
     int steps;
     std::vector<std::string> direct;
-    std::vector<std::string> cosine;  ///< the notes' is <c | lobe(-n)>, pi/4 of ours
+    std::vector<std::string> cosine;  ///< <c | lobe(-n)>, pi/4 of ours
   };
   const std::array<int, 6> distances = {1, 2, 3, 4, 6, 8};
   const std::vector<Row> rows = {
@@ -502,7 +497,7 @@ TEST(LpvTransport, AccumulatedIrradianceStraightAhead) {
   }
 }
 
-// ---- symmetries (notes 5.4) ----------------------------------------------------------------------------------------
+// ---- symmetries -----------------------------------------------------------------------------------------------------
 
 /// The 48 signed permutations of the axes.
 std::vector<glm::dmat3> cubeSymmetries() {
@@ -615,13 +610,13 @@ TEST(LpvSymmetry, ScalesWithThePowerOfTheLightEvenClamped) {
 
 TEST(LpvSymmetry, OppositeLobesDoNotAdd) {
   // Above the clamp fields do not add: two opposite lobes in one cell are isotropic and gain nothing, each by itself
-  // gains 1.138208 (the notes' inference in section 8).
+  // gains 1.138208.
   const Volume together = propagateStep(centralSource(3, unitLobe(kUp) + unitLobe(-kUp)));
   EXPECT_NEAR(totalFlux(together), 2.0, 1e-14);
   EXPECT_PRINTED("1.138208", totalFlux(propagateStep(centralSource(3, unitLobe(-kUp)))));
 }
 
-// ---- signs, many steps, accumulation (notes 5.4, 5.6) --------------------------------------------------------------
+// ---- signs, many steps, accumulation --------------------------------------------------------------------------------
 
 TEST(LpvStability, NothingNegative) {
   const Volume field = randomVolume(cube(8), 11);
@@ -714,7 +709,7 @@ TEST(LpvGrid, StoredAsAThreeDimensionalTexture) {
   }
 }
 
-// ---- injection (notes 2.5, 5.8, 5.9) -------------------------------------------------------------------------------
+// ---- injection ------------------------------------------------------------------------------------------------------
 
 TEST(LpvInjection, OneVpl) {
   VolumeRgb volume = makeVolumeRgb({glm::ivec3(8), {-4.0, -4.0, -4.0}, 1.0});
@@ -863,7 +858,7 @@ TEST(LpvInjection, PlateEdgeOnHasNoVpls) {
   EXPECT_TRUE(plateVpls(plate, rsm).empty());
 }
 
-// ---- blocking geometry (notes 2.6, 5.10) ---------------------------------------------------------------------------
+// ---- blocking geometry ----------------------------------------------------------------------------------------------
 
 /// A wall through the LPV's corners z = corner, its front towards +z, every cell of it filled (A = s^2).
 Volume fullWall(const GridSpec& grid, int corner, double filled = 1.0) {
@@ -1019,7 +1014,7 @@ TEST(LpvGeometry, BlockingNeverAddsLight) {
   EXPECT_THROW(propagateStep(field, {}, &field), std::invalid_argument);
 }
 
-// ---- lookup (notes 2.7) --------------------------------------------------------------------------------------------
+// ---- lookup ---------------------------------------------------------------------------------------------------------
 
 TEST(LpvLookup, Trilinear) {
   const GridSpec grid{{6, 5, 4}, {-1.0, 2.0, 10.0}, 0.5};
@@ -1127,7 +1122,7 @@ TEST(LpvLookup, SumOfCascadesDeviation) {
   EXPECT_NEAR(irradianceSumOfCascades(cascades, glm::dvec3(0.1), kUp), 3.0 * one, 1e-14);
 }
 
-// ---- the grid that follows the camera (notes 5.16) -----------------------------------------------------------------
+// ---- the grid that follows the camera -------------------------------------------------------------------------------
 
 TEST(LpvCameraGrid, StandsAheadOfTheCamera) {
   // 32 cells of 0.25 make an extent of 8, so the centre stands 3.2 ahead.
@@ -1218,7 +1213,7 @@ TEST(LpvCameraGrid, TruncationDeviation) {
   EXPECT_NE(std::fmod(fine.grid.minimum.x, 0.75), 0.0);
 }
 
-// ---- known kernel bugs, and what each costs (notes 2.4) ------------------------------------------------------------
+// ---- known kernel bugs, and what each costs -------------------------------------------------------------------------
 
 /// Band-0 gain over `steps` steps of a field that is the same everywhere.
 double homogeneousGain(const KernelOptions& options, int steps) {
@@ -1234,7 +1229,7 @@ TEST(LpvDeviation, SideConstantSlip) {
 }
 
 TEST(LpvDeviation, SwappedConstants) {
-  // In closed form 6/(4 pi) * (side + 4 front). The notes print 0.966075, which these formulas do not give.
+  // In closed form 6/(4 pi) * (side + 4 front).
   const double closedForm = 1.5 / kPi * (sideSolidAngle() + 4.0 * frontSolidAngle());
   EXPECT_NEAR(homogeneousGain(swappedConstantsKernel(), 1), closedForm, 1e-14);
   EXPECT_PRINTED("0.967396", homogeneousGain(swappedConstantsKernel(), 1));
@@ -1260,7 +1255,7 @@ TEST(LpvDeviation, ComponentProductSideDirections) {
     return propagate(centralSource(17, source), 8, options).accumulated.at(cell).c0;
   };
   for (int axis = 0; axis < 3; ++axis) EXPECT_PRINTED("0.006257", along(axis, {}, unitIsotropic()));
-  // The notes' figures hold with the slipped side constant, which the kernel in question has as well ...
+  // These figures hold with the slipped side constant, which the kernel in question has as well ...
   KernelOptions published = componentProductKernel();
   published.sideSolidAngle = kSlippedSideSolidAngle;
   EXPECT_PRINTED("0.004867", along(0, published, unitIsotropic()));

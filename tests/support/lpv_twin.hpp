@@ -3,7 +3,7 @@
 //
 // It is derived from the formulas, never from the shaders, so that the two can be held against each other. Sources:
 // [Kaplanyan2010] for the scheme; [Kirsch2010] for its factors (VPL intensity Phi/pi, face flux Omega * I without
-// 1/(4 pi)); the reference notes on LPV, section 2, for the anchors and for the public deviations from the kernel.
+// 1/(4 pi)); [LPV2015] and its public demo for the deviations from the kernel.
 //
 // Units: positions and cell sizes in scene units; flux in W (any unit will do: everything is linear in it); SH
 // coefficients of one channel in W/sr times the basis' sr^(1/2); irradiance in W per square scene unit.
