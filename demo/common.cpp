@@ -123,6 +123,7 @@ const Setting kSettings[] = {
     SETTING("lpv.rays", "with transport rays: paths of a receiver and frame, 1, 2, 4, ... 64 (16)", s.lpv.rays = parsePowerOfTwo(k, v, 64)),
     SETTING("lpv.least-rays", "with transport rays: paths of a receiver in its first frame, at least (64)", s.lpv.leastRays = parseNumber(k, v, 1, 1 << 20)),
     SETTING("lpv.samples", "with transport rays: paths of a receiver while light and geometry stand still (512)", s.lpv.samples = parseNumber(k, v, 1, 1 << 24)),
+    SETTING("lpv.most-change", "of receivers: largest relative change of what is shown in a frame, 0 for any (0.004)", s.lpv.mostChange = static_cast<float>(parseNumber(k, v, 0.0, 1.0))),
     SETTING("lpv.iterations", "propagation steps (8)", s.lpv.iterations = parseNumber(k, v, 0, 100000)),
     SETTING("lpv.cell-size", "cell size of the coarsest cascade in scene units (0: half the cells span the scene)",
             s.lpv.cascades.cellSize = parseNumber(k, v, 0.0, 1e12)),

@@ -63,7 +63,7 @@ std::pair<int, int> parseViews(const std::string& text, int viewCount) {
   return {first, last};
 }
 
-// How much two pictures of one view differ: their means, and the 16x16 block that differs most, relative to the mean.
+// How much two pictures of one view differ: their means, and the 16x16 block that differs most, relative to its own mean or, in the dark, to the picture's.
 struct Change {
   double mean = 0.0, block = 0.0;
 };
@@ -77,10 +77,13 @@ Change changeBetween(const Image& before, const Image& after) {
   change.mean = std::abs(luminance(glm::vec3(means[1])) / reference - 1.0);
   for (int y = 0; y + kBlock <= before.height; y += kBlock)
     for (int x = 0; x + kBlock <= before.width; x += kBlock) {
-      double sum = 0.0;
+      double sum = 0.0, own = 0.0;
       for (int j = 0; j < kBlock; ++j)
-        for (int i = 0; i < kBlock; ++i) sum += luminance(after.at(x + i, y + j)) - luminance(before.at(x + i, y + j));
-      change.block = std::max(change.block, std::abs(sum) / (kBlock * kBlock) / reference);
+        for (int i = 0; i < kBlock; ++i) {
+          own += luminance(before.at(x + i, y + j));
+          sum += luminance(after.at(x + i, y + j)) - luminance(before.at(x + i, y + j));
+        }
+      change.block = std::max(change.block, std::abs(sum) / std::max(own, reference * kBlock * kBlock));
     }
   return change;
 }

@@ -86,6 +86,8 @@ class LightPropagationVolume {
     int rays = 16;              ///< of LpvTransport::rays: paths of a receiver and frame, 1, 2, 4 ... 64
     int leastRays = 64;         ///< the same: paths that a receiver has in the frame in which it is first needed, at least
     int samples = 512;          ///< the same: paths of a receiver while light and geometry stand still
+    /// Of receivers: by how much of itself the irradiance that is shown may change in a frame while the camera moves or paths are added; 0: by any.
+    float mostChange = 0.004f;
     Storage storage = Storage::half;
     bool everyBrick = false;    ///< the compute gather does not leave out what light has not reached; the same bits, for tests and to measure it
   };

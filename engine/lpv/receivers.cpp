@@ -40,6 +40,13 @@ float typicalOf(const Scene& scene) {
   return result > 0.0f ? std::clamp(result, 1e-30f, 1e30f) : 1.0f;
 }
 
+/// Whether the camera jumped: then there is no picture before with which this one should agree.
+bool isCut(const Cascade& before, const Cascade& now) {
+  constexpr std::int64_t kCells = 4;
+  const glm::i64vec3 moved = glm::abs(now.firstCell - before.firstCell);
+  return std::max({moved.x, moved.y, moved.z}) > kCells;
+}
+
 }  // namespace
 
 bool LpvReceivers::isNeeded(const SceneNeeds& needs, LpvTransport transport, Light light) {
@@ -80,7 +87,8 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
     buffer = gl::Buffer("lpv receivers", capacity_ * sizeof(shared::LpvReceiver), nullptr, GL_DYNAMIC_COPY);
   for (gl::Buffer& buffer : work_) buffer = gl::Buffer("lpv receivers' work", sizeof kNoWork, nullptr, GL_DYNAMIC_COPY);
   lit_ = gl::Buffer("lpv lit receivers", std::min(capacity_, kMostPaths / static_cast<std::size_t>(lanes)) * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
-  lpvConstants_ = gl::Buffer("lpv constants", sizeof(shared::LpvConstants), nullptr, GL_DYNAMIC_DRAW);
+  for (gl::Buffer* buffer : {&lpvConstants_, &lpvConstantsBefore_})
+    *buffer = gl::Buffer("lpv constants", sizeof(shared::LpvConstants), nullptr, GL_DYNAMIC_DRAW);
   constants_ = gl::Buffer("lpv receiver constants", sizeof(shared::LpvReceiverConstants), nullptr, GL_DYNAMIC_DRAW);
   pathConstants_ = gl::Buffer("lpv path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW);
   const gl::Sampling linear{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};
@@ -144,7 +152,9 @@ void LpvReceivers::forget() {
 
 void LpvReceivers::place(const Inputs& inputs) {
   const shared::LpvConstants lpv = lpvConstants(settings_, inputs.cascades, referenceIrradiance_);
+  std::swap(lpvConstants_, lpvConstantsBefore_);
   lpvConstants_.upload(0, sizeof lpv, &lpv);
+  if (cascades_.empty()) lpvConstantsBefore_.upload(0, sizeof lpv, &lpv);
   shared::LpvReceiverConstants constants{};
   for (std::size_t k = 0; k < inputs.cascades.size(); ++k) constants.firstCell[k] = glm::ivec4(glm::ivec3(inputs.cascades[k].firstCell), 0);
   constants.rayOrigin = glm::vec3(rayOrigin_);
@@ -215,18 +225,22 @@ void LpvReceivers::mark(const Inputs& inputs) {
 }
 
 // Of receivers that are needed those that have fewer paths than `target`.
-void LpvReceivers::list(int target) {
+void LpvReceivers::list(int target, bool countsFading) {
   const std::array<GLuint, 5> none{0, 1, 1, 0, frame_};
   work_[0].upload(4 * sizeof(GLuint), sizeof none, none.data());
   bindReceivers();
+  lpvConstantsBefore_.bind(GL_UNIFORM_BUFFER, kLpvBinding);  // new receivers look up what was seen in their place
+  irradiance_.bind(kIrradianceUnit);
   scene_.bind();
   lit_.bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
   const gl::ComputePass pass("lpv list receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   list_->use();
   list_->set("mostLit", static_cast<unsigned>(lit_.bytes() / sizeof(GLuint)));
   list_->set("pathTarget", static_cast<unsigned>(target));
+  list_->set("countsFading", countsFading ? 1 : 0);
   seen_.bind(kSeenUnit);
   pass.dispatchIndirect(work_[0]);
+  lpvConstants_.bind(GL_UNIFORM_BUFFER, kLpvBinding);
 }
 
 void LpvReceivers::light(int target) {
@@ -269,12 +283,14 @@ void LpvReceivers::gather(const Inputs& inputs) {
   }
 }
 
-void LpvReceivers::store() {
+void LpvReceivers::store(float mostChange) {
   const std::array<const gl::Texture*, 1> textures{&irradiance_};
   gl::clearToZero(textures, clearTexture_);
   const gl::ComputePass pass("lpv store receivers", GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   store_->use();
   store_->set("fullPaths", kFullPaths);
+  store_->set("enoughPaths", static_cast<unsigned>(std::min(settings_.samples, settings_.leastRays)));
+  store_->set("mostChange", mostChange);
   bindReceivers();
   slotTable_.bind(kSlotsUnit);
   irradiance_.bindImage(0, GL_WRITE_ONLY);
@@ -284,24 +300,26 @@ void LpvReceivers::store() {
 void LpvReceivers::update(const Inputs& inputs, int rounds) {
   const bool moved = !cascades_.empty() && !std::equal(cascades_.begin(), cascades_.end(), inputs.cascades.begin(), inputs.cascades.end(),
                                                        [](const Cascade& a, const Cascade& b) { return a.firstCell == b.firstCell; });
-  cascades_ = inputs.cascades;
+  const bool cut = cascades_.empty() || isCut(cascades_.front(), inputs.cascades.front());
+  const float mostChange = inputs.fades && !cut ? settings_.mostChange : 0.0f;
   place(inputs);
+  cascades_ = inputs.cascades;
   if (moved) keep();
   mark(inputs);
   if (settings_.transport == LpvTransport::gather) {
     gather(inputs);
-    store();
-    list(1);
+    store(mostChange);
+    list(1, true);
     ring_->copy(work_[0]);
     return;
   }
   for (int round = 0; round < rounds; ++round) {
-    if (cached_ && round > 0) store();
+    if (cached_ && round > 0) store(mostChange);
     light(settings_.samples);
   }
   for (int paths = rounds * settings_.rays; paths < std::min(settings_.leastRays, settings_.samples); paths += settings_.rays) light(settings_.leastRays);
-  store();
-  list(settings_.samples);  // what is still to be done
+  store(mostChange);
+  list(settings_.samples, true);  // what is still to be done
   ring_->copy(work_[0]);
 }
 
@@ -321,7 +339,7 @@ void LpvReceivers::collect(bool wait) {
 }
 
 std::size_t LpvReceivers::gpuBytes() const {
-  std::size_t bytes = scene_.gpuBytes() + lpvConstants_.bytes() + constants_.bytes() + pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() +
+  std::size_t bytes = scene_.gpuBytes() + lpvConstants_.bytes() + lpvConstantsBefore_.bytes() + constants_.bytes() + pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() +
                       seen_.bytes() + irradiance_.bytes() + ring_->bytes() + voxels_.bytes();
   for (const LightTree& tree : trees_) bytes += tree.gpuBytes();
   for (std::size_t i = 0; i < 2; ++i) bytes += receivers_[i].bytes() + work_[i].bytes();

@@ -38,6 +38,7 @@ class LpvReceivers {
     /// Of LpvTransport::gather, one a light; the same ones every frame. Read where `mapsAreNew`, and by receivers that are new.
     const std::vector<ReflectiveShadowMap::Outputs>& maps;
     bool mapsAreNew;
+    bool fades;  ///< what is shown changes by no more than Settings::mostChange; else all of it at once
   };
   /// Of the last frame whose counts have arrived.
   struct Counts {
@@ -74,10 +75,10 @@ class LpvReceivers {
   void place(const Inputs& inputs);
   void keep();
   void mark(const Inputs& inputs);
-  void list(int target);
+  void list(int target, bool countsFading = false);
   void light(int target);
   void gather(const Inputs& inputs);
-  void store();
+  void store(float mostChange);
   void bindReceivers() const;
 
   LightPropagationVolume::Settings settings_;
@@ -100,7 +101,8 @@ class LpvReceivers {
   float voxelSize_ = 1.0f;
   glm::ivec3 voxelBricks_{1};
   gl::BufferTexture voxels_;
-  gl::Buffer lpvConstants_, constants_, pathConstants_, lit_;
+  gl::Buffer lpvConstants_, lpvConstantsBefore_;  ///< the second: of the cascades that irradiance_ is of when an update begins
+  gl::Buffer constants_, pathConstants_, lit_;
   std::array<gl::Buffer, 2> receivers_, work_;  ///< the second of each: before the cascades moved
   gl::BufferTexture slotTable_, keys_, seen_;
   gl::Texture irradiance_;

@@ -285,14 +285,15 @@ std::vector<ReflectiveShadowMap::Outputs> Renderer::recordCameraMap(const Camera
 
 void Renderer::renderToTheEnd(const Camera& camera) {
   if (receivers_) rounds_ = (settings_.lpv.samples + settings_.lpv.rays - 1) / settings_.lpv.rays;
+  toTheEnd_ = true;
   render(camera);
   rounds_ = 1;
-  if (!receivers_) return;
-  receivers_->collect(true);
-  while (receivers_->counts().waiting > 0) {
+  if (receivers_) receivers_->collect(true);
+  while (receivers_ && receivers_->counts().waiting > 0) {
     render(camera);
     receivers_->collect(true);
   }
+  toTheEnd_ = false;
 }
 
 void Renderer::forget() {
@@ -328,7 +329,7 @@ bool Renderer::recordReceivers(const Camera& camera, const Camera& volumeCamera,
   }
   const gl::TimeQuery::Scope stage(timer_, "receivers");
   receivers_->update({placeCascades(settings_.lpv.cascades, gpuScene_.scene().bounds, volumeCamera.position, volumeCamera.direction), camera,
-                      glm::mat4(glm::inverse(clip)), *visible_, maps, mapsAreNew}, rounds_);
+                      glm::mat4(glm::inverse(clip)), *visible_, maps, mapsAreNew, !toTheEnd_}, rounds_);
   return true;
 }
 

@@ -147,6 +147,7 @@ class Renderer {
   std::uint32_t receivedSince_ = 0;
   bool settled_ = false;
   int rounds_ = 1;  ///< of paths in a frame
+  bool toTheEnd_ = false;  ///< nothing fades in
   std::optional<VisibleSurfaces> visible_;  ///< of techniques that start from pixels
   std::optional<RsmGather> gather_;
   std::optional<EnvironmentView> environmentView_;

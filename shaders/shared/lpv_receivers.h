@@ -10,11 +10,14 @@ SHARED_BEGIN
 #define LPV_NOWHERE 0xfffffffeu   // where that ray met nothing
 #define LPV_GATHERED 0xffffffu  // paths of a receiver whose light was gathered at once
 #define LPV_LANES 64          // of a work group, a path each
+#define LPV_PRESENT 1.0
+#define LPV_FRONT 1u
+#define LPV_FIRST 2u
 
 struct LpvReceiver {
   ivec4 cell;           // which cell of its cascade, counted from the origin; w: cascade * LPV_FACES + face
   uint triangle;        // of the scene; its place there, and whether it is seen from its front
-  uint front;
+  uint state;           // LPV_FRONT: it is seen from its front; LPV_FIRST: nothing was seen in its place before
   float second;         // weights of the second and third corner
   float third;
   vec3 irradiance;      // mean of all paths so far, W per square scene unit
@@ -23,6 +26,8 @@ struct LpvReceiver {
   uint born;            // frame in which a pixel found it
   vec3 normal;          // for shading, unit, on the side that is seen
   uint pixel;           // that found it
+  vec3 shown;           // irradiance that is looked up: follows `irradiance`, and its neighbours', at a bounded rate
+  float presence;       // how much of it is faded in, 0 to LPV_PRESENT; LPV_PRESENT alone says that `shown` has arrived too
 };
 
 struct LpvReceiverConstants {

@@ -871,13 +871,15 @@ TEST_F(GlSharedStructs, ReceiverBlockAndBuffer) {
 #define EXPECT_OFFSET(member) EXPECT_EQ(property("before[0]." #member, GL_OFFSET), static_cast<GLint>(offsetof(LpvReceiver, member))) << #member
   EXPECT_OFFSET(cell);
   EXPECT_OFFSET(triangle);
-  EXPECT_OFFSET(front);
+  EXPECT_OFFSET(state);
   EXPECT_OFFSET(second);
   EXPECT_OFFSET(third);
   EXPECT_OFFSET(irradiance);
   EXPECT_OFFSET(paths);
   EXPECT_OFFSET(born);
   EXPECT_OFFSET(pixel);
+  EXPECT_OFFSET(shown);
+  EXPECT_OFFSET(presence);
 #undef EXPECT_OFFSET
   EXPECT_EQ(property("before[0].cell", GL_TOP_LEVEL_ARRAY_STRIDE), static_cast<GLint>(sizeof(LpvReceiver)));
 }

@@ -522,6 +522,7 @@ TEST_F(LpvReceiversKept, PathsGoOnWhereTheCameraHasBeen) {
   const Scene scene = test::openBox();
   RenderSettings s = settings(1, 256);
   s.lpv.leastRays = 16;
+  s.lpv.mostChange = 0.0f;
   const Camera here = test::openBoxCamera(), there = lookingAt({2.0, 1.0, 11.0}, {0.5, -1.0, 0.0}, 0.9);  // the finer grid moves
   Renderer renderer(context(), library(), scene, s);
   const LpvReceivers::Counts first = frame(renderer, here);
@@ -567,6 +568,7 @@ TEST_F(LpvReceiversKept, WhatIsSeenAfterAMoveIsWhatIsSeenFromTheStart) {
   for (const double x : {-3.0, -1.0, 1.0, 3.0}) builder.plate({x, 0.5, 0.0}, {0, 1, 0}, {0, 0, 8}, red);
   RenderSettings s = settings(1, 256);
   s.lpv.leastRays = 256;
+  s.lpv.mostChange = 0.0f;
   s.lpv.cascades.cellSize = 0.5;
   s.lpv.cascades.heldInScene = false;
   Renderer renderer(context(), library(), builder.scene(), s);
@@ -584,6 +586,62 @@ TEST_F(LpvReceiversKept, WhatIsSeenAfterAMoveIsWhatIsSeenFromTheStart) {
   EXPECT_GT(worst, 0.0);
   renderer.drain();
   EXPECT_EQ(renderer.receivers()->counts().left, 0u);
+}
+
+// New receivers begin with what was seen in their place and move by at most lpv.most-change of it a frame, until they show what a renderer without that bound shows.
+TEST_F(LpvReceiversKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
+  const Scene scene = test::openBox();
+  const Camera here = test::openBoxCamera();
+  const auto largestStep = [](const Image& a, const Image& b) {
+    const glm::dvec3 mean = meanOf(a);
+    double largest = 0.0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        largest = std::max(largest, std::abs(b.pixels[i][c] - a.pixels[i][c]) / std::max<double>(a.pixels[i][c], mean[c]));
+    return largest;
+  };
+  // The view stays and the volume moves, so that nothing but the volume changes the picture.
+  struct Walk {
+    double largestStep = 0.0;
+    Image last;
+    int framesToArrive = 0;
+  };
+  const auto walk = [&](float mostChange) {
+    RenderSettings s = settings(1, 16, Component::indirect);
+    s.lpv.leastRays = 16;  // noise of new receivers is what would be seen
+    s.lpv.mostChange = mostChange;
+    s.lpv.cascades.heldInScene = false;
+    s.lpv.cascades.cellSize = 2.0;  // all of the box lies in the coarser grid, some of it in the finer one
+    Renderer renderer(context(), library(), scene, s);
+    renderer.renderToTheEnd(here);
+    Walk result;
+    result.last = renderer.readRadiance();
+    const auto look = [&](const Camera& volume) {
+      renderer.render(here, volume);
+      renderer.drain();
+      const Image now = renderer.readRadiance();
+      result.largestStep = std::max(result.largestStep, largestStep(result.last, now));
+      result.last = now;
+    };
+    Camera volume = here;
+    for (int i = 0; i < 60; ++i) {
+      volume.position += glm::dvec3(0.01, 0.0, -0.04);
+      look(volume);
+    }
+    while (!renderer.isSettled() && result.framesToArrive < 400) {
+      look(volume);
+      ++result.framesToArrive;
+    }
+    return result;
+  };
+  const Walk bounded = walk(0.004f), free = walk(0.0f);
+  report("largest relative change of a pixel in a frame", bounded.largestStep);
+  report("without the bound", free.largestStep);
+  report("frames until it has arrived", bounded.framesToArrive);
+  EXPECT_GT(free.largestStep, 0.05);  // else there is nothing to bound
+  EXPECT_LT(bounded.largestStep, 0.015);  // 0.004, and the step by which the finer grid's blending moves over the coarser one
+  EXPECT_LT(bounded.framesToArrive, 200);
+  EXPECT_LT(largestDifference(bounded.last, free.last), 1e-6);
 }
 
 TEST_F(LpvReceiversKept, WithoutRoomReceiversAreLeftOutAndCounted) {

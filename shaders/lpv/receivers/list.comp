@@ -1,5 +1,5 @@
 // Every receiver once a frame: a new one is placed where its pixel's ray meets the scene, in the ray caster's own numbers, so that no path starts inside of a surface;
-// and those that are needed and do not have all their paths yet are listed.
+// and those that are needed and do not have all their paths yet are listed. What a new one shows at first is what was looked up at its place in the frame before.
 layout(local_size_x = 64) in;
 #include "shared/path_tracer.h"
 layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
@@ -7,13 +7,14 @@ layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
 #include "pathtracer/bsdf.glsl"
 #include "pathtracer/materials.glsl"
 #include "pathtracer/bvh.glsl"
-#include "lpv/receivers/common.glsl"
+#include "lpv/receivers/lookup.glsl"
 #include "lpv/receivers/work.glsl"
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) writeonly restrict buffer LpvLit { uint lit[]; };
 layout(binding = 6) uniform usamplerBuffer lpvSeen;
 uniform uint mostLit;     // receivers
 uniform uint pathTarget;  // paths that a receiver shall have
+uniform bool countsFading;  // those that have not arrived at what they shall show are listed, too
 
 void main() {
   uint index = gl_GlobalInvocationID.x;
@@ -28,15 +29,20 @@ void main() {
     receivers[index].triangle = triangle;
     if (triangle != LPV_NOWHERE) {
       Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
-      receivers[index].front = surface.front ? 1u : 0u;
       receivers[index].position = surface.position + receiving.rayOrigin;
       receivers[index].normal = surface.normal;
       receivers[index].second = hit.barycentrics.x;
       receivers[index].third = hit.barycentrics.y;
+      bool known;
+      receivers[index].shown = receivedIrradiance(surface.position + receiving.rayOrigin, surface.normal, known);
+      receivers[index].presence = known ? 0.0 : LPV_PRESENT;
+      receivers[index].state = (surface.front ? LPV_FRONT : 0u) | (known ? 0u : LPV_FIRST);
     }
   }
-  if (triangle == LPV_NOWHERE || receivers[index].paths >= pathTarget) return;
-  if (receivers[index].born != receiving.frame && texelFetch(lpvSeen, int(index)).x != receiving.frame) return;
+  if (triangle == LPV_NOWHERE) return;
+  bool fades = countsFading && receivers[index].presence < LPV_PRESENT;  // also where it is not needed itself, but looked up beside those that are
+  bool lacksPaths = receivers[index].paths < pathTarget && (receivers[index].born == receiving.frame || texelFetch(lpvSeen, int(index)).x == receiving.frame);
+  if (!fades && !lacksPaths) return;
   uint place = atomicAdd(work.waiting, 1u);
   if (place >= mostLit) return;
   atomicMax(work.litGroupsX, place / uint(LPV_LANES / PATHS) + 1u);

@@ -18,17 +18,19 @@ vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
   return sum;
 }
 
-// From the finest cascade to the coarsest, each blended into the next near its border; where one has nothing the next takes its place.
+// From the finest cascade to the coarsest, each blended into the next near its border, and where it has little to interpolate from: what a point's own
+// receiver weighs at least when it is new, 1/8 of 1/4, or more is enough.
 // found: false where none has anything.
 vec3 receivedIrradiance(vec3 position, vec3 normal, out bool found) {
-  const float kLeast = 1.0 / 64.0;
+  const float kEnough = 1.0 / 32.0;
   vec3 irradiance = vec3(0.0);
   float left = 1.0;
   for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
     float weight = left * lpvCascadeWeight(k, position);
     if (!(weight > 0.0)) continue;
     vec4 here = receivedInCascade(k, position, normal);
-    if (here.w < kLeast) continue;
+    if (!(here.w > 0.0)) continue;
+    weight *= min(here.w / kEnough, 1.0);
     irradiance += weight * here.rgb / here.w;
     left -= weight;
   }

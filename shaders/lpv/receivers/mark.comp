@@ -47,7 +47,7 @@ void main() {
       uint index = atomicAdd(work.wanted, 1u);
       if (index >= receiving.capacity) continue;
       atomicMax(work.allGroupsX, index / uint(LPV_LANES) + 1u);
-      receivers[index] = LpvReceiver(ivec4(cell, k * LPV_FACES + face), LPV_UNPLACED, 0u, 0.0, 0.0, vec3(0.0), 0u, position, receiving.frame, normal, number);
+      receivers[index] = LpvReceiver(ivec4(cell, k * LPV_FACES + face), LPV_UNPLACED, 0u, 0.0, 0.0, vec3(0.0), 0u, position, receiving.frame, normal, number, vec3(0.0), 0.0);
       slots[slot] = index + 1u;
 #else
       if (holds != 0u)

@@ -149,7 +149,7 @@ void main() {
   if (there) {
     uint first = receiver.triangle * TRIANGLE_WORDS;
     vec3 normal = uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
-    Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third), receiver.front != 0u ? -normal : normal);
+    Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third), (receiver.state & LPV_FRONT) != 0u ? -normal : normal);
     // The place decides the numbers, not the order in which receivers were found.
     found[lane] = followPath(surface, receiver.triangle, PathNumbers(pcg4d(uvec4(receiver.cell)).x, receiver.paths + lane % uint(PATHS), tracer.seed));
   }

@@ -4,10 +4,29 @@
 layout(local_size_x = 64) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
-layout(std430, binding = 0) readonly restrict buffer LpvReceivers { LpvReceiver receivers[]; };
+layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(LPV_FORMAT, binding = 0) writeonly uniform image3D lpvReceived;
 layout(binding = 0) uniform usamplerBuffer lpvSlots;
-uniform float fullPaths;  // from which it counts fully, and alone
+uniform float fullPaths;   // from which it counts fully, and alone
+uniform uint enoughPaths;  // from which one that was first does not jump any more
+uniform float mostChange;  // of what is shown in a frame, relative to the larger of what it was and shall be; 0: at once
+const float kFadeIn = 1.0 / 16.0;  // a frame
+
+// Nothing that is seen jumps: the irradiance that a receiver shows moves towards what its paths and its neighbours' say, and a new one comes in by and by.
+// Where nothing was seen before it shows what the paths of its first frame have found.
+void show(uint index, inout LpvReceiver receiver, vec3 target) {
+  vec3 change = target - receiver.shown;
+  float largest = max(max(abs(change.x), abs(change.y)), abs(change.z));
+  float scale = max(max(max(receiver.shown.x, receiver.shown.y), receiver.shown.z), max(max(target.x, target.y), target.z));
+  bool isFirst = (receiver.state & LPV_FIRST) != 0u;
+  if (isFirst && receiver.paths >= enoughPaths) receivers[index].state = receiver.state & ~LPV_FIRST;
+  bool arrives = mostChange == 0.0 || isFirst || largest <= mostChange * scale;
+  receiver.shown = arrives ? target : receiver.shown + change * (mostChange * scale / largest);
+  float presence = mostChange == 0.0 ? LPV_PRESENT : min(receiver.presence + kFadeIn, LPV_PRESENT);
+  receiver.presence = arrives ? presence : min(presence, LPV_PRESENT - 0.5 * kFadeIn);
+  receivers[index].shown = receiver.shown;
+  receivers[index].presence = receiver.presence;
+}
 
 vec3 withNeighbours(LpvReceiver receiver) {
   float share = 1.0 - float(receiver.paths) / fullPaths;
@@ -39,5 +58,6 @@ void main() {
   if (any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(lpv.shape.x)))) return;
   // No less than a quarter: times 1/8, the least share of a point's own cell, that is still more than the lookup asks for. Else what few paths have found would stay black.
   float counts = clamp(float(receiver.paths) / fullPaths, 0.25, 1.0);
-  imageStore(lpvReceived, ivec3(place.xy, receiver.cell.w * lpv.shape.x + place.z), counts * vec4(withNeighbours(receiver) / lpv.referenceIrradiance, 1.0));
+  show(index, receiver, withNeighbours(receiver));
+  imageStore(lpvReceived, ivec3(place.xy, receiver.cell.w * lpv.shape.x + place.z), receiver.presence * counts * vec4(receiver.shown / lpv.referenceIrradiance, 1.0));
 }
