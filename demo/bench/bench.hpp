@@ -2,6 +2,7 @@
 #pragma once
 
 #include "commands.hpp"
+#include "render/deviations.hpp"
 
 #include <string>
 #include <vector>
@@ -63,9 +64,10 @@ struct VptTablesInput {
   gl::ProgramLibrary& programs;
   double scale;  ///< 0..1
   bool quiet;
+  Fidelity fidelity = Fidelity::corrected;
 };
 
-/// The times under the pictures of the VPT original, on scenes of ours.
+/// The times under the pictures of the VPT original, on scenes of ours; with the published estimator also those of the corrected one.
 Tables measureVptTables(const VptTablesInput& input);
 
 /// Those pictures on one sheet.

@@ -47,12 +47,11 @@ int runVpt(const Options& options) {
   if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
   if (!options.scene.empty()) throwBadInput("SCENE {}: the pictures of vpt are made of their own scenes", options.scene);
   if (!options.camera.empty()) throwBadInput("--camera {}: the pictures of vpt have their own cameras", options.camera);
-  if (options.fidelity != "corrected") throwBadInput("--fidelity {}: the pictures of vpt are made with the corrected estimator", options.fidelity);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
   watchForInterrupt();
-  const bench::VptSheet sheet = bench::drawVptPictures({context, programs, scale, options.common.quiet}, size, options.exposure);
+  const bench::VptSheet sheet = bench::drawVptPictures({context, programs, scale, options.common.quiet, options.fidelity == "original" ? Fidelity::original : Fidelity::corrected}, size, options.exposure);
   if (interrupted()) return exitCode();
   writePng(options.output, sheet.sheet);
   if (!options.common.quiet) fmt::print("{}: {} tiles of {}x{}, on {}\n", options.output, sheet.tiles, size.x, size.y, context.capabilities().renderer);

@@ -1,37 +1,121 @@
-// The pictures of the VPT original [VPT2024, 5.8 to 5.20] made again on scenes of ours, on one labelled sheet.
+// The pictures of the VPT original [VPT2024, 5.7 to 5.20] made again on scenes of ours, on one labelled sheet.
 #include "bench/contact_sheet.hpp"
 #include "bench/vpt_series.hpp"
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
+
 namespace lucerna::demo::bench {
 
 namespace {
+
 /// That a picture with fewer than the published samples may take: what a slow machine does not get done is noisier, not left out.
 constexpr double kMostSeconds = 20.0;
+constexpr int kZoom = 6;  // of figure 5.11
+
+float luminance(const glm::vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+/// The middle, every pixel as a square of kZoom.
+Bitmap zoomed(const Bitmap& picture) {
+  Bitmap result = picture;
+  const int left = (picture.width - picture.width / kZoom) / 2, top = (picture.height - picture.height / kZoom) / 2;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const auto from = 4 * (static_cast<std::size_t>(top + y / kZoom) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(left + x / kZoom));
+      const auto to = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x));
+      std::copy_n(picture.rgba.begin() + static_cast<std::ptrdiff_t>(from), 4, result.rgba.begin() + static_cast<std::ptrdiff_t>(to));
+    }
+  return result;
+}
+
+/// Pixels of less than a twentieth of the median of their eight neighbours: the published black fragments.
+int blackPixels(const Image& image) {
+  int count = 0;
+  for (int y = 1; y + 1 < image.height; ++y)
+    for (int x = 1; x + 1 < image.width; ++x) {
+      std::array<float, 8> around{};
+      std::size_t k = 0;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+          if (dx != 0 || dy != 0) around[k++] = luminance(image.at(x + dx, y + dy));
+      std::nth_element(around.begin(), around.begin() + 4, around.end());
+      count += luminance(image.at(x, y)) < 0.05f * around[4];
+    }
+  return count;
+}
+
+class Drawing {
+ public:
+  Drawing(const VptTablesInput& input, glm::ivec2 size, std::optional<double> exposure)
+      : input_(input), size_(size), exposure_(exposure), published_(input.fidelity != Fidelity::corrected),
+        progress_("bench pictures", static_cast<int>((vptPictures().size() + (published_ ? vptUntimedPictures().size() + 1 : 0)) * (published_ ? 2 : 1)), input.quiet) {}
+
+  /// A tile of a picture by an estimator on the scene that is lit for it.
+  VptResult add(const VptPicture& picture, Fidelity fidelity, const PathDeviations& deviations, const std::string& note) {
+    const Scene scene = loadVptScene(picture, fidelity);
+    VptResult drawn = renderVpt(input_.context, input_.programs, picture, scene, size_, vptSamples(picture, input_.scale), input_.scale < 1.0 ? kMostSeconds : 0.0, deviations);
+    const glm::dvec3 mean = drawn.statistics.mean;
+    const std::string label = fmt::format("{}  {}{}", picture.figure, picture.label, note);
+    tiles.push_back({fmt::format("{} ({:.3g} spp, mean {:.3g}, noise {:.2g})", label, drawn.statistics.samples, luminance(glm::vec3(mean)), drawn.statistics.relativeError),
+                     toneMapped(drawn.image, exposure_ ? static_cast<float>(*exposure_) : scene.exposure)});
+    json.push_back({{"picture", label}, {"mean", {mean.x, mean.y, mean.z}}, {"spp", drawn.statistics.samples}, {"ms", drawn.ms}, {"relative_error", drawn.statistics.relativeError},
+                    {"black_pixels", blackPixels(drawn.image)}, {"loop_turns", drawn.statistics.turns}, {"leaked_paths", drawn.statistics.leakedPaths},
+                    {"wrong_crossings", drawn.statistics.wrongCrossings}});
+    progress_.update(static_cast<int>(json.size()));
+    return drawn;
+  }
+
+  /// A picture by the estimator asked for; beside the published one the corrected.
+  void addBoth(const VptPicture& picture) {
+    add(picture, input_.fidelity, vptDeviations(picture, input_.fidelity), "");
+    if (published_ && !interrupted()) add(picture, Fidelity::corrected, {}, ", corrected, lit by an area");
+  }
+
+  /// Figure 5.11 of the two tiles last drawn of figure 5.10, enlarged.
+  void addZoom(const std::string& label, std::size_t tile) { tiles.push_back({label, zoomed(tiles.at(tile).picture)}); }
+
+  bool published() const { return published_; }
+
+  std::vector<Tile> tiles;
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+
+ private:
+  const VptTablesInput& input_;
+  glm::ivec2 size_;
+  std::optional<double> exposure_;
+  bool published_;
+  Progress progress_;
+};
+
 }  // namespace
 
 VptSheet drawVptPictures(const VptTablesInput& input, glm::ivec2 size, std::optional<double> exposure) {
-  const auto& pictures = vptPictures();
-  std::vector<Tile> tiles;
-  VptSheet result;
-  Progress progress("bench pictures", static_cast<int>(pictures.size()), input.quiet);
-  for (const VptPicture& picture : pictures) {
+  Drawing drawing(input, size, exposure);
+  if (drawing.published())
+    for (const VptPicture& picture : vptUntimedPictures())
+      if (!interrupted()) drawing.add(picture, input.fidelity, vptDeviations(picture, input.fidelity), "");
+  std::vector<std::pair<std::string, std::size_t>> enlarged;
+  for (const VptPicture& picture : vptPictures()) {
     if (interrupted()) break;
-    const Scene scene = loadVptScene(picture);
-    const std::uint32_t samples = vptSamples(picture, input.scale);
-    const VptResult drawn = renderVpt(input.context, input.programs, picture, scene, size, samples, input.scale < 1.0 ? kMostSeconds : 0.0);
-    const glm::dvec3 mean = drawn.statistics.mean;
-    tiles.push_back({fmt::format("{}  {} ({:.3g} spp, mean {:.3g})", picture.figure, picture.label, drawn.statistics.samples, 0.2126 * mean.x + 0.7152 * mean.y + 0.0722 * mean.z),
-                     toneMapped(drawn.image, exposure ? static_cast<float>(*exposure) : scene.exposure)});
-    result.json.push_back({{"picture", fmt::format("{} {}", picture.figure, picture.label)}, {"mean", {mean.x, mean.y, mean.z}}, {"spp", drawn.statistics.samples}, {"ms", drawn.ms},
-                           {"leaked_paths", drawn.statistics.leakedPaths}, {"wrong_crossings", drawn.statistics.wrongCrossings}});
-    progress.update(static_cast<int>(tiles.size()));
+    if (std::string_view(picture.figure).starts_with("5.10")) enlarged.emplace_back(picture.label, drawing.tiles.size());
+    drawing.addBoth(picture);
+    if (std::string_view(picture.figure) != "5.10 b") continue;
+    for (const auto& [label, tile] : enlarged) drawing.addZoom(fmt::format("5.11  {}, the middle {} times", label, kZoom), tile);
+    if (!drawing.published() || interrupted()) continue;
+    // The black fragments that the text lays to the offsets of its rays, and their cure.
+    PathDeviations cured = vptDeviations(picture, input.fidelity);
+    cured.fixedEpsilon = false;
+    drawing.add(picture, input.fidelity, cured, ", without path.fixed-epsilon");
   }
-  result.tiles = tiles.size();
-  if (tiles.empty()) return result;
-  const std::string title = fmt::format("VPT original, pictures 5.8 to 5.20, on scenes of our own, corrected estimator; samples: the published ones times {}, as far as {:.0f} s a picture go", input.scale, kMostSeconds);
-  result.sheet = contactSheet(title, tiles, 4);
+  VptSheet result;
+  result.tiles = drawing.tiles.size();
+  result.json = drawing.json;
+  if (drawing.tiles.empty()) return result;
+  const std::string title = fmt::format("VPT original, pictures {} to 5.20, on scenes of our own, {}; samples: the published ones times {}, as far as {:.0f} s a picture go", drawing.published() ? "5.7" : "5.8",
+                                        drawing.published() ? "published estimator lit by points, corrected beside it" : "corrected estimator", input.scale, kMostSeconds);
+  result.sheet = contactSheet(title, drawing.tiles, 4);
   return result;
 }
 

@@ -13,6 +13,8 @@ struct PathDeviations {
   bool straightShadowRays = false;
   bool linearSeeds = false;
   bool fixedEpsilon = false;
+  bool rouletteAtSurfaces = false;
+  bool unattenuatedShadowRays = false;
 };
 
 }  // namespace lucerna

@@ -25,7 +25,11 @@ constexpr int kClearanceCells = 64;
 // llvmpipe leaves all loops of a shader after 65,535 turns, those of all lanes of a vector (8, 16 at most) counted together.
 constexpr std::uint32_t kSoftwareTurns = 3500, kMostTurns = 1u << 16;
 constexpr double kLanesOfTile = 512.0 * 512.0;  // on a GPU; a smaller tile, a software renderer's too, begins with as many turns a lane
-constexpr std::size_t kStateWords = 6, kStateHeaderBytes = 16, kVec4Bytes = 16;
+/// What path.comp's StateBlock begins with; std430 aligns the lanes' vectors behind it to 16 bytes.
+struct StateHeader {
+  std::uint32_t unfinished = 0, leakedPaths = 0, wrongCrossings = 0, longest = 0, allTurns = 0, collisions = 0, padding[2]{};
+};
+constexpr std::size_t kStateWords = 6, kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
 
 /// Whether every lamp is in the open, where the index is 1: triangles by boxes, so that some are taken for enclosed that are not.
 bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
@@ -156,6 +160,8 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"BOOSTED_INTERACTION", settings_.deviations.boostedInteraction},
                          {"ROULETTE_WITHOUT_DIVISION", settings_.deviations.rouletteWithoutDivision},
                          {"STRAIGHT_SHADOW_RAYS", settings_.deviations.straightShadowRays},
+                         {"ROULETTE_AT_SURFACES", settings_.deviations.rouletteAtSurfaces},
+                         {"UNATTENUATED_SHADOW_RAYS", settings_.deviations.unattenuatedShadowRays},
                          {"LINEAR_SEEDS", settings_.deviations.linearSeeds},
                          {"FIXED_EPSILON", settings_.deviations.fixedEpsilon},
                          {"PIXEL_CENTRES", settings_.pixelCentres},
@@ -206,7 +212,7 @@ void PathTracer::setCamera(const Camera& camera) {
     cameraInside_ = surroundings.inside;
     cameraIor_ = iorInside(boundaries_, cameraInside_);
   }
-  leakedPaths_ = wrongCrossings_ = 0.0;
+  leakedPaths_ = wrongCrossings_ = turnsTaken_ = collisions_ = 0.0;
   const std::array<const gl::Texture*, 3> film{&filmMean_, &filmSpread_, &filmRest_};
   gl::clearToZero(film, clearTexture_);
   done_ = passTarget_ = 0;
@@ -314,18 +320,20 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
     gl::copyTexels(filmSpread_, corner, kept_[1], {0, 0}, size);
     gl::copyTexels(filmRest_, corner, kept_[2], {0, 0}, size);
   }
-  const std::array<std::uint32_t, 4> zeros{};
-  state_.upload(0, sizeof zeros, zeros.data());
+  const StateHeader zeros{};
+  state_.upload(0, sizeof zeros, &zeros);
 
   const auto start = std::chrono::steady_clock::now();
   dispatch(corner, size, passTarget_);
-  const auto header = counters_.readFirst<std::array<std::uint32_t, 4>>(state_);
-  const std::uint32_t unfinished = header[0];
-  leakedPaths_ += header[1];
-  wrongCrossings_ += header[2];
+  const auto header = counters_.readFirst<StateHeader>(state_);
+  const std::uint32_t unfinished = header.unfinished;
+  leakedPaths_ += header.leakedPaths;
+  wrongCrossings_ += header.wrongCrossings;
+  turnsTaken_ += header.allTurns;
+  collisions_ += header.collisions;
   gl::throwIfReset();
   gl::throwIfError("path tracing");
-  const auto taken = static_cast<std::uint64_t>(lanes) * header[3];
+  const auto taken = static_cast<std::uint64_t>(lanes) * header.longest;
   largest_ = std::max(largest_, taken);
   if (begins) largestBegun_ = std::max(largestBegun_, taken);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -409,6 +417,8 @@ PathTracer::Statistics PathTracer::statistics() const {
   Statistics result;
   result.leakedPaths = leakedPaths_;
   result.wrongCrossings = wrongCrossings_;
+  result.turns = turnsTaken_;
+  result.collisions = collisions_;
   result.fewestSamples = kUnlimited;
   glm::dvec3 variances(0.0);
   for (const Pixel& pixel : pixels) {

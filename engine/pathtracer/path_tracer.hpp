@@ -63,6 +63,8 @@ class PathTracer {
     double standardError = 0.0;     ///< root mean square over pixels and channels of a pixel's standard error; infinite before 2 samples
     double leakedPaths = 0.0;    ///< ended, as they were found outside of the scene, yet inside of a closed boundary, since setCamera
     double wrongCrossings = 0.0; ///< of boundaries left without having been entered, or entered too often: open or turned meshes
+    double turns = 0.0;          ///< of loops, in all lanes since setCamera: rays' nodes and triangles, steps in media: what time is spent on, whatever the clock
+    double collisions = 0.0;     ///< in media, likewise
     double relativeError = 0.0;     ///< that over the mean of the picture, channels averaged; 0 for a black picture without error
   };
 
@@ -131,7 +133,7 @@ class PathTracer {
   bool lampsOutside_ = false;  ///< none lies within a dielectric
   gl::Buffer media_, interiors_, grids_, densities_;
   gl::BufferTexture clearances_;
-  double leakedPaths_ = 0.0, wrongCrossings_ = 0.0;
+  double leakedPaths_ = 0.0, wrongCrossings_ = 0.0, turnsTaken_ = 0.0, collisions_ = 0.0;
   gl::Buffer state_, constantsBuffer_;
   gl::Staging counters_{"path counters"};
   gl::Texture filmMean_, filmSpread_, filmRest_;

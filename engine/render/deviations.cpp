@@ -45,6 +45,8 @@ const std::array kDeviations{
     SWITCH("path.straight-shadow-rays", "shadow rays go straight through refracting boundaries", true, path.straightShadowRays),
     SWITCH("path.linear-seeds", "PCG seeded with the pixel's number", true, path.linearSeeds),
     SWITCH("path.fixed-epsilon", "rays start 0.001 scene units beside a surface", true, path.fixedEpsilon),
+    SWITCH("path.roulette-at-surfaces", "Russian roulette at surfaces alone, never at a collision in a medium", true, path.rouletteAtSurfaces),
+    SWITCH("path.unattenuated-shadow-rays", "media on the way to a lamp take nothing of its light", true, path.unattenuatedShadowRays),
     RAD_DEVIATION("published-map", "pixels weighted by 1/r^2 and b/r^2 instead of the delta form factor", publishedMap),
     RAD_DEVIATION("centroid", "one hemicube a patch, at its centroid, whatever its size", centroid),
     RAD_DEVIATION("fixed-orientation", "hemicubes turned towards the first corner, not rolled at random", fixedOrientation),

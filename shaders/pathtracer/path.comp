@@ -27,6 +27,8 @@ layout(std430, binding = 5) restrict buffer StateBlock {
   uint leakedPaths;     // ended, since they were found outside of the scene, yet inside of a closed boundary
   uint wrongCrossings;  // of boundaries left without having been entered: open or turned meshes
   uint longest;         // turns of loops that a lane took
+  uint allTurns;        // and that all lanes took; below 2^32, as a submission has no more than 2^28 but for the last segments
+  uint collisions;      // in media, of all lanes
   uvec4 state[];        // STATE_WORDS a lane, lane by lane within each
 };
 
@@ -93,6 +95,9 @@ struct Shadow {
 #endif
 };
 Shadow shadow;
+#if MEDIA
+uint collisionCount = 0u;  // of this lane, in this submission
+#endif
 
 #if INTERIORS
 #include "pathtracer/boundary.glsl"
@@ -338,6 +343,10 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   PathMaterial material = materials[surface.material];
   path.travelled += hit.t;
   ++path.event;
+#if MEDIA && ROULETTE_AT_SURFACES
+  // A turn of [VPT2024, algorithm 3] that went into a medium ends here, at the medium's end.
+  if (mediumInside(path.inside) >= 0 && !survivesTurn(path, unitFloat(randomWordPair(numbers, path.event, kPurposeMediumChoice).x))) return false;
+#endif
 #if EMISSION
   if (any(greaterThan(material.emission, vec3(0.0))) && counts(path.scatterings)) {
     vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
@@ -402,7 +411,9 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   path.chain = path.pdf == 0.0 ? min(path.chain + 1u, 255u) : 0u;
   float most = path.chain > 32u ? 0.99 : path.event < 1024u ? 1.0 : 0.999;
   float largest = max(path.throughput.x, max(path.throughput.y, path.throughput.z));
-#if ROULETTE_WITHOUT_DIVISION
+#if MEDIA && ROULETTE_AT_SURFACES
+  if (mediumInside(path.inside) < 0 && !survivesTurn(path, unitFloat(choice.y))) return false;
+#elif ROULETTE_WITHOUT_DIVISION
   if (!(unitFloat(choice.y) < min(largest, min(most, 0.95)))) return false;  // [VPT2024, algorithm 3]
 #else
   float survival = min(largest / kRouletteBelow, most);
@@ -660,6 +671,10 @@ void main() {
   }
 
   atomicMax(longest, loopTurns);
+  atomicAdd(allTurns, loopTurns);
+#if MEDIA
+  atomicAdd(collisions, collisionCount);
+#endif
   imageStore(filmMean, pixel, uvec4(floatBitsToUint(mean), samples));
   imageStore(filmSpread, pixel, uvec4(floatBitsToUint(spread), 0u));
   imageStore(filmRest, pixel, uvec4(floatBitsToUint(rest), 0u));

@@ -2,7 +2,8 @@
 // line lets through. Hooks of path.comp, which declares Path, shadow, addLight, askLight, counts and the lights before this file is included.
 //
 // Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION, LAMPS_OUTSIDE (no lamp is within
-// a dielectric), WALKS (dense media have clearance grids); deviations DISTANCE_WITHOUT_PDF, BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, STRAIGHT_SHADOW_RAYS.
+// a dielectric), WALKS (dense media have clearance grids); deviations DISTANCE_WITHOUT_PDF, BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, ROULETTE_AT_SURFACES, STRAIGHT_SHADOW_RAYS,
+// UNATTENUATED_SHADOW_RAYS.
 #include "pathtracer/boundary.glsl"
 #if MEDIA
 #include "pathtracer/media.glsl"
@@ -121,7 +122,7 @@ bool crossShadow(Hit hit) {
       return false;
     }
   }
-#if MEDIA
+#if MEDIA && !UNATTENUATED_SHADOW_RAYS  // [VPT2024, 4.1] decides only whether a point is in shadow
   int medium = mediumInside(shadow.inside);
   if (medium >= 0) {
     float unit = shadow.infinite ? 1.0 : length(shadow.direction), far = hit.triangle == kNoHit ? (shadow.infinite ? kFar : 1.0) : hit.t;
@@ -153,13 +154,32 @@ bool leaked(Path path) {
   return any(greaterThan(path.inside, uvec4(0u))) && max(a.x, max(a.y, a.z)) > sceneMagnitude() * 1.001;
 }
 
+#if ROULETTE_AT_SURFACES
+// Roulette once a turn of the published loop [VPT2024, algorithm 3]; which turn is the first (rrStart) the text does not say: all are. False: the path ends.
+bool survivesTurn(inout Path path, float u) {
+  float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
+#if ROULETTE_WITHOUT_DIVISION
+  return u < min(largest, 0.95);
+#else
+  float survival = path.event > 1024u ? min(largest / kRouletteBelow, 0.999) : min(largest / kRouletteBelow, 1.0);
+  if (!(u < survival)) return false;
+  path.throughput /= survival;
+  return true;
+#endif
+}
+#endif
+
 // Roulette by the throughput alone: a limit by depth would darken milk. False: the path ends.
 bool survives(inout Path path, float u) {
   float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
-#if ROULETTE_WITHOUT_DIVISION
-  return u < min(largest, 0.95);  // [VPT2024, 5.5]
+#if ROULETTE_WITHOUT_DIVISION && !ROULETTE_AT_SURFACES
+  return u < min(largest, 0.95);
+#else
+#if ROULETTE_AT_SURFACES
+  float survival = 1.0;  // [VPT2024, algorithm 3] plays it once traceMedium as a whole is done
 #else
   float survival = min(largest / kRouletteBelow, 1.0);
+#endif
   // In an endless medium without absorption nothing else ends a path. So seldom that who crosses a slab of optical depth 1000 (slowest mode: 3.3e-6 a collision) is seldom lost:
   // once weights grew faster than half of that, all would be lost that is found late.
   if (path.event > (1u << 20)) survival = min(survival, 1.0 - exp2(-20.0));
@@ -246,6 +266,7 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
   path.chain = 0u;
   path.travelled = 0.0;
   ++path.event;
+  ++collisionCount;
   if (leaked(path)) {
     atomicAdd(leakedPaths, 1u);
     return kEnded;

@@ -369,7 +369,7 @@ TEST_F(CommandLine, PathTracingAsPublishedNamesItsDeviations) {
   const std::string common = "render " + scene() + " --technique path --size 16x12 --spp 4 ";
   ASSERT_EQ(RUN_LUCERNA(common + "--fidelity original -o " + path("o.pfm") + " --json " + path("original.json")).exitCode, 0);
   EXPECT_EQ(json("original.json").at("fidelity"), "original");
-  EXPECT_EQ(json("original.json").at("deviations").size(), 7u);  // all but path.schlick, which is a switch of the original's
+  EXPECT_EQ(json("original.json").at("deviations").size(), 9u);  // all but path.schlick, which is a switch of the original's
   ASSERT_EQ(RUN_LUCERNA(common + "--deviation path.fixed-epsilon=on -o " + path("one.pfm") + " --json " + path("one.json")).exitCode, 0);
   EXPECT_EQ(json("one.json").at("deviations"), nlohmann::json::array({"path.fixed-epsilon"}));
   EXPECT_NE(lucerna::readImage(path("o.pfm")).pixels, lucerna::readImage(path("one.pfm")).pixels);

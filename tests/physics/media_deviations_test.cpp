@@ -61,6 +61,48 @@ TEST_F(MediaDeviations, RouletteWithoutDivision) {
   expectSlab("roulette-without-division", measure(scene, 256, {.rouletteWithoutDivision = true}), .535540991, 0.0, 1e-6);
 }
 
+TEST_F(MediaDeviations, RouletteAtSurfaces) {
+  // Divided, it is unbiased wherever it is played. Undivided it takes nothing where light meets no surface but one that changes nothing: that
+  // half-space of albedo 1 gives back all light again.
+  const Scene thin = slab(grey(.9, 2.0, .75), 1.5, 1.0);
+  const auto right = measure(thin, 512, {}), atSurfaces = measure(thin, 512, {.rouletteAtSurfaces = true});
+  EXPECT_NEAR(atSurfaces.mean.x, right.mean.x, 3.5 * std::hypot(right.meanError.x, atSurfaces.meanError.x));
+  EXPECT_NEAR(atSurfaces.mean.y, right.mean.y, 3.5 * std::hypot(right.meanError.y, atSurfaces.meanError.y));
+  const Scene deep = slab(grey(1.0, 60.0, 0.0), 1.0, 1.0);
+  const auto kept = measure(deep, 64, {.rouletteWithoutDivision = true, .rouletteAtSurfaces = true});
+  std::printf("roulette-at-surfaces: thin slab %.5f, %.5f (%.5f, %.5f), half-space without division %.5f\n", atSurfaces.mean.x, atSurfaces.mean.y, right.mean.x, right.mean.y,
+              kept.mean.x + kept.mean.y);
+  EXPECT_NEAR(kept.mean.x + kept.mean.y, 1.0, 1e-5);
+}
+
+TEST_F(MediaDeviations, UnattenuatedShadowRays) {
+  // A diffuse floor under a layer of optical depth 1 that only absorbs, a point light 3 units above: exp(-1) / 9 of the intensity arrives, of which the
+  // published test for shadow takes nothing away.
+  Scene scene;
+  scene.media = {homogeneous(glm::dvec3(0.0), glm::dvec3(1.0), 0.0)};
+  addBox(scene, {-5.0, 0.0, -5.0}, {5.0, 1.0, 5.0}, addBoundary(scene, Bsdf::none, 1.0, 0));
+  Material floor;
+  floor.diffuse = glm::vec3(0.5f);
+  scene.materials.push_back(floor);
+  addBox(scene, {-1.0, -2.0, -1.0}, {1.0, -1.0, 1.0}, 1);
+  PointLight light;
+  light.position = {0.0, 2.0, 0.0};
+  light.intensity = glm::vec3(1.0f);
+  scene.points = {light};
+  scene.cameras = {cameraAt({0.3, -0.5, 0.0}, {0.0, -1.0, 0.0})};
+  PathTracer::Settings settings;
+  settings.bounces = 1;
+  for (const bool on : {false, true}) {
+    settings.size = {4, 4};
+    settings.deviations.unattenuatedShadowRays = on;
+    PathTracer tracer(context(), library(), scene, settings);
+    tracer.record(4);
+    const double value = tracer.statistics().mean.x, exact = std::exp(-1.0) / 9.0 * 0.5 / M_PI;
+    std::printf("unattenuated-shadow-rays %s: %.6f, exact %.6f\n", on ? "on " : "off", value, exact);
+    EXPECT_NEAR(value, on ? exact * std::exp(1.0) : exact, 1e-5);
+  }
+}
+
 TEST_F(MediaDeviations, FresnelAmplitudesAndSchlick) {
   const Scene scene = slab(grey(.9, 1.0, .75), 1.5, 1.0);
   expectSlab("corrected", measure(scene, 512, {}), .115171, .681242);
@@ -139,7 +181,7 @@ TEST_F(MediaDeviations, FixedEpsilon) {
 TEST_F(MediaDeviations, TheOriginalIsBiasedOnTheSlabAndTheCorrectedIsNot) {
   // All that --fidelity original turns on, on slabs of known reflectance and transmittance [vandeHulst1980, volume 2, table 35], adding-doubling: more
   // than 3 standard errors off, and far more, while the corrected estimator is within 3.
-  const PathDeviations original{true, true, true, true, false, true, true, true};
+  const PathDeviations original{true, true, true, true, false, true, true, true, true, true};
   const struct {
     double depth, ior, reflectance, transmittance;
   } rows[] = {{2.0, 1.0, .0973946, .6609577}, {1.0, 1.5, .115171, .681242}};
@@ -178,7 +220,9 @@ TEST_F(MediaDeviations, AllOfThemInTheWhiteFurnace) {
                                                           {"straight-shadow-rays", {.straightShadowRays = true}},
                                                           {"linear-seeds", {.linearSeeds = true}},
                                                           {"fixed-epsilon", {.fixedEpsilon = true}},
-                                                          {"all of the original", {true, true, true, true, false, true, true, true}}};
+                                                          {"roulette-at-surfaces", {.rouletteAtSurfaces = true}},
+                                                          {"unattenuated-shadow-rays", {.unattenuatedShadowRays = true}},
+                                                          {"all of the original", {true, true, true, true, false, true, true, true, true, true}}};
   for (const auto& [name, deviations] : cases) {
     const auto s = measure(scene, 64, deviations);
     std::printf("white furnace, %-28s %.5f +- %.5f\n", name, s.mean.x, s.meanError.x);
