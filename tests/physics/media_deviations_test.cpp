@@ -62,8 +62,8 @@ TEST_F(MediaDeviations, RouletteWithoutDivision) {
 }
 
 TEST_F(MediaDeviations, RouletteAtSurfaces) {
-  // Divided, it is unbiased wherever it is played. Undivided it takes nothing where light meets no surface but one that changes nothing: that
-  // half-space of albedo 1 gives back all light again.
+  // Divided, it is unbiased wherever it is played. Undivided it takes a twentieth a turn of the loop, of which a way through a medium is one, however
+  // often it scatters: that half-space of albedo 1 gives back 0.95, where roulette at each collision leaves 0.54.
   const Scene thin = slab(grey(.9, 2.0, .75), 1.5, 1.0);
   const auto right = measure(thin, 512, {}), atSurfaces = measure(thin, 512, {.rouletteAtSurfaces = true});
   EXPECT_NEAR(atSurfaces.mean.x, right.mean.x, 3.5 * std::hypot(right.meanError.x, atSurfaces.meanError.x));
@@ -72,7 +72,7 @@ TEST_F(MediaDeviations, RouletteAtSurfaces) {
   const auto kept = measure(deep, 64, {.rouletteWithoutDivision = true, .rouletteAtSurfaces = true});
   std::printf("roulette-at-surfaces: thin slab %.5f, %.5f (%.5f, %.5f), half-space without division %.5f\n", atSurfaces.mean.x, atSurfaces.mean.y, right.mean.x, right.mean.y,
               kept.mean.x + kept.mean.y);
-  EXPECT_NEAR(kept.mean.x + kept.mean.y, 1.0, 1e-5);
+  EXPECT_NEAR(kept.mean.x + kept.mean.y, 0.95, 3.5 * std::sqrt(0.95 * 0.05 / (16 * 16 * 64)));
 }
 
 TEST_F(MediaDeviations, UnattenuatedShadowRays) {

@@ -86,23 +86,13 @@ TEST_F(MediaPublished, EspressoIsBrightestWithoutADirectionAndDarkestTurnedBack)
   EXPECT_GT(measured, 1.5 * backward);
 }
 
-TEST_F(MediaPublished, WorkRisesWithScatteringAndAbsorption) {
-  // Figures 5.12 to 5.15 give 15.5, 23.3, 36.5, 38 s and 14.5, 16.7, 21.9, 24.3 s: rising, the last two of milk "very alike". Loop turns instead of a
-  // clock: rays' nodes and triangles, steps in media.
-  const auto turns = [&](const Block& block) { return draw(block, original(), 12).statistics.turns; };
-  double milk[4], juice[4];
-  for (int i = 0; i < 4; ++i) {
-    milk[i] = turns({"milk", std::pow(10.0, i - 3), 1.0, 1.0, 1.1});
-    juice[i] = turns({"juice", 1.0, std::pow(10.0, i - 1), 1.0, 1.1});
-  }
-  std::printf("turns, milk %.3g: 1 %.2f %.2f %.2f (published 1 1.50 2.35 2.45)\nturns, juice %.3g: 1 %.2f %.2f %.2f (published 1 1.15 1.51 1.68)\n", milk[0], milk[1] / milk[0],
-              milk[2] / milk[0], milk[3] / milk[0], juice[0], juice[1] / juice[0], juice[2] / juice[0], juice[3] / juice[0]);
-  EXPECT_GT(milk[1], 1.05 * milk[0]);
-  EXPECT_GT(milk[2], 1.05 * milk[1]);
-  EXPECT_GT(milk[3], 0.95 * milk[2]);
-  EXPECT_GT(juice[1], juice[0]);
-  EXPECT_GT(juice[2], juice[1]);
-  EXPECT_GT(juice[3], juice[2]);
+TEST_F(MediaPublished, WorkRisesWithScattering) {
+  // Figures 5.12 and 5.13 took 15.5, 23.3, 36.5 and 38 s: rising, as more scattering is sampled. Loop turns instead of a clock: rays' nodes and
+  // triangles, steps in media. The text calls the last two very alike; here the last has more than twice the turns of the one before.
+  double turns[4];
+  for (int i = 0; i < 4; ++i) turns[i] = draw({"milk", std::pow(10.0, i - 3), 1.0, 1.0, 1.1}, original(), 12).statistics.turns;
+  std::printf("turns, milk %.3g: 1 %.2f %.2f %.2f (published times 1 1.50 2.35 2.45)\n", turns[0], turns[1] / turns[0], turns[2] / turns[0], turns[3] / turns[0]);
+  for (int i = 1; i < 4; ++i) EXPECT_GT(turns[i], 1.1 * turns[i - 1]) << i;
 }
 
 }  // namespace
