@@ -2,9 +2,9 @@
 //
 // Three kinds:
 // - CHECK(condition, ...) for programmer errors: prints the condition, the values given and the place, then aborts.
-// - Error for files, options, shaders and contexts: its message names the file, the line or key, what was wrong and what
-//   would be right. The command line prints that message and ends with exitCode().
-// - Stopped for work that ends early because its caller asked for it (Ctrl-C).
+// - Error for files, options, shaders and contexts: its message names the file, the line or key, the problem and what
+//   would be valid. The command line prints that message and exits with exitCode().
+// - Stopped for work that its caller ended early (Ctrl-C).
 #pragma once
 
 #include <fmt/format.h>
@@ -15,11 +15,11 @@
 
 namespace lucerna {
 
-/// What went wrong decides the exit code of the program.
+/// The kind decides the exit code of the program.
 enum class ErrorKind {
-  fault = 1,              ///< a fault of ours
+  fault = 1,              ///< internal error
   badInput = 2,           ///< a file or option that cannot be used
-  missingCapability = 3,  ///< the machine or driver lacks something
+  missingCapability = 3,  ///< something is missing on this machine or in its driver
 };
 
 class Error : public std::runtime_error {
@@ -32,7 +32,7 @@ class Error : public std::runtime_error {
   ErrorKind kind_;
 };
 
-/// Work that its caller stopped. What was finished is kept; the message says where.
+/// Work that its caller stopped. Finished work is kept; the message says where.
 class Stopped : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

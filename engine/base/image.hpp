@@ -5,7 +5,7 @@
 // - Bitmap: 8-bit RGBA as read from a texture file or written to a PNG, sRGB-encoded unless its user says otherwise;
 //   row 0 is the TOP row.
 // Formats: png, jpg, tga and bmp are read and png is written through DevIL, after a check of every byte count (picture_header.hpp); exr through OpenEXR; hdr (Radiance RGBE; why not
-// through DevIL: image.cpp) and pfm (Debevec's format: bottom row first) are small enough to be done here.
+// through DevIL: image.cpp) and pfm (Debevec's format: bottom row first) are small enough to implement here.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -45,7 +45,7 @@ float linearFromSrgb(float encoded);
 /// Radiance as shown: exposure, the filmic curve of shaders/forward/tonemap.frag, sRGB encoding.
 Bitmap toneMapped(const Image& radiance, float exposure);
 
-/// Reads png, jpg, tga or bmp as 8-bit RGBA. Throws Error(badInput) naming the file when it is missing, a folder, none of these, or damaged.
+/// Reads png, jpg, tga or bmp as 8-bit RGBA. Throws Error(badInput) naming the file when it is missing, a folder, of another format, or damaged.
 Bitmap readBitmap(const std::filesystem::path& file);
 
 /// The same from a file's bytes in memory (textures embedded in models); `file` only names it in messages.
@@ -54,12 +54,12 @@ Bitmap decodeBitmap(std::span<const std::uint8_t> bytes, const std::filesystem::
 /// Reads hdr, exr or pfm as linear float; an 8-bit picture is taken as sRGB and linearised. Throws like readBitmap.
 Image readImage(const std::filesystem::path& file);
 
-/// Writes a linear image. The extension chooses: hdr, exr, pfm keep linear values; anything else throws, as do images of no
+/// Writes a linear image. The extension chooses the format: hdr, exr or pfm; anything else throws, as do images without
 /// pixels. exr and pfm keep every float; hdr keeps 8 bits of mantissa, refuses NaN and infinity, and warns of negative values.
-/// The file appears whole or not at all (written beside its place, then renamed).
+/// The file is written completely or not at all (to a temporary file, then renamed).
 void writeImage(const std::filesystem::path& file, const Image& image);
 
-/// Writes 8-bit RGB(A) as PNG; alpha is dropped. Whole or not at all.
+/// Writes 8-bit RGB(A) as PNG; alpha is dropped. Completely or not at all.
 void writePng(const std::filesystem::path& file, const Bitmap& bitmap);
 
 /// True for the file extensions that `-o` accepts: png, hdr, exr, pfm (any case).

@@ -10,13 +10,13 @@
 
 namespace lucerna {
 
-/// Objects and arrays inside of each other at most: what walks a value calls itself once a level. Scenes need about ten.
+/// Maximum nesting: functions that walk a value recurse once per level. Scenes need about ten.
 inline constexpr int kMostJsonDepth = 200;
 
-/// Throws Error(badInput) naming `name` where brackets stand inside of each other deeper than kMostJsonDepth.
+/// Throws Error(badInput) naming `name` if brackets are nested deeper than kMostJsonDepth.
 void checkJsonDepth(std::string_view text, std::string_view name);
 
-/// The whole text as one value. Throws Error(badInput) naming `name` where it is no JSON, or nested deeper than kMostJsonDepth.
+/// The whole text as one value. Throws Error(badInput) naming `name` if it is not JSON, or nested deeper than kMostJsonDepth.
 template <class T = nlohmann::json>
 T parseJson(std::string_view text, std::string_view name) {
   checkJsonDepth(text, name);

@@ -1,4 +1,4 @@
-// Logging to standard error: one line a message, nothing else. Results go to standard output.
+// Logging to standard error, one line per message. Results go to standard output.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 // Move-only owners of OpenGL objects. Every object carries a debug name (KHR_debug), so that RenderDoc, apitrace and Nsight
 // show it, and knows its size in bytes. OpenGL 4.3 has no direct state access: buffers are edited through
-// GL_COPY_WRITE_BUFFER, textures through the last texture unit, so that nobody's bindings are disturbed.
+// GL_COPY_WRITE_BUFFER, textures through the last texture unit, so that no other binding changes.
 //
-// Shader writes to storage blocks and images are ordered by barriers alone [OpenGL 4.3, 7.12.2]. Between shaders that is a pass's business
-// (pass.hpp); between a shader and the API's own reads and writes it is done here: an object that was ever bound for shaders to write issues
-// the barrier itself before it is uploaded to, cleared, copied or read.
+// Only barriers order shader writes to storage blocks and images [OpenGL 4.3, 7.12.2]. Between shaders, passes issue them
+// (pass.hpp). Between a shader and the API's own reads and writes it happens here: an object that was ever bound for shader writes issues
+// the barrier before an upload, clear, copy or read.
 #pragma once
 
 #include "gl/api.hpp"
@@ -26,7 +26,7 @@ void deleteFramebuffer(GLuint id);
 void deleteVertexArray(GLuint id);
 }  // namespace detail
 
-/// Names the object for debuggers, cut at the driver's GL_MAX_LABEL_LENGTH: a longer one is an error [OpenGL 4.3, 20.9].
+/// Names the object for debuggers, truncated to GL_MAX_LABEL_LENGTH: longer labels are an error [OpenGL 4.3, 20.9].
 void label(GLenum identifier, GLuint id, const std::string& name);
 
 /// Owns the name of a GL object; zero when moved from.
@@ -67,7 +67,7 @@ class Buffer {
   void bind(GLenum target, GLuint index) const;
   /// Copies this buffer's first bytes into the beginning of `target`.
   void copyTo(Buffer& target, std::size_t bytes) const;
-  /// Issues a barrier where shaders may have written this buffer: GL_BUFFER_UPDATE_BARRIER_BIT before the API changes or reads it.
+  /// Issues a barrier if shaders may have written this buffer: GL_BUFFER_UPDATE_BARRIER_BIT before the API changes or reads it.
   void settle(GLbitfield barrier) const;
   template <class T>
   std::vector<T> read() const {
@@ -82,7 +82,7 @@ class Buffer {
     readBytes(values.data(), count * sizeof(T));
     return values;
   }
-  /// What it begins with.
+  /// Its first value.
   template <class T>
   T readFirst() const {
     T value{};
@@ -94,7 +94,7 @@ class Buffer {
   void readBytes(void* data, std::size_t bytes) const;
   Handle<detail::deleteBuffer> handle_;
   std::size_t bytes_ = 0;
-  mutable bool shadersMayWrite_ = false;  ///< it was bound as a storage block
+  mutable bool shadersMayWrite_ = false;  ///< was bound as a storage block
 };
 
 /// How a texture is read. Defaults: nearest, clamped to the edge.
@@ -126,14 +126,14 @@ class Texture {
   std::size_t bytes() const;  ///< of all levels; zero when moved from
 
   void upload(GLenum format, GLenum type, const void* data, int level = 0);
-  /// Level 0 from a buffer that holds the texels as the texture keeps them, beginning at `offset`.
+  /// Level 0 from a buffer with texels in the texture's own format, starting at `offset`.
   void copyFrom(const Buffer& buffer, std::size_t offset);
   void generateMipmaps();
   void bind(GLuint unit) const;
   void bindImage(GLuint unit, GLenum access, int level = 0) const;
-  /// Issues a barrier where shaders may have stored into this texture: GL_TEXTURE_UPDATE_BARRIER_BIT before the API changes or reads it.
+  /// Issues a barrier if shaders may have stored into this texture: GL_TEXTURE_UPDATE_BARRIER_BIT before the API changes or reads it.
   void settle(GLbitfield barrier) const;
-  /// All texels of a level as float RGBA (depth textures: as float, one a texel).
+  /// All texels of a level as float RGBA (depth textures: one float per texel).
   std::vector<glm::vec4> readRgba(int level = 0) const;
   std::vector<float> readDepth() const;
   std::vector<glm::uvec4> readWords() const;  ///< of an RGBA32UI texture
@@ -146,10 +146,10 @@ class Texture {
   GLenum format_ = GL_RGBA8;
   glm::ivec3 size_{0};
   int levels_ = 1;
-  mutable bool shadersMayWrite_ = false;  ///< it was bound as an image to write
+  mutable bool shadersMayWrite_ = false;  ///< was bound as a writable image
 };
 
-/// A buffer that shaders read as texels (samplerBuffer): on llvmpipe three times as fast to gather from as a shader storage block.
+/// A buffer that shaders read as texels (samplerBuffer): on llvmpipe gathers are three times as fast as from a storage block.
 class BufferTexture {
  public:
   BufferTexture() = default;
@@ -162,7 +162,7 @@ class BufferTexture {
   void upload(std::size_t offset, std::size_t bytes, const void* data) { buffer_.upload(offset, bytes, data); }
   void clear() { buffer_.clear(); }
   void bind(GLuint unit) const;
-  /// The same words as a shader storage block, for those who write them; GL_TEXTURE_FETCH_BARRIER_BIT before they are fetched.
+  /// The same storage as a writable storage block; GL_TEXTURE_FETCH_BARRIER_BIT before texel fetches.
   Buffer& buffer() { return buffer_; }
   const Buffer& buffer() const { return buffer_; }
 
@@ -171,16 +171,16 @@ class BufferTexture {
   Handle<detail::deleteTexture> texture_;
 };
 
-/// Texels of level 0 of a 2D texture into one of the same format. What shaders wrote there needs GL_TEXTURE_UPDATE_BARRIER_BIT before.
+/// Copies texels of level 0 between 2D textures of the same format. Shader writes need GL_TEXTURE_UPDATE_BARRIER_BIT first.
 void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, glm::ivec2 toCorner, glm::ivec2 size);
 
-/// Sets every texel of every level of every listed texture to zero: ARB_clear_texture where there is, else an upload of zeros.
+/// Sets every texel of every level of every listed texture to zero: ARB_clear_texture if available, else an upload of zeros.
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture);
 
 class Framebuffer {
  public:
   Framebuffer() = default;
-  /// Attaches whole textures (a 3D or array texture becomes layered). Aborts when not complete.
+  /// Attaches whole textures (a 3D or array texture becomes layered). Throws Error(missingCapability) if incomplete.
   Framebuffer(const std::string& name, std::span<const Texture* const> colors, const Texture* depth = nullptr);
   Framebuffer(Framebuffer&&) noexcept = default;
   Framebuffer& operator=(Framebuffer&&) noexcept = default;
@@ -201,7 +201,7 @@ class VertexArray {
     std::size_t offset;  ///< bytes into a vertex; 32-bit floats
   };
   VertexArray() = default;
-  /// An empty one, for draws whose vertices come from gl_VertexID.
+  /// Without attributes, for draws whose vertices come from gl_VertexID.
   explicit VertexArray(const std::string& name);
   VertexArray(const std::string& name, const Buffer& vertices, std::size_t stride, std::span<const Attribute> attributes,
               const Buffer* indices);
@@ -215,7 +215,7 @@ class VertexArray {
   Handle<detail::deleteVertexArray> handle_;
 };
 
-/// Bytes of a texel of the formats that the engine uses.
+/// Bytes per texel, for the formats the engine uses.
 std::size_t bytesPerTexel(GLenum internalFormat);
 
 }  // namespace lucerna::gl

@@ -1,4 +1,4 @@
-// Pass scopes: a pass sets all the state that it relies on and names itself, so that no pass depends on what ran before.
+// Pass scopes: a pass sets all state it relies on and has a name, so no pass depends on what ran before.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -17,12 +17,12 @@ struct RasterState {
   Depth depth = Depth::off;
   Cull cull = Cull::none;
   Blend blend = Blend::none;
-  GLuint firstBlended = 0;  ///< colour attachments before this one are written, not blended
+  GLuint firstBlended = 0;  ///< earlier colour attachments are written, not blended
   glm::vec2 polygonOffset{0.0f};  ///< factor, units; off where both are zero
   bool depthClamp = false;
 };
 
-/// Opens a KHR_debug group; its name is cut at the driver's GL_MAX_DEBUG_MESSAGE_LENGTH. glPopDebugGroup closes it.
+/// Opens a KHR_debug group; its name is truncated to GL_MAX_DEBUG_MESSAGE_LENGTH. glPopDebugGroup closes it.
 void pushDebugGroup(const std::string& name);
 
 /// A KHR_debug group for its lifetime.
@@ -40,7 +40,7 @@ class RasterPass {
   RasterPass(const std::string& name, const Framebuffer& target, const RasterState& state);
   void clearColor(int attachment, const glm::vec4& value) const;
   void clearDepth(float value = 1.0f) const;
-  /// From now on only these pixels are drawn.
+  /// Restricts drawing to these pixels (scissor).
   void restrictTo(const glm::ivec2& corner, const glm::ivec2& size) const;
 
  private:
@@ -54,7 +54,7 @@ class ComputePass {
   ~ComputePass() { glMemoryBarrier(barrier_); }
   /// Enough groups of `groupSize` to cover `size`.
   void dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const;
-  /// As many groups as three words of the buffer from `offset` (bytes) say, written by a pass before with GL_COMMAND_BARRIER_BIT at its end.
+  /// Group counts from three words of the buffer at `offset` (bytes), written by an earlier pass with GL_COMMAND_BARRIER_BIT at its end.
   void dispatchIndirect(const Buffer& groups, std::size_t offset = 0) const;
 
  private:

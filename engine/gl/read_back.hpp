@@ -1,6 +1,6 @@
-// What shaders have counted or listed, read by the CPU through buffers that no shader sees: a driver moves a buffer that the CPU reads again and again
-// into host memory, where a shader that goes on writing it is slow.
-// ReadBackRing: small buffers without waiting, copied into a ring as the frame goes, fetched when the GPU has got there. Staging: waited for.
+// Reads shader results on the CPU through buffers that no shader sees: a driver moves a buffer that the CPU reads repeatedly
+// into host memory, where shader writes are slow.
+// ReadBackRing: small buffers without waiting, copied into a ring during the frame, fetched when they have arrived. Staging: waits.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -19,9 +19,9 @@ class ReadBackRing {
   ReadBackRing(const ReadBackRing&) = delete;
   ReadBackRing& operator=(const ReadBackRing&) = delete;
 
-  /// Copies the buffer's first bytes behind all work recorded so far. With the whole ring on its way the sample is dropped.
+  /// Copies the buffer's first bytes after all work recorded so far. If the ring is full, the sample is dropped.
   void copy(const Buffer& source);
-  /// The oldest sample as 32-bit words, in order; empty where it has not arrived. wait: it is waited for.
+  /// The oldest sample as 32-bit words, in order; empty if it has not arrived. wait: waits for it.
   std::vector<GLuint> fetch(bool wait);
   std::size_t bytes() const { return kRing * bytes_; }
 
@@ -37,7 +37,7 @@ class Staging {
   Staging() = default;
   explicit Staging(const std::string& name) : name_(name) {}
 
-  /// The first `count` values of a buffer, behind all work recorded so far, which is waited for.
+  /// The first `count` values of a buffer, after all work recorded so far; waits for it.
   template <class T>
   std::vector<T> read(const Buffer& source, std::size_t count) {
     std::vector<T> values;
@@ -53,7 +53,7 @@ class Staging {
   std::size_t bytes() const { return buffer_.bytes(); }
 
  private:
-  void copy(const Buffer& source, std::size_t bytes);  // grows to what was asked for at most
+  void copy(const Buffer& source, std::size_t bytes);  // grows to the largest size requested
   std::string name_;
   Buffer buffer_;
 };

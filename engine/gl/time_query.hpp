@@ -1,9 +1,9 @@
-// GPU time of named stages, without ever waiting for a result, and the wall clock beside it.
+// GPU time of named stages, without ever waiting for a result, and their wall-clock time.
 //
-// A stage is one GL_TIME_ELAPSED query a frame, out of a ring per stage: results are fetched when they have arrived, some frames
+// A stage is one GL_TIME_ELAPSED query per frame, from a ring per stage: results are fetched when they have arrived, some frames
 // later. The first result of each stage is a warm-up and is dropped (on llvmpipe it can be garbage).
-// On a software renderer a query sees only the rasterising part, since vertices are worked on at submission; there
-// `finishStages` puts glFinish around each stage and the wall clock is the figure to read. Both are kept.
+// On a software renderer a query sees only rasterisation, since vertices are processed at submission; there
+// `finishStages` puts glFinish around each stage, and the wall clock is the figure to read. Both are recorded.
 #pragma once
 
 #include "gl/api.hpp"
@@ -22,25 +22,25 @@ struct StageStatistics {
   double medianMs = 0.0, p95Ms = 0.0;          ///< the figure to read: query on hardware, wall clock on software
   double queryMedianMs = 0.0, queryP95Ms = 0.0;
   double wallMedianMs = 0.0, wallP95Ms = 0.0;  ///< NaN unless stages are finished
-  std::size_t ran = 0, frames = 0;  ///< how often it ran, in how many frames; a stage whose inputs stay as they are runs once
-  /// Of a frame, on the average, because it did not run in every frame. A stage whose only run was the warm-up takes that one's time.
+  std::size_t ran = 0, frames = 0;  ///< how often it ran, in how many frames; a stage with unchanged inputs runs once
+  /// Average per frame, because it did not run in every frame. A stage that only ran in the warm-up counts with that time.
   double savedMs() const;
 };
 
 class TimeQuery {
  public:
-  /// finishStages: glFinish before and after each stage, and the wall clock read.
+  /// finishStages: glFinish before and after each stage, and wall-clock times.
   explicit TimeQuery(bool finishStages) : finishStages_(finishStages) {}
   ~TimeQuery();
   TimeQuery(const TimeQuery&) = delete;
   TimeQuery& operator=(const TimeQuery&) = delete;
 
-  /// Stages follow one another, they do not nest (GL_TIME_ELAPSED cannot).
+  /// Stages do not nest (GL_TIME_ELAPSED cannot).
   void begin(const std::string& stage);
   void end();
-  /// Fetches what has arrived. Call once a frame.
+  /// Fetches results that have arrived. Call once per frame.
   void collect();
-  /// Waits for everything still on its way; for the end of a run, not for a frame.
+  /// Waits for all pending results; for the end of a run, not for a frame.
   void drain();
 
   /// In order of first appearance.
@@ -48,7 +48,7 @@ class TimeQuery {
   /// Raw samples of a stage in milliseconds (after the warm-up), query or wall clock.
   const std::vector<double>& querySamples(const std::string& stage) const;
   const std::vector<double>& wallSamples(const std::string& stage) const;
-  /// Samples lost because all queries of the ring were still on their way.
+  /// Samples lost because all queries of the ring were pending.
   std::size_t dropped() const { return dropped_; }
   void reset();
 

@@ -1,4 +1,4 @@
-// The three hosts' makers, and the loader they share. Private to engine/host.
+// The three hosts' factories and their shared loader. Private to engine/host.
 #pragma once
 
 #include "host/host.hpp"
