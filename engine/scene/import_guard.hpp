@@ -1,6 +1,6 @@
-// A last line of defence around the model library (no GL; private to engine/scene). Assimp 5.2.5 calls itself once a level of nesting in most of its
-// readers, and Debian's build aborts where its own assumptions fail: a small broken file ends the process without a word. While a guard lives, such an end
-// of the thread that made it is one line on standard error and exit code 2, as for every other file that cannot be read.
+// A last line of defence around the model library (no GL; private to engine/scene). Assimp 5.2.5 recurses once per level of nesting in most of its
+// readers, and Debian's build aborts if its assumptions fail: a small broken file ends the process silently. While a guard lives, such an end
+// of its thread gives one line on standard error and exit code 2, as for every other unreadable file.
 #pragma once
 
 #include <csignal>

@@ -1,4 +1,4 @@
-// A value of a scene JSON with the place it stands at, so that whatever is wrong is named by file and key (no GL; private to engine/scene).
+// A value of a scene JSON with its file and key, for error messages (no GL; private to engine/scene).
 #pragma once
 
 #include "base/error.hpp"
@@ -18,7 +18,7 @@ namespace lucerna {
 
 using Json = nlohmann::json;
 
-/// A value and the place it stands at, such as "cameras[1].fov", for messages.
+/// A value and its path, such as "cameras[1].fov", for messages.
 struct Value {
   const Json& json;
   const std::filesystem::path& file;
@@ -98,7 +98,7 @@ struct Key {
   std::function<void(const Value&)> read;
 };
 
-/// Gives each member of an object to the entry of its name; an unknown one is an error.
+/// Passes each member of an object to the entry of its name; an unknown member is an error.
 inline void readObject(const Value& object, const std::vector<Key>& keys) {
   if (!object.json.is_object()) object.fail("an object {...}");
   for (const auto& member : object.json.items()) {
@@ -113,7 +113,7 @@ inline void readObject(const Value& object, const std::vector<Key>& keys) {
   }
 }
 
-/// The whole file. Throws Error(badInput) where it is missing or no JSON.
+/// The whole file. Throws Error(badInput) if it is missing or not JSON.
 Json readJson(const std::filesystem::path& file);
 
 }  // namespace lucerna

@@ -1,8 +1,8 @@
 // Camera paths (no GL): key frames read from a text file and the natural cubic spline through them.
 //
-// File: one key a line, words and numbers separated by blanks; '#' starts a comment.
+// File: one key per line, words and numbers separated by blanks; '#' starts a comment.
 //   p X Y Z  d X Y Z  u X Y Z  [r X Y Z]  [f DEGREES]  [a ASPECT]
-// p position, d viewing direction, u up, f vertical field of view; r (right) and a (aspect) are accepted and not used, as
+// p position, d viewing direction, u up, f vertical field of view; r (right) and a (aspect) are accepted and ignored, as
 // they follow from the others and from the picture's size. This is the format of the LPV original's public demo.
 #pragma once
 
@@ -22,11 +22,11 @@ struct KeyFrame {
   std::optional<double> verticalFov;  ///< radians
 };
 
-/// Reads a key-frame file. Throws Error(badInput) naming file and line when a number is missing, a word unknown, a direction
-/// zero, up parallel to direction, or fewer than two keys are there.
+/// Reads a key-frame file. Throws Error(badInput) naming file and line if a number is missing, a word unknown, a direction
+/// zero, up parallel to direction, or there are fewer than two keys.
 std::vector<KeyFrame> readKeyFrames(const std::filesystem::path& file);
 
-/// Natural cubic spline through key frames (each of position, direction, up on its own; knots at 0, 1, 2, ...):
+/// Natural cubic spline through key frames (position, direction and up separately; knots at 0, 1, 2, ...):
 /// second derivative 0 at both ends, first and second derivatives continuous at the keys.
 class Spline {
  public:
@@ -47,8 +47,8 @@ class Spline {
   int viewsPerSegment_;
 };
 
-/// Which view to show when: the walk keeps its duration by skipping views where rendering is slow.
-/// One view every `secondsPerView` (1/60 s as in the original's 17 ms); ends by itself after the last view.
+/// Chooses the view to show: the walk keeps its duration by skipping views if rendering is slow.
+/// One view every `secondsPerView` (1/60 s as in the original's 17 ms); ends after the last view.
 class SplinePlayback {
  public:
   SplinePlayback(int viewCount, double secondsPerView = 1.0 / 60.0) : viewCount_(viewCount), secondsPerView_(secondsPerView) {}

@@ -1,4 +1,4 @@
-// Participating media by name (no GL): the twelve of the VPT original as it printed them, and 27 measured liquids.
+// Participating media by name (no GL): the twelve of the VPT original as printed, and 27 measured liquids.
 //
 // Coefficients are in 1/mm, as published; a scene's loader turns them into 1 / scene unit. Sources: [VPT2024, table 4.1],
 // [Narasimhan2006, table 2 of the supplement: dilutions, extinction, scattering and g].
@@ -31,11 +31,11 @@ struct CatalogueMedium {
 /// All of them: the original's first, in its order.
 const std::vector<CatalogueMedium>& mediaCatalogue();
 
-/// The medium of that name, whatever its case; null where there is none.
+/// The medium of that name, case-insensitive; null if there is none.
 const CatalogueMedium* findCatalogueMedium(std::string_view name);
 
-/// The original's medium that a material's name speaks of ("Milk.001", "CocaCola", also in Czech, "sklo"). The match that ends last wins, as the last
-/// word says what a thing is ("glass_of_milk" is milk, "MilkGlass" is glass), then the longer one. Null where nothing matches.
+/// The original's medium that a material's name contains ("Milk.001", "CocaCola", also in Czech, "sklo"). The match that ends last wins, as the last
+/// word names the thing ("glass_of_milk" is milk, "MilkGlass" is glass), then the longer one. Null if nothing matches.
 const CatalogueMedium* resemblingMedium(std::string_view materialName);
 
 /// As a scene's medium, in 1 / scene unit.

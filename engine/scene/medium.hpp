@@ -1,6 +1,6 @@
 // Participating media as plain data (no GL).
 //
-// Coefficients are per scene unit of length: loaders divide by the scene's scale, so that nothing after them knows of millimetres.
+// Coefficients are per scene unit of length: loaders divide by the scene's scale, so no later code deals with millimetres.
 // Source of the quantities and their names: [Chandrasekhar1960]; extinction = scattering + absorption.
 #pragma once
 
@@ -26,7 +26,7 @@ struct Medium {
   std::string name;
   glm::vec3 scattering{0.0f};        ///< sigma_s, 1 / scene unit
   glm::vec3 absorption{0.0f};        ///< sigma_a, 1 / scene unit
-  glm::vec3 anisotropy{0.0f};        ///< g, mean cosine of Henyey-Greenstein a channel, -1..1 exclusive; not read for Rayleigh
+  glm::vec3 anisotropy{0.0f};        ///< g per channel, mean cosine of Henyey-Greenstein, -1..1 exclusive; not read for Rayleigh
   PhaseFunction phase = PhaseFunction::henyeyGreenstein;
   glm::vec3 emission{0.0f};          ///< radiance emitted per scene unit of length
   std::optional<DensityGrid> grid;   ///< none: homogeneous

@@ -1,15 +1,15 @@
-// A scene moved near the origin (no GL, pure): what the GPU computes in float is then rounded by the scene's size, not by its place.
+// A scene moved near the origin (no GL, pure): float rounding then depends on the scene's size, not on its position.
 #pragma once
 
 #include "scene/scene.hpp"
 
 namespace lucerna {
 
-/// Where the middle of `bounds` is, along each axis on which all of them lie between m and 2 m from zero: there the difference of any coordinate and this
-/// origin is exact in float [Sterbenz1974]. 0 along the others, whose coordinates are no larger than twice the bounds' extent. A float along each axis.
+/// The middle of `bounds` along each axis on which they lie between m and 2 m from zero: there the difference of any coordinate and this
+/// origin is exact in float [Sterbenz1974]. 0 along the others, whose coordinates are at most twice the bounds' extent. Representable in float.
 glm::dvec3 exactOrigin(const Bounds& bounds);
 
-/// `scene` seen from `origin`: surfaces, lamps, media, cameras and bounds. Exact for the origin of its own bounds.
+/// `scene` relative to `origin`: surfaces, lamps, media, cameras and bounds. Exact for exactOrigin() of its own bounds.
 Scene movedTo(const Scene& scene, const glm::dvec3& origin);
 
 }  // namespace lucerna

@@ -1,4 +1,4 @@
-// The parts of loadScene (no GL): models through Assimp, our scene JSON, and the check of OBJ text that Assimp does not make.
+// The parts of loadScene (no GL): models through Assimp, the scene JSON, and a check of OBJ text that Assimp lacks.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -8,27 +8,27 @@
 
 namespace lucerna {
 
-/// Whatever Assimp reads, with the defaults for what the file does not say. See scene_loader.cpp.
+/// Any model that Assimp reads, with defaults for what the file leaves out. See scene_loader.cpp.
 Scene loadModel(const std::filesystem::path& file);
 
-/// Our scene JSON: a model and what is to be said about it. Its keys: scene_file.cpp.
+/// The scene JSON: a model with cameras, lights and settings. Its keys: scene_file.cpp.
 Scene loadSceneFile(const std::filesystem::path& file);
 
-/// Throws Error(badInput) naming file and line where Wavefront OBJ text is malformed or cut off: numbers missing, a face
-/// that refers to vertices the file does not hold, binary data.
+/// Throws Error(badInput) naming file and line where Wavefront OBJ text is malformed or truncated: numbers missing, a face
+/// with vertices that the file does not have, binary data.
 void checkObj(const std::filesystem::path& file, std::string_view text);
 
-/// The text as Assimp 5.2.5 reads it rightly: with a 0 before every number that begins with a dot (it takes such a number for none and shifts those
-/// behind it), and without blanks at a line's beginning (it passes over such a line).
+/// The text in a form that Assimp 5.2.5 reads correctly: with a 0 before every number that begins with a dot (it ignores such a number and shifts those
+/// behind it), and without leading blanks (it skips such a line).
 std::string repairedObj(std::string_view obj);
 
-/// Where the sun is ours and a view has been chosen after all: the sun no longer follows the view from outside.
+/// With the default sun, after a view has been chosen: the sun no longer follows the view from outside.
 void useChosenView(Scene& scene);
 
-/// Where the sun is ours: the clear sky that goes with it, as it stands now.
+/// With the default sun: the clear sky for its current direction.
 void setDefaultSky(Scene& scene);
 
-/// Makes `file` the scene's camera path and, where no camera is known yet, its first key the first camera.
+/// Sets `file` as the scene's camera path and, if there is no camera yet, its first key as the first camera.
 void setKeyFrames(Scene& scene, const std::filesystem::path& file);
 
 }  // namespace lucerna
