@@ -1,7 +1,7 @@
-// The environment behind the surfaces, as the path tracer sees it: radiance where the depth is still that of nothing, 1.
+// Draws the environment behind the surfaces, as the path tracer sees it: radiance where the depth is still 1.
 //
-// In: a camera, a target with the scene's depth. Out: radiance in the target's first attachment. A picture is read bilinearly, where paths take the texel that a
-// direction falls into; so both are the same at texels' centres, and in between differ by no more than neighbouring texels do.
+// In: a camera, a target with the scene's depth. Out: radiance in the target's first attachment. A picture is read bilinearly, while paths take the texel that a
+// direction falls into: equal at texel centres, and in between different by at most the difference of neighbouring texels.
 #pragma once
 
 #include "gl/objects.hpp"

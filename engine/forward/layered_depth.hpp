@@ -1,4 +1,4 @@
-// Depth maps in the layers of one texture, several filled by one draw: a geometry shader instance a view. Serves the sun's
+// Depth maps in the layers of one texture, several filled by one draw (a geometry shader instance per view). Used for the sun's
 // cascades, the spot lights (each kind a 2D array) and the omnidirectional lights (an array of cube maps).
 #pragma once
 
@@ -14,7 +14,7 @@ class LayeredDepth {
  public:
   struct Shape {
     GLenum target;      ///< GL_TEXTURE_2D_ARRAY or GL_TEXTURE_CUBE_MAP_ARRAY
-    int size;           ///< texels a side
+    int size;           ///< texels per side
     int layers;         ///< of cube maps: 6 each
     int layersPerDraw;  ///< that one draw of the scene fills; divides `layers`
   };
@@ -25,7 +25,7 @@ class LayeredDepth {
     glm::mat4 clipFromPlace;
     glm::vec3 place;
   };
-  /// Draws the scene from every view, one a layer. What lies before a near plane is kept, at depth 0.
+  /// Draws the scene from every view, one per layer. Geometry before a near plane is kept, at depth 0.
   void record(const GpuScene& scene, std::span<const View> views) const;
   /// Depth in [0,1], comparison on: sampler2DArrayShadow or samplerCubeArrayShadow. Beyond a 2D map is lit.
   const gl::Texture& depth() const { return depth_; }

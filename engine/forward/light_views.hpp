@@ -1,4 +1,4 @@
-// What a spot or an omnidirectional light sees (no GL, pure): the perspective views of its shadow map and its reflective shadow map.
+// The perspective views of a spot or omnidirectional light (no GL, pure), for its shadow map and reflective shadow map.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -9,9 +9,9 @@
 
 namespace lucerna {
 
-/// A light in one point: one view of a spot, the six faces of a cube map in OpenGL's order (+x, -x, +y, -y, +z, -z) of an
+/// A light at a point: one view of a spot, the six faces of a cube map in OpenGL's order (+x, -x, +y, -y, +z, -z) of an
 /// omnidirectional light. Both planes follow the scene: far just behind its farthest corner, near at 1/2000 of that; what is
-/// nearer must be drawn with depth clamp, so that it casts its shadow all the same.
+/// nearer must be drawn with depth clamp, so that it still casts its shadow.
 struct LightViews {
   glm::dvec3 position{0.0};
   glm::vec3 intensity{0.0f};               ///< W/sr, of a spot on its axis
@@ -22,11 +22,11 @@ struct LightViews {
   double near = 0.0, far = 1.0;
   std::size_t index = 0;                   ///< in the scene's list of its kind
 
-  /// Where the light is in float, and a view's matrix for positions relative to there: rounded by what the light sees, not by where it stands.
+  /// The light's position in float, and a view's matrix for positions relative to it: rounding depends on what the light sees, not on its position.
   glm::vec3 place() const { return glm::vec3(position); }
   glm::mat4 clipFromPlace(std::size_t view) const;
   bool omnidirectional() const { return clipFromWorld.size() == 6; }
-  /// Width of a texel at depth 1 along the view's axis, for a map of size x size texels a view.
+  /// Width of a texel at depth 1 along the view's axis, for a map of size x size texels per view.
   double texelWidth(int size) const { return 2.0 * tangent / size; }
   /// Upper bound of the sum of the texels' solid angles in shaders/rsm/rsm.frag, all views together, sr; tends to the views' own.
   double largestSolidAngle(int size) const;
@@ -35,12 +35,12 @@ struct LightViews {
 LightViews lightViews(const SpotLight& light, const Bounds& scene);
 LightViews lightViews(const PointLight& light, const Bounds& scene);
 
-/// The views of the spots and of the omnidirectional lights of a scene, those with intensity > 0 alone.
+/// The views of a scene's spots and omnidirectional lights, only those with intensity > 0.
 std::vector<LightViews> spotViews(const Scene& scene);
 std::vector<LightViews> pointViews(const Scene& scene);
 
-/// The irradiance that a scene's lights typically make, the largest of all lights and channels: of the sun its own, of the others
-/// I / r^2 with r a quarter of the scene's diagonal. Finite and above 0 (1 without lights). It is a unit in which to store light, no result.
+/// Typical irradiance from a scene's lights, the largest of all lights and channels: the sun's own, of the others
+/// I / r^2 with r a quarter of the scene's diagonal. Finite and above 0 (1 without lights). Storage normalisation only; does not affect the result.
 float typicalIrradiance(const Scene& scene);
 
 }  // namespace lucerna

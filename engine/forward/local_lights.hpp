@@ -12,8 +12,8 @@ namespace lucerna {
 class LocalLights {
  public:
   struct Settings {
-    int spotSize = 1024;  ///< texels a side of a spot's shadow map
-    int pointSize = 512;  ///< texels a side of each of the six faces of an omnidirectional light's
+    int spotSize = 1024;  ///< texels per side of a spot's shadow map
+    int pointSize = 512;  ///< texels per side of each of the six faces of an omnidirectional light's
   };
   static bool isNeeded(const SceneNeeds& needs) { return needs.spotLights || needs.pointLights; }
 
@@ -30,8 +30,8 @@ class LocalLights {
 
  private:
   std::vector<LayeredDepth::View> spotViews_, pointViews_;
-  std::optional<LayeredDepth> spotShadows_;   ///< a layer a spot
-  std::optional<LayeredDepth> pointShadows_;  ///< six layers a light, a cube map
+  std::optional<LayeredDepth> spotShadows_;   ///< a layer per spot
+  std::optional<LayeredDepth> pointShadows_;  ///< six layers per light, a cube map
   gl::Buffer constants_;
 };
 

@@ -1,4 +1,4 @@
-// The sun's shadow map: depth alone, its own size, so that shadows stay sharp whatever the reflective shadow map's [LPV2015, 6.3.1].
+// The sun's shadow map: depth only, sized independently of the reflective shadow map, so shadows stay sharp [LPV2015, 6.3.1].
 #pragma once
 
 #include "forward/gpu_scene.hpp"
@@ -9,7 +9,7 @@ namespace lucerna {
 class ShadowMap {
  public:
   struct Settings {
-    int size = 2048;  ///< texels a side
+    int size = 2048;  ///< texels per side
   };
   static bool isNeeded(const SceneNeeds& needs) { return needs.directionalLight; }
 

@@ -15,7 +15,7 @@ struct SunFrustum {
   double texelArea(int size) const { return width * height / (static_cast<double>(size) * size); }
 };
 
-/// Just holds every vertex of the scene, with a margin of 0.5 %, so that it does not depend on the camera: nothing flickers as it moves.
+/// Encloses every vertex of the scene, with a margin of 0.5 %. It does not depend on the camera, so nothing flickers.
 SunFrustum fitSunFrustum(const Scene& scene, const glm::dvec3& sunDirection);
 
 }  // namespace lucerna

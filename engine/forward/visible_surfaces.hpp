@@ -1,4 +1,4 @@
-// What the camera sees, for techniques that start from its pixels: depth and normals, drawn before shading.
+// Depth and normals of the visible surfaces, drawn before shading, for techniques that start from pixels.
 #pragma once
 
 #include "forward/gpu_scene.hpp"
@@ -9,7 +9,7 @@ namespace lucerna {
 
 class VisibleSurfaces {
  public:
-  /// depth: of the picture's size, kept by the caller, as shading goes on with it.
+  /// depth: of the picture's size, owned by the caller, since shading reuses it.
   VisibleSurfaces(gl::ProgramLibrary& programs, const GpuScene& scene, const gl::Texture& depth);
   void resize(const gl::Texture& depth);
 

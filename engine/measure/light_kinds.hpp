@@ -1,5 +1,5 @@
-// The kinds of light in a scene, and the scene with some of them alone (no GL): a technique is judged against the light
-// that it is given.
+// The kinds of light in a scene, and the scene with only some of them (no GL): a technique is judged by the light
+// that it supports.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -9,27 +9,27 @@
 
 namespace lucerna::measure {
 
-/// Which kinds of emitters a scene has, a technique knows, or a reference holds.
+/// The kinds of emitters that a scene has, a technique supports, or a reference contains.
 struct LightKinds {
   bool sun = true;
   bool lamps = true;        ///< spots and omnidirectional lamps
-  bool surfaces = true;     ///< emissive surfaces, and media that shine
+  bool surfaces = true;     ///< emissive surfaces and media
   bool environment = true;  ///< what is seen behind the scene and lights it; a background that lights nothing is none
 
   auto operator<=>(const LightKinds&) const = default;
   bool any() const { return sun || lamps || surfaces || environment; }
 };
 
-/// Those of both.
+/// Intersection.
 LightKinds operator&(LightKinds a, LightKinds b);
-/// Those of a that b has not.
+/// Those of a that are not in b.
 LightKinds without(LightKinds a, LightKinds b);
 /// "sun, lamps"; "none".
 std::string nameOf(LightKinds kinds);
 
-/// The kinds that the scene has: an emitter of radiance 0 is none.
+/// The kinds that the scene has; emitters of radiance 0 do not count.
 LightKinds kindsOf(const Scene& scene);
-/// The scene without the emitters of all other kinds. Surfaces that shone stay, black emitters with their albedo; the
+/// The scene without the emitters of all other kinds. Emissive surfaces stay, black but with their albedo; the
 /// background stays.
 Scene litBy(const Scene& scene, LightKinds kinds);
 

@@ -1,4 +1,4 @@
-// References: pictures of one transport, sampled far beyond what they judge, with their own standard errors, and kept on disk (no GL: who samples is passed in).
+// References: pictures of one transport with many samples and their standard errors, cached on disk (no GL: the sampler is passed in).
 #pragma once
 
 #include "base/image.hpp"
@@ -13,13 +13,13 @@
 
 namespace lucerna::measure {
 
-/// Which light a picture holds.
-/// direct: emitted, and scattered once. oneBounce: after exactly one diffuse reflection more, without `direct`; unoccluded: where nothing stands between the two
+/// The light that a picture contains.
+/// direct: emitted, and scattered once. oneBounce: after exactly one diffuse reflection more, without `direct`; unoccluded: without occlusion between the two
 /// surfaces. all: everything. indirect: all without direct; the sampler may bound its bounces.
-enum class Transport { direct, oneBounce, oneBounceUnoccluded, all, indirect };  // kept in files: new ones at the end
+enum class Transport { direct, oneBounce, oneBounceUnoccluded, all, indirect };  // stored in files: append new ones at the end
 std::string_view nameOf(Transport transport);
 
-/// The mean picture of `samples` paths a pixel, the paths number `first`, first + 1, ...: other numbers are independent, the same ones give the same picture.
+/// The mean picture of `samples` paths per pixel, numbered from `first`: other numbers are independent, the same ones give the same picture.
 using Sampler = std::function<Image(std::uint64_t first, std::uint32_t samples)>;
 
 struct Reference {
@@ -27,12 +27,12 @@ struct Reference {
   Image mean;
   Image standardError;        ///< of each pixel and channel
   double meanError = 0.0;     ///< standard error of the mean over pixels and channels
-  std::uint64_t samples = 0;  ///< paths a pixel
+  std::uint64_t samples = 0;  ///< paths per pixel
   double seconds = 0.0;       ///< spent on it
-  std::string renderer;       ///< who sampled
+  std::string renderer;       ///< of the sampler
 };
 
-/// Mean and standard errors from batches of equal sizes, each a picture of its own: what correlates pixels within one does not deceive the error.
+/// Mean and standard errors from batches of equal size, each a separate picture: correlation within a batch does not bias the error.
 class BatchMean {
  public:
   void add(const Image& batch);
@@ -52,28 +52,28 @@ class BatchMean {
 Reference merged(const Reference& a, const Reference& b);
 
 struct SamplingGoal {
-  std::uint64_t samples = 0;   ///< stop when there are that many a pixel; 0: by time
-  double seconds = 60.0;       ///< stop when that much was spent; at least kBatches batches of one sample are made
+  std::uint64_t samples = 0;   ///< stop at this many per pixel; 0: by time
+  double seconds = 60.0;       ///< stop after this time; at least kBatches batches of one sample are made
   static constexpr int kBatches = 16;
 };
 
-/// Samples from path number `first` on until the goal is met. `stop` is asked between batches; a reference of fewer than two batches is none.
+/// Samples from path number `first` until the goal is met. `stop` is asked between batches; fewer than two batches give no reference.
 std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first, const SamplingGoal& goal,
                                          const std::function<bool()>& stop = {});
 
-/// What a reference is of: the scene's content, the view, the size, the transport, and how the sampler works (its version and switches, as text).
+/// Identity of a reference: the scene's content, view, size, transport, and the sampler (version and switches, as text).
 struct ReferenceKey {
   std::uint64_t value = 0;
   std::string name() const;  ///< 16 hexadecimal digits
 };
 ReferenceKey keyOf(const Scene& scene, const Camera& camera, glm::ivec2 size, Transport transport, std::string_view sampler);
 
-/// References in a folder, a file each, written whole or not at all and checked when read.
+/// References in a folder, one file each, written completely or not at all and checked when read.
 class ReferenceCache {
  public:
-  /// The folder is made; throws Error(badInput) where it cannot be.
+  /// Creates the folder; throws Error(badInput) if it cannot.
   explicit ReferenceCache(std::filesystem::path folder);
-  /// Empty where there is none; a damaged file is one warning and none.
+  /// Empty if there is none; a damaged file gives one warning and counts as none.
   std::optional<Reference> load(const ReferenceKey& key) const;
   void store(const ReferenceKey& key, const Reference& reference) const;
   std::filesystem::path fileOf(const ReferenceKey& key) const;
@@ -85,7 +85,7 @@ class ReferenceCache {
   std::filesystem::path folder_;
 };
 
-/// From the cache where it meets the goal; what is there is sampled further where it does not, and kept. Empty where `stop` came before two batches.
+/// From the cache if it meets the goal; otherwise sampled further and stored. Empty if stopped before two batches.
 std::optional<Reference> obtainReference(const ReferenceCache& cache, const ReferenceKey& key, const Sampler& sampler, Transport transport, const SamplingGoal& goal,
                                          const std::string& renderer, const std::function<bool()>& stop = {});
 

@@ -1,7 +1,7 @@
-// Direct light of a pixel by shadow rays, for the radiosity view: sharp shadows where patches hold one value each.
+// Direct light per pixel by shadow rays, for the radiosity view: sharp shadows, where patches have one value each.
 //
 // Input: a Scene. Output, to fragment shaders that include shaders/render/direct_rays.glsl: irradiance by emissive triangles (their closed form
-// [Lambert1760] times the part of them that rays find free), sun, spot and omnidirectional lights (a ray each). Scene units.
+// [Lambert1760] times their visible fraction, by rays), sun, spot and omnidirectional lights (a ray each). Scene units.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -12,14 +12,14 @@ namespace lucerna {
 
 class DirectRays {
  public:
-  /// Emissive triangles that it takes at most: each costs rays in every pixel.
+  /// Maximum number of emissive triangles: each costs rays in every pixel.
   static constexpr std::size_t kMostEmitters = 64;
   static std::size_t emitterCount(const Scene& scene);
 
-  /// `rays`: a pixel, divided among the emissive triangles (at least one each). `origin`: of the positions that pixels ask from, in the scene's coordinates.
+  /// `rays`: per pixel, divided among the emissive triangles (at least one each). `origin`: of the pixels' positions, in the scene's coordinates.
   DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays, const glm::dvec3& origin = glm::dvec3(0.0));
   void bind() const;  ///< storage block 1, texture units 60 and 61
-  /// Work of a pixel, about: gl/pieces.hpp.
+  /// Estimated work per pixel: gl/pieces.hpp.
   double turnsOfPixel() const { return turnsOfPixel_; }
   std::size_t gpuBytes() const { return rays_.gpuBytes() + lights_.bytes(); }
 

@@ -1,7 +1,7 @@
-// Which lamps are drawn where a scene has more than shaders hold: those that light it most, not the first.
+// Chooses the lamps to draw if a scene has more than the shaders support: those that light it most.
 //
-// Input: the views of all lamps of one kind. A lamp's importance is the flux that surfaces reflect of it, from a small reflective shadow map: what goes past the scene or onto
-// black counts for nothing, wherever the lamp stands in the list.
+// Input: the views of all lamps of one kind. A lamp's importance is its flux reflected by surfaces, from a small reflective shadow map: light that misses the scene or hits
+// black does not count.
 #pragma once
 
 #include "rsm/reflective_shadow_map.hpp"
@@ -10,8 +10,8 @@
 
 namespace lucerna {
 
-/// Leaves the `most` lamps of `views` that light the scene most, in their order. All of one kind. The others are named in one warning, with their share of what all of them light.
-/// Draws nothing where there are no more than that.
+/// Keeps the `most` lamps of `views` (all of one kind) that light the scene most, in their order. One warning names the others and their share of the light.
+/// Draws nothing if there are at most that many.
 void keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene, std::vector<LightViews>& views, std::size_t most);
 
 }  // namespace lucerna

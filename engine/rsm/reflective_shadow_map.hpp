@@ -1,4 +1,4 @@
-// Reflective shadow map of a light [Dachsbacher2005]: what the light sees, each texel a virtual point light. One map a light: of
+// Reflective shadow map of a light [Dachsbacher2005]: what the light sees, each texel a virtual point light. One map per light: of
 // the sun, of a spot light, or of an omnidirectional light with its six faces drawn in one pass.
 #pragma once
 
@@ -12,10 +12,10 @@ class ReflectiveShadowMap {
  public:
   enum class Light { sun, spot, point };
   struct Settings {
-    int size = 256;  ///< texels a side, of every layer
+    int size = 256;  ///< texels per side of every layer
     Light light = Light::sun;
     bool fluxCosine = false;  ///< deviation rsm.flux-cosine: flux times N.L
-    bool albedo = false;      ///< a fourth target: for light that is reflected more than once
+    bool albedo = false;      ///< a fourth target, for several bounces
   };
   /// 2D arrays: one layer, or the six faces of an omnidirectional light.
   struct Outputs {
@@ -23,12 +23,12 @@ class ReflectiveShadowMap {
     const gl::Texture& normal;    ///< RGBA16F, unit, on the light's side; w = cosine to the light
     const gl::Texture& flux;      ///< RGBA32F, reflected flux of the texel, W; w = area of the surface in it, scene units squared
     float texelArea = 1.0f;       ///< sun: across the rays, scene units squared; other lights have no such area: 1. Only for deviations
-    double largestFlux = 0.0;     ///< of all texels together, W: what the light sends into the map, an upper bound for any albedo up to 1
+    double largestFlux = 0.0;     ///< of all texels together, W: the light's flux into the map, an upper bound for any albedo up to 1
     Light light = Light::sun;
     const gl::Texture* albedo = nullptr;  ///< RGBA16F, linear; null unless asked for
     /// Texels of all layers.
     int texelCount() const { return position.size().x * position.size().y * position.size().z; }
-    /// To the units 0, 1, 2 and, if there is an albedo, 3, where all that reads a map expects it.
+    /// Binds to units 0, 1, 2 and, if there is an albedo, 3, where all readers of a map expect it.
     void bind() const {
       position.bind(0), normal.bind(1), flux.bind(2);
       if (albedo) albedo->bind(3);
