@@ -10,16 +10,16 @@ namespace lucerna {
 
 class LightTree {
  public:
-  static constexpr int kTop = 32;  ///< nodes a side of the coarsest level, at most
+  static constexpr int kTop = 32;  ///< most nodes per side of the coarsest level
   /// size, layers: of the map.
   LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers);
 
   void build(const ReflectiveShadowMap::Outputs& map);
-  /// For a program in use that includes tree.glsl; the nodes as texels to `unit`.
+  /// For a program in use that includes tree.glsl; binds the nodes as texels to `unit`.
   void bind(const gl::Program& program, GLuint unit) const;
   int levels() const { return levels_; }
   std::size_t gpuBytes() const { return nodes_.bytes(); }
-  /// 12 words a node, level by level, the finest first; for tests.
+  /// 12 words per node, level by level, finest first; for tests.
   std::vector<GLuint> readNodes() const { return nodes_.buffer().read<GLuint>(); }
 
  private:

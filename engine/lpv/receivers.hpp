@@ -1,12 +1,12 @@
-// Receivers: irradiance kept at points of surfaces, in the cascades of the light propagation volume, gathered from the lights' maps or found by paths.
+// Receivers: irradiance stored at surface points, in the cascades of the light propagation volume, gathered from the lights' maps or found by paths.
 //
-// Irradiance along a surface is smooth even in a corner, where a field of radiance in space is not; so what is interpolated here are surface points. Each cell of
-// each cascade has six slots, an axis and a sign each; a slot holds one real point that the camera has seen and whose surface leans that way. Points
-// are kept while the camera moves, and their paths are added up while light and geometry stand still.
+// Irradiance along a surface is smooth even in a corner, where a field of radiance in space is not; so surface points are interpolated. Each cell of
+// each cascade has six slots, one per axis and sign; a slot holds one real point that the camera has seen and whose normal points that way. Points
+// are kept while the camera moves, and their paths accumulate while light and geometry are static.
 //
-// In: a scene (PathScene), cascades, what the camera sees, maps of lights where their light is gathered. Out: a layered 3D texture that shaders/lpv/receivers/lookup.glsl interpolates: irradiance in W per square scene
-// unit. Which light: emissive surfaces, the sky, and all that is scattered `bounces` times; sun and lamps light surfaces directly in forward shading.
-// Errors: Error(missingCapability) where a texture or buffer is larger than the driver's.
+// In: a scene (PathScene), cascades, the visible surfaces, the lights' maps for gather. Out: a layered 3D texture that shaders/lpv/receivers/lookup.glsl interpolates: irradiance in W per square scene
+// unit. Light: emissive surfaces, the sky, and everything scattered `bounces` times; forward shading adds the direct light of sun and lamps.
+// Errors: Error(missingCapability) if a texture or buffer exceeds the driver's limits.
 // Source: README.md in this folder, section "Receivers".
 #pragma once
 
@@ -28,22 +28,22 @@ namespace lucerna {
 
 class LpvReceivers {
  public:
-  /// Light that is kept: what sun and lamps do not give by themselves. `direct`: of emissive surfaces and the sky, once scattered.
+  /// Stored light: everything but the direct light of sun and lamps. `direct`: of emissive surfaces and the sky, scattered once.
   enum class Light { all, direct, indirect };
   struct Inputs {
     std::vector<Cascade> cascades;  ///< finest first, as many as in the settings
-    Camera camera;                  ///< of the visible surfaces, among the frame's positions
+    Camera camera;                  ///< of the visible surfaces, in the frame's coordinates
     glm::mat4 worldFromClip;        ///< the same
     const VisibleSurfaces& visible;
-    /// Of LpvTransport::gather, one a light; the same ones every frame. Read where `mapsAreNew`, and by receivers that are new.
+    /// For LpvTransport::gather, one per light; the same ones every frame. Read if `mapsAreNew`, and by new receivers.
     const std::vector<ReflectiveShadowMap::Outputs>& maps;
     bool mapsAreNew;
     bool fades;  ///< what is shown changes by no more than Settings::mostChange; else all of it at once
   };
   /// Of the last frame whose counts have arrived.
   struct Counts {
-    std::uint64_t receivers = 0;  ///< that there are
-    std::uint64_t waiting = 0;    ///< of those that are needed, still lack paths
+    std::uint64_t receivers = 0;  ///< in total
+    std::uint64_t waiting = 0;    ///< visible ones that still lack paths
     std::uint64_t left = 0;       ///< without room
     std::uint32_t frame = 0;      ///< as frame() counts them
   };
@@ -54,10 +54,10 @@ class LpvReceivers {
 
   static bool isNeeded(const SceneNeeds& needs, LpvTransport transport, Light light);
 
-  /// A frame: finds receivers for what is visible, and gives those that lack paths Settings::rays of them, new ones Settings::leastRays.
-  /// rounds: as many frames' paths at once.
+  /// One frame: finds receivers for visible surfaces, and traces Settings::rays paths for those that lack some, Settings::leastRays for new ones.
+  /// rounds: the paths of this many frames at once.
   void update(const Inputs& inputs, int rounds = 1);
-  /// All that is kept is dropped, as before the first frame.
+  /// Drops everything stored, as before the first frame.
   void forget();
 
   /// Binds blocks 1 and 6 and unit 5 for shaders/lpv/receivers/lookup.glsl.
@@ -85,8 +85,8 @@ class LpvReceivers {
   gl::ProgramLibrary* programs_;
   const gl::Capabilities* capabilities_;
   PathScene scene_;
-  glm::dvec3 rayOrigin_;  ///< among the frame's positions
-  float referenceIrradiance_;  ///< of the order of what there is; only scales the stored values
+  glm::dvec3 rayOrigin_;  ///< in the frame's coordinates
+  float referenceIrradiance_;  ///< of the order of the irradiance; only scales stored values
   bool clearTexture_;
   bool cached_;  ///< paths end at receivers
   std::size_t slots_, capacity_;
@@ -94,10 +94,10 @@ class LpvReceivers {
   std::vector<Cascade> cascades_;  ///< of the frame before
   shared::PathConstants path_{};
   const gl::Program *mark_, *claim_, *keep_, *list_, *store_;
-  const gl::Program* paths_ = nullptr;  ///< of rays alone; what follows of gather
+  const gl::Program* paths_ = nullptr;  ///< only rays; the following only gather
   const gl::Program *gatherSun_ = nullptr, *gatherLamp_ = nullptr, *gatherSky_ = nullptr;
-  std::vector<LightTree> trees_;        ///< of each map, built as they come
-  glm::vec3 voxelMinimum_{0.0f};        ///< among the frame's positions
+  std::vector<LightTree> trees_;        ///< one per map
+  glm::vec3 voxelMinimum_{0.0f};        ///< in the frame's coordinates
   float voxelSize_ = 1.0f;
   glm::ivec3 voxelBricks_{1};
   gl::BufferTexture voxels_;

@@ -1,5 +1,5 @@
-// Where a scene's surfaces are, coarsely: bits of voxels, for short rays that ask whether anything lies between two points (no GL, pure).
-// Units: scene units. Surfaces that a mask cuts out leave no bits.
+// A scene's surfaces as voxel bits, for short visibility rays between two points (no GL, pure).
+// Units: scene units. Surfaces cut out by a mask set no bits.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -12,15 +12,15 @@
 namespace lucerna {
 
 struct SurfaceVoxels {
-  static constexpr int kBrick = 4;  ///< voxels a side of a brick
+  static constexpr int kBrick = 4;  ///< voxels per side of a brick
   glm::dvec3 minimum{0.0};          ///< of voxel 0, in the scene's coordinates
   double size = 1.0;                ///< of a voxel
-  glm::ivec3 bricks{1};             ///< a direction
+  glm::ivec3 bricks{1};             ///< per axis
   std::vector<glm::uvec2> bits;     ///< a brick's 64 voxels, x fastest, bricks too
   bool isSet(const glm::ivec3& voxel) const;
 };
 
-/// `across`: voxels along the longest side of the scene, 1..1024. A voxel is set where a point of a surface lies in it, to within half a voxel's spacing of the points looked at.
+/// `across`: voxels along the longest side of the scene, 1..1024. A voxel is set if a point of a surface lies in it; points are sampled half a voxel apart.
 SurfaceVoxels surfaceVoxels(const Scene& scene, int across);
 
 }  // namespace lucerna

@@ -1,6 +1,6 @@
-// How far it is from places in a box to the nearest triangle: what lets a walk through a dense medium do without rays (no GL).
+// Distances from points in a box to the nearest triangle, so that a walk through a dense medium needs no rays (no GL).
 //
-// Lengths in scene units. Exact distances at the centres of cubic cells; from any place p the nearest triangle is at least radius(c) - |p - c|
+// Lengths in scene units. Exact distances at the centres of cubic cells; from any point p the nearest triangle is at least radius(c) - |p - c|
 // away, whichever cell's centre c is.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace lucerna {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// From a point to the nearest of a triangle; one without area is its longest side.
+/// Distance from a point to a triangle; a triangle without area counts as its longest side.
 double distanceTo(const Corners& triangle, const glm::dvec3& point);
 
 struct ClearanceGrid {
@@ -23,7 +23,7 @@ struct ClearanceGrid {
   std::vector<float> radius;  ///< x fastest; rounded down. Infinite without triangles
 };
 
-/// `cells` along the box's longest side, a power of two. All cores; corners that are not finite are left out.
+/// `cells` along the box's longest side, a power of two. Uses all cores; corners that are not finite are ignored.
 ClearanceGrid clearanceGrid(const std::vector<Corners>& triangles, const glm::dvec3& min, const glm::dvec3& max, int cells);
 
 }  // namespace lucerna

@@ -1,4 +1,4 @@
-// What the published path tracer of participating media does differently [VPT2024] (no GL): README.md, section Deviations, has formula,
+// Deviations of the published path tracer of participating media [VPT2024] (no GL): README.md, section Deviations, has formula,
 // source and measured effect of each.
 #pragma once
 

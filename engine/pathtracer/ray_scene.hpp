@@ -1,6 +1,6 @@
 // A scene's triangles and their hierarchy on the GPU, for programs that include shaders/pathtracer/bvh.glsl.
 //
-// Space: rays are given and hits are found in the scene moved by -origin() (see bvh.hpp): subtract it in double from cameras and lights.
+// Space: rays and hits are in the scene moved by -origin() (see bvh.hpp): subtract it in double from cameras and lights.
 #pragma once
 
 #include "gl/context.hpp"
@@ -13,8 +13,8 @@ namespace lucerna {
 
 struct RaySceneSettings {
   BvhSettings bvh;
-  bool moves = false;  ///< update() will be called: the hierarchy is kept in main memory too
-  std::optional<bool> sharedStack;  ///< compute programs keep the stack of a traversal in shared memory; not set: they do but on software renderers
+  bool moves = false;  ///< update() will be called: keep the hierarchy in main memory too
+  std::optional<bool> sharedStack;  ///< traversal stacks of compute programs in shared memory; not set: except on software renderers
 };
 
 class RayScene {
@@ -23,14 +23,14 @@ class RayScene {
   /// Texture units that bind() occupies.
   static constexpr GLuint kNodesUnit = 60, kTrianglesUnit = 61;
 
-  /// Throws Error(missingCapability) where the scene is larger than a buffer texture of the driver.
+  /// Throws Error(missingCapability) if the scene exceeds the driver's limit of buffer textures.
   RayScene(const Scene& scene, const gl::Capabilities& capabilities, const Settings& settings = {});
 
-  /// Takes over corners that have moved in the same scene: refits where that can be done, else builds anew, which may move origin().
+  /// Updates moved corners of the same scene: refits if possible, else rebuilds, which may move origin().
   void update(const Scene& scene);
 
   void bind() const;
-  /// Flag SHARED_STACK for compute programs of at most 64 invocations a group: entries of the stack, 0 where it is a local array.
+  /// Flag SHARED_STACK for compute programs of at most 64 invocations per group: entries of the stack, 0 if it is a local array.
   int sharedStack() const;
   const glm::dvec3& origin() const { return origin_; }
   const BvhStatistics& statistics() const { return statistics_; }

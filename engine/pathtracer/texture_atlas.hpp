@@ -1,4 +1,4 @@
-// All textures of a scene in one array texture, since a compute program of OpenGL 4.3 can bind but few: where each goes. No GL.
+// Layout of all textures of a scene in one array texture, since a compute program of OpenGL 4.3 can bind only few. No GL.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,7 +9,7 @@ namespace lucerna {
 
 struct AtlasPlace {
   int layer = 0;
-  glm::ivec2 corner{0};  ///< texel of its lower left one
+  glm::ivec2 corner{0};  ///< its lower left texel
 };
 
 struct AtlasLayout {
@@ -17,7 +17,7 @@ struct AtlasLayout {
   std::vector<AtlasPlace> places;    ///< in the order given
 };
 
-/// Shelves: rectangles by falling height, from left to right. No rectangle may be larger than `limit` either way.
+/// Shelf packing: rectangles by decreasing height, from left to right. No rectangle may exceed `limit` in either direction.
 AtlasLayout layOutAtlas(const std::vector<glm::ivec2>& sizes, int limit);
 
 }  // namespace lucerna
