@@ -17,7 +17,7 @@ class FormFactorMatrix {
  public:
   FormFactorMatrix() : starts_{0} {}
 
-  /// The next row's entries.
+  /// Appends the next row.
   void appendRow(std::span<const std::uint32_t> patches, std::span<const float> factors);
   std::size_t rowCount() const { return starts_.size() - 1; }
   std::size_t entryCount() const { return patches_.size(); }
@@ -26,7 +26,7 @@ class FormFactorMatrix {
   struct Row {
     std::span<const std::uint32_t> patches;
     std::span<const float> factors;
-    double scale;  ///< of all of them: what floats cannot hold of a row's sum
+    double scale;  ///< factor on the row: the part of its sum that floats cannot hold
   };
   Row row(std::size_t i) const;
 
@@ -34,11 +34,11 @@ class FormFactorMatrix {
   void multiply(std::span<const glm::dvec3> x, std::span<glm::dvec3> y) const;
   std::vector<double> rowSums() const;
 
-  /// What hemicubes get wrong, put right: A_i F_ij = A_j F_ji for all pairs, both taken to be their mean, in which the smaller patch's factor counts by the larger one's
-  /// area: its centre stands for it, and what it sees covers pixels. Rows that are closed, `sums[i]` = 1, then sum to 1; of open ones nobody knows the sum better than those
-  /// means (a sum that were held where near factors are off would be paid for by far ones). By a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]. Returns the largest relative error of a sum before
-  /// the last rounding; that is then put right row by row in double (reciprocity holds to the floats' 1e-7), since light in a white room counts it 1 / (1 - rho) times.
-  /// `sources`, where given, marks columns whose factors are closed forms: what a source sees below `fewPixels` of its hemisphere is known from the other row alone.
+  /// Repairs errors of hemicubes: A_i F_ij = A_j F_ji for all pairs, by the mean of both, in which the smaller patch's factor is weighted by the larger one's
+  /// area: its centre represents it, and what it sees covers pixels. Closed rows, `sums[i]` = 1, then sum to 1; open rows stay unconstrained: forcing a wrong
+  /// near-field sum would move the error to far entries. By a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]. Returns the largest relative error of a sum before
+  /// the last rounding, which is then corrected row by row in double (reciprocity holds to the floats' 1e-7), since a white room amplifies it by 1 / (1 - rho).
+  /// `sources`, if given, marks columns whose factors are closed forms: what a source sees below `fewPixels` of its hemisphere is taken from the other row.
   double repair(std::span<const double> areas, std::span<const double> sums, std::span<const std::uint32_t> sources = {}, double fewPixels = 0.0);
   /// Largest |A_i F_ij - A_j F_ji| over the mean of A_i F_ij.
   double reciprocityError(std::span<const double> areas) const;

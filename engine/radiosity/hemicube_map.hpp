@@ -1,4 +1,4 @@
-// Delta form factors: what each pixel of a hemicube stands for (no GL, pure).
+// Delta form factors: the weight of each pixel of a hemicube (no GL, pure).
 #pragma once
 
 #include <vector>

@@ -1,7 +1,7 @@
-// Rows of the form factor matrix on disk, appended submission by submission (no GL): what a killed run leaves for the next.
+// Rows of the form factor matrix on disk, appended per submission (no GL), so that a killed run can be resumed.
 //
-// A header (magic, version, fingerprint, patches), then blocks, each with its own length and checksum. A block that was cut short or damaged
-// ends the file: it and what follows is computed again.
+// A header (magic, version, fingerprint, patches), then blocks, each with its own length and checksum. A truncated or damaged block
+// ends the file: it and everything after it is recomputed.
 #pragma once
 
 #include "radiosity/hemicubes.hpp"
@@ -15,28 +15,28 @@ namespace lucerna {
 
 class RowFile {
  public:
-  /// Opens or makes the file; calls `take` for each whole block there is, in order. Throws Error(badInput) when the file is no row file, of
-  /// another version, or of another scene or settings (`fingerprint`); it is left as it was then.
+  /// Opens or creates the file; calls `take` for each complete block, in order. Throws Error(badInput) if the file is not a row file, of
+  /// another version, or of another scene or settings (`fingerprint`); it is then left unchanged.
   RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches, const std::function<void(const FormFactorRows&)>& take);
   ~RowFile();
-  /// Of the file there is; nothing where it is none of ours or of another version.
+  /// Of the existing file; empty if it is not a row file or of another version.
   static std::optional<std::uint64_t> fingerprintOf(const std::filesystem::path& file);
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;
 
-  /// Rows must follow those before. On a full disk the file is cut back to its last whole block and Error(badInput) says so.
+  /// Rows must follow the previous ones. On a full disk the file is cut back to its last complete block, and Error(badInput) is thrown.
   void append(const FormFactorRows& rows);
-  /// All rows that are in it, block by block, in order. Throws Error(badInput) where they no longer are.
+  /// All its rows, block by block, in order. Throws Error(badInput) if they are gone.
   void forEach(const std::function<void(const FormFactorRows&)>& take);
 
  private:
-  /// The block at the file's position, whose first row is `expected`, if it is whole; ends at `end`.
+  /// The block at the file's position, whose first row is `expected`, if it is complete; ends at `end`.
   std::optional<FormFactorRows> readBlock(std::uint32_t expected, std::uint64_t& end);
 
   std::filesystem::path file_;
   int descriptor_ = -1;
   std::uint32_t patches_ = 0;
-  std::uint64_t end_ = 0;  ///< of the last whole block
+  std::uint64_t end_ = 0;  ///< of the last complete block
 };
 
 }  // namespace lucerna
