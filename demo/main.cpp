@@ -27,7 +27,7 @@ void printError(std::string message) {
   fmt::print(stderr, "lucerna: {}\n", message);
 }
 
-/// Results that did not arrive are no results: a full disk behind standard output is told only here.
+/// A full disk behind standard output is only reported here.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.flush()) return code;
   printError(fmt::format("standard output cannot be written: {}", std::strerror(errno)));

@@ -1,4 +1,4 @@
-// A scene's meshes and textures on the GPU, as every raster pass draws them.
+// A scene's meshes and textures on the GPU, for all raster passes.
 #pragma once
 
 #include "gl/context.hpp"
@@ -16,7 +16,7 @@ struct GpuSceneSettings {
   float anisotropy = 4.0f;  ///< at most; 1 where the extension is missing
 };
 
-/// What a pass wants drawn with which program: cut-out meshes need a discard, which costs the others early depth tests.
+/// The programs of a pass: masked meshes need a discard, which would disable early depth tests for the others.
 struct SurfacePrograms {
   const gl::Program* opaque = nullptr;
   const gl::Program* masked = nullptr;  ///< null exactly when the scene has no alpha masks
@@ -35,7 +35,7 @@ class GpuScene {
     const glm::vec3* viewPoint = nullptr;
   };
   void draw(const SurfacePrograms& programs, const View& view) const;
-  /// Positions alone for opaque meshes, in one call; masks for the rest.
+  /// Only positions for opaque meshes, in one call; masked meshes with their masks.
   void drawDepth(const SurfacePrograms& programs) const;
 
   const Scene& scene() const { return *scene_; }

@@ -1,9 +1,9 @@
 // Shader programs from files.
 //
-// A small preprocessor of our own stands before the driver's: it writes `#version 430 core`, the program's declared flags as
-// `#define NAME value`, then the file with its include-once, root-relative `#include "lib/x.glsl"`s. It refuses what drivers let pass:
-// an identifier in #if that is no declared flag (a misspelt one would silently leave a feature out), a missing file, a cycle.
-// A branch that a flag leaves out (`#if FLAG`, `#if !FLAG`) includes nothing. Driver logs are rewritten to shaders/lib/x.glsl:12. Names of flags come from SceneNeeds and Settings alone.
+// A small preprocessor runs before the driver's: it writes `#version 430 core`, the program's declared flags as
+// `#define NAME value`, then the file with its include-once, root-relative `#include "lib/x.glsl"`s. It refuses what drivers accept:
+// an undeclared identifier in #if (a misspelt one would silently disable a feature), a missing file, a cycle.
+// A branch that a flag leaves out (`#if FLAG`, `#if !FLAG`) includes nothing. Driver logs are rewritten to shaders/lib/x.glsl:12. Flags come only from SceneNeeds and Settings.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -72,7 +72,7 @@ class Program {
   void set(std::string_view uniform, const glm::vec4& value) const;
   void set(std::string_view uniform, const glm::mat4& value) const;
 
-  /// Names of the active uniforms, blocks and storage buffers: what the driver kept.
+  /// Names of the active uniforms, blocks and storage buffers.
   std::vector<std::string> activeResources() const;
 
  private:
@@ -86,13 +86,13 @@ class Program {
   mutable std::map<std::string, GLint, std::less<>> locations_;
 };
 
-/// Builds programs, keeps each (files, flags) once, reloads those whose files changed.
+/// Builds programs, one per (files, flags), and reloads those whose files changed.
 class ProgramLibrary {
  public:
   /// `root`: the shaders folder; empty: LUCERNA_SHADERS in the environment, else the one beside the assets (base/data.hpp).
   explicit ProgramLibrary(std::filesystem::path root = {});
 
-  /// Throws Error(badInput) with the rewritten log when it does not compile or link.
+  /// Throws Error(badInput) with the rewritten log if it does not compile or link.
   const Program& load(const ProgramDescription& description);
   const Program& loadRaster(const std::string& name, const std::string& vertex, const std::string& fragment,
                             const ShaderFlags& flags = {}, const std::string& geometry = {});

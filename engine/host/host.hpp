@@ -1,7 +1,7 @@
-// Who owns the OpenGL context: a GLFW window, EGL without a surface, or OSMesa (off-screen, Mesa's software rasteriser).
+// Owners of the OpenGL context: a GLFW window, EGL without a surface, or OSMesa (off-screen, Mesa's software renderer).
 //
-// One executable holds all three. The rest of the engine draws into framebuffer objects only; framebuffer 0 exists in a
-// window alone, so only a host presents.
+// One executable has all three. The rest of the engine draws only into framebuffer objects; framebuffer 0 exists only in a
+// window, so only a host presents.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -26,8 +26,8 @@ struct HostOptions {
   glm::ivec2 windowSize{1280, 720};
   std::string windowTitle = "Lucerna";
   bool windowVisible = true;
-  bool swapAtRefresh = true;  ///< a window waits for the display's refresh; off where frames a second are measured, which would be the display's
-  bool debugContext = false;  ///< ask for a debug context where the host can
+  bool swapAtRefresh = true;  ///< wait for the display's refresh; off where frames per second are measured
+  bool debugContext = false;  ///< request a debug context if the host can
 };
 
 /// What the keyboard and mouse did since the last poll; empty without a window.
@@ -45,16 +45,16 @@ class Host {
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 
-  /// Makes a context of OpenGL 4.3 core or newer, current on the calling thread, and loads GLEW's pointers.
-  /// Throws Error(missingCapability) saying what lacks. One host at a time.
+  /// Creates a context of OpenGL 4.3 core or newer, current on the calling thread, and loads GLEW's pointers.
+  /// Throws Error(missingCapability) naming what is missing. One host at a time.
   static std::unique_ptr<Host> create(HostKind kind, const HostOptions& options = {});
 
-  /// The default where none is asked for: a window if `wantsWindow` and there is a display, else EGL where it gives a
+  /// The default host: a window if `wantsWindow` and there is a display, else EGL if it gives a
   /// hardware renderer or LUCERNA_EGL_DEVICE chooses a device, else OSMesa, else EGL with a software renderer.
   static std::unique_ptr<Host> createDefault(bool wantsWindow, const HostOptions& options = {});
 
   virtual HostKind kind() const = 0;
-  /// Shows a framebuffer's first colour attachment (top row last, as GL keeps it) and waits for the swap. No effect off-screen.
+  /// Shows a framebuffer's first colour attachment (top row last, as in GL) and waits for the swap. No effect off-screen.
   virtual void present(unsigned framebuffer, glm::ivec2 size) = 0;
   virtual HostInput poll() { return {}; }
   virtual glm::ivec2 framebufferSize() const = 0;
@@ -62,42 +62,42 @@ class Host {
   /// Refreshes of the display that present() waits for; none without a window.
   virtual std::optional<int> swapInterval() const { return {}; }
 
-  /// Whether the renderer string names a software rasteriser (llvmpipe, softpipe): stage times then need glFinish.
+  /// Whether the renderer string names a software renderer (llvmpipe, softpipe): stage times then need glFinish.
   static bool isSoftwareRenderer(std::string_view renderer);
 
  protected:
   Host() = default;
 };
 
-/// Whether OSMesa was built in and its library is there.
+/// Whether OSMesa was built in and its library can be loaded.
 bool osmesaAvailable();
 
-/// A device as EGL enumerates them, told without a context.
+/// A device enumerated by EGL, described without a context.
 struct EglDevice {
   enum class Kind { discrete, unknown, integrated, software };
   Kind kind = Kind::unknown;
-  std::string driver;      ///< of the kernel or of EGL: "amdgpu", "i915", "swrast"; empty where nothing tells
-  std::string node;        ///< "/dev/dri/renderD128"; empty where there is none
-  std::string pci;         ///< vendor:device, "1002:73bf"; empty where it is none of PCI's
-  double videoBytes = 0.0; ///< memory of its own, where the kernel tells (amdgpu)
+  std::string driver;      ///< of the kernel or of EGL: "amdgpu", "i915", "swrast"; empty if unknown
+  std::string node;        ///< "/dev/dri/renderD128"; may be empty
+  std::string pci;         ///< vendor:device, "1002:73bf"; empty if not on PCI
+  double videoBytes = 0.0; ///< dedicated memory, if the kernel reports it (amdgpu)
 };
 
 std::string_view nameOf(EglDevice::Kind kind);
 
-/// In EGL's order, by which LUCERNA_EGL_DEVICE=N counts. Empty without EGL or its extension for devices.
+/// In EGL's order, as counted by LUCERNA_EGL_DEVICE=N. Empty without EGL or its extension for devices.
 std::vector<EglDevice> eglDevices();
 
 /// Indices into eglDevices() in the order in which host egl tries them: discrete, unknown, integrated, software; among equals
-/// the one with more memory of its own first, then EGL's order.
+/// the one with more dedicated memory first, then EGL's order.
 std::vector<std::size_t> eglPreference(const std::vector<EglDevice>& devices);
 
-/// What is known of a device's render node; `sys` is /sys but in tests. Rules, since no interface says "discrete":
+/// Describes a device's render node; `sys` is /sys except in tests. Rules, since no interface says "discrete":
 /// NVIDIA (PCI vendor 10de): discrete. Intel (8086): integrated on PCI bus 0, else discrete. AMD (1002): discrete from 2 GiB of
 /// video memory on; an APU has less, as long as its firmware is not told otherwise. No PCI device: integrated (a chip's
 /// own). Others, virtual ones too: unknown.
 EglDevice describeRenderNode(const std::filesystem::path& node, const std::filesystem::path& sys = "/sys");
 
-/// Whether a window could be opened at all (DISPLAY or WAYLAND_DISPLAY set).
+/// Whether a window could be opened (DISPLAY or WAYLAND_DISPLAY set).
 bool displayAvailable();
 
 }  // namespace lucerna

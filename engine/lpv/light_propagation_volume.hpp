@@ -44,11 +44,11 @@ enum class LpvSurfels { rsm, camera, both };
 
 class LightPropagationVolume {
  public:
-  /// What the result is kept in, rounded to the nearest; all that leads to it is kept in 32 bits. `full` (32-bit) is for tests.
+  /// Storage of the result, rounded to nearest; everything before it is in 32 bits. `full` (32-bit) is for tests.
   enum class Storage { half, full };
-  /// What the published text and its public demo do differently, each by itself; README.md has formula, source and effect.
+  /// Differences of the published text and its public demo, one by one; README.md has formula, source and effect.
   struct Deviations {
-    bool fluxUnits = false;          ///< neither texel area nor cell size counts; lookup times 1.7 / pi
+    bool fluxUnits = false;          ///< ignores texel area and cell size; lookup times 1.7 / pi
     bool sumCascades = false;        ///< all cascades are added, none is joined
     bool unjoined = false;           ///< cascades are blended as they are
     bool truncate = false;           ///< conversion to int instead of floor; grids snap to whole world units
@@ -56,7 +56,7 @@ class LightPropagationVolume {
     bool sideDirections = false;     ///< side faces by component-wise product
     bool sideSolidAngle = false;     ///< 0.4234413544
     bool fourPiKernel = false;       ///< Omega / (4 pi) with an amplifier
-    bool fewerSteps = false;         ///< one step less, and the injected grid is not in the sum
+    bool fewerSteps = false;         ///< one step fewer, and the injected grid is not in the sum
     bool blockFirstStep = false;     ///< the first step is blocked too
     bool surfelArea = false;         ///< perspective formula times N.L for an orthographic light; other lights keep true areas
     bool unwindowed = false;         ///< light that travels away from a surface counts negative
@@ -73,34 +73,34 @@ class LightPropagationVolume {
     LpvPropagate propagate = LpvPropagate::compute;
     Deviations deviations;
     float amplifier = 1.0f;     ///< of the deviating kernel: 4 would conserve
-    int iterations = 8;         ///< propagation steps; 0: injected light alone
+    int iterations = 8;         ///< propagation steps; 0: only injected light
     bool blocking = true;       ///< geometry volume
     LpvSurfels surfels = LpvSurfels::rsm;
-    bool mergeViews = false;    ///< several maps see surfels: of one seen twice the longer vector counts. Else all are summed
+    bool mergeViews = false;    ///< several maps: of a surfel seen twice the longer vector counts; else all are summed
     int bounces = 1;            ///< with propagate more than 1 need blocking, two iterations and maps with albedo; with rays kAllBounces too
     float blendBand = 0.25f;    ///< fraction of a cascade's half extent over which it fades into the next
     int handOver = 0;           ///< steps after which a finer cascade takes light from the coarser one; 0: handOverStep()
-    std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not set: as the lookup was meant
+    std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not set: the lookup's default
     LpvVisibility visibility = LpvVisibility::voxels;  ///< of LpvTransport::gather
     int voxels = 256;           ///< the same: along the longest side of the scene
-    int rays = 16;              ///< of LpvTransport::rays: paths of a receiver and frame, 1, 2, 4 ... 64
-    int leastRays = 64;         ///< the same: paths that a receiver has in the frame in which it is first needed, at least
+    int rays = 16;              ///< of LpvTransport::rays: paths per receiver and frame, 1, 2, 4 ... 64
+    int leastRays = 64;         ///< the same: least paths of a receiver in its first frame
     int samples = 512;          ///< the same: paths of a receiver while light and geometry stand still
     /// Of receivers: by how much of itself the irradiance that is shown may change in a frame while the camera moves or paths are added; 0: by any.
     float mostChange = 0.004f;
     Storage storage = Storage::half;
-    bool everyBrick = false;    ///< the compute gather does not leave out what light has not reached; the same bits, for tests and to measure it
+    bool everyBrick = false;    ///< the compute gather also runs bricks without light; the same bits, for tests and measurements
   };
   /// Deviations of the published lookup are deviations of that one alone.
   static LpvLookup lookupOf(const Settings& settings) { return settings.deviations.fluxUnits || settings.deviations.unwindowed ? LpvLookup::published : settings.lookup; }
   /// In cells along the normal.
   static float offsetOf(const Settings& settings) { return settings.lookupOffset.value_or(lookupOf(settings) == LpvLookup::published ? 0.5f : 0.0f); }
   struct Inputs {
-    std::vector<ReflectiveShadowMap::Outputs> rsms;  ///< one a light; all are added up
+    std::vector<ReflectiveShadowMap::Outputs> rsms;  ///< one per light; all are added
     std::vector<Cascade> cascades;                   ///< finest first, as many as in the settings
-    float referenceIrradiance;      ///< E_ref > 0, of the order of what the lights make; only scales the stored values
+    float referenceIrradiance;      ///< E_ref > 0, of the order of the lights' irradiance; only scales stored values
     glm::vec3 lightPosition{0.0f};  ///< the sun's; only read by the deviation surfelArea
-    std::vector<ReflectiveShadowMap::Outputs> views{};  ///< what the camera sees, for its surfels alone: flux is not read
+    std::vector<ReflectiveShadowMap::Outputs> views{};  ///< what the camera sees, only for its surfels: flux is not read
   };
   /// Red, green and blue: 3D textures of SH coefficients c / (E_ref s^2), cascades stacked along z.
   using Volume = std::array<gl::Texture, 3>;
@@ -108,7 +108,7 @@ class LightPropagationVolume {
   /// Flags of shaders/lpv/lookup.glsl, for the programs that include it.
   static gl::ShaderFlags lookupFlags(const Settings& settings);
 
-  /// After how many steps light has spread as far in a grid as after `iterations` in the next finer one. Steps spread it by
+  /// Steps after which light has spread as far in a grid as after `iterations` in the next finer one. Steps spread it by
   /// a root mean square distance of about sqrt(1.33 n - 0.33) cells (reference: 1, 1.496, 2.216, 3.222 cells after 1, 2, 4, 8).
   static int handOverStep(int iterations, double ratio);
 
@@ -117,11 +117,11 @@ class LightPropagationVolume {
   LightPropagationVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Settings& settings);
 
   // The frame's stages, in this order; none of them compiles or allocates.
-  void place(const Inputs& inputs);           ///< uploads where the cascades lie
+  void place(const Inputs& inputs);           ///< uploads the cascades' placement
   void inject(const Inputs& inputs);          ///< clears, then adds every virtual point light
   void fillGeometryVolume(const Inputs& inputs);  ///< no effect without blocking
   void propagate();
-  void join();                                ///< cascades into one picture; no effect with one cascade
+  void join();                                ///< joins the cascades; no effect with one
 
   /// Binds block 1 and units 4, 5, 6 for shaders/lpv/lookup.glsl.
   void bindForLookup() const;
@@ -155,38 +155,38 @@ class LightPropagationVolume {
   int brickCount_ = 0;  ///< of all cascades, lit or not
   bool haveClearTexture_;
   bool fillsHalfVectors_ = false;  ///< atomics on four half floats at once
-  bool frontIsInjected_ = false;   ///< by atomics: the injected light is in the first front already
+  bool frontIsInjected_ = false;   ///< with atomics the injected light is already in the first front
   const gl::Program* inject_ = nullptr;
   const gl::Program* resolve_ = nullptr;             ///< only with atomics on integers or half floats
   const gl::Program* countSurfels_ = nullptr;        ///< only with atomics on 32 bits
   const gl::Program* fillGeometryVolume_ = nullptr;
   const gl::Program* averageFaces_ = nullptr;         ///< from the texture
-  const gl::Program* averageCountedFaces_ = nullptr;  ///< from what atomics counted
+  const gl::Program* averageCountedFaces_ = nullptr;  ///< from the atomics' counts
   const gl::Program* mergeViews_ = nullptr;  ///< only with several views
   const gl::Program* reflect_ = nullptr;     ///< only with several bounces
   const gl::Program* begin_ = nullptr;             ///< only with compute, as averageFaces_ and the two of bricks
   const gl::Program* markBricks_ = nullptr;
   const gl::Program* listBricks_ = nullptr;
   const gl::Program* propagateFirst_ = nullptr;
-  const gl::Program* propagateFurther_ = nullptr;  ///< blocked where blocking is on
-  const gl::Program* finish_ = nullptr;            ///< only where nothing is joined
+  const gl::Program* propagateFurther_ = nullptr;  ///< blocked if blocking is on
+  const gl::Program* finish_ = nullptr;            ///< only if nothing is joined
   const gl::Program* balance_ = nullptr;           ///< only with several cascades, as the two of join
   const gl::Program* join_ = nullptr;
   const gl::Program* joinCoarsest_ = nullptr;
   gl::Buffer constants_;
   gl::VertexArray noAttributes_;
-  Volume counts_;     ///< what atomics on half floats count in
+  Volume counts_;     ///< target of atomics on half floats
   Volume injected_;
-  Volume result_;     ///< what the lookup reads
+  Volume result_;     ///< read by the lookup
   Volume sum_, farSum_;  ///< of the layered pass, 32 bits: of the first steps and of those after the hand-over
   // Of the compute gather (lpv/propagate.comp). Three channels one after the other, as the three below.
   std::array<gl::BufferTexture, 2> fronts_;  ///< atomics count in the first
   gl::BufferTexture sums_, farSums_;  ///< as the layered pass' two; the second only with several cascades
   gl::BufferTexture potential_;       ///< the geometry volume as atomics count it
   gl::BufferTexture faces_;           ///< potential at the faces across x, y, z
-  gl::Buffer bricks_;                 ///< those that light has reached (lpv/bricks.glsl)
-  gl::BufferTexture received_;  ///< what a cascade has from the coarser ones and for the finer one; only with several cascades, as the two below
-  gl::BufferTexture balances_;  ///< of one cascade after the other with the next coarser, half its resolution
+  gl::Buffer bricks_;                 ///< reached by light (lpv/bricks.glsl)
+  gl::BufferTexture received_;  ///< light from the coarser cascades for the finer one; only with several cascades, as the two below
+  gl::BufferTexture balances_;  ///< between one cascade and the next coarser, at half its resolution
   gl::BufferTexture balanced_;  ///< band 0 of the first steps' light as joined
   gl::Buffer resultTexels_;     ///< the result before it is copied to the textures
   std::array<Volume, 2> layeredFronts_;
@@ -200,7 +200,7 @@ class LightPropagationVolume {
   std::array<std::array<gl::Framebuffer, 2>, 2> layeredTargets_;  ///< front x (sum, far sum); only for the layered pass
 };
 
-/// Where the cascades lie and what the stored values are relative to, as shaders read it.
+/// Placement of the cascades and normalisation of stored values, as shaders read it.
 shared::LpvConstants lpvConstants(const LightPropagationVolume::Settings& settings, const std::vector<Cascade>& cascades, float referenceIrradiance);
 
 }  // namespace lucerna

@@ -1,4 +1,4 @@
-// Figures drawn from many measurements (no GL): the Pareto front and the slope of a log-log line.
+// Summaries of many measurements (no GL): the Pareto front and the slope of a log-log line.
 #pragma once
 
 #include <span>

@@ -1,20 +1,20 @@
-// How far one linear HDR picture is from another (no GL).
+// Errors of one linear HDR picture against another (no GL).
 //
 // d = image - reference, over all pixels and the three channels alike unless said otherwise; m = mean of the reference.
 //   rmse    sqrt(mean d^2), radiance
 //   nrmse   rmse / m
 //   l2      sqrt(sum d^2 / sum r^2): a black picture has 1, whatever share of the picture is background
-//   relmse  mean d^2 / (r^2 + kRelativeEpsilon m^2): the epsilon follows the scene's brightness, so that units do not
-//   matter bias    mean d, signed, radiance; relativeBias = bias / m p99     99th percentile, and max, of a pixel's
-//   largest |d| over its channels
-// A pixel that is not finite makes every figure NaN and is counted: nothing is clamped away.
+//   relmse  mean d^2 / (r^2 + kRelativeEpsilon m^2): the epsilon follows the scene's brightness, so units do not matter
+//   bias    mean d, signed, radiance; relativeBias = bias / m
+//   p99     99th percentile, and max, of a pixel's largest |d| over its channels
+// A pixel that is not finite makes every measure NaN and is counted: nothing is clamped away.
 //
-// Averaged over blocks (blockMeans) the same figures say what is wrong beyond single pixels; PartErrors says which
-// pixels are too bright and which too dark; constantIrradiance() is the picture to beat: one irradiance everywhere,
-// chosen as well as can be.
+// Averaged over blocks (blockMeans) the same measures show errors larger than single pixels; PartErrors shows which
+// pixels are too bright and which too dark; constantIrradiance() is the yardstick: one irradiance everywhere,
+// chosen by least squares.
 //
-// A reference that was sampled has noise of its own: E[measured mse] = mse + mean variance of the reference.
-// lessNoise() takes it off, and says where a figure cannot be told from it (below three standard errors).
+// A sampled reference has noise of its own: E[measured mse] = mse + mean variance of the reference.
+// lessNoise() subtracts it, and marks measures that are within it (below three standard errors).
 #pragma once
 
 #include "base/image.hpp"
@@ -34,10 +34,10 @@ struct ImageErrors {
   std::size_t notFinite = 0;      ///< pixels, in either picture
 };
 
-/// Throws Error(badInput) where the sizes differ or there are no pixels.
+/// Throws Error(badInput) if the sizes differ or there are no pixels.
 ImageErrors errorsOf(const Image& image, const Image& reference);
 
-/// What a sampled reference contributes to those figures.
+/// The contribution of a sampled reference's noise to those measures.
 struct ReferenceNoise {
   double variance = 0.0;          ///< mean over pixels and channels of the squared standard error
   double relativeVariance = 0.0;  ///< the same of se^2 / (r^2 + epsilon m^2)
@@ -49,7 +49,7 @@ ReferenceNoise noiseOf(const Image& reference, const Image& standardError, doubl
 struct JudgedErrors {
   ImageErrors measured;
   double rmse = 0.0, nrmse = 0.0, l2 = 0.0,
-         relmse = 0.0;  ///< less the reference's share, at least 0; l2 over sum r^2 less its share too
+         relmse = 0.0;  ///< less the reference's noise, at least 0; l2 over sum r^2 less its noise too
   double noiseNrmse = 0.0;                       ///< that share: sqrt(variance) / m
   double noiseL2 = 0.0;                          ///< the same over sqrt(mean r^2)
   double biasError = 0.0;                        ///< standard error of the bias
@@ -67,7 +67,7 @@ Image blockMeans(const Image& image, int side);
 /// Standard errors of those means, the pixels' own being independent.
 Image blockStandardErrors(const Image& standardError, int side);
 
-/// Some of the pixels alone, such as those that the sun lights.
+/// Errors of some pixels, such as those that the sun lights.
 struct PartErrors {
   double pixels = 0.0;        ///< their share of the picture, 0..1
   double bias = 0.0;          ///< mean d of them, radiance
@@ -75,12 +75,12 @@ struct PartErrors {
   double biasError = 0.0;     ///< standard error of the relative bias
   double squares = 0.0;       ///< their share of sum d^2, 0..1; 0 where that is 0
 };
-/// isPart: a value a pixel. ownBiasError: as in lessNoise(), of the whole picture; a part of its pixels is taken to be
+/// isPart: one value per pixel. ownBiasError: as in lessNoise(), of the whole picture; a part of its pixels is taken to be
 /// as noisy as all of them.
 PartErrors partErrorsOf(const Image& image, const Image& reference, const Image& standardError,
                         const std::vector<bool>& isPart, double ownBiasError = 0.0);
 
-/// The irradiance E, channel by channel, at least 0, for which albedo E / pi comes nearest to the picture by least
+/// The irradiance E, channel by channel, at least 0, for which albedo E / pi is closest to the picture by least
 /// squares: E = pi sum(a r) / sum(a^2).
 glm::dvec3 constantIrradiance(const Image& albedo, const Image& picture);
 /// albedo E / pi: Lambert's surfaces under the same irradiance everywhere.

@@ -1,4 +1,4 @@
-// A scene on the GPU as paths need it: triangles and their hierarchy, materials and textures in one atlas, lights and environment, for programs
+// A scene on the GPU for path tracing: triangles and their hierarchy, materials and textures in one atlas, lights and environment, for programs
 // that include shaders/pathtracer/{materials,bvh,environment,lights}.glsl. The path tracer follows paths from a camera in it, the light
 // propagation volume's receivers from points of surfaces (lpv/receivers.hpp).
 //
@@ -22,7 +22,7 @@
 
 namespace lucerna {
 
-/// A storage block of `values`, never of no size. Throws Error(missingCapability) where it is larger than the driver's storage blocks.
+/// A storage block of `values`, at least one element. Throws Error(missingCapability) if it exceeds the driver's limit.
 template <class T>
 gl::Buffer storageOf(const std::string& name, const std::vector<T>& values, const gl::Capabilities& capabilities) {
   const std::size_t bytes = std::max(values.size(), std::size_t{1}) * sizeof(T);
@@ -37,24 +37,24 @@ gl::Buffer storageOf(const std::string& name, const std::vector<T>& values, cons
 class PathScene {
  public:
   struct Settings {
-    bool diffuseOnly = false;  ///< every surface that scatters is taken for Lambert with its `diffuse`, as forward shading takes it
-    bool nextEvent = true;     ///< with a table of lights to be asked
+    bool diffuseOnly = false;  ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
+    bool nextEvent = true;     ///< with a table of lights for sampling
     RaySceneSettings rays;
   };
-  /// `needs`: of the scene, less what is left out of the programs. rankOfMaterial: of closed boundaries (media.hpp); empty: there are none.
-  /// Throws Error(missingCapability) where the driver's limits are too small for the scene.
+  /// `needs`: of the scene, without what the programs leave out. rankOfMaterial: of closed boundaries (media.hpp); may be empty.
+  /// Throws Error(missingCapability) if the scene exceeds the driver's limits.
   PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const Settings& settings, const std::vector<int>& rankOfMaterial = {});
 
   /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61.
   void bind() const;
   /// Those of the shaders named above.
   gl::ShaderFlags flags() const;
-  /// Environment and the probability of asking it, of the block that they read.
+  /// Fills in the environment and the probability of sampling it.
   void fill(shared::PathConstants& constants) const;
   bool hasLights() const { return lightCount_ > 0; }
   const RayScene& rays() const { return rays_; }
   const glm::dvec3& origin() const { return rays_.origin(); }
-  const Hash& hash() const { return hash_; }  ///< of all that decides what paths find
+  const Hash& hash() const { return hash_; }  ///< of everything that paths depend on
   std::size_t gpuBytes() const;
 
  private:

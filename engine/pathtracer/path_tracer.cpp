@@ -31,7 +31,7 @@ struct StateHeader {
 };
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
 
-/// Whether every lamp is in the open, where the index is 1: triangles by boxes, so that some are taken for enclosed that are not.
+/// Whether every lamp is in the open, where the index is 1. Conservative: emissive triangles are tested by bounding box.
 bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
   std::vector<Bounds> refracting = boundsOfRanks(boundaries);
   for (std::size_t rank = 0; rank < refracting.size(); ++rank)

@@ -1,8 +1,8 @@
 // The path tracer: unbiased light transport between surfaces, by a compute program (shaders/pathtracer/path.comp).
-// See README.md in this folder, section "Path tracing", for inputs, outputs, units, sources and measurements.
+// See README.md in this folder for inputs, outputs, units, sources and measurements.
 //
 // Progressive: each submission is bounded to about Settings::submissionSeconds of work and adds to a film of means and variances in
-// float that does not stall; any number of samples may follow later, and the picture is the same however the work was cut.
+// float that does not stall; samples can be added later, and the picture is the same however the work is divided.
 #pragma once
 
 #include "base/hash.hpp"
@@ -28,13 +28,13 @@
 
 namespace lucerna {
 
-/// Which light paths count, by how often light was scattered between lamp and camera; a boundary passed straight through is no scattering.
+/// Light paths that count, by the number of scatterings between lamp and camera; passing a boundary straight is not a scattering.
 enum class Transport {
   all,                   ///< any number
-  direct,                ///< 0 and 1: what is seen of lights, and what they light
+  direct,                ///< 0 and 1: visible lights, and what they light
   indirect,              ///< 2 and more
   oneBounce,             ///< exactly 2
-  oneBounceUnoccluded,   ///< exactly 2, and nothing stands between the two scatterings: what a reflective shadow map gathers
+  oneBounceUnoccluded,   ///< exactly 2, without occlusion between the two scatterings: what a reflective shadow map gathers
 };
 std::string_view nameOf(Transport transport);
 
@@ -44,23 +44,23 @@ class PathTracer {
   struct Settings {
     glm::ivec2 size{1280, 720};
     Transport transport = Transport::all;
-    std::uint32_t bounces = kUnlimited;  ///< scatterings at most; below kUnlimited longer paths are missing from the picture
-    bool diffuseOnly = false;            ///< every surface that scatters is taken for Lambert with its `diffuse`, as forward shading takes it
-    bool walks = true;                   ///< in dense media without rays where no triangle is near; the picture is the same, bit by bit
-    bool nextEvent = true;               ///< ask lights directly; without, only lights that rays can hit give light
-    bool pixelCentres = false;           ///< camera rays through the centres of pixels, as raster techniques shade; else all over them, a box filter
+    std::uint32_t bounces = kUnlimited;  ///< most scatterings; below kUnlimited longer paths are missing
+    bool diffuseOnly = false;            ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
+    bool walks = true;                   ///< no rays in dense media where no triangle is near; the picture is the same, bit by bit
+    bool nextEvent = true;               ///< sample lights directly; without it only lights that rays can hit contribute
+    bool pixelCentres = false;           ///< camera rays through pixel centres, as raster techniques shade; else a box filter
     std::uint32_t seed = 0;              ///< pictures of different seeds are independent
     double submissionSeconds = 0.05;
     RayScene::Settings rays;
     PathDeviations deviations;
   };
-  /// From the film as it is.
+  /// Of the current film.
   struct Statistics {
     std::uint32_t fewestSamples = 0, mostSamples = 0;  ///< of a pixel
     double samples = 0.0;                              ///< mean over pixels
     glm::dvec3 mean{0.0};           ///< radiance
     glm::dvec3 meanError{0.0};      ///< standard error of `mean`
-    double standardError = 0.0;     ///< root mean square over pixels and channels of a pixel's standard error; infinite before 2 samples
+    double standardError = 0.0;     ///< of a pixel, root mean square over pixels and channels; infinite before 2 samples
     double leakedPaths = 0.0;    ///< ended, as they were found outside of the scene, yet inside of a closed boundary, since setCamera
     double wrongCrossings = 0.0; ///< of boundaries left without having been entered, or entered too often: open or turned meshes
     double turns = 0.0;          ///< of loops, in all lanes since setCamera: rays' nodes and triangles, steps in media: what time is spent on, whatever the clock
@@ -68,32 +68,32 @@ class PathTracer {
     double relativeError = 0.0;     ///< that over the mean of the picture, channels averaged; 0 for a black picture without error
   };
 
-  /// Compiles and allocates. Throws Error(missingCapability) where the driver's limits are too small for the scene.
+  /// Compiles and allocates. Throws Error(missingCapability) if the scene exceeds the driver's limits.
   PathTracer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings);
 
   /// Sets the view and empties the film.
   void setCamera(const Camera& camera);
   /// One submission towards `samples` samples in every pixel, waited for. False once all have them.
   bool advance(std::uint32_t samples) { return submit(samples, Passes::doubling); }
-  /// All that is missing, in as few passes as may be: nobody looks at the picture on the way.
+  /// Everything that is missing, in as few passes as possible, without intermediate pictures.
   void record(std::uint32_t samples) { while (submit(samples, Passes::whole)) {} }
 
-  /// Takes a tile that is in the middle of a pass back to where that pass began. Paths under way are the long ones: a picture of those that have ended
-  /// alone would be too dark, so whoever stops between two calls of advance() calls this before looking at the film.
+  /// Restores a tile in the middle of a pass to the pass's beginning. Unfinished paths are the long ones: a picture of the finished ones
+  /// alone would be too dark. Call this when stopping between two calls of advance(), before reading the film.
   void dropUnfinishedPass();
 
   Image mean() const;           ///< radiance, linear, scene units, top row first; pixels without a sample are 0
   Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
   Statistics statistics() const;
-  /// The film, without what a pass under way has added, and what it belongs to; resume() goes on from it to the same picture, bit by bit, as if there had been no break.
+  /// The film without the unfinished pass, and its identity; resume() continues from it to the same picture, bit by bit.
   std::vector<std::uint8_t> checkpoint() const;
-  /// `name` is for messages. Throws Error(badInput) where the bytes are damaged or of another scene, view, size or setting.
+  /// `name` is for messages. Throws Error(badInput) if the bytes are damaged or of another scene, view, size or setting.
   void resume(const std::vector<std::uint8_t>& bytes, const std::string& name);
   const Settings& settings() const { return settings_; }
   const SceneNeeds& needs() const { return needs_; }
   std::size_t gpuBytes() const;
-  /// Lanes times turns of the lane that took most, of the submission that took most of all so far; `begun`: among those that each began a tile, of which
-  /// nothing was known. A lane begins no segment after its share of turns, so that it takes more by one segment at most.
+  /// Lanes times turns of the slowest lane, of the largest submission so far; `begun`: among those that began a tile, of which
+  /// nothing was known. A lane begins no segment after its share of turns, so it exceeds it by at most one segment.
   struct Submissions {
     std::uint64_t largest = 0, begun = 0;
   };
@@ -118,11 +118,11 @@ class PathTracer {
   struct Tile {
     glm::ivec2 corner, size;
   };
-  Tile tile() const;  ///< the one that is next, or under way
+  Tile tile() const;  ///< the current or next one
 
   Settings settings_;
   SceneNeeds needs_;
-  std::optional<PathScene> scene_;  ///< always there after construction
+  std::optional<PathScene> scene_;  ///< always set after construction
   shared::PathConstants constants_{};
   const gl::Program* program_ = nullptr;
   PackedBoundaries boundaries_;
@@ -137,17 +137,17 @@ class PathTracer {
   gl::Buffer state_, constantsBuffer_;
   gl::Staging counters_{"path counters"};
   gl::Texture filmMean_, filmSpread_, filmRest_;
-  std::array<gl::Texture, 3> kept_;  ///< the same of the tile under way, as it was before the pass
+  std::array<gl::Texture, 3> kept_;  ///< copy of the current tile before the pass
   int tileSide_;
-  std::uint32_t mostTurns_;  ///< a lane, in a submission
+  std::uint32_t mostTurns_;  ///< per lane and submission
   bool clearTexture_;
   Hash sceneHash_;
 
-  // How far the picture is: a pass gives every pixel passTarget_ samples, tile after tile.
+  // Progress: a pass gives every pixel passTarget_ samples, tile by tile.
   std::uint32_t done_ = 0, passTarget_ = 0;
   int tile_ = 0;
   bool tileBegun_ = false;
-  gl::PieceSize turns_;  ///< a lane, in the next submission
+  gl::PieceSize turns_;  ///< per lane, in the next submission
   std::uint64_t largestBegun_ = 0, largest_ = 0;
 };
 

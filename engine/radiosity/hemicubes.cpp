@@ -89,7 +89,7 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   if (3 * patches > texels || keyBytes / sizeof(GLuint) > texels)
     throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's end at {} (GL_MAX_TEXTURE_BUFFER_SIZE)", patches, settings.resolution,
                            std::max(3 * patches, keyBytes / sizeof(GLuint)), texels);
-  // A software renderer does best inside the processor's cache, a GPU with work for all of its cores. Of what they have rays touch little: some hemicubes at once even so.
+  // A software renderer is fastest inside the processor's cache, a GPU with work for all of its cores. Rays touch little memory, so batch at least 16 hemicubes.
   const std::size_t some = settings_.visibility == HemicubeVisibility::rays ? 16 * each : 0;
   const std::size_t wanted = settings.batchBytes ? settings.batchBytes : std::max(some, std::size_t{capabilities.softwareRenderer ? 4u : 64u} << 20);
   batch_ = static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1, std::min({patches, kMostHemicubes, texels * sizeof(GLuint) / keyBytes, std::max<std::size_t>(kMostKept / listed, 1)})));

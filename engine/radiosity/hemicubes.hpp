@@ -1,8 +1,8 @@
-// Form factors by hemicubes on the GPU, many a submission.
+// Form factors by hemicubes on the GPU, many per submission.
 //
-// Input: a RadiosityMesh. Output: rows of the form factor matrix, F[i][j] = the share of what patch i sends out that reaches patch j's
-// front = the part of its hemisphere that j fills, cosine-weighted. Which patch a pixel sees is told by a rasteriser in compute shaders, by rays
-// or by an item buffer (shaders/radiosity/hemicube.glsl); none of them has a near plane.
+// Input: a RadiosityMesh. Output: rows of the form factor matrix, F[i][j] = the fraction of patch i's exitance that reaches patch j's
+// front = the part of its hemisphere that j fills, cosine-weighted. Visibility comes from a rasteriser in compute shaders, from rays
+// or from an item buffer (shaders/radiosity/hemicube.glsl); none of them has a near plane.
 // Sources: shaders/REFERENCES.md [CohenGreenberg1985], [BaumRushmeierWinget1989], [Olano1997].
 #pragma once
 
@@ -25,9 +25,9 @@ namespace lucerna {
 
 class RayScene;
 
-/// How pixels learn what they see. Rows differ by what lies within rounding of a pixel's centre, with the item buffer by what lies within 1/512 pixel.
+/// Visibility of a hemicube's pixels. Rows differ by what lies within rounding of a pixel's centre, with the item buffer within 1/512 pixel.
 enum class HemicubeVisibility {
-  automatic,   ///< measured at start, where the whole work takes longer than measuring
+  automatic,   ///< measured at start, if the whole work takes longer than measuring
   itemBuffer,  ///< patches' numbers drawn to layers by the GPU's rasteriser
   raster,      ///< a rasteriser in compute shaders
   rays         ///< one through each pixel's centre
@@ -38,50 +38,50 @@ HemicubeVisibility parseHemicubeVisibility(std::string_view name);
 
 struct HemicubeSettings {
   HemicubeVisibility visibility = HemicubeVisibility::automatic;
-  double worthMeasuring = 10.0;            ///< automatic: seconds that all hemicubes must take by raster for the others to be measured too
-  int resolution = 64;                     ///< pixels a side of the full face; even
+  double worthMeasuring = 10.0;            ///< automatic: if all hemicubes take raster this many seconds, the others are measured too
+  int resolution = 64;                     ///< pixels per side of the full face; even
   DeltaMap map = DeltaMap::exact;
   bool randomRoll = true;                  ///< each turned about its normal by a hash of seed and patch; else towards the first corner
   std::uint32_t seed = 1;
-  int exactPixels = 12;                    ///< what is large enough to cover as many pixels takes its closed form; 0: never
+  int exactPixels = 12;                    ///< patches that cover this many pixels get their closed form; 0: never
   float nearDistance = 3.0f;               ///< receivers are divided until (distance / size of a part) is this; 0: never
-  int mostParts = 8;                       ///< a side of a receiver, at most
-  double unmeasuredTurns = gl::kUnmeasuredTurns;  ///< of a submission of which nothing is known (gl/pieces.hpp); the rows are the same, bit by bit
-  std::size_t batchBytes = 0;              ///< of GPU memory a batch may take in one buffer; 0: what suits the renderer
+  int mostParts = 8;                       ///< most parts per side of a receiver
+  double unmeasuredTurns = gl::kUnmeasuredTurns;  ///< of a first submission (gl/pieces.hpp); the rows are the same, bit by bit
+  std::size_t batchBytes = 0;              ///< of GPU memory per batch and buffer; 0: automatic
 };
 
 /// Consecutive rows of the matrix; entries in the order of patches.
 struct FormFactorRows {
   int first = 0;                       ///< patch of the first row
-  std::vector<std::uint32_t> counts;   ///< entries a row
-  std::vector<float> fronts, backs;    ///< shares of the hemisphere that show fronts and backs, by pixels; the rest is open
+  std::vector<std::uint32_t> counts;   ///< entries per row
+  std::vector<float> fronts, backs;    ///< fractions of the hemisphere that show fronts and backs, by pixels; the rest is open
   std::vector<std::uint32_t> patches;  ///< of each entry
   std::vector<float> factors;          ///< of each entry, > 0
 };
 
-/// What a batch left on the GPU, read back.
+/// Results of a batch, read back.
 struct DrawnHemicubes {
   int first = 0, count = 0, patchCount = 0;
-  std::vector<float> factors;      ///< raster: hemicube-major, by pixels; below 0 where a back was seen
-  std::vector<glm::uvec2> kept;    ///< rays, item buffer, which leave `factors` empty: hemicube * patchCount + patch, in no order; bits of such a factor
+  std::vector<float> factors;      ///< raster: hemicube-major, by pixels; below 0 if a back was seen
+  std::vector<glm::uvec2> kept;    ///< rays, item buffer, which leave `factors` empty: hemicube * patchCount + patch, unordered; bits of such a factor
   std::vector<glm::uvec2> exact;   ///< place in `factors` or `kept`; bits of the closed form, which replaces the pixels'
 };
-/// Touches no GL: a thread of its own may do it while the next batch is drawn.
+/// Without GL: another thread can do it while the next batch is drawn.
 FormFactorRows rowsOf(DrawnHemicubes drawn);
 
 class Hemicubes {
  public:
-  /// Throws Error(missingCapability) where the driver's storage blocks cannot hold the corners or one hemicube. `rays`: of sceneOf(mesh), where the caller
-  /// has them already; must outlive this.
+  /// Throws Error(missingCapability) if the driver's storage blocks cannot hold the corners or one hemicube. `rays`: of sceneOf(mesh), if the caller
+  /// already has them; must outlive this.
   Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh, const HemicubeSettings& settings, const RayScene* rays = nullptr);
 
   ~Hemicubes();
   Hemicubes(const Hemicubes&) = delete;
   Hemicubes& operator=(const Hemicubes&) = delete;
 
-  /// The one that was asked for or chosen; never automatic.
+  /// The requested or chosen one; never automatic.
   HemicubeVisibility visibility() const { return settings_.visibility; }
-  /// What automatic measured, milliseconds a hemicube; empty where it was not asked.
+  /// Measurements of automatic, milliseconds per hemicube; else empty.
   struct Cost {
     HemicubeVisibility visibility;
     double milliseconds;
@@ -89,16 +89,16 @@ class Hemicubes {
   const std::vector<Cost>& costs() const { return costs_; }
   int batchSize() const { return batch_; }
   int patchCount() const { return patchCount_; }
-  /// 1 for patches that shine and are small beside the scene: factors to them are closed forms, however few pixels they cover.
+  /// 1 for emissive patches that are small compared with the scene: factors to them are closed forms, however few pixels they cover.
   const std::vector<std::uint32_t>& smallSources() const { return smallSources_; }
-  /// Rows of `count` hemicubes from `first` on, at most batchSize(); waits for them.
+  /// Rows of `count` hemicubes from `first`, at most batchSize(); waits for them.
   FormFactorRows rows(int first, int count);
-  /// Submissions so far, of which the largest had about so many turns (gl/pieces.hpp).
+  /// Submissions so far, and the estimated turns of the largest (gl/pieces.hpp).
   double largestTurns() const { return pieces_.largestTurns(); }
-  /// Rows first..end - 1, piece by piece: while the GPU draws one, a thread of its own makes rows of the one before and hands them to `take`, in order
-  /// and never two at once. `goOn` is asked on this thread after each piece, with the patches drawn so far; false stops.
+  /// Rows first..end - 1, piece by piece: while the GPU draws one, another thread makes rows of the previous one and passes them to `take`, in order
+  /// and never two at once. `goOn` is called on this thread after each piece, with the patches drawn so far; false stops.
   void stream(int first, int end, const std::function<void(const FormFactorRows&)>& take, const std::function<bool(int done)>& goOn = {});
-  std::size_t gpuBytes() const;  ///< of what the chosen way needs
+  std::size_t gpuBytes() const;  ///< of the chosen method
 
  private:
   DrawnHemicubes draw(int first, int count);  ///< one submission; waits for it
@@ -124,12 +124,12 @@ class Hemicubes {
   std::vector<Cost> costs_;
   const gl::Program *depth_ = nullptr, *depthLarge_ = nullptr, *sum_ = nullptr, *sumLarge_ = nullptr, *exact_ = nullptr, *traceRays_ = nullptr;
   std::unique_ptr<RayScene> ownRays_;
-  const RayScene* rays_ = nullptr;  ///< where pixels or small sources are seen by rays
+  const RayScene* rays_ = nullptr;  ///< if pixels or small sources are seen by rays
   std::optional<ItemBuffer> itemBuffer_;
   gl::BufferTexture corners_, deltaFactors_, keys_;
   gl::Buffer sources_, frames_, factors_, keptList_, exactList_, largeList_;
   gl::Staging staging_{"hemicube results"};
-  gl::PieceSize pieces_;  ///< hemicubes a submission
+  gl::PieceSize pieces_;  ///< hemicubes per submission
   int sourceCount_ = 0;
 };
 

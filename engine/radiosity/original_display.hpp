@@ -1,7 +1,7 @@
 // The original's third program: a triangle file drawn, each triangle in one colour [RAD2008 section 3.8].
 //
-// What is shown is e + b [RAD2008 eq 3-1], mapped to 0..255 by a logarithm as published, times a constant (which it is compared with), by the
-// engine's filmic curve, as false colours, or as the 24-bit colours of the computation. Colours are chosen on the CPU, one a triangle.
+// Shows e + b [RAD2008 eq 3-1], mapped to 0..255 by a logarithm as published, by a constant factor (for comparison), by the
+// engine's filmic curve, as false colours, or as the 24-bit colours of the computation. Colours are chosen on the CPU, one per triangle.
 #pragma once
 
 #include "base/image.hpp"
@@ -25,15 +25,15 @@ RadMapping parseRadMapping(std::string_view name);
 
 struct RadDisplay {
   RadMapping mapping = RadMapping::logarithmic;
-  double constant = 0.0;      ///< linear and filmic: what a value is multiplied by, 1 being white; 0: exposureOf()
-  bool backCorners = false;   ///< triangles turned away shown by their corners; else not at all
+  double constant = 0.0;      ///< linear and filmic: factor on values, 1 is white; 0: exposureOf()
+  bool backCorners = false;   ///< show back-facing triangles by their corners; else not at all
   bool mesh = false;          ///< edges over the faces
 };
 
-/// What brings the 99th percentile (by area) of received radiosity to white: sources lie orders of magnitude above it. 1 where nothing is received.
+/// The factor that maps the 99th percentile (by area) of received radiosity to white: sources are orders of magnitude above it. 1 if nothing is received.
 double exposureOf(std::span<const RadTriangle> triangles);
 
-/// Colours as displayed (sRGB), 0..1, one a triangle. Pure. The logarithm is log(1 + v) / log(1 + the greatest v).
+/// Colours as displayed (sRGB), 0..1, one per triangle. Pure. The logarithm is log(1 + v) / log(1 + the greatest v).
 std::vector<glm::vec3> displayColours(std::span<const RadTriangle> triangles, const RadDisplay& display);
 
 /// From above one corner into the scene, all of it in view.

@@ -1,9 +1,9 @@
 // The radiosity original: a picture of the scene from every triangle, five views, read back and summed on the CPU [RAD2008 chapter 3].
 //
 // From a triangle's centroid five views of 90 degrees are drawn, each triangle in the colour whose red, green and blue bytes are the number
-// e + b ro that it sends out [RAD2008 eq 3-2]; glReadPixels brings them to the CPU, which multiplies each pixel with a map (original_map.hpp) and
+// e + b ro of its exitance [RAD2008 eq 3-2]; glReadPixels brings them to the CPU, which multiplies each pixel with a map (original_map.hpp) and
 // sums: that is the triangle's received radiosity b. A sweep over all triangles is one iteration; done when nothing changed in one.
-// Units: the file's (rad_file.hpp). Nothing is accelerated here: that is the corrected solver's business.
+// Units: the file's (rad_file.hpp). Nothing is accelerated here; see the corrected solver.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -20,19 +20,19 @@
 
 namespace lucerna {
 
-/// All that a run which was stopped needs to go on as if it had not been.
+/// Everything that a stopped run needs to resume.
 struct OriginalProgress {
   std::vector<float> received;  ///< b of every triangle: at the sweep's start (Jacobi), now (Gauss-Seidel); 24-bit numbers are exact floats
   std::vector<float> next;      ///< b of the first `done` triangles after this sweep (Jacobi)
-  std::size_t done = 0;         ///< triangles of the sweep under way
+  std::size_t done = 0;         ///< triangles of the current sweep
   double change = 0.0;          ///< sum of |change of b| over them; after a whole sweep: the sweep's
-  std::uint32_t sweeps = 0;     ///< whole ones
+  std::uint32_t sweeps = 0;     ///< complete ones
 };
 
 class OriginalRadiosity {
  public:
   struct Settings {
-    int view = 500;                                        ///< pixels a side, 2 to 4096
+    int view = 500;                                        ///< pixels per side, 2 to 4096
     bool gaussSeidel = false;                              ///< new values used at once, else from the next sweep on
     RadiosityDeviations deviations = publishedRadiosity();
     double nearPlane = 0.0;                                ///< scene units; 0: 1e-4 of the scene's diagonal
@@ -42,31 +42,31 @@ class OriginalRadiosity {
   /// `triangles` are checked ones (checkRadTriangles) and must outlive this.
   OriginalRadiosity(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, const Settings& settings);
 
-  /// Where the file stands: b as it is there, no sweep begun.
+  /// The state of the file: its b, no sweep begun.
   OriginalProgress start() const;
 
-  /// Goes on with the sweep in `progress` to its end (true), or until `goOn` says no after a triangle (false). It is asked after every one.
+  /// Continues the sweep in `progress` to its end (true), or until `goOn`, called after every triangle, returns false (false).
   bool sweep(OriginalProgress& progress, const std::function<bool(const OriginalProgress&)>& goOn);
 
-  /// What a triangle sends out when it receives `received`: what its pixels hold.
+  /// A triangle's exitance when it receives `received`: the value of its pixels.
   float sentBy(std::size_t triangle, float received) const;
-  /// Shows these values to gather(); sweep() does so itself.
+  /// Sets the values that gather() sees; sweep() does so itself.
   void setReceived(std::span<const float> received);
-  /// The received radiosity of one triangle as it sees the scene now.
+  /// The received radiosity of one triangle in the current scene.
   float gather(std::size_t triangle);
   /// The same from a point, towards `normal`, not rounded; `up` is any direction across the normal.
   double gatherAt(const glm::dvec3& point, const glm::dvec3& normal, const glm::dvec3& up);
 
   /// The triangles of the file with these values as b, rounded down.
   std::vector<RadTriangle> withReceived(std::span<const float> received) const;
-  /// Absorbed over emitted flux, less 1: zero in a closed scene that is solved. NaN where nothing is emitted.
+  /// Absorbed over emitted flux, less 1: zero in a solved closed scene. NaN if nothing is emitted.
   double energyBalance(std::span<const float> received) const;
 
   const Settings& settings() const { return settings_; }
   double nearPlane() const { return near_; }
   std::size_t hemicubes() const { return hemicubes_; }          ///< drawn so far
   std::size_t drawnTriangles() const { return drawnTriangles_; }  ///< in all views so far
-  std::size_t overflows() const { return overflows_; }          ///< numbers sent that 24 bits could not hold: their upper bits were lost
+  std::size_t overflows() const { return overflows_; }          ///< exitances above 24 bits, whose upper bits were lost
   std::size_t gpuBytes() const { return vertices_.bytes() + color_.bytes() + depth_.bytes(); }
 
  private:
@@ -81,7 +81,7 @@ class OriginalRadiosity {
   gl::VertexArray vertexArray_;
   gl::Texture color_, depth_;
   gl::Framebuffer framebuffer_;
-  std::vector<glm::vec4> corners_;  ///< three a triangle: position, number sent
+  std::vector<glm::vec4> corners_;  ///< three per triangle: position, exitance
   std::vector<std::uint8_t> bytes_;
   std::vector<float> floats_;
   double near_ = 0.0, far_ = 0.0;

@@ -1,8 +1,8 @@
-// A radiosity solution in the frame: solved or loaded once, then shown from anywhere in real time.
+// A radiosity solution in the frame: solved or loaded once, then rendered from anywhere in real time.
 //
 // Input: a Scene. Output, each frame: radiance of the patches into the bound target, irradiance interpolated between light vertices (never across an
-// edge or to another material) and multiplied by the texture. Direct light is part of that, or is left to shadow rays in each pixel
-// (shaders/render/direct_rays.glsl, which the caller binds): then patches give what is reflected alone.
+// edge or to another material) and multiplied by the texture. Direct light is included, or left to shadow rays per pixel
+// (shaders/render/direct_rays.glsl, bound by the caller): then patches give only reflected light.
 #pragma once
 
 #include "gl/context.hpp"
@@ -19,31 +19,31 @@ namespace lucerna {
 class RadiosityView {
  public:
   enum class Mapping { tone, linear, logarithmic, falseColours };  ///< tone: the engine's own
-  enum class Light { all, direct, indirect };                      ///< direct: of lamps, of the sky and of what patches emit
-  enum class Direct { automatic, patches, pixels };                ///< pixels: shadow rays in each pixel instead of a value a patch; automatic: patches
+  enum class Light { all, direct, indirect };                      ///< direct: of lamps, the sky and emissive patches
+  enum class Direct { automatic, patches, pixels };                ///< pixels: shadow rays per pixel instead of a value per patch; automatic: patches
 
   struct Settings {
     RadiositySolutionSettings solution;
-    std::filesystem::path file;  ///< loaded where there is one, else saved here once solved; empty: neither
+    std::filesystem::path file;  ///< loaded if it exists, else saved here once solved; empty: neither
     Mapping mapping = Mapping::tone;
-    float decades = 4.0f;        ///< that logarithmic and false colours span below 1 / exposure
+    float decades = 4.0f;        ///< spanned by logarithmic and false colours below 1 / exposure
     bool mesh = false;           ///< patch edges drawn over
-    bool flat = false;           ///< patches as they are, not interpolated
+    bool flat = false;           ///< patches not interpolated
     Light light = Light::all;
     Direct direct = Direct::automatic;
-    int shadowRays = 32;         ///< a pixel, divided among the emissive triangles; not read here
+    int shadowRays = 32;         ///< per pixel, divided among the emissive triangles; not read here
   };
 
   /// Solves or loads; throws as solveScene and loadSolution do. scene() is drawn about `origin`.
   RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings, const glm::dvec3& origin = glm::dvec3(0.0));
 
-  /// What GpuScene is to draw: the patches.
+  /// The patches, for GpuScene.
   const Scene& scene() const { return lit_; }
   const RadiositySolution& solution() const { return solution_; }
   /// Programs for GpuScene::draw with depth equal, and the display mapping (null: the engine's).
   SurfacePrograms loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene) const;
   const gl::Program* loadMapping(gl::ProgramLibrary& programs) const;
-  /// Whether pixels ask for direct light themselves: then DirectRays are to be bound too.
+  /// Whether direct light is computed per pixel: then DirectRays must be bound too.
   bool takesDirectRays() const { return settings_.direct == Direct::pixels && settings_.light != Light::indirect; }
   void bind() const;  ///< before drawing
   std::size_t gpuBytes() const { return light_.bytes() + faces_.bytes(); }

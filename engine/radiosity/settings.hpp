@@ -1,4 +1,4 @@
-// What a radiosity solution is asked for: by the published program (original_solver) and by the corrected one (no GL, pure).
+// Settings shared by the published program (original_solver) and the corrected one (no GL, pure).
 //
 // Radiosity here is exitance in the scene's own units; the original counts it in steps of its 24-bit numbers (rad_file.hpp).
 #pragma once
@@ -20,10 +20,10 @@ RadiositySolver parseRadiositySolver(std::string_view name);
 /// Each is what the published program does; false is right.
 struct RadiosityDeviations {
   bool publishedMap = false;      ///< pixels weighted 1/r^2 (top) and b/r^2 (sides) instead of the delta form factor
-  bool values24Bit = false;       ///< whole numbers of 24 bits, rounded down, instead of floats
+  bool values24Bit = false;       ///< 24-bit integers, rounded down, instead of floats
   bool centroid = false;          ///< one hemicube at a triangle's centroid, whatever its size
   bool fixedOrientation = false;  ///< hemicubes turned towards the first corner instead of rolled at random
-  bool noNearField = false;       ///< nothing done about what is nearer than the near plane or a patch's own size
+  bool noNearField = false;       ///< no correction closer than the near plane or a patch's own size
 };
 
 struct RadiositySettings {
@@ -51,7 +51,7 @@ RadiosityDeviations publishedRadiosity();
 /// "NAME=on" or "NAME=off"; throws Error(badInput) listing the names.
 void applyRadiosityDeviation(RadiosityDeviations& deviations, std::string_view assignment);
 
-/// Names of those that are on.
+/// Names of those switched on.
 std::vector<std::string> activeRadiosityDeviations(const RadiosityDeviations& deviations);
 
 }  // namespace lucerna

@@ -26,7 +26,7 @@ namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-constexpr double kEdges = 12.0;  // longest edges that span the scene, where nobody says
+constexpr double kEdges = 12.0;  // default: longest edges that span the scene
 constexpr std::size_t kBytesPerEntry = 32;  // of a form factor, its mirrored copy and their mean, while they are repaired
 
 std::size_t freeMemory() {

@@ -53,7 +53,7 @@ DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities,
     lights.push_back({vec(l.position - origin, kSpot), vec(l.direction, std::cos(l.innerAngle)), vec({}, std::cos(l.outerAngle)), vec(glm::dvec3(l.intensity))});
   for (const PointLight& l : scene.points) lights.push_back({vec(l.position - origin, kPoint), {}, {}, vec(glm::dvec3(l.intensity))});
   const int each = std::max(1, rays / static_cast<int>(std::max<std::size_t>(emitters.size(), 1)));
-  // One light that is none where there is none: no buffer is empty. Its count is in the head.
+  // GL buffers cannot be empty: without lights upload one dummy; the count in the head is 0.
   const double raysOfPixel = static_cast<double>(emitters.size()) * each + static_cast<double>(lights.size() - emitters.size());
   turnsOfPixel_ = gl::kTurnsOfRay * std::max(raysOfPixel, 1.0);
   const int head[4] = {static_cast<int>(lights.size()), each, 0, 0};

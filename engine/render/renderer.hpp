@@ -61,16 +61,16 @@ struct RenderSettings {
 
 class Renderer {
  public:
-  /// Compiles and allocates what `scene` and `settings` need, and nothing else. The scene must outlive the renderer.
-  /// A scene far from the origin is drawn moved to it (scene/place.hpp), with cameras and lamps, so that its picture is that of the same scene near it.
+  /// Compiles and allocates only what `scene` and `settings` need. The scene must outlive the renderer.
+  /// A scene far from the origin is moved to it (scene/place.hpp), with cameras and lamps, so that its picture does not depend on its position.
   Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings);
 
   /// One frame: the HDR picture, then the display picture. Stages are timed.
   void render(const Camera& camera) { render(camera, camera); }
-  /// The same with the light propagation volume placed for another view: what changes then is flicker, not motion.
+  /// The same with the light propagation volume placed for another view, to separate flicker from motion.
   void render(const Camera& camera, const Camera& volumeCamera);
 
-  /// The picture that frames of this view come to: all that is added up over frames, at once.
+  /// The picture that frames of this view converge to: everything accumulated over frames, at once.
   void renderToTheEnd(const Camera& camera);
 
   Image readRadiance() const;   ///< linear, scene units, top row first
@@ -97,7 +97,7 @@ class Renderer {
   const RsmGather* gather() const { return gather_ ? &*gather_ : nullptr; }
   /// Waits for everything still on its way, times and counts; for the end of a run, not for a frame.
   void drain();
-  /// Names of what the scene or the settings did not need.
+  /// Names of features that were left out.
   std::vector<std::string> leftOut() const;
 
  private:

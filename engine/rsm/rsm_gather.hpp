@@ -1,4 +1,4 @@
-// The reflective shadow map as a method of its own [Dachsbacher2005]: indirect irradiance at every visible surface point, gathered
+// The gather over the reflective shadow map [Dachsbacher2005]: indirect irradiance at every visible surface point, gathered
 // from samples of the map around the point's projection, with screen-space interpolation. Unoccluded, one bounce.
 // See README.md in this folder for inputs, outputs, units, sources, deviations and measurements.
 #pragma once
@@ -18,7 +18,7 @@ class RsmGather {
  public:
   enum class Weight { unbiased, published };  ///< xi1, or xi1^2 [Dachsbacher2005]
   enum class Rotation { none, noise };        ///< the same pattern for every pixel, or turned by interleaved gradient noise
-  enum class Near { none, clamp, disc, quad };///< what stands in for 1/d^2 beside a surfel; see README.md
+  enum class Near { none, clamp, disc, quad };///< replacement of 1/d^2 near a surfel; see README.md
   struct Settings {
     int samples = 400;
     float radius = 0.3f;          ///< r, fraction of the map's side
@@ -27,10 +27,10 @@ class RsmGather {
     Near nearField = Near::quad;
     float clampTexels = 1.0f;     ///< Near::clamp: least distance, in texel sides across the rays
     bool interpolate = true;
-    int lowResolution = 4;        ///< a low-resolution sample every so many pixels each way; 1 is the same as interpolate = false
-    float fitNormal = 0.9f;       ///< least cosine between the normals of a pixel and a sample that fits it
+    int lowResolution = 4;        ///< pixels between low-resolution samples; 1 is the same as interpolate = false
+    float fitNormal = 0.9f;       ///< least cosine between the normals of a pixel and a fitting sample
     float fitPlane = 0.25f;       ///< most distance from each other's tangent plane, in steps between samples at the pixel
-    float fitDistance = 8.0f;     ///< most distance, in the same
+    float fitDistance = 8.0f;     ///< most distance, in the same unit
     bool showRefused = false;     ///< paint the refused pixels red
     bool interpolates() const { return interpolate && lowResolution > 1; }
   };
@@ -39,7 +39,7 @@ class RsmGather {
     glm::mat4 worldFromClip;  ///< the camera's
     float pixelWidth;         ///< of a pixel, scene units across the view per unit of distance
   };
-  /// Pixels a frame, summed over `frames` whose counts have arrived.
+  /// Pixels, summed over `frames` whose counts have arrived.
   struct Counts {
     std::uint64_t frames = 0, pixels = 0, gathered = 0, refused = 0;  ///< pixels: those that show a surface
     double saving() const { return pixels ? 1.0 - static_cast<double>(gathered) / static_cast<double>(pixels) : 0.0; }
@@ -56,14 +56,14 @@ class RsmGather {
   void interpolate(const Inputs& inputs);
   void gatherFull(const Inputs& inputs);
 
-  /// Irradiance in W/m^2, RGBA32F of the picture's size; w: 0 no surface, 1 there is, 2 interpolation refused it.
+  /// Irradiance in W/m^2, RGBA32F of the picture's size; w: 0 no surface, 1 surface, 2 refused by interpolation.
   const gl::Texture& irradiance() const { return irradiance_; }
-  void collect(bool wait = false);  ///< fetches counts that have arrived; wait: all of them
+  void collect(bool wait = false);  ///< fetches counts that have arrived; wait: waits for all
   const Counts& counts() const { return counts_; }
   const Settings& settings() const { return settings_; }
   std::size_t gpuBytes() const;
 
-  // What the passes share with the tests' probe.
+  // Shared by the passes and the tests' probe.
   /// (xi1 sin 2 pi xi2, xi1 cos 2 pi xi2, xi1 or xi1^2, 0): a Hammersley set, shifted on the torus by `shift`.
   static std::vector<glm::vec4> pattern(int samples, Weight weight, const glm::dvec2& shift = glm::dvec2(0.0));
   static gl::ShaderFlags flags(const Settings& settings);

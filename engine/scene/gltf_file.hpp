@@ -1,4 +1,4 @@
-// What is asked of a glTF file before Assimp reads it, and its JSON, for what Assimp 5.2.5 leaves out (no GL; private to engine/scene).
+// Checks a glTF file before Assimp reads it, and reads from its JSON what Assimp 5.2.5 leaves out (no GL; private to engine/scene).
 // Source: glTF 2.0 specification, Khronos Group, 2021.
 #pragma once
 
@@ -14,18 +14,18 @@
 
 namespace lucerna {
 
-/// Nodes below each other at most: importers call themselves once a level.
+/// Maximum depth of nodes: importers recurse once per level.
 inline constexpr int kMostNodeDepth = 1000;
 
-/// The JSON of a .gltf or .glb file. Throws Error(badInput) naming `file` where it is none, where nodes are no trees (a node below two others or
-/// below itself makes an importer run for ever, or exponentially long), or nested deeper than kMostNodeDepth, and where an accessor has more elements
-/// than its bytes hold.
+/// The JSON of a .gltf or .glb file. Throws Error(badInput) naming `file` if it is not glTF, if nodes are not trees (a node with two parents or
+/// its own descendant makes an importer loop forever or exponentially long) or nested deeper than kMostNodeDepth, and if an accessor has more elements
+/// than its bytes can hold.
 Json checkedGltf(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 
-/// The file with the number of each material before its name, "3#paint": Assimp hands materials on in the order of their first use. `root` is its JSON.
+/// The file with the number of each material before its name, "3#paint": Assimp returns materials in the order of their first use. `root` is its JSON.
 std::vector<std::uint8_t> withNumberedMaterials(const Json& root, std::span<const std::uint8_t> bytes);
 
-/// The number before such a name; nothing where there is none (the material that Assimp makes for meshes without one).
+/// The number before such a name; empty if there is none (Assimp's material for meshes without one).
 std::optional<std::size_t> numberOfMaterial(std::string_view name);
 
 /// KHR_texture_transform: where a texture is looked up for texture coordinates (u, v), v = 0 being its top row.
@@ -37,7 +37,7 @@ struct TextureTransform {
   glm::dvec2 apply(const glm::dvec2& uv) const;
 };
 
-/// What Assimp 5.2.5 does not hand on of a material of glTF 2, or not as it is meant.
+/// Properties of a glTF 2 material that Assimp 5.2.5 drops or changes.
 struct GltfMaterial {
   std::string name;
   enum class Alpha { opaque, mask, blend };
@@ -53,10 +53,10 @@ struct GltfMaterial {
   std::string notDone;                        ///< what of it no technique shows, for one warning; empty: nothing
 };
 
-/// Material `index` of a glTF 2; the default one where there is none of that number. Throws Error(badInput) naming file and key.
+/// Material `index` of a glTF 2; the default material if there is none of that number. Throws Error(badInput) naming file and key.
 GltfMaterial gltfMaterial(const Json& root, const std::filesystem::path& file, std::size_t index);
 
-/// Names of lights (KHR_lights_punctual) that have a range, which ends them against the law of their distance; empty: none.
+/// Names of lights (KHR_lights_punctual) that have a range, which contradicts 1/d^2; may be empty.
 std::string gltfLightsWithRange(const Json& root);
 
 }  // namespace lucerna

@@ -1,6 +1,6 @@
-// SceneNeeds: what a scene and the chosen settings ask for (no GL, pure).
+// SceneNeeds: the features that a scene and the chosen settings require (no GL, pure).
 //
-// The only source of shader flags and of what is built. Whatever is false here is not compiled, not allocated, not run.
+// The only source of shader flags and of what is built. A feature that is false here is not compiled, allocated or run.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -18,7 +18,7 @@ struct SceneNeeds {
   bool emission = false;         ///< any drawn mesh emits
   bool directionalLight = false; ///< a sun with irradiance > 0
   bool background = false;       ///< background radiance > 0
-  bool indirect = false;         ///< something to light it with and something to reflect: a light and an albedo > 0
+  bool indirect = false;         ///< a light and an albedo > 0
   bool spotLights = false;       ///< a spot light with intensity > 0
   bool pointLights = false;      ///< an omnidirectional light with intensity > 0
   bool environment = false;      ///< light from all around, seen behind surfaces; whoever does not let it light them says so
@@ -30,22 +30,22 @@ struct SceneNeeds {
   bool conductors = false;
   bool dielectrics = false;      ///< refracting ones, smooth or rough
   bool roughDielectrics = false;
-  bool nullBoundaries = false;   ///< a boundary that changes nothing but the medium
-  bool media = false;            ///< a medium that does anything, inside of a drawn boundary or around the camera
-  bool denseMedia = false;       ///< homogeneous inside of a drawn dielectric, where paths scatter many times (isDense)
+  bool nullBoundaries = false;   ///< a boundary that changes only the medium
+  bool media = false;            ///< a medium with an effect, inside a drawn boundary or around the camera
+  bool denseMedia = false;       ///< homogeneous, inside a drawn dielectric, where paths scatter many times (isDense)
   bool heterogeneousMedia = false;  ///< one of them has a density grid
   bool volumeEmission = false;   ///< one of them emits
 
   /// (name, needed) in declaration order, for `info` and reports.
   std::vector<std::pair<std::string, bool>> named() const;
-  /// Any light that comes from one point or one direction: what shadow maps and reflective shadow maps are drawn from.
+  /// Any light from one point or one direction: these have shadow maps and reflective shadow maps.
   bool anyLight() const { return directionalLight || spotLights || pointLights; }
   bool operator==(const SceneNeeds&) const = default;
 };
 
 SceneNeeds analyse(const Scene& scene);
 
-/// Whether light scatters some 32 times and more in a body of that extent: the path tracer then walks without rays where it can.
+/// Whether light scatters some 32 times or more in a body of that extent: the path tracer then walks without rays if possible.
 bool isDense(const Medium& medium, double extent);
 
 }  // namespace lucerna

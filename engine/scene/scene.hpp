@@ -42,13 +42,13 @@ struct Texture {
   Bitmap bitmap;               ///< 8-bit; albedo maps are sRGB-encoded
 };
 
-/// How a surface scatters light in the path tracer. The real-time techniques read `diffuse` and `specular` alone.
+/// How a surface scatters light in the path tracer. The real-time techniques read only `diffuse` and `specular`.
 enum class Bsdf {
   diffuse,     ///< Lambert; a `diffuse` of 0 is black
   mirror,      ///< reflects `specular`, smooth
   conductor,   ///< GGX of `roughness`, Fresnel by Schlick between `specular` at normal incidence and 1
   dielectric,  ///< reflects and refracts by `ior`; smooth at roughness 0, else GGX
-  none,        ///< a boundary between media alone: light goes straight on
+  none,        ///< only a boundary between media: light passes straight
 };
 
 struct Material {
@@ -57,7 +57,7 @@ struct Material {
   float roughness = 0.0f;            ///< GGX alpha, 0..1; 0: smooth
   float ior = 1.5f;                  ///< of the inside (against the normal) over vacuum
   int interior = -1;                 ///< index into Scene::media of what fills a dielectric or none; -1: vacuum
-  int priority = 0;                  ///< where two closed dielectrics overlap the higher one is there [SchmidtBudge2002]
+  int priority = 0;                  ///< where two closed dielectrics overlap, the higher one counts [SchmidtBudge2002]
   glm::vec3 diffuse{0.5f};           ///< albedo factor (Kd), multiplies the texture
   glm::vec3 specular{0.0f};          ///< Ks
   float shininess = 1.0f;            ///< Blinn-Phong exponent (Ns)
@@ -88,29 +88,29 @@ struct DirectionalLight {
 
 /// A lamp with a cone of light. Radiant intensity at an angle theta from `direction`:
 /// I(theta) = intensity * smoothstep((cos theta - cos outerAngle) / (cos innerAngle - cos outerAngle)), smoothstep(t) = t^2 (3 - 2 t)
-/// for t held to [0,1]; equal angles make a hard edge. Since smoothstep is antisymmetric about t = 1/2, the whole cone's flux is
+/// for t clamped to [0,1]; equal angles make a hard edge. Since smoothstep is antisymmetric about t = 1/2, the whole cone's flux is
 /// intensity * 2 pi * (1 - (cos innerAngle + cos outerAngle) / 2).
 struct SpotLight {
   glm::dvec3 position{0.0};
   glm::dvec3 direction{0.0, -1.0, 0.0};  ///< unit, the cone's axis, away from the lamp
   glm::vec3 intensity{0.0f};             ///< radiant intensity on the axis, W/sr
   double innerAngle = 0.5;               ///< half angle of the cone of full intensity, radians; 0..outerAngle
-  double outerAngle = 0.7;               ///< half angle beyond which there is none, radians; above 0, at most kLargestSpotAngle
+  double outerAngle = 0.7;               ///< half angle of the cone, radians; above 0, at most kLargestSpotAngle
 };
 
-/// A lamp that shines the same in all directions; its flux is 4 pi intensity.
+/// A lamp of the same intensity in all directions; its flux is 4 pi intensity.
 struct PointLight {
   glm::dvec3 position{0.0};
   glm::vec3 intensity{0.0f};  ///< radiant intensity, W/sr
 };
 
-/// One perspective shadow map serves a spot light, so its cone must stay clear of a half space: 80 degrees.
+/// A spot light has one perspective shadow map, so its cone must be well below a half space: 80 degrees.
 inline constexpr double kLargestSpotAngle = 80.0 * 3.14159265358979323846 / 180.0;
-/// How many of a kind are drawn with shadow maps: what the shaders' arrays hold. A scene may have more (rsm/lamp_choice.hpp).
+/// Lamps of a kind drawn with shadow maps, the size of the shaders' arrays. A scene may have more (rsm/lamp_choice.hpp).
 inline constexpr std::size_t kMaxSpotLights = LIGHTS_MAX_SPOTS;
 inline constexpr std::size_t kMaxPointLights = LIGHTS_MAX_POINTS;
 
-/// A view of the scene. Positions in double, so that far from the origin nothing is lost before it must be.
+/// A view of the scene. Positions in double, for precision far from the origin.
 struct Camera {
   std::string name;
   glm::dvec3 position{0.0};
@@ -135,7 +135,7 @@ struct Scene {
   std::vector<Material> materials;     ///< at least one where there is a mesh
   std::vector<Texture> textures;
   std::optional<DirectionalLight> sun;
-  bool defaultSun = false;             ///< no file named a light, so the sun is ours
+  bool defaultSun = false;             ///< no file has a light: the sun is the default
   std::vector<SpotLight> spots;
   std::vector<PointLight> points;
   std::vector<Medium> media;
@@ -147,15 +147,15 @@ struct Scene {
   glm::vec3 background{0.0f};          ///< radiance seen where there is neither surface nor environment; it lights nothing
   float exposure = 1.0f;               ///< multiplies radiance before tone mapping; 3 with the default sun
   std::filesystem::path keyFrames;     ///< the walk's camera path; empty: none named
-  std::size_t degenerateTriangles = 0; ///< of zero area. They stay, so that counts agree with the file's (Crytek Sponza has one):
-                                       ///< whoever divides by an area or normalises a face normal must expect them
-  std::size_t droppedTriangles = 0;    ///< left out while loading, as a position in them is not finite
+  std::size_t degenerateTriangles = 0; ///< of zero area, kept so that counts agree with the file's (Crytek Sponza has one):
+                                       ///< code that divides by an area or normalises a face normal must expect them
+  std::size_t droppedTriangles = 0;    ///< left out while loading: a position is not finite
 
   std::size_t triangleCount() const { return indices.size() / 3; }
 };
 
 /// Reads a scene: a scene JSON (ours; see scene_file.cpp for its keys) or whatever Assimp reads.
-/// Every problem that leaves something to show (missing texture, missing MTL) is one warning naming the file; anything else
+/// Problems that leave something to show (missing texture, missing MTL) give one warning naming the file; others
 /// (missing file, a folder, nothing to draw, truncated or malformed data) throws Error(badInput).
 /// Files without any light get the default sun, files without a camera a view computed from the bounds.
 Scene loadScene(const std::filesystem::path& file);

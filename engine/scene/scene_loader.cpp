@@ -65,7 +65,7 @@ constexpr double kDefaultFov = 50.0 * kPi / 180.0;
 
 /// Slanted, so that walls are lit too. In Crytek Sponza it reaches a quarter of the court's floor and the curtains on +z.
 const glm::dvec3 kDefaultSunDirection = glm::normalize(glm::dvec3(0.12, -1.0, 0.2));
-/// For the view from outside, which nobody chose: over its right shoulder, so that all sides of a box that are seen are lit, and a sheet that faces +z is.
+/// For the default view from outside: over its right shoulder, so that all visible sides of a box are lit, and so is a sheet that faces +z.
 const glm::dvec3 kSunOverShoulder = glm::normalize(glm::dvec3(-0.3, -1.0, -0.6));
 const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
 /// Goes with that sun: bright where it shines, still readable where only its reflection comes.

@@ -1,4 +1,4 @@
-// Means of pictures: what a technique takes that does not read texels one by one (no GL).
+// Means of pictures, for techniques that do not read single texels (no GL).
 #pragma once
 
 #include "base/image.hpp"

@@ -180,8 +180,8 @@ bool survives(inout Path path, float u) {
 #else
   float survival = min(largest / kRouletteBelow, 1.0);
 #endif
-  // In an endless medium without absorption nothing else ends a path. So seldom that who crosses a slab of optical depth 1000 (slowest mode: 3.3e-6 a collision) is seldom lost:
-  // once weights grew faster than half of that, all would be lost that is found late.
+  // In an endless medium without absorption nothing else ends a path. Rare enough that a path across a slab of optical depth 1000 (slowest mode: 3.3e-6 per collision) is
+  // seldom lost: if weights grew faster than half of that, late arrivals would have infinite variance.
   if (path.event > (1u << 20)) survival = min(survival, 1.0 - exp2(-20.0));
   if (!(u < survival)) return false;
   path.throughput /= survival;
