@@ -5,6 +5,7 @@
 #include "gl/program.hpp"
 #include "host/host.hpp"
 #include "render/renderer.hpp"
+#include "settings/settings.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -45,7 +46,6 @@ struct CommonOptions {
 struct PictureOptions {
   std::string technique = "lpv", component = "all", fidelity = "corrected", size = "1280x720";
   std::vector<std::string> deviations, settings;
-  std::string readBy;        ///< the technique that reads the settings where that is not `technique`: path, which Renderer does not know
   std::string settingsFile;  ///< --settings: what it says counts as given before the command line
 
   void declare(CLI::App& app);
@@ -55,8 +55,8 @@ struct PictureOptions {
   void readSettingsFile();
   /// The options as a settings file, which readSettingsFile() takes.
   nlohmann::ordered_json toJson() const;
-  /// Throws Error(badInput) naming the option. `exposure` gets a value if --set exposure=... is given.
-  RenderSettings parse(std::optional<float>& exposure) const;
+  /// Throws Error(badInput) naming the option. What the technique does not read is a warning.
+  RenderSettings parse() const;
 };
 
 /// "640x360" with both from 1 to 16384; throws Error(badInput) naming the option.
@@ -67,8 +67,9 @@ Camera chooseCamera(const Scene& scene, const std::string& text);
 
 /// Every key of --set with its meaning and default, for --help and README.
 std::string settingsHelp();
-/// "rad.KEY=VALUE" of what a radiosity solution depends on; throws Error(badInput) with those keys.
-void applySolutionSetting(RadiositySolutionSettings& settings, const std::string& assignment);
+/// "KEY=VALUE" of --set; a former spelling of the key is a warning. `only`: the settings that cost as much. Throws Error(badInput) with the keys.
+SettingAssignment parseSet(const std::string& assignment, const SettingCost* only = nullptr);
+inline constexpr SettingCost kSolutionCost = SettingCost::solution;  ///< of the settings that a radiosity solution depends on
 /// Every deviation with its meaning.
 std::string deviationsHelp();
 

@@ -1,7 +1,8 @@
-// lucerna info [SCENE]: host, driver, limits, extensions; a scene's counts and needs.
+// lucerna info [SCENE]: host, driver, limits, extensions; a scene's counts and needs; the table of settings.
 #include "base/error.hpp"
 #include "commands.hpp"
 #include "scene/scene.hpp"
+#include "settings_page.hpp"
 
 #include <fmt/core.h>
 
@@ -14,7 +15,7 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string scene;
-  bool devices = false;
+  bool devices = false, settings = false;
 };
 
 /// EGL's devices, and what each draws with. The first that host egl would try is marked.
@@ -47,6 +48,11 @@ int listDevices(const Options& options) {
 int run(const Options& options) {
   options.common.apply();
   if (options.devices) return listDevices(options);
+  if (options.settings) {
+    fmt::print("{}", settingsPage());
+    options.common.writeJson({{"settings", settingsJson()}});
+    return 0;
+  }
   nlohmann::ordered_json json;
   std::optional<Scene> scene;
   if (!options.scene.empty()) scene = loadScene(options.scene);
@@ -105,6 +111,7 @@ Work addInfo(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...");
   app.add_flag("--devices", options->devices, "list the devices that EGL knows, and which is tried first");
+  app.add_flag("--settings", options->settings, "print every setting and deviation, with ranges, defaults, units and sources (docs/settings.md)");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

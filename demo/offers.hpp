@@ -1,6 +1,8 @@
 // What completions offer for the values of an option: kept in the command line's own tree, seen neither by help nor by parsing.
 #pragma once
 
+#include "settings/settings.hpp"
+
 #include <CLI/CLI.hpp>
 
 #include <string>
@@ -17,7 +19,7 @@ std::vector<std::string> offered(CLI::Option& option);
 /// With spaces between them.
 std::string joined(const std::vector<std::string>& words);
 
-/// "KEY=" of every setting of --set, or of those that a radiosity solution depends on.
-std::vector<std::string> offeredSettings(bool ofSolutions = false);
+/// "KEY=" of every setting of --set, with its values where they have names; of those that cost as much, or (null) all.
+std::vector<std::string> offeredSettings(const SettingCost* only = nullptr);
 
 }  // namespace lucerna::demo

@@ -74,12 +74,14 @@ Work addGenerate(CLI::App& app) {
 
 int solve(const RadiositySolve& options) {
   options.common.apply();
-  if (options.settings.view < 2 || options.settings.view > 4096) throwBadInput("VIEW {}: expected 2 to 4096 pixels", options.settings.view);
-  if (options.settings.maxSweeps < 0) throwBadInput("--max-sweeps {}: expected 0 (no limit) or more", options.settings.maxSweeps);
+  if (options.resolution < 2 || options.resolution > 4096) throwBadInput("RESOLUTION {}: expected 2 to 4096 pixels", options.resolution);
+  if (options.maxSweeps < 0) throwBadInput("--max-sweeps {}: expected 0 (no limit) or more", options.maxSweeps);
   if (!(options.saveEvery >= 0.0)) throwBadInput("--save-every {}: expected seconds, 0 or more", options.saveEvery);
-  if (options.nearPlane && !(*options.nearPlane > 0.0 && std::isfinite(*options.nearPlane))) throwBadInput("--near {}: expected a distance above 0", *options.nearPlane);
+  if (options.nearPlane && !(*options.nearPlane > 0.0 && std::isfinite(*options.nearPlane))) throwBadInput("--near-plane {}: expected a distance above 0", *options.nearPlane);
   if (options.fidelity == "original" && !options.set.empty()) throwBadInput("--set {}: the published program has no such settings", options.set.front());
-  if (options.fidelity == "original" && !options.visibility.empty()) throwBadInput("--visibility {}: the published program draws colours; it is for --fidelity corrected", options.visibility);
+  if (options.fidelity == "original")
+    for (const auto& [option, assignment] : options.shortSettings)
+      if (option == "--visibility") throwBadInput("--visibility {}: the published program draws colours; it is for --fidelity corrected", assignment.substr(assignment.find('=') + 1));
   if (options.fidelity == "original") return solveOriginal(options);
   if (options.fidelity != "corrected") throwBadInput("--fidelity {}: unknown; there are corrected, original", options.fidelity);
   return solveCorrected(options);
@@ -95,32 +97,49 @@ Work addSolve(CLI::App& app) {
   auto options = std::make_shared<RadiositySolve>();
   app.add_option("IN", options->in, "a triangle file; corrected: or any scene")->required();
   app.add_option("OUT", options->out, "where every sweep is saved; may be IN. Ctrl-C stops at any time, the same command goes on")->required();
-  const CLI::Option* view = app.add_option("VIEW", options->settings.view, "pixels a side of a hemicube's face (original 500, corrected 64)");
+  // Options that are shorter spellings of settings; the original reads some of them itself.
+  auto shorter = std::make_shared<std::vector<std::pair<const char*, const CLI::Option*>>>();
+  const auto shortFor = [&](const char* key, CLI::Option* option) {
+    shorter->emplace_back(key, option);
+    return option;
+  };
+  shortFor("radiosity.resolution", app.add_option("RESOLUTION", options->resolution, "pixels a side of a hemicube's face (original 500, corrected 64)"));
   offer(app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str(), {"corrected", "original"});
-  offer(app.add_option("--solver", options->solver, "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room, cg"),
+  offer(shortFor("radiosity.solver", app.add_option("--solver", options->solver, "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room, cg")),
         {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "per-room", "cg"});
   std::vector<std::string> switches;
   for (const RadiosityDeviation& deviation : allRadiosityDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
   offer(app.add_option("--deviation", options->deviations, "NAME=on|off: one deviation of the published original; may be repeated"), switches);
-  app.add_option("--max-sweeps", options->settings.maxSweeps, "stop after so many sweeps (0: when nothing changes)")->capture_default_str();
-  app.add_option("--near", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
-  app.add_option("--seed", options->settings.seed, "of the random roll with rad.fixed-orientation=off")->capture_default_str();
+  shortFor("radiosity.products", app.add_option("--max-sweeps", options->maxSweeps, "stop after so many sweeps (0: when nothing changes)")->capture_default_str());
+  app.add_option("--near-plane", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
+  app.add_option_function<double>("--near", [options](double distance) {
+    logWarning("--near: now written --near-plane");
+    options->nearPlane = distance;
+  })->group("");
+  shortFor("radiosity.seed", app.add_option("--seed", options->seed, "of the random roll with radiosity.fixed-orientation=off")->capture_default_str());
   app.add_option("--save-every", options->saveEvery, "seconds between checkpoints within a sweep")->capture_default_str();
   app.add_flag("--restart", options->restart, "begin anew where a stopped run could go on");
-  app.add_option("--error", options->settings.error, "corrected: stop at this guaranteed relative error (0.001)")->check(CLI::Range(1e-12, 10.0));
-  app.add_option_function<double>("--memory", [options](double mib) { options->settings.memoryBytes = static_cast<std::size_t>(std::max(mib, 0.0) * 1048576.0); },
-                                  "corrected: MiB for form factors; more are read from OUT.rows for each product (half of what is free)")
-      ->check(CLI::Range(0.0, 1e9));
-  app.add_option("--edge", options->edge, "corrected: longest edge of a scene's patches in scene units (a 12th of the scene)")->check(CLI::NonNegativeNumber);
-  app.add_option("--refinements", options->refinements, "corrected: times that a scene's patches are halved where light changes steeply (0)")->check(CLI::Range(0, 8));
-  offer(app.add_option("--set", options->set, "corrected: rad.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated"), offeredSettings(true));
-  offer(app.add_option("--visibility", options->visibility, "corrected: what tells pixels what they see: auto (measured at start), raster, rays, item-buffer"),
+  const auto addShort = [&](const char* option, const char* key, const char* meaning) {
+    return shortFor(key, app.add_option_function<std::string>(option, [](const std::string&) {}, std::string("corrected: ") + meaning));
+  };
+  addShort("--error", "radiosity.error", "stop at this guaranteed relative error (0.001)")->type_name("FLOAT");
+  addShort("--memory", "radiosity.memory", "MiB for form factors; more are read from OUT.rows for each product (half of what is free)")->type_name("FLOAT");
+  addShort("--edge", "radiosity.edge", "longest edge of a scene's patches in scene units (a 12th of the scene)")->type_name("FLOAT");
+  addShort("--refinements", "radiosity.refinements", "times that a scene's patches are halved where light changes steeply (0)")->type_name("INT");
+  offer(app.add_option("--set", options->set, "corrected: radiosity.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated"), offeredSettings(&kSolutionCost));
+  offer(addShort("--visibility", "radiosity.visibility", "what tells pixels what they see: auto (measured at start), raster, rays, item-buffer"),
         {"auto", "raster", "rays", "item-buffer"});
   app.footer(radiosityDeviationsHelp());
   options->common.declare(app);
-  return [options, view] {
-    options->viewGiven = view->count() > 0;
+  return [options, shorter] {
+    for (const auto& [key, option] : *shorter) {
+      if (option->count() == 0) continue;
+      std::string value = option->results().back();
+      if (option->get_name() == "RESOLUTION" && options->resolution % 2 != 0) value = std::to_string(options->resolution + 1);
+      if (option->get_name() == "--max-sweeps" && options->maxSweeps == 0) continue;  // no limit but the setting's own
+      options->shortSettings.emplace_back(option->get_name(), std::string(key) + "=" + value);
+    }
     return solve(*options);
   };
 }

@@ -15,14 +15,14 @@ struct RadiositySolve {
   CommonOptions common;
   std::string in, out, fidelity = "corrected", solver;
   std::vector<std::string> deviations;
-  std::vector<std::string> set;   ///< corrected: rad.KEY=VALUE as `lucerna render` takes them
-  RadiositySettings settings;     ///< view, maxSweeps, seed; the rest is parsed by the solver that runs
+  std::vector<std::string> set;   ///< corrected: radiosity.KEY=VALUE as `lucerna render` takes them
+  /// Corrected: the other options, which are shorter spellings of settings: option, KEY=VALUE. They come before `set`.
+  std::vector<std::pair<std::string, std::string>> shortSettings;
+  int resolution = 500;           ///< original: pixels a side of a hemicube
+  int maxSweeps = 0;              ///< original; 0: no limit
+  unsigned seed = 1;              ///< original: of the random roll
   std::optional<double> nearPlane;
   double saveEvery = 10.0;        ///< seconds between checkpoints within a sweep
-  bool viewGiven = false;         ///< else each solver takes its own
-  double edge = 0.0;              ///< corrected: longest edge of a patch, scene units; 0: its own
-  int refinements = 0;            ///< corrected
-  std::string visibility;         ///< corrected: how pixels learn what they see; empty: auto
   bool restart = false;           ///< take no checkpoint up
 };
 

@@ -1,5 +1,5 @@
 // lucerna radiosity solve --fidelity corrected: any scene, or a triangle file of the original.
-// A scene's solution is a file that `render --technique radiosity --set rad.file=OUT` shows; a triangle file gets its b, as the original's does.
+// A scene's solution is a file that `render --technique radiosity --set radiosity.file=OUT` shows; a triangle file gets its b, as the original's does.
 #include "radiosity.hpp"
 
 #include "base/error.hpp"
@@ -66,7 +66,7 @@ std::array<std::int64_t, 4> stampOf(const std::string& file) {
 }  // namespace
 
 int solveCorrected(const RadiositySolve& options) {
-  if (options.nearPlane) throwBadInput("--near: corrected hemicubes have no near plane");
+  if (options.nearPlane) throwBadInput("--near-plane: corrected hemicubes have no near plane");
   const bool rad = isRadFile(options.in);
   std::vector<RadTriangle> triangles;
   if (rad) {
@@ -74,18 +74,17 @@ int solveCorrected(const RadiositySolve& options) {
     checkRadTriangles(triangles, options.in);
   }
   const Scene scene = rad ? sceneOf(triangles, options.in) : loadScene(options.in);
-  RadiositySolutionSettings settings;
-  settings.patches.longestEdge = options.edge;
-  settings.refinements = options.refinements;
-  if (options.viewGiven) settings.hemicubes.resolution = 2 * ((options.settings.view + 1) / 2);
-  settings.hemicubes.seed = options.settings.seed;
+  RenderSettings all;
+  for (const auto& [option, assignment] : options.shortSettings) {
+    const auto [setting, value] = parseAssignment(assignment);
+    parseSetting(*setting, all, value, option + ": ");
+  }
+  for (const std::string& assignment : options.set) {
+    const auto [setting, value] = parseSet(assignment, &kSolutionCost);
+    parseSetting(*setting, all, value, "--set ");
+  }
+  RadiositySolutionSettings& settings = all.radiosity.solution;
   for (const std::string& deviation : options.deviations) applyRadiosityDeviation(settings.deviations, deviation);
-  if (!options.visibility.empty()) settings.hemicubes.visibility = parseHemicubeVisibility(options.visibility);
-  if (!options.solver.empty()) settings.solver = parseRadiositySolver(options.solver);
-  if (options.settings.error > 0.0) settings.error = options.settings.error;
-  if (options.settings.maxSweeps > 0) settings.mostProducts = options.settings.maxSweeps;
-  settings.memoryBytes = options.settings.memoryBytes;
-  for (const std::string& setting : options.set) applySolutionSetting(settings, setting);
   settings.wholeTriangles = rad;
   if (rad) settings.refinements = 0;
 

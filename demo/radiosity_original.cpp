@@ -120,11 +120,11 @@ double leastChange(const OriginalRadiosity::Settings& settings, std::span<const 
 
 int solveOriginal(const RadiositySolve& options) {
   OriginalRadiosity::Settings settings;
-  settings.view = options.settings.view;
-  settings.seed = options.settings.seed;
+  settings.view = options.resolution;
+  settings.seed = options.seed;
   settings.nearPlane = options.nearPlane.value_or(0.0);
   if (!options.solver.empty()) {
-    const RadiositySolver solver = parseRadiositySolver(options.solver);
+    const RadiositySolver solver = parseName<RadiositySolver>(options.solver, "--solver");
     if (solver != RadiositySolver::jacobi && solver != RadiositySolver::gaussSeidel)
       throwBadInput("--solver {}: the original has jacobi and gauss-seidel", options.solver);
     settings.gaussSeidel = solver == RadiositySolver::gaussSeidel;
@@ -158,7 +158,7 @@ int solveOriginal(const RadiositySolve& options) {
   const auto start = Clock::now();
   const std::uint32_t sweepsBefore = progress.sweeps;
   bool settled = false, stopped = false;
-  while (!settled && !stopped && (options.settings.maxSweeps == 0 || progress.sweeps < static_cast<std::uint32_t>(options.settings.maxSweeps))) {
+  while (!settled && !stopped && (options.maxSweeps == 0 || progress.sweeps < static_cast<std::uint32_t>(options.maxSweeps))) {
     const auto sweepStart = Clock::now();
     const std::size_t hemicubesBefore = solver.hemicubes();
     Progress bar(fmt::format("sweep {}", progress.sweeps + 1), static_cast<int>(triangles.size()), options.common.quiet);

@@ -31,7 +31,7 @@ struct Options {
 RadDisplay displayOf(const Options& options) {
   RadDisplay display;
   if (!options.mode.empty() && options.mode != "s" && options.mode != "c") throwBadInput("{}: unknown; there are s (triangles turned away too), c (colours as computed)", options.mode);
-  if (!options.mapping.empty()) display.mapping = parseRadMapping(options.mapping);
+  if (!options.mapping.empty()) display.mapping = parseName<RadMapping>(options.mapping, "--mapping");
   if (options.falseColours) display.mapping = RadMapping::falseColours;
   if (options.mode == "c") display.mapping = RadMapping::bits24;
   display.backCorners = options.mode == "s";

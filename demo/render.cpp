@@ -3,7 +3,7 @@
 #include "base/files.hpp"
 #include "commands.hpp"
 #include "offers.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 #include "render_path.hpp"
 
 #include <fmt/core.h>
@@ -30,8 +30,7 @@ int run(Options options) {
   if (!options.path.spp) options.path.spp = options.picture.settingsSpp;
   if (options.picture.technique == "path") return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
   options.path.refuseIfGiven(options.picture.technique);
-  std::optional<float> exposure;
-  RenderSettings settings = options.picture.parse(exposure);
+  RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
   if (settings.radiosity.direct == RadiosityView::Direct::automatic) settings.radiosity.direct = RadiosityView::Direct::pixels;
   if (!isWritableImageName(options.output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
@@ -44,7 +43,6 @@ int run(Options options) {
     throwMissingCapability("--size {}: this driver's textures end at {} pixels", options.picture.size, context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
   Renderer renderer(context, programs, scene, settings);
-  if (exposure) renderer.setExposure(*exposure);
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < options.repeat; ++i) renderer.renderToTheEnd(camera);
   glFinish();
@@ -104,7 +102,6 @@ Work addRender(CLI::App& app) {
   app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")->required();
   app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")->check(CLI::Range(1, 100000))->capture_default_str();
   options->picture.declare(app);
-  offer(app.get_option("--technique"), {"direct", "rsm", "lpv", "radiosity", "path"});
   options->path.declare(app);
   options->common.declare(app);
   return [options, size = app.get_option("--size")] {

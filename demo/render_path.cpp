@@ -5,7 +5,7 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -61,11 +61,8 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   for (const std::string& deviation : picture.deviations)
     if (!deviation.starts_with("path.")) throwBadInput("--deviation {}: --technique path has those that begin with path.", deviation);
   PictureOptions rest = picture;
-  rest.technique = "direct";
-  rest.readBy = "path";
   if (!path.sizeGiven && (picture.fidelity == "original" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
-  std::optional<float> exposure;
-  const RenderSettings shared = rest.parse(exposure);
+  const RenderSettings shared = rest.parse();
   if (!isWritableImageName(output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
   const Scene scene = loadScene(sceneFile);
   const Camera camera = chooseCamera(scene, cameraText);
@@ -123,7 +120,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const PathTracer::Statistics statistics = tracer.statistics();
   const Image image = tracer.mean();
   if (lowerExtension(output) == ".png")
-    writePng(output, toneMapped(image, exposure.value_or(scene.exposure)));
+    writePng(output, toneMapped(image, shared.exposure.value_or(scene.exposure)));
   else
     writeImage(output, image);
   // After the picture: a disk that is full does not cost it.

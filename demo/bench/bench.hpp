@@ -2,7 +2,7 @@
 #pragma once
 
 #include "commands.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include <string>
 #include <vector>

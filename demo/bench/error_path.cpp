@@ -5,7 +5,7 @@
 #include "bench/error_rows.hpp"
 #include "measure/flip.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include <fmt/core.h>
 

@@ -37,8 +37,7 @@ std::string fileStem(const std::string& name) {
 
 /// The rung's options as settings of a renderer that measures.
 RenderSettings settingsOf(const ErrorBench& bench, const Rung& rung, Component component) {
-  std::optional<float> exposure;
-  RenderSettings settings = rung.picture.parse(exposure);
+  RenderSettings settings = rung.picture.parse();
   settings.component = component;
   settings.size = bench.size;
   settings.fullFloatTarget = true;
@@ -187,8 +186,7 @@ std::vector<InsideModel> insideModels(const References& references) {
 }
 
 TechniqueModel modelOf(const Rung& rung, measure::LightKinds scene) {
-  std::optional<float> exposure;
-  const RenderSettings settings = rung.picture.parse(exposure);
+  const RenderSettings settings = rung.picture.parse();
   LightPaths paths = modelOf(settings);
   paths.lights = paths.lights & scene;
   return {rung.picture.technique, paths, directLightsOf(settings) & scene};

@@ -1,7 +1,7 @@
 #include "bench/ladder.hpp"
 
 #include "base/error.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include <fmt/format.h>
 
@@ -64,24 +64,15 @@ std::vector<Rung> lpvLadder(bool shrink) {
 std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
   std::vector<Rung> rungs;
   for (int parts : {3, 6, 12, 24})
-    if (!shrink || parts < 24) rungs.push_back(rung("radiosity", "patches", {fmt::format("rad.edge={:.6g}", longestSide / parts)}));
+    if (!shrink || parts < 24) rungs.push_back(rung("radiosity", "patches", {fmt::format("radiosity.edge={:.6g}", longestSide / parts)}));
   for (int pixels : {16, 32, 64, 128})
     if (!shrink || pixels < 128)
-      rungs.push_back(rung("radiosity", "hemicubes", {fmt::format("rad.edge={:.6g}", longestSide / 6), fmt::format("rad.resolution={}", pixels)}));
+      rungs.push_back(rung("radiosity", "hemicubes", {fmt::format("radiosity.edge={:.6g}", longestSide / 6), fmt::format("radiosity.resolution={}", pixels)}));
   return rungs;
 }
 
 /// What a technique's settings and deviations begin with.
-std::string prefixOf(const std::string& technique) { return (technique == "radiosity" ? "rad" : technique) + "."; }
-
-bool rendererHas(const std::string& technique) {
-  try {
-    parseTechnique(technique);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
+std::string prefixOf(const std::string& technique) { return technique + "."; }
 
 }  // namespace
 
@@ -98,16 +89,14 @@ std::string Rung::label() const {
 std::string Rung::name() const { return label(); }
 
 std::vector<std::string> ladderTechniques() {
-  std::vector<std::string> techniques{"direct", "rsm", "lpv", "radiosity"};
-  std::erase_if(techniques, [](const std::string& t) { return !rendererHas(t); });
-  return techniques;
+  return {"direct", "rsm", "lpv", "radiosity"};
 }
 
 std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double longestSide) {
   if (technique == "direct") return {rung("direct", "", {})};
   if (technique == "rsm") return rsmLadder(shrink);
   if (technique == "lpv") return lpvLadder(shrink);
-  if (technique == "radiosity" && rendererHas(technique)) return radiosityLadder(shrink, longestSide);
+  if (technique == "radiosity") return radiosityLadder(shrink, longestSide);
   std::string known;
   for (const std::string& t : ladderTechniques()) known += (known.empty() ? "" : ", ") + t;
   throwBadInput("--techniques {}: unknown; there are {}", technique, known);

@@ -53,7 +53,8 @@ LightPaths modelOf(const RenderSettings& settings) {
       if (settings.lpv.transport == LpvTransport::rays) model.transport = Transport::oneBounce;
       if (settings.lpv.bounces != 1) model = {Transport::indirect, model.lights, settings.lpv.bounces};
       break;
-    case Technique::radiosity: break;
+    case Technique::radiosity:
+    case Technique::path: break;
   }
   return model;
 }

@@ -118,8 +118,7 @@ struct Options {
 int run(Options options) {
   options.common.apply();
   options.picture.readSettingsFile();
-  std::optional<float> exposure;
-  const RenderSettings settings = options.picture.parse(exposure);
+  const RenderSettings settings = options.picture.parse();
   if (options.scenes.empty()) options.scenes = {bench::sceneOrAtrium("")};
   const auto host = options.common.makeHost(false);
   const gl::Context context;

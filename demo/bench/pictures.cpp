@@ -5,7 +5,7 @@
 #include "bench/contact_sheet.hpp"
 #include "bench/rad.hpp"
 #include "offers.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include <fmt/core.h>
 

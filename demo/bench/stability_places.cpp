@@ -105,7 +105,7 @@ Image picture(const StabilityContext& c, const Scene& scene, How how, Component 
     return tracer.mean();
   }
   RenderSettings settings;
-  settings.technique = parseTechnique(techniqueOf(how));
+  settings.technique = parseName<Technique>(techniqueOf(how), "technique");
   settings.component = component;
   settings.size = kSize;
   settings.fullFloatTarget = true;
@@ -134,7 +134,7 @@ double difference(const Image& a, const Image& b) {
 }
 
 std::string nameOf(How how, Lamp lamp, const char* what) {
-  return fmt::format("{}, {}{}", what, nameOf(lamp), how == How::pixels ? " by rad.direct=pixels" : how == How::rays ? " by rays" : "");
+  return fmt::format("{}, {}{}", what, nameOf(lamp), how == How::pixels ? " by radiosity.direct=pixels" : how == How::rays ? " by rays" : "");
 }
 
 }  // namespace

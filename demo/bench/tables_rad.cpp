@@ -122,7 +122,7 @@ std::vector<Cost> deviationCosts(gl::ProgramLibrary& programs, int view, bool qu
     one.*deviation.member = false;
     costs.push_back(costOf(fmt::format("{}=off", deviation.name), one));
   }
-  costs.push_back(costOf("all off but rad.centroid", right));
+  costs.push_back(costOf("all off but radiosity.centroid", right));
   return costs;
 }
 
@@ -289,7 +289,7 @@ int runRadTables(const CommonOptions& common, double scale) {
       fmt::print("{:<32}{:>10.2f}{:>10.2f}{:>+10.2f}\n", cost.name, 100.0 * cost.nrmse, 100.0 * cost.most, 100.0 * cost.bias);
       json["deviations"].push_back({{"name", cost.name}, {"nrmse", cost.nrmse}, {"worst", cost.most}, {"bias", cost.bias}});
     }
-    fmt::print("rad.centroid=off samples three corners; those on another wall see it edge on and lose its light\n");
+    fmt::print("radiosity.centroid=off samples three corners; those on another wall see it edge on and lose its light\n");
   }
   if (!interrupted()) closedBoxes(context, programs, scale, json);
   common.writeJson(json);

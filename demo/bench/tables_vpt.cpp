@@ -5,7 +5,7 @@
 #include "bench/vpt_series.hpp"
 
 #include "measure/image_errors.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include <fmt/core.h>
 

@@ -3,7 +3,7 @@
 
 #include "bench/bench.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include <string>
 #include <vector>

@@ -5,7 +5,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 #include "scene/key_frames.hpp"
 #include "walk/free_camera.hpp"
 
@@ -221,8 +221,7 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
 int run(Options options) {
   options.common.apply();
   options.picture.readSettingsFile();
-  std::optional<float> exposure;
-  const RenderSettings settings = options.picture.parse(exposure);
+  const RenderSettings settings = options.picture.parse();
   if (options.scene.empty()) options.scene = (dataFolder() / "assets/atrium/atrium.json").string();
   if (!options.record.empty() && fs::exists(options.record) && !fs::is_directory(options.record))
     throwBadInput("--record {}: there is a file of that name; a folder is wanted", options.record);
@@ -238,7 +237,6 @@ int run(Options options) {
   const gl::Context context;
   gl::ProgramLibrary programs;
   Renderer renderer(context, programs, scene, settings);
-  if (exposure) renderer.setExposure(*exposure);
   if (host->kind() == HostKind::window && options.record.empty()) return play(options, *host, context, programs, renderer, path, scene);
   return record(options, *host, context, renderer, path);
 }

@@ -1,33 +1,37 @@
-// Values that have a name on the command line: a table of both, read either way.
+// Names of enum values, as the command line, files and JSON spell them: one table an enum, one parser for all.
+//
+// An enum class whose values count from 0 has names once a function namesOf(E) stands beside it that returns them in order:
+//   constexpr std::array<std::string_view, 2> namesOf(LpvLookup) { return {"flux", "published"}; }
 #pragma once
 
 #include "base/error.hpp"
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 
 namespace lucerna {
 
-template <class T, std::size_t N>
-using NamedValues = std::array<std::pair<T, const char*>, N>;
+template <class E>
+concept NamedEnum = requires(E value) { namesOf(value).size(); };
 
-template <class T, std::size_t N>
-std::string_view nameIn(const NamedValues<T, N>& table, T value) {
-  for (const auto& [known, name] : table)
-    if (known == value) return name;
-  CHECK(false, "value {} has no name", static_cast<int>(value));
-  return {};
+template <NamedEnum E>
+constexpr std::string_view nameOf(E value) {
+  const auto names = namesOf(value);
+  const auto index = static_cast<std::size_t>(value);
+  CHECK(index < names.size(), "value {} has no name", index);
+  return names[index];
 }
 
-/// Throws Error(badInput) with the names that there are; `what` is what the message begins with.
-template <class T, std::size_t N>
-T valueIn(const NamedValues<T, N>& table, std::string_view name, std::string_view what) {
+/// Throws Error(badInput) with the names that there are; `what` is what the message begins with, such as "--host".
+template <NamedEnum E>
+E parseName(std::string_view name, std::string_view what) {
+  const auto names = namesOf(E{});
   std::string known;
-  for (const auto& [value, text] : table) {
-    if (name == text) return value;
-    known += (known.empty() ? "" : ", ") + std::string(text);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (name == names[i]) return static_cast<E>(i);
+    known += (known.empty() ? "" : ", ") + std::string(names[i]);
   }
   throwBadInput("{} {}: unknown; there are {}", what, name, known);
 }

@@ -29,21 +29,6 @@ void loadPointers(HostKind kind) {
 
 }  // namespace
 
-std::string_view nameOf(HostKind kind) {
-  switch (kind) {
-    case HostKind::window: return "window";
-    case HostKind::egl: return "egl";
-    case HostKind::osmesa: return "osmesa";
-  }
-  return "?";
-}
-
-HostKind parseHostKind(std::string_view name) {
-  for (HostKind kind : {HostKind::window, HostKind::egl, HostKind::osmesa})
-    if (name == nameOf(kind)) return kind;
-  throwBadInput("--host {}: unknown host; there are window, egl and osmesa", name);
-}
-
 bool displayAvailable() {
   const auto set = [](const char* name) {
     const char* value = std::getenv(name);

@@ -4,8 +4,11 @@
 // window, so only a host presents.
 #pragma once
 
+#include "base/named_values.hpp"
+
 #include <glm/glm.hpp>
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -18,9 +21,9 @@ namespace lucerna {
 
 enum class HostKind { window, egl, osmesa };
 
-std::string_view nameOf(HostKind kind);
-/// "window", "egl" or "osmesa"; anything else throws Error(badInput) listing the three.
-HostKind parseHostKind(std::string_view name);
+constexpr std::array<std::string_view, 3> namesOf(HostKind) { return {"window", "egl", "osmesa"}; }
+/// Throws Error(badInput) listing the three.
+inline HostKind parseHostKind(std::string_view name) { return parseName<HostKind>(name, "--host"); }
 
 struct HostOptions {
   glm::ivec2 windowSize{1280, 720};

@@ -24,20 +24,6 @@ constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 
 }  // namespace
 
-std::string_view nameOf(LpvFill fill) {
-  return fill == LpvFill::layered ? "layered" : fill == LpvFill::atomic ? "atomic" : "fixed";
-}
-
-std::string_view nameOf(LpvLookup lookup) { return lookup == LpvLookup::flux ? "flux" : "published"; }
-std::string_view nameOf(LpvTransport transport) {
-  return transport == LpvTransport::propagate ? "propagate" : transport == LpvTransport::gather ? "gather" : "rays";
-}
-std::string_view nameOf(LpvVisibility visibility) { return visibility == LpvVisibility::none ? "none" : "voxels"; }
-
-std::string_view nameOf(LpvPropagate propagate) {
-  return propagate == LpvPropagate::compute ? "compute" : propagate == LpvPropagate::layered ? "layered" : "slices";
-}
-
 LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
                                                const Settings& settings)
     : settings_(settings), haveClearTexture_(capabilities.clearTexture) {

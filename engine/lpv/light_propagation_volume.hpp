@@ -2,6 +2,7 @@
 // See README.md in this folder for inputs, outputs, units, sources and measurements.
 #pragma once
 
+#include "base/named_values.hpp"
 #include "gl/context.hpp"
 #include "gl/pass.hpp"
 #include "gl/program.hpp"
@@ -18,29 +19,30 @@ namespace lucerna {
 /// How the grid is filled. `layered`: geometry shader and additive blending. `atomic`: float image atomics, an extension.
 /// `fixed`: 32-bit integer image atomics, core OpenGL 4.3, the same bits every run.
 enum class LpvFill { layered, atomic, fixed };
-std::string_view nameOf(LpvFill fill);
+constexpr std::array<std::string_view, 3> namesOf(LpvFill) { return {"layered", "atomic", "fixed"}; }
 
 /// `compute`: all cascades in one dispatch a step. `layered`: as published, one pass a step and cascade with a point a cell.
 /// `slices`: the same pass with a triangle a slice instead.
 enum class LpvPropagate { compute, layered, slices };
-std::string_view nameOf(LpvPropagate propagate);
+constexpr std::array<std::string_view, 3> namesOf(LpvPropagate) { return {"compute", "layered", "slices"}; }
 
 /// How irradiance at a surface follows from the propagated coefficients. `flux`: what the propagation kernel itself would send through a face there. `published`: the light of
 /// one source half a cell away [Kaplanyan2010], 1.91 times too much for light in transit.
 enum class LpvLookup { flux, published };
-std::string_view nameOf(LpvLookup lookup);
+constexpr std::array<std::string_view, 2> namesOf(LpvLookup) { return {"flux", "published"}; }
 
 /// How light gets from what is lit to what is looked up. `propagate`: through the grids' cells, step by step, as published. The others to receivers, points of
 /// surfaces (receivers.hpp): `gather` from the lights' maps, one bounce; `rays` along paths.
 enum class LpvTransport { propagate, gather, rays };
-std::string_view nameOf(LpvTransport transport);
+constexpr std::array<std::string_view, 3> namesOf(LpvTransport) { return {"propagate", "gather", "rays"}; }
 
 /// What light that is gathered passes through: everything, or everything but the voxels in which surfaces lie.
 enum class LpvVisibility { none, voxels };
-std::string_view nameOf(LpvVisibility visibility);
+constexpr std::array<std::string_view, 2> namesOf(LpvVisibility) { return {"none", "voxels"}; }
 
 /// Whose surfels fill the geometry volume: those that the lights' maps see, those that the camera sees, or both.
 enum class LpvSurfels { rsm, camera, both };
+constexpr std::array<std::string_view, 3> namesOf(LpvSurfels) { return {"rsm", "camera", "both"}; }
 
 class LightPropagationVolume {
  public:

@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "base/named_values.hpp"
 #include "gl/pass.hpp"
 #include "pathtracer/ray_scene.hpp"
 
@@ -29,13 +28,6 @@ constexpr int kExactGroups = 256;
 constexpr double kSecondsOfPiece = 0.25, kTurnsOfPatch = 8.0, kTurnsOfPixel = 32.0;  // by raster: a patch's setting up; a pixel's layers
 constexpr int kMeasured = 32;  // hemicubes of a batch that a cost is taken from
 
-constexpr std::array kVisibilities{
-    std::pair{HemicubeVisibility::automatic, "auto"},
-    std::pair{HemicubeVisibility::itemBuffer, "item-buffer"},
-    std::pair{HemicubeVisibility::raster, "raster"},
-    std::pair{HemicubeVisibility::rays, "rays"},
-};
-
 /// The same for a seed and a patch in every run and batch; 0..1. [Steele2014], its finaliser.
 double hashed(std::uint32_t seed, std::uint32_t patch) {
   std::uint64_t z = (static_cast<std::uint64_t>(seed) << 32 | patch) + 0x9e3779b97f4a7c15u;
@@ -47,10 +39,6 @@ double hashed(std::uint32_t seed, std::uint32_t patch) {
 gl::Buffer storage(const char* name, std::size_t bytes) { return gl::Buffer(name, std::max<std::size_t>(bytes, 16), nullptr, GL_DYNAMIC_COPY); }
 
 }  // namespace
-
-std::string_view nameOf(HemicubeVisibility visibility) { return nameIn(kVisibilities, visibility); }
-
-HemicubeVisibility parseHemicubeVisibility(std::string_view name) { return valueIn(kVisibilities, name, "visibility"); }
 
 namespace {
 /// Work of a hemicube, about: gl/pieces.hpp. By rays at least, which is more than by raster but for very many patches.

@@ -6,6 +6,7 @@
 // Sources: shaders/REFERENCES.md [CohenGreenberg1985], [BaumRushmeierWinget1989], [Olano1997].
 #pragma once
 
+#include "base/named_values.hpp"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "gl/pieces.hpp"
@@ -32,9 +33,7 @@ enum class HemicubeVisibility {
   raster,      ///< a rasteriser in compute shaders
   rays         ///< one through each pixel's centre
 };
-std::string_view nameOf(HemicubeVisibility visibility);
-/// "auto", "item-buffer", "raster" or "rays"; anything else throws Error(badInput).
-HemicubeVisibility parseHemicubeVisibility(std::string_view name);
+constexpr std::array<std::string_view, 4> namesOf(HemicubeVisibility) { return {"auto", "item-buffer", "raster", "rays"}; }
 
 struct HemicubeSettings {
   HemicubeVisibility visibility = HemicubeVisibility::automatic;

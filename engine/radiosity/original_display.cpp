@@ -1,7 +1,6 @@
 #include "radiosity/original_display.hpp"
 
 #include "base/error.hpp"
-#include "base/named_values.hpp"
 #include "gl/pass.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -15,9 +14,6 @@
 namespace lucerna {
 
 namespace {
-
-constexpr std::array kMappings{std::pair{RadMapping::logarithmic, "log"}, std::pair{RadMapping::linear, "linear"}, std::pair{RadMapping::filmic, "filmic"},
-                               std::pair{RadMapping::falseColours, "false"}, std::pair{RadMapping::bits24, "bits"}};
 
 glm::vec3 grey(double value) { return glm::vec3(static_cast<float>(std::clamp(value, 0.0, 1.0))); }
 
@@ -45,10 +41,6 @@ glm::vec3 bytesOf(const RadTriangle& t) {
 }
 
 }  // namespace
-
-std::string_view nameOf(RadMapping mapping) { return nameIn(kMappings, mapping); }
-
-RadMapping parseRadMapping(std::string_view name) { return valueIn(kMappings, name, "--mapping"); }
 
 double exposureOf(std::span<const RadTriangle> triangles) {
   std::vector<std::size_t> order(triangles.size());

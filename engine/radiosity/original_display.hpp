@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/image.hpp"
+#include "base/named_values.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 #include "radiosity/rad_file.hpp"
@@ -19,9 +20,7 @@
 namespace lucerna {
 
 enum class RadMapping { logarithmic, linear, filmic, falseColours, bits24 };
-std::string_view nameOf(RadMapping mapping);
-/// log, linear, filmic, false or bits; throws Error(badInput) listing them.
-RadMapping parseRadMapping(std::string_view name);
+constexpr std::array<std::string_view, 5> namesOf(RadMapping) { return {"log", "linear", "filmic", "false", "bits"}; }
 
 struct RadDisplay {
   RadMapping mapping = RadMapping::logarithmic;

@@ -36,7 +36,7 @@ class OriginalRadiosity {
     bool gaussSeidel = false;                              ///< new values used at once, else from the next sweep on
     RadiosityDeviations deviations = publishedRadiosity();
     double nearPlane = 0.0;                                ///< scene units; 0: 1e-4 of the scene's diagonal
-    unsigned seed = 1;                                     ///< of the roll where rad.fixed-orientation is off
+    unsigned seed = 1;                                     ///< of the roll where radiosity.fixed-orientation is off
   };
 
   /// `triangles` are checked ones (checkRadTriangles) and must outlive this.

@@ -35,25 +35,6 @@ RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& pr
 
 }  // namespace
 
-std::string_view nameOf(RadiosityView::Mapping mapping) {
-  switch (mapping) {
-    case RadiosityView::Mapping::tone: return "tone";
-    case RadiosityView::Mapping::linear: return "linear";
-    case RadiosityView::Mapping::logarithmic: return "log";
-    case RadiosityView::Mapping::falseColours: return "false-colours";
-  }
-  return "?";
-}
-
-std::string_view nameOf(RadiosityView::Direct direct) {
-  switch (direct) {
-    case RadiosityView::Direct::automatic: return "auto";
-    case RadiosityView::Direct::patches: return "patches";
-    case RadiosityView::Direct::pixels: return "pixels";
-  }
-  return "?";
-}
-
 RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings, const glm::dvec3& origin)
     : settings_(settings), solution_(solveOrLoad(context, programs, scene, settings)), lit_(litScene(scene, solution_.mesh, origin)) {
   std::vector<glm::dvec3> patchLight = solution_.irradiance;

@@ -5,6 +5,7 @@
 // (shaders/render/direct_rays.glsl, bound by the caller): then patches give only reflected light.
 #pragma once
 
+#include "base/named_values.hpp"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
@@ -55,7 +56,7 @@ class RadiosityView {
   gl::Buffer light_, faces_;
 };
 
-std::string_view nameOf(RadiosityView::Mapping mapping);
-std::string_view nameOf(RadiosityView::Direct direct);
+constexpr std::array<std::string_view, 4> namesOf(RadiosityView::Mapping) { return {"tone", "linear", "log", "false-colours"}; }
+constexpr std::array<std::string_view, 3> namesOf(RadiosityView::Direct) { return {"auto", "patches", "pixels"}; }
 
 }  // namespace lucerna

@@ -1,39 +1,25 @@
 #include "radiosity/settings.hpp"
 
 #include "base/error.hpp"
-#include "base/named_values.hpp"
+#include "base/log.hpp"
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace lucerna {
 
 namespace {
 
-constexpr std::array kSolvers{
-    std::pair{RadiositySolver::automatic, "auto"},
-    std::pair{RadiositySolver::jacobi, "jacobi"},
-    std::pair{RadiositySolver::gaussSeidel, "gauss-seidel"},
-    std::pair{RadiositySolver::progressive, "progressive"},
-    std::pair{RadiositySolver::overshoot, "overshoot"},
-    std::pair{RadiositySolver::anderson, "anderson"},
-    std::pair{RadiositySolver::perRoom, "per-room"},
-    std::pair{RadiositySolver::conjugateGradients, "cg"},
-};
-
 constexpr std::array kDeviations{
-    RadiosityDeviation{"rad.published-map", "pixels weighted by 1/r^2 and b/r^2 instead of the delta form factor", &RadiosityDeviations::publishedMap},
-    RadiosityDeviation{"rad.24-bit", "radiosity in whole numbers of 24 bits, rounded down", &RadiosityDeviations::values24Bit},
-    RadiosityDeviation{"rad.centroid", "one hemicube a triangle, at its centroid", &RadiosityDeviations::centroid},
-    RadiosityDeviation{"rad.fixed-orientation", "hemicubes turned towards the first corner, not rolled at random", &RadiosityDeviations::fixedOrientation},
-    RadiosityDeviation{"rad.no-near-field", "what is nearer than the near plane or a patch's size is not treated", &RadiosityDeviations::noNearField},
+    RadiosityDeviation{"radiosity.published-map", "pixels weighted by 1/r^2 and b/r^2 instead of the delta form factor", &RadiosityDeviations::publishedMap},
+    RadiosityDeviation{"radiosity.24-bit", "radiosity in whole numbers of 24 bits, rounded down", &RadiosityDeviations::values24Bit},
+    RadiosityDeviation{"radiosity.centroid", "one hemicube a patch, at its centroid, whatever its size", &RadiosityDeviations::centroid},
+    RadiosityDeviation{"radiosity.fixed-orientation", "hemicubes turned towards the first corner, not rolled at random", &RadiosityDeviations::fixedOrientation},
+    RadiosityDeviation{"radiosity.no-near-field", "near pairs and small sources by pixels alone, without a repair", &RadiosityDeviations::noNearField},
 };
 
 }  // namespace
-
-std::string_view nameOf(RadiositySolver solver) { return nameIn(kSolvers, solver); }
-
-RadiositySolver parseRadiositySolver(std::string_view name) { return valueIn(kSolvers, name, "--solver"); }
 
 std::span<const RadiosityDeviation> allRadiosityDeviations() { return kDeviations; }
 
@@ -45,7 +31,11 @@ RadiosityDeviations publishedRadiosity() {
 
 void applyRadiosityDeviation(RadiosityDeviations& deviations, std::string_view assignment) {
   const auto equals = assignment.find('=');
-  const std::string_view name = assignment.substr(0, equals);
+  std::string name(assignment.substr(0, equals));
+  if (name.starts_with("rad.")) {  // its former spelling
+    const std::string former = std::exchange(name, "radiosity" + name.substr(3));
+    logWarning("--deviation {}: now written {}", former, name);
+  }
   const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
   if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
   const auto found = std::find_if(kDeviations.begin(), kDeviations.end(), [&](const RadiosityDeviation& d) { return d.name == name; });

@@ -3,7 +3,9 @@
 // Radiosity here is exitance in the scene's own units; the original counts it in steps of its 24-bit numbers (rad_file.hpp).
 #pragma once
 
-#include <cstddef>
+#include "base/named_values.hpp"
+
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,9 +15,9 @@ namespace lucerna {
 
 /// How the linear system is solved. The original has the first two.
 enum class RadiositySolver { automatic, jacobi, gaussSeidel, progressive, overshoot, anderson, perRoom, conjugateGradients };
-std::string_view nameOf(RadiositySolver solver);
-/// Throws Error(badInput) listing the names.
-RadiositySolver parseRadiositySolver(std::string_view name);
+constexpr std::array<std::string_view, 8> namesOf(RadiositySolver) {
+  return {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "per-room", "cg"};
+}
 
 /// Each is what the published program does; false is right.
 struct RadiosityDeviations {
@@ -26,17 +28,7 @@ struct RadiosityDeviations {
   bool noNearField = false;       ///< no correction closer than the near plane or a patch's own size
 };
 
-struct RadiositySettings {
-  int view = 500;                      ///< pixels a side of the hemicube's full face; even
-  RadiositySolver solver = RadiositySolver::automatic;
-  RadiosityDeviations deviations;
-  double error = 0.0;                  ///< stop at this guaranteed relative error; 0: when nothing changes
-  int maxSweeps = 0;                   ///< 0: no limit
-  std::size_t memoryBytes = 0;         ///< for kept rows; 0: chosen from the machine
-  unsigned seed = 1;                   ///< of the random roll
-};
-
-/// A named switch, as in engine/render/deviations.hpp. Names begin with "rad.".
+/// A named switch, as in engine/settings/deviations.hpp. Names begin with "radiosity.", once "rad.".
 struct RadiosityDeviation {
   const char* name;
   const char* meaning;

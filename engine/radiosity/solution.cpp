@@ -241,7 +241,7 @@ RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution,
 /// What each deviation is in this solver. The published map knows neither closed forms nor a repair, which would hide it.
 RadiositySolutionSettings withDeviations(RadiositySolutionSettings settings) {
   const RadiosityDeviations& d = settings.deviations;
-  if (d.values24Bit) throwBadInput("--deviation rad.24-bit=on: whole numbers are the published solver's; use lucerna radiosity solve --fidelity original");
+  if (d.values24Bit) throwBadInput("--deviation radiosity.24-bit=on: whole numbers are the published solver's; use lucerna radiosity solve --fidelity original");
   if (d.publishedMap) settings.hemicubes.map = DeltaMap::published;
   if (d.publishedMap || d.noNearField) settings.hemicubes.exactPixels = 0, settings.repair = false;
   if (d.centroid) settings.hemicubes.nearDistance = 0.0f;

@@ -31,7 +31,7 @@ struct RadiositySolutionSettings {
   std::size_t memoryBytes = 0;     ///< for form factors; the rest is read from the checkpoint for each product, or recomputed. 0: half of the free memory
 };
 
-/// What decides a solution, as on the command line: "rad.edge=0 rad.resolution=64 ...". Solver, memory and visibility are no part of it: with them a solution
+/// What decides a solution, as on the command line: "radiosity.edge=0 radiosity.resolution=64 ...". Solver, memory and visibility are no part of it: with them a solution
 /// differs within its error at most.
 std::string textOf(const RadiositySolutionSettings& settings);
 

@@ -42,9 +42,15 @@ std::uint64_t fingerprint(const Scene& scene) {
   return hash.value();
 }
 
+/// "KEY=VALUE" each. Files of versions before this one have former spellings of keys.
 std::vector<std::string> wordsOf(const std::string& text) {
   std::istringstream stream(text);
-  return {std::istream_iterator<std::string>(stream), {}};
+  std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
+  for (std::string& word : words) {
+    if (word.starts_with("rad.near=")) word.replace(0, 8, "radiosity.part-distance");
+    if (word.starts_with("rad.")) word.replace(0, 3, "radiosity");
+  }
+  return words;
 }
 
 std::uint32_t bitsOf(const RadiosityDeviations& deviations) {
@@ -56,10 +62,10 @@ std::uint32_t bitsOf(const RadiosityDeviations& deviations) {
 }  // namespace
 
 std::string textOf(const RadiositySolutionSettings& s) {
-  std::string text = s.wholeTriangles ? "patches=triangles" : fmt::format("rad.edge={}", s.patches.longestEdge);
-  text += fmt::format(" rad.resolution={} rad.exact-pixels={} rad.near={} rad.parts={} rad.seed={} rad.repair={} rad.refinements={}", s.hemicubes.resolution, s.hemicubes.exactPixels,
+  std::string text = s.wholeTriangles ? "patches=triangles" : fmt::format("radiosity.edge={}", s.patches.longestEdge);
+  text += fmt::format(" radiosity.resolution={} radiosity.exact-pixels={} radiosity.part-distance={} radiosity.parts={} radiosity.seed={} radiosity.repair={} radiosity.refinements={}", s.hemicubes.resolution, s.hemicubes.exactPixels,
                       s.hemicubes.nearDistance, s.hemicubes.mostParts, s.hemicubes.seed, s.repair ? "on" : "off", s.refinements);
-  if (s.refinements > 0) text += fmt::format(" rad.steep={}", s.steep);
+  if (s.refinements > 0) text += fmt::format(" radiosity.steep={}", s.steep);
   return text;
 }
 
@@ -76,7 +82,7 @@ void checkSettings(const std::filesystem::path& file, const RadiositySolution& s
   }
   if (!(solution.progress.errorBound <= asked.error)) {
     const bool isDefault = asked.error == RadiositySolutionSettings{}.error;
-    (isDefault ? other : wrong) += fmt::format("{}an error of {:.3g} (asked for: rad.error={:.3g})", (isDefault ? other : wrong).empty() ? "" : ", ", solution.progress.errorBound, asked.error);
+    (isDefault ? other : wrong) += fmt::format("{}an error of {:.3g} (asked for: radiosity.error={:.3g})", (isDefault ? other : wrong).empty() ? "" : ", ", solution.progress.errorBound, asked.error);
   }
   if (!wrong.empty()) throwBadInput("{}: solved with {}: leave that out, or name another file to solve anew", file.string(), wrong);
   if (!other.empty()) logWarning("{}: shown as it was solved, with {}", file.string(), other);

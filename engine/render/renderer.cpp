@@ -40,16 +40,6 @@ glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 
          glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
 }
 
-template <class T>
-T parseNamed(std::string_view name, std::string_view option, std::initializer_list<T> values) {
-  std::string known;
-  for (T value : values) {
-    if (name == nameOf(value)) return value;
-    known += (known.empty() ? "" : ", ") + std::string(nameOf(value));
-  }
-  throwBadInput("--{} {}: unknown; there are {}", option, name, known);
-}
-
 std::unique_ptr<RadiosityView> makeRadiosity(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings,
                                              const glm::dvec3& origin) {
   if (settings.technique != Technique::radiosity) return nullptr;
@@ -71,33 +61,6 @@ LpvReceivers::Light receivedLight(Component component) {
 
 }  // namespace
 
-std::string_view nameOf(Technique technique) {
-  switch (technique) {
-    case Technique::direct: return "direct";
-    case Technique::rsm: return "rsm";
-    case Technique::lpv: return "lpv";
-    case Technique::radiosity: return "radiosity";
-  }
-  return "?";
-}
-
-std::string_view nameOf(Component component) {
-  switch (component) {
-    case Component::all: return "all";
-    case Component::direct: return "direct";
-    case Component::indirect: return "indirect";
-  }
-  return "?";
-}
-
-Technique parseTechnique(std::string_view name) {
-  return parseNamed(name, "technique", {Technique::direct, Technique::rsm, Technique::lpv, Technique::radiosity});
-}
-
-Component parseComponent(std::string_view name) {
-  return parseNamed(name, "component", {Component::all, Component::direct, Component::indirect});
-}
-
 Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings)
     : settings_(settings),
       needs_(analyse(scene)),
@@ -107,12 +70,13 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       showsReceivers_(settings.technique == Technique::lpv && settings.lpv.transport != LpvTransport::propagate &&
                       LpvReceivers::isNeeded(needs_, settings.lpv.transport, receivedLight(settings.component))),
       showsGather_(settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs_)),
-      exposure_(scene.exposure),
+      exposure_(settings.exposure.value_or(scene.exposure)),
       timer_(context.capabilities().softwareRenderer),
       radiosity_(makeRadiosity(context, programs, scene, settings, origin_)),
       gpuScene_(radiosity_ ? radiosity_->scene() : aboutOrigin(scene), needs_, context.capabilities(), settings.textures),
       frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, GL_DYNAMIC_DRAW),
       noAttributes_("full screen") {
+  if (settings.technique == Technique::path) throwBadInput("--technique path: a picture of its own (lucerna render); there are direct, rsm, lpv, radiosity");
   if (moved_) moved_->textures.clear();  // they are on the GPU
   const Scene& drawn = gpuScene_.scene();
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);

@@ -16,13 +16,13 @@
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "lpv/receivers.hpp"
-#include "pathtracer/path_deviations.hpp"
 #include "radiosity/radiosity_view.hpp"
 #include "render/direct_rays.hpp"
 #include "rsm/lamp_choice.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 #include "rsm/rsm_gather.hpp"
 #include "scene/needs.hpp"
+#include "settings/render_settings.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -32,32 +32,6 @@
 #include <vector>
 
 namespace lucerna {
-
-enum class Technique { direct, rsm, lpv, radiosity };
-enum class Component { all, direct, indirect };
-
-std::string_view nameOf(Technique technique);
-std::string_view nameOf(Component component);
-Technique parseTechnique(std::string_view name);  ///< throws Error(badInput) listing the names
-Component parseComponent(std::string_view name);
-
-struct RenderSettings {
-  Technique technique = Technique::lpv;
-  Component component = Component::all;
-  glm::ivec2 size{1280, 720};
-  bool reuse = true;             ///< stages whose inputs are those of the frame before are not run again; the same picture, bit by bit
-  bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits: for pictures that are measured
-  GpuSceneSettings textures;
-  ShadowMap::Settings shadow;          ///< of the sun; the size is that of each cascade where there are several
-  SunCascadeSettings sunCascades;
-  LocalLights::Settings lights;
-  ReflectiveShadowMap::Settings rsm;   ///< the size serves the sun and spots; each face of an omnidirectional light has half of it. `light` is not read
-  RsmGather::Settings gather;
-  LightPropagationVolume::Settings lpv;
-  PathDeviations path;                 ///< of the path tracer, which renders by itself
-  RadiosityView::Settings radiosity;   ///< `light` is not read: the component says it
-  double unmeasuredTurns = gl::kUnmeasuredTurns;  ///< of a piece of radiosity's shadow rays of which nothing is known (gl/pieces.hpp)
-};
 
 class Renderer {
  public:

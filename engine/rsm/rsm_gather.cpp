@@ -29,18 +29,6 @@ double radicalInverse(std::uint32_t i) {
 
 }  // namespace
 
-std::string_view nameOf(RsmGather::Weight weight) { return weight == RsmGather::Weight::unbiased ? "unbiased" : "published"; }
-std::string_view nameOf(RsmGather::Rotation rotation) { return rotation == RsmGather::Rotation::none ? "none" : "noise"; }
-std::string_view nameOf(RsmGather::Near nearField) {
-  switch (nearField) {
-    case RsmGather::Near::none: return "none";
-    case RsmGather::Near::clamp: return "clamp";
-    case RsmGather::Near::disc: return "disc";
-    case RsmGather::Near::quad: return "quad";
-  }
-  return "?";
-}
-
 std::vector<glm::vec4> RsmGather::pattern(int samples, Weight weight, const glm::dvec2& shift) {
   std::vector<glm::vec4> result;
   for (int i = 0; i < samples; ++i) {

@@ -3,6 +3,7 @@
 // See README.md in this folder for inputs, outputs, units, sources, deviations and measurements.
 #pragma once
 
+#include "base/named_values.hpp"
 #include "forward/visible_surfaces.hpp"
 #include "gl/pass.hpp"
 #include "gl/read_back.hpp"
@@ -83,8 +84,8 @@ class RsmGather {
   Counts counts_;
 };
 
-std::string_view nameOf(RsmGather::Weight weight);
-std::string_view nameOf(RsmGather::Rotation rotation);
-std::string_view nameOf(RsmGather::Near nearField);
+constexpr std::array<std::string_view, 2> namesOf(RsmGather::Weight) { return {"unbiased", "published"}; }
+constexpr std::array<std::string_view, 2> namesOf(RsmGather::Rotation) { return {"none", "noise"}; }
+constexpr std::array<std::string_view, 4> namesOf(RsmGather::Near) { return {"none", "clamp", "disc", "quad"}; }
 
 }  // namespace lucerna

@@ -67,8 +67,8 @@ TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
   std::map<std::string, double> nrmse;
   for (const auto& row : json["deviations"]) nrmse[row["name"]] = row["nrmse"];
   ASSERT_EQ(nrmse.size(), 7u);
-  EXPECT_LT(nrmse["rad.published-map=off"], 0.9 * nrmse["as published"]);
-  EXPECT_LT(nrmse["all off but rad.centroid"], nrmse["as published"]);
+  EXPECT_LT(nrmse["radiosity.published-map=off"], 0.9 * nrmse["as published"]);
+  EXPECT_LT(nrmse["all off but radiosity.centroid"], nrmse["as published"]);
 }
 
 TEST(BenchRad, PicturesShowWhatTheFiguresShow) {

@@ -134,7 +134,7 @@ TEST_F(CommandLine, DeviationsAreReported) {
     const bool isMarked = star == "*";
     if (isMarked) words >> name;
     else name = star;
-    if (!name.starts_with("lpv.") && !name.starts_with("rsm.") && !name.starts_with("path.") && !name.starts_with("rad.")) continue;
+    if (!name.starts_with("lpv.") && !name.starts_with("rsm.") && !name.starts_with("path.") && !name.starts_with("radiosity.")) continue;
     ++known;
     if (isMarked) marked.push_back(name);
   }

@@ -42,8 +42,8 @@ TEST_F(GlErrors, LargeHemicubesSeeWhatSmallOnesSee) {
     std::ofstream(path("room.obj")) << "mtllib plate.mtl\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\nusemtl lamp\nf 1 4 3 2\nusemtl m\nf 5 6 7 8\n"
                                         "f 1 2 6 5\nf 4 8 7 3\nf 1 5 8 4\nf 2 3 7 6\n";
     std::ofstream(path("plate.mtl")) << "newmtl m\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n";
-    const RunResult result = run("'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique radiosity --camera 0,1,0.9,0,1,-1,70 --size 16x16 --quiet --set rad.edge=4 --set rad.direct=patches --set rad.exact-pixels=0 " +
-                                 "--set rad.repair=off --set rad.visibility=" + way + " --set rad.resolution=" + std::to_string(resolution) + " -o '" + path("o.pfm") + "' --json '" + path("o.json") + "'");
+    const RunResult result = run("'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique radiosity --camera 0,1,0.9,0,1,-1,70 --size 16x16 --quiet --set radiosity.edge=4 --set radiosity.direct=patches --set radiosity.exact-pixels=0 " +
+                                 "--set radiosity.repair=off --set radiosity.visibility=" + way + " --set radiosity.resolution=" + std::to_string(resolution) + " -o '" + path("o.pfm") + "' --json '" + path("o.json") + "'");
     EXPECT_EQ(result.exitCode, 0) << result.err;
     std::ifstream stream(path("o.json"));
     const std::string json((std::istreambuf_iterator<char>(stream)), {});

@@ -67,38 +67,50 @@ TEST_F(Inputs, NumbersThatAreNoneAreRefused) {
     expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --edge " + value, 2, {"--edge"});
     expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --memory " + value, 2, {"--memory"});
     expectRefused(std::string("tune ") + path("m.obj") + " -o " + path("x.pfm") + " --frame-time " + value, 2, {"--frame-time"});
-    expectRefused(render(std::string("--set rad.edge=") + value + " --technique radiosity"), 2, {"rad.edge"});
+    expectRefused(render(std::string("--set radiosity.edge=") + value + " --technique radiosity"), 2, {"radiosity.edge"});
   }
 }
 
 TEST_F(Inputs, NumbersBeyondTheirRangeAreRefused) {
   const std::string solve = "radiosity solve " + path("m.obj") + " " + path("x.pfm") + " ";
-  for (const char* option : {"--error 0", "--error -1", "--memory -5", "--near -1", "--edge -1", "--save-every -1", "--max-sweeps -1", "--refinements 99"})
+  for (const char* option : {"--error 0", "--error -1", "--memory -5", "--near-plane -1", "--edge -1", "--save-every -1", "--max-sweeps -1", "--refinements 99"})
     expectRefused(solve + option, 2, {std::string(option).substr(0, std::string(option).find(' '))});
   expectRefused("bench rays " + path("m.obj") + " --split-budget -1", 2, {"--split-budget"});
   expectRefused("tune " + path("m.obj") + " -o " + path("x.pfm") + " --frame-time 0", 2, {"--frame-time"});
 }
 
 TEST_F(Inputs, SettingsThatATechniqueDoesNotReadAreOneWarning) {
-  const RunResult path_ = RUN_LUCERNA(render("--technique path --spp 1 --set lpv.cells=8 --set rad.edge=1"));
+  const RunResult path_ = RUN_LUCERNA(render("--technique path --spp 1 --set lpv.cells=8 --set radiosity.edge=1"));
   EXPECT_EQ(path_.exitCode, 0) << path_.err;
   EXPECT_EQ(std::count(path_.err.begin(), path_.err.end(), '\n'), 1) << path_.err;
-  for (const char* part : {"lpv.cells, rad.edge", "path does not read"}) EXPECT_NE(path_.err.find(part), std::string::npos) << path_.err;
+  for (const char* part : {"lpv.cells, radiosity.edge", "path does not read"}) EXPECT_NE(path_.err.find(part), std::string::npos) << path_.err;
   EXPECT_NE(RUN_LUCERNA(render("--technique direct --set rsm.size=8")).err.find("rsm.size: technique direct"), std::string::npos);
-  for (const char* read : {"lpv --set lpv.cells=8 --set rsm.size=8", "direct --set shadow.size=64 --set exposure=2", "rsm --set rsm.samples=9 --set texture.anisotropy=1"})
+  for (const char* read : {"lpv --set lpv.transport=gather --set lpv.cells=8 --set rsm.size=8", "direct --set shadow.size=64 --set exposure=2", "rsm --set rsm.samples=9 --set texture.anisotropy=1"})
     EXPECT_EQ(RUN_LUCERNA(render(std::string("--technique ") + read)).err.find("does not read"), std::string::npos) << read;
 }
 
+TEST_F(Inputs, FormerSpellingsWorkAndSayTheNewOne) {
+  const auto warned = [&](const std::string& options, const std::string& line) {
+    const RunResult result = RUN_LUCERNA(render(options));
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_NE(result.err.find(line), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("does not read"), std::string::npos) << result.err;
+  };
+  warned("--technique radiosity --set rad.edge=1 --set radiosity.resolution=16", "--set rad.edge: now written radiosity.edge");
+  warned("--technique radiosity --set radiosity.edge=1 --set radiosity.resolution=16 --deviation rad.centroid=on", "--deviation rad.centroid: now written radiosity.centroid");
+  warned("--technique rsm --set rsm.samples=9 --set rsm.near=disc", "--set rsm.near: now written rsm.near-field");
+}
+
 TEST_F(Inputs, ASolutionOfOtherSettingsIsSaidSo) {
-  const std::string file = "--technique radiosity --set rad.file=" + path("s.lit") + " ";
-  ASSERT_EQ(RUN_LUCERNA(render(file + "--set rad.edge=1 --set rad.resolution=16")).exitCode, 0);
+  const std::string file = "--technique radiosity --set radiosity.file=" + path("s.lit") + " ";
+  ASSERT_EQ(RUN_LUCERNA(render(file + "--set radiosity.edge=1 --set radiosity.resolution=16")).exitCode, 0);
   fs::remove(folder().path() / "x.pfm");
-  expectRefused(render(file + "--set rad.edge=0.25"), 2, {"s.lit", "rad.edge=1 (asked for: rad.edge=0.25)", "another file"});
-  expectRefused(render(file + "--set rad.refinements=1"), 2, {"s.lit", "rad.refinements=0 (asked for: rad.refinements=1)"});
+  expectRefused(render(file + "--set radiosity.edge=0.25"), 2, {"s.lit", "radiosity.edge=1 (asked for: radiosity.edge=0.25)", "another file"});
+  expectRefused(render(file + "--set radiosity.refinements=1"), 2, {"s.lit", "radiosity.refinements=0 (asked for: radiosity.refinements=1)"});
   const RunResult shown = RUN_LUCERNA(render(file));
   EXPECT_EQ(shown.exitCode, 0) << shown.err;
-  for (const char* part : {"as it was solved", "rad.edge=1", "rad.resolution=16"}) EXPECT_NE(shown.err.find(part), std::string::npos) << shown.err;
-  EXPECT_EQ(RUN_LUCERNA(render(file + "--set rad.edge=1 --set rad.resolution=16")).err.find("as it was solved"), std::string::npos);
+  for (const char* part : {"as it was solved", "radiosity.edge=1", "radiosity.resolution=16"}) EXPECT_NE(shown.err.find(part), std::string::npos) << shown.err;
+  EXPECT_EQ(RUN_LUCERNA(render(file + "--set radiosity.edge=1 --set radiosity.resolution=16")).err.find("as it was solved"), std::string::npos);
 }
 
 TEST_F(Inputs, PicturesOfOtherFormatsAreOneLine) {

@@ -219,8 +219,8 @@ TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
   for (const auto& row : ladder.at("rows")) {
     EXPECT_EQ(row.at("technique"), "radiosity");
     for (const std::string setting : row.at("settings")) {
-      if (row.at("series") == "radiosity patches" && setting.starts_with("rad.edge=")) edges[setting.substr(9)] = row;
-      if (setting.starts_with("rad.resolution=")) resolutions[setting.substr(15)] = row;
+      if (row.at("series") == "radiosity patches" && setting.starts_with("radiosity.edge=")) edges[setting.substr(15)] = row;
+      if (setting.starts_with("radiosity.resolution=")) resolutions[setting.substr(21)] = row;
     }
   }
   ASSERT_EQ(edges.size(), 3u);
@@ -235,8 +235,8 @@ TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
   std::map<std::string, double> bias;
   const nlohmann::json deviations = json("error.json");
   for (const auto& row : deviations.at("rows")) bias[row.at("fidelity") == "original" ? "original" : row.at("deviations").empty() ? "" : row.at("deviations")[0].get<std::string>()] = row.at("bias");
-  for (const char* name : {"", "original", "rad.published-map=on", "rad.centroid=on", "rad.fixed-orientation=on", "rad.no-near-field=on"}) EXPECT_TRUE(bias.contains(name)) << name;
-  EXPECT_NE(bias[""], bias["rad.published-map=on"]);
+  for (const char* name : {"", "original", "radiosity.published-map=on", "radiosity.centroid=on", "radiosity.fixed-orientation=on", "radiosity.no-near-field=on"}) EXPECT_TRUE(bias.contains(name)) << name;
+  EXPECT_NE(bias[""], bias["radiosity.published-map=on"]);
 }
 
 TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {

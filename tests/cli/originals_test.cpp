@@ -62,7 +62,7 @@ std::string small(const std::string& command) {
   if (is("render")) {
     more = " --size 32x18 --quiet";
     if (has("--technique path")) more += " --spp 1";
-    if (has("--technique radiosity")) more += " --set rad.resolution=16 --set rad.error=0.1";
+    if (has("--technique radiosity")) more += " --set radiosity.resolution=16 --set radiosity.error=0.1";
     else if (!has("--technique") && !has("lpv.transport=rays")) more += " --set lpv.cells=8";
   }
   if (is("walk")) more = " --record walk --frames 2 --size 32x18 --set lpv.cells=8 --quiet";

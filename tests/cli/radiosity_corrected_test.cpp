@@ -36,10 +36,10 @@ class RadiosityCorrected : public ::testing::Test {
   }
   // Pixels learn what they see in one way: automatic chooses by time, and ways differ in their last bits.
   std::string solve(const std::string& in, const std::string& out, const std::string& more = "") const {
-    return "'" LUCERNA_BINARY "' radiosity solve '" + path(in) + "' '" + path(out) + "' 16 --set rad.edge=0.5 --set rad.visibility=raster " + more;
+    return "'" LUCERNA_BINARY "' radiosity solve '" + path(in) + "' '" + path(out) + "' 16 --set radiosity.edge=0.5 --set radiosity.visibility=raster " + more;
   }
   std::string render(const std::string& more, const std::string& out = "p.pfm") const {
-    return "'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique radiosity --set rad.visibility=raster --size 24x16 --camera 0,0,0.9,0,0,-1,70 --json '" + path("r.json") + "' -o '" + path(out) + "' " + more;
+    return "'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique radiosity --set radiosity.visibility=raster --size 24x16 --camera 0,0,0.9,0,0,-1,70 --json '" + path("r.json") + "' -o '" + path(out) + "' " + more;
   }
   void expectRefused(const std::string& command, const std::vector<std::string>& parts, int exitCode = 2) const {
     const RunResult result = run(command);
@@ -58,17 +58,17 @@ class RadiosityCorrected : public ::testing::Test {
 };
 
 TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
-  const std::string all = "--set rad.edge=0.7 --set rad.resolution=24 --set rad.solver=anderson --set rad.error=1e-4 --set rad.seed=5 --set rad.exact-pixels=6 --set rad.near=2 "
-                          "--set rad.parts=4 --set rad.products=50 --set rad.memory=100 --set rad.repair=off --set rad.refinements=1 --set rad.steep=0.2 --deviation rad.fixed-orientation=on ";
+  const std::string all = "--set radiosity.edge=0.7 --set radiosity.resolution=24 --set radiosity.solver=anderson --set radiosity.error=1e-4 --set radiosity.seed=5 --set radiosity.exact-pixels=6 --set radiosity.part-distance=2 "
+                          "--set radiosity.parts=4 --set radiosity.products=50 --set radiosity.memory=100 --set radiosity.repair=off --set radiosity.refinements=1 --set radiosity.steep=0.2 --deviation radiosity.fixed-orientation=on ";
   expectWorks(solve("room.obj", "a.lit", all + "--json '" + path("s.json") + "'"));
   const nlohmann::json s = json("s.json");
   EXPECT_EQ(s["solver"], "anderson");
   EXPECT_LE(s["error_bound"].get<double>(), 1e-4);
-  EXPECT_EQ(s["deviations"], nlohmann::json::array({"rad.fixed-orientation"}));
+  EXPECT_EQ(s["deviations"], nlohmann::json::array({"radiosity.fixed-orientation"}));
   EXPECT_FALSE(fs::exists(path("a.lit.rows")));
   EXPECT_FALSE(fs::exists(path("a.lit.rows.1")));
   // The picture of that file and the one that render solves itself are the same to the bit.
-  expectWorks(render("--deviation rad.fixed-orientation=on --set rad.file='" + path("a.lit") + "'", "file.pfm"));
+  expectWorks(render("--deviation radiosity.fixed-orientation=on --set radiosity.file='" + path("a.lit") + "'", "file.pfm"));
   EXPECT_EQ(json("r.json")["radiosity"]["hemicubes"], 0);
   expectWorks(render(all, "own.pfm"));
   EXPECT_EQ(json("r.json")["radiosity"]["patches"], s["patches"]);
@@ -76,31 +76,31 @@ TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
   EXPECT_EQ(bytes("file.pfm"), bytes("own.pfm"));
   // Each does something: another number of patches, or another picture.
   std::set<std::string> pictures{lucerna::readFileText(path("own.pfm"))};
-  for (const char* other : {"--set rad.edge=1.2", "--set rad.resolution=32", "--set rad.seed=6 --deviation rad.fixed-orientation=off", "--set rad.exact-pixels=0", "--set rad.near=0", "--set rad.repair=on",
-                            "--deviation rad.published-map=on", "--deviation rad.fixed-orientation=off"}) {
+  for (const char* other : {"--set radiosity.edge=1.2", "--set radiosity.resolution=32", "--set radiosity.seed=6 --deviation radiosity.fixed-orientation=off", "--set radiosity.exact-pixels=0", "--set radiosity.part-distance=0", "--set radiosity.repair=on",
+                            "--deviation radiosity.published-map=on", "--deviation radiosity.fixed-orientation=off"}) {
     expectWorks(render(all + other));
     EXPECT_TRUE(pictures.insert(lucerna::readFileText(path("p.pfm"))).second) << other;
   }
-  expectWorks(render(all + "--deviation rad.no-near-field=on"));
-  EXPECT_FALSE(pictures.insert(lucerna::readFileText(path("p.pfm"))).second) << "no closed forms and no repair: the picture of rad.exact-pixels=0";
-  expectWorks(render(all + "--set rad.solver=jacobi"));
+  expectWorks(render(all + "--deviation radiosity.no-near-field=on"));
+  EXPECT_FALSE(pictures.insert(lucerna::readFileText(path("p.pfm"))).second) << "no closed forms and no repair: the picture of radiosity.exact-pixels=0";
+  expectWorks(render(all + "--set radiosity.solver=jacobi"));
   EXPECT_EQ(json("r.json")["radiosity"]["solver"], "jacobi");
-  expectWorks(render("--fidelity original --set rad.edge=1.2"));
-  EXPECT_EQ(json("r.json")["deviations"].dump().find("rad.24-bit"), std::string::npos);
-  for (const char* name : {"rad.published-map", "rad.centroid", "rad.fixed-orientation", "rad.no-near-field"}) EXPECT_NE(json("r.json")["deviations"].dump().find(name), std::string::npos) << name;
+  expectWorks(render("--fidelity original --set radiosity.edge=1.2"));
+  EXPECT_EQ(json("r.json")["deviations"].dump().find("radiosity.24-bit"), std::string::npos);
+  for (const char* name : {"radiosity.published-map", "radiosity.centroid", "radiosity.fixed-orientation", "radiosity.no-near-field"}) EXPECT_NE(json("r.json")["deviations"].dump().find(name), std::string::npos) << name;
 }
 
 TEST_F(RadiosityCorrected, WrongInputIsOneClearLine) {
-  expectRefused(render("--set rad.patch=1"), {"rad.patch=1", "unknown key", "rad.edge"});
-  expectRefused(render("--set rad.resolution=x"), {"rad.resolution", "x"});
-  expectRefused(render("--set rad.solver=magic"), {"magic", "cg", "jacobi"});
-  expectRefused(render("--deviation rad.24-bit=on"), {"rad.24-bit", "--fidelity original"});
-  expectRefused(solve("room.obj", "o.lit", "--deviation rad.24-bit=on"), {"rad.24-bit", "--fidelity original"});
-  expectRefused(solve("room.obj", "o.lit", "--set rad.mesh=on"), {"rad.mesh", "unknown key", "rad.edge"});
+  expectRefused(render("--set radiosity.patch=1"), {"radiosity.patch=1", "unknown key", "radiosity.edge"});
+  expectRefused(render("--set radiosity.resolution=x"), {"radiosity.resolution", "x"});
+  expectRefused(render("--set radiosity.solver=magic"), {"magic", "cg", "jacobi"});
+  expectRefused(render("--deviation radiosity.24-bit=on"), {"radiosity.24-bit", "--fidelity original"});
+  expectRefused(solve("room.obj", "o.lit", "--deviation radiosity.24-bit=on"), {"radiosity.24-bit", "--fidelity original"});
+  expectRefused(solve("room.obj", "o.lit", "--set radiosity.mesh=on"), {"radiosity.mesh", "unknown key", "radiosity.edge"});
   expectRefused(solve("room.obj", "o.lit", "--set lpv.cells=8"), {"lpv.cells", "unknown key"});
-  expectRefused(solve("room.obj", "o.lit", "--near 0.1"), {"--near", "no near plane"});
+  expectRefused(solve("room.obj", "o.lit", "--near-plane 0.1"), {"--near-plane", "no near plane"});
   expectRefused(solve("no.obj", "o.lit"), {"no.obj"});
-  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.rad") + "' --fidelity original --set rad.edge=1", {"--set rad.edge=1"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.rad") + "' --fidelity original --set radiosity.edge=1", {"--set radiosity.edge=1"});
   room("white", "Kd 1 1 1\nKe 1 1 1", "-1 -1 -1", false);
   expectRefused(solve("white.obj", "w.lit"), {"reflectance 1 everywhere in a closed scene"});
   EXPECT_FALSE(fs::exists(path("o.lit")));
@@ -114,19 +114,19 @@ TEST_F(RadiosityCorrected, WrongInputIsOneClearLine) {
   EXPECT_LT(json("h.json")["patches"].get<int>(), json("s.json")["patches"].get<int>());
 
   // A solution that was cut short, that is another scene's, or made with other deviations.
-  expectRefused(render("--set rad.file='" + path("room.obj") + "'"), {"room.obj", "no radiosity solution"});
-  expectRefused(render("--set rad.file='" + path("h.lit") + "'"), {"h.lit", "another scene"});
-  expectRefused(render("--deviation rad.centroid=on --set rad.file='" + path("o.lit") + "'"), {"o.lit", "other deviations"});
+  expectRefused(render("--set radiosity.file='" + path("room.obj") + "'"), {"room.obj", "no radiosity solution"});
+  expectRefused(render("--set radiosity.file='" + path("h.lit") + "'"), {"h.lit", "another scene"});
+  expectRefused(render("--deviation radiosity.centroid=on --set radiosity.file='" + path("o.lit") + "'"), {"o.lit", "other deviations"});
   fs::resize_file(path("o.lit"), fs::file_size(path("o.lit")) - 100);
   const auto cut = bytes("o.lit");
-  expectRefused(render("--set rad.file='" + path("o.lit") + "'"), {"o.lit", "cut short"});
+  expectRefused(render("--set radiosity.file='" + path("o.lit") + "'"), {"o.lit", "cut short"});
   EXPECT_EQ(bytes("o.lit"), cut);
 }
 
 // ---------------------------------------------------------------------------------------------------- killed, full, changed
 
 /// Many small submissions, two meshes.
-const std::string kLong = "--set rad.edge=0.5 --set rad.refinements=1 --set rad.steep=0.3 --set rad.batch=0.05 --quiet ";
+const std::string kLong = "--set radiosity.edge=0.5 --set radiosity.refinements=1 --set radiosity.steep=0.3 --set radiosity.batch=0.05 --quiet ";
 
 TEST_F(RadiosityCorrected, KilledRunsGoOnToTheSameBits) {
   double seconds = 1e9;  // the shorter of two runs: on a busy machine one alone may say too much, and every kill would come too late
@@ -159,11 +159,11 @@ TEST_F(RadiosityCorrected, KilledRunsGoOnToTheSameBits) {
 }
 
 TEST_F(RadiosityCorrected, ACheckpointThatIsCutShortOrAnothersIsHandled) {
-  const std::string edge = "--quiet --set rad.batch=0.05 ";
+  const std::string edge = "--quiet --set radiosity.batch=0.05 ";
   expectWorks(solve("room.obj", "whole.lit", edge));
   // Stopped by Ctrl-C as soon as the first rows are down.
   const auto stopped = [&](const std::string& out) {
-    run("sh -c 'exec \"$0\" \"$@\"' " + solve("room.obj", out, edge + "--set rad.seed=2") + " >/dev/null 2>&1 & pid=$!; while kill -0 $pid 2>/dev/null && ! [ $(stat -c %s '" + path(out + ".rows") +
+    run("sh -c 'exec \"$0\" \"$@\"' " + solve("room.obj", out, edge + "--set radiosity.seed=2") + " >/dev/null 2>&1 & pid=$!; while kill -0 $pid 2>/dev/null && ! [ $(stat -c %s '" + path(out + ".rows") +
         "' 2>/dev/null || echo 0) -gt 9000 ]; do :; done; kill -INT $pid; wait $pid");
     return fs::exists(path(out + ".rows"));
   };
@@ -174,11 +174,11 @@ TEST_F(RadiosityCorrected, ACheckpointThatIsCutShortOrAnothersIsHandled) {
   EXPECT_EQ(bytes("s.lit.rows"), rows);
   // The scene's file was changed in between.
   room("room", "Kd 0.6 0.5 0.4", "-1.2 -1 -1");
-  expectRefused(solve("room.obj", "s.lit", edge + "--set rad.seed=2"), {"s.lit.rows", "another scene"});
+  expectRefused(solve("room.obj", "s.lit", edge + "--set radiosity.seed=2"), {"s.lit.rows", "another scene"});
   EXPECT_EQ(bytes("s.lit.rows"), rows);
   room("room", "Kd 0.6 0.5 0.4");
   // Cut in the middle of a block, of its header, of the file's header: what is whole is taken.
-  const std::string fine = edge + "--set rad.seed=2 ";
+  const std::string fine = edge + "--set radiosity.seed=2 ";
   expectWorks(solve("room.obj", "fine.lit", fine));
   for (const std::size_t size : {rows.size() - 7, std::size_t{24 + 10}, std::size_t{11}, std::size_t{0}}) {
     lucerna::writeFileAtomically(path("s.lit.rows"), std::span(rows).first(size));
@@ -243,7 +243,7 @@ TEST_F(RadiosityCorrected, ADiskThatIsFullLeavesCheckpointAndSolution) {
 
 TEST_F(RadiosityCorrected, WithLittleMemoryTheAnswerIsTheSame) {
   expectWorks(solve("room.obj", "kept.lit", "--error 1e-5 --quiet --json '" + path("k.json") + "'"));
-  const RunResult anew = run(solve("room.obj", "anew.lit", "--error 1e-5 --memory 0.05 --set rad.repair=off --json '" + path("a.json") + "'"));
+  const RunResult anew = run(solve("room.obj", "anew.lit", "--error 1e-5 --memory 0.05 --set radiosity.repair=off --json '" + path("a.json") + "'"));
   ASSERT_EQ(anew.exitCode, 0) << anew.err;
   EXPECT_NE(anew.err.find("read from " + path("anew.lit.rows")), std::string::npos) << anew.err;
   EXPECT_EQ(json("k.json")["hemicubes"], json("k.json")["patches"]);
@@ -251,9 +251,9 @@ TEST_F(RadiosityCorrected, WithLittleMemoryTheAnswerIsTheSame) {
   EXPECT_EQ(json("a.json")["solver"], "anderson");
   EXPECT_LE(json("a.json")["error_bound"].get<double>(), 1e-5);
   // Without repair, of which rows that are read or computed anew get a half, both solve the same system.
-  expectWorks(solve("room.obj", "plain.lit", "--error 1e-5 --set rad.repair=off"));
+  expectWorks(solve("room.obj", "plain.lit", "--error 1e-5 --set radiosity.repair=off"));
   const auto mean = [&](const std::string& file) {
-    expectWorks(render("--set rad.file='" + path(file) + "' --set rad.edge=0.5"));
+    expectWorks(render("--set radiosity.file='" + path(file) + "' --set radiosity.edge=0.5"));
     return json("r.json")["mean"][1].get<double>();
   };
   const double kept = mean("kept.lit"), again = mean("anew.lit"), plain = mean("plain.lit");
@@ -286,7 +286,7 @@ TEST_F(RadiosityCorrected, AgreesWithThePathTracer) {
     expectWorks("'" LUCERNA_BINARY "' compare '" + path("radiosity.pfm") + "' '" + path("path.pfm") + "' --json '" + path("c.json") + "'");
     return json("c.json")["relative_bias"].get<double>();
   };
-  EXPECT_LT(std::abs(bias(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json", "--set rad.edge=0.1 --set rad.resolution=32", "--spp 512")), 0.012);
+  EXPECT_LT(std::abs(bias(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json", "--set radiosity.edge=0.1 --set radiosity.resolution=32", "--spp 512")), 0.012);
 
   // A court under the sun: pillars go on under its floor, beams lie in them and end in its walls. What runs on inside of something must not darken what is seen of it.
   std::ofstream(path("court.mtl")) << "newmtl stone\nKd 0.7 0.65 0.6\n";
@@ -311,9 +311,9 @@ TEST_F(RadiosityCorrected, AgreesWithThePathTracer) {
   box({-2.2, 1.2, -1.3}, {2.2, 1.45, -1.05}, false, true);
   box({0.75, 1.2, -2.2}, {1.0, 1.5, 2.2}, false, true);
   obj.close();
-  const std::string camera = "--camera -1.8,1.9,1.8,1,0,-1,70 ", coarse = camera + "--set rad.edge=0.4 --set rad.resolution=32 ";
+  const std::string camera = "--camera -1.8,1.9,1.8,1,0,-1,70 ", coarse = camera + "--set radiosity.edge=0.4 --set radiosity.resolution=32 ";
   EXPECT_LT(std::abs(bias(path("court.obj"), coarse, camera + "--spp 512")), 0.02);
-  EXPECT_LT(bias(path("court.obj"), coarse + "--deviation rad.centroid=on", camera + "--spp 512"), -0.025);  // -0.029: what the right one must not be
+  EXPECT_LT(bias(path("court.obj"), coarse + "--deviation radiosity.centroid=on", camera + "--spp 512"), -0.025);  // -0.029: what the right one must not be
 }
 
 }  // namespace

@@ -105,8 +105,8 @@ TEST_F(Radiosity, WrongInputIsOneClearLine) {
   expectRefused(solve(good, path("no/such/o.rad")), {"no/such", "no folder"});
   expectRefused(solve(good, "/proc/o.rad"), {"/proc/o.rad", "cannot be written"});
   expectRefused(solve(good, out, "--solver cg"), {"cg", "jacobi", "gauss-seidel"});
-  expectRefused(solve(good, out, "--deviation rad.x=on"), {"rad.x", "rad.24-bit"});
-  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + good + "' '" + out + "' 1 --fidelity original", {"VIEW 1"});
+  expectRefused(solve(good, out, "--deviation radiosity.x=on"), {"radiosity.x", "radiosity.24-bit"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + good + "' '" + out + "' 1 --fidelity original", {"RESOLUTION 1"});
   expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + good + "' '" + out + "' --fidelity exact", {"exact", "original"});
   expectRefused("'" LUCERNA_BINARY "' radiosity show '" + good + "' x -o '" + path("o.png") + "'", {"x", "s ", "c "});
   expectRefused("'" LUCERNA_BINARY "' radiosity show '" + good + "' -o '" + path("o.jpg") + "'", {"png"});

@@ -1,4 +1,5 @@
 // Completions and the manual page, both made from the command line's own tree: asked as the shells ask, rendered as man renders.
+#include "base/files.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -52,11 +53,13 @@ TEST(Completions, BashOffersCommandsAndTheirOptions) {
 TEST(Completions, BashOffersValues) {
   EXPECT_EQ(bashOffers({"render", "--technique", "r"}), (Words{"rsm", "radiosity"}));
   EXPECT_EQ(bashOffers({"render", "a.obj", "--technique", "p"}), Words{"path"});
-  EXPECT_EQ(bashOffers({"walk", "--technique", "p"}), Words{}) << "walk has no path tracing";
+  EXPECT_EQ(bashOffers({"walk", "--technique", "p"}), Words{"path"});
+  EXPECT_EQ(bashOffers({"render", "--set", "lpv.lookup", "=", "f"}), Words{"flux"});
+  EXPECT_EQ(bashOffers({"render", "--set", "rsm.interpolate", "="}), (Words{"on", "off"}));
   EXPECT_EQ(bashOffers({"render", "--technique", "=", "lp"}), Words{"lpv"});
   EXPECT_EQ(bashOffers({"render", "--set", "lpv.casc"}), Words{"lpv.cascades="});
   EXPECT_EQ(bashOffers({"render", "--set", "=", "lpv.casc"}), Words{"lpv.cascades="});
-  EXPECT_EQ(bashOffers({"radiosity", "solve", "--set", "rad.m"}), Words{"rad.memory="}) << "rad.mesh and rad.mapping belong to the view";
+  EXPECT_EQ(bashOffers({"radiosity", "solve", "--set", "radiosity.m"}), Words{"radiosity.memory="}) << "radiosity.mesh and radiosity.mapping belong to the view";
   EXPECT_EQ(bashOffers({"radiosity", "generate", "out.bin", ""}), (Words{"1", "2", "3"}));
   EXPECT_EQ(bashOffers({"render", "--repeat", ""}), Words{}) << "a number";
   // Bash puts the answer in the place of what follows '='.
@@ -188,6 +191,10 @@ TEST(ManualPage, IsFormattedWithoutWarnings) {
     EXPECT_EQ(lint.out, "");
   }
   if (!tried) GTEST_SKIP() << "neither man nor mandoc is installed";
+}
+
+TEST(SettingsPage, IsWhatTheProgramPrints) {
+  EXPECT_EQ(lucerna::readFileText(LUCERNA_SOURCE_DIR "/docs/settings.md"), RUN_LUCERNA("info --settings").out) << "lucerna info --settings > docs/settings.md";
 }
 
 TEST(ManualPage, TellsEveryCommandAndItsOptions) {

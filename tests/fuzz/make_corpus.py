@@ -85,7 +85,7 @@ triangle = struct.pack("<9f3fIIf", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 100, 0, 0
 put("rad_file", struct.pack("<I", 1) + triangle, struct.pack("<I", 2) + triangle * 2)
 
 patch = struct.pack("<6I15fiI2f", 0, 1, 2, 0, 1, 2, *([0] * 6), *([0, 0, 1] * 3), 0, 0, 0.5, 0) + struct.pack("<25d", *([0] * 6), 0.5, *([0.5] * 18))
-settings = b"rad.edge=0 rad.resolution=64 rad.exact-pixels=12 rad.near=3 rad.parts=8 rad.seed=1 rad.repair=on rad.refinements=0"
+settings = b"radiosity.edge=0 radiosity.resolution=64 radiosity.exact-pixels=12 radiosity.part-distance=3 radiosity.parts=8 radiosity.seed=1 radiosity.repair=on radiosity.refinements=0"
 points = struct.pack("<9d", 0, 0, 0, 1, 0, 0, 0, 1, 0)
 put("solution", struct.pack("<8s4I5Q5d", b"LUCLIGHT", 3, 1, 0, len(settings), 0, 3, 1, 3, 0, 1, 0, 0, 0, 1) + settings + points + patch)
 

@@ -1,8 +1,8 @@
-// Each deviation of engine/render/deviations.cpp by its own known figure: what is right without it, and what it does when it is on.
+// Each deviation of engine/settings/deviations.cpp by its own known figure: what is right without it, and what it does when it is on.
 //
 // Switches are turned by name, as on the command line. Where the twin has the matching option, the GL is held against it too.
 // Expected values follow from the formulas beside them [Kaplanyan2010; Kirsch2010].
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 #include "shared/frame.h"
 #include "support/gl_fixture.hpp"
 #include "support/lpv_on_gl.hpp"
@@ -164,7 +164,7 @@ TEST_F(LpvDeviations, EachOneHasATestHere) {
   std::size_t others = 0;
   for (const Deviation& deviation : allDeviations()) {
     const std::string_view name = deviation.name;
-    if (name.starts_with("path.") || name.starts_with("rad.")) {  // tests/physics/media_deviations_test.cpp, tests/gl/radiosity_solution_test.cpp
+    if (name.starts_with("path.") || name.starts_with("radiosity.")) {  // tests/physics/media_deviations_test.cpp, tests/gl/radiosity_solution_test.cpp
       ++others;
       continue;
     }

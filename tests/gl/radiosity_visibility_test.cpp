@@ -200,9 +200,9 @@ TEST_F(HemicubeVisibilityTest, SolutionsAgreeAndAStoppedOneGoesOnAsItBegan) {
 }
 
 TEST_F(HemicubeVisibilityTest, Names) {
-  for (const HemicubeVisibility way : kWays) EXPECT_EQ(parseHemicubeVisibility(nameOf(way)), way);
-  EXPECT_EQ(parseHemicubeVisibility("auto"), HemicubeVisibility::automatic);
-  EXPECT_THROW(parseHemicubeVisibility("guess"), Error);
+  for (const HemicubeVisibility way : kWays) EXPECT_EQ(parseName<HemicubeVisibility>(nameOf(way), ""), way);
+  EXPECT_EQ(parseName<HemicubeVisibility>("auto", ""), HemicubeVisibility::automatic);
+  EXPECT_THROW(parseName<HemicubeVisibility>("guess", ""), Error);
 }
 
 }  // namespace

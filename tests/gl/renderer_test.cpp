@@ -411,10 +411,10 @@ TEST_F(RendererGl, DisplayPictureIsTheToneMappedOne) {
 }
 
 TEST(RendererNames, ParseAndRefuse) {
-  for (const Technique technique : {Technique::direct, Technique::lpv}) EXPECT_EQ(parseTechnique(nameOf(technique)), technique);
-  for (const Component component : {Component::all, Component::direct, Component::indirect}) EXPECT_EQ(parseComponent(nameOf(component)), component);
-  EXPECT_THROW(parseTechnique("LPV"), Error);
-  EXPECT_THROW(parseComponent(""), Error);
+  for (const Technique technique : {Technique::direct, Technique::lpv}) EXPECT_EQ(parseName<Technique>(nameOf(technique), ""), technique);
+  for (const Component component : {Component::all, Component::direct, Component::indirect}) EXPECT_EQ(parseName<Component>(nameOf(component), ""), component);
+  EXPECT_THROW(parseName<Technique>("LPV", ""), Error);
+  EXPECT_THROW(parseName<Component>("", ""), Error);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // What is made once: stages whose inputs have not changed are not run again, and no bit of any picture changes by that.
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 #include "render/renderer.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/small_scenes.hpp"

@@ -4,7 +4,7 @@
 #include "measure/image_errors.hpp"
 #include "measure/reference.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 #include "scene/scene.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/long_tests.hpp"

@@ -2,7 +2,7 @@
 // rises along the published series. On the scenes of assets/media in the original's format, lit by a point as there.
 #include "base/data.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 #include "support/gl_fixture.hpp"
 
 #include <gtest/gtest.h>

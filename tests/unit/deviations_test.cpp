@@ -1,6 +1,6 @@
 // The deviations' switches: by name, by fidelity, reported, and each with its line in the README.md of its technique.
 #include "base/error.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ std::vector<std::string> namesInOriginal() {
 /// Names begin with the technique's name on the command line; one folder is named otherwise.
 fs::path folderOf(const std::string& name) {
   const std::string technique = name.substr(0, name.find('.'));
-  return fs::path(LUCERNA_SOURCE_DIR) / "engine" / (technique == "path" ? "pathtracer" : technique == "rad" ? "radiosity" : technique);
+  return fs::path(LUCERNA_SOURCE_DIR) / "engine" / (technique == "path" ? "pathtracer" : technique);
 }
 
 /// The cells of a row of a Markdown table, without the spaces that align them; none for any other line.

@@ -204,11 +204,11 @@ TEST(RadSwitches, AreNamedAndSet) {
   EXPECT_EQ(activeRadiosityDeviations(published).size(), 5u);
   EXPECT_TRUE(activeRadiosityDeviations({}).empty());
   RadiosityDeviations some = published;
-  applyRadiosityDeviation(some, "rad.24-bit=off");
+  applyRadiosityDeviation(some, "radiosity.24-bit=off");
   EXPECT_FALSE(some.values24Bit);
   EXPECT_EQ(activeRadiosityDeviations(some).size(), 4u);
-  EXPECT_NE(badInputMessage([&] { applyRadiosityDeviation(some, "rad.bits=off"); }).find("rad.published-map"), std::string::npos);
-  EXPECT_NE(badInputMessage([&] { applyRadiosityDeviation(some, "rad.24-bit"); }).find("NAME=on"), std::string::npos);
+  EXPECT_NE(badInputMessage([&] { applyRadiosityDeviation(some, "radiosity.bits=off"); }).find("radiosity.published-map"), std::string::npos);
+  EXPECT_NE(badInputMessage([&] { applyRadiosityDeviation(some, "radiosity.24-bit"); }).find("NAME=on"), std::string::npos);
 }
 
 TEST(RadSwitches, HaveTheirLineInTheReadme) {
@@ -260,8 +260,8 @@ TEST(RadDisplayColours, FollowTheirMapping) {
   display.mapping = RadMapping::bits24;
   triangles[2].e = 0x102030;
   EXPECT_EQ(displayColours(triangles, display)[2], glm::vec3(0x10, 0x20, 0x30) / 255.0f);
-  EXPECT_EQ(parseRadMapping("filmic"), RadMapping::filmic);
-  EXPECT_NE(badInputMessage([] { parseRadMapping("x"); }).find("log, linear"), std::string::npos);
+  EXPECT_EQ(parseName<RadMapping>("filmic", ""), RadMapping::filmic);
+  EXPECT_NE(badInputMessage([] { parseName<RadMapping>("x", ""); }).find("log, linear"), std::string::npos);
 }
 
 }  // namespace

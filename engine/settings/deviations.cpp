@@ -1,9 +1,11 @@
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace lucerna {
 
@@ -15,7 +17,15 @@ namespace {
         [](RenderSettings& s, bool on) { s.member = on; }                               \
   }
 #define LPV_DEVIATION(name, meaning, inOriginal, member) SWITCH("lpv." name, meaning, inOriginal, lpv.deviations.member)
-#define RAD_DEVIATION(name, meaning, member) SWITCH("rad." name, meaning, true, radiosity.solution.deviations.member)
+
+/// Those of radiosity stand in one table of their own, which its files and the published solver read.
+template <bool RadiosityDeviations::*kMember>
+Deviation radiosityDeviation() {
+  const auto all = allRadiosityDeviations();
+  const auto found = std::find_if(all.begin(), all.end(), [](const RadiosityDeviation& d) { return d.member == kMember; });
+  return {found->name, found->meaning, true, [](const RenderSettings& s) { return s.radiosity.solution.deviations.*kMember; },
+          [](RenderSettings& s, bool on) { s.radiosity.solution.deviations.*kMember = on; }};
+}
 
 const std::array kDeviations{
     SWITCH("rsm.flux-cosine", "flux of a texel times the cosine to the light", true, rsm.fluxCosine),
@@ -47,15 +57,14 @@ const std::array kDeviations{
     SWITCH("path.fixed-epsilon", "rays start 0.001 scene units beside a surface", true, path.fixedEpsilon),
     SWITCH("path.roulette-at-surfaces", "Russian roulette at surfaces alone, never at a collision in a medium", true, path.rouletteAtSurfaces),
     SWITCH("path.unattenuated-shadow-rays", "media on the way to a lamp take nothing of its light", true, path.unattenuatedShadowRays),
-    RAD_DEVIATION("published-map", "pixels weighted by 1/r^2 and b/r^2 instead of the delta form factor", publishedMap),
-    RAD_DEVIATION("centroid", "one hemicube a patch, at its centroid, whatever its size", centroid),
-    RAD_DEVIATION("fixed-orientation", "hemicubes turned towards the first corner, not rolled at random", fixedOrientation),
-    RAD_DEVIATION("no-near-field", "near pairs and small sources by pixels alone, without a repair", noNearField),
+    radiosityDeviation<&RadiosityDeviations::publishedMap>(),
+    radiosityDeviation<&RadiosityDeviations::centroid>(),
+    radiosityDeviation<&RadiosityDeviations::fixedOrientation>(),
+    radiosityDeviation<&RadiosityDeviations::noNearField>(),
     LPV_DEVIATION("blocking-direction", "blocking potential evaluated in the direction of travel", true, blockingDirection),
 };
 
 #undef LPV_DEVIATION
-#undef RAD_DEVIATION
 #undef SWITCH
 
 }  // namespace
@@ -78,10 +87,14 @@ void applyFidelity(RenderSettings& settings, Fidelity fidelity) {
 
 void applyDeviation(RenderSettings& settings, std::string_view assignment) {
   const auto equals = assignment.find('=');
-  const std::string_view name = assignment.substr(0, equals);
+  std::string name(assignment.substr(0, equals));
+  if (name.starts_with("rad.")) {  // its former spelling
+    const std::string former = std::exchange(name, "radiosity" + name.substr(3));
+    logWarning("--deviation {}: now written {}", former, name);
+  }
   const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
   if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
-  if (name == "rad.24-bit") throwBadInput("--deviation {}: whole numbers are the published solver's alone; lucerna radiosity solve --fidelity original has them", assignment);
+  if (name == "radiosity.24-bit") throwBadInput("--deviation {}: whole numbers are the published solver's alone; lucerna radiosity solve --fidelity original has them", assignment);
   const auto found = std::find_if(kDeviations.begin(), kDeviations.end(), [&](const Deviation& d) { return d.name == name; });
   if (found == kDeviations.end()) {
     std::string known;

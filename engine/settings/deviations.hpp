@@ -4,7 +4,7 @@
 // its technique's README.md with formula, source and effect (a test checks that the line is there).
 #pragma once
 
-#include "render/renderer.hpp"
+#include "settings/render_settings.hpp"
 
 #include <span>
 #include <string>
@@ -12,8 +12,6 @@
 #include <vector>
 
 namespace lucerna {
-
-enum class Fidelity { corrected, original };
 
 struct Deviation {
   const char* name;     ///< technique, dot, what deviates

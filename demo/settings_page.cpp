@@ -1,0 +1,89 @@
+#include "settings_page.hpp"
+
+#include "settings/deviations.hpp"
+#include "settings/settings.hpp"
+
+#include <fmt/format.h>
+
+namespace lucerna::demo {
+
+namespace {
+
+std::vector<std::string_view> techniquesOf(const Setting& setting) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < namesOf(Technique{}).size(); ++i)
+    if (isReadBy(setting, static_cast<Technique>(i))) names.push_back(namesOf(Technique{})[i]);
+  return names;
+}
+
+/// Of the light propagation volume; empty where all read it, or that technique does not.
+std::vector<std::string_view> transportsOf(const Setting& setting) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < namesOf(LpvTransport{}).size(); ++i)
+    if (isReadBy(setting, static_cast<LpvTransport>(i))) names.push_back(namesOf(LpvTransport{})[i]);
+  if (names.size() == namesOf(LpvTransport{}).size()) names.clear();
+  return names;
+}
+
+/// What ends a cell of a table stands in one: escaped.
+std::string cell(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+  return escaped;
+}
+
+std::string readers(const Setting& setting) {
+  const std::vector<std::string_view> techniques = techniquesOf(setting), transports = transportsOf(setting);
+  std::string text = techniques.size() == namesOf(Technique{}).size() ? "all" : fmt::format("{}", fmt::join(techniques, ", "));
+  if (!transports.empty()) text += fmt::format(" (transport {})", fmt::join(transports, ", "));
+  return text;
+}
+
+}  // namespace
+
+std::string settingsPage() {
+  std::string text =
+      "# Settings\n\n"
+      "Made by `lucerna info --settings` from the table in engine/settings/settings.cpp; a test compares them.\n\n"
+      "Set one by `--set KEY=VALUE`, or in a settings file (`--settings FILE`: a JSON object with `technique`, `fidelity`, `deviations` and `settings`).\n"
+      "A setting that the technique does not read is a warning. What a change costs: *uniform*, the next frame has it; *rebuild*, programs are compiled and\n"
+      "textures allocated anew; *solution*, radiosity is solved anew. Sources are those of shaders/REFERENCES.md.\n";
+  std::string_view group;
+  for (const Setting& setting : allSettings()) {
+    const std::string_view stage = setting.key.substr(0, setting.key.find('.'));
+    if (stage != group) text += fmt::format("\n## {}\n\n| Key | Values | Default | Unit | Meaning | Read by | A change costs | Source |\n|---|---|---|---|---|---|---|---|\n", stage);
+    group = stage;
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} | {} |\n", setting.key, cell(allowedValues(setting)), cell(defaultValue(setting)), setting.unit, cell(setting.meaning),
+                        readers(setting), nameOf(setting.cost), setting.source);
+  }
+  text +=
+      "\n## Deviations\n\n"
+      "What the published originals do differently, each by itself: `--deviation NAME=on|off`. Those with a star are on with `--fidelity original`.\n"
+      "Formulas, sources and measured effects are in the README.md of each technique.\n\n| Name | | Meaning |\n|---|---|---|\n";
+  for (const Deviation& deviation : allDeviations()) text += fmt::format("| `{}` | {} | {} |\n", deviation.name, deviation.inOriginal ? "*" : "", cell(deviation.meaning));
+  return text;
+}
+
+nlohmann::ordered_json settingsJson() {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Setting& setting : allSettings()) {
+    nlohmann::ordered_json entry = {{"key", setting.key}, {"type", nameOf(setting.value.type)}};
+    if (setting.value.type == SettingType::integer || setting.value.type == SettingType::real) {
+      entry["least"] = setting.value.least;
+      entry["most"] = setting.value.most;
+    }
+    if (!setting.value.choices.empty()) entry["choices"] = setting.value.choices;
+    if (!setting.value.word.empty()) entry["word"] = setting.value.word;
+    entry["unit"] = setting.unit;
+    entry["default"] = defaultValue(setting);
+    entry["meaning"] = setting.meaning;
+    entry["source"] = setting.source;
+    entry["cost"] = nameOf(setting.cost);
+    entry["techniques"] = techniquesOf(setting);
+    entry["transports"] = transportsOf(setting);
+    list.push_back(entry);
+  }
+  return list;
+}
+
+}  // namespace lucerna::demo

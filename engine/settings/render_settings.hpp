@@ -1,0 +1,52 @@
+// What a picture is made with: the technique, what of its light is shown, and the settings of every stage (no GL calls).
+// engine/settings/settings.hpp lists those that people set, by key.
+#pragma once
+
+#include "base/named_values.hpp"
+#include "forward/gpu_scene.hpp"
+#include "forward/local_lights.hpp"
+#include "forward/shadow_map.hpp"
+#include "forward/sun_cascades.hpp"
+#include "lpv/light_propagation_volume.hpp"
+#include "pathtracer/path_deviations.hpp"
+#include "radiosity/radiosity_view.hpp"
+#include "rsm/reflective_shadow_map.hpp"
+#include "rsm/rsm_gather.hpp"
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+namespace lucerna {
+
+enum class Technique { direct, rsm, lpv, radiosity, path };
+constexpr std::array<std::string_view, 5> namesOf(Technique) { return {"direct", "rsm", "lpv", "radiosity", "path"}; }
+
+enum class Component { all, direct, indirect };
+constexpr std::array<std::string_view, 3> namesOf(Component) { return {"all", "direct", "indirect"}; }
+
+enum class Fidelity { corrected, original };
+constexpr std::array<std::string_view, 2> namesOf(Fidelity) { return {"corrected", "original"}; }
+
+struct RenderSettings {
+  Technique technique = Technique::lpv;
+  Component component = Component::all;
+  glm::ivec2 size{1280, 720};
+  bool reuse = true;             ///< stages whose inputs are those of the frame before are not run again; the same picture, bit by bit
+  bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits: for pictures that are measured
+  std::optional<float> exposure; ///< multiplies radiance before tone mapping; not set: the scene's
+  GpuSceneSettings textures;
+  ShadowMap::Settings shadow;          ///< of the sun; the size is that of each cascade where there are several
+  SunCascadeSettings sunCascades;
+  LocalLights::Settings lights;
+  ReflectiveShadowMap::Settings rsm;   ///< the size serves the sun and spots; each face of an omnidirectional light has half of it. `light` is not read
+  RsmGather::Settings gather;
+  LightPropagationVolume::Settings lpv;
+  PathDeviations path;
+  RadiosityView::Settings radiosity;   ///< `light` is not read: the component says it
+  double unmeasuredTurns = gl::kUnmeasuredTurns;  ///< of a piece of radiosity's shadow rays of which nothing is known (gl/pieces.hpp)
+};
+
+}  // namespace lucerna

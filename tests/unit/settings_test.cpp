@@ -1,0 +1,195 @@
+// The table of settings: every entry is parsed, printed, documented and kept in a place of its own; what is wrong is refused with what would be right.
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "settings/settings.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace lucerna {
+namespace {
+
+using test::badInputMessage;
+
+bool isNumber(const Setting& setting) { return setting.value.type == SettingType::integer || setting.value.type == SettingType::real; }
+
+/// Every value of a choice or switch; of a number its bounds, something between them and the word.
+std::vector<std::string> someValues(const Setting& setting) {
+  const SettingValue& value = setting.value;
+  switch (value.type) {
+    case SettingType::boolean: return {"on", "off"};
+    case SettingType::choice: return {value.choices.begin(), value.choices.end()};
+    case SettingType::file: return {"a file.lit", "b"};
+    case SettingType::integer:
+    case SettingType::real: break;
+  }
+  RenderSettings settings;
+  std::vector<std::string> texts;
+  for (const double number : {value.least, 0.5 * (value.least + value.most), value.most}) {
+    setSettingNumber(setting, settings, number);
+    texts.push_back(printSetting(setting, settings));
+  }
+  if (!value.word.empty()) texts.emplace_back(value.word);
+  return texts;
+}
+
+/// All settings as text.
+std::vector<std::string> printed(const RenderSettings& settings) {
+  std::vector<std::string> texts;
+  for (const Setting& setting : allSettings()) texts.push_back(printSetting(setting, settings));
+  return texts;
+}
+
+TEST(Settings, KeysAreDistinctAndEveryEntryIsWhole) {
+  std::set<std::string_view> keys;
+  for (const Setting& setting : allSettings()) {
+    const std::string key(setting.key);
+    EXPECT_TRUE(keys.insert(setting.key).second) << key;
+    EXPECT_TRUE(std::regex_match(key, std::regex("exposure|[a-z]+\\.[a-z-]+"))) << key;
+    EXPECT_FALSE(setting.meaning.empty()) << key;
+    EXPECT_EQ(setting.meaning.find('\n'), std::string_view::npos) << key;
+    EXPECT_NE(setting.readers.techniques, 0u) << key << " is read by nothing";
+    EXPECT_NE(setting.readers.transports & 7u, 0u) << key << " is read by no transport";
+    EXPECT_TRUE(!isNumber(setting) || setting.value.least < setting.value.most) << key;
+    EXPECT_TRUE(setting.value.type != SettingType::choice || setting.value.choices.size() > 1) << key;
+    EXPECT_FALSE(setting.value.type == SettingType::file ? setting.usually.empty() : defaultValue(setting).empty()) << key;
+  }
+  EXPECT_GT(keys.size(), 50u);
+}
+
+// A setting that is parsed is printed as it was written, and changes its own place alone.
+TEST(Settings, EachIsParsedPrintedAndKeptInItsOwnPlace) {
+  const std::vector<std::string> usual = printed({});
+  std::size_t index = 0;
+  for (const Setting& setting : allSettings()) {
+    std::set<std::string> seen;
+    for (const std::string& text : someValues(setting)) {
+      RenderSettings settings;
+      parseSetting(setting, settings, text);
+      EXPECT_EQ(printSetting(setting, settings), text) << setting.key;
+      seen.insert(printSetting(setting, settings));
+      std::vector<std::string> others = printed(settings), expected = usual;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(index));
+      expected.erase(expected.begin() + static_cast<std::ptrdiff_t>(index));
+      EXPECT_EQ(others, expected) << setting.key << "=" << text << " changes another setting";
+      if (setting.value.type == SettingType::file) continue;
+      RenderSettings byNumber;
+      setSettingNumber(setting, byNumber, settingNumber(setting, settings));
+      EXPECT_EQ(printSetting(setting, byNumber), text) << setting.key;
+    }
+    EXPECT_GT(seen.size(), 1u) << setting.key << " cannot be changed";
+    ++index;
+  }
+}
+
+TEST(Settings, WhatIsWrongIsRefusedWithWhatWouldBeRight) {
+  for (const Setting& setting : allSettings()) {
+    if (setting.value.type == SettingType::file) continue;
+    const std::string key(setting.key);
+    std::vector<std::string> wrong{"", "nan", "inf", "-inf", "nonsense", "1e999", " 1", "1 ", "0x10"};
+    if (isNumber(setting)) {
+      wrong.push_back(fmt::format("{}", setting.value.least - 1.0));
+      wrong.push_back(fmt::format("{}", setting.value.most * 2.0 + 1.0));
+    }
+    if (setting.value.type == SettingType::integer) wrong.insert(wrong.end(), {"1.5", "2e0"});
+    for (const std::string& text : wrong) {
+      RenderSettings settings;
+      const std::string message = badInputMessage([&] { parseSetting(setting, settings, text, "--set "); });
+      EXPECT_TRUE(message.starts_with("--set " + key + ": '" + text + "' is ")) << message;
+      EXPECT_NE(message.find(allowedValues(setting).substr(0, 3)), std::string::npos) << message;
+      EXPECT_EQ(printed(settings), printed({})) << key << "=" << text << " changed something";
+    }
+    RenderSettings settings;
+    const bool nanMeansUnset = !setting.value.word.empty() && std::isnan(setting.value.wordNumber);
+    if (!nanMeansUnset) {
+      EXPECT_NE(badInputMessage([&] { setSettingNumber(setting, settings, std::numeric_limits<double>::quiet_NaN()); }).find(key), std::string::npos);
+    }
+    EXPECT_NE(badInputMessage([&] { setSettingNumber(setting, settings, std::numeric_limits<double>::infinity()); }).find(key), std::string::npos);
+    const double below = setting.value.least - 1.0, beyond = 2.0 * setting.value.most + 1.0;
+    for (const double number : {below, beyond}) {
+      if (!setting.value.word.empty() && number == setting.value.wordNumber) continue;  // it stands for the word
+      EXPECT_NE(badInputMessage([&] { setSettingNumber(setting, settings, number); }).find(key), std::string::npos) << number;
+    }
+    EXPECT_EQ(printed(settings), printed({})) << key;
+  }
+}
+
+TEST(Settings, UnknownKeysAreRefusedWithThoseThatThereAre) {
+  const std::string message = badInputMessage([] { parseAssignment("lpv.cels=3", "--set "); });
+  EXPECT_TRUE(message.starts_with("--set lpv.cels=3: unknown key")) << message;
+  for (const Setting& setting : allSettings()) EXPECT_NE(message.find(setting.key), std::string::npos) << setting.key;
+  for (const char* wrong : {"", "=", "=3", "lpv.cells"}) EXPECT_NE(badInputMessage([&] { parseAssignment(wrong); }).find("key=value"), std::string::npos) << wrong;
+  // Of a radiosity solution's alone.
+  const SettingCost only = SettingCost::solution;
+  EXPECT_EQ(parseAssignment("radiosity.edge=0.5", "", &only).value, "0.5");
+  EXPECT_EQ(badInputMessage([&] { parseAssignment("radiosity.mesh=on", "", &only); }).find("lpv.cells"), std::string::npos);
+}
+
+TEST(Settings, FormerSpellingsAreUnderstood) {
+  EXPECT_EQ(formerKey("rad.edge"), "radiosity.edge");
+  EXPECT_EQ(formerKey("rad.near"), "radiosity.part-distance");
+  EXPECT_EQ(formerKey("rsm.near"), "rsm.near-field");
+  EXPECT_EQ(formerKey("radiosity.edge"), "");
+  EXPECT_EQ(findSetting("rad.edge"), findSetting("radiosity.edge"));
+  EXPECT_EQ(parseAssignment("rsm.near=quad").setting->key, "rsm.near-field");
+  EXPECT_EQ(findSetting("rad.nothing"), nullptr);
+  RenderSettings settings;
+  parseSetting(*findSetting("lpv.blocking"), settings, "on");
+  EXPECT_EQ(printSetting(*findSetting("lpv.blocking"), settings), "rsm");
+}
+
+// A technique's settings begin with its name; each technique but the path tracer has some, and none reads another's.
+TEST(Settings, AreReadByTheirTechnique) {
+  for (const Setting& setting : allSettings()) {
+    const std::string stage(setting.key.substr(0, setting.key.find('.')));
+    for (const Technique technique : {Technique::rsm, Technique::lpv, Technique::radiosity}) {
+      const bool isOwn = stage == nameOf(technique), isAnothers = !isOwn && (stage == "lpv" || stage == "radiosity");
+      EXPECT_TRUE(!isOwn || isReadBy(setting, technique)) << setting.key;
+      EXPECT_FALSE(isAnothers && isReadBy(setting, technique)) << setting.key;
+    }
+  }
+  RenderSettings settings;
+  settings.technique = Technique::lpv;
+  settings.lpv.transport = LpvTransport::rays;
+  EXPECT_TRUE(isRead(*findSetting("lpv.samples"), settings));
+  EXPECT_FALSE(isRead(*findSetting("lpv.iterations"), settings));
+  EXPECT_EQ(onlyTransport(*findSetting("lpv.iterations")), LpvTransport::propagate);
+  EXPECT_EQ(onlyTransport(*findSetting("lpv.voxels")), LpvTransport::gather);
+  EXPECT_EQ(onlyTransport(*findSetting("lpv.cells")), std::nullopt);
+  EXPECT_EQ(onlyTransport(*findSetting("rsm.size")), std::nullopt);
+}
+
+TEST(Settings, SourcesAreInTheListOfReferences) {
+  const std::string references = readFileText(LUCERNA_SOURCE_DIR "/shaders/REFERENCES.md");
+  for (const Setting& setting : allSettings()) {
+    if (setting.source.empty()) continue;
+    std::smatch match;
+    const std::string source(setting.source);
+    ASSERT_TRUE(std::regex_match(source, match, std::regex("\\[([A-Za-z]+[0-9]*)(, [^\\]]*)?\\]"))) << setting.key << " " << source;
+    EXPECT_NE(references.find("- [" + match[1].str() + "]"), std::string::npos) << setting.key << " " << source;
+  }
+}
+
+// Documents name settings as they are written today.
+TEST(Settings, DocumentsNameNoUnknownKey) {
+  const std::regex assignment("`((lpv|rsm|radiosity|shadow|texture|frame)\\.[a-z-]+)=");
+  for (const char* folder : {"lpv", "rsm", "radiosity", "forward"}) {
+    std::ifstream file(std::string(LUCERNA_SOURCE_DIR "/engine/") + folder + "/README.md");
+    for (std::string line; std::getline(file, line);)
+      for (std::sregex_iterator match(line.begin(), line.end(), assignment), end; match != end; ++match) {
+        const std::string key = (*match)[1];
+        const std::string text = readFileText(LUCERNA_SOURCE_DIR "/docs/settings.md");
+        EXPECT_NE(text.find("`" + key + "`"), std::string::npos) << folder << "/README.md: " << key << " is neither a setting nor a deviation";
+      }
+  }
+}
+
+}  // namespace
+}  // namespace lucerna
