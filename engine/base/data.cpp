@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The first of the three folders that is missing; empty where all are there.
+/// The first missing one of the three folders; empty if all exist.
 std::string missingFolder(const fs::path& folder) {
   std::error_code error;
   for (const char* name : {"shaders", "assets", "keyFrames"})
@@ -21,7 +21,7 @@ std::string missingFolder(const fs::path& folder) {
   return {};
 }
 
-/// Where the data may lie when LUCERNA_DATA does not say, in the order of the header.
+/// Places to search without LUCERNA_DATA, in the order of the header.
 std::vector<fs::path> candidates() {
   std::vector<fs::path> folders;
   std::error_code error;

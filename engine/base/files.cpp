@@ -1,5 +1,5 @@
-// Whole files in and out. Writing goes through a temporary file and rename(2), which replaces a file in one step as long as
-// both names are on one file system; that is why the temporary file lies beside its target.
+// Reads and writes whole files. Writing uses a temporary file and rename(2), which replaces a file atomically if
+// both names are on one file system; so the temporary file is in the target's folder.
 #include "base/files.hpp"
 
 #include "base/error.hpp"
@@ -32,7 +32,7 @@ Container readWhole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throwCannotOpen(file, errno);
   Container content;
-  // Piece by piece, as pipes and the like have no size; of a plain file the first piece is all of it, and one byte that ends the reading.
+  // Piece by piece, as pipes have no size; the first piece holds all of a regular file, plus one byte to detect its end.
   std::size_t piece = 1u << 20, used = 0;
   if (const std::uintmax_t size = fs::file_size(file, error); !error) piece = static_cast<std::size_t>(size) + 1;
   for (; stream; piece = 1u << 20) {
@@ -45,7 +45,7 @@ Container readWhole(const fs::path& file) {
   return content;
 }
 
-/// What the temporary files of this machine begin with: process numbers mean nothing on another one, or in another container.
+/// Prefix of this machine's temporary files: process numbers mean nothing on another machine or in another container.
 const std::string& temporaryPrefix() {
   static const std::string prefix = [] {
     char name[256] = {};
@@ -74,7 +74,7 @@ void sweepOnce(const fs::path& folder) {
     pid_t process = 0;
     const auto [stop, failure] = std::from_chars(name.data() + prefix.size(), name.data() + name.size(), process);
     if (failure != std::errc() || *stop != '-' || process <= 0) continue;
-    if (::kill(process, 0) == 0 || errno != ESRCH) continue;  // it lives, and may be writing
+    if (::kill(process, 0) == 0 || errno != ESRCH) continue;  // alive, and may be writing
     ::unlink(entry->path().c_str());
   }
 }
@@ -90,7 +90,7 @@ int writeAll(const fs::path& file, std::span<const std::uint8_t> bytes, bool dur
     else if (errno != EINTR) failure = errno;
   }
   if (durably && failure == 0 && ::fsync(descriptor) != 0) failure = errno;
-  // Network file systems may tell of a full disk only here.
+  // Network file systems may report a full disk only here.
   if (::close(descriptor) != 0 && failure == 0) failure = errno;
   return failure;
 }
@@ -115,7 +115,7 @@ void replaceFile(const fs::path& file, std::span<const std::uint8_t> bytes, bool
     throwBadInput("{}: cannot be written: {}", file.string(), std::strerror(failure));
   }
   if (!durably) return;
-  // The new name too must survive a power cut; a file system that cannot sync a folder has nothing more to offer.
+  // The new name must survive a power cut too; a file system that cannot sync a folder cannot guarantee that.
   if (const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); descriptor >= 0) {
     ::fsync(descriptor);
     ::close(descriptor);

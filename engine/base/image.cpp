@@ -1,10 +1,10 @@
 // Images on disk. Which library does what, and why:
-// - 8-bit pictures (png, jpg, tga, bmp): DevIL, which sees none that base/picture_header.hpp has not checked. It keeps its current image, error
-//   stack and modes in globals, so one mutex guards it all.
+// - 8-bit pictures (png, jpg, tga, bmp): DevIL, after the checks of base/picture_header.hpp. It keeps its current image, error
+//   stack and modes in globals, so one mutex guards all of it.
 // - Radiance hdr: here. DevIL 1.7.8 reads every value 256/255 times too large (0.4 %), cuts mantissas off instead of rounding
-//   them when writing, and takes truncated files for whole; our comparisons measure bias far below that.
+//   them when writing, and accepts truncated files; comparisons here measure bias far below that.
 // - exr: OpenEXR, as Debian's DevIL has none. pfm: a header and raw floats.
-// Every format goes through memory, so that reading and writing of files fail in one way only (base/files.hpp).
+// Every format goes through memory, so file errors are handled in one place (base/files.hpp).
 #include "base/image.hpp"
 
 #include "base/error.hpp"
@@ -512,7 +512,7 @@ Bitmap readBitmap(const fs::path& file) { return decodeBitmap(readFileBytes(file
 
 Image readImage(const fs::path& file) {
   const std::vector<std::uint8_t> bytes = readFileBytes(file);
-  // By content: a wrong extension is no reason to fail.
+  // By content: a wrong extension is not an error.
   if (startsWith(bytes, "\x76\x2f\x31\x01")) {
     try {
       return decodeExr(bytes, file);

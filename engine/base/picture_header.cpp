@@ -44,7 +44,7 @@ PictureHeader checkedHeader(const fs::path& file, Bytes bytes, PictureFormat for
   return {format, static_cast<int>(width), static_cast<int>(height)};
 }
 
-/// Chunk by chunk up to IEND: length, type, data, checksum. What lies behind IEND is no decoder's business.
+/// Chunk by chunk up to IEND: length, type, data, checksum. Data behind IEND is ignored.
 PictureHeader checkPng(Bytes bytes, const fs::path& file) {
   constexpr std::size_t kSignature = 8, kFrame = 12;  // of a chunk: length, type, checksum
   if (bytes.size() < kSignature + kFrame + 13) throwTruncated(file, "PNG");
@@ -65,7 +65,7 @@ PictureHeader checkPng(Bytes bytes, const fs::path& file) {
   return header;
 }
 
-/// Segment by segment up to EOI; entropy-coded data, which follow SOS, end at the next marker that is no restart.
+/// Segment by segment up to EOI; entropy-coded data, which follow SOS, end at the next marker that is not a restart.
 PictureHeader checkJpeg(Bytes bytes, const fs::path& file) {
   constexpr std::uint8_t kSof0 = 0xc0, kSof2 = 0xc2, kDht = 0xc4, kJpg = 0xc8, kDac = 0xcc, kSof15 = 0xcf, kRst0 = 0xd0, kRst7 = 0xd7, kSoi = 0xd8, kEoi = 0xd9,
                          kSos = 0xda, kTem = 0x01;

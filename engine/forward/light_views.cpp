@@ -50,7 +50,7 @@ double LightViews::largestSolidAngle(int size) const {
 LightViews lightViews(const SpotLight& light, const Bounds& scene) {
   LightViews views{light.position, light.intensity, light.direction, std::cos(light.innerAngle), std::cos(light.outerAngle), {}};
   placePlanes(views, scene);
-  views.tangent = 1.01 * std::tan(light.outerAngle);  // the cone's rim lies inside the map, its filter too
+  views.tangent = 1.01 * std::tan(light.outerAngle);  // the cone's rim and its filter lie inside the map
   const glm::dvec3 up = std::abs(light.direction.y) < 0.99 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
   views.clipFromWorld = {view(views, light.direction, up)};
   return views;

@@ -30,7 +30,7 @@ void VisibleSurfaces::record(const GpuScene& scene, const GpuScene::View& view) 
   gl::RasterState state;
   state.depth = gl::Depth::lessWrite;
   const gl::RasterPass pass("visible surfaces", target_, state);
-  pass.clearDepth();  // normals are read where depth says that there is a surface
+  pass.clearDepth();  // normals are only read where depth has a surface
   scene.draw(programs_, view);
 }
 

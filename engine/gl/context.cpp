@@ -40,7 +40,7 @@ const char* nameOfError(GLenum error) {
   }
 }
 
-/// The first error since the last look, GL_OUT_OF_MEMORY before others. A lost context reports one for ever.
+/// The first error since the last check, GL_OUT_OF_MEMORY before others. A lost context reports errors forever.
 GLenum firstError() {
   GLenum first = GL_NO_ERROR;
   GLenum error = glGetError();

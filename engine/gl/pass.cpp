@@ -7,7 +7,7 @@
 namespace lucerna::gl {
 
 void pushDebugGroup(const std::string& name) {
-  static const GLint most = [] {  // asked once: groups are pushed all the time, and a driver with threads of its own stops for a query
+  static const GLint most = [] {  // queried once: groups are pushed all the time, and a query stalls drivers with their own threads
     GLint length = 0;
     glGetIntegerv(GL_MAX_DEBUG_MESSAGE_LENGTH, &length);  // counts the terminating zero
     return length;

@@ -27,7 +27,7 @@ void PieceSize::took(std::uint32_t units, double seconds) {
   const double factor = std::clamp(seconds_ / std::max(seconds, 1e-9), 0.25, 2.0);
   const double most = unitsOf(mostTurns_, turnsOfUnit_, most_);
   double next = std::floor(factor * units);
-  if (factor >= 1.0) next = std::max(next, static_cast<double>(units_));  // of a last, smaller piece
+  if (factor >= 1.0) next = std::max(next, static_cast<double>(units_));  // after a last, smaller piece
   units_ = static_cast<std::uint32_t>(std::clamp(next, 1.0, most));
 }
 

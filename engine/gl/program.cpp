@@ -41,7 +41,7 @@ const char* suffixOf(GLenum stage) {
   return stage == GL_VERTEX_SHADER ? "vert" : stage == GL_GEOMETRY_SHADER ? "geom" : stage == GL_FRAGMENT_SHADER ? "frag" : "comp";
 }
 
-/// What a linked program takes of the limits of OpenGL: lines "NAME VALUE", NAME of GL_MAX_NAME, zeros left out. Shared memory cannot be asked for.
+/// A linked program's use of OpenGL's limits: lines "NAME VALUE", NAME of GL_MAX_NAME, zeros left out. Shared memory cannot be queried.
 std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::string>>& texts) {
   struct Stage {
     GLenum referenced;
@@ -108,8 +108,8 @@ std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::str
   return text;
 }
 
-/// LUCERNA_DUMP_PROGRAMS=FOLDER keeps what drivers are given, for other drivers and validators: FOLDER/HASH.vert .geom .frag .comp a stage, HASH.name the
-/// program's name and its flags, HASH.needs what it needs. Programs of the same text are kept once.
+/// LUCERNA_DUMP_PROGRAMS=FOLDER stores the sources, for other drivers and validators: FOLDER/HASH.vert .geom .frag .comp per stage, HASH.name the
+/// program's name and flags, HASH.needs its requirements. Programs of the same text are stored once.
 void dump(const std::string& name, GLuint program, const std::vector<std::pair<GLenum, std::string>>& texts) {
   const char* folder = std::getenv("LUCERNA_DUMP_PROGRAMS");
   if (!folder || !*folder) return;

@@ -1,4 +1,4 @@
-// The preprocessor that stands before the driver's: includes, declared flags, line map, readable logs. No GL calls.
+// The preprocessor before the driver's: includes, declared flags, line map, readable logs. No GL calls.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "gl/program.hpp"
@@ -82,8 +82,8 @@ class Expander {
     open_.pop_back();
   }
 
-  // Which branches are open, so that a branch that a flag leaves out includes nothing. Only `#if FLAG`, `#if !FLAG` and their #elif, #else
-  // are judged; any other condition counts as taken, its #else too.
+  // Tracks open branches, so that a branch disabled by a flag includes nothing. Only `#if FLAG`, `#if !FLAG` and their #elif, #else
+  // are evaluated; any other condition counts as taken, its #else too.
   void followBranches(const std::string& line) {
     static const std::regex kFlag(R"(^\s*#\s*(if|elif)\s+(!?)\s*([A-Za-z_]\w*)\s*(//.*)?$)");
     static const std::regex kOpen(R"(^\s*#\s*(if|ifdef|ifndef)\b.*$)");
@@ -96,7 +96,7 @@ class Expander {
       branches_.push_back(value.value_or(true));
       taken_.push_back(value);
     } else if (std::regex_match(line, kElse) && !branches_.empty()) {
-      // An earlier branch that surely was taken closes the later ones; one that surely was not leaves them to their own flag.
+      // An earlier branch that is certainly taken closes the later ones; one that is certainly not leaves them to their own flag.
       branches_.back() = taken_.back() == true ? false : value.value_or(true);
       if (taken_.back() != true) taken_.back() = value == true ? std::optional(true) : taken_.back() == false ? value : std::nullopt;
     } else if (std::regex_match(line, kEnd) && !branches_.empty()) {

@@ -3,7 +3,7 @@
 // GLEW loads everything newer by pointer, but leaves GL 1.0/1.1 to whatever GL library the executable links, and there can be
 // only one of those, while this executable has three hosts. So these few dozen functions are defined here: each forwards to
 // the current host's loader (OSMesaGetProcAddress, eglGetProcAddress, glfwGetProcAddress). GLEW, a shared library, finds its
-// pointers through glXGetProcAddressARB: defined here too and exported by whatever links the engine (CMakeLists.txt), so that
+// pointers through glXGetProcAddressARB: defined here too and exported by every executable that links the engine (CMakeLists.txt), so that
 // it asks the current host.
 #include "host/host_backends.hpp"
 

@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-// glewInit answers 3 or 4 where there is no GLX, and the pointers are good all the same: judge it by them.
+// glewInit returns 3 or 4 without GLX, although the pointers are valid: judge it by them.
 void loadPointers(HostKind kind) {
   glewExperimental = GL_TRUE;
   glewInit();

@@ -30,7 +30,7 @@ bool hasExtension(const char* list, std::string_view name) {
   return false;
 }
 
-/// Of EGL without a display: what enumerates devices.
+/// EGL functions without a display, which enumerate devices.
 struct DeviceFunctions {
   PFNEGLGETPLATFORMDISPLAYEXTPROC getPlatformDisplay = nullptr;
   PFNEGLQUERYDEVICESEXTPROC queryDevices = nullptr;
@@ -66,7 +66,7 @@ struct DeviceFunctions {
     if (hasExtension(extensions, "EGL_EXT_device_drm_render_node")) node = queryString(device, EGL_DRM_RENDER_NODE_FILE_EXT);
     if (!node && hasExtension(extensions, "EGL_EXT_device_drm")) node = queryString(device, EGL_DRM_DEVICE_FILE_EXT);
     if (node) result = describeRenderNode(node);
-    // NVIDIA's own driver, where its module gives no node.
+    // NVIDIA's own driver, if its module has no node.
     if (!node && hasExtension(extensions, "EGL_NV_device_cuda")) result.kind = EglDevice::Kind::discrete, result.driver = "nvidia";
     return result;
   }
@@ -96,7 +96,7 @@ std::string listed(const std::vector<EglDevice>& devices) {
   return text.empty() ? "none" : text;
 }
 
-/// The displays to try, one after the other. Throws Error(badInput) for a LUCERNA_EGL_DEVICE that is none.
+/// The displays to try, one after the other. Throws Error(badInput) for an unknown LUCERNA_EGL_DEVICE.
 std::vector<EGLDisplay> candidateDisplays() {
   const DeviceFunctions egl;
   const std::vector<EGLDeviceEXT> handles = egl.devices();
@@ -162,7 +162,7 @@ class EglHost final : public Host {
       if (!hasExtension(extensions, "EGL_KHR_no_config_context")) return false;
       config = nullptr;  // EGL_NO_CONFIG_KHR
     }
-    // A context that tells of resets where that can be had: by EGL 1.5 or EGL_KHR_create_context, else by EGL_EXT_create_context_robustness.
+    // A context that reports resets if possible: by EGL 1.5 or EGL_KHR_create_context, else by EGL_EXT_create_context_robustness.
     EGLContext context = EGL_NO_CONTEXT;
     for (const auto& [reset, strategy] : {std::pair<EGLint, EGLint>{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET},
                                           {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT},

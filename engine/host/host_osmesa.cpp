@@ -1,11 +1,11 @@
 // OSMesa: off-screen rendering into client memory by Mesa's software rasteriser; needs no display, no device, no window system.
-// The library is loaded when this host is asked for, so that the other hosts do not carry it (it brings LLVM along).
+// The library is loaded on demand, so that the other hosts do not load it (it brings LLVM along).
 #include "base/error.hpp"
 #include "host/host_backends.hpp"
 
 #ifdef LUCERNA_OSMESA
 
-// glew.h takes GLAPI away, osmesa.h needs it: GLEW must not be included in this file.
+// glew.h undefines GLAPI, which osmesa.h needs: GLEW must not be included in this file.
 #include <GL/osmesa.h>
 
 #include <dlfcn.h>
@@ -75,7 +75,7 @@ class OsmesaHost final : public Host {
 
  private:
   OSMesaContext context_ = nullptr;
-  std::array<std::uint32_t, 4> pixel_{};  // the client buffer that OSMesa insists on; nothing is drawn into it
+  std::array<std::uint32_t, 4> pixel_{};  // the client buffer that OSMesa requires; nothing is drawn into it
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ class WindowHost final : public Host {
     glfwWindowHint(GLFW_VISIBLE, options.windowVisible ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {  // a context that tells of resets, where that can be had
+    for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {  // a context that reports resets, if possible
       glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
       window_ = glfwCreateWindow(options.windowSize.x, options.windowSize.y, options.windowTitle.c_str(), nullptr, nullptr);
       if (window_) break;

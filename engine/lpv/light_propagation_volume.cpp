@@ -39,7 +39,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     return static_cast<std::size_t>(texels.x) * static_cast<std::size_t>(texels.y) * static_cast<std::size_t>(texels.z);
   };
   const std::size_t volumeBytes = 3 * cellsOf(size) * kCellBytes;
-  const gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};  // outside the grid is dark
+  const gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};  // dark outside the grid
   steps_ = std::max(settings.iterations - (deviations.fewerSteps ? 1 : 0), 0);
   const bool joined = c.cascades > 1 && !deviations.sumCascades && !deviations.unjoined;
   if (settings_.handOver == 0) settings_.handOver = handOverStep(steps_, c.ratio);
@@ -92,7 +92,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
                                {"SIDE_SOLID_ANGLE", deviations.sideSolidAngle},
                                {"FOUR_PI_KERNEL", deviations.fourPiKernel},
                                {"BLOCKING_DIRECTION", deviations.blockingDirection}};
-  const bool blocked = settings.blocking && (steps_ > 1 || (steps_ == 1 && deviations.blockFirstStep));  // the first step is not, by itself
+  const bool blocked = settings.blocking && (steps_ > 1 || (steps_ == 1 && deviations.blockFirstStep));  // the first step is not blocked by default
   if (blocked) {
     fillGeometryVolume_ = &programs.loadRaster("lpv geometry volume", "lpv/inject.vert", "lpv/geometry_volume.frag",
                                                {{"LPV_FULL_FLOAT", full}, {"TRUNCATE", deviations.truncate}, {"SURFEL_AREA", deviations.surfelArea},
@@ -114,7 +114,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
       viewPotential_ = gl::Texture("lpv view", GL_RGBA32F, corners);
       allocateView("lpv view", viewReflectance_, viewPotential_, viewTarget_);
     }
-    // What several views see is merged and what reflects has an albedo as well: then by blending, whatever fills the grid.
+    // Several views are merged, and reflection needs an albedo: then by blending, with any fill.
     if (settings.fill != LpvFill::layered && !fillsHalfVectors_ && !settings.mergeViews && !reflects() && !deviations.surfelArea) {
       const gl::ShaderFlags fill{{"FILL_FIXED", settings.fill == LpvFill::fixed}, {"FILL_FLOAT", settings.fill == LpvFill::atomic}, {"TRUNCATE", deviations.truncate}};
       countSurfels_ = &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp", with(with(group, fill), vpl));
@@ -326,7 +326,7 @@ void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
     fronts_[0].buffer().bind(GL_SHADER_STORAGE_BUFFER, kFrontBuffer);
     if (fillsHalfVectors_)
       for (GLuint channel = 0; channel < 3; ++channel) counts_[channel].bindImage(channel, GL_READ_WRITE);
-    for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {  // atomics need no order among them
+    for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {  // atomics need no order
       inject_->set("fluxScale", fluxScale(rsm));
       rsm.bind();
       pass.dispatch(rsm.position.size(), kTexelsOfGroup);
@@ -355,7 +355,7 @@ void LightPropagationVolume::resolveCounts(const gl::BufferTexture& counts, cons
   pass.dispatch(size, kGroup);
 }
 
-// Steps for integers come from the area of all texels together, which only the sun's map knows.
+// The integers' unit follows from the area of all texels together, known only for the sun's map.
 bool LightPropagationVolume::countsSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps) const {
   if (!countSurfels_) return false;
   return settings_.fill != LpvFill::fixed || std::all_of(maps.begin(), maps.end(), [](const ReflectiveShadowMap::Outputs* map) {
@@ -498,7 +498,7 @@ void LightPropagationVolume::propagateFrom(const Volume& source) {
 }
 
 void LightPropagationVolume::propagateByCompute(const Volume& source) {
-  // What no brick is dispatched for is never written, so it has to be dark.
+  // Cells without a dispatched brick are never written, so they must be dark.
   fronts_[1].clear();
   sums_.clear();
   if (join_) farSums_.clear();
@@ -539,7 +539,7 @@ void LightPropagationVolume::propagateByCompute(const Volume& source) {
   }
 }
 
-// As published: one layered pass a step and cascade, blending adds to the sum. One point a cell, or one triangle a slice.
+// As published: one layered pass per step and cascade, blending adds to the sum. One point per cell, or one triangle per slice.
 void LightPropagationVolume::propagateLayered(const Volume& source) {
   std::vector<const gl::Texture*> sums{&sum_[0], &sum_[1], &sum_[2]};
   if (join_) sums.insert(sums.end(), {&farSum_[0], &farSum_[1], &farSum_[2]});

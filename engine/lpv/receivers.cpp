@@ -18,17 +18,17 @@ namespace {
 constexpr GLuint kLpvBinding = 1, kPathBinding = 5, kConstantsBinding = 6;  // GL_UNIFORM_BUFFER
 constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kIrradianceUnit = 5, kSeenUnit = 6, kVoxelsUnit = 6, kTreeUnit = 7;
-constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that finds no receivers to end at: what it misses by that is albedo^64
-constexpr float kFullPaths = 256.0f;  // from which a receiver counts fully, and alone
-constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // as the path tracer's, less a segment's
+constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that finds no receivers to end at; it misses albedo^64
+constexpr float kFullPaths = 256.0f;  // from which a receiver has full weight, without its neighbours
+constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
 constexpr std::array<GLuint, 9> kNoWork{0, 1, 1, 0, 0, 1, 1, 0, 0};
 constexpr std::size_t kTurnsOfPath = 256;  // about: gl/pieces.hpp
 constexpr std::size_t kMostPaths = (std::size_t{1} << 28) / kTurnsOfPath;  // paths of a submission
-constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // that a key tells apart
+constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // distinguished by a key
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
-/// What lamps, emissive surfaces and the sky typically make.
+/// Typical irradiance from lamps, emissive surfaces and the sky.
 float typicalOf(const Scene& scene) {
   constexpr float kPi = 3.14159265f;
   float result = analyse(scene).anyLight() ? typicalIrradiance(scene) : 0.0f;
@@ -72,7 +72,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
                            layers, capabilities.max3dTextureSize);
   const int lanes = settings.transport == LpvTransport::rays ? settings.rays : LPV_LANES;  // of a receiver
   slots_ = cells * cells * cells * cascades * LPV_FACES;
-  // Surfaces cross a grid in some cells^2 cells; four times that, each with the faces that it leans to.
+  // Surfaces cross a grid in some cells^2 cells; times four, for the faces that each normal covers.
   capacity_ = std::min(slots_, 24 * cells * cells * cascades);
 
   const auto words = [&](const std::string& name, std::size_t count) {
@@ -185,7 +185,7 @@ void LpvReceivers::bindReceivers() const {
   work_[0].bind(GL_SHADER_STORAGE_BUFFER, kWorkBuffer);
 }
 
-// The grids have moved: what still lies in them is written to a new list, entered in the slots.
+// The grids have moved: receivers still inside are copied to a new list and entered in the slots.
 void LpvReceivers::keep() {
   std::swap(receivers_[0], receivers_[1]);
   std::swap(work_[0], work_[1]);
@@ -224,7 +224,7 @@ void LpvReceivers::mark(const Inputs& inputs) {
   pass.dispatch(size, group);
 }
 
-// Of receivers that are needed those that have fewer paths than `target`.
+// Lists visible receivers with fewer paths than `target`.
 void LpvReceivers::list(int target, bool countsFading) {
   const std::array<GLuint, 5> none{0, 1, 1, 0, frame_};
   work_[0].upload(4 * sizeof(GLuint), sizeof none, none.data());
@@ -251,7 +251,7 @@ void LpvReceivers::light(int target) {
   pass.dispatchIndirect(work_[0], 4 * sizeof(GLuint));
 }
 
-// Receivers that are new gather from every map and from the sky; those that have gathered are done while the maps stay.
+// New receivers gather from every map and from the sky; then they are final while the maps stay.
 void LpvReceivers::gather(const Inputs& inputs) {
   if (gatherSun_ || gatherLamp_) {
     const bool first = trees_.empty();
@@ -319,7 +319,7 @@ void LpvReceivers::update(const Inputs& inputs, int rounds) {
   }
   for (int paths = rounds * settings_.rays; paths < std::min(settings_.leastRays, settings_.samples); paths += settings_.rays) light(settings_.leastRays);
   store(mostChange);
-  list(settings_.samples, true);  // what is still to be done
+  list(settings_.samples, true);  // the remaining work
   ring_->copy(work_[0]);
 }
 

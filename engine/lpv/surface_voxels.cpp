@@ -9,7 +9,7 @@ namespace lucerna {
 
 namespace {
 
-/// Whether a material is cut out at a texture coordinate: as forward shading has it, at the nearest texel.
+/// Whether a material is cut out at a texture coordinate: as in forward shading, at the nearest texel.
 bool isCutOut(const Scene& scene, const Material& material, const glm::dvec2& texCoord) {
   const int index = material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture;
   if (!material.alphaMasked || index < 0) return false;

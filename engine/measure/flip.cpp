@@ -116,7 +116,7 @@ Kernel balanced(Kernel kernel) {
 
 // ---------------------------------------------------------------------------------------------------- the two pipelines
 
-/// What the eye resolves of a picture, by contrast sensitivity [Andersson2020, table 1]: a sum of Gaussians a sqrt(pi/b) exp(-pi^2 x^2 / b), x in degrees.
+/// A picture filtered by the eye's contrast sensitivity [Andersson2020, table 1]: a sum of Gaussians a sqrt(pi/b) exp(-pi^2 x^2 / b), x in degrees.
 Plane seen(const Plane& ycxcz, Size size, double ppd) {
   struct Term {
     double a, b;
@@ -218,7 +218,7 @@ FlipExposures flipExposures(const Image& reference) {
   FlipExposures exposures;
   const double largest = percentile(luminance, 1.0);
   if (!(largest > 0.0)) return exposures;
-  const double middle = std::max(median(luminance), largest * std::exp2(-16.0));  // a black half would ask for endless exposure
+  const double middle = std::max(median(luminance), largest * std::exp2(-16.0));  // a half-black picture would need infinite exposure
   exposures.start = std::log2(bright / largest);
   exposures.stop = std::log2(bright / middle);
   exposures.count = std::max(2, static_cast<int>(std::ceil(exposures.stop - exposures.start)));

@@ -111,7 +111,7 @@ void forBlocks(const Image& image, int side, F f) {
       f(glm::ivec2(x, y), glm::ivec2(std::min(x + side, image.width), std::min(y + side, image.height)));
 }
 
-/// Every pixel of a block gets what `of` makes of the block's pixels' sum of values, and their count.
+/// Sets every pixel of a block to `of` of the sum of the block's pixels and their count.
 template <typename Value, typename Of>
 Image overBlocks(const Image& image, int side, Value value, Of of) {
   Image result(image.width, image.height);

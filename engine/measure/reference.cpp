@@ -93,11 +93,11 @@ std::optional<Reference> sampleReference(const Sampler& sampler, Transport trans
   // By time: the batch doubles until a sixteenth of the time is spent on one; then all begin again at that size, so that they are equal.
   std::uint32_t size = byCount ? static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (goal.samples + SamplingGoal::kBatches - 1) / SamplingGoal::kBatches)) : 1;
   std::uint64_t next = first;
-  if (!byCount) sampler(next, 1);  // what is made once, such as programs, says nothing of a batch's time
+  if (!byCount) sampler(next, 1);  // one-time work, such as compiling, does not belong to a batch's time
   if (!byCount)
     for (double last = 0.0;;) {
       const double before = elapsed();
-      sampler(next, size);  // numbers that are used again below would do no harm, yet the picture is not kept
+      sampler(next, size);  // discarded, so its numbers may be used again below
       last = elapsed() - before;
       if ((stop && stop()) || 2.0 * last * SamplingGoal::kBatches > goal.seconds || size >= (1u << 20)) break;
       size *= 2;
@@ -161,7 +161,7 @@ std::vector<std::uint8_t> encode(const ReferenceKey& key, const Reference& r) {
   return bytes;
 }
 
-/// Empty where anything is not as it was written.
+/// Empty if anything is not as it was written.
 std::optional<Reference> decode(const ReferenceKey& key, const std::vector<std::uint8_t>& bytes) {
   Header header;
   if (bytes.size() < sizeof header + sizeof(std::uint64_t)) return std::nullopt;

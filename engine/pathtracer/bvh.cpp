@@ -24,7 +24,7 @@ using shared::BvhTriangle;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kBins = 16;
-constexpr std::size_t kParallelFrom = 4096;  // references below which another thread is not worth its start
+constexpr std::size_t kParallelFrom = 4096;  // fewer references are not worth another thread
 
 struct Box {
   glm::vec3 min{kInfinity}, max{-kInfinity};
@@ -52,7 +52,7 @@ struct Reference {
   std::uint32_t triangle;
 };
 
-// The scene's corners may be anything; what is kept is finite and has an area.
+// Corners may be anything; kept triangles are finite and have an area.
 bool hasArea(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const glm::dvec3 n = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
   const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
@@ -201,7 +201,7 @@ class BinaryBuilder {
     }
   }
 
-  // The part of a reference between two planes across an axis, rounded outwards; nothing where only rounding put it there.
+  // The part of a reference between two planes across an axis, rounded outwards; empty if only rounding put it there.
   std::optional<Box> clip(const Reference& r, int axis, float low, float high) const {
     const BvhTriangle& t = triangles_[r.triangle];
     const std::array<glm::dvec3, 3> corners{t.a, t.b, t.c};
@@ -255,7 +255,7 @@ class BinaryBuilder {
     return best;
   }
 
-  // Splits those references that the plane crosses where that costs less than leaving them on one side whole [Stich2009 section 4.4].
+  // Splits references crossed by the plane if that costs less than keeping them on one side [Stich2009 section 4.4].
   bool divideInSpace(const std::vector<Reference>& references, const Box& box, const Cut& cut, std::size_t spare, std::vector<Reference>& left,
                      std::vector<Reference>& right) const {
     const float at = plane(box, cut.axis, cut.bin + 1);
@@ -293,7 +293,7 @@ class BinaryBuilder {
   void divide(std::vector<Reference>& references, const Box& box, std::size_t spare, int depth, std::vector<Reference>& left, std::vector<Reference>& right) const {
     Box centres;
     for (const Reference& r : references) centres.add(r.box.centre());
-    // Once halving is all that keeps the depth below its bound, halve.
+    // Halve once only halving keeps the depth below its bound.
     const bool deep = depth + 1 + static_cast<int>(std::bit_width(references.size() + spare)) >= BVH_MAX_DEPTH;
     if (!deep) {
       const Cut object = bestObjectCut(references, centres);
@@ -327,7 +327,7 @@ class BinaryBuilder {
 
 // ---------------------------------------------------------------------------------------------------- eight children
 
-// Writes the boxes of a node's children; a child that is missing has an empty box.
+// Writes the boxes of a node's children; a missing child has an empty box.
 void encodeBoxes(BvhNode& node, const std::array<Box, BVH_WIDTH>& children) {
   Box all;
   for (const Box& child : children) all.add(child);

@@ -15,7 +15,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
-/// What a light is worth: luminance, but never nothing for a light of any colour.
+/// Sampling weight of a light: luminance, but above 0 for a light of any colour.
 double worth(const glm::dvec3& c) { return 0.5 * luminance(c) + 0.5 * std::max({c.x, c.y, c.z}); }
 
 /// Solid angle of a texel in row y.
@@ -108,7 +108,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
       if (!(area > 0.0) || !std::isfinite(area)) continue;
       double brightness = worth(material.emission);
       if (material.emissionTexture >= 0) {
-        // By the mean over the triangle; a part of the picture's own, as what is looked up here at some points may have missed a bright spot.
+        // By the mean over the triangle, plus a part of the picture's own: the lookups here may have missed a bright spot.
         const auto uv = [&](std::uint32_t k) { return scene.vertices[scene.indices[i + k]].texCoord; };
         const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap;
         brightness = 0.9 * worth(glm::dvec3(material.emissionScale) * meanTexture(bitmap, {uv(0), uv(1), uv(2)})) + 0.1 * brightness;
@@ -121,7 +121,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
       light.p = i / 3;
       light.q = static_cast<std::uint32_t>(mesh.material);
       const std::size_t before = table.lights.size();
-      add(light, brightness * 2.0 * kPi * area);  // both sides shine
+      add(light, brightness * 2.0 * kPi * area);  // both sides emit
       if (table.lights.size() > before) areas.push_back(area);
     }
   }
@@ -182,7 +182,7 @@ EnvironmentTable environmentTable(const Image& picture) {
     for (std::size_t x = 0; x < width; ++x) weights[x] = worth(glm::dvec3(picture.at(static_cast<int>(x), row)));
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     ofRows[y] = sum * texelSolidAngle(picture, row);
-    if (!(sum > 0.0)) continue;  // is never picked
+    if (!(sum > 0.0)) continue;  // is never sampled
     const AliasTable picks = aliasTable(weights);
     for (std::size_t x = 0; x < width; ++x) table.texels[y * width + x] = glm::uvec4(wordOf(picks.threshold[x]), picks.alias[x], 0u, 0u);
   }

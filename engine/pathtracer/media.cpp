@@ -23,7 +23,7 @@ void checkCoefficient(const Medium& medium, const char* name, const glm::vec3& v
       throwBadInput("medium {}: {} must be finite and 0 or more, and is {}", medium.name, name, value[c]);
 }
 
-/// The largest of the cells of each block and their neighbours: a bound of what is interpolated between them.
+/// The largest of the cells of each block and their neighbours: a bound of the interpolated values.
 std::vector<float> blockBounds(const DensityGrid& grid, const glm::ivec3& blocks) {
   std::vector<float> bounds;
   for (int bz = 0; bz < blocks.z; ++bz)
@@ -79,7 +79,7 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
     for (int c = 0; c < 3; ++c) {
       const double g = medium.phase == PhaseFunction::rayleigh ? 0.0 : static_cast<double>(medium.anisotropy[c]);
       if (!(g > -1.0 && g < 1.0)) throwBadInput("medium {}: g must lie between -1 and 1, both left out, and is {}", medium.name, g);
-      // A channel that does not scatter has no g: it follows the others, so that they need not be told apart.
+      // A channel that does not scatter has no g: it copies the others, so that all can be equal.
       record.albedo[c] = extinction[c] > 0.0 ? static_cast<float>(static_cast<double>(medium.scattering[c]) / extinction[c]) : 0.0f;
       record.oneMinusG[c] = static_cast<float>(1.0 - g);
       record.onePlusG[c] = static_cast<float>(1.0 + g);
@@ -100,7 +100,7 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
     if (medium.grid) {
       record.grid = static_cast<int>(packed.grids.size());
       packed.grids.push_back(packGrid(medium, origin, packed.densities));
-      // What emits alone still needs points at which its emission is looked up: some four a crossing of the box.
+      // A medium that only emits still needs points to look up its emission: some four per crossing of the box.
       if (record.majorant <= 0.0f && largest(medium.emission) > 0.0) {
         const double bound = *std::max_element(medium.grid->density.begin(), medium.grid->density.end());
         record.majorant = static_cast<float>(4.0 / (glm::length(medium.grid->max - medium.grid->min) * std::max(bound, 1e-30)));

@@ -61,11 +61,11 @@ class PathTracer {
     glm::dvec3 mean{0.0};           ///< radiance
     glm::dvec3 meanError{0.0};      ///< standard error of `mean`
     double standardError = 0.0;     ///< of a pixel, root mean square over pixels and channels; infinite before 2 samples
-    double leakedPaths = 0.0;    ///< ended, as they were found outside of the scene, yet inside of a closed boundary, since setCamera
+    double leakedPaths = 0.0;    ///< ended because found outside the scene yet inside a closed boundary, since setCamera
     double wrongCrossings = 0.0; ///< of boundaries left without having been entered, or entered too often: open or turned meshes
     double turns = 0.0;          ///< of loops, in all lanes since setCamera: rays' nodes and triangles, steps in media: what time is spent on, whatever the clock
     double collisions = 0.0;     ///< in media, likewise
-    double relativeError = 0.0;     ///< that over the mean of the picture, channels averaged; 0 for a black picture without error
+    double relativeError = 0.0;     ///< standardError over the picture's mean, channels averaged; 0 for a black picture without error
   };
 
   /// Compiles and allocates. Throws Error(missingCapability) if the scene exceeds the driver's limits.

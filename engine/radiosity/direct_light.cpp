@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// As blocked.comp reads it.
+/// Input of blocked.comp.
 struct Ray {
   glm::vec4 origin;     ///< in the hierarchy's space; w: the patch
   glm::vec4 direction;  ///< to the light, its length the distance
   glm::vec4 normal;     ///< of the patch; w: the largest of its coordinates
 };
 
-/// What arrives at a point if nothing is between: the way to the light, and irradiance across it.
+/// Unoccluded light at a point: the vector to the light, and the irradiance across it.
 struct Arrival {
   glm::dvec3 toLight, irradiance;
 };
@@ -51,7 +51,7 @@ glm::dvec3 radianceOf(const Environment& environment, const glm::dvec3& directio
   return glm::dvec3(environment.radiance) * glm::dvec3(picture.at(x, y));
 }
 
-/// Asks for rays, so many a submission.
+/// Traces visibility rays, in submissions of limited size.
 class ShadowRays {
  public:
   static constexpr std::size_t kEach = 1 << 16;
@@ -59,7 +59,7 @@ class ShadowRays {
   ShadowRays(gl::ProgramLibrary& programs, const RayScene& rays)
       : program_(programs.loadCompute("direct light", "radiosity/blocked.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}})), rays_(rays) {}
 
-  /// Not 0 where something lies between.
+  /// Not 0 if occluded.
   std::vector<GLuint> blocked(const std::vector<Ray>& batch) const {
     if (batch.empty()) return {};
     const gl::Buffer rayBuffer("direct light rays", batch.size() * sizeof(Ray), batch.data(), GL_STREAM_DRAW);
@@ -81,7 +81,7 @@ class ShadowRays {
   const RayScene& rays_;
 };
 
-/// A patch's normal, and the largest coordinate of its corners in the hierarchy's space, which is what rounds.
+/// A patch's normal, and the largest coordinate of its corners in the hierarchy's space, which decides the rounding.
 glm::vec4 faceOf(const RadiosityMesh& mesh, const Patch& patch, const glm::dvec3& origin) {
   double largest = 0.0;
   for (const glm::dvec3& corner : mesh.corners(patch)) largest = std::max({largest, std::abs(corner.x - origin.x), std::abs(corner.y - origin.y), std::abs(corner.z - origin.z)});
@@ -155,7 +155,7 @@ std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& r
       const std::vector<glm::dvec3> points = pointsOf(mesh, patch, centroids);
       const glm::dvec3 n = patch.faceNormal, u = glm::normalize(std::abs(n.x) < 0.5 ? glm::cross(n, glm::dvec3(1, 0, 0)) : glm::cross(n, glm::dvec3(0, 1, 0))), v = glm::cross(n, u);
       for (std::size_t k = 0; k < raysOfPatch; ++k) {
-        // What is uniform on the unit disc is the cosine's on the hemisphere above it. Each patch's is turned.
+        // Uniform points on the unit disc are cosine-distributed on the hemisphere above it. Each patch turns them.
         const double r2 = (static_cast<double>(k) + 0.5) / static_cast<double>(raysOfPatch), angle = 2.0 * kPi * kPlastic * static_cast<double>(k + p);
         const double which = kPlastic * kPlastic * static_cast<double>(k);
         const glm::dvec3& point = points[static_cast<std::size_t>((which - std::floor(which)) * static_cast<double>(points.size()))];

@@ -66,7 +66,7 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
       }
   }
   FormFactorMatrix mean;  // of A F and its transpose
-  std::vector<bool> known(n);  // the sum: where it is closed
+  std::vector<bool> known(n);  // whether the sum is known: closed rows
   std::vector<std::uint32_t> patches;
   std::vector<float> values;
   for (std::size_t i = 0; i < n; ++i) {
@@ -78,7 +78,7 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
       const std::uint32_t ja = a < starts_[i + 1] ? patches_[a] : ~0u, jb = b < starts[i + 1] ? from[b] : ~0u, j = std::min(ja, jb);
       // In float as in the transposed copy, and in the order of patches, so that S_ij and S_ji have the same bits.
       const double own = ja == j ? static_cast<double>(static_cast<float>(areas[i] * static_cast<double>(factors_[a]))) : 0.0, other = jb == j ? static_cast<double>(flux[b]) : 0.0;
-      // Of the own one. Both sums are made of the same numbers in the same order.
+      // Weight of the own one. Both sums add the same numbers in the same order.
       double weight = areas[j] / (areas[i] + areas[j]), against = areas[i] / (areas[i] + areas[j]);
       if (isSource(i) != isSource(j) && std::max(own, other) < fewPixels * areas[isSource(i) ? i : j]) weight = isSource(j) ? 1.0 : 0.0, against = 1.0 - weight;
       const double sum = i < j ? weight * own + against * other : against * other + weight * own;
@@ -93,7 +93,7 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
   }
   flux = {};
   from = {};
-  // d_i sum_j S_ij d_j = A_i where the sum is known, else d_i = 1.
+  // d_i sum_j S_ij d_j = A_i if the sum is known, else d_i = 1.
   std::vector<double> d(n, 1.0), next(n);
   double worst = 0.0;
   constexpr int kMost = 200;

@@ -15,17 +15,17 @@ namespace lucerna {
 namespace {
 
 constexpr std::size_t kParts = kPatchParts * kPatchParts, kRaysEach = 8, kRaysASubmission = 1 << 16;
-constexpr std::size_t kSteps = 16;     // of walks: what has not met a back by then is in the open
+constexpr std::size_t kSteps = 16;     // of walks: a walk that has not hit a back by then is in the open
 constexpr float kHidden = 0.3f;        // of the most open part. Of 0.1 to 0.5 Sponza's sunlight agrees best at 0.3 and 0.5
 constexpr float kOpen = 0.3f;
 constexpr GLuint kNothing = 0, kBack = ~0u;
 
-/// As hidden_parts.comp reads it.
+/// Input of hidden_parts.comp.
 struct Receiver {
   glm::vec4 a, b, c, normal;
 };
 
-/// For each part of the patches what `raysEach` rays meet: kNothing, kBack, or a part + 1.
+/// For each part of the patches the hits of `raysEach` rays: kNothing, kBack, or a part + 1.
 std::vector<GLuint> seenFrom(const gl::Program& program, const RayScene& rays, const RadiosityMesh& mesh, std::span<const std::uint32_t> patches, std::size_t raysEach) {
   std::vector<GLuint> seen;
   seen.reserve(patches.size() * kParts * raysEach);
@@ -65,7 +65,7 @@ void cut(Patch& patch, const RadiosityMesh& mesh, std::uint16_t hidden) {
   const double open = static_cast<double>(kParts) - std::popcount(hidden);
   for (std::size_t k = 0; k < kParts; ++k)
     if (!(hidden >> k & 1)) mean += centroids[k] / open;
-  // A hemicube stands at the middle of what is open or, where that is itself hidden, at the nearest part that is not.
+  // A hemicube stands at the centre of the open parts or, if that is hidden, at the nearest open part.
   glm::dvec2 place = mean;
   if (hidden >> partAt(kPatchParts, mean) & 1) {
     double least = 1e300;
@@ -84,7 +84,7 @@ void cut(Patch& patch, const RadiosityMesh& mesh, std::uint16_t hidden) {
 
 double cutHiddenParts(gl::ProgramLibrary& programs, const RayScene& rays, RadiosityMesh& mesh) {
   const gl::Program& program = programs.loadCompute("hidden parts", "radiosity/hidden_parts.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
-  // One ray a part finds the patches that may have hidden parts; most scenes have none.
+  // One ray per part finds the patches that may have hidden parts; most scenes have none.
   std::vector<std::uint32_t> suspects(mesh.patches.size());
   std::iota(suspects.begin(), suspects.end(), 0u);
   {

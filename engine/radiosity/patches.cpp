@@ -19,13 +19,13 @@ bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v
 
 glm::dvec3 cross3(const std::array<glm::dvec3, 3>& c) { return glm::cross(c[1] - c[0], c[2] - c[0]); }
 
-/// A triangle whose doubled area is this small beside its longest edge squared is a line in floats.
+/// A triangle whose doubled area is this small relative to its longest edge squared is a line in floats.
 bool hasArea(const std::array<glm::dvec3, 3>& c) {
   const double longest = std::max({glm::dot(c[1] - c[0], c[1] - c[0]), glm::dot(c[2] - c[1], c[2] - c[1]), glm::dot(c[0] - c[2], c[0] - c[2])});
   return glm::length(cross3(c)) > 1e-7 * longest;
 }
 
-/// Joins places that are closer than `tolerance` into one point.
+/// Merges positions closer than `tolerance` into one point.
 class Welder {
  public:
   Welder(std::vector<glm::dvec3>& points, double tolerance) : points_(points), tolerance_(tolerance), cell_(std::max(4.0 * tolerance, 1e-300)) {}
@@ -112,7 +112,7 @@ int longestEdge(const RadiosityMesh& mesh, const Patch& patch) {
     const glm::dvec3 d = mesh.points[a] - mesh.points[b];
     const double length = glm::dot(d, d);
     const Edge edge = edgeOf(a, b);
-    // Equal edges: the same one must win for both of its patches, so that marks do not chase each other.
+    // Equal edges: the same one must win in both of its patches, or marks would not terminate.
     if (length > most * (1.0 + 1e-12) || (length > most * (1.0 - 1e-12) && edge < mostEdge)) most = length, longest = k, mostEdge = edge;
   }
   return longest;
@@ -186,7 +186,7 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
         const auto halves = halved(patch, cut, *middle);
         open.insert(open.end(), halves.rbegin(), halves.rend());
       } else {
-        // One that was not cut is complete: means of textures are dear.
+        // A patch that was not cut is complete: texture means are expensive.
         if (patch.point != mesh.patches[i].point || patch.hidden) complete(patch, result, scene);
         result.patches.push_back(patch);
         if (parent) parent->push_back(static_cast<std::uint32_t>(i));
@@ -246,7 +246,7 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
       }
       const glm::vec3 face(glm::normalize(cross3(mesh.corners(patch))));
       for (glm::vec3& n : patch.normal) n = isFinite(n) && glm::dot(n, face) > 0.0f ? glm::normalize(n) : face;
-      // The same three points in the same sense, whichever comes first.
+      // The same three points in the same winding, in any rotation.
       auto key = patch.point;
       std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
       if (!seen.insert(key).second) {

@@ -26,7 +26,7 @@ glm::dvec3 vec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
 bool isFinite(const std::array<float, 3>& a) { return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]); }
 
-/// What tells whether a file is still the one it was.
+/// Detects changes of a file.
 std::array<std::int64_t, 4> stampOf(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return {};
@@ -39,7 +39,7 @@ std::array<std::int64_t, 4> stampOf(const std::filesystem::path& file) {
 double areaOf(const RadTriangle& t) {
   const glm::dvec3 a = vec(t.p1), u = vec(t.p2) - a, v = vec(t.p3) - a;
   const double area = 0.5 * glm::length(glm::cross(u, v));
-  // Corners are floats: below the rounding of the longest side the area is no area.
+  // Corners are floats: an area below the rounding of the longest side counts as zero.
   const double longest = std::max({glm::length(u), glm::length(v), glm::length(u - v)});
   return area > 1e-7 * longest * longest ? area : 0.0;
 }

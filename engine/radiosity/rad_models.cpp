@@ -53,7 +53,7 @@ class Builder {
       }
   }
 
-  /// A box from `low` to `high` turned about the vertical through its middle, without the faces named in `touching`: they lie on something else.
+  /// A box from `low` to `high` turned about the vertical through its middle, without the faces named in `touching`, which touch something else.
   enum Face : unsigned { none = 0, bottom = 1, top = 2, back = 4, front = 8 };
   void box(const dvec3& low, const dvec3& high, double degrees, const dvec3& color, unsigned touching) {
     const dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
@@ -81,7 +81,7 @@ class Builder {
   std::vector<RadTriangle> take() { return std::move(triangles_); }
 
  private:
-  // Halving is exact, so that 2^k pieces come of a triangle; counted before they are made.
+  // Halving is exact, so a triangle gives 2^k pieces; they are counted before they are made.
   void triangle(const RadTriangle& pattern, const dvec3& a, const dvec3& b, const dvec3& c) {
     const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
     total_ += std::exp2(std::max(0.0, std::floor(std::log2(area / settings_.areaThreshold)) + 1.0));
@@ -137,7 +137,7 @@ void hall(Builder& b) {
   b.pierced(x, z, y, 0.40, 0.55, 0.52, 0.80, kPlaster, true);     // a small window in the far wall
   for (double cx : {32.0, 60.0, 88.0})
     for (double cz : {25.0, 79.0}) b.column({cx, 0.0, cz}, 4.0, h, 10, kStone);
-  // A wall across, with an opening from floor up; it stands off the ceiling, so that light passes over it.
+  // A wall across, with an opening from floor up; it ends below the ceiling, so that light passes over it.
   b.box({112.0, 0.0, 0.0}, {115.0, 28.0, 38.0}, 0.0, kPlaster, Builder::bottom | Builder::back);
   b.box({112.0, 0.0, 58.0}, {115.0, 28.0, d}, 0.0, kPlaster, Builder::bottom | Builder::front);
   // A table, a box turned, a low block, and a panel hung under the lamp.
@@ -153,7 +153,7 @@ void twoChambers(Builder& b) {
   const double w = 48, h = 16, d = 28;
   const dvec3 x{w, 0, 0}, y{0, h, 0}, z{0, 0, d};
   // The wall between, from floor to ceiling, joined to the back wall (z = 0), leaving a gap of 8 units before the front one. What it
-  // touches is cut along its edges: a triangle that lay under it would be lit by one chamber and shown in the other.
+  // touches is cut along its edges: a triangle below it would be lit in one chamber and visible in the other.
   const double x0 = 23, x1 = 25, end = 20;
   b.rectangle({0, 0, 0}, z, {x0, 0, 0}, kFloor);
   b.rectangle({x1, 0, 0}, z, {w - x1, 0, 0}, kFloor);

@@ -16,9 +16,9 @@ namespace lucerna {
 namespace {
 
 constexpr char kMagic[8] = {'L', 'U', 'C', 'R', 'O', 'W', 'S', '\n'};
-constexpr std::uint32_t kVersion = 2;  // 2: rows depend on how pixels learn what they see
+constexpr std::uint32_t kVersion = 2;  // 2: rows depend on the visibility method
 
-constexpr float kMostFactor = 1.01f;      // shares of a hemisphere, with rounding
+constexpr float kMostFactor = 1.01f;      // fractions of a hemisphere, with rounding
 
 struct Header {
   char magic[8];
@@ -27,7 +27,7 @@ struct Header {
 };
 struct BlockHeader {
   std::uint32_t first, rows;
-  std::uint64_t entries, checksum;  ///< of all that follows in the block, and of the three before
+  std::uint64_t entries, checksum;  ///< of everything that follows in the block, and of the three before
 };
 
 std::uint64_t checksumOf(const BlockHeader& header, std::span<const std::uint8_t> data) {
@@ -68,7 +68,7 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
   Header header{};
   if (status.st_size > 0) {
     if (!readAll(descriptor_, &header, sizeof header)) {
-      // Killed before its first bytes were down, or something else's: only a beginning of our own magic is ours to write over.
+      // Killed before its first bytes were written, or a foreign file: only a prefix of our own magic may be overwritten.
       char start[sizeof kMagic] = {};
       const auto got = static_cast<std::size_t>(std::max<ssize_t>(::pread(descriptor_, start, sizeof start, 0), 0));
       if (std::memcmp(start, kMagic, got) != 0) refuse("is no checkpoint of radiosity");
@@ -120,7 +120,7 @@ std::optional<FormFactorRows> RowFile::readBlock(std::uint32_t expected, std::ui
   get(rows.backs, block.rows);
   get(rows.patches, block.entries);
   get(rows.factors, block.entries);
-  // The checksum finds damage; what was written by something else is found here.
+  // The checksum finds damage; this finds foreign writes.
   if (std::accumulate(rows.counts.begin(), rows.counts.end(), std::uint64_t{0}) != block.entries) return std::nullopt;
   for (std::size_t i = 0; i < rows.patches.size(); ++i)
     if (rows.patches[i] >= patches_ || !(rows.factors[i] >= 0.0f && rows.factors[i] <= kMostFactor)) return std::nullopt;

@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 8> namesOf(RadiositySolver) {
   return {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "per-room", "cg"};
 }
 
-/// Each is what the published program does; false is right.
+/// Deviations of the published program; false is correct.
 struct RadiosityDeviations {
   bool publishedMap = false;      ///< pixels weighted 1/r^2 (top) and b/r^2 (sides) instead of the delta form factor
   bool values24Bit = false;       ///< 24-bit integers, rounded down, instead of floats

@@ -32,7 +32,7 @@ struct RadiositySolutionSettings {
 };
 
 /// What decides a solution, as on the command line: "radiosity.edge=0 radiosity.resolution=64 ...". Solver, memory and visibility are no part of it: with them a solution
-/// differs within its error at most.
+/// differs at most within its error.
 std::string textOf(const RadiositySolutionSettings& settings);
 
 struct RadiosityStage {

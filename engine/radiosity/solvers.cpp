@@ -20,7 +20,7 @@ glm::dvec3 largest(std::span<const glm::dvec3> v) {
   return most;
 }
 
-/// What all solvers share: the system, the guarantee, the count.
+/// Shared by all solvers: the system, the error bound, the count.
 class Solve {
  public:
   Solve(const RadiositySystem& system, const SolverSettings& settings) : system_(system), settings_(settings), n_(system.areas.size()) {
@@ -37,7 +37,7 @@ class Solve {
     }
     meanReflectance_ /= area_;
     for (int c = 0; c < 3; ++c) {
-      if (largest(system.emission)[c] == 0.0) q_[c] = 0.0;  // dark: its solution is 0 whatever it reflects
+      if (largest(system.emission)[c] == 0.0) q_[c] = 0.0;  // dark: the solution is 0 for any reflectance
       if (q_[c] < 1.0) {
         factor_[c] = q_[c] / (1.0 - q_[c]);
       } else if (lost[c] < 1e-7 * area_) {
@@ -79,7 +79,7 @@ class Solve {
     return mean / area_;
   }
 
-  /// `irradiance` = F times an exitance that differs from E + rho * irradiance by at most `change`. True: go on.
+  /// `irradiance` = F times an exitance that differs from E + rho * irradiance by at most `change`. True: continue.
   bool report(const Vector& irradiance, const glm::dvec3& change) {
     glm::dvec3 emitted(0.0), absorbed(0.0), escaped(0.0);
     for (std::size_t i = 0; i < n_; ++i) {
@@ -184,7 +184,7 @@ void gaussSeidel(Solve& solve) {
   }
 }
 
-/// Southwell's method: the patch with the most unshot light shoots [Gortler1993]; overshoot: and what it will get to reflect besides [FedaPurgathofer1992].
+/// Southwell's method: the patch with the most unshot light shoots [Gortler1993]; overshoot: plus the light it will receive and reflect [FedaPurgathofer1992].
 void progressive(Solve& solve, bool overshoot) {
   const RadiositySystem& s = solve.system();
   const std::size_t n = solve.size();
@@ -215,7 +215,7 @@ void progressive(Solve& solve, bool overshoot) {
     solve.countRow();
     if (count % std::max<std::size_t>(n / 10, 1) != 0) continue;
     Vector exitance = jacobiStep(s, irradiance);
-    // Shooting takes reciprocity for exact; what rounding leaves of it the last step must see.
+    // Shooting assumes exact reciprocity; the last step must include its rounding errors.
     if (solve.boundOf(largest(unshot), solve.meanOf(exitance)) <= solve.error()) return jacobi(solve, std::move(exitance));
     if (!solve.report(irradiance, largest(unshot))) return;
   }
@@ -292,7 +292,7 @@ void anderson(Solve& solve) {
   }
 }
 
-/// Jacobi with a Galerkin correction on groups of patches: the slow modes are constant in a room, so a room is one unknown more.
+/// Jacobi with a Galerkin correction on groups of patches: the slow modes are constant in a room, so each room adds one unknown.
 /// Groups are found from the matrix itself: the sign of the slowest mode left splits every group in two [Fiedler1973].
 void perRoom(Solve& solve) {
   const RadiositySystem& s = solve.system();
@@ -321,7 +321,7 @@ void perRoom(Solve& solve) {
     }
     groups = count;
   }
-  // F P, three groups a product.
+  // F P, three groups per product.
   std::vector<std::vector<double>> seen(groups, std::vector<double>(n));
   for (std::uint32_t first = 0; first < groups; first += 3) {
     Vector indicator(n, glm::dvec3(0.0)), image(n);
@@ -352,7 +352,7 @@ void perRoom(Solve& solve) {
   }
 }
 
-/// Conjugate gradients on H - F rho H = F E, which is self-adjoint where vectors are weighed by A rho [HestenesStiefel1952].
+/// Conjugate gradients on H - F rho H = F E, which is self-adjoint with vectors weighted by A rho [HestenesStiefel1952].
 void conjugateGradients(Solve& solve) {
   const RadiositySystem& s = solve.system();
   const std::size_t n = solve.size();
@@ -364,7 +364,7 @@ void conjugateGradients(Solve& solve) {
   Vector h(n, glm::dvec3(0.0)), r(n), p(n), weighted(n), image(n);
   double lastBound = 1e300;
   for (;;) {
-    // The true residual; a Jacobi step goes with it.
+    // The true residual, from a Jacobi step.
     const Vector exitance = jacobiStep(s, h);
     solve.product(exitance, image);
     glm::dvec3 change(0.0);
@@ -374,7 +374,7 @@ void conjugateGradients(Solve& solve) {
     }
     if (!solve.report(image, change)) return;
     const double bound = solve.boundOf(change, solve.meanOf(exitance));
-    if (bound > 0.5 * lastBound) return;  // the last bits of double precision: more cannot be had
+    if (bound > 0.5 * lastBound) return;  // the limit of double precision
     lastBound = bound;
     p = r;
     glm::dvec3 rr = dot(r, r);
@@ -393,7 +393,7 @@ void conjugateGradients(Solve& solve) {
         change = glm::max(change, glm::abs(s.reflectance[i] * r[i]));
       }
       const glm::dvec3 next = dot(r, r);
-      // A channel that is done to the last bits rests.
+      // A channel that has converged to the last bits is skipped.
       for (int c = 0; c < 3; ++c) beta[c] = rr[c] > 0.0 && next[c] > 1e-30 * start[c] ? next[c] / rr[c] : 0.0;
       for (std::size_t i = 0; i < n; ++i) p[i] = r[i] + beta * p[i];
       rr = next;

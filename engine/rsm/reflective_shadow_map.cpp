@@ -81,7 +81,7 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, 
     program->set("cosInner", static_cast<float>(light.cosInner));
     program->set("cosOuter", static_cast<float>(light.cosOuter));
   }
-  draw(scene, true);  // what stands before the near plane reflects too
+  draw(scene, true);  // geometry before the near plane reflects too
   return {position_, normal_, flux_, 1.0f, largest(light.intensity) * light.largestSolidAngle(size()), light_, albedo()};
 }
 
