@@ -12,7 +12,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kDiffuseUnit = 0, kMaskUnit = 1;
+constexpr GLuint kDiffuseUnit = 0, kMaskUnit = 1, kNormalUnit = 12, kMetalUnit = 13, kEmissionUnit = 14;
 
 int mipLevels(int width, int height) { return 1 + static_cast<int>(std::floor(std::log2(std::max(width, height)))); }
 
@@ -44,18 +44,22 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
   gl::Sampling sampling{GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_REPEAT};
   sampling.anisotropy = capabilities.anisotropicFilter ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
 
-  std::map<int, int> albedoTextures, maskTextures;
-  const auto upload = [&](int index, bool asMask) {
-    auto& known = asMask ? maskTextures : albedoTextures;
-    if (const auto found = known.find(index); found != known.end()) return found->second;
+  struct Use {
+    const char* name;
+    GLenum format;
+  };
+  constexpr Use kColour{"albedo", GL_SRGB8_ALPHA8}, kMask{"mask", GL_R8}, kLinear{"values", GL_RGBA8};
+  std::map<std::pair<int, GLenum>, int> known;  // a picture may be a colour here, a mask there
+  const auto upload = [&](int index, const Use& use) {
+    const auto [place, isNew] = known.try_emplace({index, use.format}, static_cast<int>(textures_.size()));
+    if (!isNew) return place->second;
     const Texture& texture = scene.textures[static_cast<std::size_t>(index)];
     const Bitmap& bitmap = texture.bitmap;
-    const std::string name = (asMask ? "mask " : "albedo ") + texture.file.filename().string();
+    const std::string name = fmt::format("{} {}", use.name, texture.file.filename().string());
     const int levels = mipLevels(bitmap.width, bitmap.height);
     std::vector<std::uint8_t> texels = flippedRows(bitmap);
-    gl::Texture& target = textures_.emplace_back(name, static_cast<GLenum>(asMask ? GL_R8 : GL_SRGB8_ALPHA8),
-                                                 glm::ivec2(bitmap.width, bitmap.height), sampling, levels);
-    if (asMask) {
+    gl::Texture& target = textures_.emplace_back(name, use.format, glm::ivec2(bitmap.width, bitmap.height), sampling, levels);
+    if (use.format == GL_R8) {
       const std::size_t channel = bitmap.hasAlpha ? 3 : 0;
       for (std::size_t i = 0; i < texels.size() / 4; ++i) texels[i] = texels[4 * i + channel];
       target.upload(GL_RED, GL_UNSIGNED_BYTE, texels.data());
@@ -63,17 +67,31 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
       target.upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
     }
     target.generateMipmaps();
-    return known[index] = static_cast<int>(textures_.size()) - 1;
+    return place->second;
   };
 
   for (const Material& material : scene.materials) {
     Surface surface{material.diffuse, material.specular, material.emission, material.shininess};
-    if (needs.diffuseTextures && material.diffuseTexture >= 0) surface.diffuseTexture = upload(material.diffuseTexture, false);
+    if (needs.diffuseTextures && material.diffuseTexture >= 0) surface.diffuseTexture = upload(material.diffuseTexture, kColour);
     surface.masked = needs.alphaMasks && material.alphaMasked;
-    if (surface.masked) surface.maskTexture = upload(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true);
+    if (surface.masked) surface.maskTexture = upload(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, kMask);
+    if (needs.emissionTextures && material.emissionTexture >= 0) {
+      surface.emission = material.emissionScale;
+      surface.emissionTexture = upload(material.emissionTexture, kColour);
+    }
+    if (needs.normalMaps && material.normalTexture >= 0) {
+      surface.normalScale = material.normalScale;
+      surface.normalTexture = upload(material.normalTexture, kLinear);
+    }
+    if (material.metalMap) {
+      surface.diffuse = material.metalMap->base;
+      surface.metallic = material.metalMap->metallic;
+      surface.roughness = material.metalMap->roughness;
+      if (material.metalMap->texture >= 0) surface.metalTexture = upload(material.metalMap->texture, kLinear);
+    }
     surfaces_.push_back(surface);
   }
-  if (needs.diffuseTextures) {
+  if (needs.diffuseTextures || needs.emissionTextures || needs.normalMaps || needs.metalMaps) {
     white_.emplace("white", static_cast<GLenum>(GL_RGBA8), glm::ivec2(1));
     const std::array<std::uint8_t, 4> texel{255, 255, 255, 255};
     white_->upload(GL_RGBA, GL_UNSIGNED_BYTE, texel.data());
@@ -107,7 +125,8 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
 }
 
 gl::ShaderFlags GpuScene::materialFlags(bool masked) const {
-  return {{"DIFFUSE_TEXTURES", needs_.diffuseTextures}, {"ALPHA_MASK", masked}};
+  return {{"DIFFUSE_TEXTURES", needs_.diffuseTextures}, {"ALPHA_MASK", masked}, {"EMISSION_TEXTURES", needs_.emissionTextures},
+          {"NORMAL_MAPS", needs_.normalMaps}, {"METAL_MAPS", needs_.metalMaps}};
 }
 
 void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) const {
@@ -117,8 +136,18 @@ void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) c
     program.set("materialShininess", surface.shininess);
   }
   if (needs_.emission) program.set("materialEmission", surface.emission);
-  if (needs_.diffuseTextures)
-    (surface.diffuseTexture >= 0 ? textures_[static_cast<std::size_t>(surface.diffuseTexture)] : *white_).bind(kDiffuseUnit);
+  const auto bind = [&](int texture, GLuint unit) { (texture >= 0 ? textures_[static_cast<std::size_t>(texture)] : *white_).bind(unit); };
+  if (needs_.diffuseTextures) bind(surface.diffuseTexture, kDiffuseUnit);
+  if (needs_.emissionTextures) bind(surface.emissionTexture, kEmissionUnit);
+  if (needs_.normalMaps) {
+    program.set("materialNormalScale", surface.normalScale);
+    bind(surface.normalTexture, kNormalUnit);
+  }
+  if (needs_.metalMaps) {
+    program.set("materialMetallic", surface.metallic);
+    program.set("materialRoughness", surface.roughness);
+    bind(surface.metalTexture, kMetalUnit);
+  }
   if (surface.masked) textures_[static_cast<std::size_t>(surface.maskTexture)].bind(kMaskUnit);
 }
 

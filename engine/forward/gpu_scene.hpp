@@ -46,8 +46,10 @@ class GpuScene {
   struct Surface {
     glm::vec3 diffuse, specular, emission;
     float shininess;
-    int diffuseTexture = -1, maskTexture = -1;
+    int diffuseTexture = -1, maskTexture = -1, emissionTexture = -1, normalTexture = -1, metalTexture = -1;
     bool masked = false;
+    float normalScale = 0.0f;                 ///< 0: no picture of normals
+    float metallic = 0.0f, roughness = -1.0f; ///< factors on a MetalMap; these: none
   };
   struct Draw {
     std::uint32_t firstIndex, indexCount;

@@ -29,7 +29,8 @@ bool isNeeded(const Scene& scene, std::string_view need) {
 }  // namespace
 
 const std::vector<std::string>& neutralNeeds() {
-  static const std::vector<std::string> names{"diffuseTextures", "alphaMasks", "specular", "emission", "background", "environment", "environmentPicture", "spotLights", "pointLights"};
+  static const std::vector<std::string> names{"diffuseTextures", "alphaMasks", "specular", "emission", "background", "environment", "environmentPicture", "spotLights", "pointLights",
+                                              "emissionTextures", "normalMaps", "metalMaps"};
   return names;
 }
 
@@ -45,6 +46,14 @@ void addNeutral(Scene& scene, std::string_view need) {
     material.specular = glm::vec3(kNothing);
   } else if (need == "emission") {
     material.emission = glm::vec3(kNothing);
+  } else if (need == "emissionTextures") {
+    material.emission = material.emissionScale = glm::vec3(kNothing);
+    material.emissionTexture = addWhiteTexture(scene);
+  } else if (need == "normalMaps") {
+    material.normalTexture = addWhiteTexture(scene);
+    material.normalScale = kNothing;
+  } else if (need == "metalMaps") {
+    material.metalMap = MetalMap{material.diffuse, 0.0f, 1.0f, addWhiteTexture(scene)};
   } else if (need == "background") {
     scene.background = glm::vec3(kNothing);
   } else if (need == "environment") {

@@ -13,7 +13,7 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kEnvironmentRowsUnit = 4;
+constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kEnvironmentRowsUnit = 4, kValuesUnit = 62;
 constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
 
 std::uint32_t kindOf(const Material& material) {
@@ -44,9 +44,16 @@ PathScene::PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capa
     to.emission = from.emissionTexture >= 0 ? from.emissionScale : from.emission;
     to.ior = from.ior;
     to.boundary = static_cast<std::uint32_t>(rankOfMaterial.empty() ? -1 : rankOfMaterial[i]);
-    to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = PATH_NO_TEXTURE;
+    to.normalScale = from.normalScale;
+    to.metallic = from.metalMap ? from.metalMap->metallic : -1.0f;
+    if (from.metalMap) {
+      to.albedo = from.metalMap->base;
+      to.roughness = from.metalMap->roughness * from.metalMap->roughness;
+      if (to.kind == PATH_CONDUCTOR) to.kind = PATH_DIFFUSE;  // the texel says
+    }
+    to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = to.normalTexture.layer = to.metalTexture.layer = PATH_NO_TEXTURE;
   }
-  const bool textured = needs_.diffuseTextures || needs_.alphaMasks || needs_.emissionTextures;
+  const bool textured = needs_.diffuseTextures || needs_.alphaMasks || needs_.emissionTextures || needs_.normalMaps || needs_.metalMaps;
   if (textured) uploadTextures(scene, capabilities, materials);
 
   std::vector<float> pickDensity;
@@ -83,29 +90,32 @@ void PathScene::uploadEnvironment(const Environment& environment) {
   environmentRows_->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.rows.data());
 }
 
-void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials) {
-  // A picture may be in the atlas twice: as colour, and as mask in the alpha channel.
-  struct Entry {
-    int texture;
-    bool mask;
-    auto operator<=>(const Entry&) const = default;
-  };
-  std::map<Entry, std::size_t> index;
-  std::vector<Entry> entries;
-  const auto want = [&](int texture, bool mask) {
+namespace {
+
+/// What of a picture an atlas takes: it may be in one twice, as colour, and as mask in the alpha channel.
+struct AtlasEntry {
+  int texture;
+  bool mask;
+  auto operator<=>(const AtlasEntry&) const = default;
+};
+
+/// Pictures of one encoding that go into one array texture, and the materials' fields that say where.
+struct AtlasContent {
+  std::map<AtlasEntry, std::size_t> index;
+  std::vector<AtlasEntry> entries;
+  std::vector<std::pair<std::size_t, shared::PathTexture*>> uses;
+  void add(int texture, bool mask, shared::PathTexture& use) {
     const auto [place, isNew] = index.try_emplace({texture, mask}, entries.size());
     if (isNew) entries.push_back({texture, mask});
-    return place->second;
-  };
-  std::vector<std::array<std::size_t, 3>> used(materials.size(), {SIZE_MAX, SIZE_MAX, SIZE_MAX});
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    const Material& material = scene.materials[i];
-    if (needs_.diffuseTextures && material.diffuseTexture >= 0) used[i][0] = want(material.diffuseTexture, false);
-    if (needs_.alphaMasks && material.alphaMasked) used[i][1] = want(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true);
-    if (needs_.emissionTextures && material.emissionTexture >= 0) used[i][2] = want(material.emissionTexture, false);
+    uses.emplace_back(place->second, &use);
   }
+};
+
+/// Nothing where there is nothing to put into it.
+std::optional<gl::Texture> makeAtlas(const Scene& scene, const gl::Capabilities& capabilities, const char* name, GLenum format, const AtlasContent& content) {
+  if (content.entries.empty()) return std::nullopt;
   std::vector<glm::ivec2> sizes;
-  for (const Entry& entry : entries) {
+  for (const AtlasEntry& entry : content.entries) {
     const Texture& texture = scene.textures[static_cast<std::size_t>(entry.texture)];
     sizes.emplace_back(texture.bitmap.width, texture.bitmap.height);
     if (std::max(sizes.back().x, sizes.back().y) > capabilities.maxTextureSize)
@@ -116,29 +126,40 @@ void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capab
   if (layout.size.z > capabilities.maxArrayTextureLayers)
     throwMissingCapability("{} layers of textures; this driver has at most {} (GL_MAX_ARRAY_TEXTURE_LAYERS)", layout.size.z, capabilities.maxArrayTextureLayers);
   std::vector<std::uint8_t> texels(4 * static_cast<std::size_t>(layout.size.x) * static_cast<std::size_t>(layout.size.y) * static_cast<std::size_t>(layout.size.z));
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(entries[i].texture)].bitmap;
+  for (std::size_t i = 0; i < content.entries.size(); ++i) {
+    const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(content.entries[i].texture)].bitmap;
     const AtlasPlace& place = layout.places[i];
     for (int y = 0; y < sizes[i].y; ++y) {  // rows bottom first, as v = 0 is the bottom row
       const std::uint8_t* from = bitmap.rgba.data() + 4 * static_cast<std::size_t>(sizes[i].y - 1 - y) * static_cast<std::size_t>(sizes[i].x);
       std::uint8_t* to = texels.data() + 4 * ((static_cast<std::size_t>(place.layer) * static_cast<std::size_t>(layout.size.y) + static_cast<std::size_t>(place.corner.y + y)) *
                                                   static_cast<std::size_t>(layout.size.x) + static_cast<std::size_t>(place.corner.x));
       std::copy_n(from, 4 * static_cast<std::size_t>(sizes[i].x), to);
-      if (entries[i].mask && !bitmap.hasAlpha)
+      if (content.entries[i].mask && !bitmap.hasAlpha)
         for (int x = 0; x < sizes[i].x; ++x) to[4 * x + 3] = from[4 * x];
     }
   }
-  atlas_.emplace("texture atlas", static_cast<GLenum>(GL_SRGB8_ALPHA8), layout.size, gl::Sampling{}, 1, static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
-  atlas_->upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-  const auto place = [&](std::size_t entry, shared::PathTexture& to) {
-    if (entry == SIZE_MAX) return;
-    to = {layout.places[entry].layer, layout.places[entry].corner.x, layout.places[entry].corner.y, sizes[entry].x, sizes[entry].y, 0, 0, 0};
-  };
+  std::optional<gl::Texture> atlas;
+  atlas.emplace(name, format, layout.size, gl::Sampling{}, 1, static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
+  atlas->upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  for (const auto& [entry, use] : content.uses)
+    *use = {layout.places[entry].layer, layout.places[entry].corner.x, layout.places[entry].corner.y, sizes[entry].x, sizes[entry].y, 0, 0, 0};
+  return atlas;
+}
+
+}  // namespace
+
+void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials) {
+  AtlasContent colours, values;
   for (std::size_t i = 0; i < materials.size(); ++i) {
-    place(used[i][0], materials[i].diffuseTexture);
-    place(used[i][1], materials[i].maskTexture);
-    place(used[i][2], materials[i].emissionTexture);
+    const Material& material = scene.materials[i];
+    if (needs_.diffuseTextures && material.diffuseTexture >= 0) colours.add(material.diffuseTexture, false, materials[i].diffuseTexture);
+    if (needs_.alphaMasks && material.alphaMasked) colours.add(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true, materials[i].maskTexture);
+    if (needs_.emissionTextures && material.emissionTexture >= 0) colours.add(material.emissionTexture, false, materials[i].emissionTexture);
+    if (needs_.normalMaps && material.normalTexture >= 0) values.add(material.normalTexture, false, materials[i].normalTexture);
+    if (needs_.metalMaps && material.metalMap && material.metalMap->texture >= 0) values.add(material.metalMap->texture, false, materials[i].metalTexture);
   }
+  atlas_ = makeAtlas(scene, capabilities, "texture atlas", GL_SRGB8_ALPHA8, colours);
+  values_ = makeAtlas(scene, capabilities, "value atlas", GL_RGBA8, values);
 }
 
 void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured, const std::vector<float>& pickDensity) {
@@ -179,13 +200,16 @@ void PathScene::bind() const {
   materials_.bind(GL_SHADER_STORAGE_BUFFER, kMaterialsBinding);
   if (hasLights()) lights_.bind(GL_SHADER_STORAGE_BUFFER, kLightsBinding);
   if (atlas_) atlas_->bind(kAtlasUnit);
+  if (values_) values_->bind(kValuesUnit);
   if (environmentPicture_) environmentPicture_->bind(kEnvironmentUnit);
   if (environmentTable_) environmentTable_->bind(kEnvironmentTableUnit);
   if (environmentRows_) environmentRows_->bind(kEnvironmentRowsUnit);
 }
 
 gl::ShaderFlags PathScene::flags() const {
-  return {{"TEXTURES", needs_.diffuseTextures || needs_.emissionTextures},
+  return {{"TEXTURES", needs_.diffuseTextures || needs_.emissionTextures || needs_.normalMaps || needs_.metalMaps},
+          {"NORMAL_MAPS", needs_.normalMaps},
+          {"METAL_MAPS", needs_.metalMaps},
           {"ALPHA_MASKS", needs_.alphaMasks},
           {"SMOOTH_NORMALS", needs_.smoothNormals},
           {"TRIANGLE_WORDS", triangleWords_},
@@ -206,7 +230,7 @@ void PathScene::fill(shared::PathConstants& constants) const {
 
 std::size_t PathScene::gpuBytes() const {
   std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes();
-  for (const std::optional<gl::Texture>* texture : {&atlas_, &environmentPicture_, &environmentTable_, &environmentRows_})
+  for (const std::optional<gl::Texture>* texture : {&atlas_, &values_, &environmentPicture_, &environmentTable_, &environmentRows_})
     if (*texture) bytes += (*texture)->bytes();
   return bytes;
 }

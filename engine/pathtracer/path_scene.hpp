@@ -45,7 +45,7 @@ class PathScene {
   /// Throws Error(missingCapability) if the scene exceeds the driver's limits.
   PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const Settings& settings, const std::vector<int>& rankOfMaterial = {});
 
-  /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61.
+  /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62.
   void bind() const;
   /// Those of the shaders named above.
   gl::ShaderFlags flags() const;
@@ -68,7 +68,7 @@ class PathScene {
   std::size_t lightCount_ = 0;
   shared::PathConstants constants_{};
   gl::Buffer triangles_, materials_, lights_;
-  std::optional<gl::Texture> atlas_, environmentPicture_, environmentTable_, environmentRows_;
+  std::optional<gl::Texture> atlas_, values_, environmentPicture_, environmentTable_, environmentRows_;
   Hash hash_;
 };
 

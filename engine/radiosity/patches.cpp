@@ -68,9 +68,7 @@ void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
   patch.centroid = (c[0] + c[1] + c[2]) / 3.0;
   patch.hidden = 0;
   const Material& material = scene.materials[static_cast<std::size_t>(patch.material)];
-  patch.reflectance = glm::dvec3(material.diffuse);
-  if (material.diffuseTexture >= 0)
-    patch.reflectance *= meanTexture(scene.textures[static_cast<std::size_t>(material.diffuseTexture)].bitmap, patch.texCoord);
+  patch.reflectance = meanAlbedo(scene, material, patch.texCoord);
   patch.emission = std::numbers::pi * glm::dvec3(material.emission);
   if (material.emissionTexture >= 0)
     patch.emission = std::numbers::pi * glm::dvec3(material.emissionScale) * meanTexture(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap, patch.texCoord);

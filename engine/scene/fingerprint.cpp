@@ -6,7 +6,7 @@ namespace {
 
 // A field added to one of these changes its size: then add it below (or here, where light does not see it) and correct the figure.
 #if defined(__x86_64__) && defined(__GLIBCXX__)
-static_assert(sizeof(Material) == 128, "add what is new to the fingerprint");
+static_assert(sizeof(Material) == 160, "add what is new to the fingerprint");
 static_assert(sizeof(Medium) == 184, "add what is new to the fingerprint");
 static_assert(sizeof(Environment) == 64, "add what is new to the fingerprint");
 #endif
@@ -17,6 +17,8 @@ void add(Hash& h, const Material& m) {
   h.add(m.diffuse), h.add(m.specular), h.add(m.emission);
   h.add(m.shininess), h.add(m.opacity), h.add(m.diffuseTexture), h.add(m.alphaTexture), h.add(m.alphaMasked);
   if (m.emissionTexture >= 0) h.add(m.emissionTexture), h.add(m.emissionScale);
+  if (m.normalTexture >= 0) h.add(m.normalTexture), h.add(m.normalScale);
+  if (m.metalMap) h.add(m.metalMap->base), h.add(m.metalMap->metallic), h.add(m.metalMap->roughness), h.add(m.metalMap->texture);
 }
 
 void add(Hash& h, const Image& image) {

@@ -198,7 +198,14 @@ GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t in
   if (material.has("name") && material.at("name").json.is_string()) result.name = material.at("name").text();
   const auto lacks = [&](const std::string& what) { result.notDone += (result.notDone.empty() ? "" : ", ") + what; };
 
+  // One set of texture coordinates serves all pictures.
   std::optional<TextureTransform> baseTransform;
+  const auto read = [&](const Value& texture, const char* what) {
+    const TextureTransform transform = transformOf(texture);
+    result.clamped = result.clamped || clamps(root, texture);
+    if (!baseTransform) baseTransform = transform;
+    else if (!(transform == *baseTransform)) lacks(fmt::format("the {} texture lies as the first one does", what));
+  };
   if (material.has("pbrMetallicRoughness")) {
     const Value base = material.at("pbrMetallicRoughness");
     if (!base.json.is_object()) base.fail("an object {...}");
@@ -207,18 +214,14 @@ GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t in
       if (!factor.json.is_array() || factor.json.size() != 4) factor.fail("an array of 4 numbers");
       result.baseAlpha = factor.at(std::size_t{3}).numberBetween(0.0, 1.0, "a number from 0 to 1");
     }
-    if (base.has("baseColorTexture")) {
-      baseTransform = transformOf(base.at("baseColorTexture"));
-      result.clamped = clamps(root, base.at("baseColorTexture"));
-    }
-    if (base.has("metallicRoughnessTexture")) lacks("metallic and roughness are their texture's mean");
+    if (base.has("baseColorTexture")) read(base.at("baseColorTexture"), "base colour's");
+    if (base.has("metallicRoughnessTexture")) read(base.at("metallicRoughnessTexture"), "metallic-roughness");
   }
-  if (material.has("normalTexture")) lacks("no normal map");
-  if (material.has("emissiveTexture")) {
-    const TextureTransform emission = transformOf(material.at("emissiveTexture"));
-    if (!baseTransform) baseTransform = emission;
-    else if (!(emission == *baseTransform)) lacks("the emission's texture lies as the base colour's does");
+  if (material.has("normalTexture")) {
+    read(material.at("normalTexture"), "normal");
+    if (material.at("normalTexture").has("scale")) result.normalScale = static_cast<float>(material.at("normalTexture").at("scale").numberBetween(-1e3, 1e3, "a number from -1000 to 1000"));
   }
+  if (material.has("emissiveTexture")) read(material.at("emissiveTexture"), "emissive");
   result.transform = baseTransform.value_or(TextureTransform{});
 
   if (material.has("alphaMode")) {

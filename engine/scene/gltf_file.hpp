@@ -48,8 +48,9 @@ struct GltfMaterial {
   double transmission = 0.0;                  ///< KHR_materials_transmission
   double thickness = 0.0;                     ///< KHR_materials_volume; 0: a thin wall
   glm::vec3 absorption{0.0f};                 ///< of what fills it, 1 / scene unit: -ln(attenuationColor) / attenuationDistance
-  TextureTransform transform;                 ///< of the base colour's texture; the emission's where there is none
-  bool clamped = false;                       ///< the base colour's texture is to be clamped or mirrored beyond its edge; it repeats here
+  float normalScale = 1.0f;                   ///< of its normal map
+  TextureTransform transform;                 ///< of the base colour's texture; where there is none, of the first other one
+  bool clamped = false;                       ///< a texture is to be clamped or mirrored beyond its edge; it repeats here
   std::string notDone;                        ///< what of it no technique shows, for one warning; empty: nothing
 };
 

@@ -54,6 +54,8 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
       {"environment", environment},
       {"environmentPicture", environmentPicture},
       {"emissionTextures", emissionTextures},
+      {"normalMaps", normalMaps},
+      {"metalMaps", metalMaps},
       {"smoothNormals", smoothNormals},
       {"mirrors", mirrors},
       {"conductors", conductors},
@@ -88,9 +90,12 @@ SceneNeeds analyse(const Scene& scene) {
     needs.specular |= anyPositive(material.specular);
     needs.emission |= anyPositive(material.emission);
     needs.emissionTextures |= anyPositive(material.emission) && material.emissionTexture >= 0;
+    needs.normalMaps |= material.normalTexture >= 0 && material.normalScale != 0.0f;
+    needs.metalMaps |= material.metalMap.has_value();
     needs.smoothNormals = needs.smoothNormals || isSmooth(scene, mesh);
     needs.mirrors |= material.bsdf == Bsdf::mirror;
-    needs.conductors |= material.bsdf == Bsdf::conductor;
+    // A picture's mean may be no metal where texels are.
+    needs.conductors |= material.bsdf == Bsdf::conductor || (material.bsdf == Bsdf::diffuse && material.metalMap && material.metalMap->metallic > 0.5f);
     needs.dielectrics |= material.bsdf == Bsdf::dielectric;
     needs.roughDielectrics |= material.bsdf == Bsdf::dielectric && material.roughness > 0.0f;
     needs.nullBoundaries |= material.bsdf == Bsdf::none;

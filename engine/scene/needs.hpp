@@ -23,8 +23,10 @@ struct SceneNeeds {
   bool pointLights = false;      ///< an omnidirectional light with intensity > 0
   bool environment = false;      ///< light from all around, seen behind surfaces; whoever does not let it light them says so
   bool environmentPicture = false;
-  // Of the path tracer alone:
   bool emissionTextures = false; ///< any drawn mesh emits by a picture
+  bool normalMaps = false;       ///< any drawn mesh has a picture of normals
+  bool metalMaps = false;        ///< any drawn mesh is a metal, or rough, by a picture
+  // Of the path tracer alone:
   bool smoothNormals = false;    ///< a vertex normal that is not its triangle's
   bool mirrors = false;
   bool conductors = false;

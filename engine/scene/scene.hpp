@@ -51,6 +51,15 @@ enum class Bsdf {
   none,        ///< only a boundary between media: light passes straight
 };
 
+/// A surface whose metallic share, roughness or highlight differ from texel to texel (glTF 2.0, appendix B): base colour b = `base` * diffuseTexture,
+/// m = `metallic` * blue, r = `roughness` * green; then diffuse b (1 - m), specular mix(0.04, b, m), GGX alpha r^2, Blinn-Phong exponent 2 / r^4 - 2.
+struct MetalMap {
+  glm::vec3 base{1.0f};
+  float metallic = 1.0f;
+  float roughness = 1.0f;
+  int texture = -1;  ///< its green and blue, not sRGB-encoded; -1: white
+};
+
 struct Material {
   std::string name;
   Bsdf bsdf = Bsdf::diffuse;
@@ -64,11 +73,14 @@ struct Material {
   glm::vec3 emission{0.0f};          ///< emitted radiance (Ke); with a picture of it, its mean over the picture
   glm::vec3 emissionScale{0.0f};     ///< with a picture: emitted radiance where that is white
   float opacity = 1.0f;              ///< d
-  int emissionTexture = -1;          ///< picture of the emission (map_Ke), sRGB-encoded: path tracer and radiosity read it, others take the mean
+  int emissionTexture = -1;          ///< picture of the emission (map_Ke), sRGB-encoded; radiosity takes its mean over a patch
   int diffuseTexture = -1;           ///< index into Scene::textures, -1: none
   int alphaTexture = -1;             ///< mask in its own file (map_d); its red channel, or its alpha where it has one
                                      ///< (bitmap.hasAlpha); not sRGB-encoded, and never a diffuseTexture of this material
   bool alphaMasked = false;          ///< cut out where alpha < 0.5, from alphaTexture or the diffuse texture's alpha
+  int normalTexture = -1;            ///< normals, x along u and y along v, as 0.5 + 0.5 n; not sRGB-encoded (shaders/lib/normal_map.glsl)
+  float normalScale = 1.0f;          ///< on their x and y
+  std::optional<MetalMap> metalMap;  ///< then diffuse, specular, shininess, roughness and bsdf are those of the picture's mean
 };
 
 /// A run of indices drawn with one material.
@@ -140,7 +152,7 @@ struct Scene {
   std::vector<PointLight> points;
   std::vector<Medium> media;
   int cameraMedium = -1;               ///< index of the medium that the camera is in where no boundary tells; -1: vacuum
-  std::optional<Environment> environment;  ///< seen behind the scene; lights it in the path tracer and with lpv.transport=rays
+  std::optional<Environment> environment;  ///< seen behind the scene; lights it in the path tracer, in radiosity and with lpv.transport=gather or rays
   std::vector<Camera> cameras;         ///< never empty after loading: the first is the default view
   Bounds bounds;
   double metresPerUnit = 1.0;

@@ -9,8 +9,8 @@
 //   scale keep their shape.
 // - A material with opacity 0 would be invisible; exporters that mix up `d` and `Tr` write it for solid things: taken as 1.
 // - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic), Blinn-Phong
-//   exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). Textures of metallic,
-//   roughness and emission become their mean, which keeps a surface's total.
+//   exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). glTF's pictures of it are read texel by
+//   texel (MetalMap); what takes a material as a whole, and files of other formats, have their mean, which keeps a surface's total.
 // - glTF 2 by its own JSON where Assimp 5.2.5 leaves things out (gltf_file.hpp): KHR_texture_transform goes into the texture coordinates, alphaCutoff over
 //   baseColorFactor's alpha into the mask, KHR_materials_emissive_strength into the emission, KHR_materials_volume into a medium, colours that all vertices
 //   of a mesh share into its material. What is not shown is one warning a material. Occlusion textures are light that techniques find themselves: not read.
@@ -125,6 +125,13 @@ Bitmap checkerBitmap() {
   return bitmap;
 }
 
+/// Mean over all texels, values as they are in 0..1.
+glm::vec3 meanValue(const Bitmap& bitmap) {
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < bitmap.rgba.size(); i += 4) sum += glm::dvec3(bitmap.rgba[i], bitmap.rgba[i + 1], bitmap.rgba[i + 2]);
+  return glm::vec3(sum / (255.0 * static_cast<double>(bitmap.rgba.size() / 4)));
+}
+
 /// Reads every picture once; a picture that cannot be read is one warning.
 class TextureLoader {
  public:
@@ -162,12 +169,10 @@ class TextureLoader {
     const std::string name = nameOf(material, types);
     if (name.empty()) return glm::vec3(1.0f);
     const std::optional<Texture> texture = read(name);
-    if (!texture) return glm::vec3(1.0f);
-    glm::dvec3 sum(0.0);
-    const std::vector<std::uint8_t>& rgba = texture->bitmap.rgba;
-    for (std::size_t i = 0; i < rgba.size(); i += 4) sum += glm::dvec3(rgba[i], rgba[i + 1], rgba[i + 2]);
-    return glm::vec3(sum / (255.0 * static_cast<double>(rgba.size() / 4)));
+    return texture ? meanValue(texture->bitmap) : glm::vec3(1.0f);
   }
+
+  static bool has(const aiMaterial& material, std::initializer_list<aiTextureType> types) { return !nameOf(material, types).empty(); }
 
  private:
   static std::string nameOf(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
@@ -275,7 +280,10 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
   if (source.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS) {
     float roughness = number(AI_MATKEY_ROUGHNESS_FACTOR, 1.0f);
     // glTF: roughness in green, metallic in blue. Its own texture slot in Assimp 5.2.
-    const glm::vec3 map = textures.mean(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN});
+    const int picture = gltf ? textures.optional(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN}) : -1;
+    const glm::vec3 map = picture >= 0 ? meanValue(scene.textures[static_cast<std::size_t>(picture)].bitmap)
+                                       : gltf ? glm::vec3(1.0f) : textures.mean(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN});
+    const MetalMap factors{glm::vec3(1.0f), clampedNumber(metallic, 0.0f, 1.0f, 0.0f), clampedNumber(roughness, 0.0f, 1.0f, 1.0f), picture};
     metallic = clampedNumber(metallic * map.z, 0.0f, 1.0f, 0.0f);
     roughness = clampedNumber(roughness * map.y, 0.0f, 1.0f, 1.0f);
     glm::vec3 base = material.diffuse;
@@ -289,6 +297,11 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
     const float alpha2 = std::pow(std::max(roughness, 0.03f), 4.0f);
     material.shininess = std::max(2.0f / alpha2 - 2.0f, 1.0f);
     material.roughness = roughness * roughness;
+    // A metal's picture is the colour of its reflection.
+    if (gltf && (picture >= 0 || (factors.metallic > 0.0f && textures.has(source, {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR})))) {
+      material.metalMap = factors;
+      material.metalMap->base = base;
+    }
     if ((gltf ? static_cast<float>(gltf->transmission) : number(AI_MATKEY_TRANSMISSION_FACTOR, 0.0f)) > 0.5f) material.bsdf = Bsdf::dielectric;
     else if (metallic > 0.5f) material.bsdf = Bsdf::conductor;
   }
@@ -320,6 +333,11 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
     material.emissionTexture = textures.optional(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR});
     material.emission = material.emissionScale;
     if (material.emissionTexture >= 0) material.emission *= glm::vec3(meanColour(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap));
+  }
+
+  if (gltf) {
+    material.normalTexture = textures.optional(source, {aiTextureType_NORMALS});
+    material.normalScale = gltf->normalScale;
   }
 
   material.opacity = clampedNumber(number(AI_MATKEY_OPACITY, 1.0f), 0.0f, 1.0f, 1.0f);

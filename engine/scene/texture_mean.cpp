@@ -8,11 +8,15 @@
 namespace lucerna {
 
 namespace {
-/// Linear value of a texture where texture coordinates wrap; nearest texel.
-glm::dvec3 texelAt(const Bitmap& bitmap, const glm::dvec2& uv) {
+/// Bytes of a texture where texture coordinates wrap; nearest texel.
+const std::uint8_t* bytesAt(const Bitmap& bitmap, const glm::dvec2& uv) {
   const auto wrap = [](double t, int n) { return std::min(static_cast<int>((t - std::floor(t)) * n), n - 1); };
   const int x = wrap(uv.x, bitmap.width), y = bitmap.height - 1 - wrap(uv.y, bitmap.height);
-  const std::uint8_t* texel = bitmap.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x));
+  return bitmap.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x));
+}
+
+glm::dvec3 texelAt(const Bitmap& bitmap, const glm::dvec2& uv) {
+  const std::uint8_t* texel = bytesAt(bitmap, uv);
   glm::dvec3 value;
   for (int c = 0; c < 3; ++c) value[c] = static_cast<double>(linearFromSrgb(static_cast<float>(texel[c]) / 255.0f));
   return value;
@@ -28,11 +32,30 @@ glm::dvec3 meanColour(const Bitmap& bitmap) {
   return sum / static_cast<double>(bitmap.rgba.size() / 4);
 }
 
-glm::dvec3 meanTexture(const Bitmap& bitmap, const std::array<glm::vec2, 3>& uv) {
+namespace {
+template <class F>
+glm::dvec3 meanOverParts(const std::array<glm::vec2, 3>& uv, const F& valueAt) {
   static const std::vector<glm::dvec2> centroids = partCentroids(8);
   glm::dvec3 sum(0.0);
-  for (const glm::dvec2& w : centroids) sum += texelAt(bitmap, (1.0 - w.x - w.y) * glm::dvec2(uv[0]) + w.x * glm::dvec2(uv[1]) + w.y * glm::dvec2(uv[2]));
+  for (const glm::dvec2& w : centroids) sum += valueAt((1.0 - w.x - w.y) * glm::dvec2(uv[0]) + w.x * glm::dvec2(uv[1]) + w.y * glm::dvec2(uv[2]));
   return sum / static_cast<double>(centroids.size());
+}
+}  // namespace
+
+glm::dvec3 meanTexture(const Bitmap& bitmap, const std::array<glm::vec2, 3>& uv) {
+  return meanOverParts(uv, [&](const glm::dvec2& at) { return texelAt(bitmap, at); });
+}
+
+glm::dvec3 meanAlbedo(const Scene& scene, const Material& material, const std::array<glm::vec2, 3>& uv) {
+  const auto bitmap = [&](int texture) { return texture >= 0 ? &scene.textures[static_cast<std::size_t>(texture)].bitmap : nullptr; };
+  const Bitmap* colour = bitmap(material.diffuseTexture);
+  if (!material.metalMap) return colour ? glm::dvec3(material.diffuse) * meanTexture(*colour, uv) : glm::dvec3(material.diffuse);
+  const MetalMap& map = *material.metalMap;
+  const Bitmap* metal = bitmap(map.texture);
+  return glm::dvec3(map.base) * meanOverParts(uv, [&](const glm::dvec2& at) {
+           const double metallic = static_cast<double>(map.metallic) * (metal ? bytesAt(*metal, at)[2] / 255.0 : 1.0);
+           return (colour ? texelAt(*colour, at) : glm::dvec3(1.0)) * (1.0 - metallic);
+         });
 }
 
 }  // namespace lucerna

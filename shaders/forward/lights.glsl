@@ -17,7 +17,8 @@ const float kTouching = 1e-30;      // distance squared: a surface point in the 
 #if SPOT_LIGHTS
 layout(binding = 10) uniform sampler2DArrayShadow spotShadows;
 
-Arriving spotLight(int i, vec3 position, vec3 normal) {
+// normal: for shading; meshNormal: along which the shadow map is asked beside the surface.
+Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   vec3 away = lights.spots[i].position - position;
   float distance2 = dot(away, away);
   Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
@@ -25,7 +26,7 @@ Arriving spotLight(int i, vec3 position, vec3 normal) {
   float falloff = spotFalloff(-dot(result.toLight, lights.spots[i].direction), lights.spots[i].cosInner, lights.spots[i].cosOuter);
   if (result.cosine <= 0.0 || falloff <= 0.0) return result;
   float depth = -dot(away, lights.spots[i].direction);
-  vec4 clip = lights.spots[i].clipFromPlace * vec4(normal * (kNormalOffset * lights.spots[i].shadowTexel * depth) - away, 1.0);
+  vec4 clip = lights.spots[i].clipFromPlace * vec4(meshNormal * (kNormalOffset * lights.spots[i].shadowTexel * depth) - away, 1.0);
   float visible = clip.w > 0.0 ? shadowTent(spotShadows, float(i), 0.5 * clip.xyz / clip.w + 0.5) : 1.0;
   result.irradiance = lights.spots[i].intensity * (falloff * result.cosine / distance2 * visible);
   return result;
@@ -41,7 +42,7 @@ float pointShadowTap(int i, vec3 fromLight) {
   return texture(pointShadows, vec4(fromLight, float(i)), clamp(depth, 0.0, 1.0));
 }
 
-Arriving pointLight(int i, vec3 position, vec3 normal) {
+Arriving pointLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   vec3 away = lights.points[i].position - position;
   float distance2 = dot(away, away);
   Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
@@ -50,7 +51,7 @@ Arriving pointLight(int i, vec3 position, vec3 normal) {
   // Depth is measured along the face's axis, the largest component.
   vec3 size = abs(away);
   float texel = lights.points[i].shadowTexel * max(size.x, max(size.y, size.z));
-  vec3 fromLight = normal * (kNormalOffset * texel) - away;
+  vec3 fromLight = meshNormal * (kNormalOffset * texel) - away;
   // Half a texel along the two axes of the face; a tap beyond its edge is looked up in its neighbour, at that one's depth.
   vec3 u = size.x >= size.y && size.x >= size.z ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 v = size.z > size.x && size.z > size.y ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);

@@ -21,14 +21,6 @@ in vec3 vNormal;
 in vec2 vTexCoord;
 layout(location = 0) out vec4 radiance;
 
-#if SPECULAR
-uniform vec3 materialSpecular;
-uniform float materialShininess;
-#endif
-#if EMISSION
-uniform vec3 materialEmission;
-#endif
-
 #if DIRECT
 #include "forward/sun_shadow.glsl"
 #endif
@@ -36,39 +28,57 @@ uniform vec3 materialEmission;
 #include "forward/lights.glsl"
 #endif
 
+#if SPECULAR
+#include "lib/highlight.glsl"
+Highlight highlight;
+#endif
+#if EMISSION
+#include "lib/emission.glsl"
+#endif
+
 // Reflected radiance over irradiance.
 vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
   vec3 reflected = albedo / kPi;
 #if SPECULAR
   vec3 halfway = normalize(toCamera + toLight);
-  reflected += materialSpecular * ((materialShininess + 8.0) / (8.0 * kPi) * pow(max(dot(normal, halfway), 0.0), materialShininess));
+  reflected += highlight.specular * ((highlight.shininess + 8.0) / (8.0 * kPi) * pow(max(dot(normal, halfway), 0.0), highlight.shininess));
 #endif
   return reflected;
 }
 
 void main() {
-  vec3 albedo = materialAlbedo(vTexCoord);
+  vec3 albedo = materialAlbedo(vTexCoord), mapped = materialNormal(vNormal, vPosition, vTexCoord);
+#if SPECULAR
+  highlight = materialHighlight(vTexCoord);
+#endif
+#if EMISSION
+  vec3 emitted = materialEmitted(vTexCoord);
+#endif
   if (materialCutOut(vTexCoord)) discard;
   vec3 toCamera = normalize(frame.cameraPosition - vPosition);
   // Surfaces have two sides: the normal is turned to the viewer by the face's own side, not by the interpolated normal.
-  vec3 normal = normalize(gl_FrontFacing ? vNormal : -vNormal);
+  vec3 meshNormal = normalize(gl_FrontFacing ? vNormal : -vNormal);
+  vec3 normal = meshNormal;
+#if NORMAL_MAPS
+  normal = normalize(gl_FrontFacing ? mapped : -mapped);
+#endif
   vec3 result = vec3(0.0);
 #if DIRECT
   float cosine = dot(normal, -frame.sunDirection);
   if (cosine > 0.0) {
-    vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, normal));
+    vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, meshNormal));
     result += reflection(albedo, normal, toCamera, -frame.sunDirection) * irradiance;
   }
 #endif
 #if SPOT_LIGHTS
   for (int i = 0; i < SPOT_LIGHTS; ++i) {
-    Arriving light = spotLight(i, vPosition, normal);
+    Arriving light = spotLight(i, vPosition, normal, meshNormal);
     if (light.cosine > 0.0) result += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
   }
 #endif
 #if POINT_LIGHTS
   for (int i = 0; i < POINT_LIGHTS; ++i) {
-    Arriving light = pointLight(i, vPosition, normal);
+    Arriving light = pointLight(i, vPosition, normal, meshNormal);
     if (light.cosine > 0.0) result += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
   }
 #endif
@@ -76,15 +86,15 @@ void main() {
   result += albedo / kPi * lpvIrradiance(vPosition, normal);
 #endif
 #if RECEIVED
-  bool found;
-  result += albedo / kPi * receivedIrradiance(vPosition, normal, found);
+  bool found;  // receivers stand on the mesh: their irradiance is that of its own normal, as gathered one is
+  result += albedo / kPi * receivedIrradiance(vPosition, meshNormal, found);
 #endif
 #if GATHERED
   vec4 gathered = texelFetch(gatheredIrradiance, ivec2(gl_FragCoord.xy), 0);
   result += albedo / kPi * gathered.rgb;
 #endif
 #if EMISSION
-  result += materialEmission;
+  result += emitted;
 #endif
 #if SHOW_REFUSED
   if (gathered.w > 1.5) result = vec3(1.0, 0.0, 0.0) / frame.exposure;

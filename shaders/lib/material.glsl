@@ -9,12 +9,43 @@ layout(binding = 0) uniform sampler2D diffuseTexture;  // white where a material
 layout(binding = 1) uniform sampler2D maskTexture;
 #endif
 
-vec3 materialAlbedo(vec2 texCoord) {
+vec3 materialColour(vec2 texCoord) {
 #if DIFFUSE_TEXTURES
   return materialDiffuse * texture(diffuseTexture, texCoord).rgb;
 #else
   return materialDiffuse;
 #endif
+}
+
+#if METAL_MAPS
+layout(binding = 13) uniform sampler2D metalTexture;  // roughness in green, metallic in blue; white where a material has none
+uniform float materialMetallic;                       // 0 where a material has no MetalMap (scene/scene.hpp)
+uniform float materialRoughness;                      // negative where it has none
+#endif
+
+vec3 materialAlbedo(vec2 texCoord) {
+  vec3 colour = materialColour(texCoord);
+#if METAL_MAPS
+  colour *= 1.0 - materialMetallic * texture(metalTexture, texCoord).b;
+#endif
+  return colour;
+}
+
+#if NORMAL_MAPS
+#include "lib/normal_map.glsl"
+layout(binding = 12) uniform sampler2D normalTexture;
+uniform float materialNormalScale;  // 0 where a material has none
+#endif
+
+// The normal that the material's picture makes of an interpolated one, on the same side of the face.
+vec3 materialNormal(vec3 normal, vec3 position, vec2 texCoord) {
+#if NORMAL_MAPS
+  vec3 e1 = dFdx(position), e2 = dFdy(position);
+  vec2 t1 = dFdx(texCoord), t2 = dFdy(texCoord);
+  vec3 mapped = decodedNormal(texture(normalTexture, texCoord).xyz, materialNormalScale);
+  if (materialNormalScale != 0.0) return normalFromMap(normalize(normal), e1, e2, t1, t2, mapped);
+#endif
+  return normal;
 }
 
 bool materialCutOut(vec2 texCoord) {

@@ -3,6 +3,12 @@
 #if TEXTURES || ALPHA_MASKS
 layout(binding = 0) uniform sampler2DArray textureAtlas;
 #endif
+#if NORMAL_MAPS || METAL_MAPS
+layout(binding = 62) uniform sampler2DArray valueAtlas;  // of pictures that are not sRGB-encoded
+#endif
+#if NORMAL_MAPS
+#include "lib/normal_map.glsl"
+#endif
 
 // TRIANGLE_WORDS uvec4 a triangle, floats as their bits:
 // 0: first corner, material; 1: second corner, geometric normal x; 2: third corner, geometric normal y; 3: geometric normal z, the third
@@ -29,7 +35,7 @@ vec2 texCoordAt(uint triangle, vec2 barycentrics) {
 }
 
 // Repeated both ways, bilinear between texel centres.
-vec4 readTexture(PathTexture t, vec2 texCoord) {
+vec4 readAtlas(sampler2DArray atlas, PathTexture t, vec2 texCoord) {
   ivec2 size = ivec2(t.width, t.height);
   vec2 p = fract(texCoord) * vec2(size) - 0.5;
   vec2 floored = floor(p);
@@ -38,12 +44,14 @@ vec4 readTexture(PathTexture t, vec2 texCoord) {
   low += size * ivec2(lessThan(low, ivec2(0)));
   high -= size * ivec2(greaterThanEqual(high, size));
   ivec2 corner = ivec2(t.x, t.y);
-  vec4 a = texelFetch(textureAtlas, ivec3(corner + low, t.layer), 0);
-  vec4 b = texelFetch(textureAtlas, ivec3(corner + ivec2(high.x, low.y), t.layer), 0);
-  vec4 c = texelFetch(textureAtlas, ivec3(corner + ivec2(low.x, high.y), t.layer), 0);
-  vec4 d = texelFetch(textureAtlas, ivec3(corner + high, t.layer), 0);
+  vec4 a = texelFetch(atlas, ivec3(corner + low, t.layer), 0);
+  vec4 b = texelFetch(atlas, ivec3(corner + ivec2(high.x, low.y), t.layer), 0);
+  vec4 c = texelFetch(atlas, ivec3(corner + ivec2(low.x, high.y), t.layer), 0);
+  vec4 d = texelFetch(atlas, ivec3(corner + high, t.layer), 0);
   return mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
 }
+
+vec4 readTexture(PathTexture t, vec2 texCoord) { return readAtlas(textureAtlas, t, texCoord); }
 #endif
 
 #if ALPHA_MASKS
@@ -83,14 +91,59 @@ Surface surfaceAt(uint triangle, vec2 barycentrics, vec3 direction) {
   return surface;
 }
 
-vec3 albedoAt(Surface surface) {
-  vec3 albedo = materials[surface.material].albedo;
+vec3 colourAt(Surface surface) {
+  vec3 colour = materials[surface.material].albedo;
 #if TEXTURES
   PathTexture t = materials[surface.material].diffuseTexture;
-  if (t.layer >= 0) albedo *= readTexture(t, surface.texCoord).rgb;
+  if (t.layer >= 0) colour *= readTexture(t, surface.texCoord).rgb;
+#endif
+  return colour;
+}
+
+#if METAL_MAPS
+// Factors of a MetalMap: x on its roughness' square root, y the metallic share.
+vec2 metalAt(Surface surface) {
+  PathTexture t = materials[surface.material].metalTexture;
+  vec2 map = t.layer >= 0 ? readAtlas(valueAtlas, t, surface.texCoord).gb : vec2(1.0);
+  return vec2(map.x, max(materials[surface.material].metallic, 0.0) * map.y);
+}
+
+#if GLOSSY
+// A metal where more than half of it is one, as materials without pictures are taken.
+void applyMetalMap(Surface surface, inout PathMaterial material) {
+  if (material.metallic < 0.0) return;
+  vec2 metal = metalAt(surface);
+  material.roughness *= metal.x * metal.x;
+  if (material.kind == PATH_DIFFUSE && metal.y > 0.5) {
+    material.kind = PATH_CONDUCTOR;
+    material.specular = mix(vec3(0.04), colourAt(surface), metal.y);
+  }
+}
+#endif
+#endif
+
+vec3 albedoAt(Surface surface) {
+  vec3 albedo = colourAt(surface);
+#if METAL_MAPS
+  albedo *= 1.0 - metalAt(surface).y;
 #endif
   return albedo;
 }
+
+#if NORMAL_MAPS
+// For shading, by the material's picture: turned as the surface's normals are.
+void applyNormalMap(inout Surface surface, uint triangle) {
+  PathTexture t = materials[surface.material].normalTexture;
+  if (t.layer < 0) return;
+  uint first = triangle * TRIANGLE_WORDS;
+  vec3 a = uintBitsToFloat(triangleData[first].xyz);
+  vec4 ab = uintBitsToFloat(triangleData[first + 4u]);
+  vec2 c = uintBitsToFloat(triangleData[first + 3u].yz);
+  vec3 mapped = decodedNormal(readAtlas(valueAtlas, t, surface.texCoord).xyz, materials[surface.material].normalScale);
+  float side = surface.front ? 1.0 : -1.0;
+  surface.normal = side * normalFromMap(side * surface.normal, uintBitsToFloat(triangleData[first + 1u].xyz) - a, uintBitsToFloat(triangleData[first + 2u].xyz) - a, ab.zw - ab.xy, c - ab.xy, mapped);
+}
+#endif
 
 #if EMISSION
 // Probability a unit of area that a light sample goes to a point of the triangle.

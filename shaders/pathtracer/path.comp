@@ -341,6 +341,12 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #endif
 #endif
   PathMaterial material = materials[surface.material];
+#if METAL_MAPS && GLOSSY
+  applyMetalMap(surface, material);
+#endif
+#if NORMAL_MAPS
+  applyNormalMap(surface, hit.triangle);
+#endif
   path.travelled += hit.t;
   ++path.event;
 #if MEDIA && ROULETTE_AT_SURFACES

@@ -13,13 +13,20 @@ in vec3 vNormal;
 flat in vec3 vFace;
 flat in vec2 vFacePlace;
 #endif
-layout(location = 0) out vec4 radiance;
 #if EMISSION
-uniform vec3 materialEmission;
+#include "lib/emission.glsl"
 #endif
+layout(location = 0) out vec4 radiance;
 
 void main() {
   vec3 albedo = materialAlbedo(vTexCoord);
+#if EMISSION
+  vec3 emitted = materialEmitted(vTexCoord);
+#endif
+#if DIRECT_RAYS
+  // Where shading normals are none or turned away the face's own is taken, as in the solution.
+  vec3 normal = materialNormal(dot(vNormal, vFace) > 0.0 ? normalize(vNormal) : vFace, vPosition, vTexCoord);
+#endif
 #if MESH
   vec3 width = fwidth(vCorner);
 #endif
@@ -28,13 +35,11 @@ void main() {
   if (gl_FrontFacing) {
     vec3 irradiance = vIrradiance;
 #if DIRECT_RAYS
-    // Where shading normals are none or turned away the face's own is taken, as in the solution.
-    vec3 normal = dot(vNormal, vFace) > 0.0 ? normalize(vNormal) : vFace;
     irradiance += directIrradiance(vPosition, normal, vFace, vFacePlace.x, vFacePlace.y);
 #endif
     result = albedo * irradiance / kPi;
 #if EMISSION
-    result += materialEmission;
+    result += emitted;
 #endif
   }
 #if MESH

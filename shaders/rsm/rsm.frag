@@ -5,6 +5,7 @@
 // Spot and omnidirectional: flux = I(omega) * albedo * dOmega. A texel of width w at depth 1, seen at the angle psi to the view's
 // axis, lies at the distance 1 / cos psi and is tilted by psi: dOmega = w^2 cos psi / (1 / cos psi)^2 = w^2 cos^3 psi, exact to
 // second order in w (the corner form, four arctangents, loses more than that to rounding). Surface area: d^2 dOmega / cos.
+// Pictures of normals are not read here: a texel's area follows from the mesh's own normal, and flux does not depend on it.
 // The cosine in an area is bounded by 1/20: the few texels on a surface seen edge-on say little about its area.
 #include "lib/frame.glsl"
 #include "lib/material.glsl"

@@ -53,13 +53,15 @@ struct PathMaterial {
   vec3 specular;
   float roughness;          // GGX alpha
   vec3 emission;
-  float padding2;
+  float metallic;           // of a MetalMap (scene/scene.hpp), whose base is `albedo`; negative where there is none
   float ior;
   uint boundary;            // which closed boundary it is of: index of the material
-  float padding0, padding1;
+  float normalScale;
+  float padding;
   PathTexture diffuseTexture;
   PathTexture maskTexture;  // in alpha
   PathTexture emissionTexture;
+  PathTexture normalTexture, metalTexture;  // in the atlas of values that are no colours
 };
 
 // A light and, for the choice of one by one number, an entry of an alias table over all of them [Vose1991].

@@ -25,7 +25,10 @@ const Need kNeeds[] = {{"diffuseTextures", {"diffuseTexture"}, {}},
                        {"environment", {"environmentRadiance"}, {"environment"}},
                        {"environmentPicture", {"environmentTexture", "environmentTurn"}, {"environment"}},
                        {"spotLights", {"spotShadows"}, {"spot shadows"}},
-                       {"pointLights", {"pointShadows"}, {"point shadows"}}};
+                       {"pointLights", {"pointShadows"}, {"point shadows"}},
+                       {"emissionTextures", {"emissionTexture"}, {}},
+                       {"normalMaps", {"normalTexture", "materialNormalScale"}, {}},
+                       {"metalMaps", {"metalTexture", "materialMetallic"}, {}}};
 
 class NeedsOff : public test::GlTest {
  protected:
@@ -91,7 +94,8 @@ TEST_F(NeedsOff, LeavesNothingBehindAndChangesNothing) {
     }
     // A uniform has no bytes of its own; what has a texture or a buffer does.
     const bool isConstant = std::string_view(need.name) == "environment";
-    if ((!need.stages.empty() && !isConstant) || std::string_view(need.name) == "diffuseTextures" || std::string_view(need.name) == "alphaMasks") {
+    const bool isPicture = std::string_view(need.name).ends_with("Textures") || std::string_view(need.name).ends_with("Maps") || std::string_view(need.name).ends_with("Masks");
+    if ((!need.stages.empty() && !isConstant) || isPicture) {
       EXPECT_LT(off.gpuBytes, on.gpuBytes);
     } else {
       EXPECT_EQ(off.gpuBytes, on.gpuBytes);

@@ -158,11 +158,38 @@ TEST(Gltf, VolumesBecomeMedia) {
   EXPECT_EQ(loadTriangle(folder, transmission + R"("KHR_materials_volume":{"attenuationDistance":2,"attenuationColor":[0.5,1,0.5]}})").materials.at(0).interior, -1);
 }
 
+TEST(Gltf, PicturesOfNormalsMetalAndEmissionAreRead) {
+  const TempFolder folder;
+  const Scene scene = loadTriangle(folder, R"("normalTexture":{"index":0,"scale":0.75},"emissiveFactor":[1,0.5,0.25],"emissiveTexture":{"index":0},
+    "pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":0.8,"roughnessFactor":0.9,"metallicRoughnessTexture":{"index":0}})");
+  EXPECT_TRUE(loggedWarnings().empty());
+  const Material& m = scene.materials.at(0);
+  ASSERT_EQ(m.normalTexture, 0);  // one picture, whatever it is used for
+  EXPECT_FLOAT_EQ(m.normalScale, 0.75f);
+  EXPECT_EQ(m.emissionTexture, 0);
+  EXPECT_EQ(m.emissionScale, glm::vec3(1, 0.5f, 0.25f));
+  ASSERT_TRUE(m.metalMap);
+  EXPECT_EQ(m.metalMap->texture, 0);
+  EXPECT_FLOAT_EQ(m.metalMap->metallic, 0.8f);
+  EXPECT_FLOAT_EQ(m.metalMap->roughness, 0.9f);
+  EXPECT_NEAR(glm::length(m.metalMap->base - glm::vec3(0.5f, 0.6f, 0.7f)), 0.0f, 1e-6f);
+  // The picture's texels are blue 16, green 32, red 48 as the file lies in memory.
+  const float metallic = 0.8f * 16.0f / 255.0f;
+  EXPECT_NEAR(glm::length(m.diffuse - (1.0f - metallic) * m.metalMap->base), 0.0f, 1e-5f);
+  // A metal's picture is the colour of its reflection, with a picture of the metallic share or without.
+  EXPECT_TRUE(loadTriangle(folder, R"("pbrMetallicRoughness":{"metallicFactor":1,"baseColorTexture":{"index":0}})").materials.at(0).metalMap);
+  EXPECT_FALSE(loadTriangle(folder, R"("pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0}})").materials.at(0).metalMap);
+  EXPECT_FALSE(loadTriangle(folder, R"("pbrMetallicRoughness":{"metallicFactor":1})").materials.at(0).metalMap);
+  // One set of texture coordinates serves all.
+  loadTriangle(folder, R"("normalTexture":{"index":0,"texCoord":1},"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})");
+  EXPECT_TRUE(contains(onlyWarning(), "material 'paint': the normal texture lies as the first one does"));
+}
+
 TEST(Gltf, WhatIsNotShownIsOneWarning) {
   const TempFolder folder;
-  loadTriangle(folder, R"("normalTexture":{"index":0},"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}},"extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":1}})");
+  loadTriangle(folder, R"("alphaMode":"BLEND","extensions":{"KHR_materials_sheen":{"sheenRoughnessFactor":1},"KHR_materials_clearcoat":{"clearcoatFactor":1}})");
   const std::string warning = onlyWarning();
-  for (const char* part : {"a.gltf", "material 'paint'", "no normal map", "metallic and roughness are their texture's mean", "no KHR_materials_clearcoat"}) EXPECT_TRUE(contains(warning, part)) << warning;
+  for (const char* part : {"a.gltf", "material 'paint'", "not blended (BLEND)", "no KHR_materials_sheen", "no KHR_materials_clearcoat"}) EXPECT_TRUE(contains(warning, part)) << warning;
   loadTriangle(folder, R"("doubleSided":true)", floats({1, 1, 1, 1, 1, 1, 1, 1, 1}),
                R"(,"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"name":"bulb","type":"point","range":5,"color":[1,1,1],"intensity":1}]}})");
   EXPECT_TRUE(contains(onlyWarning(), "bulb"));

@@ -1,0 +1,13 @@
+// Radiance that a mesh's material sends out. Sampled before `discard`, as albedo is (lib/material.glsl).
+uniform vec3 materialEmission;
+#if EMISSION_TEXTURES
+layout(binding = 14) uniform sampler2D emissionTexture;  // white where a material has none
+#endif
+
+vec3 materialEmitted(vec2 texCoord) {
+#if EMISSION_TEXTURES
+  return materialEmission * texture(emissionTexture, texCoord).rgb;
+#else
+  return materialEmission;
+#endif
+}

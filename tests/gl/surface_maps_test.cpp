@@ -1,0 +1,260 @@
+// Pictures of normals, of metals and of emission, texel by texel: forward shading, radiosity and the path tracer against what the texels say.
+#include "support/path_scenes.hpp"
+
+#include "base/image.hpp"
+#include "render/renderer.hpp"
+#include "scene/texture_mean.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace lucerna::test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+class SurfaceMaps : public PathTest {
+ protected:
+  static Image drawn(const Scene& scene, const Camera& camera, Technique technique = Technique::direct, Component component = Component::all) {
+    RenderSettings settings;
+    settings.technique = technique;
+    settings.component = component;
+    settings.size = glm::ivec2(16);
+    settings.fullFloatTarget = true;
+    settings.shadow.size = 256;
+    settings.rsm.size = 64;
+    settings.lpv.cascades.cells = 8;
+    settings.radiosity.direct = RadiosityView::Direct::pixels;
+    Renderer renderer(context(), library(), scene, settings);
+    renderer.renderToTheEnd(camera);
+    return renderer.readRadiance();
+  }
+  Image traced(const Scene& scene, const Camera& camera) {
+    PathTracer::Settings settings = sized(16);
+    settings.pixelCentres = true;
+    settings.transport = Transport::direct;
+    return tracer(scene, camera, settings, 1).mean();
+  }
+};
+
+double linear(int byte) { return static_cast<double>(linearFromSrgb(static_cast<float>(byte) / 255.0f)); }
+
+/// llvmpipe decodes sRGB by a polynomial that is off by up to 2 % of a dark value.
+constexpr double kDecoding = 0.02;
+
+/// Texels `left` for u < 1/2, `right` beyond.
+int twoHalves(SceneBuilder& builder, std::array<std::uint8_t, 3> left, std::array<std::uint8_t, 3> right) {
+  std::vector<std::uint8_t> rgba;
+  for (int x = 0; x < 16; ++x)
+    for (int c = 0; c < 4; ++c) rgba.push_back(c == 3 ? 255 : (x < 8 ? left : right)[static_cast<std::size_t>(c)]);
+  return builder.texture(16, 1, rgba);
+}
+
+/// A floor of side 8 about the origin, its front up; u grows along +x, v towards -z.
+SceneBuilder floorOf(const Material& material) {
+  SceneBuilder builder;
+  const int index = builder.material(glm::vec3(1.0f));
+  builder.materialAt(index) = material;
+  builder.plate({0, 0, 0}, {8, 0, 0}, {0, 0, -8}, index);
+  return builder;
+}
+
+// ------------------------------------------------------------------------------------------------------------- normals
+
+TEST_F(SurfaceMaps, NormalsLieAlongTheTextureWhicheverWayItLies) {
+  struct Coordinates {
+    const char* name;
+    glm::dmat2 of;             ///< columns: what u and v are made of x and -z
+    glm::dvec3 tangent, bitangent;
+  };
+  const Coordinates kinds[] = {{"as they are", glm::dmat2({1, 0}, {0, 1}), {1, 0, 0}, {0, 0, -1}},
+                               {"turned", glm::dmat2({0, -1}, {1, 0}), {0, 0, -1}, {-1, 0, 0}},
+                               {"mirrored", glm::dmat2({-1, 0}, {0, 1}), {-1, 0, 0}, {0, 0, -1}}};
+  const std::array<std::uint8_t, 4> texel{220, 70, 200, 255};
+  for (const Coordinates& kind : kinds)
+    for (const float scale : {1.0f, 0.5f, -1.0f})
+      for (const double side : {1.0, -1.0}) {
+        SCOPED_TRACE(std::string(kind.name) + ", scale " + std::to_string(scale) + ", side " + std::to_string(side));
+        Material material;
+        material.diffuse = {0.8f, 0.4f, 0.2f};
+        material.normalScale = scale;
+        SceneBuilder builder = floorOf(material);
+        builder.materialAt(0).normalTexture = builder.texture(1, 1, {texel.begin(), texel.end()});
+        for (Vertex& v : builder.scene().vertices) v.texCoord = glm::vec2(kind.of * glm::dvec2(v.texCoord));
+        const auto component = [&](std::size_t c) { return 2.0 * texel[c] / 255.0 - 1.0; };
+        const double s = static_cast<double>(scale);
+        const glm::dvec3 normal = side * glm::normalize(s * component(0) * kind.tangent + s * component(1) * kind.bitangent + component(2) * glm::dvec3(0, 1, 0));
+        const Camera camera = lookingAt({0.3, 4.0 * side, 0.4}, {0.2, 0.0, 0.1}, 0.7);
+        const glm::dvec3 toSun = glm::normalize(glm::dvec3(0.2, side, 0.3));
+        builder.sun(-toSun, glm::vec3(2.0f));
+        const double expected = 0.4 / kPi * 2.0 * glm::dot(normal, toSun);
+        ASSERT_GT(expected, 0.05);
+        const Image rastered = drawn(builder.scene(), camera), walked = traced(builder.scene(), camera);
+        for (int y = 0; y < 16; ++y)
+          for (int x = 0; x < 16; ++x) {
+            ASSERT_NEAR(rastered.at(x, y).y, expected, 1e-4) << x << " " << y;
+            ASSERT_NEAR(walked.at(x, y).y, expected, 1e-4) << x << " " << y;
+          }
+        if (side < 0.0) continue;  // radiosity's patches have one side
+        const Image solved = drawn(builder.scene(), camera, Technique::radiosity, Component::direct);
+        EXPECT_NEAR(solved.at(8, 8).y, expected, 1e-4);
+      }
+}
+
+TEST_F(SurfaceMaps, LampsAndHighlightsTakeTheMappedNormal) {
+  Material material;
+  material.diffuse = glm::vec3(0.5f);
+  material.specular = {0.3f, 0.2f, 0.1f};
+  material.shininess = 20.0f;
+  SceneBuilder builder = floorOf(material);
+  builder.materialAt(0).normalTexture = builder.texture(1, 1, {200, 128, 220, 255});
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(2.0 * 200 / 255.0 - 1.0, 2.0 * 220 / 255.0 - 1.0, -(2.0 * 128 / 255.0 - 1.0)));
+  const Camera camera = lookingAt({0, 4, 0}, {0, 0, 0}, 0.1);
+  const auto expect = [&](const char* name, const glm::dvec3& toLight, double irradianceAcross) {
+    const Image image = drawn(builder.scene(), camera);
+    const double cosine = std::max(glm::dot(normal, glm::normalize(toLight + glm::dvec3(0, 1, 0))), 0.0);
+    const glm::dvec3 reflection = glm::dvec3(0.5 / kPi) + glm::dvec3(0.3, 0.2, 0.1) * (28.0 / (8.0 * kPi) * std::pow(cosine, 20.0));
+    const glm::dvec3 expected = reflection * (irradianceAcross * glm::dot(normal, toLight));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(8, 8)[c], expected[c], 0.02 * expected[c]) << name;  // the pixel is not the picture's middle
+  };
+  const glm::dvec3 toLight = glm::normalize(glm::dvec3(2.0, 3.0, 0.5));
+  builder.sun(-toLight, glm::vec3(3.0f));
+  expect("sun", toLight, 3.0);
+  builder.scene().sun.reset();
+  builder.scene().points.push_back({3.0 * toLight, glm::vec3(9.0f)});
+  expect("omnidirectional", toLight, 1.0);
+  builder.scene().points.clear();
+  builder.scene().spots.push_back({3.0 * toLight, -toLight, glm::vec3(9.0f), 0.4, 0.6});
+  expect("spot", toLight, 1.0);
+}
+
+// Without texture coordinates there is no tangent: the mesh's own normal stays.
+TEST_F(SurfaceMaps, WithoutTextureCoordinatesNormalsStay) {
+  Material material;
+  material.diffuse = glm::vec3(0.5f);
+  SceneBuilder builder = floorOf(material);
+  builder.materialAt(0).normalTexture = builder.texture(1, 1, {255, 128, 128, 255});
+  for (Vertex& v : builder.scene().vertices) v.texCoord = {0.25f, 0.75f};
+  builder.sun({0, -1, 0}, glm::vec3(1.0f));
+  const Camera camera = lookingAt({0, 4, 0}, {0, 0, 0}, 0.5);
+  EXPECT_NEAR(drawn(builder.scene(), camera).at(8, 8).x, 0.5 / kPi, 1e-5);
+  EXPECT_NEAR(traced(builder.scene(), camera).at(8, 8).x, 0.5 / kPi, 1e-5);
+}
+
+// -------------------------------------------------------------------------------------------------------------- metals
+
+/// Left half: metallic 1/5 of the factor, roughness 153/255; right half: metallic, roughness 102/255. Of one colour's picture.
+SceneBuilder halfMetal(float metallic, float roughness) {
+  Material material;
+  SceneBuilder builder = floorOf(material);
+  MetalMap map{{0.9f, 0.8f, 0.7f}, metallic, roughness, twoHalves(builder, {7, 153, 51}, {99, 102, 255})};
+  builder.materialAt(0).metalMap = map;
+  builder.materialAt(0).diffuse = 0.4f * map.base;
+  builder.materialAt(0).specular = glm::vec3(0.5f);
+  builder.materialAt(0).diffuseTexture = builder.texture(1, 1, {200, 220, 240, 255});
+  return builder;
+}
+
+/// The base colour of halfMetal.
+const glm::dvec3 kBase = glm::dvec3(0.9, 0.8, 0.7) * glm::dvec3(linear(200), linear(220), linear(240));
+
+TEST_F(SurfaceMaps, MetalsByTexelsAreShadedByTexels) {
+  for (const auto& [metallicFactor, roughnessFactor] : {std::pair(1.0f, 1.0f), std::pair(0.5f, 0.9f)}) {
+    SceneBuilder builder = halfMetal(metallicFactor, roughnessFactor);
+    const glm::dvec3 toSun = glm::normalize(glm::dvec3(0.3, 1.0, 0.2));
+    builder.sun(-toSun, glm::vec3(2.0f));
+    for (const bool right : {false, true}) {
+      const glm::dvec3 place(right ? 2.0 : -2.0, 0.0, 0.0);
+      const Image image = drawn(builder.scene(), lookingAt(place + glm::dvec3(0, 4, 0), place, 0.02));
+      const double metallic = static_cast<double>(metallicFactor) * (right ? 1.0 : 0.2), roughness = static_cast<double>(roughnessFactor) * (right ? 0.4 : 0.6);
+      const double exponent = std::max(2.0 / std::pow(roughness, 4.0) - 2.0, 1.0);
+      const double lobe = (exponent + 8.0) / (8.0 * kPi) * std::pow(glm::normalize(toSun + glm::dvec3(0, 1, 0)).y, exponent);
+      for (int c = 0; c < 3; ++c) {
+        const double expected = (kBase[c] * (1.0 - metallic) / kPi + (0.04 * (1.0 - metallic) + kBase[c] * metallic) * lobe) * 2.0 * toSun.y;
+        EXPECT_NEAR(image.at(8, 8)[c], expected, 0.01 * expected) << metallicFactor << " " << right << " " << c;
+      }
+    }
+  }
+}
+
+// In an environment of radiance 1 everywhere a Lambert surface shows its albedo, a smooth metal Schlick's reflectance [Schlick1994].
+TEST_F(SurfaceMaps, ThePathTracerTakesTexelsForMetalFromAHalfOn) {
+  SceneBuilder builder = halfMetal(1.0f, 0.0f);
+  builder.scene().sun.reset();
+  builder.scene().environment = Environment{};
+  builder.scene().environment->radiance = glm::vec3(1.0f);
+  const double cosine = std::sqrt(0.5);
+  for (const bool right : {false, true}) {
+    const glm::dvec3 place(right ? 2.0 : -2.0, 0.0, 0.0);
+    const Image image = tracer(builder.scene(), lookingAt(place + glm::dvec3(0, 3, 3), place, 0.02), 4, 4).mean();
+    for (int c = 0; c < 3; ++c) {
+      const double expected = right ? kBase[c] + (1.0 - kBase[c]) * std::pow(1.0 - cosine, 5.0) : kBase[c] * 0.8;
+      EXPECT_NEAR(image.at(1, 1)[c], expected, kDecoding * expected) << right << " " << c;
+    }
+  }
+  // A rough metal loses what its facets hide, a smooth one nothing: roughness is read.
+  builder.materialAt(0).metalMap->roughness = 1.0f;
+  const Image rough = tracer(builder.scene(), lookingAt({2, 3, 3}, {2, 0, 0}, 0.02), 16, 64).mean();
+  EXPECT_GT(std::abs(meanOf(rough).x - (kBase.x + (1.0 - kBase.x) * std::pow(1.0 - cosine, 5.0))), 1e-3);
+  // As forward shading has it: metals reflect nothing diffusely.
+  PathTracer::Settings diffuse = sized(4);
+  diffuse.diffuseOnly = true;
+  EXPECT_NEAR(tracer(builder.scene(), lookingAt({2, 3, 3}, {2, 0, 0}, 0.02), diffuse, 4).mean().at(1, 1).x, 0.0, 1e-6);
+}
+
+// What surfaces throw on each other is diffuse: of a picture that says metal there is none.
+TEST_F(SurfaceMaps, MetalsByTexelsThrowNoDiffuseLight) {
+  for (const float metallic : {0.0f, 1.0f}) {
+    SceneBuilder builder;
+    const int lit = builder.material(glm::vec3(0.5f)), grey = builder.material(glm::vec3(0.5f));
+    builder.materialAt(lit).metalMap = MetalMap{glm::vec3(0.8f), metallic, 1.0f, builder.texture(1, 1, {0, 255, 255, 255})};
+    builder.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, lit);
+    builder.plate({-2, 2, 0}, {0, 4, 0}, {0, 0, 4}, grey);
+    builder.sun({0.0, -1.0, 0.0}, glm::vec3(5.0f));  // along the grey plate
+    const Camera camera = lookingAt({3, 1.5, 0}, {-2, 1.0, 0}, 0.3);
+    for (const Technique technique : {Technique::lpv, Technique::rsm}) {
+      const double light = meanOf(drawn(builder.scene(), camera, technique, Component::indirect)).x;
+      if (metallic > 0.0f) EXPECT_EQ(light, 0.0) << static_cast<int>(technique);
+      else EXPECT_GT(light, 0.01) << static_cast<int>(technique);
+    }
+  }
+}
+
+TEST_F(SurfaceMaps, PatchesReflectTheMeanOfTheirTexels) {
+  const Scene scene = halfMetal(1.0f, 1.0f).scene();
+  const std::array<glm::vec2, 3> all{{{0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}}}, left{{{0.1f, 0.0f}, {0.4f, 0.0f}, {0.1f, 1.0f}}};
+  EXPECT_NEAR(meanAlbedo(scene, scene.materials[0], left).x, kBase.x * 0.8, 1e-6);
+  // Of the triangle 3/4 of the area have u < 1/2.
+  EXPECT_NEAR(meanAlbedo(scene, scene.materials[0], all).x, kBase.x * 0.8 * 0.75, 0.02);
+}
+
+// ------------------------------------------------------------------------------------------------------------ emission
+
+TEST_F(SurfaceMaps, EmissionByTexelsShinesByTexelsInEveryTechnique) {
+  Material material;
+  material.diffuse = glm::vec3(0.0f);
+  SceneBuilder builder = floorOf(material);
+  const int texture = twoHalves(builder, {255, 100, 0}, {30, 200, 255});
+  builder.materialAt(0).emissionTexture = texture;
+  builder.materialAt(0).emissionScale = {3.0f, 2.0f, 1.0f};
+  builder.materialAt(0).emission = {1.7f, 0.7f, 0.5f};  // the mean, about
+  builder.scene().sun.reset();
+  for (const bool right : {false, true}) {
+    const glm::dvec3 expected = glm::dvec3(3, 2, 1) * (right ? glm::dvec3(linear(30), linear(200), linear(255)) : glm::dvec3(linear(255), linear(100), linear(0)));
+    const glm::dvec3 place(right ? 2.0 : -2.0, 0.0, 0.0);
+    const Camera camera = lookingAt(place + glm::dvec3(0, 4, 0), place, 0.1);
+    for (const Technique technique : {Technique::direct, Technique::lpv, Technique::radiosity}) {
+      const Image image = drawn(builder.scene(), camera, technique);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(8, 8)[c], expected[c], kDecoding * expected[c] + 1e-6) << static_cast<int>(technique) << " " << right << " " << c;
+    }
+    const Image walked = traced(builder.scene(), camera);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(walked.at(8, 8)[c], expected[c], kDecoding * expected[c] + 1e-6) << "path " << right << " " << c;
+  }
+}
+
+}  // namespace
+}  // namespace lucerna::test
