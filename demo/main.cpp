@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
     printError(error.what());
     return error.exitCode();
   } catch (const lucerna::Stopped& stopped) {
-    fmt::print(stderr, "lucerna: {}\n", stopped.what());
+    printError(stopped.what());
     return lucerna::demo::exitCode();
   } catch (const std::bad_alloc&) {
     printError("out of memory");

@@ -163,12 +163,12 @@ class Report {
 
 int run(AllOptions options) {
   options.common.apply();
-  std::error_code error;
-  fs::create_directories(options.out, error);
-  if (error || !fs::is_directory(options.out)) throwBadInput("--out {}: the folder cannot be made ({})", options.out, error ? error.message() : "a file is in the way");
   if (!(options.scale > 0.0 && options.scale <= 4.0)) throwBadInput("--scale {}: expected a number above 0, at most 4", options.scale);
   for (const std::string& name : options.parts)
     if (std::find(std::begin(kParts), std::end(kParts), name) == std::end(kParts)) throwBadInput("--parts {}: unknown; there are {}", name, fmt::join(kParts, ", "));
+  std::error_code error;
+  fs::create_directories(options.out, error);
+  if (error || !fs::is_directory(options.out)) throwBadInput("--out {}: the folder cannot be made ({})", options.out, error ? error.message() : "a file is in the way");
   if (options.scenes.empty()) options.scenes = {asset("cornell/cornell.json"), asset("atrium/atrium.json")};
   const auto host = options.common.makeHost(false);
   const gl::Context context;

@@ -95,7 +95,8 @@ int writeAll(const fs::path& file, std::span<const std::uint8_t> bytes, bool dur
   return failure;
 }
 
-void replaceFile(const fs::path& file, std::span<const std::uint8_t> bytes, bool durably) {
+/// A name beside the file, from which it may be renamed. Throws where the file cannot be written.
+fs::path temporaryFor(const fs::path& file) {
   if (!file.has_filename()) throwBadInput("'{}': cannot be written: expected a file name", file.string());
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   std::error_code error;
@@ -107,7 +108,11 @@ void replaceFile(const fs::path& file, std::span<const std::uint8_t> bytes, bool
 
   sweepOnce(folder);
   static std::atomic<unsigned> counter{0};
-  const fs::path temporary = folder / fmt::format("{}{}-{}.tmp", temporaryPrefix(), ::getpid(), counter++);
+  return folder / fmt::format("{}{}-{}.tmp", temporaryPrefix(), ::getpid(), counter++);
+}
+
+void replaceFile(const fs::path& file, std::span<const std::uint8_t> bytes, bool durably) {
+  const fs::path temporary = temporaryFor(file), folder = temporary.parent_path();
   int failure = writeAll(temporary, bytes, durably);
   if (failure == 0 && std::rename(temporary.c_str(), file.c_str()) != 0) failure = errno;
   if (failure != 0) {
@@ -133,6 +138,13 @@ void throwCannotOpen(const fs::path& file, int reason) {
 std::vector<std::uint8_t> readFileBytes(const fs::path& file) { return readWhole<std::vector<std::uint8_t>>(file); }
 
 std::string readFileText(const fs::path& file) { return readWhole<std::string>(file); }
+
+void checkWritable(const fs::path& file) {
+  const fs::path temporary = temporaryFor(file);
+  const int failure = writeAll(temporary, {}, false);
+  ::unlink(temporary.c_str());
+  if (failure != 0) throwBadInput("{}: cannot be written: {}", file.string(), std::strerror(failure));
+}
 
 void writeFileAtomically(const fs::path& file, std::span<const std::uint8_t> bytes) { replaceFile(file, bytes, false); }
 

@@ -49,18 +49,19 @@ GLenum firstError() {
   return first;
 }
 
-}  // namespace
-
-void throwIfError(const std::string& after) {
+/// outOfMemory: what is said where memory is what is missing; place: what was done, for every other error.
+void throwFirstError(const std::string& outOfMemory, const std::string& place) {
   const GLenum error = firstError();
-  if (error == GL_OUT_OF_MEMORY) throwMissingCapability("the driver is out of memory ({})", after);
-  if (error != GL_NO_ERROR) throw Error(ErrorKind::fault, fmt::format("internal error: OpenGL reports {} ({})", nameOfError(error), after));
+  if (error == GL_OUT_OF_MEMORY) throwMissingCapability("{}", outOfMemory);
+  if (error != GL_NO_ERROR) throw Error(ErrorKind::fault, fmt::format("internal error: OpenGL reports {} ({})", nameOfError(error), place));
 }
 
+}  // namespace
+
+void throwIfError(const std::string& after) { throwFirstError("the driver is out of memory (" + after + ")", after); }
+
 void throwIfNotAllocated(const std::string& name, std::size_t bytes) {
-  const GLenum error = firstError();
-  if (error == GL_OUT_OF_MEMORY) throwMissingCapability("{}: the driver has no {} bytes of memory for it", name, bytes);
-  if (error != GL_NO_ERROR) throw Error(ErrorKind::fault, fmt::format("internal error: OpenGL reports {} ({}, {} bytes)", nameOfError(error), name, bytes));
+  throwFirstError(fmt::format("{}: the driver has no {} bytes of memory for it", name, bytes), fmt::format("{}, {} bytes", name, bytes));
 }
 
 std::string takePendingErrors() { return std::exchange(g_pendingErrors, {}); }

@@ -26,6 +26,7 @@ constexpr std::array kLimits{
     Limit{GL_MAX_UNIFORM_BLOCK_SIZE, "GL_MAX_UNIFORM_BLOCK_SIZE", 1 << 14},
     Limit{GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS", 0},
     Limit{GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, "GL_MAX_COMPUTE_SHARED_MEMORY_SIZE", 1 << 15},
+    Limit{GL_MAX_COMPUTE_WORK_GROUP_COUNT, "GL_MAX_COMPUTE_WORK_GROUP_COUNT", 65535},
     Limit{GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS", 1024},
     Limit{GL_MAX_TEXTURE_IMAGE_UNITS, "GL_MAX_TEXTURE_IMAGE_UNITS", 16},
     Limit{GL_MAX_IMAGE_UNITS, "GL_MAX_IMAGE_UNITS", 8},
@@ -40,14 +41,28 @@ const Limit& find(GLenum name) {
   return *found;
 }
 
+GLint held(GLint value, const Limit& known) {
+  const char* minima = std::getenv("LUCERNA_GL_MINIMA");
+  return minima && *minima && *minima != '0' ? std::min(value, known.guaranteed) : value;
+}
+
 }  // namespace
 
 GLint limit(GLenum name) {
   const Limit& known = find(name);
   GLint value = 0;
   glGetIntegerv(name, &value);
-  const char* minima = std::getenv("LUCERNA_GL_MINIMA");
-  return minima && *minima && *minima != '0' ? std::min(value, known.guaranteed) : value;
+  return held(value, known);
+}
+
+glm::uvec3 mostWorkGroups() {
+  glm::uvec3 most(0u);
+  for (GLuint axis = 0; axis < 3; ++axis) {
+    GLint value = 0;
+    glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &value);
+    most[static_cast<int>(axis)] = static_cast<GLuint>(held(value, find(GL_MAX_COMPUTE_WORK_GROUP_COUNT)));
+  }
+  return most;
 }
 
 void requireWithin(GLenum limitName, std::size_t needed, std::string_view what) {

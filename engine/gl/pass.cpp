@@ -1,6 +1,7 @@
 #include "gl/pass.hpp"
 
 #include "base/error.hpp"
+#include "gl/limits.hpp"
 
 #include <algorithm>
 
@@ -61,11 +62,7 @@ void RasterPass::restrictTo(const glm::ivec2& corner, const glm::ivec2& size) co
 
 void ComputePass::dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const {
   const glm::uvec3 groups((size + groupSize - 1) / groupSize);
-  static const glm::uvec3 most = [] {  // 65,535 at least [OpenGL 4.3, table 23.70]
-    glm::ivec3 limits(0);
-    for (GLuint axis = 0; axis < 3; ++axis) glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &limits[static_cast<int>(axis)]);
-    return glm::uvec3(limits);
-  }();
+  static const glm::uvec3 most = mostWorkGroups();  // asked once, as above
   if (glm::any(glm::greaterThan(groups, most)))
     throwMissingCapability("{} x {} x {} work groups; this driver's dispatches end at {} x {} x {}", groups.x, groups.y, groups.z, most.x, most.y, most.z);
   glDispatchCompute(groups.x, groups.y, groups.z);

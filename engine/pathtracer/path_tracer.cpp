@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <utility>
 
 namespace lucerna {
 
@@ -207,8 +208,10 @@ void PathTracer::setCamera(const Camera& camera) {
   constants_.firstPixel = glm::vec3(camera.direction - 0.5 * settings_.size.x * pixel * right - 0.5 * settings_.size.y * pixel * up);
   if (hasInteriors()) {
     const Surroundings surroundings = surroundingsOf(boundaries_, camera.position);
-    if (surroundings.openness > 0.01)
-      logWarning("camera {}: it lies on a closed boundary, or inside of one that is open by {:.3g} of a sphere", camera.name, surroundings.openness);
+    // Said when paths start there: another camera may be set before.
+    cameraWarning_ = surroundings.openness > 0.01
+                         ? fmt::format("camera {}: it lies on a closed boundary, or inside of one that is open by {:.3g} of a sphere", camera.name, surroundings.openness)
+                         : std::string();
     cameraInside_ = surroundings.inside;
     cameraIor_ = iorInside(boundaries_, cameraInside_);
   }
@@ -303,6 +306,7 @@ void PathTracer::dropUnfinishedPass() {
 
 bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   if (done_ >= samples) return false;
+  if (!cameraWarning_.empty()) logWarning("{}", std::exchange(cameraWarning_, {}));
   if (passTarget_ == done_ || passTarget_ > samples) {
     // At the end of a pass lanes wait for the last path of a tile. A pass that doubles the samples lets them wait seldom and yet pictures come early.
     const std::uint32_t most = needs_.media ? 1024 : 64;

@@ -130,6 +130,7 @@ class PathTracer {
   int outerMedium_ = -1;
   InsideCounts cameraInside_{0u};
   float cameraIor_ = 1.0f;
+  std::string cameraWarning_;  ///< to be said before its first path
   bool lampsOutside_ = false;  ///< none lies within a dielectric
   gl::Buffer media_, interiors_, grids_, densities_;
   gl::BufferTexture clearances_;

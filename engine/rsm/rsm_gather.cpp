@@ -8,8 +8,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kPatternBinding = 0, kWorkBinding = 1, kRefusedBinding = 2;
-constexpr GLuint kLowUnit = 5;
+constexpr GLuint kPatternBinding = 0, kWorkBinding = 1;
+constexpr GLuint kLowUnit = 5, kRefusedUnit = 5, kRefusedImage = 1;
 
 // The Work block of shaders/rsm/work.glsl.
 struct GatherCounts {
@@ -64,8 +64,8 @@ void RsmGather::resize() {
   irradiance_ = gl::Texture("gathered irradiance", GL_RGBA32F, size);
   if (settings_.interpolates()) {
     lowIrradiance_ = gl::Texture("gathered irradiance low", GL_RGBA32F, lowSize(size, settings_.lowResolution));
-    refused_ = gl::Buffer("refused pixels", static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * sizeof(GLuint), nullptr,
-                          GL_DYNAMIC_COPY);
+    // A list, yet no buffer: storage blocks may end at 16 MiB, a picture's pixels do not.
+    refused_ = gl::Texture("refused pixels", GL_R32UI, size);
   }
 }
 
@@ -82,7 +82,6 @@ void RsmGather::bindVisible(const gl::Program& program, const Inputs& inputs) co
   if (settings_.interpolates()) program.set("lowStep", settings_.lowResolution);
   pattern_.bind(GL_SHADER_STORAGE_BUFFER, kPatternBinding);
   work_.bind(GL_SHADER_STORAGE_BUFFER, kWorkBinding);
-  if (settings_.interpolates()) refused_.bind(GL_SHADER_STORAGE_BUFFER, kRefusedBinding);
 }
 
 void RsmGather::gatherLow(const Inputs& inputs) {
@@ -96,7 +95,7 @@ void RsmGather::gatherLow(const Inputs& inputs) {
 }
 
 void RsmGather::interpolate(const Inputs& inputs) {
-  const gl::ComputePass pass("interpolation", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  const gl::ComputePass pass("interpolation", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   bindVisible(*interpolate_, inputs);
   lowIrradiance_.bind(kLowUnit);
   interpolate_->set("pixelWidth", inputs.pixelWidth);
@@ -104,6 +103,7 @@ void RsmGather::interpolate(const Inputs& inputs) {
   interpolate_->set("fitPlane", settings_.fitPlane);
   interpolate_->set("fitDistance", settings_.fitDistance);
   irradiance_.bindImage(0, GL_WRITE_ONLY);
+  refused_.bindImage(kRefusedImage, GL_WRITE_ONLY);
   pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));
 }
 
@@ -117,6 +117,7 @@ void RsmGather::gatherFull(const Inputs& inputs) {
     bindMap(*full_, settings_, inputs.rsm);
     bindVisible(*full_, inputs);
     irradiance_.bindImage(0, GL_WRITE_ONLY);
+    if (settings_.interpolates()) refused_.bind(kRefusedUnit);
     if (settings_.interpolates())
       pass.dispatchIndirect(work_);
     else

@@ -77,9 +77,10 @@ class RsmGather {
   const gl::Program* low_ = nullptr;
   const gl::Program* interpolate_ = nullptr;
   const gl::Program* full_ = nullptr;
-  gl::Buffer pattern_, work_, refused_;
+  gl::Buffer pattern_, work_;
   const VisibleSurfaces* visible_;
   gl::Texture lowIrradiance_, irradiance_;
+  gl::Texture refused_;  ///< of 32 bits: a list of pixels, row by row
   std::unique_ptr<gl::ReadBackRing> ring_;
   Counts counts_;
 };

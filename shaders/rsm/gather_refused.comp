@@ -5,11 +5,13 @@
 #include "rsm/work.glsl"
 layout(local_size_x = WORK_GROUP) in;
 layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;
-layout(std430, binding = 2) readonly buffer Refused { uint refusedPixels[]; };
+layout(binding = 5) uniform usampler2D refusedPixels;
 
 void main() {
   for (uint i = gl_GlobalInvocationID.x; i < work.refused; i += gl_NumWorkGroups.x * WORK_GROUP) {
-    ivec2 pixel = ivec2(refusedPixels[i] & 0xffffu, refusedPixels[i] >> 16);
+    int width = textureSize(refusedPixels, 0).x;
+    uint refused = texelFetch(refusedPixels, ivec2(int(i) % width, int(i) / width), 0).x;
+    ivec2 pixel = ivec2(refused & 0xffffu, refused >> 16);
     imageStore(irradianceImage, pixel, vec4(gatherIrradiance(visiblePosition(pixel), visibleUnitNormal(pixel), pixelRotation(pixel)), 2.0));
   }
 }

@@ -7,7 +7,7 @@
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;  // w: 0 no surface, 1 interpolated, 2 gathered
-layout(std430, binding = 2) writeonly buffer Refused { uint refusedPixels[]; };  // x | y << 16
+layout(r32ui, binding = 1) writeonly uniform uimage2D refusedPixels;  // x | y << 16, row by row
 layout(binding = 5) uniform sampler2D lowIrradiance;
 uniform float pixelWidth;   // of a pixel, scene units across the view per unit of distance
 uniform float fitNormal;    // least cosine between the normals
@@ -46,7 +46,8 @@ void main() {
         imageStore(irradianceImage, pixel, vec4(sum.rgb / sum.w, 1.0));
       } else {
         uint index = atomicAdd(work.refused, 1u);
-        refusedPixels[index] = uint(pixel.x) | uint(pixel.y) << 16;
+        int width = imageSize(refusedPixels).x;
+        imageStore(refusedPixels, ivec2(int(index) % width, int(index) / width), uvec4(uint(pixel.x) | uint(pixel.y) << 16));
         if (index % WORK_GROUP == 0u && index / WORK_GROUP < 65535u) atomicAdd(work.groupsX, 1u);
       }
     } else {
