@@ -163,7 +163,7 @@ TEST_F(RadiosityKnownOnGl, TwoRoomsAreCorrectedRoomByRoom) {
   EXPECT_LT(finer - rooms, 12.0);  // then a power of ten takes two to four
 }
 
-TEST_F(RadiosityKnownOnGl, ReceiverErrorFallsWithTheSquareOfItsPartsAtRightAngles) {
+TEST_F(RadiosityKnownOnGl, ReceiverErrorFallsWithTheFourthPowerOfItsPartsAtRightAngles) {
   // Unit squares with a common edge.
   double error[3] = {};
   for (int k = 0; k < 3; ++k) {
@@ -179,10 +179,10 @@ TEST_F(RadiosityKnownOnGl, ReceiverErrorFallsWithTheSquareOfItsPartsAtRightAngle
     const auto wall = [](std::size_t j) { return j >= 2; };
     error[k] = std::abs(0.5 * (r.sum(0, wall) + r.sum(1, wall)) / 0.200043776075403 - 1.0);
   }
-  // The edge itself, where the factor jumps to a half, takes a little of the slope away.
-  EXPECT_NEAR(std::log2(error[0] / error[1]), 2.0, 0.4);
-  EXPECT_NEAR(std::log2(error[1] / error[2]), 2.0, 0.5);
-  EXPECT_LT(error[2], 0.002);
+  // The square of what centroids alone would leave: two numbers of parts take its first term off.
+  EXPECT_NEAR(std::log2(error[0] / error[1]), 4.0, 0.5);
+  EXPECT_NEAR(std::log2(error[1] / error[2]), 4.0, 0.5);
+  EXPECT_LT(error[2], 2e-4);
 }
 
 TEST_F(RadiosityKnownOnGl, AnyClosedMeshIsAFurnace) {
