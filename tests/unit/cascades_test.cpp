@@ -145,5 +145,23 @@ TEST(CascadesDeathTest, NeedsCells) {
   EXPECT_DEATH(placeCascades({8, 0}, Bounds{}, glm::dvec3(0.0), kAhead), "cells = 8, cascades = 0");
 }
 
+// Pairs of cells that are averaged where cascades are joined stay the same.
+TEST(Cascades, AllButTheCoarsestMoveByTwoCells) {
+  CascadeSettings settings;
+  settings.cellSize = 1.0;
+  settings.heldInScene = false;
+  bool oddCoarsest = false;
+  for (int step = 0; step < 40; ++step) {
+    const std::vector<Cascade> cascades = placeCascades(settings, {}, glm::dvec3(0.23 * step, -0.11 * step, 0.4 * step), {0, 0, -1});
+    for (std::size_t k = 0; k < cascades.size(); ++k)
+      for (int axis = 0; axis < 3; ++axis) {
+        const bool odd = cascades[k].firstCell[axis] % 2 != 0;
+        oddCoarsest = oddCoarsest || (odd && k + 1 == cascades.size());
+        EXPECT_TRUE(!odd || k + 1 == cascades.size()) << "cascade " << k << ", step " << step;
+      }
+  }
+  EXPECT_TRUE(oddCoarsest);
+}
+
 }  // namespace
 }  // namespace lucerna

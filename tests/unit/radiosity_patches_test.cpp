@@ -1,10 +1,12 @@
 // Patches from scenes: areas, fronts, welding, what is left out, and refinement that keeps the mesh whole.
 #include "base/error.hpp"
+#include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/patches.hpp"
 #include "support/radiosity_scenes.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -138,6 +140,16 @@ TEST(RadiosityPatches, ATJunctionIsFound) {
   builder.triangle({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, m);
   builder.triangle({0, 0, 0}, {1, -1, 0}, {1, 0, 0}, m);
   EXPECT_EQ(countTJunctions(makePatches(builder.scene(), {})), 1u);
+}
+
+TEST(RadiosityPatches, WorkOnAllCoresIsDoneOnceEach) {
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{255}, std::size_t{256}, std::size_t{10007}}) {
+    std::vector<int> times(count, 0);
+    onAllCores(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) ++times[i];
+    });
+    EXPECT_TRUE(std::all_of(times.begin(), times.end(), [](int t) { return t == 1; })) << count;
+  }
 }
 
 }  // namespace
