@@ -51,7 +51,7 @@ enum class Bsdf {
   none,        ///< only a boundary between media: light passes straight
 };
 
-/// A surface whose metallic share, roughness or highlight differ from texel to texel (glTF 2.0, appendix B): base colour b = `base` * diffuseTexture,
+/// A surface whose metallic share, roughness or highlight differ from texel to texel [GLTF2, appendix B]: base colour b = `base` * diffuseTexture,
 /// m = `metallic` * blue, r = `roughness` * green; then diffuse b (1 - m), specular mix(0.04, b, m), GGX alpha r^2, Blinn-Phong exponent 2 / r^4 - 2.
 struct MetalMap {
   glm::vec3 base{1.0f};

@@ -20,6 +20,7 @@
 // - Lights: a directional light's colour is its irradiance, that of a spot or point light its radiant intensity in W/sr, as
 //   the file has it (glTF's candela are not divided by a luminous efficacy); where other formats give a quadratic attenuation
 //   q, colour / q. Constant and linear attenuation are no physics and are ignored.
+// - Lamps far too weak or strong for an exposure of 1, as their units are anybody's: another exposure, with a warning.
 // - No light in the file: a sun, over the shoulder of a view that we chose, else slanted as suits courts and halls, and its clear sky (loadScene, as the sun may still be turned). No camera: the first key of keyFrames/<stem>.txt where the repository has one, else a
 //   view from outside that frames the bounding sphere.
 #include "scene/scene_file.hpp"
@@ -760,10 +761,33 @@ void setDefaultSky(Scene& scene) {
   if (scene.defaultSun) scene.environment = Environment{glm::vec3(1.0f), clearSkyPicture({}, *scene.sun), 0.0};
 }
 
+namespace {
+
+/// Lamps of model files are in the units of whoever wrote them. Where what they give in the scene's middle is far from what an exposure of 1 shows, another is taken.
+void setExposureForLamps(Scene& scene) {
+  if (scene.defaultSun) return;
+  const auto strongest = [](const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); };
+  const double radius = 0.5 * glm::length(scene.bounds.extent());
+  const auto lamp = [&](const glm::dvec3& position, const glm::vec3& intensity) {
+    const double distance = std::max(glm::length(position - scene.bounds.centre()), radius);
+    return strongest(intensity) / (distance * distance);
+  };
+  double irradiance = scene.sun ? strongest(scene.sun->irradiance) : 0.0;
+  for (const SpotLight& light : scene.spots) irradiance += lamp(light.position, light.intensity);
+  for (const PointLight& light : scene.points) irradiance += lamp(light.position, light.intensity);
+  if (!(irradiance > 1e-30 && irradiance < 1e30) || (irradiance > 0.3 && irradiance < 30.0)) return;
+  scene.exposure = static_cast<float>(3.0 / irradiance);
+  logWarning("{}: its lamps give an irradiance of about {:.2g}, so that pictures would be {} at exposure 1; {:.2g} is taken", scene.file.string(), irradiance, irradiance < 1.0 ? "black" : "white",
+             scene.exposure);
+}
+
+}  // namespace
+
 Scene loadScene(const fs::path& file) {
   if (lowerExtension(file) == ".json") return loadSceneFile(file);
   Scene scene = loadModel(file);
   setDefaultSky(scene);
+  setExposureForLamps(scene);
   return scene;
 }
 

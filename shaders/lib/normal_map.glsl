@@ -1,4 +1,4 @@
-// Normals from a picture, as glTF 2.0 has them (section 3.9.3): x along the tangent, y along the bitangent, z along the surface's normal.
+// Normals from a picture, as glTF has them [GLTF2, section 3.9.3]: x along the tangent, y along the bitangent, z along the surface's normal.
 // The tangent is the direction in which u grows, across the normal; the bitangent stands on both, on the side to which v grows. Both follow from a
 // triangle's corners, so that no vertex carries them: exact where texture coordinates are affine, and on curved meshes a little off the tangents that are
 // interpolated between vertices [Mikkelsen2008].

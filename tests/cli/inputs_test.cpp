@@ -160,4 +160,25 @@ TEST_F(Inputs, LinesOfErrorsAreNotBrokenByWhatFilesHold) {
   expectRefused("info " + path("a.json"), 2, {"unknown key"});
 }
 
+// Found out before the work, not after it.
+TEST_F(Inputs, WhatCannotBeWrittenIsToldAtOnce) {
+  fs::create_directory(folder().path() / "folder");
+  for (const std::string& command : {"radiosity solve " + path("m.obj") + " " + path("folder"), "radiosity solve --fidelity original " + path("m.obj") + " " + path("folder"),
+                                     "radiosity solve " + path("m.obj") + " " + path("none/x.sol")}) {
+    const RunResult result = run("timeout 60 '" LUCERNA_BINARY "' " + command);
+    EXPECT_EQ(result.exitCode, 2) << command << "\n" << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_NE(result.err.find("cannot be written"), std::string::npos) << result.err;
+    EXPECT_EQ(result.out.find("hemicube"), std::string::npos) << "it had begun: " << result.out;
+    EXPECT_FALSE(fs::exists(folder().path() / "folder.rows"));
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder().path() / "folder"), fs::directory_iterator()), 0);
+}
+
+TEST_F(Inputs, ARefusedReportMakesNoFolder) {
+  expectRefused("bench all --out " + path("report") + " --parts nonsense", 2, {"nonsense", "stability"});
+  expectRefused("bench all --out " + path("report") + " --scale 9", 2, {"--scale"});
+  EXPECT_FALSE(fs::exists(folder().path() / "report"));
+}
+
 }  // namespace

@@ -1,4 +1,5 @@
 // On a driver with no more than OpenGL 4.3 guarantees (LUCERNA_GL_MINIMA=1) techniques render, or say in one line which limit they need more of.
+#include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -15,11 +16,11 @@ using lucerna::test::TempFolder;
 
 class Minima : public ::testing::Test {
  protected:
-  RunResult render(const std::string& scene, const std::string& arguments) const {
-    return lucerna::test::run("LUCERNA_GL_MINIMA=1 '" LUCERNA_BINARY "' render '" + scene + "' --host osmesa --size 24x24 --quiet -o '" + picture().string() + "' " + arguments);
+  RunResult render(const std::string& scene, const std::string& arguments, const std::string& size = "24x24") const {
+    return lucerna::test::run("LUCERNA_GL_MINIMA=1 '" LUCERNA_BINARY "' render '" + scene + "' --host osmesa --size " + size + " --quiet -o '" + picture().string() + "' " + arguments);
   }
-  void expectRendered(const std::string& arguments) const {
-    const RunResult result = render(kCornell, arguments);
+  void expectRendered(const std::string& arguments, const std::string& size = "24x24") const {
+    const RunResult result = render(kCornell, arguments, size);
     EXPECT_EQ(result.exitCode, 0) << arguments << "\n" << result.err;
     EXPECT_TRUE(fs::exists(picture()));
     fs::remove(picture());
@@ -42,6 +43,8 @@ TEST_F(Minima, WhatFitsIsRendered) {
   expectRendered("--technique rsm");
   expectRendered("--technique lpv --set lpv.transport=propagate --set lpv.cells=16");
   expectRendered("--technique path --spp 1");
+  // A number for each pixel is more than a storage block holds.
+  if (lucerna::test::longTests()) expectRendered("--technique rsm --set rsm.samples=4 --set rsm.size=64", "2176x2048");
 }
 
 TEST_F(Minima, WhatDoesNotFitNamesTheLimit) {

@@ -50,6 +50,7 @@ TEST_F(LimitsTest, WhatIsGuaranteedIsMadeAndNoMore) {
   gl::Texture("deepest", GL_R8, glm::ivec3(1, 1, 2048));
   expectRefused([] { gl::Texture("deep", GL_R8, glm::ivec3(1, 1, 2049)); }, "deep", "GL_MAX_3D_TEXTURE_SIZE is 2048");
   expectRefused([] { gl::Texture("layers", GL_R8, glm::ivec3(1, 1, 2049), {}, 1, GL_TEXTURE_2D_ARRAY); }, "layers", "GL_MAX_ARRAY_TEXTURE_LAYERS is 2048");
+  EXPECT_EQ(gl::mostWorkGroups(), glm::uvec3(65535u));
   expectRefused([] { gl::requireWithin(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, 1, "vertices"); }, "vertices", "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS is 0");
 }
 

@@ -1,12 +1,16 @@
 // Spot and omnidirectional lights in scene files and as views; the sun's cascades: splits and snapping. No GL.
+#include "base/log.hpp"
 #include "forward/light_views.hpp"
 #include "forward/sun_cascades.hpp"
+#include "forward/sun_frustum.hpp"
+#include "pathtracer/light_table.hpp"
 #include "scene/needs.hpp"
 #include "support/temp_folder.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -152,6 +156,30 @@ TEST(SceneLights, GltfLampsAreRead) {
   EXPECT_NEAR(scene.spots[0].outerAngle, 0.5, 1e-6);
 }
 
+// A lamp 4 units from a triangle about the origin, in W/sr: what it gives there is intensity / 16.
+TEST(SceneLights, LampsOfModelsThatAreFarTooWeakOrStrongChooseTheExposure) {
+  const TempFolder folder;
+  const auto exposure = [&](double intensity) {
+    clearLoggedWarnings();
+    return loadScene(folder.write("a.gltf", fmt::format(R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,1]}}],
+    "nodes":[{{"mesh":0,"translation":[-0.5,-0.5,0]}},{{"name":"a","translation":[0,0,4],"extensions":{{"KHR_lights_punctual":{{"light":0}}}}}}],
+    "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+    "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}}],
+    "bufferViews":[{{"buffer":0,"byteLength":36}}],
+    "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}}],
+    "extensionsUsed":["KHR_lights_punctual"],
+    "extensions":{{"KHR_lights_punctual":{{"lights":[{{"type":"point","intensity":{}}}]}}}}}})", intensity))).exposure;
+  };
+  EXPECT_EQ(exposure(16.0), 1.0f);
+  EXPECT_TRUE(loggedWarnings().empty());
+  EXPECT_NEAR(exposure(0.16), 300.0f, 1.0f);
+  ASSERT_EQ(loggedWarnings().size(), 1u);
+  EXPECT_NE(loggedWarnings()[0].find("black at exposure 1"), std::string::npos);
+  EXPECT_NEAR(exposure(16000.0), 0.003f, 1e-5f);
+  EXPECT_NE(loggedWarnings().at(0).find("white"), std::string::npos);
+  EXPECT_EQ(exposure(0.0), 3.0f);  // no lamp: the default sun's
+}
+
 TEST(SceneLights, NeedsAreRaisedByLampsThatShine) {
   Scene scene;
   scene.materials.resize(1);
@@ -282,6 +310,46 @@ TEST(SunCascades, TexelsStayWhileTheCameraMovesAndTurns) {
         EXPECT_NEAR(moved, std::round(moved), 1e-6) << "cascade " << i << " step " << step;
       }
       EXPECT_EQ(a.z, b.z);
+    }
+  }
+}
+
+// What each entry comes up with by threshold and alias is the probability that was asked for [Vose1991].
+TEST(AliasTables, DrawWhatWasAskedFor) {
+  for (const std::vector<double>& weights : {std::vector<double>{1, 2, 3, 4, 0, 7.5, 1e-6}, std::vector<double>{5}, std::vector<double>{0, 0, 3}, std::vector<double>{1e-3, 1e3, 1, 1, 1}}) {
+    const AliasTable table = aliasTable(weights);
+    const double n = static_cast<double>(weights.size());
+    double sum = 0.0;
+    for (const double w : weights) sum += w;
+    std::vector<double> drawn(weights.size(), 0.0);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const double kept = std::clamp(static_cast<double>(table.threshold[i]), 0.0, 1.0);
+      drawn[i] += kept / n;
+      drawn[table.alias[i]] += (1.0 - kept) / n;
+    }
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      EXPECT_NEAR(drawn[i], weights[i] / sum, 1e-7) << i << " of " << weights.size();
+      EXPECT_NEAR(table.probability[i], weights[i] / sum, 1e-12) << i;
+    }
+  }
+}
+
+// Width and height are the sides of what the matrix maps to -1..1, and every vertex lies inside.
+TEST(SunFrustum, HoldsTheSceneAndSaysItsSides) {
+  Scene scene;
+  for (const glm::vec3& p : {glm::vec3(-5, 0, -1), glm::vec3(5, 0, -1), glm::vec3(5, 2, 1), glm::vec3(-5, 1, 1)}) {
+    scene.vertices.push_back({p, {}, {}});
+    scene.bounds.add(glm::dvec3(p));
+  }
+  for (const glm::dvec3& direction : {glm::dvec3(0, -1, 0), glm::normalize(glm::dvec3(0.3, -1, 0.2)), glm::normalize(glm::dvec3(0.1, -0.2, -1))}) {
+    const SunFrustum frustum = fitSunFrustum(scene, direction);
+    const glm::dmat4 rows = glm::transpose(glm::dmat4(frustum.clipFromWorld));
+    EXPECT_NEAR(2.0 / glm::length(glm::dvec3(rows[0])), frustum.width, 1e-5 * frustum.width);
+    EXPECT_NEAR(2.0 / glm::length(glm::dvec3(rows[1])), frustum.height, 1e-5 * frustum.height);
+    EXPECT_GT(std::abs(frustum.width - frustum.height), 1.0);
+    for (const Vertex& vertex : scene.vertices) {
+      const glm::dvec4 clip = glm::dmat4(frustum.clipFromWorld) * glm::dvec4(glm::dvec3(vertex.position), 1.0);
+      for (int axis = 0; axis < 3; ++axis) EXPECT_LT(std::abs(clip[axis]), 1.0);
     }
   }
 }

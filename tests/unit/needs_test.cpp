@@ -42,6 +42,8 @@ TEST(SceneNeedsTest, EachFeatureRaisesItsFlagAlone) {
       {"texture", [](Scene& s) { s.materials[0].diffuseTexture = 0; }, &SceneNeeds::diffuseTextures},
       {"mask", [](Scene& s) { s.materials[0].alphaMasked = true; }, &SceneNeeds::alphaMasks},
       {"specular", [](Scene& s) { s.materials[0].specular.z = 0.01f; }, &SceneNeeds::specular},
+      {"normal map", [](Scene& s) { s.materials[0].normalTexture = 0; }, &SceneNeeds::normalMaps},
+      {"map of no metal", [](Scene& s) { s.materials[0].metalMap = MetalMap{glm::vec3(0.5f), 0.5f, 1.0f, 0}; }, &SceneNeeds::metalMaps},
       {"mirror", [](Scene& s) { s.materials[0].bsdf = Bsdf::mirror; }, &SceneNeeds::mirrors},
       {"conductor", [](Scene& s) { s.materials[0].bsdf = Bsdf::conductor; }, &SceneNeeds::conductors},
       {"dielectric", [](Scene& s) { s.materials[0].bsdf = Bsdf::dielectric; }, &SceneNeeds::dielectrics},
@@ -57,6 +59,15 @@ TEST(SceneNeedsTest, EachFeatureRaisesItsFlagAlone) {
     expected.*c.flag = true;
     EXPECT_EQ(analyse(scene), expected) << c.name;
   }
+}
+
+TEST(SceneNeedsTest, AMapThatMaySayMetalNeedsConductors) {
+  Scene scene = plainScene();
+  scene.materials[0].metalMap = MetalMap{glm::vec3(0.5f), 1.0f, 1.0f, 0};  // its mean may be no metal
+  EXPECT_TRUE(analyse(scene).conductors);
+  scene.materials[0].normalTexture = 0;
+  scene.materials[0].normalScale = 0.0f;
+  EXPECT_FALSE(analyse(scene).normalMaps);
 }
 
 TEST(SceneNeedsTest, MaterialsOfNoDrawnMeshDoNotCount) {
