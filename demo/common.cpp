@@ -34,6 +34,7 @@ std::string CommonOptions::askedHost() const {
 
 void CommonOptions::apply() const {
   if (const std::string asked = askedHost(); !asked.empty()) parseHostKind(asked);
+  if (!json.empty()) checkWritable(json);
   if (quiet) setLogLevel(LogLevel::quiet);
   if (const char* verbose = std::getenv("LUCERNA_VERBOSE"); verbose && *verbose) setLogLevel(LogLevel::verbose);
 }

@@ -26,6 +26,7 @@ struct Options {
 
 int run(Options options) {
   options.common.apply();
+  checkWritable(options.output);
   options.picture.readSettingsFile();
   if (!options.path.spp) options.path.spp = options.picture.settingsSpp;
   if (options.picture.technique == "path") return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);

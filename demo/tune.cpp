@@ -81,6 +81,7 @@ std::string describe(const ErrorRow& row) {
 
 int run(Options options) {
   if (options.frameTime.has_value() == options.error.has_value()) throwBadInput("tune: give one of --frame-time MS and --error E");
+  checkWritable(options.output);
   if (options.bench.out.empty()) options.bench.out = "bench-error";
   if (options.bench.techniques.empty()) options.bench.techniques = bench::ladderTechniques();  // those that walk in real time; path tracing where it is asked for
   const auto result = bench::benchScene(options.common, options.bench);

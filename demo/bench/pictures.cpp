@@ -69,6 +69,7 @@ int runVpt(const Options& options) {
 
 int run(const Options& options) {
   options.common.apply();
+  checkWritable(options.output);
   bench::checkOriginal(options.original);
   RenderSettings usual;
   if (options.fidelity != "corrected" && options.fidelity != "original")

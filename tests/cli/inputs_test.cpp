@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 
@@ -164,12 +165,17 @@ TEST_F(Inputs, LinesOfErrorsAreNotBrokenByWhatFilesHold) {
 TEST_F(Inputs, WhatCannotBeWrittenIsToldAtOnce) {
   fs::create_directory(folder().path() / "folder");
   for (const std::string& command : {"radiosity solve " + path("m.obj") + " " + path("folder"), "radiosity solve --fidelity original " + path("m.obj") + " " + path("folder"),
-                                     "radiosity solve " + path("m.obj") + " " + path("none/x.sol")}) {
+                                     "radiosity solve " + path("m.obj") + " " + path("none/x.sol"), "render " + path("m.obj") + " --technique path --seconds 50 -o " + path("none/x.pfm"),
+                                     "render " + path("m.obj") + " --technique path --seconds 50 -o " + path("x.pfm") + " --json " + path("folder"),
+                                     "tune " + path("m.obj") + " --frame-time 16 -o " + path("folder")}) {
+    const auto begun = std::chrono::steady_clock::now();
     const RunResult result = run("timeout 60 '" LUCERNA_BINARY "' " + command);
     EXPECT_EQ(result.exitCode, 2) << command << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
     EXPECT_NE(result.err.find("cannot be written"), std::string::npos) << result.err;
     EXPECT_EQ(result.out.find("hemicube"), std::string::npos) << "it had begun: " << result.out;
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count(), 40.0) << command;
+    EXPECT_FALSE(fs::exists(folder().path() / "x.pfm"));
     EXPECT_FALSE(fs::exists(folder().path() / "folder.rows"));
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(folder().path() / "folder"), fs::directory_iterator()), 0);
