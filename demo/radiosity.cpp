@@ -78,8 +78,6 @@ int solve(const RadiositySolve& options) {
   if (options.resolution < 2 || options.resolution > 4096) throwBadInput("RESOLUTION {}: expected 2 to 4096 pixels", options.resolution);
   if (options.maxSweeps < 0) throwBadInput("--max-sweeps {}: expected 0 (no limit) or more", options.maxSweeps);
   checkWritable(options.out);
-  if (options.settings.view < 2 || options.settings.view > 4096) throwBadInput("VIEW {}: expected 2 to 4096 pixels", options.settings.view);
-  if (options.settings.maxSweeps < 0) throwBadInput("--max-sweeps {}: expected 0 (no limit) or more", options.settings.maxSweeps);
   if (!(options.saveEvery >= 0.0)) throwBadInput("--save-every {}: expected seconds, 0 or more", options.saveEvery);
   if (options.nearPlane && !(*options.nearPlane > 0.0 && std::isfinite(*options.nearPlane))) throwBadInput("--near-plane {}: expected a distance above 0", *options.nearPlane);
   if (options.fidelity == "original" && !options.set.empty()) throwBadInput("--set {}: the published program has no such settings", options.set.front());
