@@ -43,6 +43,16 @@ Scene loadTriangle(const TempFolder& folder, const std::string& material, const 
     "buffers":[{"uri":"a.bin","byteLength":96}])" + more + "}"));
 }
 
+/// The same with colours of four numbers, the last of them 0.5.
+Scene loadTriangleOfFour(const TempFolder& folder, const std::string& material) {
+  clearLoggedWarnings();
+  folder.write("a.bin", floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 1, 0.5f, 1, 1, 1, 0.5f, 1, 1, 1, 0.5f}));
+  return loadScene(folder.write("a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1},"material":0}]}],"materials":[{"name":"paint",)" + material + R"(}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},{"bufferView":1,"componentType":5126,"count":3,"type":"VEC4"}],
+    "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":48}],"buffers":[{"uri":"a.bin","byteLength":84}]})"));
+}
+
 std::string onlyWarning() {
   EXPECT_EQ(loggedWarnings().size(), 1u);
   return loggedWarnings().empty() ? "" : loggedWarnings().front();
@@ -64,6 +74,14 @@ TEST(Gltf, ColoursThatAllVerticesShareTintTheMaterial) {
   const Scene mixed = loadTriangle(folder, material, floats({0, 1, 0, 0.5f, 1, 0, 1, 1, 0.75f}));
   EXPECT_NEAR(glm::length(mixed.materials.at(0).diffuse - glm::vec3(0.4f, 0.5f, 0.25f)), 0.0f, 1e-6f);
   EXPECT_TRUE(contains(onlyWarning(), "material 'paint': vertex colours are their mean"));
+}
+
+TEST(Gltf, AlphaOfVerticesIsSaidNotToBeRead) {
+  const TempFolder folder;
+  loadTriangleOfFour(folder, R"("alphaMode":"MASK")");
+  EXPECT_TRUE(contains(onlyWarning(), "material 'paint': vertices' alpha is not read"));
+  loadTriangleOfFour(folder, R"("alphaMode":"OPAQUE")");
+  EXPECT_TRUE(loggedWarnings().empty());
 }
 
 // With rotation 90 degrees counter-clockwise (v down): u' = v, v' = -u.
