@@ -366,6 +366,12 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
   return material;
 }
 
+/// Whether vertices are transparent in part. Colours of three numbers come with an alpha of 0.
+bool haveAlpha(const aiMesh& mesh) {
+  if (!mesh.HasVertexColors(0)) return false;
+  return std::any_of(mesh.mColors[0], mesh.mColors[0] + mesh.mNumVertices, [](const aiColor4D& colour) { return colour.a > 0.0f && colour.a < 1.0f; });
+}
+
 /// The colour that a mesh's vertices have, a factor on the base colour: its mean over the surface, and whether all have that one.
 std::pair<glm::vec3, bool> vertexColour(const aiMesh& mesh) {
   if (!mesh.HasVertexColors(0)) return {glm::vec3(1.0f), true};
@@ -722,11 +728,7 @@ Scene loadModel(const fs::path& file) {
         if (rest.notDone.find(what) == std::string::npos) rest.notDone += fmt::format("{}{}", rest.notDone.empty() ? "" : ", ", what);
       };
       if (!same) lacks("vertex colours are their mean");
-      // Colours of three numbers come with an alpha of 0.
-      const auto isPartial = [&](unsigned i) { return mesh.mColors[0][i].a > 0.0f && mesh.mColors[0][i].a < 1.0f; };
-      bool partial = false;
-      for (unsigned i = 0; mesh.HasVertexColors(0) && i < mesh.mNumVertices && !partial; ++i) partial = isPartial(i);
-      if (partial && rest.alpha != GltfMaterial::Alpha::opaque) lacks("vertices' alpha is not read");
+      if (haveAlpha(mesh) && rest.alpha != GltfMaterial::Alpha::opaque) lacks("vertices' alpha is not read");
       if (rest.clamped && leavesPicture(mesh, rest.transform)) lacks("its texture repeats where it should be clamped or mirrored");
       const int material = convertedMaterial(index, tint, &rest);
       if (scene.materials[static_cast<std::size_t>(material)].opacity > 0.0f) appendMesh(scene, mesh, worldFromNode, material, rest.transform, name);
