@@ -51,7 +51,7 @@ TEST_F(SampleModels, EveryOneThatLoadsShowsSomething) {
     Renderer renderer(context(), library(), *scene, settings);
     renderer.render(scene->cameras.front());
     const Image image = renderer.readRadiance();
-    const auto lit = std::count_if(image.pixels.begin(), image.pixels.end(), [](const glm::vec3& p) { return (p.x + p.y + p.z) * scene->exposure > 1e-3f; });
+    const auto lit = std::count_if(image.pixels.begin(), image.pixels.end(), [&](const glm::vec3& p) { return (p.x + p.y + p.z) * scene->exposure > 1e-3f; });
     EXPECT_GT(lit, 0) << file;  // of AMF's two shapes of a unit, 90 units apart, a few
     if (pictures) {
       std::string name = fs::relative(file, folder).string() + ".png";
