@@ -93,9 +93,15 @@ JudgedPicture References::judge(const Image& original, const Reference& referenc
   };
   JudgedPicture judged;
   judged.pixels = errors(picture, truth, error);
+  // d sqrt(x) = dx / (2 sqrt(x)).
+  const measure::SquareErrors whole = measure::squareErrorsOf(picture, truth, error);
+  judged.nrmseError = whole.squares / (2.0 * judged.pixels.rmse * judged.pixels.measured.referenceMean);
+  judged.relmseError = whole.relative;
   picture = less(picture, black), truth = less(truth, black);
   const int side = measure::blockSide(truth.width);
   judged.scattered = errors(picture, truth, error);
+  judged.l2Error = measure::squareErrorsOf(picture, truth, error).squares * judged.scattered.l2 /
+                   (2.0 * judged.scattered.rmse * judged.scattered.rmse);
   judged.blocks = errors(measure::blockMeans(picture, side), measure::blockMeans(truth, side),
                          measure::blockStandardErrors(error, side));
   judged.lit = measure::partErrorsOf(picture, truth, error, lit, ownError);

@@ -42,6 +42,8 @@ struct JudgedPicture {
   measure::JudgedErrors scattered;  ///< of scattered light
   measure::JudgedErrors blocks;     ///< the same averaged over blocks of 1/16 of the width
   measure::PartErrors lit, other;
+  /// Standard errors that the reference's noise gives to l2, nrmse and relmse; NaN where the error is 0.
+  double l2Error = 0.0, nrmseError = 0.0, relmseError = 0.0;
 };
 
 struct References {

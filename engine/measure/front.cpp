@@ -2,25 +2,34 @@
 
 #include "base/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace lucerna::measure {
 
+bool isBelow(double a, double ea, double b, double eb) { return a < b && b - a > kApart * std::hypot(ea, eb); }
+
 std::vector<bool> paretoFront(std::span<const CostAndError> points) {
   std::vector<bool> front(points.size(), false);
   const auto valid = [](const CostAndError& p) { return std::isfinite(p.cost) && std::isfinite(p.error); };
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const CostAndError& p = points[i];
-    if (!valid(p)) continue;
-    bool beaten = false;
-    for (std::size_t j = 0; j < points.size() && !beaten; ++j) {
-      const CostAndError& q = points[j];
-      if (j == i || !valid(q) || q.cost > p.cost || q.error > p.error) continue;
-      beaten = q.cost < p.cost || q.error < p.error || j < i;
-    }
-    front[i] = !beaten;
-  }
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (valid(points[i])) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    return points[i].cost != points[j].cost ? points[i].cost < points[j].cost : points[i].error < points[j].error;
+  });
+  const auto errsLess = [&](std::size_t i, std::size_t j) {
+    return isBelow(points[i].error, points[i].errorSpread, points[j].error, points[j].errorSpread);
+  };
+  const auto costsLess = [&](std::size_t i, std::size_t j) {
+    return isBelow(points[i].cost, points[i].costSpread, points[j].cost, points[j].costSpread);
+  };
+  std::vector<std::size_t> kept;
+  for (const std::size_t i : order)
+    if (std::all_of(kept.begin(), kept.end(), [&](std::size_t j) { return errsLess(i, j); })) kept.push_back(i);
+  for (const std::size_t i : kept)
+    front[i] = std::none_of(kept.begin(), kept.end(), [&](std::size_t j) { return errsLess(j, i) && !costsLess(i, j); });
   return front;
 }
 

@@ -90,12 +90,34 @@ JudgedErrors lessNoise(const ImageErrors& measured, const ReferenceNoise& noise,
   judged.l2 = ratio(judged.rmse, std::sqrt(std::max(0.0, measured.referenceSquare - noise.variance)));
   judged.noiseL2 = ratio(std::sqrt(noise.variance), std::sqrt(measured.referenceSquare));
   judged.noiseNrmse = ratio(std::sqrt(noise.variance), measured.referenceMean);
+  judged.noiseRelmse = noise.relativeVariance;
   judged.biasError = std::hypot(noise.meanError, ownBiasError);
   judged.atNoise = measured.rmse < 3.0 * std::sqrt(noise.variance);
   judged.biasAtNoise = std::abs(measured.bias) < 3.0 * judged.biasError;
   if (measured.notFinite > 0)
     judged.rmse = judged.nrmse = judged.l2 = judged.relmse = measured.rmse;  // max(0, NaN) would be 0
   return judged;
+}
+
+SquareErrors squareErrorsOf(const Image& image, const Image& reference, const Image& standardError) {
+  checkSizes(image, reference);
+  checkSizes(reference, standardError);
+  const glm::dvec3 mean = meanOf(reference);
+  const double floor = relativeFloor(sum(mean) / 3.0);
+  double squares = 0.0, relative = 0.0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const glm::dvec3 r(reference.pixels[i]), d = glm::dvec3(image.pixels[i]) - r, s(standardError.pixels[i]);
+    double error = 0.0, relativeError = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      const double s2 = s[c] * s[c], spread = std::sqrt((4.0 * std::max(0.0, d[c] * d[c] - s2) + 2.0 * s2) * s2);
+      error += spread;
+      relativeError += ratio(spread, r[c] * r[c] + floor);
+    }
+    squares += error * error;
+    relative += relativeError * relativeError;
+  }
+  const double n = 3.0 * static_cast<double>(image.pixels.size());
+  return {std::sqrt(squares) / n, std::sqrt(relative) / n};
 }
 
 int blockSide(int width) { return std::max(1, static_cast<int>(std::lround(width / 16.0))); }

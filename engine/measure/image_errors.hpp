@@ -46,12 +46,21 @@ struct ReferenceNoise {
 /// standardError: of each pixel and channel.
 ReferenceNoise noiseOf(const Image& reference, const Image& standardError, double meanError);
 
+/// Standard errors that the reference's own noise gives to what was measured against it: of mean d^2, and of relmse. A
+/// pixel's channels share their paths and count as wholly dependent; true differences are taken as d^2 less the noise.
+/// Var(d + e)^2 = 4 d^2 s^2 + 2 s^4 for normal noise e of standard error s.
+struct SquareErrors {
+  double squares = 0.0, relative = 0.0;
+};
+SquareErrors squareErrorsOf(const Image& image, const Image& reference, const Image& standardError);
+
 struct JudgedErrors {
   ImageErrors measured;
   double rmse = 0.0, nrmse = 0.0, l2 = 0.0,
          relmse = 0.0;  ///< less the reference's noise, at least 0; l2 over sum r^2 less its noise too
   double noiseNrmse = 0.0;                       ///< that share: sqrt(variance) / m
   double noiseL2 = 0.0;                          ///< the same over sqrt(mean r^2)
+  double noiseRelmse = 0.0;                      ///< what was taken off relmse
   double biasError = 0.0;                        ///< standard error of the bias
   bool atNoise = false;                          ///< measured rmse is below 3 standard errors of the reference
   bool biasAtNoise = false;                      ///< |bias| is below 3 biasError
