@@ -60,7 +60,7 @@ class Report {
     const auto result = runErrorBench(context_, programs, scene, options, host_);
     if (!result->complete) return;
     HtmlPage part("");
-    addToPage(part, options.out, result->report);
+    addToPage(part, options.out, result->report, kPageBytes / (options_.scenes.size() + 1));  // the scenes, and a study of deviations
     page_.append(part);
     json_[deviations ? "deviations" : "error"].push_back(errorBenchJson(*result, options));
   }

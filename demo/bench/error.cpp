@@ -8,6 +8,7 @@
 #include "offers.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -56,6 +57,23 @@ std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<st
   return rungs;
 }
 
+/// The command that measures this, but for --techniques and the folder.
+std::string benchCommand(const ErrorBenchOptions& options) {
+  std::vector<std::string> words{"lucerna", "bench", "error", options.scene, "--size", options.size, "--frames", std::to_string(options.frames)};
+  if (!options.camera.empty()) words.insert(words.end(), {"--camera", options.camera});
+  words.insert(words.end(), {"--budget", fmt::format("{:g}", options.budget)});
+  if (options.referenceSamples > 0) words.insert(words.end(), {"--reference-spp", std::to_string(options.referenceSamples)});
+  if (options.small) words.emplace_back("--small");
+  if (options.deviations) words.emplace_back("--deviations");
+  return shellCommand(words);
+}
+
+std::string pictureCommand(const ErrorBenchOptions& options) {
+  std::vector<std::string> words{"lucerna", "render", options.scene, "--size", options.size};
+  if (!options.camera.empty()) words.insert(words.end(), {"--camera", options.camera});
+  return shellCommand(words);
+}
+
 }  // namespace
 
 void ErrorBenchOptions::declare(CLI::App& app) {
@@ -101,7 +119,8 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                                   measure::keyOf(scene, camera, size, measure::Transport::all, "rows 2").name(),
                                   result->references.all().samples));
 
-  const ErrorBench bench{context, programs, scene, camera, size, result->references, folder, 0.3 * options.budget, options.frames};
+  const ErrorBench bench{context, programs, scene, camera, size, result->references, folder, 0.3 * options.budget, options.frames,
+                         benchCommand(options), pictureCommand(options)};
   writePng(folder / "pictures/reference.png", measure::toneMapped(result->references.all().mean, scene.exposure));
   std::vector<ErrorRow> rows;
   Progress progress(options.deviations ? "deviations" : "ladders", static_cast<int>(rungs.size()) + (withPath ? 1 : 0), options.quiet);
@@ -131,12 +150,15 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   report.inside = insideModels(result->references);
   report.references = &result->references;
   report.isDeviationStudy = options.deviations;
+  report.exposure = scene.exposure;
+  report.driver = context.capabilities().version;
+  report.command = bench.command + (options.techniques.empty() ? "" : fmt::format(" --techniques {}", fmt::join(options.techniques, ",")));
   report.leftOut = leftOut;
   writeFileAtomically(folder / "error.csv", csvOf(report));
   writeFileAtomically(folder / "error.json", errorBenchJson(*result, options).dump(2) + "\n");
   plotRows(folder, report);
   HtmlPage page("Lucerna: " + title);
-  addToPage(page, folder, report);
+  addToPage(page, folder, report, kPageBytes);
   writeFileAtomically(folder / "report.html", page.text());
   result->complete = true;
   return result;
@@ -163,6 +185,9 @@ nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const Erro
   json["renderer"] = report.renderer;
   json["host"] = report.host;
   json["cpu"] = report.cpu;
+  json["driver"] = report.driver;
+  json["program"] = programVersion();
+  json["command"] = report.command;
   json["bench"] = report.title;
   json["scene"] = options.scene;
   json["size"] = options.size;

@@ -73,8 +73,10 @@ struct Observation {
   std::vector<JudgedPicture> errors;
   std::size_t gpuBytes = 0;
   double setupMs = 0.0;
-  Image picture;  // of the first seed
+  Image picture, standardError;  // of the first seed
 };
+
+std::uint32_t seedOf(int index) { return 0x51ed270bu + static_cast<std::uint32_t>(index) * 7919u; }
 
 PathTracer::Settings settingsOf(const ErrorBench& bench, const PathSeries& series, int seed) {
   PathTracer::Settings settings;
@@ -82,7 +84,7 @@ PathTracer::Settings settingsOf(const ErrorBench& bench, const PathSeries& serie
   settings.diffuseOnly = !bench.references.own;  // as the reference
   settings.deviations = series.switches;
   settings.pixelCentres = true;
-  settings.seed = 0x51ed270bu + static_cast<std::uint32_t>(seed) * 7919u;
+  settings.seed = seedOf(seed);
   return settings;
 }
 
@@ -119,16 +121,22 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed, std::v
     o.errors.push_back(bench.references.judge(picture, truth, false, ownError));
     if (seed == 0) {
       o.picture = picture;
+      if (samples > 1) o.standardError = tracer.standardError();
       o.setupMs = setup;
       o.gpuBytes = tracer.gpuBytes();
     }
   }
 }
 
-double medianOf(const std::vector<JudgedPicture>& errors, double (*of)(const JudgedPicture&)) {
+/// A figure of each seed.
+std::vector<double> ofSeeds(const std::vector<JudgedPicture>& errors, double (*of)(const JudgedPicture&)) {
   std::vector<double> values;
   for (const JudgedPicture& e : errors) values.push_back(of(e));
-  return median(values);
+  return values;
+}
+
+double medianOf(const std::vector<JudgedPicture>& errors, double (*of)(const JudgedPicture&)) {
+  return median(ofSeeds(errors, of));
 }
 
 ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t samples, const Observation& o) {
@@ -158,10 +166,59 @@ ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t 
   row["blocks"]["l2"] = medianOf(o.errors, [](const JudgedPicture& e) { return e.blocks.l2; });
   row["blocks"]["nrmse"] =
       medianOf(o.errors, [](const JudgedPicture& e) { return e.blocks.rmse / e.pixels.measured.referenceMean; });
-  row["flip"] =
-      first.pixels.measured.notFinite > 0 ? NAN : measure::flipHdr(o.picture, bench.references.path().mean).mean;
-  row["picture"] = writePictures(bench, fmt::format("{} spp={}", series.label(), samples), o.picture, bench.references.path());
+  row["wall_ms_samples"] = o.ms;
+  nlohmann::ordered_json& seeds = row["seeds"];
+  for (std::size_t i = 0; i < o.errors.size(); ++i) seeds["seed"].push_back(seedOf(static_cast<int>(i)));
+  seeds["ms"] = o.ms;
+  seeds["cpu_ms"] = o.cpuMs;
+  seeds["l2"] = ofSeeds(o.errors, [](const JudgedPicture& e) { return e.scattered.l2; });
+  seeds["nrmse"] = ofSeeds(o.errors, [](const JudgedPicture& e) { return e.pixels.nrmse; });
+  seeds["relmse"] = ofSeeds(o.errors, [](const JudgedPicture& e) { return e.pixels.relmse; });
+  seeds["relative_bias"] = ofSeeds(o.errors, [](const JudgedPicture& e) { return e.pixels.measured.relativeBias; });
+  measure::Flip flip{NAN, {}};
+  if (first.pixels.measured.notFinite == 0) flip = measure::flipHdr(o.picture, bench.references.path().mean);
+  row["flip"] = flip.mean;
+  row["picture"] = writePictures(bench, fmt::format("{} spp={}", series.label(), samples), o.picture, bench.references.path(), flip.map,
+                                 o.standardError.pixels.empty() ? nullptr : &o.standardError);
+  addProvenance(bench, row);
   return row;
+}
+
+/// How far a figure of one seed lies from another's, relative to their mean: pooled over rungs, as three seeds alone
+/// tell little. NaN where no rung has two.
+double relativeSpread(const std::vector<ErrorRow>& rows, const char* measure, double& freedom) {
+  double squares = 0.0;
+  freedom = 0.0;
+  for (const ErrorRow& row : rows) {
+    if (!row.contains("seeds") || !row.at("seeds").at(measure).is_array()) continue;
+    std::vector<double> values;
+    for (const auto& v : row.at("seeds").at(measure))
+      if (v.is_number()) values.push_back(v.get<double>());
+    const double n = static_cast<double>(values.size());
+    double mean = 0.0;
+    for (const double v : values) mean += v / n;
+    if (values.size() < 2 || !(mean > 0.0)) continue;
+    for (const double v : values) squares += (v / mean - 1.0) * (v / mean - 1.0);
+    freedom += n - 1.0;
+  }
+  return freedom > 0.0 ? std::sqrt(squares / freedom) : NAN;
+}
+
+/// A sampled picture's errors differ from seed to seed: their standard errors take that in.
+void addSeedSpread(std::vector<ErrorRow>& rows) {
+  for (const char* measure : {"l2", "nrmse", "relmse"}) {
+    double freedom = 0.0;
+    const double spread = relativeSpread(rows, measure, freedom);
+    if (!std::isfinite(spread)) continue;
+    for (ErrorRow& row : rows) {
+      const std::size_t n = row.contains("seeds") ? row.at("seeds").at("seed").size() : 1;
+      const double ofMedian = n == 3 ? 0.67 : n > 1 ? std::sqrt(1.5708 / static_cast<double>(n)) : 1.0;
+      const std::string key = std::string(measure) + "_error";
+      const double own = spread * ofMedian * number(row, measure), reference = number(row, key.c_str());
+      row[key] = std::isfinite(reference) ? std::hypot(reference, own) : own;
+      row["error_freedom"] = std::max(1.0, 0.5 * freedom);  // a rung holds the samples of those below it: half as many are independent
+    }
+  }
 }
 
 }  // namespace
@@ -188,6 +245,7 @@ std::vector<ErrorRow> measurePath(const ErrorBench& bench, bool deviations) {
     writeFileAtomically(file, nlohmann::ordered_json(own).dump(1) + "\n");
     rows.insert(rows.end(), own.begin(), own.end());
   }
+  addSeedSpread(rows);
   return rows;
 }
 

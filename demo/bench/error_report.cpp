@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "bench/figure.hpp"
 #include "bench/plot.hpp"
 #include "measure/front.hpp"
 #include "measure/heat_map.hpp"
@@ -11,11 +12,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <span>
-#include <thread>
 
 namespace lucerna::demo::bench {
 
@@ -227,17 +226,6 @@ std::string slopeText(const std::vector<ErrorRow>& rows) {
 
 }  // namespace
 
-std::string cpuName() {
-  std::ifstream stream("/proc/cpuinfo");
-  std::string line, name = "unknown processor";
-  while (std::getline(stream, line))
-    if (line.starts_with("model name")) {
-      name = line.substr(line.find(':') + 2);
-      break;
-    }
-  return fmt::format("{}, {} threads", name, std::thread::hardware_concurrency());
-}
-
 std::string terminalTable(const ErrorReport& report) {
   std::string result = notes(report) + "\nAll light:\n" + textOf(allLightTable(report));
   result +=
@@ -409,9 +397,46 @@ bool plotRows(const fs::path& folder, const ErrorReport& report) {
   return all || inside;
 }
 
-void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report) {
+namespace {
+
+/// The report as the figure takes it; pictures that the folder does not hold as linear ones are left out.
+Figure figureOf(const fs::path& folder, const ErrorReport& report, std::vector<Image>& store) {
+  Figure figure;
+  figure.facts = {{"title", report.title},       {"renderer", report.renderer}, {"driver", report.driver},
+                  {"host", report.host},         {"cpu", report.cpu},           {"program", programVersion()},
+                  {"command", report.command},   {"exposure", report.exposure}, {"relmse_epsilon", measure::kRelativeEpsilon},
+                  {"references", referencesJson(*report.references)},           {"yardsticks", report.yardsticks},
+                  {"rows", report.rows}};
+  const measure::Reference &all = report.references->all(), &path = report.references->path();
+  figure.references.push_back({"reference, all light", &all.mean, &all.standardError});
+  if (&path != &all) figure.references.push_back({"reference, all materials", &path.mean, &path.standardError});
+  store.reserve(2 * report.rows.size());
+  for (std::size_t i = 0; i < report.rows.size(); ++i) {
+    const ErrorRow& row = report.rows[i];
+    const std::string stem = (folder / text(row, "picture")).string();
+    if (!fs::exists(stem + ".pfm")) continue;
+    FigurePicture picture;
+    picture.row = i;
+    picture.reference = text(row, "technique") == "path" && &path != &all ? 1 : 0;
+    picture.picture = &store.emplace_back(readImage(stem + ".pfm"));
+    if (fs::exists(stem + ".error.pfm")) picture.standardError = &store.emplace_back(readImage(stem + ".error.pfm"));
+    if (fs::exists(stem + ".flip.png")) picture.flip = readBitmap(stem + ".flip.png");
+    // All of the front, and the last of every series; the rest where there is room.
+    const bool isLastOfSeries = i + 1 == report.rows.size() || text(row, "series") != text(report.rows[i + 1], "series");
+    picture.isFirstChoice = flag(row, "pareto") || isLastOfSeries;
+    figure.pictures.push_back(std::move(picture));
+  }
+  return figure;
+}
+
+}  // namespace
+
+void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report, std::size_t bytes) {
   page.section(fmt::format("{}: {}", report.isDeviationStudy ? "Deviations" : "Error against run time", report.title));
   page.preformatted(notes(report));
+  std::vector<Image> store;
+  const Figure figure = figureOf(folder, report, store);
+  page.figure(figureHtml(figure, bytes));
   if (fs::exists(folder / "error.svg")) page.svg(folder / "error.svg");
   page.table(allLightTable(report));
   page.paragraph(
@@ -443,19 +468,30 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
     page.table(model);
   }
   page.heading("Pictures");
-  page.pictures({{folder / "pictures/reference.png", "reference, all light"}});
   const Image& truth = report.references->all().mean;
   const double scale = 0.2 * measure::heatMapScale(Image(truth.width, truth.height), truth);
   page.paragraph(fmt::format("Heat maps: absolute, 0 (black) to {0:.3g} and more (white) radiance; signed luminance, -{0:.3g} (blue), 0 (white), +{0:.3g} (red). One scale for all.", scale));
+  // Tone-mapped copies for those who read without scripts, as far as there is room: the figure above holds the pictures themselves.
+  std::size_t room = bytes / 8;
+  const auto show = [&](const std::vector<HtmlPage::Picture>& pictures) {
+    std::size_t size = 0;
+    for (const HtmlPage::Picture& picture : pictures) size += 4 * fs::file_size(picture.png) / 3;
+    if (size > room) return false;
+    room -= size;
+    page.pictures(pictures);
+    return true;
+  };
+  int leftOut = show({{folder / "pictures/reference.png", "reference, all light"}}) ? 0 : 1;
   for (const ErrorRow& row : report.rows) {
     // All of the front and of the deviations; of the rest one a series.
     const bool isLastOfSeries = &row == &report.rows.back() || text(row, "series") != text(*(&row + 1), "series");
     if (!flag(row, "pareto") && !isLastOfSeries) continue;
     const std::string stem = text(row, "picture");
-    page.pictures({{folder / (stem + ".png"), text(row, "label")},
-                   {folder / (stem + ".absolute.png"), "absolute error, relative L2 " + errorText(row, "l2")},
-                   {folder / (stem + ".signed.png"), "signed error, bias " + biasText(row)}});
+    leftOut += !show({{folder / (stem + ".png"), text(row, "label")},
+                      {folder / (stem + ".absolute.png"), "absolute error, relative L2 " + errorText(row, "l2")},
+                      {folder / (stem + ".signed.png"), "signed error, bias " + biasText(row)}});
   }
+  if (leftOut > 0) page.paragraph(fmt::format("{} more lie in the folder pictures: this page has no room for them.", leftOut));
 }
 
 }  // namespace lucerna::demo::bench

@@ -3,12 +3,15 @@
 
 #include "bench/error_rows.hpp"
 #include "bench/html.hpp"
+#include "bench/provenance.hpp"
 
 namespace lucerna::demo::bench {
 
 struct ErrorReport {
   std::string title;                     ///< scene, camera, size
-  std::string renderer, host, cpu;
+  std::string renderer, driver, host, cpu;
+  std::string command;                   ///< that measures it again, but for --out
+  float exposure = 1.0f;                 ///< of the pictures as they are shown first
   std::vector<ErrorRow> rows;
   std::vector<ErrorRow> yardsticks;      ///< "black" and "constant", against all light
   std::vector<ModelError> model;
@@ -29,10 +32,7 @@ nlohmann::ordered_json referencesJson(const References& references);
 /// error: all light; error_inside: indirect light inside each model. SVG and PNG beside each other; one warning where
 /// gnuplot is missing, and false.
 bool plotRows(const std::filesystem::path& folder, const ErrorReport& report);
-/// Adds its sections to `page`; pictures and plot are read from the folder.
-void addToPage(HtmlPage& page, const std::filesystem::path& folder, const ErrorReport& report);
-
-/// The processor's name and count, from /proc/cpuinfo; "unknown processor" elsewhere.
-std::string cpuName();
+/// Adds its sections to `page`; pictures and plot are read from the folder. `bytes`: what the figure's linear pictures may take of the page.
+void addToPage(HtmlPage& page, const std::filesystem::path& folder, const ErrorReport& report, std::size_t bytes);
 
 }  // namespace lucerna::demo::bench

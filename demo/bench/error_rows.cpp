@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "bench/provenance.hpp"
 #include "base/statistics.hpp"
 #include "measure/flip.hpp"
 #include "measure/front.hpp"
@@ -14,6 +15,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <set>
 
@@ -47,7 +49,7 @@ RenderSettings settingsOf(const ErrorBench& bench, const Rung& rung, Component c
 }
 
 struct Timed {
-  std::vector<double> wallMs;
+  std::vector<double> wallMs, cpuMs;
   double queryMs = 0.0;  ///< medians of all stages together
   double setupMs = 0.0;
   std::size_t gpuBytes = 0;
@@ -73,9 +75,11 @@ Timed render(const ErrorBench& bench, const RenderSettings& settings, int frames
   const auto all = Clock::now();
   for (int i = 0; i < frames || (i < 3 * frames && msSince(all) < 200.0); ++i) {
     start = Clock::now();
+    const std::clock_t cpuStart = std::clock();
     renderAnew(renderer, bench.camera);
     glFinish();
     timed.wallMs.push_back(msSince(start));
+    timed.cpuMs.push_back(1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC);
   }
   renderer.drain();
   for (const gl::StageStatistics& stage : renderer.timer().statistics())
@@ -135,6 +139,9 @@ nlohmann::ordered_json errorsJson(const JudgedPicture& judged) {
   const measure::JudgedErrors& e = judged.pixels;
   const double mean = e.measured.referenceMean;
   return {{"l2", judged.scattered.l2},
+          {"l2_error", judged.l2Error},
+          {"nrmse_error", judged.nrmseError},
+          {"relmse_error", judged.relmseError},
           {"nrmse", e.nrmse},
           {"rmse", e.rmse},
           {"relmse", e.relmse},
@@ -147,6 +154,7 @@ nlohmann::ordered_json errorsJson(const JudgedPicture& judged) {
           {"bias_at_noise", e.biasAtNoise},
           {"noise_l2", judged.scattered.noiseL2},
           {"noise_nrmse", e.noiseNrmse},
+          {"noise_relmse", e.noiseRelmse},
           {"measured_nrmse", e.measured.nrmse},
           {"not_finite", e.measured.notFinite},
           {"blocks",
@@ -194,16 +202,60 @@ TechniqueModel modelOf(const Rung& rung, measure::LightKinds scene) {
 
 fs::path rowFile(const fs::path& folder, const std::string& name) { return folder / "rows" / (fileStem(name) + ".json"); }
 
-std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture, const measure::Reference& reference) {
+std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture, const measure::Reference& reference,
+                          const std::vector<float>& flip, const Image* ownError) {
   const std::string stem = "pictures/" + fileStem(name);
   const Image& truth = reference.mean;
   // One scale for all rows, so that they can be compared: a fifth of what a black picture would have.
   const double scale = std::max(0.2 * measure::heatMapScale(Image(truth.width, truth.height), truth), 1e-30);
   const auto file = [&](const char* kind) { return bench.folder / (stem + kind + ".png"); };
   writePng(file(""), measure::toneMapped(picture, bench.scene.exposure));
+  writeImage(bench.folder / (stem + ".pfm"), picture);
+  if (ownError) writeImage(bench.folder / (stem + ".error.pfm"), *ownError);
+  if (!flip.empty()) {
+    Bitmap map;
+    map.width = picture.width, map.height = picture.height;
+    for (const float v : flip) {
+      const auto grey = static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(v, 0.0f, 1.0f)));
+      map.rgba.insert(map.rgba.end(), {grey, grey, grey, 255});
+    }
+    writePng(file(".flip"), map);
+  }
   writePng(file(".absolute"), measure::heatMap(picture, truth, measure::HeatMap::absolute, scale));
   writePng(file(".signed"), measure::heatMap(picture, truth, measure::HeatMap::signedLuminance, scale));
   return stem;
+}
+
+double medianError(const std::vector<double>& values) {
+  const double n = static_cast<double>(values.size());
+  if (values.size() < 2) return NAN;
+  double mean = 0.0, squares = 0.0;
+  for (const double v : values) mean += v / n;
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  const double deviation = std::sqrt(squares / (n - 1.0));
+  return deviation * (values.size() == 3 ? 0.67 : std::sqrt(1.5708 / n));
+}
+
+void addProvenance(const ErrorBench& bench, ErrorRow& row) {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char date[32];
+  std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  const std::string technique = row.at("technique").get<std::string>();
+  row["date"] = date;
+  row["program"] = programVersion();
+  row["renderer"] = bench.context.capabilities().renderer;
+  row["driver"] = bench.context.capabilities().version;
+  row["cpu"] = cpuName();
+  row["command"] = bench.command + " --techniques " + technique;
+  std::vector<std::string> words{"--technique", technique, "--fidelity", row.at("fidelity").get<std::string>()};
+  for (const auto& deviation : row.at("deviations")) words.insert(words.end(), {"--deviation", deviation.get<std::string>()});
+  if (row.contains("spp"))
+    words.insert(words.end(), {"--spp", row.at("spp").dump(), "--seed", row.at("seeds").at("seed").at(0).dump()});
+  else
+    for (const auto& setting : row.at("settings")) words.insert(words.end(), {"--set", setting.get<std::string>()});
+  row["picture_command"] = bench.pictureCommand + " " + shellCommand(words) + " -o picture.pfm";
 }
 
 double rankedError(const ErrorRow& row, const char* measure) {
@@ -255,13 +307,16 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
   row["wall_ms"] = wall;
   row["wall_ms_spread"] = {percentile(timed.wallMs, 0.05), percentile(timed.wallMs, 0.95)};
   row["query_ms"] = timed.queryMs;
+  row["wall_ms_samples"] = timed.wallMs;
+  row["cpu_ms"] = median(timed.cpuMs);
   row["frames"] = timed.wallMs.size();
   row["setup_ms"] = timed.setupMs;
   row["gpu_bytes"] = timed.gpuBytes;
   const JudgedPicture errors = bench.references.judge(timed.picture, bench.references.all());
   row.update(errorsJson(errors));
-  row["flip"] =
-      errors.pixels.measured.notFinite > 0 ? NAN : measure::flipHdr(timed.picture, bench.references.all().mean).mean;
+  measure::Flip flip{NAN, {}};
+  if (errors.pixels.measured.notFinite == 0) flip = measure::flipHdr(timed.picture, bench.references.all().mean);
+  row["flip"] = flip.mean;
   // Inside its model: the light that it promises, of the lights that it knows. That of all light is above.
   const LightPaths model = modelOf(rung, bench.references.lights).paths;
   if (model.lights.any() && model != LightPaths{measure::Transport::all, bench.references.lights}) {
@@ -274,10 +329,27 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
     row["inside_model"]["transport"] = std::string(measure::nameOf(model.transport));
     row["inside_model"]["lights"] = measure::nameOf(model.lights);
   }
-  row["picture"] = writePictures(bench, rung.name(), timed.picture, bench.references.all());
+  row["picture"] = writePictures(bench, rung.name(), timed.picture, bench.references.all(), flip.map, nullptr);
+  addProvenance(bench, row);
   keep(bench, rung.name(), row);
   return row;
 }
+
+namespace {
+
+/// A row's time and an l2 of it (errors: the row, or its inside_model), with their standard errors.
+measure::CostAndError pointOf(const ErrorRow& row, const ErrorRow& errors) {
+  std::vector<double> samples;
+  if (const auto found = row.find("wall_ms_samples"); found != row.end() && found->is_array())
+    for (const auto& value : *found) samples.push_back(value.get<double>());
+  const auto orNone = [](double spread) { return std::isfinite(spread) ? spread : 0.0; };
+  const auto noise = errors.find("at_noise");
+  const bool atNoise = noise != errors.end() && noise->is_boolean() && noise->get<bool>();
+  return {number(row, "ms"), rankedError(errors, "l2"), orNone(medianError(samples)),
+          atNoise ? 0.0 : orNone(number(errors, "l2_error"))};
+}
+
+}  // namespace
 
 void markFront(std::vector<ErrorRow>& rows) {
   // Settings of one technique are ranked inside their model: against all light, errors of the model and of the settings
@@ -292,14 +364,16 @@ void markFront(std::vector<ErrorRow>& rows) {
   for (const auto& [name, group] : groups) {
     std::vector<measure::CostAndError> points;
     for (const std::size_t i : group)
-      points.push_back({number(rows[i], "ms"), rankedError(rows[i].at("inside_model"), "l2")});
+      points.push_back(pointOf(rows[i], rows[i].at("inside_model")));
     const std::vector<bool> front = measure::paretoFront(points);
     for (std::size_t k = 0; k < group.size(); ++k) rows[group[k]]["inside_front"] = static_cast<bool>(front[k]);
   }
   // What is left is ranked by all light.
   std::vector<measure::CostAndError> points;
-  for (const ErrorRow& row : rows)
-    points.push_back({row.at("inside_front").get<bool>() ? number(row, "ms") : NAN, rankedError(row, "l2")});
+  for (const ErrorRow& row : rows) {
+    points.push_back(pointOf(row, row));
+    if (!row.at("inside_front").get<bool>()) points.back().cost = NAN;
+  }
   const std::vector<bool> front = measure::paretoFront(points);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     int rank = 0;  // how many of the front are at most as slow

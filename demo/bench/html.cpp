@@ -1,5 +1,6 @@
 #include "bench/html.hpp"
 
+#include "base/data.hpp"
 #include "base/files.hpp"
 
 #include <fmt/format.h>
@@ -11,20 +12,8 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-std::string base64(std::span<const std::uint8_t> bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < count ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[word >> (18 - 6 * k) & 63u] : '=';
-  }
-  return text;
-}
-
 constexpr std::string_view kStyle = R"(
-body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1e; background: #fff; max-width: 1480px; margin: 2em auto; padding: 0 1.5em; }
+body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1e; background: #fff; max-width: 1900px; margin: 2em auto; padding: 0 1.5em; }
 h1 { font-size: 1.7em; margin-bottom: .2em; } h2 { margin-top: 2.2em; border-bottom: 2px solid #ddd; padding-bottom: .2em; } h3 { margin-top: 1.6em; }
 nav { background: #f5f5f7; padding: .6em 1.2em; border-radius: 6px; } nav a { margin-right: 1.4em; }
 .scroll { overflow-x: auto; }
@@ -40,6 +29,18 @@ pre { background: #f5f5f7; padding: .8em; overflow-x: auto; font-size: 12px; } .
 bool isNumber(const std::string& text) { return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' || text[0] == '+' || text[0] == '<' || text[0] == '>'); }
 
 }  // namespace
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < count ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[word >> (18 - 6 * k) & 63u] : '=';
+  }
+  return text;
+}
 
 std::string escapeHtml(std::string_view text) {
   std::string result;
@@ -96,7 +97,13 @@ void HtmlPage::svg(const std::filesystem::path& file) {
   body_ += "<div class=\"plot\">\n" + text + "</div>\n";
 }
 
+void HtmlPage::figure(const std::string& html) {
+  body_ += html;
+  hasFigure_ = true;
+}
+
 void HtmlPage::append(const HtmlPage& other) {
+  hasFigure_ = hasFigure_ || other.hasFigure_;
   // Anchors of the other page start anew: they get a prefix of their own.
   std::string body = other.body_;
   const std::string prefix = fmt::format("p{}-", ++anchors_);
@@ -115,8 +122,16 @@ std::string HtmlPage::text() const {
     for (const auto& [anchor, title] : index_) index += fmt::format("<a href=\"#{}\">{}</a>", anchor, escapeHtml(title));
     index += "</nav>\n";
   }
-  return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><style>{1}</style></head>\n<body><h1>{0}</h1>\n{2}{3}</body></html>\n",
-                     escapeHtml(title_), kStyle, index, body_);
+  std::string style(kStyle), script;
+  if (hasFigure_) {
+    style += readFileText(dataFolder() / "assets/report/figure.css");
+    script = "<script>\n" + readFileText(dataFolder() / "assets/report/figure.js") + "</script>\n";
+  }
+  std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\"><title>";
+  for (const std::string& part : {escapeHtml(title_), std::string("</title><style>"), style, std::string("</style></head>\n<body><h1>"), escapeHtml(title_),
+                                  std::string("</h1>\n"), index, body_, script, std::string("</body></html>\n")})
+    page += part;
+  return page;
 }
 
 }  // namespace lucerna::demo::bench

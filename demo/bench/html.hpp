@@ -1,7 +1,9 @@
 // A report as one self-contained HTML page: text, tables, pictures and plots, all inside the file.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +11,9 @@
 namespace lucerna::demo::bench {
 
 std::string escapeHtml(std::string_view text);
+std::string base64(std::span<const std::uint8_t> bytes);
+/// What a page with figures takes at most, bytes; its pictures get three quarters.
+inline constexpr std::size_t kPageLimit = 20'000'000, kPageBytes = 14'000'000;
 
 class HtmlPage {
  public:
@@ -32,6 +37,8 @@ class HtmlPage {
   };
   void pictures(const std::vector<Picture>& pictures);
   void svg(const std::filesystem::path& file);
+  /// An interactive figure (figure.hpp): its script and style come with the page, once.
+  void figure(const std::string& html);
   void preformatted(const std::string& text);
   /// What another page holds, without its title and index.
   void append(const HtmlPage& other);
@@ -42,6 +49,7 @@ class HtmlPage {
   std::string title_, body_;
   std::vector<std::pair<std::string, std::string>> index_;  // anchor, title
   int anchors_ = 0;
+  bool hasFigure_ = false;
 };
 
 }  // namespace lucerna::demo::bench

@@ -1,0 +1,870 @@
+// The figure of a report (demo/bench/figure.hpp): viewer of linear pictures, maps, error against time, tables, crops, exports.
+// Plain script without dependencies; it fetches nothing. Its numbers are those of the report's JSON, or follow from them by the formulas below.
+'use strict';
+(() => {
+
+// ------------------------------------------------------------------------------------------------ data
+
+function bytesOf(base64) {
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes;
+}
+/// IEEE 754 halves to numbers, by a table of all of them.
+let halfTable = null;
+function halves(base64, scale) {
+  if (!halfTable) {
+    halfTable = new Float32Array(65536);
+    for (let h = 0; h < 65536; ++h) {
+      const sign = h & 0x8000 ? -1 : 1, exponent = h >> 10 & 31, fraction = h & 1023;
+      halfTable[h] = sign * (exponent === 31 ? (fraction ? NaN : Infinity) : exponent ? 2 ** (exponent - 15) * (1 + fraction / 1024) : 2 ** -24 * fraction);
+    }
+  }
+  const words = new Uint16Array(bytesOf(base64).buffer), result = new Float32Array(words.length);
+  for (let i = 0; i < words.length; ++i) result[i] = halfTable[words[i]] / scale;
+  return result;
+}
+const luminance = (p, i) => 0.2126 * p[3 * i] + 0.7152 * p[3 * i + 1] + 0.0722 * p[3 * i + 2];
+
+// ------------------------------------------------------------------------------------------------ numbers as text
+
+function short(value, digits = 3) {
+  if (value === null || value === undefined || Number.isNaN(value)) return '';
+  if (!Number.isFinite(value)) return value > 0 ? 'inf' : '-inf';
+  return String(Number(value.toPrecision(digits)));
+}
+const percent = (value, digits = 3) => (Number.isFinite(value) ? short(100 * value, digits) + ' %' : '');
+const escapeText = text => String(text).replace(/[&<>"]/g, c => ({'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;'})[c]);
+/// 1, 2 or 5 times a power of ten, at least the value.
+function roundUp(value) {
+  if (!(value > 0)) return 1;
+  const power = 10 ** Math.floor(Math.log10(value));
+  for (const step of [1, 2, 5]) if (value <= step * power * (1 + 1e-9)) return step * power;
+  return 10 * power;
+}
+
+// ------------------------------------------------------------------------------------------------ colours
+
+// Stops of even distance whose lightness grows, so that they read in grey too; the signed one is blue to red, which colour-blind eyes tell apart.
+const SEQUENTIAL = [[0, 0, 0], [66, 10, 74], [147, 26, 72], [222, 66, 37], [250, 146, 14], [252, 228, 120], [255, 255, 255]];
+const SIGNED = [[8, 48, 120], [52, 122, 190], [150, 199, 226], [247, 247, 247], [246, 178, 144], [206, 74, 64], [110, 4, 28]];
+const NOISE = [150, 150, 150], NOT_FINITE = [0, 255, 0];
+function colourAt(stops, t) {
+  const position = Math.min(Math.max(t, 0), 1) * (stops.length - 1), lower = Math.min(Math.floor(position), stops.length - 2), f = position - lower;
+  return [0, 1, 2].map(c => Math.round(stops[lower][c] * (1 - f) + stops[lower + 1][c] * f));
+}
+const OKABE = ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#7A4FBF', '#8C6D31', '#333333', '#B22222', '#3CB371', '#999900'];  // [Okabe2008] and four more
+const MARKS = ['circle', 'square', 'up', 'down', 'diamond', 'plus', 'cross', 'star'];
+function mark(kind, x, y, r, colour, hollow) {
+  const fill = hollow ? '#fff' : colour, path = d => `<path d="${d}" fill="${fill}" stroke="${colour}" stroke-width="1.6"/>`;
+  const line = d => `<path d="${d}" fill="none" stroke="${colour}" stroke-width="2.2"/>`;
+  switch (kind) {
+    case 'square': return path(`M${x - r} ${y - r}h${2 * r}v${2 * r}h${-2 * r}z`);
+    case 'up': return path(`M${x} ${y - 1.2 * r}l${1.15 * r} ${2.1 * r}h${-2.3 * r}z`);
+    case 'down': return path(`M${x} ${y + 1.2 * r}l${1.15 * r} ${-2.1 * r}h${-2.3 * r}z`);
+    case 'diamond': return path(`M${x} ${y - 1.35 * r}l${1.35 * r} ${1.35 * r}l${-1.35 * r} ${1.35 * r}l${-1.35 * r} ${-1.35 * r}z`);
+    case 'plus': return line(`M${x - 1.2 * r} ${y}h${2.4 * r}M${x} ${y - 1.2 * r}v${2.4 * r}`);
+    case 'cross': return line(`M${x - r} ${y - r}l${2 * r} ${2 * r}M${x - r} ${y + r}l${2 * r} ${-2 * r}`);
+    case 'star': return line(`M${x - 1.2 * r} ${y}h${2.4 * r}M${x - .7 * r} ${y - 1.1 * r}l${1.4 * r} ${2.2 * r}M${x + .7 * r} ${y - 1.1 * r}l${-1.4 * r} ${2.2 * r}`);
+    default: return `<circle cx="${x}" cy="${y}" r="${r}" fill="${fill}" stroke="${colour}" stroke-width="1.6"/>`;
+  }
+}
+
+// ------------------------------------------------------------------------------------------------ tone mapping
+
+const srgb = v => (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055);
+const TONES = {
+  filmic: {name: 'filmic (the engine\'s)', of: v => { const x = 0.6 * v; return Number.isFinite(x * x) ? x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14) : 1; }},
+  linear: {name: 'linear, cut at 1', of: v => v},
+  reinhard: {name: 'v / (1 + v)', of: v => (Number.isFinite(v) ? v / (1 + v) : 1)},
+};
+const MAPS = {
+  picture: {name: 'picture'},
+  signed: {name: 'signed difference', unit: 'radiance', stops: SIGNED},
+  relative: {name: 'relative difference', unit: 'of sqrt(r\u00b2 + epsilon m\u00b2)', stops: SIGNED},
+  flip: {name: 'FLIP', unit: '', stops: SEQUENTIAL},
+  z: {name: 'z-score', unit: 'standard errors; grey: noise explains it (below 3)', stops: SIGNED},
+};
+const LIMIT_OF_NOISE = 3;
+
+// ------------------------------------------------------------------------------------------------ costs and errors of rows
+
+const COSTS = {
+  ms: {name: 'time of a picture, ms', of: row => row.ms},
+  setup: {name: 'time of a picture with set-up, ms', of: row => (row.ms === null || row.setup_ms === null ? null : row.ms + row.setup_ms)},
+  cpu_ms: {name: 'processor time of a picture, ms', of: row => row.cpu_ms},
+};
+/// of: a row's error; spread: its standard error; floor: three standard errors of the reference, null where none is known.
+const METRICS = {
+  l2: {name: 'relative L2 of scattered light', of: r => r.l2, spread: r => r.l2_error, floor: r => 3 * r.noise_l2, seeds: 'l2'},
+  nrmse: {name: 'NRMSE', of: r => r.nrmse, spread: r => r.nrmse_error, floor: r => 3 * r.noise_nrmse, seeds: 'nrmse'},
+  relmse: {name: 'relative MSE', of: r => r.relmse, spread: r => r.relmse_error, floor: r => 9 * r.noise_relmse, seeds: 'relmse', isSquare: true},
+  flip: {name: 'FLIP (mean)', of: r => r.flip, spread: () => null, floor: () => null, seeds: null},
+  bias: {name: 'bias, absolute', of: r => Math.abs(r.relative_bias), spread: r => Math.abs(r.bias_error * r.relative_bias / r.bias), floor: r => 3 * Math.abs(r.bias_error * r.relative_bias / r.bias), seeds: null},
+  inside: {name: 'relative L2 inside the model', of: r => (r.inside_model || {}).l2, spread: r => (r.inside_model || {}).l2_error, floor: r => (r.inside_model ? 3 * r.inside_model.noise_l2 : null), seeds: null},
+};
+const isNumber = v => typeof v === 'number' && Number.isFinite(v);
+function atNoise(row, metric) {
+  if (metric === 'bias') return !!row.bias_at_noise;
+  if (metric === 'flip') return false;
+  if (metric === 'relmse') return METRICS.relmse.of(row) < (METRICS.relmse.floor(row) || 0) && !!row.at_noise;
+  return !!(metric === 'inside' ? (row.inside_model || {}).at_noise : row.at_noise);
+}
+/// What a row is drawn and ranked at: its error, or the least that the reference can tell.
+function ranked(row, metric) {
+  const value = atNoise(row, metric) ? METRICS[metric].floor(row) : METRICS[metric].of(row);
+  return isNumber(value) ? value : NaN;
+}
+const spreadOf = (row, metric) => { const s = atNoise(row, metric) ? 0 : METRICS[metric].spread(row); return isNumber(s) ? s : 0; };
+/// "12.3 %", or "< 0.4 % (noise)" where the reference cannot tell, as the tables have it.
+function errorText(row, metric) {
+  const value = METRICS[metric].of(row);
+  return !isNumber(value) ? '' : atNoise(row, metric) ? `< ${percent(METRICS[metric].floor(row))} (noise)` : percent(value);
+}
+/// The standard error of a median [order statistics]; 0 where there is none.
+function medianError(values) {
+  if (!Array.isArray(values) || values.length < 2) return 0;
+  const mean = values.reduce((a, b) => a + b, 0) / values.length, deviation = Math.sqrt(values.reduce((a, b) => a + (b - mean) ** 2, 0) / (values.length - 1));
+  return deviation * (values.length === 3 ? 0.67 : Math.sqrt(1.5708 / values.length));
+}
+const costSpread = (row, cost) => medianError(cost === 'cpu_ms' ? (row.seeds || {}).cpu_ms : row.wall_ms_samples);
+const isBelow = (a, ea, b, eb) => a < b && b - a > 2 * Math.hypot(ea, eb);
+/// The front by a test, as engine/measure/front.hpp has it: settings of a technique must be on the front inside their model first.
+function frontOf(rows, cost, metric) {
+  const points = rows.map((row, index) => ({index, cost: COSTS[cost].of(row), error: ranked(row, metric), costSpread: costSpread(row, cost), spread: spreadOf(row, metric)}))
+    .filter(p => isNumber(p.cost) && isNumber(p.error) && (metric === 'inside' || rows[p.index].inside_front));
+  points.sort((a, b) => a.cost - b.cost || a.error - b.error || a.index - b.index);
+  const kept = [];
+  for (const p of points) if (kept.every(q => isBelow(p.error, p.spread, q.error, q.spread))) kept.push(p);
+  return kept.filter(p => !kept.some(q => isBelow(q.error, q.spread, p.error, p.spread) && !isBelow(q.cost, q.costSpread, p.cost, p.costSpread))).map(p => p.index);
+}
+/// Error of a series at a cost: log-log between the two rungs around it. {value, spread, interpolated}, or null outside of the ladder.
+function errorAt(points, cost) {
+  for (let i = 0; i < points.length; ++i) {
+    const a = points[i];
+    if (Math.abs(a.cost / cost - 1) < 1e-9) return {value: a.error, spread: a.spread, interpolated: false};
+    const b = points[i + 1];
+    if (!b || !(a.cost < cost && cost < b.cost)) continue;
+    const f = Math.log(cost / a.cost) / Math.log(b.cost / a.cost), value = Math.exp((1 - f) * Math.log(a.error) + f * Math.log(b.error));
+    return {value, spread: value * Math.hypot((1 - f) * a.spread / a.error, f * b.spread / b.error), interpolated: true};
+  }
+  return null;
+}
+/// Cost at which a series first gets down to an error: the rung, or log-log between the rungs around it.
+function costAt(points, error) {
+  for (let i = 0; i < points.length; ++i) {
+    const b = points[i], a = points[i - 1];
+    if (b.error > error) continue;
+    if (!a) return {value: b.cost, spread: b.costSpread, interpolated: false, atMost: b.error < error};
+    const slope = Math.log(b.cost / a.cost) / Math.log(b.error / a.error), f = Math.log(error / a.error) / Math.log(b.error / a.error);
+    const value = a.cost * (b.cost / a.cost) ** f;
+    const ofError = Math.abs(slope) * Math.hypot((1 - f) * a.spread / a.error, f * b.spread / b.error);
+    return {value, spread: value * Math.hypot(ofError, (1 - f) * a.costSpread / a.cost, f * b.costSpread / b.cost), interpolated: f < 1 - 1e-9, atMost: false};
+  }
+  return null;
+}
+
+// ------------------------------------------------------------------------------------------------ a figure
+
+const figures = [];
+let active = null;
+
+class Figure {
+  constructor(root) {
+    this.root = root;
+    this.facts = JSON.parse(root.querySelector('script[type="application/json"]').textContent);
+    this.rows = this.facts.rows;
+    [this.width, this.height] = this.facts.picture_size;
+    this.planes = {};
+    for (const element of root.querySelectorAll('script[data-plane]')) this.planes[element.dataset.plane] = element;
+    // 0: the reference; then pictures: the front from its fastest on, then the others in the order of the ladders.
+    const front = this.facts.pictures.map((p, i) => i).filter(i => this.rows[this.facts.pictures[i].row].pareto).sort((a, b) => this.rows[this.facts.pictures[a].row].front - this.rows[this.facts.pictures[b].row].front);
+    const rest = this.facts.pictures.map((p, i) => i).filter(i => !front.includes(i));
+    this.items = [null, ...front.concat(rest).map(i => ({picture: i, row: this.facts.pictures[i].row, truth: this.facts.pictures[i].truth}))];
+    this.seriesNames = [...new Set(this.rows.map(r => r.series))];
+    this.state = {current: Math.min(1, this.items.length - 1), before: 0, mode: 'single', flipped: false, chosen: [], map: 'picture', stops: 0, tone: 'filmic', zoom: 0, x: this.width / 2, y: this.height / 2,
+                  cursor: {x: this.width >> 1, y: this.height >> 1}, wipe: 0.5, ranges: {}, lock: true, cost: 'ms', metric: 'l2', crops: [], selected: this.items.length > 1 ? this.items[1].row : 0};
+    this.state.chosen = this.items.map((item, i) => i).slice(0, 4);
+    this.cache = new Map();
+    this.decoded = {};
+    this.build();
+    this.chooseCrops();
+    this.drawPlot();
+    this.drawTables();
+    this.select(this.state.selected);
+    this.draw();
+  }
+
+  label(i) { return i === 0 ? this.facts.truths[0].name : this.rows[this.items[i].row].label; }
+  style(series) {
+    const i = this.seriesNames.indexOf(series);
+    return {colour: OKABE[i % OKABE.length], mark: MARKS[(i + Math.floor(i / OKABE.length) * 3) % MARKS.length]};
+  }
+
+  // ---------------------------------------------------------------- pixels
+  once(key, make) { return key in this.decoded ? this.decoded[key] : (this.decoded[key] = make()); }
+  text(name) { const element = this.planes[name]; return element ? element.textContent : null; }
+  truth(t) { return this.once('truth' + t, () => new Float32Array(bytesOf(this.text('r' + t)).buffer)); }
+  truthError(t) { const scale = this.facts.truths[t].error_scale; return scale === null ? null : this.once('error' + t, () => halves(this.text(`r${t}e`), scale)); }
+  difference(i) {
+    const p = this.facts.pictures[this.items[i].picture];
+    return this.once('difference' + i, () => halves(this.text('p' + this.items[i].picture), p.scale));
+  }
+  ownError(i) { const p = this.facts.pictures[this.items[i].picture]; return p.error_scale === null ? null : this.once('own' + i, () => halves(this.text(`p${this.items[i].picture}e`), p.error_scale)); }
+  flipMap(i) { return this.facts.pictures[this.items[i].picture].flip ? this.once('flip' + i, () => bytesOf(this.text(`p${this.items[i].picture}f`))) : null; }
+  pixels(i) {
+    if (i === 0) return this.truth(0);
+    return this.once('pixels' + i, () => {
+      const d = this.difference(i), t = this.truth(this.items[i].truth), result = new Float32Array(d.length);
+      for (let k = 0; k < d.length; ++k) result[k] = t[k] + d[k];
+      return result;
+    });
+  }
+  /// A value of a map at a pixel; NaN where there is none. Standard errors of channels, which share their paths, add up as if wholly dependent.
+  mapValue(i, map, k) {
+    const t = this.truth(this.items[i].truth), d = this.difference(i), dy = luminance(d, k);
+    switch (map) {
+      case 'signed': return dy;
+      case 'relative': return dy / Math.sqrt(luminance(t, k) ** 2 + this.facts.relmse_epsilon * this.meanLuminance(this.items[i].truth) ** 2);
+      case 'flip': { const f = this.flipMap(i); return f ? f[k] / 255 : NaN; }
+      case 'z': {
+        const e = this.truthError(this.items[i].truth), own = this.ownError(i);
+        if (!e) return NaN;
+        const s = Math.hypot(luminance(e, k), own ? luminance(own, k) : 0);
+        return s > 0 ? dy / s : dy === 0 ? 0 : dy > 0 ? Infinity : -Infinity;
+      }
+    }
+    return NaN;
+  }
+  meanLuminance(t) {
+    return this.once('mean' + t, () => { const p = this.truth(t); let sum = 0; for (let k = 0; k < this.width * this.height; ++k) sum += luminance(p, k); return sum / (this.width * this.height); });
+  }
+  values(i, map) {
+    return this.once(`values ${map} ${i}`, () => { const v = new Float32Array(this.width * this.height); for (let k = 0; k < v.length; ++k) v[k] = this.mapValue(i, map, k); return v; });
+  }
+  /// The range that shows most of a map: 99 % of its values, rounded up to 1, 2 or 5 times a power of ten.
+  fittingRange(i, map) {
+    if (map === 'flip') return 1;
+    if (map === 'z') return 10;
+    const sorted = Float32Array.from(this.values(i, map), Math.abs).filter(Number.isFinite).sort();
+    return roundUp(sorted[Math.floor(0.99 * (sorted.length - 1))]);
+  }
+  /// Locked: one range for all methods, until it is changed. Not locked: that of the method that is shown.
+  range(i, map) {
+    const s = this.state;
+    if (s.lock) return s.ranges[map] || (s.ranges[map] = this.fittingRange(Math.max(1, s.current), map));
+    return s.ranges[map + i] || this.fittingRange(i, map);
+  }
+  scaleRange(factor) {
+    const s = this.state, i = this.shown();
+    if (s.map === 'picture' || i === 0) return;
+    s.ranges[s.lock ? s.map : s.map + i] = this.range(i, s.map) * factor;
+  }
+
+  /// A method as a small canvas of the pictures' size.
+  canvasOf(i, map = this.state.map) {
+    const s = this.state, real = i === 0 ? 'picture' : map, range = real === 'picture' ? 0 : this.range(i, real);
+    const key = `${i} ${real} ${real === 'picture' ? s.stops + s.tone : range}`;
+    if (this.cache.has(key)) return this.cache.get(key);
+    if (this.cache.size > 40) this.cache.delete(this.cache.keys().next().value);
+    const canvas = document.createElement('canvas'), context = canvas.getContext('2d');
+    canvas.width = this.width, canvas.height = this.height;
+    const image = context.createImageData(this.width, this.height), out = image.data, n = this.width * this.height;
+    if (real === 'picture') {
+      const p = this.pixels(i), exposure = this.facts.exposure * 2 ** s.stops, tone = TONES[s.tone].of;
+      for (let k = 0; k < n; ++k) {
+        const finite = Number.isFinite(p[3 * k] + p[3 * k + 1] + p[3 * k + 2]);
+        for (let c = 0; c < 3; ++c)
+          out[4 * k + c] = finite ? Math.round(255 * srgb(Math.min(Math.max(tone(Math.max(exposure * p[3 * k + c], 0)), 0), 1))) : NOT_FINITE[c];
+        out[4 * k + 3] = 255;
+      }
+    } else {
+      const v = this.values(i, real), stops = MAPS[real].stops;
+      for (let k = 0; k < n; ++k) {
+        const colour = Number.isNaN(v[k]) ? NOT_FINITE : real === 'z' && Math.abs(v[k]) < LIMIT_OF_NOISE ? NOISE : colourAt(stops, stops === SIGNED ? 0.5 + 0.5 * v[k] / range : v[k] / range);
+        out.set(colour, 4 * k);
+        out[4 * k + 3] = 255;
+      }
+    }
+    context.putImageData(image, 0, 0);
+    this.cache.set(key, canvas);
+    return canvas;
+  }
+
+  // ---------------------------------------------------------------- page elements
+  build() {
+    const add = (parent, tag, name, html) => { const e = document.createElement(tag); if (name) e.className = name; if (html) e.innerHTML = html; parent.appendChild(e); return e; };
+    const root = this.root;
+    root.tabIndex = 0;
+    root.setAttribute('role', 'application');
+    root.setAttribute('aria-label', `Figure: ${this.facts.title}. Press question mark for keys.`);
+    const bar = this.bar = add(root, 'div', 'lf-bar');
+    this.buttons = {};
+    const group = title => add(bar, 'span', '', escapeText(title));
+    const button = (parent, key, text, action) => {
+      const b = add(parent, 'button');
+      b.textContent = text;
+      b.type = 'button';
+      b.title = `key ${key}`;
+      b.addEventListener('click', () => { this.press(key); });
+      this.buttons[action] = b;
+    };
+    const view = group('View');
+    button(view, 'v', 'one', 'single'); button(view, 'w', 'wipe', 'wipe'); button(view, 's', 'side by side', 'side'); button(view, 'f', 'flip', 'flip');
+    const choose = (title, options, value, change) => {
+      const span = group(title), select = add(span, 'select');
+      select.setAttribute('aria-label', title);
+      for (const [key, o] of Object.entries(options)) select.add(new Option(o.name, key, false, key === value));
+      select.addEventListener('change', () => { change(select.value); this.draw(); });
+      return select;
+    };
+    this.mapSelect = choose('Map', MAPS, 'picture', v => { this.state.map = v; });
+    this.toneSelect = choose('Tone map', TONES, 'filmic', v => { this.state.tone = v; });
+    const exposure = group('Exposure');
+    button(exposure, 'e', '\u2212', 'darker'); this.stops = add(exposure, 'output'); button(exposure, 'E', '+', 'brighter');
+    const range = group('Range');
+    button(range, '[', '\u2212', 'narrower'); button(range, ']', '+', 'wider'); button(range, 'l', 'lock over methods', 'lock');
+    const zoom = group('Zoom');
+    button(zoom, '-', '\u2212', 'out'); button(zoom, '+', '+', 'in'); button(zoom, 'r', 'fit', 'fit');
+    const save = group('Save');
+    button(save, 'x', 'figure SVG', 'svg'); button(save, 'X', 'plot SVG', 'plotSvg'); button(save, 'd', 'data CSV', 'csv'); button(save, 'L', 'LaTeX', 'latex'); button(save, 'P', 'print, PDF', 'print');
+    button(group(''), '?', 'keys', 'help');
+
+    const main = add(root, 'div', 'lf-main');
+    this.list = add(main, 'div', 'lf-list');
+    this.list.setAttribute('role', 'listbox');
+    this.list.setAttribute('aria-label', 'Methods');
+    this.items.forEach((item, i) => {
+      const line = add(this.list, 'div'), key = i <= 9 ? `<kbd>${i}</kbd>` : '<span></span>';
+      line.setAttribute('role', 'option');
+      line.dataset.item = i;
+      if (item) {
+        const row = this.rows[item.row], style = this.style(row.series);
+        line.innerHTML = `${key}<svg width="14" height="14">${mark(style.mark, 7, 7, 4, style.colour)}</svg><span>${escapeText(row.label)}${row.pareto ? ' \u2605' : ''}</span><span class="set"></span>`;
+      } else {
+        line.innerHTML = `${key}<span></span><span>${escapeText(this.label(0))}</span><span class="set"></span>`;
+      }
+      line.addEventListener('click', () => this.show(i));
+    });
+    if (this.items.length - 1 < this.rows.length)
+      add(this.list, 'div', 'none', `<span></span><span></span><span>${this.rows.length - this.items.length + 1} rows without pictures here: no room on the page, or measured before pictures were kept</span>`);
+    const right = add(main, 'div');
+    const viewBox = add(right, 'div', 'lf-view');
+    this.canvas = add(viewBox, 'canvas');
+    this.canvas.setAttribute('role', 'img');
+    this.scaleBar = add(right, 'div', 'lf-scale');
+    this.status = add(right, 'div', 'lf-status');
+    this.status.setAttribute('aria-live', 'polite');
+    this.valuesBox = add(right, 'div', 'lf-values');
+    this.bindPointer();
+
+    this.help = add(root, 'details', 'lf-help', '<summary>Keys</summary><dl class="keys">' + KEYS.map(k => `<div><dt>${k.keys.map(x => `<kbd>${escapeText(x.label || x)}</kbd>`).join(' ')}</dt><dd>${escapeText(k.help)}</dd></div>`).join('') + '</dl>');
+
+    add(root, 'h3', '', 'Error against time');
+    const axes = add(root, 'div', 'lf-bar');
+    const axis = (title, options, value, change) => {
+      const span = add(axes, 'span', '', escapeText(title)), select = add(span, 'select');
+      select.setAttribute('aria-label', title);
+      for (const [key, o] of Object.entries(options)) select.add(new Option(o.name, key, false, key === value));
+      select.addEventListener('change', () => { change(select.value); this.drawPlot(); this.drawTables(); });
+      return select;
+    };
+    this.costSelect = axis('Cost', COSTS, 'ms', v => { this.state.cost = v; });
+    this.metricSelect = axis('Error', METRICS, 'l2', v => { this.state.metric = v; });
+    const columns = add(root, 'div', 'lf-columns');
+    this.plotBox = add(columns, 'div', 'lf-plot');
+    this.factsBox = add(columns, 'div', 'lf-facts');
+    this.tableBox = add(root, 'div', 'lf-tables');
+    add(root, 'h3', '', 'Crops');
+    this.cropBox = add(root, 'div', 'lf-crops');
+    root.addEventListener('focusin', () => { activate(this); });
+    root.addEventListener('pointerdown', () => { activate(this); });
+  }
+
+  // ---------------------------------------------------------------- view
+  shown() { return this.state.flipped && this.state.mode !== 'side' ? this.state.before : this.state.current; }
+  show(i) {
+    const s = this.state;
+    if (i >= this.items.length || i < 0) return;
+    if (i !== s.current) s.before = s.current;
+    s.current = i;
+    s.flipped = false;
+    if (i > 0) this.select(this.items[i].row);
+    this.draw();
+  }
+  panes() {
+    const s = this.state;
+    if (s.mode === 'side') return s.chosen.length ? s.chosen : [s.current];
+    return [this.shown()];
+  }
+  layout() {
+    const box = this.canvas.parentElement.clientWidth || 800, panes = this.panes(), n = panes.length;
+    const columns = n <= 1 ? 1 : n === 2 || n === 4 ? 2 : 3, lines = Math.ceil(n / columns);
+    const paneWidth = box / columns, paneHeight = Math.min(paneWidth * this.height / this.width, n === 1 ? 620 : 420);
+    return {columns, lines, paneWidth, paneHeight, width: box, height: lines * paneHeight, scale: this.state.zoom || Math.min(paneWidth / this.width, paneHeight / this.height)};
+  }
+  draw() {
+    const s = this.state, l = this.layout(), ratio = window.devicePixelRatio || 1, canvas = this.canvas;
+    canvas.style.height = l.height + 'px';
+    canvas.width = Math.round(l.width * ratio), canvas.height = Math.round(l.height * ratio);
+    const g = canvas.getContext('2d');
+    g.setTransform(ratio, 0, 0, ratio, 0, 0);
+    g.imageSmoothingEnabled = false;
+    const put = (i, left, top, from, to) => {
+      g.save();
+      g.beginPath();
+      g.rect(left + from, top, to - from, l.paneHeight);
+      g.clip();
+      g.drawImage(this.canvasOf(i), left + l.paneWidth / 2 - s.x * l.scale, top + l.paneHeight / 2 - s.y * l.scale, this.width * l.scale, this.height * l.scale);
+      g.restore();
+    };
+    const caption = (text, x, y, align) => {
+      g.font = '12px system-ui, sans-serif';
+      g.textAlign = align;
+      const w = Math.min(g.measureText(text).width + 10, l.paneWidth);
+      g.fillStyle = 'rgba(0,0,0,.72)';
+      g.fillRect(align === 'left' ? x : x - w, y, w, 19);
+      g.fillStyle = '#fff';
+      g.fillText(text, align === 'left' ? x + 5 : x - 5, y + 14, l.paneWidth - 10);
+    };
+    const describe = i => (i === 0 || s.map === 'picture' ? this.label(i) : `${this.label(i)}: ${MAPS[s.map].name}`) + (i === 0 ? '' : `, L2 ${errorText(this.rows[this.items[i].row], 'l2')}`);
+    this.panes().forEach((i, p) => {
+      const left = p % l.columns * l.paneWidth, top = Math.floor(p / l.columns) * l.paneHeight;
+      if (s.mode === 'wipe') {
+        const at = s.wipe * l.paneWidth;
+        put(s.before, left, top, 0, at);
+        put(s.current, left, top, at, l.paneWidth);
+        g.fillStyle = '#fff';
+        g.fillRect(left + at - 1, top, 2, l.paneHeight);
+        g.fillStyle = '#000';
+        g.fillRect(left + at + 1, top, 1, l.paneHeight);
+        caption(describe(s.before), left, top, 'left');
+        caption(describe(s.current), left + l.paneWidth, top, 'right');
+      } else {
+        put(i, left, top, 0, l.paneWidth);
+        caption(describe(i), left, top, 'left');
+      }
+      // The cursor's pixel, and crops.
+      const box = (x, y, w, h, colour, width) => {
+        g.strokeStyle = '#000'; g.lineWidth = width + 2;
+        const a = left + l.paneWidth / 2 + (x - s.x) * l.scale, b = top + l.paneHeight / 2 + (y - s.y) * l.scale;
+        g.save(); g.beginPath(); g.rect(left, top, l.paneWidth, l.paneHeight); g.clip();
+        g.strokeRect(a, b, w * l.scale, h * l.scale);
+        g.strokeStyle = colour; g.lineWidth = width;
+        g.strokeRect(a, b, w * l.scale, h * l.scale);
+        g.restore();
+      };
+      s.crops.forEach((c, k) => box(c.x, c.y, c.width, c.height, OKABE[(k + 1) % OKABE.length], 1.5));
+      box(s.cursor.x, s.cursor.y, 1, 1, '#fff', 1);
+    });
+    for (const mode of ['single', 'wipe', 'side']) this.buttons[mode].setAttribute('aria-pressed', String(s.mode === mode));
+    this.buttons.flip.setAttribute('aria-pressed', String(s.flipped));
+    this.buttons.lock.setAttribute('aria-pressed', String(s.lock));
+    this.mapSelect.value = s.map;
+    this.toneSelect.value = s.tone;
+    this.stops.textContent = `${s.stops >= 0 ? '+' : ''}${s.stops} EV`;
+    for (const line of this.list.querySelectorAll('[data-item]')) {
+      const i = Number(line.dataset.item);
+      line.setAttribute('aria-selected', String(i === this.shown()));
+      line.querySelector('.set').textContent = s.chosen.includes(i) ? '\u25a3' : '';
+    }
+    const text = this.panes().map(describe).join('; ');
+    canvas.setAttribute('aria-label', text);
+    this.status.textContent = (s.mode === 'wipe' ? `left: ${describe(s.before)}; right: ${describe(s.current)}` : text) + `. Zoom ${short(l.scale)}` + (this.facts.block > 1 ? `. Pixels are means over ${this.facts.block} x ${this.facts.block}; figures in tables are of the whole picture.` : '.');
+    this.drawScale();
+    this.drawValues();
+    this.drawCrops();
+  }
+  drawScale() {
+    const s = this.state, i = s.mode === 'side' ? s.chosen.find(k => k > 0) || 0 : this.shown() || s.before;
+    this.scaleBar.innerHTML = '';
+    if (s.map === 'picture' || i === 0) return;
+    const range = this.range(i, s.map), stops = MAPS[s.map].stops, low = stops === SIGNED ? -range : 0;
+    const canvas = document.createElement('canvas');
+    canvas.width = 320, canvas.height = 1;
+    const g = canvas.getContext('2d');
+    for (let x = 0; x < 320; ++x) {
+      const value = low + (range - low) * (x + 0.5) / 320;
+      g.fillStyle = `rgb(${s.map === 'z' && Math.abs(value) < LIMIT_OF_NOISE ? NOISE : colourAt(stops, (x + 0.5) / 320)})`;
+      g.fillRect(x, 0, 1, 1);
+    }
+    const span = text => { const e = document.createElement('span'); e.textContent = text; return e; };
+    this.scaleBar.append(span(short(low)), canvas, span(short(range)), span(`${MAPS[s.map].name}${MAPS[s.map].unit ? ', ' + MAPS[s.map].unit : ''}${s.lock ? '; range locked over methods' : ''}`));
+  }
+  drawValues() {
+    const {x, y} = this.state.cursor, k = y * this.width + x, t = this.truth(0), e = this.truthError(0);
+    const three = (p, j = k) => [0, 1, 2].map(c => `<td>${short(p[3 * j + c], 5)}</td>`).join('');
+    let html = `<table><tr><th>pixel ${x}, ${y}</th><th>R</th><th>G</th><th>B</th><th>luminance</th><th>difference</th><th>relative</th><th>z-score</th><th>FLIP</th></tr>`;
+    this.facts.truths.forEach((truth, i) => {
+      const p = this.truth(i), error = this.truthError(i);
+      html += `<tr class="marked"><td>${escapeText(truth.name)}</td>${three(p)}<td>${short(luminance(p, k), 5)}</td><td></td><td></td><td></td><td></td></tr>`;
+      if (error) html += `<tr><td>its standard error</td>${three(error)}<td>${short(luminance(error, k), 3)}</td><td></td><td></td><td></td><td></td></tr>`;
+    });
+    this.items.forEach((item, i) => {
+      if (i === 0) return;
+      const p = this.pixels(i), shown = i === this.shown() ? ' class="marked"' : '';
+      html += `<tr${shown}><td>${escapeText(this.label(i))}</td>${three(p)}<td>${short(luminance(p, k), 5)}</td><td>${short(this.mapValue(i, 'signed', k))}</td><td>${percent(this.mapValue(i, 'relative', k))}</td><td>${short(this.mapValue(i, 'z', k))}</td><td>${short(this.mapValue(i, 'flip', k))}</td></tr>`;
+    });
+    this.valuesBox.innerHTML = html + '</table>';
+  }
+  pixelAt(event) {
+    const r = this.canvas.getBoundingClientRect(), l = this.layout(), x = (event.clientX - r.left) % l.paneWidth, y = (event.clientY - r.top) % l.paneHeight, s = this.state;
+    return {x: s.x + (x - l.paneWidth / 2) / l.scale, y: s.y + (y - l.paneHeight / 2) / l.scale, paneX: x / l.paneWidth};
+  }
+  moveCursor(x, y) {
+    this.state.cursor = {x: Math.min(Math.max(Math.floor(x), 0), this.width - 1), y: Math.min(Math.max(Math.floor(y), 0), this.height - 1)};
+  }
+  zoomBy(factor, x, y) {
+    const s = this.state, old = this.layout().scale, next = Math.min(Math.max(old * factor, 0.25), 64);
+    if (x !== undefined) s.x = x - (x - s.x) * old / next, s.y = y - (y - s.y) * old / next;
+    s.zoom = next;
+  }
+  bindPointer() {
+    let drag = null, waiting = false;
+    const later = () => { if (!waiting) { waiting = true; requestAnimationFrame(() => { waiting = false; this.draw(); }); } };
+    this.canvas.addEventListener('pointerdown', event => {
+      this.root.focus({preventScroll: true});
+      const p = this.pixelAt(event);
+      drag = {x: event.clientX, y: event.clientY, wipe: this.state.mode === 'wipe' && Math.abs(p.paneX - this.state.wipe) < 0.03};
+      this.canvas.setPointerCapture(event.pointerId);
+    });
+    this.canvas.addEventListener('pointerup', () => { drag = null; });
+    this.canvas.addEventListener('pointermove', event => {
+      const p = this.pixelAt(event), s = this.state;
+      if (drag && drag.wipe) s.wipe = Math.min(Math.max(p.paneX, 0), 1);
+      else if (drag) {
+        const scale = this.layout().scale;
+        s.x -= (event.clientX - drag.x) / scale, s.y -= (event.clientY - drag.y) / scale;
+        drag.x = event.clientX, drag.y = event.clientY;
+      } else this.moveCursor(p.x, p.y);
+      later();
+    });
+    this.canvas.addEventListener('wheel', event => { event.preventDefault(); const p = this.pixelAt(event); this.zoomBy(event.deltaY < 0 ? 1.25 : 0.8, p.x, p.y); later(); }, {passive: false});
+  }
+
+  // ---------------------------------------------------------------- the selected row
+  select(index) {
+    const row = this.rows[index], f = this.facts;
+    this.state.selected = index;
+    const item = this.items.findIndex(it => it && it.row === index);
+    const line = (name, value) => (value === undefined || value === null || value === '' ? '' : `<div><dt>${escapeText(name)}</dt><dd>${value}</dd></div>`);
+    const command = (name, text, note) => (text ? line(name, `<code>${escapeText(text)}</code> <button type="button" data-copy="${escapeText(text)}">copy</button>${note ? `<br><span class="note">${escapeText(note)}</span>` : ''}`) : '');
+    const error = metric => escapeText(errorText(row, metric)) + (spreadOf(row, metric) > 0 ? ` \u00b1 ${percent(spreadOf(row, metric), 2)}` : '');
+    this.factsBox.innerHTML = `<strong>${escapeText(row.label)}</strong>${item < 0 ? '<p class="note">No picture of this row is on the page.</p>' : ''}<dl>` +
+      line('picture', isNumber(row.ms) ? `${short(row.ms, 4)} ms` + (Array.isArray(row.wall_ms_spread) ? ` (${short(row.wall_ms_spread[0])} .. ${short(row.wall_ms_spread[1])})` : '') : '') + line('set-up', isNumber(row.setup_ms) ? `${short(row.setup_ms, 4)} ms` : '') +
+      line('processor time', isNumber(row.cpu_ms) ? `${short(row.cpu_ms, 4)} ms` : '') + line('relative L2', error('l2')) + line('NRMSE', error('nrmse')) + line('inside its model', error('inside')) + line('bias', isNumber(row.relative_bias) ? `${percent(row.relative_bias)}${row.bias_at_noise ? ' (0)' : ''}` : '') +
+      line('relative MSE', short(row.relmse)) + line('FLIP', short(row.flip)) + line('GPU memory', isNumber(row.gpu_bytes) ? `${short(row.gpu_bytes / 1048576, 4)} MiB` : '') +
+      line('settings', escapeText([...(row.settings || []), ...(row.deviations || [])].join(' '))) + line('fidelity', escapeText(row.fidelity || '')) + line('seeds', row.seeds ? escapeText(row.seeds.seed.join(', ')) : '') +
+      line('program', escapeText(row.program || f.program || '')) + line('renderer', escapeText(row.renderer || f.renderer || '')) + line('driver', escapeText(row.driver || f.driver || '')) + line('CPU', escapeText(row.cpu || f.cpu || '')) + line('date', escapeText(row.date || '')) +
+      command('measured by', row.command || f.command) + command('picture by', row.picture_command, 'highlights, filtering and pixel centres as the program has them for pictures; the row is measured without highlights') + '</dl>';
+    for (const b of this.factsBox.querySelectorAll('[data-copy]')) b.addEventListener('click', () => copyText(b.dataset.copy, b));
+    for (const p of this.plotBox.querySelectorAll('.point')) p.querySelector('.ring').setAttribute('stroke', Number(p.dataset.row) === index ? '#000' : 'transparent');
+  }
+
+  // ---------------------------------------------------------------- plot
+  seriesPoints(name) {
+    const {cost, metric} = this.state;
+    return this.rows.map((row, index) => ({index, cost: COSTS[cost].of(row), error: ranked(row, metric), spread: spreadOf(row, metric), costSpread: costSpread(row, cost), noise: atNoise(row, metric)}))
+      .filter(p => this.rows[p.index].series === name && p.cost > 0 && p.error > 0).sort((a, b) => a.cost - b.cost);
+  }
+  drawPlot() { this.plotBox.innerHTML = this.plotSvg(); this.bindPlot(); }
+  plotSvg() {
+    const {cost, metric} = this.state, W = 900, H = 560, left = 78, right = 14, top = 14, bottom = 52;
+    const series = this.seriesNames.map(name => ({name, points: this.seriesPoints(name)})).filter(s => s.points.length);
+    const all = series.flatMap(s => s.points);
+    if (!all.length) return '<p>No row has both this cost and this error.</p>';
+    const levels = [];
+    for (const y of this.facts.yardsticks || []) levels.push({value: METRICS[metric].of(y), name: y.label});
+    const floors = this.rows.map(r => METRICS[metric].floor(r)).filter(isNumber);
+    if (floors.length) levels.push({value: metric === 'inside' || metric === 'bias' ? Math.min(...floors) : floors[0], name: metric === 'bias' ? 'least 3 standard errors of a bias' : '3 \u00d7 noise of the reference'});
+    const ys = all.flatMap(p => [p.error, p.error - 1.96 * p.spread, p.error + 1.96 * p.spread]).concat(levels.map(v => v.value)).filter(v => v > 0), xs = all.map(p => p.cost);
+    const pad = (a, b) => { const d = Math.max(Math.log(b / a) * 0.05, 0.1); return [a * Math.exp(-d), b * Math.exp(d)]; };
+    const [x0, x1] = pad(Math.min(...xs), Math.max(...xs)), [y0, y1] = pad(Math.max(Math.min(...ys), Math.min(...all.map(p => p.error)) / 10), Math.max(...ys));
+    const X = v => left + (W - left - right) * Math.log(v / x0) / Math.log(x1 / x0), Y = v => H - bottom - (H - top - bottom) * Math.log(v / y0) / Math.log(y1 / y0);
+    const tics = (a, b) => { const list = []; const decades = Math.log10(b / a); for (let d = Math.floor(Math.log10(a)); d <= Math.ceil(Math.log10(b)); ++d) for (const m of decades > 4 ? [1] : [1, 2, 5]) { const v = m * 10 ** d; if (v >= a && v <= b) list.push(v); } return list; };
+    const unit = METRICS[metric].isSquare || metric === 'flip' ? v => short(v) : v => short(100 * v) + ' %';
+    let out = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${W} ${H}" width="${W}" height="${H}" font-family="system-ui, sans-serif" font-size="13"><title>${escapeText(this.facts.title)}: ${escapeText(METRICS[metric].name)} against ${escapeText(COSTS[cost].name)}</title><rect width="${W}" height="${H}" fill="#fff"/>`;
+    for (const v of tics(x0, x1)) out += `<path d="M${X(v)} ${top}V${H - bottom}" stroke="#e2e2e6"/><text x="${X(v)}" y="${H - bottom + 18}" text-anchor="middle">${short(v)}</text>`;
+    for (const v of tics(y0, y1)) out += `<path d="M${left} ${Y(v)}H${W - right}" stroke="#e2e2e6"/><text x="${left - 8}" y="${Y(v) + 4}" text-anchor="end">${unit(v)}</text>`;
+    out += `<path d="M${left} ${top}V${H - bottom}H${W - right}" fill="none" stroke="#333"/><text x="${(left + W - right) / 2}" y="${H - 10}" text-anchor="middle">${escapeText(COSTS[cost].name)}</text><text transform="translate(16 ${(top + H - bottom) / 2}) rotate(-90)" text-anchor="middle">${escapeText(METRICS[metric].name)}</text>`;
+    out += `<clipPath id="plot-area"><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}"/></clipPath>`;
+    levels.filter(v => v.value >= y0 && v.value <= y1).forEach((level, k) => { out += `<path class="level" data-value="${level.value}" d="M${left} ${Y(level.value)}H${W - right}" stroke="#444" stroke-dasharray="${['8 4', '2 4', '10 3 2 3'][k % 3]}"/><text x="${W - right - 4}" y="${Y(level.value) - 4}" text-anchor="end" font-size="11" fill="#444">${escapeText(level.name)}</text>`; });
+    // The front, from its cheapest to its best.
+    const front = frontOf(this.rows, cost, metric), line = front.map(i => ({x: X(COSTS[cost].of(this.rows[i])), y: Y(ranked(this.rows[i], metric))})).sort((a, b) => a.x - b.x);
+    if (line.length > 1) out += `<path class="front" d="M${line.map(p => `${p.x} ${p.y}`).join('L')}" fill="none" stroke="#f0dc82" stroke-width="9" stroke-linejoin="round" stroke-linecap="round"/>`;
+    // Slope -1/2 (-1 for squares) through the path tracer's first point: what independent samples give.
+    const path = series.find(s => s.name === 'path'), slope = METRICS[metric].isSquare ? -1 : -0.5;
+    if (path && metric !== 'bias') { const a = path.points[0]; out += `<path class="guide" clip-path="url(#plot-area)" d="M${X(x0)} ${Y(a.error * (x0 / a.cost) ** slope)}L${X(x1)} ${Y(a.error * (x1 / a.cost) ** slope)}" stroke="#555" stroke-dasharray="2 5"/><text x="${X(Math.sqrt(a.cost * x1))}" y="${Y(a.error * (Math.sqrt(a.cost * x1) / a.cost) ** slope) - 6}" font-size="11" fill="#555">slope ${slope}</text>`; }
+    const seeds = METRICS[metric].seeds;
+    for (const s of series) {
+      const style = this.style(s.name), real = s.points.filter(p => !p.noise);
+      // A band over seeds where there are some: from the least to the largest.
+      const banded = real.filter(p => seeds && this.rows[p.index].seeds && this.rows[p.index].seeds[seeds].filter(isNumber).length > 1);
+      if (banded.length > 1) {
+        const ends = f => banded.map(p => `${X(p.cost)} ${Y(Math.max(f(...this.rows[p.index].seeds[seeds].filter(isNumber)), y0))}`);
+        out += `<path class="band" clip-path="url(#plot-area)" d="M${ends(Math.min).join('L')}L${ends(Math.max).reverse().join('L')}z" fill="${style.colour}" fill-opacity=".22"/>`;
+      }
+      if (real.length > 1) out += `<path d="M${real.map(p => `${X(p.cost)} ${Y(p.error)}`).join('L')}" fill="none" stroke="${style.colour}" stroke-width="1.5"/>`;
+    }
+    for (const s of series) {
+      const style = this.style(s.name);
+      for (const p of s.points) {
+        const row = this.rows[p.index], x = X(p.cost), y = Y(p.error), bar = 1.96 * p.spread;
+        const label = `${row.label}: ${short(p.cost, 4)} ms, ${p.noise ? 'below ' : ''}${unit(p.error)}${front.includes(p.index) ? ', on the front' : ''}`;
+        out += `<g class="point" tabindex="0" role="button" data-row="${p.index}" data-cost="${p.cost}" data-error="${p.error}" aria-label="${escapeText(label)}"><title>${escapeText(label)}</title>` +
+          (bar > 0 ? `<path d="M${x} ${Y(p.error + bar)}V${Y(Math.max(p.error - bar, y0))}" stroke="${style.colour}" clip-path="url(#plot-area)"/>` : '') +
+          `<circle class="ring" cx="${x}" cy="${y}" r="10" fill="transparent" stroke="${p.index === this.state.selected ? '#000' : 'transparent'}" stroke-width="2"/>` + mark(style.mark, x, y, 4.6, style.colour, p.noise) +
+          (p.noise ? `<path d="M${x} ${y + 7}v9m-3 -4l3 4l3 -4" fill="none" stroke="${style.colour}"/>` : '') + '</g>';
+      }
+    }
+    out += '</svg>';
+    this.legend = '<div class="lf-legend">' + series.map(s => { const style = this.style(s.name); return `<span><svg width="16" height="14">${mark(style.mark, 8, 7, 4, style.colour)}</svg> ${escapeText(s.name)}</span>`; }).join('') +
+      '<span>yellow: the front by a test (two standard errors); hollow with an arrow: below the reference\u2019s noise; bands: least to largest of the seeds; bars: 95 %</span></div>';
+    return out + this.legend;
+  }
+  bindPlot() {
+    const points = [...this.plotBox.querySelectorAll('.point')];
+    for (const p of points) {
+      const pick = () => { const row = Number(p.dataset.row), item = this.items.findIndex(it => it && it.row === row); if (item > 0) this.show(item); else this.select(row); };
+      p.addEventListener('click', pick);
+      p.addEventListener('keydown', event => { if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); event.stopPropagation(); pick(); } });
+    }
+  }
+
+  // ---------------------------------------------------------------- tables of equal time and equal error
+  tableData() {
+    const metric = this.state.metric, keep = this.state.cost, result = {};
+    for (const cost of ['ms', 'setup']) {
+      this.state.cost = cost;
+      const series = this.seriesNames.map(name => ({name, points: this.seriesPoints(name).filter(p => !p.noise)})).filter(s => s.points.length);
+      const all = series.flatMap(s => s.points), steps = (values, count) => {
+        // 1, 2 and 5 of every decade between them; at most `count`, evenly.
+        const low = Math.min(...values), high = Math.max(...values), list = [];
+        for (let v = roundUp(low); v <= high * (1 + 1e-9); v = roundUp(v * 1.5)) list.push(v);
+        return list.length <= count ? list : [...new Set(Array.from({length: count}, (_, k) => list[Math.round(k * (list.length - 1) / (count - 1))]))];
+      };
+      if (!all.length) { result[cost] = {times: [], errors: [], equalTime: [], equalError: [], unit: []}; continue; }
+      const times = steps(all.map(p => p.cost), 7), errors = steps(all.map(p => p.error), 7).reverse(), path = series.find(s => s.name === 'path');
+      result[cost] = {times, errors,
+        equalTime: series.map(s => ({series: s.name, entries: times.map(t => errorAt(s.points, t))})),
+        equalError: series.map(s => ({series: s.name, entries: errors.map(e => { const at = costAt(s.points, e), of = path && costAt(path.points, e); return at && {...at, speedUp: of && !of.atMost && !at.atMost ? of.value / at.value : null}; })})),
+        // Time to unit variance [Mueller2016]: what an unbiased estimator needs for a relative variance of 1, time times variance; the mean over its rungs from 32 samples on, or over all where it has none.
+        unit: series.filter(s => s.name === 'path').map(s => {
+          const long = s.points.filter(p => (this.rows[p.index].spp || 0) >= 32), rungs = long.length ? long : s.points;
+          // Set-up is there once, however many samples follow.
+          const of = rungs.map(p => this.rows[p.index]).map(r => r.ms * r.nrmse ** 2 + (cost === 'setup' ? r.setup_ms : 0)).filter(isNumber);
+          if (!of.length) return {series: s.name, value: null};
+          const mean = of.reduce((a, b) => a + b, 0) / of.length;
+          return {series: s.name, value: mean, spread: of.length > 1 ? Math.sqrt(of.reduce((a, b) => a + (b - mean) ** 2, 0) / (of.length - 1) / of.length) : 0, rungs: of.length};
+        })};
+    }
+    this.state.cost = keep;
+    return result;
+  }
+  drawTables() {
+    const data = this.tableData(), metric = this.state.metric, value = METRICS[metric].isSquare || metric === 'flip' ? v => short(v) : v => percent(v);
+    const range = (e, f) => (e.spread > 0 ? ` <span class="note">(${f(Math.max(0, e.value - 1.96 * e.spread))} .. ${f(e.value + 1.96 * e.spread)})</span>` : '');
+    let html = '';
+    for (const cost of ['ms', 'setup']) {
+      const t = data[cost];
+      if (!t.times.length) continue;
+      html += `<h3>Equal time: ${escapeText(METRICS[metric].name)} by ${escapeText(COSTS[cost].name)}</h3><div class="scroll"><table class="equal-time" data-cost="${cost}"><tr><th>series</th>${t.times.map(v => `<th>${short(v)} ms</th>`).join('')}</tr>` +
+        t.equalTime.map(s => `<tr><td>${escapeText(s.series)}</td>${s.entries.map(e => (e ? `<td data-value="${e.value}">${e.interpolated ? '~' : ''}${value(e.value)}${range(e, value)}</td>` : '<td>\u2013</td>')).join('')}</tr>`).join('') + '</table></div>';
+      html += `<h3>Equal error: ${escapeText(COSTS[cost].name)} for ${escapeText(METRICS[metric].name)}</h3><div class="scroll"><table class="equal-error" data-cost="${cost}"><tr><th>series</th>${t.errors.map(v => `<th>${value(v)}</th>`).join('')}</tr>` +
+        t.equalError.map(s => `<tr><td>${escapeText(s.series)}</td>${s.entries.map(e => (e ? `<td data-value="${e.value}">${e.atMost ? '\u2264 ' : e.interpolated ? '~' : ''}${short(e.value)}${range(e, short)}${e.speedUp ? ` <b>\u00d7${short(e.speedUp)}</b>` : ''}</td>` : '<td>\u2013</td>')).join('')}</tr>`).join('') + '</table></div>';
+      for (const u of t.unit) if (u.value !== null) html += `<p>Time to unit variance, ${escapeText(u.series)}, ${escapeText(COSTS[cost].name)}: <b data-unit="${cost}">${short(u.value)}</b>${u.spread > 0 ? ` \u00b1 ${short(u.spread, 2)}` : ''} (time \u00d7 NRMSE\u00b2${cost === 'setup' ? ' and set-up' : ''}, mean of ${u.rungs} rungs).</p>`;
+    }
+    this.tableBox.innerHTML = html + '<p class="note">~: log-log between two rungs of the series. \u2264: its first rung is better already. \u2013: the ladder does not get there, or ends at the reference\u2019s noise. In brackets: 95 %, from the reference\u2019s noise, seeds and times. \u00d7: how many times faster than path tracing at that error.</p>';
+  }
+
+  // ---------------------------------------------------------------- crops
+  /// Where the methods of the front disagree most: windows of a sixth of the width with the largest sum of their luminances' relative variance, which do not overlap.
+  chooseCrops() {
+    const methods = this.items.map((it, i) => i).filter(i => i > 0 && this.rows[this.items[i].row].pareto).slice(0, 8), w = Math.max(4, Math.round(this.width / 6)), h = Math.max(4, Math.min(this.height, Math.round(w * 0.75)));
+    const use = methods.length > 1 ? methods : this.items.map((it, i) => i).slice(1, 5);
+    if (!use.length || this.width < w || this.height < h) return;
+    const n = this.width * this.height, sums = new Float64Array((this.width + 1) * (this.height + 1)), ps = use.map(i => this.pixels(i)), t = this.truth(0), epsilon = this.facts.relmse_epsilon * this.meanLuminance(0) ** 2;
+    for (let y = 0; y < this.height; ++y)
+      for (let x = 0; x < this.width; ++x) {
+        const k = y * this.width + x;
+        let mean = 0, squares = 0;
+        for (const p of ps) { const v = luminance(p, k); mean += v / ps.length; squares += v * v / ps.length; }
+        const v = (squares - mean * mean) / (luminance(t, k) ** 2 + epsilon);
+        sums[(y + 1) * (this.width + 1) + x + 1] = (Number.isFinite(v) ? Math.min(Math.max(v, 0), 1) : 0) + sums[y * (this.width + 1) + x + 1] + sums[(y + 1) * (this.width + 1) + x] - sums[y * (this.width + 1) + x];
+      }
+    for (let k = 0; k < 3; ++k) {
+      let best = null;
+      for (let y = 0; y + h <= this.height; ++y)
+        for (let x = 0; x + w <= this.width; ++x) {
+          if (this.state.crops.some(c => x < c.x + c.width && c.x < x + w && y < c.y + c.height && c.y < y + h)) continue;
+          const at = (u, v) => sums[v * (this.width + 1) + u], sum = at(x + w, y + h) - at(x, y + h) - at(x + w, y) + at(x, y);
+          if (!best || sum > best.sum) best = {x, y, width: w, height: h, sum};
+        }
+      if (best) this.state.crops.push(best);
+    }
+  }
+  cropCanvas(i, c) {
+    const canvas = document.createElement('canvas');
+    canvas.width = c.width * 5, canvas.height = c.height * 5;
+    const g = canvas.getContext('2d');
+    g.imageSmoothingEnabled = false;
+    g.drawImage(this.canvasOf(i), c.x, c.y, c.width, c.height, 0, 0, canvas.width, canvas.height);
+    return canvas;
+  }
+  /// Relative L2 of a crop, of the pictures as they are.
+  cropError(i, c) {
+    const d = this.difference(i), t = this.truth(this.items[i].truth);
+    let a = 0, b = 0;
+    for (let y = c.y; y < c.y + c.height; ++y) for (let x = c.x; x < c.x + c.width; ++x) for (let k = 0; k < 3; ++k) { const at = 3 * (y * this.width + x) + k; a += d[at] ** 2; b += t[at] ** 2; }
+    return Math.sqrt(a / b);
+  }
+  drawCrops() {
+    this.cropBox.innerHTML = '';
+    const set = this.state.chosen.slice(0, 6);
+    for (const [k, c] of this.state.crops.entries()) {
+      const line = document.createElement('div');
+      line.className = 'lf-crop-line';
+      this.cropBox.append(line);
+      for (const i of set) {
+        const figure = document.createElement('figure'), canvas = this.cropCanvas(i, c), caption = document.createElement('figcaption');
+        canvas.style.borderColor = OKABE[(k + 1) % OKABE.length];
+        caption.textContent = `${k + 1}: ${this.label(i)}${i > 0 ? `, L2 ${percent(this.cropError(i, c))}` : ''}`;
+        canvas.setAttribute('role', 'img');
+        canvas.setAttribute('aria-label', caption.textContent);
+        figure.append(canvas, caption);
+        line.append(figure);
+      }
+    }
+  }
+
+  // ---------------------------------------------------------------- exports
+  figureSvg() {
+    const set = this.state.chosen.slice(0, 6), cw = 150, gap = 8;
+    const scale = cw / this.width, ph = this.height * scale;
+    let y = gap, out = '';
+    set.forEach((i, k) => {
+      const x = gap + k * (cw + gap);
+      out += `<image x="${x}" y="${y}" width="${cw}" height="${ph}" image-rendering="pixelated" href="${this.canvasOf(i).toDataURL()}"/>`;
+      this.state.crops.forEach((c, n) => { out += `<rect x="${x + c.x * scale}" y="${y + c.y * scale}" width="${c.width * scale}" height="${c.height * scale}" fill="none" stroke="${OKABE[(n + 1) % OKABE.length]}"/>`; });
+      const row = i > 0 ? this.rows[this.items[i].row] : null, lines = [this.label(i).slice(0, 30), row ? `${short(row.ms)} ms, L2 ${errorText(row, 'l2')}` : ''];
+      lines.forEach((text, n) => { out += `<text x="${x}" y="${y + ph + 13 + 12 * n}" font-size="9">${escapeText(text)}</text>`; });
+    });
+    y += ph + 34;
+    this.state.crops.forEach((c, n) => {
+      const h = cw * c.height / c.width;
+      set.forEach((i, k) => {
+        const x = gap + k * (cw + gap);
+        out += `<image x="${x}" y="${y}" width="${cw}" height="${h}" image-rendering="pixelated" href="${this.cropCanvas(i, c).toDataURL()}"/><rect x="${x}" y="${y}" width="${cw}" height="${h}" fill="none" stroke="${OKABE[(n + 1) % OKABE.length]}" stroke-width="2"/>`;
+      });
+      y += h + gap;
+    });
+    const width = gap + set.length * (cw + gap);
+    return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${y}" width="${width}" height="${y}" font-family="sans-serif"><title>${escapeText(this.facts.title)}</title><rect width="100%" height="100%" fill="#fff"/>${out}</svg>`;
+  }
+  csv() {
+    const keys = [...new Set(this.rows.flatMap(r => Object.keys(r).filter(k => typeof r[k] !== 'object' || r[k] === null)))];
+    const cell = v => (v === null || v === undefined ? '' : typeof v === 'string' ? `"${v.replace(/"/g, '""')}"` : String(v));
+    return [keys.join(','), ...this.rows.map(r => keys.map(k => cell(r[k])).join(','))].join('\n') + '\n';
+  }
+  latex() {
+    const {cost, metric} = this.state, tex = t => String(t).replace(/[\\&%$#_{}~^]/g, c => ({'\\': '\\textbackslash{}', '~': '\\textasciitilde{}', '^': '\\textasciicircum{}'})[c] || '\\' + c);
+    let out = `% ${this.facts.title}; ${this.facts.command}\n% needs: booktabs, pgfplots\n\\begin{tabular}{lrrr}\n\\toprule\nmethod & ${tex(COSTS[cost].name)} & ${tex(METRICS[metric].name)} & bias \\\\\n\\midrule\n`;
+    for (const i of frontOf(this.rows, cost, metric)) { const r = this.rows[i]; out += `${tex(r.label)} & ${short(COSTS[cost].of(r), 4)} & ${atNoise(r, metric) ? '$<$ ' : ''}${short(ranked(r, metric))} & ${short(r.relative_bias)} \\\\\n`; }
+    out += `\\bottomrule\n\\end{tabular}\n\n\\begin{tikzpicture}\n\\begin{loglogaxis}[xlabel={${tex(COSTS[cost].name)}}, ylabel={${tex(METRICS[metric].name)}}, legend pos=outer north east]\n`;
+    for (const name of this.seriesNames) { const points = this.seriesPoints(name).filter(p => !p.noise); if (points.length) out += `\\addplot coordinates {${points.map(p => `(${p.cost},${p.error})`).join(' ')}};\\addlegendentry{${tex(name)}}\n`; }
+    return out + '\\end{loglogaxis}\n\\end{tikzpicture}\n';
+  }
+  plotFile() { const svg = this.plotBox.querySelector('svg'); return svg ? new XMLSerializer().serializeToString(svg) : ''; }
+  save(name, type, text) {
+    lastSaved = {name, text};
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([text], {type}));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  /// Does what a key is for; false for keys that are for nothing here.
+  press(key) {
+    const found = KEYS.find(k => k.keys.some(x => (x.key || x) === key));
+    if (!found) return false;
+    found.run(this, key);
+    return true;
+  }
+}
+
+// ------------------------------------------------------------------------------------------------ keys: the one list that help shows and that is obeyed
+
+let lastSaved = null;
+const cycle = (list, value, step = 1) => list[(list.indexOf(value) + step + list.length) % list.length];
+const redraw = run => (f, key) => { run(f, key); f.draw(); };
+const DIRECTIONS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+const arrows = prefix => Object.keys(DIRECTIONS).map(k => ({key: prefix + k, label: (prefix ? 'Shift ' : '') + {ArrowLeft: '\u2190', ArrowRight: '\u2192', ArrowUp: '\u2191', ArrowDown: '\u2193'}[k]}));
+const KEYS = [
+  {keys: ['0'], help: 'the reference', run: f => f.show(0)},
+  {keys: ['1', '2', '3', '4', '5', '6', '7', '8', '9'], help: 'method 1 to 9 of the list', run: (f, k) => f.show(Number(k))},
+  {keys: ['n', 'b'], help: 'next method, the one before', run: (f, k) => f.show((f.state.current + (k === 'n' ? 1 : f.items.length - 1)) % f.items.length)},
+  {keys: ['v'], help: 'one picture', run: redraw(f => { f.state.mode = 'single'; })},
+  {keys: ['w'], help: 'wipe: the method before on the left, this one on the right', run: redraw(f => { f.state.mode = 'wipe'; f.state.flipped = false; })},
+  {keys: [',', '.'], help: 'move the wipe', run: redraw((f, k) => { f.state.wipe = Math.min(1, Math.max(0, f.state.wipe + (k === ',' ? -0.05 : 0.05))); })},
+  {keys: ['s'], help: 'side by side, up to six', run: redraw(f => { f.state.mode = 'side'; })},
+  {keys: ['a'], help: 'take this method into the set of side by side and crops, or out of it', run: redraw(f => { const s = f.state, at = s.chosen.indexOf(s.current); if (at >= 0) s.chosen.splice(at, 1); else if (s.chosen.length < 6) s.chosen.push(s.current); })},
+  {keys: ['f'], help: 'flip to the method before and back', run: redraw(f => { f.state.flipped = !f.state.flipped; if (f.state.mode === 'side') f.state.mode = 'single'; })},
+  {keys: ['m', 'M'], help: 'next map, the one before: picture, signed, relative, FLIP, z-score', run: redraw((f, k) => { f.state.map = cycle(Object.keys(MAPS), f.state.map, k === 'm' ? 1 : -1); })},
+  {keys: ['E', 'e'], help: 'exposure half a stop up, down', run: redraw((f, k) => { f.state.stops += k === 'E' ? 0.5 : -0.5; })},
+  {keys: ['t'], help: 'next tone map', run: redraw(f => { f.state.tone = cycle(Object.keys(TONES), f.state.tone); })},
+  {keys: [']', '['], help: 'range of the map doubled, halved', run: redraw((f, k) => f.scaleRange(k === ']' ? 2 : 0.5))},
+  {keys: ['l'], help: 'one range for all methods, or each its own', run: redraw(f => { f.state.lock = !f.state.lock; })},
+  {keys: ['+', '-'], help: 'zoom in, out, about the cursor', run: redraw((f, k) => f.zoomBy(k === '+' ? 1.25 : 0.8, f.state.cursor.x + 0.5, f.state.cursor.y + 0.5))},
+  {keys: arrows(''), help: 'pan, all pictures in step', run: redraw((f, k) => { const [x, y] = DIRECTIONS[k], step = 40 / f.layout().scale; f.state.x += x * step; f.state.y += y * step; })},
+  {keys: arrows('Shift+'), help: 'move the cursor by a pixel', run: redraw((f, k) => { const [x, y] = DIRECTIONS[k.slice(6)]; f.moveCursor(f.state.cursor.x + x, f.state.cursor.y + y); })},
+  {keys: ['r'], help: 'the whole picture again', run: redraw(f => { f.state.zoom = 0; f.state.x = f.width / 2; f.state.y = f.height / 2; })},
+  {keys: ['c'], help: 'a crop around the cursor', run: redraw(f => { const s = f.state, w = Math.max(4, Math.round(f.width / 6)), h = Math.max(4, Math.min(f.height, Math.round(w * 0.75))); s.crops.push({x: Math.min(Math.max(s.cursor.x - (w >> 1), 0), f.width - w), y: Math.min(Math.max(s.cursor.y - (h >> 1), 0), f.height - h), width: w, height: h}); })},
+  {keys: ['C'], help: 'take the last crop away', run: redraw(f => { f.state.crops.pop(); })},
+  {keys: ['A'], help: 'crops where methods disagree most', run: redraw(f => { f.state.crops = []; f.chooseCrops(); })},
+  {keys: ['k'], help: 'next cost of the plot: picture, with set-up, processor', run: f => { f.state.cost = cycle(Object.keys(COSTS), f.state.cost); f.costSelect.value = f.state.cost; f.drawPlot(); f.drawTables(); }},
+  {keys: ['y'], help: 'next error of the plot', run: f => { f.state.metric = cycle(Object.keys(METRICS), f.state.metric); f.metricSelect.value = f.state.metric; f.drawPlot(); f.drawTables(); }},
+  {keys: ['x'], help: 'save the figure (pictures and crops) as SVG', run: f => f.save('figure.svg', 'image/svg+xml', f.figureSvg())},
+  {keys: ['X'], help: 'save the plot as SVG', run: f => f.save('plot.svg', 'image/svg+xml', f.plotFile())},
+  {keys: ['d'], help: 'save all rows as CSV', run: f => f.save('rows.csv', 'text/csv', f.csv())},
+  {keys: ['L'], help: 'save table and plot as LaTeX', run: f => f.save('figure.tex', 'text/x-tex', f.latex())},
+  {keys: ['P'], help: 'print, or save as PDF', run: () => window.print()},
+  {keys: ['p'], help: 'copy the command that measured the selected row', run: f => copyText(f.rows[f.state.selected].command || f.facts.command)},
+  {keys: ['?'], help: 'show or hide this list', run: f => { f.help.open = !f.help.open; }},
+];
+
+let lastCopied = null;
+function copyText(text, button) {
+  lastCopied = text;
+  const done = () => { if (button) { button.textContent = 'copied'; setTimeout(() => { button.textContent = 'copy'; }, 1200); } };
+  const byHand = () => {
+    const area = document.createElement('textarea');
+    area.value = text;
+    document.body.append(area);
+    area.select();
+    document.execCommand('copy');
+    area.remove();
+    done();
+  };
+  if (navigator.clipboard && window.isSecureContext) navigator.clipboard.writeText(text).then(done, byHand);
+  else byHand();
+}
+
+function activate(figure) {
+  if (active === figure) return;
+  active = figure;
+  for (const f of figures) f.root.classList.toggle('lf-active', f === figure);
+}
+document.addEventListener('keydown', event => {
+  if (!active || event.ctrlKey || event.altKey || event.metaKey || event.defaultPrevented) return;
+  if (/^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName)) return;
+  const key = event.key.startsWith('Arrow') && event.shiftKey ? 'Shift+' + event.key : event.key;
+  if (active.press(key)) event.preventDefault();
+});
+for (const root of document.querySelectorAll('[data-figure]')) figures.push(new Figure(root));
+if (figures.length) activate(figures[0]);
+window.addEventListener('resize', () => figures.forEach(f => f.draw()));
+// For tests: what the page holds, and when it was ready, ms after it began to load.
+window.lucernaReport = {figures, KEYS, METRICS, COSTS, frontOf, errorAt, costAt, ready: performance.now(), get lastCopied() { return lastCopied; }, get lastSaved() { return lastSaved; }};
+
+})();
