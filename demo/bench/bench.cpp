@@ -3,6 +3,7 @@
 
 #include "base/data.hpp"
 #include "base/error.hpp"
+#include "bench/diff.hpp"
 
 namespace lucerna::demo {
 
@@ -31,6 +32,7 @@ Work addBench(CLI::App& app) {
   add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);
   add("rays", "Rays per second of the compute-shader hierarchy, beside Embree on the same rays", addBenchRays);
   add("error", "Error against run time: every technique over a ladder of settings", addBenchError);
+  add("diff", "Two reports of bench error row by row: better, worse or undecided, by a test that knows both spreads", addBenchDiff);
   add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);
   add("needs", "What a scene leaves out, and what that saves", addBenchNeeds);
   add("all", "The whole report on one page: tables, error, stability, needs, rays", addBenchAll);

@@ -1,0 +1,263 @@
+// lucerna bench diff A B: two reports of `bench error`, row by row: is B better or worse than A, by tests that know the spreads of both.
+//
+// Errors (relative L2, the same inside the model, bias): the difference over its standard error, which comes from the noise of the references and, for
+// path tracing, from seeds. Student's t where few seeds say how large it is. A figure below the reference's noise is an upper bound, and is decided only
+// where the other one is clear of it.
+// Times: the logarithm of B over A. Two runs of one program differ by more than the spread within each (load, clock, memory), and the rows say by how much:
+// the median of all rows is the machine's part and is reported apart; what rows scatter about it (median absolute deviation) adds to a row's own spread.
+// So many rows are so many chances to err: the level is Sidak's for all tests together [Sidak1967].
+#include "bench/diff.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/statistics.hpp"
+#include "bench/error_rows.hpp"
+#include "offers.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+namespace lucerna::demo {
+
+namespace bench {
+
+namespace {
+
+struct DiffOptions {
+  CommonOptions common;
+  std::string a, b;
+  std::vector<std::string> what{"error", "time"};
+  double significance = 0.01, timeFloor = 0.1;
+};
+
+/// Equal to rounding: atomics add in any order.
+constexpr double kRounding = 1e-5;
+
+enum class Verdict { undecided, better, worse };
+std::string_view nameOf(Verdict v) { return v == Verdict::better ? "better" : v == Verdict::worse ? "worse" : "undecided"; }
+
+/// A figure with its standard error, of which `freedom` degrees tell; infinite: it is known.
+struct Estimate {
+  double value = NAN, error = 0.0, freedom = INFINITY;
+  bool isBound = false;  ///< at most `value`
+};
+
+struct Finding {
+  std::string what;
+  double a = NAN, b = NAN, apart = NAN;  ///< standard errors of the difference
+  Verdict verdict = Verdict::undecided;
+};
+struct RowDiff {
+  std::string label;
+  std::vector<Finding> findings;
+  Verdict verdict = Verdict::undecided;
+};
+
+/// The z beyond which a normal variable lies on either side with this probability in all, by bisection.
+double normalLimit(double probability) {
+  double low = 0.0, high = 40.0;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    (std::erfc(middle / std::sqrt(2.0)) > probability ? low : high) = middle;
+  }
+  return low;
+}
+/// Student's limit from the normal one [AbramowitzStegun 26.7.5].
+double studentLimit(double z, double freedom) {
+  if (!std::isfinite(freedom)) return z;
+  const double v = std::max(freedom, 1.0);
+  return z + (z * z * z + z) / (4.0 * v) + (5.0 * std::pow(z, 5) + 16.0 * z * z * z + 3.0 * z) / (96.0 * v * v);
+}
+
+bool flagOf(const ErrorRow& row, const char* key) {
+  const auto found = row.find(key);
+  return found != row.end() && found->is_boolean() && found->get<bool>();
+}
+
+/// errors: a row, or its inside_model. freedom: of the row's seeds.
+Estimate l2Of(const ErrorRow& errors, double freedom) {
+  if (flagOf(errors, "at_noise")) return {3.0 * number(errors, "noise_l2"), 0.0, INFINITY, true};
+  const double error = number(errors, "l2_error");
+  return {number(errors, "l2"), std::isfinite(error) ? error : 0.0, freedom, false};
+}
+/// Relative, signed.
+Estimate biasOf(const ErrorRow& row, double freedom) {
+  const double mean = number(row, "bias") / number(row, "relative_bias"), error = number(row, "bias_error") / std::abs(mean);
+  return {number(row, "relative_bias"), std::isfinite(error) ? error : 0.0, freedom, false};
+}
+double freedomOf(const ErrorRow& row) {
+  const double freedom = number(row, "error_freedom");
+  return std::isfinite(freedom) ? freedom : INFINITY;
+}
+
+/// Less is better. z: the normal limit.
+Finding judge(const std::string& what, const Estimate& a, const Estimate& b, double z) {
+  Finding finding{what, a.value, b.value, NAN, Verdict::undecided};
+  if (!std::isfinite(a.value) || !std::isfinite(b.value)) {
+    // What is no longer finite is worse, whatever it was.
+    if (std::isfinite(a.value) != std::isfinite(b.value)) finding.verdict = std::isfinite(a.value) ? Verdict::worse : Verdict::better;
+    return finding;
+  }
+  const double difference = b.value - a.value, error = std::hypot(a.error, b.error);
+  if ((a.isBound && b.isBound) || (a.isBound && difference <= 0.0) || (b.isBound && difference >= 0.0)) return finding;
+  if (std::abs(difference) <= kRounding * std::max(std::abs(a.value), std::abs(b.value))) return finding;
+  finding.apart = error > 0.0 ? difference / error : std::copysign(INFINITY, difference);
+  if (std::abs(finding.apart) > studentLimit(z, std::min(a.freedom, b.freedom)))
+    finding.verdict = std::abs(b.value) > std::abs(a.value) ? Verdict::worse : Verdict::better;
+  return finding;
+}
+
+/// A median time as a logarithm: its standard error from the samples.
+Estimate logTimeOf(const ErrorRow& row) {
+  std::vector<double> samples;
+  if (const auto found = row.find("wall_ms_samples"); found != row.end() && found->is_array())
+    for (const auto& value : *found) samples.push_back(value.get<double>());
+  const double error = medianError(samples) / median(samples);
+  return {std::log(number(row, "ms")), std::isfinite(error) ? error : 0.0, std::isfinite(error) ? static_cast<double>(samples.size()) - 1.0 : INFINITY, false};
+}
+
+nlohmann::ordered_json readReport(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path file = fs::is_directory(path) ? fs::path(path) / "error.json" : fs::path(path);
+  nlohmann::ordered_json report = nlohmann::ordered_json::parse(readFileText(file), nullptr, false);
+  if (report.is_discarded() || !report.is_object() || !report.contains("rows") || !report.at("rows").is_array() || !report.contains("bench"))
+    throwBadInput("{}: no report of lucerna bench error (its JSON, or the folder that holds error.json)", path);
+  return report;
+}
+
+std::map<std::string, ErrorRow> byLabel(const nlohmann::ordered_json& report, std::vector<std::string>& order) {
+  std::map<std::string, ErrorRow> rows;
+  for (const ErrorRow& row : report.at("rows")) {
+    const std::string label = row.at("label").get<std::string>();
+    if (rows.emplace(label, row).second) order.push_back(label);
+  }
+  return rows;
+}
+
+int run(const DiffOptions& options) {
+  options.common.apply();
+  const auto wants = [&](const char* what) { return std::find(options.what.begin(), options.what.end(), what) != options.what.end(); };
+  for (const std::string& what : options.what)
+    if (what != "error" && what != "time") throwBadInput("--only {}: unknown; there are error, time", what);
+  if (!(options.significance > 0.0 && options.significance < 1.0)) throwBadInput("--significance {}: expected a number between 0 and 1", options.significance);
+  const nlohmann::ordered_json reportA = readReport(options.a), reportB = readReport(options.b);
+  if (reportA.at("bench") != reportB.at("bench"))
+    throwBadInput("{} is of '{}', {} of '{}': only reports of one scene, view and size are compared", options.a, reportA.at("bench").get<std::string>(), options.b, reportB.at("bench").get<std::string>());
+  std::vector<std::string> orderA, orderB;
+  const auto a = byLabel(reportA, orderA), b = byLabel(reportB, orderB);
+  std::vector<std::string> both, onlyA, onlyB;
+  for (const std::string& label : orderA) (b.contains(label) ? both : onlyA).push_back(label);
+  for (const std::string& label : orderB)
+    if (!a.contains(label)) onlyB.push_back(label);
+  if (both.empty()) throwBadInput("{} and {} have no row in common", options.a, options.b);
+
+  // Sidak: four tests a row.
+  const double tests = 4.0 * static_cast<double>(both.size()), z = normalLimit(1.0 - std::pow(1.0 - options.significance, 1.0 / tests));
+  // What the machine does to all rows, and how far rows scatter about that.
+  std::vector<double> ratios;
+  for (const std::string& label : both)
+    if (const double ratio = logTimeOf(b.at(label)).value - logTimeOf(a.at(label)).value; std::isfinite(ratio)) ratios.push_back(ratio);
+  const double shift = ratios.empty() ? 0.0 : median(ratios);
+  std::vector<double> deviations;
+  for (const double ratio : ratios) deviations.push_back(std::abs(ratio - shift));
+  const double scatter = deviations.size() >= 4 ? 1.4826 * median(deviations) : INFINITY;  // too few rows to tell
+
+  std::vector<RowDiff> diffs;
+  int worse = 0, better = 0;
+  for (const std::string& label : both) {
+    const ErrorRow &rowA = a.at(label), &rowB = b.at(label);
+    RowDiff diff{label, {}, Verdict::undecided};
+    const double freedomA = freedomOf(rowA), freedomB = freedomOf(rowB);
+    if (wants("error")) {
+      diff.findings.push_back(judge("relative L2", l2Of(rowA, freedomA), l2Of(rowB, freedomB), z));
+      if (rowA.contains("inside_model") && rowB.contains("inside_model"))
+        diff.findings.push_back(judge("inside model", l2Of(rowA.at("inside_model"), INFINITY), l2Of(rowB.at("inside_model"), INFINITY), z));
+      diff.findings.push_back(judge("bias", biasOf(rowA, INFINITY), biasOf(rowB, INFINITY), z));
+    }
+    if (wants("time")) {
+      Estimate timeA = logTimeOf(rowA), timeB = logTimeOf(rowB);
+      Finding time{"ms", number(rowA, "ms"), number(rowB, "ms"), NAN, Verdict::undecided};
+      const double change = timeB.value - timeA.value - shift, error = std::hypot(std::hypot(timeA.error, timeB.error), scatter);
+      if (std::isfinite(change) && std::isfinite(error)) {
+        time.apart = error > 0.0 ? change / error : change == 0.0 ? 0.0 : std::copysign(INFINITY, change);
+        if (std::abs(time.apart) > studentLimit(z, static_cast<double>(ratios.size()) - 1.0) && std::abs(change) > std::log1p(options.timeFloor))
+          time.verdict = change > 0.0 ? Verdict::worse : Verdict::better;
+      }
+      diff.findings.push_back(time);
+    }
+    for (const Finding& f : diff.findings) {
+      if (f.verdict == Verdict::worse) diff.verdict = Verdict::worse;
+      if (f.verdict == Verdict::better && diff.verdict == Verdict::undecided) diff.verdict = Verdict::better;
+    }
+    worse += diff.verdict == Verdict::worse;
+    better += diff.verdict == Verdict::better;
+    diffs.push_back(std::move(diff));
+  }
+
+  if (!options.common.quiet) {
+    std::size_t width = 10;
+    for (const RowDiff& diff : diffs) width = std::max(width, diff.label.size());
+    for (const RowDiff& diff : diffs) {
+      std::string line = fmt::format("{:<9}  {:<{}}", nameOf(diff.verdict), diff.label, width);
+      for (const Finding& f : diff.findings) {
+        const double scale = f.what == "ms" ? 1.0 : 100.0;
+        line += fmt::format("  {} {:.4g} -> {:.4g}{}{}", f.what, scale * f.a, scale * f.b, f.what == "ms" ? "" : " %", std::isfinite(f.apart) ? fmt::format(" ({:+.1f})", f.apart) : "");
+        if (f.verdict != Verdict::undecided) line += fmt::format(" {}", nameOf(f.verdict));
+      }
+      fmt::print("{}\n", line);
+    }
+    for (const std::string& label : onlyA) fmt::print("gone       {}\n", label);
+    for (const std::string& label : onlyB) fmt::print("new        {}\n", label);
+    fmt::print("In brackets: standard errors of the difference; decided beyond {:.2f} (level {:g} for all {} rows).\n", z, options.significance, both.size());
+    if (wants("time"))
+      fmt::print("All rows together: B takes {:.3f} times A's time (median), machine or program; rows scatter by {:.1f} % about that.\n", std::exp(shift), std::isfinite(scatter) ? 100.0 * scatter : NAN);
+    fmt::print("{} better, {} worse, {} undecided\n", better, worse, static_cast<int>(diffs.size()) - better - worse);
+  }
+  nlohmann::ordered_json json;
+  json["a"] = options.a;
+  json["b"] = options.b;
+  json["significance"] = options.significance;
+  json["limit"] = z;
+  json["time_ratio"] = std::exp(shift);
+  json["time_scatter"] = scatter;
+  json["better"] = better;
+  json["worse"] = worse;
+  json["gone"] = onlyA;
+  json["new"] = onlyB;
+  json["rows"] = nlohmann::ordered_json::array();
+  for (const RowDiff& diff : diffs) {
+    nlohmann::ordered_json row{{"label", diff.label}, {"verdict", nameOf(diff.verdict)}};
+    for (const Finding& f : diff.findings) row["findings"].push_back({{"what", f.what}, {"a", f.a}, {"b", f.b}, {"standard_errors", f.apart}, {"verdict", nameOf(f.verdict)}});
+    json["rows"].push_back(std::move(row));
+  }
+  options.common.writeJson(json);
+  return worse > 0 || !onlyA.empty() ? 1 : 0;
+}
+
+}  // namespace
+
+}  // namespace bench
+
+Work addBenchDiff(CLI::App& app) {
+  auto options = std::make_shared<bench::DiffOptions>();
+  app.add_option("A", options->a, "a report: its JSON, or the folder of `bench error`")->required();
+  app.add_option("B", options->b, "another of the same scene, view and size; exit code 1 where a row of it is worse, or gone")->required();
+  offer(app.add_option("--only", options->what, "of error, time; default: both")->delimiter(','), {"error", "time"});
+  app.add_option("--significance", options->significance, "the chance that any row is called better or worse where nothing changed")->capture_default_str();
+  app.add_option("--time-floor", options->timeFloor, "smaller changes of a time, as a fraction, are undecided")->capture_default_str()->check(CLI::NonNegativeNumber);
+  options->common.declare(app);
+  return [options] {
+    try {
+      return bench::run(*options);
+    } catch (const nlohmann::json::exception& error) {
+      throwBadInput("{}, {}: no reports of lucerna bench error ({})", options->a, options->b, error.what());
+    }
+  };
+}
+
+}  // namespace lucerna::demo
