@@ -4,6 +4,7 @@
 #include "command_tree.hpp"
 #include "commands.hpp"
 #include "gl/context.hpp"
+#include "merge.hpp"
 
 #include <fmt/core.h>
 
@@ -60,6 +61,7 @@ int main(int argc, char** argv) {
   };
   add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times", lucerna::demo::addWalk);
   add("render", "Render one picture of a scene", lucerna::demo::addRender);
+  add("merge", "Parts of a path traced picture's samples (render --samples) as one picture", lucerna::demo::addMerge);
   add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
   add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
   add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL", lucerna::demo::addMedia);

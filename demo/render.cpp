@@ -31,6 +31,7 @@ int run(Options options) {
   if (!options.path.spp) options.path.spp = options.picture.settingsSpp;
   if (options.picture.technique == "path") return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
   options.path.refuseIfGiven(options.picture.technique);
+  if (options.output.empty()) throwBadInput("-o: missing: where the picture goes");
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
   if (settings.radiosity.direct == RadiosityView::Direct::automatic) settings.radiosity.direct = RadiosityView::Direct::pixels;
@@ -100,7 +101,7 @@ Work addRender(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...")->required();
   app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")->required();
+  app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");
   app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")->check(CLI::Range(1, 100000))->capture_default_str();
   options->picture.declare(app);
   options->path.declare(app);

@@ -4,6 +4,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "pathtracer/film.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "settings/deviations.hpp"
 
@@ -40,6 +41,25 @@ bool isOriginalScene(const std::string& file) {
   return json.is_object() && json.contains("scene");
 }
 
+struct SampleRange {
+  std::uint32_t first = 0, last = 0;
+};
+/// "FIRST:LAST"; empty where it was not given.
+std::optional<SampleRange> sampleRange(const PathOptions& path) {
+  if (path.samples.empty()) return std::nullopt;
+  constexpr std::uint64_t kMost = 1u << 31;
+  const auto colon = path.samples.find(':');
+  const auto number = [&](const std::string& text) {
+    const bool isNumber = !text.empty() && text.size() <= 10 && text.find_first_not_of("0123456789") == std::string::npos;
+    return isNumber ? std::stoull(text) : kMost + 1;
+  };
+  const std::uint64_t first = colon == std::string::npos ? kMost + 1 : number(path.samples.substr(0, colon)), last = colon == std::string::npos ? 0 : number(path.samples.substr(colon + 1));
+  if (first >= last || last > kMost) throwBadInput("--samples {}: expected FIRST:LAST, whole numbers, FIRST below LAST, LAST at most {}", path.samples, kMost);
+  if (path.spp || path.seconds || path.error) throwBadInput("--samples {}: says how many samples there are; --spp, --seconds and --error do not go with it", path.samples);
+  if (path.checkpoint.empty()) throwBadInput("--samples {}: needs --checkpoint PART, which lucerna merge takes", path.samples);
+  return SampleRange{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
+}
+
 }  // namespace
 
 void PathOptions::declare(CLI::App& app) {
@@ -48,12 +68,13 @@ void PathOptions::declare(CLI::App& app) {
   app.add_option("--error", error, "path: stop where the pixels' standard error, root mean square, is this fraction of the mean radiance")->check(CLI::PositiveNumber);
   app.add_option("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
   app.add_option("--checkpoint", checkpoint, "path: go on from this file if it is there; it is written every minute and at the end. Without it a stopped picture is kept in OUT.film, from which the same command goes on");
+  app.add_option("--samples", samples, "path: FIRST:LAST, a part of the samples of a pixel, FIRST up to but without LAST, kept by --checkpoint; lucerna merge makes one picture of all parts");
   app.add_option("--seed", seed, "path: of the random numbers")->capture_default_str();
 }
 
 void PathOptions::refuseIfGiven(const std::string& technique) const {
-  if (spp || seconds || error || bounces || seed != 0 || !checkpoint.empty())
-    throwBadInput("--technique {}: --spp, --seconds, --error, --bounces, --seed and --checkpoint belong to --technique path", technique);
+  if (spp || seconds || error || bounces || seed != 0 || !checkpoint.empty() || !samples.empty())
+    throwBadInput("--technique {}: --spp, --samples, --seconds, --error, --bounces, --seed and --checkpoint belong to --technique path", technique);
 }
 
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path, const std::string& sceneFile,
@@ -63,7 +84,9 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   PictureOptions rest = picture;
   if (!path.sizeGiven && (picture.fidelity == "original" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
   const RenderSettings shared = rest.parse();
-  if (!isWritableImageName(output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
+  const std::optional<SampleRange> part = sampleRange(path);
+  if (output.empty() && !part) throwBadInput("-o: missing: where the picture goes");
+  if (!output.empty() && !isWritableImageName(output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
   const Scene scene = loadScene(sceneFile);
   const Camera camera = chooseCamera(scene, cameraText);
   PathTracer::Settings settings;
@@ -82,14 +105,25 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   tracer.setCamera(camera);
   // Without --checkpoint the film is kept beside the picture, only where the work was stopped.
   const std::string checkpoint = path.checkpoint.empty() ? output + ".film" : path.checkpoint;
-  if (std::filesystem::exists(checkpoint)) tracer.resume(readFileBytes(checkpoint), checkpoint);
+  if (std::filesystem::exists(checkpoint)) {
+    const std::vector<std::uint8_t> bytes = readFileBytes(checkpoint);
+    tracer.resume(bytes, checkpoint);
+    const std::uint32_t first = filmOf(bytes, checkpoint).first;
+    if (first != (part ? part->first : 0))
+      throwBadInput("{}: its samples begin with number {}, not {}{}", checkpoint, first, part ? part->first : 0, part ? "" : " (a part of --samples; lucerna merge makes a whole)");
+  } else if (part) {
+    // A part begins with an empty film whose first sample has another number.
+    Film film = filmOf(tracer.checkpoint(), checkpoint);
+    film.first = part->first;
+    tracer.resume(bytesOf(film), checkpoint);
+  }
   const auto save = [&] { writeFileAtomically(checkpoint, tracer.checkpoint()); };
   watchForInterrupt();
 
-  const std::uint32_t target = path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : kDefaultSamples);
+  const std::uint32_t target = part ? part->last - part->first : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : kDefaultSamples);
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  Progress progress("samples", static_cast<int>(std::min(target, 1000000000u)), common.quiet || !path.spp);
+  Progress progress("samples", static_cast<int>(std::min(target, 1000000000u)), common.quiet || !(path.spp || part));
   // Samples in steps: between them the error is looked at, and all pixels have the same number.
   std::uint32_t done = tracer.statistics().fewestSamples;
   double saved = 0.0;
@@ -121,14 +155,14 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const Image image = tracer.mean();
   if (lowerExtension(output) == ".png")
     writePng(output, toneMapped(image, shared.exposure.value_or(scene.exposure)));
-  else
+  else if (!output.empty())  // of a part the checkpoint may be all that is wanted
     writeImage(output, image);
   // After the picture: a disk that is full does not cost it.
   if (!path.checkpoint.empty()) save();
   else std::filesystem::remove(checkpoint);
   if (!common.quiet)
     fmt::print("{}: {}x{}, path, {}, {:.6g} samples a pixel, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} ({:.3g} of the mean), {:.3f} s on {}\n",
-               output, image.width, image.height, picture.component, statistics.samples, statistics.mean.x, statistics.mean.y, statistics.mean.z,
+               output.empty() ? checkpoint : output, image.width, image.height, picture.component, statistics.samples, statistics.mean.x, statistics.mean.y, statistics.mean.z,
                statistics.standardError, statistics.relativeError, seconds, context.capabilities().renderer);
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
@@ -150,6 +184,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   json["mean"] = {statistics.mean.x, statistics.mean.y, statistics.mean.z};
   json["mean_standard_error"] = {finiteOrNull(statistics.meanError.x), finiteOrNull(statistics.meanError.y), finiteOrNull(statistics.meanError.z)};
   json["spp"] = statistics.samples;
+  if (part) json["samples"] = {part->first, part->last};
   json["standard_error"] = finiteOrNull(statistics.standardError);
   json["relative_error"] = finiteOrNull(statistics.relativeError);
   json["bounces"] = path.bounces ? nlohmann::ordered_json(*path.bounces) : nlohmann::ordered_json(nullptr);

@@ -11,6 +11,7 @@ struct PathOptions {
   std::optional<double> seconds;
   std::optional<double> error;
   std::optional<std::uint32_t> bounces;
+  std::string samples;     ///< "FIRST:LAST": those samples alone, FIRST up to but without LAST, into the checkpoint; empty: all
   std::uint32_t seed = 0;
   std::string checkpoint;  ///< empty: none
   bool sizeGiven = true;   ///< --size was; without it the original's files and fidelity have the original's size
@@ -20,6 +21,7 @@ struct PathOptions {
   void refuseIfGiven(const std::string& technique) const;
 };
 
+/// output: empty where the checkpoint of --samples alone is wanted.
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path, const std::string& sceneFile,
                const std::string& cameraText, const std::string& output);
 

@@ -4,6 +4,7 @@
 #include "base/log.hpp"
 #include "gl/pass.hpp"
 #include "pathtracer/clearance.hpp"
+#include "pathtracer/film.hpp"
 
 #include <algorithm>
 #include <array>
@@ -50,13 +51,6 @@ bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
   return std::all_of(scene.points.begin(), scene.points.end(), [&](const PointLight& light) { return isPlaceOutside(light.position); }) &&
          std::all_of(scene.spots.begin(), scene.spots.end(), [&](const SpotLight& light) { return isPlaceOutside(light.position); });
 }
-
-constexpr std::array<char, 8> kCheckpointMagic{'L', 'U', 'C', 'P', 'A', 'T', 'H', '1'};
-struct CheckpointHeader {
-  std::array<char, 8> magic = kCheckpointMagic;
-  std::uint64_t identity = 0, filmHash = 0;
-  std::uint32_t width = 0, height = 0;
-};
 
 /// The state of a tile's lanes fits in a storage block.
 int tileSideOn(const gl::Capabilities& capabilities) {
@@ -218,6 +212,7 @@ void PathTracer::setCamera(const Camera& camera) {
   leakedPaths_ = wrongCrossings_ = turnsTaken_ = collisions_ = 0.0;
   const std::array<const gl::Texture*, 3> film{&filmMean_, &filmSpread_, &filmRest_};
   gl::clearToZero(film, clearTexture_);
+  constants_.picture.w = 0;
   done_ = passTarget_ = 0;
   tile_ = 0;
   tileBegun_ = false;
@@ -227,7 +222,7 @@ std::uint64_t PathTracer::identity() const {
   shared::PathConstants constants = constants_;
   constants.tile = glm::ivec4(0);
   constants.sampleTarget = constants.turns = 0;
-  constants.picture.z = 0;
+  constants.picture.z = constants.picture.w = 0;  // a part of the samples is of the same picture
   Hash hash = sceneHash_;
   hash.bytes(&constants, sizeof constants);
   for (const auto& [name, value] : flags()) {
@@ -238,52 +233,36 @@ std::uint64_t PathTracer::identity() const {
 }
 
 std::vector<std::uint8_t> PathTracer::checkpoint() const {
-  CheckpointHeader header;
-  header.identity = identity();
-  header.width = static_cast<std::uint32_t>(settings_.size.x);
-  header.height = static_cast<std::uint32_t>(settings_.size.y);
-  std::vector<std::uint8_t> bytes(sizeof header);
+  Film film;
+  film.identity = identity();
+  film.size = settings_.size;
+  film.first = static_cast<std::uint32_t>(constants_.picture.w);
   const std::array<const gl::Texture*, 3> films{&filmMean_, &filmSpread_, &filmRest_};
+  const std::array<std::vector<glm::uvec4>*, 3> planes{&film.mean, &film.spread, &film.rest};
   for (std::size_t f = 0; f < films.size(); ++f) {
-    std::vector<glm::uvec4> words = films[f]->readWords();
-    if (tileBegun_) {
-      const auto [corner, size] = tile();
-      const std::vector<glm::uvec4> before = kept_[f].readWords();
-      for (int y = 0; y < size.y; ++y)
-        std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(y) * kept_[f].size().x, size.x,
-                    words.begin() + static_cast<std::ptrdiff_t>(corner.y + y) * settings_.size.x + corner.x);
-    }
-    const auto* begin = reinterpret_cast<const std::uint8_t*>(words.data());
-    bytes.insert(bytes.end(), begin, begin + words.size() * sizeof(glm::uvec4));
+    std::vector<glm::uvec4>& words = *planes[f];
+    words = films[f]->readWords();
+    if (!tileBegun_) continue;
+    const auto [corner, size] = tile();
+    const std::vector<glm::uvec4> before = kept_[f].readWords();
+    for (int y = 0; y < size.y; ++y)
+      std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(y) * kept_[f].size().x, size.x,
+                  words.begin() + static_cast<std::ptrdiff_t>(corner.y + y) * settings_.size.x + corner.x);
   }
-  header.filmHash = Hash::of(bytes.data() + sizeof header, bytes.size() - sizeof header);
-  std::memcpy(bytes.data(), &header, sizeof header);
-  return bytes;
+  return bytesOf(film);
 }
 
 void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::string& name) {
-  CheckpointHeader header;
-  const std::size_t texels = static_cast<std::size_t>(settings_.size.x) * static_cast<std::size_t>(settings_.size.y);
-  if (bytes.size() < sizeof header) throwBadInput("{}: {} bytes are no checkpoint of a path traced picture", name, bytes.size());
-  std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.magic != kCheckpointMagic) throwBadInput("{}: no checkpoint of a path traced picture, or of another version", name);
-  if (header.width != static_cast<std::uint32_t>(settings_.size.x) || header.height != static_cast<std::uint32_t>(settings_.size.y))
-    throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, header.width, header.height, settings_.size.x, settings_.size.y);
-  if (bytes.size() != sizeof header + 3 * texels * sizeof(glm::uvec4) ||
-      header.filmHash != Hash::of(bytes.data() + sizeof header, bytes.size() - sizeof header))
-    throwBadInput("{}: the checkpoint is damaged or cut off", name);
-  if (header.identity != identity()) throwBadInput("{}: a checkpoint of another scene, view or setting", name);
-  std::vector<glm::uvec4> words(texels);
-  const std::uint8_t* from = bytes.data() + sizeof header;
-  for (gl::Texture* film : {&filmMean_, &filmSpread_, &filmRest_}) {
-    std::memcpy(static_cast<void*>(words.data()), from, texels * sizeof(glm::uvec4));
-    film->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, words.data());
-    if (film == &filmMean_) {
-      done_ = kUnlimited;
-      for (const glm::uvec4& word : words) done_ = std::min(done_, word.w);
-    }
-    from += texels * sizeof(glm::uvec4);
-  }
+  const Film film = filmOf(bytes, name);
+  if (film.size != settings_.size)
+    throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, film.size.x, film.size.y, settings_.size.x, settings_.size.y);
+  if (film.identity != identity()) throwBadInput("{}: a checkpoint of another scene, view or setting", name);
+  filmMean_.upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, film.mean.data());
+  filmSpread_.upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, film.spread.data());
+  filmRest_.upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, film.rest.data());
+  constants_.picture.w = static_cast<int>(film.first);
+  done_ = kUnlimited;
+  for (const glm::uvec4& word : film.mean) done_ = std::min(done_, word.w);
   passTarget_ = done_;
   tile_ = 0;
   tileBegun_ = false;
@@ -400,11 +379,6 @@ Image toImage(const Pixels& pixels, glm::ivec2 size, Value value) {
   return image;
 }
 
-/// Variance of a pixel's mean. Rounding may leave a sum of squares a hair below 0.
-glm::dvec3 meanVariance(const glm::vec3& spread, std::uint32_t samples) {
-  const double n = samples;
-  return samples < 2 ? glm::dvec3(0.0) : glm::max(glm::dvec3(spread), glm::dvec3(0.0)) / (n * (n - 1.0));
-}
 }  // namespace
 
 Image PathTracer::mean() const {
@@ -412,35 +386,25 @@ Image PathTracer::mean() const {
 }
 
 Image PathTracer::standardError() const {
-  return toImage(readFilm(), settings_.size, [](const Pixel& p) { return glm::vec3(glm::sqrt(meanVariance(p.spread, p.samples))); });
+  return toImage(readFilm(), settings_.size, [](const Pixel& p) { return standardErrorOf({p.mean, p.spread, p.samples}); });
 }
 
 PathTracer::Statistics PathTracer::statistics() const {
-  const std::vector<Pixel> pixels = readFilm();
-  const double count = static_cast<double>(pixels.size());
+  std::vector<FilmPixel> pixels;
+  for (const Pixel& p : readFilm()) pixels.push_back({p.mean, p.spread, p.samples});
+  const FilmStatistics film = statisticsOf(pixels);
   Statistics result;
+  result.fewestSamples = film.fewestSamples;
+  result.mostSamples = film.mostSamples;
+  result.samples = film.samples;
+  result.mean = film.mean;
+  result.meanError = film.meanError;
+  result.standardError = film.standardError;
+  result.relativeError = film.relativeError;
   result.leakedPaths = leakedPaths_;
   result.wrongCrossings = wrongCrossings_;
   result.turns = turnsTaken_;
   result.collisions = collisions_;
-  result.fewestSamples = kUnlimited;
-  glm::dvec3 variances(0.0);
-  for (const Pixel& pixel : pixels) {
-    result.fewestSamples = std::min(result.fewestSamples, pixel.samples);
-    result.mostSamples = std::max(result.mostSamples, pixel.samples);
-    result.samples += pixel.samples / count;
-    result.mean += glm::dvec3(pixel.mean) / count;
-    variances += meanVariance(pixel.spread, pixel.samples);
-  }
-  result.meanError = glm::sqrt(variances) / count;
-  if (result.fewestSamples < 2) {
-    result.standardError = result.relativeError = std::numeric_limits<double>::infinity();
-    result.meanError = glm::dvec3(result.standardError);
-    return result;
-  }
-  result.standardError = std::sqrt((variances.x + variances.y + variances.z) / (3.0 * count));
-  const double mean = (result.mean.x + result.mean.y + result.mean.z) / 3.0;
-  result.relativeError = result.standardError > 0.0 ? result.standardError / mean : 0.0;
   return result;
 }
 

@@ -471,7 +471,7 @@ void main() {
   vec3 mean = uintBitsToFloat(meanWords.xyz), rest = uintBitsToFloat(imageLoad(filmRest, pixel).xyz);
   vec3 spread = uintBitsToFloat(imageLoad(filmSpread, pixel).xyz);
 
-  PathNumbers numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), samples, tracer.seed);
+  PathNumbers numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(tracer.picture.w) + samples, tracer.seed);
   uint slot = uint(lane.y * tracer.tile.z + lane.x), lanes = uint(tracer.picture.z);
   uvec4 saved = state[slot + 4u * lanes];
   Path path;
@@ -667,7 +667,7 @@ void main() {
       vec3 difference = (path.radiance - mean) - rest;
       mean = twoSum(mean, rest + difference / float(samples), rest);
       spread += difference * ((path.radiance - mean) - rest);
-      numbers.sampleIndex = samples;
+      numbers.sampleIndex = uint(tracer.picture.w) + samples;
       if (samples >= tracer.sampleTarget) {
         inFlight = false;
         break;

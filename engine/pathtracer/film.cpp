@@ -1,0 +1,171 @@
+#include "pathtracer/film.hpp"
+
+#include "base/error.hpp"
+#include "base/hash.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+namespace lucerna {
+
+namespace {
+
+constexpr std::array<char, 8> kMagic{'L', 'U', 'C', 'P', 'A', 'T', 'H', '2'};
+struct Header {
+  std::array<char, 8> magic = kMagic;
+  std::uint64_t identity = 0, hash = 0;
+  std::uint32_t width = 0, height = 0, first = 0, reserved = 0;
+};
+
+std::uint64_t hashOf(const std::uint8_t* words, std::size_t size, std::uint32_t first) {
+  Hash hash;
+  hash.bytes(words, size);
+  hash.add(first);
+  return hash.value();
+}
+
+glm::vec3 floatsOf(const glm::uvec4& w) { return {std::bit_cast<float>(w.x), std::bit_cast<float>(w.y), std::bit_cast<float>(w.z)}; }
+glm::uvec4 wordsOf(const glm::vec3& v, std::uint32_t w) {
+  return {std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y), std::bit_cast<std::uint32_t>(v.z), w};
+}
+
+/// Variance of a pixel's mean. Rounding may leave a sum of squares a hair below 0.
+glm::dvec3 meanVariance(const FilmPixel& p) {
+  const double n = p.samples;
+  return p.samples < 2 ? glm::dvec3(0.0) : glm::max(glm::dvec3(p.spread), glm::dvec3(0.0)) / (n * (n - 1.0));
+}
+
+template <class Value>
+Image toImage(const Film& film, Value value) {
+  Image image(film.size.x, film.size.y);
+  const std::vector<FilmPixel> pixels = film.pixels();
+  for (int y = 0; y < film.size.y; ++y)
+    for (int x = 0; x < film.size.x; ++x)
+      image.at(x, film.size.y - 1 - y) = value(pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(film.size.x) + static_cast<std::size_t>(x)]);
+  return image;
+}
+
+}  // namespace
+
+FilmStatistics statisticsOf(std::span<const FilmPixel> pixels) {
+  const double count = static_cast<double>(pixels.size());
+  FilmStatistics result;
+  result.fewestSamples = std::numeric_limits<std::uint32_t>::max();
+  glm::dvec3 variances(0.0);
+  for (const FilmPixel& pixel : pixels) {
+    result.fewestSamples = std::min(result.fewestSamples, pixel.samples);
+    result.mostSamples = std::max(result.mostSamples, pixel.samples);
+    result.samples += pixel.samples / count;
+    result.mean += glm::dvec3(pixel.mean) / count;
+    variances += meanVariance(pixel);
+  }
+  result.meanError = glm::sqrt(variances) / count;
+  if (result.fewestSamples < 2) {
+    result.standardError = result.relativeError = std::numeric_limits<double>::infinity();
+    result.meanError = glm::dvec3(result.standardError);
+    return result;
+  }
+  result.standardError = std::sqrt((variances.x + variances.y + variances.z) / (3.0 * count));
+  const double mean = (result.mean.x + result.mean.y + result.mean.z) / 3.0;
+  result.relativeError = result.standardError > 0.0 ? result.standardError / mean : 0.0;
+  return result;
+}
+
+glm::vec3 standardErrorOf(const FilmPixel& pixel) { return glm::vec3(glm::sqrt(meanVariance(pixel))); }
+
+std::vector<FilmPixel> Film::pixels() const {
+  std::vector<FilmPixel> result(mean.size());
+  for (std::size_t i = 0; i < mean.size(); ++i) result[i] = {floatsOf(mean[i]), floatsOf(spread[i]), mean[i].w};
+  return result;
+}
+Image Film::picture() const {
+  return toImage(*this, [](const FilmPixel& p) { return p.mean; });
+}
+Image Film::standardError() const { return toImage(*this, standardErrorOf); }
+
+Film filmOf(std::span<const std::uint8_t> bytes, const std::string& name) {
+  Header header;
+  if (bytes.size() < sizeof header) throwBadInput("{}: {} bytes are no checkpoint of a path traced picture", name, bytes.size());
+  std::memcpy(&header, bytes.data(), sizeof header);
+  if (header.magic != kMagic) throwBadInput("{}: no checkpoint of a path traced picture, or of another version", name);
+  const std::size_t texels = static_cast<std::size_t>(header.width) * header.height, plane = texels * sizeof(glm::uvec4);
+  if (header.width > (1u << 16) || header.height > (1u << 16) || texels == 0 || bytes.size() != sizeof header + 3 * plane ||
+      header.hash != hashOf(bytes.data() + sizeof header, 3 * plane, header.first))
+    throwBadInput("{}: the checkpoint is damaged or cut off", name);
+  Film film;
+  film.identity = header.identity;
+  film.size = {static_cast<int>(header.width), static_cast<int>(header.height)};
+  film.first = header.first;
+  const std::uint8_t* from = bytes.data() + sizeof header;
+  for (std::vector<glm::uvec4>* words : {&film.mean, &film.spread, &film.rest}) {
+    words->resize(texels);
+    std::memcpy(static_cast<void*>(words->data()), from, plane);
+    from += plane;
+  }
+  return film;
+}
+
+std::vector<std::uint8_t> bytesOf(const Film& film) {
+  Header header;
+  header.identity = film.identity;
+  header.width = static_cast<std::uint32_t>(film.size.x);
+  header.height = static_cast<std::uint32_t>(film.size.y);
+  header.first = film.first;
+  std::vector<std::uint8_t> bytes(sizeof header);
+  for (const std::vector<glm::uvec4>* words : {&film.mean, &film.spread, &film.rest}) {
+    const auto* begin = reinterpret_cast<const std::uint8_t*>(words->data());
+    bytes.insert(bytes.end(), begin, begin + words->size() * sizeof(glm::uvec4));
+  }
+  header.hash = hashOf(bytes.data() + sizeof header, bytes.size() - sizeof header, header.first);
+  std::memcpy(bytes.data(), &header, sizeof header);
+  return bytes;
+}
+
+Film merged(std::span<const Film> films, std::span<const std::string> names) {
+  CHECK(!films.empty() && films.size() == names.size(), "{} films, {} names", films.size(), names.size());
+  std::vector<std::size_t> order(films.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return films[a].first < films[b].first; });
+
+  // What must be so before anything is added.
+  const Film& lead = films[order[0]];
+  std::uint64_t next = lead.first;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Film& film = films[order[k]];
+    const std::string &name = names[order[k]], &before = names[order[k == 0 ? 0 : k - 1]];
+    if (film.size != lead.size) throwBadInput("{}: {} x {} pixels; {} has {} x {}", name, film.size.x, film.size.y, names[order[0]], lead.size.x, lead.size.y);
+    if (film.identity != lead.identity) throwBadInput("{}: of another scene, view or setting than {}", name, names[order[0]]);
+    const std::uint32_t samples = film.mean.front().w;
+    if (samples == 0 || std::any_of(film.mean.begin(), film.mean.end(), [&](const glm::uvec4& w) { return w.w != samples; }))
+      throwBadInput("{}: the part is not finished; the command that makes it goes on with it", name);
+    if (film.first < next) throwBadInput("{} and {} hold the same samples ({} to {})", before, name, film.first, next - 1);
+    if (film.first > next) throwBadInput("samples {} to {} are in no part (between {} and {})", next, film.first - 1, before, name);
+    next = film.first + std::uint64_t{samples};
+  }
+
+  Film result = lead;
+  for (std::size_t i = 0; i < lead.mean.size(); ++i) {
+    double n = 0.0;
+    glm::dvec3 mean(0.0), spread(0.0);
+    for (const std::size_t k : order) {
+      const Film& film = films[k];
+      const double m = film.mean[i].w, all = n + m;
+      const glm::dvec3 own = glm::dvec3(floatsOf(film.mean[i])) + glm::dvec3(floatsOf(film.rest[i])), difference = own - mean;
+      spread += glm::dvec3(floatsOf(film.spread[i])) + difference * difference * (n * m / all);
+      mean += difference * (m / all);
+      n = all;
+    }
+    const glm::vec3 high(mean);
+    result.mean[i] = wordsOf(high, static_cast<std::uint32_t>(n));
+    result.rest[i] = wordsOf(glm::vec3(mean - glm::dvec3(high)), lead.rest[i].w);
+    result.spread[i] = wordsOf(glm::vec3(spread), lead.spread[i].w);
+  }
+  return result;
+}
+
+}  // namespace lucerna
