@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lucerna::demo {
@@ -24,9 +25,13 @@ int run(const Options& options) {
   options.common.apply();
   for (const std::string* file : {&options.output, &options.errorOutput})
     if (!file->empty() && !isWritableImageName(*file)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", *file);
-  std::vector<Film> films;
-  for (const std::string& part : options.parts) films.push_back(filmOf(readFileBytes(part), part));
-  const Film film = merged(films, options.parts);
+  // In the order of their samples, one in memory at a time.
+  std::vector<std::pair<std::uint32_t, std::string>> parts;
+  for (const std::string& part : options.parts) parts.emplace_back(firstSampleOf(part), part);
+  std::sort(parts.begin(), parts.end());
+  FilmMerge merge;
+  for (const auto& [first, part] : parts) merge.add(filmOf(readFileBytes(part), part), part);
+  const Film film = merge.result();
   const FilmStatistics statistics = statisticsOf(film.pixels());
   const Image image = film.picture();
   if (lowerExtension(options.output) == ".png")
@@ -37,7 +42,7 @@ int run(const Options& options) {
   if (!options.checkpoint.empty()) writeFileAtomically(options.checkpoint, bytesOf(film));
   if (!options.common.quiet)
     fmt::print("{}: {}x{}, {} parts, samples {} to {}, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} ({:.3g} of the mean)\n", options.output, image.width, image.height,
-               films.size(), film.first, film.first + film.mean.front().w - 1, statistics.mean.x, statistics.mean.y, statistics.mean.z, statistics.standardError, statistics.relativeError);
+               merge.films(), film.first, film.first + film.mean.front().w - 1, statistics.mean.x, statistics.mean.y, statistics.mean.z, statistics.standardError, statistics.relativeError);
   const auto finiteOrNull = [](double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr); };
   nlohmann::ordered_json json;
   json["parts"] = options.parts;

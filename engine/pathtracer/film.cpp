@@ -1,15 +1,17 @@
 #include "pathtracer/film.hpp"
 
 #include "base/error.hpp"
+#include "base/files.hpp"
 #include "base/hash.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
-#include <numeric>
 
 namespace lucerna {
 
@@ -126,44 +128,50 @@ std::vector<std::uint8_t> bytesOf(const Film& film) {
   return bytes;
 }
 
-Film merged(std::span<const Film> films, std::span<const std::string> names) {
-  CHECK(!films.empty() && films.size() == names.size(), "{} films, {} names", films.size(), names.size());
-  std::vector<std::size_t> order(films.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return films[a].first < films[b].first; });
+std::uint32_t firstSampleOf(const std::filesystem::path& file) {
+  Header header;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throwCannotOpen(file, errno);
+  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) || header.magic != kMagic)
+    throwBadInput("{}: no checkpoint of a path traced picture, or of another version", file.string());
+  return header.first;
+}
 
-  // What must be so before anything is added.
-  const Film& lead = films[order[0]];
-  std::uint64_t next = lead.first;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const Film& film = films[order[k]];
-    const std::string &name = names[order[k]], &before = names[order[k == 0 ? 0 : k - 1]];
-    if (film.size != lead.size) throwBadInput("{}: {} x {} pixels; {} has {} x {}", name, film.size.x, film.size.y, names[order[0]], lead.size.x, lead.size.y);
-    if (film.identity != lead.identity) throwBadInput("{}: of another scene, view or setting than {}", name, names[order[0]]);
-    const std::uint32_t samples = film.mean.front().w;
-    if (samples == 0 || std::any_of(film.mean.begin(), film.mean.end(), [&](const glm::uvec4& w) { return w.w != samples; }))
-      throwBadInput("{}: the part is not finished; the command that makes it goes on with it", name);
-    if (film.first < next) throwBadInput("{} and {} hold the same samples ({} to {})", before, name, film.first, next - 1);
-    if (film.first > next) throwBadInput("samples {} to {} are in no part (between {} and {})", next, film.first - 1, before, name);
-    next = film.first + std::uint64_t{samples};
+void FilmMerge::add(const Film& film, const std::string& name) {
+  const std::uint32_t samples = film.mean.front().w;
+  if (samples == 0 || std::any_of(film.mean.begin(), film.mean.end(), [&](const glm::uvec4& w) { return w.w != samples; }))
+    throwBadInput("{}: the part is not finished; the command that makes it goes on with it", name);
+  if (films_ == 0) {
+    head_ = film;
+    headName_ = name;
+    next_ = film.first;
+    mean_.assign(film.mean.size(), glm::dvec3(0.0));
+    spread_ = mean_;
   }
+  if (film.size != head_.size) throwBadInput("{}: {} x {} pixels; {} has {} x {}", name, film.size.x, film.size.y, headName_, head_.size.x, head_.size.y);
+  if (film.identity != head_.identity) throwBadInput("{}: of another scene, view or setting than {}", name, headName_);
+  if (film.first < next_) throwBadInput("{} and {} hold the same samples ({} to {})", before_, name, film.first, std::min<std::uint64_t>(next_, film.first + std::uint64_t{samples}) - 1);
+  if (film.first > next_) throwBadInput("samples {} to {} are in no part (between {} and {})", next_, film.first - 1, before_, name);
 
-  Film result = lead;
-  for (std::size_t i = 0; i < lead.mean.size(); ++i) {
-    double n = 0.0;
-    glm::dvec3 mean(0.0), spread(0.0);
-    for (const std::size_t k : order) {
-      const Film& film = films[k];
-      const double m = film.mean[i].w, all = n + m;
-      const glm::dvec3 own = glm::dvec3(floatsOf(film.mean[i])) + glm::dvec3(floatsOf(film.rest[i])), difference = own - mean;
-      spread += glm::dvec3(floatsOf(film.spread[i])) + difference * difference * (n * m / all);
-      mean += difference * (m / all);
-      n = all;
-    }
-    const glm::vec3 high(mean);
-    result.mean[i] = wordsOf(high, static_cast<std::uint32_t>(n));
-    result.rest[i] = wordsOf(glm::vec3(mean - glm::dvec3(high)), lead.rest[i].w);
-    result.spread[i] = wordsOf(glm::vec3(spread), lead.spread[i].w);
+  const double n = static_cast<double>(next_ - head_.first), m = samples, all = n + m;
+  for (std::size_t i = 0; i < mean_.size(); ++i) {
+    const glm::dvec3 own = glm::dvec3(floatsOf(film.mean[i])) + glm::dvec3(floatsOf(film.rest[i])), difference = own - mean_[i];
+    spread_[i] += glm::dvec3(floatsOf(film.spread[i])) + difference * difference * (n * m / all);
+    mean_[i] += difference * (m / all);
+  }
+  next_ += samples;
+  before_ = name;
+  ++films_;
+}
+
+Film FilmMerge::result() const {
+  CHECK(films_ > 0, "{} films", films_);
+  Film result = head_;
+  for (std::size_t i = 0; i < mean_.size(); ++i) {
+    const glm::vec3 high(mean_[i]);
+    result.mean[i] = wordsOf(high, static_cast<std::uint32_t>(next_ - head_.first));
+    result.rest[i] = wordsOf(glm::vec3(mean_[i] - glm::dvec3(high)), head_.rest[i].w);
+    result.spread[i] = wordsOf(glm::vec3(spread_[i]), head_.spread[i].w);
   }
   return result;
 }

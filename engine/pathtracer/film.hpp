@@ -7,6 +7,7 @@
 #include "base/image.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,8 +48,26 @@ struct Film {
 Film filmOf(std::span<const std::uint8_t> bytes, const std::string& name);
 std::vector<std::uint8_t> bytesOf(const Film& film);
 
-/// The films of parts as one [ChanGolubLeVeque1983, pairwise update]. In any order. Throws Error(badInput) where they differ in scene, view, size or
-/// settings, where one is not finished (pixels of different numbers of samples, or none), where two hold the same samples, or samples between them are missing.
-Film merged(std::span<const Film> films, std::span<const std::string> names);
+/// Number of the first sample, from the beginning of a file alone: nothing else of it is checked.
+std::uint32_t firstSampleOf(const std::filesystem::path& file);
+
+/// The films of parts as one [ChanGolubLeVeque1983, pairwise update], one after another in the order of their samples, so that two are in memory however
+/// many there are. Sums in double.
+class FilmMerge {
+ public:
+  /// Throws Error(badInput) where the film differs from those before in scene, view, size or settings, is not finished (pixels of different numbers of
+  /// samples, or of none), holds samples that one before it holds, or leaves some out between them.
+  void add(const Film& film, const std::string& name);
+  int films() const { return films_; }
+  /// At least one was added.
+  Film result() const;
+
+ private:
+  Film head_;  ///< of the first: identity, size, first sample
+  std::string headName_, before_;
+  std::uint64_t next_ = 0;
+  int films_ = 0;
+  std::vector<glm::dvec3> mean_, spread_;
+};
 
 }  // namespace lucerna
