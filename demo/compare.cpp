@@ -2,6 +2,9 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/contact_sheet.hpp"
+#include "bench/figure.hpp"
+#include "bench/html.hpp"
+#include "bench/provenance.hpp"
 #include "commands.hpp"
 #include "measure/flip.hpp"
 #include "measure/heat_map.hpp"
@@ -11,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace lucerna::demo {
 
@@ -18,8 +22,40 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string image, reference, heatMap;
+  std::string image, reference, heatMap, page, standardError;
 };
+
+/// The pair as one page with the reports' figure: A against B, which is of no time.
+void writePage(const Options& options, const Image& image, const Image& reference, const measure::ImageErrors& e, const measure::Flip& flip) {
+  std::optional<Image> error;
+  measure::ReferenceNoise noise;
+  if (!options.standardError.empty()) {
+    error = readImage(options.standardError);
+    if (error->width != reference.width || error->height != reference.height) throwBadInput("--standard-error {}: not of the size of {}", options.standardError, options.reference);
+    noise = measure::noiseOf(reference, *error, 0.0);
+  }
+  const measure::JudgedErrors judged = measure::lessNoise(e, noise);
+  nlohmann::ordered_json row{{"label", options.image}, {"series", "A"}, {"pareto", true}, {"front", 1}, {"inside_front", true}, {"at_noise", error && judged.atNoise}, {"bias_at_noise", false},
+                             {"l2", judged.l2}, {"nrmse", judged.nrmse}, {"relmse", judged.relmse}, {"bias", e.bias}, {"relative_bias", e.relativeBias}, {"flip", flip.mean},
+                             {"noise_l2", judged.noiseL2}, {"noise_nrmse", judged.noiseNrmse}, {"noise_relmse", judged.noiseRelmse}};
+  for (const char* key : {"ms", "setup_ms", "cpu_ms", "bias_error"}) row[key] = nullptr;
+  bench::Figure figure;
+  std::vector<std::string> words{"lucerna", "compare", options.image, options.reference};
+  if (error) words.insert(words.end(), {"--standard-error", options.standardError});
+  figure.facts = {{"title", options.image + " against " + options.reference}, {"program", bench::programVersion()}, {"cpu", bench::cpuName()}, {"command", bench::shellCommand(words)},
+                  {"exposure", 1.0}, {"relmse_epsilon", measure::kRelativeEpsilon}, {"rows", nlohmann::ordered_json::array({row})}};
+  figure.references.push_back({options.reference, &reference, error ? &*error : nullptr});
+  bench::FigurePicture picture;
+  picture.picture = &image;
+  if (!flip.map.empty()) {
+    picture.flip.width = image.width, picture.flip.height = image.height;
+    for (const float v : flip.map) picture.flip.rgba.insert(picture.flip.rgba.end(), 4, static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(v, 0.0f, 1.0f))));
+  }
+  figure.pictures.push_back(std::move(picture));
+  bench::HtmlPage page("Lucerna: " + options.image + " against " + options.reference);
+  page.figure(bench::figureHtml(figure, bench::kPageBytes));
+  writeFileAtomically(options.page, page.text());
+}
 
 void writeHeatMaps(const std::string& file, const Image& image, const Image& reference, double scale) {
   using measure::HeatMap;
@@ -45,7 +81,10 @@ int run(const Options& options) {
   const measure::ImageErrors blocks =
       measure::errorsOf(measure::blockMeans(image, side), measure::blockMeans(reference, side));
   const double blackNrmse = std::sqrt(e.referenceSquare) / e.referenceMean;
-  const double flip = e.notFinite > 0 ? NAN : measure::flipHdr(image, reference).mean;
+  measure::Flip flipped{NAN, {}};
+  if (e.notFinite == 0) flipped = measure::flipHdr(image, reference);
+  const double flip = flipped.mean;
+  if (!options.page.empty()) writePage(options, image, reference, e, flipped);
   if (!options.heatMap.empty()) writeHeatMaps(options.heatMap, image, reference, measure::heatMapScale(image, reference));
   if (!options.common.quiet) {
     fmt::print("{} against {}, {}x{}, linear radiance, mean of the reference {:.6g}\n", options.image, options.reference, image.width, image.height, e.referenceMean);
@@ -87,6 +126,8 @@ Work addCompare(CLI::App& app) {
   app.add_option("A", options->image, "a picture: hdr, exr, pfm, or png, jpg, tga, bmp taken as sRGB")->required();
   app.add_option("B", options->reference, "the reference, of the same size")->required();
   app.add_option("--heatmap", options->heatMap, "OUT.png: absolute and signed differences side by side");
+  app.add_option("--page", options->page, "OUT.html: both in the viewer of the reports, with maps and values under the cursor");
+  app.add_option("--standard-error", options->standardError, "with --page: B's standard error of each pixel, such as of lucerna merge --error; gives z-scores");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -360,8 +360,10 @@ class Figure {
 
     this.help = add(root, 'details', 'lf-help', '<summary>Keys</summary><dl class="keys">' + KEYS.map(k => `<div><dt>${k.keys.map(x => `<kbd>${escapeText(x.label || x)}</kbd>`).join(' ')}</dt><dd>${escapeText(k.help)}</dd></div>`).join('') + '</dl>');
 
-    add(root, 'h3', '', 'Error against time');
-    const axes = add(root, 'div', 'lf-bar');
+    const plotted = add(root, 'div');
+    plotted.hidden = !this.rows.some(row => isNumber(row.ms));  // two pictures alone have no times
+    add(plotted, 'h3', '', 'Error against time');
+    const axes = add(plotted, 'div', 'lf-bar');
     const axis = (title, options, value, change) => {
       const span = add(axes, 'span', '', escapeText(title)), select = add(span, 'select');
       select.setAttribute('aria-label', title);
@@ -377,6 +379,7 @@ class Figure {
     this.tableBox = add(root, 'div', 'lf-tables');
     add(root, 'h3', '', 'Crops');
     this.cropBox = add(root, 'div', 'lf-crops');
+    this.plotBox.hidden = this.tableBox.hidden = plotted.hidden;
     root.addEventListener('focusin', () => { activate(this); });
     root.addEventListener('pointerdown', () => { activate(this); });
   }
