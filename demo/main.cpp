@@ -1,6 +1,7 @@
 // lucerna: one executable, one subcommand a file. Errors become one line and an exit code: 2 bad input, 3 missing
 // capability, 1 a fault of ours.
 #include "base/error.hpp"
+#include "cluster.hpp"
 #include "command_tree.hpp"
 #include "commands.hpp"
 #include "gl/context.hpp"
@@ -62,6 +63,7 @@ int main(int argc, char** argv) {
   add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times", lucerna::demo::addWalk);
   add("render", "Render one picture of a scene", lucerna::demo::addRender);
   add("merge", "Parts of a path traced picture's samples (render --samples) as one picture", lucerna::demo::addMerge);
+  add("cluster", "A path traced picture by many machines: a folder that they share, Slurm, or this machine alone", lucerna::demo::addCluster);
   add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
   add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
   add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL", lucerna::demo::addMedia);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace lucerna::demo {
 
@@ -17,12 +18,19 @@ namespace {
 struct Options {
   CommonOptions common;
   std::vector<std::string> parts;
-  std::string output, checkpoint, errorOutput;
+  std::string folder, output, checkpoint, errorOutput;
   double exposure = 1.0;
 };
 
-int run(const Options& options) {
+int run(Options options) {
   options.common.apply();
+  if (!options.folder.empty()) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(options.folder, error))
+      if (entry.path().extension() == ".film") options.parts.push_back(entry.path().string());
+    if (error) throwBadInput("--parts {}: {}", options.folder, error.message());
+  }
+  if (options.parts.empty()) throwBadInput("merge: no parts were given");
   for (const std::string* file : {&options.output, &options.errorOutput})
     if (!file->empty() && !isWritableImageName(*file)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", *file);
   // In the order of their samples, one in memory at a time.
@@ -61,7 +69,8 @@ int run(const Options& options) {
 
 Work addMerge(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("PART", options->parts, "films that render --samples FIRST:LAST --checkpoint PART made, of one scene and with one setting, in any order")->required();
+  app.add_option("PART", options->parts, "films that render --samples FIRST:LAST --checkpoint PART made, of one scene and with one setting, in any order");
+  app.add_option("--parts", options->folder, "a folder: all its files that end in .film");
   app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")->required();
   app.add_option("--error", options->errorOutput, "OUT.{hdr,exr,pfm}: the standard error of each pixel");
   app.add_option("--checkpoint", options->checkpoint, "the film of all parts, from which render --checkpoint goes on where they begin with sample 0");

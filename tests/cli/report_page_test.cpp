@@ -1,11 +1,15 @@
-// The page of a report, driven in headless Chromium: every number shown is the JSON's, every key does what its help says.
+// bench diff; and the page of a report, driven in headless Chromium: every number shown is the JSON's, every key does what its help says.
 #include "base/files.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <random>
 
 namespace {
 
@@ -23,6 +27,123 @@ TEST(ReportPage, ShowsTheNumbersOfItsJsonAndObeysItsKeys) {
   const auto driven = test::run("timeout 300 node '" + source + "/tests/cli/report_page.js' \"$(command -v chromium)\" '" + out + "/report.html' '" + out + "/error.json'");
   EXPECT_EQ(driven.exitCode, 0) << driven.out << driven.err;
   EXPECT_NE(driven.out.find(" 0 faults"), std::string::npos) << driven.out;
+}
+
+// A report as `bench error` writes it, but for what is drawn: three rows of known spreads.
+nlohmann::json reportOf(double l2Error, double factor = 1.0) {
+  nlohmann::json report{{"bench", "room, 32x18"}, {"rows", nlohmann::json::array()}};
+  for (int i = 0; i < 12; ++i) {
+    const double l2 = 0.1 * (i + 1) * factor, ms = 10.0 * (i + 1);
+    report["rows"].push_back({{"label", "rsm samples=" + std::to_string(i)}, {"ms", ms}, {"wall_ms_samples", {0.98 * ms, ms, 1.03 * ms}}, {"l2", l2}, {"l2_error", l2Error * l2}, {"noise_l2", 0.01},
+                              {"at_noise", false}, {"bias", 0.02}, {"relative_bias", 0.02}, {"bias_error", 0.0005}});
+  }
+  return report;
+}
+
+class BenchDiff : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const nlohmann::json& report) { std::ofstream(folder_.path() / name) << report.dump(); }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  /// The verdicts, by label; the exit code first.
+  int diff(const std::string& more = "") {
+    const auto result = RUN_LUCERNA("bench diff '" + path("a.json") + "' '" + path("b.json") + "' --json '" + path("diff.json") + "' --quiet " + more);
+    err_ = result.err;
+    if (std::filesystem::exists(path("diff.json"))) verdicts_ = nlohmann::json::parse(std::ifstream(path("diff.json")));
+    return result.exitCode;
+  }
+  std::string verdict(std::size_t row) const { return verdicts_.at("rows").at(row).at("verdict"); }
+
+  std::string err_;
+  nlohmann::json verdicts_;
+
+ private:
+  test::TempFolder folder_;
+};
+
+TEST_F(BenchDiff, FindsAPlantedLossOfOnePercentAndNothingElse) {
+  const nlohmann::json a = reportOf(0.001);
+  write("a.json", a);
+  nlohmann::json b = a;
+  b["rows"][4]["l2"] = 1.01 * a["rows"][4]["l2"].get<double>();                       // seven standard errors of the difference
+  b["rows"][7]["relative_bias"] = 0.02 - 0.01, b["rows"][7]["bias"] = 0.02 - 0.01;     // light is lost: nearer to none, so better here
+  b["rows"][8]["relative_bias"] = 0.02 + 0.01, b["rows"][8]["bias"] = 0.02 + 0.01;
+  write("b.json", b);
+  EXPECT_EQ(diff(), 1) << err_;
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(verdict(i), i == 4 || i == 8 ? "worse" : i == 7 ? "better" : "undecided") << i;
+  // The same loss within spreads ten times as large is nobody's.
+  write("a.json", reportOf(0.01));
+  b = reportOf(0.01);
+  b["rows"][4]["l2"] = 1.01 * b["rows"][4]["l2"].get<double>();
+  write("b.json", b);
+  EXPECT_EQ(diff(), 0) << err_;
+  EXPECT_EQ(verdict(4), "undecided");
+}
+
+// Errors drawn again and times of a machine that is slower by 30 % and scatters by 5 %: thirty runs, of which one in a hundred may
+// find something: three of them have a chance of 0.3 %.
+TEST_F(BenchDiff, DoesNotCryAtASecondRunOfTheSame) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const nlohmann::json a = reportOf(0.01);
+  int cried = 0;
+  for (int run = 0; run < 30; ++run) {
+    nlohmann::json one = a, two = a;
+    for (nlohmann::json* report : {&one, &two})
+      for (auto& row : (*report)["rows"]) {
+        const double machine = (report == &two ? 1.3 : 1.0) * std::exp(0.05 * normal(random));
+        row["l2"] = row["l2"].get<double>() * (1.0 + 0.01 * normal(random));
+        row["relative_bias"] = row["bias"] = 0.02 + 0.0005 * normal(random);
+        row["ms"] = row["ms"].get<double>() * machine;
+        for (auto& ms : row["wall_ms_samples"]) ms = ms.get<double>() * machine;
+      }
+    write("a.json", one);
+    write("b.json", two);
+    cried += diff() != 0;
+  }
+  EXPECT_LE(cried, 2);
+}
+
+TEST_F(BenchDiff, TimesAreJudgedAgainstTheOtherRows) {
+  write("a.json", reportOf(0.01));
+  nlohmann::json b = reportOf(0.01);
+  for (auto& row : b["rows"]) row["ms"] = 1.2 * row["ms"].get<double>();  // a slower machine
+  b["rows"][3]["ms"] = 3.0 * b["rows"][3]["ms"].get<double>();
+  write("b.json", b);
+  EXPECT_EQ(diff(), 1) << err_;
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(verdict(i), i == 3 ? "worse" : "undecided") << i;
+  EXPECT_NEAR(verdicts_.at("time_ratio"), 1.2, 1e-9);
+  EXPECT_EQ(diff("--only error"), 0) << err_;
+}
+
+TEST_F(BenchDiff, WhatIsAtTheNoiseIsABound) {
+  nlohmann::json a = reportOf(0.001), b = a;
+  a["rows"][0]["at_noise"] = true;  // below 3 %
+  a["rows"][0]["l2"] = 0.01;
+  b["rows"][0]["l2"] = 0.1;
+  a["rows"][1]["at_noise"] = b["rows"][1]["at_noise"] = true;
+  a["rows"][1]["l2"] = 0.001, b["rows"][1]["l2"] = 0.02;
+  b["rows"][2]["l2"] = nullptr;  // no longer finite
+  b["rows"].erase(11);
+  write("a.json", a);
+  write("b.json", b);
+  EXPECT_EQ(diff(), 1) << err_;
+  EXPECT_EQ(verdict(0), "worse");
+  EXPECT_EQ(verdict(1), "undecided");
+  EXPECT_EQ(verdict(2), "worse");
+  EXPECT_EQ(verdicts_.at("gone").size(), 1u);
+}
+
+TEST_F(BenchDiff, WhatIsNoPairOfReportsIsRefused) {
+  write("a.json", reportOf(0.01));
+  nlohmann::json b = reportOf(0.01);
+  b["bench"] = "another room";
+  write("b.json", b);
+  EXPECT_EQ(diff(), 2);
+  EXPECT_NE(err_.find("another room"), std::string::npos) << err_;
+  write("b.json", {{"bench", "room, 32x18"}, {"rows", {{{"ms", 3}}}}});
+  EXPECT_EQ(diff(), 2) << err_;
+  write("b.json", {1, 2});
+  EXPECT_EQ(diff(), 2) << err_;
 }
 
 }  // namespace

@@ -272,6 +272,18 @@ TEST(LogLogSlope, SaysHowUncertainItIs) {
   EXPECT_NEAR(s.error, std::sqrt(6.0 / 9.0 / 2.0), 1e-12);
 }
 
+// What NVIDIA's program prints for its own pair of pictures: exposures from -12.5423 to 0.9427 stops are 14 [Andersson2021, README of the program]. A reference
+// of that largest and median luminance gets the same ones.
+TEST(Flip, ThePublishedExposuresAreFourteen) {
+  // Radiance that ACES maps to 0.85: 1.7047 by hand, the larger root of 0.4445 x^2 - 0.4715 x - 0.119, over 0.6.
+  const double bright = (0.4715 + std::sqrt(0.4715 * 0.4715 + 4.0 * 0.4445 * 0.119)) / (2.0 * 0.4445) / 0.6;
+  const auto grey = [&](double stops) { return glm::vec3(static_cast<float>(bright * std::exp2(-stops))); };
+  const FlipExposures e = flipExposures(picture({grey(0.9427), grey(0.9427), grey(0.9427), grey(-12.5423)}));
+  EXPECT_NEAR(e.start, -12.5423, 1e-4);
+  EXPECT_NEAR(e.stop, 0.9427, 1e-4);
+  EXPECT_EQ(e.count, 14);
+}
+
 TEST(HeatMap, ScaleShowsMostOfTheError) {
   Image a(10, 10), b(10, 10);
   EXPECT_EQ(heatMapScale(a, b), 0.0);

@@ -1,0 +1,291 @@
+#include "cluster.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "cluster_job.hpp"
+#include "commands.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <map>
+#include <mutex>
+#include <thread>
+
+namespace lucerna::demo {
+
+namespace {
+
+namespace fs = std::filesystem;
+using State = ClusterJob::State;
+
+struct Options {
+  CommonOptions common;
+  std::string folder, output, time = "1-00:00:00", account, gpus;
+  std::vector<std::string> command;
+  std::uint32_t tasks = 40;
+  int jobs = 1;
+  std::optional<int> task;
+  double deadAfter = 120.0;
+};
+
+std::string thisProgram() { return fs::read_symlink("/proc/self/exe").string(); }
+
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+// ---------------------------------------------------------------------------------------------------- plan
+
+/// The words after `render`, and what is taken out of them: samples and picture.
+struct Planned {
+  std::vector<std::string> render;
+  std::uint32_t samples = 0;
+  std::string output;
+};
+
+Planned readCommand(const std::vector<std::string>& words) {
+  Planned planned;
+  std::size_t i = 0;
+  if (i < words.size() && (words[i] == "lucerna" || words[i].ends_with("/lucerna"))) ++i;
+  if (i >= words.size() || words[i] != "render") throwBadInput("cluster plan: what follows -- must be a command `render SCENE --technique path --spp N ... -o OUT`");
+  bool isPath = false;
+  for (++i; i < words.size(); ++i) {
+    // "--key value" and "--key=value" alike.
+    std::string key = words[i], value;
+    if (const auto equals = key.find('='); key.starts_with("--") && equals != std::string::npos) value = key.substr(equals + 1), key = key.substr(0, equals);
+    const auto take = [&]() -> const std::string& {
+      if (value.empty()) {
+        if (++i >= words.size()) throwBadInput("cluster plan: {} has no value", key);
+        value = words[i];
+      }
+      return value;
+    };
+    if (key == "--spp") {
+      const std::string& text = take();
+      if (text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos) throwBadInput("cluster plan: --spp {}: expected a whole number up to 999999999", text);
+      planned.samples = static_cast<std::uint32_t>(std::stoul(text));
+    } else if (key == "-o" || key == "--output") {
+      planned.output = take();
+    } else if (key == "--samples" || key == "--checkpoint" || key == "--seconds" || key == "--error" || key == "--json") {
+      throwBadInput("cluster plan: {}: a task's own; give --spp and -o", key);
+    } else {
+      if (key == "--technique") isPath = (value.empty() ? (i + 1 < words.size() ? words[i + 1] : value) : value) == "path";
+      planned.render.push_back(words[i]);
+    }
+  }
+  if (!isPath) throwBadInput("cluster plan: only --technique path is cut into parts of its samples");
+  if (planned.samples == 0) throwBadInput("cluster plan: --spp N is missing: how many samples the tasks share");
+  if (!isWritableImageName(planned.output)) throwBadInput("cluster plan: -o {}: the extension must be png, hdr, exr or pfm", planned.output);
+  return planned;
+}
+
+/// The array, a task each, and the join after it, for Slurm. A task that a signal ended, a node that fell out and a preemption give their tasks back, or leave them to be
+/// found abandoned: the join finishes what is left before it joins.
+void writeSlurm(const fs::path& folder, const Options& options) {
+  const fs::path whole = fs::absolute(folder);
+  const std::string program = quoted(thisProgram()), job = quoted(whole.string());
+  std::string head = fmt::format("#!/bin/bash\n#SBATCH --time={}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n", options.time);
+  if (!options.account.empty()) head += fmt::format("#SBATCH --account={}\n", options.account);
+  if (!options.gpus.empty()) head += fmt::format("#SBATCH --gpus-per-task={}\n", options.gpus);
+  const std::string environment =
+      "# Of a node's devices the one that Slurm gave to this task.\n"
+      "if [ -n \"${CUDA_VISIBLE_DEVICES:-}\" ]; then export LUCERNA_EGL_DEVICE=\"${CUDA_VISIBLE_DEVICES%%,*}\"; fi\n";
+  const std::string array = head + fmt::format("#SBATCH --job-name=lucerna\n#SBATCH --array=0-{}\n#SBATCH --ntasks=1\n#SBATCH --signal=B:TERM@60\n#SBATCH --output={}/logs/slurm-%a.log\n", options.tasks - 1, whole.string()) +
+                            environment + fmt::format("exec {} cluster run {} --task \"$SLURM_ARRAY_TASK_ID\" --dead-after {:g}\n", program, job, options.deadAfter);
+  const std::string join = head + fmt::format("#SBATCH --job-name=lucerna-join\n#SBATCH --ntasks=1\n#SBATCH --output={}/logs/slurm-join.log\n", whole.string()) + environment +
+                           fmt::format("# What the array left: tasks of nodes that fell out.\n{0} cluster run {1} --dead-after {2:g} --quiet && exec {0} cluster join {1}\n", program, job, options.deadAfter);
+  const std::string submit = fmt::format("#!/bin/sh\n# Hands both to Slurm; prints their numbers.\nset -e\narray=$(sbatch --parsable {0}/array.sbatch)\njoin=$(sbatch --parsable --dependency=afterany:\"$array\" {0}/join.sbatch)\n"
+                                         "echo \"$array $join\"\n", job);
+  for (const auto& [name, text] : {std::pair{"array.sbatch", array}, {"join.sbatch", join}, {"submit", submit}}) {
+    writeFileAtomically(folder / name, text);
+    fs::permissions(folder / name, fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec, fs::perm_options::add);
+  }
+}
+
+int plan(const Options& options) {
+  options.common.apply();
+  const Planned planned = readCommand(options.command);
+  ClusterJob::plan(options.output, planned.render, planned.samples, options.tasks, planned.output);
+  writeSlurm(options.output, options);
+  if (!options.common.quiet)
+    fmt::print("{0}: {1} tasks of {2} samples. On this machine: lucerna cluster run {0} --jobs N, then lucerna cluster join {0}. With Slurm: {0}/submit\n", options.output, options.tasks, planned.samples);
+  options.common.writeJson({{"job", options.output}, {"tasks", options.tasks}, {"samples", planned.samples}});
+  return 0;
+}
+
+// ---------------------------------------------------------------------------------------------------- run
+
+/// Runs a task as a process of its own until it ends, is to stop, or was taken for dead. Returns whether it is done.
+bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& claim, bool quiet) {
+  std::vector<std::string> words{thisProgram(), "render"};
+  words.insert(words.end(), job.render().begin(), job.render().end());
+  // The result is written last: it says that the part is whole.
+  words.insert(words.end(), {"--samples", fmt::format("{}:{}", task.first, task.last), "--checkpoint", job.part(task).string(), "--json", job.result(task).string(), "--quiet"});
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const std::string log = job.log(task).string(), directory = job.directory();
+
+  const pid_t parent = ::getpid(), child = ::fork();
+  if (child < 0) throwMissingCapability("cluster run: no process can be made");
+  if (child == 0) {
+    // Between fork and exec: calls that are safe there alone. A worker that is killed takes its task along.
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() != parent) ::_exit(143);
+    const int out = ::open(log.c_str(), O_CREAT | O_APPEND | O_WRONLY, 0644);
+    if (out >= 0) ::dup2(out, 1), ::dup2(out, 2);
+    if (::chdir(directory.c_str()) != 0) ::_exit(126);
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  auto alive = std::chrono::steady_clock::now();
+  bool asked = false, lost = false;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (interrupted() && !asked) asked = ::kill(child, SIGTERM) == 0;
+    if (std::chrono::steady_clock::now() - alive > std::chrono::seconds(5)) {
+      alive = std::chrono::steady_clock::now();
+      if (!job.keep(claim) && !lost) lost = ::kill(child, SIGTERM) == 0;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const bool done = WIFEXITED(status) && WEXITSTATUS(status) == 0 && fs::exists(job.result(task));
+  if (!done && !lost) job.giveBack(claim);
+  if (!quiet)
+    fmt::print("{}: samples {} to {}{}\n", task.name, task.first, task.last - 1,
+               done ? "" : WIFSIGNALED(status) ? fmt::format(", ended by signal {}", WTERMSIG(status)) : fmt::format(", exit code {}: see {}", WEXITSTATUS(status), log));
+  return done;
+}
+
+int run(const Options& options) {
+  options.common.apply();
+  const ClusterJob job(options.folder);
+  const int count = static_cast<int>(job.tasks().size());
+  if (options.task && (*options.task < 0 || *options.task >= count)) throwBadInput("--task {}: the job has 0 to {}", *options.task, count - 1);
+  watchForInterrupt();
+  // A task that fails again and again is not tried for ever.
+  constexpr int kTries = 3;
+  std::mutex mutex;
+  std::map<std::string, int> failures;
+  std::atomic<int> finished = 0;
+  std::string fault;
+  const auto work = [&](int worker) {
+    try {
+      while (!interrupted()) {
+        bool isBusy = false, did = false;
+        for (int k = 0; k < count && !interrupted(); ++k) {
+          if (options.task && k != *options.task) continue;
+          // Workers begin at different places, so that they seldom want the same.
+          const ClusterTask& task = job.tasks()[static_cast<std::size_t>((k + (options.task ? 0 : worker * count / std::max(options.jobs, 1))) % count)];
+          if (const std::scoped_lock lock(mutex); failures[task.name] >= kTries) continue;
+          const State state = job.state(task, options.deadAfter);
+          if (state == State::done) continue;
+          const auto claim = job.claim(task, options.deadAfter);
+          if (!claim) {
+            isBusy = isBusy || job.state(task, options.deadAfter) == State::running;
+            continue;
+          }
+          did = true;
+          if (runTask(job, task, *claim, options.common.quiet)) ++finished;
+          else if (!interrupted()) {
+            const std::scoped_lock lock(mutex);
+            ++failures[task.name];
+          }
+        }
+        if (did) continue;
+        // One of an array leaves the others to theirs; else what somebody works on may yet be abandoned.
+        if (!isBusy || options.task) break;
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      }
+    } catch (const std::exception& error) {
+      const std::scoped_lock lock(mutex);
+      fault = error.what();
+    }
+  };
+  std::vector<std::thread> workers;
+  for (int i = 0; i < options.jobs; ++i) workers.emplace_back(work, i);
+  for (std::thread& worker : workers) worker.join();
+  if (!fault.empty()) throwBadInput("{}", fault);
+  if (interrupted()) throw Stopped(fmt::format("stopped; lucerna cluster run {} goes on", options.folder));
+  int left = 0;
+  for (int k = 0; k < count; ++k)
+    if (!options.task || k == *options.task) left += job.state(job.tasks()[static_cast<std::size_t>(k)], options.deadAfter) != State::done;
+  if (!options.common.quiet) fmt::print("{} tasks done here, {} left\n", finished.load(), left);
+  options.common.writeJson({{"done_here", finished.load()}, {"left", left}});
+  // That somebody else works on the one task that was asked for is no failure.
+  return left == 0 || (options.task && job.state(job.tasks()[static_cast<std::size_t>(*options.task)], options.deadAfter) == State::running) ? 0 : 1;
+}
+
+// ---------------------------------------------------------------------------------------------------- status, join
+
+int status(const Options& options) {
+  options.common.apply();
+  const ClusterJob job(options.folder);
+  std::map<State, int> counts;
+  for (const ClusterTask& task : job.tasks()) ++counts[job.state(task, options.deadAfter)];
+  if (!options.common.quiet)
+    fmt::print("{}: {} tasks: {} done, {} running, {} abandoned, {} waiting\n", options.folder, job.tasks().size(), counts[State::done], counts[State::running], counts[State::abandoned], counts[State::waiting]);
+  options.common.writeJson({{"tasks", job.tasks().size()}, {"done", counts[State::done]}, {"running", counts[State::running]}, {"abandoned", counts[State::abandoned]}, {"waiting", counts[State::waiting]}});
+  return 0;
+}
+
+int join(const Options& options) {
+  options.common.apply();
+  const ClusterJob job(options.folder);
+  std::vector<std::string> words{thisProgram(), "merge"};
+  for (const ClusterTask& task : job.tasks()) {
+    if (!fs::exists(job.result(task))) throwBadInput("{}: task {} is not done (lucerna cluster status {}, then cluster run)", options.folder, task.name, options.folder);
+  }
+  words.insert(words.end(), {"--parts", (job.folder() / "parts").string(), "-o", job.output()});
+  if (!options.common.json.empty()) words.insert(words.end(), {"--json", options.common.json});
+  if (options.common.quiet) words.emplace_back("--quiet");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(arguments[0], arguments.data());
+  throwMissingCapability("{}: cannot be run", words[0]);
+}
+
+}  // namespace
+
+std::function<int()> addCluster(CLI::App& app) {
+  app.require_subcommand(1);
+  auto options = std::make_shared<Options>();
+  CLI::App* planned = app.add_subcommand("plan", "Cut a path traced picture's samples into tasks, in a folder that all machines see; with scripts for Slurm");
+  planned->add_option("COMMAND", options->command, "after --: render SCENE --technique path --spp N ... -o OUT")->required();
+  planned->add_option("-o,--output", options->output, "the job's folder")->required();
+  planned->add_option("--tasks", options->tasks, "into how many")->capture_default_str()->check(CLI::Range(1u, 1000000u));
+  planned->add_option("--time", options->time, "Slurm's time limit of a task; one that reaches it gives its task back, and the join goes on with it")->capture_default_str();
+  planned->add_option("--account", options->account, "Slurm's account");
+  planned->add_option("--gpus", options->gpus, "Slurm's GPUs a task, such as 1; the task's program uses the first of them");
+  const auto deadAfter = [&](CLI::App* command) {
+    command->add_option("--dead-after", options->deadAfter, "seconds without a sign of life after which a task is taken up by another one; signs come every 5 s")->capture_default_str()->check(CLI::Range(6.0, 1e6));
+  };
+  deadAfter(planned);
+  CLI::App* running = app.add_subcommand("run", "Work on a job's tasks until none is left; any number of machines at once");
+  running->add_option("JOB", options->folder, "the job's folder")->required();
+  running->add_option("--jobs", options->jobs, "tasks at once")->capture_default_str()->check(CLI::Range(1, 256));
+  running->add_option("--task", options->task, "that one alone, such as of a Slurm array");
+  deadAfter(running);
+  CLI::App* asked = app.add_subcommand("status", "How many tasks are done, running, abandoned, waiting");
+  asked->add_option("JOB", options->folder, "the job's folder")->required();
+  deadAfter(asked);
+  CLI::App* joined = app.add_subcommand("join", "Make the picture of all parts");
+  joined->add_option("JOB", options->folder, "the job's folder")->required();
+  for (CLI::App* command : {planned, running, asked, joined}) options->common.declare(*command);
+  return [=] { return planned->parsed() ? plan(*options) : running->parsed() ? run(*options) : asked->parsed() ? status(*options) : join(*options); };
+}
+
+}  // namespace lucerna::demo

@@ -1,0 +1,137 @@
+#include "cluster_job.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/json.hpp"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+namespace lucerna::demo {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string hostName() {
+  char name[256] = "unknown";
+  ::gethostname(name, sizeof name - 1);
+  return name;
+}
+
+/// Made now: false where it is there already.
+bool createNew(const fs::path& file, const std::string& text) {
+  const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
+  if (descriptor < 0) {
+    if (errno == EEXIST) return false;
+    throwBadInput("{}: cannot be made ({})", file.string(), std::strerror(errno));
+  }
+  const auto written = ::write(descriptor, text.data(), text.size());  // for people: the file's existence is the claim
+  static_cast<void>(written);
+  ::close(descriptor);
+  return true;
+}
+
+fs::path claimFile(const fs::path& folder, const std::string& task, int number) { return folder / "claims" / fmt::format("{}.{}", task, number); }
+
+}  // namespace
+
+void ClusterJob::plan(const fs::path& folder, const std::vector<std::string>& render, std::uint32_t samples, std::uint32_t tasks, const std::string& output) {
+  if (tasks == 0 || tasks > samples) throwBadInput("--tasks {}: expected 1 to {}, the samples of a pixel", tasks, samples);
+  if (fs::exists(folder / "job.json")) throwBadInput("-o {}: holds a job; choose another folder, or go on with lucerna cluster run {}", folder.string(), folder.string());
+  std::error_code error;
+  for (const char* part : {"claims", "parts", "done", "logs"}) {
+    fs::create_directories(folder / part, error);
+    if (error) throwBadInput("-o {}: the folder cannot be made ({})", folder.string(), error.message());
+  }
+  nlohmann::ordered_json job;
+  job["lucerna_cluster_job"] = 1;
+  job["render"] = render;
+  job["samples"] = samples;
+  job["output"] = fs::absolute(output).string();
+  job["directory"] = fs::current_path().string();
+  const int digits = static_cast<int>(std::to_string(tasks - 1).size());
+  for (std::uint32_t i = 0; i < tasks; ++i) {
+    const auto at = [&](std::uint64_t k) { return static_cast<std::uint32_t>(k * samples / tasks); };
+    job["tasks"].push_back({{"name", fmt::format("{:0{}}", i, digits)}, {"first", at(i)}, {"last", at(i + 1)}});
+  }
+  writeFileAtomically(folder / "job.json", job.dump(1) + "\n");
+}
+
+ClusterJob::ClusterJob(fs::path folder) : folder_(fs::absolute(folder)) {
+  const fs::path file = folder_ / "job.json";
+  if (!fs::exists(file)) throwBadInput("{}: holds no job (lucerna cluster plan makes one)", folder.string());
+  const auto job = parseJson<nlohmann::ordered_json>(readFileText(file), file.string());
+  try {
+    if (job.at("lucerna_cluster_job") != 1) throwBadInput("{}: a job of another version", file.string());
+    render_ = job.at("render").get<std::vector<std::string>>();
+    output_ = job.at("output").get<std::string>();
+    directory_ = job.at("directory").get<std::string>();
+    for (const auto& task : job.at("tasks")) tasks_.push_back({task.at("name"), task.at("first"), task.at("last")});
+  } catch (const nlohmann::json::exception& error) {
+    throwBadInput("{}: no job of lucerna cluster plan ({})", file.string(), error.what());
+  }
+}
+
+double ClusterJob::age(const fs::path& file) const {
+  struct stat claim {}, now {};
+  if (::stat(file.c_str(), &claim) != 0) return 0.0;  // given back meanwhile: it is looked at again
+  const fs::path clock = folder_ / "claims" / fmt::format(".clock.{}.{}.{}", hostName(), ::getpid(), std::hash<std::thread::id>{}(std::this_thread::get_id()));
+  const int descriptor = ::open(clock.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
+  if (descriptor < 0) return 0.0;
+  const bool known = ::futimens(descriptor, nullptr) == 0 && ::fstat(descriptor, &now) == 0;
+  ::close(descriptor);
+  ::unlink(clock.c_str());
+  const auto seconds = [](const struct stat& s) { return static_cast<double>(s.st_mtim.tv_sec) + 1e-9 * static_cast<double>(s.st_mtim.tv_nsec); };
+  return known ? seconds(now) - seconds(claim) : 0.0;
+}
+
+int ClusterJob::claimsOf(const ClusterTask& task) const {
+  int count = 0;
+  while (fs::exists(claimFile(folder_, task.name, count)) || fs::exists(claimFile(folder_, task.name, count).concat(".back"))) ++count;
+  return count;
+}
+
+ClusterJob::State ClusterJob::state(const ClusterTask& task, double deadAfter) const {
+  if (fs::exists(result(task))) return State::done;
+  const int count = claimsOf(task);
+  if (count == 0) return State::waiting;
+  const fs::path last = claimFile(folder_, task.name, count - 1);
+  return !fs::exists(last) || age(last) > deadAfter ? State::abandoned : State::running;
+}
+
+std::optional<fs::path> ClusterJob::claim(const ClusterTask& task, double deadAfter) const {
+  if (fs::exists(result(task))) return std::nullopt;
+  // The number is counted once: whoever claims the task between this look and the claim takes that number.
+  const int count = claimsOf(task);
+  if (count > 0) {
+    const fs::path last = claimFile(folder_, task.name, count - 1);
+    if (fs::exists(last) && age(last) <= deadAfter) return std::nullopt;
+  }
+  const fs::path file = claimFile(folder_, task.name, count);
+  if (!createNew(file, fmt::format("{} process {}\n", hostName(), ::getpid()))) return std::nullopt;
+  // Between the look and the claim the one before may have finished.
+  if (fs::exists(result(task))) return std::nullopt;
+  return file;
+}
+
+bool ClusterJob::keep(const fs::path& claim) const {
+  ::utimensat(AT_FDCWD, claim.c_str(), nullptr, 0);
+  const std::string name = claim.filename().string(), task = name.substr(0, name.find('.'));
+  return !fs::exists(claimFile(folder_, task, std::stoi(name.substr(name.find('.') + 1)) + 1));
+}
+
+void ClusterJob::giveBack(const fs::path& claim) const {
+  std::error_code ignored;
+  fs::rename(claim, fs::path(claim).concat(".back"), ignored);  // its number stays taken
+}
+
+}  // namespace lucerna::demo
