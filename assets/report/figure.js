@@ -85,7 +85,7 @@ const MAPS = {
   flip: {name: 'FLIP', unit: '', stops: SEQUENTIAL},
   z: {name: 'z-score', unit: 'standard errors; grey: noise explains it (below 3)', stops: SIGNED},
 };
-const LIMIT_OF_NOISE = 3;
+const LIMIT_OF_NOISE = 3, ROUNDING = 1e-5;
 
 // ------------------------------------------------------------------------------------------------ costs and errors of rows
 
@@ -216,7 +216,8 @@ class Figure {
     if (i === 0) return this.truth(0);
     return this.once('pixels' + i, () => {
       const d = this.difference(i), t = this.truth(this.items[i].truth), result = new Float32Array(d.length);
-      for (let k = 0; k < d.length; ++k) result[k] = t[k] + d[k];
+      // A difference has 11 bits: a sum of fewer than its last is 0.
+      for (let k = 0; k < d.length; ++k) { const v = t[k] + d[k]; result[k] = Math.abs(v) < Math.abs(d[k]) / 1024 ? 0 : v; }
       return result;
     });
   }
@@ -230,7 +231,8 @@ class Figure {
       case 'z': {
         const e = this.truthError(this.items[i].truth), own = this.ownError(i);
         if (!e) return NaN;
-        const s = Math.hypot(luminance(e, k), own ? luminance(own, k) : 0);
+        // Where nothing is sampled, as in a plain sky, what is left is rounding.
+        const s = Math.hypot(luminance(e, k), own ? luminance(own, k) : 0, ROUNDING * luminance(t, k));
         return s > 0 ? dy / s : dy === 0 ? 0 : dy > 0 ? Infinity : -Infinity;
       }
     }
@@ -421,15 +423,16 @@ class Figure {
       g.drawImage(this.canvasOf(i), left + l.paneWidth / 2 - s.x * l.scale, top + l.paneHeight / 2 - s.y * l.scale, this.width * l.scale, this.height * l.scale);
       g.restore();
     };
-    const caption = (text, x, y, align) => {
+    const captions = [];  // above what is drawn over the pictures
+    const caption = (text, x, y, align, room = l.paneWidth) => captions.push(() => {
       g.font = '12px system-ui, sans-serif';
       g.textAlign = align;
-      const w = Math.min(g.measureText(text).width + 10, l.paneWidth);
+      const w = Math.min(g.measureText(text).width + 10, room);
       g.fillStyle = 'rgba(0,0,0,.72)';
       g.fillRect(align === 'left' ? x : x - w, y, w, 19);
       g.fillStyle = '#fff';
-      g.fillText(text, align === 'left' ? x + 5 : x - 5, y + 14, l.paneWidth - 10);
-    };
+      g.fillText(text, align === 'left' ? x + 5 : x - 5, y + 14, room - 10);
+    });
     const describe = i => (i === 0 || s.map === 'picture' ? this.label(i) : `${this.label(i)}: ${MAPS[s.map].name}`) + (i === 0 ? '' : `, L2 ${errorText(this.rows[this.items[i].row], 'l2')}`);
     this.panes().forEach((i, p) => {
       const left = p % l.columns * l.paneWidth, top = Math.floor(p / l.columns) * l.paneHeight;
@@ -441,8 +444,8 @@ class Figure {
         g.fillRect(left + at - 1, top, 2, l.paneHeight);
         g.fillStyle = '#000';
         g.fillRect(left + at + 1, top, 1, l.paneHeight);
-        caption(describe(s.before), left, top, 'left');
-        caption(describe(s.current), left + l.paneWidth, top, 'right');
+        caption(describe(s.before), left, top, 'left', l.paneWidth / 2 - 4);
+        caption(describe(s.current), left + l.paneWidth, top, 'right', l.paneWidth / 2 - 4);
       } else {
         put(i, left, top, 0, l.paneWidth);
         caption(describe(i), left, top, 'left');
@@ -460,6 +463,7 @@ class Figure {
       s.crops.forEach((c, k) => box(c.x, c.y, c.width, c.height, OKABE[(k + 1) % OKABE.length], 1.5));
       box(s.cursor.x, s.cursor.y, 1, 1, '#fff', 1);
     });
+    for (const write of captions) write();
     for (const mode of ['single', 'wipe', 'side']) this.buttons[mode].setAttribute('aria-pressed', String(s.mode === mode));
     this.buttons.flip.setAttribute('aria-pressed', String(s.flipped));
     this.buttons.lock.setAttribute('aria-pressed', String(s.lock));
