@@ -471,6 +471,7 @@ void main() {
   vec3 mean = uintBitsToFloat(meanWords.xyz), rest = uintBitsToFloat(imageLoad(filmRest, pixel).xyz);
   vec3 spread = uintBitsToFloat(imageLoad(filmSpread, pixel).xyz);
 
+  // picture.w: number of the film's first sample.
   PathNumbers numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(tracer.picture.w) + samples, tracer.seed);
   uint slot = uint(lane.y * tracer.tile.z + lane.x), lanes = uint(tracer.picture.z);
   uvec4 saved = state[slot + 4u * lanes];

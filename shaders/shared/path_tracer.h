@@ -36,7 +36,7 @@ struct PathConstants {
   float environmentPick;    // probability that a light sample goes to the environment
   vec4 environmentTurn;     // cosine and sine of its rotation
   ivec4 tile;               // its lower left pixel, its size
-  ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile; w: number of the film's first sample
+  ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile
 };
 
 // Where a texture lies in the atlas; layer is PATH_NO_TEXTURE where there is none.
