@@ -94,7 +94,7 @@ int run(const Options& options) {
         "RMSE {:.6g}   NRMSE {:.4f} % (a black picture has {:.4f} %)   relative MSE {:.6g} (epsilon {} mean^2)\n",
         e.rmse, 100.0 * e.nrmse, 100.0 * blackNrmse, e.relmse, measure::kRelativeEpsilon);
     fmt::print("bias {:+.6g} ({:+.4f} %)   99th percentile {:.6g}   largest {:.6g}   HDR-FLIP {:.4f}\n", e.bias, 100.0 * e.relativeBias, e.p99, e.max, flip);
-    if (e.notFinite > 0) fmt::print("{} pixels are not finite, so no figure is\n", e.notFinite);
+    if (e.notFinite > 0) fmt::print("{} pixels are not finite, so no measure is\n", e.notFinite);
   }
   options.common.writeJson({{"a", options.image},
                             {"b", options.reference},

@@ -77,20 +77,20 @@ bool isCommon(const OptionEntry& option) {
 const char* kEnvironment[][2] = {
     {"LUCERNA_DATA", "The folder that holds shaders, assets and keyFrames. Without it: share/lucerna beside the executable, ../share/lucerna, then lucerna "
                      "in the folders of XDG_DATA_DIRS."},
-    {"LUCERNA_SHADERS", "Another folder of shaders, such as one in which they are being changed."},
-    {"LUCERNA_REFERENCES", "Where path-traced references are kept (default: lucerna in XDG_CACHE_HOME or ~/.cache)."},
-    {"LUCERNA_DUMP_PROGRAMS", "A folder for the sources of all shader programs and what they need of the driver, for validators and other compilers."},
-    {"LUCERNA_GL_MINIMA", "1: the driver's limits are taken for no more than OpenGL 4.3 guarantees, to see what is said on the least of drivers."},
+    {"LUCERNA_SHADERS", "Another folder of shaders, for example while editing them."},
+    {"LUCERNA_REFERENCES", "Where path-traced references are cached (default: lucerna in XDG_CACHE_HOME or ~/.cache)."},
+    {"LUCERNA_DUMP_PROGRAMS", "A folder for the sources of all shader programs and their driver requirements, for validators and other compilers."},
+    {"LUCERNA_GL_MINIMA", "1: the driver's limits are treated as the minima that OpenGL 4.3 guarantees, for testing."},
     {"LUCERNA_VERBOSE", "If not empty: more messages on standard error."},
-    {"DISPLAY, WAYLAND_DISPLAY", "Where one of them is set, walk opens a window."},
+    {"DISPLAY, WAYLAND_DISPLAY", "If one of them is set, walk opens a window."},
 };
 
 const char* kExitCodes[][2] = {
     {"0", "Success."},
     {"1", "An internal error; of bench stability: a row failed."},
-    {"2", "Wrong input: a file, an option or a value."},
-    {"3", "The machine lacks something: a driver, memory, a package, the data."},
-    {"130", "Interrupted by Ctrl-C; what was finished is kept."},
+    {"2", "Invalid input: a file, an option or a value."},
+    {"3", "Something is missing on this machine: a driver, memory, a package, the data."},
+    {"130", "Interrupted by Ctrl-C; finished work is kept."},
 };
 
 std::string manual(CLI::App& program) {
@@ -103,7 +103,7 @@ std::string manual(CLI::App& program) {
     if (command.isLeaf()) text += synopsis(command) + "\n";
   text += ".fi\n.SH DESCRIPTION\n" + escaped(
       "Lucerna is an OpenGL 4.3 demo engine for real-time global illumination. It walks through a scene, renders pictures of it by light propagation volumes, "
-      "reflective shadow maps, radiosity and path tracing, and measures each technique's time and error. No GPU is needed: Mesa's software renderer will do.") + "\n";
+      "reflective shadow maps, radiosity and path tracing, and measures each technique's time and error. No GPU is required: Mesa's software renderer is enough.") + "\n";
   text += ".SH OPTIONS OF EVERY COMMAND\n";
   const auto walk = std::find_if(commands.begin(), commands.end(), [](const CommandEntry& c) { return c.path == "walk"; });
   for (const OptionEntry& option : walk->options)
@@ -125,7 +125,7 @@ std::string manual(CLI::App& program) {
   text += ".SH EXIT STATUS\n";
   for (const auto& [code, meaning] : kExitCodes) text += tagged(bold(code), meaning);
   text += ".SH FILES\n" + tagged(italic("share/lucerna/assets"), "Scenes that come with the program.") +
-          tagged(italic("share/lucerna/shaders"), "The shaders; REFERENCES.md names the published work that they re-create.") +
+          tagged(italic("share/lucerna/shaders"), "The shaders; REFERENCES.md lists the published work they implement.") +
           tagged(italic("share/lucerna/keyFrames"), "Camera paths.");
   text += ".SH EXAMPLES\n.nf\n";
   for (const char* example : {"lucerna walk", "lucerna walk my_scene.obj --record out --frames 12 --size 640x360",

@@ -117,7 +117,7 @@ int writeLogLogPlot(const fs::path& folder, const std::string& stem, const LogLo
   const std::string text = script(stem, plot, leftOut);
   if (text.empty()) throwBadInput("{}: nothing to plot: no figure is finite and above 0", stem);
   writeFileAtomically(folder / (stem + ".gp"), text);
-  if (!haveGnuplot()) throwMissingCapability("gnuplot is missing: the plots are made by it (Debian package gnuplot-nox); {} holds their script", (folder / (stem + ".gp")).string());
+  if (!haveGnuplot()) throwMissingCapability("gnuplot is missing, which draws the plots (Debian package gnuplot-nox); the script is {}", (folder / (stem + ".gp")).string());
   std::string quotedFolder = "'";
   for (char c : fs::absolute(folder).string()) quotedFolder += c == '\'' ? std::string("'\\''") : std::string(1, c);
   quotedFolder += "'";

@@ -76,7 +76,7 @@ class DevilImage {
     const bool loaded = bytes.size() <= std::numeric_limits<ILuint>::max() && ilLoadL(type, bytes.data(), static_cast<ILuint>(bytes.size())) != IL_FALSE;
     const ILenum error = drainErrors();
     if (!loaded) throwBadInput("{}: a broken picture: {}", file.string(), describe(error));
-    if (error == IL_FILE_READ_ERROR) throwBadInput("{}: a truncated picture: the file ends too early", file.string());
+    if (error == IL_FILE_READ_ERROR) throwBadInput("{}: truncated picture: the file ends too early", file.string());
     if (ilGetInteger(IL_IMAGE_WIDTH) != header.width || ilGetInteger(IL_IMAGE_HEIGHT) != header.height)
       throwBadInput("{}: a broken picture: {} x {} pixels decoded, its header says {} x {}", file.string(), ilGetInteger(IL_IMAGE_WIDTH), ilGetInteger(IL_IMAGE_HEIGHT), header.width,
                     header.height);
@@ -201,7 +201,7 @@ class HdrBytes {
   std::size_t left() const { return bytes_.size(); }
   std::uint8_t next() { return take(1)[0]; }
   std::span<const std::uint8_t> take(std::size_t count) {
-    if (count > bytes_.size()) throwBadInput("{}: truncated: an hdr file that ends within its pixels or header", file_.string());
+    if (count > bytes_.size()) throwBadInput("{}: truncated: the hdr file ends within its pixels or header", file_.string());
     const std::span<const std::uint8_t> taken = bytes_.first(count);
     bytes_ = bytes_.subspan(count);
     return taken;
@@ -263,7 +263,7 @@ Image decodeHdr(std::span<const std::uint8_t> content, const fs::path& file) {
       throwBadInput("{}: hdr pixels of '{}', expected FORMAT=32-bit_rle_rgbe", file.string(), line);
     if (line.starts_with("EXPOSURE=")) exposure *= std::strtod(line.c_str() + 9, nullptr);
   }
-  if (!(exposure > 0.0) || !std::isfinite(exposure)) throwBadInput("{}: an hdr header with an EXPOSURE that is no number above 0", file.string());
+  if (!(exposure > 0.0) || !std::isfinite(exposure)) throwBadInput("{}: an hdr header whose EXPOSURE is not a number above 0", file.string());
 
   const std::string resolution = bytes.line();
   char signY = 0, signX = 0;
@@ -354,7 +354,7 @@ void checkExrHeader(std::span<const std::uint8_t> bytes, const fs::path& file) {
   constexpr std::size_t kAttributes = 8;          // behind magic number and version
   constexpr std::uint8_t kSeveralParts = 0x10;  // of the version's second byte
   std::size_t at = kAttributes;
-  const auto truncated = [&] { throwBadInput("{}: truncated: an EXR picture that ends within its header", file.string()); };
+  const auto truncated = [&] { throwBadInput("{}: truncated: the EXR picture ends within its header", file.string()); };
   const auto skipText = [&] {
     const std::size_t begin = at;
     while (at < bytes.size() && bytes[at] != 0) ++at;

@@ -36,7 +36,7 @@ bool startsWith(Bytes bytes, std::string_view magic) {
 }
 
 [[noreturn]] void throwTruncated(const fs::path& file, const char* format) {
-  throwBadInput("{}: a truncated picture: the {} file ends too early", file.string(), format);
+  throwBadInput("{}: truncated picture: the {} file ends too early", file.string(), format);
 }
 
 PictureHeader checkedHeader(const fs::path& file, Bytes bytes, PictureFormat format, std::int64_t width, std::int64_t height) {

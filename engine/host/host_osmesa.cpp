@@ -92,7 +92,7 @@ namespace lucerna {
 bool osmesaAvailable() { return false; }
 
 std::unique_ptr<Host> detail::createOsmesaHost(const HostOptions&) {
-  throwMissingCapability("host osmesa: OSMesa was not there when this was built (Debian package libosmesa6-dev); try --host egl");
+  throwMissingCapability("host osmesa: this program was built without OSMesa (Debian package libosmesa6-dev); try --host egl");
 }
 
 }  // namespace lucerna

@@ -20,7 +20,7 @@ LightTree::LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   }
   const std::size_t texels = nodes * kNodeBytes / 16;
   if (texels > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
-    throwMissingCapability("light tree of a map of {} texels a side: {} texels; this driver's texture buffers have at most {} (GL_MAX_TEXTURE_BUFFER_SIZE)", size, texels,
+    throwMissingCapability("light tree of a map of {} texels per side: {} texels; this driver's texture buffers have at most {} (GL_MAX_TEXTURE_BUFFER_SIZE)", size, texels,
                            capabilities.maxTextureBufferSize);
   nodes_ = gl::BufferTexture("light tree", GL_RGBA32UI, nodes * kNodeBytes, nullptr, GL_DYNAMIC_COPY);
   fromTexels_ = &programs.loadCompute("light tree of texels", "lpv/gather/build.comp", {{"FROM_TEXELS", 1}});

@@ -188,7 +188,7 @@ double luminanceOf(const glm::vec3& c) { return times(kXyzFromRgb, glm::dvec3(c)
 
 Flip flipLdr(const Image& image, const Image& reference, double ppd) {
   if (image.width != reference.width || image.height != reference.height || image.pixels.empty())
-    throwBadInput("pictures of {}x{} and {}x{}: FLIP needs two of one size", image.width, image.height, reference.width, reference.height);
+    throwBadInput("pictures of {}x{} and {}x{}: FLIP needs pictures of the same size", image.width, image.height, reference.width, reference.height);
   const Size size{image.width, image.height};
   const auto convert = [](const Image& in) {
     Plane out;

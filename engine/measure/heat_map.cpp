@@ -46,7 +46,7 @@ void put(Bitmap& bitmap, const Colour& colour) {
 
 void checkSizes(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
-    throwBadInput("pictures of {}x{} and {}x{}: only pictures of one size have a difference", a.width, a.height, b.width, b.height);
+    throwBadInput("pictures of {}x{} and {}x{}: pictures must have the same size", a.width, a.height, b.width, b.height);
 }
 
 }  // namespace

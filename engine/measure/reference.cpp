@@ -212,7 +212,7 @@ ReferenceCache::ReferenceCache(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error || !fs::is_directory(folder_))
-    throwBadInput("{}: the folder for references cannot be made ({})", folder_.string(), error ? error.message() : "a file is in the way");
+    throwBadInput("{}: cannot create the folder for references ({})", folder_.string(), error ? error.message() : "a file of that name exists");
 }
 
 fs::path ReferenceCache::fileOf(const ReferenceKey& key) const { return folder_ / (key.name() + ".lucref"); }
@@ -221,7 +221,7 @@ std::optional<Reference> ReferenceCache::load(const ReferenceKey& key) const {
   const fs::path file = fileOf(key);
   if (!fs::exists(file)) return std::nullopt;
   std::optional<Reference> reference = decode(key, readFileBytes(file));
-  if (!reference) logWarning("{}: a damaged reference is not used and will be replaced", file.string());
+  if (!reference) logWarning("{}: damaged reference, will be replaced", file.string());
   return reference;
 }
 

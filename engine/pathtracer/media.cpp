@@ -123,13 +123,13 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
     if (!bounds(material)) continue;
     if (!(std::isfinite(material.ior) && material.ior > 0.0f)) throwBadInput("material {}: an index of refraction must be above 0, and is {}", material.name, material.ior);
     if (material.interior < -1 || material.interior >= static_cast<int>(scene.media.size()))
-      throwBadInput("material {}: there is no medium {}", material.name, material.interior);
+      throwBadInput("material {}: no such medium: {}", material.name, material.interior);
     keys.push_back(keyOf(material));
   }
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   if (keys.size() > static_cast<std::size_t>(kMaxBoundaryRanks))
-    throwBadInput("{}: {} different dielectrics and boundaries of media, and at most {} can be told apart", scene.name, keys.size(), kMaxBoundaryRanks);
+    throwBadInput("{}: {} different dielectrics and boundaries of media, at most {} are supported", scene.name, keys.size(), kMaxBoundaryRanks);
 
   PackedBoundaries packed;
   for (std::size_t rank = 0; rank < keys.size(); ++rank) {

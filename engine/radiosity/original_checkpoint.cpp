@@ -58,14 +58,14 @@ OriginalCheckpoint readCheckpoint(const std::filesystem::path& file) {
   Head head{};
   if (bytes.size() < sizeof head + sizeof(std::uint64_t)) throwBadInput("{}: has {} bytes, too few for a checkpoint", file.string(), bytes.size());
   std::memcpy(&head, bytes.data(), sizeof head);
-  if (std::memcmp(head.magic, kMagic, sizeof kMagic) != 0) throwBadInput("{}: is no checkpoint of this program", file.string());
+  if (std::memcmp(head.magic, kMagic, sizeof kMagic) != 0) throwBadInput("{}: is not a checkpoint of this program", file.string());
   if (head.version != kVersion) throwBadInput("{}: is a checkpoint of version {}, expected {}", file.string(), head.version, kVersion);
   const std::size_t rest = bytes.size() - sizeof head - sizeof(std::uint64_t);
   if (head.count == 0 || head.count > rest || head.done > head.count || (head.count + head.done) * sizeof(float) != rest)
-    throwBadInput("{}: says {} values and {} done, which does not fit its {} bytes", file.string(), head.count, head.done, bytes.size());
+    throwBadInput("{}: its header has {} values and {} done, which does not fit its {} bytes", file.string(), head.count, head.done, bytes.size());
   std::uint64_t digest = 0;
   std::memcpy(&digest, bytes.data() + bytes.size() - sizeof digest, sizeof digest);
-  if (digest != digestOf(std::span(bytes).first(bytes.size() - sizeof digest))) throwBadInput("{}: is damaged: its digest does not fit", file.string());
+  if (digest != digestOf(std::span(bytes).first(bytes.size() - sizeof digest))) throwBadInput("{}: is damaged: wrong digest", file.string());
   OriginalCheckpoint c;
   c.before = head.before, c.after = head.after, c.settings = head.settings;
   c.progress.sweeps = head.sweeps, c.progress.done = head.done, c.progress.change = head.change;

@@ -177,7 +177,7 @@ constexpr double kHallScale = 1.15;
 }  // namespace
 
 std::vector<RadTriangle> makeRadModel(int model, const RadModelSettings& settings) {
-  if (model < 1 || model > 3) throwBadInput("MODEL {}: unknown; there are 1 (lit cube), 2 (hall with columns), 3 (light round an obstacle)", model);
+  if (model < 1 || model > 3) throwBadInput("MODEL {}: unknown; expected 1 (lit cube), 2 (hall with columns) or 3 (light around an obstacle)", model);
   if (!(settings.areaThreshold > 0.0 && std::isfinite(settings.areaThreshold)))
     throwBadInput("AREA_THRESHOLD {}: expected an area above 0", settings.areaThreshold);
   if (!(settings.reflectance >= 0.0 && settings.reflectance <= 1.0)) throwBadInput("REFLECTANCE {}: expected 0 to 1", settings.reflectance);

@@ -412,9 +412,9 @@ RadiositySolved solveRadiosity(const RadiositySystem& system, const SolverSettin
   RadiositySolver solver = settings.solver;
   if (solver == RadiositySolver::automatic) solver = system.reciprocal ? RadiositySolver::conjugateGradients : RadiositySolver::anderson;
   const bool needsRows = solver == RadiositySolver::gaussSeidel || solver == RadiositySolver::progressive || solver == RadiositySolver::overshoot;
-  if (needsRows && !system.matrix) throwBadInput("solver {}: takes single rows, which are not kept here; give more memory or take anderson", nameOf(solver));
+  if (needsRows && !system.matrix) throwBadInput("solver {}: needs single rows, which are not stored here; give more memory or use anderson", nameOf(solver));
   if (solver == RadiositySolver::conjugateGradients && !system.reciprocal)
-    throwBadInput("solver cg: needs form factors repaired to A_i F_ij = A_j F_ji; take anderson for those that are not");
+    throwBadInput("solver cg: needs form factors repaired to A_i F_ij = A_j F_ji; use anderson otherwise");
   switch (solver) {
     case RadiositySolver::jacobi: jacobi(solve, system.emission); break;
     case RadiositySolver::gaussSeidel: gaussSeidel(solve); break;

@@ -40,7 +40,7 @@ void keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene, std:
     leftOut.push_back(std::to_string(views[order[k]].index));
     lost += reflected[order[k]];
   }
-  logWarning("{} {} lights, of which {} are drawn, those that light the scene most; left out, with {:.2g} % of the light: {}[{}] (the path tracer takes all)", views.size(),
+  logWarning("{} {} lights, only the {} that light the scene most are drawn; left out, with {:.2g} % of the light: {}[{}] (the path tracer uses all)", views.size(),
              points ? "omnidirectional" : "spot", most, all > 0.0 ? 100.0 * lost / all : 0.0, points ? "points" : "spots", fmt::join(leftOut, ", "));
   views = std::move(kept);
 }

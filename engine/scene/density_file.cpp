@@ -39,7 +39,7 @@ void checkSize(const fs::path& file, const std::array<std::int64_t, 3>& size) {
     cells *= static_cast<std::uint64_t>(s);
   }
   if (cells > kMaxDensityCells)
-    throwBadInput("{}: a density grid of {}x{}x{} cells, at most {} in all are taken", file.string(), size[0], size[1], size[2], kMaxDensityCells);
+    throwBadInput("{}: a density grid of {}x{}x{} cells, at most {} in all are supported", file.string(), size[0], size[1], size[2], kMaxDensityCells);
 }
 
 glm::ivec3 toGlm(const std::array<std::int64_t, 3>& size) {
@@ -54,7 +54,7 @@ DensityGrid readValues(const fs::path& file, Bytes bytes, const Layout& layout) 
   const std::size_t cells = cellsOf(layout.size);
   const std::size_t wanted = cells * layout.bytesPerValue;
   if (bytes.size() - layout.offset < wanted)
-    throwBadInput("{}: {} bytes of density, {}x{}x{} cells of {} bytes need {}; is the file cut off?", file.string(), bytes.size() - layout.offset, layout.size.x,
+    throwBadInput("{}: {} bytes of density, {}x{}x{} cells of {} bytes need {}; is the file truncated?", file.string(), bytes.size() - layout.offset, layout.size.x,
                   layout.size.y, layout.size.z, layout.bytesPerValue, wanted);
   DensityGrid grid;
   grid.size = layout.size;
@@ -112,7 +112,7 @@ Layout nrrdLayout(const fs::path& file, Bytes bytes) {
       hasSizes = true;
     }
   }
-  if (!hasEnd) throwBadInput("{}: the NRRD header has no end (an empty line); is the file cut off?", file.string());
+  if (!hasEnd) throwBadInput("{}: the NRRD header has no end (an empty line); is the file truncated?", file.string());
   if (dimension != "3" || !hasSizes) throwBadInput("{}: expected \"dimension: 3\" and \"sizes\" of three numbers", file.string());
   if (encoding != "raw") throwBadInput("{}: \"encoding: {}\", expected raw", file.string(), encoding);
   if (type == "uint8" || type == "unsigned char" || type == "uchar" || type == "uint8_t") layout.bytesPerValue = 1;
@@ -143,13 +143,13 @@ Layout ktx2Layout(const fs::path& file, Bytes bytes) {
   checkSize(file, size);
   layout.size = toGlm(size);
   const std::uint64_t offset = unsignedAt(bytes, 80, 8);
-  if (offset > bytes.size()) throwBadInput("{}: its data should begin at byte {} of {}; is the file cut off?", file.string(), offset, bytes.size());
+  if (offset > bytes.size()) throwBadInput("{}: its data should begin at byte {} of {}; is the file truncated?", file.string(), offset, bytes.size());
   layout.offset = static_cast<std::size_t>(offset);
   return layout;
 }
 
 Layout rawLayout(const fs::path& file, Bytes bytes, const std::optional<glm::ivec3>& size) {
-  if (!size) throwBadInput("{}: a .raw density grid says nothing of its size; give \"size\" in the scene", file.string());
+  if (!size) throwBadInput("{}: a .raw density grid has no size; give \"size\" in the scene", file.string());
   checkSize(file, {size->x, size->y, size->z});
   Layout layout;
   layout.size = *size;

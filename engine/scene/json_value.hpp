@@ -107,7 +107,7 @@ inline void readObject(const Value& object, const std::vector<Key>& keys) {
     if (key == keys.end()) {
       std::string known;
       for (const Key& k : keys) known += fmt::format("{}{}", known.empty() ? "" : ", ", k.name);
-      throwBadInput("{}: unknown key \"{}\"; known are: {}", object.file.string(), object.key.empty() ? name : fmt::format("{}.{}", object.key, name), known);
+      throwBadInput("{}: unknown key \"{}\"; expected one of {}", object.file.string(), object.key.empty() ? name : fmt::format("{}.{}", object.key, name), known);
     }
     key->read(object.at(name));
   }

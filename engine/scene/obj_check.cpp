@@ -72,7 +72,7 @@ class ObjChecker {
   void numbers(std::string_view keyword, int needed, std::size_t part) {
     for (int i = 0; i < needed; ++i) {
       std::string_view text = word();
-      if (text.empty()) fail(fmt::format("{} has {} numbers, expected {}; is the file cut off?", keyword, i, needed));
+      if (text.empty()) fail(fmt::format("{} has {} numbers, expected {}; is the file truncated?", keyword, i, needed));
       if (text[0] == '+') text.remove_prefix(1);
       float value = 0.0f;  // not finite is allowed here: the loader drops such triangles, and counts them
       const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

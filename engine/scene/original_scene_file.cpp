@@ -160,7 +160,7 @@ Scene loadOriginalScene(const Value& root) {
     if (name.empty()) {
       std::string known;
       for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
-      throwBadInput("{}: key \"{}\": {} has no material of that name or number; there are {}", root.file.string(), id, model.string(), known);
+      throwBadInput("{}: key \"{}\": {} has no material of that name or number; it has {}", root.file.string(), id, model.string(), known);
     }
     Medium medium = published.medium;
     medium.name = name;

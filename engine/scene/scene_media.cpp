@@ -196,7 +196,7 @@ void readSceneMedia(const Value& root, std::optional<double> millimetresPerUnit,
         readMaterial(object.at(name), media, material);
         found = true;
       }
-      if (!found) throwBadInput("{}: key \"materials.{}\": no material of that name is used by the model; there are {}", root.file.string(), name, known);
+      if (!found) throwBadInput("{}: key \"materials.{}\": the model has no material of that name; it has {}", root.file.string(), name, known);
     }
   }
   if (root.has("cameraMedium") && !root.at("cameraMedium").json.is_null()) scene.cameraMedium = media.named(root.at("cameraMedium")).index;
