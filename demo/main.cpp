@@ -5,6 +5,7 @@
 #include "command_tree.hpp"
 #include "commands.hpp"
 #include "gl/context.hpp"
+#include "labs/command.hpp"
 #include "merge.hpp"
 
 #include <fmt/core.h>
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
   add("bench", "Measure: error over time, stability, what is left out; published tables and pictures made again", lucerna::demo::addBench);
   add("compare", "Errors between two HDR pictures, with heat maps", lucerna::demo::addCompare);
   add("tune", "Measure a scene, and choose the technique and settings that meet a frame time or an error", lucerna::demo::addTune);
+  add("lab", "Teaching labs that check and grade themselves", lucerna::demo::addLab);
   add("completion", "Print a completion script for a shell", lucerna::demo::addCompletion);
   add("manual", "Print the manual page, in roff", lucerna::demo::addManual);
 

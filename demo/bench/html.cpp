@@ -5,9 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <span>
-
 namespace lucerna::demo::bench {
 
 namespace {

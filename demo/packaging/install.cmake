@@ -34,6 +34,10 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/assets ${P
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lucerna COMPONENT program
         PATTERN generate.py EXCLUDE PATTERN generator EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN "*.jpg" EXCLUDE)
 
+# The teaching labs: what students get and what checks them.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/demo/labs DESTINATION ${CMAKE_INSTALL_DATADIR}/lucerna/demo COMPONENT program
+        FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.md" PATTERN "*.txt")
+
 # The desktop: entry, description, icon.
 install(FILES ${packaging}/${LUCERNA_APP_ID}.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)
 install(FILES ${generated}/${LUCERNA_APP_ID}.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT program)

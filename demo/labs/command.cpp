@@ -1,0 +1,383 @@
+// lucerna lab: teaching labs that check and grade themselves.
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/log.hpp"
+#include "commands.hpp"
+#include "labs/command.hpp"
+#include "labs/hand_in.hpp"
+#include "labs/museum.hpp"
+#include "labs/prove.hpp"
+#include "gl/objects.hpp"
+#include "measure/heat_map.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <random>
+#include <thread>
+
+namespace lucerna::demo {
+
+namespace {
+
+using namespace labs;
+namespace fs = std::filesystem;
+
+struct Options {
+  CommonOptions common;
+  std::string lab, folder = ".", seed, junit, gradescope, html, name;
+  std::uint64_t nonce = 0;
+  int runs = 0;
+  bool watch = false;
+};
+
+constexpr int kWrong = 2;  ///< the exit code of a hand-in with anything wrong or missing
+constexpr unsigned kLongest = 300;  ///< seconds; a check takes at most 60
+
+/// A loop of the student's that never ends must not hang the check for ever: GL cannot be interrupted, the process can.
+void watchTime() {
+  std::signal(SIGALRM, [](int) {
+    constexpr char kMessage[] = "lucerna: the check did not end within 300 s: is there a loop in tasks.glsl that never ends?\n";
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
+    std::_Exit(kWrong);
+  });
+  alarm(kLongest);
+}
+
+std::uint64_t nonceOf(const Options& options) {
+  if (options.nonce != 0) return options.nonce;
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 16 ^ device()) & 0xffffffffffffu;  // short enough to be typed
+}
+
+int list(const Options& options) {
+  options.common.apply();
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Lab& lab : allLabs()) {
+    fmt::print("{}  {}\n", lab.number, lab.title);
+    nlohmann::ordered_json tasks = nlohmann::ordered_json::array();
+    for (const Task& task : lab.tasks) {
+      fmt::print("     {}.{} {} ({} points)\n", lab.number, task.number, task.function, task.points);
+      tasks.push_back({{"number", task.number}, {"function", task.function}, {"points", task.points}});
+    }
+    json.push_back({{"lab", lab.number}, {"title", lab.title}, {"folder", lab.folder}, {"tasks", tasks}});
+  }
+  fmt::print("\nBegin with: lucerna lab start 1 my-lab-1 --seed YOUR-ID\n");
+  options.common.writeJson({{"labs", json}});
+  return 0;
+}
+
+int start(const Options& options) {
+  options.common.apply();
+  const Lab& lab = findLab(options.lab);
+  const std::string seed = options.seed.empty() ? "example" : options.seed;
+  startLab(lab, options.folder, seed);
+  fmt::print("Lab {}: {}, seed {}\n  read     {}/README.md\n  edit     {}/tasks.glsl, {}/answers.txt\n  check    lucerna lab check {} {}\n", lab.number, lab.title, seed, options.folder, options.folder,
+             options.folder, lab.number, options.folder);
+  return 0;
+}
+
+struct Judged {
+  Folder folder;
+  Report report;
+};
+Judged judge(const Lab& lab, const Options& options) {
+  Judged judged{Folder::open(lab, options.folder, options.seed), {}};
+  const HandIn handIn = judged.folder.handIn();
+  watchTime();
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  judged.report = runChecks(lab, handIn, nonceOf(options));
+  judged.report.renderer = context.capabilities().renderer;
+  alarm(0);
+  return judged;
+}
+
+/// Into lab.json, if the folder can be written: a grader's may be read-only.
+void note(Judged& judged, const Lab& lab) {
+  nlohmann::ordered_json passed = nlohmann::ordered_json::array();
+  for (const Task& task : lab.tasks)
+    if (judged.report.verdictOf(task.number) == Verdict::passed) passed.push_back(task.number);
+  judged.folder.state["checks"].push_back(
+      {{"time", std::time(nullptr)}, {"seconds", judged.report.seconds}, {"score", judged.report.compileError.empty() ? judged.report.score(lab) : 0.0}, {"passed", passed}});
+  if (access(judged.folder.path.c_str(), W_OK) == 0) judged.folder.save();
+}
+
+int check(const Options& options) {
+  options.common.apply();
+  const Lab& lab = findLab(options.lab);
+  Judged judged = judge(lab, options);
+  note(judged, lab);
+  if (!options.common.quiet) fmt::print("{}", reportText(lab, judged.report));
+  options.common.writeJson(reportJson(lab, judged.report));
+  if (!options.junit.empty()) writeFileAtomically(options.junit, reportJunit(lab, judged.report));
+  if (!options.gradescope.empty()) writeFileAtomically(options.gradescope, reportGradescope(lab, judged.report));
+  return judged.report.allPassed() ? 0 : kWrong;
+}
+
+int hint(const Options& options) {
+  options.common.apply();
+  const auto dot = options.lab.find('.');
+  if (dot == std::string::npos) throwBadInput("hint {}: expected LAB.TASK, such as 1.2", options.lab);
+  const std::string task = options.lab.substr(dot + 1);
+  if (task.size() != 1 || task[0] < '1' || task[0] > '9') throwBadInput("hint {}: expected LAB.TASK, such as 1.2", options.lab);
+  fmt::print("{}", takeHint(findLab(options.lab.substr(0, dot)), task[0] - '0', options.folder));
+  return 0;
+}
+
+int solution(const Options& options) {
+  options.common.apply();
+  const Lab& lab = findLab(options.lab);
+  putSolution(lab, options.folder);
+  fmt::print("The solution of lab {} is in {}/tasks.glsl; lab.json says so.\n", lab.number, options.folder);
+  return 0;
+}
+
+/// Mine, reference and both times the difference, as PNGs beside the hand-in.
+void writePictures(const fs::path& folder, const Report& report) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throwBadInput("{}: {}", folder.string(), error.message());
+  for (const PictureResult& picture : report.pictures) {
+    Image off(picture.mine.width, picture.mine.height);
+    for (std::size_t i = 0; i < off.pixels.size(); ++i) off.pixels[i] = 10.0f * glm::abs(picture.mine.pixels[i] - picture.reference.pixels[i]);
+    writePng(folder / (picture.name + ".mine.png"), toneMapped(picture.mine, 1.0f));
+    writePng(folder / (picture.name + ".reference.png"), toneMapped(picture.reference, 1.0f));
+    writePng(folder / (picture.name + ".difference10.png"), toneMapped(off, 1.0f));
+    fmt::print("{}/{}.mine.png, .reference.png, .difference10.png: {}\n", folder.string(), picture.name, picture.caption);
+  }
+}
+
+/// Mine to the left, the reference to the right, one picture below the other, as a window shows them: bottom row first, six pixels a pixel.
+struct Shown {
+  glm::ivec2 size{0};
+  std::vector<std::uint8_t> rgba;
+};
+Shown sideBySide(const Report& report) {
+  constexpr int kScale = 6;
+  std::vector<std::pair<Bitmap, Bitmap>> pairs;
+  Shown shown;
+  for (const PictureResult& p : report.pictures) {
+    pairs.emplace_back(toneMapped(p.mine, 1.0f), toneMapped(p.reference, 1.0f));
+    shown.size = {std::max(shown.size.x, 2 * kScale * p.mine.width), shown.size.y + kScale * p.mine.height};
+  }
+  shown.rgba.assign(static_cast<std::size_t>(shown.size.x) * static_cast<std::size_t>(shown.size.y) * 4, 0);
+  int top = shown.size.y;
+  for (const auto& [mine, reference] : pairs) {
+    for (int y = 0; y < kScale * mine.height; ++y)
+      for (int x = 0; x < 2 * kScale * mine.width; ++x) {
+        const Bitmap& from = x < kScale * mine.width ? mine : reference;
+        const auto source = 4 * static_cast<std::size_t>(y / kScale * mine.width + x / kScale % mine.width), target = 4 * static_cast<std::size_t>((top - 1 - y) * shown.size.x + x);
+        std::copy_n(&from.rgba[source], 4, &shown.rgba[target]);
+      }
+    top -= kScale * mine.height;
+  }
+  return shown;
+}
+
+/// Checks and pictures anew whenever the task file is saved, in a window where there is a display, until Escape or Ctrl-C. What does not compile
+/// leaves the last good pictures.
+int watch(const Options& options, const Lab& lab) {
+  watchForInterrupt();
+  const auto host = options.common.makeHost(true, {.windowSize = {1152, 384}, .windowTitle = fmt::format("Lab {}: yours, and the reference", lab.number)});
+  const gl::Context context;
+  gl::Texture texture;
+  gl::Framebuffer framebuffer;
+  glm::ivec2 size(0);
+  fs::file_time_type seen{};
+  while (!interrupted()) {
+    std::error_code error;
+    if (const auto time = fs::last_write_time(fs::path(options.folder) / "tasks.glsl", error); !error && time != seen) {
+      seen = time;
+      const HandIn handIn = Folder::open(lab, options.folder, options.seed).handIn();
+      watchTime();
+      Report report = runChecks(lab, handIn, nonceOf(options));
+      alarm(0);
+      report.renderer = context.capabilities().renderer;
+      fmt::print("{}", reportText(lab, report));
+      std::fflush(stdout);
+      if (report.compileError.empty() && !report.pictures.empty()) {
+        writePictures(fs::path(options.folder) / "pictures", report);
+        const Shown shown = sideBySide(report);
+        size = shown.size;
+        texture = gl::Texture("lab pictures", GL_RGBA8, size);
+        texture.upload(GL_RGBA, GL_UNSIGNED_BYTE, shown.rgba.data());
+        const gl::Texture* colors[] = {&texture};
+        framebuffer = gl::Framebuffer("lab pictures", colors);
+      }
+    }
+    if (size.x > 0) host->present(framebuffer.id(), size);
+    const HostInput input = host->poll();
+    if (input.closeRequested || input.pressed.find('\x1b') != std::string::npos) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return 0;
+}
+
+int show(const Options& options) {
+  options.common.apply();
+  const Lab& lab = findLab(options.lab);
+  if (options.watch) return watch(options, lab);
+  const Judged judged = judge(lab, options);
+  if (!judged.report.compileError.empty()) {
+    fmt::print("{}\n", judged.report.compileError);
+    return kWrong;
+  }
+  if (judged.report.pictures.empty()) fmt::print("No picture yet: its tasks are not done (lucerna lab check {} {} says which).\n", lab.number, options.folder);
+  writePictures(fs::path(options.folder) / "pictures", judged.report);
+  return 0;
+}
+
+int report(const Options& options) {
+  options.common.apply();
+  const Lab& lab = findLab(options.lab);
+  Judged judged = judge(lab, options);
+  note(judged, lab);
+  const fs::path file = options.html.empty() ? fs::path(options.folder) / "report.html" : fs::path(options.html);
+  writeFileAtomically(file, reportHtml(lab, judged.folder, judged.report));
+  fmt::print("{}: {:.1f} of 100\n", file.string(), judged.report.compileError.empty() ? judged.report.score(lab) : 0.0);
+  return 0;
+}
+
+int prove(const Options& options) {
+  options.common.apply();
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  nlohmann::ordered_json json{{"renderer", context.capabilities().renderer}, {"labs", nlohmann::ordered_json::array()}};
+  bool good = true;
+  std::vector<Lab> wanted(allLabs().begin(), allLabs().end());
+  if (!options.lab.empty()) wanted = {findLab(options.lab)};
+  for (const Lab& lab : wanted) {
+    const Proof proof = proveLab(lab, options.nonce != 0 ? options.nonce : 1, options.runs);
+    if (!options.common.quiet) fmt::print("{}", proofText(lab, proof));
+    json["labs"].push_back(proofJson(lab, proof));
+    good = good && proof.good();
+  }
+  options.common.writeJson(json);
+  return good ? 0 : kWrong;
+}
+
+int figures(const Options& options) {
+  options.common.apply();
+  const Lab& lab = findLab(options.lab);
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  fmt::print("{}", figuresTable(lab, options.seed.empty() ? "example" : options.seed));
+  return 0;
+}
+
+int museum(const Options& options) {
+  options.common.apply();
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  Progress progress("Rooms", static_cast<int>(museumRooms().size()), options.common.quiet);
+  const fs::path file = options.html.empty() ? fs::path("museum.html") : fs::path(options.html);
+  writeFileAtomically(file, museumHtml(context, programs, [&](int done, int) { progress.update(done); }));
+  fmt::print("{}: {} rooms\n", file.string(), museumRooms().size());
+  return 0;
+}
+
+/// The hidden deviation's readings beside sound ones; with --answer it is graded instead, without a GPU.
+int mystery(const Options& options) {
+  options.common.apply();
+  const Mystery mystery = mysteryOf(options.seed);
+  if (!options.name.empty()) {
+    if (std::find(mystery.candidates.begin(), mystery.candidates.end(), options.name) == mystery.candidates.end())
+      throwBadInput("--answer {}: not one of {}", options.name, fmt::join(mystery.candidates, ", "));
+    const bool right = options.name == mystery.hidden;
+    fmt::print("seed {}: {} is {}\n", options.seed, options.name, right ? "right" : "not it");
+    options.common.writeJson({{"seed", options.seed}, {"answer", options.name}, {"right", right}, {"score", right ? 100 : 0}});
+    return right ? 0 : kWrong;
+  }
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  const Readings readings = readInstruments(context, programs, mystery.technique, mystery.hidden);
+  fmt::print("Mystery of seed {}: a Cornell box by technique {}, one deviation is on. Mean indirect radiance:\n{:<20}{:>12}{:>12}{:>10}\n", options.seed, mystery.technique, "instrument", "sound", "mystery", "ratio");
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const Reading& r : readings.readings) {
+    fmt::print("{:<20}{:>12.5g}{:>12.5g}{:>10.4f}\n", r.instrument, r.sound, r.hidden, r.hidden / r.sound);
+    rows.push_back({{"instrument", r.instrument}, {"sound", r.sound}, {"mystery", r.hidden}});
+  }
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error) throwBadInput("{}: {}", options.folder, error.message());
+  const double scale = measure::heatMapScale(readings.hidden, readings.sound);
+  writePng(fs::path(options.folder) / "sound.png", toneMapped(readings.sound, 4.0f));
+  writePng(fs::path(options.folder) / "mystery.png", toneMapped(readings.hidden, 4.0f));
+  writePng(fs::path(options.folder) / "heat_map.png", measure::heatMap(readings.hidden, readings.sound, measure::HeatMap::signedLuminance, scale));
+  fmt::print("{0}/sound.png, mystery.png, heat_map.png (signed, {1:.3g} is full red)\nWhich is it? {2}\nlucerna lab mystery --seed {3} --answer NAME; lucerna lab museum describes them all.\n", options.folder, scale,
+             fmt::join(mystery.candidates, ", "), options.seed);
+  options.common.writeJson({{"seed", options.seed}, {"technique", mystery.technique}, {"candidates", mystery.candidates}, {"readings", rows}});
+  return 0;
+}
+
+}  // namespace
+
+std::function<int()> addLab(CLI::App& app) {
+  app.require_subcommand(1);
+  auto options = std::make_shared<Options>();
+  std::vector<std::pair<CLI::App*, int (*)(const Options&)>> commands;
+  const auto add = [&](const char* name, const char* description, int (*work)(const Options&)) {
+    CLI::App* command = app.add_subcommand(name, description);
+    options->common.declare(*command);
+    commands.emplace_back(command, work);
+    return command;
+  };
+  const auto addLabAndFolder = [&](CLI::App* command) {
+    command->add_option("LAB", options->lab, "number of the lab")->required();
+    command->add_option("DIR", options->folder, "folder of the hand-in")->capture_default_str();
+  };
+  const auto addSeed = [&](CLI::App* command, const char* what) { command->add_option("--seed", options->seed, what); };
+  const auto addNonce = [&](CLI::App* command) { command->add_option("--nonce", options->nonce, "probe points and noise of an earlier run; 0: new ones")->capture_default_str(); };
+  add("list", "The labs and their tasks", list);
+  CLI::App* startApp = add("start", "Copy a lab's files into a folder of your own", start);
+  startApp->add_option("LAB", options->lab, "number of the lab")->required();
+  startApp->add_option("DIR", options->folder, "folder to make")->required();
+  addSeed(startApp, "your ID: your figures follow from it (default: example)");
+  CLI::App* checkApp = add("check", "Check and grade a hand-in", check);
+  addLabAndFolder(checkApp);
+  addSeed(checkApp, "for graders: instead of the hand-in's own");
+  addNonce(checkApp);
+  checkApp->add_option("--junit", options->junit, "FILE.xml: results as JUnit XML");
+  checkApp->add_option("--gradescope", options->gradescope, "FILE.json: results for Gradescope's autograder");
+  CLI::App* hintApp = add("hint", "The next of three hints of a task; the hand-in notes it", hint);
+  hintApp->add_option("LAB.TASK", options->lab, "such as 1.2")->required();
+  hintApp->add_option("DIR", options->folder, "folder of the hand-in")->capture_default_str();
+  addLabAndFolder(add("solution", "Put the sample solution into a hand-in; the hand-in notes it", solution));
+  CLI::App* showApp = add("show", "Write the lab's pictures: yours, the reference, the difference", show);
+  addLabAndFolder(showApp);
+  addNonce(showApp);
+  showApp->add_flag("--watch", options->watch, "anew whenever tasks.glsl is saved, in a window where there is a display, until Escape or Ctrl-C");
+  CLI::App* reportApp = add("report", "Write the hand-in as one self-contained HTML page", report);
+  addLabAndFolder(reportApp);
+  addNonce(reportApp);
+  addSeed(reportApp, "for graders: instead of the hand-in's own");
+  reportApp->add_option("-o,--output", options->html, "FILE.html (default: DIR/report.html)");
+  CLI::App* proveApp = add("prove", "For authors: stub, solution and every wrong answer of a lab, and what the checks say", prove);
+  proveApp->add_option("LAB", options->lab, "number of the lab (default: all)");
+  proveApp->add_option("--runs", options->runs, "checks of the solution with other noise, to count false alarms")->check(CLI::Range(0, 1000000))->capture_default_str();
+  addNonce(proveApp);
+  CLI::App* figuresApp = add("figures", "For authors: the figures that a lab's README quotes", figures);
+  figuresApp->add_option("LAB", options->lab, "number of the lab")->required();
+  addSeed(figuresApp, "default: example");
+  CLI::App* mysteryApp = add("mystery", "A picture with one hidden deviation: find it by instruments, and say which", mystery);
+  addSeed(mysteryApp, "which deviation is hidden follows from it");
+  mysteryApp->get_option("--seed")->required();
+  mysteryApp->add_option("--answer", options->name, "name of the deviation: graded");
+  mysteryApp->add_option("-o,--output", options->folder, "folder of the pictures")->capture_default_str();
+  CLI::App* museumApp = add("museum", "One HTML page of every deviation: symptom, cause, formula, picture, the test that catches it", museum);
+  museumApp->add_option("-o,--output", options->html, "FILE.html (default: museum.html)");
+  return [options, commands] {
+    for (const auto& [command, work] : commands)
+      if (command->parsed()) return work(*options);
+    return 0;
+  };
+}
+
+}  // namespace lucerna::demo

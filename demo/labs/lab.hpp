@@ -1,0 +1,247 @@
+// Teaching labs: what a lab is, and the checks that judge a hand-in. docs/teaching.md tells how to write a lab of one's own.
+//
+// A lab is a folder (README.md, tasks.glsl, probe.glsl, hints.txt, mutants.txt), a solution (solutions/FOLDER.glsl) and one .cpp with a
+// Lab: its tasks and a function that checks them. The student edits tasks.glsl. Each check runs one probe: kernel.comp with the student's file
+// and the lab's probe.glsl, whose `vec4 probe()` is called once an invocation. Probe points are drawn anew in each run (from the nonce), what the
+// student's figures depend on (albedo, g, ...) from the student's seed.
+//
+// Statistics: each test refuses a correct answer with probability kFalseAlarm / kMostTests at most (Bonferroni), so a whole check does with
+// kFalseAlarm, below once in 10,000 runs. The thresholds come from Student's t and the chi-square distribution.
+#pragma once
+
+#include "base/image.hpp"
+#include "gl/program.hpp"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lucerna::demo::labs {
+
+constexpr double kFalseAlarm = 2e-5;  ///< of a run of `lab check`
+constexpr int kMostTests = 40;        ///< statistical tests in a lab at most
+constexpr double kFirmness = 1e-6;    ///< a float's rounding, relative, that a mean may carry beside its noise
+
+/// splitmix64 [Steele2014]: the same numbers on every machine.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t word();
+  double uniform();                         ///< in [0,1), 53 bits
+  double uniform(double least, double most) { return least + (most - least) * uniform(); }
+  glm::dvec3 direction();                   ///< uniform on the sphere
+
+ private:
+  std::uint64_t state_;
+};
+
+/// A typical wrong answer: what it would give, and what to say of it.
+struct Mistake {
+  std::string id = {};    ///< such as "lost-cosine"; mutants.txt names it
+  std::string text = {};  ///< one sentence to the student
+};
+
+/// One probe point as the GPU gets it: `stride` vectors of floats.
+using Point = std::span<const glm::vec4>;
+using Function = std::function<glm::dvec4(Point)>;
+
+/// A function against its twin in double precision, point by point.
+struct Twin {
+  int probe = 0;
+  int stride = 1;
+  std::function<void(Random&, std::span<glm::vec4>)> draw = {};  ///< fills one point
+  Function truth = {};
+  struct Wrong {
+    Mistake mistake;
+    Function value;
+  };
+  std::vector<Wrong> mistakes = {};
+  double tolerance = 1e-4;  ///< of |truth| plus a hundredth of its root mean square: rounding in float, far below any mistake
+  int points = 2048;
+};
+
+/// The mean of what the invocations return in .x, independent of each other, against its expected value: Student's t test.
+struct Mean {
+  int probe = 0;
+  std::vector<glm::vec4> inputs = {};
+  double expected = 0.0;
+  struct Wrong {
+    Mistake mistake;
+    double value;
+  };
+  std::vector<Wrong> mistakes = {};
+  int invocations = 4096;
+};
+
+/// Samples against the probabilities of bins: a chi-square test. A sample that falls into no bin refuses the answer by itself.
+struct ChiSquare {
+  int probe = 0;
+  std::vector<glm::vec4> inputs = {};
+  std::function<int(const glm::vec4&)> bin = {};  ///< -1: no bin holds it
+  std::vector<double> shares = {};           ///< of each bin; their sum is 1
+  struct Wrong {
+    Mistake mistake;
+    std::vector<double> shares;
+  };
+  std::vector<Wrong> mistakes = {};
+  int samples = 1 << 16;
+};
+
+/// A picture, .rgb the mean of an invocation's samples and .a the variance of the mean of its three channels, against a reference: tiles of 8 by 8
+/// pixels by Student's t, each with its share of the false alarms. A picture without noise (.a = 0) keeps to 1e-3.
+struct Picture {
+  int probe = 0;
+  std::vector<glm::vec4> inputs = {};
+  glm::ivec2 size{96, 64};
+  std::function<glm::dvec3(glm::ivec2)> reference = {};  ///< row 0 at the top
+  struct Wrong {
+    Mistake mistake;
+    std::function<glm::dvec3(glm::ivec2)> value;
+  };
+  std::vector<Wrong> mistakes = {};
+  std::string caption = {};
+};
+
+enum class Verdict { passed, wrong, notDone, waiting };
+const char* nameOf(Verdict verdict);
+
+struct CheckResult {
+  int task = 0;
+  std::string name = {}, expected = {}, measured = {}, sigma = {};
+  Verdict verdict = Verdict::wrong;
+  Mistake mistake = {};    ///< the likeliest, where wrong
+  double pValue = -1.0;    ///< of a statistical test; -1: none
+};
+
+struct PictureResult {
+  std::string name, caption;
+  Image mine, reference;
+};
+
+struct Curve {
+  std::string name, xLabel, yLabel;
+  std::vector<glm::dvec2> mine, reference;
+};
+
+struct Task {
+  int number = 0;
+  std::string function;    ///< as README.md names it
+  int points = 0;
+  std::vector<int> needs;  ///< tasks that must be right before this one can be judged
+};
+
+class Checks;
+
+struct Lab {
+  int number = 0;
+  std::string folder, title;
+  std::vector<Task> tasks;
+  int answerPoints = 0;  ///< for the questions with figures; all points of a lab make 100
+  void (*check)(Checks&) = nullptr;
+};
+
+/// In order; the template of docs/teaching.md is number 0 and not listed.
+std::span<const Lab> allLabs();
+/// Throws Error(badInput) listing the numbers.
+const Lab& findLab(const std::string& number);
+/// demo/labs in the data folder: what is installed.
+std::filesystem::path labsFolder();
+
+/// What is judged: files, seed and figures of a hand-in.
+struct HandIn {
+  std::string tasks;                          ///< text of tasks.glsl
+  std::string tasksName = "tasks.glsl";       ///< as messages name it
+  std::filesystem::path tasksFile;            ///< where to look for changes (a window); empty: the text alone
+  std::map<std::string, std::string> answers; ///< answers.txt: name, what stands behind the =
+  std::string seed = "example";
+};
+
+struct Report {
+  std::string renderer, seed;
+  std::uint64_t nonce = 0;
+  std::string compileError;                     ///< file:line of the student's file; empty: it compiles
+  std::vector<CheckResult> checks;
+  std::vector<PictureResult> pictures;
+  std::vector<Curve> curves;
+  std::vector<std::pair<std::string, std::string>> yours;        ///< the student's parameters
+  std::vector<std::pair<std::string, std::string>> figures;      ///< what README.md quotes, for this seed
+  std::vector<std::pair<std::string, double>> expectedAnswers;   ///< for tests; never shown
+  double seconds = 0.0;
+
+  Verdict verdictOf(int task) const;  ///< task 0: the questions
+  double score(const Lab& lab) const;
+  bool allPassed() const;
+};
+
+/// Runs a lab's checks on a hand-in; needs a GL context. The same nonce gives the same probe points and noise.
+Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce);
+
+/// answers.txt: "name = value" a line, # begins a comment.
+std::map<std::string, std::string> parseAnswers(const std::string& text);
+/// NOT_DONE(n) that stand in the text outside comments.
+std::vector<int> tasksNotDone(const std::string& text);
+/// The first line that a task file must not have (other preprocessor lines, layout, gl_, buffer, ...), as "tasks.glsl:12: ..."; empty: none.
+std::string forbiddenLine(const std::string& text, const std::string& name);
+
+/// What a lab's check function talks to.
+class Checks {
+ public:
+  Checks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Report& report);
+  ~Checks();
+
+  /// A parameter of the student's, uniform between the two, rounded to `digits` after the point so that it can be typed. The same for a seed and a name.
+  double parameter(const std::string& name, double least, double most, int digits = 3) const;
+  /// A number that differs in each run: what was learnt by heart does not help.
+  double fresh(double least, double most) { return random_.uniform(least, most); }
+  /// Whether a task can be judged: it is done, and so is right what it needs. Else says so in the report.
+  bool task(int number);
+
+  // Each returns whether it passed, so that later, harder checks stand behind &&.
+  bool twin(const std::string& name, const Twin& twin);
+  bool mean(const std::string& name, const Mean& mean);
+  bool chiSquare(const std::string& name, const ChiSquare& test);
+  bool picture(const std::string& name, const Picture& picture);
+  /// The same of pixels that a lab put together itself.
+  bool picture(const std::string& name, const Picture& picture, const std::vector<glm::vec4>& pixels);
+  /// A question's figure in answers.txt. `tolerance` is relative.
+  void answer(const std::string& name, double expected, double tolerance = 0.005, const std::vector<Mean::Wrong>& mistakes = {});
+  /// What a probe returns, for curves and checks of a lab's own.
+  std::vector<glm::vec4> run(int probe, std::span<const glm::vec4> inputs, int stride, int count, int width = 1);
+  void curve(Curve curve) { report_.curves.push_back(std::move(curve)); }
+  /// A parameter that the questions are about: shown to the student, and a figure.
+  double yours(const std::string& name, double least, double most, int digits = 3);
+  /// A figure that README.md quotes for the seed "example", and a test compares.
+  void figure(const std::string& name, double value, int digits = 6);
+
+ private:
+  bool add(CheckResult result);
+  struct Gpu;
+  const Lab& lab_;
+  const HandIn& handIn_;
+  Report& report_;
+  Random random_;
+  std::vector<int> notDone_;
+  int task_ = 0, tests_ = 0;
+  std::uint32_t noise_;
+  std::unique_ptr<Gpu> gpu_;
+};
+
+/// Irradiance at x, normal n, from a polygon of radiance 1 wholly in front of x's surface, by Lambert's formula: half the sum over edges of the
+/// angle they are seen under times the cosine between the edge's plane and the surface [Arvo1995].
+double polygonIrradiance(std::span<const glm::dvec3> corners, const glm::dvec3& x, const glm::dvec3& n);
+/// The same of a level square above the floor y = 0.
+double squareLampIrradiance(double side, double height, const glm::dvec3& x);
+
+// Distributions, by incomplete gamma and beta functions: continued fractions and series [Press2007, 6.2, 6.4].
+double chiSquareTail(double chiSquare, double degrees);   ///< P(X >= chiSquare)
+double studentTail(double t, double degrees);             ///< P(|T| >= t)
+
+}  // namespace lucerna::demo::labs

@@ -1,0 +1,138 @@
+#include "labs/museum.hpp"
+
+#include "base/data.hpp"
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/hash.hpp"
+#include "bench/html.hpp"
+#include "labs/lab.hpp"
+#include "render/deviations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::demo::labs {
+
+namespace {
+
+using bench::escapeHtml;
+
+const Scene& box() {
+  static const Scene scene = loadScene(dataFolder() / "assets/cornell/cornell.json");
+  return scene;
+}
+
+RenderSettings settingsOf(const std::string& technique, const std::string& deviation) {
+  RenderSettings settings;
+  applyFidelity(settings, Fidelity::corrected);
+  settings.technique = parseTechnique(technique);
+  settings.component = Component::indirect;
+  settings.lpv.transport = LpvTransport::propagate;  // that all deviations of the volume belong to
+  settings.size = {96, 96};
+  settings.fullFloatTarget = true;
+  if (!deviation.empty()) applyDeviation(settings, deviation + "=on");
+  return settings;
+}
+
+Image rendered(const gl::Context& context, gl::ProgramLibrary& programs, const RenderSettings& settings) {
+  Renderer renderer(context, programs, box(), settings);
+  renderer.renderToTheEnd(box().cameras.front());
+  return renderer.readRadiance();
+}
+double meanOfAll(const Image& image) {
+  const glm::dvec3 mean = meanOf(image);
+  return (mean.x + mean.y + mean.z) / 3.0;
+}
+
+std::string techniqueOf(const std::string& deviation) {
+  const std::string prefix = deviation.substr(0, deviation.find('.'));
+  return prefix == "rad" ? "radiosity" : prefix;
+}
+
+std::string png(const Image& image, float exposure) {
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("lucerna-museum-{:x}.png", reinterpret_cast<std::uintptr_t>(&image));
+  writePng(file, toneMapped(image, exposure));
+  const std::string text = bench::base64(readFileBytes(file));
+  std::filesystem::remove(file);
+  return text;
+}
+
+constexpr std::string_view kStyle = R"(
+body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1e; max-width: 1000px; margin: 2em auto; padding: 0 1.5em; }
+section { border-top: 2px solid #ddd; padding: .6em 0 1em; overflow: hidden; } h2 { margin: .3em 0; font-size: 1.15em; } dt { color: #6b6b70; font-size: 13px; } dd { margin: 0 0 .45em; }
+code { background: #f5f5f7; padding: .1em .3em; } .pair { float: right; margin-left: 1.5em; font-size: 12px; color: #555; } .pair img { width: 144px; image-rendering: pixelated; display: block; } .pair figure { display: inline-block; margin: 0 .3em; }
+nav { columns: 3; font-size: 13px; } nav a { display: block; }
+)";
+
+}  // namespace
+
+std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs, const std::function<void(int, int)>& progress) {
+  std::string index = "<nav>", body;
+  int done = 0;
+  std::map<std::string, Image> sound;
+  for (const Room& room : museumRooms()) {
+    progress(done++, static_cast<int>(museumRooms().size()));
+    const std::string technique = techniqueOf(room.deviation);
+    std::string pictures = fmt::format("<div class=\"pair\">needs a medium: <code>lucerna render assets/media/block/coffee.json --technique path --deviation {}=on</code></div>", room.deviation);
+    if (technique != "path") {
+      if (!sound.contains(technique)) sound[technique] = rendered(context, programs, settingsOf(technique, ""));
+      const Image with = rendered(context, programs, settingsOf(technique, room.deviation));
+      const double change = meanOfAll(with) / meanOfAll(sound[technique]) - 1.0;
+      pictures = fmt::format("<div class=\"pair\"><figure><img alt=\"right\" src=\"data:image/png;base64,{}\">right</figure><figure><img alt=\"with the mistake\" src=\"data:image/png;base64,{}\">mean {:+.2f} %</figure></div>",
+                             png(sound[technique], 4.0f), png(with, 4.0f), 100.0 * change);
+    } else {
+      pictures.replace(0, 17, "<div class=\"pair\" style=\"max-width:300px\">");
+    }
+    index += fmt::format("<a href=\"#{0}\">{0}</a>", room.deviation);
+    body += fmt::format("<section id=\"{0}\">{1}<h2>{0}</h2><dl><dt>symptom</dt><dd>{2}</dd><dt>cause</dt><dd>{3}</dd><dt>formula</dt><dd><code>{4}</code> for <code>{5}</code></dd><dt>what finds it</dt><dd>{6}</dd><dt>the test that catches it</dt><dd><code>{7}</code></dd></dl></section>\n",
+                        room.deviation, pictures, escapeHtml(room.symptom), escapeHtml(room.cause), escapeHtml(room.published), escapeHtml(room.right), escapeHtml(room.instrument), escapeHtml(room.test));
+  }
+  return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Museum of mistakes</title><style>{}</style></head>\n<body><h1>Museum of mistakes</h1>\n"
+                     "<p>Every one of these was published or shipped. <code>--deviation NAME=on</code> turns one on. Pictures: indirect light alone in a Cornell box of 96 by 96 pixels, on {}.</p>{}</nav>\n{}</body></html>\n",
+                     kStyle, escapeHtml(context.capabilities().renderer), index, body);
+}
+
+Mystery mysteryOf(const std::string& seed) {
+  // Those that leave a mark in the Cornell box: the readings of any two differ.
+  static const std::vector<std::pair<std::string, std::vector<std::string>>> kPool{
+      {"lpv", {"lpv.flux-units", "lpv.sum-cascades", "lpv.side-directions", "lpv.four-pi-kernel", "lpv.fewer-steps", "lpv.block-first-step", "lpv.unwindowed", "lpv.blocking-direction"}},
+      {"rsm", {"rsm.flux-cosine", "rsm.gather-weight"}}};
+  Random random(Hash::of(seed.data(), seed.size()));
+  random.word();
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const auto& [technique, names] : kPool)
+    for (const std::string& name : names) all.emplace_back(technique, name);
+  const auto& [technique, hidden] = all[static_cast<std::size_t>(random.word() % all.size())];
+  Mystery mystery{technique, {}, hidden};
+  for (const auto& [key, names] : kPool)
+    if (key == technique) mystery.candidates = names;
+  return mystery;
+}
+
+Readings readInstruments(const gl::Context& context, gl::ProgramLibrary& programs, const std::string& technique, const std::string& deviation) {
+  Readings result;
+  const auto read = [&](const std::string& name, const std::function<void(RenderSettings&)>& change) {
+    Reading reading{name};
+    for (const bool hidden : {false, true}) {
+      RenderSettings settings = settingsOf(technique, hidden ? deviation : "");
+      change(settings);
+      Image image = rendered(context, programs, settings);
+      (hidden ? reading.hidden : reading.sound) = meanOfAll(image);
+      if (result.readings.empty()) (hidden ? result.hidden : result.sound) = std::move(image);
+    }
+    result.readings.push_back(reading);
+  };
+  read("as it is", [](RenderSettings&) {});
+  read("rsm.size doubled", [](RenderSettings& s) { s.rsm.size *= 2; });
+  if (technique == "lpv") {
+    read("one cascade", [](RenderSettings& s) { s.lpv.cascades.cascades = 1; });
+    read("one step", [](RenderSettings& s) { s.lpv.iterations = 1; });
+    read("two steps", [](RenderSettings& s) { s.lpv.iterations = 2; });
+    read("nothing blocks", [](RenderSettings& s) { s.lpv.blocking = false; });
+  }
+  return result;
+}
+
+}  // namespace lucerna::demo::labs

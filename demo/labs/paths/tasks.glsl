@@ -1,0 +1,39 @@
+// Lab 7: path tracing. README.md tells what is asked; PI, frame() and random() are there.
+// Take NOT_DONE(n) out when a task is done.
+
+// TASK 1. The balance heuristic: the weight of a sample whose own strategy has density `own` there and the other strategy `other`.
+float misWeight(float own, float other) {
+  NOT_DONE(1)
+  return 0.0;
+}
+
+// TASK 2. Next-event estimation: what the point y of a lamp adds to the radiance reflected at x, y drawn with density pdfArea over the lamp.
+float lampSample(float radiance, float albedo, vec3 x, vec3 n, vec3 y, vec3 ny, float pdfArea) {
+  NOT_DONE(2)
+  return 0.0;
+}
+
+// TASK 3. A density over a lamp's area as a density over solid angle at x.
+float densityOverSolidAngle(float pdfArea, vec3 x, vec3 y, vec3 ny) {
+  NOT_DONE(3)
+  return 0.0;
+}
+
+// TASK 4. Russian roulette: whether the path goes on, with probability `survival`; u is uniform in [0,1).
+bool roulette(inout float throughput, float survival, float u) {
+  NOT_DONE(4)
+  return false;
+}
+
+// TASK 5. One path in a closed box of walls that emit `emission` and reflect `albedo`: its radiance, and how often it was reflected.
+float furnacePath(float emission, float albedo, float survival, out int bounces) {
+  NOT_DONE(5)
+  bounces = 0;
+  return 0.0;
+}
+
+// TASK 6. Standard error of the mean of n samples with this sum and sum of squares.
+float standardError(float sum, float squares, float n) {
+  NOT_DONE(6)
+  return 0.0;
+}

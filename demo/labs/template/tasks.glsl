@@ -1,0 +1,14 @@
+// Template of a lab. README.md tells what is asked; PI, frame() and random() are there.
+// Take NOT_DONE(n) out when a task is done.
+
+// TASK 1. The area of a disc.
+float discArea(float radius) {
+  NOT_DONE(1)
+  return 0.0;
+}
+
+// TASK 2. A point uniform in a disc of radius 1; u: two independent numbers in [0,1).
+vec2 discPoint(vec2 u) {
+  NOT_DONE(2)
+  return vec2(0.0);
+}

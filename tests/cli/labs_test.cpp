@@ -1,0 +1,241 @@
+// lucerna lab: each lab's stub, solution and typical wrong answers; a student's way from start to report; figures of the READMEs.
+#include "base/files.hpp"
+#include "render/deviations.hpp"
+#include "support/long_tests.hpp"
+#include "support/subprocess.hpp"
+#include "support/temp_folder.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+namespace lucerna::test {
+namespace {
+
+using nlohmann::json;
+
+json readJson(const std::filesystem::path& file) { return json::parse(readFileText(file)); }
+
+std::vector<json> labs() {
+  TempFolder folder;
+  const RunResult listed = RUN_LUCERNA(fmt::format("lab list --json {}", (folder / "labs.json").string()));
+  EXPECT_EQ(listed.exitCode, 0) << listed.err;
+  return readJson(folder / "labs.json").at("labs").get<std::vector<json>>();
+}
+
+/// Proves a lab: the stub is polite, the solution passes, every mutant is refused, nine in ten with the right hint.
+void prove(int lab) {
+  TempFolder folder;
+  const RunResult proved = RUN_LUCERNA(fmt::format("lab prove {} --json {}", lab, (folder / "proof.json").string()));
+  EXPECT_EQ(proved.exitCode, 0) << proved.out << proved.err;
+  const json proof = readJson(folder / "proof.json").at("labs").at(0);
+  EXPECT_TRUE(proof.at("stub_polite"));
+  EXPECT_TRUE(proof.at("solution_passes"));
+  EXPECT_GE(proof.at("mutants").size(), 10u);
+  int right = 0;
+  for (const json& mutant : proof.at("mutants")) {
+    EXPECT_TRUE(mutant.at("rejected")) << mutant.dump();
+    right += mutant.at("hint") == mutant.at("wanted") ? 1 : 0;
+  }
+  EXPECT_GE(10 * right, 9 * static_cast<int>(proof.at("mutants").size())) << proved.out;
+  EXPECT_LT(proof.at("seconds"), 60.0) << "a check takes at most a minute on two cores of software GL";
+}
+
+// A suite each, so that they run beside each other.
+TEST(LabProof1, Furnace) { prove(1); }
+TEST(LabProof2, Shadows) { prove(2); }
+TEST(LabProof3, Harmonics) { prove(3); }
+TEST(LabProof4, Propagation) { prove(4); }
+TEST(LabProof5, Cascades) { prove(5); }
+TEST(LabProof6, Hemicubes) { prove(6); }
+TEST(LabProof7, Paths) { prove(7); }
+TEST(LabProof8, Media) { prove(8); }
+
+TEST(LabList, EightLabsOfThreeToSevenTasks) {
+  const std::vector<json> all = labs();
+  ASSERT_EQ(all.size(), 8u);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].at("lab"), i + 1) << "LabProof" << i + 1 << " proves it";
+    EXPECT_GE(all[i].at("tasks").size(), 3u);
+    EXPECT_LE(all[i].at("tasks").size(), 7u);
+  }
+}
+
+// A correct answer fails less than once in 10,000 runs: at most one of 10,000 may, and about 1 % of the tests have p < 1 %.
+TEST(LabFalseAlarms, FewerThanOneIn10000) {
+  if (!longTests()) GTEST_SKIP() << "minutes to hours: LUCERNA_LONG_TESTS";
+  const char* wanted = std::getenv("LUCERNA_LAB_RUNS");
+  const int runs = wanted ? std::atoi(wanted) : 10000;
+  for (const json& lab : labs()) {
+    TempFolder folder;
+    const RunResult proved = RUN_LUCERNA(fmt::format("lab prove {} --runs {} --json {}", lab.at("lab").dump(), runs, (folder / "proof.json").string()));
+    const json proof = readJson(folder / "proof.json").at("labs").at(0);
+    EXPECT_EQ(proof.at("runs"), runs);
+    EXPECT_LE(proof.at("refusals"), 1) << proved.out;
+    const double share = proof.at("below_1_percent").get<double>() / proof.at("tests").get<double>();
+    EXPECT_LT(share, 0.02) << proved.out;
+  }
+}
+
+TEST(LabReadme, FiguresAreThoseOfTheCheck) {
+  for (const json& lab : labs()) {
+    const std::string readme = readFileText(std::filesystem::path(LUCERNA_SOURCE_DIR) / "demo/labs" / lab.at("folder").get<std::string>() / "README.md");
+    const RunResult figures = RUN_LUCERNA(fmt::format("lab figures {}", lab.at("lab").dump()));
+    ASSERT_EQ(figures.exitCode, 0) << figures.err;
+    std::istringstream stream(figures.out);
+    int count = 0;
+    for (std::string line; std::getline(stream, line); ++count) EXPECT_NE(readme.find(line + "\n"), std::string::npos) << lab.at("folder") << ": " << line;
+    EXPECT_GE(count, 3) << lab.at("folder");
+    for (const json& task : lab.at("tasks"))
+      EXPECT_NE(readme.find(fmt::format("\n{}. ", task.at("number").dump())), std::string::npos) << lab.at("folder") << ": README.md does not name task " << task.at("number");
+  }
+}
+
+// The template of docs/teaching.md is a lab like any other.
+TEST(LabProof0, Template) { prove(0); }
+
+// Every deviation has its room, and every room names a test that is there.
+TEST(LabMuseum, EveryDeviationHasARoomAndATest) {
+  TempFolder folder;
+  const RunResult made = RUN_LUCERNA(fmt::format("lab museum -o {}", (folder / "museum.html").string()));
+  ASSERT_EQ(made.exitCode, 0) << made.err;
+  const std::string html = readFileText(folder / "museum.html");
+  for (const Deviation& deviation : allDeviations()) EXPECT_NE(html.find(fmt::format("<section id=\"{}\">", deviation.name)), std::string::npos) << deviation.name;
+  static const std::regex kTest(R"(<code>(tests/[a-z_/]+\.cpp): (\w+)</code>)");
+  int rooms = 0;
+  for (auto it = std::sregex_iterator(html.begin(), html.end(), kTest); it != std::sregex_iterator(); ++it, ++rooms) {
+    const std::string text = readFileText(std::filesystem::path(LUCERNA_SOURCE_DIR) / (*it)[1].str());
+    EXPECT_NE(text.find(fmt::format(", {}) {{", (*it)[2].str())), std::string::npos) << it->str();
+  }
+  EXPECT_EQ(rooms, static_cast<int>(allDeviations().size()));
+  EXPECT_EQ(html.find("http"), std::string::npos) << "the page stands by itself";
+}
+
+// The answer follows from the seed; one candidate alone is right; the hidden one leaves a mark on the instruments.
+TEST(LabMystery, OneCandidateIsRightAndLeavesAMark) {
+  TempFolder folder;
+  const RunResult shown = RUN_LUCERNA(fmt::format("lab mystery --seed ada -o {} --json {}", (folder / "m").string(), (folder / "m.json").string()));
+  ASSERT_EQ(shown.exitCode, 0) << shown.err;
+  const json mystery = readJson(folder / "m.json");
+  double largest = 0.0;
+  for (const json& r : mystery.at("readings")) largest = std::max(largest, std::abs(r.at("mystery").get<double>() / r.at("sound").get<double>() - 1.0));
+  EXPECT_GT(largest, 0.01) << mystery.dump(1);
+  int right = 0;
+  for (const json& name : mystery.at("candidates")) {
+    right += RUN_LUCERNA(fmt::format("lab mystery --seed ada --answer {}", name.get<std::string>())).exitCode == 0 ? 1 : 0;
+  }
+  EXPECT_EQ(right, 1);
+  EXPECT_EQ(RUN_LUCERNA("lab mystery --seed ada --answer lpv.nothing").exitCode, 2);
+}
+
+class LabWay : public ::testing::Test {
+ protected:
+  TempFolder folder;
+  std::filesystem::path dir = folder / "mine";
+  RunResult lab(const std::string& arguments) { return RUN_LUCERNA(fmt::format("lab {}", arguments)); }
+  void start() { ASSERT_EQ(lab(fmt::format("start 1 {} --seed ada", dir.string())).exitCode, 0); }
+  void edit(const std::string& from, const std::string& to) {
+    std::string text = readFileText(dir / "tasks.glsl");
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    writeFileAtomically(dir / "tasks.glsl", text.replace(at, from.size(), to));
+  }
+};
+
+TEST_F(LabWay, StubIsPolite) {
+  start();
+  const RunResult checked = lab(fmt::format("check 1 {}", dir.string()));
+  EXPECT_EQ(checked.exitCode, 2);
+  EXPECT_NE(checked.out.find("task 1 not done"), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("0.0 of 100"), std::string::npos) << checked.out;
+  EXPECT_EQ(lab(fmt::format("start 1 {}", dir.string())).exitCode, 2) << "nothing is overwritten";
+}
+
+TEST_F(LabWay, CompileErrorsNameFileAndLine) {
+  start();
+  edit("  NOT_DONE(1)\n  return vec3(0.0);", "  return vec3(unknown);");
+  const RunResult checked = lab(fmt::format("check 1 {}", dir.string()));
+  EXPECT_EQ(checked.exitCode, 2);
+  EXPECT_NE(checked.out.find(fmt::format("{}:6", (dir / "tasks.glsl").string())), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("unknown"), std::string::npos) << checked.out;
+}
+
+TEST_F(LabWay, ProbesAreOutOfReach) {
+  for (const char* line : {"#define PROBE 2", "uint hack = gl_GlobalInvocationID.x;", "layout(std430) buffer B { float b[]; };", "float x = float(labNoise);"}) {
+    std::filesystem::remove_all(dir);
+    start();
+    edit("// TASK 1", fmt::format("{}\n// TASK 1", line));
+    const RunResult checked = lab(fmt::format("check 1 {}", dir.string()));
+    EXPECT_EQ(checked.exitCode, 2) << line;
+    EXPECT_NE(checked.out.find("has no place here"), std::string::npos) << checked.out;
+  }
+}
+
+TEST_F(LabWay, MissingFunctionIsTold) {
+  start();
+  edit("float pdfCosine(", "float densityOfCosine(");
+  edit("  NOT_DONE(3)\n", "");
+  edit("  NOT_DONE(1)\n", "");
+  const RunResult checked = lab(fmt::format("check 1 {}", dir.string()));
+  EXPECT_EQ(checked.exitCode, 2);
+  EXPECT_NE(checked.out.find("signature"), std::string::npos) << checked.out;
+}
+
+TEST_F(LabWay, FromHintToReport) {
+  start();
+  for (int level = 1; level <= 4; ++level) {
+    const RunResult hint = lab(fmt::format("hint 1.2 {}", dir.string()));
+    EXPECT_EQ(hint.exitCode, 0) << hint.err;
+    EXPECT_NE(hint.out.find(fmt::format("hint {} of 3", std::min(level, 3))), std::string::npos) << hint.out;
+  }
+  ASSERT_EQ(lab(fmt::format("solution 1 {}", dir.string())).exitCode, 0);
+  EXPECT_TRUE(std::filesystem::exists(dir / "tasks.mine.glsl")) << "the student's own file is kept";
+  const std::string files = fmt::format("--json {} --junit {} --gradescope {}", (folder / "r.json").string(), (folder / "r.xml").string(), (folder / "g.json").string());
+  EXPECT_EQ(lab(fmt::format("check 1 {} {} --nonce 7", dir.string(), files)).exitCode, 2) << "answers.txt is empty still";
+  const json result = readJson(folder / "r.json");
+  EXPECT_EQ(result.at("score"), 85.0) << result.dump(1);
+  EXPECT_EQ(result.at("seed"), "ada");
+  EXPECT_EQ(result.at("nonce"), 7);
+  const json gradescope = readJson(folder / "g.json");
+  EXPECT_EQ(gradescope.at("score"), 85.0);
+  EXPECT_EQ(gradescope.at("tests").size(), 7u);
+  const std::string junit = readFileText(folder / "r.xml");
+  EXPECT_NE(junit.find("failures=\"3\""), std::string::npos) << junit.substr(0, 300);
+
+  ASSERT_EQ(lab(fmt::format("report 1 {}", dir.string())).exitCode, 0);
+  const std::string html = readFileText(dir / "report.html");
+  EXPECT_NE(html.find("The sample solution was put into this hand-in"), std::string::npos);
+  EXPECT_NE(html.find("data:image/png;base64,"), std::string::npos);
+  EXPECT_NE(html.find("<svg"), std::string::npos);
+  EXPECT_EQ(html.find("http"), std::string::npos) << "the page stands by itself";
+  const json state = readJson(dir / "lab.json");
+  EXPECT_EQ(state.at("hints").size(), 4u);
+  EXPECT_EQ(state.at("checks").size(), 2u);
+
+  ASSERT_EQ(lab(fmt::format("show 1 {}", dir.string())).exitCode, 0);
+  EXPECT_TRUE(std::filesystem::exists(dir / "pictures/lamp.mine.png"));
+}
+
+// The same nonce gives the same result, another seed other parameters.
+TEST_F(LabWay, NonceAndSeed) {
+  start();
+  ASSERT_EQ(lab(fmt::format("solution 1 {}", dir.string())).exitCode, 0);
+  const auto checked = [&](const std::string& options) {
+    lab(fmt::format("check 1 {} {} --json {}", dir.string(), options, (folder / "r.json").string()));
+    json result = readJson(folder / "r.json");
+    result.erase("seconds");
+    return result;
+  };
+  const json once = checked("--nonce 11"), again = checked("--nonce 11"), otherNonce = checked("--nonce 12"), otherSeed = checked("--nonce 11 --seed bob");
+  EXPECT_EQ(once, again);
+  EXPECT_NE(once.at("checks"), otherNonce.at("checks"));
+  EXPECT_NE(once.at("checks"), otherSeed.at("checks"));
+}
+
+}  // namespace
+}  // namespace lucerna::test
