@@ -1,7 +1,7 @@
 # Sourced by demo/run, tests/run and the turns: installs the Debian packages that are missing, and builds with a preset.
 
 run_packages="g++ cmake ninja-build pkg-config libglew-dev libglfw3-dev libglm-dev libassimp-dev libdevil-dev
-  libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev"
+  libimgui-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev"
 test_packages="libgtest-dev xvfb xauth"
 # What is done without where it is not to be had: the host osmesa, plots, and a yardstick for rays.
 optional_run_packages="libosmesa6-dev gnuplot-nox"

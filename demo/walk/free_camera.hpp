@@ -15,6 +15,9 @@ class FreeCamera {
   /// Moves by what the keyboard and mouse did in the last `seconds`. The horizon stays level.
   void move(const HostInput& input, double seconds);
   const Camera& camera() const { return camera_; }
+  double speed() const { return speed_; }
+  void setSpeed(double speed) { speed_ = speed; }
+  void setFieldOfView(double radians) { camera_.verticalFov = radians; }
 
  private:
   Camera camera_;

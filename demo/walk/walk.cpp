@@ -5,9 +5,13 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
+#include "offers.hpp"
 #include "settings/deviations.hpp"
 #include "scene/key_frames.hpp"
-#include "walk/free_camera.hpp"
+#include "walk/keys.hpp"
+#include "walk/options.hpp"
+#include "walk/paths.hpp"
+#include "walk/window.hpp"
 
 #include <fmt/core.h>
 
@@ -23,35 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-struct Options {
-  CommonOptions common;
-  PictureOptions picture;
-  std::string scene, keys, record, views;
-  bool flicker = false;
-  int frames = 0;  ///< 0: 12 when recording, the whole path in a window
-};
+using Options = WalkOptions;
 
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-// A path where the scene names none: once round the middle of its bounds, looking at the centre.
-std::vector<KeyFrame> orbit(const Scene& scene) {
-  const glm::dvec3 centre = scene.bounds.centre();
-  const Camera& first = scene.cameras.front();
-  const glm::dvec3 arm = first.position - centre;
-  std::vector<KeyFrame> keys;
-  for (int i = 0; i <= 8; ++i) {
-    const double angle = 2.0 * M_PI * i / 8.0;
-    const glm::dvec3 turned(std::cos(angle) * arm.x + std::sin(angle) * arm.z, arm.y, std::cos(angle) * arm.z - std::sin(angle) * arm.x);
-    const glm::dvec3 direction = glm::length(turned) > 0.0 ? -glm::normalize(turned) : glm::dvec3(0.0, 0.0, -1.0);
-    keys.push_back({centre + turned, direction, {0.0, 1.0, 0.0}, first.verticalFov});
-  }
-  return keys;
-}
-
-Spline makePath(const Options& options, const Scene& scene) {
-  const fs::path file = options.keys.empty() ? scene.keyFrames : fs::path(options.keys);
-  return Spline(file.empty() ? orbit(scene) : readKeyFrames(file));
-}
 
 // "FIRST:LAST", views of the path; empty: all.
 std::pair<int, int> parseViews(const std::string& text, int viewCount) {
@@ -160,61 +138,38 @@ int record(const Options& options, const Host& host, const gl::Context& context,
   return exitCode();
 }
 
-int play(const Options& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, Renderer& renderer, const Spline& path,
-         const Scene& scene) {
+/// In a window, or driven by recorded input.
+int play(const Options& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, Scene scene, Spline path) {
   watchForInterrupt();
+  WalkState state;
+  state.scene = std::make_unique<Scene>(std::move(scene));
+  state.sceneText = options.scene;
+  state.materialsAsLoaded = state.scene->materials;
+  state.exposure = state.scene->exposure;
   const auto [first, last] = parseViews(options.views, path.viewCount());
-  const SplinePlayback playback(last - first + 1);
-  FreeCamera freeCamera(path.view(first), 0.08 * glm::length(scene.bounds.extent()));
-  bool playing = true;
-  const auto start = Clock::now();
-  auto frameStart = start, titleTime = start;
-  double playedSeconds = 0.0;
-  int frames = 0, framesSinceTitle = 0;
-  while (!interrupted()) {
-    const HostInput input = host.poll();
-    if (input.closeRequested) break;
-    const double dt = secondsSince(frameStart);
-    frameStart = Clock::now();
-    bool quit = false;
-    for (const char key : input.pressed) {
-      if (key == '\x1b') quit = true;
-      if (key == 'R') playing = !playing;
-      if (key == '=') renderer.setExposure(renderer.exposure() * 1.25f);
-      if (key == '-') renderer.setExposure(renderer.exposure() / 1.25f);
-      if (key == 'L') {
-        const auto reload = programs.reloadChanged();
-        renderer.forget();  // what was made by the programs before
-        fmt::print(stderr, "{} programs reloaded\n", reload.reloaded);
-        for (const std::string& failure : reload.failures) fmt::print(stderr, "{}\n", failure);
-      }
-    }
-    if (quit) break;
-    if (playing && frames > 0) playedSeconds += dt;
-    if (playing) {
-      const auto view = playback.viewAt(playedSeconds);
-      if (!view) break;  // the walk ends by itself
-      freeCamera.place(path.view(first + *view));
-    } else {
-      freeCamera.move(input, std::min(dt, 0.1));  // a slow frame must not throw the camera across the room
-    }
-    renderer.resize(host.framebufferSize());
-    renderer.render(freeCamera.camera());
-    host.present(renderer.displayFramebuffer().id(), renderer.size());
-    ++frames;
-    ++framesSinceTitle;
-    if (secondsSince(titleTime) > 0.5) {
-      host.setTitle(fmt::format("Lucerna - {:.1f} frames a second - R path/free, WASD and drag, - = exposure, L reload, Esc", framesSinceTitle / secondsSince(titleTime)));
-      titleTime = Clock::now();
-      framesSinceTitle = 0;
-    }
-    if (options.frames > 0 && frames >= options.frames) break;
-  }
-  renderer.drain();
-  const double seconds = secondsSince(start);
+  state.path.first = first;
+  state.path.last = last;
+  state.camera.emplace(path.view(first), 0.08 * glm::length(state.scene->bounds.extent()));
+  state.path.spline = std::move(path);
+  state.sides[0].options = state.sides[1].options = options.picture;
+  state.sides[1].options.technique = options.picture.technique == "direct" ? "lpv" : "direct";
+  state.sides[1].options.settings.clear();
+  state.sides[1].options.deviations.clear();
+  state.shotFolder = options.shots;
+  const bool measures = !options.common.json.empty() && options.playInput.empty();
+  state.panel = options.panel == "on" || (options.panel == "auto" && !measures);
+  state.hint = !measures;
+  state.messageAge = measures ? 1e9 : 0.0;
+  WalkWindow window(options, host, context, programs, std::move(state));
+  window.run();
+  SideState& side = window.state().sides[0];
+  if (!side.renderer) return exitCode();
+  Renderer& renderer = *side.renderer;
   if (!options.common.quiet)
-    fmt::print("{} frames in {:.1f} s\n{}", frames, seconds, stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
-  options.common.writeJson(resultJson(options, host, context, renderer, frames, seconds));
+    fmt::print("{} frames in {:.1f} s\n{}", window.frames(), window.seconds(), stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
+  nlohmann::ordered_json json = resultJson(options, host, context, renderer, window.frames(), window.seconds());
+  json["window"] = window.toJson();
+  options.common.writeJson(json);
   return exitCode();
 }
 
@@ -225,8 +180,8 @@ int run(Options options) {
   if (options.scene.empty()) options.scene = (dataFolder() / "assets/atrium/atrium.json").string();
   if (!options.record.empty() && fs::exists(options.record) && !fs::is_directory(options.record))
     throwBadInput("--record {}: there is a file of that name; a folder is wanted", options.record);
-  const Scene scene = loadScene(options.scene);
-  const Spline path = makePath(options, scene);
+  Scene scene = loadScene(options.scene);
+  Spline path = pathOf(scene, options.keys);
   parseViews(options.views, path.viewCount());
 
   HostOptions hostOptions;
@@ -236,8 +191,9 @@ int run(Options options) {
   const auto host = options.common.makeHost(options.record.empty(), hostOptions);
   const gl::Context context;
   gl::ProgramLibrary programs;
+  if ((host->kind() == HostKind::window || !options.playInput.empty()) && options.record.empty())
+    return play(options, *host, context, programs, std::move(scene), std::move(path));
   Renderer renderer(context, programs, scene, settings);
-  if (host->kind() == HostKind::window && options.record.empty()) return play(options, *host, context, programs, renderer, path, scene);
   return record(options, *host, context, renderer, path);
 }
 
@@ -251,8 +207,12 @@ Work addWalk(CLI::App& app) {
   app.add_option("--frames", options->frames, "how many pictures (12), or frames in a window (the whole path)")->check(CLI::Range(1, 1000000));
   app.add_option("--views", options->views, "FIRST:LAST: only these views of the path, 200 between two keys");
   app.add_flag("--flicker", options->flicker, "measure how much the light changes between pictures by itself, not by the camera's motion");
+  app.add_option("--play-input", options->playInput, "drive the window by this file of recorded input (demo/walk/input_file.hpp), on any host");
+  app.add_option("--shots", options->shots, "folder for screenshots")->capture_default_str();
+  offer(app.add_option("--panel", options->panel, "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"), {"on", "off", "auto"});
   options->picture.declare(app);
   options->common.declare(app);
+  app.footer(keysHelp() + "\n" + app.get_footer());
   return [options] { return run(*options); };
 }
 

@@ -185,6 +185,7 @@ const Program& ProgramLibrary::load(const ProgramDescription& description) {
       return *program;
     }
   }
+  if (beforeBuild_) beforeBuild_(description.name);
   std::unique_ptr<Program> program(new Program(description));
   build(*program);
   programs_.push_back(std::move(program));

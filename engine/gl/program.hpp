@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -105,6 +106,10 @@ class ProgramLibrary {
   };
   Reload reloadChanged();
 
+  /// Called before each program that is built, with its name, between any other GL calls of the builder's: it may draw, and may throw, which ends
+  /// what the program was built for. Empty: nobody is asked.
+  void setBeforeBuild(std::function<void(const std::string& name)> beforeBuild) { beforeBuild_ = std::move(beforeBuild); }
+
   struct Statistics {
     int built = 0, reused = 0;
     double compileSeconds = 0.0;
@@ -118,6 +123,7 @@ class ProgramLibrary {
  private:
   void build(Program& program);
   std::filesystem::path root_;
+  std::function<void(const std::string&)> beforeBuild_;
   std::vector<std::unique_ptr<Program>> programs_;
   Statistics statistics_;
 };

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/named_values.hpp"
+#include "host/input.hpp"
 
 #include <glm/glm.hpp>
 
@@ -33,15 +34,6 @@ struct HostOptions {
   bool debugContext = false;  ///< request a debug context if the host can
 };
 
-/// What the keyboard and mouse did since the last poll; empty without a window.
-struct HostInput {
-  bool closeRequested = false;
-  glm::dvec2 mouseDelta{0.0};     ///< pixels, while the left button is held; +y down
-  glm::dvec3 move{0.0};           ///< held keys: x right (D-A), y up (E-Q), z forward (W-S), each -1, 0 or 1
-  bool fast = false;              ///< shift held
-  std::string pressed;            ///< characters of the keys pressed since the last poll, upper case; Escape is '\x1b'
-};
-
 class Host {
  public:
   virtual ~Host() = default;
@@ -62,6 +54,17 @@ class Host {
   virtual HostInput poll() { return {}; }
   virtual glm::ivec2 framebufferSize() const = 0;
   virtual void setTitle(const std::string&) {}
+
+  // Of a window alone; elsewhere without effect.
+  virtual void setWindowSize(glm::ivec2) {}
+  virtual void setFullScreen(bool) {}
+  virtual bool isFullScreen() const { return false; }
+  virtual void setSwapInterval(int) {}
+  /// How much larger text and controls are to be drawn than at 96 dots an inch: the system's scale for this window.
+  virtual float contentScale() const { return 1.0f; }
+  virtual void setClipboard(const std::string&) {}
+  virtual std::string clipboard() const { return {}; }
+
   /// Refreshes of the display that present() waits for; none without a window.
   virtual std::optional<int> swapInterval() const { return {}; }
 

@@ -6,6 +6,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace lucerna::detail {
@@ -39,12 +40,7 @@ class WindowHost final : public Host {
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(swapInterval_);
     glfwSetWindowUserPointer(window_, this);
-    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-      if (action != GLFW_PRESS) return;
-      auto* self = static_cast<WindowHost*>(glfwGetWindowUserPointer(window));
-      if (key == GLFW_KEY_ESCAPE) self->pressed_ += '\x1b';
-      else if (key >= GLFW_KEY_SPACE && key <= GLFW_KEY_GRAVE_ACCENT) self->pressed_ += static_cast<char>(key);
-    });
+    listen();
     setGlLoader([](const char* name) { return reinterpret_cast<GlProc>(glfwGetProcAddress(name)); }, true);
   }
   ~WindowHost() override {
@@ -65,19 +61,8 @@ class WindowHost final : public Host {
 
   HostInput poll() override {
     glfwPollEvents();
-    HostInput input;
-    input.closeRequested = glfwWindowShouldClose(window_);
-    const auto held = [&](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0 : 0.0; };
-    input.move = {held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_E) - held(GLFW_KEY_Q), held(GLFW_KEY_W) - held(GLFW_KEY_S)};
-    input.fast = held(GLFW_KEY_LEFT_SHIFT) + held(GLFW_KEY_RIGHT_SHIFT) > 0.0;
-    glm::dvec2 mouse;
-    glfwGetCursorPos(window_, &mouse.x, &mouse.y);
-    const bool dragging = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
-    if (dragging && dragging_) input.mouseDelta = mouse - mouse_;
-    dragging_ = dragging;
-    mouse_ = mouse;
-    input.pressed = std::exchange(pressed_, {});
-    return input;
+    if (glfwWindowShouldClose(window_)) input_.close();
+    return input_.take();
   }
 
   glm::ivec2 framebufferSize() const override {
@@ -88,13 +73,81 @@ class WindowHost final : public Host {
 
   std::optional<int> swapInterval() const override { return swapInterval_; }
   void setTitle(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
+  void setWindowSize(glm::ivec2 size) override { glfwSetWindowSize(window_, std::max(size.x, 1), std::max(size.y, 1)); }
+  bool isFullScreen() const override { return glfwGetWindowMonitor(window_) != nullptr; }
+
+  // On the monitor that holds the window's centre.
+  void setFullScreen(bool on) override {
+    if (on == isFullScreen()) return;
+    if (!on) {
+      glfwSetWindowMonitor(window_, nullptr, place_.x, place_.y, size_.x, size_.y, GLFW_DONT_CARE);
+      return;
+    }
+    glfwGetWindowPos(window_, &place_.x, &place_.y);
+    glfwGetWindowSize(window_, &size_.x, &size_.y);
+    const glm::ivec2 centre = place_ + size_ / 2;
+    int count = 0;
+    GLFWmonitor** monitors = glfwGetMonitors(&count);
+    GLFWmonitor* chosen = glfwGetPrimaryMonitor();
+    for (int i = 0; i < count; ++i) {
+      glm::ivec2 corner, extent;
+      glfwGetMonitorWorkarea(monitors[i], &corner.x, &corner.y, &extent.x, &extent.y);
+      if (glm::all(glm::greaterThanEqual(centre, corner)) && glm::all(glm::lessThan(centre, corner + extent))) chosen = monitors[i];
+    }
+    if (!chosen) return;
+    const GLFWvidmode* mode = glfwGetVideoMode(chosen);
+    glfwSetWindowMonitor(window_, chosen, 0, 0, mode->width, mode->height, mode->refreshRate);
+    glfwSwapInterval(swapInterval_);  // some drivers forget it
+  }
+  void setSwapInterval(int interval) override {
+    swapInterval_ = interval;
+    glfwSwapInterval(interval);
+  }
+  float contentScale() const override {
+    float x = 1.0f, y = 1.0f;
+    glfwGetWindowContentScale(window_, &x, &y);
+    return std::max(x, y);
+  }
+  void setClipboard(const std::string& text) override { glfwSetClipboardString(window_, text.c_str()); }
+  std::string clipboard() const override {
+    const char* text = glfwGetClipboardString(window_);
+    return text ? text : "";
+  }
 
  private:
+  static InputState& inputOf(GLFWwindow* window) { return static_cast<WindowHost*>(glfwGetWindowUserPointer(window))->input_; }
+  void listen() {
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+      inputOf(window).key(key, action != GLFW_RELEASE, action == GLFW_REPEAT);
+    });
+    glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned character) { inputOf(window).text(utf8(character)); });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+      if (button <= GLFW_MOUSE_BUTTON_MIDDLE) inputOf(window).button(static_cast<MouseButton>(button), action == GLFW_PRESS);
+    });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+      glm::ivec2 points, pixels;  // the cursor is told in screen coordinates, which are not pixels everywhere
+      glfwGetWindowSize(window, &points.x, &points.y);
+      glfwGetFramebufferSize(window, &pixels.x, &pixels.y);
+      inputOf(window).cursor(glm::dvec2(x, y) * glm::dvec2(pixels) / glm::dvec2(glm::max(points, glm::ivec2(1))));
+    });
+    glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) { inputOf(window).wheel({x, y}); });
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** files) {
+      for (int i = 0; i < count; ++i) inputOf(window).drop(files[i]);
+    });
+    glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int focused) { inputOf(window).focus(focused == GLFW_TRUE); });
+  }
+  static std::string utf8(unsigned c) {
+    const auto byte = [](unsigned value) { return static_cast<char>(value); };
+    if (c < 0x80) return {byte(c)};
+    if (c < 0x800) return {byte(0xc0 | c >> 6), byte(0x80 | (c & 0x3f))};
+    if (c < 0x10000) return {byte(0xe0 | c >> 12), byte(0x80 | (c >> 6 & 0x3f)), byte(0x80 | (c & 0x3f))};
+    return {byte(0xf0 | c >> 18), byte(0x80 | (c >> 12 & 0x3f)), byte(0x80 | (c >> 6 & 0x3f)), byte(0x80 | (c & 0x3f))};
+  }
+
   GLFWwindow* window_ = nullptr;
   int swapInterval_;
-  std::string pressed_;
-  glm::dvec2 mouse_{0.0};
-  bool dragging_ = false;
+  InputState input_;
+  glm::ivec2 place_{0}, size_{1280, 720};  ///< of the window before it filled the screen
 };
 
 }  // namespace

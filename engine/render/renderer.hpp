@@ -50,6 +50,8 @@ class Renderer {
   Image readRadiance() const;   ///< linear, scene units, top row first
   Bitmap readDisplay() const;   ///< tone mapped, sRGB, top row first
   const gl::Framebuffer& displayFramebuffer() const { return displayTarget_; }
+  const gl::Texture& display() const { return display_; }    ///< of that framebuffer
+  const gl::Texture& radiance() const { return radiance_; }  ///< linear, scene units, bottom row first
   glm::ivec2 size() const { return settings_.size; }
   void resize(glm::ivec2 size);
   void setExposure(float exposure) { exposure_ = exposure; }

@@ -1,18 +1,9 @@
-// Radiance to display: exposure, a filmic curve, sRGB encoding.
-// Curve: the rational fit of the ACES reference rendering [Narkowicz2015], applied per channel to linear values.
+// Radiance to display: exposure, then the curve and encoding of lib/tonemap.glsl.
 #include "lib/frame.glsl"
+#include "lib/tonemap.glsl"
 in vec2 uv;
 layout(binding = 0) uniform sampler2D radianceTexture;
 layout(location = 0) out vec4 displayColor;
-
-vec3 filmic(vec3 x) {
-  x *= 0.6;  // the fit's own white is 1/0.6 too bright beside the reference
-  return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
-}
-
-vec3 srgbFromLinear(vec3 x) {  // IEC 61966-2-1
-  return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, greaterThan(x, vec3(0.0031308)));
-}
 
 void main() {
   vec3 radiance = texelFetch(radianceTexture, ivec2(gl_FragCoord.xy), 0).rgb;

@@ -1,0 +1,66 @@
+#include "walk/keys.hpp"
+
+#include <fmt/format.h>
+
+namespace lucerna::demo {
+
+namespace {
+
+constexpr KeyBinding kKeys[] = {
+    {key::kF1, false, Action::help, "this list"},
+    {key::kF2, false, Action::panel, "the panel"},
+    {key::kF5, false, Action::reload, "load changed shaders again"},
+    {'L', false, Action::reload, "the same"},
+    {key::kF11, false, Action::fullScreen, "full screen"},
+    {key::kF12, false, Action::shot, "save the picture: PNG as shown, HDR linear, settings inside"},
+    {' ', false, Action::pause, "pause and go on along the path"},
+    {'R', false, Action::follow, "leave the path, take it up again"},
+    {'[', false, Action::slower, "half the speed along the path"},
+    {']', false, Action::faster, "twice the speed along the path"},
+    {'O', false, Action::loop, "begin the path again at its end"},
+    {'K', false, Action::addKeyFrame, "this view as a new key frame"},
+    {'-', false, Action::darker, "less exposure"},
+    {'=', false, Action::brighter, "more exposure"},
+    {'0', false, Action::autoExposure, "exposure by the picture, on or off"},
+    {'1', false, Action::direct, "technique direct"},
+    {'2', false, Action::rsm, "technique rsm"},
+    {'3', false, Action::lpv, "technique lpv"},
+    {'4', false, Action::radiosity, "technique radiosity"},
+    {'5', false, Action::path, "the path-traced reference"},
+    {'Z', true, Action::undo, "take the last change of settings back"},
+    {key::kTab, false, Action::flicker, "the other one of A and B"},
+    {'X', false, Action::wipe, "A and B divided by a wipe, which the right button draws"},
+    {'B', false, Action::sideBySide, "A and B side by side"},
+    {'Z', false, Action::magnifier, "magnifier with values"},
+    {'H', false, Action::nextView, "picture, signed error, relative error, z-score, FLIP"},
+    {'T', false, Action::truth, "live truth: a reference of this view while the camera rests"},
+    {'F', false, Action::fit, "the whole picture again, after zooming"},
+    {key::kEscape, false, Action::end, "stop what is being made; else end"},
+};
+
+}  // namespace
+
+std::span<const KeyBinding> allKeys() { return kKeys; }
+
+std::optional<Action> actionOf(const KeyEvent& event) {
+  if (!event.down || event.repeat || event.alt) return {};
+  for (const KeyBinding& binding : kKeys)
+    if (binding.key == event.key && binding.control == event.control) return binding.action;
+  return {};
+}
+
+std::string nameOf(const KeyBinding& binding) { return (binding.control ? "control " : "") + key::nameOf(binding.key); }
+
+std::string keysHelp() {
+  std::string text = "Keys in the window:\n";
+  for (const KeyBinding& binding : kKeys) text += fmt::format("  {:<20} {}\n", nameOf(binding), binding.meaning);
+  text += fmt::format("  {:<20} {}\n", "W A S D Q E", "move; with shift four times as fast");
+  text += fmt::format("  {:<20} {}\n", "left button", "look around by dragging");
+  text += fmt::format("  {:<20} {}\n", "right button", "draw the wipe");
+  text += fmt::format("  {:<20} {}\n", "middle button", "move the zoomed picture");
+  text += fmt::format("  {:<20} {}\n", "wheel", "zoom into the picture");
+  text += fmt::format("  {:<20} {}\n", "drop a file", "a scene, or a picture to compare with");
+  return text;
+}
+
+}  // namespace lucerna::demo

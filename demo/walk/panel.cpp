@@ -1,0 +1,526 @@
+#include "walk/panel.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/statistics.hpp"
+#include "render/deviations.hpp"
+#include "walk/keys.hpp"
+#include "walk/shots.hpp"
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::demo {
+
+namespace {
+
+// ---------------------------------------------------------------------------------------------------- controls, each noted by name
+
+bool button(Ui& ui, const char* label) {
+  const bool pressed = ImGui::Button(label);
+  ui.note(label);
+  return pressed;
+}
+
+bool checkbox(Ui& ui, const char* label, bool& value) {
+  const bool changed = ImGui::Checkbox(label, &value);
+  ui.note(label);
+  return changed;
+}
+
+bool slider(Ui& ui, const char* label, float& value, float least, float most, const char* format, bool logarithmic = false) {
+  const bool changed = ImGui::SliderFloat(label, &value, least, most, format, logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  ui.note(label);
+  return changed;
+}
+
+/// A menu; its items are noted as "label: item". The position of the chosen one.
+template <class Names>
+bool menu(Ui& ui, const char* label, int& chosen, const Names& names) {
+  bool changed = false;
+  const bool isOpen = ImGui::BeginCombo(label, std::string(names[static_cast<std::size_t>(chosen)]).c_str());
+  if (!isOpen) {
+    ui.note(label);
+    return false;
+  }
+  for (int i = 0; i < static_cast<int>(std::size(names)); ++i) {
+    const std::string name(names[static_cast<std::size_t>(i)]);
+    if (ImGui::Selectable(name.c_str(), i == chosen)) {
+      changed = i != chosen;
+      chosen = i;
+    }
+    ui.note(std::string(label) + ": " + name);
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+template <class Names>
+bool menu(Ui& ui, const char* label, std::string& chosen, const Names& names) {
+  int index = 0;
+  for (int i = 0; i < static_cast<int>(std::size(names)); ++i)
+    if (chosen == names[static_cast<std::size_t>(i)]) index = i;
+  const bool changed = menu(ui, label, index, names);
+  if (changed) chosen = names[static_cast<std::size_t>(index)];
+  return changed;
+}
+
+bool textField(Ui& ui, const char* label, std::string& text) {
+  const bool entered = ImGui::InputText(label, &text, ImGuiInputTextFlags_EnterReturnsTrue);
+  ui.note(label);
+  return entered;
+}
+
+void explain(const std::string& text) {
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(30.0f * ImGui::GetFontSize());
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void line(const std::string& text) { ImGui::TextUnformatted(text.c_str()); }
+void wrapped(const std::string& text) {
+  ImGui::PushTextWrapPos(0.0f);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+bool section(Ui& ui, const char* name, bool openAtStart) {
+  ui.section("");
+  const bool open = ImGui::CollapsingHeader(name, openAtStart ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  ui.note(name);
+  ui.section(name);
+  if (open) ImGui::PushID(name);
+  return open;
+}
+void endSection() { ImGui::PopID(); }
+
+// ---------------------------------------------------------------------------------------------------- sections
+
+void showScene(Ui& ui, WalkState& s) {
+  const Scene& scene = *s.scene;
+  line(scene.name);
+  line(fmt::format("{} triangles, {} materials, {} textures", scene.triangleCount(), scene.materials.size(), scene.textures.size()));
+  line(fmt::format("{} spots, {} points{}{}{}", scene.spots.size(), scene.points.size(), scene.sun ? ", a sun" : "", scene.defaultSun ? " of ours" : "", scene.environment ? ", a sky" : ""));
+  const glm::dvec3 size = scene.bounds.extent();
+  line(fmt::format("{:.4g} x {:.4g} x {:.4g} units of {:.4g} m", size.x, size.y, size.z, scene.metresPerUnit));
+  if (textField(ui, "file", s.sceneText)) s.sceneToLoad = s.sceneText;
+  explain("A scene file: JSON, OBJ, glTF, PLY. Enter loads it; a file dropped on the window is loaded, too. One that cannot be read leaves this scene as it is.");
+  if (button(ui, "load")) s.sceneToLoad = s.sceneText;
+  ImGui::SameLine();
+  checkbox(ui, "on a ground", s.ground);
+  explain("Models that come without light of their own get a grey floor when they are loaded here, besides our sun and sky.");
+}
+
+void frameScene(WalkState& s) {
+  const Bounds& bounds = s.scene->bounds;
+  Camera camera = s.camera->camera();
+  const double radius = 0.5 * std::max(glm::length(bounds.extent()), 1e-9);
+  camera.position = bounds.centre() - camera.direction * (radius / std::sin(0.5 * camera.verticalFov));
+  s.camera->place(camera);
+  s.path.follows = false;
+}
+
+void showCamera(Ui& ui, WalkState& s, Host& host) {
+  const Camera& c = s.camera->camera();
+  line(fmt::format("at {:.4g}, {:.4g}, {:.4g}", c.position.x, c.position.y, c.position.z));
+  line(fmt::format("looks along {:.3f}, {:.3f}, {:.3f}", c.direction.x, c.direction.y, c.direction.z));
+  float degrees = static_cast<float>(glm::degrees(c.verticalFov));
+  if (slider(ui, "field of view", degrees, 10.0f, 120.0f, "%.1f degrees")) {
+    s.path.follows = false;
+    s.camera->setFieldOfView(glm::radians(static_cast<double>(degrees)));
+  }
+  float speed = static_cast<float>(s.camera->speed());
+  const float span = static_cast<float>(std::max(glm::length(s.scene->bounds.extent()), 1e-9));
+  if (slider(ui, "speed", speed, 1e-4f * span, span, "%.3g units/s", true)) s.camera->setSpeed(speed);
+  if (button(ui, "frame the scene")) frameScene(s);
+  explain("Moves back along the line of sight until all of the scene is in view.");
+  ImGui::SameLine();
+  if (button(ui, "copy as --camera")) ImGui::SetClipboardText(("--camera " + cameraText(c)).c_str());
+  if (s.scene->cameras.size() > 1 || !s.scene->cameras.front().name.empty())
+    for (const Camera& camera : s.scene->cameras) {
+      const std::string name = camera.name.empty() ? "first view" : camera.name;
+      if (ImGui::SmallButton(name.c_str())) {
+        s.camera->place(camera);
+        s.path.follows = false;
+      }
+      ui.note(name);
+      ImGui::SameLine();
+    }
+  ImGui::NewLine();
+  checkbox(ui, "along the path", s.path.follows);
+  ImGui::SameLine();
+  if (button(ui, s.path.paused ? "play" : "pause")) s.path.paused = !s.path.paused;
+  ImGui::SameLine();
+  checkbox(ui, "loop", s.path.loops);
+  float seconds = static_cast<float>(s.path.seconds), playSpeed = static_cast<float>(s.path.speed);
+  if (slider(ui, "time", seconds, 0.0f, static_cast<float>(s.path.duration()), "%.2f s")) {
+    s.path.seconds = std::min(static_cast<double>(seconds), s.path.duration() - 1e-6);
+    s.path.follows = true;
+  }
+  if (slider(ui, "play speed", playSpeed, 0.0625f, 16.0f, "%.3g x", true)) s.path.speed = playSpeed;
+  (void)host;
+}
+
+void showLight(Ui& ui, WalkState& s) {
+  slider(ui, "exposure", s.exposure, 1e-3f, 1e3f, "%.4g", true);
+  explain("Multiplies radiance before the tone curve, in all pictures alike.");
+  checkbox(ui, "automatic exposure", s.autoExposure);
+  explain("Follows the picture's mean luminance. Off for measuring: pictures are compared before exposure anyway.");
+  ImGui::SameLine();
+  if (button(ui, "meter once")) s.meterWanted = true;
+  Scene& scene = *s.scene;
+  bool changed = false;
+  if (scene.sun) {
+    DirectionalLight& sun = *scene.sun;
+    const glm::dvec3 to = -sun.direction;
+    float height = static_cast<float>(glm::degrees(std::asin(std::clamp(to.y, -1.0, 1.0))));
+    float azimuth = static_cast<float>(glm::degrees(std::atan2(to.x, -to.z)));
+    const bool moved = slider(ui, "sun height", height, 1.0f, 90.0f, "%.1f degrees") | slider(ui, "sun azimuth", azimuth, -180.0f, 180.0f, "%.1f degrees");
+    if (moved) {
+      const double h = glm::radians(std::clamp(static_cast<double>(height), 0.5, 89.9)), a = glm::radians(static_cast<double>(azimuth));
+      sun.direction = -glm::dvec3(std::cos(h) * std::sin(a), std::sin(h), -std::cos(h) * std::cos(a));
+      changed = true;
+    }
+    float strength = std::max({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z});
+    if (strength > 0.0f) {
+      float asked = strength;
+      if (slider(ui, "sun irradiance", asked, 1e-3f, 1e4f, "%.4g W/unit^2", true)) {
+        sun.irradiance *= asked / strength;
+        changed = true;
+      }
+    }
+  }
+  const auto lamp = [&](const std::string& name, glm::vec3& intensity, glm::dvec3& position) {
+    ImGui::PushID(name.c_str());
+    line(name);
+    float strength = std::max({intensity.x, intensity.y, intensity.z});
+    if (strength > 0.0f) {
+      float asked = strength;
+      const bool moved = ImGui::SliderFloat("intensity", &asked, 1e-4f, 1e5f, "%.4g W/sr", ImGuiSliderFlags_Logarithmic);
+      ui.note(name + " intensity");
+      if (moved) {
+        intensity *= asked / strength;
+        changed = true;
+      }
+    }
+    glm::vec3 place(position);
+    const float step = 1e-3f * static_cast<float>(std::max(glm::length(scene.bounds.extent()), 1e-9));
+    const bool moved = ImGui::DragFloat3("position", &place.x, step);
+    ui.note(name + " position");
+    if (moved) {
+      position = glm::dvec3(place);
+      changed = true;
+    }
+    ImGui::PopID();
+  };
+  for (std::size_t i = 0; i < scene.spots.size() && i < 16; ++i) lamp(fmt::format("spot {}", i + 1), scene.spots[i].intensity, scene.spots[i].position);
+  for (std::size_t i = 0; i < scene.points.size() && i < 16; ++i) lamp(fmt::format("point {}", i + 1), scene.points[i].intensity, scene.points[i].position);
+  const bool shines = std::any_of(s.materialsAsLoaded.begin(), s.materialsAsLoaded.end(), [](const Material& m) { return m.emission != glm::vec3(0.0f); });
+  if (shines && slider(ui, "emissive surfaces", s.emissionFactor, 0.01f, 100.0f, "%.3g x", true)) {
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+      scene.materials[i].emission = s.emissionFactor * s.materialsAsLoaded[i].emission;
+      scene.materials[i].emissionScale = s.emissionFactor * s.materialsAsLoaded[i].emissionScale;
+    }
+    changed = true;
+  }
+  if (scene.environment) {
+    float strength = std::max({scene.environment->radiance.x, scene.environment->radiance.y, scene.environment->radiance.z});
+    if (strength > 0.0f) {
+      float asked = strength;
+      if (slider(ui, "sky", asked, 1e-4f, 1e4f, "%.4g x", true)) {
+        scene.environment->radiance *= asked / strength;
+        changed = true;
+      }
+    }
+  }
+  if (changed) ++s.sceneVersion;
+}
+
+void showSide(Ui& ui, WalkState& s, int index) {
+  SideState& side = s.sides[static_cast<std::size_t>(index)];
+  static constexpr std::array<std::string_view, 4> kTechniques{"direct", "rsm", "lpv", "radiosity"};
+  static constexpr std::array<std::string_view, 3> kComponents{"all", "direct", "indirect"};
+  static constexpr std::array<std::string_view, 2> kFidelities{"corrected", "original"};
+  int shows = static_cast<int>(side.shows);
+  if (menu(ui, "shows", shows, kShowsNames)) {
+    side.shows = static_cast<Shows>(shows);
+    if (side.shows == Shows::reference) s.truthOn = true;
+  }
+  if (side.shows == Shows::picture) {
+    textField(ui, "picture", side.pictureFile);
+    explain("hdr, exr or pfm in linear radiance, png or jpg taken as sRGB. Enter loads it; a picture dropped on the window comes here as B.");
+  }
+  if (menu(ui, "technique", side.options.technique, kTechniques)) side.options.settings.clear(), side.options.deviations.clear();
+  menu(ui, "light", side.options.component, kComponents);
+  menu(ui, "fidelity", side.options.fidelity, kFidelities);
+  if (side.renderer) line(fmt::format("made in {:.2f} s, {:.1f} MiB on the GPU", side.buildSeconds, static_cast<double>(side.renderer->gpuBytes()) / 1048576.0));
+  if (!side.failure.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 120, 90, 255));
+    wrapped(side.failure);
+    ImGui::PopStyleColor();
+  }
+}
+
+void showSettings(Ui& ui, WalkState& s) {
+  static constexpr std::array<std::string_view, 2> kSides{"A", "B"};
+  menu(ui, "of", s.edited, kSides);
+  SideState& side = s.sides[static_cast<std::size_t>(s.edited)];
+  if (button(ui, "copy as command line")) ImGui::SetClipboardText((commandLine("render", s.scene->file.string(), side.options) + " --camera " + cameraText(s.camera->camera()) + " -o picture.exr").c_str());
+  ImGui::SameLine();
+  if (button(ui, "all defaults")) side.options.settings.clear(), side.options.deviations.clear();
+  for (const std::string& assignment : side.options.settings) wrapped("--set " + assignment);
+  for (const Deviation& deviation : allDeviations()) {
+    const std::string name = deviation.name;
+    const bool belongs = name.starts_with(side.options.technique + ".") || (side.options.technique == "radiosity" && name.starts_with("rad.")) ||
+                         (side.options.technique == "lpv" && name.starts_with("rsm."));
+    if (!belongs || !side.renderer) continue;
+    const std::vector<std::string> active = activeDeviations(side.renderer->settings());
+    bool on = std::find(active.begin(), active.end(), name) != active.end();
+    if (checkbox(ui, name.c_str(), on)) assign(side.options.deviations, name, on ? "on" : "off");
+    explain(deviation.meaning);
+  }
+}
+
+void showJudgement(WalkState& s, int index) {
+  SideState& side = s.sides[static_cast<std::size_t>(index)];
+  if (side.shows == Shows::reference || !s.isVisible(index)) return;
+  const char* name = index == 0 ? "A" : "B";
+  if (!side.judgement.known()) {
+    line(fmt::format("{}: waits for {} samples a pixel", name, Truth::kFewest));
+    return;
+  }
+  const measure::ErrorInterval& e = side.judgement.nrmse();
+  line(fmt::format("{}: error {:.2f} %, {:.2f} to {:.2f} (99 %)", name, 100.0 * e.value, 100.0 * e.low, 100.0 * e.high));
+  explain("Root mean square difference from the path-traced reference of this view, over the reference's mean, with the reference's own noise taken off. "
+          "The interval holds the true error but for one view in a hundred.");
+  const auto flip = side.judgement.flip();
+  line(fmt::format("   bias {:+.2f} %, FLIP {}", 100.0 * side.judgement.bias(), flip ? fmt::format("{:.4f}", *flip) : std::string("...")));
+}
+
+void showCompare(Ui& ui, WalkState& s) {
+  int layout = static_cast<int>(s.layout), show = static_cast<int>(s.show);
+  if (menu(ui, "layout", layout, kLayoutNames)) s.layout = static_cast<Layout>(layout);
+  if (menu(ui, "shown as", show, kShowNames)) {
+    s.show = static_cast<Show>(show);
+    if (s.show != Show::picture) s.truthOn = true;
+  }
+  static constexpr std::array<std::string_view, 2> kSides{"A", "B"};
+  menu(ui, "shown", s.shown, kSides);
+  if (s.layout == Layout::wipe) slider(ui, "wipe", s.split, 0.0f, 1.0f, "%.2f");
+  slider(ui, "zoom", s.zoom, 1.0f, 64.0f, "%.2f x", true);
+  checkbox(ui, "magnifier", s.magnifier);
+  if (s.show == Show::signedError) slider(ui, "colours end at", s.errorScale, 0.0f, 100.0f, s.errorScale > 0.0f ? "%.4g radiance" : "half of the mean", true);
+  ImGui::Separator();
+  checkbox(ui, "live truth", s.truthOn);
+  explain("While the camera rests, the path tracer makes the reference of this view; it is kept with the bench's references.");
+  slider(ui, "share of a frame", s.truthShare, 0.01f, 0.9f, "%.2f");
+  explain("Of a frame's time for the path tracer while the picture is still being made; on a still view it takes what is idle.");
+  if (!s.truthOn) return;
+  if (!s.truth || s.truth->samples() == 0) {
+    line("the reference: when the camera rests");
+    return;
+  }
+  line(fmt::format("reference: {} samples a pixel, {:.1f} s", s.truth->samples(), s.truth->seconds()));
+  showJudgement(s, 0);
+  showJudgement(s, 1);
+}
+
+void showTimings(Ui& ui, WalkState& s) {
+  if (!s.frameMs.empty()) {
+    const std::vector<double> ms(s.frameMs.begin(), s.frameMs.end());
+    const double middle = median(ms), most = percentile(ms, 0.95);
+    line(fmt::format("frame {:.2f} ms, 95 % {:.2f} ms", middle, most));
+    const float top = std::max(1.2f * static_cast<float>(most), 1.3f * s.budgetMs);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, 4.0f * ImGui::GetFontSize());
+    ImGui::PlotLines("##frames", s.frameMs.data(), static_cast<int>(s.frameMs.size()), 0, nullptr, 0.0f, top, size);
+    const float y = corner.y + size.y * (1.0f - s.budgetMs / top);
+    ImGui::GetWindowDrawList()->AddLine({corner.x, y}, {corner.x + size.x, y}, IM_COL32(255, 170, 40, 255));
+  }
+  slider(ui, "budget", s.budgetMs, 1.0f, 1000.0f, "%.1f ms", true);
+  for (int i = 0; i < 2; ++i) {
+    SideState& side = s.sides[static_cast<std::size_t>(i)];
+    if (!side.renderer || !s.isVisible(i)) continue;
+    line(fmt::format("{}: {}", i == 0 ? "A" : "B", side.built.technique));
+    const std::vector<gl::StageStatistics> stages = side.renderer->timer().statistics();
+    double longest = 1e-9;
+    for (const gl::StageStatistics& stage : stages) longest = std::max(longest, std::isnan(stage.medianMs) ? 0.0 : stage.medianMs);
+    for (const gl::StageStatistics& stage : stages) {
+      const double ms = std::isnan(stage.medianMs) ? 0.0 : stage.medianMs;
+      const double reused = stage.frames > 0 ? 1.0 - static_cast<double>(stage.ran) / static_cast<double>(stage.frames) : 0.0;
+      ImGui::ProgressBar(static_cast<float>(ms / longest), {6.0f * ImGui::GetFontSize(), 0.0f}, fmt::format("{:.2f} ms", ms).c_str());
+      ImGui::SameLine();
+      line(stage.name + (reused > 0.0 ? fmt::format(", reused {:.0f} %", 100.0 * reused) : ""));
+      explain(fmt::format("median {:.3f} ms, 95 % {:.3f} ms of {} samples; ran in {} of {} frames", stage.medianMs, stage.p95Ms, stage.count, stage.ran, stage.frames));
+    }
+  }
+  if (button(ui, "begin again"))
+    for (SideState& side : s.sides)
+      if (side.renderer) side.renderer->timer().reset();
+  wrapped(s.rendererName);
+}
+
+void showMemory(Ui& ui, WalkState& s) {
+  double total = static_cast<double>(ui.gpuBytes());
+  const auto mebibytes = [&](const std::string& name, std::size_t bytes) {
+    total += static_cast<double>(bytes);
+    line(fmt::format("{:8.2f} MiB  {}", static_cast<double>(bytes) / 1048576.0, name));
+  };
+  for (int i = 0; i < 2; ++i)
+    if (const SideState& side = s.sides[static_cast<std::size_t>(i)]; side.renderer) mebibytes(std::string(i == 0 ? "A, " : "B, ") + side.built.technique, side.renderer->gpuBytes());
+  if (s.truth) mebibytes("path tracer", s.truth->gpuBytes());
+  line(fmt::format("{:8.2f} MiB  in all", total / 1048576.0));
+  const SideState& side = s.side();
+  if (!side.renderer) return;
+  std::string left;
+  for (const std::string& name : side.renderer->leftOut()) left += (left.empty() ? "" : ", ") + name;
+  wrapped("Left out, as nothing here needs it: " + left);
+}
+
+void showRecord(Ui& ui, WalkState& s, Host& host) {
+  if (button(ui, "save the picture")) s.shotWanted = true;
+  explain("PNG as shown and HDR with linear radiance, both with settings, camera and exposure inside.");
+  std::string folder = s.shotFolder.string();
+  if (textField(ui, "into", folder)) s.shotFolder = folder;
+  ImGui::Separator();
+  if (button(ui, "add key frame")) {
+    const Camera& c = s.camera->camera();
+    s.keyFrames.push_back({c.position, c.direction, c.up, c.verticalFov});
+  }
+  ImGui::SameLine();
+  if (button(ui, "remove the last") && !s.keyFrames.empty()) s.keyFrames.pop_back();
+  for (std::size_t i = 0; i < s.keyFrames.size(); ++i) {
+    const KeyFrame& key = s.keyFrames[i];
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::SmallButton(fmt::format("{}: {:.3g}, {:.3g}, {:.3g}", i + 1, key.position.x, key.position.y, key.position.z).c_str())) {
+      Camera camera = s.camera->camera();
+      camera.position = key.position;
+      camera.direction = key.direction;
+      camera.up = key.up;
+      camera.verticalFov = key.verticalFov.value_or(camera.verticalFov);
+      s.camera->place(camera);
+      s.path.follows = false;
+    }
+    ImGui::SameLine();
+    if (ImGui::SmallButton("set")) {
+      const Camera& c = s.camera->camera();
+      s.keyFrames[i] = {c.position, c.direction, c.up, c.verticalFov};
+    }
+    ImGui::PopID();
+  }
+  textField(ui, "key frame file", s.keyFramesFile);
+  if (button(ui, "write")) {
+    try {
+      if (s.keyFrames.size() < 2) throwBadInput("a path has at least two key frames; there are {}", s.keyFrames.size());
+      writeFileAtomically(s.keyFramesFile, textOfKeyFrames(s.keyFrames, "Recorded in " + s.scene->name + "."));
+      s.say(fmt::format("{}: {} key frames", s.keyFramesFile, s.keyFrames.size()));
+    } catch (const Error& error) {
+      s.say(error.what());
+    }
+  }
+  ImGui::SameLine();
+  if (button(ui, "walk along them") && s.keyFrames.size() >= 2) {
+    s.path.spline = Spline(s.keyFrames);
+    s.path.first = 0;
+    s.path.last = s.path.spline->viewCount() - 1;
+    s.path.seconds = 0.0;
+    s.path.follows = true;
+    s.path.paused = false;
+  }
+  ImGui::Separator();
+  bool full = host.isFullScreen();
+  if (checkbox(ui, "full screen", full)) host.setFullScreen(full);
+  ImGui::SameLine();
+  if (checkbox(ui, "wait for the display", s.swapAtRefresh)) host.setSwapInterval(s.swapAtRefresh ? 1 : 0);
+  int limit = s.frameLimit;
+  ImGui::SliderInt("frames a second", &limit, 0, 240, limit == 0 ? "no limit" : "%d at most");
+  ui.note("frames a second");
+  s.frameLimit = limit;
+  slider(ui, "render scale", s.renderScale, 0.25f, 2.0f, "%.2f x");
+  explain("Sides of the picture that is computed over those of the window. 2: four samples a pixel, averaged after the tone curve.");
+}
+
+}  // namespace
+
+void Panel::show(Ui& ui, WalkState& s, Host& host) {
+  const float width = 25.0f * ImGui::GetFontSize();
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x - std::min(width, screen.x), 0.0f}, ImGuiCond_Always);
+  ImGui::SetNextWindowSize({std::min(width, screen.x), screen.y}, ImGuiCond_Always);
+  ImGui::Begin("Lucerna", nullptr, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar);
+  ImGui::PushItemWidth(0.52f * ImGui::GetContentRegionAvail().x);
+  const auto part = [&](const char* name, bool open, auto content) {
+    if (!section(ui, name, open)) return;
+    content();
+    endSection();
+  };
+  part("Technique A", true, [&] { showSide(ui, s, 0); });
+  part("Technique B", false, [&] { showSide(ui, s, 1); });
+  part("Settings and deviations", false, [&] { showSettings(ui, s); });
+  part("Compare", true, [&] { showCompare(ui, s); });
+  part("Light", false, [&] { showLight(ui, s); });
+  part("Camera", false, [&] { showCamera(ui, s, host); });
+  part("Scene", false, [&] { showScene(ui, s); });
+  part("Timings", true, [&] { showTimings(ui, s); });
+  part("Memory and left out", false, [&] { showMemory(ui, s); });
+  part("Record and window", false, [&] { showRecord(ui, s, host); });
+  ui.section("");
+  ImGui::PopItemWidth();
+  ImGui::End();
+}
+
+void Panel::showHelp(Ui& ui, WalkState& s) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.02f * screen.x, 0.04f * screen.y}, ImGuiCond_Always);
+  ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, {0.96f * screen.x, 0.92f * screen.y});
+  ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
+  line(keysHelp());
+  if (ImGui::Button("close")) s.help = false;
+  ui.section("Keys");
+  ui.note("close");
+  ui.section("");
+  ImGui::End();
+}
+
+void Panel::showMessage(const WalkState& s, const std::string& work, double share) {
+  std::string text = work.empty() ? "" : work + " ... Escape stops it";
+  if (work.empty() && !s.messages.empty() && s.messageAge < 8.0) text = s.messages.back();
+  else if (work.empty() && s.hint) text = "F1 keys, F2 panel, W A S D and dragging move, X wipe, T live truth";
+  if (text.empty()) return;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({8.0f, screen.y - 8.0f}, ImGuiCond_Always, {0.0f, 1.0f});
+  ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, {0.6f * screen.x, screen.y});
+  ImGui::SetNextWindowBgAlpha(work.empty() ? 0.6f : 1.0f);
+  ImGui::Begin("##message", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  ImGui::PushTextWrapPos(0.58f * screen.x);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  if (share >= 0.0) ImGui::ProgressBar(static_cast<float>(share), {20.0f * ImGui::GetFontSize(), 0.0f});
+  ImGui::End();
+}
+
+void Panel::showValues(const WalkState& s) {
+  if (!s.magnifier || !s.pixel) return;
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  if (!ImGui::IsMousePosValid(&mouse) || ImGui::GetIO().WantCaptureMouse) return;
+  ImGui::SetNextWindowPos({mouse.x + 90.0f, mouse.y}, ImGuiCond_Always);
+  ImGui::SetNextWindowBgAlpha(0.8f);
+  ImGui::Begin("##values", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  line(fmt::format("pixel {}, {}, radiance", s.pixel->x, s.pixel->y));
+  const auto value = [](const char* name, const std::optional<glm::vec3>& v) {
+    if (v) line(fmt::format("{:<6} {:10.4g} {:10.4g} {:10.4g}", name, v->x, v->y, v->z));
+  };
+  value("A", s.values.a);
+  value("B", s.values.b);
+  value("truth", s.values.truth);
+  value("+-", s.values.error);
+  ImGui::End();
+}
+
+}  // namespace lucerna::demo

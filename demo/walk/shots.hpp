@@ -1,0 +1,26 @@
+// What the window writes: screenshots with their settings inside, and camera paths (no GL).
+#pragma once
+
+#include "base/image.hpp"
+#include "scene/key_frames.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lucerna::demo {
+
+/// PNG with a text of keyword "Comment" [PNG, ISO 15948, 11.3.4.3], in Latin-1; whole or not at all.
+void writePngWithNote(const std::filesystem::path& file, const Bitmap& bitmap, const std::string& note);
+/// Radiance HDR with the note as lines of its header that begin with '#' [Ward, RADIANCE picture format]; whole or not at all.
+void writeHdrWithNote(const std::filesystem::path& file, const Image& image, const std::string& note);
+
+/// FOLDER/NAME_0001, the first number that is free for both extensions.
+std::filesystem::path freeName(const std::filesystem::path& folder, const std::string& name);
+
+/// The text of a key frame file (scene/key_frames.hpp), readable by readKeyFrames().
+std::string textOfKeyFrames(const std::vector<KeyFrame>& keys, const std::string& comment);
+/// A key frame as one line of it.
+std::string textOf(const KeyFrame& key);
+
+}  // namespace lucerna::demo

@@ -1,0 +1,54 @@
+#include "walk/state.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace lucerna::demo {
+
+namespace {
+
+/// As a shell takes it.
+std::string quoted(const std::string& text) {
+  const bool plain = !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=,:+-") == std::string::npos;
+  if (plain) return text;
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+}  // namespace
+
+std::string textOf(const PictureOptions& o) {
+  return fmt::format("{} {} {} | {} | {}", o.technique, o.component, o.fidelity, fmt::join(o.deviations, " "), fmt::join(o.settings, " "));
+}
+
+std::string commandLine(const std::string& command, const std::string& scene, const PictureOptions& o) {
+  const PictureOptions usual;
+  std::string line = "lucerna " + command + " " + quoted(scene);
+  if (o.technique != usual.technique) line += " --technique " + o.technique;
+  if (o.component != usual.component) line += " --component " + o.component;
+  if (o.fidelity != usual.fidelity) line += " --fidelity " + o.fidelity;
+  for (const std::string& deviation : o.deviations) line += " --deviation " + quoted(deviation);
+  for (const std::string& setting : o.settings) line += " --set " + quoted(setting);
+  return line;
+}
+
+void assign(std::vector<std::string>& assignments, const std::string& key, const std::string& value) {
+  const auto known = std::find_if(assignments.begin(), assignments.end(), [&](const std::string& a) { return a.starts_with(key + "="); });
+  if (value.empty()) {
+    if (known != assignments.end()) assignments.erase(known);
+  } else if (known != assignments.end()) {
+    *known = key + "=" + value;
+  } else {
+    assignments.push_back(key + "=" + value);
+  }
+}
+
+std::string cameraText(const Camera& c) {
+  const glm::dvec3 target = c.position + c.direction;
+  return fmt::format("{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.5g}", c.position.x, c.position.y, c.position.z, target.x, target.y, target.z, glm::degrees(c.verticalFov));
+}
+
+}  // namespace lucerna::demo

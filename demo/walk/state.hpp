@@ -1,0 +1,128 @@
+// All that the window knows and the panel changes: the scene, the view, two techniques, how they are compared.
+// Plain data: window.cpp acts on it once a frame, panel.cpp shows it.
+#pragma once
+
+#include "commands.hpp"
+#include "scene/key_frames.hpp"
+#include "walk/compare.hpp"
+#include "walk/free_camera.hpp"
+#include "walk/truth.hpp"
+
+#include <array>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lucerna::demo {
+
+/// What a side of the comparison shows.
+enum class Shows { technique, reference, picture };
+constexpr std::array<std::string_view, 3> kShowsNames{"a technique", "the reference", "a stored picture"};
+
+/// A or B.
+struct SideState {
+  PictureOptions options;          ///< what is asked for
+  Shows shows = Shows::technique;
+  std::string pictureFile;
+
+  // What there is. The renderer is that of `built`; until one for `options` is ready it goes on being shown.
+  std::unique_ptr<Renderer> renderer;
+  PictureOptions built;
+  std::string builtAs, failedAs;   ///< textOf() of options, with the scene's version
+  std::string failure;             ///< why the options could not be had; empty: they could
+  double buildSeconds = 0.0;
+  std::optional<gl::Texture> picture;
+  std::string pictureShown;        ///< the file of `picture`
+  bool settled = false;            ///< the picture stays as it is until something moves
+  std::uint64_t pictureVersion = 0, judgedPicture = 0, judgedTruth = 0;
+  Judgement judgement;
+};
+
+/// A camera path and where on it the walk is.
+struct PathState {
+  std::optional<Spline> spline;
+  int first = 0, last = 0;         ///< views
+  bool follows = true, paused = false, loops = false;
+  double seconds = 0.0, speed = 1.0;
+  double duration() const { return SplinePlayback(last - first + 1).duration(); }
+};
+
+struct WalkState {
+  // Scene
+  std::unique_ptr<Scene> scene;
+  std::uint64_t sceneVersion = 1;  ///< raised where lights or materials were changed
+  std::string sceneText;           ///< of the panel's text field
+  std::optional<std::filesystem::path> sceneToLoad;
+  bool ground = true;              ///< under scenes that are loaded here and come without light of their own: models
+  float emissionFactor = 1.0f;
+  std::vector<Material> materialsAsLoaded;
+
+  // Camera
+  PathState path;
+  std::optional<FreeCamera> camera;
+  std::vector<KeyFrame> keyFrames;  ///< recorded
+  std::string keyFramesFile = "key_frames.txt";
+
+  // Techniques
+  std::array<SideState, 2> sides;
+  int shown = 0;                   ///< of the sides, where the layout is one picture
+  int edited = 0;                  ///< of the sides, by the settings section
+  std::vector<std::array<PictureOptions, 2>> undo;
+  std::string settingsFilter;
+
+  // Comparison
+  Layout layout = Layout::one;
+  Show show = Show::picture;
+  float split = 0.5f, zoom = 1.0f, errorScale = 0.0f;  ///< errorScale 0: a tenth of the mean
+  glm::vec2 centre{0.5f};
+  bool magnifier = false;
+  float exposure = 1.0f;
+  bool autoExposure = false;
+  float renderScale = 1.0f;        ///< of the picture's side over the window's; 2: four samples a pixel
+
+  // Truth
+  bool truthOn = false;
+  float truthShare = 0.1f;         ///< of a frame's time
+  std::unique_ptr<Truth> truth;
+
+  // Window
+  bool panel = true, help = false, hint = true;
+  bool swapAtRefresh = true;
+  int frameLimit = 0;              ///< frames a second; 0: none
+  float budgetMs = 16.7f;
+  std::filesystem::path shotFolder = ".";
+  bool shotWanted = false, meterWanted = false, reloadWanted = false, endWanted = false;
+  std::deque<std::string> messages;  ///< the newest last
+  double messageAge = 0.0;         ///< seconds
+  std::vector<float> frameMs;      ///< the last ones
+  std::string rendererName;
+
+  // Under the cursor, for the magnifier.
+  std::optional<glm::ivec2> pixel;  ///< from the picture's top left
+  struct PixelValues {
+    std::optional<glm::vec3> a, b, truth, error;
+  } values;
+
+  void say(std::string message) {
+    messages.push_back(std::move(message));
+    if (messages.size() > 50) messages.pop_front();
+    messageAge = 0.0;
+  }
+  SideState& side() { return sides[static_cast<std::size_t>(shown)]; }
+  /// Whether a side is on the screen.
+  bool isVisible(int side) const { return layout != Layout::one || side == shown; }
+};
+
+/// The options as text: equal texts make equal pictures.
+std::string textOf(const PictureOptions& options);
+/// `lucerna render ...` or `walk` with these options.
+std::string commandLine(const std::string& command, const std::string& scene, const PictureOptions& options);
+/// Sets KEY=VALUE, in place of what was said of the key before; an empty value takes it out.
+void assign(std::vector<std::string>& assignments, const std::string& key, const std::string& value);
+/// --camera's argument.
+std::string cameraText(const Camera& camera);
+
+}  // namespace lucerna::demo

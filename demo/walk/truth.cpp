@@ -1,0 +1,167 @@
+#include "walk/truth.hpp"
+
+#include "base/error.hpp"
+#include "base/hash.hpp"
+#include "base/log.hpp"
+#include "bench/path_sampler.hpp"
+#include "measure/flip.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace lucerna::demo {
+
+namespace {
+
+measure::Transport measured(Component component) {
+  switch (component) {
+    case Component::all: return measure::Transport::all;
+    case Component::direct: return measure::Transport::direct;
+    case Component::indirect: return measure::Transport::indirect;
+  }
+  return measure::Transport::all;
+}
+
+Transport traced(Component component) {
+  switch (component) {
+    case Component::all: return Transport::all;
+    case Component::direct: return Transport::direct;
+    case Component::indirect: return Transport::indirect;
+  }
+  return Transport::all;
+}
+
+void upload(gl::Texture& texture, const Image& image) {
+  std::vector<glm::vec4> texels;
+  texels.reserve(image.pixels.size());
+  for (int y = image.height - 1; y >= 0; --y)
+    for (int x = 0; x < image.width; ++x) texels.emplace_back(image.at(x, y), 1.0f);
+  texture.upload(GL_RGBA, GL_FLOAT, texels.data());
+}
+
+}  // namespace
+
+gl::Texture textureOf(const std::string& name, const Image& image) {
+  gl::Texture texture(name, GL_RGBA32F, glm::ivec2(image.width, image.height));
+  upload(texture, image);
+  return texture;
+}
+
+// The settings are those of bench/path_sampler.cpp, so that both make the same picture; another seed makes it independent of what the cache holds.
+Truth::Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size, Component component)
+    : context_(context), scene_(scene), size_(size), component_(component), cache_(measure::ReferenceCache::defaultFolder()) {
+  PathTracer::Settings settings;
+  settings.size = size;
+  settings.transport = traced(component);
+  settings.diffuseOnly = true;
+  settings.pixelCentres = true;
+  settings.submissionSeconds = 0.02;
+  Hash seed;
+  seed.add(std::string_view("live"));
+  seed.add(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count()));
+  settings.seed = static_cast<std::uint32_t>(seed.value() ^ seed.value() >> 32);
+  tracer_ = std::make_unique<PathTracer>(context, programs, scene, settings);
+  meanTexture_ = gl::Texture("reference", GL_RGBA32F, size);
+  errorTexture_ = gl::Texture("standard error of the reference", GL_RGBA32F, size);
+}
+
+Truth::~Truth() = default;
+
+void Truth::look(const Camera& camera) {
+  keep();
+  tracer_->setCamera(camera);
+  key_ = measure::keyOf(scene_, camera, size_, measured(component_), bench::PathSampler::kVersion);
+  cached_ = cache_.load(*key_);
+  cachedSamples_ = cached_ ? cached_->samples : 0;
+  shownSamples_ = keptSamples_ = 0;
+  target_ = 1;
+  credit_ = seconds_ = 0.0;
+  shown_ = {};
+  if (cached_) publish();
+}
+
+void Truth::advance(double seconds) {
+  if (!key_) return;
+  credit_ = std::min(credit_ + seconds, std::max(4.0 * submission_, seconds));
+  while (credit_ >= submission_) {
+    const auto start = std::chrono::steady_clock::now();
+    const bool more = tracer_->advance(target_);
+    submission_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    credit_ -= submission_;
+    seconds_ += submission_;
+    if (more) continue;
+    shownSamples_ = target_;
+    target_ += std::clamp(target_, 1u, 16u);
+    publish();
+  }
+}
+
+// Of whole passes alone: every pixel has the same number of samples.
+void Truth::publish() {
+  measure::Reference mine;
+  if (shownSamples_ >= 2) {
+    mine.transport = measured(component_);
+    mine.mean = tracer_->mean();
+    mine.standardError = tracer_->standardError();
+    const glm::dvec3 error = tracer_->statistics().meanError;
+    mine.meanError = (error.x + error.y + error.z) / 3.0;  // channels rise and fall together
+    mine.samples = shownSamples_;
+    mine.seconds = seconds_;
+    mine.renderer = context_.capabilities().renderer;
+  }
+  if (cached_ && shownSamples_ >= 2) shown_ = measure::merged(*cached_, mine);
+  else if (cached_) shown_ = *cached_;
+  else if (shownSamples_ >= 2) shown_ = std::move(mine);
+  else return;
+  upload(meanTexture_, shown_.mean);
+  upload(errorTexture_, shown_.standardError);
+  ++version_;
+}
+
+void Truth::keep() {
+  if (!key_ || shownSamples_ < keptSamples_ + kWorthKeeping || shown_.samples == 0) return;
+  try {
+    cache_.store(*key_, shown_);
+  } catch (const Error& error) {
+    logWarning("{}; the reference of this view is not kept", error.what());
+  }
+  keptSamples_ = shownSamples_;
+}
+
+std::size_t Truth::gpuBytes() const { return tracer_->gpuBytes() + meanTexture_.bytes() + errorTexture_.bytes(); }
+
+Judgement::~Judgement() {
+  if (pending_.valid()) pending_.wait();
+}
+
+void Judgement::clear() {
+  known_ = false;
+  flip_.reset();
+  flipMap_ = {};
+}
+
+void Judgement::judge(Image picture, const measure::Reference& reference) {
+  nrmse_ = measure::nrmseInterval(picture, reference.mean, reference.standardError);
+  const glm::dvec3 a = meanOf(picture), b = meanOf(reference.mean);
+  const double mean = b.x + b.y + b.z;
+  bias_ = mean > 0.0 ? (a.x + a.y + a.z) / mean - 1.0 : 0.0;
+  known_ = true;
+  if (pending_.valid()) return;  // the next one will have better pictures
+  pending_ = std::async(std::launch::async, [picture = std::move(picture), truth = reference.mean] {
+    const measure::Flip flip = measure::flipHdr(picture, truth);
+    return FlipResult{flip.mean, flip.map, truth.width, truth.height};
+  });
+}
+
+std::optional<double> Judgement::flip() {
+  if (pending_.valid() && pending_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    const FlipResult result = pending_.get();
+    flip_ = result.mean;
+    Image map(result.width, result.height);
+    for (std::size_t i = 0; i < result.map.size(); ++i) map.pixels[i] = glm::vec3(result.map[i]);
+    flipMap_ = textureOf("FLIP", map);
+  }
+  return flip_;
+}
+
+}  // namespace lucerna::demo

@@ -1,0 +1,101 @@
+// Live truth: while the camera rests, the path tracer makes the reference of the view that is shown, and pictures are judged by it.
+//
+// In: the scene, the view, the size and which light; each frame, the time that may be spent. Out: mean and standard error as textures, and for a picture its
+// error with the interval that holds the true one. References come from and go to the bench's cache (measure/reference.hpp).
+#pragma once
+
+#include "gl/context.hpp"
+#include "gl/program.hpp"
+#include "measure/error_interval.hpp"
+#include "measure/reference.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "render/renderer.hpp"
+
+#include <future>
+#include <memory>
+#include <optional>
+
+namespace lucerna::demo {
+
+class Truth {
+ public:
+  /// Compiles, and builds the hierarchy of the scene; `scene` must outlive it.
+  Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size, Component component);
+  ~Truth();
+
+  glm::ivec2 size() const { return size_; }
+  Component component() const { return component_; }
+  /// Another view: what was sampled is put into the cache where it is worth it, and sampling begins again.
+  void look(const Camera& camera);
+  /// Spends about `seconds`; less than a submission takes is saved up.
+  void advance(double seconds);
+
+  /// Samples a pixel, the cache's among them; 0: there is nothing yet.
+  std::uint64_t samples() const { return cachedSamples_ + shownSamples_; }
+  bool ready() const { return samples() >= kFewest; }
+  double seconds() const { return seconds_; }   ///< spent on this view
+  const gl::Texture& mean() const { return meanTexture_; }
+  const gl::Texture& standardError() const { return errorTexture_; }
+  const measure::Reference& reference() const { return shown_; }
+  /// Raised whenever the reference has become better, or another.
+  std::uint64_t version() const { return version_; }
+  std::size_t gpuBytes() const;
+  /// Keeps what was sampled of this view in the cache.
+  void keep();
+
+  static constexpr std::uint64_t kFewest = 16;   ///< samples before anything is said of errors
+  static constexpr std::uint64_t kWorthKeeping = 64;
+
+ private:
+  void publish();
+
+  const gl::Context& context_;
+  const Scene& scene_;
+  glm::ivec2 size_;
+  Component component_;
+  std::unique_ptr<PathTracer> tracer_;
+  measure::ReferenceCache cache_;
+  std::optional<measure::ReferenceKey> key_;
+  std::optional<measure::Reference> cached_;
+  measure::Reference shown_;
+  std::uint64_t cachedSamples_ = 0, shownSamples_ = 0, keptSamples_ = 0;
+  std::uint32_t target_ = 1;
+  double credit_ = 0.0, submission_ = 0.0, seconds_ = 0.0;
+  std::uint64_t version_ = 0;
+  gl::Texture meanTexture_, errorTexture_;
+};
+
+/// A picture judged by a reference: the figures at once, FLIP on a thread of its own.
+class Judgement {
+ public:
+  Judgement() = default;
+  Judgement(Judgement&&) = default;
+  Judgement& operator=(Judgement&&) = default;
+  ~Judgement();
+  void judge(Image picture, const measure::Reference& reference);
+  void clear();
+  bool known() const { return known_; }
+  const measure::ErrorInterval& nrmse() const { return nrmse_; }
+  double bias() const { return bias_; }  ///< of the mean, relative
+  /// FLIP's mean and map, once they are there; the map as a texture.
+  std::optional<double> flip();
+  const gl::Texture* flipMap() const { return flipMap_.id() ? &flipMap_ : nullptr; }
+
+ private:
+  struct FlipResult {
+    double mean = 0.0;
+    std::vector<float> map;
+    int width = 0, height = 0;
+  };
+  bool known_ = false;
+  measure::ErrorInterval nrmse_;
+  double bias_ = 0.0;
+  std::future<FlipResult> pending_;
+  std::optional<double> flip_;
+  gl::Texture flipMap_;
+};
+
+/// A linear picture, top row first, as a texture, bottom row first.
+gl::Texture textureOf(const std::string& name, const Image& image);
+
+}  // namespace lucerna::demo

@@ -1,0 +1,119 @@
+#include "walk/ui.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::demo {
+
+namespace {
+
+constexpr std::pair<ImGuiKey, int> kKeys[] = {
+    {ImGuiKey_Tab, key::kTab},     {ImGuiKey_LeftArrow, key::kLeft}, {ImGuiKey_RightArrow, key::kRight}, {ImGuiKey_UpArrow, key::kUp},
+    {ImGuiKey_DownArrow, key::kDown}, {ImGuiKey_PageUp, key::kPageUp}, {ImGuiKey_PageDown, key::kPageDown}, {ImGuiKey_Home, key::kHome},
+    {ImGuiKey_End, key::kEnd},     {ImGuiKey_Insert, key::kInsert},  {ImGuiKey_Delete, key::kDelete},    {ImGuiKey_Backspace, key::kBackspace},
+    {ImGuiKey_Space, ' '},         {ImGuiKey_Enter, key::kEnter},    {ImGuiKey_Escape, key::kEscape},    {ImGuiKey_A, 'A'},
+    {ImGuiKey_C, 'C'},             {ImGuiKey_V, 'V'},                {ImGuiKey_X, 'X'},                  {ImGuiKey_Y, 'Y'},
+    {ImGuiKey_Z, 'Z'}};
+
+}  // namespace
+
+Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), scale_(scale), overlay_(programs) {
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;  // nothing is written beside the user's files
+  io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+  for (const auto& [imguiKey, ours] : kKeys) io.KeyMap[imguiKey] = ours;
+  io.ClipboardUserData = this;
+  io.GetClipboardTextFn = [](void* self) -> const char* {
+    Ui& ui = *static_cast<Ui*>(self);
+    if (ui.host_.kind() == HostKind::window) ui.clipboard_ = ui.host_.clipboard();
+    return ui.clipboard_.c_str();
+  };
+  io.SetClipboardTextFn = [](void* self, const char* text) {
+    static_cast<Ui*>(self)->clipboard_ = text;
+    static_cast<Ui*>(self)->host_.setClipboard(text);
+  };
+  ImGui::StyleColorsDark();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 4.0f;
+  style.Colors[ImGuiCol_WindowBg].w = 0.86f;
+  style.ScaleAllSizes(scale);
+  ImFontConfig font;
+  font.SizePixels = std::round(13.0f * scale);
+  io.Fonts->AddFontDefault(&font);
+  unsigned char* pixels = nullptr;
+  int width = 0, height = 0;
+  io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+  gl::Sampling sampling;
+  sampling.minFilter = sampling.magFilter = GL_LINEAR;
+  font_ = gl::Texture("font", GL_RGBA8, glm::ivec2(width, height), sampling);
+  font_.upload(GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+  io.Fonts->SetTexID(&font_);
+  io.Fonts->ClearTexData();
+}
+
+Ui::~Ui() { ImGui::DestroyContext(); }
+
+void Ui::begin(const HostInput& input, glm::ivec2 size, double seconds) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
+  io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 1.0));
+  io.MousePos = {static_cast<float>(input.cursor.x), static_cast<float>(input.cursor.y)};
+  if (!input.focused) io.MousePos = {-FLT_MAX, -FLT_MAX};
+  for (int button = 0; button < 3; ++button) io.MouseDown[button] = input.buttons[static_cast<std::size_t>(button)];
+  io.MouseWheel += static_cast<float>(input.wheel.y);
+  io.MouseWheelH += static_cast<float>(input.wheel.x);
+  for (const KeyEvent& event : input.keys) {
+    io.KeysDown[event.key] = event.down;
+    io.KeyCtrl = event.control;
+    io.KeyShift = event.shift;
+    io.KeyAlt = event.alt;
+  }
+  io.AddInputCharactersUTF8(input.text.c_str());
+  places_.clear();
+  ImGui::NewFrame();
+}
+
+void Ui::drop() { ImGui::EndFrame(); }
+
+void Ui::end(const gl::Framebuffer& target) {
+  ImGui::Render();
+  wanted_.clear();
+  const ImDrawData& data = *ImGui::GetDrawData();
+  vertices_.clear();
+  indices_.clear();
+  runs_.clear();
+  for (int i = 0; i < data.CmdListsCount; ++i) {
+    const ImDrawList& list = *data.CmdLists[i];
+    const auto firstVertex = static_cast<std::uint32_t>(vertices_.size());
+    for (const ImDrawVert& v : list.VtxBuffer) {
+      const ImVec4 color = ImGui::ColorConvertU32ToFloat4(v.col);
+      vertices_.push_back({{v.pos.x, v.pos.y}, {v.uv.x, v.uv.y}, {color.x, color.y, color.z, color.w}});
+    }
+    for (const ImDrawCmd& command : list.CmdBuffer) {
+      const glm::ivec2 corner(static_cast<int>(command.ClipRect.x), static_cast<int>(command.ClipRect.y));
+      const glm::ivec2 end(static_cast<int>(command.ClipRect.z), static_cast<int>(command.ClipRect.w));
+      runs_.push_back({corner, end - corner, static_cast<std::uint32_t>(indices_.size()), command.ElemCount, static_cast<const gl::Texture*>(command.GetTexID())});
+      for (unsigned k = 0; k < command.ElemCount; ++k)
+        indices_.push_back(firstVertex + command.VtxOffset + list.IdxBuffer[static_cast<int>(command.IdxOffset + k)]);
+    }
+  }
+  overlay_.draw(target, vertices_, indices_, runs_);
+}
+
+void Ui::note(const std::string& label) {
+  const std::string name = section_.empty() ? label : section_ + "/" + label;
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  labels_.insert(name);
+  places_[name] = {{0.5f * (low.x + high.x), 0.5f * (low.y + high.y)}, ImGui::IsItemVisible()};
+  if (name == wanted_) ImGui::SetScrollHereY();
+}
+
+std::optional<Ui::Place> Ui::find(const std::string& label) {
+  wanted_ = label;
+  const auto found = places_.find(label);
+  if (found == places_.end()) return {};
+  return found->second;
+}
+
+}  // namespace lucerna::demo

@@ -1,0 +1,628 @@
+#include "walk/window.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/log.hpp"
+#include "base/statistics.hpp"
+#include "gl/pass.hpp"
+#include "walk/ground.hpp"
+#include "walk/panel.hpp"
+#include "walk/paths.hpp"
+#include "walk/shots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+namespace lucerna::demo {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPlayedFrame = 1.0 / 60.0;  // seconds, of recorded input: the same walk on every machine
+constexpr double kMessageSeconds = 8.0, kHintSeconds = 8.0;
+constexpr int kStillFrames = 3;              // before the truth of a view is sought
+constexpr std::size_t kPlotFrames = 240;
+
+double secondsSince(std::chrono::steady_clock::time_point start) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+
+bool sameView(const Camera& a, const Camera& b) {
+  return a.position == b.position && a.direction == b.direction && a.up == b.up && a.verticalFov == b.verticalFov;
+}
+
+bool isPicture(const fs::path& file) {
+  const std::string extension = lowerExtension(file);
+  return extension == ".png" || extension == ".jpg" || extension == ".hdr" || extension == ".exr" || extension == ".pfm";
+}
+
+}  // namespace
+
+WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, WalkState state)
+    : options_(options), host_(host), context_(context), programs_(programs), state_(std::move(state)) {
+  state_.rendererName = context.capabilities().renderer;
+  if (!options.playInput.empty()) player_.emplace(options.playInput);
+  playedSize_ = parseSize(options.picture.size);
+  state_.swapAtRefresh = host.swapInterval().value_or(0) > 0;
+}
+
+WalkWindow::~WalkWindow() {
+  if (state_.truth) state_.truth->keep();
+}
+
+// ---------------------------------------------------------------------------------------------------- input
+
+bool WalkWindow::takeInput() {
+  if (player_) {
+    if (player_->done() && options_.frames == 0) return false;
+    if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
+    input_ = player_->next(&*ui_);
+    if (const auto size = player_->takeSize()) {
+      playedSize_ = *size;
+      host_.setWindowSize(*size);
+    }
+    host_.poll();  // so that the system sees a living window
+  } else {
+    input_ = host_.poll();
+  }
+  if (input_.closeRequested || interrupted()) return false;
+  const bool typing = ui_ && ui_->wantsKeyboard(), pointing = ui_ && ui_->wantsMouse();
+  if (typing) {
+    input_.move = glm::dvec3(0.0);
+    input_.pressed.clear();
+  }
+  if (pointing) input_.mouseDelta = glm::dvec2(0.0);
+  touched_ = touched_ || !input_.pressed.empty() || input_.buttons[0] || input_.buttons[1] || !input_.dropped.empty();
+  for (const KeyEvent& event : input_.keys) {
+    touched_ = true;
+    const auto action = actionOf(event);
+    if (action && (!typing || *action == Action::help || *action == Action::panel)) act(*action);
+  }
+  if (!pointing) {
+    const glm::vec2 pixels(glm::max(window_, glm::ivec2(1)));
+    if (input_.buttons[static_cast<std::size_t>(MouseButton::right)] && state_.layout == Layout::wipe)
+      state_.split = std::clamp(static_cast<float>(input_.cursor.x) / pixels.x, 0.0f, 1.0f);
+    if (input_.wheel.y != 0.0) state_.zoom = std::clamp(state_.zoom * static_cast<float>(std::exp2(0.25 * input_.wheel.y)), 1.0f, 64.0f);
+    if (state_.zoom == 1.0f) state_.centre = glm::vec2(0.5f);
+    if (input_.buttons[static_cast<std::size_t>(MouseButton::middle)])
+      state_.centre = glm::clamp(state_.centre - glm::vec2(1.0f, -1.0f) * glm::vec2(input_.cursor - cursorBefore_) / pixels / state_.zoom, 0.0f, 1.0f);
+  }
+  cursorBefore_ = input_.cursor;
+  for (const fs::path& file : input_.dropped) {
+    if (isPicture(file)) {
+      SideState& b = state_.sides[1];
+      b.shows = Shows::picture;
+      b.pictureFile = file.string();
+      if (state_.layout == Layout::one) state_.layout = Layout::wipe;
+    } else {
+      state_.sceneToLoad = file;
+    }
+  }
+  return !state_.endWanted && !stop_;
+}
+
+void WalkWindow::act(Action action) {
+  WalkState& s = state_;
+  const auto technique = [&](const char* name) {
+    s.side().shows = Shows::technique;
+    s.side().options.technique = name;
+  };
+  switch (action) {
+    case Action::help: s.help = !s.help; break;
+    case Action::panel: s.panel = !s.panel; break;
+    case Action::reload: s.reloadWanted = true; break;
+    case Action::fullScreen: host_.setFullScreen(!host_.isFullScreen()); break;
+    case Action::shot: s.shotWanted = true; break;
+    case Action::end: s.endWanted = true; break;
+    case Action::pause: s.path.paused = !s.path.paused; break;
+    case Action::follow: s.path.follows = !s.path.follows; break;
+    case Action::slower: s.path.speed = std::max(s.path.speed / 2.0, 1.0 / 64.0); break;
+    case Action::faster: s.path.speed = std::min(s.path.speed * 2.0, 64.0); break;
+    case Action::loop: s.path.loops = !s.path.loops; break;
+    case Action::addKeyFrame: {
+      const Camera& c = s.camera->camera();
+      s.keyFrames.push_back({c.position, c.direction, c.up, c.verticalFov});
+      s.say(fmt::format("{} key frames", s.keyFrames.size()));
+      break;
+    }
+    case Action::darker: s.exposure /= 1.25f; break;
+    case Action::brighter: s.exposure *= 1.25f; break;
+    case Action::autoExposure: s.autoExposure = !s.autoExposure; break;
+    case Action::direct: technique("direct"); break;
+    case Action::rsm: technique("rsm"); break;
+    case Action::lpv: technique("lpv"); break;
+    case Action::radiosity: technique("radiosity"); break;
+    case Action::path:
+      s.side().shows = Shows::reference;
+      s.truthOn = true;
+      break;
+    case Action::undo:
+      if (s.undo.empty()) break;
+      for (std::size_t i = 0; i < 2; ++i) s.sides[i].options = s.undo.back()[i];
+      s.undo.pop_back();
+      s.say("settings as before");
+      break;
+    case Action::flicker: s.shown = 1 - s.shown; break;
+    case Action::wipe: s.layout = s.layout == Layout::wipe ? Layout::one : Layout::wipe; break;
+    case Action::sideBySide: s.layout = s.layout == Layout::sideBySide ? Layout::one : Layout::sideBySide; break;
+    case Action::magnifier: s.magnifier = !s.magnifier; break;
+    case Action::nextView: s.show = static_cast<Show>((static_cast<int>(s.show) + 1) % static_cast<int>(kShowNames.size())); break;
+    case Action::truth: s.truthOn = !s.truthOn; break;
+    case Action::fit:
+      s.zoom = 1.0f;
+      s.centre = glm::vec2(0.5f);
+      break;
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------- the frame's steps
+
+void WalkWindow::moveCamera(double seconds) {
+  PathState& path = state_.path;
+  const bool steers = input_.move != glm::dvec3(0.0) || input_.mouseDelta != glm::dvec2(0.0);
+  if (steers) path.follows = false;
+  if (path.follows) {
+    if (!path.paused && frames_ > 0) path.seconds += seconds * path.speed;
+    const SplinePlayback playback(path.last - path.first + 1);
+    auto view = playback.viewAt(path.seconds);
+    if (!view && path.loops) {
+      path.seconds = std::fmod(path.seconds, playback.duration());
+      view = playback.viewAt(path.seconds);
+    }
+    if (!view) {
+      stop_ = !touched_;  // the walk ends by itself where nobody has touched anything
+      path.seconds = playback.duration();
+      path.paused = true;
+      view = path.last - path.first;
+    }
+    state_.camera->place(path.spline->view(path.first + *view));
+  } else {
+    state_.camera->move(input_, std::min(seconds, 0.1));  // a slow frame must not throw the camera across the room
+  }
+  if (!sameView(state_.camera->camera(), lastCamera_)) changed();
+  lastCamera_ = state_.camera->camera();
+}
+
+void WalkWindow::loadWantedScene() {
+  if (!state_.sceneToLoad) return;
+  const fs::path file = *std::exchange(state_.sceneToLoad, std::nullopt);
+  try {
+    breathe("loading " + file.filename().string());
+    auto scene = std::make_unique<Scene>(loadScene(file));
+    if (state_.ground && wantsGround(*scene)) addGround(*scene);
+    Spline path = pathOf(*scene, {});
+    std::optional<float> exposure;
+    RenderSettings settings = state_.sides[0].options.parse(exposure);
+    settings.size = state_.sides[0].renderer->size();
+    programs_.setBeforeBuild([this](const std::string& name) { breathe("compiling " + name); });
+    auto renderer = std::make_unique<Renderer>(context_, programs_, *scene, settings);
+    programs_.setBeforeBuild({});
+    // Nothing can fail from here on: the new scene takes the old one's place.
+    state_.truth.reset();
+    for (SideState& side : state_.sides) {
+      side.renderer.reset();
+      side.builtAs.clear();
+      side.failedAs.clear();
+    }
+    state_.scene = std::move(scene);
+    ++state_.sceneVersion;
+    state_.emissionFactor = 1.0f;
+    state_.materialsAsLoaded = state_.scene->materials;
+    SideState& a = state_.sides[0];
+    a.renderer = std::move(renderer);
+    a.built = a.options;
+    a.builtAs = textOf(a.options) + fmt::format(" {}", state_.sceneVersion);
+    state_.sceneText = file.string();
+    state_.path.spline = std::move(path);
+    state_.path.first = 0;
+    state_.path.last = state_.path.spline->viewCount() - 1;
+    state_.path.seconds = 0.0;
+    state_.path.follows = false;
+    state_.camera.emplace(state_.scene->cameras.front(), 0.08 * glm::length(state_.scene->bounds.extent()));
+    state_.exposure = state_.scene->exposure;
+    if (state_.scene->defaultSun) state_.meterWanted = true;  // no file said how bright it is to look
+    host_.setTitle("Lucerna - " + state_.scene->name);
+    state_.say(fmt::format("{}: {} triangles", state_.scene->name, state_.scene->triangleCount()));
+    changed();
+  } catch (const Error& error) {
+    programs_.setBeforeBuild({});
+    state_.say(error.what());
+  } catch (const Stopped&) {
+    programs_.setBeforeBuild({});
+    state_.say("loading stopped");
+  }
+}
+
+void WalkWindow::make(SideState& side) {
+  if (side.shows == Shows::picture) {
+    if (side.pictureFile == side.pictureShown) return;
+    side.pictureShown = side.pictureFile;
+    try {
+      side.picture = textureOf("stored picture", readImage(side.pictureFile));
+      side.judgedTruth = 0;
+      ++side.pictureVersion;
+    } catch (const Error& error) {
+      state_.say(error.what());
+    }
+  }
+  const std::string wanted = textOf(side.options) + fmt::format(" {}", state_.sceneVersion);
+  if (side.shows != Shows::technique && side.renderer) return;
+  if (wanted == side.builtAs || wanted == side.failedAs) return;
+  const bool first = !state_.sides[0].renderer;
+  try {
+    std::optional<float> exposure;
+    RenderSettings settings = side.options.parse(exposure);
+    settings.size = glm::max(glm::ivec2(glm::vec2(window_) * state_.renderScale), glm::ivec2(1));
+    const auto start = Clock::now();
+    breathe("making technique " + side.options.technique);
+    programs_.setBeforeBuild([this](const std::string& name) { breathe("compiling " + name); });
+    auto renderer = std::make_unique<Renderer>(context_, programs_, *state_.scene, settings);
+    programs_.setBeforeBuild({});
+    side.renderer = std::move(renderer);
+    side.buildSeconds = secondsSince(start);
+    side.failure.clear();
+    side.failedAs.clear();
+    if (!side.builtAs.empty() && textOf(side.built) != textOf(side.options)) {
+      std::array<PictureOptions, 2> before{state_.sides[0].built, state_.sides[1].built};
+      if (state_.undo.empty() || textOf(state_.undo.back()[0]) != textOf(before[0]) || textOf(state_.undo.back()[1]) != textOf(before[1])) state_.undo.push_back(before);
+      if (state_.undo.size() > 100) state_.undo.erase(state_.undo.begin());
+    }
+    side.built = side.options;
+    side.builtAs = wanted;
+    side.settled = false;
+    side.judgement.clear();
+    side.judgedTruth = 0;
+    if (exposure && first) state_.exposure = *exposure;
+  } catch (const Error& error) {
+    programs_.setBeforeBuild({});
+    if (first) throw;
+    side.failedAs = wanted;
+    side.failure = error.what();
+    state_.say(error.what());
+  } catch (const Stopped&) {
+    programs_.setBeforeBuild({});
+    if (first) {
+      stop_ = true;
+      return;
+    }
+    side.options = side.built;
+    if (!side.renderer) side.failedAs = wanted;
+    state_.say("stopped; settings as before");
+  }
+}
+
+void WalkWindow::makeReady() {
+  if (state_.reloadWanted) {
+    state_.reloadWanted = false;
+    const auto reload = programs_.reloadChanged();
+    for (SideState& side : state_.sides)
+      if (side.renderer) side.renderer->forget();  // what was made by the programs before
+    state_.say(fmt::format("{} programs reloaded", reload.reloaded));
+    for (const std::string& failure : reload.failures) {
+      state_.say(failure);
+      logWarning("{}", failure);
+    }
+    changed();
+  }
+  for (int i = 0; i < 2; ++i)
+    if (i == 0 || state_.isVisible(i)) make(state_.sides[static_cast<std::size_t>(i)]);
+}
+
+const gl::Texture* WalkWindow::radianceOf(int index) const {
+  const SideState& side = state_.sides[static_cast<std::size_t>(index)];
+  if (side.shows == Shows::picture && side.picture) return &*side.picture;
+  if (side.shows == Shows::reference && state_.truth && state_.truth->samples() > 0 && still_ >= kStillFrames) return &state_.truth->mean();
+  return side.renderer ? &side.renderer->radiance() : nullptr;
+}
+
+// A side that shows the reference draws its technique until there is one.
+void WalkWindow::draw() {
+  if ((state_.autoExposure && frames_ % 8 == 0) || state_.meterWanted) {
+    if (const gl::Texture* radiance = radianceOf(state_.shown); radiance && frames_ > 0) {
+      if (const auto metered = compare_->meteredExposure(*radiance))
+        state_.exposure = state_.meterWanted ? *metered : state_.exposure * std::pow(*metered / state_.exposure, 0.3f);
+      state_.meterWanted = false;
+    }
+  }
+  for (int i = 0; i < 2; ++i) {
+    SideState& side = state_.sides[static_cast<std::size_t>(i)];
+    if (!state_.isVisible(i) || !side.renderer || (side.shows == Shows::picture && side.picture)) continue;
+    const bool rests = state_.truthOn && still_ > kStillFrames && side.settled && side.renderer->exposure() == state_.exposure;
+    if (rests) continue;
+    side.renderer->setExposure(state_.exposure);
+    side.renderer->render(state_.camera->camera());
+    ++side.pictureVersion;
+    side.settled = still_ > kStillFrames && side.renderer->isSettled();
+  }
+}
+
+void WalkWindow::seekTruth(double frameSeconds) {
+  if (!state_.truthOn || !state_.side().renderer) return;
+  if (still_ < kStillFrames) return;
+  const SideState& shown = state_.side();
+  const glm::ivec2 size = shown.renderer->size();
+  const Component component = parseComponent(shown.built.component.empty() ? "all" : shown.built.component);
+  if (!state_.truth || state_.truth->size() != size || state_.truth->component() != component || truthVersion_ != state_.sceneVersion) {
+    try {
+      breathe("making the path tracer");
+      programs_.setBeforeBuild([this](const std::string& name) { breathe("compiling " + name); });
+      state_.truth.reset();
+      state_.truth = std::make_unique<Truth>(context_, programs_, *state_.scene, size, component);
+      truthVersion_ = state_.sceneVersion;
+      truthCamera_.reset();
+    } catch (const Error& error) {
+      state_.truthOn = false;
+      state_.say(error.what());
+    } catch (const Stopped&) {
+      state_.truthOn = false;
+    }
+    programs_.setBeforeBuild({});
+    if (!state_.truth) return;
+  }
+  if (!truthCamera_ || !sameView(*truthCamera_, state_.camera->camera())) {
+    truthCamera_ = state_.camera->camera();
+    state_.truth->look(*truthCamera_);
+    for (SideState& side : state_.sides) side.judgement.clear(), side.judgedTruth = 0;
+  }
+  bool all = true;
+  for (int i = 0; i < 2; ++i) {
+    const SideState& side = state_.sides[static_cast<std::size_t>(i)];
+    if (state_.isVisible(i) && side.shows == Shows::technique) all = all && side.settled;
+  }
+  constexpr double kIdleSeconds = 0.03;  // a frame, where nothing else is to be done: the panel still answers
+  const double share = std::clamp(static_cast<double>(state_.truthShare), 0.01, 0.9);
+  const double budget = share / (1.0 - share) * std::min(frameSeconds, 1.0);
+  state_.truth->advance(all ? std::max(budget, kIdleSeconds) : budget);
+}
+
+// Pictures that have settled, twice a second at most: reading them back waits for the GPU.
+void WalkWindow::judge() {
+  if (!state_.truth || !state_.truthOn || !state_.truth->ready() || still_ < kStillFrames) return;
+  if (!player_ && secondsSince(made_) < 0.5) return;
+  made_ = Clock::now();
+  for (int i = 0; i < 2; ++i) {
+    SideState& side = state_.sides[static_cast<std::size_t>(i)];
+    if (!state_.isVisible(i) || side.shows == Shows::reference) continue;
+    if (side.judgedTruth == state_.truth->version() && side.judgedPicture == side.pictureVersion) continue;
+    side.judgedTruth = state_.truth->version();
+    side.judgedPicture = side.pictureVersion;
+    if (side.shows == Shows::picture) {
+      if (!side.picture || side.picture->size2d() != state_.truth->size()) continue;
+      const std::vector<glm::vec4> texels = side.picture->readRgba();
+      Image image(side.picture->size().x, side.picture->size().y);
+      for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+          image.at(x, image.height - 1 - y) = glm::vec3(texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)]);
+      side.judgement.judge(std::move(image), state_.truth->reference());
+    } else if (side.renderer && side.renderer->size() == state_.truth->size()) {
+      side.judgement.judge(side.renderer->readRadiance(), state_.truth->reference());
+    }
+  }
+}
+
+void WalkWindow::readPixel(const Compare::Inputs& inputs) {
+  state_.values = {};
+  state_.pixel.reset();
+  if (!state_.magnifier || input_.cursor.x < 0.0) return;
+  state_.pixel = Compare::pictureAt(inputs, window_, glm::vec2(input_.cursor));
+  if (!state_.pixel) return;
+  const auto read = [&](const gl::Texture* texture) -> std::optional<glm::vec3> {
+    if (!texture || texture->size2d() != inputs.left.radiance->size2d()) return {};
+    const gl::Texture one("pixel", texture->format(), glm::ivec2(1));
+    gl::copyTexels(*texture, {state_.pixel->x, texture->size().y - 1 - state_.pixel->y}, one, {0, 0}, {1, 1});
+    return glm::vec3(one.readRgba().front());
+  };
+  state_.values.a = read(radianceOf(0));
+  if (state_.layout != Layout::one || state_.shown == 1) state_.values.b = read(radianceOf(1));
+  if (state_.truth && state_.truthOn && still_ >= kStillFrames && state_.truth->samples() > 0) {
+    state_.values.truth = read(&state_.truth->mean());
+    state_.values.error = read(&state_.truth->standardError());
+  }
+}
+
+void WalkWindow::compose() {
+  SideState& shown = state_.side();
+  const bool truthThere = state_.truth && state_.truthOn && state_.truth->ready() && still_ >= kStillFrames;
+  const bool shows = state_.show == Show::picture || (truthThere && radianceOf(state_.shown) && radianceOf(state_.shown)->size2d() == state_.truth->size());
+  const bool plain = state_.layout == Layout::one && (state_.show == Show::picture || !shows) && state_.zoom == 1.0f && !state_.magnifier &&
+                     radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) && shown.renderer && shown.renderer->size() == window_;
+  presented_ = plain && !drawsUi() && !state_.shotWanted;
+  if (presented_) {
+    host_.present(shown.renderer->displayFramebuffer().id(), window_);
+    return;
+  }
+  Compare::Inputs inputs;
+  const auto side = [&](int i) {
+    const SideState& s = state_.sides[static_cast<std::size_t>(i)];
+    Compare::Side result{radianceOf(i), truthThere ? state_.show : Show::picture, s.judgement.flipMap()};
+    const bool isReference = truthThere && result.radiance == &state_.truth->mean();
+    if (isReference || (result.show == Show::flip && !result.flip) || (result.radiance && truthThere && result.radiance->size2d() != state_.truth->size())) result.show = Show::picture;
+    return result;
+  };
+  inputs.layout = state_.layout;
+  inputs.left = side(state_.layout == Layout::one ? state_.shown : 0);
+  inputs.right = side(1);
+  if (!inputs.right.radiance) inputs.layout = Layout::one;
+  inputs.split = state_.split;
+  inputs.zoom = state_.zoom;
+  inputs.centre = state_.centre;
+  inputs.exposure = state_.exposure;
+  if (truthThere) {
+    inputs.reference = &state_.truth->mean();
+    inputs.standardError = &state_.truth->standardError();
+    const glm::dvec3 mean = meanOf(state_.truth->reference().mean);
+    inputs.errorScale = state_.errorScale > 0.0f ? state_.errorScale : std::max(0.5f * static_cast<float>(mean.x + mean.y + mean.z) / 3.0f, 1e-30f);
+  }
+  if (state_.magnifier && input_.cursor.x >= 0.0 && !(ui_ && ui_->wantsMouse())) inputs.magnifier = glm::vec2(input_.cursor);
+  if (plain) gl::copyTexels(shown.renderer->display(), {0, 0}, picture_, {0, 0}, window_);
+  else if (inputs.left.radiance) compare_->record(pictureTarget_, inputs);
+  readPixel(inputs);
+  if (state_.shotWanted) takeShot();
+}
+
+Bitmap WalkWindow::shownPicture() const {
+  const std::vector<glm::vec4> texels = picture_.readRgba();
+  Bitmap bitmap;
+  bitmap.width = window_.x;
+  bitmap.height = window_.y;
+  for (int y = window_.y - 1; y >= 0; --y)
+    for (int x = 0; x < window_.x; ++x)
+      for (int c = 0; c < 4; ++c)
+        bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(window_.x) + static_cast<std::size_t>(x)][c])));
+  return bitmap;
+}
+
+void WalkWindow::takeShot() {
+  state_.shotWanted = false;
+  const SideState& side = state_.side();
+  try {
+    std::error_code ignored;
+    fs::create_directories(state_.shotFolder, ignored);
+    const fs::path stem = freeName(state_.shotFolder, state_.scene->name);
+    std::string note = fmt::format("Lucerna {} on {}\n{} --camera {} --size {}x{}\nexposure {:.6g}", LUCERNA_VERSION, state_.rendererName,
+                                   commandLine("render", state_.scene->file.string(), side.built), cameraText(state_.camera->camera()), window_.x, window_.y, state_.exposure);
+    if (side.judgement.known())
+      note += fmt::format("\nrelative error {:.4g}, {:.4g} to {:.4g} (99 %), against {} path-traced samples a pixel", side.judgement.nrmse().value, side.judgement.nrmse().low,
+                          side.judgement.nrmse().high, state_.truth ? state_.truth->samples() : 0);
+    writePngWithNote(stem.string() + ".png", shownPicture(), note);
+    if (side.renderer) writeHdrWithNote(stem.string() + ".hdr", side.renderer->readRadiance(), note);
+    state_.say(fmt::format("{}.png and .hdr written", stem.string()));
+  } catch (const Error& error) {
+    state_.say(error.what());
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------- showing it
+
+void WalkWindow::resizeTo(glm::ivec2 window) {
+  if (window != window_) {
+    window_ = window;
+    picture_ = gl::Texture("window", GL_RGBA8, window_);
+    const std::array<const gl::Texture*, 1> colors{&picture_};
+    pictureTarget_ = gl::Framebuffer("window", colors);
+    const gl::RasterPass pass("window", pictureTarget_, {});
+    pass.clearColor(0, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    changed();
+  }
+  const glm::ivec2 size = glm::max(glm::ivec2(glm::vec2(window_) * state_.renderScale), glm::ivec2(1));
+  for (SideState& side : state_.sides)
+    if (side.renderer && side.renderer->size() != size) {
+      side.renderer->resize(size);
+      side.settled = false;
+      changed();
+    }
+}
+
+void WalkWindow::drawUi(const HostInput& input, double seconds, const std::string& work, double share) {
+  if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
+  ui_->begin(input, window_, seconds);
+  if (work.empty()) {
+    if (state_.panel) Panel::show(*ui_, state_, host_);
+    if (state_.help) Panel::showHelp(*ui_, state_);
+    Panel::showValues(state_);
+  }
+  Panel::showMessage(state_, work, share);
+  ui_->end(pictureTarget_);
+}
+
+// What recorded input touches by name must be there; else nothing that nobody looks at is made.
+bool WalkWindow::drawsUi() const {
+  return state_.panel || state_.help || state_.hint || (!state_.messages.empty() && state_.messageAge < kMessageSeconds) || player_.has_value();
+}
+
+void WalkWindow::breathe(const std::string& what, double share) {
+  const bool measures = !options_.common.json.empty() && !player_;
+  if (measures || window_.x <= 0 || secondsSince(lastBreath_) < 0.1) return;
+  if (!player_) {
+    const HostInput input = host_.poll();
+    if (input.closeRequested) stop_ = true;
+    if (stop_ || interrupted() || input.pressed.find('\x1b') != std::string::npos) throw Stopped(what);
+    if (host_.framebufferSize() != window_) return;  // the next frame sees to that
+  }
+  drawUi({}, 0.02, what, share);
+  host_.present(pictureTarget_.id(), window_);
+  lastBreath_ = Clock::now();
+}
+
+void WalkWindow::pace(Clock::time_point start) {
+  if (state_.frameLimit <= 0 || player_) return;
+  std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / state_.frameLimit)));
+}
+
+void WalkWindow::run() {
+  const auto begin = Clock::now();
+  auto frameStart = begin, titleTime = begin;
+  compare_.emplace(programs_);
+  while (takeInput()) {
+    const auto start = Clock::now();
+    const double measured = frames_ > 0 ? std::chrono::duration<double>(start - frameStart).count() : 0.0;
+    const double dt = player_ ? kPlayedFrame : measured;
+    frameStart = start;
+    const glm::ivec2 window = host_.kind() == HostKind::window ? host_.framebufferSize() : playedSize_;
+    if (window.x <= 0 || window.y <= 0) {  // minimised
+      if (!player_) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      ++frames_;
+      continue;
+    }
+    resizeTo(window);
+    loadWantedScene();
+    makeReady();
+    if (stop_) break;
+    moveCamera(dt);
+    draw();
+    seekTruth(measured);
+    judge();
+    compose();
+    if (drawsUi()) {
+      drawUi(input_, dt, "", -1.0);
+      if (player_)
+        if (const auto file = player_->takeSave()) writePng(*file, shownPicture());
+      host_.present(pictureTarget_.id(), window_);
+    } else if (!presented_) {
+      host_.present(pictureTarget_.id(), window_);
+    }
+    ++still_;
+    ++frames_;
+    state_.messageAge += dt;
+    sinceHint_ += dt;
+    if (sinceHint_ > kHintSeconds) state_.hint = false;
+    state_.frameMs.push_back(static_cast<float>(1e3 * secondsSince(start)));
+    if (state_.frameMs.size() > kPlotFrames) state_.frameMs.erase(state_.frameMs.begin());
+    ++framesOfTitle_;
+    if (secondsSince(titleTime) > 0.5) {
+      host_.setTitle(fmt::format("Lucerna - {} - {:.1f} frames a second - F1 keys, F2 panel", state_.scene->name, framesOfTitle_ / secondsSince(titleTime)));
+      titleTime = Clock::now();
+      framesOfTitle_ = 0;
+    }
+    if (options_.frames > 0 && frames_ >= options_.frames) break;
+    pace(start);
+  }
+  for (SideState& side : state_.sides)
+    if (side.renderer) side.renderer->drain();
+  seconds_ = secondsSince(begin);
+}
+
+nlohmann::ordered_json WalkWindow::toJson() const {
+  nlohmann::ordered_json json;
+  if (!state_.frameMs.empty()) {
+    const std::vector<double> ms(state_.frameMs.begin(), state_.frameMs.end());
+    json["frame_ms"] = {{"median", median(ms)}, {"p25", percentile(ms, 0.25)}, {"p75", percentile(ms, 0.75)}, {"p95", percentile(ms, 0.95)}, {"count", ms.size()}};
+  }
+  json["messages"] = state_.messages;
+  if (ui_) {
+    json["panel_gpu_bytes"] = ui_->gpuBytes();
+    json["controls"] = ui_->labels();
+  }
+  if (player_) json["touched"] = player_->touched();
+  if (state_.truth) {
+    json["truth"] = {{"samples", state_.truth->samples()}, {"seconds", state_.truth->seconds()}};
+    for (std::size_t i = 0; i < 2; ++i)
+      if (const Judgement& j = state_.sides[i].judgement; j.known())
+        json["truth"][i == 0 ? "a" : "b"] = {{"nrmse", j.nrmse().value}, {"low", j.nrmse().low}, {"high", j.nrmse().high}, {"bias", j.bias()}};
+  }
+  return json;
+}
+
+}  // namespace lucerna::demo

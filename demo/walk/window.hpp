@@ -1,0 +1,81 @@
+// The walkthrough in a window, or driven by recorded input on any host: path and free camera, panel, comparison, live truth.
+#pragma once
+
+#include "walk/input_file.hpp"
+#include "walk/keys.hpp"
+#include "walk/options.hpp"
+#include "walk/state.hpp"
+#include "walk/ui.hpp"
+
+#include <chrono>
+
+namespace lucerna::demo {
+
+class WalkWindow {
+ public:
+  /// `state`: with scene, path and the first technique's renderer.
+  WalkWindow(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, WalkState state);
+  ~WalkWindow();
+
+  /// Until it is closed, the path ends or --frames are drawn.
+  void run();
+
+  int frames() const { return frames_; }
+  double seconds() const { return seconds_; }
+  WalkState& state() { return state_; }
+  /// What a driven run did: controls, messages.
+  nlohmann::ordered_json toJson() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  // A frame, in this order.
+  bool takeInput();                    ///< false: it is to end
+  void act(Action action);
+  void moveCamera(double seconds);
+  void loadWantedScene();
+  void makeReady();
+  void make(SideState& side);
+  void draw();
+  void seekTruth(double frameSeconds);
+  void judge();
+  void compose();
+  void readPixel(const Compare::Inputs& inputs);
+  void takeShot();
+  void pace(Clock::time_point start);
+
+  /// Called while something long is made: shows the old picture with what is going on; throws Stopped where Escape was pressed.
+  void breathe(const std::string& what, double share = -1.0);
+  void resizeTo(glm::ivec2 window);
+  void drawUi(const HostInput& input, double seconds, const std::string& work, double share);
+  bool drawsUi() const;
+  Bitmap shownPicture() const;
+  const gl::Texture* radianceOf(int side) const;
+  void changed() { still_ = 0; }
+
+  const WalkOptions& options_;
+  Host& host_;
+  const gl::Context& context_;
+  gl::ProgramLibrary& programs_;
+  WalkState state_;
+  std::optional<Ui> ui_;
+  std::optional<InputPlayer> player_;
+  std::optional<Compare> compare_;
+  HostInput input_;
+  glm::dvec2 cursorBefore_{0.0};
+  glm::ivec2 window_{0}, playedSize_{0};
+  gl::Texture picture_;                ///< what is presented, where that is not the renderer's own
+  gl::Framebuffer pictureTarget_;
+  Camera lastCamera_;
+  int still_ = 0;                      ///< frames since something moved
+  bool touched_ = false;               ///< somebody is there: the walk does not end by itself
+  bool stop_ = false;
+  bool presented_ = false;             ///< compose() showed the renderer's own picture
+  std::optional<Camera> truthCamera_;  ///< that the truth is of
+  std::uint64_t truthVersion_ = 0;     ///< of the scene that the truth is of
+  int frames_ = 0;
+  double seconds_ = 0.0, sinceTitle_ = 0.0, sinceHint_ = 0.0;
+  int framesOfTitle_ = 0;
+  Clock::time_point lastBreath_{}, made_{};
+};
+
+}  // namespace lucerna::demo

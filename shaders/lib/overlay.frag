@@ -1,0 +1,7 @@
+// Colour times texture; alpha as it is.
+in vec2 uv;
+in vec4 color;
+layout(binding = 0) uniform sampler2D picture;
+layout(location = 0) out vec4 displayColor;
+
+void main() { displayColor = color * texture(picture, uv); }

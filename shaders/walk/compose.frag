@@ -1,0 +1,86 @@
+// The window's picture: one or two pictures of a view, whole, divided by a wipe or side by side, under one exposure, tone map and zoom; each shown as
+// it is or as its difference from a reference. A magnifier about the cursor.
+// Curve and encoding: shaders/forward/tonemap.frag.
+#include "lib/tonemap.glsl"
+layout(binding = 0) uniform sampler2D leftPicture;    // linear radiance
+layout(binding = 1) uniform sampler2D rightPicture;
+layout(binding = 2) uniform sampler2D reference;      // mean, as many texels as the pictures
+layout(binding = 3) uniform sampler2D standardError;  // of the mean
+layout(binding = 4) uniform sampler2D leftFlip;       // FLIP's map, 0..1
+layout(binding = 5) uniform sampler2D rightFlip;
+uniform ivec2 views;       // of left and right: what SHOW_* say
+uniform vec2 pixels;       // of the target
+uniform float split;       // of the width where the right picture begins; 1: the left one alone
+uniform bool sideBySide;
+uniform float zoom;        // 1: the picture fits
+uniform vec2 centre;       // of the picture, 0..1, in the middle of the target
+uniform float exposure;
+uniform float errorScale;  // radiance at the end of the signed colours
+uniform vec4 magnifier;    // pixel of the target, radius in pixels (0: none), factor
+layout(location = 0) out vec4 displayColor;
+
+const int SHOW_PICTURE = 0, SHOW_SIGNED = 1, SHOW_RELATIVE = 2, SHOW_Z = 3, SHOW_FLIP = 4, SHOW_VALUES = 5;
+
+float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }  // IEC 61966-2-1
+
+// Blue (-1) over white (0) to red (+1).
+vec3 diverging(float t) { return t < 0.0 ? vec3(1.0 + max(t, -1.0), 1.0 + max(t, -1.0), 1.0) : vec3(1.0, 1.0 - min(t, 1.0), 1.0 - min(t, 1.0)); }
+// Black (0) over red and yellow to white (1).
+vec3 heat(float t) { return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0); }
+
+vec3 shown(bool right, ivec2 texel) {
+  ivec2 size = right ? textureSize(rightPicture, 0) : textureSize(leftPicture, 0);
+  texel = clamp(texel, ivec2(0), size - 1);
+  vec3 radiance = right ? texelFetch(rightPicture, texel, 0).rgb : texelFetch(leftPicture, texel, 0).rgb;
+  int view = right ? views.y : views.x;
+  if (any(isnan(radiance)) || any(isinf(radiance))) return vec3(0.0, 1.0, 0.0);
+  if (view == SHOW_PICTURE) return srgbFromLinear(filmic(exposure * radiance));
+  if (view == SHOW_VALUES) return clamp(radiance, 0.0, 1.0);
+  if (view == SHOW_FLIP) return heat((right ? texelFetch(rightFlip, texel, 0) : texelFetch(leftFlip, texel, 0)).r);
+  vec3 truth = texelFetch(reference, texel, 0).rgb;
+  vec3 noise = texelFetch(standardError, texel, 0).rgb;
+  float difference = luminance(radiance - truth);
+  if (view == SHOW_SIGNED) return diverging(difference / errorScale);
+  if (view == SHOW_RELATIVE) {
+    vec3 d = abs(radiance - truth);
+    return heat(max(d.x, max(d.y, d.z)) / max(max(truth.x, max(truth.y, truth.z)), 1e-30));
+  }
+  // In standard errors of the reference; grey where the noise explains it. Channels of a pixel are taken to rise and fall together.
+  float z = difference / max(luminance(noise), 1e-30);
+  return abs(z) < 3.0 ? vec3(0.35) : diverging(sign(z) * clamp(abs(z) / 20.0, 0.15, 1.0));
+}
+
+void main() {
+  vec2 pixel = gl_FragCoord.xy;
+  float magnified = zoom;
+  if (magnifier.z > 0.0) {
+    vec2 offset = pixel - magnifier.xy;
+    float beyond = max(abs(offset.x), abs(offset.y)) - magnifier.z;
+    if (beyond > 0.0 && beyond < 2.0) {
+      displayColor = vec4(1.0, 0.8, 0.2, 1.0);
+      return;
+    }
+    if (beyond <= 0.0) pixel = magnifier.xy + offset / magnifier.w, magnified *= magnifier.w;
+  }
+  float edge = sideBySide ? 0.5 : split;
+  bool right = pixel.x >= edge * pixels.x;
+  if (edge > 0.0 && edge < 1.0 && abs(pixel.x - edge * pixels.x) < 0.75 && magnified == zoom) {
+    displayColor = vec4(1.0);
+    return;
+  }
+  vec2 region = sideBySide ? vec2(0.5 * pixels.x, pixels.y) : pixels;
+  vec2 middle = sideBySide ? vec2(right ? 0.75 : 0.25, 0.5) * pixels : 0.5 * pixels;
+  vec2 size = vec2(right ? textureSize(rightPicture, 0) : textureSize(leftPicture, 0));
+  float pixelsOfTexel = zoom * min(region.x / size.x, region.y / size.y);
+  vec2 place = (pixel - middle) / pixelsOfTexel + centre * size;  // in texels
+  if (any(lessThan(place, vec2(0.0))) || any(greaterThanEqual(place, size))) {
+    displayColor = vec4(0.08, 0.08, 0.08, 1.0);
+    return;
+  }
+  float side = 1.0 / (pixelsOfTexel * magnified / zoom);  // of a pixel, in texels
+  int taps = clamp(int(ceil(side - 0.01)), 1, 4);
+  vec3 sum = vec3(0.0);
+  for (int y = 0; y < taps; ++y)
+    for (int x = 0; x < taps; ++x) sum += shown(right, ivec2(floor(place + side * ((vec2(x, y) + 0.5) / float(taps) - 0.5))));
+  displayColor = vec4(sum / float(taps * taps), 1.0);
+}

@@ -1,0 +1,170 @@
+// The walkthrough's window, driven by recorded input (demo/walk/input_file.hpp): on the off-screen test host, and in a window of a virtual display.
+// LUCERNA_LONG_TESTS=1: 1,000 frames of it.
+#include "base/image.hpp"
+#include "scene/key_frames.hpp"
+#include "support/long_tests.hpp"
+#include "support/subprocess.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using lucerna::test::run;
+using lucerna::test::RunResult;
+using lucerna::test::TempFolder;
+
+// Two walls and a floor, a lamp, two views.
+const char* kScene = R"({"model": "room.obj", "sun": {"direction": [-0.5, -1, -0.3], "irradiance": [3, 3, 3]},
+  "cameras": [{"name": "first", "position": [1.5, 1.2, 1.8], "target": [0, 0.6, 0], "fov": 55}, {"name": "second", "position": [-1, 1, 1.8], "target": [0, 0.5, 0], "fov": 50}]})";
+const char* kRoom =
+    "mtllib room.mtl\n"
+    "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\nv -2 3 2\n"
+    "usemtl white\nf 1 4 3 2\nusemtl red\nf 1 2 6 5\nusemtl white\nf 1 5 7 4\n";
+const char* kMaterials = "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0.1\n";
+
+class Window : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write("room.json", kScene);
+    write("room.obj", kRoom);
+    write("room.mtl", kMaterials);
+    write("path.txt", "p 1.5 1.2 1.8 d -0.6 -0.3 -0.7 u 0 1 0\np -1 1 1.8 d 0.4 -0.2 -0.8 u 0 1 0\n");
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(path(name), std::ios::binary).rdbuf();
+    return text.str();
+  }
+  /// Plays an input file in a small window; GL errors end the command with exit code 1.
+  RunResult play(const std::string& input, const std::string& arguments = "", const std::string& before = "") const {
+    return run("cd '" + folder_.path().string() + "' && " + before + " LUCERNA_VERBOSE=1 LUCERNA_REFERENCES=" + path("references") + " '" LUCERNA_BINARY "' walk room.json --keys path.txt --size 128x72 --set lpv.cells=8 --set lpv.samples=64 --set rad.edge=1 --play-input '" +
+               input + "' --json walk.json " + arguments);
+  }
+  static std::string kept(const std::string& name) { return LUCERNA_SOURCE_DIR "/tests/input/" + name; }
+  nlohmann::json json() const { return nlohmann::json::parse(std::ifstream(path("walk.json"))); }
+
+ private:
+  TempFolder folder_;
+};
+
+/// Lines of a verbose run that tell of GL errors or hazards.
+std::string glComplaints(const std::string& err) {
+  std::istringstream lines(err);
+  std::string line, found;
+  while (std::getline(lines, line))
+    if (line.find("OpenGL error: ") != std::string::npos || line.find("OpenGL: ") != std::string::npos) found += line + "\n";
+  return found;
+}
+
+TEST_F(Window, EveryKeyDoesItsWork) {
+  const RunResult result = play(kept("keys.txt"), "--shots shots");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  // F12: a PNG and an HDR of the window's size, with what made them inside.
+  EXPECT_EQ(lucerna::readImage(path("shots/room_0001.hdr")).width, 128);
+  EXPECT_EQ(lucerna::readBitmap(path("shots/room_0001.png")).height, 72);
+  for (const char* file : {"shots/room_0001.hdr", "shots/room_0001.png"})
+    for (const char* part : {"render", "room.json", "--technique direct", "--camera ", "exposure "}) EXPECT_NE(read(file).find(part), std::string::npos) << file << ": " << part;
+}
+
+TEST_F(Window, EveryControlOnce) {
+  const RunResult result = play(kept("every_control.txt"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  const auto window = json().at("window");
+  const auto controls = window.at("controls").get<std::vector<std::string>>(), touched = window.at("touched").get<std::vector<std::string>>();
+  EXPECT_GT(controls.size(), 60u);
+  for (const char* label : {"Technique A/technique: rsm", "Compare/layout: wipe", "Light/sun height", "Camera/second", "Timings/begin again", "Record and window/add key frame"})
+    EXPECT_NE(std::find(touched.begin(), touched.end(), label), touched.end()) << label;
+  for (const std::string& label : controls) {
+    EXPECT_NE(std::find(touched.begin(), touched.end(), label), touched.end()) << label << " was never touched";
+  }
+}
+
+TEST_F(Window, SizesOfAllKinds) {
+  const RunResult result = play(kept("resizes.txt"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+}
+
+// While the camera rests the reference comes, and the picture's error with its interval; what was sampled is in the cache for the next time.
+TEST_F(Window, TruthComesWhileTheCameraRests) {
+  write("input.txt", "1 key R\n2 key T\n400 key F2\n");
+  const RunResult result = play(path("input.txt"), "--technique direct");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const auto truth = json().at("window").at("truth");
+  EXPECT_GE(truth.at("samples"), 64) << truth;
+  const double value = truth.at("a").at("nrmse"), low = truth.at("a").at("low"), high = truth.at("a").at("high");
+  EXPECT_GT(value, 0.05) << "direct light alone lacks what surfaces throw on each other";
+  EXPECT_LE(low, value);
+  EXPECT_LE(value, high);
+  EXPECT_LT(high - low, 0.5 * value);
+  EXPECT_LT(truth.at("a").at("bias"), 0.0);
+  EXPECT_FALSE(fs::is_empty(path("references")));
+}
+
+TEST_F(Window, AFileThatFailsSaysWhyAndTheSceneStays) {
+  write("broken.obj", "f 1 2 3\n");
+  write("other.obj", kRoom);
+  write("input.txt", "1 drop broken.obj\n5 drop missing.gltf\n9 key 1\n12 drop other.obj\n20 key F2\n");
+  const RunResult result = play(path("input.txt"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  std::string all;
+  for (const auto& message : json().at("window").at("messages")) all += message.get<std::string>() + "\n";
+  EXPECT_NE(all.find("broken.obj"), std::string::npos) << all;
+  EXPECT_NE(all.find("missing.gltf"), std::string::npos) << all;
+  EXPECT_NE(all.find("other: 6 triangles"), std::string::npos) << all;
+}
+
+TEST_F(Window, KeyFramesAreWrittenAsTheyAreRead) {
+  write("input.txt", "1 key R\n2 key K\n3 down W\n30 up W\n31 key K\n32 touch Record and window\n33 touch Record and window/write\n");
+  const RunResult result = play(path("input.txt"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const auto keys = lucerna::readKeyFrames(path("key_frames.txt"));
+  ASSERT_EQ(keys.size(), 2u);
+  EXPECT_GT(glm::length(keys[0].position - keys[1].position), 0.1);
+}
+
+TEST_F(Window, InputFilesAreChecked) {
+  for (const auto& [text, part] : {std::pair{"1 jump\n", "unknown"}, {"x key A\n", "FRAME VERB"}, {"5 key A\n3 key A\n", "comes after"}, {"1 key NoSuchKey\n", "NoSuchKey"},
+                                   {"1 cursor 3\n", "two numbers"}, {"1 touch No such control\n", "No such control"}}) {
+    write("input.txt", text);
+    const RunResult result = play(path("input.txt"), "--technique direct");
+    EXPECT_EQ(result.exitCode, 2) << text << result.err;
+    EXPECT_NE(result.err.find("input.txt"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+  }
+}
+
+TEST_F(Window, HelpListsTheKeys) {
+  const RunResult result = RUN_LUCERNA("walk --help");
+  for (const char* part : {"Keys in the window", "F12", "control Z", "magnifier"}) EXPECT_NE(result.out.find(part), std::string::npos) << part;
+}
+
+// The same in a window of its own, where there is Xvfb.
+TEST_F(Window, InAVirtualDisplay) {
+  if (run("command -v xvfb-run").exitCode != 0) GTEST_SKIP() << "no xvfb-run";
+  const RunResult result = play(kept("resizes.txt"), "--host window", "xvfb-run -a env");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  EXPECT_EQ(json().at("host"), "window");
+}
+
+TEST_F(Window, AThousandFrames) {
+  if (!lucerna::test::longTests()) GTEST_SKIP() << "LUCERNA_LONG_TESTS is not set";
+  const RunResult result = play(kept("every_control.txt"), "--frames 1000");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(json().at("frames"), 1000);
+  EXPECT_EQ(glComplaints(result.err), "");
+}
+
+}  // namespace
