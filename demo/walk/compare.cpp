@@ -26,8 +26,9 @@ Compare::Compare(gl::ProgramLibrary& programs)
   meterTarget_ = gl::Framebuffer("exposure meter", colors);
 }
 
-void Compare::record(const gl::Framebuffer& target, const Inputs& in) const {
+void Compare::record(const gl::Framebuffer& target, glm::ivec2 size, const Inputs& in) const {
   const gl::RasterPass pass("window picture", target, {});
+  pass.restrictTo({0, 0}, size);
   compose_->use();
   const auto bind = [&](GLuint unit, const gl::Texture* texture) { (texture ? *texture : black_).bind(unit); };
   bind(0, in.left.radiance);
@@ -37,7 +38,7 @@ void Compare::record(const gl::Framebuffer& target, const Inputs& in) const {
   bind(4, in.left.flip);
   bind(5, in.right.flip);
   compose_->set("views", glm::ivec2(static_cast<int>(in.left.show), static_cast<int>(in.right.show)));
-  compose_->set("pixels", glm::vec2(target.size()));
+  compose_->set("pixels", glm::vec2(size));
   compose_->set("split", in.layout == Layout::one ? 1.0f : in.split);
   compose_->set("sideBySide", in.layout == Layout::sideBySide ? 1 : 0);
   compose_->set("zoom", in.zoom);
@@ -45,7 +46,7 @@ void Compare::record(const gl::Framebuffer& target, const Inputs& in) const {
   compose_->set("exposure", in.exposure);
   compose_->set("errorScale", in.errorScale);
   glm::vec4 magnifier(0.0f);
-  if (in.magnifier) magnifier = {in.magnifier->x, static_cast<float>(target.size().y) - in.magnifier->y, kMagnifierRadius, kMagnification};
+  if (in.magnifier) magnifier = {in.magnifier->x, static_cast<float>(size.y) - in.magnifier->y, kMagnifierRadius, kMagnification};
   compose_->set("magnifier", magnifier);
   gl::drawFullScreen(noAttributes_);
 }

@@ -37,7 +37,8 @@ class Compare {
   };
 
   explicit Compare(gl::ProgramLibrary& programs);
-  void record(const gl::Framebuffer& target, const Inputs& inputs) const;
+  /// Into the left part of the target, of the target's height.
+  void record(const gl::Framebuffer& target, glm::ivec2 size, const Inputs& inputs) const;
 
   /// Exposure that puts the picture's geometric mean luminance at middle grey; none for a black picture. Waits for the GPU.
   std::optional<float> meteredExposure(const gl::Texture& radiance) const;

@@ -93,22 +93,36 @@ void InputPlayer::act(const Event& event) {
   }
 }
 
-// The items of a menu, "Section/menu: item", are there while it is open alone: an open menu's items come first, then controls, then menus again whose items
-// have not all been seen to.
+// What is there comes first: items of an open menu ("Section/menu: item", any of them closes it), then controls. Then what is not there: the section is
+// opened, or the menu, and what does not come by that has gone.
 void InputPlayer::chooseNext(Ui& ui) {
-  const auto menuOf = [](const std::string& label) { return label.substr(0, label.find(": ")); };
-  std::string openMenu, next;
-  for (const std::string& label : ui.labels()) {
-    const bool isItem = label.find(": ") != std::string::npos;
-    if (isItem && ui.isThere(label)) {
-      if (openMenu.empty() || !touched_.contains(label)) openMenu = label;  // any item closes the menu
-    } else if (next.empty() && !touched_.contains(label)) {
-      next = menuOf(label);
-    }
-  }
-  touching_ = !openMenu.empty() ? openMenu : next;
+  const auto isItem = [](const std::string& label) { return label.find(": ") != std::string::npos; };
+  const auto parentOf = [&](const std::string& label) { return isItem(label) ? label.substr(0, label.find(": ")) : label.substr(0, label.find('/')); };
   touchStep_ = waited_ = 0;
-  if (touching_.empty()) every_ = false;
+  touching_.clear();
+  for (const std::string& label : ui.labels())
+    if (isItem(label) && ui.isThere(label) && (touching_.empty() || !touched_.contains(label))) touching_ = label;
+  if (!touching_.empty()) return;
+  const auto isSection = [](const std::string& label) { return label.find('/') == std::string::npos; };
+  for (const bool sections : {false, true})
+    for (const std::string& label : ui.labels())
+      if (isSection(label) == sections && !touched_.contains(label) && ui.isThere(label)) {
+        touching_ = label;
+        return;
+      }
+  for (const std::string& label : ui.labels()) {
+    if (touched_.contains(label)) continue;
+    std::string parent = parentOf(label);
+    if (!ui.isThere(parent)) parent = parentOf(parent);  // a menu's section
+    if (++attempts_[label] > 4 || !ui.isThere(parent)) {
+      gone_.insert(label);
+      touched_.insert(label);
+      continue;
+    }
+    touching_ = parent;
+    return;
+  }
+  every_ = false;
 }
 
 void InputPlayer::touch(Ui* ui) {
@@ -119,7 +133,7 @@ void InputPlayer::touch(Ui* ui) {
   if (touchStep_ == 0 && (!place || !place->visible)) {
     if (++waited_ <= kPatience) return;
     if (every_) {  // it went away with what it belonged to
-      touched_.insert(touching_ + " (gone)");
+      gone_.insert(touching_);
       touched_.insert(touching_);
       touching_.clear();
       return;

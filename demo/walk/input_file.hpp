@@ -19,6 +19,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -40,6 +41,8 @@ class InputPlayer {
   /// Nothing is left to be done.
   bool done() const { return events_.empty() && touching_.empty() && !every_; }
   const std::set<std::string>& touched() const { return touched_; }
+  /// Controls that went away before they could be touched.
+  const std::set<std::string>& gone() const { return gone_; }
 
  private:
   static constexpr int kPatience = 60;
@@ -63,7 +66,8 @@ class InputPlayer {
   std::string touching_;
   int touchingLine_ = 0, touchStep_ = 0, waited_ = 0;
   bool every_ = false;
-  std::set<std::string> touched_;
+  std::set<std::string> touched_, gone_;
+  std::map<std::string, int> attempts_;  ///< to bring a control in sight
 };
 
 }  // namespace lucerna::demo

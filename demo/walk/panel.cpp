@@ -3,12 +3,12 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/statistics.hpp"
-#include "render/deviations.hpp"
+#include "walk/controls.hpp"
 #include "walk/keys.hpp"
+#include "walk/settings_section.hpp"
 #include "walk/shots.hpp"
 
 #include <fmt/format.h>
-#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,79 +16,6 @@
 namespace lucerna::demo {
 
 namespace {
-
-// ---------------------------------------------------------------------------------------------------- controls, each noted by name
-
-bool button(Ui& ui, const char* label) {
-  const bool pressed = ImGui::Button(label);
-  ui.note(label);
-  return pressed;
-}
-
-bool checkbox(Ui& ui, const char* label, bool& value) {
-  const bool changed = ImGui::Checkbox(label, &value);
-  ui.note(label);
-  return changed;
-}
-
-bool slider(Ui& ui, const char* label, float& value, float least, float most, const char* format, bool logarithmic = false) {
-  const bool changed = ImGui::SliderFloat(label, &value, least, most, format, logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-  ui.note(label);
-  return changed;
-}
-
-/// A menu; its items are noted as "label: item". The position of the chosen one.
-template <class Names>
-bool menu(Ui& ui, const char* label, int& chosen, const Names& names) {
-  bool changed = false;
-  const bool isOpen = ImGui::BeginCombo(label, std::string(names[static_cast<std::size_t>(chosen)]).c_str());
-  if (!isOpen) {
-    ui.note(label);
-    return false;
-  }
-  for (int i = 0; i < static_cast<int>(std::size(names)); ++i) {
-    const std::string name(names[static_cast<std::size_t>(i)]);
-    if (ImGui::Selectable(name.c_str(), i == chosen)) {
-      changed = i != chosen;
-      chosen = i;
-    }
-    ui.note(std::string(label) + ": " + name);
-  }
-  ImGui::EndCombo();
-  return changed;
-}
-
-template <class Names>
-bool menu(Ui& ui, const char* label, std::string& chosen, const Names& names) {
-  int index = 0;
-  for (int i = 0; i < static_cast<int>(std::size(names)); ++i)
-    if (chosen == names[static_cast<std::size_t>(i)]) index = i;
-  const bool changed = menu(ui, label, index, names);
-  if (changed) chosen = names[static_cast<std::size_t>(index)];
-  return changed;
-}
-
-bool textField(Ui& ui, const char* label, std::string& text) {
-  const bool entered = ImGui::InputText(label, &text, ImGuiInputTextFlags_EnterReturnsTrue);
-  ui.note(label);
-  return entered;
-}
-
-void explain(const std::string& text) {
-  if (!ImGui::IsItemHovered()) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(30.0f * ImGui::GetFontSize());
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
-}
-
-void line(const std::string& text) { ImGui::TextUnformatted(text.c_str()); }
-void wrapped(const std::string& text) {
-  ImGui::PushTextWrapPos(0.0f);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-}
 
 bool section(Ui& ui, const char* name, bool openAtStart) {
   ui.section("");
@@ -267,26 +194,6 @@ void showSide(Ui& ui, WalkState& s, int index) {
   }
 }
 
-void showSettings(Ui& ui, WalkState& s) {
-  static constexpr std::array<std::string_view, 2> kSides{"A", "B"};
-  menu(ui, "of", s.edited, kSides);
-  SideState& side = s.sides[static_cast<std::size_t>(s.edited)];
-  if (button(ui, "copy as command line")) ImGui::SetClipboardText((commandLine("render", s.scene->file.string(), side.options) + " --camera " + cameraText(s.camera->camera()) + " -o picture.exr").c_str());
-  ImGui::SameLine();
-  if (button(ui, "all defaults")) side.options.settings.clear(), side.options.deviations.clear();
-  for (const std::string& assignment : side.options.settings) wrapped("--set " + assignment);
-  for (const Deviation& deviation : allDeviations()) {
-    const std::string name = deviation.name;
-    const bool belongs = name.starts_with(side.options.technique + ".") || (side.options.technique == "radiosity" && name.starts_with("rad.")) ||
-                         (side.options.technique == "lpv" && name.starts_with("rsm."));
-    if (!belongs || !side.renderer) continue;
-    const std::vector<std::string> active = activeDeviations(side.renderer->settings());
-    bool on = std::find(active.begin(), active.end(), name) != active.end();
-    if (checkbox(ui, name.c_str(), on)) assign(side.options.deviations, name, on ? "on" : "off");
-    explain(deviation.meaning);
-  }
-}
-
 void showJudgement(WalkState& s, int index) {
   SideState& side = s.sides[static_cast<std::size_t>(index)];
   if (side.shows == Shows::reference || !s.isVisible(index)) return;
@@ -448,8 +355,10 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
 
 }  // namespace
 
+int Panel::widthOf(float scale) { return static_cast<int>(std::lround(310.0f * scale)); }
+
 void Panel::show(Ui& ui, WalkState& s, Host& host) {
-  const float width = 25.0f * ImGui::GetFontSize();
+  const auto width = static_cast<float>(widthOf(ui.scale()));
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x - std::min(width, screen.x), 0.0f}, ImGuiCond_Always);
   ImGui::SetNextWindowSize({std::min(width, screen.x), screen.y}, ImGuiCond_Always);

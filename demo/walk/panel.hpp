@@ -10,6 +10,8 @@ class Panel {
  public:
   /// Between Ui::begin and Ui::end.
   static void show(Ui& ui, WalkState& state, Host& host);
+  /// Pixels that it takes at the right edge.
+  static int widthOf(float scale);
   /// F1.
   static void showHelp(Ui& ui, WalkState& state);
   /// One line at the bottom: what is going on, or the last message.

@@ -4,6 +4,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "base/statistics.hpp"
+#include "gl/build_watch.hpp"
 #include "gl/pass.hpp"
 #include "walk/ground.hpp"
 #include "walk/panel.hpp"
@@ -81,7 +82,7 @@ bool WalkWindow::takeInput() {
     if (action && (!typing || *action == Action::help || *action == Action::panel)) act(*action);
   }
   if (!pointing) {
-    const glm::vec2 pixels(glm::max(window_, glm::ivec2(1)));
+    const glm::vec2 pixels(glm::max(view_, glm::ivec2(1)));
     if (input_.buttons[static_cast<std::size_t>(MouseButton::right)] && state_.layout == Layout::wipe)
       state_.split = std::clamp(static_cast<float>(input_.cursor.x) / pixels.x, 0.0f, 1.0f);
     if (input_.wheel.y != 0.0) state_.zoom = std::clamp(state_.zoom * static_cast<float>(std::exp2(0.25 * input_.wheel.y)), 1.0f, 64.0f);
@@ -193,12 +194,10 @@ void WalkWindow::loadWantedScene() {
     auto scene = std::make_unique<Scene>(loadScene(file));
     if (state_.ground && wantsGround(*scene)) addGround(*scene);
     Spline path = pathOf(*scene, {});
-    std::optional<float> exposure;
-    RenderSettings settings = state_.sides[0].options.parse(exposure);
+    RenderSettings settings = state_.sides[0].options.parse();
     settings.size = state_.sides[0].renderer->size();
-    programs_.setBeforeBuild([this](const std::string& name) { breathe("compiling " + name); });
+    const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
     auto renderer = std::make_unique<Renderer>(context_, programs_, *scene, settings);
-    programs_.setBeforeBuild({});
     // Nothing can fail from here on: the new scene takes the old one's place.
     state_.truth.reset();
     for (SideState& side : state_.sides) {
@@ -227,10 +226,8 @@ void WalkWindow::loadWantedScene() {
     state_.say(fmt::format("{}: {} triangles", state_.scene->name, state_.scene->triangleCount()));
     changed();
   } catch (const Error& error) {
-    programs_.setBeforeBuild({});
     state_.say(error.what());
   } catch (const Stopped&) {
-    programs_.setBeforeBuild({});
     state_.say("loading stopped");
   }
 }
@@ -252,14 +249,12 @@ void WalkWindow::make(SideState& side) {
   if (wanted == side.builtAs || wanted == side.failedAs) return;
   const bool first = !state_.sides[0].renderer;
   try {
-    std::optional<float> exposure;
-    RenderSettings settings = side.options.parse(exposure);
-    settings.size = glm::max(glm::ivec2(glm::vec2(window_) * state_.renderScale), glm::ivec2(1));
+    RenderSettings settings = side.options.parse();
+    settings.size = pictureSize();
     const auto start = Clock::now();
     breathe("making technique " + side.options.technique);
-    programs_.setBeforeBuild([this](const std::string& name) { breathe("compiling " + name); });
+    const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
     auto renderer = std::make_unique<Renderer>(context_, programs_, *state_.scene, settings);
-    programs_.setBeforeBuild({});
     side.renderer = std::move(renderer);
     side.buildSeconds = secondsSince(start);
     side.failure.clear();
@@ -274,15 +269,13 @@ void WalkWindow::make(SideState& side) {
     side.settled = false;
     side.judgement.clear();
     side.judgedTruth = 0;
-    if (exposure && first) state_.exposure = *exposure;
+    if (settings.exposure && first) state_.exposure = *settings.exposure;
   } catch (const Error& error) {
-    programs_.setBeforeBuild({});
     if (first) throw;
     side.failedAs = wanted;
     side.failure = error.what();
     state_.say(error.what());
   } catch (const Stopped&) {
-    programs_.setBeforeBuild({});
     if (first) {
       stop_ = true;
       return;
@@ -343,11 +336,11 @@ void WalkWindow::seekTruth(double frameSeconds) {
   if (still_ < kStillFrames) return;
   const SideState& shown = state_.side();
   const glm::ivec2 size = shown.renderer->size();
-  const Component component = parseComponent(shown.built.component.empty() ? "all" : shown.built.component);
+  const Component component = shown.renderer->settings().component;
   if (!state_.truth || state_.truth->size() != size || state_.truth->component() != component || truthVersion_ != state_.sceneVersion) {
     try {
       breathe("making the path tracer");
-      programs_.setBeforeBuild([this](const std::string& name) { breathe("compiling " + name); });
+      const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
       state_.truth.reset();
       state_.truth = std::make_unique<Truth>(context_, programs_, *state_.scene, size, component);
       truthVersion_ = state_.sceneVersion;
@@ -358,7 +351,6 @@ void WalkWindow::seekTruth(double frameSeconds) {
     } catch (const Stopped&) {
       state_.truthOn = false;
     }
-    programs_.setBeforeBuild({});
     if (!state_.truth) return;
   }
   if (!truthCamera_ || !sameView(*truthCamera_, state_.camera->camera())) {
@@ -406,7 +398,7 @@ void WalkWindow::readPixel(const Compare::Inputs& inputs) {
   state_.values = {};
   state_.pixel.reset();
   if (!state_.magnifier || input_.cursor.x < 0.0) return;
-  state_.pixel = Compare::pictureAt(inputs, window_, glm::vec2(input_.cursor));
+  if (input_.cursor.x < view_.x) state_.pixel = Compare::pictureAt(inputs, view_, glm::vec2(input_.cursor));
   if (!state_.pixel) return;
   const auto read = [&](const gl::Texture* texture) -> std::optional<glm::vec3> {
     if (!texture || texture->size2d() != inputs.left.radiance->size2d()) return {};
@@ -427,8 +419,8 @@ void WalkWindow::compose() {
   const bool truthThere = state_.truth && state_.truthOn && state_.truth->ready() && still_ >= kStillFrames;
   const bool shows = state_.show == Show::picture || (truthThere && radianceOf(state_.shown) && radianceOf(state_.shown)->size2d() == state_.truth->size());
   const bool plain = state_.layout == Layout::one && (state_.show == Show::picture || !shows) && state_.zoom == 1.0f && !state_.magnifier &&
-                     radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) && shown.renderer && shown.renderer->size() == window_;
-  presented_ = plain && !drawsUi() && !state_.shotWanted;
+                     radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) && shown.renderer && shown.renderer->size() == view_;
+  presented_ = plain && !drawsUi() && !state_.shotWanted && view_ == window_;
   if (presented_) {
     host_.present(shown.renderer->displayFramebuffer().id(), window_);
     return;
@@ -456,19 +448,20 @@ void WalkWindow::compose() {
     inputs.errorScale = state_.errorScale > 0.0f ? state_.errorScale : std::max(0.5f * static_cast<float>(mean.x + mean.y + mean.z) / 3.0f, 1e-30f);
   }
   if (state_.magnifier && input_.cursor.x >= 0.0 && !(ui_ && ui_->wantsMouse())) inputs.magnifier = glm::vec2(input_.cursor);
-  if (plain) gl::copyTexels(shown.renderer->display(), {0, 0}, picture_, {0, 0}, window_);
-  else if (inputs.left.radiance) compare_->record(pictureTarget_, inputs);
+  if (plain) gl::copyTexels(shown.renderer->display(), {0, 0}, picture_, {0, 0}, view_);
+  else if (inputs.left.radiance) compare_->record(pictureTarget_, view_, inputs);
   readPixel(inputs);
   if (state_.shotWanted) takeShot();
 }
 
-Bitmap WalkWindow::shownPicture() const {
+/// The left part of the window, from its upper edge.
+Bitmap WalkWindow::shownPicture(glm::ivec2 size) const {
   const std::vector<glm::vec4> texels = picture_.readRgba();
   Bitmap bitmap;
-  bitmap.width = window_.x;
-  bitmap.height = window_.y;
-  for (int y = window_.y - 1; y >= 0; --y)
-    for (int x = 0; x < window_.x; ++x)
+  bitmap.width = size.x;
+  bitmap.height = size.y;
+  for (int y = size.y - 1; y >= 0; --y)
+    for (int x = 0; x < size.x; ++x)
       for (int c = 0; c < 4; ++c)
         bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(window_.x) + static_cast<std::size_t>(x)][c])));
   return bitmap;
@@ -482,11 +475,11 @@ void WalkWindow::takeShot() {
     fs::create_directories(state_.shotFolder, ignored);
     const fs::path stem = freeName(state_.shotFolder, state_.scene->name);
     std::string note = fmt::format("Lucerna {} on {}\n{} --camera {} --size {}x{}\nexposure {:.6g}", LUCERNA_VERSION, state_.rendererName,
-                                   commandLine("render", state_.scene->file.string(), side.built), cameraText(state_.camera->camera()), window_.x, window_.y, state_.exposure);
+                                   commandLine("render", state_.scene->file.string(), side.built), cameraText(state_.camera->camera()), side.renderer->size().x, side.renderer->size().y, state_.exposure);
     if (side.judgement.known())
       note += fmt::format("\nrelative error {:.4g}, {:.4g} to {:.4g} (99 %), against {} path-traced samples a pixel", side.judgement.nrmse().value, side.judgement.nrmse().low,
                           side.judgement.nrmse().high, state_.truth ? state_.truth->samples() : 0);
-    writePngWithNote(stem.string() + ".png", shownPicture(), note);
+    writePngWithNote(stem.string() + ".png", shownPicture(view_), note);
     if (side.renderer) writeHdrWithNote(stem.string() + ".hdr", side.renderer->readRadiance(), note);
     state_.say(fmt::format("{}.png and .hdr written", stem.string()));
   } catch (const Error& error) {
@@ -506,14 +499,19 @@ void WalkWindow::resizeTo(glm::ivec2 window) {
     pass.clearColor(0, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     changed();
   }
-  const glm::ivec2 size = glm::max(glm::ivec2(glm::vec2(window_) * state_.renderScale), glm::ivec2(1));
+  // An open panel has the right part for itself, where that leaves most of the window.
+  const int panel = state_.panel ? Panel::widthOf(host_.contentScale()) : 0;
+  view_ = {window_.x > 2 * panel ? window_.x - panel : window_.x, window_.y};
   for (SideState& side : state_.sides)
-    if (side.renderer && side.renderer->size() != size) {
-      side.renderer->resize(size);
+    if (side.renderer && side.renderer->size() != pictureSize()) {
+      side.renderer->resize(pictureSize());
       side.settled = false;
+      side.judgement.clear();
       changed();
     }
 }
+
+glm::ivec2 WalkWindow::pictureSize() const { return glm::max(glm::ivec2(glm::vec2(view_) * state_.renderScale), glm::ivec2(1)); }
 
 void WalkWindow::drawUi(const HostInput& input, double seconds, const std::string& work, double share) {
   if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
@@ -578,7 +576,7 @@ void WalkWindow::run() {
     if (drawsUi()) {
       drawUi(input_, dt, "", -1.0);
       if (player_)
-        if (const auto file = player_->takeSave()) writePng(*file, shownPicture());
+        if (const auto file = player_->takeSave()) writePng(*file, shownPicture(window_));
       host_.present(pictureTarget_.id(), window_);
     } else if (!presented_) {
       host_.present(pictureTarget_.id(), window_);
@@ -615,7 +613,10 @@ nlohmann::ordered_json WalkWindow::toJson() const {
     json["panel_gpu_bytes"] = ui_->gpuBytes();
     json["controls"] = ui_->labels();
   }
-  if (player_) json["touched"] = player_->touched();
+  if (player_) {
+    json["touched"] = player_->touched();
+    json["gone"] = player_->gone();
+  }
   if (state_.truth) {
     json["truth"] = {{"samples", state_.truth->samples()}, {"seconds", state_.truth->seconds()}};
     for (std::size_t i = 0; i < 2; ++i)

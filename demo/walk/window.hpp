@@ -48,7 +48,8 @@ class WalkWindow {
   void resizeTo(glm::ivec2 window);
   void drawUi(const HostInput& input, double seconds, const std::string& work, double share);
   bool drawsUi() const;
-  Bitmap shownPicture() const;
+  Bitmap shownPicture(glm::ivec2 size) const;
+  glm::ivec2 pictureSize() const;  ///< that is computed
   const gl::Texture* radianceOf(int side) const;
   void changed() { still_ = 0; }
 
@@ -63,6 +64,7 @@ class WalkWindow {
   HostInput input_;
   glm::dvec2 cursorBefore_{0.0};
   glm::ivec2 window_{0}, playedSize_{0};
+  glm::ivec2 view_{0};                 ///< the window less the panel: where the picture is
   gl::Texture picture_;                ///< what is presented, where that is not the renderer's own
   gl::Framebuffer pictureTarget_;
   Camera lastCamera_;

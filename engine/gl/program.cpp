@@ -1,5 +1,7 @@
 #include "gl/program.hpp"
 
+#include "gl/build_watch.hpp"
+
 #include "base/data.hpp"
 #include "base/error.hpp"
 #include "base/hash.hpp"
@@ -185,7 +187,7 @@ const Program& ProgramLibrary::load(const ProgramDescription& description) {
       return *program;
     }
   }
-  if (beforeBuild_) beforeBuild_(description.name);
+  BuildWatch::say(description.name);
   std::unique_ptr<Program> program(new Program(description));
   build(*program);
   programs_.push_back(std::move(program));

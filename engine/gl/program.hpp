@@ -11,7 +11,6 @@
 #include <glm/glm.hpp>
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -106,10 +105,6 @@ class ProgramLibrary {
   };
   Reload reloadChanged();
 
-  /// Called before each program that is built, with its name, between any other GL calls of the builder's: it may draw, and may throw, which ends
-  /// what the program was built for. Empty: nobody is asked.
-  void setBeforeBuild(std::function<void(const std::string& name)> beforeBuild) { beforeBuild_ = std::move(beforeBuild); }
-
   struct Statistics {
     int built = 0, reused = 0;
     double compileSeconds = 0.0;
@@ -123,7 +118,6 @@ class ProgramLibrary {
  private:
   void build(Program& program);
   std::filesystem::path root_;
-  std::function<void(const std::string&)> beforeBuild_;
   std::vector<std::unique_ptr<Program>> programs_;
   Statistics statistics_;
 };
