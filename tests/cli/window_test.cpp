@@ -45,8 +45,8 @@ class Window : public ::testing::Test {
     return text.str();
   }
   /// Plays an input file in a small window; GL errors end the command with exit code 1.
-  RunResult play(const std::string& input, const std::string& arguments = "", const std::string& before = "") const {
-    return run("cd '" + folder_.path().string() + "' && " + before + " LUCERNA_VERBOSE=1 LUCERNA_REFERENCES=" + path("references") + " '" LUCERNA_BINARY "' walk room.json --keys path.txt --size 128x72 --set lpv.cells=8 --set lpv.samples=64 --set rad.edge=1 --play-input '" +
+  RunResult play(const std::string& input, const std::string& arguments = "", const std::string& before = "", const std::string& size = "128x72") const {
+    return run("cd '" + folder_.path().string() + "' && " + before + " LUCERNA_VERBOSE=1 LUCERNA_REFERENCES=" + path("references") + " '" LUCERNA_BINARY "' walk room.json --keys path.txt --size " + size + " --set lpv.cells=8 --set lpv.samples=64 --set rad.edge=1 --play-input '" +
                input + "' --json walk.json " + arguments);
   }
   static std::string kept(const std::string& name) { return LUCERNA_SOURCE_DIR "/tests/input/" + name; }
@@ -77,7 +77,7 @@ TEST_F(Window, EveryKeyDoesItsWork) {
 }
 
 TEST_F(Window, EveryControlOnce) {
-  const RunResult result = play(kept("every_control.txt"));
+  const RunResult result = play(kept("every_control.txt"), "", "", "420x300");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
   const auto window = json().at("window");
@@ -160,7 +160,7 @@ TEST_F(Window, InAVirtualDisplay) {
 
 TEST_F(Window, AThousandFrames) {
   if (!lucerna::test::longTests()) GTEST_SKIP() << "LUCERNA_LONG_TESTS is not set";
-  const RunResult result = play(kept("every_control.txt"), "--frames 1000");
+  const RunResult result = play(kept("every_control.txt"), "--frames 1000", "", "420x300");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(json().at("frames"), 1000);
   EXPECT_EQ(glComplaints(result.err), "");
