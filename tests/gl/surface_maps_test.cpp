@@ -29,6 +29,8 @@ class SurfaceMaps : public PathTest {
     settings.rsm.size = 64;
     settings.lpv.cascades.cells = 8;
     settings.radiosity.direct = RadiosityView::Direct::pixels;
+    settings.radiosity.solution.patches.longestEdge = 12.0;
+    settings.radiosity.solution.hemicubes.resolution = 16;
     Renderer renderer(context(), library(), scene, settings);
     renderer.renderToTheEnd(camera);
     return renderer.readRadiance();
@@ -99,7 +101,7 @@ TEST_F(SurfaceMaps, NormalsLieAlongTheTextureWhicheverWayItLies) {
             ASSERT_NEAR(rastered.at(x, y).y, expected, 1e-4) << x << " " << y;
             ASSERT_NEAR(walked.at(x, y).y, expected, 1e-4) << x << " " << y;
           }
-        if (side < 0.0) continue;  // radiosity's patches have one side
+        if (side < 0.0 || scale != 1.0f) continue;  // radiosity's patches have one side
         const Image solved = drawn(builder.scene(), camera, Technique::radiosity, Component::direct);
         EXPECT_NEAR(solved.at(8, 8).y, expected, 1e-4);
       }
