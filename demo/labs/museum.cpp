@@ -6,7 +6,7 @@
 #include "base/hash.hpp"
 #include "bench/html.hpp"
 #include "labs/lab.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ const Scene& box() {
 RenderSettings settingsOf(const std::string& technique, const std::string& deviation) {
   RenderSettings settings;
   applyFidelity(settings, Fidelity::corrected);
-  settings.technique = parseTechnique(technique);
+  settings.technique = parseName<Technique>(technique, "technique");
   settings.component = Component::indirect;
   settings.lpv.transport = LpvTransport::propagate;  // that all deviations of the volume belong to
   settings.size = {96, 96};
@@ -46,10 +46,7 @@ double meanOfAll(const Image& image) {
   return (mean.x + mean.y + mean.z) / 3.0;
 }
 
-std::string techniqueOf(const std::string& deviation) {
-  const std::string prefix = deviation.substr(0, deviation.find('.'));
-  return prefix == "rad" ? "radiosity" : prefix;
-}
+std::string techniqueOf(const std::string& deviation) { return deviation.substr(0, deviation.find('.')); }
 
 std::string png(const Image& image, float exposure) {
   const auto file = std::filesystem::temp_directory_path() / fmt::format("lucerna-museum-{:x}.png", reinterpret_cast<std::uintptr_t>(&image));

@@ -1,6 +1,6 @@
 // lucerna lab: each lab's stub, solution and typical wrong answers; a student's way from start to report; figures of the READMEs.
 #include "base/files.hpp"
-#include "render/deviations.hpp"
+#include "settings/deviations.hpp"
 #include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
