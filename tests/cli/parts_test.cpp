@@ -4,6 +4,7 @@
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -26,7 +27,7 @@ class Parts : public ::testing::Test {
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(std::ifstream(path(name))); }
   /// The Cornell box, whose light is all over the range; small.
   std::string picture() const { return std::string("'" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --technique path --size 24x14 --seed 3 "); }
-  std::string part(const std::string& range, const std::string& name) const { return "render " + picture() + "--samples " + range + " --checkpoint '" + path(name) + "' --quiet "; }
+  std::string part(const std::string& range, const std::string& name) const { return fmt::format("render {}--samples {} --checkpoint '{}' --quiet ", picture(), range, path(name)); }
   void expectRefused(const std::string& command, const std::string& word) {
     const RunResult result = RUN_LUCERNA(command);
     EXPECT_EQ(result.exitCode, 2) << result.err;
