@@ -136,7 +136,7 @@ function frontOf(rows, cost, metric) {
   points.sort((a, b) => a.cost - b.cost || a.error - b.error || a.index - b.index);
   const kept = [];
   for (const p of points) if (kept.every(q => isBelow(p.error, p.spread, q.error, q.spread))) kept.push(p);
-  return kept.filter(p => !kept.some(q => isBelow(q.error, q.spread, p.error, p.spread) && !isBelow(q.cost, q.costSpread, p.cost, p.costSpread))).map(p => p.index);
+  return kept.filter(p => !kept.some(q => isBelow(q.error, q.spread, p.error, p.spread) && !isBelow(p.cost, p.costSpread, q.cost, q.costSpread))).map(p => p.index);
 }
 /// Error of a series at a cost: log-log between the two rungs around it. {value, spread, interpolated}, or null outside of the ladder.
 function errorAt(points, cost) {
