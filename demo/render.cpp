@@ -26,12 +26,12 @@ struct Options {
 
 int run(Options options) {
   options.common.apply();
-  checkWritable(options.output);
+  if (!options.output.empty()) checkWritable(options.output);
   options.picture.readSettingsFile();
   if (!options.path.spp) options.path.spp = options.picture.settingsSpp;
   if (options.picture.technique == "path") return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
   options.path.refuseIfGiven(options.picture.technique);
-  if (options.output.empty()) throwBadInput("-o: missing: where the picture goes");
+  if (options.output.empty()) throwBadInput("--output is missing: where the picture goes");
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
   if (settings.radiosity.direct == RadiosityView::Direct::automatic) settings.radiosity.direct = RadiosityView::Direct::pixels;

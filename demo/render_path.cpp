@@ -85,7 +85,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   if (!path.sizeGiven && (picture.fidelity == "original" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
   const RenderSettings shared = rest.parse();
   const std::optional<SampleRange> part = sampleRange(path);
-  if (output.empty() && !part) throwBadInput("-o: missing: where the picture goes");
+  if (output.empty() && !part) throwBadInput("--output is missing: where the picture goes");
   if (!output.empty() && !isWritableImageName(output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
   const Scene scene = loadScene(sceneFile);
   const Camera camera = chooseCamera(scene, cameraText);

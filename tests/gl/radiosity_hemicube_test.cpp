@@ -205,7 +205,8 @@ TEST_F(Hemicube, AreaFactorsOfACube) {
   EXPECT_GT(std::abs(0.5 * (centroid.sum(0, 2, 3) + centroid.sum(1, 2, 3)) / 0.199824895698387 - 1.0), 0.03);
 }
 
-TEST_F(Hemicube, ReceiverErrorFallsWithTheSquareOfItsParts) {
+// Centroids of parts are off by the square of the parts; what halving them shows of it is taken off [Richardson1911], which leaves the fourth power.
+TEST_F(Hemicube, ReceiverErrorFallsWithTheFourthPowerOfItsParts) {
   double error[3] = {};
   const int parts[3] = {2, 4, 8};
   for (int k = 0; k < 3; ++k) {
@@ -219,9 +220,9 @@ TEST_F(Hemicube, ReceiverErrorFallsWithTheSquareOfItsParts) {
     const Computed c = compute(builder.scene(), settings);
     error[k] = std::abs(0.5 * (c.sum(0, 2, 3) + c.sum(1, 2, 3)) / 0.415253283577147 - 1.0);
   }
-  EXPECT_NEAR(std::log2(error[0] / error[1]), 2.0, 0.3);
-  EXPECT_NEAR(std::log2(error[1] / error[2]), 2.0, 0.4);
-  EXPECT_LT(error[2], 0.004);
+  EXPECT_GT(std::log2(error[0] / error[1]), 1.7);  // two parts a side are too few for the limit
+  EXPECT_NEAR(std::log2(error[1] / error[2]), 4.0, 0.5);
+  EXPECT_LT(error[2], 0.001) << error[0] << " " << error[1];
 }
 
 TEST_F(Hemicube, SmallSourcesAreNeitherMissedNorExaggerated) {
