@@ -53,7 +53,7 @@ void addNeutral(Scene& scene, std::string_view need) {
     material.normalTexture = addWhiteTexture(scene);
     material.normalScale = kNothing;
   } else if (need == "metalMaps") {
-    material.metalMap = MetalMap{material.diffuse, 0.0f, 1.0f, addWhiteTexture(scene)};
+    material.metalMap = MetalMap{material.diffuse, 0.0f, -1.0f, addWhiteTexture(scene)};  // no roughness: no highlight of its own
   } else if (need == "background") {
     scene.background = glm::vec3(kNothing);
   } else if (need == "environment") {
