@@ -108,7 +108,9 @@ void showLight(Ui& ui, WalkState& s) {
     const glm::dvec3 to = -sun.direction;
     float height = static_cast<float>(glm::degrees(std::asin(std::clamp(to.y, -1.0, 1.0))));
     float azimuth = static_cast<float>(glm::degrees(std::atan2(to.x, -to.z)));
-    const bool moved = slider(ui, "sun height", height, 1.0f, 90.0f, "%.1f degrees") | slider(ui, "sun azimuth", azimuth, -180.0f, 180.0f, "%.1f degrees");
+    const bool raised = slider(ui, "sun height", height, 1.0f, 90.0f, "%.1f degrees");  // both are drawn, whichever moved
+    const bool turned = slider(ui, "sun azimuth", azimuth, -180.0f, 180.0f, "%.1f degrees");
+    const bool moved = raised || turned;
     if (moved) {
       const double h = glm::radians(std::clamp(static_cast<double>(height), 0.5, 89.9)), a = glm::radians(static_cast<double>(azimuth));
       sun.direction = -glm::dvec3(std::cos(h) * std::sin(a), std::sin(h), -std::cos(h) * std::cos(a));

@@ -75,7 +75,7 @@ class WalkWindow {
   std::optional<Camera> truthCamera_;  ///< that the truth is of
   std::uint64_t truthVersion_ = 0;     ///< of the scene that the truth is of
   int frames_ = 0;
-  double seconds_ = 0.0, sinceTitle_ = 0.0, sinceHint_ = 0.0;
+  double seconds_ = 0.0, sinceHint_ = 0.0;
   int framesOfTitle_ = 0;
   Clock::time_point lastBreath_{}, made_{};
 };

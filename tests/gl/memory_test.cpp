@@ -62,16 +62,18 @@ class Allocations {
     }
     for (const auto& [id, kind] : textures()) {
       if (!glIsTexture(id)) continue;
-      glBindTexture(kind.first, id);
-      for (GLint level = 0; level < kind.second; ++level) {
-        const auto ask = [&](GLenum what) {
+      const auto [target, levels] = kind;
+      const GLenum face = target == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_CUBE_MAP_POSITIVE_X : target;
+      glBindTexture(target, id);
+      for (GLint level = 0; level < levels; ++level) {
+        const auto ask = [face, level](GLenum what) {
           GLint value = 0;
-          glGetTexLevelParameteriv(kind.first == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_CUBE_MAP_POSITIVE_X : kind.first, level, what, &value);
+          glGetTexLevelParameteriv(face, level, what, &value);
           return static_cast<std::size_t>(value);
         };
         std::size_t bits = 0;
-        for (const GLenum part : {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE, GL_TEXTURE_DEPTH_SIZE}) bits += ask(part);
-        bytes += bits / 8 * ask(GL_TEXTURE_WIDTH) * ask(GL_TEXTURE_HEIGHT) * ask(GL_TEXTURE_DEPTH) * (kind.first == GL_TEXTURE_CUBE_MAP ? 6 : 1);
+        for (const int part : {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE, GL_TEXTURE_DEPTH_SIZE}) bits += ask(static_cast<GLenum>(part));
+        bytes += bits / 8 * ask(GL_TEXTURE_WIDTH) * ask(GL_TEXTURE_HEIGHT) * ask(GL_TEXTURE_DEPTH) * (target == GL_TEXTURE_CUBE_MAP ? 6 : 1);
       }
     }
     return bytes;
