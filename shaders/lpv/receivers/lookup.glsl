@@ -19,21 +19,22 @@ vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
 }
 
 // From the finest cascade to the coarsest, each blended into the next near its border, and where it has little to interpolate from: what a point's own
-// receiver weighs at least when it is new, 1/8 of 1/4, or more is enough.
+// receiver weighs at least when it is new, 1/8 of 1/4, or more is enough. Less than kLeast is no more than the filter's rounding: its colour would be noise.
 // found: false where none has anything.
 vec3 receivedIrradiance(vec3 position, vec3 normal, out bool found) {
-  const float kEnough = 1.0 / 32.0;
+  const float kEnough = 1.0 / 32.0, kLeast = 1e-5;
   vec3 irradiance = vec3(0.0);
-  float left = 1.0;
+  float left = 1.0, sum = 0.0;
   for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
     float weight = left * lpvCascadeWeight(k, position);
     if (!(weight > 0.0)) continue;
     vec4 here = receivedInCascade(k, position, normal);
-    if (!(here.w > 0.0)) continue;
+    if (!(here.w > kLeast)) continue;
     weight *= min(here.w / kEnough, 1.0);
     irradiance += weight * here.rgb / here.w;
+    sum += weight;  // not 1 - left, which loses a small weight's digits
     left -= weight;
   }
-  found = left < 1.0;
-  return found ? irradiance * (lpv.referenceIrradiance / (1.0 - left)) : vec3(0.0);
+  found = sum > 0.0;
+  return found ? irradiance * (lpv.referenceIrradiance / sum) : vec3(0.0);
 }
