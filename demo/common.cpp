@@ -90,9 +90,9 @@ SettingAssignment parseSet(const std::string& assignment, const SettingCost* onl
 }
 
 std::string deviationsHelp() {
-  std::string text = "\nDeviations (--deviation NAME=on|off; * are on with --fidelity original):\n";
+  std::string text = "\nDeviations (--deviation NAME=on|off; * are on with --fidelity original, which is thesis; + with demo):\n";
   for (const Deviation& deviation : allDeviations())
-    text += fmt::format("{} {:<24} {}\n", deviation.inOriginal ? '*' : ' ', deviation.name, deviation.meaning);
+    text += fmt::format("{}{} {:<24} {}\n", deviation.inOriginal ? '*' : ' ', deviation.inDemo ? '+' : ' ', deviation.name, deviation.meaning);
   return text;
 }
 
@@ -100,7 +100,7 @@ void PictureOptions::declare(CLI::App& app) {
   const auto offerNames = [](CLI::Option* option, const auto& names) { offer(option, std::vector<std::string>(names.begin(), names.end())); };
   offerNames(app.add_option("--technique", technique, "direct, rsm, lpv, radiosity or, for render, path")->capture_default_str(), namesOf(Technique{}));
   offerNames(app.add_option("--component", component, "all, direct or indirect")->capture_default_str(), namesOf(Component{}));
-  offerNames(app.add_option("--fidelity", fidelity, "corrected, or original: as published")->capture_default_str(), namesOf(Fidelity{}));
+  offerNames(app.add_option("--fidelity", fidelity, "corrected; original: as published; lpv: thesis (original) or demo, the program published with it")->capture_default_str(), namesOf(Fidelity{}));
   std::vector<std::string> switches;
   for (const Deviation& deviation : allDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
@@ -134,7 +134,7 @@ void chooseTransport(RenderSettings& settings, const PictureOptions& options, co
   const auto isSet = [&](std::string_view key) { return std::any_of(given.begin(), given.end(), [&](const Setting* s) { return s->key == key; }); };
   if (!isSet("lpv.transport")) {
     settings.lpv.transport = LpvTransport::rays;
-    if (options.fidelity == "original" || settings.rsm.fluxCosine || settings.lpv.deviations != LightPropagationVolume::Deviations{})
+    if (options.fidelity != "corrected" || settings.rsm.fluxCosine || settings.lpv.deviations != LightPropagationVolume::Deviations{})
       settings.lpv.transport = LpvTransport::propagate;
     for (const Setting* setting : given)
       if (const auto transport = onlyTransport(*setting)) {

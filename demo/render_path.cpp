@@ -82,7 +82,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   for (const std::string& deviation : picture.deviations)
     if (!deviation.starts_with("path.")) throwBadInput("--deviation {}: --technique path has those that begin with path.", deviation);
   PictureOptions rest = picture;
-  if (!path.sizeGiven && (picture.fidelity == "original" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
+  if (!path.sizeGiven && (picture.fidelity != "corrected" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
   const RenderSettings shared = rest.parse();
   const std::optional<SampleRange> part = sampleRange(path);
   if (output.empty() && !part) throwBadInput("--output is missing: where the picture goes");

@@ -58,9 +58,10 @@ std::string settingsPage() {
   }
   text +=
       "\n## Deviations\n\n"
-      "What the published originals do differently, each by itself: `--deviation NAME=on|off`. Those with a star are on with `--fidelity original`.\n"
+      "What the published originals do differently, each by itself: `--deviation NAME=on|off`. Those with a star are on with `--fidelity original`, which is `thesis`;\n"
+      "those with a plus with `demo`, the program published with the thesis on light propagation.\n"
       "Formulas, sources and measured effects are in the README.md of each technique.\n\n| Name | | Meaning |\n|---|---|---|\n";
-  for (const Deviation& deviation : allDeviations()) text += fmt::format("| `{}` | {} | {} |\n", deviation.name, deviation.inOriginal ? "*" : "", cell(deviation.meaning));
+  for (const Deviation& deviation : allDeviations()) text += fmt::format("| `{}` | {} | {} |\n", deviation.name, std::string(deviation.inOriginal ? "*" : "") + (deviation.inDemo ? "+" : ""), cell(deviation.meaning));
   return text;
 }
 

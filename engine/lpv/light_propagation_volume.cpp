@@ -16,7 +16,6 @@ constexpr std::size_t kCellBytes = 16;  // of four coefficients in a buffer
 constexpr GLuint kFrontBuffer = 0, kNextBuffer = 1, kSumBuffer = 2, kFacesBuffer = 3, kBricksBuffer = 4;
 constexpr GLuint kReceivedBuffer = 0, kResultBuffer = 1, kBalancedBuffer = 2, kBalancesBuffer = 3;
 constexpr glm::ivec3 kGroup{8, 8, 1};  // the fastest of those tried on llvmpipe, see README.md
-constexpr glm::ivec3 kTexelsOfGroup = kGroup * glm::ivec3(4, 4, 1);  // an invocation adds up a tile of 4x4, as in lpv/tile.glsl
 constexpr double kSmallestCosine = 0.05;                             // to which the reflective shadow map bounds a texel's area
 constexpr int kBrick = 4;              // cells a side, as in lpv/bricks.glsl
 constexpr std::array<GLuint, 4> kNoBricks{64, 0, 1, 0};  // groups of the dispatch, a row at a time, and their count
@@ -24,12 +23,21 @@ constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 
 }  // namespace
 
+LightPropagationVolume::Settings LightPropagationVolume::withItsPasses(Settings settings) {
+  if (!settings.deviations.halfGrids) return settings;
+  settings.fill = LpvFill::layered;
+  if (settings.propagate == LpvPropagate::compute) settings.propagate = LpvPropagate::layered;
+  return settings;
+}
+
 LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
-                                               const Settings& settings)
-    : settings_(settings), haveClearTexture_(capabilities.clearTexture) {
+                                               const Settings& wanted)
+    : settings_(withItsPasses(wanted)), haveClearTexture_(capabilities.clearTexture) {
+  const Settings& settings = settings_;
   const CascadeSettings& c = settings.cascades;
   const Deviations& deviations = settings.deviations;
   CHECK(c.cascades >= 1 && c.cascades <= LPV_MAX_CASCADES, "cascades = {}", c.cascades);
+  CHECK(settings.tile >= 1 && settings.tile <= 16, "tile = {}", settings.tile);
   CHECK(c.cells >= 1 && (c.cells + 1) * c.cascades <= capabilities.max3dTextureSize, "cells = {}", c.cells);
   const bool full = settings.storage == Storage::full;
   const bool layered = settings.propagate != LpvPropagate::compute;
@@ -62,9 +70,11 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   };
 
   const gl::ShaderFlags vpl{{"FLUX_UNITS", deviations.fluxUnits}, {"LOWEST_CELL", deviations.firstCell ? 1 : 0}};
+  const gl::ShaderFlags tile{{"TILE", settings.tile}};
 
-  // Injection. 32-bit floats for what is summed: 16-bit sums stop growing after some 2000 equal additions.
-  allocate(injected_, "injected", GL_RGBA32F, size, sampling);
+  // 32-bit floats for what is summed: 16-bit sums stop growing after some 2000 equal additions.
+  const GLenum grid = deviations.halfGrids ? GL_RGBA16F : GL_RGBA32F;
+  allocate(injected_, "injected", grid, size, sampling);
   if (settings.fill == LpvFill::layered) {
     inject_ = &programs.loadRaster("lpv inject", "lpv/inject.vert", "lpv/inject.frag",
                                    with({{"LPV_FULL_FLOAT", full}, {"REFLECTS", 0}}, vpl), "lpv/inject.geom");
@@ -77,7 +87,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
                              "lpv.fill=fixed needs no extension");
     fillsHalfVectors_ = !fixed && !capabilities.shaderAtomicFloat;  // 16-bit sums stop growing: only where there is no other
     const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed && !fillsHalfVectors_}, {"FILL_HALF", fillsHalfVectors_}};
-    inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(with(group, fill), vpl));
+    inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(with(with(group, fill), vpl), tile));
     if (fixed || fillsHalfVectors_) resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(with(group, fill), vpl));
     if (fillsHalfVectors_) allocate(counts_, "count", GL_RGBA16F, size, {});
     fronts_[0] = buffer("lpv front even", GL_RGBA32F, volumeBytes);
@@ -99,7 +109,8 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
                                                 {"LOWEST_CELL", deviations.firstCell ? 1 : 0}, {"REFLECTS", reflects()}},
                                                "lpv/geometry_volume.geom");
     const glm::ivec3 corners(c.cells + 1, c.cells + 1, (c.cells + 1) * c.cascades);
-    geometryVolume_.emplace("lpv geometry volume", static_cast<GLenum>(GL_RGBA32F), corners, sampling);
+    // Views are merged in place, in images of 32 bits.
+    geometryVolume_.emplace("lpv geometry volume", settings.mergeViews ? static_cast<GLenum>(GL_RGBA32F) : grid, corners, sampling);
     const auto allocateView = [&](const std::string& name, gl::Texture& reflectance, const gl::Texture& potential, gl::Framebuffer& target) {
       std::vector<const gl::Texture*> targets{&potential};
       if (reflects()) {
@@ -117,7 +128,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     // Several views are merged, and reflection needs an albedo: then by blending, with any fill.
     if (settings.fill != LpvFill::layered && !fillsHalfVectors_ && !settings.mergeViews && !reflects() && !deviations.surfelArea) {
       const gl::ShaderFlags fill{{"FILL_FIXED", settings.fill == LpvFill::fixed}, {"FILL_FLOAT", settings.fill == LpvFill::atomic}, {"TRUNCATE", deviations.truncate}};
-      countSurfels_ = &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp", with(with(group, fill), vpl));
+      countSurfels_ = &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp", with(with(with(group, fill), vpl), tile));
       potential_ = buffer("lpv geometry volume's counts", GL_RGBA32F, cellsOf(corners) * kCellBytes);
     }
     if (!layered) {
@@ -170,8 +181,8 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     bricks_ = gl::Buffer("lpv bricks", sizeof kNoBricks + 3 * static_cast<std::size_t>(brickCount_) * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
     return;
   }
-  allocate(sum_, "sum", GL_RGBA32F, size, sampling);
-  if (joins) allocate(farSum_, "far sum", GL_RGBA32F, size, sampling);
+  allocate(sum_, "sum", grid, size, sampling);
+  if (joins) allocate(farSum_, "far sum", grid, size, sampling);
   const auto load = [&](bool withBlocking, bool withInjected) {
     return &programs.loadRaster("lpv propagate layered", "lpv/propagate_layered.vert", "lpv/propagate_layered.frag",
                                 with({{"LPV_FULL_FLOAT", full}, {"POINTS", settings.propagate == LpvPropagate::layered}, {"BLOCKED", withBlocking},
@@ -181,7 +192,7 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   propagateFirst_ = load(firstBlocked, !deviations.fewerSteps);
   if (steps_ > 1) propagateFurther_ = load(blocked, false);
   for (std::size_t i = 0; i < (steps_ > 1 ? 2u : 1u); ++i) {
-    allocate(layeredFronts_[i], i == 0 ? "front even" : "front odd", GL_RGBA32F, size, sampling);
+    allocate(layeredFronts_[i], i == 0 ? "front even" : "front odd", grid, size, sampling);
     for (std::size_t far = 0; far < (joins ? 2u : 1u); ++far) {
       const Volume& front = layeredFronts_[i];
       const Volume& sum = far ? farSum_ : sum_;
@@ -329,7 +340,7 @@ void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
     for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {  // atomics need no order
       inject_->set("fluxScale", fluxScale(rsm));
       rsm.bind();
-      pass.dispatch(rsm.position.size(), kTexelsOfGroup);
+      pass.dispatch(rsm.position.size(), kGroup * glm::ivec3(settings_.tile, settings_.tile, 1));
     }
   }
   if (fillsHalfVectors_) {
@@ -378,7 +389,7 @@ void LightPropagationVolume::countSurfels(const std::vector<const ReflectiveShad
     potential_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kFrontBuffer);
     for (const ReflectiveShadowMap::Outputs* map : maps) {
       map->bind();
-      pass.dispatch(map->position.size(), kTexelsOfGroup);
+      pass.dispatch(map->position.size(), kGroup * glm::ivec3(settings_.tile, settings_.tile, 1));
     }
   }
   if (resolve_) resolveCounts(potential_, geometryVolume_->size(), 1, fixedScale);

@@ -63,6 +63,7 @@ class LightPropagationVolume {
     bool surfelArea = false;         ///< perspective formula times N.L for an orthographic light; other lights keep true areas
     bool unwindowed = false;         ///< light that travels away from a surface counts negative
     bool blockingDirection = false;  ///< potential evaluated in the direction of travel
+    bool halfGrids = false;          ///< what leads to the result is kept in 16 bits too; filled and propagated by layered passes, as there alone textures hold it
     bool kernel() const { return sideDirections || sideSolidAngle || fourPiKernel || blockingDirection; }
     bool operator==(const Deviations&) const = default;
   };
@@ -72,6 +73,7 @@ class LightPropagationVolume {
     LpvTransport transport = LpvTransport::propagate;
     LpvLookup lookup = LpvLookup::flux;
     LpvFill fill = LpvFill::layered;
+    int tile = 4;               ///< with atomics: side of the square of texels that is added up before it goes to the grid; 1: an atomic a light, as published
     LpvPropagate propagate = LpvPropagate::compute;
     Deviations deviations;
     float amplifier = 1.0f;     ///< of the deviating kernel: 4 would conserve
@@ -95,6 +97,8 @@ class LightPropagationVolume {
   };
   /// Deviations of the published lookup are deviations of that one alone.
   static LpvLookup lookupOf(const Settings& settings) { return settings.deviations.fluxUnits || settings.deviations.unwindowed ? LpvLookup::published : settings.lookup; }
+  /// Of grids in 16 bits there are layered passes alone.
+  static Settings withItsPasses(Settings settings);
   /// In cells along the normal.
   static float offsetOf(const Settings& settings) { return settings.lookupOffset.value_or(lookupOf(settings) == LpvLookup::published ? 0.5f : 0.0f); }
   struct Inputs {

@@ -119,7 +119,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
     const bool voxels = settings.visibility == LpvVisibility::voxels;
     const auto load = [&](const char* name, bool sky, bool perspective) {
       return &programs.loadCompute(name, "lpv/gather/gather.comp",
-                                   with(common, {{"SKY", sky}, {"PERSPECTIVE", perspective}, {"VOXELS", voxels}, {"NEAR", static_cast<int>(RsmGather::Near::quad)}, {"LINEAR_SEEDS", 0}, {"GLOSSY", 0},
+                                   with(common, {{"SKY", sky}, {"PERSPECTIVE", perspective}, {"VOXELS", voxels}, {"NEAR", static_cast<int>(RsmGather::Near::quad)}, {"MAP_LIGHT", 0}, {"LINEAR_SEEDS", 0}, {"GLOSSY", 0},
                                                  {"ENVIRONMENT", needs.environment}, {"ENVIRONMENT_PICTURE", needs.environmentPicture}}));
     };
     if (needs.directionalLight && light != Light::direct) gatherSun_ = load("lpv gather sun", false, false);

@@ -83,7 +83,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   spots_ = spotViews(drawn);
   points_ = pointViews(drawn);
   const bool showsGatheredMaps = showsReceivers_ && settings.lpv.transport == LpvTransport::gather && settings.component != Component::direct;
-  if ((showsDirect_ || showsLpv_ || showsGatheredMaps) && LocalLights::isNeeded(needs_)) {
+  if ((showsDirect_ || showsLpv_ || showsGather_ || showsGatheredMaps) && LocalLights::isNeeded(needs_)) {
     keepMostImportant(programs, gpuScene_, spots_, kMaxSpotLights);
     keepMostImportant(programs, gpuScene_, points_, kMaxPointLights);
   }
@@ -106,7 +106,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     rsms_.emplace_back(programs, gpuScene_, map);
   };
   if ((showsLpv_ || showsGather_ || showsGatheredMaps) && needs_.directionalLight) addMap(Light::sun);
-  if (showsLpv_ || showsGatheredMaps) {
+  if (showsLpv_ || showsGather_ || showsGatheredMaps) {
     for (std::size_t i = 0; i < spots_.size(); ++i) addMap(Light::spot);
     for (std::size_t i = 0; i < points_.size(); ++i) addMap(Light::point);
   }
@@ -124,8 +124,6 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     volume.mergeViews = volume.blocking && views > 1;
     lpv_.emplace(programs, context.capabilities(), volume);
   }
-  if (settings.technique == Technique::rsm && settings.component != Component::direct && LocalLights::isNeeded(needs_))
-    logWarning("technique rsm gathers the sun's light alone: spot and omnidirectional lights give direct light only (lpv takes all)");
 
   if (needs_.environment && !showsReceivers_ && !radiosity_)
     logWarning("technique {}{}: the environment lights nothing (path and radiosity have its light, and lpv with lpv.transport=gather or rays)", nameOf(settings.technique),
@@ -163,7 +161,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   allocateTargets();
   if (EnvironmentView::isNeeded(needs_) && settings.component != Component::indirect) environmentView_.emplace(programs, scene);
   if (showsGather_ || showsReceivers_) visible_.emplace(programs, gpuScene_, depth_);
-  if (showsGather_) gather_.emplace(programs, settings.gather, *visible_);
+  if (showsGather_) gather_.emplace(programs, needs_, settings.gather, *visible_);
   if (showsReceivers_) receivers_.emplace(programs, context.capabilities(), scene, origin_, settings.lpv, receivedLight(settings.component));
 }
 
@@ -354,13 +352,16 @@ void Renderer::render(const Camera& cameraInScene, const Camera& volumeCameraInS
   recordShadows(camera);
 
   if (gather_) {
-    const ReflectiveShadowMap::Outputs rsm = recordReflectiveShadowMaps().front();  // the sun's is the only one
+    RsmGather::Inputs inputs{{}, glm::mat4(glm::inverse(exactClip)), static_cast<float>(2.0 * std::tan(0.5 * camera.verticalFov) / settings_.size.y)};
+    auto spot = spots_.begin(), point = points_.begin();
+    for (const ReflectiveShadowMap::Outputs& map : recordReflectiveShadowMaps()) {
+      using Light = ReflectiveShadowMap::Light;
+      inputs.maps.push_back({map, map.light == Light::spot ? &*spot++ : map.light == Light::point ? &*point++ : nullptr});
+    }
     {
       const gl::TimeQuery::Scope stage(timer_, "geometry");
       visible_->record(gpuScene_, {&cameraClip, &viewPoint});
     }
-    const RsmGather::Inputs inputs{rsm, glm::mat4(glm::inverse(exactClip)),
-                                   static_cast<float>(2.0 * std::tan(0.5 * camera.verticalFov) / settings_.size.y)};
     if (gather_->settings().interpolates()) {
       timer_.begin("gather low");
       gather_->gatherLow(inputs);

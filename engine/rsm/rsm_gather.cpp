@@ -1,5 +1,9 @@
 #include "rsm/rsm_gather.hpp"
 
+#include "base/error.hpp"
+
+#include <fmt/core.h>
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -39,19 +43,22 @@ std::vector<glm::vec4> RsmGather::pattern(int samples, Weight weight, const glm:
   return result;
 }
 
-gl::ShaderFlags RsmGather::flags(const Settings& settings) {
-  return {{"NEAR", static_cast<int>(settings.nearField)}, {"ROTATION", settings.rotation == Rotation::noise}};
+gl::ShaderFlags RsmGather::flags(const Settings& settings, Light light) {
+  return {{"NEAR", static_cast<int>(settings.nearField)}, {"ROTATION", settings.rotation == Rotation::noise}, {"MAP_LIGHT", static_cast<int>(light)}};
 }
 
-RsmGather::RsmGather(gl::ProgramLibrary& programs, const Settings& settings, const VisibleSurfaces& visible)
+RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings, const VisibleSurfaces& visible)
     : settings_(settings), visible_(&visible) {
-  if (settings.interpolates()) {
-    low_ = &programs.loadCompute("rsm gather low", "rsm/gather_low.comp", flags(settings));
-    interpolate_ = &programs.loadCompute("rsm interpolate", "rsm/interpolate.comp");
-    full_ = &programs.loadCompute("rsm gather refused", "rsm/gather_refused.comp", flags(settings));
-  } else {
-    full_ = &programs.loadCompute("rsm gather all", "rsm/gather_all.comp", flags(settings));
+  const std::array<std::pair<bool, const char*>, 3> lights{{{needs.directionalLight, ""}, {needs.spotLights, " spot"}, {needs.pointLights, " lamp"}}};
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const auto& [needed, name] = lights[i];
+    if (!needed) continue;
+    const gl::ShaderFlags flagsOfLight = flags(settings, static_cast<Light>(i));
+    if (settings.interpolates()) low_[i] = &programs.loadCompute(fmt::format("rsm gather{} low", name), "rsm/gather_low.comp", flagsOfLight);
+    full_[i] = settings.interpolates() ? &programs.loadCompute(fmt::format("rsm gather{} refused", name), "rsm/gather_refused.comp", flagsOfLight)
+                                       : &programs.loadCompute(fmt::format("rsm gather{} all", name), "rsm/gather_all.comp", flagsOfLight);
   }
+  if (settings.interpolates()) interpolate_ = &programs.loadCompute("rsm interpolate", "rsm/interpolate.comp");
   const std::vector<glm::vec4> samples = pattern(settings.samples, settings.weight);
   pattern_ = gl::Buffer("rsm gather pattern", samples.size() * sizeof(glm::vec4), samples.data(), GL_STATIC_DRAW);
   work_ = gl::Buffer("rsm gather work", sizeof(GatherCounts), nullptr, GL_DYNAMIC_COPY);
@@ -69,11 +76,17 @@ void RsmGather::resize() {
   }
 }
 
-void RsmGather::bindMap(const gl::Program& program, const Settings& settings, const ReflectiveShadowMap::Outputs& rsm) {
+void RsmGather::bindMap(const gl::Program& program, const Settings& settings, const Map& map, bool adds) {
   program.use();
-  rsm.bind();
+  map.rsm.bind();
+  program.set("adds", adds ? 1 : 0);
   program.set("gatherRadius", settings.radius);
-  if (settings.nearField == Near::clamp) program.set("minimumDistance2", settings.clampTexels * settings.clampTexels * rsm.texelArea);
+  if (settings.nearField == Near::clamp) program.set("minimumDistance2", settings.clampTexels * settings.clampTexels * map.rsm.texelArea);
+  if (map.rsm.light == Light::sun) return;
+  CHECK(map.views, "no views of a light of kind {}", static_cast<int>(map.rsm.light));
+  for (std::size_t i = 0; i < map.views->clipFromWorld.size(); ++i) program.set(fmt::format("clipFromPlace[{}]", i), map.views->clipFromPlace(i));
+  program.set("lightPlace", map.views->place());
+  program.set("texelWidth", static_cast<float>(map.views->texelWidth(map.rsm.position.size().x)));
 }
 
 void RsmGather::bindVisible(const gl::Program& program, const Inputs& inputs) const {
@@ -87,11 +100,14 @@ void RsmGather::bindVisible(const gl::Program& program, const Inputs& inputs) co
 void RsmGather::gatherLow(const Inputs& inputs) {
   const GatherCounts start;
   work_.upload(0, sizeof start, &start);
-  const gl::ComputePass pass("gather low", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-  bindMap(*low_, settings_, inputs.rsm);
-  bindVisible(*low_, inputs);
-  lowIrradiance_.bindImage(0, GL_WRITE_ONLY);
-  pass.dispatch(lowIrradiance_.size(), glm::ivec3(8, 8, 1));
+  for (const Map& map : inputs.maps) {
+    const gl::ComputePass pass("gather low", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    const gl::Program& program = *low_[static_cast<std::size_t>(map.rsm.light)];
+    bindMap(program, settings_, map, &map != &inputs.maps.front());
+    bindVisible(program, inputs);
+    lowIrradiance_.bindImage(0, GL_READ_WRITE);
+    pass.dispatch(lowIrradiance_.size(), glm::ivec3(8, 8, 1));
+  }
 }
 
 void RsmGather::interpolate(const Inputs& inputs) {
@@ -112,11 +128,12 @@ void RsmGather::gatherFull(const Inputs& inputs) {
     const GatherCounts start;
     work_.upload(0, sizeof start, &start);
   }
-  {
-    const gl::ComputePass pass("gather full", GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    bindMap(*full_, settings_, inputs.rsm);
-    bindVisible(*full_, inputs);
-    irradiance_.bindImage(0, GL_WRITE_ONLY);
+  for (const Map& map : inputs.maps) {
+    const gl::ComputePass pass("gather full", GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    const gl::Program& program = *full_[static_cast<std::size_t>(map.rsm.light)];
+    bindMap(program, settings_, map, &map != &inputs.maps.front());
+    bindVisible(program, inputs);
+    irradiance_.bindImage(0, GL_READ_WRITE);
     if (settings_.interpolates()) refused_.bind(kRefusedUnit);
     if (settings_.interpolates())
       pass.dispatchIndirect(work_);

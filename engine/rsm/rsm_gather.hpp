@@ -9,6 +9,7 @@
 #include "gl/read_back.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -35,8 +36,13 @@ class RsmGather {
     bool showRefused = false;     ///< paint the refused pixels red
     bool interpolates() const { return interpolate && lowResolution > 1; }
   };
+  using Light = ReflectiveShadowMap::Light;
+  struct Map {
+    ReflectiveShadowMap::Outputs rsm;
+    const LightViews* views = nullptr;  ///< a spot's or an omnidirectional light's; the sun's lie in the frame's block
+  };
   struct Inputs {
-    ReflectiveShadowMap::Outputs rsm;  ///< the sun's
+    std::vector<Map> maps;    ///< one a light, at least one; what they give is added up
     glm::mat4 worldFromClip;  ///< the camera's
     float pixelWidth;         ///< of a pixel, scene units across the view per unit of distance
   };
@@ -45,11 +51,10 @@ class RsmGather {
     std::uint64_t frames = 0, pixels = 0, gathered = 0, refused = 0;  ///< pixels: those that show a surface
     double saving() const { return pixels ? 1.0 - static_cast<double>(gathered) / static_cast<double>(pixels) : 0.0; }
   };
-  /// Only parallel light can be gathered: samples are placed by its projection.
-  static bool isNeeded(const SceneNeeds& needs) { return needs.directionalLight && ReflectiveShadowMap::isNeeded(needs); }
+  static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
 
-  /// Gathers at the pixels of `visible`, which outlives it and is drawn before.
-  RsmGather(gl::ProgramLibrary& programs, const Settings& settings, const VisibleSurfaces& visible);
+  /// Gathers at the pixels of `visible`, which outlives it and is drawn before. Compiles for the kinds of light in `needs`.
+  RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings, const VisibleSurfaces& visible);
   void resize();  ///< to the size that the visible surfaces have now
 
   // In this order; the first two only where settings().interpolates().
@@ -67,16 +72,16 @@ class RsmGather {
   // Shared by the passes and the tests' probe.
   /// (xi1 sin 2 pi xi2, xi1 cos 2 pi xi2, xi1 or xi1^2, 0): a Hammersley set, shifted on the torus by `shift`.
   static std::vector<glm::vec4> pattern(int samples, Weight weight, const glm::dvec2& shift = glm::dvec2(0.0));
-  static gl::ShaderFlags flags(const Settings& settings);
-  static void bindMap(const gl::Program& program, const Settings& settings, const ReflectiveShadowMap::Outputs& rsm);
+  static gl::ShaderFlags flags(const Settings& settings, Light light);
+  /// adds: to what is in the image already.
+  static void bindMap(const gl::Program& program, const Settings& settings, const Map& map, bool adds = false);
 
  private:
   void bindVisible(const gl::Program& program, const Inputs& inputs) const;
 
   Settings settings_;
-  const gl::Program* low_ = nullptr;
+  std::array<const gl::Program*, 3> low_{}, full_{};  ///< by the kind of light
   const gl::Program* interpolate_ = nullptr;
-  const gl::Program* full_ = nullptr;
   gl::Buffer pattern_, work_;
   const VisibleSurfaces* visible_;
   gl::Texture lowIrradiance_, irradiance_;

@@ -1,6 +1,7 @@
 // Deviations: what the published originals do differently, each a named switch (no GL, pure).
 //
-// `--fidelity original` turns on those that the published text or its public demo have; `--deviation NAME=on|off` sets one. Each has a line in
+// `--fidelity thesis` turns on those that the published text has, `demo` those of the program published with it where that is another (the light
+// propagation volume's); `original` is the thesis. `--deviation NAME=on|off` sets one. Each has a line in
 // its technique's README.md with formula, source and effect (a test checks that the line is there).
 #pragma once
 
@@ -16,7 +17,8 @@ namespace lucerna {
 struct Deviation {
   const char* name;     ///< technique, dot, what deviates
   const char* meaning;  ///< one line
-  bool inOriginal;      ///< whether the published text or its demo has it
+  bool inOriginal;      ///< whether the published text has it
+  bool inDemo;          ///< whether the program published with it has
   bool (*isOn)(const RenderSettings&);
   void (*turn)(RenderSettings&, bool on);
 };

@@ -27,8 +27,9 @@ constexpr std::array<std::string_view, 5> namesOf(Technique) { return {"direct",
 enum class Component { all, direct, indirect };
 constexpr std::array<std::string_view, 3> namesOf(Component) { return {"all", "direct", "indirect"}; }
 
-enum class Fidelity { corrected, original };
-constexpr std::array<std::string_view, 2> namesOf(Fidelity) { return {"corrected", "original"}; }
+/// `original` is the thesis; `demo` the program published with it, where that is another (the light propagation volume's).
+enum class Fidelity { corrected, original, thesis, demo };
+constexpr std::array<std::string_view, 4> namesOf(Fidelity) { return {"corrected", "original", "thesis", "demo"}; }
 
 struct RenderSettings {
   Technique technique = Technique::lpv;

@@ -170,6 +170,8 @@ const std::vector<Setting>& table() {
        rebuild, kPropagate, ""},
       {"lpv.fill", choice(FIELD(lpv.fill)), "", "how the grid is filled: layered, by blending; atomic, in floats; fixed, in integers, the same bits every run", "", rebuild, kPropagate,
        ""},
+      {"lpv.tile", number(FIELD(lpv.tile), 1, 16), "texels", "with lpv.fill=atomic or fixed: side of the square added up before an atomic; 1: one atomic per texel, as published", "[LPV2015]",
+       rebuild, kPropagate, ""},
       {"lpv.propagate", choice(FIELD(lpv.propagate)), "", "compute; layered: one pass per step and cascade, one point per cell, as published; slices: the same, one triangle per slice",
        "[LPV2015]", rebuild, kPropagate, ""},
       {"lpv.amplifier", number(FIELD(lpv.amplifier), 0.0, 100.0), "", "factor of the deviation lpv.four-pi-kernel; 4 conserves energy", "[LPV2015]", rebuild, kPropagate, ""},

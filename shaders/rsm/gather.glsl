@@ -1,11 +1,34 @@
 // Irradiance at a point from the reflective shadow map: samples of it around the point's projection (s,t) at
 // (s + r xi1 sin 2 pi xi2, t + r xi1 cos 2 pi xi2) [Dachsbacher2005 sec 4.1].
 // The density of these per texel is 1 / (2 pi R^2 xi1), R = r in texels, so the sum over all texels within R is estimated
-// without bias by sum_i E_i xi1_i 2 pi R^2 / N. The published weight is xi1^2 in xi1's place.
+// without bias by sum_i E_i xi1_i 2 pi R^2 / N. The published weight is xi1^2 in xi1's place. Lights follow each other, a dispatch each: `adds` is 1 from the second on.
 #include "rsm/transfer.glsl"
 layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // xi1 sin, xi1 cos, weight, unused
+uniform int adds;
 uniform float gatherRadius;  // r, fraction of the map's side
 
+#if MAP_LIGHT == MAP_POINT
+// The map is a whole sphere about the lamp: samples lie at the angle pi r xi1 from the point's direction, turned by 2 pi xi2. Their density per texel is
+// dOmega / (2 pi^2 r sin(pi r xi1)), so xi1 of the plane becomes sin / dOmega.
+vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
+  vec3 away = position - lightPlace;
+  if (!(dot(away, away) > 0.0)) return vec3(0.0);
+  vec3 axis = normalize(away), right = normalize(cross(axis, abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0))), up = cross(right, axis);
+  float most = kPi * min(gatherRadius, 1.0), c = cos(rotation), s = sin(rotation);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < pattern.length(); ++i) {
+    vec3 p = pattern[i].xyz;
+    float xi1 = length(p.xy);
+    if (!(xi1 > 0.0)) continue;
+    vec2 turned = vec2(c * p.x + s * p.y, c * p.y - s * p.x) / xi1;
+    float sine = sin(most * xi1), solidAngle;
+    ivec3 texel = rsmTexel(cos(most * xi1) * axis + sine * (turned.x * right + turned.y * up), solidAngle);
+    RsmSurfel surfel = rsmSurfel(texel);
+    if (surfel.lit) sum += p.z * (sine / (xi1 * solidAngle)) * surfelIrradiance(surfel, position, normal);
+  }
+  return sum * (2.0 * kPi * most / float(pattern.length()));
+}
+#else
 vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
   ivec2 size = rsmSize();
   vec2 centre = rsmProject(position) * vec2(size);
@@ -17,11 +40,12 @@ vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
     vec2 at = floor(centre + radius * vec2(c * p.x + s * p.y, c * p.y - s * p.x));
     // Beyond the map is no light; compared as floats, since the integer of a huge or undefined number is undefined.
     if (!(min(at.x, at.y) >= 0.0 && at.x < float(size.x) && at.y < float(size.y))) continue;
-    RsmSurfel surfel = rsmSurfel(ivec2(at));
+    RsmSurfel surfel = rsmSurfel(ivec3(at, 0));
     if (surfel.lit) sum += p.z * surfelIrradiance(surfel, position, normal);
   }
   return sum * (2.0 * kPi * radius.x * radius.y / float(pattern.length()));
 }
+#endif
 
 // The angle by which a pixel turns the pattern: neighbours differ most, after the interleaved gradient noise of
 // J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", SIGGRAPH course 2014.

@@ -3,7 +3,7 @@
 #include "forward/visible.glsl"
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;
+layout(rgba32f, binding = 0) uniform image2D irradianceImage;
 shared uint groupSurfaces;
 
 void main() {
@@ -14,7 +14,8 @@ void main() {
     vec4 result = vec4(0.0);
     if (isVisibleSurface(pixel)) {
       result = vec4(gatherIrradiance(visiblePosition(pixel), visibleUnitNormal(pixel), pixelRotation(pixel)), 1.0);
-      atomicAdd(groupSurfaces, 1u);
+      if (adds != 0) result.rgb += imageLoad(irradianceImage, pixel).rgb;
+      else atomicAdd(groupSurfaces, 1u);
     }
     imageStore(irradianceImage, pixel, result);
   }

@@ -4,7 +4,7 @@
 #include "rsm/low.glsl"
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) writeonly uniform image2D lowIrradiance;  // W/m^2; w = 1 on a surface
+layout(rgba32f, binding = 0) uniform image2D lowIrradiance;  // W/m^2; w = 1 on a surface
 shared uint groupSamples;
 
 void main() {
@@ -16,7 +16,8 @@ void main() {
     vec4 result = vec4(0.0);
     if (isVisibleSurface(pixel)) {
       result = vec4(gatherIrradiance(visiblePosition(pixel), visibleUnitNormal(pixel), pixelRotation(pixel)), 1.0);
-      atomicAdd(groupSamples, 1u);
+      if (adds != 0) result.rgb += imageLoad(lowIrradiance, low).rgb;
+      else atomicAdd(groupSamples, 1u);
     }
     imageStore(lowIrradiance, low, result);
   }

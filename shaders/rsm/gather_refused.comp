@@ -4,7 +4,7 @@
 #include "forward/visible.glsl"
 #include "rsm/work.glsl"
 layout(local_size_x = WORK_GROUP) in;
-layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;
+layout(rgba32f, binding = 0) uniform image2D irradianceImage;
 layout(binding = 5) uniform usampler2D refusedPixels;
 
 void main() {
@@ -12,6 +12,8 @@ void main() {
     int width = textureSize(refusedPixels, 0).x;
     uint refused = texelFetch(refusedPixels, ivec2(int(i) % width, int(i) / width), 0).x;
     ivec2 pixel = ivec2(refused & 0xffffu, refused >> 16);
-    imageStore(irradianceImage, pixel, vec4(gatherIrradiance(visiblePosition(pixel), visibleUnitNormal(pixel), pixelRotation(pixel)), 2.0));
+    vec3 irradiance = gatherIrradiance(visiblePosition(pixel), visibleUnitNormal(pixel), pixelRotation(pixel));
+    if (adds != 0) irradiance += imageLoad(irradianceImage, pixel).rgb;
+    imageStore(irradianceImage, pixel, vec4(irradiance, 2.0));
   }
 }

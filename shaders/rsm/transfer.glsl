@@ -9,7 +9,7 @@ const float kPi = 3.14159265358979;
 #define NEAR_DISC 2   // d^2 + A/pi for one d^2: exact on the axis of a disc of area A
 #define NEAR_QUAD 3   // the exact form factor of the surfel's outline within near2 (d^2 < 4 A where the light falls straight), else the point
 #if NEAR == NEAR_CLAMP
-uniform float minimumDistance2;  // scene units squared
+uniform float minimumDistance2;  // over surfel.across: scene units squared
 #endif
 
 #if NEAR == NEAR_QUAD
@@ -63,7 +63,7 @@ vec3 surfelIrradiance(RsmSurfel surfel, vec3 position, vec3 normal) {
 #if NEAR == NEAR_DISC
   d2 += surfel.area / kPi;
 #elif NEAR == NEAR_CLAMP
-  d2 = max(d2, minimumDistance2);
+  d2 = max(d2, minimumDistance2 * surfel.across);
 #endif
   return surfel.flux * (emitted * received / (kPi * d2));
 }

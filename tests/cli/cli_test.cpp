@@ -131,8 +131,8 @@ TEST_F(CommandLine, DeviationsAreReported) {
   for (std::string line, star, name; std::getline(lines, line);) {
     std::istringstream words(line);
     if (!(words >> star)) continue;
-    const bool isMarked = star == "*";
-    if (isMarked) words >> name;
+    const bool isMarked = star.starts_with("*");
+    if (isMarked || star == "+") words >> name;
     else name = star;
     if (!name.starts_with("lpv.") && !name.starts_with("rsm.") && !name.starts_with("path.") && !name.starts_with("radiosity.")) continue;
     ++known;
@@ -142,8 +142,15 @@ TEST_F(CommandLine, DeviationsAreReported) {
   EXPECT_GT(marked.size(), 5u);
   EXPECT_GT(known, static_cast<int>(marked.size()));
   Names without = marked;
-  std::erase(without, "lpv.truncate");
-  EXPECT_EQ(deviations(" --fidelity original --deviation lpv.truncate=off").second, without);
+  std::erase(without, "lpv.unjoined");
+  EXPECT_EQ(deviations(" --fidelity original --deviation lpv.unjoined=off").second, without);
+  // The text and the program published with it are two.
+  const auto [thesis, ofThesis] = deviations(" --fidelity thesis");
+  EXPECT_EQ(ofThesis, original);
+  const Names demo = deviations(" --fidelity demo").second;
+  EXPECT_EQ(std::count(demo.begin(), demo.end(), "lpv.sum-cascades"), 1);
+  EXPECT_EQ(std::count(original.begin(), original.end(), "lpv.sum-cascades"), 0);
+  expectRefused("render " + scene() + " --fidelity faithful -o " + path("y.pfm"), 2, {"faithful", "thesis", "demo"}, "y.pfm");
   expectRefused("render " + scene() + " --deviation lpv.nothing=on -o " + path("y.pfm"), 2, {"lpv.nothing", "lpv.side-directions"}, "y.pfm");
   expectRefused("render " + scene() + " --deviation lpv.truncate=maybe -o " + path("y.pfm"), 2, {"lpv.truncate=maybe", "=on or"}, "y.pfm");
 }

@@ -1,5 +1,6 @@
 // Spot, omnidirectional and cascaded lights on GL: irradiance, shadows, flux and area of reflective shadow maps, what is left out.
 #include "base/log.hpp"
+#include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
 #include "shared/frame.h"
 #include "support/gl_fixture.hpp"
@@ -551,28 +552,75 @@ TEST_F(LightsGl, FixedPointSumsOfAllLightsDoNotOverflow) {
   }
 }
 
-TEST_F(LightsGl, TheGatherIsOfTheSunAlone) {
-  LitScene scene;
-  scene.room(1.0);
-  scene.points = {PointLight{glm::dvec3(0.1), glm::vec3(1.0f)}};
-  const Camera camera = viewFrom({0, 0, 0.5}, {0, 0, -1}, 1.0);
-  const auto drawn = [&](Technique technique) {
-    Renderer renderer(context(), programs(), scene, settings(technique, {32, 32}));
+TEST_F(LightsGl, TheGatherOfEachLightIsThatOfPathsThroughWalls) {
+  // A room with a spot and two lamps: what the gather finds is one bounce that nothing stands in the way of, and the lights
+  // add up. Against paths of just that transport, each light alone and all together. The pattern has 1024 samples over all of each map.
+  LitScene room;
+  room.room(1.0);
+  room.quad({-0.4, -0.5, -0.5}, {-0.4, -0.5, 0.1}, {0.2, -0.5, 0.1}, {0.2, -0.5, -0.5});  // a shelf, which blocks direct light alone
+  const Camera camera = viewFrom({0.2, 0.1, 0.9}, {-0.2, -0.2, -1.0}, 1.2);
+  const auto gathered = [&](const LitScene& scene, bool interpolate) {
+    RenderSettings s = settings(Technique::rsm, {24, 18});
+    s.component = Component::indirect;
+    s.fullFloatTarget = true;
+    s.gather.radius = 1.5f;
+    s.gather.samples = 1024;
+    s.rsm.size = 64;
+    s.gather.interpolate = interpolate;
+    Renderer renderer(context(), programs(), scene, s);
     renderer.render(camera);
-    const auto leftOut = renderer.leftOut();
-    EXPECT_EQ(std::count(leftOut.begin(), leftOut.end(), "rsm gather") == 0, technique == Technique::rsm && scene.sun.has_value());
-    EXPECT_EQ(renderer.gather() != nullptr, technique == Technique::rsm && scene.sun.has_value());
     return renderer.readRadiance();
   };
-  EXPECT_EQ(drawn(Technique::rsm).pixels, drawn(Technique::direct).pixels);
-  // With a sun, what is added to direct light is what there is without the lamp. The sun shines from below, through no window: the
-  // room's own floor is lit from outside.
-  scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.2, 1.0, 0.1)), glm::vec3(1.0f)};
-  const Image both = drawn(Technique::rsm), direct = drawn(Technique::direct);
-  scene.points.clear();
-  const Image sunBoth = drawn(Technique::rsm), sunDirect = drawn(Technique::direct);
+  const auto traced = [&](const LitScene& scene) {
+    PathTracer::Settings s;
+    s.size = {24, 18};
+    s.transport = Transport::oneBounceUnoccluded;
+    s.diffuseOnly = s.pixelCentres = true;
+    PathTracer tracer(context(), programs(), scene, s);
+    tracer.setCamera(camera);
+    tracer.record(128);
+    return tracer.mean();
+  };
+  LitScene spot = room, lamps = room, all = room;
+  spot.spots = {SpotLight{{0.3, 0.6, 0.2}, glm::normalize(glm::dvec3(-0.4, -1.0, -0.5)), {4.0f, 3.0f, 2.0f}, 0.3, 0.7}};
+  lamps.points = {PointLight{{-0.4, 0.2, -0.3}, {0.8f, 0.5f, 0.3f}}, PointLight{{0.5, -0.3, 0.4}, {0.2f, 0.4f, 0.9f}}};
+  all.spots = spot.spots;
+  all.points = lamps.points;
+  for (const auto& [name, scene] : {std::pair("spot", &spot), std::pair("lamps", &lamps), std::pair("all", &all)}) {
+    const Image right = traced(*scene);
+    for (const bool interpolate : {false, true}) {
+      const Image image = gathered(*scene, interpolate);
+      double square = 0.0, sum = 0.0, bias = 0.0;
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const glm::dvec3 d = glm::dvec3(image.pixels[i]) - glm::dvec3(right.pixels[i]);
+        square += glm::dot(d, d);
+        sum += glm::dot(glm::dvec3(right.pixels[i]), glm::dvec3(right.pixels[i]));
+        bias += (d.x + d.y + d.z) / (3.0 * static_cast<double>(right.pixels.size()));
+      }
+      const glm::dvec3 mean = meanOf(right);
+      std::printf("gather of %s%s: relative L2 %.4f, bias %+.4f\n", name, interpolate ? ", interpolated" : "", std::sqrt(square / sum), 3.0 * bias / (mean.x + mean.y + mean.z));
+      EXPECT_LT(std::abs(3.0 * bias / (mean.x + mean.y + mean.z)), 0.03) << name;
+      EXPECT_LT(std::sqrt(square / sum), interpolate ? 0.20 : 0.15) << name;
+    }
+  }
+  // Lights add up.
+  const Image both = gathered(all, false), one = gathered(spot, false), other = gathered(lamps, false);
   for (std::size_t i = 0; i < both.pixels.size(); ++i)
-    EXPECT_LT(glm::length(both.pixels[i] - direct.pixels[i] - sunBoth.pixels[i] + sunDirect.pixels[i]), 1e-5f) << i;
+    EXPECT_LE(glm::length(both.pixels[i] - one.pixels[i] - other.pixels[i]), 1e-4f * glm::length(both.pixels[i]) + 1e-6f) << i;
+}
+
+TEST_F(LightsGl, WithoutLightThereIsNoGather) {
+  LitScene scene;
+  scene.room(1.0);
+  const auto gathers = [&] {
+    Renderer renderer(context(), programs(), scene, settings(Technique::rsm, {16, 16}));
+    const auto leftOut = renderer.leftOut();
+    EXPECT_EQ(std::count(leftOut.begin(), leftOut.end(), "rsm gather") == 0, renderer.gather() != nullptr);
+    return renderer.gather() != nullptr;
+  };
+  EXPECT_FALSE(gathers());
+  scene.points = {PointLight{glm::dvec3(0.1), glm::vec3(1.0f)}};
+  EXPECT_TRUE(gathers());
 }
 
 TEST_F(LightsGl, EveryStageOfEveryLightIsTimed) {

@@ -302,6 +302,24 @@ TEST_F(LpvWays, FixedPointGivesTheSameBitsInAnyOrder) {
   EXPECT_TRUE(std::any_of(first[0].begin(), first[0].end(), [](const glm::vec4& c) { return c.x > 0.0f; }));
 }
 
+TEST_F(LpvWays, AnAtomicALightGivesTheSameBitsAsTiles) {
+  const RsmTextures textures(randomTexels(5, 4000), kTexelArea);
+  for (const bool blocking : {false, true}) {
+    LpvSettings s = settings(12, 2, 2);
+    s.fill = LpvFill::fixed;
+    s.blocking = blocking;
+    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
+    const std::vector<glm::vec4> tiles = run(s, inputs).injected()[1].readRgba();
+    double sum = 0.0;
+    for (const glm::vec4& texel : tiles) sum += static_cast<double>(texel.x);
+    EXPECT_GT(sum, 0.0);
+    for (const int side : {1, 2, 3}) {
+      s.tile = side;
+      EXPECT_EQ(run(s, inputs).injected()[1].readRgba(), tiles) << side;
+    }
+  }
+}
+
 TEST_F(LpvWays, FixedPointNeverOverflows) {
   // All texels of a map, albedo 1, in one cell and along an axis, so that band 1 takes the largest value that there can be: 2^30 steps.
   for (const int count : {64, 64 * 64, 256 * 256})

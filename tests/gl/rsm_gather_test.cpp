@@ -52,8 +52,8 @@ class RsmGatherOnGl : public test::GlTest {
     const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), GL_STATIC_DRAW);
     {
       const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
-      RsmGather::bindMap(programs().loadCompute("rsm gather probe", "rsm/gather_probe.comp", RsmGather::flags(settings)), settings,
-                         {textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())});
+      RsmGather::bindMap(programs().loadCompute("rsm gather probe", "rsm/gather_probe.comp", RsmGather::flags(settings, RsmGather::Light::sun)), settings,
+                         {{textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())}});
       frameBuffer.bind(GL_UNIFORM_BUFFER, 0);
       samples.bind(GL_SHADER_STORAGE_BUFFER, 0);
       in.bind(GL_SHADER_STORAGE_BUFFER, 1);

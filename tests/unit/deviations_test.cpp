@@ -70,7 +70,9 @@ TEST(Deviations, EachHasItsLineInTheReadmeOfItsTechnique) {
       // Name, formula as published, ours, source, effect: none left empty.
       EXPECT_EQ(cells.size(), 5u) << line;
       EXPECT_EQ(std::count(cells.begin(), cells.end(), ""), 0) << line;
-      EXPECT_EQ(cells.size() > 1 && cells[1].starts_with("* "), deviation.inOriginal) << line;  // the star of --fidelity original
+      // A star: in the text and the program published with it; T: in the text alone, D: in the program alone.
+      const std::string mark = deviation.inOriginal ? deviation.inDemo ? "* " : "T " : deviation.inDemo ? "D " : "";
+      for (const char* any : {"* ", "T ", "D "}) EXPECT_EQ(cells.size() > 1 && cells[1].starts_with(any), mark == any) << line;
     }
     EXPECT_TRUE(found) << name << " has no line in the README.md of its technique, section Deviations";
   }
@@ -102,6 +104,30 @@ TEST(Deviations, OriginalTurnsOnJustThoseMarkedAndWhatGoesWithThem) {
   for (const Deviation& deviation : allDeviations()) deviation.turn(turned, true);
   applyFidelity(turned, Fidelity::corrected);
   EXPECT_TRUE(activeDeviations(turned).empty());
+}
+
+TEST(Deviations, ThesisAndDemoAreTwoAndOriginalIsTheThesis) {
+  const auto active = [](std::string_view fidelity) {
+    RenderSettings settings;
+    applyFidelity(settings, parseName<Fidelity>(fidelity, "--fidelity"));
+    return activeDeviations(settings);
+  };
+  const auto has = [](const std::vector<std::string>& names, const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  EXPECT_EQ(active("original"), active("thesis"));
+  EXPECT_TRUE(active("corrected").empty());
+  const std::vector<std::string> thesis = active("thesis"), demo = active("demo");
+  // What the text says otherwise than its program: the sum from G_0 (5.10), cascades blended (5.5), faces' directions (5.3), floor (6.1), no digit slip.
+  for (const char* name : {"lpv.fewer-steps", "lpv.sum-cascades", "lpv.side-directions", "lpv.side-solid-angle", "lpv.truncate", "lpv.flux-units", "lpv.surfel-area"}) {
+    EXPECT_FALSE(has(thesis, name)) << name;
+    EXPECT_TRUE(has(demo, name)) << name;
+  }
+  EXPECT_TRUE(has(thesis, "lpv.unjoined"));
+  EXPECT_FALSE(has(demo, "lpv.unjoined"));
+  for (const char* name : {"lpv.half-grids", "lpv.unwindowed", "lpv.blocking-direction", "rsm.flux-cosine", "path.distance-without-pdf"}) {
+    EXPECT_TRUE(has(thesis, name)) << name;
+    EXPECT_TRUE(has(demo, name)) << name;
+  }
+  EXPECT_THROW(parseName<Fidelity>("published", "--fidelity"), Error);
 }
 
 TEST(Deviations, EachIsTurnedByItsNameAlone) {

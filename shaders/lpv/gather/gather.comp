@@ -93,7 +93,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
         if (!(c1 > 0.0 && c2 > 0.0)) continue;
         given = flux.rgb * (c1 * c2 / (kPi * r2 + flux.w * c2));
 #else
-        RsmSurfel surfel = rsmSurfel(place);
+        RsmSurfel surfel = rsmSurfel(ivec3(place, 0));
         if (!surfel.lit) continue;
         given = surfelIrradiance(surfel, position, normal);
 #endif
