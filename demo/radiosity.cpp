@@ -7,6 +7,7 @@
 #include "offers.hpp"
 #include "radiosity/rad_file.hpp"
 #include "radiosity/rad_models.hpp"
+#include "radiosity/rad_scene.hpp"
 
 #include <fmt/core.h>
 
@@ -19,13 +20,41 @@ namespace {
 
 struct Generate {
   CommonOptions common;
-  std::string file;
-  int model = 0;
+  std::string file, model;      // 1, 2, 3, or a scene file
   std::vector<double> numbers;  // threshold, reflectance, light power; all or none
+  std::optional<double> edge;   // of a scene's triangles
+  std::uint32_t power = RadSceneSettings{}.lightPower;
 };
+
+int generateFromScene(const Generate& options) {
+  if (!options.numbers.empty()) throwBadInput("{}: AREA_THRESHOLD REFLECTANCE LIGHT_POWER are of the models 1 to 3; a scene has --edge and --power, and its own reflectances", options.numbers[0]);
+  if (options.power < 1 || options.power > kRadMost) throwBadInput("--power {}: expected 1 to {} (24 bits)", options.power, kRadMost);
+  const Scene scene = loadScene(options.model);
+  if (scene.sun || !scene.spots.empty() || !scene.points.empty() || scene.environment)
+    logWarning("{}: the original's files have no other lights than triangles that emit: its sun, lamps and environment are left out", options.model);
+  const RadScene made = radTrianglesOf(scene, {options.edge.value_or(0.0), options.power});
+  writeRadFile(options.file, made.triangles);
+  if (!options.common.quiet)
+    fmt::print("{}: {}, {} triangles with edges of at most {:.6g} units ({} sources, the brightest of power {}), a step of e and b is {:.6g} W per square unit, {} bytes\n", options.file, options.model,
+               made.triangles.size(), made.longestEdge, made.sources, options.power, made.exitanceOfStep, 4 + made.triangles.size() * sizeof(RadTriangle));
+  nlohmann::ordered_json json;
+  json["file"] = options.file;
+  json["scene"] = options.model;
+  json["triangles"] = made.triangles.size();
+  json["sources"] = made.sources;
+  json["longest_edge"] = made.longestEdge;
+  json["light_power"] = options.power;
+  json["exitance_of_step"] = made.exitanceOfStep;
+  options.common.writeJson(json);
+  return 0;
+}
 
 int generate(const Generate& options) {
   options.common.apply();
+  const bool isModel = options.model.find_first_not_of("0123456789") == std::string::npos;
+  if (!isModel) return generateFromScene(options);
+  if (options.edge) throwBadInput("--edge {}: of a scene's triangles; the models have AREA_THRESHOLD", *options.edge);
+  const int model = options.model.size() > 9 ? 0 : std::stoi(options.model);
   RadModelSettings settings;
   if (!options.numbers.empty()) {
     if (options.numbers.size() != 3) throwBadInput("AREA_THRESHOLD REFLECTANCE LIGHT_POWER: {} of them given, expected all three or none", options.numbers.size());
@@ -41,17 +70,17 @@ int generate(const Generate& options) {
     if (power != std::floor(power)) throwBadInput("LIGHT_POWER {}: expected a whole number", power);
     settings.lightPower = static_cast<std::uint32_t>(power);
   }
-  const std::vector<RadTriangle> triangles = makeRadModel(options.model, settings);
+  const std::vector<RadTriangle> triangles = makeRadModel(model, settings);
   writeRadFile(options.file, triangles);
   const auto sources = std::count_if(triangles.begin(), triangles.end(), [](const RadTriangle& t) { return t.e > 0; });
   double area = 0.0;
   for (const RadTriangle& t : triangles) area += areaOf(t);
   if (!options.common.quiet)
-    fmt::print("{}: model {}, {} triangles below {} square units ({} sources of power {}), reflectance {}, {} bytes\n", options.file, options.model, triangles.size(),
+    fmt::print("{}: model {}, {} triangles below {} square units ({} sources of power {}), reflectance {}, {} bytes\n", options.file, model, triangles.size(),
                settings.areaThreshold, sources, settings.lightPower, settings.reflectance, 4 + triangles.size() * sizeof(RadTriangle));
   nlohmann::ordered_json json;
   json["file"] = options.file;
-  json["model"] = options.model;
+  json["model"] = model;
   json["triangles"] = triangles.size();
   json["sources"] = sources;
   json["area"] = area;
@@ -65,9 +94,11 @@ int generate(const Generate& options) {
 Work addGenerate(CLI::App& app) {
   auto options = std::make_shared<Generate>();
   app.add_option("FILE", options->file, "the triangle file to write")->required();
-  offer(app.add_option("MODEL", options->model, "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle")->required(), {"1", "2", "3"});
+  offer(app.add_option("MODEL", options->model, "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle; or a scene file: OBJ, glTF, PLY, ...")->required(), {"1", "2", "3"});
   app.add_option("NUMBERS", options->numbers, "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until below the area; 0 to 1; 0 to 16777215")
       ->expected(0, 3);
+  app.add_option("--edge", options->edge, "of a scene: longest edge of the triangles in scene units (a 12th of the scene)")->check(CLI::PositiveNumber);
+  app.add_option("--power", options->power, "of a scene: e of its brightest triangle, 1 to 16777215")->capture_default_str();
   app.footer("As published: lucerna radiosity generate model1.out 1 2.5 0.15 100000");
   options->common.declare(app);
   return [options] { return generate(*options); };
@@ -155,7 +186,7 @@ Work addRadiosity(CLI::App& app) {
     CLI::App* command = app.add_subcommand(name, description);
     commands->emplace_back(command, declare(*command));
   };
-  add("generate", "Make one of the original's three models", addGenerate);
+  add("generate", "Make one of the original's three models, or triangles of any scene", addGenerate);
   add("solve", "Compute the radiosity of a scene", addSolve);
   add("show", "Look at a triangle file in a window, or make a picture of it", addRadiosityShow);
   return [commands] {

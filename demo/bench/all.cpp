@@ -1,9 +1,11 @@
-// lucerna bench all --out DIR: the whole report on one page, with an index: error, deviations, stability, needs, tables, rays.
+// lucerna bench all --out DIR: the whole report on one page, with an index: error, deviations, stability, needs, rays, and the three originals' tables and pictures.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
+#include "bench/lpv_pictures.hpp"
 #include "bench/needs_bench.hpp"
+#include "bench/rad.hpp"
 #include "bench/rays_bench.hpp"
 #include "bench/stability.hpp"
 #include "offers.hpp"
@@ -31,7 +33,11 @@ struct AllOptions {
   std::vector<std::string> parts;   ///< empty: all
 };
 
-constexpr const char* kParts[] = {"error", "deviations", "stability", "needs", "rays", "tables"};
+constexpr const char* kParts[] = {"error", "deviations", "stability", "needs", "rays", "tables", "pictures"};
+
+/// Of --scale, so that the originals' own scales end in minutes on a software renderer.
+constexpr double kVptTables = 0.04, kVptPictures = 0.01, kRadTables = 0.2, kRadPictures = 0.2;
+constexpr glm::ivec2 kSheetTile{160, 90};
 
 /// "WxH" with about 160x90 pixels at scale 1.
 std::string sizeOf(double scale) {
@@ -101,20 +107,49 @@ class Report {
     page_.table(table);
   }
 
-  void tables() {
+  /// The published tables of all three originals. VPT's with the published estimator, the corrected one beside it.
+  void tables(const std::string& file) {
     gl::ProgramLibrary programs;
-    const Scene scene = loadScene(sceneOrAtrium(""));
-    const Tables tables = measureLpvTables({context_, programs, scene, std::min(1.0, options_.scale), options_.common.quiet});
     page_.section("Published tables, measured again");
-    HtmlPage::Table table{{"table", "row", "published ms", "here ms", "here / published"}, {}, {}};
-    for (const Row& row : tables.rows)
-      for (const Row::Published& published : row.published)
-        table.rows.push_back({row.table, row.name() + ", " + published.gpu, fmt::format("{:.4g}", published.ms), fmt::format("{:.4g}", row.measured()), fmt::format("{:.3g}", row.measured() / published.ms)});
+    const double scale = std::min(1.0, options_.scale);
+    const Scene scene = loadScene(file);
+    add("Light propagation volumes, on " + scene.name, measureLpvTables({context_, programs, scene, scale, options_.common.quiet}), "lpv");
+    if (interrupted()) return;
+    add("Participating media", measureVptTables({context_, programs, kVptTables * scale, options_.common.quiet, Fidelity::original}), "vpt");
+    if (interrupted()) return;
+    const nlohmann::ordered_json rad = measureRadTables(context_, programs, kRadTables * scale, options_.common.quiet, false);
+    page_.heading("Radiosity");
+    HtmlPage::Table table{{"table", "row", "published", "here", "unit", "here / published"}, {}, {}};
+    for (const auto& row : rad.at("rows"))
+      table.rows.push_back({row.at("table").get<std::string>(), row.at("row").get<std::string>(), fmt::format("{:.4g}", row.at("published").get<double>()),
+                            fmt::format("{:.4g}", row.at("measured").get<double>()), row.at("unit").get<std::string>(), fmt::format("{:.3g}", row.at("ratio").get<double>())});
     std::string notes;
-    for (const std::string& note : tables.notes) notes += note + "\n";
-    page_.preformatted(notes + tables.summary);
+    for (const auto& note : rad.at("notes")) notes += note.get<std::string>() + "\n";
+    page_.preformatted(notes);
     page_.table(table);
-    json_["tables"] = tables.json;
+    json_["tables"]["rad"] = rad;
+  }
+
+  /// The published pictures of all three, a sheet each, in the report's folder too.
+  void pictures(const std::string& file) {
+    gl::ProgramLibrary programs;
+    page_.section("Published pictures, made again");
+    const double scale = std::min(1.0, options_.scale);
+    const auto keep = [&](const char* name, const char* caption, const VptSheet& sheet) {
+      if (interrupted()) return;
+      const fs::path png = fs::path(options_.out) / (std::string("pictures-") + name + ".png");
+      writePng(png, sheet.sheet);
+      page_.pictures({{png, caption}});
+      json_["pictures"][name] = sheet.json;
+    };
+    const Scene scene = loadScene(file);
+    RenderSettings usual;
+    applyFidelity(usual, Fidelity::original);
+    usual.size = kSheetTile;
+    keep("lpv", "Light propagation volumes as published", drawLpvPictures({context_, programs, scene, scene.cameras.front(), usual, "original", {}, options_.common.quiet}));
+    if (!interrupted())
+      keep("vpt", "Participating media as published, the corrected estimator beside", drawVptPictures({context_, programs, kVptPictures * scale, options_.common.quiet, Fidelity::original}, kSheetTile, {}));
+    if (!interrupted()) keep("rad", "Radiosity as published", drawRadPictures(programs, kSheetTile, kRadPictures * scale, options_.common.quiet));
   }
 
   void rays(const std::vector<std::string>& files) {
@@ -139,6 +174,20 @@ class Report {
     page_.paragraph(fmt::format("The compute-shader hierarchy beside Embree's single rays on the same {} rays of each kind, in turn, medians of {}; all of this machine's cores work for either.", options.rays,
                                 options.repeats));
     page_.table(table);
+  }
+
+  /// Rows with what was published beside.
+  void add(const std::string& heading, const Tables& tables, const char* key) {
+    page_.heading(heading);
+    HtmlPage::Table table{{"table", "row", "published ms", "here ms", "here / published"}, {}, {}};
+    for (const Row& row : tables.rows)
+      for (const Row::Published& published : row.published)
+        table.rows.push_back({row.table, row.name() + ", " + published.gpu, fmt::format("{:.4g}", published.ms), fmt::format("{:.4g}", row.measured()), fmt::format("{:.3g}", row.measured() / published.ms)});
+    std::string notes;
+    for (const std::string& note : tables.notes) notes += note + "\n";
+    page_.preformatted(notes + tables.summary);
+    page_.table(table);
+    json_["tables"][key] = tables.json;
   }
 
   void missing(const char* part, const std::string& why) {
@@ -169,6 +218,7 @@ int run(AllOptions options) {
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error || !fs::is_directory(options.out)) throwBadInput("--out {}: the folder cannot be made ({})", options.out, error ? error.message() : "a file is in the way");
+  const std::string originals = sceneOrAtrium(options.scenes.empty() ? "" : options.scenes.front());  // what has a scene of its own is made on that
   if (options.scenes.empty()) options.scenes = {asset("cornell/cornell.json"), asset("atrium/atrium.json")};
   const auto host = options.common.makeHost(false);
   const gl::Context context;
@@ -190,7 +240,8 @@ int run(AllOptions options) {
   part("stability", [&] { report.stability(); });
   part("needs", [&] { report.needs(options.scenes); });
   part("rays", [&] { report.rays(options.scenes); });
-  part("tables", [&] { report.tables(); });
+  part("tables", [&] { report.tables(originals); });
+  part("pictures", [&] { report.pictures(originals); });
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (interrupted()) {
     fmt::print(stderr, "lucerna: interrupted; the same command with --out {} goes on\n", options.out);
@@ -213,9 +264,9 @@ int run(AllOptions options) {
 
 Work addBenchAll(CLI::App& app) {
   auto options = std::make_shared<bench::AllOptions>();
-  app.add_option("SCENE", options->scenes, "scene files for error and needs (default: the Cornell box and the atrium)");
+  app.add_option("SCENE", options->scenes, "scene files for error and needs (default: the Cornell box and the atrium); the first for the tables and pictures of lpv (default: the atrium)");
   app.add_option("--out", options->out, "folder of the report; an interrupted one goes on")->required();
-  offer(app.add_option("--parts", options->parts, "of error, deviations, stability, needs, rays, tables; default: all")->delimiter(','),
+  offer(app.add_option("--parts", options->parts, "of error, deviations, stability, needs, rays, tables, pictures; default: all")->delimiter(','),
         {std::begin(bench::kParts), std::end(bench::kParts)});
   app.add_option("--scale", options->scale, "how much work: pixels and seconds; 1 takes four times as long as the default")->capture_default_str();
   options->common.declare(app);

@@ -166,9 +166,16 @@ Scene closedBox(int n) {
 /// Squares a side of each wall: boxes of 2,028 and 25,392 triangles.
 constexpr std::array kBoxes{13, 46};
 
+template <class... Values>
+void say(bool prints, fmt::format_string<Values...> format, Values&&... values) {
+  if (!prints) return;
+  fmt::print(format, std::forward<Values>(values)...);
+  std::fflush(stdout);
+}
+
 /// Hemicubes a second of the corrected solver: the whole stage, rows made, sorted out and kept. Median, least and most of five runs.
-void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, double scale, nlohmann::ordered_json& json) {
-  fmt::print("\nCorrected: hemicubes/s in a closed box, 64x64, near pairs and closed forms included; 5 runs\n{:<24}{:<14}{:>10}{:>10}{:>10}{:>12}\n", "", "", "median", "least",
+void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, double scale, nlohmann::ordered_json& json, bool prints) {
+  say(prints, "\nCorrected: hemicubes/s in a closed box, 64x64, near pairs and closed forms included; 5 runs\n{:<24}{:<14}{:>10}{:>10}{:>10}{:>12}\n", "", "", "median", "least",
              "most", "CPU ms each");
   for (const int squares : kBoxes) {
     PatchSettings whole;
@@ -198,8 +205,7 @@ void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, doubl
       }
       const double milliseconds = 1000.0 * static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / (5.0 * count);
       std::sort(rates.begin(), rates.end());
-      fmt::print("{:<24}{:<14}{:>10.0f}{:>10.0f}{:>10.0f}{:>12.3f}\n", fmt::format("{} triangles", hemicubes.patchCount()), nameOf(way), rates[2], rates[0], rates[4], milliseconds);
-      std::fflush(stdout);
+      say(prints, "{:<24}{:<14}{:>10.0f}{:>10.0f}{:>10.0f}{:>12.3f}\n", fmt::format("{} triangles", hemicubes.patchCount()), nameOf(way), rates[2], rates[0], rates[4], milliseconds);
       json["closed_box"].push_back({{"triangles", hemicubes.patchCount()}, {"view", settings.resolution}, {"visibility", nameOf(way)}, {"hemicubes", count}, {"hemicubes_per_s", rates[2]},
                                     {"least", rates[0]}, {"most", rates[4]}, {"processor_ms", milliseconds}, {"renderer", context.capabilities().renderer}});
     }
@@ -208,29 +214,21 @@ void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, doubl
 
 }  // namespace
 
-int runRadTables(const CommonOptions& common, double scale) {
-  const auto host = common.makeHost(false);
-  const gl::Context context;
-  gl::ProgramLibrary programs;
-  watchForInterrupt();
+nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramLibrary& programs, double scale, bool quiet, bool prints) {
   const std::string& renderer = context.capabilities().renderer;
   const auto most = static_cast<std::size_t>(std::max(8.0, std::round(400.0 * scale)));
   const double mostSeconds = std::max(1.0, 40.0 * scale);
 
   nlohmann::ordered_json json;
-  json["renderer"] = renderer;
-  json["host"] = nameOf(host->kind());
-  json["original"] = "rad";
-  json["scale"] = scale;
   const std::vector<std::string> notes{
       fmt::format("Scale    {}: at most {} hemicubes or {:.0f} s a figure, of triangles spread evenly over the scene", scale, most, mostSeconds),
       fmt::format("Whole    not run: {} sweeps over all triangles, computed from the rate (extrapolated); published are whole runs of {} sweeps", kSweeps, kSweeps),
       "Scene    model 2; its measures are ours, its numbers of triangles within 2 % of the published"};
   json["notes"] = notes;
-  fmt::print("Renderer {}\n", renderer);
-  for (const std::string& note : notes) fmt::print("{}\n", note);
+  say(prints, "Renderer {}\n", renderer);
+  for (const std::string& note : notes) say(prints, "{}\n", note);
 
-  fmt::print("\nTables 4.1 and 4.2\n{:<28}{:>14}{:>14}{:>9}{:>14}{:>14}{:>13}{:>14}\n", "", "whole, min", "here, min", "ratio", "s a triangle", "here, s", "hemicubes/s",
+  say(prints, "\nTables 4.1 and 4.2\n{:<28}{:>14}{:>14}{:>9}{:>14}{:>14}{:>13}{:>14}\n", "", "whole, min", "here, min", "ratio", "s a triangle", "here, s", "hemicubes/s",
              "Mtriangles/s");
   json["rows"] = nlohmann::ordered_json::array();
   for (const Published& published : kPublished) {
@@ -242,9 +240,8 @@ int runRadTables(const CommonOptions& common, double scale) {
       const Rate rate = measure(programs, triangles, kViews[v], most, mostSeconds);
       const double secondsATriangle = kSweeps / rate.hemicubesASecond(), minutes = secondsATriangle * static_cast<double>(triangles.size()) / 60.0;
       const std::string name = fmt::format("{}x{}, {} triangles", kViews[v], kViews[v], published.triangles);
-      fmt::print("{:<28}{:>14.2f}{:>14.2f}{:>9.3g}{:>14.3f}{:>14.4f}{:>13.1f}{:>14.2f}\n", name, published.minutes[v], minutes, minutes / published.minutes[v],
+      say(prints, "{:<28}{:>14.2f}{:>14.2f}{:>9.3g}{:>14.3f}{:>14.4f}{:>13.1f}{:>14.2f}\n", name, published.minutes[v], minutes, minutes / published.minutes[v],
                  published.secondsATriangle[v], secondsATriangle, rate.hemicubesASecond(), rate.mtrianglesASecond());
-      std::fflush(stdout);
       for (const bool whole : {true, false}) {
         nlohmann::ordered_json row;
         row["table"] = whole ? "4.1" : "4.2";
@@ -272,26 +269,40 @@ int runRadTables(const CommonOptions& common, double scale) {
   RadModelSettings model;
   model.areaThreshold = hall ? 100.0 : 30.0;
   const std::vector<RadTriangle> coarse = makeRadModel(hall ? 2 : 3, model);
-  if (const auto sweeps = interrupted() ? std::nullopt : sweepsToRest(programs, coarse, 32, common.quiet)) {
-    fmt::print("\nSweeps   {} until nothing changes (model {}, {} triangles, 32x32, reflectance 0.15, power 100000); published {} (model 2)\n", *sweeps, hall ? 2 : 3, coarse.size(),
+  if (const auto sweeps = interrupted() ? std::nullopt : sweepsToRest(programs, coarse, 32, quiet)) {
+    say(prints, "\nSweeps   {} until nothing changes (model {}, {} triangles, 32x32, reflectance 0.15, power 100000); published {} (model 2)\n", *sweeps, hall ? 2 : 3, coarse.size(),
                kSweeps);
     json["rows"].push_back({{"table", "4.1"}, {"row", fmt::format("sweeps, model {}, {} triangles", hall ? 2 : 3, coarse.size())}, {"published", kSweeps}, {"measured", *sweeps},
                             {"ratio", *sweeps / static_cast<double>(kSweeps)}, {"unit", "sweeps"}, {"renderer", renderer}});
   }
 
   const int view = scale >= 0.5 ? 100 : scale >= 0.1 ? 64 : 32;
-  const std::vector<Cost> costs = interrupted() ? std::vector<Cost>{} : deviationCosts(programs, view, common.quiet);
+  const std::vector<Cost> costs = interrupted() ? std::vector<Cost>{} : deviationCosts(programs, view, quiet);
   if (!interrupted()) {
-    fmt::print("\nDeviations: model 1, threshold 20, reflectance 0.5, {}x{}; against floats, exact map, random roll at {}x{} and the same points\n{:<32}{:>10}{:>10}{:>10}\n", view, view,
+    say(prints, "\nDeviations: model 1, threshold 20, reflectance 0.5, {}x{}; against floats, exact map, random roll at {}x{} and the same points\n{:<32}{:>10}{:>10}{:>10}\n", view, view,
                4 * view, 4 * view, "", "NRMSE %", "worst %", "bias %");
     json["deviations"] = nlohmann::ordered_json::array();
     for (const Cost& cost : costs) {
-      fmt::print("{:<32}{:>10.2f}{:>10.2f}{:>+10.2f}\n", cost.name, 100.0 * cost.nrmse, 100.0 * cost.most, 100.0 * cost.bias);
+      say(prints, "{:<32}{:>10.2f}{:>10.2f}{:>+10.2f}\n", cost.name, 100.0 * cost.nrmse, 100.0 * cost.most, 100.0 * cost.bias);
       json["deviations"].push_back({{"name", cost.name}, {"nrmse", cost.nrmse}, {"worst", cost.most}, {"bias", cost.bias}});
     }
-    fmt::print("radiosity.centroid=off samples three corners; those on another wall see it edge on and lose its light\n");
+    say(prints, "radiosity.centroid=off samples three corners; those on another wall see it edge on and lose its light\n");
   }
-  if (!interrupted()) closedBoxes(context, programs, scale, json);
+  if (!interrupted()) closedBoxes(context, programs, scale, json, prints);
+  return json;
+}
+
+int runRadTables(const CommonOptions& common, double scale) {
+  const auto host = common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  nlohmann::ordered_json json;
+  json["renderer"] = context.capabilities().renderer;
+  json["host"] = nameOf(host->kind());
+  json["original"] = "rad";
+  json["scale"] = scale;
+  json.update(measureRadTables(context, programs, scale, common.quiet, true));
   common.writeJson(json);
   return exitCode();
 }

@@ -88,6 +88,10 @@ std::vector<std::uint8_t> encodeRadFile(std::span<const RadTriangle> triangles) 
 }
 
 std::vector<RadTriangle> readRadFile(const std::filesystem::path& file) {
+  const std::string extension = lowerExtension(file);
+  for (const char* scene : {".obj", ".json", ".gltf", ".glb", ".ply", ".stl", ".fbx", ".dae", ".3ds", ".off"})
+    if (extension == scene)
+      throwBadInput("{}: a scene ({}), not a file of triangles; lucerna radiosity generate FILE {} makes one of it", file.string(), extension.substr(1), file.string());
   const auto before = stampOf(file);
   const std::vector<std::uint8_t> bytes = readFileBytes(file);
   if (stampOf(file) != before) throwBadInput("{}: changed while it was read; try again when nothing writes to it", file.string());

@@ -77,7 +77,12 @@ TEST(BenchRad, PicturesShowWhatTheFiguresShow) {
   const RunResult result = RUN_LUCERNA("bench pictures --original rad --scale 0.05 --size 96x72 --quiet -o '" + sheet + "' --json '" + file + "'");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
-  EXPECT_EQ(json["pictures"].size(), 20u);
+  EXPECT_EQ(json["pictures"].size(), 27u);
+  // The right map's weights over all five faces come to pi where its middle is 1; the published map gives more, most of it at the faces' rims.
+  const double faces = std::pow(0.24 * 72.0, 2.0) / (96.0 * 72.0);
+  EXPECT_EQ(json["pictures"][3]["picture"], "the delta form factor: 1/r^4 and b/r^4");
+  EXPECT_NEAR(json["pictures"][3]["mean"].get<double>(), M_PI * faces, 0.02 * M_PI * faces);
+  EXPECT_GT(json["pictures"][2]["mean"].get<double>(), 1.3 * M_PI * faces);
   std::map<std::string, double> mean;  // by figure, the first word
   for (const auto& picture : json["pictures"]) {
     const std::string label = picture["picture"];

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string>
@@ -68,9 +69,10 @@ std::string small(const std::string& command) {
     else if (!has("--technique") && !has("lpv.transport=rays")) more += " --set lpv.cells=8";
   }
   if (is("walk")) more = " --record walk --frames 2 --size 32x18 --set lpv.cells=8 --quiet";
+  if (is("bench all")) more = " --parts tables,pictures --scale 0.02 --quiet";
   if (is("bench tables")) more = has("lpv") ? " --scale 0.05 --quiet" : has("vpt") ? " --scale 0.001 --quiet" : " --scale 0.0005 --quiet";
   if (is("bench pictures")) more = has("lpv") ? " --size 32x18 --quiet" : has("vpt") ? " --scale 0.0005 --size 24x14 --quiet" : " --scale 0.01 --size 48x36 --quiet";
-  if (is("radiosity generate")) more = " --quiet";
+  if (is("radiosity generate")) more = has("assets") ? " --edge 1e9 --quiet" : " --quiet";
   if (is("radiosity show")) more = " --size 48x36 --quiet";
   std::string arguments = command.substr(std::string("lucerna ").size());
   if (is("radiosity solve")) {
@@ -117,7 +119,11 @@ TEST(Originals, EveryCommandOfThePageRuns) {
         EXPECT_TRUE(fs::exists(folder.path() / name) && fs::file_size(folder.path() / name) > 0) << arguments;
       }
   }
-  EXPECT_EQ(headings, (std::set<std::string>{"LPV", "RAD", "VPT"}));
+  EXPECT_EQ(headings, (std::set<std::string>{"All three", "LPV", "RAD", "VPT"}));
+  for (const char* name : {"index.html", "pictures-lpv.png", "pictures-rad.png", "pictures-vpt.png"}) EXPECT_TRUE(fs::exists(folder.path() / "report" / name)) << name;
+  std::ifstream report(folder.path() / "report/index.html");
+  const std::string html((std::istreambuf_iterator<char>(report)), std::istreambuf_iterator<char>());
+  for (const char* part : {"Light propagation volumes, on", "Participating media", "5.16 a: espresso", "500x500, 26360 triangles"}) EXPECT_NE(html.find(part), std::string::npos) << part;
   EXPECT_GT(ran.size(), 50u);
   EXPECT_LT(without, 5);
 }

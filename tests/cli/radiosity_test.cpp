@@ -46,6 +46,44 @@ class Radiosity : public ::testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(Radiosity, AnySceneBecomesAFileOfTriangles) {
+  // A floor under a lamp half as large: what the file says of each, in its units; then the published solver and display run on it.
+  std::ofstream(path("room.mtl")) << "newmtl floor\nKd 0.6 0.3 0\nnewmtl lamp\nKd 0 0 0\nKe 2 2 2\n";
+  std::ofstream(path("room.obj")) << "mtllib room.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n"
+                                     "usemtl floor\nf 1 4 3 2\nusemtl lamp\nf 5 6 7 8\n";
+  const RunResult made = RUN_LUCERNA("radiosity generate '" + path("room.rad") + "' '" + path("room.obj") + "' --edge 1 --power 1000000 --json '" + path("g.json") + "'");
+  ASSERT_EQ(made.exitCode, 0) << made.err;
+  const nlohmann::json g = json("g.json");
+  EXPECT_NEAR(g["exitance_of_step"].get<double>(), 2.0 * M_PI / 1000000.0, 1e-9);
+  const std::vector<RadTriangle> triangles = lucerna::readRadFile(path("room.rad"));
+  EXPECT_EQ(triangles.size(), g["triangles"].get<std::size_t>());
+  EXPECT_GE(triangles.size(), 40u);
+  double floor = 0.0, lamp = 0.0;
+  for (const RadTriangle& t : triangles) {
+    (t.e > 0 ? lamp : floor) += lucerna::areaOf(t);
+    EXPECT_EQ(t.e, t.e > 0 ? 1000000u : 0u);
+    EXPECT_EQ(t.b, 0u);
+    EXPECT_NEAR(t.ro, t.e > 0 ? 0.0f : 0.3f, 1e-6f);
+    EXPECT_NEAR(t.c[1], t.e > 0 ? 1.0f : 0.5f, 1e-6f);
+    for (const auto& [a, b] : {std::pair(t.p1, t.p2), std::pair(t.p2, t.p3), std::pair(t.p3, t.p1)}) EXPECT_LE(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 1.0f + 1e-6f);
+  }
+  EXPECT_NEAR(floor, 16.0, 1e-4);
+  EXPECT_NEAR(lamp, 4.0, 1e-4);
+  ASSERT_EQ(run(solve(path("room.rad"), path("lit.rad"))).exitCode, 0);
+  double received = 0.0;
+  for (const RadTriangle& t : lucerna::readRadFile(path("lit.rad"))) received += t.e == 0 ? t.b * lucerna::areaOf(t) : 0.0;
+  EXPECT_GT(received, 0.0);
+  EXPECT_EQ(RUN_LUCERNA("radiosity show '" + path("lit.rad") + "' -o '" + path("lit.png") + "' --size 32x24").exitCode, 0);
+  // What is no file of triangles is told, and how to make one.
+  expectRefused(solve(path("room.obj"), path("x.rad")), {"room.obj", "scene (obj)", "radiosity generate FILE"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity show '" + path("room.obj") + "' -o '" + path("x.png") + "'", {"room.obj", "radiosity generate FILE"});
+  std::ofstream(path("dark.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' '" + path("dark.obj") + "'", {"dark.obj", "no surface emits"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' '" + path("room.obj") + "' 2 0.5 100", {"--edge and --power"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' 1 --edge 2", {"--edge", "AREA_THRESHOLD"});
+  EXPECT_FALSE(fs::exists(path("x.rad")));
+}
+
 TEST_F(Radiosity, GenerateSolveShow) {
   const RunResult made = RUN_LUCERNA("radiosity generate '" + path("m.rad") + "' 1 40 0.5 1000000 --json '" + path("g.json") + "'");
   ASSERT_EQ(made.exitCode, 0) << made.err;

@@ -1,0 +1,24 @@
+// Pictures 7.3 to 7.7 of the LPV original on one sheet, on any scene.
+#pragma once
+
+#include "bench/bench.hpp"
+
+#include <optional>
+
+namespace lucerna::demo::bench {
+
+struct LpvPicturesInput {
+  const gl::Context& context;
+  gl::ProgramLibrary& programs;
+  const Scene& scene;
+  const Camera& camera;
+  RenderSettings usual;            ///< size, fidelity; what a picture changes comes on top
+  std::string fidelity;            ///< its name, for the title
+  std::optional<double> exposure;  ///< else the scene's
+  bool quiet;
+};
+
+/// Without tiles where it was interrupted.
+VptSheet drawLpvPictures(const LpvPicturesInput& input);
+
+}  // namespace lucerna::demo::bench

@@ -1,0 +1,51 @@
+#include "radiosity/rad_scene.hpp"
+
+#include "base/error.hpp"
+#include "radiosity/patches.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna {
+
+namespace {
+
+double meanOfChannels(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
+
+std::array<float, 3> toFloats(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+glm::dvec3 hueOf(const glm::dvec3& v) {
+  const double largest = std::max({v.x, v.y, v.z});
+  return largest > 0.0 ? v / largest : glm::dvec3(0.0);
+}
+
+}  // namespace
+
+RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings) {
+  CHECK(settings.lightPower >= 1 && settings.lightPower <= kRadMost, "power {}", settings.lightPower);
+  RadScene result;
+  const glm::dvec3 extent = scene.bounds.extent();
+  PatchSettings patches;
+  patches.longestEdge = result.longestEdge = settings.longestEdge > 0.0 ? settings.longestEdge : std::max({extent.x, extent.y, extent.z}) / 12.0;
+  const RadiosityMesh mesh = makePatches(scene, patches);
+  double brightest = 0.0;
+  for (const Patch& patch : mesh.patches) brightest = std::max(brightest, meanOfChannels(patch.emission));
+  if (!(brightest > 0.0)) throwBadInput("{}: no surface emits; the original's files have no other lights than triangles with e above 0", scene.file.string());
+  result.exitanceOfStep = brightest / settings.lightPower;
+  result.triangles.reserve(mesh.patches.size());
+  for (const Patch& patch : mesh.patches) {
+    const auto corners = mesh.corners(patch);
+    const double emission = meanOfChannels(patch.emission);
+    RadTriangle t;
+    t.p1 = toFloats(corners[0]), t.p2 = toFloats(corners[1]), t.p3 = toFloats(corners[2]);
+    t.n = toFloats(patch.faceNormal);
+    t.c = toFloats(hueOf(emission > 0.0 ? patch.emission : patch.reflectance));
+    t.ro = static_cast<float>(meanOfChannels(patch.reflectance));
+    t.e = emission > 0.0 ? std::max(1u, static_cast<std::uint32_t>(std::lround(emission / result.exitanceOfStep))) : 0u;
+    result.sources += t.e > 0;
+    result.triangles.push_back(t);
+  }
+  return result;
+}
+
+}  // namespace lucerna
