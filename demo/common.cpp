@@ -98,7 +98,7 @@ std::string deviationsHelp() {
 
 void PictureOptions::declare(CLI::App& app) {
   const auto offerNames = [](CLI::Option* option, const auto& names) { offer(option, std::vector<std::string>(names.begin(), names.end())); };
-  offerNames(app.add_option("--technique", technique, "direct, rsm, lpv, radiosity or, for render, path")->capture_default_str(), namesOf(Technique{}));
+  offerNames(app.add_option("--technique", technique, "direct, rsm, lpv, radiosity or path")->capture_default_str(), namesOf(Technique{}));
   offerNames(app.add_option("--component", component, "all, direct or indirect")->capture_default_str(), namesOf(Component{}));
   offerNames(app.add_option("--fidelity", fidelity, "corrected; original: as published; lpv: thesis (original) or demo, the program published with it")->capture_default_str(), namesOf(Fidelity{}));
   std::vector<std::string> switches;

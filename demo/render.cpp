@@ -1,5 +1,6 @@
 // lucerna render SCENE ... -o OUT: one picture. PNG is tone mapped; hdr, exr and pfm keep linear radiance.
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 #include "base/files.hpp"
 #include "commands.hpp"
 #include "offers.hpp"
@@ -47,7 +48,7 @@ int run(Options options) {
   Renderer renderer(context, programs, scene, settings);
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < options.repeat; ++i) renderer.renderToTheEnd(camera);
-  glFinish();
+  gl::finish();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / options.repeat;
   renderer.drain();
 

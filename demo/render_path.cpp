@@ -17,9 +17,6 @@ namespace lucerna::demo {
 
 namespace {
 
-/// Where nothing else stops.
-constexpr std::uint32_t kDefaultSamples = 64;
-
 nlohmann::ordered_json finiteOrNull(double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr); }
 
 Transport transportOf(Component component) {
@@ -69,11 +66,11 @@ void PathOptions::declare(CLI::App& app) {
   app.add_option("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
   app.add_option("--checkpoint", checkpoint, "path: go on from this file if it is there; it is written every minute and at the end. Without it a stopped picture is kept in OUT.film, from which the same command goes on");
   app.add_option("--samples", samples, "path: FIRST:LAST, a part of the samples of a pixel, FIRST up to but without LAST, kept by --checkpoint; lucerna merge makes one picture of all parts");
-  app.add_option("--seed", seed, "path: of the random numbers")->capture_default_str();
+  app.add_option("--seed", seed, "path: of the random numbers (0)");
 }
 
 void PathOptions::refuseIfGiven(const std::string& technique) const {
-  if (spp || seconds || error || bounces || seed != 0 || !checkpoint.empty() || !samples.empty())
+  if (spp || seconds || error || bounces || seed || !checkpoint.empty() || !samples.empty())
     throwBadInput("--technique {}: --spp, --samples, --seconds, --error, --bounces, --seed and --checkpoint belong to --technique path", technique);
 }
 
@@ -92,9 +89,9 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   PathTracer::Settings settings;
   settings.size = shared.size;
   settings.transport = transportOf(shared.component);
-  settings.bounces = path.bounces.value_or(PathTracer::kUnlimited);
-  settings.seed = path.seed;
-  settings.deviations = shared.path;
+  settings.bounces = path.bounces.value_or(shared.path.scatterings);
+  settings.seed = path.seed.value_or(shared.path.seed);
+  settings.deviations = shared.path.deviations;
 
   const auto host = common.makeHost(false);
   gl::Context context;
@@ -120,7 +117,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const auto save = [&] { writeFileAtomically(checkpoint, tracer.checkpoint()); };
   watchForInterrupt();
 
-  const std::uint32_t target = part ? part->last - part->first : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : kDefaultSamples);
+  const std::uint32_t target = part ? part->last - part->first : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : shared.path.samples);
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Progress progress("samples", static_cast<int>(std::min(target, 1000000000u)), common.quiet || !(path.spp || part));
@@ -187,7 +184,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   if (part) json["samples"] = {part->first, part->last};
   json["standard_error"] = finiteOrNull(statistics.standardError);
   json["relative_error"] = finiteOrNull(statistics.relativeError);
-  json["bounces"] = path.bounces ? nlohmann::ordered_json(*path.bounces) : nlohmann::ordered_json(nullptr);
+  json["bounces"] = settings.bounces != PathTracer::kUnlimited ? nlohmann::ordered_json(settings.bounces) : nlohmann::ordered_json(nullptr);
   json["gpu_bytes"] = tracer.gpuBytes();
   json["left_out"] = nlohmann::ordered_json::array();
   for (const auto& [name, needed] : tracer.needs().named())

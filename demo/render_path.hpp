@@ -7,12 +7,12 @@ namespace lucerna::demo {
 
 /// What stops a path traced picture, whichever comes first, and which light paths it holds.
 struct PathOptions {
-  std::optional<std::uint32_t> spp;   ///< 64 where nothing else stops either
+  std::optional<std::uint32_t> spp;   ///< else path.samples, where nothing else stops
   std::optional<double> seconds;
   std::optional<double> error;
   std::optional<std::uint32_t> bounces;
   std::string samples;     ///< "FIRST:LAST": those samples alone, FIRST up to but without LAST, into the checkpoint; empty: all
-  std::uint32_t seed = 0;
+  std::optional<std::uint32_t> seed;
   std::string checkpoint;  ///< empty: none
   bool sizeGiven = true;   ///< --size was; without it the original's files and fidelity have the original's size
 

@@ -1,5 +1,6 @@
 // The path tracer's ladders, corrected and as published, and its deviations one by one: pictures that go on being sampled, observed at 1, 2, 4, ... samples a pixel.
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 #include "base/files.hpp"
 #include "base/statistics.hpp"
 #include "bench/error_rows.hpp"
@@ -48,7 +49,7 @@ PathSeries seriesOf(const std::string& fidelity, const std::string& deviation) {
     series.deviations = {deviation + "=on"};
     applyDeviation(settings, series.deviations[0]);
   }
-  series.switches = settings.path;
+  series.switches = settings.path.deviations;
   return series;
 }
 
@@ -95,7 +96,7 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed, std::v
   // Baking: the driver finishes the program on first use, and submissions grow until each takes its share of a second.
   tracer.record(kWarmUp);
   tracer.setCamera(bench.camera);
-  glFinish();
+  gl::finish();
   const double setup = std::chrono::duration<double, std::milli>(Clock::now() - made).count();
   double spent = 0.0, cpu = 0.0;
   std::size_t step = 0;
@@ -106,7 +107,7 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed, std::v
     const auto start = Clock::now();
     const std::clock_t cpuStart = std::clock();
     tracer.record(samples);
-    glFinish();
+    gl::finish();
     spent += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     cpu += 1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC;
     if (seed == 0) ladder.emplace_back(samples, Observation{});

@@ -1,6 +1,7 @@
 #include "bench/error_rows.hpp"
 
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "bench/provenance.hpp"
@@ -66,10 +67,10 @@ Timed render(const ErrorBench& bench, const RenderSettings& settings, int frames
   Timed timed;
   auto start = Clock::now();
   Renderer renderer(bench.context, bench.programs, bench.scene, settings);
-  glFinish();
+  gl::finish();
   timed.setupMs = msSince(start);
   renderAnew(renderer, bench.camera);  // warm-up
-  glFinish();
+  gl::finish();
   renderer.drain();
   renderer.timer().reset();
   const auto all = Clock::now();
@@ -77,7 +78,7 @@ Timed render(const ErrorBench& bench, const RenderSettings& settings, int frames
     start = Clock::now();
     const std::clock_t cpuStart = std::clock();
     renderAnew(renderer, bench.camera);
-    glFinish();
+    gl::finish();
     timed.wallMs.push_back(msSince(start));
     timed.cpuMs.push_back(1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC);
   }

@@ -1,5 +1,6 @@
 // lucerna bench needs [SCENE]...: what a scene leaves out, and what leaving it out saves: the same picture with every feature forced on beside it.
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
 #include "bench/needs_bench.hpp"
@@ -23,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 void measureFrames(Renderer& renderer, const Camera& camera, std::vector<double>& ms) {
   const auto start = Clock::now();
   renderer.render(camera);
-  glFinish();
+  gl::finish();
   ms.push_back(1e3 * std::chrono::duration<double>(Clock::now() - start).count());
 }
 
@@ -58,7 +59,7 @@ NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const C
   Renderer lean(context, leanPrograms, scene, settings), complete(context, fullPrograms, full, settings);
   lean.render(camera);
   complete.render(camera);
-  glFinish();
+  gl::finish();
   std::vector<double> leanMs, fullMs;
   for (int i = 0; i < frames && !interrupted(); ++i) {
     measureFrames(lean, camera, leanMs);

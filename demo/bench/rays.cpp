@@ -6,6 +6,7 @@
 #include "bench/embree_rays.hpp"
 #include "bench/rays_bench.hpp"
 #include "gl/pass.hpp"
+#include "gl/draw.hpp"
 #include "pathtracer/ray_scene.hpp"
 
 #include <fmt/core.h>
@@ -56,7 +57,7 @@ class Tracer {
       program.set("firstRay", static_cast<int>(first));
       pass.dispatch(glm::ivec3(static_cast<int>(std::min(kBatch, count - first)), 1, 1), glm::ivec3(64, 1, 1));
     }
-    glFinish();
+    gl::finish();
   }
   std::vector<PlainHit> hits(std::size_t count) const {
     std::vector<PlainHit> all = hits_.read<PlainHit>();

@@ -237,7 +237,8 @@ void measureClearing(gl::TimeQuery& timer, bool haveClearTexture, int count) {
   for (int i = 0; i <= count && !interrupted(); ++i) {
     if (haveClearTexture) {
       const gl::TimeQuery::Scope stage(timer, "glClearTexImage");
-      glClearTexImage(grid.id(), 0, GL_RGBA, GL_HALF_FLOAT, nullptr);
+      const std::array<const gl::Texture*, 1> all{&grid};
+      gl::clearToZero(all, true);
     }
     {
       const gl::TimeQuery::Scope stage(timer, "glTexSubImage3D");

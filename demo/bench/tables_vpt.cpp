@@ -34,14 +34,14 @@ std::vector<Estimator> estimatorsOf(Fidelity fidelity) {
   const bool published = fidelity != Fidelity::corrected;
   RenderSettings corrected, original;
   applyFidelity(original, Fidelity::original);
-  std::vector<Estimator> estimators{{"corrected", corrected.path}, {"original", original.path}};
+  std::vector<Estimator> estimators{{"corrected", corrected.path.deviations}, {"original", original.path.deviations}};
   if (published) std::swap(estimators[0], estimators[1]);
   for (const Deviation& deviation : allDeviations()) {
     if (!std::string_view(deviation.name).starts_with("path.")) continue;
     RenderSettings alone = published ? original : corrected;
     const bool turned = !deviation.isOn(alone);
     deviation.turn(alone, turned);
-    estimators.push_back({fmt::format("{}{}", deviation.name, published ? (turned ? " too" : " off") : ""), alone.path});
+    estimators.push_back({fmt::format("{}{}", deviation.name, published ? (turned ? " too" : " off") : ""), alone.path.deviations});
   }
   return estimators;
 }

@@ -2,6 +2,7 @@
 
 #include "base/data.hpp"
 #include "gl/objects.hpp"
+#include "gl/draw.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -90,8 +91,8 @@ Scene loadVptScene(const VptPicture& picture, Fidelity fidelity) {
 PathDeviations vptDeviations(const VptPicture& picture, Fidelity fidelity) {
   RenderSettings settings;
   applyFidelity(settings, fidelity);
-  if (!picture.boosted) settings.path.boostedInteraction = false;
-  return settings.path;
+  if (!picture.boosted) settings.path.deviations.boostedInteraction = false;
+  return settings.path.deviations;
 }
 
 glm::ivec2 vptSize(double scale) {
@@ -119,7 +120,7 @@ VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, co
   const auto makeSeconds = [&] {
     const auto begin = std::chrono::steady_clock::now();
     const PathTracer second(context, programs, scene, settings);
-    glFinish();
+    gl::finish();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
   PathTracer tracer(context, programs, scene, settings);

@@ -2,6 +2,7 @@
 // ends by itself; without one, or with --record, views spread over the path are drawn and written, with the time of every stage.
 #include "base/data.hpp"
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
@@ -106,8 +107,9 @@ int record(const Options& options, const Host& host, const gl::Context& context,
   for (; done < frames && !interrupted(); ++done) {
     const int view = frames > 1 ? first + static_cast<int>(std::lround(static_cast<double>(last - first) * done / (frames - 1))) : first;
     const auto start = Clock::now();
-    renderer.render(path.view(view));
-    glFinish();
+    if (renderer.path()) renderer.renderToTheEnd(path.view(view));  // all samples: one alone is noise
+    else renderer.render(path.view(view));
+    gl::finish();
     frameSeconds.push_back(secondsSince(start));
     writePng(folder / fmt::format("frame_{:04}.png", done), renderer.readDisplay());
     if (options.flicker && before) {

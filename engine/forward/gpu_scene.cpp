@@ -1,6 +1,7 @@
 #include "forward/gpu_scene.hpp"
 
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 
 #include <algorithm>
 #include <array>
@@ -152,8 +153,7 @@ void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) c
 }
 
 void GpuScene::drawRange(const Draw& draw) const {
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(draw.indexCount), GL_UNSIGNED_INT,
-                 reinterpret_cast<const void*>(sizeof(std::uint32_t) * draw.firstIndex));
+  gl::drawIndexedTriangles(draw.firstIndex, draw.indexCount);
 }
 
 void GpuScene::draw(const SurfacePrograms& programs, const View& view) const {

@@ -1,6 +1,7 @@
 #include "lpv/light_propagation_volume.hpp"
 
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 
 #include <algorithm>
 #include <array>
@@ -311,7 +312,7 @@ void LightPropagationVolume::inject(const Inputs& inputs) {
   for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {
     inject_->set("fluxScale", fluxScale(rsm));
     rsm.bind();
-    glDrawArrays(GL_POINTS, 0, rsm.texelCount());
+    gl::drawPoints(rsm.texelCount());
   }
 }
 
@@ -408,7 +409,7 @@ void LightPropagationVolume::drawSurfels(const Inputs& inputs, const ReflectiveS
     fillGeometryVolume_->set("texelCount", isSun ? static_cast<float>(map.texelCount()) : 0.0f);
   }
   map.bind();
-  glDrawArrays(GL_POINTS, 0, map.texelCount());
+  gl::drawPoints(map.texelCount());
 }
 
 void LightPropagationVolume::mergeView() {
@@ -574,9 +575,9 @@ void LightPropagationVolume::propagateLayered(const Volume& source) {
       program.set("firstLayer", k * cells);
       program.set("cells", cells);
       if (settings_.propagate == LpvPropagate::layered)
-        glDrawArrays(GL_POINTS, 0, cells * cells * cells);
+        gl::drawPoints(cells * cells * cells);
       else
-        glDrawArraysInstanced(GL_TRIANGLES, 0, 3, cells);
+        gl::drawTriangles(3, cells);
     }
     front = &layeredFronts_[next];
   }

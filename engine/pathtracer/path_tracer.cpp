@@ -122,16 +122,26 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       break;
   }
 
-  const glm::ivec2 tile = glm::min(settings.size, glm::ivec2(tileSide_));
-  const std::size_t lanes = static_cast<std::size_t>(tile.x) * static_cast<std::size_t>(tile.y);
-  constants_.picture = glm::ivec4(settings.size, static_cast<int>(lanes), 0);
-  state_ = gl::Buffer("path state", kStateHeaderBytes + lanes * kStateWords * kVec4Bytes, nullptr, GL_DYNAMIC_COPY);
-  filmMean_ = gl::Texture("film mean", GL_RGBA32UI, settings.size);
-  filmSpread_ = gl::Texture("film spread", GL_RGBA32UI, settings.size);
-  filmRest_ = gl::Texture("film rest", GL_RGBA32UI, settings.size);
-  for (gl::Texture& texture : kept_) texture = gl::Texture("film kept", GL_RGBA32UI, tile);
+  allocateFilm();
   program_ = &programs.loadCompute("path tracing", "pathtracer/path.comp", kernelFlags());
   setCamera(scene.cameras.empty() ? Camera{} : scene.cameras.front());
+}
+
+void PathTracer::allocateFilm() {
+  const glm::ivec2 tile = glm::min(settings_.size, glm::ivec2(tileSide_));
+  const std::size_t lanes = static_cast<std::size_t>(tile.x) * static_cast<std::size_t>(tile.y);
+  constants_.picture = glm::ivec4(settings_.size, static_cast<int>(lanes), 0);
+  state_ = gl::Buffer("path state", kStateHeaderBytes + lanes * kStateWords * kVec4Bytes, nullptr, GL_DYNAMIC_COPY);
+  filmMean_ = gl::Texture("film mean", GL_RGBA32UI, settings_.size);
+  filmSpread_ = gl::Texture("film spread", GL_RGBA32UI, settings_.size);
+  filmRest_ = gl::Texture("film rest", GL_RGBA32UI, settings_.size);
+  for (gl::Texture& texture : kept_) texture = gl::Texture("film kept", GL_RGBA32UI, tile);
+}
+
+void PathTracer::resize(glm::ivec2 size) {
+  CHECK(size.x > 0 && size.y > 0, "{} x {} pixels", size.x, size.y);
+  settings_.size = size;
+  allocateFilm();
 }
 
 gl::ShaderFlags PathTracer::flags() const {

@@ -73,6 +73,8 @@ class PathTracer {
 
   /// Sets the view and empties the film.
   void setCamera(const Camera& camera);
+  /// A film of another size; setCamera() must follow.
+  void resize(glm::ivec2 size);
   /// One submission towards `samples` samples in every pixel, waited for. False once all have them.
   bool advance(std::uint32_t samples) { return submit(samples, Passes::doubling); }
   /// Everything that is missing, in as few passes as possible, without intermediate pictures.
@@ -81,6 +83,12 @@ class PathTracer {
   /// Restores a tile in the middle of a pass to the pass's beginning. Unfinished paths are the long ones: a picture of the finished ones
   /// alone would be too dark. Call this when stopping between two calls of advance(), before reading the film.
   void dropUnfinishedPass();
+
+  std::uint32_t samples() const { return done_; }  ///< that every pixel has
+  /// Whether no tile is in the middle of a pass: then the film holds whole passes alone.
+  bool isBetweenTiles() const { return !tileBegun_; }
+  /// The film's means, as shaders/pathtracer/film.frag reads them.
+  void bindMean(GLuint unit) const { filmMean_.bind(unit); }
 
   Image mean() const;           ///< radiance, linear, scene units, top row first; pixels without a sample are 0
   Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
@@ -107,6 +115,7 @@ class PathTracer {
   std::vector<Pixel> readFilm() const;
   std::uint64_t identity() const;  ///< of what decides the picture
   gl::ShaderFlags flags() const;
+  void allocateFilm();
   /// With those that do not decide the picture, but how it is made.
   gl::ShaderFlags kernelFlags() const;
   bool hasInteriors() const { return needs_.dielectrics || needs_.nullBoundaries || needs_.media; }

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "gl/draw.hpp"
 #include "gl/pass.hpp"
 #include "pathtracer/ray_scene.hpp"
 
@@ -208,13 +209,12 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
       gl::RasterState state;
       state.depth = gl::Depth::lessWrite;
       const gl::RasterPass pass("hemicube items", itemBuffer_->target, state);
-      constexpr GLuint kNothing[4] = {0, 0, 0, 0};
-      glClearBufferuiv(GL_COLOR, 0, kNothing);
+      gl::clearWords(0, glm::uvec4(0u));
       pass.clearDepth();
       begin(*itemBuffer_->draw, first, count);
       itemBuffer_->draw->set("inverseFar", static_cast<float>(0.5 / mesh_->extent));
       itemBuffer_->noAttributes.bind();
-      glDrawArraysInstanced(GL_TRIANGLES, 0, 3 * patchCount_, count);
+      gl::drawTriangles(3 * patchCount_, count);
     }
     const gl::Program& program = itemBuffer_ ? *itemBuffer_->sum : *traceRays_;
     const gl::ComputePass pass(program.name(), kBarrier);

@@ -1,6 +1,7 @@
 #include "radiosity/original_display.hpp"
 
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 #include "gl/pass.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -149,7 +150,7 @@ void RadView::record(const Camera& camera) const {
     program_->set("clipFromWorld", clipFromWorld);
     program_->set("edge", edge);
     vertexArray_.bind();
-    glDrawArrays(GL_TRIANGLES, 0, count_);
+    gl::drawTriangles(count_);
   };
   gl::RasterState state;
   state.depth = gl::Depth::lessWrite;
@@ -164,27 +165,24 @@ void RadView::record(const Camera& camera) const {
   if (display_.mesh) {
     state.polygonOffset = {};
     const gl::RasterPass pass("radiosity mesh", framebuffer_, state);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    const gl::PolygonMode edges(gl::PolygonMode::Parts::edges);
     draw({0.25f, 0.55f, 0.95f, 0.45f});
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   }
   if (display_.backCorners) {
     state.polygonOffset = {};
+    state.cull = gl::Cull::front;
     const gl::RasterPass pass("radiosity back corners", framebuffer_, state);
-    glCullFace(GL_FRONT);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_POINT);
+    const gl::PolygonMode corners(gl::PolygonMode::Parts::corners);
     draw(glm::vec4(0.0f));
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   }
 }
 
 Bitmap RadView::read() const {
   const glm::ivec2 size = framebuffer_.size();
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   Bitmap bitmap;
   bitmap.width = size.x, bitmap.height = size.y;
   std::vector<std::uint8_t> bottomUp(4 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
-  glReadPixels(0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, bottomUp.data());
+  gl::readBytes(framebuffer_, {0, 0}, size, bottomUp.data());
   const std::size_t row = 4 * static_cast<std::size_t>(size.x);
   for (std::size_t y = static_cast<std::size_t>(size.y); y-- > 0;)
     bitmap.rgba.insert(bitmap.rgba.end(), bottomUp.begin() + static_cast<std::ptrdiff_t>(y * row), bottomUp.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));

@@ -1,6 +1,7 @@
 #include "radiosity/original_solver.hpp"
 
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 #include "gl/pass.hpp"
 
 #include <glm/gtc/constants.hpp>
@@ -93,13 +94,13 @@ double OriginalRadiosity::readAndSum(const std::vector<float>& map, int firstRow
   CHECK(count == map.size(), "{} pixels, {} weights", count, map.size());
   double sum = 0.0;
   if (settings_.deviations.values24Bit) {
-    glReadPixels(0, firstRow, settings_.view, rows, GL_RGBA, GL_UNSIGNED_BYTE, bytes_.data());
+    gl::readBytes(framebuffer_, {0, firstRow}, {settings_.view, rows}, bytes_.data());
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t number = static_cast<std::uint32_t>(bytes_[4 * i]) << 16 | static_cast<std::uint32_t>(bytes_[4 * i + 1]) << 8 | bytes_[4 * i + 2];
       sum += static_cast<double>(number) * static_cast<double>(map[i]);
     }
   } else {
-    glReadPixels(0, firstRow, settings_.view, rows, GL_RED, GL_FLOAT, floats_.data());
+    gl::readFloats(framebuffer_, {0, firstRow}, {settings_.view, rows}, floats_.data());
     for (std::size_t i = 0; i < count; ++i) sum += static_cast<double>(floats_[i]) * static_cast<double>(map[i]);
   }
   return sum;
@@ -122,7 +123,7 @@ double OriginalRadiosity::gatherAt(const glm::dvec3& point, const glm::dvec3& no
       program_->use();
       program_->set("clipFromWorld", glm::mat4(clipFromView * glm::lookAt(point, point + towards[face], face == 0 ? up : normal)));
       vertexArray_.bind();
-      glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners_.size()));
+      gl::drawTriangles(static_cast<int>(corners_.size()));
     }
     sum += face == 0 ? readAndSum(map_.top, 0, view) : readAndSum(map_.side, view - half, half);
   }

@@ -188,7 +188,7 @@ void gaussSeidel(Solve& solve) {
 void progressive(Solve& solve, bool overshoot) {
   const RadiositySystem& s = solve.system();
   const std::size_t n = solve.size();
-  Vector shot(n, glm::dvec3(0.0)), unshot = s.emission, irradiance(n, glm::dvec3(0.0));
+  Vector unshot = s.emission, irradiance(n, glm::dvec3(0.0));
   const glm::dvec3 escape = glm::max(1.0 - solve.meanReflectance(), glm::dvec3(1e-6));
   glm::dvec3 unshotFlux(0.0);
   for (std::size_t i = 0; i < n; ++i) unshotFlux += s.areas[i] * unshot[i];
@@ -201,7 +201,6 @@ void progressive(Solve& solve, bool overshoot) {
       if (const double sum = flux.x + flux.y + flux.z; sum > most) most = sum, best = i;
     }
     const glm::dvec3 shoots = unshot[best] + s.reflectance[best] * ambient;
-    shot[best] += shoots;
     unshot[best] -= shoots;
     unshotFlux -= s.areas[best] * shoots;
     const FormFactorMatrix::Row row = s.matrix->row(best);

@@ -134,7 +134,7 @@ constexpr unsigned bit(LpvTransport transport) { return 1u << static_cast<unsign
 constexpr unsigned kDrawn = bit(Technique::direct) | bit(Technique::rsm) | bit(Technique::lpv);  // lit by shadow maps
 constexpr SettingReaders kAll{kDrawn | bit(Technique::radiosity) | bit(Technique::path)};
 constexpr SettingReaders kTextured{kDrawn | bit(Technique::radiosity)}, kShadowed{kDrawn};
-constexpr SettingReaders kRsm{bit(Technique::rsm)}, kRadiosity{bit(Technique::radiosity)};
+constexpr SettingReaders kRsm{bit(Technique::rsm)}, kRadiosity{bit(Technique::radiosity)}, kPath{bit(Technique::path)};
 constexpr SettingReaders kLpv{bit(Technique::lpv)};
 constexpr SettingReaders kPropagate{bit(Technique::lpv), bit(LpvTransport::propagate)};
 constexpr SettingReaders kGather{bit(Technique::lpv), bit(LpvTransport::gather)};
@@ -226,6 +226,11 @@ const std::vector<Setting>& table() {
       {"radiosity.direct", choice(FIELD(radiosity.direct)), "", "direct light: pixels, by shadow rays per pixel; patches, one value per patch; auto: pixels in render, patches elsewhere", "", rebuild,
        kRadiosity, ""},
       {"radiosity.shadow-rays", number(FIELD(radiosity.shadowRays), 1, 4096), "rays", "a pixel with radiosity.direct=pixels, divided among the emissive triangles", "", rebuild, kRadiosity, ""},
+      {"path.samples", number(FIELD(path.samples), 1, 4000000000.0), "samples", "a pixel, of a finished picture (--spp)", "", rebuild, kPath, ""},
+      {"path.least-samples", number(FIELD(path.leastSamples), 1, 4000000000.0), "samples", "a pixel in the first frame of a view, at least", "", rebuild, kPath, ""},
+      {"path.scatterings", number(FIELD(path.scatterings), 0, 1000000, "all", PathSettings::kAllScatterings), "",
+       "between light and camera; light that was scattered more often is left out (--bounces; 2 is one bounce)", "", rebuild, kPath, ""},
+      {"path.seed", number(FIELD(path.seed), 0, 4294967295.0), "", "of the random numbers (--seed)", "", rebuild, kPath, ""},
       {"shadow.size", number(FIELD(shadow.size), 1, 16384), "texels", "side of the sun's shadow map, of each cascade", "", rebuild, kShadowed, ""},
       {"shadow.cascades", number(FIELD(sunCascades.cascades), 1, SUN_MAX_CASCADES), "", "shadow maps of the sun along the view; 1: one for the whole scene", "[Zhang2006]", rebuild, kShadowed,
        ""},

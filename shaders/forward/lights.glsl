@@ -1,4 +1,4 @@
-// Light that arrives from spot and omnidirectional lights: E = I(omega) cos / d^2, shadowed. The flags SPOT_LIGHTS and POINT_LIGHTS
+// Light that arrives from spot and omnidirectional lights: E = I(omega) cos / d^2, shadowed. The flags SPOTS and POINTS
 // are their numbers.
 #include "lib/shadow.glsl"
 #include "lib/spot.glsl"
@@ -14,7 +14,7 @@ struct Arriving {
 const float kNormalOffset = 1.5;  // texels of the shadow map at the receiver's depth
 const float kTouching = 1e-30;      // distance squared: a surface point in the lamp itself has no direction to it and gets no light, not NaN
 
-#if SPOT_LIGHTS
+#if SPOTS
 layout(binding = 10) uniform sampler2DArrayShadow spotShadows;
 
 // normal: for shading; meshNormal: along which the shadow map is asked beside the surface.
@@ -33,7 +33,7 @@ Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
 }
 #endif
 
-#if POINT_LIGHTS
+#if POINTS
 layout(binding = 11) uniform samplerCubeArrayShadow pointShadows;
 
 float pointShadowTap(int i, vec3 fromLight) {

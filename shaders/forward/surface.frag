@@ -6,25 +6,17 @@
 #include "lib/sh.glsl"
 #include "lib/material.glsl"
 #include "lib/shadow.glsl"  // here, outside any condition: two of those below share it
-#if INDIRECT
-#include "lpv/lookup.glsl"
-#endif
-#if RECEIVED
-#include "lpv/receivers/lookup.glsl"
-#endif
-#if GATHERED
-layout(binding = 7) uniform sampler2D gatheredIrradiance;  // w = 2: interpolation refused the pixel
-#endif
+#include "forward/indirect.glsl"
 
 in vec3 vPosition;
 in vec3 vNormal;
 in vec2 vTexCoord;
 layout(location = 0) out vec4 radiance;
 
-#if DIRECT
+#if SUN
 #include "forward/sun_shadow.glsl"
 #endif
-#if SPOT_LIGHTS || POINT_LIGHTS
+#if SPOTS || POINTS
 #include "forward/lights.glsl"
 #endif
 
@@ -63,41 +55,29 @@ void main() {
   normal = normalize(gl_FrontFacing ? mapped : -mapped);
 #endif
   vec3 result = vec3(0.0);
-#if DIRECT
+#if SUN
   float cosine = dot(normal, -frame.sunDirection);
   if (cosine > 0.0) {
     vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, meshNormal));
     result += reflection(albedo, normal, toCamera, -frame.sunDirection) * irradiance;
   }
 #endif
-#if SPOT_LIGHTS
-  for (int i = 0; i < SPOT_LIGHTS; ++i) {
+#if SPOTS
+  for (int i = 0; i < SPOTS; ++i) {
     Arriving light = spotLight(i, vPosition, normal, meshNormal);
     if (light.cosine > 0.0) result += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
   }
 #endif
-#if POINT_LIGHTS
-  for (int i = 0; i < POINT_LIGHTS; ++i) {
+#if POINTS
+  for (int i = 0; i < POINTS; ++i) {
     Arriving light = pointLight(i, vPosition, normal, meshNormal);
     if (light.cosine > 0.0) result += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
   }
 #endif
-#if INDIRECT
-  result += albedo / kPi * lpvIrradiance(vPosition, normal);
-#endif
-#if RECEIVED
-  bool found;  // receivers stand on the mesh: their irradiance is that of its own normal, as gathered one is
-  result += albedo / kPi * receivedIrradiance(vPosition, meshNormal, found);
-#endif
-#if GATHERED
-  vec4 gathered = texelFetch(gatheredIrradiance, ivec2(gl_FragCoord.xy), 0);
-  result += albedo / kPi * gathered.rgb;
-#endif
+  result += albedo / kPi * indirectIrradiance(vPosition, normal, meshNormal);
 #if EMISSION
   result += emitted;
 #endif
-#if SHOW_REFUSED
-  if (gathered.w > 1.5) result = vec3(1.0, 0.0, 0.0) / frame.exposure;
-#endif
+  if (indirectIsRefused()) result = vec3(1.0, 0.0, 0.0) / frame.exposure;
   radiance = vec4(result, 1.0);
 }

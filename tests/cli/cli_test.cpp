@@ -171,6 +171,17 @@ TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
   }
 }
 
+TEST_F(CommandLine, WalkPathTracesEachPictureToItsEnd) {
+  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --technique path --set path.samples=2 --record " + path("out") +
+                                       " --frames 2 --size 32x18 --json " + path("walk.json"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), 2);
+  const auto walk = json("walk.json");
+  EXPECT_EQ(walk.at("technique"), "path");
+  for (const char* stage : {"path tracing", "film", "tone mapping"}) EXPECT_EQ(walk.at("stages").at(stage).at("count"), 2) << stage;
+  for (const char* stage : {"shadow", "shading", "receivers"}) EXPECT_FALSE(walk.at("stages").contains(stage)) << stage;
+}
+
 TEST_F(CommandLine, DirectLightLeavesTheIndirectStagesOut) {
   const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --technique direct --record " + path("out") +
                                        " --frames 1 --size 64x36 --json " + path("walk.json"));

@@ -134,7 +134,7 @@ TEST_F(BenchProof, PathTracingAsPublishedIsBiased) {
     settings.seed = seed;
     RenderSettings published;
     applyFidelity(published, Fidelity::original);
-    if (original) settings.deviations = published.path;
+    if (original) settings.deviations = published.path.deviations;
     auto t = std::make_unique<PathTracer>(context(), library(), scene, settings);
     t->setCamera(scene.cameras.front());
     t->record(samples);

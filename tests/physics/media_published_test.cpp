@@ -17,7 +17,7 @@ using namespace test;
 PathDeviations original() {
   RenderSettings settings;
   applyFidelity(settings, Fidelity::original);
-  return settings.path;
+  return settings.path.deviations;
 }
 
 class MediaPublished : public SharedProgramsTest {

@@ -1,0 +1,34 @@
+// The reflective shadow maps of the lights whose light a technique reflects. They do not depend on the camera: lights and geometry stand still, so they
+// are drawn once (with frame.reuse=off each frame).
+#pragma once
+
+#include "gl/time_query.hpp"
+#include "render/frame_parts.hpp"
+#include "rsm/reflective_shadow_map.hpp"
+
+#include <vector>
+
+namespace lucerna {
+
+class LightMaps {
+ public:
+  struct Lights {
+    bool sun, lamps;  ///< lamps: spot and omnidirectional lights
+  };
+  LightMaps(const FrameParts& parts, Lights lights, bool albedo);
+
+  /// One a light: the sun, the spots, the omnidirectional lights. Stage: rsm, where they are drawn.
+  const std::vector<ReflectiveShadowMap::Outputs>& record(gl::TimeQuery& timer);
+  bool willBeDrawn() const { return !(parts_.settings.reuse && made_); }
+  void forget() { made_ = false; }
+  std::size_t count() const { return maps_.size(); }
+  std::size_t gpuBytes() const;
+
+ private:
+  FrameParts parts_;
+  std::vector<ReflectiveShadowMap> maps_;
+  std::vector<ReflectiveShadowMap::Outputs> outputs_;  ///< since they were last drawn
+  bool made_ = false;
+};
+
+}  // namespace lucerna

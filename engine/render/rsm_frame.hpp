@@ -1,0 +1,40 @@
+// Technique rsm in the frame: every light's reflective shadow map gathered at visible pixels.
+//
+// Stages, with their inputs:  rsm (lights, geometry) -> geometry (camera) -> gather low, interpolation (both) -> gather full.
+#pragma once
+
+#include "forward/visible_surfaces.hpp"
+#include "render/light_maps.hpp"
+#include "rsm/rsm_gather.hpp"
+
+namespace lucerna {
+
+class RsmFrame {
+ public:
+  static bool isNeeded(const RenderSettings& settings, const SceneNeeds& needs) {
+    return settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs);
+  }
+  /// `depth`: the frame's, of the picture's size.
+  RsmFrame(const FrameParts& parts, const gl::Texture& depth);
+  void resize(const gl::Texture& depth);
+
+  /// Draws depth, too.
+  void record(gl::TimeQuery& timer, const FrameView& view);
+  void forget() { maps_.forget(); }
+  void collect(bool wait = false) { gather_.collect(wait); }
+
+  /// Of shaders/forward/indirect.glsl, and what it reads.
+  gl::ShaderFlags shadingFlags() const { return {{"GATHERED", 1}, {"SHOW_REFUSED", gather_.settings().showRefused}}; }
+  void bindForShading() const;
+
+  const RsmGather& gather() const { return gather_; }
+  std::size_t gpuBytes() const { return maps_.gpuBytes() + visible_.gpuBytes() + gather_.gpuBytes(); }
+
+ private:
+  FrameParts parts_;
+  LightMaps maps_;
+  VisibleSurfaces visible_;
+  RsmGather gather_;
+};
+
+}  // namespace lucerna
