@@ -30,9 +30,9 @@ int generateFromScene(const Generate& options) {
   if (!options.numbers.empty()) throwBadInput("{}: AREA_THRESHOLD REFLECTANCE LIGHT_POWER are of the models 1 to 3; a scene has --edge and --power, and its own reflectances", options.numbers[0]);
   if (options.power < 1 || options.power > kRadMost) throwBadInput("--power {}: expected 1 to {} (24 bits)", options.power, kRadMost);
   const Scene scene = loadScene(options.model);
+  const RadScene made = radTrianglesOf(scene, {options.edge.value_or(0.0), options.power});
   if (scene.sun || !scene.spots.empty() || !scene.points.empty() || scene.environment)
     logWarning("{}: the original's files have no other lights than triangles that emit: its sun, lamps and environment are left out", options.model);
-  const RadScene made = radTrianglesOf(scene, {options.edge.value_or(0.0), options.power});
   writeRadFile(options.file, made.triangles);
   if (!options.common.quiet)
     fmt::print("{}: {}, {} triangles with edges of at most {:.6g} units ({} sources, the brightest of power {}), a step of e and b is {:.6g} W per square unit, {} bytes\n", options.file, options.model,
