@@ -240,6 +240,28 @@ void showCompare(Ui& ui, WalkState& s) {
   showJudgement(s, 1);
 }
 
+void showStages(Ui& ui, WalkState& s) {
+  const SideState& side = s.side();
+  if (!side.renderer) return;
+  std::vector<std::string> names{"the frame"};
+  int layers = 1;
+  bool isLight = false;
+  for (const StagePicture& picture : side.renderer->stagePictures()) {
+    names.push_back(picture.name);
+    if (picture.name == s.stage) {
+      layers = picture.texture->size().z;
+      isLight = picture.isLight();
+    }
+  }
+  std::string chosen = s.stage.empty() ? names.front() : s.stage;
+  if (menu(ui, "picture of", chosen, names)) s.stage = chosen == names.front() ? "" : chosen;
+  if (layers > 1) {
+    ImGui::SliderInt("layer", &s.stageLayer, 0, layers - 1);
+    ui.note("layer");
+  }
+  if (isLight) slider(ui, "brightness", s.stageFactor, -20.0f, 40.0f, "2^%.1f");
+}
+
 void showTimings(Ui& ui, WalkState& s) {
   if (!s.frameMs.empty()) {
     const std::vector<double> ms(s.frameMs.begin(), s.frameMs.end());
@@ -378,6 +400,7 @@ void Panel::show(Ui& ui, WalkState& s, Host& host) {
   part("Light", false, [&] { showLight(ui, s); });
   part("Camera", false, [&] { showCamera(ui, s, host); });
   part("Scene", false, [&] { showScene(ui, s); });
+  part("Debug view", false, [&] { showStages(ui, s); });
   part("Timings", true, [&] { showTimings(ui, s); });
   part("Memory and left out", false, [&] { showMemory(ui, s); });
   part("Record and window", false, [&] { showRecord(ui, s, host); });

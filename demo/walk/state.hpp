@@ -83,6 +83,11 @@ struct WalkState {
   bool autoExposure = false;
   float renderScale = 1.0f;        ///< of the picture's side over the window's; 2: four samples a pixel
 
+  // Debug view
+  std::string stage;               ///< of the shown side's Renderer::stagePictures(); empty: the frame
+  int stageLayer = 0;
+  float stageFactor = 0.0f;        ///< powers of two of flux
+
   // Truth
   bool truthOn = false;
   float truthShare = 0.1f;         ///< of a frame's time

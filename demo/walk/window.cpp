@@ -418,7 +418,8 @@ void WalkWindow::compose() {
   SideState& shown = state_.side();
   const bool truthThere = state_.truth && state_.truthOn && state_.truth->ready() && still_ >= kStillFrames;
   const bool shows = state_.show == Show::picture || (truthThere && radianceOf(state_.shown) && radianceOf(state_.shown)->size2d() == state_.truth->size());
-  const bool plain = state_.layout == Layout::one && (state_.show == Show::picture || !shows) && state_.zoom == 1.0f && !state_.magnifier &&
+  const bool stage = !state_.stage.empty() && shown.renderer;
+  const bool plain = !stage && state_.layout == Layout::one && (state_.show == Show::picture || !shows) && state_.zoom == 1.0f && !state_.magnifier &&
                      radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) && shown.renderer && shown.renderer->size() == view_;
   presented_ = plain && !drawsUi() && !state_.shotWanted && view_ == window_;
   if (presented_) {
@@ -448,6 +449,14 @@ void WalkWindow::compose() {
     inputs.errorScale = state_.errorScale > 0.0f ? state_.errorScale : std::max(0.5f * static_cast<float>(mean.x + mean.y + mean.z) / 3.0f, 1e-30f);
   }
   if (state_.magnifier && input_.cursor.x >= 0.0 && !(ui_ && ui_->wantsMouse())) inputs.magnifier = glm::vec2(input_.cursor);
+  if (stage) {
+    for (const StagePicture& picture : shown.renderer->stagePictures()) {
+      if (picture.name != state_.stage) continue;
+      if (!stageView_) stageView_.emplace(programs_);
+      inputs.layout = Layout::one;
+      inputs.left = {&stageView_->record(picture, state_.stageLayer, std::exp2(state_.stageFactor), state_.scene->bounds), Show::values, nullptr};
+    }
+  }
   if (plain) gl::copyTexels(shown.renderer->display(), {0, 0}, picture_, {0, 0}, view_);
   else if (inputs.left.radiance) compare_->record(pictureTarget_, view_, inputs);
   readPixel(inputs);

@@ -4,6 +4,7 @@
 #include "walk/input_file.hpp"
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
+#include "walk/stage_view.hpp"
 #include "walk/state.hpp"
 #include "walk/ui.hpp"
 
@@ -61,6 +62,7 @@ class WalkWindow {
   std::optional<Ui> ui_;
   std::optional<InputPlayer> player_;
   std::optional<Compare> compare_;
+  std::optional<StageView> stageView_;
   HostInput input_;
   glm::dvec2 cursorBefore_{0.0};
   glm::ivec2 window_{0}, playedSize_{0};

@@ -17,6 +17,7 @@ class VisibleSurfaces {
   void record(const GpuScene& scene, const GpuScene::View& view) const;
   /// For a program in use that includes shaders/forward/visible.glsl: units 3 and 4.
   void bind(const gl::Program& program, const glm::mat4& worldFromClip) const;
+  const gl::Texture& normal() const { return normal_; }
   glm::ivec2 size() const { return normal_.size2d(); }
   std::size_t gpuBytes() const { return normal_.bytes(); }
 

@@ -33,6 +33,16 @@ const std::vector<ReflectiveShadowMap::Outputs>& LightMaps::record(gl::TimeQuery
   return outputs_;
 }
 
+void LightMaps::addStagePictures(std::vector<StagePicture>& pictures) const {
+  using Kind = StagePicture::Kind;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const std::string name = "rsm " + std::to_string(i + 1) + " ";
+    pictures.push_back({Kind::flux, name + "flux", &outputs_[i].flux});
+    pictures.push_back({Kind::normal, name + "normal", &outputs_[i].normal});
+    pictures.push_back({Kind::position, name + "position", &outputs_[i].position});
+  }
+}
+
 std::size_t LightMaps::gpuBytes() const {
   std::size_t bytes = 0;
   for (const ReflectiveShadowMap& map : maps_) bytes += map.gpuBytes();

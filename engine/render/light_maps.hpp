@@ -4,6 +4,7 @@
 
 #include "gl/time_query.hpp"
 #include "render/frame_parts.hpp"
+#include "render/stage_picture.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 
 #include <vector>
@@ -22,6 +23,7 @@ class LightMaps {
   bool willBeDrawn() const { return !(parts_.settings.reuse && made_); }
   void forget() { made_ = false; }
   std::size_t count() const { return maps_.size(); }
+  void addStagePictures(std::vector<StagePicture>& pictures) const;
   std::size_t gpuBytes() const;
 
  private:

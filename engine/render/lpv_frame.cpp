@@ -85,6 +85,15 @@ gl::ShaderFlags LpvFrame::shadingFlags() const {
   return flags;
 }
 
+void LpvFrame::addStagePictures(std::vector<StagePicture>& pictures) const {
+  maps_.addStagePictures(pictures);
+  const auto add = [&](const char* name, const LightPropagationVolume::Volume& volume) {
+    pictures.push_back({StagePicture::Kind::coefficients, name, &volume[0], &volume[1], &volume[2]});
+  };
+  add("lpv injected light", volume_.injected());
+  add("lpv propagated light", volume_.result());
+}
+
 void LpvFrame::addLeftOut(std::vector<std::string>& names) const {
   if (!volume_.geometryVolume()) {
     names.emplace_back("geometry volume");

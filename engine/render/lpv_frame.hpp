@@ -30,6 +30,7 @@ class LpvFrame {
 
   const LightPropagationVolume& volume() const { return volume_; }
   bool hasMaps() const { return maps_.count() > 0; }
+  void addStagePictures(std::vector<StagePicture>& pictures) const;
   void addLeftOut(std::vector<std::string>& names) const;
   std::size_t gpuBytes() const { return maps_.gpuBytes() + volume_.gpuBytes() + (cameraMap_ ? cameraMap_->gpuBytes() : 0); }
 

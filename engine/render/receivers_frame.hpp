@@ -36,6 +36,11 @@ class ReceiversFrame {
 
   bool hasMaps() const { return maps_ && maps_->count() > 0; }
   const LpvReceivers& receivers() const { return receivers_; }
+  void addStagePictures(std::vector<StagePicture>& pictures) const {
+    if (maps_) maps_->addStagePictures(pictures);
+    pictures.push_back({StagePicture::Kind::normal, "normals", &visible_.normal()});
+    pictures.push_back({StagePicture::Kind::irradiance, "lpv receivers", &receivers_.irradiance()});
+  }
   std::size_t gpuBytes() const { return (maps_ ? maps_->gpuBytes() : 0) + visible_.gpuBytes() + receivers_.gpuBytes(); }
 
  private:

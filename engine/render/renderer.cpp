@@ -354,6 +354,17 @@ std::size_t Renderer::gpuBytes() const {
   return bytes;
 }
 
+std::vector<StagePicture> Renderer::stagePictures() const {
+  std::vector<StagePicture> pictures;
+  if (shadowMap_) pictures.push_back({StagePicture::Kind::depth, "shadow map", &shadowMap_->depth()});
+  if (sunCascades_) pictures.push_back({StagePicture::Kind::depth, "sun cascades", &sunCascades_->depth()});
+  if (rsm_) rsm_->addStagePictures(pictures);
+  if (lpv_) lpv_->addStagePictures(pictures);
+  if (receivers_) receivers_->addStagePictures(pictures);
+  if (!path_) pictures.push_back({StagePicture::Kind::depth, "depth", &depth_});
+  return pictures;
+}
+
 std::vector<std::string> Renderer::leftOut() const {
   std::vector<std::string> names;
   for (const auto& [name, needed] : needs_.named())

@@ -21,6 +21,7 @@
 #include "render/radiosity_frame.hpp"
 #include "render/receivers_frame.hpp"
 #include "render/rsm_frame.hpp"
+#include "render/stage_picture.hpp"
 #include "scene/needs.hpp"
 #include "settings/render_settings.hpp"
 #include "shared/frame.h"
@@ -66,6 +67,7 @@ class Renderer {
   std::size_t gpuBytes() const;
   const SceneNeeds& needs() const { return needs_; }
   const RenderSettings& settings() const { return settings_; }
+  std::vector<StagePicture> stagePictures() const;
   const LpvReceivers* receivers() const { return receivers_ ? &receivers_->receivers() : nullptr; }
   /// Whether more frames of the same view would show the same: nothing is added up any more.
   bool isSettled() const { return (!receivers_ || receivers_->isSettled()) && (!path_ || path_->isSettled()); }

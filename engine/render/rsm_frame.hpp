@@ -28,6 +28,10 @@ class RsmFrame {
   void bindForShading() const;
 
   const RsmGather& gather() const { return gather_; }
+  void addStagePictures(std::vector<StagePicture>& pictures) const {
+    maps_.addStagePictures(pictures);
+    pictures.push_back({StagePicture::Kind::normal, "normals", &visible_.normal()});
+  }
   std::size_t gpuBytes() const { return maps_.gpuBytes() + visible_.gpuBytes() + gather_.gpuBytes(); }
 
  private:

@@ -1,0 +1,54 @@
+#include "walk/stage_view.hpp"
+
+#include "gl/draw.hpp"
+#include "gl/pass.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace lucerna::demo {
+
+namespace {
+
+enum Shape { flat, layered, volume, threeVolumes };  // SHAPE of shaders/walk/stage.frag
+
+Shape shapeOf(const StagePicture& picture) {
+  if (picture.green) return threeVolumes;
+  switch (picture.texture->target()) {
+    case GL_TEXTURE_3D: return volume;
+    case GL_TEXTURE_2D_ARRAY: return layered;
+    default: return flat;
+  }
+}
+
+}  // namespace
+
+const gl::Texture& StageView::record(const StagePicture& picture, int layer, float factor, const Bounds& bounds) {
+  const gl::Texture* texture = picture.texture;
+  // Shadow maps are textures for comparison, whose depths cannot be read as they are: from a copy they can.
+  if (picture.kind == StagePicture::Kind::depth && shapeOf(picture) == flat) {
+    if (!copy_.id() || copy_.size2d() != texture->size2d() || copy_.format() != texture->format())
+      copy_ = gl::Texture("depth to be looked at", texture->format(), texture->size2d());
+    gl::copyTexels(*texture, {0, 0}, copy_, {0, 0}, texture->size2d());
+    texture = &copy_;
+  }
+  if (!result_.id() || result_.size2d() != texture->size2d()) {
+    result_ = gl::Texture("stage view", GL_RGBA16F, texture->size2d());
+    const std::array<const gl::Texture*, 1> colors{&result_};
+    target_ = gl::Framebuffer("stage view", colors);
+  }
+  const gl::Program& program = programs_.loadRaster("stage view", "lib/fullscreen.vert", "walk/stage.frag", {{"SHAPE", shapeOf(picture)}});
+  const gl::RasterPass pass("stage view", target_, {});
+  program.use();
+  texture->bind(0);
+  if (picture.green) picture.green->bind(1), picture.blue->bind(2);
+  program.set("layer", std::clamp(layer, 0, texture->size().z - 1));
+  program.set("kind", static_cast<int>(picture.kind));
+  program.set("factor", factor);
+  program.set("minimum", glm::vec3(bounds.min));
+  program.set("extent", glm::max(glm::vec3(bounds.extent()), glm::vec3(1e-30f)));
+  gl::drawFullScreen(noAttributes_);
+  return result_;
+}
+
+}  // namespace lucerna::demo

@@ -1,0 +1,26 @@
+// A stage's own picture instead of the frame's: shadow maps, targets of reflective shadow maps, normals, depth.
+#pragma once
+
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+#include "render/stage_picture.hpp"
+#include "scene/scene.hpp"
+
+namespace lucerna::demo {
+
+class StageView {
+ public:
+  explicit StageView(gl::ProgramLibrary& programs) : programs_(programs), noAttributes_("stage view") {}
+
+  /// Draws it; the picture is valid until the next call. factor: of flux, 1 shows the mean of what is lit as middle grey.
+  const gl::Texture& record(const StagePicture& picture, int layer, float factor, const Bounds& bounds);
+  static int layersOf(const StagePicture& picture) { return picture.texture->size().z; }
+
+ private:
+  gl::ProgramLibrary& programs_;
+  gl::VertexArray noAttributes_;
+  gl::Texture copy_, result_;
+  gl::Framebuffer target_;
+};
+
+}  // namespace lucerna::demo
