@@ -69,8 +69,6 @@ class LpvReceivers {
   const LightPropagationVolume::Settings& settings() const { return settings_; }
   std::uint32_t frame() const { return frame_; }  ///< the last update's number
   const gl::Texture& irradiance() const { return irradiance_; }
-  /// RGBA: irradiance over E_ref times w, w: how much a receiver counts; cells, six faces and cascades stacked along z.
-  const gl::Texture& irradiance() const { return irradiance_; }
   std::size_t gpuBytes() const;
 
  private:
