@@ -21,7 +21,7 @@ namespace lucerna::demo {
 // ---------------------------------------------------------------------------------------------------- options
 
 void CommonOptions::declare(CLI::App& app) {
-  offer(app.add_option("--host", host, "who makes the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
+  offer(app.add_option("--host", host, "what creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
         {"window", "egl", "osmesa"});
   app.add_option("--json", json, "write machine-readable results to this file");
   app.add_flag("--quiet", quiet, "no warnings, no progress");
@@ -107,7 +107,7 @@ void PictureOptions::declare(CLI::App& app) {
   offer(app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated"), switches);
   app.add_option("--size", size, "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for --fidelity original")->capture_default_str();
   offer(app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated"), offeredSettings());
-  app.add_option("--settings", settingsFile, "a settings file, such as `lucerna tune` writes; what else is given here comes after it");
+  app.add_option("--settings", settingsFile, "a settings file, as written by `lucerna tune`; other options here override it");
   app.footer(settingsHelp() + deviationsHelp());
 }
 
@@ -120,7 +120,7 @@ void PictureOptions::readSettingsFile() {
   deviations.insert(deviations.begin(), file.deviations.begin(), file.deviations.end());
   settings.insert(settings.begin(), file.settings.begin(), file.settings.end());
   settingsSpp = file.spp;
-  if (settingsSpp && technique != "path") throwBadInput("--settings {}: key \"spp\": samples a pixel belong to technique path, not to {}", settingsFile, technique);
+  if (settingsSpp && technique != "path") throwBadInput("--settings {}: key \"spp\": samples per pixel belong to technique path, not to {}", settingsFile, technique);
 }
 
 nlohmann::ordered_json PictureOptions::toJson() const {
@@ -139,7 +139,7 @@ void chooseTransport(RenderSettings& settings, const PictureOptions& options, co
     for (const Setting* setting : given)
       if (const auto transport = onlyTransport(*setting)) {
         settings.lpv.transport = *transport;
-        if (*transport != LpvTransport::rays) logInfo("{}: lpv.transport={}, which alone reads it", setting->key, nameOf(*transport));
+        if (*transport != LpvTransport::rays) logInfo("{}: using lpv.transport={}, the only one that reads it", setting->key, nameOf(*transport));
         break;
       }
   }
@@ -173,9 +173,9 @@ RenderSettings PictureOptions::parse() const {
   std::string unread;
   for (const Setting* setting : given) {
     if (!isReadBy(*setting, result.technique)) unread += (unread.empty() ? "" : ", ") + std::string(setting->key);
-    else if (!isRead(*setting, result)) logWarning("--set {}: lpv.transport={} does not read that, {} does", setting->key, nameOf(result.lpv.transport), readingTransports(*setting));
+    else if (!isRead(*setting, result)) logWarning("--set {}: lpv.transport={} does not use it, {} does", setting->key, nameOf(result.lpv.transport), readingTransports(*setting));
   }
-  if (!unread.empty()) logWarning("--set {}: technique {} does not read that", unread, technique);
+  if (!unread.empty()) logWarning("--set {}: technique {} does not use it", unread, technique);
   return result;
 }
 
@@ -284,7 +284,7 @@ std::string gatherLine(const RsmGather& gather) {
   const nlohmann::ordered_json json = gatherJson(gather);
   const auto count = [&](const char* key) { return json.at(key).get<std::uint64_t>(); };
   if (count("frames") == 0) return "";
-  return fmt::format("gathered {} of {} pixels a frame ({} refused by interpolation), {:.1f} % saved\n", count("gathered"), count("pixels"), count("refused"),
+  return fmt::format("gathered {} of {} pixels per frame ({} refused by interpolation), {:.1f} % saved\n", count("gathered"), count("pixels"), count("refused"),
                      100.0 * gather.counts().saving());
 }
 
@@ -296,8 +296,8 @@ nlohmann::ordered_json receiversJson(const LpvReceivers& receivers) {
 std::string receiversLine(const LpvReceivers& receivers) {
   const LpvReceivers::Counts& c = receivers.counts();
   std::string line = fmt::format("{} receivers, {} paths each", c.receivers, receivers.settings().samples);
-  if (c.waiting > 0) line += fmt::format("; {} lack some", c.waiting);
-  if (c.left > 0) line += fmt::format("; {} found no room (lpv.cells)", c.left);
+  if (c.waiting > 0) line += fmt::format("; {} incomplete", c.waiting);
+  if (c.left > 0) line += fmt::format("; {} without room (lpv.cells)", c.left);
   return line + "\n";
 }
 

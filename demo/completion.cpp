@@ -202,7 +202,7 @@ std::function<int()> addCompletion(CLI::App& app) {
     if (*shell == "bash") fmt::print("{}", bash(commands));
     else if (*shell == "zsh") fmt::print("{}", zsh(commands));
     else if (*shell == "fish") fmt::print("{}", fish(commands));
-    else throwBadInput("SHELL {}: unknown; there are bash, zsh, fish", *shell);
+    else throwBadInput("SHELL {}: unknown; expected one of bash, zsh, fish", *shell);
     return 0;
   };
 }

@@ -110,7 +110,7 @@ int run(const Options& options) {
 Work addInfo(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...");
-  app.add_flag("--devices", options->devices, "list the devices that EGL knows, and which is tried first");
+  app.add_flag("--devices", options->devices, "list EGL's devices and mark the one that is tried first");
   app.add_flag("--settings", options->settings, "print every setting and deviation, with ranges, defaults, units and sources (docs/settings.md)");
   options->common.declare(app);
   return [options] { return run(*options); };

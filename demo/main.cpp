@@ -33,7 +33,7 @@ void printError(std::string message) {
 /// A full disk behind standard output is only reported here.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.flush()) return code;
-  printError(fmt::format("standard output cannot be written: {}", std::strerror(errno)));
+  printError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
   return code != 0 ? code : static_cast<int>(lucerna::ErrorKind::missingCapability);
 }
 

@@ -57,13 +57,13 @@ int generate(const Generate& options) {
   const int model = options.model.size() > 9 ? 0 : std::stoi(options.model);
   RadModelSettings settings;
   if (!options.numbers.empty()) {
-    if (options.numbers.size() != 3) throwBadInput("AREA_THRESHOLD REFLECTANCE LIGHT_POWER: {} of them given, expected all three or none", options.numbers.size());
+    if (options.numbers.size() != 3) throwBadInput("AREA_THRESHOLD REFLECTANCE LIGHT_POWER: {} given, expected all three or none", options.numbers.size());
     settings.areaThreshold = options.numbers[0];
     settings.reflectance = options.numbers[1];
     double power = options.numbers[2];
     // The manual allows 2^24, which three bytes just do not hold.
     if (power == 16777216.0) {
-      logWarning("LIGHT_POWER 16777216: 24 bits hold one less; {} taken", kRadMost);
+      logWarning("LIGHT_POWER 16777216: does not fit into 24 bits; using {}", kRadMost);
       power = kRadMost;
     }
     if (!(power >= 0.0 && power <= kRadMost)) throwBadInput("LIGHT_POWER {}: expected 0 to {} (24 bits)", power, kRadMost);
@@ -95,7 +95,7 @@ Work addGenerate(CLI::App& app) {
   auto options = std::make_shared<Generate>();
   app.add_option("FILE", options->file, "the triangle file to write")->required();
   offer(app.add_option("MODEL", options->model, "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle; or a scene file: OBJ, glTF, PLY, ...")->required(), {"1", "2", "3"});
-  app.add_option("NUMBERS", options->numbers, "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until below the area; 0 to 1; 0 to 16777215")
+  app.add_option("NUMBERS", options->numbers, "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until smaller than the area; 0 to 1; 0 to 16777215")
       ->expected(0, 3);
   app.add_option("--edge", options->edge, "of a scene: longest edge of the triangles in scene units (a 12th of the scene)")->check(CLI::PositiveNumber);
   app.add_option("--power", options->power, "of a scene: e of its brightest triangle, 1 to 16777215")->capture_default_str();
@@ -114,9 +114,9 @@ int solve(const RadiositySolve& options) {
   if (options.fidelity == "original" && !options.set.empty()) throwBadInput("--set {}: the published program has no such settings", options.set.front());
   if (options.fidelity == "original")
     for (const auto& [option, assignment] : options.shortSettings)
-      if (option == "--visibility") throwBadInput("--visibility {}: the published program draws colours; it is for --fidelity corrected", assignment.substr(assignment.find('=') + 1));
+      if (option == "--visibility") throwBadInput("--visibility {}: only with --fidelity corrected; the published program draws colours", assignment.substr(assignment.find('=') + 1));
   if (options.fidelity == "original") return solveOriginal(options);
-  if (options.fidelity != "corrected") throwBadInput("--fidelity {}: unknown; there are corrected, original", options.fidelity);
+  if (options.fidelity != "corrected") throwBadInput("--fidelity {}: unknown; expected one of corrected, original", options.fidelity);
   return solveCorrected(options);
 }
 
@@ -129,14 +129,14 @@ std::string radiosityDeviationsHelp() {
 Work addSolve(CLI::App& app) {
   auto options = std::make_shared<RadiositySolve>();
   app.add_option("IN", options->in, "a triangle file; corrected: or any scene")->required();
-  app.add_option("OUT", options->out, "where every sweep is saved; may be IN. Ctrl-C stops at any time, the same command goes on")->required();
+  app.add_option("OUT", options->out, "file that every sweep is saved to; may be IN. Ctrl-C stops at any time, the same command resumes")->required();
   // Options that are shorter spellings of settings; the original reads some of them itself.
   auto shorter = std::make_shared<std::vector<std::pair<const char*, const CLI::Option*>>>();
   const auto shortFor = [&](const char* key, CLI::Option* option) {
     shorter->emplace_back(key, option);
     return option;
   };
-  shortFor("radiosity.resolution", app.add_option("RESOLUTION", options->resolution, "pixels a side of a hemicube's face (original 500, corrected 64)"));
+  shortFor("radiosity.resolution", app.add_option("RESOLUTION", options->resolution, "pixels per side of a hemicube's face (original 500, corrected 64)"));
   offer(app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str(), {"corrected", "original"});
   offer(shortFor("radiosity.solver", app.add_option("--solver", options->solver, "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room, cg")),
         {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "per-room", "cg"});
@@ -144,7 +144,7 @@ Work addSolve(CLI::App& app) {
   for (const RadiosityDeviation& deviation : allRadiosityDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
   offer(app.add_option("--deviation", options->deviations, "NAME=on|off: one deviation of the published original; may be repeated"), switches);
-  shortFor("radiosity.products", app.add_option("--max-sweeps", options->maxSweeps, "stop after so many sweeps (0: when nothing changes)")->capture_default_str());
+  shortFor("radiosity.products", app.add_option("--max-sweeps", options->maxSweeps, "stop after this many sweeps (0: when nothing changes)")->capture_default_str());
   app.add_option("--near-plane", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
   app.add_option_function<double>("--near", [options](double distance) {
     logWarning("--near: now written --near-plane");
@@ -152,7 +152,7 @@ Work addSolve(CLI::App& app) {
   })->group("");
   shortFor("radiosity.seed", app.add_option("--seed", options->seed, "of the random roll with radiosity.fixed-orientation=off")->capture_default_str());
   app.add_option("--save-every", options->saveEvery, "seconds between checkpoints within a sweep")->capture_default_str();
-  app.add_flag("--restart", options->restart, "begin anew where a stopped run could go on");
+  app.add_flag("--restart", options->restart, "start over instead of resuming a stopped run");
   const auto addShort = [&](const char* option, const char* key, const char* meaning) {
     return shortFor(key, app.add_option_function<std::string>(option, [](const std::string&) {}, std::string("corrected: ") + meaning));
   };
@@ -188,7 +188,7 @@ Work addRadiosity(CLI::App& app) {
   };
   add("generate", "Make one of the original's three models, or triangles of any scene", addGenerate);
   add("solve", "Compute the radiosity of a scene", addSolve);
-  add("show", "Look at a triangle file in a window, or make a picture of it", addRadiosityShow);
+  add("show", "Show a triangle file in a window, or render a picture of it", addRadiosityShow);
   return [commands] {
     for (const auto& [command, work] : *commands)
       if (command->parsed()) return work();

@@ -91,7 +91,7 @@ std::optional<OriginalProgress> takeUp(const RadiositySolve& options, std::span<
   std::error_code error;
   if (options.restart || !fs::exists(file, error)) return std::nullopt;
   const auto unused = [&](const std::string& why) {
-    logWarning("{}: not taken up ({}): begins with {}", file.string(), why, options.in);
+    logWarning("{}: not resumed ({}): starts from {}", file.string(), why, options.in);
     return std::nullopt;
   };
   try {
@@ -148,7 +148,7 @@ int solveOriginal(const RadiositySolve& options) {
   if (const auto taken = takeUp(options, triangles, key)) {
     progress = *taken;
     files.holds(fs::exists(options.out, error) ? readRadFile(options.out) : triangles);
-    if (!options.common.quiet) fmt::print("{}: taken up at sweep {}, {} of {} triangles done\n", files.checkpoint().string(), progress.sweeps + 1, progress.done, triangles.size());
+    if (!options.common.quiet) fmt::print("{}: resumed at sweep {}, {} of {} triangles done\n", files.checkpoint().string(), progress.sweeps + 1, progress.done, triangles.size());
   } else {
     files.holds(triangles);
     files.saveSweep(progress, triangles);  // so that a folder or disk that cannot be written is known before the work
@@ -194,7 +194,7 @@ int solveOriginal(const RadiositySolve& options) {
   const double balance = solver.energyBalance(progress.received);
   if (!options.common.quiet) {
     fmt::print("{}: {} triangles, {} sweeps, {}; {:.2f} s, {:.1f} hemicubes/s, {:.2f} Mtriangles/s, energy balance {:+.4f}, on {}\n", options.out, triangles.size(),
-               progress.sweeps, settled ? "nothing changes any more" : stopped ? "stopped; the same command goes on" : "as many as asked for", seconds, rate, triangleRate,
+               progress.sweeps, settled ? "nothing changes any more" : stopped ? "stopped; the same command resumes it" : "as many as asked for", seconds, rate, triangleRate,
                balance, renderer);
   }
   nlohmann::ordered_json json;

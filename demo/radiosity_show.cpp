@@ -30,7 +30,7 @@ struct Options {
 
 RadDisplay displayOf(const Options& options) {
   RadDisplay display;
-  if (!options.mode.empty() && options.mode != "s" && options.mode != "c") throwBadInput("{}: unknown; there are s (triangles turned away too), c (colours as computed)", options.mode);
+  if (!options.mode.empty() && options.mode != "s" && options.mode != "c") throwBadInput("{}: unknown; expected s (back-facing triangles too) or c (the computed colours)", options.mode);
   if (!options.mapping.empty()) display.mapping = parseName<RadMapping>(options.mapping, "--mapping");
   if (options.falseColours) display.mapping = RadMapping::falseColours;
   if (options.mode == "c") display.mapping = RadMapping::bits24;
@@ -88,10 +88,10 @@ int run(const Options& options) {
   const auto host = options.common.makeHost(options.output.empty(), hostOptions);
   const gl::Context context;
   if (std::max(size.x, size.y) > context.capabilities().maxTextureSize)
-    throwMissingCapability("--size {}: this driver's textures end at {} pixels", options.size, context.capabilities().maxTextureSize);
+    throwMissingCapability("--size {}: this driver's limit is {} pixels", options.size, context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
   if (options.output.empty()) {
-    if (host->kind() != HostKind::window) throwMissingCapability("show: there is no window here; -o OUT.png makes a picture");
+    if (host->kind() != HostKind::window) throwMissingCapability("show: no window is available; use -o OUT.png");
     walkAround(*host, programs, triangles, display, camera);
   } else {
     RadView view(programs, size);
@@ -117,11 +117,11 @@ int run(const Options& options) {
 Work addRadiosityShow(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("FILE", options->file, "a triangle file")->required();
-  offer(app.add_option("MODE", options->mode, "s: triangles turned away shown too, by their corners; c: the 24-bit colours that the computation draws"), {"s", "c"});
+  offer(app.add_option("MODE", options->mode, "s: back-facing triangles too, by their corners; c: the 24-bit colours of the computation"), {"s", "c"});
   app.add_option("-o,--output", options->output, "OUT.png: a picture instead of a window");
   offer(app.add_option("--mapping", options->mapping, "log (as published, default), linear (times a constant), filmic (the engine's), false (colours), bits (as c)"),
         {"log", "linear", "filmic", "false", "bits"});
-  app.add_option("--constant", options->constant, "linear and filmic: what a value is multiplied by, 1 being white (0: from the scene)")->capture_default_str();
+  app.add_option("--constant", options->constant, "linear and filmic: factor of values, 1 is white (0: from the scene)")->capture_default_str();
   app.add_flag("--mesh", options->mesh, "draw the triangles' edges");
   app.add_flag("--false-colours", options->falseColours, "the same as --mapping false");
   app.add_option("--camera", options->camera, "px,py,pz,tx,ty,tz,fov (position, target, degrees); default: from above a corner");

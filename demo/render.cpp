@@ -43,7 +43,7 @@ int run(Options options) {
   const auto host = options.common.makeHost(false);
   gl::Context context;
   if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
-    throwMissingCapability("--size {}: this driver's textures end at {} pixels", options.picture.size, context.capabilities().maxTextureSize);
+    throwMissingCapability("--size {}: this driver's limit is {} pixels", options.picture.size, context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
   Renderer renderer(context, programs, scene, settings);
   const auto start = std::chrono::steady_clock::now();
@@ -59,7 +59,7 @@ int run(Options options) {
     writeImage(options.output, image);
   const glm::dvec3 mean = meanOf(image);
   if (!options.common.quiet) {
-    fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s a frame on {}\n", options.output, image.width, image.height,
+    fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s per frame on {}\n", options.output, image.width, image.height,
                options.picture.technique, options.picture.component, mean.x, mean.y, mean.z, seconds, context.capabilities().renderer);
     if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
     if (renderer.receivers()) fmt::print("{}", receiversLine(*renderer.receivers()));

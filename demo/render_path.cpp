@@ -60,11 +60,11 @@ std::optional<SampleRange> sampleRange(const PathOptions& path) {
 }  // namespace
 
 void PathOptions::declare(CLI::App& app) {
-  app.add_option("--spp", spp, "path: samples a pixel, at most (64, without --seconds and --error)")->check(CLI::Range(1u, 4000000000u));
-  app.add_option("--seconds", seconds, "path: stop after this time; every pixel has one sample at least")->check(CLI::PositiveNumber);
-  app.add_option("--error", error, "path: stop where the pixels' standard error, root mean square, is this fraction of the mean radiance")->check(CLI::PositiveNumber);
+  app.add_option("--spp", spp, "path: samples per pixel, at most (64, without --seconds and --error)")->check(CLI::Range(1u, 4000000000u));
+  app.add_option("--seconds", seconds, "path: stop after this time, with at least one sample per pixel")->check(CLI::PositiveNumber);
+  app.add_option("--error", error, "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance")->check(CLI::PositiveNumber);
   app.add_option("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
-  app.add_option("--checkpoint", checkpoint, "path: go on from this file if it is there; it is written every minute and at the end. Without it a stopped picture is kept in OUT.film, from which the same command goes on");
+  app.add_option("--checkpoint", checkpoint, "path: resume from this file if it exists; it is written every minute and at the end. Without it a stopped picture is stored in OUT.film, and the same command resumes it");
   app.add_option("--samples", samples, "path: FIRST:LAST, a part of the samples of a pixel, FIRST up to but without LAST, kept by --checkpoint; lucerna merge makes one picture of all parts");
   app.add_option("--seed", seed, "path: of the random numbers (0)");
 }
@@ -77,7 +77,7 @@ void PathOptions::refuseIfGiven(const std::string& technique) const {
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path, const std::string& sceneFile,
                const std::string& cameraText, const std::string& output) {
   for (const std::string& deviation : picture.deviations)
-    if (!deviation.starts_with("path.")) throwBadInput("--deviation {}: --technique path has those that begin with path.", deviation);
+    if (!deviation.starts_with("path.")) throwBadInput("--deviation {}: --technique path supports only deviations that begin with path.", deviation);
   PictureOptions rest = picture;
   if (!path.sizeGiven && (picture.fidelity != "corrected" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
   const RenderSettings shared = rest.parse();
@@ -96,7 +96,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const auto host = common.makeHost(false);
   gl::Context context;
   if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
-    throwMissingCapability("--size {}: this driver's textures end at {} pixels", rest.size, context.capabilities().maxTextureSize);
+    throwMissingCapability("--size {}: this driver's limit is {} pixels", rest.size, context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
@@ -133,7 +133,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
       try {
         save();
       } catch (const Error& error) {
-        logWarning("--checkpoint {}; the picture goes on without it", error.what());
+        logWarning("--checkpoint {}; rendering continues without it", error.what());
       }
       saved = elapsed();
     }
@@ -145,7 +145,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const double seconds = elapsed();
   if (interrupted()) {
     save();
-    throw Stopped(fmt::format("stopped at {:.6g} samples a pixel; the same command goes on from {}", tracer.statistics().samples, checkpoint));
+    throw Stopped(fmt::format("stopped at {:.6g} samples per pixel; the same command resumes from {}", tracer.statistics().samples, checkpoint));
   }
 
   const PathTracer::Statistics statistics = tracer.statistics();
@@ -158,7 +158,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   if (!path.checkpoint.empty()) save();
   else std::filesystem::remove(checkpoint);
   if (!common.quiet)
-    fmt::print("{}: {}x{}, path, {}, {:.6g} samples a pixel, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} ({:.3g} of the mean), {:.3f} s on {}\n",
+    fmt::print("{}: {}x{}, path, {}, {:.6g} samples per pixel, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} ({:.3g} of the mean), {:.3f} s on {}\n",
                output.empty() ? checkpoint : output, image.width, image.height, picture.component, statistics.samples, statistics.mean.x, statistics.mean.y, statistics.mean.z,
                statistics.standardError, statistics.relativeError, seconds, context.capabilities().renderer);
   nlohmann::ordered_json json;

@@ -34,7 +34,7 @@ SettingsFile readSettingsFile(const std::string& file) {
       if (!value.is_number_unsigned() || value.get<std::uint64_t>() < 1 || value.get<std::uint64_t>() > kMost) fail("a whole number from 1 to 4000000000");
       result.spp = value.get<std::uint32_t>();
     } else if (key != "measured") {
-      throwBadInput("{}: unknown key \"{}\"; known are: technique, fidelity, deviations, settings, spp, measured", name, key);
+      throwBadInput("{}: unknown key \"{}\"; expected one of technique, fidelity, deviations, settings, spp, measured", name, key);
     }
   }
   return result;

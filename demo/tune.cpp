@@ -69,18 +69,18 @@ const ErrorRow& choose(const std::vector<ErrorRow>& rows, const char* wish, doub
     met |= meets;
   }
   if (!best && leastSetup > mostSetup)
-    throwBadInput("tune: nothing is ready within --setup-time {:g} s; the soonest needs {:.3g} s", mostSetup, leastSetup);
+    throwBadInput("tune: no settings are ready within --setup-time {:g} s; the fastest need {:.3g} s", mostSetup, leastSetup);
   if (!best) throw Error(ErrorKind::fault, "tune: no row has a finite time and error");
   return *best;
 }
 
 std::string describe(const ErrorRow& row) {
-  return fmt::format("{}: {:.2f} ms a picture after {:.3g} s of set-up, NRMSE {:.3g} %", row.at("label").get<std::string>(), number(row, "ms"), setupSeconds(row),
+  return fmt::format("{}: {:.2f} ms per picture after {:.3g} s of set-up, NRMSE {:.3g} %", row.at("label").get<std::string>(), number(row, "ms"), setupSeconds(row),
                      100.0 * bench::rankedError(row, "nrmse"));
 }
 
 int run(Options options) {
-  if (options.frameTime.has_value() == options.error.has_value()) throwBadInput("tune: give one of --frame-time MS and --error E");
+  if (options.frameTime.has_value() == options.error.has_value()) throwBadInput("tune: give either --frame-time MS or --error E");
   checkWritable(options.output);
   if (options.bench.out.empty()) options.bench.out = "bench-error";
   if (options.bench.techniques.empty()) options.bench.techniques = bench::ladderTechniques();  // those that walk in real time; path tracing where it is asked for
@@ -90,7 +90,7 @@ int run(Options options) {
   bool met = false;
   const ErrorRow& row = options.frameTime ? choose(result->report.rows, "ms", *options.frameTime, "nrmse", options.setupTime, met)
                                           : choose(result->report.rows, "nrmse", *options.error, "ms", options.setupTime, met);
-  if (!met) throwBadInput("tune: nothing meets {}; the nearest is {}", options.frameTime ? fmt::format("{:g} ms", *options.frameTime) : fmt::format("NRMSE {:g}", *options.error), describe(row));
+  if (!met) throwBadInput("tune: no settings meet {}; the closest are {}", options.frameTime ? fmt::format("{:g} ms", *options.frameTime) : fmt::format("NRMSE {:g}", *options.error), describe(row));
   nlohmann::ordered_json settings = {{"technique", row.at("technique")}, {"fidelity", row.at("fidelity")}, {"deviations", row.at("deviations")}, {"settings", row.contains("spp") ? nlohmann::ordered_json::array() : row.at("settings")}};
   if (row.contains("spp")) settings["spp"] = row.at("spp");
   settings["measured"] = {{"ms", row.at("ms")}, {"setup_ms", row.at("setup_ms")}, {"nrmse", row.at("nrmse")}, {"size", options.bench.size}, {"scene", options.bench.scene}, {"renderer", result->report.renderer}};
@@ -105,10 +105,10 @@ int run(Options options) {
 Work addTune(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->bench.scene, "a scene file (default: the atrium)");
-  app.add_option("--frame-time", options->frameTime, "milliseconds a picture at most: the least error")->check(CLI::PositiveNumber);
-  app.add_option("--error", options->error, "NRMSE at most, such as 0.1: the least time")->check(CLI::PositiveNumber);
+  app.add_option("--frame-time", options->frameTime, "at most this many milliseconds per picture: settings with the least error")->check(CLI::PositiveNumber);
+  app.add_option("--error", options->error, "at most this NRMSE, such as 0.1: settings with the least time")->check(CLI::PositiveNumber);
   app.add_option("--setup-time", options->setupTime,
-                 "seconds at most before the first picture (10); a radiosity solution of a large scene takes longer")
+                 "at most this many seconds before the first picture (10); a radiosity solution of a large scene takes longer")
       ->check(CLI::PositiveNumber);
   app.add_option("-o,--output", options->output, "the settings file")->required();
   options->bench.declare(app);

@@ -214,10 +214,10 @@ int run(AllOptions options) {
   options.common.apply();
   if (!(options.scale > 0.0 && options.scale <= 4.0)) throwBadInput("--scale {}: expected a number above 0, at most 4", options.scale);
   for (const std::string& name : options.parts)
-    if (std::find(std::begin(kParts), std::end(kParts), name) == std::end(kParts)) throwBadInput("--parts {}: unknown; there are {}", name, fmt::join(kParts, ", "));
+    if (std::find(std::begin(kParts), std::end(kParts), name) == std::end(kParts)) throwBadInput("--parts {}: unknown; expected one of {}", name, fmt::join(kParts, ", "));
   std::error_code error;
   fs::create_directories(options.out, error);
-  if (error || !fs::is_directory(options.out)) throwBadInput("--out {}: the folder cannot be made ({})", options.out, error ? error.message() : "a file is in the way");
+  if (error || !fs::is_directory(options.out)) throwBadInput("--out {}: cannot create folder ({})", options.out, error ? error.message() : "a file of that name exists");
   const std::string originals = sceneOrAtrium(options.scenes.empty() ? "" : options.scenes.front());  // what has a scene of its own is made on that
   if (options.scenes.empty()) options.scenes = {asset("cornell/cornell.json"), asset("atrium/atrium.json")};
   const auto host = options.common.makeHost(false);
@@ -265,7 +265,7 @@ int run(AllOptions options) {
 Work addBenchAll(CLI::App& app) {
   auto options = std::make_shared<bench::AllOptions>();
   app.add_option("SCENE", options->scenes, "scene files for error and needs (default: the Cornell box and the atrium); the first for the tables and pictures of lpv (default: the atrium)");
-  app.add_option("--out", options->out, "folder of the report; an interrupted one goes on")->required();
+  app.add_option("--out", options->out, "folder of the report; an interrupted one is resumed")->required();
   offer(app.add_option("--parts", options->parts, "of error, deviations, stability, needs, rays, tables, pictures; default: all")->delimiter(','),
         {std::begin(bench::kParts), std::end(bench::kParts)});
   app.add_option("--scale", options->scale, "how much work: pixels and seconds; 1 takes four times as long as the default")->capture_default_str();

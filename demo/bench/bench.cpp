@@ -10,7 +10,7 @@ namespace lucerna::demo {
 namespace bench {
 
 void checkOriginal(const std::string& name) {
-  if (name != "lpv" && name != "rad" && name != "vpt") throwBadInput("--original {}: unknown; there are lpv, rad, vpt", name);
+  if (name != "lpv" && name != "rad" && name != "vpt") throwBadInput("--original {}: unknown; expected one of lpv, rad, vpt", name);
 }
 
 std::string asset(const std::string& file) { return (dataFolder() / "assets" / file).string(); }

@@ -35,7 +35,7 @@ std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
   std::string list;
   for (const std::string& t : known) list += (list.empty() ? "" : ", ") + t;
   for (const std::string& t : options.techniques)
-    if (std::find(known.begin(), known.end(), t) == known.end()) throwBadInput("--techniques {}: unknown; there are {}", t, list);
+    if (std::find(known.begin(), known.end(), t) == known.end()) throwBadInput("--techniques {}: unknown; expected one of {}", t, list);
   return options.techniques;
 }
 
@@ -81,7 +81,7 @@ void ErrorBenchOptions::declare(CLI::App& app) {
   app.add_option("--size", size, "WIDTHxHEIGHT of the pictures")->capture_default_str();
   app.add_option("--budget", budget, "seconds for references and path tracing; known references are used again")->capture_default_str()->check(CLI::Range(0.01, 1e6));
   app.add_option("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")->check(CLI::Range(2, 1 << 30));
-  app.add_option("--references", references, "folder of kept references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
+  app.add_option("--references", references, "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
   offer(app.add_option("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all")->delimiter(','), {"direct", "rsm", "lpv", "radiosity", "path"});
   app.add_option("--frames", frames, "pictures a rung at least")->capture_default_str()->check(CLI::Range(1, 10000));
   app.add_flag("--small", small, "without the most expensive rungs");

@@ -175,7 +175,7 @@ std::string notes(const ErrorReport& report) {
     const glm::dvec3 mean = meanOf(r.mean);
     const double m = (mean.x + mean.y + mean.z) / 3.0;
     line += fmt::format(
-        "Reference {:<44} {} samples a pixel, {:.1f} s; mean {:.6g} +- {:.2g}; noise of a pixel {:.3g} % of the mean\n",
+        "Reference {:<44} {} samples per pixel, {:.1f} s; mean {:.6g} +- {:.2g}; noise of a pixel {:.3g} % of the mean\n",
         nameOf(paths), r.samples, r.seconds, m, r.meanError, m > 0.0 ? 100.0 * std::sqrt(noise.variance) / m : 0.0);
   }
   return line;
@@ -318,7 +318,7 @@ namespace {
 /// Writes the plot; a warning and false where nothing can be drawn or gnuplot is missing.
 bool draw(const fs::path& folder, const std::string& stem, const LogLogPlot& plot) {
   if (std::all_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.points.empty(); })) {
-    logWarning("no plot {}: every row is at the reference's noise; give it more --budget", stem);
+    logWarning("no plot {}: every row is at the reference's noise; increase --budget", stem);
     return false;
   }
   try {

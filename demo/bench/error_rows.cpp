@@ -98,7 +98,7 @@ std::optional<ErrorRow> readRow(const fs::path& file) {
   if (!fs::exists(file)) return std::nullopt;
   ErrorRow row = ErrorRow::parse(readFileText(file), nullptr, false);
   if (row.is_discarded()) {
-    logWarning("{}: a damaged row is measured again", file.string());
+    logWarning("{}: damaged row, measured again", file.string());
     return std::nullopt;
   }
   return row;
@@ -275,7 +275,7 @@ void makeFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder / "rows", error);
   if (!error) fs::create_directories(folder / "pictures", error);
-  if (error) throwBadInput("--out {}: the folder cannot be made ({})", folder.string(), error.message());
+  if (error) throwBadInput("--out {}: cannot create folder ({})", folder.string(), error.message());
   writeFileAtomically(folder / "rows/.writable", "");
 }
 

@@ -99,7 +99,7 @@ std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double lon
   if (technique == "radiosity") return radiosityLadder(shrink, longestSide);
   std::string known;
   for (const std::string& t : ladderTechniques()) known += (known.empty() ? "" : ", ") + t;
-  throwBadInput("--techniques {}: unknown; there are {}", technique, known);
+  throwBadInput("--techniques {}: unknown; expected one of {}", technique, known);
 }
 
 std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {

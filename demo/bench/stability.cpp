@@ -65,7 +65,7 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
   for (const StabilityCase& c : cases)
     if (known.find(c.technique) == std::string::npos) known += (known.empty() ? "" : ", ") + c.technique;
   if (!technique.empty()) std::erase_if(cases, [&](const StabilityCase& c) { return c.technique != technique; });
-  if (cases.empty()) throwBadInput("--technique {}: unknown; there are {}", technique, known);
+  if (cases.empty()) throwBadInput("--technique {}: unknown; expected one of {}", technique, known);
   std::vector<StabilityRow> rows;
   Progress progress("stability", static_cast<int>(cases.size()), quiet);
   for (const StabilityCase& c : cases) {

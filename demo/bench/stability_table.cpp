@@ -24,7 +24,7 @@ std::vector<std::string> worseRows(const nlohmann::ordered_json& now, const nloh
     };
     std::map<std::string, const nlohmann::ordered_json*> rows;
     for (const auto& row : now) rows.emplace(key(row), &row);
-    if (!kept.is_array()) throwBadInput("--compare {}: no table of bench stability --json: \"rows\" is no array", file);
+    if (!kept.is_array()) throwBadInput("--compare {}: not a table of bench stability --json: \"rows\" is not an array", file);
     for (const auto& before : kept) {
       const std::string name = key(before);
       if (!technique.empty() && before.at("technique") != technique) continue;

@@ -109,7 +109,7 @@ int run(Options options) {
   const double scale = options.scale.value_or(vpt ? kVptScale : 1.0);
   if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
   if (!options.fidelity.empty() && !vpt) throwBadInput("--fidelity {}: the tables of {} are measured in each way that has a name of its own there; only --original vpt has estimators to choose from", options.fidelity, options.original);
-  if (!options.fidelity.empty() && options.fidelity != "corrected" && options.fidelity != "original") throwBadInput("--fidelity {}: unknown; there are corrected, original", options.fidelity);
+  if (!options.fidelity.empty() && options.fidelity != "corrected" && options.fidelity != "original") throwBadInput("--fidelity {}: unknown; expected one of corrected, original", options.fidelity);
   if (vpt && !options.scene.empty()) throwBadInput("SCENE {}: the tables of vpt are measured on their own scenes", options.scene);
   if (options.original == "rad") {
     if (!options.scene.empty()) throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
@@ -153,7 +153,7 @@ int run(Options options) {
 Work addBenchTables(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  offer(app.add_option("--original", options->original, "whose tables: lpv, rad or vpt")->required(), {"lpv", "rad", "vpt"});
+  offer(app.add_option("--original", options->original, "original whose tables are measured: lpv, rad or vpt")->required(), {"lpv", "rad", "vpt"});
   app.add_option("--scale", options->scale, "less work on a slow machine, above 0, at most 1. lpv and rad (1): fewer frames or hemicubes; below 0.5 also smaller "
                                            "grids and models. vpt (0.05): each side and the samples of the published pictures times this");
   offer(app.add_option("--fidelity", options->fidelity, "vpt: original: the published estimator on scenes lit as published, the corrected beside it; or corrected (default)"), {"corrected", "original"});

@@ -112,7 +112,7 @@ class Bench {
       : input_(input), capabilities_(input.context.capabilities()), needs_(analyse(input.scene)), gpuScene_(input.scene, needs_, capabilities_),
         timer_(capabilities_.softwareRenderer) {
     if (!LightPropagationVolume::isNeeded(needs_))
-      throwBadInput("{}: has no sun, or nothing that reflects it: there is no indirect light to measure", input.scene.file.string());
+      throwBadInput("{}: no sun, or nothing that reflects it: no indirect light to measure", input.scene.file.string());
     sunFrustum_ = fitSunFrustum(input.scene, input.scene.sun->direction);
     shared::FrameConstants frame{};
     frame.sunClipFromWorld = glm::mat4(sunFrustum_.clipFromWorld);

@@ -93,7 +93,7 @@ int record(const Options& options, const Host& host, const gl::Context& context,
   const fs::path folder = options.record.empty() ? fs::path("walk") : fs::path(options.record);
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) throwBadInput("--record {}: the folder cannot be made ({})", folder.string(), error.message());
+  if (error || !fs::is_directory(folder)) throwBadInput("--record {}: cannot create folder ({})", folder.string(), error.message());
   const auto [first, last] = parseViews(options.views, path.viewCount());
   const int frames = options.frames > 0 ? options.frames : 12;
 
@@ -126,7 +126,7 @@ int record(const Options& options, const Host& host, const gl::Context& context,
   double seconds = 0.0;
   for (double s : frameSeconds) seconds += s;
   if (!options.common.quiet) {
-    fmt::print("{} pictures {}x{} in {}, {:.2f} frames a second\n", done, renderer.size().x, renderer.size().y, folder.string(), done / seconds);
+    fmt::print("{} pictures {}x{} in {}, {:.2f} frames per second\n", done, renderer.size().x, renderer.size().y, folder.string(), done / seconds);
     fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
     if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
     if (options.flicker)
@@ -181,7 +181,7 @@ int run(Options options) {
   const RenderSettings settings = options.picture.parse();
   if (options.scene.empty()) options.scene = (dataFolder() / "assets/atrium/atrium.json").string();
   if (!options.record.empty() && fs::exists(options.record) && !fs::is_directory(options.record))
-    throwBadInput("--record {}: there is a file of that name; a folder is wanted", options.record);
+    throwBadInput("--record {}: is a file, expected a folder", options.record);
   Scene scene = loadScene(options.scene);
   Spline path = pathOf(scene, options.keys);
   parseViews(options.views, path.viewCount());
@@ -204,11 +204,11 @@ int run(Options options) {
 Work addWalk(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file (default: the atrium)");
-  app.add_option("--keys", options->keys, "key frames of the camera path (default: the scene's, else once round it)");
+  app.add_option("--keys", options->keys, "key frames of the camera path (default: the scene's, else one round around it)");
   app.add_option("--record", options->record, "draw off-screen and write pictures into this folder (without a window: walk)");
-  app.add_option("--frames", options->frames, "how many pictures (12), or frames in a window (the whole path)")->check(CLI::Range(1, 1000000));
-  app.add_option("--views", options->views, "FIRST:LAST: only these views of the path, 200 between two keys");
-  app.add_flag("--flicker", options->flicker, "measure how much the light changes between pictures by itself, not by the camera's motion");
+  app.add_option("--frames", options->frames, "number of pictures (12), or frames in a window (the whole path)")->check(CLI::Range(1, 1000000));
+  app.add_option("--views", options->views, "FIRST:LAST: only these views of the path; 200 between two key frames");
+  app.add_flag("--flicker", options->flicker, "measure how much the light itself changes between pictures, without the camera's motion");
   app.add_option("--play-input", options->playInput, "drive the window by this file of recorded input (demo/walk/input_file.hpp), on any host");
   app.add_option("--shots", options->shots, "folder for screenshots")->capture_default_str();
   offer(app.add_option("--panel", options->panel, "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"), {"on", "off", "auto"});

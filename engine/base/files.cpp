@@ -103,8 +103,8 @@ fs::path temporaryFor(const fs::path& file) {
   const bool isFolder = fs::is_directory(folder, error);
   if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
     throwBadInput("{}: cannot be written: {}", file.string(), error.message());
-  if (!isFolder) throwBadInput("{}: cannot be written: there is no folder {}", file.string(), folder.string());
-  if (fs::is_directory(file, error)) throwBadInput("{}: cannot be written: it is a folder", file.string());
+  if (!isFolder) throwBadInput("{}: cannot be written: no such folder: {}", file.string(), folder.string());
+  if (fs::is_directory(file, error)) throwBadInput("{}: cannot be written: is a folder", file.string());
 
   sweepOnce(folder);
   static std::atomic<unsigned> counter{0};

@@ -33,7 +33,7 @@ E parseName(std::string_view name, std::string_view what) {
     if (name == names[i]) return static_cast<E>(i);
     known += (known.empty() ? "" : ", ") + std::string(names[i]);
   }
-  throwBadInput("{} {}: unknown; there are {}", what, name, known);
+  throwBadInput("{} {}: unknown; expected one of {}", what, name, known);
 }
 
 }  // namespace lucerna

@@ -61,7 +61,7 @@ void throwFirstError(const std::string& outOfMemory, const std::string& place) {
 void throwIfError(const std::string& after) { throwFirstError("the driver is out of memory (" + after + ")", after); }
 
 void throwIfNotAllocated(const std::string& name, std::size_t bytes) {
-  throwFirstError(fmt::format("{}: the driver has no {} bytes of memory for it", name, bytes), fmt::format("{}, {} bytes", name, bytes));
+  throwFirstError(fmt::format("{}: the driver cannot allocate {} bytes", name, bytes), fmt::format("{}, {} bytes", name, bytes));
 }
 
 std::string takePendingErrors() { return std::exchange(g_pendingErrors, {}); }
@@ -97,7 +97,7 @@ void throwIfReset() {
   const bool ours = status == GL_GUILTY_CONTEXT_RESET_ARB;
   const char* whose = ours ? "for work of this program that took too long or went wrong"
                            : status == GL_INNOCENT_CONTEXT_RESET_ARB ? "for work of another program" : "and does not say for whose work";
-  throw Error(ours ? ErrorKind::fault : ErrorKind::missingCapability, fmt::format("the driver reset the GPU {}: nothing more can be drawn in this run", whose));
+  throw Error(ours ? ErrorKind::fault : ErrorKind::missingCapability, fmt::format("the driver reset the GPU {}: cannot continue", whose));
 }
 
 DebugOutput defaultDebugOutput() { return logLevel() == LogLevel::verbose ? DebugOutput::synchronous : DebugOutput::off; }

@@ -64,7 +64,7 @@ void ComputePass::dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) 
   const glm::uvec3 groups((size + groupSize - 1) / groupSize);
   static const glm::uvec3 most = mostWorkGroups();  // asked once, as above
   if (glm::any(glm::greaterThan(groups, most)))
-    throwMissingCapability("{} x {} x {} work groups; this driver's dispatches end at {} x {} x {}", groups.x, groups.y, groups.z, most.x, most.y, most.z);
+    throwMissingCapability("{} x {} x {} work groups; this driver's limit is {} x {} x {}", groups.x, groups.y, groups.z, most.x, most.y, most.z);
   glDispatchCompute(groups.x, groups.y, groups.z);
 }
 

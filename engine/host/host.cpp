@@ -22,7 +22,7 @@ void loadPointers(HostKind kind) {
   glGetIntegerv(GL_MAJOR_VERSION, &major);
   glGetIntegerv(GL_MINOR_VERSION, &minor);
   if (major * 10 + minor < 43)
-    throwMissingCapability("host {}: OpenGL 4.3 is needed, the driver gives {}", nameOf(kind), version ? version : "nothing");
+    throwMissingCapability("host {}: OpenGL 4.3 is required, the driver provides {}", nameOf(kind), version ? version : "nothing");
   if (!glDispatchCompute || !glTexStorage3D || !glObjectLabel)
     throwMissingCapability("host {}: the driver says OpenGL {} but lacks entry points of 4.3", nameOf(kind), version);
 }
@@ -64,7 +64,7 @@ std::unique_ptr<Host> Host::createDefault(bool wantsWindow, const HostOptions& o
     try {
       return create(HostKind::window, options);
     } catch (const Error& error) {
-      logWarning("{}; going on without a window", error.what());
+      logWarning("{}; continuing without a window", error.what());
     }
   }
   if (detail::chosenEglDevice()) return create(HostKind::egl, options);

@@ -94,9 +94,9 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     fronts_[0] = buffer("lpv front even", GL_RGBA32F, volumeBytes);
   }
 
-  if (settings.bounces == kAllBounces) throwBadInput("lpv.bounces=all: lpv.transport=propagate reflects light a number of times");
+  if (settings.bounces == kAllBounces) throwBadInput("lpv.bounces=all: lpv.transport=propagate needs a number of bounces");
   if (settings.bounces > 1 && (!settings.blocking || steps_ < 2))
-    throwBadInput("lpv.bounces={}: light is reflected by the geometry volume; that needs lpv.blocking other than off and two iterations",
+    throwBadInput("lpv.bounces={}: the geometry volume reflects light; this needs two iterations and lpv.blocking other than off",
                   settings.bounces);
   const gl::ShaderFlags kernel{{"FACE_KERNEL", deviations.kernel()},
                                {"SIDE_DIRECTIONS", deviations.sideDirections},

@@ -114,7 +114,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   if (settings.transport == LpvTransport::rays) paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
   store_ = &programs.loadCompute("lpv store receivers", "lpv/receivers/store.comp", common);
   if (settings.transport == LpvTransport::gather) {
-    if (settings.bounces != 1) throwBadInput("lpv.bounces={}: lpv.transport=gather gathers one bounce; rays has more", settings.bounces == LightPropagationVolume::kAllBounces ? "all" : std::to_string(settings.bounces));
+    if (settings.bounces != 1) throwBadInput("lpv.bounces={}: lpv.transport=gather has one bounce; rays has more", settings.bounces == LightPropagationVolume::kAllBounces ? "all" : std::to_string(settings.bounces));
     const SceneNeeds needs = analyse(scene);
     const bool voxels = settings.visibility == LpvVisibility::voxels;
     const auto load = [&](const char* name, bool sky, bool perspective) {

@@ -17,7 +17,7 @@ double sum(const glm::dvec3& v) { return v.x + v.y + v.z; }
 
 void checkSizes(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
-    throwBadInput("pictures of {}x{} and {}x{}: only pictures of one size can be compared", a.width, a.height, b.width, b.height);
+    throwBadInput("pictures of {}x{} and {}x{}: pictures must have the same size", a.width, a.height, b.width, b.height);
   if (a.pixels.empty()) throwBadInput("pictures without pixels cannot be compared");
 }
 

@@ -92,13 +92,13 @@ Image Film::standardError() const { return toImage(*this, standardErrorOf); }
 
 Film filmOf(std::span<const std::uint8_t> bytes, const std::string& name) {
   Header header;
-  if (bytes.size() < sizeof header) throwBadInput("{}: {} bytes are no checkpoint of a path traced picture", name, bytes.size());
+  if (bytes.size() < sizeof header) throwBadInput("{}: not a checkpoint of a path-traced picture ({} bytes)", name, bytes.size());
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.magic != kMagic) throwBadInput("{}: no checkpoint of a path traced picture, or of another version", name);
+  if (header.magic != kMagic) throwBadInput("{}: not a checkpoint of a path-traced picture, or one of another version", name);
   const std::size_t texels = static_cast<std::size_t>(header.width) * header.height, plane = texels * sizeof(glm::uvec4);
   if (header.width > (1u << 16) || header.height > (1u << 16) || texels == 0 || bytes.size() != sizeof header + 3 * plane ||
       header.hash != hashOf(bytes.data() + sizeof header, 3 * plane, header.first))
-    throwBadInput("{}: the checkpoint is damaged or cut off", name);
+    throwBadInput("{}: the checkpoint is damaged or truncated", name);
   Film film;
   film.identity = header.identity;
   film.size = {static_cast<int>(header.width), static_cast<int>(header.height)};
@@ -133,7 +133,7 @@ std::uint32_t firstSampleOf(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throwCannotOpen(file, errno);
   if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) || header.magic != kMagic)
-    throwBadInput("{}: no checkpoint of a path traced picture, or of another version", file.string());
+    throwBadInput("{}: not a checkpoint of a path-traced picture, or one of another version", file.string());
   return header.first;
 }
 

@@ -214,7 +214,7 @@ void PathTracer::setCamera(const Camera& camera) {
     const Surroundings surroundings = surroundingsOf(boundaries_, camera.position);
     // Said when paths start there: another camera may be set before.
     cameraWarning_ = surroundings.openness > 0.01
-                         ? fmt::format("camera {}: it lies on a closed boundary, or inside of one that is open by {:.3g} of a sphere", camera.name, surroundings.openness)
+                         ? fmt::format("camera {}: lies on a closed boundary, or inside one that is open by {:.3g} of a sphere", camera.name, surroundings.openness)
                          : std::string();
     cameraInside_ = surroundings.inside;
     cameraIor_ = iorInside(boundaries_, cameraInside_);

@@ -72,11 +72,11 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   const std::size_t listed = items ? std::min(patches, keyBytes / sizeof(GLuint)) + sources.size() - patches : patches;
   const std::size_t each = std::max({keyBytes, factorBytes, listed * sizeof(glm::uvec2) + 16});
   if (each > limit)
-    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need storage blocks of {} bytes, this driver's end at {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE): use longer edges or smaller hemicubes",
+    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need storage blocks of {} bytes, this driver's limit is {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE): use longer edges or smaller hemicubes",
                            patches, settings.resolution, each, limit);
   const auto texels = static_cast<std::size_t>(std::max(capabilities.maxTextureBufferSize, 1 << 16));
   if (3 * patches > texels || keyBytes / sizeof(GLuint) > texels)
-    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's end at {} (GL_MAX_TEXTURE_BUFFER_SIZE)", patches, settings.resolution,
+    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's limit is {} (GL_MAX_TEXTURE_BUFFER_SIZE)", patches, settings.resolution,
                            std::max(3 * patches, keyBytes / sizeof(GLuint)), texels);
   // A software renderer is fastest inside the processor's cache, a GPU with work for all of its cores. Rays touch little memory, so batch at least 16 hemicubes.
   const std::size_t some = settings_.visibility == HemicubeVisibility::rays ? 16 * each : 0;
@@ -152,7 +152,7 @@ void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& cap
   settings_.visibility = best->visibility;
   std::string measured;
   for (const Cost& cost : costs_) measured += fmt::format("{}{} {:.3g} ms", measured.empty() ? "" : ", ", nameOf(cost.visibility), cost.milliseconds);
-  logInfo("radiosity: hemicubes by {} (a hemicube: {}{})", nameOf(settings_.visibility), measured, costs_.size() == 1 ? "; too few to measure other ways" : "");
+  logInfo("radiosity: hemicubes by {} (a hemicube: {}{})", nameOf(settings_.visibility), measured, costs_.size() == 1 ? "; too few to measure the other methods" : "");
 }
 
 Hemicubes::Frame Hemicubes::frameOf(int index) const {

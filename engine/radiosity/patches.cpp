@@ -199,7 +199,7 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
   for (const Material& m : scene.materials)
     for (int c = 0; c < 3; ++c) {
       if (!(m.diffuse[c] >= 0.0f && m.diffuse[c] <= 1.0f))
-        throwBadInput("material {}: reflectance {} is not from 0 to 1: such a surface would send out more light than it gets", m.name, m.diffuse[c]);
+        throwBadInput("material {}: reflectance {} is not from 0 to 1: such a surface would reflect more light than it receives", m.name, m.diffuse[c]);
       if (!(m.emission[c] >= 0.0f && std::isfinite(m.emission[c]))) throwBadInput("material {}: emission {} is not a finite number >= 0", m.name, m.emission[c]);
     }
   RadiosityMesh mesh;

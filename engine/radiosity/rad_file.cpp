@@ -64,15 +64,15 @@ std::size_t checkRadTriangles(std::span<const RadTriangle> triangles, const std:
 }
 
 std::vector<RadTriangle> decodeRadFile(std::span<const std::uint8_t> bytes, const std::string& file) {
-  if (bytes.size() < kHead) throwBadInput("{}: has {} bytes; a file of triangles begins with their count, {} bytes", file, bytes.size(), kHead);
+  if (bytes.size() < kHead) throwBadInput("{}: has {} bytes; a triangle file begins with the count of triangles, {} bytes", file, bytes.size(), kHead);
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data(), kHead);
   if (sizeFor(count) != bytes.size()) {
     if (const std::uint32_t turned = __builtin_bswap32(count); sizeFor(turned) == bytes.size())
       throwBadInput("{}: is in the other byte order ({} triangles, big endian); expected little endian", file, turned);
-    throwBadInput("{}: its count says {} triangles, that is {} bytes, but the file has {}", file, count, sizeFor(count), bytes.size());
+    throwBadInput("{}: its count is {} triangles, {} bytes, but the file has {}", file, count, sizeFor(count), bytes.size());
   }
-  if (count == 0) throwBadInput("{}: holds no triangle", file);
+  if (count == 0) throwBadInput("{}: has no triangles", file);
   std::vector<RadTriangle> triangles(count);
   std::memcpy(triangles.data(), bytes.data() + kHead, bytes.size() - kHead);
   return triangles;

@@ -61,20 +61,20 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
   const auto refuse = [&](const char* why) {
     ::close(descriptor_);
     descriptor_ = -1;
-    throwBadInput("{}: {}; remove it to begin anew", file.string(), why);
+    throwBadInput("{}: {}; remove it to start over", file.string(), why);
   };
   struct stat status {};
-  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) refuse("is no plain file");
+  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) refuse("is not a regular file");
   Header header{};
   if (status.st_size > 0) {
     if (!readAll(descriptor_, &header, sizeof header)) {
       // Killed before its first bytes were written, or a foreign file: only a prefix of our own magic may be overwritten.
       char start[sizeof kMagic] = {};
       const auto got = static_cast<std::size_t>(std::max<ssize_t>(::pread(descriptor_, start, sizeof start, 0), 0));
-      if (std::memcmp(start, kMagic, got) != 0) refuse("is no checkpoint of radiosity");
+      if (std::memcmp(start, kMagic, got) != 0) refuse("is not a checkpoint of radiosity");
       header = {};
     } else {
-      if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) refuse("is no checkpoint of radiosity");
+      if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) refuse("is not a checkpoint of radiosity");
       if (header.version != kVersion) refuse("is a checkpoint of another version of this program");
       if (header.fingerprint != fingerprint || header.patches != patches) refuse("is the checkpoint of another scene or of other settings");
     }
@@ -178,7 +178,7 @@ void RowFile::append(const FormFactorRows& rows) {
     if (put_ <= 0) {
       const std::string reason = std::strerror(put_ < 0 ? errno : ENOSPC);
       const bool cut = ::ftruncate(descriptor_, static_cast<off_t>(end_)) == 0;
-      throwBadInput("{}: {}; {} rows are kept in it{}", file_.string(), reason, rows.first, cut ? "" : ", its end is to be ignored");
+      throwBadInput("{}: {}; it holds {} rows{}", file_.string(), reason, rows.first, cut ? "" : ", ignore its end");
     }
     from += put_;
     left -= static_cast<std::size_t>(put_);

@@ -42,7 +42,7 @@ void applyRadiosityDeviation(RadiosityDeviations& deviations, std::string_view a
   if (found == kDeviations.end()) {
     std::string known;
     for (const RadiosityDeviation& d : kDeviations) known += (known.empty() ? "" : ", ") + std::string(d.name);
-    throwBadInput("--deviation {}: unknown; there are {}", assignment, known);
+    throwBadInput("--deviation {}: unknown; expected one of {}", assignment, known);
   }
   deviations.*found->member = value == "on";
 }

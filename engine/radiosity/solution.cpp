@@ -81,8 +81,8 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
   bool kept = true, stopped = false;
   const auto stop = [&] {
-    throw Stopped(fmt::format("stopped with {} of {} hemicubes made{}", solution.fronts.size(), n,
-                              checkpoint.empty() ? std::string() : fmt::format("; the same command goes on from {}", checkpoint.string())));
+    throw Stopped(fmt::format("stopped after {} of {} hemicubes{}", solution.fronts.size(), n,
+                              checkpoint.empty() ? std::string() : fmt::format("; the same command resumes from {}", checkpoint.string())));
   };
   const auto take = [&](const FormFactorRows& rows) {
     if (kept) append(matrix, rows);
@@ -92,8 +92,8 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     solution.backs.insert(solution.backs.end(), rows.backs.begin(), rows.backs.end());
     const double perPatch = static_cast<double>(matrix.entryCount()) / static_cast<double>(solution.fronts.size()), bytes = perPatch * static_cast<double>(n) * static_cast<double>(kBytesPerEntry);
     if (kept && bytes > static_cast<double>(memory)) {
-      logWarning("radiosity: the form factors of {} patches need about {} MiB, there are {}: they are {} for each product", n, static_cast<std::size_t>(bytes) >> 20, memory >> 20,
-                 checkpoint.empty() ? "computed anew" : "read from " + checkpoint.string());
+      logWarning("radiosity: the form factors of {} patches need about {} MiB, {} are available: they are {} for each product", n, static_cast<std::size_t>(bytes) >> 20, memory >> 20,
+                 checkpoint.empty() ? "recomputed" : "read from " + checkpoint.string());
       kept = false;
       matrix = {};
     }

@@ -84,8 +84,8 @@ void checkSettings(const std::filesystem::path& file, const RadiositySolution& s
     const bool isDefault = asked.error == RadiositySolutionSettings{}.error;
     (isDefault ? other : wrong) += fmt::format("{}an error of {:.3g} (asked for: radiosity.error={:.3g})", (isDefault ? other : wrong).empty() ? "" : ", ", solution.progress.errorBound, asked.error);
   }
-  if (!wrong.empty()) throwBadInput("{}: solved with {}: leave that out, or name another file to solve anew", file.string(), wrong);
-  if (!other.empty()) logWarning("{}: shown as it was solved, with {}", file.string(), other);
+  if (!wrong.empty()) throwBadInput("{}: solved with {}: leave that out, or name another file for a new solution", file.string(), wrong);
+  if (!other.empty()) logWarning("{}: shown as solved, with {}", file.string(), other);
 }
 
 void saveSolution(const std::filesystem::path& file, const Scene& scene, const RadiositySolution& s) {
@@ -148,20 +148,20 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
 RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& scene) {
   const std::vector<std::uint8_t> bytes = readFileBytes(file);
   FileHeader header{};
-  if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) throwBadInput("{}: is no radiosity solution", file.string());
+  if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) throwBadInput("{}: not a radiosity solution", file.string());
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.version != kVersion) throwBadInput("{}: a solution of version {}, this program reads {}: solve anew", file.string(), header.version, kVersion);
-  if (header.scene != fingerprint(scene)) throwBadInput("{}: the solution of another scene, or of this one before it was changed: solve anew", file.string());
+  if (header.version != kVersion) throwBadInput("{}: a solution of version {}, this program reads {}: solve it again", file.string(), header.version, kVersion);
+  if (header.scene != fingerprint(scene)) throwBadInput("{}: the solution of another scene, or of this one before it was changed: solve it again", file.string());
   const std::size_t most = bytes.size() / sizeof(glm::dvec3) + 1;
   if (header.points > most || header.patches > most ||
       bytes.size() != sizeof header + header.settingsBytes + header.points * sizeof(glm::dvec3) + header.patches * sizeof(FilePatch))
-    throwBadInput("{}: {} bytes do not fit {} points and {} patches: was it cut short?", file.string(), bytes.size(), header.points, header.patches);
+    throwBadInput("{}: {} bytes do not fit {} points and {} patches: was it truncated?", file.string(), bytes.size(), header.points, header.patches);
   const std::uint8_t* at = bytes.data() + sizeof header;
-  if (Hash::of(at, bytes.size() - sizeof header) != header.checksum) throwBadInput("{}: its checksum is wrong: it is damaged", file.string());
+  if (Hash::of(at, bytes.size() - sizeof header) != header.checksum) throwBadInput("{}: is damaged: wrong checksum", file.string());
   // The checksum finds damage; what was written by something else is found here.
   if (header.points == 0 || header.patches == 0) throwBadInput("{}: a solution without patches", file.string());
   if (header.lightVertices > 3 * header.patches) throwBadInput("{}: {} light vertices for {} patches", file.string(), header.lightVertices, header.patches);
-  if (header.solver > static_cast<std::uint32_t>(RadiositySolver::conjugateGradients)) throwBadInput("{}: there is no solver {}", file.string(), header.solver);
+  if (header.solver > static_cast<std::uint32_t>(RadiositySolver::conjugateGradients)) throwBadInput("{}: no such solver: {}", file.string(), header.solver);
   for (const double figure : {header.products, header.residual, header.errorBound, header.energyBalance, header.extent})
     if (!std::isfinite(figure)) throwBadInput("{}: a figure of its header is not finite", file.string());
   RadiositySolution s;

@@ -17,7 +17,7 @@ RadiosityView::Settings viewSettings(const Scene& scene, const RenderSettings& s
   view.light = settings.component == Component::all ? Light::all : settings.component == Component::direct ? Light::direct : Light::indirect;
   if (view.direct != RadiosityView::Direct::pixels) return view;
   if (const std::size_t emitters = DirectRays::emitterCount(scene); emitters > DirectRays::kMostEmitters) {
-    logWarning("radiosity: {} triangles emit, more than the {} that each pixel can ask by shadow rays: direct light is a value a patch", emitters, DirectRays::kMostEmitters);
+    logWarning("radiosity: {} triangles emit, more than the {} supported by shadow rays per pixel: direct light is computed per patch", emitters, DirectRays::kMostEmitters);
     view.direct = RadiosityView::Direct::patches;
   }
   return view;

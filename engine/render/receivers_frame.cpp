@@ -13,7 +13,7 @@ LpvReceivers::Light receivedLight(Component component) {
 
 std::optional<LightMaps> lightMaps(const FrameParts& parts) {
   if (!ReceiversFrame::takesMaps(parts.settings, parts.needs)) return {};
-  if (parts.needs.emission) logWarning("lpv.transport=gather: emissive surfaces light nothing (rays has them)");
+  if (parts.needs.emission) logWarning("lpv.transport=gather: emissive surfaces light nothing (rays supports them)");
   return std::optional<LightMaps>(std::in_place, parts, LightMaps::Lights{true, true}, false);
 }
 

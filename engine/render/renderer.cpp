@@ -78,7 +78,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   loadPrograms(programs);
 
   if (needs_.environment && !receivers_ && !radiosity_)
-    logWarning("technique {}{}: the environment lights nothing (path and radiosity have its light, and lpv with lpv.transport=gather or rays)", nameOf(technique),
+    logWarning("technique {}{}: the environment lights nothing (path and radiosity support it, and lpv with lpv.transport=gather or rays)", nameOf(technique),
                technique == Technique::lpv ? " with lpv.transport=propagate" : "");
 }
 

@@ -27,15 +27,15 @@ std::uint32_t wordAt(std::span<const std::uint8_t> bytes, std::size_t at) {
 std::string_view jsonText(const fs::path& file, std::span<const std::uint8_t> bytes) {
   const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!all.starts_with("glTF")) return all;
-  if (bytes.size() < 20) throwBadInput("{}: {} bytes are no binary glTF; is the file cut off?", file.string(), bytes.size());
+  if (bytes.size() < 20) throwBadInput("{}: {} bytes are too few for a binary glTF; is the file truncated?", file.string(), bytes.size());
   if (wordAt(bytes, 4) == 1) {  // version 1: length and format (0: JSON) of the scene stand in the header
     const std::uint32_t length = wordAt(bytes, 12);
-    if (length > bytes.size() - 20) throwBadInput("{}: a scene of {} bytes, {} are there; is the file cut off?", file.string(), length, bytes.size() - 20);
+    if (length > bytes.size() - 20) throwBadInput("{}: a scene of {} bytes, {} are there; is the file truncated?", file.string(), length, bytes.size() - 20);
     return all.substr(20, length);
   }
   const std::uint32_t length = wordAt(bytes, 12);
   if (all.substr(16, 4) != "JSON") throwBadInput("{}: the first chunk of a binary glTF must be JSON", file.string());
-  if (length > bytes.size() - 20) throwBadInput("{}: a JSON chunk of {} bytes, {} are there; is the file cut off?", file.string(), length, bytes.size() - 20);
+  if (length > bytes.size() - 20) throwBadInput("{}: a JSON chunk of {} bytes, {} are there; is the file truncated?", file.string(), length, bytes.size() - 20);
   return all.substr(20, length);
 }
 
@@ -59,9 +59,9 @@ void checkNodes(const fs::path& file, const Json& root) {
     if (!children->is_array()) throwBadInput("{}: node {}: \"children\" must be an array", file.string(), name);
     for (const Json& child : *children) {
       const std::string childName = nameOfReference(child);
-      if (!nodes.contains(childName)) throwBadInput("{}: node {}: there is no node {}", file.string(), name, childName);
+      if (!nodes.contains(childName)) throwBadInput("{}: node {}: no such node: {}", file.string(), name, childName);
       const auto [before, isNew] = parents.emplace(childName, name);
-      if (!isNew) throwBadInput("{}: node {} lies below node {} and node {}; nodes must be trees", file.string(), childName, before->second, name);
+      if (!isNew) throwBadInput("{}: node {} is a child of node {} and of node {}; nodes must be trees", file.string(), childName, before->second, name);
     }
   }
   // Every node has one parent at most, so that only a walk upwards that does not end is a cycle.
@@ -72,7 +72,7 @@ void checkNodes(const fs::path& file, const Json& root) {
     for (; !depths.contains(at); at = parents.at(at)) {
       way.push_back(at);
       if (way.size() > static_cast<std::size_t>(kMostNodeDepth))
-        throwBadInput("{}: node {} lies below itself, or below more than {} others", file.string(), name, kMostNodeDepth);
+        throwBadInput("{}: node {} is its own descendant, or nested more than {} deep", file.string(), name, kMostNodeDepth);
       if (parents.contains(at)) continue;
       depths[at] = 0;
       way.pop_back();
@@ -80,7 +80,7 @@ void checkNodes(const fs::path& file, const Json& root) {
     }
     int depth = depths.at(at);
     for (auto step = way.rbegin(); step != way.rend(); ++step) depths[*step] = ++depth;
-    if (depth > kMostNodeDepth) throwBadInput("{}: node {} lies below more than {} others", file.string(), name, kMostNodeDepth);
+    if (depth > kMostNodeDepth) throwBadInput("{}: node {} is nested more than {} deep", file.string(), name, kMostNodeDepth);
   }
 }
 
@@ -97,11 +97,11 @@ void checkAccessors(const fs::path& file, const Json& root) {
     const std::uint64_t count = wholeNumber(*accessor, "count");
     const auto view = accessor->find("bufferView");
     if (view == accessor->end()) {
-      if (count > kMostZeroElements) throwBadInput("{}: accessor {}: {} elements without a buffer view, at most {} are taken", file.string(), name, count, kMostZeroElements);
+      if (count > kMostZeroElements) throwBadInput("{}: accessor {}: {} elements without a buffer view, at most {} are supported", file.string(), name, count, kMostZeroElements);
       continue;
     }
     const auto found = views.find(nameOfReference(*view));
-    if (found == views.end() || !found->second->is_object()) throwBadInput("{}: accessor {}: there is no buffer view {}", file.string(), name, nameOfReference(*view));
+    if (found == views.end() || !found->second->is_object()) throwBadInput("{}: accessor {}: no such buffer view: {}", file.string(), name, nameOfReference(*view));
     const std::uint64_t bytes = wholeNumber(*found->second, "byteLength");
     if (count > bytes) throwBadInput("{}: accessor {}: {} elements in a buffer view of {} bytes", file.string(), name, count, bytes);
   }

@@ -204,7 +204,7 @@ class TextureLoader {
     } catch (const Error& e) {
       if (std::find(unreadable_.begin(), unreadable_.end(), name) == unreadable_.end()) {
         unreadable_.push_back(name);
-        logWarning("texture {} (a default stands in)", e.what());
+        logWarning("texture {} (using a default)", e.what());
       }
       return std::nullopt;
     }
@@ -343,7 +343,7 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
 
   material.opacity = clampedNumber(number(AI_MATKEY_OPACITY, 1.0f), 0.0f, 1.0f, 1.0f);
   if (material.opacity == 0.0f && !gltf) {
-    logWarning("{}: material '{}' has opacity 0; taken as 1", scene.file.string(), material.name);
+    logWarning("{}: material '{}' has opacity 0; using 1", scene.file.string(), material.name);
     material.opacity = 1.0f;
   }
 
@@ -413,7 +413,7 @@ void checkOff(const fs::path& file, std::span<const std::uint8_t> content) {
   double vertices = 0.0, faces = 0.0;
   text >> word;
   if (text >> vertices >> faces && vertices + faces > static_cast<double>(content.size()) / 2.0)
-    throwBadInput("{}: {:.0f} vertices and {:.0f} faces in {} bytes; is the file cut off?", file.string(), vertices, faces, content.size());
+    throwBadInput("{}: {:.0f} vertices and {:.0f} faces in {} bytes; is the file truncated?", file.string(), vertices, faces, content.size());
 }
 
 /// Assimp hands on whatever its readers made: RAW files leave nodes that are not there, and any mesh number may be wrong.
@@ -423,7 +423,7 @@ void checkNodes(const aiScene& source, const fs::path& file) {
     const auto [node, depth] = open.back();
     open.pop_back();
     if (!node) throwBadInput("{}: cannot be read as a model: a node of it is missing", file.string());
-    if (depth > kMostNodeDepth) throwBadInput("{}: nodes below more than {} others", file.string(), kMostNodeDepth);
+    if (depth > kMostNodeDepth) throwBadInput("{}: nodes nested more than {} deep", file.string(), kMostNodeDepth);
     for (unsigned i = 0; i < node->mNumMeshes; ++i)
       if (node->mMeshes[i] >= source.mNumMeshes || !source.mMeshes[node->mMeshes[i]])
         throwBadInput("{}: a node names mesh {}, the file holds {}", file.string(), node->mMeshes[i], source.mNumMeshes);
@@ -439,10 +439,10 @@ void checkFaces(const aiScene& source, const fs::path& file) {
     mesh.mPrimitiveTypes = 0;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices == 0) throwBadInput("{}: face {} of mesh '{}' has no vertices; is the file cut off?", file.string(), f, mesh.mName.C_Str());
+      if (face.mNumIndices == 0) throwBadInput("{}: face {} of mesh '{}' has no vertices; is the file truncated?", file.string(), f, mesh.mName.C_Str());
       for (unsigned i = 0; i < face.mNumIndices; ++i)
         if (face.mIndices[i] >= mesh.mNumVertices)
-          throwBadInput("{}: face {} of mesh '{}' refers to vertex {}, the mesh holds {}; is the file cut off?", file.string(), f,
+          throwBadInput("{}: face {} of mesh '{}' refers to vertex {}, the mesh holds {}; is the file truncated?", file.string(), f,
                         mesh.mName.C_Str(), face.mIndices[i], mesh.mNumVertices);
       constexpr unsigned kTypes[] = {aiPrimitiveType_POINT, aiPrimitiveType_LINE, aiPrimitiveType_TRIANGLE, aiPrimitiveType_POLYGON};
       mesh.mPrimitiveTypes |= kTypes[std::min(face.mNumIndices, 4u) - 1];
@@ -573,7 +573,7 @@ void appendCameras(Scene& scene, const aiScene& source) {
     const glm::dvec3 right = glm::cross(camera.direction, camera.up);
     const bool usable = isFinite(camera.position) && glm::length(right) > 0.0 && camera.verticalFov > 0.0 && camera.verticalFov < kPi;
     if (!usable) {
-      logWarning("{}: camera '{}' has no proper direction, up or field of view; left out", scene.file.string(), camera.name);
+      logWarning("{}: camera '{}' has an invalid direction, up or field of view; ignored", scene.file.string(), camera.name);
       continue;
     }
     camera.direction = glm::normalize(camera.direction);
@@ -606,7 +606,7 @@ void appendLights(Scene& scene, const aiScene& source) {
       const double half = gltf ? 1.0 : 0.5;
       const double outer = std::min(half * light.mAngleOuterCone, kLargestSpotAngle);
       if (half * light.mAngleOuterCone > kLargestSpotAngle)
-        logWarning("{}: spot light '{}' is wider than 80 degrees from its axis; narrowed to that", scene.file.string(), light.mName.C_Str());
+        logWarning("{}: spot light '{}' is wider than 80 degrees from its axis; clamped to that", scene.file.string(), light.mName.C_Str());
       const double inner = std::clamp(half * light.mAngleInnerCone, 0.0, outer);
       scene.spots.push_back({position, glm::normalize(direction), intensity, inner, outer});
     } else {
@@ -614,7 +614,7 @@ void appendLights(Scene& scene, const aiScene& source) {
     }
   }
   if (others > 0)
-    logWarning("{}: {} lights are left out; one directional, spot and point lights and emissive surfaces are read", scene.file.string(), others);
+    logWarning("{}: {} lights ignored; supported are one directional light, spot and point lights and emissive surfaces", scene.file.string(), others);
   if (scene.sun || !scene.spots.empty() || !scene.points.empty()) return;
   scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
   scene.defaultSun = true;
@@ -694,7 +694,7 @@ Scene loadModel(const fs::path& file) {
   }
   if (!source || !source->mRootNode) throwBadInput("{}: cannot be read as a model: {}", file.string(), importer->GetErrorString());
   if (!files->foundMaterials && !files->missingMaterials.empty())
-    logWarning("{}: material library {} is missing; default materials stand in", file.string(), files->missingMaterials.front());
+    logWarning("{}: material library {} is missing; using default materials", file.string(), files->missingMaterials.front());
 
   TextureLoader textures(scene, *source);
   // Only those in use are converted; of glTF once for each colour that vertices give it.
@@ -738,11 +738,11 @@ Scene loadModel(const fs::path& file) {
   for (const auto& [index, rest] : gltfMaterials)
     if (!rest.notDone.empty()) logWarning("{}: material '{}': {}", file.string(), rest.name, rest.notDone);
   if (const std::string ranged = gltfLightsWithRange(gltf); !ranged.empty())
-    logWarning("{}: lights {}: their range is not read, as light falls with the square of the distance without an end", file.string(), ranged);
+    logWarning("{}: lights {}: range ignored, falloff is 1/d^2 without a limit", file.string(), ranged);
   if (scene.indices.empty())
     throwBadInput("{}: nothing to draw: no triangles ({} dropped as not finite)", file.string(), scene.droppedTriangles);
   if (scene.degenerateTriangles == scene.triangleCount()) throwBadInput("{}: nothing to draw: all triangles have zero area", file.string());
-  if (scene.droppedTriangles > 0) logWarning("{}: {} triangles with positions that are not finite are left out", file.string(), scene.droppedTriangles);
+  if (scene.droppedTriangles > 0) logWarning("{}: {} triangles with positions that are not finite ignored", file.string(), scene.droppedTriangles);
 
   appendLights(scene, *source);
   appendCameras(scene, *source);
@@ -752,7 +752,7 @@ Scene loadModel(const fs::path& file) {
   }
   // Cameras that animations would have turned, or that were read with the other handedness, may see nothing at all: then they do not come first.
   const bool blind = !scene.cameras.empty() && !seesAnything(scene.cameras.front(), scene.bounds);
-  if (blind) logWarning("{}: camera '{}' sees nothing of the scene; a view from outside comes first", file.string(), scene.cameras.front().name);
+  if (blind) logWarning("{}: camera '{}' sees nothing of the scene; the default view is from outside", file.string(), scene.cameras.front().name);
   if (scene.cameras.empty() || blind) {
     scene.cameras.insert(scene.cameras.begin(), outsideView(scene.bounds));
     if (scene.defaultSun) scene.sun->direction = kSunOverShoulder;

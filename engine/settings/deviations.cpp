@@ -98,12 +98,12 @@ void applyDeviation(RenderSettings& settings, std::string_view assignment) {
   }
   const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
   if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
-  if (name == "radiosity.24-bit") throwBadInput("--deviation {}: whole numbers are the published solver's alone; lucerna radiosity solve --fidelity original has them", assignment);
+  if (name == "radiosity.24-bit") throwBadInput("--deviation {}: only the published solver has 24-bit values; use lucerna radiosity solve --fidelity original", assignment);
   const auto found = std::find_if(kDeviations.begin(), kDeviations.end(), [&](const Deviation& d) { return d.name == name; });
   if (found == kDeviations.end()) {
     std::string known;
     for (const Deviation& d : kDeviations) known += (known.empty() ? "" : ", ") + std::string(d.name);
-    throwBadInput("--deviation {}: unknown; there are {}", assignment, known);
+    throwBadInput("--deviation {}: unknown; expected one of {}", assignment, known);
   }
   found->turn(settings, value == "on");
 }

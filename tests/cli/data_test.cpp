@@ -72,7 +72,7 @@ TEST_F(DataFolder, LucernaDataComesFirstAndIsRefusedWithoutTheThreeFolders) {
   fs::create_directories(folder_ / "wrong/shaders");
   const RunResult refused = render("prefix/bin/lucerna", "LUCERNA_DATA=wrong");
   EXPECT_EQ(refused.exitCode, 2);
-  EXPECT_EQ(refused.err, "lucerna: LUCERNA_DATA=wrong: expected a folder with shaders, assets and keyFrames; there is no folder assets in it\n");
+  EXPECT_EQ(refused.err, "lucerna: LUCERNA_DATA=wrong: expected a folder with shaders, assets and keyFrames; it has no folder assets\n");
   EXPECT_FALSE(fs::exists(folder_ / "out.pfm"));
 }
 

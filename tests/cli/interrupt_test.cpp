@@ -65,7 +65,7 @@ f 9 10 11 12
       EXPECT_TRUE(stopped.exitCode == code) << stopped.exitCode << stopped.err;
       EXPECT_FALSE(fs::exists(out)) << "a final file of unfinished work";
       if (cleanStart) {
-        EXPECT_NE(stopped.err.find("goes on from"), std::string::npos) << stopped.err;
+        EXPECT_NE(stopped.err.find("resumes from"), std::string::npos) << stopped.err;
       }
       const RunResult rest = run(command);
       ASSERT_EQ(rest.exitCode, 0) << rest.err;

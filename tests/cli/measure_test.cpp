@@ -256,8 +256,8 @@ TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {
   ASSERT_EQ(picture.exitCode, 0) << picture.err;
   EXPECT_EQ(json("p.json").at("technique"), settings.at("technique"));
   EXPECT_EQ(json("p.json").at("settings"), settings.at("settings"));
-  expectOneLine(RUN_LUCERNA(common + "--quiet --error 1e-9 -o '" + path("s.json") + "'"), 2, {"nothing meets", "nearest", "set-up"});
-  expectOneLine(RUN_LUCERNA(common + "--quiet --frame-time 100000 --setup-time 1e-6 -o '" + path("s.json") + "'"), 2, {"--setup-time", "soonest"});
+  expectOneLine(RUN_LUCERNA(common + "--quiet --error 1e-9 -o '" + path("s.json") + "'"), 2, {"no settings meet", "closest", "set-up"});
+  expectOneLine(RUN_LUCERNA(common + "--quiet --frame-time 100000 --setup-time 1e-6 -o '" + path("s.json") + "'"), 2, {"--setup-time", "fastest"});
   expectOneLine(RUN_LUCERNA(common + "-o '" + path("s.json") + "'"), 2, {"--frame-time", "--error"});
   std::ofstream(path("bad.json")) << "[1, 2";
   expectOneLine(RUN_LUCERNA("render '" + path("scene.obj") + "' --settings '" + path("bad.json") + "' -o '" + path("p.pfm") + "'"), 2, {"--settings", "bad.json"});

@@ -70,7 +70,7 @@ TEST_F(Parts, TogetherAreOneRun) {
   expectRefused("merge '" + path("a.film") + "' '" + path("c.film") + "' -o '" + path("no.pfm") + "'", "samples 7 to 29 are in no part");
   ASSERT_EQ(RUN_LUCERNA("render " + picture() + "--bounces 1 --samples 7:9 --checkpoint '" + path("other.film") + "' --quiet").exitCode, 0);
   expectRefused("merge '" + path("a.film") + "' '" + path("other.film") + "' -o '" + path("no.pfm") + "'", "another scene, view or setting");
-  expectRefused("merge '" + path("one.pfm") + "' -o '" + path("no.pfm") + "'", "no checkpoint");
+  expectRefused("merge '" + path("one.pfm") + "' -o '" + path("no.pfm") + "'", "not a checkpoint");
   EXPECT_FALSE(fs::exists(path("no.pfm")));
   expectRefused(part("9:12", "a.film"), "begin with number 0");
   expectRefused("render " + picture() + "--spp 9 -o '" + path("no.pfm") + "' --checkpoint '" + path("b.film") + "'", "merge");

@@ -140,7 +140,7 @@ TEST_F(Radiosity, WrongInputIsOneClearLine) {
   expectRefused(solve(broken("nan.rad", [](auto& b) { b[6] = 0xc0, b[7] = 0x7f; }), out), {"nan.rad", "triangle 0", "finite"});
   expectRefused(solve(broken("ro.rad", [](auto& b) { b[4 + 60 + 3] = 0x40; }), out), {"ro.rad", "triangle 0", "reflectance"});
   expectRefused(solve(path("missing.rad"), out), {"missing.rad", "no such file"});
-  expectRefused(solve(good, path("no/such/o.rad")), {"no/such", "no folder"});
+  expectRefused(solve(good, path("no/such/o.rad")), {"no/such", "no such folder"});
   expectRefused(solve(good, "/proc/o.rad"), {"/proc/o.rad", "cannot be written"});
   expectRefused(solve(good, out, "--solver cg"), {"cg", "jacobi", "gauss-seidel"});
   expectRefused(solve(good, out, "--deviation radiosity.x=on"), {"radiosity.x", "radiosity.24-bit"});
@@ -188,7 +188,7 @@ TEST_F(Radiosity, CheckpointOfAnotherRunIsNotTakenUp) {
   EXPECT_EQ(bytes("whole.rad"), two);
   const RunResult other = run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1 --solver gauss-seidel --json '" + path("j.json") + "'"));
   EXPECT_EQ(other.exitCode, 0) << other.err;
-  EXPECT_NE(other.err.find("not taken up (made with other settings"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("not resumed (made with other settings"), std::string::npos) << other.err;
   EXPECT_EQ(json("j.json")["sweeps_here"], 1);
   // Another file in OUT's place.
   ASSERT_EQ(run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1")).exitCode, 0);

@@ -90,9 +90,9 @@ TEST(Completions, OfferWhatTheProgramTakes) {
                         Case{"radiosity solve x x", "--fidelity"}, Case{"radiosity show x", "--mapping"}, Case{"info", "--host"}}) {
     const RunResult refused = run(fmt::format("cd '{}' && '{}' {} {} nonsense", folder.path().string(), LUCERNA_BINARY, c.before, c.option));
     EXPECT_EQ(refused.exitCode, 2) << c.before << " " << c.option;
-    const auto start = refused.err.find("there are ");
+    const auto start = refused.err.find("expected one of ");
     ASSERT_NE(start, std::string::npos) << refused.err;
-    std::string list = refused.err.substr(start + 10);
+    std::string list = refused.err.substr(start + 16);
     std::replace(list.begin(), list.end(), ',', ' ');
     std::istringstream stream(list);
     Words taken;
@@ -169,7 +169,7 @@ TEST(Completions, ZshOffersCommandsOptionsAndValues) {
 TEST(Completions, AnUnknownShellIsRefused) {
   const RunResult result = RUN_LUCERNA("completion tcsh");
   EXPECT_EQ(result.exitCode, 2);
-  EXPECT_EQ(result.err, "lucerna: SHELL tcsh: unknown; there are bash, zsh, fish\n");
+  EXPECT_EQ(result.err, "lucerna: SHELL tcsh: unknown; expected one of bash, zsh, fish\n");
   EXPECT_EQ(result.out, "");
 }
 

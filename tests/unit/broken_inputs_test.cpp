@@ -69,8 +69,8 @@ TEST(BrokenInputs, NodesThatAreNoTreesAreRefused) {
   const TempFolder folder;
   EXPECT_EQ(loadScene(folder.write("good.gltf", gltfWithNodes(nodeChain(500)))).triangleCount(), 1u);
   EXPECT_TRUE(contains(refusal(folder, "deep.gltf", gltfWithNodes(nodeChain(100000))), "more than 1000"));
-  EXPECT_TRUE(contains(refusal(folder, "self.gltf", gltfWithNodes(R"([{"children":[0],"mesh":0}])")), "below itself"));
-  EXPECT_TRUE(contains(refusal(folder, "ring.gltf", gltfWithNodes(R"([{"mesh":0},{"children":[2]},{"children":[1]}])")), "below itself"));
+  EXPECT_TRUE(contains(refusal(folder, "self.gltf", gltfWithNodes(R"([{"children":[0],"mesh":0}])")), "its own descendant"));
+  EXPECT_TRUE(contains(refusal(folder, "ring.gltf", gltfWithNodes(R"([{"mesh":0},{"children":[2]},{"children":[1]}])")), "its own descendant"));
   // Each node twice below the one before: 2^30 copies.
   std::string doubled = "[";
   for (int i = 0; i < 30; ++i) doubled += fmt::format("{{\"children\":[{0},{0}]}},", i + 1);

@@ -305,11 +305,11 @@ TEST(ImageFiles, OnlyKnownExtensionsAreWritten) {
 TEST(ImageFiles, UnwritablePlacesAreErrors) {
   const TempFolder folder;
   const Image image(2, 2);
-  EXPECT_TRUE(contains(badInputMessage([&] { writeImage(folder / "none/a.exr", image); }), "there is no folder"));
+  EXPECT_TRUE(contains(badInputMessage([&] { writeImage(folder / "none/a.exr", image); }), "no such folder"));
   std::filesystem::create_directory(folder / "taken.exr");
-  EXPECT_TRUE(contains(badInputMessage([&] { writeImage(folder / "taken.exr", image); }), "it is a folder"));
+  EXPECT_TRUE(contains(badInputMessage([&] { writeImage(folder / "taken.exr", image); }), "is a folder"));
   folder.write("file", "x");
-  EXPECT_TRUE(contains(badInputMessage([&] { writeImage(folder / "file/a.exr", image); }), "there is no folder"));
+  EXPECT_TRUE(contains(badInputMessage([&] { writeImage(folder / "file/a.exr", image); }), "no such folder"));
   EXPECT_EQ(folder.listing(), "file taken.exr");
 }
 
