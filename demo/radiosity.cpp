@@ -5,9 +5,9 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "offers.hpp"
-#include "radiosity/rad_file.hpp"
-#include "radiosity/rad_models.hpp"
-#include "radiosity/rad_scene.hpp"
+#include "radiosity/original/rad_file.hpp"
+#include "radiosity/original/rad_models.hpp"
+#include "radiosity/original/rad_scene.hpp"
 
 #include <fmt/core.h>
 

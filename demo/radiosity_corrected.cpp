@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
-#include "radiosity/rad_file.hpp"
+#include "radiosity/original/rad_file.hpp"
 #include "radiosity/solution.hpp"
 
 #include <fmt/core.h>

@@ -3,8 +3,8 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "radiosity/original_checkpoint.hpp"
-#include "radiosity/original_solver.hpp"
+#include "radiosity/original/checkpoint.hpp"
+#include "radiosity/original/solver.hpp"
 
 #include <fmt/core.h>
 

@@ -5,7 +5,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "offers.hpp"
-#include "radiosity/original_display.hpp"
+#include "radiosity/original/display.hpp"
 #include "scene/scene.hpp"
 #include "walk/free_camera.hpp"
 

@@ -9,7 +9,7 @@
 
 namespace lucerna {
 
-/// As shaders/pathtracer/bvh.glsl has them.
+/// As shaders/rays/bvh.glsl has them.
 struct PlainRay {
   glm::vec3 origin{0.0f};
   float tMin = 0.0f;

@@ -2,9 +2,9 @@
 #include "bench/rad.hpp"
 
 #include "bench/contact_sheet.hpp"
-#include "radiosity/original_display.hpp"
-#include "radiosity/original_solver.hpp"
-#include "radiosity/rad_models.hpp"
+#include "radiosity/original/display.hpp"
+#include "radiosity/original/solver.hpp"
+#include "radiosity/original/rad_models.hpp"
 
 #include <fmt/core.h>
 

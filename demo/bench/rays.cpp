@@ -7,7 +7,7 @@
 #include "bench/rays_bench.hpp"
 #include "gl/pass.hpp"
 #include "gl/draw.hpp"
-#include "pathtracer/ray_scene.hpp"
+#include "rays/ray_scene.hpp"
 
 #include <fmt/core.h>
 
@@ -41,7 +41,7 @@ class Tracer {
   }
 
   const gl::Program& program(bool anyHit, bool countWork) {
-    return programs_.loadCompute("trace rays", "pathtracer/trace_rays.comp", {{"ALPHA_MASKS", 0}, {"ANY_HIT", anyHit}, {"COUNT_WORK", countWork}, {"OFFSET_ORIGINS", 0}, {"SHARED_STACK", scene_.sharedStack()}});
+    return programs_.loadCompute("trace rays", "rays/trace_rays.comp", {{"ALPHA_MASKS", 0}, {"ANY_HIT", anyHit}, {"COUNT_WORK", countWork}, {"OFFSET_ORIGINS", 0}, {"SHARED_STACK", scene_.sharedStack()}});
   }
   void upload(const std::vector<PlainRay>& rays) { rays_.upload(0, rays.size() * sizeof rays[0], rays.data()); }
   /// What was uploaded, in submissions that no watchdog minds.

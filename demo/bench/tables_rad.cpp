@@ -7,8 +7,8 @@
 #include "base/error.hpp"
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/hemicubes.hpp"
-#include "radiosity/original_solver.hpp"
-#include "radiosity/rad_models.hpp"
+#include "radiosity/original/solver.hpp"
+#include "radiosity/original/rad_models.hpp"
 
 #include <fmt/core.h>
 

@@ -1,9 +1,9 @@
-# cmake --install, the library's part (component development): lib/liblucerna_engine.a, include/lucerna and what find_package(lucerna) reads.
+# cmake --install, the library's part (component development): lib/liblucerna_*.a, include/lucerna and what find_package(lucerna) reads.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lucerna)
-install(TARGETS lucerna_engine EXPORT lucerna-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+install(TARGETS ${lucerna_layers} EXPORT lucerna-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lucerna)
 set_target_properties(lucerna_engine PROPERTIES EXPORT_NAME engine)
 install(EXPORT lucerna-targets NAMESPACE lucerna:: DESTINATION ${package_dir} COMPONENT development)

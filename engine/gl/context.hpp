@@ -1,7 +1,7 @@
 // The driver's identity, capabilities and debug messages.
 #pragma once
 
-#include "gl/api.hpp"
+#include "host/api.hpp"
 
 #include <string>
 #include <utility>

@@ -1,7 +1,7 @@
 // Driver limits beyond the minima that OpenGL 4.3 guarantees.
 #pragma once
 
-#include "gl/api.hpp"
+#include "host/api.hpp"
 
 #include <glm/glm.hpp>
 

@@ -7,7 +7,7 @@
 // the barrier before an upload, clear, copy or read.
 #pragma once
 
-#include "gl/api.hpp"
+#include "host/api.hpp"
 
 #include <glm/glm.hpp>
 

@@ -1,7 +1,7 @@
 #include "gl/pieces.hpp"
 
 #include "base/error.hpp"
-#include "gl/api.hpp"
+#include "host/api.hpp"
 
 #include <algorithm>
 #include <cmath>

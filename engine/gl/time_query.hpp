@@ -6,7 +6,7 @@
 // `finishStages` puts glFinish around each stage, and the wall clock is the figure to read. Both are recorded.
 #pragma once
 
-#include "gl/api.hpp"
+#include "host/api.hpp"
 
 #include <array>
 #include <chrono>

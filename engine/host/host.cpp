@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "gl/api.hpp"
+#include "host/api.hpp"
 #include "host/host_backends.hpp"
 
 #include <cstdlib>

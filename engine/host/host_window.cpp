@@ -1,6 +1,6 @@
 // A GLFW window: the walkthrough's host. The only one with a framebuffer 0.
 #include "base/error.hpp"
-#include "gl/api.hpp"
+#include "host/api.hpp"
 #include "host/host_backends.hpp"
 
 #define GLFW_INCLUDE_NONE

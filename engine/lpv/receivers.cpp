@@ -5,7 +5,7 @@
 #include "gl/pass.hpp"
 #include "lpv/surface_voxels.hpp"
 #include "rsm/rsm_gather.hpp"
-#include "pathtracer/light_table.hpp"
+#include "rays/light_table.hpp"
 #include "shared/lpv_receivers.h"
 
 #include <algorithm>

@@ -17,7 +17,7 @@
 #include "lpv/cascades.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "lpv/light_tree.hpp"
-#include "pathtracer/path_scene.hpp"
+#include "rays/path_scene.hpp"
 
 #include <array>
 #include <cstdint>

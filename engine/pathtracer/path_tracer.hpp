@@ -14,7 +14,7 @@
 #include "gl/read_back.hpp"
 #include "pathtracer/media.hpp"
 #include "pathtracer/path_deviations.hpp"
-#include "pathtracer/path_scene.hpp"
+#include "rays/path_scene.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
 

@@ -40,7 +40,7 @@ std::vector<Arrival> arrivals(const Scene& scene, const glm::dvec3& point, doubl
   return result;
 }
 
-/// Radiance of the texel that a direction falls into, as paths see it (shaders/pathtracer/environment.glsl).
+/// Radiance of the texel that a direction falls into, as paths see it (shaders/rays/environment.glsl).
 glm::dvec3 radianceOf(const Environment& environment, const glm::dvec3& direction) {
   if (!environment.picture) return glm::dvec3(environment.radiance);
   const Image& picture = *environment.picture;

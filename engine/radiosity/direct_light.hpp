@@ -3,7 +3,7 @@
 #pragma once
 
 #include "gl/program.hpp"
-#include "pathtracer/ray_scene.hpp"
+#include "rays/ray_scene.hpp"
 #include "radiosity/patches.hpp"
 
 #include <vector>

@@ -4,7 +4,7 @@
 #include "base/log.hpp"
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
-#include "pathtracer/ray_scene.hpp"
+#include "rays/ray_scene.hpp"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "gl/program.hpp"
-#include "pathtracer/ray_scene.hpp"
+#include "rays/ray_scene.hpp"
 #include "radiosity/patches.hpp"
 
 namespace lucerna {

@@ -2,7 +2,7 @@
 //
 // Input: a Scene. Output, each frame: radiance of the patches into the bound target, irradiance interpolated between light vertices (never across an
 // edge or to another material) and multiplied by the texture. Direct light is included, or left to shadow rays per pixel
-// (shaders/render/direct_rays.glsl, bound by the caller): then patches give only reflected light.
+// (shaders/radiosity/direct_rays.glsl, bound by the caller): then patches give only reflected light.
 #pragma once
 
 #include "base/named_values.hpp"

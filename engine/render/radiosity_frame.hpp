@@ -5,7 +5,7 @@
 
 #include "gl/pieces.hpp"
 #include "radiosity/radiosity_view.hpp"
-#include "render/direct_rays.hpp"
+#include "radiosity/direct_rays.hpp"
 #include "render/frame_parts.hpp"
 
 #include <optional>

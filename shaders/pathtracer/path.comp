@@ -11,13 +11,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/path_tracer.h"
 layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
 
-#include "pathtracer/random.glsl"
-#include "pathtracer/bsdf.glsl"
+#include "rays/random.glsl"
+#include "rays/bsdf.glsl"
 #include "pathtracer/fresnel.glsl"
-#include "pathtracer/materials.glsl"
-#include "pathtracer/bvh.glsl"
-#include "pathtracer/environment.glsl"
-#include "pathtracer/lights.glsl"
+#include "rays/materials.glsl"
+#include "rays/bvh.glsl"
+#include "rays/environment.glsl"
+#include "rays/lights.glsl"
 
 layout(rgba32ui, binding = 0) uniform uimage2D filmMean;    // xyz and, as an integer, the number of samples
 layout(rgba32ui, binding = 1) uniform uimage2D filmSpread;  // sum of squared deviations; w unused

@@ -1,7 +1,7 @@
 // For tests: the path tracer's pure functions by themselves, one invocation an input. PROBE chooses.
 layout(local_size_x = 64) in;
-#include "pathtracer/random.glsl"
-#include "pathtracer/bsdf.glsl"
+#include "rays/random.glsl"
+#include "rays/bsdf.glsl"
 #include "pathtracer/fresnel.glsl"
 layout(std430, binding = 0) readonly restrict buffer Inputs { vec4 inputs[]; };
 layout(std430, binding = 1) writeonly restrict buffer Outputs { vec4 outputs[]; };

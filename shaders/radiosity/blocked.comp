@@ -1,6 +1,6 @@
 // Whether anything lies between a patch and a light, through the hierarchy of the path tracer. x: rays.
 layout(local_size_x = 64) in;
-#include "pathtracer/bvh.glsl"
+#include "rays/bvh.glsl"
 struct LightRay {
   vec4 origin;     // in the hierarchy's space; w: the patch that it starts from, not looked at
   vec4 direction;  // to the light, its length the distance

@@ -6,7 +6,7 @@
 #include "radiosity/triangle_parts.glsl"
 layout(local_size_x = 64) in;
 #if SOURCES
-#include "pathtracer/bvh.glsl"
+#include "rays/bvh.glsl"
 uniform vec3 raysOrigin;  // of the hierarchy's space
 #endif
 

@@ -1,5 +1,5 @@
 // Which patch a ray meets, through the hierarchy of the path tracer. Of sheets in one place the one that shows its front is met.
-#include "pathtracer/bvh.glsl"
+#include "rays/bvh.glsl"
 
 struct PatchMet {
   uint patchIndex;  // kNoHit: none

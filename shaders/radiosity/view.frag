@@ -8,7 +8,7 @@ in vec3 vIrradiance;
 in vec2 vTexCoord;
 in vec3 vCorner;
 #if DIRECT_RAYS
-#include "render/direct_rays.glsl"
+#include "radiosity/direct_rays.glsl"
 in vec3 vNormal;
 flat in vec3 vFace;
 flat in vec2 vFacePlace;

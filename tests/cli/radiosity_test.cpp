@@ -1,5 +1,5 @@
 // lucerna radiosity generate|solve|show as a user runs them, and what happens to the files when a run is stopped, killed, or cannot write.
-#include "radiosity/rad_file.hpp"
+#include "radiosity/original/rad_file.hpp"
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "support/subprocess.hpp"

@@ -1,8 +1,8 @@
 // The radiosity original's hemicubes on real GL, against closed-form factors and a double-precision solution.
-#include "radiosity/original_checkpoint.hpp"
-#include "radiosity/original_display.hpp"
-#include "radiosity/original_solver.hpp"
-#include "radiosity/rad_models.hpp"
+#include "radiosity/original/checkpoint.hpp"
+#include "radiosity/original/display.hpp"
+#include "radiosity/original/solver.hpp"
+#include "radiosity/original/rad_models.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/rad_twin.hpp"
 #include "support/temp_folder.hpp"

@@ -1,7 +1,7 @@
 // Radiosity in double precision, without pictures: closed-form factors from a point to polygons that see each other wholly.
 #pragma once
 
-#include "radiosity/rad_file.hpp"
+#include "radiosity/original/rad_file.hpp"
 
 #include <glm/glm.hpp>
 

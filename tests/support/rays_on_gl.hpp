@@ -1,8 +1,8 @@
-// Batches of rays traced by shaders/pathtracer/bvh.glsl.
+// Batches of rays traced by shaders/rays/bvh.glsl.
 #pragma once
 
 #include "gl/program.hpp"
-#include "pathtracer/ray_scene.hpp"
+#include "rays/ray_scene.hpp"
 
 #include <cstdint>
 #include <span>

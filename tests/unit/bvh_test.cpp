@@ -1,5 +1,5 @@
 // The hierarchy as built: every triangle lies in the boxes above it, nothing is lost, the depth is bounded. No GL.
-#include "pathtracer/bvh.hpp"
+#include "rays/bvh.hpp"
 #include "support/small_scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The layers of docs/architecture.md: which folders of engine/ include which, and that OpenGL is called in engine/gl and engine/host alone.
+// The layers of engine/CMakeLists.txt and docs/architecture.md: which folders of engine/ include which, and that OpenGL is called in engine/gl and engine/host alone.
 #include "base/files.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,20 +16,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::map<std::string, std::set<std::string>> kMayInclude{
-    {"base", {}},
-    {"scene", {"base"}},
-    {"gl", {"base", "host"}},  // a host judges the driver's name, a context the host's functions: one layer
-    {"host", {"base", "gl"}},
-    {"forward", {"base", "scene", "gl"}},
-    {"rsm", {"base", "scene", "gl", "forward"}},
-    {"pathtracer", {"base", "scene", "gl"}},
-    {"lpv", {"base", "scene", "gl", "forward", "rsm", "pathtracer"}},
-    {"radiosity", {"base", "scene", "gl", "forward", "pathtracer"}},
-    {"measure", {"base", "scene"}},
-    {"settings", {"base", "scene", "gl", "forward", "rsm", "pathtracer", "lpv", "radiosity"}},
-    {"render", {"base", "scene", "gl", "forward", "rsm", "pathtracer", "lpv", "radiosity", "settings"}},
-};
+/// The lines lucerna_layer(NAME LOWER...) of engine/CMakeLists.txt.
+std::map<std::string, std::set<std::string>> layers() {
+  std::map<std::string, std::set<std::string>> result;
+  std::istringstream lines(readFileText(fs::path(LUCERNA_SOURCE_DIR) / "engine/CMakeLists.txt"));
+  const std::regex layer("^lucerna_layer\\(([a-z ]+)\\)$");
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    if (!std::regex_match(line, match, layer)) continue;
+    std::istringstream words(match[1]);
+    std::string name, lower;
+    words >> name;
+    std::set<std::string>& below = result[name];
+    while (words >> lower) {
+      EXPECT_TRUE(result.contains(lower)) << "engine/" << name << " stands above engine/" << lower << ", which comes after it";
+      below.insert(lower);
+    }
+  }
+  return result;
+}
 
 std::vector<fs::path> sourcesIn(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -46,17 +52,18 @@ std::string codeOf(const fs::path& file) {
 TEST(Layers, FoldersIncludeThoseBelowThemAlone) {
   const fs::path engine = fs::path(LUCERNA_SOURCE_DIR) / "engine";
   const std::regex include("(?:^|\n)#include \"([a-z]+)/");
+  const std::map<std::string, std::set<std::string>> mayInclude = layers();
   std::size_t seen = 0;
   for (const fs::directory_entry& folder : fs::directory_iterator(engine)) {
     const std::string name = folder.path().filename().string();
     if (!folder.is_directory() || sourcesIn(folder.path()).empty()) continue;
-    ASSERT_TRUE(kMayInclude.contains(name)) << "engine/" << name << " has no place among the layers";
+    ASSERT_TRUE(mayInclude.contains(name)) << "engine/" << name << " has no place among the layers";
     for (const fs::path& file : sourcesIn(folder.path())) {
       const std::string text = readFileText(file);
       for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end; ++match) {
         const std::string other = (*match)[1];
         if (other == name || other == "shared") continue;  // shaders/shared: structs that both languages compile
-        EXPECT_TRUE(kMayInclude.at(name).contains(other)) << fs::relative(file, engine.parent_path()) << " includes " << other << "/";
+        EXPECT_TRUE(mayInclude.at(name).contains(other)) << fs::relative(file, engine.parent_path()) << " includes " << other << "/";
         ++seen;
       }
     }

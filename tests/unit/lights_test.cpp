@@ -3,7 +3,7 @@
 #include "forward/light_views.hpp"
 #include "forward/sun_cascades.hpp"
 #include "forward/sun_frustum.hpp"
-#include "pathtracer/light_table.hpp"
+#include "rays/light_table.hpp"
 #include "scene/needs.hpp"
 #include "support/temp_folder.hpp"
 

@@ -9,15 +9,15 @@
 layout(local_size_x = 64) in;  // LPV_LANES
 #include "shared/path_tracer.h"
 layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
-#include "pathtracer/random.glsl"
+#include "rays/random.glsl"
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
 #if VOXELS
 #include "lpv/gather/voxels.glsl"
 #endif
 #if SKY
-#include "pathtracer/bsdf.glsl"
-#include "pathtracer/environment.glsl"
+#include "rays/bsdf.glsl"
+#include "rays/environment.glsl"
 #else
 #include "rsm/transfer.glsl"
 #include "lpv/gather/tree.glsl"

@@ -3,10 +3,10 @@
 layout(local_size_x = 64) in;
 #include "shared/path_tracer.h"
 layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
-#include "pathtracer/random.glsl"
-#include "pathtracer/bsdf.glsl"
-#include "pathtracer/materials.glsl"
-#include "pathtracer/bvh.glsl"
+#include "rays/random.glsl"
+#include "rays/bsdf.glsl"
+#include "rays/materials.glsl"
+#include "rays/bvh.glsl"
 #include "lpv/receivers/lookup.glsl"
 #include "lpv/receivers/work.glsl"
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };

@@ -8,13 +8,13 @@
 layout(local_size_x = 64) in;  // LPV_LANES; GLSL 4.30 takes literals alone
 #include "shared/path_tracer.h"
 layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
-#include "pathtracer/random.glsl"
-#include "pathtracer/bsdf.glsl"
-#include "pathtracer/materials.glsl"
-#include "pathtracer/bvh.glsl"
-#include "pathtracer/environment.glsl"
+#include "rays/random.glsl"
+#include "rays/bsdf.glsl"
+#include "rays/materials.glsl"
+#include "rays/bvh.glsl"
+#include "rays/environment.glsl"
 #if NEXT_EVENT
-#include "pathtracer/lights.glsl"
+#include "rays/lights.glsl"
 #endif
 #if CACHED
 #include "lpv/receivers/lookup.glsl"

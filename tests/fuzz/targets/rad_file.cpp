@@ -1,7 +1,7 @@
 // Triangle files of the radiosity original; what is read is written as the same bytes.
 #include "fuzz.hpp"
 
-#include "radiosity/rad_file.hpp"
+#include "radiosity/original/rad_file.hpp"
 
 #include <algorithm>
 

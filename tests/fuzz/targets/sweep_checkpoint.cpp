@@ -1,7 +1,7 @@
 // Checkpoints of the radiosity original. The digest is put right, so that the fuzzer comes past it.
 #include "fuzz.hpp"
 
-#include "radiosity/original_checkpoint.hpp"
+#include "radiosity/original/checkpoint.hpp"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "radiosity/rad_scene.hpp"
+#include "radiosity/original/rad_scene.hpp"
 
 #include "base/error.hpp"
 #include "radiosity/patches.hpp"

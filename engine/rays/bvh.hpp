@@ -1,4 +1,4 @@
-// A bounding volume hierarchy of a scene's triangles, for shaders/pathtracer/bvh.glsl. No GL.
+// A bounding volume hierarchy of a scene's triangles, for shaders/rays/bvh.glsl. No GL.
 //
 // Space: the scene moved by -origin, so that no precision is lost far from the world's origin; lengths in scene units. An axis
 // is moved only where the scene lies so far along it that every difference is exact in float, so the triangles are those of the scene.

@@ -1,7 +1,7 @@
-#include "pathtracer/path_scene.hpp"
+#include "rays/path_scene.hpp"
 
-#include "pathtracer/light_table.hpp"
-#include "pathtracer/texture_atlas.hpp"
+#include "rays/light_table.hpp"
+#include "rays/texture_atlas.hpp"
 
 #include <array>
 #include <bit>

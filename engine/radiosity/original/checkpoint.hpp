@@ -5,7 +5,7 @@
 // so that a run killed between the two writes resumes too. It is removed at the end of the run.
 #pragma once
 
-#include "radiosity/original_solver.hpp"
+#include "radiosity/original/solver.hpp"
 
 #include <cstdint>
 #include <filesystem>

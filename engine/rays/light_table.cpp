@@ -1,4 +1,4 @@
-#include "pathtracer/light_table.hpp"
+#include "rays/light_table.hpp"
 
 #include "base/error.hpp"
 #include "scene/texture_mean.hpp"

@@ -1,4 +1,4 @@
-// Rays against the triangles of a RayScene (engine/pathtracer/ray_scene.hpp): the first hit, or any.
+// Rays against the triangles of a RayScene (engine/rays/ray_scene.hpp): the first hit, or any.
 //
 // Space: RayScene's (the world moved by -RayScene::origin()). Flag ALPHA_MASKS: the including file declares, before the include,
 // `bool isCutOut(uint triangle, vec2 barycentrics)`, asked for triangles whose material is masked. Takes texture units 60 and 61.

@@ -4,7 +4,7 @@
 bool isCutOut(uint triangle, vec2 barycentrics) { return barycentrics.x < 0.5; }  // tests alone: half of every masked triangle
 #endif
 layout(local_size_x = 64) in;
-#include "pathtracer/bvh.glsl"
+#include "rays/bvh.glsl"
 
 layout(std430, binding = 2) readonly restrict buffer Rays { Ray rays[]; };
 layout(std430, binding = 3) writeonly restrict buffer Hits { Hit hits[]; };

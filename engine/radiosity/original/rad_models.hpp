@@ -5,7 +5,7 @@
 // across its longest side until its area is below the threshold, so that no side exceeds about twice another.
 #pragma once
 
-#include "radiosity/rad_file.hpp"
+#include "radiosity/original/rad_file.hpp"
 
 #include <vector>
 

@@ -1,11 +1,11 @@
 // Direct light per pixel by shadow rays, for the radiosity view: sharp shadows, where patches have one value each.
 //
-// Input: a Scene. Output, to fragment shaders that include shaders/render/direct_rays.glsl: irradiance by emissive triangles (their closed form
+// Input: a Scene. Output, to fragment shaders that include shaders/radiosity/direct_rays.glsl: irradiance by emissive triangles (their closed form
 // [Lambert1760] times their visible fraction, by rays), sun, spot and omnidirectional lights (a ray each). Scene units.
 #pragma once
 
 #include "gl/objects.hpp"
-#include "pathtracer/ray_scene.hpp"
+#include "rays/ray_scene.hpp"
 #include "scene/scene.hpp"
 
 namespace lucerna {

@@ -1,15 +1,15 @@
 // The radiosity original: a picture of the scene from every triangle, five views, read back and summed on the CPU [RAD2008 chapter 3].
 //
 // From a triangle's centroid five views of 90 degrees are drawn, each triangle in the colour whose red, green and blue bytes are the number
-// e + b ro of its exitance [RAD2008 eq 3-2]; glReadPixels brings them to the CPU, which multiplies each pixel with a map (original_map.hpp) and
+// e + b ro of its exitance [RAD2008 eq 3-2]; glReadPixels brings them to the CPU, which multiplies each pixel with a map (map.hpp) and
 // sums: that is the triangle's received radiosity b. A sweep over all triangles is one iteration; done when nothing changed in one.
 // Units: the file's (rad_file.hpp). Nothing is accelerated here; see the corrected solver.
 #pragma once
 
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
-#include "radiosity/original_map.hpp"
-#include "radiosity/rad_file.hpp"
+#include "radiosity/original/map.hpp"
+#include "radiosity/original/rad_file.hpp"
 #include "radiosity/settings.hpp"
 
 #include <glm/glm.hpp>

@@ -1,4 +1,4 @@
-#include "pathtracer/bvh.hpp"
+#include "rays/bvh.hpp"
 
 #include "scene/place.hpp"
 

@@ -1,11 +1,11 @@
-// A scene's triangles and their hierarchy on the GPU, for programs that include shaders/pathtracer/bvh.glsl.
+// A scene's triangles and their hierarchy on the GPU, for programs that include shaders/rays/bvh.glsl.
 //
 // Space: rays and hits are in the scene moved by -origin() (see bvh.hpp): subtract it in double from cameras and lights.
 #pragma once
 
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
-#include "pathtracer/bvh.hpp"
+#include "rays/bvh.hpp"
 
 #include <optional>
 

@@ -1,4 +1,4 @@
-#include "pathtracer/texture_atlas.hpp"
+#include "rays/texture_atlas.hpp"
 
 #include "base/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "radiosity/original_checkpoint.hpp"
+#include "radiosity/original/checkpoint.hpp"
 
 #include "base/error.hpp"
 #include "base/files.hpp"

@@ -1,4 +1,4 @@
-#include "radiosity/original_map.hpp"
+#include "radiosity/original/map.hpp"
 
 #include "base/error.hpp"
 

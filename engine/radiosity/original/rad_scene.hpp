@@ -8,7 +8,7 @@
 // Lights without a surface and the environment have no place in the file.
 #pragma once
 
-#include "radiosity/rad_file.hpp"
+#include "radiosity/original/rad_file.hpp"
 #include "scene/scene.hpp"
 
 namespace lucerna {

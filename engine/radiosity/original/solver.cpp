@@ -1,4 +1,4 @@
-#include "radiosity/original_solver.hpp"
+#include "radiosity/original/solver.hpp"
 
 #include "base/error.hpp"
 #include "gl/draw.hpp"

@@ -1,4 +1,4 @@
-#include "radiosity/rad_file.hpp"
+#include "radiosity/original/rad_file.hpp"
 
 #include "base/error.hpp"
 #include "base/files.hpp"

@@ -8,7 +8,7 @@
 #include "base/named_values.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
-#include "radiosity/rad_file.hpp"
+#include "radiosity/original/rad_file.hpp"
 #include "scene/scene.hpp"
 
 #include <glm/glm.hpp>

@@ -1,4 +1,4 @@
-#include "radiosity/rad_models.hpp"
+#include "radiosity/original/rad_models.hpp"
 
 #include "base/error.hpp"
 

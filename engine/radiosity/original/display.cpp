@@ -1,4 +1,4 @@
-#include "radiosity/original_display.hpp"
+#include "radiosity/original/display.hpp"
 
 #include "base/error.hpp"
 #include "gl/draw.hpp"

@@ -3,4 +3,4 @@
 
 #include <GL/glew.h>
 
-#include "gl/newer_than_43.hpp"
+#include "host/newer_than_43.hpp"

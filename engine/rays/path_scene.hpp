@@ -1,5 +1,5 @@
 // A scene on the GPU for path tracing: triangles and their hierarchy, materials and textures in one atlas, lights and environment, for programs
-// that include shaders/pathtracer/{materials,bvh,environment,lights}.glsl. The path tracer follows paths from a camera in it, the light
+// that include shaders/rays/{materials,bvh,environment,lights}.glsl. The path tracer follows paths from a camera in it, the light
 // propagation volume's receivers from points of surfaces (lpv/receivers.hpp).
 //
 // Space: the scene moved by -origin() (ray_scene.hpp). Units: scene units.
@@ -10,7 +10,7 @@
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
-#include "pathtracer/ray_scene.hpp"
+#include "rays/ray_scene.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
 #include "shared/path_tracer.h"

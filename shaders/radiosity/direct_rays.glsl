@@ -1,8 +1,8 @@
-// Direct irradiance at a point by shadow rays; see engine/render/direct_rays.hpp. Storage block 1, texture units 60 and 61.
+// Direct irradiance at a point by shadow rays; see engine/radiosity/direct_rays.hpp. Storage block 1, texture units 60 and 61.
 // What an emissive triangle sends to the point were nothing between is its closed form (radiosity/polygon.glsl); the part of it that is free is the
 // mean over points of the triangle, evenly spread by area and weighted by what each of them sends: without a blocker there is no noise.
 #include "lib/spot.glsl"
-#include "pathtracer/bvh.glsl"
+#include "rays/bvh.glsl"
 #include "radiosity/polygon.glsl"
 
 struct DirectLight {

@@ -1,4 +1,4 @@
-#include "pathtracer/ray_scene.hpp"
+#include "rays/ray_scene.hpp"
 
 #include "base/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "render/direct_rays.hpp"
+#include "radiosity/direct_rays.hpp"
 
 #include "gl/pieces.hpp"
 #include "radiosity/patches.hpp"
