@@ -1,6 +1,7 @@
 // lucerna radiosity solve --fidelity original: the published program's run, its files safe at every moment.
 #include "radiosity.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "radiosity/original/checkpoint.hpp"
@@ -20,10 +21,6 @@ namespace lucerna::demo {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 /// OUT and its checkpoint, as this run left them.
 class Files {
  public:

@@ -19,15 +19,6 @@ namespace {
 
 nlohmann::ordered_json finiteOrNull(double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr); }
 
-Transport transportOf(Component component) {
-  switch (component) {
-    case Component::all: return Transport::all;
-    case Component::direct: return Transport::direct;
-    case Component::indirect: return Transport::indirect;
-  }
-  return Transport::all;
-}
-
 /// Of the original's pictures [VPT2024].
 constexpr const char* kPublishedSize = "1920x1080";
 

@@ -1,10 +1,10 @@
 // lucerna bench error SCENE: every technique over a ladder of settings, its time and its error against a path-traced reference.
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/hash.hpp"
+#include "base/image.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
-#include "base/hash.hpp"
-#include "measure/tone_map.hpp"
 #include "offers.hpp"
 
 #include <fmt/core.h>
@@ -116,12 +116,12 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   // Rows are judged by the reference that there was: a better one is another bench.
   claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", title,
                                   options.deviations ? "deviations" : "ladders", context.capabilities().renderer,
-                                  measure::keyOf(scene, camera, size, measure::Transport::all, "rows 2").name(),
+                                  measure::keyOf(scene, camera, size, Transport::all, "rows 2").name(),
                                   result->references.all().samples));
 
   const ErrorBench bench{context, programs, scene, camera, size, result->references, folder, 0.3 * options.budget, options.frames,
                          benchCommand(options), pictureCommand(options)};
-  writePng(folder / "pictures/reference.png", measure::toneMapped(result->references.all().mean, scene.exposure));
+  writePng(folder / "pictures/reference.png", toneMapped(result->references.all().mean, scene.exposure));
   std::vector<ErrorRow> rows;
   Progress progress(options.deviations ? "deviations" : "ladders", static_cast<int>(rungs.size()) + (withPath ? 1 : 0), options.quiet);
   for (const Rung& rung : rungs) {

@@ -1,12 +1,12 @@
 #include "bench/error_report.hpp"
 
 #include "base/error.hpp"
+#include "base/image.hpp"
 #include "base/log.hpp"
 #include "bench/figure.hpp"
 #include "bench/plot.hpp"
 #include "measure/front.hpp"
 #include "measure/heat_map.hpp"
-#include "measure/tone_map.hpp"
 
 #include <fmt/core.h>
 
@@ -300,7 +300,7 @@ nlohmann::ordered_json referencesJson(const References& references) {
   auto json = nlohmann::ordered_json::array();
   for (const auto& [paths, r] : references.of) {
     const glm::dvec3 mean = meanOf(r.mean);
-    json.push_back({{"transport", std::string(measure::nameOf(paths.transport))},
+    json.push_back({{"transport", std::string(nameOf(paths.transport))},
                     {"lights", measure::nameOf(paths.lights)},
                     {"bounces", paths.bounces},
                     {"samples", r.samples},

@@ -1,16 +1,16 @@
 #include "bench/error_rows.hpp"
 
 #include "base/error.hpp"
-#include "gl/draw.hpp"
 #include "base/files.hpp"
+#include "base/hash.hpp"
+#include "base/image.hpp"
 #include "base/log.hpp"
-#include "bench/provenance.hpp"
 #include "base/statistics.hpp"
+#include "bench/provenance.hpp"
+#include "gl/draw.hpp"
 #include "measure/flip.hpp"
 #include "measure/front.hpp"
-#include "base/hash.hpp"
 #include "measure/heat_map.hpp"
-#include "measure/tone_map.hpp"
 
 #include <fmt/core.h>
 
@@ -178,7 +178,7 @@ std::vector<InsideModel> insideModels(const References& references) {
   std::vector<InsideModel> result;
   std::set<LightPaths> made;
   for (const TechniqueModel& m : references.models) {
-    if (!m.paths.lights.any() || m.paths == LightPaths{measure::Transport::all, references.lights} ||
+    if (!m.paths.lights.any() || m.paths == LightPaths{Transport::all, references.lights} ||
         !made.insert(m.paths).second)
       continue;
     const measure::Reference truth = references.inside(m.paths);
@@ -210,7 +210,7 @@ std::string writePictures(const ErrorBench& bench, const std::string& name, cons
   // One scale for all rows, so that they can be compared: a fifth of what a black picture would have.
   const double scale = std::max(0.2 * measure::heatMapScale(Image(truth.width, truth.height), truth), 1e-30);
   const auto file = [&](const char* kind) { return bench.folder / (stem + kind + ".png"); };
-  writePng(file(""), measure::toneMapped(picture, bench.scene.exposure));
+  writePng(file(""), toneMapped(picture, bench.scene.exposure));
   writeImage(bench.folder / (stem + ".pfm"), picture);
   if (ownError) writeImage(bench.folder / (stem + ".error.pfm"), *ownError);
   if (!flip.empty()) {
@@ -320,14 +320,14 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
   row["flip"] = flip.mean;
   // Inside its model: the light that it promises, of the lights that it knows. That of all light is above.
   const LightPaths model = modelOf(rung, bench.references.lights).paths;
-  if (model.lights.any() && model != LightPaths{measure::Transport::all, bench.references.lights}) {
+  if (model.lights.any() && model != LightPaths{Transport::all, bench.references.lights}) {
     const bool whole = showsLights(model.transport);
     const Image picture =
         whole ? timed.picture : render(bench, settingsOf(bench, rung, Component::indirect), 1).picture;
     row["inside_model"] =
         errorsJson(bench.references.judge(picture, bench.references.inside(model), onSurfacesAlone(model)));
     row["inside_model"]["model"] = nameOf(model);
-    row["inside_model"]["transport"] = std::string(measure::nameOf(model.transport));
+    row["inside_model"]["transport"] = std::string(nameOf(model.transport));
     row["inside_model"]["lights"] = measure::nameOf(model.lights);
   }
   row["picture"] = writePictures(bench, rung.name(), timed.picture, bench.references.all(), flip.map, nullptr);

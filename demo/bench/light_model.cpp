@@ -5,7 +5,6 @@
 namespace lucerna::demo::bench {
 
 using measure::LightKinds;
-using measure::Transport;
 
 std::string nameOf(const LightPaths& paths) {
   const std::string lights = measure::nameOf(paths.lights);

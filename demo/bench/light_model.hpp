@@ -14,7 +14,7 @@ namespace lucerna::demo::bench {
 
 /// The light of a reference.
 struct LightPaths {
-  measure::Transport transport = measure::Transport::all;
+  Transport transport = Transport::all;
   measure::LightKinds lights;
   int bounces = 0;  ///< of indirect light at most; 0: any number
 
@@ -23,7 +23,7 @@ struct LightPaths {
 /// "one bounce of sun, lamps"; "up to 2 bounces of sun".
 std::string nameOf(const LightPaths& paths);
 /// What is seen of lights and of what lies behind the scene is part of it.
-bool showsLights(measure::Transport transport);
+bool showsLights(Transport transport);
 
 /// The kinds of light that a technique reflects from surface to surface, whatever the scene has.
 measure::LightKinds lightsOf(const RenderSettings& settings);

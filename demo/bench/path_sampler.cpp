@@ -9,23 +9,8 @@
 
 namespace lucerna::demo::bench {
 
-namespace {
-
-Transport pathTransport(measure::Transport transport) {
-  switch (transport) {
-    case measure::Transport::direct: return Transport::direct;
-    case measure::Transport::oneBounce: return Transport::oneBounce;
-    case measure::Transport::oneBounceUnoccluded: return Transport::oneBounceUnoccluded;
-    case measure::Transport::all: return Transport::all;
-    case measure::Transport::indirect: return Transport::indirect;
-  }
-  return Transport::all;
-}
-
-}  // namespace
-
 PathSampler::PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-                         const Camera& camera, glm::ivec2 size, measure::Transport transport, bool allMaterials,
+                         const Camera& camera, glm::ivec2 size, Transport transport, bool allMaterials,
                          int bounces)
     : context_(context),
       programs_(programs),
@@ -51,7 +36,7 @@ measure::Sampler PathSampler::asSampler() {
 void PathSampler::begin(std::uint64_t first) {
   PathTracer::Settings settings;
   settings.size = size_;
-  settings.transport = pathTransport(transport_);
+  settings.transport = transport_;
   settings.diffuseOnly = !allMaterials_;
   settings.pixelCentres = true;
   if (bounces_ > 0)

@@ -18,7 +18,7 @@ class PathSampler {
   static constexpr std::string_view kVersionOfAllMaterials = "path tracer 2, pixel centres, all materials";
 
   /// bounces: of indirect light at most; 0: any number.
-  PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera, glm::ivec2 size, measure::Transport transport,
+  PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera, glm::ivec2 size, Transport transport,
               bool allMaterials = false, int bounces = 0);
   ~PathSampler();
   PathSampler(const PathSampler&) = delete;
@@ -37,7 +37,7 @@ class PathSampler {
   const Scene& scene_;
   Camera camera_;
   glm::ivec2 size_;
-  measure::Transport transport_;
+  Transport transport_;
   bool allMaterials_;
   int bounces_;
   std::unique_ptr<PathTracer> tracer_;

@@ -3,8 +3,8 @@
 
 #include "bench/contact_sheet.hpp"
 #include "radiosity/original/display.hpp"
-#include "radiosity/original/solver.hpp"
 #include "radiosity/original/rad_models.hpp"
+#include "radiosity/original/solver.hpp"
 
 #include <fmt/core.h>
 

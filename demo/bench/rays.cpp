@@ -5,8 +5,8 @@
 #include "base/statistics.hpp"
 #include "bench/embree_rays.hpp"
 #include "bench/rays_bench.hpp"
-#include "gl/pass.hpp"
 #include "gl/draw.hpp"
+#include "gl/pass.hpp"
 #include "rays/ray_scene.hpp"
 
 #include <fmt/core.h>

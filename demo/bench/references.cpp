@@ -13,7 +13,6 @@ namespace lucerna::demo::bench {
 
 using measure::LightKinds;
 using measure::Reference;
-using measure::Transport;
 
 namespace {
 

@@ -53,7 +53,7 @@ struct References {
   /// all - direct: a difference of pictures, errors in quadrature.
   const measure::Reference& indirect() const { return indirect_; }
   measure::ReferenceNoise noise(const measure::Reference& r) const { return measure::noiseOf(r.mean, r.standardError, r.meanError); }
-  const measure::Reference& all() const { return of.at({measure::Transport::all, lights}); }
+  const measure::Reference& all() const { return of.at({Transport::all, lights}); }
   /// What path tracing is judged by: mirrors, glass and rough metal as they are.
   const measure::Reference& path() const { return own ? *own : all(); }
   /// What a technique is judged by inside its model. Lights that its kinds lack are seen in it all the same: they would

@@ -4,11 +4,12 @@
 // as many as published, is computed from their rate: every hemicube costs the same, since every view draws the whole scene.
 #include "bench/rad.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/hemicubes.hpp"
-#include "radiosity/original/solver.hpp"
 #include "radiosity/original/rad_models.hpp"
+#include "radiosity/original/solver.hpp"
 
 #include <fmt/core.h>
 
@@ -21,10 +22,6 @@
 namespace lucerna::demo::bench {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 constexpr int kSweeps = 7;
 constexpr const char* kPublishedOn = "GeForce 7600 GT";

@@ -13,24 +13,6 @@ namespace lucerna::demo {
 
 namespace {
 
-measure::Transport measured(Component component) {
-  switch (component) {
-    case Component::all: return measure::Transport::all;
-    case Component::direct: return measure::Transport::direct;
-    case Component::indirect: return measure::Transport::indirect;
-  }
-  return measure::Transport::all;
-}
-
-Transport traced(Component component) {
-  switch (component) {
-    case Component::all: return Transport::all;
-    case Component::direct: return Transport::direct;
-    case Component::indirect: return Transport::indirect;
-  }
-  return Transport::all;
-}
-
 void upload(gl::Texture& texture, const Image& image) {
   std::vector<glm::vec4> texels;
   texels.reserve(image.pixels.size());
@@ -52,7 +34,7 @@ Truth::Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Sce
     : context_(context), scene_(scene), size_(size), component_(component), cache_(measure::ReferenceCache::defaultFolder()) {
   PathTracer::Settings settings;
   settings.size = size;
-  settings.transport = traced(component);
+  settings.transport = transportOf(component);
   settings.diffuseOnly = true;
   settings.pixelCentres = true;
   settings.submissionSeconds = 0.02;
@@ -70,7 +52,7 @@ Truth::~Truth() = default;
 void Truth::look(const Camera& camera) {
   keep();
   tracer_->setCamera(camera);
-  key_ = measure::keyOf(scene_, camera, size_, measured(component_), bench::PathSampler::kVersion);
+  key_ = measure::keyOf(scene_, camera, size_, transportOf(component_), bench::PathSampler::kVersion);
   cached_ = cache_.load(*key_);
   cachedSamples_ = cached_ ? cached_->samples : 0;
   shownSamples_ = keptSamples_ = 0;
@@ -100,7 +82,7 @@ void Truth::advance(double seconds) {
 void Truth::publish() {
   measure::Reference mine;
   if (shownSamples_ >= 2) {
-    mine.transport = measured(component_);
+    mine.transport = transportOf(component_);
     mine.mean = tracer_->mean();
     mine.standardError = tracer_->standardError();
     const glm::dvec3 error = tracer_->statistics().meanError;

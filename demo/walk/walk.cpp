@@ -1,14 +1,15 @@
 // lucerna walk [SCENE]: the walkthrough. In a window the path plays in real time, views are skipped where drawing is slow, and it
 // ends by itself; without one, or with --record, views spread over the path are drawn and written, with the time of every stage.
+#include "base/clock.hpp"
 #include "base/data.hpp"
 #include "base/error.hpp"
-#include "gl/draw.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
+#include "gl/draw.hpp"
 #include "offers.hpp"
-#include "settings/deviations.hpp"
 #include "scene/key_frames.hpp"
+#include "settings/deviations.hpp"
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
 #include "walk/paths.hpp"
@@ -26,11 +27,8 @@ namespace lucerna::demo {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 using Options = WalkOptions;
-
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // "FIRST:LAST", views of the path; empty: all.
 std::pair<int, int> parseViews(const std::string& text, int viewCount) {

@@ -1,5 +1,6 @@
 #include "walk/window.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
@@ -27,8 +28,6 @@ constexpr double kPlayedFrame = 1.0 / 60.0;  // seconds, of recorded input: the 
 constexpr double kMessageSeconds = 8.0, kHintSeconds = 8.0;
 constexpr int kStillFrames = 3;              // before the truth of a view is sought
 constexpr std::size_t kPlotFrames = 240;
-
-double secondsSince(std::chrono::steady_clock::time_point start) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
 
 bool sameView(const Camera& a, const Camera& b) {
   return a.position == b.position && a.direction == b.direction && a.up == b.up && a.verticalFov == b.verticalFov;

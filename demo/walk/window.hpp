@@ -1,6 +1,7 @@
 // The walkthrough in a window, or driven by recorded input on any host: path and free camera, panel, comparison, live truth.
 #pragma once
 
+#include "base/clock.hpp"
 #include "walk/input_file.hpp"
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
@@ -28,7 +29,6 @@ class WalkWindow {
   nlohmann::ordered_json toJson() const;
 
  private:
-  using Clock = std::chrono::steady_clock;
   // A frame, in this order.
   bool takeInput();                    ///< false: it is to end
   void act(Action action);

@@ -486,10 +486,10 @@ Bitmap toneMapped(const Image& radiance, float exposure) {
   Bitmap bitmap{radiance.width, radiance.height, {}, false};
   bitmap.rgba.reserve(4 * radiance.pixels.size());
   for (const glm::vec3& pixel : radiance.pixels) {
+    const bool finite = std::isfinite(pixel.x) && std::isfinite(pixel.y) && std::isfinite(pixel.z);
     for (int c = 0; c < 3; ++c) {
-      const float x = 0.6f * exposure * pixel[c];  // [Narkowicz2015]; constants as in the shader
-      const float curve = std::clamp((x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f), 0.0f, 1.0f);
-      bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * srgbFromLinear(curve))));
+      const float shown = finite ? srgbFromLinear(filmic(std::max(exposure * pixel[c], 0.0f))) : c == 1 ? 1.0f : 0.0f;
+      bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * shown)));
     }
     bitmap.rgba.push_back(255);
   }

@@ -8,6 +8,8 @@
 // through DevIL: image.cpp) and pfm (Debevec's format: bottom row first) are small enough to implement here.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <glm/glm.hpp>
 
 #include <cstdint>
@@ -42,7 +44,17 @@ glm::dvec3 meanOf(const Image& image);
 float srgbFromLinear(float linear);
 float linearFromSrgb(float encoded);
 
-/// Radiance as shown: exposure, the filmic curve of shaders/forward/tonemap.frag, sRGB encoding.
+/// The display curve: the rational fit of the ACES reference rendering [Narkowicz2015], as shaders/lib/tonemap.glsl has it. From radiance times exposure,
+/// at least 0, to linear in [0,1].
+template <class T>
+T filmic(T x) {
+  x *= static_cast<T>(0.6);
+  if (!std::isfinite(x * x)) return static_cast<T>(1.0);
+  return std::clamp(x * (static_cast<T>(2.51) * x + static_cast<T>(0.03)) / (x * (static_cast<T>(2.43) * x + static_cast<T>(0.59)) + static_cast<T>(0.14)),
+                    static_cast<T>(0.0), static_cast<T>(1.0));
+}
+
+/// Radiance as shown: exposure, the filmic curve, sRGB encoding. Pixels that are not finite become pure green.
 Bitmap toneMapped(const Image& radiance, float exposure);
 
 /// Reads png, jpg, tga or bmp as 8-bit RGBA. Throws Error(badInput) naming the file when it is missing, a folder, of another format, or damaged.

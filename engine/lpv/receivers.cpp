@@ -4,8 +4,8 @@
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
 #include "lpv/surface_voxels.hpp"
-#include "rsm/rsm_gather.hpp"
 #include "rays/light_table.hpp"
+#include "rsm/rsm_gather.hpp"
 #include "shared/lpv_receivers.h"
 
 #include <algorithm>

@@ -178,8 +178,8 @@ Features featuresOf(const Plane& ycxcz, Size size, double ppd) {
 }
 
 glm::dvec3 toneMapped(const glm::dvec3& radiance) {
-  const glm::dvec3 x = 0.6 * glm::max(radiance, 0.0);
-  return glm::clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+  const glm::dvec3 lit = glm::max(radiance, 0.0);
+  return {filmic(lit.x), filmic(lit.y), filmic(lit.z)};
 }
 
 double luminanceOf(const glm::vec3& c) { return times(kXyzFromRgb, glm::dvec3(c)).y; }

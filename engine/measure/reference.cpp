@@ -15,17 +15,6 @@ namespace lucerna::measure {
 
 namespace fs = std::filesystem;
 
-std::string_view nameOf(Transport transport) {
-  switch (transport) {
-    case Transport::direct: return "direct";
-    case Transport::oneBounce: return "oneBounce";
-    case Transport::oneBounceUnoccluded: return "oneBounceUnoccluded";
-    case Transport::all: return "all";
-    case Transport::indirect: return "indirect";
-  }
-  return "?";
-}
-
 // ---------------------------------------------------------------------------------------------------- batches
 
 void BatchMean::add(const Image& batch) {

@@ -3,6 +3,7 @@
 
 #include "base/image.hpp"
 #include "scene/scene.hpp"
+#include "scene/transport.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -12,12 +13,6 @@
 #include <string_view>
 
 namespace lucerna::measure {
-
-/// The light that a picture contains.
-/// direct: emitted, and scattered once. oneBounce: after exactly one diffuse reflection more, without `direct`; unoccluded: without occlusion between the two
-/// surfaces. all: everything. indirect: all without direct; the sampler may bound its bounces.
-enum class Transport { direct, oneBounce, oneBounceUnoccluded, all, indirect };  // stored in files: append new ones at the end
-std::string_view nameOf(Transport transport);
 
 /// The mean picture of `samples` paths per pixel, numbered from `first`: other numbers are independent, the same ones give the same picture.
 using Sampler = std::function<Image(std::uint64_t first, std::uint32_t samples)>;

@@ -62,17 +62,6 @@ int tileSideOn(const gl::Capabilities& capabilities) {
 
 }  // namespace
 
-std::string_view nameOf(Transport transport) {
-  switch (transport) {
-    case Transport::all: return "all";
-    case Transport::direct: return "direct";
-    case Transport::indirect: return "indirect";
-    case Transport::oneBounce: return "one-bounce";
-    case Transport::oneBounceUnoccluded: return "one-bounce-unoccluded";
-  }
-  return "?";
-}
-
 PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings)
     : settings_(settings),
       needs_(analyse(scene)),

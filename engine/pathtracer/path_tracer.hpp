@@ -17,6 +17,7 @@
 #include "rays/path_scene.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
+#include "scene/transport.hpp"
 
 #include <array>
 #include <cstdint>
@@ -27,16 +28,6 @@
 #include <vector>
 
 namespace lucerna {
-
-/// Light paths that count, by the number of scatterings between lamp and camera; passing a boundary straight is not a scattering.
-enum class Transport {
-  all,                   ///< any number
-  direct,                ///< 0 and 1: visible lights, and what they light
-  indirect,              ///< 2 and more
-  oneBounce,             ///< exactly 2
-  oneBounceUnoccluded,   ///< exactly 2, without occlusion between the two scatterings: what a reflective shadow map gathers
-};
-std::string_view nameOf(Transport transport);
 
 class PathTracer {
  public:

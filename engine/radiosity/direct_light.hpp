@@ -3,8 +3,8 @@
 #pragma once
 
 #include "gl/program.hpp"
-#include "rays/ray_scene.hpp"
 #include "radiosity/patches.hpp"
+#include "rays/ray_scene.hpp"
 
 #include <vector>
 

@@ -1,20 +1,12 @@
 #include "radiosity/form_factor_matrix.hpp"
 
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 namespace lucerna {
-
-void onAllCores(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)>& work) {
-  const std::size_t cores = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, 64);
-  if (count < 256 || cores == 1) return work(0, count);
-  std::vector<std::jthread> threads;
-  for (std::size_t k = 1; k < cores; ++k) threads.emplace_back([&, k] { work(count * k / cores, count * (k + 1) / cores); });
-  work(0, count / cores);
-}
 
 void FormFactorMatrix::appendRow(std::span<const std::uint32_t> patches, std::span<const float> factors) {
   CHECK(patches.size() == factors.size(), "{} patches, {} factors", patches.size(), factors.size());

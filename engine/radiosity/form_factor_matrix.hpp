@@ -50,7 +50,4 @@ class FormFactorMatrix {
   std::vector<double> scales_;
 };
 
-/// Runs work(begin, end) on parts of 0..count, on all cores.
-void onAllCores(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)>& work);
-
 }  // namespace lucerna

@@ -1,5 +1,6 @@
 #include "radiosity/hidden_parts.hpp"
 
+#include "base/parallel.hpp"
 #include "gl/pass.hpp"
 #include "radiosity/form_factor_matrix.hpp"
 #include "scene/triangle_parts.hpp"

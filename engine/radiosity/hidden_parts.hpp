@@ -10,8 +10,8 @@
 #pragma once
 
 #include "gl/program.hpp"
-#include "rays/ray_scene.hpp"
 #include "radiosity/patches.hpp"
+#include "rays/ray_scene.hpp"
 
 namespace lucerna {
 

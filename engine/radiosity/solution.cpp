@@ -1,5 +1,6 @@
 #include "radiosity/solution.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/hash.hpp"
@@ -23,8 +24,6 @@
 namespace lucerna {
 
 namespace {
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 constexpr double kEdges = 12.0;  // default: longest edges that span the scene
 constexpr std::size_t kBytesPerEntry = 32;  // of a form factor, its mirrored copy and their mean, while they are repaired
@@ -112,7 +111,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   if (!checkpoint.empty())
     file = std::make_unique<RowFile>(checkpoint, rowsFingerprint(mesh, asked), static_cast<std::uint32_t>(n), take);
   std::size_t computed = 0;
-  double start = now();
+  Clock::time_point start = Clock::now();
   const std::size_t from = solution.fronts.size();
   const auto keep = [&](const FormFactorRows& rows) {
     take(rows);
@@ -124,12 +123,12 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     stopped = !stage(RadiosityStage::Kind::formFactors, static_cast<std::size_t>(done));
     return !stopped;
   });
-  solution.hemicubeSeconds += now() - start;
+  solution.hemicubeSeconds += secondsSince(start);
   solution.keptRows = kept;
   solution.visibility = hemicubes.visibility();
   if (stopped) stop();
 
-  start = now();
+  start = Clock::now();
   RadiositySystem system;
   std::vector<double> sums;
   for (std::size_t i = 0; i < n; ++i) {
@@ -206,7 +205,7 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   solution.progress = solved.progress;
   solution.solver = solved.solver;
   solution.reached = solved.reached;
-  solution.solveSeconds += now() - start;
+  solution.solveSeconds += secondsSince(start);
 }
 
 double mean3(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }

@@ -8,15 +8,6 @@ namespace lucerna {
 
 namespace {
 
-Transport transportOf(Component component) {
-  switch (component) {
-    case Component::all: return Transport::all;
-    case Component::direct: return Transport::direct;
-    case Component::indirect: return Transport::indirect;
-  }
-  return Transport::all;
-}
-
 PathTracer::Settings tracerSettings(const RenderSettings& settings) {
   PathTracer::Settings tracer;
   tracer.size = settings.size;

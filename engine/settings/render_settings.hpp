@@ -12,6 +12,7 @@
 #include "radiosity/radiosity_view.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 #include "rsm/rsm_gather.hpp"
+#include "scene/transport.hpp"
 
 #include <glm/glm.hpp>
 
@@ -26,6 +27,10 @@ constexpr std::array<std::string_view, 5> namesOf(Technique) { return {"direct",
 
 enum class Component { all, direct, indirect };
 constexpr std::array<std::string_view, 3> namesOf(Component) { return {"all", "direct", "indirect"}; }
+/// The light paths that a picture of it holds.
+constexpr Transport transportOf(Component component) {
+  return component == Component::direct ? Transport::direct : component == Component::indirect ? Transport::indirect : Transport::all;
+}
 
 /// `original` is the thesis; `demo` the program published with it, where that is another (the light propagation volume's).
 enum class Fidelity { corrected, original, thesis, demo };

@@ -1,11 +1,10 @@
 // Display mappings of radiosity besides the engine's tone mapping. MAPPING 1: linear, a constant factor (the exposure), cut at 1.
 // 2: logarithmic, as the original shows its values [RAD2008 section 3.6]: range decades below 1 / exposure. 3: false colours of the same decades, by luminance.
 #include "lib/frame.glsl"
+#include "lib/tonemap.glsl"
 layout(binding = 0) uniform sampler2D hdr;
 uniform float decades;
 out vec4 color;
-
-vec3 srgb(vec3 c) { return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308))); }
 
 // Where v lies in the decades below 1: 0..1.
 vec3 logarithmic(vec3 v) { return clamp(1.0 + log2(max(v, vec3(1e-30))) / (decades * 3.321928), 0.0, 1.0); }
@@ -13,7 +12,7 @@ vec3 logarithmic(vec3 v) { return clamp(1.0 + log2(max(v, vec3(1e-30))) / (decad
 void main() {
   vec3 value = max(texelFetch(hdr, ivec2(gl_FragCoord.xy), 0).rgb * frame.exposure, vec3(0.0));
 #if MAPPING == 1
-  color = vec4(srgb(min(value, vec3(1.0))), 1.0);
+  color = vec4(srgbFromLinear(min(value, vec3(1.0))), 1.0);
 #elif MAPPING == 2
   color = vec4(logarithmic(value), 1.0);
 #else

@@ -186,13 +186,13 @@ TEST_F(Measure, TechniquesAreJudgedByTheLightThatTheyAreGiven) {
     return Mean{};
   };
   const auto on = bench("20 20 20"), off = bench("0 0 0");
-  for (const char* transport : {"direct", "oneBounce", "oneBounceUnoccluded"}) {
+  for (const char* transport : {"direct", "one-bounce", "one-bounce-unoccluded"}) {
     const Mean given = mean(on, transport, "sun"), asIfOff = mean(off, transport, "sun");
     EXPECT_NEAR(given.value, asIfOff.value, 5.0 * std::hypot(given.error, asIfOff.error) + 1e-6 * asIfOff.value)
         << transport;
     EXPECT_GT(given.value, 0.0);
   }
-  for (const char* transport : {"direct", "oneBounce"})
+  for (const char* transport : {"direct", "one-bounce"})
     EXPECT_GT(mean(on, transport, "sun, emissive surfaces").value, 1.5 * mean(on, transport, "sun").value) << transport;
   // What they have not is a line of its own, of direct light and of what is reflected; nothing where there is no such
   // lamp.

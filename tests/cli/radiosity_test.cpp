@@ -1,7 +1,7 @@
 // lucerna radiosity generate|solve|show as a user runs them, and what happens to the files when a run is stopped, killed, or cannot write.
-#include "radiosity/original/rad_file.hpp"
 #include "base/files.hpp"
 #include "base/image.hpp"
+#include "radiosity/original/rad_file.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 

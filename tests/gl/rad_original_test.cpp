@@ -1,8 +1,8 @@
 // The radiosity original's hemicubes on real GL, against closed-form factors and a double-precision solution.
 #include "radiosity/original/checkpoint.hpp"
 #include "radiosity/original/display.hpp"
-#include "radiosity/original/solver.hpp"
 #include "radiosity/original/rad_models.hpp"
+#include "radiosity/original/solver.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/rad_twin.hpp"
 #include "support/temp_folder.hpp"

@@ -49,7 +49,7 @@ class BenchProof : public test::SharedProgramsTest {
                    t->record(samples);
                    return t->mean();
                  },
-                 measure::Transport::all, 0, goal)
+                 Transport::all, 0, goal)
           .value();
     }();
     return result;

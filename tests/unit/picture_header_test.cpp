@@ -1,6 +1,6 @@
 // Pictures before a decoder sees them: what is no whole picture of a known format is refused in one line, in no time and without memory.
-#include "base/image.hpp"
 #include "base/files.hpp"
+#include "base/image.hpp"
 #include "base/picture_header.hpp"
 #include "support/temp_folder.hpp"
 

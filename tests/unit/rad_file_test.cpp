@@ -1,7 +1,7 @@
 // The radiosity original's files, models, map and switches: everything of it that needs no GL.
 #include "radiosity/original/checkpoint.hpp"
-#include "radiosity/original/map.hpp"
 #include "radiosity/original/display.hpp"
+#include "radiosity/original/map.hpp"
 #include "radiosity/original/rad_file.hpp"
 #include "radiosity/original/rad_models.hpp"
 #include "support/temp_folder.hpp"

@@ -1,5 +1,6 @@
 // Patches from scenes: areas, fronts, welding, what is left out, and refinement that keeps the mesh whole.
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/patches.hpp"
 #include "support/radiosity_scenes.hpp"

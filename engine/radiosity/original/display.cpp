@@ -18,12 +18,7 @@ namespace {
 
 glm::vec3 grey(double value) { return glm::vec3(static_cast<float>(std::clamp(value, 0.0, 1.0))); }
 
-/// The fit that shaders/forward/tonemap.frag draws with [Narkowicz2015], then sRGB.
-double filmic(double x) {
-  x *= 0.6;
-  const double y = std::clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
-  return static_cast<double>(srgbFromLinear(static_cast<float>(y)));
-}
+double encodedFilmic(double x) { return static_cast<double>(srgbFromLinear(static_cast<float>(filmic(x)))); }
 
 /// Black, blue, cyan, green, yellow, red, white at equal steps: ordered by lightness at its ends, told apart in between.
 glm::vec3 falseColour(double value) {
@@ -70,7 +65,7 @@ std::vector<glm::vec3> displayColours(std::span<const RadTriangle> triangles, co
     switch (display.mapping) {
       case RadMapping::logarithmic: colours.push_back(grey(std::log1p(value) * scale)); break;
       case RadMapping::linear: colours.push_back(grey(value * constant)); break;
-      case RadMapping::filmic: colours.push_back(grey(filmic(value * constant))); break;
+      case RadMapping::filmic: colours.push_back(grey(encodedFilmic(value * constant))); break;
       case RadMapping::falseColours: colours.push_back(falseColour(std::log1p(value) * scale)); break;
       case RadMapping::bits24: colours.push_back(bytesOf(t)); break;
     }

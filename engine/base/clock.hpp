@@ -1,0 +1,11 @@
+// Time that passes.
+#pragma once
+
+#include <chrono>
+
+namespace lucerna {
+
+using Clock = std::chrono::steady_clock;
+inline double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+}  // namespace lucerna
