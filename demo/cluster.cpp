@@ -59,12 +59,14 @@ Planned readCommand(const std::vector<std::string>& words) {
   Planned planned;
   std::size_t i = 0;
   if (i < words.size() && (words[i] == "lucerna" || words[i].ends_with("/lucerna"))) ++i;
-  if (i >= words.size() || words[i] != "render") throwBadInput("cluster plan: what follows -- must be a command `render SCENE --technique path --spp N ... -o OUT`");
+  if (i >= words.size() || words[i] != "render")
+    throwBadInput("cluster plan: what follows -- must be a command `render SCENE --technique path --spp N ... -o OUT`");
   bool isPath = false;
   for (++i; i < words.size(); ++i) {
     // "--key value" and "--key=value" alike.
     std::string key = words[i], value;
-    if (const auto equals = key.find('='); key.starts_with("--") && equals != std::string::npos) value = key.substr(equals + 1), key = key.substr(0, equals);
+    if (const auto equals = key.find('='); key.starts_with("--") && equals != std::string::npos)
+      value = key.substr(equals + 1), key = key.substr(0, equals);
     const auto take = [&]() -> const std::string& {
       if (value.empty()) {
         if (++i >= words.size()) throwBadInput("cluster plan: {} has no value", key);
@@ -74,43 +76,66 @@ Planned readCommand(const std::vector<std::string>& words) {
     };
     if (key == "--spp") {
       const std::string& text = take();
-      if (text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos) throwBadInput("cluster plan: --spp {}: expected a whole number up to 999999999", text);
+      if (text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos)
+        throwBadInput("cluster plan: --spp {}: expected a whole number up to 999999999", text);
       planned.samples = static_cast<std::uint32_t>(std::stoul(text));
     } else if (key == "-o" || key == "--output") {
       planned.output = take();
-    } else if (key == "--samples" || key == "--checkpoint" || key == "--seconds" || key == "--error" || key == "--json") {
+    } else if (key == "--samples" || key == "--checkpoint" || key == "--seconds" || key == "--error" ||
+               key == "--json") {
       throwBadInput("cluster plan: {}: a task's own; give --spp and -o", key);
     } else {
-      if (key == "--technique") isPath = (value.empty() ? (i + 1 < words.size() ? words[i + 1] : value) : value) == "path";
+      if (key == "--technique")
+        isPath = (value.empty() ? (i + 1 < words.size() ? words[i + 1] : value) : value) == "path";
       planned.render.push_back(words[i]);
     }
   }
   if (!isPath) throwBadInput("cluster plan: only --technique path is cut into parts of its samples");
   if (planned.samples == 0) throwBadInput("cluster plan: --spp N is missing: how many samples the tasks share");
-  if (!isWritableImageName(planned.output)) throwBadInput("cluster plan: -o {}: the extension must be png, hdr, exr or pfm", planned.output);
+  if (!isWritableImageName(planned.output))
+    throwBadInput("cluster plan: -o {}: the extension must be png, hdr, exr or pfm", planned.output);
   return planned;
 }
 
-/// The array, a task each, and the join after it, for Slurm. A task that a signal ended, a node that fell out and a preemption give their tasks back, or leave them to be
-/// found abandoned: the join finishes what is left before it joins.
+/// The array, a task each, and the join after it, for Slurm. A task that a signal ended, a node that fell out and a
+/// preemption give their tasks back, or leave them to be found abandoned: the join finishes what is left before it
+/// joins.
 void writeSlurm(const fs::path& folder, const Options& options) {
   const fs::path whole = fs::absolute(folder);
   const std::string program = quoted(thisProgram()), job = quoted(whole.string());
-  std::string head = fmt::format("#!/bin/bash\n#SBATCH --time={}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n", options.time);
+  std::string head =
+      fmt::format("#!/bin/bash\n#SBATCH --time={}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n", options.time);
   if (!options.account.empty()) head += fmt::format("#SBATCH --account={}\n", options.account);
   if (!options.gpus.empty()) head += fmt::format("#SBATCH --gpus-per-task={}\n", options.gpus);
   const std::string environment =
       "# Of a node's devices the one that Slurm gave to this task.\n"
       "if [ -n \"${CUDA_VISIBLE_DEVICES:-}\" ]; then export LUCERNA_EGL_DEVICE=\"${CUDA_VISIBLE_DEVICES%%,*}\"; fi\n";
-  const std::string array = head + fmt::format("#SBATCH --job-name=lucerna\n#SBATCH --array=0-{}\n#SBATCH --ntasks=1\n#SBATCH --signal=B:TERM@60\n#SBATCH --output={}/logs/slurm-%a.log\n", options.tasks - 1, whole.string()) +
-                            environment + fmt::format("exec {} cluster run {} --task \"$SLURM_ARRAY_TASK_ID\" --dead-after {:g}\n", program, job, options.deadAfter);
-  const std::string join = head + fmt::format("#SBATCH --job-name=lucerna-join\n#SBATCH --ntasks=1\n#SBATCH --output={}/logs/slurm-join.log\n", whole.string()) + environment +
-                           fmt::format("# What the array left: tasks of nodes that fell out.\n{0} cluster run {1} --dead-after {2:g} --quiet && exec {0} cluster join {1}\n", program, job, options.deadAfter);
-  const std::string submit = fmt::format("#!/bin/sh\n# Hands both to Slurm; prints their numbers.\nset -e\narray=$(sbatch --parsable {0}/array.sbatch)\njoin=$(sbatch --parsable --dependency=afterany:\"$array\" {0}/join.sbatch)\n"
-                                         "echo \"$array $join\"\n", job);
+  const std::string array = head +
+                            fmt::format(
+                                "#SBATCH --job-name=lucerna\n#SBATCH --array=0-{}\n#SBATCH --ntasks=1\n#SBATCH "
+                                "--signal=B:TERM@60\n#SBATCH --output={}/logs/slurm-%a.log\n",
+                                options.tasks - 1, whole.string()) +
+                            environment +
+                            fmt::format("exec {} cluster run {} --task \"$SLURM_ARRAY_TASK_ID\" --dead-after {:g}\n",
+                                        program, job, options.deadAfter);
+  const std::string join =
+      head +
+      fmt::format("#SBATCH --job-name=lucerna-join\n#SBATCH --ntasks=1\n#SBATCH --output={}/logs/slurm-join.log\n",
+                  whole.string()) +
+      environment +
+      fmt::format(
+          "# What the array left: tasks of nodes that fell out.\n{0} cluster run {1} --dead-after {2:g} --quiet && "
+          "exec {0} cluster join {1}\n",
+          program, job, options.deadAfter);
+  const std::string submit = fmt::format(
+      "#!/bin/sh\n# Hands both to Slurm; prints their numbers.\nset -e\narray=$(sbatch --parsable "
+      "{0}/array.sbatch)\njoin=$(sbatch --parsable --dependency=afterany:\"$array\" {0}/join.sbatch)\n"
+      "echo \"$array $join\"\n",
+      job);
   for (const auto& [name, text] : {std::pair{"array.sbatch", array}, {"join.sbatch", join}, {"submit", submit}}) {
     writeFileAtomically(folder / name, text);
-    fs::permissions(folder / name, fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec, fs::perm_options::add);
+    fs::permissions(folder / name, fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
+                    fs::perm_options::add);
   }
 }
 
@@ -120,7 +145,10 @@ int plan(const Options& options) {
   ClusterJob::plan(options.output, planned.render, planned.samples, options.tasks, planned.output);
   writeSlurm(options.output, options);
   if (!options.common.quiet)
-    fmt::print("{0}: {1} tasks of {2} samples. On this machine: lucerna cluster run {0} --jobs N, then lucerna cluster join {0}. With Slurm: {0}/submit\n", options.output, options.tasks, planned.samples);
+    fmt::print(
+        "{0}: {1} tasks of {2} samples. On this machine: lucerna cluster run {0} --jobs N, then lucerna cluster join "
+        "{0}. With Slurm: {0}/submit\n",
+        options.output, options.tasks, planned.samples);
   options.common.writeJson({{"job", options.output}, {"tasks", options.tasks}, {"samples", planned.samples}});
   return 0;
 }
@@ -132,7 +160,8 @@ bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& cla
   std::vector<std::string> words{thisProgram(), "render"};
   words.insert(words.end(), job.render().begin(), job.render().end());
   // The result is written last: it says that the part is whole.
-  words.insert(words.end(), {"--samples", fmt::format("{}:{}", task.first, task.last), "--checkpoint", job.part(task).string(), "--json", job.result(task).string(), "--quiet"});
+  words.insert(words.end(), {"--samples", fmt::format("{}:{}", task.first, task.last), "--checkpoint",
+                             job.part(task).string(), "--json", job.result(task).string(), "--quiet"});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -165,7 +194,9 @@ bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& cla
   if (!done && !lost) job.giveBack(claim);
   if (!quiet)
     fmt::print("{}: samples {} to {}{}\n", task.name, task.first, task.last - 1,
-               done ? "" : WIFSIGNALED(status) ? fmt::format(", ended by signal {}", WTERMSIG(status)) : fmt::format(", exit code {}: see {}", WEXITSTATUS(status), log));
+               done                  ? ""
+               : WIFSIGNALED(status) ? fmt::format(", ended by signal {}", WTERMSIG(status))
+                                     : fmt::format(", exit code {}: see {}", WEXITSTATUS(status), log));
   return done;
 }
 
@@ -173,7 +204,8 @@ int run(const Options& options) {
   options.common.apply();
   const ClusterJob job(options.folder);
   const int count = static_cast<int>(job.tasks().size());
-  if (options.task && (*options.task < 0 || *options.task >= count)) throwBadInput("--task {}: the job has 0 to {}", *options.task, count - 1);
+  if (options.task && (*options.task < 0 || *options.task >= count))
+    throwBadInput("--task {}: the job has 0 to {}", *options.task, count - 1);
   watchForInterrupt();
   // A task that fails again and again is not tried for ever.
   constexpr int kTries = 3;
@@ -188,7 +220,8 @@ int run(const Options& options) {
         for (int k = 0; k < count && !interrupted(); ++k) {
           if (options.task && k != *options.task) continue;
           // Workers begin at different places, so that they seldom want the same.
-          const ClusterTask& task = job.tasks()[static_cast<std::size_t>((k + (options.task ? 0 : worker * count / std::max(options.jobs, 1))) % count)];
+          const ClusterTask& task = job.tasks()[static_cast<std::size_t>(
+              (k + (options.task ? 0 : worker * count / std::max(options.jobs, 1))) % count)];
           if (const std::scoped_lock lock(mutex); failures[task.name] >= kTries) continue;
           const State state = job.state(task, options.deadAfter);
           if (state == State::done) continue;
@@ -221,11 +254,15 @@ int run(const Options& options) {
   if (interrupted()) throw Stopped(fmt::format("stopped; lucerna cluster run {} goes on", options.folder));
   int left = 0;
   for (int k = 0; k < count; ++k)
-    if (!options.task || k == *options.task) left += job.state(job.tasks()[static_cast<std::size_t>(k)], options.deadAfter) != State::done;
+    if (!options.task || k == *options.task)
+      left += job.state(job.tasks()[static_cast<std::size_t>(k)], options.deadAfter) != State::done;
   if (!options.common.quiet) fmt::print("{} tasks done here, {} left\n", finished.load(), left);
   options.common.writeJson({{"done_here", finished.load()}, {"left", left}});
   // That somebody else works on the one task that was asked for is no failure.
-  return left == 0 || (options.task && job.state(job.tasks()[static_cast<std::size_t>(*options.task)], options.deadAfter) == State::running) ? 0 : 1;
+  return left == 0 || (options.task && job.state(job.tasks()[static_cast<std::size_t>(*options.task)],
+                                                 options.deadAfter) == State::running)
+             ? 0
+             : 1;
 }
 
 // ---------------------------------------------------------------------------------------------------- status, join
@@ -236,8 +273,13 @@ int status(const Options& options) {
   std::map<State, int> counts;
   for (const ClusterTask& task : job.tasks()) ++counts[job.state(task, options.deadAfter)];
   if (!options.common.quiet)
-    fmt::print("{}: {} tasks: {} done, {} running, {} abandoned, {} waiting\n", options.folder, job.tasks().size(), counts[State::done], counts[State::running], counts[State::abandoned], counts[State::waiting]);
-  options.common.writeJson({{"tasks", job.tasks().size()}, {"done", counts[State::done]}, {"running", counts[State::running]}, {"abandoned", counts[State::abandoned]}, {"waiting", counts[State::waiting]}});
+    fmt::print("{}: {} tasks: {} done, {} running, {} abandoned, {} waiting\n", options.folder, job.tasks().size(),
+               counts[State::done], counts[State::running], counts[State::abandoned], counts[State::waiting]);
+  options.common.writeJson({{"tasks", job.tasks().size()},
+                            {"done", counts[State::done]},
+                            {"running", counts[State::running]},
+                            {"abandoned", counts[State::abandoned]},
+                            {"waiting", counts[State::waiting]}});
   return 0;
 }
 
@@ -246,7 +288,9 @@ int join(const Options& options) {
   const ClusterJob job(options.folder);
   std::vector<std::string> words{thisProgram(), "merge"};
   for (const ClusterTask& task : job.tasks()) {
-    if (!fs::exists(job.result(task))) throwBadInput("{}: task {} is not done (lucerna cluster status {}, then cluster run)", options.folder, task.name, options.folder);
+    if (!fs::exists(job.result(task)))
+      throwBadInput("{}: task {} is not done (lucerna cluster status {}, then cluster run)", options.folder, task.name,
+                    options.folder);
   }
   words.insert(words.end(), {"--parts", (job.folder() / "parts").string(), "-o", job.output()});
   if (!options.common.json.empty()) words.insert(words.end(), {"--json", options.common.json});
@@ -263,18 +307,34 @@ int join(const Options& options) {
 std::function<int()> addCluster(CLI::App& app) {
   app.require_subcommand(1);
   auto options = std::make_shared<Options>();
-  CLI::App* planned = app.add_subcommand("plan", "Cut a path traced picture's samples into tasks, in a folder that all machines see; with scripts for Slurm");
-  planned->add_option("COMMAND", options->command, "after --: render SCENE --technique path --spp N ... -o OUT")->required();
+  CLI::App* planned = app.add_subcommand(
+      "plan",
+      "Cut a path traced picture's samples into tasks, in a folder that all machines see; with scripts for Slurm");
+  planned->add_option("COMMAND", options->command, "after --: render SCENE --technique path --spp N ... -o OUT")
+      ->required();
   planned->add_option("-o,--output", options->output, "the job's folder")->required();
-  planned->add_option("--tasks", options->tasks, "into how many")->capture_default_str()->check(CLI::Range(1u, 1000000u));
-  planned->add_option("--time", options->time, "Slurm's time limit of a task; one that reaches it gives its task back, and the join goes on with it")->capture_default_str();
+  planned->add_option("--tasks", options->tasks, "into how many")
+      ->capture_default_str()
+      ->check(CLI::Range(1u, 1000000u));
+  planned
+      ->add_option(
+          "--time", options->time,
+          "Slurm's time limit of a task; one that reaches it gives its task back, and the join goes on with it")
+      ->capture_default_str();
   planned->add_option("--account", options->account, "Slurm's account");
-  planned->add_option("--gpus", options->gpus, "Slurm's GPUs a task, such as 1; the task's program uses the first of them");
+  planned->add_option("--gpus", options->gpus,
+                      "Slurm's GPUs a task, such as 1; the task's program uses the first of them");
   const auto deadAfter = [&](CLI::App* command) {
-    command->add_option("--dead-after", options->deadAfter, "seconds without a sign of life after which a task is taken up by another one; signs come every 5 s")->capture_default_str()->check(CLI::Range(6.0, 1e6));
+    command
+        ->add_option(
+            "--dead-after", options->deadAfter,
+            "seconds without a sign of life after which a task is taken up by another one; signs come every 5 s")
+        ->capture_default_str()
+        ->check(CLI::Range(6.0, 1e6));
   };
   deadAfter(planned);
-  CLI::App* running = app.add_subcommand("run", "Work on a job's tasks until none is left; any number of machines at once");
+  CLI::App* running =
+      app.add_subcommand("run", "Work on a job's tasks until none is left; any number of machines at once");
   running->add_option("JOB", options->folder, "the job's folder")->required();
   running->add_option("--jobs", options->jobs, "tasks at once")->capture_default_str()->check(CLI::Range(1, 256));
   running->add_option("--task", options->task, "that one alone, such as of a Slurm array");
@@ -285,7 +345,12 @@ std::function<int()> addCluster(CLI::App& app) {
   CLI::App* joined = app.add_subcommand("join", "Make the picture of all parts");
   joined->add_option("JOB", options->folder, "the job's folder")->required();
   for (CLI::App* command : {planned, running, asked, joined}) options->common.declare(*command);
-  return [=] { return planned->parsed() ? plan(*options) : running->parsed() ? run(*options) : asked->parsed() ? status(*options) : join(*options); };
+  return [=] {
+    return planned->parsed()   ? plan(*options)
+           : running->parsed() ? run(*options)
+           : asked->parsed()   ? status(*options)
+                               : join(*options);
+  };
 }
 
 }  // namespace lucerna::demo

@@ -40,13 +40,19 @@ bool createNew(const fs::path& file, const std::string& text) {
   return true;
 }
 
-fs::path claimFile(const fs::path& folder, const std::string& task, int number) { return folder / "claims" / fmt::format("{}.{}", task, number); }
+fs::path claimFile(const fs::path& folder, const std::string& task, int number) {
+  return folder / "claims" / fmt::format("{}.{}", task, number);
+}
 
 }  // namespace
 
-void ClusterJob::plan(const fs::path& folder, const std::vector<std::string>& render, std::uint32_t samples, std::uint32_t tasks, const std::string& output) {
-  if (tasks == 0 || tasks > samples) throwBadInput("--tasks {}: expected 1 to {}, the samples of a pixel", tasks, samples);
-  if (fs::exists(folder / "job.json")) throwBadInput("-o {}: holds a job; choose another folder, or go on with lucerna cluster run {}", folder.string(), folder.string());
+void ClusterJob::plan(const fs::path& folder, const std::vector<std::string>& render, std::uint32_t samples,
+                      std::uint32_t tasks, const std::string& output) {
+  if (tasks == 0 || tasks > samples)
+    throwBadInput("--tasks {}: expected 1 to {}, the samples of a pixel", tasks, samples);
+  if (fs::exists(folder / "job.json"))
+    throwBadInput("-o {}: holds a job; choose another folder, or go on with lucerna cluster run {}", folder.string(),
+                  folder.string());
   std::error_code error;
   for (const char* part : {"claims", "parts", "done", "logs"}) {
     fs::create_directories(folder / part, error);
@@ -82,21 +88,28 @@ ClusterJob::ClusterJob(fs::path folder) : folder_(fs::absolute(folder)) {
 }
 
 double ClusterJob::age(const fs::path& file) const {
-  struct stat claim {}, now {};
+  struct stat claim {
+  }, now{};
   if (::stat(file.c_str(), &claim) != 0) return 0.0;  // given back meanwhile: it is looked at again
-  const fs::path clock = folder_ / "claims" / fmt::format(".clock.{}.{}.{}", hostName(), ::getpid(), std::hash<std::thread::id>{}(std::this_thread::get_id()));
+  const fs::path clock =
+      folder_ / "claims" /
+      fmt::format(".clock.{}.{}.{}", hostName(), ::getpid(), std::hash<std::thread::id>{}(std::this_thread::get_id()));
   const int descriptor = ::open(clock.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
   if (descriptor < 0) return 0.0;
   const bool known = ::futimens(descriptor, nullptr) == 0 && ::fstat(descriptor, &now) == 0;
   ::close(descriptor);
   ::unlink(clock.c_str());
-  const auto seconds = [](const struct stat& s) { return static_cast<double>(s.st_mtim.tv_sec) + 1e-9 * static_cast<double>(s.st_mtim.tv_nsec); };
+  const auto seconds = [](const struct stat& s) {
+    return static_cast<double>(s.st_mtim.tv_sec) + 1e-9 * static_cast<double>(s.st_mtim.tv_nsec);
+  };
   return known ? seconds(now) - seconds(claim) : 0.0;
 }
 
 int ClusterJob::claimsOf(const ClusterTask& task) const {
   int count = 0;
-  while (fs::exists(claimFile(folder_, task.name, count)) || fs::exists(claimFile(folder_, task.name, count).concat(".back"))) ++count;
+  while (fs::exists(claimFile(folder_, task.name, count)) ||
+         fs::exists(claimFile(folder_, task.name, count).concat(".back")))
+    ++count;
   return count;
 }
 

@@ -1,13 +1,15 @@
-// The folder of a job that many machines work on (no GL). All that they share is that folder, on storage where creating a file that must not exist yet is
-// atomic and a rename is seen whole (a local disk; NFS from version 3 on; Lustre, GPFS).
+// The folder of a job that many machines work on (no GL). All that they share is that folder, on storage where creating
+// a file that must not exist yet is atomic and a rename is seen whole (a local disk; NFS from version 3 on; Lustre,
+// GPFS).
 //
 //   job.json             what is made: the command, its samples, the tasks; never changed
-//   claims/TASK.N        who works on a task: creating the file is the claim, its time of change is the sign of life. N: how often it was taken up.
-//                        A claim without a sign of life for `deadAfter` seconds is nobody's: whoever creates TASK.(N+1) first takes the task up
-//   parts/TASK.film      the task's checkpoint, written every minute and at the end: who takes a task up goes on from it
-//   done/TASK.json       its result, written last, at once
-//   logs/TASK.log        what the program said
-//   array.sbatch, join.sbatch, submit     the same for Slurm
+//   claims/TASK.N        who works on a task: creating the file is the claim, its time of change is the sign of life.
+//   N: how often it was taken up.
+//                        A claim without a sign of life for `deadAfter` seconds is nobody's: whoever creates TASK.(N+1)
+//                        first takes the task up
+//   parts/TASK.film      the task's checkpoint, written every minute and at the end: who takes a task up goes on from
+//   it done/TASK.json       its result, written last, at once logs/TASK.log        what the program said array.sbatch,
+//   join.sbatch, submit     the same for Slurm
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -31,21 +33,26 @@ class ClusterJob {
 
   /// Throws Error(badInput) where the folder holds no job.
   explicit ClusterJob(std::filesystem::path folder);
-  /// render: the words after `lucerna render`, without --samples, --spp, --checkpoint and -o. Throws Error(badInput) where the folder holds a job, or more tasks than samples are asked for.
-  static void plan(const std::filesystem::path& folder, const std::vector<std::string>& render, std::uint32_t samples, std::uint32_t tasks, const std::string& output);
+  /// render: the words after `lucerna render`, without --samples, --spp, --checkpoint and -o. Throws Error(badInput)
+  /// where the folder holds a job, or more tasks than samples are asked for.
+  static void plan(const std::filesystem::path& folder, const std::vector<std::string>& render, std::uint32_t samples,
+                   std::uint32_t tasks, const std::string& output);
 
   const std::filesystem::path& folder() const { return folder_; }
   const std::vector<ClusterTask>& tasks() const { return tasks_; }
   const std::vector<std::string>& render() const { return render_; }
   const std::string& output() const { return output_; }
-  const std::string& directory() const { return directory_; }  ///< where the command was planned: its relative paths are from there
+  const std::string& directory() const {
+    return directory_;
+  }  ///< where the command was planned: its relative paths are from there
 
   std::filesystem::path part(const ClusterTask& task) const { return folder_ / "parts" / (task.name + ".film"); }
   std::filesystem::path result(const ClusterTask& task) const { return folder_ / "done" / (task.name + ".json"); }
   std::filesystem::path log(const ClusterTask& task) const { return folder_ / "logs" / (task.name + ".log"); }
   State state(const ClusterTask& task, double deadAfter) const;
 
-  /// The claim, if the task is to be had: it waits, or was abandoned. Empty where it is done, somebody works on it, or another one was faster.
+  /// The claim, if the task is to be had: it waits, or was abandoned. Empty where it is done, somebody works on it, or
+  /// another one was faster.
   std::optional<std::filesystem::path> claim(const ClusterTask& task, double deadAfter) const;
   /// A sign of life; false where the task was taken up by another one, who took this one for dead.
   bool keep(const std::filesystem::path& claim) const;

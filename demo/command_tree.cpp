@@ -36,10 +36,12 @@ void append(std::vector<CommandEntry>& commands, CLI::App& app, const std::strin
   command.footer = app.get_footer();
   for (CLI::Option* option : app.get_options([](const CLI::Option* o) { return !o->get_group().empty(); }))
     (option->get_positional() ? command.positionals : command.options).push_back(entryOf(*option));
-  const std::vector<CLI::App*> children = app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); });
+  const std::vector<CLI::App*> children =
+      app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); });
   for (const CLI::App* child : children) command.subcommands.emplace_back(child->get_name(), child->get_description());
   commands.push_back(std::move(command));
-  for (CLI::App* child : children) append(commands, *child, path.empty() ? child->get_name() : path + " " + child->get_name());
+  for (CLI::App* child : children)
+    append(commands, *child, path.empty() ? child->get_name() : path + " " + child->get_name());
 }
 
 }  // namespace

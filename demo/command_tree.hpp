@@ -1,4 +1,5 @@
-// The command line as a list of commands, read from CLI11's own tree: what the manual page and the completions are made of.
+// The command line as a list of commands, read from CLI11's own tree: what the manual page and the completions are made
+// of.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,11 +11,11 @@
 namespace lucerna::demo {
 
 struct OptionEntry {
-  std::vector<std::string> names;   ///< "-o", "--output"; of a positional its placeholder alone, such as "SCENE"
+  std::vector<std::string> names;  ///< "-o", "--output"; of a positional its placeholder alone, such as "SCENE"
   std::string description;
-  std::string type;                 ///< TEXT, INT, UINT, FLOAT; empty for a flag
-  std::string range;                ///< what is accepted, as CLI11 says it; empty: not limited
-  std::string defaultValue;         ///< empty: none that is shown
+  std::string type;  ///< TEXT, INT, UINT, FLOAT; empty for a flag
+  std::string range;  ///< what is accepted, as CLI11 says it; empty: not limited
+  std::string defaultValue;  ///< empty: none that is shown
   std::vector<std::string> values;  ///< what completions offer (offers.hpp)
   bool required = false, repeats = false;
 
@@ -34,7 +35,8 @@ struct CommandEntry {
   bool isLeaf() const { return subcommands.empty(); }
 };
 
-/// The program first, then its commands in their order, each followed by its own. What is in no group is hidden and left out.
+/// The program first, then its commands in their order, each followed by its own. What is in no group is hidden and
+/// left out.
 std::vector<CommandEntry> commandTree(CLI::App& program);
 
 /// The subcommands that print it, as commands.hpp has the others.

@@ -18,7 +18,8 @@
 
 namespace lucerna::demo {
 
-/// A subcommand: its options are declared on `app`, its work is returned and run after parsing. It returns the exit code.
+/// A subcommand: its options are declared on `app`, its work is returned and run after parsing. It returns the exit
+/// code.
 using Work = std::function<int()>;
 Work addWalk(CLI::App& app);
 Work addRender(CLI::App& app);
@@ -62,14 +63,17 @@ struct PictureOptions {
 /// "640x360" with both from 1 to 16384; throws Error(badInput) naming the option.
 glm::ivec2 parseSize(const std::string& text);
 
-/// A camera's name, or px,py,pz,tx,ty,tz,fov: position, target, vertical field of view in degrees; empty: the scene's first.
+/// A camera's name, or px,py,pz,tx,ty,tz,fov: position, target, vertical field of view in degrees; empty: the scene's
+/// first.
 Camera chooseCamera(const Scene& scene, const std::string& text);
 
 /// Every key of --set with its meaning and default, for --help and README.
 std::string settingsHelp();
-/// "KEY=VALUE" of --set; a former spelling of the key is a warning. `only`: the settings that cost as much. Throws Error(badInput) with the keys.
+/// "KEY=VALUE" of --set; a former spelling of the key is a warning. `only`: the settings that cost as much. Throws
+/// Error(badInput) with the keys.
 SettingAssignment parseSet(const std::string& assignment, const SettingCost* only = nullptr);
-inline constexpr SettingCost kSolutionCost = SettingCost::solution;  ///< of the settings that a radiosity solution depends on
+inline constexpr SettingCost kSolutionCost =
+    SettingCost::solution;  ///< of the settings that a radiosity solution depends on
 /// Every deviation with its meaning.
 std::string deviationsHelp();
 

@@ -21,8 +21,10 @@ namespace lucerna::demo {
 // ---------------------------------------------------------------------------------------------------- options
 
 void CommonOptions::declare(CLI::App& app) {
-  offer(app.add_option("--host", host, "what creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
-        {"window", "egl", "osmesa"});
+  offer(
+      app.add_option("--host", host,
+                     "what creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
+      {"window", "egl", "osmesa"});
   app.add_option("--json", json, "write machine-readable results to this file");
   app.add_flag("--quiet", quiet, "no warnings, no progress");
 }
@@ -62,10 +64,13 @@ T parseNumber(const std::string& option, const std::string& text, T lowest, T hi
 }  // namespace
 
 std::string settingsHelp() {
-  std::string text = "Settings (--set KEY=VALUE; one that the technique does not read is a warning; lucerna info --settings says more):\n";
+  std::string text =
+      "Settings (--set KEY=VALUE; one that the technique does not read is a warning; lucerna info --settings says "
+      "more):\n";
   for (const Setting& setting : allSettings())
-    text += fmt::format("  {:<22} {}{}; {} (default {})\n", setting.key, setting.unit.empty() ? "" : std::string(setting.unit) + ": ", setting.meaning, allowedValues(setting),
-                        defaultValue(setting));
+    text += fmt::format("  {:<22} {}{}; {} (default {})\n", setting.key,
+                        setting.unit.empty() ? "" : std::string(setting.unit) + ": ", setting.meaning,
+                        allowedValues(setting), defaultValue(setting));
   return text;
 }
 
@@ -90,24 +95,40 @@ SettingAssignment parseSet(const std::string& assignment, const SettingCost* onl
 }
 
 std::string deviationsHelp() {
-  std::string text = "\nDeviations (--deviation NAME=on|off; * are on with --fidelity original, which is thesis; + with demo):\n";
+  std::string text =
+      "\nDeviations (--deviation NAME=on|off; * are on with --fidelity original, which is thesis; + with demo):\n";
   for (const Deviation& deviation : allDeviations())
-    text += fmt::format("{}{} {:<24} {}\n", deviation.inOriginal ? '*' : ' ', deviation.inDemo ? '+' : ' ', deviation.name, deviation.meaning);
+    text += fmt::format("{}{} {:<24} {}\n", deviation.inOriginal ? '*' : ' ', deviation.inDemo ? '+' : ' ',
+                        deviation.name, deviation.meaning);
   return text;
 }
 
 void PictureOptions::declare(CLI::App& app) {
-  const auto offerNames = [](CLI::Option* option, const auto& names) { offer(option, std::vector<std::string>(names.begin(), names.end())); };
-  offerNames(app.add_option("--technique", technique, "direct, rsm, lpv, radiosity or path")->capture_default_str(), namesOf(Technique{}));
-  offerNames(app.add_option("--component", component, "all, direct or indirect")->capture_default_str(), namesOf(Component{}));
-  offerNames(app.add_option("--fidelity", fidelity, "corrected; original: as published; lpv: thesis (original) or demo, the program published with it")->capture_default_str(), namesOf(Fidelity{}));
+  const auto offerNames = [](CLI::Option* option, const auto& names) {
+    offer(option, std::vector<std::string>(names.begin(), names.end()));
+  };
+  offerNames(app.add_option("--technique", technique, "direct, rsm, lpv, radiosity or path")->capture_default_str(),
+             namesOf(Technique{}));
+  offerNames(app.add_option("--component", component, "all, direct or indirect")->capture_default_str(),
+             namesOf(Component{}));
+  offerNames(
+      app.add_option("--fidelity", fidelity,
+                     "corrected; original: as published; lpv: thesis (original) or demo, the program published with it")
+          ->capture_default_str(),
+      namesOf(Fidelity{}));
   std::vector<std::string> switches;
   for (const Deviation& deviation : allDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
-  offer(app.add_option("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated"), switches);
-  app.add_option("--size", size, "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for --fidelity original")->capture_default_str();
+  offer(app.add_option("--deviation", deviations,
+                       "NAME=on|off: one deviation of the published original; may be repeated"),
+        switches);
+  app.add_option("--size", size,
+                 "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for "
+                 "--fidelity original")
+      ->capture_default_str();
   offer(app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated"), offeredSettings());
-  app.add_option("--settings", settingsFile, "a settings file, as written by `lucerna tune`; other options here override it");
+  app.add_option("--settings", settingsFile,
+                 "a settings file, as written by `lucerna tune`; other options here override it");
   app.footer(settingsHelp() + deviationsHelp());
 }
 
@@ -120,7 +141,9 @@ void PictureOptions::readSettingsFile() {
   deviations.insert(deviations.begin(), file.deviations.begin(), file.deviations.end());
   settings.insert(settings.begin(), file.settings.begin(), file.settings.end());
   settingsSpp = file.spp;
-  if (settingsSpp && technique != "path") throwBadInput("--settings {}: key \"spp\": samples per pixel belong to technique path, not to {}", settingsFile, technique);
+  if (settingsSpp && technique != "path")
+    throwBadInput("--settings {}: key \"spp\": samples per pixel belong to technique path, not to {}", settingsFile,
+                  technique);
 }
 
 nlohmann::ordered_json PictureOptions::toJson() const {
@@ -129,21 +152,28 @@ nlohmann::ordered_json PictureOptions::toJson() const {
 
 namespace {
 
-/// The transport where none is named: that of the first setting or deviation that one transport alone reads, else paths, which have all light.
-void chooseTransport(RenderSettings& settings, const PictureOptions& options, const std::vector<const Setting*>& given) {
-  const auto isSet = [&](std::string_view key) { return std::any_of(given.begin(), given.end(), [&](const Setting* s) { return s->key == key; }); };
+/// The transport where none is named: that of the first setting or deviation that one transport alone reads, else
+/// paths, which have all light.
+void chooseTransport(RenderSettings& settings, const PictureOptions& options,
+                     const std::vector<const Setting*>& given) {
+  const auto isSet = [&](std::string_view key) {
+    return std::any_of(given.begin(), given.end(), [&](const Setting* s) { return s->key == key; });
+  };
   if (!isSet("lpv.transport")) {
     settings.lpv.transport = LpvTransport::rays;
-    if (options.fidelity != "corrected" || settings.rsm.fluxCosine || settings.lpv.deviations != LightPropagationVolume::Deviations{})
+    if (options.fidelity != "corrected" || settings.rsm.fluxCosine ||
+        settings.lpv.deviations != LightPropagationVolume::Deviations{})
       settings.lpv.transport = LpvTransport::propagate;
     for (const Setting* setting : given)
       if (const auto transport = onlyTransport(*setting)) {
         settings.lpv.transport = *transport;
-        if (*transport != LpvTransport::rays) logInfo("{}: using lpv.transport={}, the only one that reads it", setting->key, nameOf(*transport));
+        if (*transport != LpvTransport::rays)
+          logInfo("{}: using lpv.transport={}, the only one that reads it", setting->key, nameOf(*transport));
         break;
       }
   }
-  if (!isSet("lpv.bounces") && settings.lpv.transport == LpvTransport::rays) settings.lpv.bounces = LightPropagationVolume::kAllBounces;
+  if (!isSet("lpv.bounces") && settings.lpv.transport == LpvTransport::rays)
+    settings.lpv.bounces = LightPropagationVolume::kAllBounces;
 }
 
 /// The transports of the light propagation volume that read a setting: "propagate", "propagate and rays".
@@ -173,7 +203,9 @@ RenderSettings PictureOptions::parse() const {
   std::string unread;
   for (const Setting* setting : given) {
     if (!isReadBy(*setting, result.technique)) unread += (unread.empty() ? "" : ", ") + std::string(setting->key);
-    else if (!isRead(*setting, result)) logWarning("--set {}: lpv.transport={} does not use it, {} does", setting->key, nameOf(result.lpv.transport), readingTransports(*setting));
+    else if (!isRead(*setting, result))
+      logWarning("--set {}: lpv.transport={} does not use it, {} does", setting->key, nameOf(result.lpv.transport),
+                 readingTransports(*setting));
   }
   if (!unread.empty()) logWarning("--set {}: technique {} does not use it", unread, technique);
   return result;
@@ -182,7 +214,8 @@ RenderSettings PictureOptions::parse() const {
 glm::ivec2 parseSize(const std::string& text) {
   const auto cross = text.find('x');
   if (cross == std::string::npos) throwBadInput("--size {}: expected WIDTHxHEIGHT, such as 640x360", text);
-  return {parseNumber("--size", text.substr(0, cross), 1, 16384), parseNumber("--size", text.substr(cross + 1), 1, 16384)};
+  return {parseNumber("--size", text.substr(0, cross), 1, 16384),
+          parseNumber("--size", text.substr(cross + 1), 1, 16384)};
 }
 
 Camera chooseCamera(const Scene& scene, const std::string& text) {
@@ -197,32 +230,37 @@ Camera chooseCamera(const Scene& scene, const std::string& text) {
     double value = NAN;
     try {
       value = std::stod(part, &used);
-    } catch (const std::exception&) {
-    }
+    } catch (const std::exception&) {}
     if (used == 0 || used != part.size() || !std::isfinite(value)) numbers.clear();
     if (used == 0 || used != part.size() || !std::isfinite(value)) break;
     numbers.push_back(value);
   }
   if (numbers.size() != 7) {
     std::string known;
-    for (const Camera& camera : scene.cameras) known += (known.empty() ? "" : ", ") + (camera.name.empty() ? "default" : camera.name);
+    for (const Camera& camera : scene.cameras)
+      known += (known.empty() ? "" : ", ") + (camera.name.empty() ? "default" : camera.name);
     throwBadInput("--camera {}: neither a camera of the scene ({}) nor px,py,pz,tx,ty,tz,fov", text, known);
   }
   Camera camera;
   camera.position = {numbers[0], numbers[1], numbers[2]};
   const glm::dvec3 view = glm::dvec3(numbers[3], numbers[4], numbers[5]) - camera.position;
   if (glm::length(view) == 0.0) throwBadInput("--camera {}: the target is the position", text);
-  if (!(numbers[6] > 0.0 && numbers[6] < 180.0)) throwBadInput("--camera {}: the field of view is in degrees, above 0 and below 180", text);
+  if (!(numbers[6] > 0.0 && numbers[6] < 180.0))
+    throwBadInput("--camera {}: the field of view is in degrees, above 0 and below 180", text);
   camera.direction = glm::normalize(view);
   camera.up = std::abs(camera.direction.y) < 0.999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
   camera.verticalFov = glm::radians(numbers[6]);
   return camera;
 }
 
-// ---------------------------------------------------------------------------------------------------- progress, interruption
+// ---------------------------------------------------------------------------------------------------- progress,
+// interruption
 
 Progress::Progress(std::string what, int total, bool quiet)
-    : what_(std::move(what)), total_(total), enabled_(!quiet && isatty(STDERR_FILENO)), start_(std::chrono::steady_clock::now()) {}
+    : what_(std::move(what)),
+      total_(total),
+      enabled_(!quiet && isatty(STDERR_FILENO)),
+      start_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() {
   if (drawn_) fmt::print(stderr, "\r\x1b[K");
@@ -234,7 +272,8 @@ void Progress::update(int done) {
   constexpr int kWidth = 30;
   const int filled = total_ > 0 ? kWidth * done / total_ : 0;
   const double rest = done > 0 ? seconds / done * (total_ - done) : 0.0;
-  fmt::print(stderr, "\r{} [{:#<{}}{:-<{}}] {}/{}, {:.0f} s left \x1b[K", what_, "", filled, "", kWidth - filled, done, total_, rest);
+  fmt::print(stderr, "\r{} [{:#<{}}{:-<{}}] {}/{}, {:.0f} s left \x1b[K", what_, "", filled, "", kWidth - filled, done,
+             total_, rest);
   std::fflush(stderr);
   drawn_ = true;
 }
@@ -244,7 +283,8 @@ volatile std::sig_atomic_t g_interrupted = 0;  // the signal
 volatile std::time_t g_interruptedAt = 0;
 
 void onInterrupt(int signal) {
-  // A second Ctrl-C does not wait for the work to end; one that comes with the first (timeout signals a whole group) is the same.
+  // A second Ctrl-C does not wait for the work to end; one that comes with the first (timeout signals a whole group) is
+  // the same.
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   if (g_interrupted && now.tv_sec > g_interruptedAt + 1) std::_Exit(128 + signal);
@@ -268,7 +308,13 @@ int exitCode() { return g_interrupted ? 128 + g_interrupted : 0; }
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const auto& s : stages) {
-    json[s.name] = {{"median_ms", s.medianMs}, {"p95_ms", s.p95Ms}, {"count", s.count}, {"query_median_ms", s.queryMedianMs}, {"ran", s.ran}, {"frames", s.frames}, {"saved_ms", s.savedMs()}};
+    json[s.name] = {{"median_ms", s.medianMs},
+                    {"p95_ms", s.p95Ms},
+                    {"count", s.count},
+                    {"query_median_ms", s.queryMedianMs},
+                    {"ran", s.ran},
+                    {"frames", s.frames},
+                    {"saved_ms", s.savedMs()}};
     if (!std::isnan(s.wallMedianMs)) json[s.name]["wall_median_ms"] = s.wallMedianMs;
   }
   return json;
@@ -277,20 +323,27 @@ nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages
 nlohmann::ordered_json gatherJson(const RsmGather& gather) {
   const RsmGather::Counts& c = gather.counts();
   const auto perFrame = [&](std::uint64_t sum) { return c.frames ? (sum + c.frames / 2) / c.frames : 0; };
-  return {{"refused", perFrame(c.refused)}, {"pixels", perFrame(c.pixels)}, {"gathered", perFrame(c.gathered)}, {"saving", c.saving()}, {"frames", c.frames}};
+  return {{"refused", perFrame(c.refused)},
+          {"pixels", perFrame(c.pixels)},
+          {"gathered", perFrame(c.gathered)},
+          {"saving", c.saving()},
+          {"frames", c.frames}};
 }
 
 std::string gatherLine(const RsmGather& gather) {
   const nlohmann::ordered_json json = gatherJson(gather);
   const auto count = [&](const char* key) { return json.at(key).get<std::uint64_t>(); };
   if (count("frames") == 0) return "";
-  return fmt::format("gathered {} of {} pixels per frame ({} refused by interpolation), {:.1f} % saved\n", count("gathered"), count("pixels"), count("refused"),
-                     100.0 * gather.counts().saving());
+  return fmt::format("gathered {} of {} pixels per frame ({} refused by interpolation), {:.1f} % saved\n",
+                     count("gathered"), count("pixels"), count("refused"), 100.0 * gather.counts().saving());
 }
 
 nlohmann::ordered_json receiversJson(const LpvReceivers& receivers) {
   const LpvReceivers::Counts& c = receivers.counts();
-  return {{"receivers", c.receivers}, {"waiting", c.waiting}, {"without_room", c.left}, {"paths_of_each", receivers.settings().samples}};
+  return {{"receivers", c.receivers},
+          {"waiting", c.waiting},
+          {"without_room", c.left},
+          {"paths_of_each", receivers.settings().samples}};
 }
 
 std::string receiversLine(const LpvReceivers& receivers) {
@@ -302,12 +355,12 @@ std::string receiversLine(const LpvReceivers& receivers) {
 }
 
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer) {
-  std::string text = fmt::format("Stage times on {}\n{:<18}{:>12}{:>12}{:>8}{:>16}{:>16}{:>14}\n", renderer, "stage", "median ms", "95 % ms", "count",
-                                 "query median ms", "ran in frames", "saved ms");
+  std::string text = fmt::format("Stage times on {}\n{:<18}{:>12}{:>12}{:>8}{:>16}{:>16}{:>14}\n", renderer, "stage",
+                                 "median ms", "95 % ms", "count", "query median ms", "ran in frames", "saved ms");
   double total = 0.0, saved = 0.0;
   for (const auto& s : stages) {
-    text += fmt::format("{:<18}{:>12.3f}{:>12.3f}{:>8}{:>16.3f}{:>16}{:>14.3f}\n", s.name, s.medianMs, s.p95Ms, s.count, s.queryMedianMs,
-                        fmt::format("{} of {}", s.ran, s.frames), s.savedMs());
+    text += fmt::format("{:<18}{:>12.3f}{:>12.3f}{:>8}{:>16.3f}{:>16}{:>14.3f}\n", s.name, s.medianMs, s.p95Ms, s.count,
+                        s.queryMedianMs, fmt::format("{} of {}", s.ran, s.frames), s.savedMs());
     total += std::isnan(s.medianMs) ? 0.0 : s.medianMs - s.savedMs();
     saved += s.savedMs();
   }

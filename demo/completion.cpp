@@ -18,7 +18,8 @@ std::string names(const CommandEntry& command) {
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size()) text.replace(at, what.size(), by);
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
   return text;
 }
 
@@ -93,9 +94,12 @@ std::string bashValues(const OptionEntry& option) {
 }
 
 std::string bash(const std::vector<CommandEntry>& commands) {
-  std::string text = "# bash completion for lucerna; made by `lucerna completion bash`.\n\n# The commands of a command.\n_lucerna_commands() {\n  case $1 in\n";
+  std::string text =
+      "# bash completion for lucerna; made by `lucerna completion bash`.\n\n# The commands of a "
+      "command.\n_lucerna_commands() {\n  case $1 in\n";
   for (const CommandEntry& command : commands)
-    if (!command.isLeaf()) text += fmt::format("    {}) echo {} ;;\n", inQuotes(command.path), inQuotes(names(command)));
+    if (!command.isLeaf())
+      text += fmt::format("    {}) echo {} ;;\n", inQuotes(command.path), inQuotes(names(command)));
   text += "  esac\n}\n\n_lucerna_options() {\n  case $1 in\n";
   for (const CommandEntry& command : commands) {
     std::string all;
@@ -107,13 +111,18 @@ std::string bash(const std::vector<CommandEntry>& commands) {
     for (const OptionEntry& option : command.options) {
       if (!option.takesValue()) continue;
       std::string patterns;
-      for (const std::string& name : option.names) patterns += (patterns.empty() ? "" : " | ") + inQuotes(command.path + ":" + name);
+      for (const std::string& name : option.names)
+        patterns += (patterns.empty() ? "" : " | ") + inQuotes(command.path + ":" + name);
       text += fmt::format("    {}) echo {} ;;\n", patterns, inQuotes(bashValues(option)));
     }
-  text += "  esac\n}\n\n# What a positional argument may be, by its number from 0.\n_lucerna_positional() {\n  case \"$1:$2\" in\n";
+  text +=
+      "  esac\n}\n\n# What a positional argument may be, by its number from 0.\n_lucerna_positional() {\n  case "
+      "\"$1:$2\" in\n";
   for (const CommandEntry& command : commands)
     for (std::size_t i = 0; i < command.positionals.size(); ++i)
-      text += fmt::format("    {}{}) echo {} ;;\n", inQuotes(command.path + ":"), command.positionals[i].repeats ? "*" : std::to_string(i), inQuotes(bashValues(command.positionals[i])));
+      text += fmt::format("    {}{}) echo {} ;;\n", inQuotes(command.path + ":"),
+                          command.positionals[i].repeats ? "*" : std::to_string(i),
+                          inQuotes(bashValues(command.positionals[i])));
   return text + "  esac\n}\n" + kBashFunctions;
 }
 
@@ -128,9 +137,13 @@ std::string zshAction(const OptionEntry& option) {
 }
 
 /// Within an argument of _arguments ':' and brackets end a part.
-std::string zshText(const std::string& text) { return replaced(replaced(replaced(replaced(text, "\\", "\\\\"), ":", "\\:"), "[", "\\["), "]", "\\]"); }
+std::string zshText(const std::string& text) {
+  return replaced(replaced(replaced(replaced(text, "\\", "\\\\"), ":", "\\:"), "[", "\\["), "]", "\\]");
+}
 
-std::string zshFunction(const std::string& path) { return "_lucerna" + (path.empty() ? "" : "_" + replaced(path, " ", "_")); }
+std::string zshFunction(const std::string& path) {
+  return "_lucerna" + (path.empty() ? "" : "_" + replaced(path, " ", "_"));
+}
 
 std::string zsh(const std::vector<CommandEntry>& commands) {
   std::string text = "#compdef lucerna\n# zsh completion for lucerna; made by `lucerna completion zsh`.\n";
@@ -142,51 +155,74 @@ std::string zsh(const std::vector<CommandEntry>& commands) {
     const auto add = [&](const std::string& argument) { text += fmt::format(" \\\n    {}", inQuotes(argument)); };
     for (const OptionEntry& option : command.options)
       for (const std::string& name : option.names) {
-        const std::string value = option.takesValue() ? fmt::format(":{}:{}", zshText(option.type), zshAction(option)) : "";
-        add(fmt::format("{}{}{}[{}]{}", option.repeats ? "*" : "", name, value.empty() ? "" : name.starts_with("--") ? "=" : "+",
+        const std::string value =
+            option.takesValue() ? fmt::format(":{}:{}", zshText(option.type), zshAction(option)) : "";
+        add(fmt::format("{}{}{}[{}]{}", option.repeats ? "*" : "", name,
+                        value.empty()            ? ""
+                        : name.starts_with("--") ? "="
+                                                 : "+",
                         zshText(shortened(option.description)), value));
       }
     for (const OptionEntry& positional : command.positionals)
-      add(fmt::format("{}{}:{}", positional.repeats ? "*:" : positional.required ? ":" : "::", zshText(positional.names.front()), zshAction(positional)));
+      add(fmt::format("{}{}:{}",
+                      positional.repeats    ? "*:"
+                      : positional.required ? ":"
+                                            : "::",
+                      zshText(positional.names.front()), zshAction(positional)));
     if (command.isLeaf()) {
       text += "\n}\n";
       continue;
     }
-    text += " \\\n    '1: :->command' \\\n    '*:: :->rest'\n  case $state in\n    command)\n      local -a commands=(\n";
-    for (const auto& [name, description] : command.subcommands) text += "        " + inQuotes(name + ":" + zshText(shortened(description))) + "\n";
+    text +=
+        " \\\n    '1: :->command' \\\n    '*:: :->rest'\n  case $state in\n    command)\n      local -a commands=(\n";
+    for (const auto& [name, description] : command.subcommands)
+      text += "        " + inQuotes(name + ":" + zshText(shortened(description))) + "\n";
     text += "      )\n      _describe command commands ;;\n    rest)\n      case $line[1] in\n";
     for (const auto& [name, description] : command.subcommands)
-      text += fmt::format("        {}) {} ;;\n", name, zshFunction(command.path.empty() ? name : command.path + " " + name));
+      text += fmt::format("        {}) {} ;;\n", name,
+                          zshFunction(command.path.empty() ? name : command.path + " " + name));
     text += "      esac ;;\n  esac\n}\n";
   }
-  return text + "\nif [[ $zsh_eval_context[-1] == loadautofunc ]]; then _lucerna \"$@\"; else compdef _lucerna lucerna; fi\n";
+  return text +
+         "\nif [[ $zsh_eval_context[-1] == loadautofunc ]]; then _lucerna \"$@\"; else compdef _lucerna lucerna; fi\n";
 }
 
 // ---------------------------------------------------------------------------------------------------- fish
 
 /// Fish knows two escapes in single quotes.
-std::string inFishQuotes(const std::string& text) { return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'"; }
+std::string inFishQuotes(const std::string& text) {
+  return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'";
+}
 
 std::string fish(const std::vector<CommandEntry>& commands) {
   std::string paths;
   for (const CommandEntry& command : commands)
     if (!command.path.empty()) paths += " " + inFishQuotes(" " + command.path);
-  std::string text = "# fish completion for lucerna; made by `lucerna completion fish`.\n\n# Whether the words before the cursor are of this command.\nfunction __lucerna_at\n"
-                     "    set -l path ''\n    for word in (commandline -opc)[2..-1]\n        if contains -- \"$path $word\"" +
-                     paths + "\n            set path \"$path $word\"\n        end\n    end\n    test \"$path\" = \"$argv[1]\"\nend\n\n";
+  std::string text =
+      "# fish completion for lucerna; made by `lucerna completion fish`.\n\n# Whether the words before the cursor are "
+      "of this command.\nfunction __lucerna_at\n"
+      "    set -l path ''\n    for word in (commandline -opc)[2..-1]\n        if contains -- \"$path $word\"" +
+      paths +
+      "\n            set path \"$path $word\"\n        end\n    end\n    test \"$path\" = \"$argv[1]\"\nend\n\n";
   for (const CommandEntry& command : commands) {
-    const std::string start = "complete -c lucerna -n " + inFishQuotes("__lucerna_at " + inFishQuotes(command.path.empty() ? "" : " " + command.path));
-    for (const auto& [name, description] : command.subcommands) text += start + " -f -a " + name + " -d " + inFishQuotes(shortened(description)) + "\n";
+    const std::string start =
+        "complete -c lucerna -n " +
+        inFishQuotes("__lucerna_at " + inFishQuotes(command.path.empty() ? "" : " " + command.path));
+    for (const auto& [name, description] : command.subcommands)
+      text += start + " -f -a " + name + " -d " + inFishQuotes(shortened(description)) + "\n";
     for (const OptionEntry& option : command.options) {
       text += start;
-      for (const std::string& name : option.names) text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+      for (const std::string& name : option.names)
+        text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       if (option.takesFile()) text += " -r -F";
       else if (option.takesValue()) text += " -x";
       if (!option.values.empty()) text += " -a " + inFishQuotes(joined(option.values));
       text += " -d " + inFishQuotes(shortened(option.description)) + "\n";
     }
     for (const OptionEntry& positional : command.positionals)
-      if (!positional.values.empty()) text += start + " -a " + inFishQuotes(joined(positional.values)) + " -d " + inFishQuotes(positional.names.front()) + "\n";
+      if (!positional.values.empty())
+        text += start + " -a " + inFishQuotes(joined(positional.values)) + " -d " +
+                inFishQuotes(positional.names.front()) + "\n";
   }
   return text;
 }

@@ -31,14 +31,20 @@ int listDevices(const Options& options) {
     try {
       const auto host = Host::create(HostKind::egl);
       renderer = gl::Context().capabilities().renderer;
-    } catch (const Error& error) {
-      fault = error.what();
-    }
-    fmt::print("{} {:<3}{:<11} {}\n", i == order[0] ? '*' : ' ', i, nameOf(device.kind), renderer.empty() ? fault : renderer);
-    fmt::print("       driver {}, PCI {}, node {}\n", device.driver.empty() ? "unknown" : device.driver, device.pci.empty() ? "none" : device.pci,
-               device.node.empty() ? "none" : device.node);
-    json["devices"].push_back({{"index", i}, {"kind", nameOf(device.kind)}, {"first", i == order[0]}, {"renderer", renderer}, {"fault", fault},
-                               {"driver", device.driver}, {"pci", device.pci}, {"node", device.node}, {"video_bytes", device.videoBytes}});
+    } catch (const Error& error) { fault = error.what(); }
+    fmt::print("{} {:<3}{:<11} {}\n", i == order[0] ? '*' : ' ', i, nameOf(device.kind),
+               renderer.empty() ? fault : renderer);
+    fmt::print("       driver {}, PCI {}, node {}\n", device.driver.empty() ? "unknown" : device.driver,
+               device.pci.empty() ? "none" : device.pci, device.node.empty() ? "none" : device.node);
+    json["devices"].push_back({{"index", i},
+                               {"kind", nameOf(device.kind)},
+                               {"first", i == order[0]},
+                               {"renderer", renderer},
+                               {"fault", fault},
+                               {"driver", device.driver},
+                               {"pci", device.pci},
+                               {"node", device.node},
+                               {"video_bytes", device.videoBytes}});
   }
   if (devices.empty()) fmt::print("  none: EGL is missing or enumerates no devices\n");
   options.common.writeJson(json);
@@ -60,8 +66,8 @@ int run(const Options& options) {
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   const gl::Capabilities& c = context.capabilities();
-  fmt::print("lucerna {}\nhost        {}\nrenderer    {}\nvendor      {}\nOpenGL      {}\nGLSL        {}\n", LUCERNA_VERSION, nameOf(host->kind()),
-             c.renderer, c.vendor, c.version, c.shadingLanguage);
+  fmt::print("lucerna {}\nhost        {}\nrenderer    {}\nvendor      {}\nOpenGL      {}\nGLSL        {}\n",
+             LUCERNA_VERSION, nameOf(host->kind()), c.renderer, c.vendor, c.version, c.shadingLanguage);
   json["host"] = nameOf(host->kind());
   json["renderer"] = c.renderer;
   json["vendor"] = c.vendor;
@@ -79,11 +85,13 @@ int run(const Options& options) {
   }
   if (scene) {
     const glm::dvec3 low = scene->bounds.min, high = scene->bounds.max;
-    fmt::print("\nscene {}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n", scene->file.string(), "triangles", scene->triangleCount(), "vertices",
-               scene->vertices.size(), "meshes", scene->meshes.size(), "materials", scene->materials.size(), "textures", scene->textures.size());
-    fmt::print("  {:<32}{} ({} of zero area)\n", "left out, not finite", scene->droppedTriangles, scene->degenerateTriangles);
-    fmt::print("  {:<32}({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), {:.6g} m a unit\n", "bounds", low.x, low.y, low.z, high.x, high.y, high.z,
-               scene->metresPerUnit);
+    fmt::print("\nscene {}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n", scene->file.string(),
+               "triangles", scene->triangleCount(), "vertices", scene->vertices.size(), "meshes", scene->meshes.size(),
+               "materials", scene->materials.size(), "textures", scene->textures.size());
+    fmt::print("  {:<32}{} ({} of zero area)\n", "left out, not finite", scene->droppedTriangles,
+               scene->degenerateTriangles);
+    fmt::print("  {:<32}({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), {:.6g} m a unit\n", "bounds", low.x,
+               low.y, low.z, high.x, high.y, high.z, scene->metresPerUnit);
     for (const Camera& camera : scene->cameras)
       fmt::print("  {:<32}{}\n", "camera", camera.name.empty() ? "default" : camera.name);
     json["scene"] = scene->file.string();
@@ -111,7 +119,8 @@ Work addInfo(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...");
   app.add_flag("--devices", options->devices, "list EGL's devices and mark the one that is tried first");
-  app.add_flag("--settings", options->settings, "print every setting and deviation, with ranges, defaults, units and sources (docs/settings.md)");
+  app.add_flag("--settings", options->settings,
+               "print every setting and deviation, with ranges, defaults, units and sources (docs/settings.md)");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

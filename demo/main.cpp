@@ -37,14 +37,16 @@ int flushed(int code) {
   return code != 0 ? code : static_cast<int>(lucerna::ErrorKind::missingCapability);
 }
 
-/// One kind in one place: numbers of options that are not finite, or beyond any use, are refused before a command sees them.
+/// One kind in one place: numbers of options that are not finite, or beyond any use, are refused before a command sees
+/// them.
 void checkNumbers(const CLI::App& app) {
   constexpr double kMost = 1e12;
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
     for (const std::string& text : option->results()) {
       const double value = std::strtod(text.c_str(), nullptr);
-      if (!(std::abs(value) <= kMost)) lucerna::throwBadInput("{}: '{}' is not a number from {:g} to {:g}", option->get_name(), text, -kMost, kMost);
+      if (!(std::abs(value) <= kMost))
+        lucerna::throwBadInput("{}: '{}' is not a number from {:g} to {:g}", option->get_name(), text, -kMost, kMost);
     }
   }
   for (const CLI::App* command : app.get_subcommands()) checkNumbers(*command);
@@ -61,16 +63,20 @@ int main(int argc, char** argv) {
     CLI::App* command = app.add_subcommand(name, description);
     commands.emplace_back(command, declare(*command));
   };
-  add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times", lucerna::demo::addWalk);
+  add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times",
+      lucerna::demo::addWalk);
   add("render", "Render one picture of a scene", lucerna::demo::addRender);
   add("merge", "Parts of a path traced picture's samples (render --samples) as one picture", lucerna::demo::addMerge);
-  add("cluster", "A path traced picture by many machines: a folder that they share, Slurm, or this machine alone", lucerna::demo::addCluster);
+  add("cluster", "A path traced picture by many machines: a folder that they share, Slurm, or this machine alone",
+      lucerna::demo::addCluster);
   add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
   add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
   add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL", lucerna::demo::addMedia);
-  add("bench", "Measure: error over time, stability, what is left out; published tables and pictures made again", lucerna::demo::addBench);
+  add("bench", "Measure: error over time, stability, what is left out; published tables and pictures made again",
+      lucerna::demo::addBench);
   add("compare", "Errors between two HDR pictures, with heat maps", lucerna::demo::addCompare);
-  add("tune", "Measure a scene, and choose the technique and settings that meet a frame time or an error", lucerna::demo::addTune);
+  add("tune", "Measure a scene, and choose the technique and settings that meet a frame time or an error",
+      lucerna::demo::addTune);
   add("lab", "Teaching labs that check and grade themselves", lucerna::demo::addLab);
   add("completion", "Print a completion script for a shell", lucerna::demo::addCompletion);
   add("manual", "Print the manual page, in roff", lucerna::demo::addManual);

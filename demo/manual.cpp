@@ -1,4 +1,5 @@
-// lucerna manual: the manual page lucerna(1) in roff, from the command line's own tree; man(7) says what the requests do.
+// lucerna manual: the manual page lucerna(1) in roff, from the command line's own tree; man(7) says what the requests
+// do.
 #include "command_tree.hpp"
 
 #include <fmt/core.h>
@@ -11,7 +12,8 @@ namespace lucerna::demo {
 
 namespace {
 
-/// Text that roff takes for text: no escapes, no requests at the beginning of a line, hyphens that can be searched for and copied.
+/// Text that roff takes for text: no escapes, no requests at the beginning of a line, hyphens that can be searched for
+/// and copied.
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -31,11 +33,14 @@ std::string bold(const std::string& text) { return "\\fB" + escaped(text) + "\\f
 std::string italic(const std::string& text) { return "\\fI" + escaped(text) + "\\fR"; }
 
 /// A tagged paragraph: the tag is roff, the text is plain.
-std::string tagged(const std::string& tag, const std::string& text) { return ".TP\n" + tag + "\n" + escaped(text) + "\n"; }
+std::string tagged(const std::string& tag, const std::string& text) {
+  return ".TP\n" + tag + "\n" + escaped(text) + "\n";
+}
 
 std::string optionText(const OptionEntry& option, bool positional) {
   std::string tag;
-  for (const std::string& name : option.names) tag += (tag.empty() ? "" : ", ") + (positional ? italic(name) : bold(name));
+  for (const std::string& name : option.names)
+    tag += (tag.empty() ? "" : ", ") + (positional ? italic(name) : bold(name));
   if (!positional && option.takesValue()) tag += " " + italic(option.type);
   std::string details;
   if (!option.range.empty()) details = option.range;
@@ -63,7 +68,9 @@ std::string footerText(const std::string& footer) {
     const bool entry = line.starts_with("  ") || line.starts_with("* ");
     const auto end = entry ? line.find(' ', 2) : std::string::npos;
     if (end == std::string::npos) text += ".PP\n" + escaped(line) + "\n";
-    else text += tagged((line[0] == '*' ? "* " : "") + bold(line.substr(2, end - 2)), line.substr(line.find_first_not_of(' ', end)));
+    else
+      text += tagged((line[0] == '*' ? "* " : "") + bold(line.substr(2, end - 2)),
+                     line.substr(line.find_first_not_of(' ', end)));
   }
   return text;
 }
@@ -75,11 +82,15 @@ bool isCommon(const OptionEntry& option) {
 }
 
 const char* kEnvironment[][2] = {
-    {"LUCERNA_DATA", "The folder that holds shaders, assets and keyFrames. Without it: share/lucerna beside the executable, ../share/lucerna, then lucerna "
-                     "in the folders of XDG_DATA_DIRS."},
+    {"LUCERNA_DATA",
+     "The folder that holds shaders, assets and keyFrames. Without it: share/lucerna beside the executable, "
+     "../share/lucerna, then lucerna "
+     "in the folders of XDG_DATA_DIRS."},
     {"LUCERNA_SHADERS", "Another folder of shaders, for example while editing them."},
     {"LUCERNA_REFERENCES", "Where path-traced references are cached (default: lucerna in XDG_CACHE_HOME or ~/.cache)."},
-    {"LUCERNA_DUMP_PROGRAMS", "A folder for the sources of all shader programs and their driver requirements, for validators and other compilers."},
+    {"LUCERNA_DUMP_PROGRAMS",
+     "A folder for the sources of all shader programs and their driver requirements, for validators and other "
+     "compilers."},
     {"LUCERNA_GL_MINIMA", "1: the driver's limits are treated as the minima that OpenGL 4.3 guarantees, for testing."},
     {"LUCERNA_VERBOSE", "If not empty: more messages on standard error."},
     {"DISPLAY, WAYLAND_DISPLAY", "If one of them is set, walk opens a window."},
@@ -96,16 +107,23 @@ const char* kExitCodes[][2] = {
 std::string manual(CLI::App& program) {
   const std::vector<CommandEntry> commands = commandTree(program);
   // The date of the release, not of the build: the same sources give the same page.
-  std::string text = fmt::format(".\\\" Made by `lucerna manual` from the command line's own tree.\n.TH LUCERNA 1 {} \"lucerna {}\" \"User Commands\"\n",
-                                 LUCERNA_RELEASE_DATE, LUCERNA_VERSION);
+  std::string text = fmt::format(
+      ".\\\" Made by `lucerna manual` from the command line's own tree.\n.TH LUCERNA 1 {} \"lucerna {}\" \"User "
+      "Commands\"\n",
+      LUCERNA_RELEASE_DATE, LUCERNA_VERSION);
   text += ".SH NAME\nlucerna \\- real\\-time global illumination, measured\n.SH SYNOPSIS\n.nf\n";
   for (const CommandEntry& command : commands)
     if (command.isLeaf()) text += synopsis(command) + "\n";
-  text += ".fi\n.SH DESCRIPTION\n" + escaped(
-      "Lucerna is an OpenGL 4.3 demo engine for real-time global illumination. It walks through a scene, renders pictures of it by light propagation volumes, "
-      "reflective shadow maps, radiosity and path tracing, and measures each technique's time and error. No GPU is required: Mesa's software renderer is enough.") + "\n";
+  text += ".fi\n.SH DESCRIPTION\n" +
+          escaped(
+              "Lucerna is an OpenGL 4.3 demo engine for real-time global illumination. It walks through a scene, "
+              "renders pictures of it by light propagation volumes, "
+              "reflective shadow maps, radiosity and path tracing, and measures each technique's time and error. No "
+              "GPU is required: Mesa's software renderer is enough.") +
+          "\n";
   text += ".SH OPTIONS OF EVERY COMMAND\n";
-  const auto walk = std::find_if(commands.begin(), commands.end(), [](const CommandEntry& c) { return c.path == "walk"; });
+  const auto walk =
+      std::find_if(commands.begin(), commands.end(), [](const CommandEntry& c) { return c.path == "walk"; });
   for (const OptionEntry& option : walk->options)
     if (isCommon(option)) text += optionText(option, false);
   text += ".SH COMMANDS\n";
@@ -118,18 +136,21 @@ std::string manual(CLI::App& program) {
       if (!isCommon(option)) text += optionText(option, false);
     if (command.footer.empty()) continue;
     const auto [known, isNew] = footers.emplace(command.footer, command.path);
-    text += isNew ? footerText(command.footer) : ".PP\nSettings and deviations are those of " + bold("lucerna " + known->second) + ".\n";
+    text += isNew ? footerText(command.footer)
+                  : ".PP\nSettings and deviations are those of " + bold("lucerna " + known->second) + ".\n";
   }
   text += ".SH ENVIRONMENT\n";
   for (const auto& [name, meaning] : kEnvironment) text += tagged(bold(name), meaning);
   text += ".SH EXIT STATUS\n";
   for (const auto& [code, meaning] : kExitCodes) text += tagged(bold(code), meaning);
-  text += ".SH FILES\n" + tagged(italic("share/lucerna/assets"), "Scenes that come with the program.") +
-          tagged(italic("share/lucerna/shaders"), "The shaders; REFERENCES.md lists the published work they implement.") +
-          tagged(italic("share/lucerna/keyFrames"), "Camera paths.");
+  text +=
+      ".SH FILES\n" + tagged(italic("share/lucerna/assets"), "Scenes that come with the program.") +
+      tagged(italic("share/lucerna/shaders"), "The shaders; REFERENCES.md lists the published work they implement.") +
+      tagged(italic("share/lucerna/keyFrames"), "Camera paths.");
   text += ".SH EXAMPLES\n.nf\n";
-  for (const char* example : {"lucerna walk", "lucerna walk my_scene.obj --record out --frames 12 --size 640x360",
-                              "lucerna render my_scene.obj --technique path --spp 64 -o picture.exr", "lucerna bench error --out report"})
+  for (const char* example :
+       {"lucerna walk", "lucerna walk my_scene.obj --record out --frames 12 --size 640x360",
+        "lucerna render my_scene.obj --technique path --spp 64 -o picture.exr", "lucerna bench error --out report"})
     text += escaped(example) + "\n";
   return text + ".fi\n";
 }

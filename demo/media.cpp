@@ -1,4 +1,5 @@
-// lucerna media list|draft: the catalogue of participating media, and a scene JSON of the VPT original drafted from an MTL.
+// lucerna media list|draft: the catalogue of participating media, and a scene JSON of the VPT original drafted from an
+// MTL.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "commands.hpp"
@@ -30,12 +31,20 @@ int list(const Options& options) {
   nlohmann::ordered_json json;
   json["unit"] = "1/mm";
   json["media"] = nlohmann::ordered_json::array();
-  fmt::print("{:<35}{:<28}{:<30}{:<20}{:<6}{:<28}{:<28}{}\n", "medium", "sigma_s R G B, 1/mm", "sigma_a R G B, 1/mm", "g R G B", "ior", "albedo R G B", "mean free path, mm", "source");
+  fmt::print("{:<35}{:<28}{:<30}{:<20}{:<6}{:<28}{:<28}{}\n", "medium", "sigma_s R G B, 1/mm", "sigma_a R G B, 1/mm",
+             "g R G B", "ior", "albedo R G B", "mean free path, mm", "source");
   for (const CatalogueMedium& m : mediaCatalogue()) {
-    fmt::print("{:<35}{:<28}{:<30}{:<20}{:<6g}{:<28}{:<28}{}\n", m.name, triple(m.scattering), triple(m.absorption), triple(m.anisotropy), m.ior, triple(m.albedo()),
-               triple(m.meanFreePath()), m.source);
-    json["media"].push_back({{"name", m.name}, {"sigma_s", array(m.scattering)}, {"sigma_a", array(m.absorption)}, {"g", array(m.anisotropy)}, {"ior", m.ior},
-                             {"albedo", array(m.albedo())}, {"mean_free_path", array(m.meanFreePath())}, {"published", m.published}, {"source", m.source}});
+    fmt::print("{:<35}{:<28}{:<30}{:<20}{:<6g}{:<28}{:<28}{}\n", m.name, triple(m.scattering), triple(m.absorption),
+               triple(m.anisotropy), m.ior, triple(m.albedo()), triple(m.meanFreePath()), m.source);
+    json["media"].push_back({{"name", m.name},
+                             {"sigma_s", array(m.scattering)},
+                             {"sigma_a", array(m.absorption)},
+                             {"g", array(m.anisotropy)},
+                             {"ior", m.ior},
+                             {"albedo", array(m.albedo())},
+                             {"mean_free_path", array(m.meanFreePath())},
+                             {"published", m.published},
+                             {"source", m.source}});
   }
   options.common.writeJson(json);
   return 0;
@@ -64,7 +73,8 @@ Work addMedia(CLI::App& app) {
   CLI::App* listApp = app.add_subcommand("list", "The catalogue: the original's twelve media and 27 measured liquids");
   options->common.declare(*listApp);
   CLI::App* draftApp = app.add_subcommand("draft", "Draft the original's scene JSON from an MTL, to be edited");
-  draftApp->add_option("MTL", options->mtl, "the material library; an OBJ of the same stem gives camera and light")->required();
+  draftApp->add_option("MTL", options->mtl, "the material library; an OBJ of the same stem gives camera and light")
+      ->required();
   draftApp->add_option("-o,--output", options->output, "FILE.json (default: standard output)");
   options->common.declare(*draftApp);
   return [options, listApp] { return listApp->parsed() ? list(*options) : draft(*options); };

@@ -32,7 +32,8 @@ int run(Options options) {
   }
   if (options.parts.empty()) throwBadInput("merge: no parts were given");
   for (const std::string* file : {&options.output, &options.errorOutput})
-    if (!file->empty() && !isWritableImageName(*file)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", *file);
+    if (!file->empty() && !isWritableImageName(*file))
+      throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", *file);
   // In the order of their samples, one in memory at a time.
   std::vector<std::pair<std::uint32_t, std::string>> parts;
   for (const std::string& part : options.parts) parts.emplace_back(firstSampleOf(part), part);
@@ -44,20 +45,25 @@ int run(Options options) {
   const Image image = film.picture();
   if (lowerExtension(options.output) == ".png")
     writePng(options.output, toneMapped(image, static_cast<float>(options.exposure)));
-  else
-    writeImage(options.output, image);
+  else writeImage(options.output, image);
   if (!options.errorOutput.empty()) writeImage(options.errorOutput, film.standardError());
   if (!options.checkpoint.empty()) writeFileAtomically(options.checkpoint, bytesOf(film));
   if (!options.common.quiet)
-    fmt::print("{}: {}x{}, {} parts, samples {} to {}, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} ({:.3g} of the mean)\n", options.output, image.width, image.height,
-               merge.films(), film.first, film.first + film.mean.front().w - 1, statistics.mean.x, statistics.mean.y, statistics.mean.z, statistics.standardError, statistics.relativeError);
-  const auto finiteOrNull = [](double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr); };
+    fmt::print(
+        "{}: {}x{}, {} parts, samples {} to {}, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} "
+        "({:.3g} of the mean)\n",
+        options.output, image.width, image.height, merge.films(), film.first, film.first + film.mean.front().w - 1,
+        statistics.mean.x, statistics.mean.y, statistics.mean.z, statistics.standardError, statistics.relativeError);
+  const auto finiteOrNull = [](double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+  };
   nlohmann::ordered_json json;
   json["parts"] = options.parts;
   json["samples"] = {film.first, film.first + film.mean.front().w};
   json["size"] = {image.width, image.height};
   json["mean"] = {statistics.mean.x, statistics.mean.y, statistics.mean.z};
-  json["mean_standard_error"] = {finiteOrNull(statistics.meanError.x), finiteOrNull(statistics.meanError.y), finiteOrNull(statistics.meanError.z)};
+  json["mean_standard_error"] = {finiteOrNull(statistics.meanError.x), finiteOrNull(statistics.meanError.y),
+                                 finiteOrNull(statistics.meanError.z)};
   json["spp"] = statistics.samples;
   json["standard_error"] = finiteOrNull(statistics.standardError);
   json["relative_error"] = finiteOrNull(statistics.relativeError);
@@ -69,11 +75,15 @@ int run(Options options) {
 
 Work addMerge(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("PART", options->parts, "films that render --samples FIRST:LAST --checkpoint PART made, of one scene and with one setting, in any order");
+  app.add_option(
+      "PART", options->parts,
+      "films that render --samples FIRST:LAST --checkpoint PART made, of one scene and with one setting, in any order");
   app.add_option("--parts", options->folder, "a folder: all its files that end in .film");
-  app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")->required();
+  app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")
+      ->required();
   app.add_option("--error", options->errorOutput, "OUT.{hdr,exr,pfm}: the standard error of each pixel");
-  app.add_option("--checkpoint", options->checkpoint, "the film of all parts, from which render --checkpoint goes on where they begin with sample 0");
+  app.add_option("--checkpoint", options->checkpoint,
+                 "the film of all parts, from which render --checkpoint goes on where they begin with sample 0");
   app.add_option("--exposure", options->exposure, "of a png")->capture_default_str();
   options->common.declare(app);
   return [options] { return run(*options); };

@@ -1,4 +1,5 @@
-// The values are the description of a validator that is never active: CLI11 has no other place in an option for what its users add.
+// The values are the description of a validator that is never active: CLI11 has no other place in an option for what
+// its users add.
 #include "offers.hpp"
 
 #include <sstream>
@@ -33,8 +34,7 @@ std::vector<std::string> offered(CLI::Option& option) {
   try {
     std::istringstream text(std::as_const(*option.get_validator(kName)).active(true).get_description());
     for (std::string value; text >> value;) values.push_back(value);
-  } catch (const CLI::OptionNotFound&) {
-  }
+  } catch (const CLI::OptionNotFound&) {}
   return values;
 }
 

@@ -1,4 +1,5 @@
-// What completions offer for the values of an option: kept in the command line's own tree, seen neither by help nor by parsing.
+// What completions offer for the values of an option: kept in the command line's own tree, seen neither by help nor by
+// parsing.
 #pragma once
 
 #include "settings/settings.hpp"

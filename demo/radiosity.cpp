@@ -1,4 +1,5 @@
-// lucerna radiosity generate|solve|show: the three programs of the radiosity original, on its own file format and on any mesh.
+// lucerna radiosity generate|solve|show: the three programs of the radiosity original, on its own file format and on
+// any mesh.
 #include "radiosity.hpp"
 
 #include "base/error.hpp"
@@ -20,23 +21,34 @@ namespace {
 
 struct Generate {
   CommonOptions common;
-  std::string file, model;      // 1, 2, 3, or a scene file
+  std::string file, model;  // 1, 2, 3, or a scene file
   std::vector<double> numbers;  // threshold, reflectance, light power; all or none
-  std::optional<double> edge;   // of a scene's triangles
+  std::optional<double> edge;  // of a scene's triangles
   std::uint32_t power = RadSceneSettings{}.lightPower;
 };
 
 int generateFromScene(const Generate& options) {
-  if (!options.numbers.empty()) throwBadInput("{}: AREA_THRESHOLD REFLECTANCE LIGHT_POWER are of the models 1 to 3; a scene has --edge and --power, and its own reflectances", options.numbers[0]);
-  if (options.power < 1 || options.power > kRadMost) throwBadInput("--power {}: expected 1 to {} (24 bits)", options.power, kRadMost);
+  if (!options.numbers.empty())
+    throwBadInput(
+        "{}: AREA_THRESHOLD REFLECTANCE LIGHT_POWER are of the models 1 to 3; a scene has --edge and --power, and its "
+        "own reflectances",
+        options.numbers[0]);
+  if (options.power < 1 || options.power > kRadMost)
+    throwBadInput("--power {}: expected 1 to {} (24 bits)", options.power, kRadMost);
   const Scene scene = loadScene(options.model);
   const RadScene made = radTrianglesOf(scene, {options.edge.value_or(0.0), options.power});
   if (scene.sun || !scene.spots.empty() || !scene.points.empty() || scene.environment)
-    logWarning("{}: the original's files have no other lights than triangles that emit: its sun, lamps and environment are left out", options.model);
+    logWarning(
+        "{}: the original's files have no other lights than triangles that emit: its sun, lamps and environment are "
+        "left out",
+        options.model);
   writeRadFile(options.file, made.triangles);
   if (!options.common.quiet)
-    fmt::print("{}: {}, {} triangles with edges of at most {:.6g} units ({} sources, the brightest of power {}), a step of e and b is {:.6g} W per square unit, {} bytes\n", options.file, options.model,
-               made.triangles.size(), made.longestEdge, made.sources, options.power, made.exitanceOfStep, 4 + made.triangles.size() * sizeof(RadTriangle));
+    fmt::print(
+        "{}: {}, {} triangles with edges of at most {:.6g} units ({} sources, the brightest of power {}), a step of e "
+        "and b is {:.6g} W per square unit, {} bytes\n",
+        options.file, options.model, made.triangles.size(), made.longestEdge, made.sources, options.power,
+        made.exitanceOfStep, 4 + made.triangles.size() * sizeof(RadTriangle));
   nlohmann::ordered_json json;
   json["file"] = options.file;
   json["scene"] = options.model;
@@ -57,7 +69,9 @@ int generate(const Generate& options) {
   const int model = options.model.size() > 9 ? 0 : std::stoi(options.model);
   RadModelSettings settings;
   if (!options.numbers.empty()) {
-    if (options.numbers.size() != 3) throwBadInput("AREA_THRESHOLD REFLECTANCE LIGHT_POWER: {} given, expected all three or none", options.numbers.size());
+    if (options.numbers.size() != 3)
+      throwBadInput("AREA_THRESHOLD REFLECTANCE LIGHT_POWER: {} given, expected all three or none",
+                    options.numbers.size());
     settings.areaThreshold = options.numbers[0];
     settings.reflectance = options.numbers[1];
     double power = options.numbers[2];
@@ -66,7 +80,8 @@ int generate(const Generate& options) {
       logWarning("LIGHT_POWER 16777216: does not fit into 24 bits; using {}", kRadMost);
       power = kRadMost;
     }
-    if (!(power >= 0.0 && power <= kRadMost)) throwBadInput("LIGHT_POWER {}: expected 0 to {} (24 bits)", power, kRadMost);
+    if (!(power >= 0.0 && power <= kRadMost))
+      throwBadInput("LIGHT_POWER {}: expected 0 to {} (24 bits)", power, kRadMost);
     if (power != std::floor(power)) throwBadInput("LIGHT_POWER {}: expected a whole number", power);
     settings.lightPower = static_cast<std::uint32_t>(power);
   }
@@ -76,8 +91,9 @@ int generate(const Generate& options) {
   double area = 0.0;
   for (const RadTriangle& t : triangles) area += areaOf(t);
   if (!options.common.quiet)
-    fmt::print("{}: model {}, {} triangles below {} square units ({} sources of power {}), reflectance {}, {} bytes\n", options.file, model, triangles.size(),
-               settings.areaThreshold, sources, settings.lightPower, settings.reflectance, 4 + triangles.size() * sizeof(RadTriangle));
+    fmt::print("{}: model {}, {} triangles below {} square units ({} sources of power {}), reflectance {}, {} bytes\n",
+               options.file, model, triangles.size(), settings.areaThreshold, sources, settings.lightPower,
+               settings.reflectance, 4 + triangles.size() * sizeof(RadTriangle));
   nlohmann::ordered_json json;
   json["file"] = options.file;
   json["model"] = model;
@@ -94,11 +110,20 @@ int generate(const Generate& options) {
 Work addGenerate(CLI::App& app) {
   auto options = std::make_shared<Generate>();
   app.add_option("FILE", options->file, "the triangle file to write")->required();
-  offer(app.add_option("MODEL", options->model, "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle; or a scene file: OBJ, glTF, PLY, ...")->required(), {"1", "2", "3"});
-  app.add_option("NUMBERS", options->numbers, "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until smaller than the area; 0 to 1; 0 to 16777215")
+  offer(app.add_option("MODEL", options->model,
+                       "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle; or a "
+                       "scene file: OBJ, glTF, PLY, ...")
+            ->required(),
+        {"1", "2", "3"});
+  app.add_option("NUMBERS", options->numbers,
+                 "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until smaller than "
+                 "the area; 0 to 1; 0 to 16777215")
       ->expected(0, 3);
-  app.add_option("--edge", options->edge, "of a scene: longest edge of the triangles in scene units (a 12th of the scene)")->check(CLI::PositiveNumber);
-  app.add_option("--power", options->power, "of a scene: e of its brightest triangle, 1 to 16777215")->capture_default_str();
+  app.add_option("--edge", options->edge,
+                 "of a scene: longest edge of the triangles in scene units (a 12th of the scene)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--power", options->power, "of a scene: e of its brightest triangle, 1 to 16777215")
+      ->capture_default_str();
   app.footer("As published: lucerna radiosity generate model1.out 1 2.5 0.15 100000");
   options->common.declare(app);
   return [options] { return generate(*options); };
@@ -106,62 +131,96 @@ Work addGenerate(CLI::App& app) {
 
 int solve(const RadiositySolve& options) {
   options.common.apply();
-  if (options.resolution < 2 || options.resolution > 4096) throwBadInput("RESOLUTION {}: expected 2 to 4096 pixels", options.resolution);
+  if (options.resolution < 2 || options.resolution > 4096)
+    throwBadInput("RESOLUTION {}: expected 2 to 4096 pixels", options.resolution);
   if (options.maxSweeps < 0) throwBadInput("--max-sweeps {}: expected 0 (no limit) or more", options.maxSweeps);
   checkWritable(options.out);
   if (!(options.saveEvery >= 0.0)) throwBadInput("--save-every {}: expected seconds, 0 or more", options.saveEvery);
-  if (options.nearPlane && !(*options.nearPlane > 0.0 && std::isfinite(*options.nearPlane))) throwBadInput("--near-plane {}: expected a distance above 0", *options.nearPlane);
-  if (options.fidelity == "original" && !options.set.empty()) throwBadInput("--set {}: the published program has no such settings", options.set.front());
+  if (options.nearPlane && !(*options.nearPlane > 0.0 && std::isfinite(*options.nearPlane)))
+    throwBadInput("--near-plane {}: expected a distance above 0", *options.nearPlane);
+  if (options.fidelity == "original" && !options.set.empty())
+    throwBadInput("--set {}: the published program has no such settings", options.set.front());
   if (options.fidelity == "original")
     for (const auto& [option, assignment] : options.shortSettings)
-      if (option == "--visibility") throwBadInput("--visibility {}: only with --fidelity corrected; the published program draws colours", assignment.substr(assignment.find('=') + 1));
+      if (option == "--visibility")
+        throwBadInput("--visibility {}: only with --fidelity corrected; the published program draws colours",
+                      assignment.substr(assignment.find('=') + 1));
   if (options.fidelity == "original") return solveOriginal(options);
-  if (options.fidelity != "corrected") throwBadInput("--fidelity {}: unknown; expected one of corrected, original", options.fidelity);
+  if (options.fidelity != "corrected")
+    throwBadInput("--fidelity {}: unknown; expected one of corrected, original", options.fidelity);
   return solveCorrected(options);
 }
 
 std::string radiosityDeviationsHelp() {
   std::string text = "Deviations (--deviation NAME=on|off; all are on with --fidelity original):\n";
-  for (const RadiosityDeviation& deviation : allRadiosityDeviations()) text += fmt::format("  {:<24} {}\n", deviation.name, deviation.meaning);
+  for (const RadiosityDeviation& deviation : allRadiosityDeviations())
+    text += fmt::format("  {:<24} {}\n", deviation.name, deviation.meaning);
   return text;
 }
 
 Work addSolve(CLI::App& app) {
   auto options = std::make_shared<RadiositySolve>();
   app.add_option("IN", options->in, "a triangle file; corrected: or any scene")->required();
-  app.add_option("OUT", options->out, "file that every sweep is saved to; may be IN. Ctrl-C stops at any time, the same command resumes")->required();
+  app.add_option("OUT", options->out,
+                 "file that every sweep is saved to; may be IN. Ctrl-C stops at any time, the same command resumes")
+      ->required();
   // Options that are shorter spellings of settings; the original reads some of them itself.
   auto shorter = std::make_shared<std::vector<std::pair<const char*, const CLI::Option*>>>();
   const auto shortFor = [&](const char* key, CLI::Option* option) {
     shorter->emplace_back(key, option);
     return option;
   };
-  shortFor("radiosity.resolution", app.add_option("RESOLUTION", options->resolution, "pixels per side of a hemicube's face (original 500, corrected 64)"));
-  offer(app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str(), {"corrected", "original"});
-  offer(shortFor("radiosity.solver", app.add_option("--solver", options->solver, "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, progressive, overshoot, anderson, per-room, cg")),
+  shortFor("radiosity.resolution", app.add_option("RESOLUTION", options->resolution,
+                                                  "pixels per side of a hemicube's face (original 500, corrected 64)"));
+  offer(app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str(),
+        {"corrected", "original"});
+  offer(shortFor("radiosity.solver",
+                 app.add_option("--solver", options->solver,
+                                "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, "
+                                "progressive, overshoot, anderson, per-room, cg")),
         {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "per-room", "cg"});
   std::vector<std::string> switches;
   for (const RadiosityDeviation& deviation : allRadiosityDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
-  offer(app.add_option("--deviation", options->deviations, "NAME=on|off: one deviation of the published original; may be repeated"), switches);
-  shortFor("radiosity.products", app.add_option("--max-sweeps", options->maxSweeps, "stop after this many sweeps (0: when nothing changes)")->capture_default_str());
+  offer(app.add_option("--deviation", options->deviations,
+                       "NAME=on|off: one deviation of the published original; may be repeated"),
+        switches);
+  shortFor("radiosity.products",
+           app.add_option("--max-sweeps", options->maxSweeps, "stop after this many sweeps (0: when nothing changes)")
+               ->capture_default_str());
   app.add_option("--near-plane", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
-  app.add_option_function<double>("--near", [options](double distance) {
-    logWarning("--near: now written --near-plane");
-    options->nearPlane = distance;
-  })->group("");
-  shortFor("radiosity.seed", app.add_option("--seed", options->seed, "of the random roll with radiosity.fixed-orientation=off")->capture_default_str());
-  app.add_option("--save-every", options->saveEvery, "seconds between checkpoints within a sweep")->capture_default_str();
+  app.add_option_function<double>("--near",
+                                  [options](double distance) {
+                                    logWarning("--near: now written --near-plane");
+                                    options->nearPlane = distance;
+                                  })
+      ->group("");
+  shortFor("radiosity.seed",
+           app.add_option("--seed", options->seed, "of the random roll with radiosity.fixed-orientation=off")
+               ->capture_default_str());
+  app.add_option("--save-every", options->saveEvery, "seconds between checkpoints within a sweep")
+      ->capture_default_str();
   app.add_flag("--restart", options->restart, "start over instead of resuming a stopped run");
   const auto addShort = [&](const char* option, const char* key, const char* meaning) {
-    return shortFor(key, app.add_option_function<std::string>(option, [](const std::string&) {}, std::string("corrected: ") + meaning));
+    return shortFor(key, app.add_option_function<std::string>(
+                             option, [](const std::string&) {}, std::string("corrected: ") + meaning));
   };
   addShort("--error", "radiosity.error", "stop at this guaranteed relative error (0.001)")->type_name("FLOAT");
-  addShort("--memory", "radiosity.memory", "MiB for form factors; more are read from OUT.rows for each product (half of what is free)")->type_name("FLOAT");
-  addShort("--edge", "radiosity.edge", "longest edge of a scene's patches in scene units (a 12th of the scene)")->type_name("FLOAT");
-  addShort("--refinements", "radiosity.refinements", "times that a scene's patches are halved where light changes steeply (0)")->type_name("INT");
-  offer(app.add_option("--set", options->set, "corrected: radiosity.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated"), offeredSettings(&kSolutionCost));
-  offer(addShort("--visibility", "radiosity.visibility", "what tells pixels what they see: auto (measured at start), raster, rays, item-buffer"),
+  addShort("--memory", "radiosity.memory",
+           "MiB for form factors; more are read from OUT.rows for each product (half of what is free)")
+      ->type_name("FLOAT");
+  addShort("--edge", "radiosity.edge", "longest edge of a scene's patches in scene units (a 12th of the scene)")
+      ->type_name("FLOAT");
+  addShort("--refinements", "radiosity.refinements",
+           "times that a scene's patches are halved where light changes steeply (0)")
+      ->type_name("INT");
+  offer(
+      app.add_option(
+          "--set", options->set,
+          "corrected: radiosity.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated"),
+      offeredSettings(&kSolutionCost));
+  offer(addShort("--visibility", "radiosity.visibility",
+                 "what tells pixels what they see: auto (measured at start), raster, rays, item-buffer"),
         {"auto", "raster", "rays", "item-buffer"});
   app.footer(radiosityDeviationsHelp());
   options->common.declare(app);
@@ -169,7 +228,8 @@ Work addSolve(CLI::App& app) {
     for (const auto& [key, option] : *shorter) {
       if (option->count() == 0) continue;
       std::string value = option->results().back();
-      if (option->get_name() == "RESOLUTION" && options->resolution % 2 != 0) value = std::to_string(options->resolution + 1);
+      if (option->get_name() == "RESOLUTION" && options->resolution % 2 != 0)
+        value = std::to_string(options->resolution + 1);
       if (option->get_name() == "--max-sweeps" && options->maxSweeps == 0) continue;  // no limit but the setting's own
       options->shortSettings.emplace_back(option->get_name(), std::string(key) + "=" + value);
     }

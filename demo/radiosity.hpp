@@ -15,18 +15,19 @@ struct RadiositySolve {
   CommonOptions common;
   std::string in, out, fidelity = "corrected", solver;
   std::vector<std::string> deviations;
-  std::vector<std::string> set;   ///< corrected: radiosity.KEY=VALUE as `lucerna render` takes them
+  std::vector<std::string> set;  ///< corrected: radiosity.KEY=VALUE as `lucerna render` takes them
   /// Corrected: the other options, which are shorter spellings of settings: option, KEY=VALUE. They come before `set`.
   std::vector<std::pair<std::string, std::string>> shortSettings;
-  int resolution = 500;           ///< original: pixels a side of a hemicube
-  int maxSweeps = 0;              ///< original; 0: no limit
-  unsigned seed = 1;              ///< original: of the random roll
+  int resolution = 500;  ///< original: pixels a side of a hemicube
+  int maxSweeps = 0;  ///< original; 0: no limit
+  unsigned seed = 1;  ///< original: of the random roll
   std::optional<double> nearPlane;
-  double saveEvery = 10.0;        ///< seconds between checkpoints within a sweep
-  bool restart = false;           ///< take no checkpoint up
+  double saveEvery = 10.0;  ///< seconds between checkpoints within a sweep
+  bool restart = false;  ///< take no checkpoint up
 };
 
-/// The published program on its own file format; --fidelity corrected goes to a function of the same shape beside it. demo/radiosity_original.cpp
+/// The published program on its own file format; --fidelity corrected goes to a function of the same shape beside it.
+/// demo/radiosity_original.cpp
 int solveOriginal(const RadiositySolve& options);
 /// Any scene or triangle file. demo/radiosity_corrected.cpp
 int solveCorrected(const RadiositySolve& options);

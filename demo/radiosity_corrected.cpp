@@ -1,5 +1,6 @@
 // lucerna radiosity solve --fidelity corrected: any scene, or a triangle file of the original.
-// A scene's solution is a file that `render --technique radiosity --set radiosity.file=OUT` shows; a triangle file gets its b, as the original's does.
+// A scene's solution is a file that `render --technique radiosity --set radiosity.file=OUT` shows; a triangle file gets
+// its b, as the original's does.
 #include "radiosity.hpp"
 
 #include "base/error.hpp"
@@ -27,10 +28,12 @@ bool isRadFile(const std::filesystem::path& file) {
   std::uint32_t count = 0;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  return stream.read(reinterpret_cast<char*>(&count), sizeof count) && !error && size == 4 + std::uintmax_t{count} * sizeof(RadTriangle);
+  return stream.read(reinterpret_cast<char*>(&count), sizeof count) && !error &&
+         size == 4 + std::uintmax_t{count} * sizeof(RadTriangle);
 }
 
-/// The bag of triangles as a scene: a material for each pair of reflectance and emission. Exitances are the file's own whole numbers.
+/// The bag of triangles as a scene: a material for each pair of reflectance and emission. Exitances are the file's own
+/// whole numbers.
 Scene sceneOf(const std::vector<RadTriangle>& triangles, const std::string& name) {
   Scene scene;
   scene.name = name;
@@ -60,7 +63,8 @@ Scene sceneOf(const std::vector<RadTriangle>& triangles, const std::string& name
 std::array<std::int64_t, 4> stampOf(const std::string& file) {
   struct stat s {};
   if (::stat(file.c_str(), &s) != 0) return {};
-  return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size), static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
+  return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size),
+          static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
 }
 
 }  // namespace
@@ -96,32 +100,43 @@ int solveCorrected(const RadiositySolve& options) {
   const auto before = stampOf(options.out);
   watchForInterrupt();
   Progress progress("hemicubes", 1000, options.common.quiet);
-  const RadiositySolution solution = solveScene(context, programs, scene, settings, checkpoint, [&](const RadiosityStage& stage) {
-    if (stage.total > 0) progress.update(static_cast<int>(1000 * stage.done / stage.total));
-    if (stage.kind == RadiosityStage::Kind::solving && !options.common.quiet)
-      fmt::print("{:6.1f} products: residual {:.3g}, error at most {:.3g}, energy balance {:.3g}\n", stage.solve.products, stage.solve.residual, stage.solve.errorBound, stage.solve.energyBalance);
-    return !interrupted();
-  });
+  const RadiositySolution solution =
+      solveScene(context, programs, scene, settings, checkpoint, [&](const RadiosityStage& stage) {
+        if (stage.total > 0) progress.update(static_cast<int>(1000 * stage.done / stage.total));
+        if (stage.kind == RadiosityStage::Kind::solving && !options.common.quiet)
+          fmt::print("{:6.1f} products: residual {:.3g}, error at most {:.3g}, energy balance {:.3g}\n",
+                     stage.solve.products, stage.solve.residual, stage.solve.errorBound, stage.solve.energyBalance);
+        return !interrupted();
+      });
   if (stampOf(options.out) != before)
-    throwBadInput("{}: was changed by something else while it was being solved; it is left as it is. The same command takes the form factors from {}", options.out, checkpoint.string());
+    throwBadInput(
+        "{}: was changed by something else while it was being solved; it is left as it is. The same command takes the "
+        "form factors from {}",
+        options.out, checkpoint.string());
   if (rad) {
     for (RadTriangle& triangle : triangles) triangle.b = 0;
     // Patches name triangles in the scene's order, which is by material.
     for (std::size_t i = 0; i < solution.irradiance.size(); ++i) {
       const std::size_t index = scene.indices[3 * solution.mesh.patches[i].triangle] / 3;
-      triangles[index].b = static_cast<std::uint32_t>(std::clamp(std::round(solution.irradiance[i].x), 0.0, static_cast<double>(kRadMost)));
+      triangles[index].b = static_cast<std::uint32_t>(
+          std::clamp(std::round(solution.irradiance[i].x), 0.0, static_cast<double>(kRadMost)));
     }
     writeRadFile(options.out, triangles);
   } else {
     saveSolution(options.out, scene, solution);
   }
   removeCheckpoints(checkpoint);
-  const double rate = solution.hemicubeSeconds > 0.0 ? static_cast<double>(solution.hemicubes) / solution.hemicubeSeconds : 0.0;
+  const double rate =
+      solution.hemicubeSeconds > 0.0 ? static_cast<double>(solution.hemicubes) / solution.hemicubeSeconds : 0.0;
   if (!options.common.quiet)
-    fmt::print("{}: {} patches ({} without area left out), {} hemicubes of {} pixels in {:.2f} s ({:.0f}/s), {} in {:.1f} products and {:.2f} s, error at most {:.3g}, "
-               "energy balance {:.3g} on {}\n",
-               options.out, solution.mesh.patches.size(), solution.mesh.degenerate, solution.hemicubes, settings.hemicubes.resolution, solution.hemicubeSeconds, rate,
-               nameOf(solution.solver), solution.progress.products, solution.solveSeconds, solution.progress.errorBound, solution.progress.energyBalance, context.capabilities().renderer);
+    fmt::print(
+        "{}: {} patches ({} without area left out), {} hemicubes of {} pixels in {:.2f} s ({:.0f}/s), {} in {:.1f} "
+        "products and {:.2f} s, error at most {:.3g}, "
+        "energy balance {:.3g} on {}\n",
+        options.out, solution.mesh.patches.size(), solution.mesh.degenerate, solution.hemicubes,
+        settings.hemicubes.resolution, solution.hemicubeSeconds, rate, nameOf(solution.solver),
+        solution.progress.products, solution.solveSeconds, solution.progress.errorBound,
+        solution.progress.energyBalance, context.capabilities().renderer);
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
   json["fidelity"] = options.fidelity;

@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 /// OUT and its checkpoint, as this run left them.
 class Files {
  public:
-  Files(fs::path out, std::uint64_t settings) : out_(std::move(out)), checkpoint_(checkpointOf(out_)), settings_(settings) {}
+  Files(fs::path out, std::uint64_t settings)
+      : out_(std::move(out)), checkpoint_(checkpointOf(out_)), settings_(settings) {}
 
   const fs::path& checkpoint() const { return checkpoint_; }
 
@@ -59,12 +60,15 @@ class Files {
   Stamp stamp() const {
     struct stat s {};
     if (::stat(out_.c_str(), &s) != 0) return {};
-    return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size), static_cast<std::int64_t>(s.st_mtim.tv_sec),
-            static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
+    return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size),
+            static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
   }
   void refuseIfChanged() const {
     if (stamp() != stamp_)
-      throwBadInput("{}: was changed by something else since this run last wrote or read it; it is left as it is, and what was computed since is lost", out_.string());
+      throwBadInput(
+          "{}: was changed by something else since this run last wrote or read it; it is left as it is, and what was "
+          "computed since is lost",
+          out_.string());
   }
 
   fs::path out_, checkpoint_;
@@ -83,7 +87,8 @@ bool sameButReceived(std::span<const RadTriangle> a, std::span<const RadTriangle
 }
 
 /// The checkpoint beside OUT, if this very run can go on with it; else nothing, and a warning says why.
-std::optional<OriginalProgress> takeUp(const RadiositySolve& options, std::span<const RadTriangle> triangles, std::uint64_t settings) {
+std::optional<OriginalProgress> takeUp(const RadiositySolve& options, std::span<const RadTriangle> triangles,
+                                       std::uint64_t settings) {
   const fs::path file = checkpointOf(options.out);
   std::error_code error;
   if (options.restart || !fs::exists(file, error)) return std::nullopt;
@@ -101,11 +106,10 @@ std::optional<OriginalProgress> takeUp(const RadiositySolve& options, std::span<
       if (!sameButReceived(out, triangles)) return unused(options.out + " holds another scene");
       there = digestOf(encodeRadFile(out));
     }
-    if (there != checkpoint.before && there != checkpoint.after) return unused(options.out + " is not what it belongs to");
+    if (there != checkpoint.before && there != checkpoint.after)
+      return unused(options.out + " is not what it belongs to");
     return checkpoint.progress;
-  } catch (const Error& fault) {
-    return unused(fault.what());
-  }
+  } catch (const Error& fault) { return unused(fault.what()); }
 }
 
 /// Whole numbers come to rest; floats may go on trading their last bit.
@@ -145,7 +149,9 @@ int solveOriginal(const RadiositySolve& options) {
   if (const auto taken = takeUp(options, triangles, key)) {
     progress = *taken;
     files.holds(fs::exists(options.out, error) ? readRadFile(options.out) : triangles);
-    if (!options.common.quiet) fmt::print("{}: resumed at sweep {}, {} of {} triangles done\n", files.checkpoint().string(), progress.sweeps + 1, progress.done, triangles.size());
+    if (!options.common.quiet)
+      fmt::print("{}: resumed at sweep {}, {} of {} triangles done\n", files.checkpoint().string(), progress.sweeps + 1,
+                 progress.done, triangles.size());
   } else {
     files.holds(triangles);
     files.saveSweep(progress, triangles);  // so that a folder or disk that cannot be written is known before the work
@@ -155,10 +161,12 @@ int solveOriginal(const RadiositySolve& options) {
   const auto start = Clock::now();
   const std::uint32_t sweepsBefore = progress.sweeps;
   bool settled = false, stopped = false;
-  while (!settled && !stopped && (options.maxSweeps == 0 || progress.sweeps < static_cast<std::uint32_t>(options.maxSweeps))) {
+  while (!settled && !stopped &&
+         (options.maxSweeps == 0 || progress.sweeps < static_cast<std::uint32_t>(options.maxSweeps))) {
     const auto sweepStart = Clock::now();
     const std::size_t hemicubesBefore = solver.hemicubes();
-    Progress bar(fmt::format("sweep {}", progress.sweeps + 1), static_cast<int>(triangles.size()), options.common.quiet);
+    Progress bar(fmt::format("sweep {}", progress.sweeps + 1), static_cast<int>(triangles.size()),
+                 options.common.quiet);
     auto saved = Clock::now();
     const auto goOn = [&](const OriginalProgress& now) {
       bar.update(static_cast<int>(now.done));
@@ -184,15 +192,24 @@ int solveOriginal(const RadiositySolve& options) {
   const double seconds = secondsSince(start);
   if (settled) files.removeCheckpoint();
   if (solver.overflows() > 0)
-    logWarning("{}: {} times a triangle sent more than 24 bits hold; the upper bits were lost, as published (a lower LIGHT_POWER avoids it)", options.in, solver.overflows());
+    logWarning(
+        "{}: {} times a triangle sent more than 24 bits hold; the upper bits were lost, as published (a lower "
+        "LIGHT_POWER avoids it)",
+        options.in, solver.overflows());
 
   const double hemicubes = static_cast<double>(solver.hemicubes());
-  const double rate = seconds > 0.0 ? hemicubes / seconds : 0.0, triangleRate = seconds > 0.0 ? static_cast<double>(solver.drawnTriangles()) / seconds / 1e6 : 0.0;
+  const double rate = seconds > 0.0 ? hemicubes / seconds : 0.0,
+               triangleRate = seconds > 0.0 ? static_cast<double>(solver.drawnTriangles()) / seconds / 1e6 : 0.0;
   const double balance = solver.energyBalance(progress.received);
   if (!options.common.quiet) {
-    fmt::print("{}: {} triangles, {} sweeps, {}; {:.2f} s, {:.1f} hemicubes/s, {:.2f} Mtriangles/s, energy balance {:+.4f}, on {}\n", options.out, triangles.size(),
-               progress.sweeps, settled ? "nothing changes any more" : stopped ? "stopped; the same command resumes it" : "as many as asked for", seconds, rate, triangleRate,
-               balance, renderer);
+    fmt::print(
+        "{}: {} triangles, {} sweeps, {}; {:.2f} s, {:.1f} hemicubes/s, {:.2f} Mtriangles/s, energy balance {:+.4f}, "
+        "on {}\n",
+        options.out, triangles.size(), progress.sweeps,
+        settled   ? "nothing changes any more"
+        : stopped ? "stopped; the same command resumes it"
+                  : "as many as asked for",
+        seconds, rate, triangleRate, balance, renderer);
   }
   nlohmann::ordered_json json;
   json["renderer"] = renderer;

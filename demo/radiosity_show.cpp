@@ -30,24 +30,29 @@ struct Options {
 
 RadDisplay displayOf(const Options& options) {
   RadDisplay display;
-  if (!options.mode.empty() && options.mode != "s" && options.mode != "c") throwBadInput("{}: unknown; expected s (back-facing triangles too) or c (the computed colours)", options.mode);
+  if (!options.mode.empty() && options.mode != "s" && options.mode != "c")
+    throwBadInput("{}: unknown; expected s (back-facing triangles too) or c (the computed colours)", options.mode);
   if (!options.mapping.empty()) display.mapping = parseName<RadMapping>(options.mapping, "--mapping");
   if (options.falseColours) display.mapping = RadMapping::falseColours;
   if (options.mode == "c") display.mapping = RadMapping::bits24;
   display.backCorners = options.mode == "s";
-  if (!(options.constant >= 0.0 && std::isfinite(options.constant))) throwBadInput("--constant {}: expected a number above 0, or 0 to choose one", options.constant);
+  if (!(options.constant >= 0.0 && std::isfinite(options.constant)))
+    throwBadInput("--constant {}: expected a number above 0, or 0 to choose one", options.constant);
   display.constant = options.constant;
   display.mesh = options.mesh;
   return display;
 }
 
-void walkAround(Host& host, gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, RadDisplay display, const Camera& camera) {
+void walkAround(Host& host, gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, RadDisplay display,
+                const Camera& camera) {
   watchForInterrupt();
   FreeCamera freeCamera(camera, 0.08 * diagonalOf(triangles));
   glm::ivec2 size = host.framebufferSize();
   auto view = std::make_unique<RadView>(programs, size);
   view->show(triangles, display);
-  host.setTitle("Lucerna radiosity - 1 log, 2 linear, 3 filmic, 4 false colours, 5 bits, M mesh, B backs, - = constant, WASD QE and drag, Esc");
+  host.setTitle(
+      "Lucerna radiosity - 1 log, 2 linear, 3 filmic, 4 false colours, 5 bits, M mesh, B backs, - = constant, WASD QE "
+      "and drag, Esc");
   auto frameStart = Clock::now();
   while (!interrupted()) {
     const HostInput input = host.poll();
@@ -76,7 +81,8 @@ int run(const Options& options) {
   options.common.apply();
   const RadDisplay display = displayOf(options);
   const glm::ivec2 size = parseSize(options.size);
-  if (!options.output.empty() && lowerExtension(options.output) != ".png") throwBadInput("-o {}: the extension must be png", options.output);
+  if (!options.output.empty() && lowerExtension(options.output) != ".png")
+    throwBadInput("-o {}: the extension must be png", options.output);
   const std::vector<RadTriangle> triangles = readRadFile(options.file);
   checkRadTriangles(triangles, options.file);
   Scene cameras;
@@ -88,7 +94,8 @@ int run(const Options& options) {
   const auto host = options.common.makeHost(options.output.empty(), hostOptions);
   const gl::Context context;
   if (std::max(size.x, size.y) > context.capabilities().maxTextureSize)
-    throwMissingCapability("--size {}: this driver's limit is {} pixels", options.size, context.capabilities().maxTextureSize);
+    throwMissingCapability("--size {}: this driver's limit is {} pixels", options.size,
+                           context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
   if (options.output.empty()) {
     if (host->kind() != HostKind::window) throwMissingCapability("show: no window is available; use -o OUT.png");
@@ -99,7 +106,8 @@ int run(const Options& options) {
     view.record(camera);
     writePng(options.output, view.read());
     if (!options.common.quiet)
-      fmt::print("{}: {}x{}, {} triangles, {}, on {}\n", options.output, size.x, size.y, triangles.size(), nameOf(display.mapping), context.capabilities().renderer);
+      fmt::print("{}: {}x{}, {} triangles, {}, on {}\n", options.output, size.x, size.y, triangles.size(),
+                 nameOf(display.mapping), context.capabilities().renderer);
   }
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
@@ -117,14 +125,20 @@ int run(const Options& options) {
 Work addRadiosityShow(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("FILE", options->file, "a triangle file")->required();
-  offer(app.add_option("MODE", options->mode, "s: back-facing triangles too, by their corners; c: the 24-bit colours of the computation"), {"s", "c"});
+  offer(app.add_option("MODE", options->mode,
+                       "s: back-facing triangles too, by their corners; c: the 24-bit colours of the computation"),
+        {"s", "c"});
   app.add_option("-o,--output", options->output, "OUT.png: a picture instead of a window");
-  offer(app.add_option("--mapping", options->mapping, "log (as published, default), linear (times a constant), filmic (the engine's), false (colours), bits (as c)"),
+  offer(app.add_option("--mapping", options->mapping,
+                       "log (as published, default), linear (times a constant), filmic (the engine's), false "
+                       "(colours), bits (as c)"),
         {"log", "linear", "filmic", "false", "bits"});
-  app.add_option("--constant", options->constant, "linear and filmic: factor of values, 1 is white (0: from the scene)")->capture_default_str();
+  app.add_option("--constant", options->constant, "linear and filmic: factor of values, 1 is white (0: from the scene)")
+      ->capture_default_str();
   app.add_flag("--mesh", options->mesh, "draw the triangles' edges");
   app.add_flag("--false-colours", options->falseColours, "the same as --mapping false");
-  app.add_option("--camera", options->camera, "px,py,pz,tx,ty,tz,fov (position, target, degrees); default: from above a corner");
+  app.add_option("--camera", options->camera,
+                 "px,py,pz,tx,ty,tz,fov (position, target, degrees); default: from above a corner");
   app.add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   options->common.declare(app);
   return [options] { return run(*options); };

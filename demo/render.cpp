@@ -30,40 +30,45 @@ int run(Options options) {
   if (!options.output.empty()) checkWritable(options.output);
   options.picture.readSettingsFile();
   if (!options.path.spp) options.path.spp = options.picture.settingsSpp;
-  if (options.picture.technique == "path") return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
+  if (options.picture.technique == "path")
+    return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
   options.path.refuseIfGiven(options.picture.technique);
   if (options.output.empty()) throwBadInput("--output is missing: where the picture goes");
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
-  if (settings.radiosity.direct == RadiosityView::Direct::automatic) settings.radiosity.direct = RadiosityView::Direct::pixels;
-  if (!isWritableImageName(options.output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
+  if (settings.radiosity.direct == RadiosityView::Direct::automatic)
+    settings.radiosity.direct = RadiosityView::Direct::pixels;
+  if (!isWritableImageName(options.output))
+    throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
   const Scene scene = loadScene(options.scene);
   const Camera camera = chooseCamera(scene, options.camera);
 
   const auto host = options.common.makeHost(false);
   gl::Context context;
   if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
-    throwMissingCapability("--size {}: this driver's limit is {} pixels", options.picture.size, context.capabilities().maxTextureSize);
+    throwMissingCapability("--size {}: this driver's limit is {} pixels", options.picture.size,
+                           context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
   Renderer renderer(context, programs, scene, settings);
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < options.repeat; ++i) renderer.renderToTheEnd(camera);
   gl::finish();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / options.repeat;
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / options.repeat;
   renderer.drain();
 
   const Image image = renderer.readRadiance();
-  if (lowerExtension(options.output) == ".png")
-    writePng(options.output, renderer.readDisplay());
-  else
-    writeImage(options.output, image);
+  if (lowerExtension(options.output) == ".png") writePng(options.output, renderer.readDisplay());
+  else writeImage(options.output, image);
   const glm::dvec3 mean = meanOf(image);
   if (!options.common.quiet) {
-    fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s per frame on {}\n", options.output, image.width, image.height,
-               options.picture.technique, options.picture.component, mean.x, mean.y, mean.z, seconds, context.capabilities().renderer);
+    fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s per frame on {}\n", options.output,
+               image.width, image.height, options.picture.technique, options.picture.component, mean.x, mean.y, mean.z,
+               seconds, context.capabilities().renderer);
     if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
     if (renderer.receivers()) fmt::print("{}", receiversLine(*renderer.receivers()));
-    if (options.repeat > 1) fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
+    if (options.repeat > 1)
+      fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
   }
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
@@ -84,13 +89,24 @@ int run(Options options) {
   if (options.repeat > 1) json["stages"] = stagesJson(renderer.timer().statistics());
   if (const RadiosityView* view = renderer.radiosity()) {
     const RadiositySolution& s = view->solution();
-    json["radiosity"] = {{"patches", s.mesh.patches.size()}, {"degenerate", s.mesh.degenerate}, {"solver", nameOf(s.solver)}, {"products", s.progress.products},
-                         {"error_bound", s.progress.errorBound}, {"energy_balance", s.progress.energyBalance}, {"hemicubes", s.hemicubes},
-                         {"hemicube_seconds", s.hemicubeSeconds}, {"solve_seconds", s.solveSeconds}, {"repaired", s.repaired}, {"entries", s.entries}};
+    json["radiosity"] = {{"patches", s.mesh.patches.size()},
+                         {"degenerate", s.mesh.degenerate},
+                         {"solver", nameOf(s.solver)},
+                         {"products", s.progress.products},
+                         {"error_bound", s.progress.errorBound},
+                         {"energy_balance", s.progress.energyBalance},
+                         {"hemicubes", s.hemicubes},
+                         {"hemicube_seconds", s.hemicubeSeconds},
+                         {"solve_seconds", s.solveSeconds},
+                         {"repaired", s.repaired},
+                         {"entries", s.entries}};
     if (!options.common.quiet)
-      fmt::print("radiosity: {} patches, {} hemicubes in {:.2f} s ({:.0f}/s), solved by {} in {:.1f} products to {:.2g} (guaranteed), energy balance {:.2g}\n",
-                 s.mesh.patches.size(), s.hemicubes, s.hemicubeSeconds, s.hemicubeSeconds > 0.0 ? static_cast<double>(s.hemicubes) / s.hemicubeSeconds : 0.0,
-                 nameOf(s.solver), s.progress.products, s.progress.errorBound, s.progress.energyBalance);
+      fmt::print(
+          "radiosity: {} patches, {} hemicubes in {:.2f} s ({:.0f}/s), solved by {} in {:.1f} products to {:.2g} "
+          "(guaranteed), energy balance {:.2g}\n",
+          s.mesh.patches.size(), s.hemicubes, s.hemicubeSeconds,
+          s.hemicubeSeconds > 0.0 ? static_cast<double>(s.hemicubes) / s.hemicubeSeconds : 0.0, nameOf(s.solver),
+          s.progress.products, s.progress.errorBound, s.progress.energyBalance);
   }
   options.common.writeJson(json);
   return 0;
@@ -102,8 +118,11 @@ Work addRender(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...")->required();
   app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");
-  app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")->check(CLI::Range(1, 100000))->capture_default_str();
+  app.add_option("-o,--output", options->output,
+                 "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");
+  app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
   options->picture.declare(app);
   options->path.declare(app);
   options->common.declare(app);

@@ -17,7 +17,9 @@ namespace lucerna::demo {
 
 namespace {
 
-nlohmann::ordered_json finiteOrNull(double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr); }
+nlohmann::ordered_json finiteOrNull(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
 
 /// Of the original's pictures [VPT2024].
 constexpr const char* kPublishedSize = "1920x1080";
@@ -38,43 +40,63 @@ std::optional<SampleRange> sampleRange(const PathOptions& path) {
   constexpr std::uint64_t kMost = 1u << 31;
   const auto colon = path.samples.find(':');
   const auto number = [&](const std::string& text) {
-    const bool isNumber = !text.empty() && text.size() <= 10 && text.find_first_not_of("0123456789") == std::string::npos;
+    const bool isNumber =
+        !text.empty() && text.size() <= 10 && text.find_first_not_of("0123456789") == std::string::npos;
     return isNumber ? std::stoull(text) : kMost + 1;
   };
-  const std::uint64_t first = colon == std::string::npos ? kMost + 1 : number(path.samples.substr(0, colon)), last = colon == std::string::npos ? 0 : number(path.samples.substr(colon + 1));
-  if (first >= last || last > kMost) throwBadInput("--samples {}: expected FIRST:LAST, whole numbers, FIRST below LAST, LAST at most {}", path.samples, kMost);
-  if (path.spp || path.seconds || path.error) throwBadInput("--samples {}: says how many samples there are; --spp, --seconds and --error do not go with it", path.samples);
-  if (path.checkpoint.empty()) throwBadInput("--samples {}: needs --checkpoint PART, which lucerna merge takes", path.samples);
+  const std::uint64_t first = colon == std::string::npos ? kMost + 1 : number(path.samples.substr(0, colon)),
+                      last = colon == std::string::npos ? 0 : number(path.samples.substr(colon + 1));
+  if (first >= last || last > kMost)
+    throwBadInput("--samples {}: expected FIRST:LAST, whole numbers, FIRST below LAST, LAST at most {}", path.samples,
+                  kMost);
+  if (path.spp || path.seconds || path.error)
+    throwBadInput("--samples {}: says how many samples there are; --spp, --seconds and --error do not go with it",
+                  path.samples);
+  if (path.checkpoint.empty())
+    throwBadInput("--samples {}: needs --checkpoint PART, which lucerna merge takes", path.samples);
   return SampleRange{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
 }
 
 }  // namespace
 
 void PathOptions::declare(CLI::App& app) {
-  app.add_option("--spp", spp, "path: samples per pixel, at most (64, without --seconds and --error)")->check(CLI::Range(1u, 4000000000u));
-  app.add_option("--seconds", seconds, "path: stop after this time, with at least one sample per pixel")->check(CLI::PositiveNumber);
-  app.add_option("--error", error, "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance")->check(CLI::PositiveNumber);
+  app.add_option("--spp", spp, "path: samples per pixel, at most (64, without --seconds and --error)")
+      ->check(CLI::Range(1u, 4000000000u));
+  app.add_option("--seconds", seconds, "path: stop after this time, with at least one sample per pixel")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--error", error,
+                 "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance")
+      ->check(CLI::PositiveNumber);
   app.add_option("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
-  app.add_option("--checkpoint", checkpoint, "path: resume from this file if it exists; it is written every minute and at the end. Without it a stopped picture is stored in OUT.film, and the same command resumes it");
-  app.add_option("--samples", samples, "path: FIRST:LAST, a part of the samples of a pixel, FIRST up to but without LAST, kept by --checkpoint; lucerna merge makes one picture of all parts");
+  app.add_option("--checkpoint", checkpoint,
+                 "path: resume from this file if it exists; it is written every minute and at the end. Without it a "
+                 "stopped picture is stored in OUT.film, and the same command resumes it");
+  app.add_option("--samples", samples,
+                 "path: FIRST:LAST, a part of the samples of a pixel, FIRST up to but without LAST, kept by "
+                 "--checkpoint; lucerna merge makes one picture of all parts");
   app.add_option("--seed", seed, "path: of the random numbers (0)");
 }
 
 void PathOptions::refuseIfGiven(const std::string& technique) const {
   if (spp || seconds || error || bounces || seed || !checkpoint.empty() || !samples.empty())
-    throwBadInput("--technique {}: --spp, --samples, --seconds, --error, --bounces, --seed and --checkpoint belong to --technique path", technique);
+    throwBadInput(
+        "--technique {}: --spp, --samples, --seconds, --error, --bounces, --seed and --checkpoint belong to "
+        "--technique path",
+        technique);
 }
 
-int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path, const std::string& sceneFile,
-               const std::string& cameraText, const std::string& output) {
+int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,
+               const std::string& sceneFile, const std::string& cameraText, const std::string& output) {
   for (const std::string& deviation : picture.deviations)
-    if (!deviation.starts_with("path.")) throwBadInput("--deviation {}: --technique path supports only deviations that begin with path.", deviation);
+    if (!deviation.starts_with("path."))
+      throwBadInput("--deviation {}: --technique path supports only deviations that begin with path.", deviation);
   PictureOptions rest = picture;
   if (!path.sizeGiven && (picture.fidelity != "corrected" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
   const RenderSettings shared = rest.parse();
   const std::optional<SampleRange> part = sampleRange(path);
   if (output.empty() && !part) throwBadInput("--output is missing: where the picture goes");
-  if (!output.empty() && !isWritableImageName(output)) throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
+  if (!output.empty() && !isWritableImageName(output))
+    throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
   const Scene scene = loadScene(sceneFile);
   const Camera camera = chooseCamera(scene, cameraText);
   PathTracer::Settings settings;
@@ -87,7 +109,8 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const auto host = common.makeHost(false);
   gl::Context context;
   if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
-    throwMissingCapability("--size {}: this driver's limit is {} pixels", rest.size, context.capabilities().maxTextureSize);
+    throwMissingCapability("--size {}: this driver's limit is {} pixels", rest.size,
+                           context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
@@ -98,7 +121,8 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     tracer.resume(bytes, checkpoint);
     const std::uint32_t first = filmOf(bytes, checkpoint).first;
     if (first != (part ? part->first : 0))
-      throwBadInput("{}: its samples begin with number {}, not {}{}", checkpoint, first, part ? part->first : 0, part ? "" : " (a part of --samples; lucerna merge makes a whole)");
+      throwBadInput("{}: its samples begin with number {}, not {}{}", checkpoint, first, part ? part->first : 0,
+                    part ? "" : " (a part of --samples; lucerna merge makes a whole)");
   } else if (part) {
     // A part begins with an empty film whose first sample has another number.
     Film film = filmOf(tracer.checkpoint(), checkpoint);
@@ -108,7 +132,9 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const auto save = [&] { writeFileAtomically(checkpoint, tracer.checkpoint()); };
   watchForInterrupt();
 
-  const std::uint32_t target = part ? part->last - part->first : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : shared.path.samples);
+  const std::uint32_t target =
+      part ? part->last - part->first
+           : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : shared.path.samples);
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Progress progress("samples", static_cast<int>(std::min(target, 1000000000u)), common.quiet || !(path.spp || part));
@@ -118,14 +144,13 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   bool stopped = false;
   while (done < target && !stopped) {
     const std::uint32_t next = std::min(target, done + std::max(1u, done / 4));
-    while (!stopped && tracer.advance(next)) stopped = interrupted() || (done > 0 && path.seconds && elapsed() >= *path.seconds);
+    while (!stopped && tracer.advance(next))
+      stopped = interrupted() || (done > 0 && path.seconds && elapsed() >= *path.seconds);
     if (!stopped) done = next;
     if (!path.checkpoint.empty() && elapsed() > saved + 60.0) {
       try {
         save();
-      } catch (const Error& error) {
-        logWarning("--checkpoint {}; rendering continues without it", error.what());
-      }
+      } catch (const Error& error) { logWarning("--checkpoint {}; rendering continues without it", error.what()); }
       saved = elapsed();
     }
     progress.update(static_cast<int>(std::min(done, 1000000000u)));
@@ -136,22 +161,25 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const double seconds = elapsed();
   if (interrupted()) {
     save();
-    throw Stopped(fmt::format("stopped at {:.6g} samples per pixel; the same command resumes from {}", tracer.statistics().samples, checkpoint));
+    throw Stopped(fmt::format("stopped at {:.6g} samples per pixel; the same command resumes from {}",
+                              tracer.statistics().samples, checkpoint));
   }
 
   const PathTracer::Statistics statistics = tracer.statistics();
   const Image image = tracer.mean();
-  if (lowerExtension(output) == ".png")
-    writePng(output, toneMapped(image, shared.exposure.value_or(scene.exposure)));
+  if (lowerExtension(output) == ".png") writePng(output, toneMapped(image, shared.exposure.value_or(scene.exposure)));
   else if (!output.empty())  // of a part the checkpoint may be all that is wanted
     writeImage(output, image);
   // After the picture: a disk that is full does not cost it.
   if (!path.checkpoint.empty()) save();
   else std::filesystem::remove(checkpoint);
   if (!common.quiet)
-    fmt::print("{}: {}x{}, path, {}, {:.6g} samples per pixel, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} ({:.3g} of the mean), {:.3f} s on {}\n",
-               output.empty() ? checkpoint : output, image.width, image.height, picture.component, statistics.samples, statistics.mean.x, statistics.mean.y, statistics.mean.z,
-               statistics.standardError, statistics.relativeError, seconds, context.capabilities().renderer);
+    fmt::print(
+        "{}: {}x{}, path, {}, {:.6g} samples per pixel, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel "
+        "{:.3g} ({:.3g} of the mean), {:.3f} s on {}\n",
+        output.empty() ? checkpoint : output, image.width, image.height, picture.component, statistics.samples,
+        statistics.mean.x, statistics.mean.y, statistics.mean.z, statistics.standardError, statistics.relativeError,
+        seconds, context.capabilities().renderer);
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
   json["host"] = nameOf(host->kind());
@@ -170,12 +198,14 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   json["size"] = {image.width, image.height};
   json["seconds"] = seconds;
   json["mean"] = {statistics.mean.x, statistics.mean.y, statistics.mean.z};
-  json["mean_standard_error"] = {finiteOrNull(statistics.meanError.x), finiteOrNull(statistics.meanError.y), finiteOrNull(statistics.meanError.z)};
+  json["mean_standard_error"] = {finiteOrNull(statistics.meanError.x), finiteOrNull(statistics.meanError.y),
+                                 finiteOrNull(statistics.meanError.z)};
   json["spp"] = statistics.samples;
   if (part) json["samples"] = {part->first, part->last};
   json["standard_error"] = finiteOrNull(statistics.standardError);
   json["relative_error"] = finiteOrNull(statistics.relativeError);
-  json["bounces"] = settings.bounces != PathTracer::kUnlimited ? nlohmann::ordered_json(settings.bounces) : nlohmann::ordered_json(nullptr);
+  json["bounces"] = settings.bounces != PathTracer::kUnlimited ? nlohmann::ordered_json(settings.bounces)
+                                                               : nlohmann::ordered_json(nullptr);
   json["gpu_bytes"] = tracer.gpuBytes();
   json["left_out"] = nlohmann::ordered_json::array();
   for (const auto& [name, needed] : tracer.needs().named())

@@ -7,14 +7,15 @@ namespace lucerna::demo {
 
 /// What stops a path traced picture, whichever comes first, and which light paths it holds.
 struct PathOptions {
-  std::optional<std::uint32_t> spp;   ///< else path.samples, where nothing else stops
+  std::optional<std::uint32_t> spp;  ///< else path.samples, where nothing else stops
   std::optional<double> seconds;
   std::optional<double> error;
   std::optional<std::uint32_t> bounces;
-  std::string samples;     ///< "FIRST:LAST": those samples alone, FIRST up to but without LAST, into the checkpoint; empty: all
+  std::string
+      samples;  ///< "FIRST:LAST": those samples alone, FIRST up to but without LAST, into the checkpoint; empty: all
   std::optional<std::uint32_t> seed;
   std::string checkpoint;  ///< empty: none
-  bool sizeGiven = true;   ///< --size was; without it the original's files and fidelity have the original's size
+  bool sizeGiven = true;  ///< --size was; without it the original's files and fidelity have the original's size
 
   void declare(CLI::App& app);
   /// Throws Error(badInput) where one is given with another technique.
@@ -22,7 +23,7 @@ struct PathOptions {
 };
 
 /// output: empty where the checkpoint of --samples alone is wanted.
-int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path, const std::string& sceneFile,
-               const std::string& cameraText, const std::string& output);
+int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,
+               const std::string& sceneFile, const std::string& cameraText, const std::string& output);
 
 }  // namespace lucerna::demo

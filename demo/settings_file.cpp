@@ -12,7 +12,9 @@ SettingsFile readSettingsFile(const std::string& file) {
   if (!json.is_object()) throwBadInput("{}: expected an object with technique, fidelity, deviations, settings", name);
   SettingsFile result;
   for (const auto& [key, value] : json.items()) {
-    const auto fail = [&, &keyName = key](const char* expected) { throwBadInput("{}: key \"{}\": expected {}", name, keyName, expected); };
+    const auto fail = [&, &keyName = key](const char* expected) {
+      throwBadInput("{}: key \"{}\": expected {}", name, keyName, expected);
+    };
     const auto texts = [&, &values = value] {
       if (!values.is_array()) fail("an array of texts");
       std::vector<std::string> list;
@@ -31,10 +33,12 @@ SettingsFile readSettingsFile(const std::string& file) {
       result.settings = texts();
     } else if (key == "spp") {
       constexpr std::uint64_t kMost = 4000000000u;  // as --spp has it
-      if (!value.is_number_unsigned() || value.get<std::uint64_t>() < 1 || value.get<std::uint64_t>() > kMost) fail("a whole number from 1 to 4000000000");
+      if (!value.is_number_unsigned() || value.get<std::uint64_t>() < 1 || value.get<std::uint64_t>() > kMost)
+        fail("a whole number from 1 to 4000000000");
       result.spp = value.get<std::uint32_t>();
     } else if (key != "measured") {
-      throwBadInput("{}: unknown key \"{}\"; expected one of technique, fidelity, deviations, settings, spp, measured", name, key);
+      throwBadInput("{}: unknown key \"{}\"; expected one of technique, fidelity, deviations, settings, spp, measured",
+                    name, key);
     }
   }
   return result;

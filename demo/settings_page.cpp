@@ -34,7 +34,8 @@ std::string cell(std::string_view text) {
 
 std::string readers(const Setting& setting) {
   const std::vector<std::string_view> techniques = techniquesOf(setting), transports = transportsOf(setting);
-  std::string text = techniques.size() == namesOf(Technique{}).size() ? "all" : fmt::format("{}", fmt::join(techniques, ", "));
+  std::string text =
+      techniques.size() == namesOf(Technique{}).size() ? "all" : fmt::format("{}", fmt::join(techniques, ", "));
   if (!transports.empty()) text += fmt::format(" (transport {})", fmt::join(transports, ", "));
   return text;
 }
@@ -45,23 +46,35 @@ std::string settingsPage() {
   std::string text =
       "# Settings\n\n"
       "Made by `lucerna info --settings` from the table in engine/settings/settings.cpp; a test compares them.\n\n"
-      "Set one by `--set KEY=VALUE`, or in a settings file (`--settings FILE`: a JSON object with `technique`, `fidelity`, `deviations` and `settings`).\n"
-      "A setting that the technique does not read is a warning. What a change costs: *uniform*, the next frame has it; *rebuild*, programs are compiled and\n"
+      "Set one by `--set KEY=VALUE`, or in a settings file (`--settings FILE`: a JSON object with `technique`, "
+      "`fidelity`, `deviations` and `settings`).\n"
+      "A setting that the technique does not read is a warning. What a change costs: *uniform*, the next frame has it; "
+      "*rebuild*, programs are compiled and\n"
       "textures allocated anew; *solution*, radiosity is solved anew. Sources are those of shaders/REFERENCES.md.\n";
   std::string_view group;
   for (const Setting& setting : allSettings()) {
     const std::string_view stage = setting.key.substr(0, setting.key.find('.'));
-    if (stage != group) text += fmt::format("\n## {}\n\n| Key | Values | Default | Unit | Meaning | Read by | A change costs | Source |\n|---|---|---|---|---|---|---|---|\n", stage);
+    if (stage != group)
+      text += fmt::format(
+          "\n## {}\n\n| Key | Values | Default | Unit | Meaning | Read by | A change costs | Source "
+          "|\n|---|---|---|---|---|---|---|---|\n",
+          stage);
     group = stage;
-    text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} | {} |\n", setting.key, cell(allowedValues(setting)), cell(defaultValue(setting)), setting.unit, cell(setting.meaning),
-                        readers(setting), nameOf(setting.cost), setting.source);
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} | {} |\n", setting.key, cell(allowedValues(setting)),
+                        cell(defaultValue(setting)), setting.unit, cell(setting.meaning), readers(setting),
+                        nameOf(setting.cost), setting.source);
   }
   text +=
       "\n## Deviations\n\n"
-      "What the published originals do differently, each by itself: `--deviation NAME=on|off`. Those with a star are on with `--fidelity original`, which is `thesis`;\n"
+      "What the published originals do differently, each by itself: `--deviation NAME=on|off`. Those with a star are "
+      "on with `--fidelity original`, which is `thesis`;\n"
       "those with a plus with `demo`, the program published with the thesis on light propagation.\n"
-      "Formulas, sources and measured effects are in the README.md of each technique.\n\n| Name | | Meaning |\n|---|---|---|\n";
-  for (const Deviation& deviation : allDeviations()) text += fmt::format("| `{}` | {} | {} |\n", deviation.name, std::string(deviation.inOriginal ? "*" : "") + (deviation.inDemo ? "+" : ""), cell(deviation.meaning));
+      "Formulas, sources and measured effects are in the README.md of each technique.\n\n| Name | | Meaning "
+      "|\n|---|---|---|\n";
+  for (const Deviation& deviation : allDeviations())
+    text += fmt::format("| `{}` | {} | {} |\n", deviation.name,
+                        std::string(deviation.inOriginal ? "*" : "") + (deviation.inDemo ? "+" : ""),
+                        cell(deviation.meaning));
   return text;
 }
 

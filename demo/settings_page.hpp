@@ -1,4 +1,5 @@
-// The settings and deviations as documents: docs/settings.md, and the same as JSON. Both are made from the tables alone.
+// The settings and deviations as documents: docs/settings.md, and the same as JSON. Both are made from the tables
+// alone.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +11,8 @@ namespace lucerna::demo {
 /// docs/settings.md; `lucerna info --settings` prints it, and a test compares the two.
 std::string settingsPage();
 
-/// An array of objects: key, type, least, most, choices, word, unit, default, meaning, source, cost, techniques, transports.
+/// An array of objects: key, type, least, most, choices, word, unit, default, meaning, source, cost, techniques,
+/// transports.
 nlohmann::ordered_json settingsJson();
 
 }  // namespace lucerna::demo

@@ -1,4 +1,5 @@
-// lucerna tune SCENE --frame-time MS | --error E: measures the scene, then picks the technique and settings that meet one of them best.
+// lucerna tune SCENE --frame-time MS | --error E: measures the scene, then picks the technique and settings that meet
+// one of them best.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/bench.hpp"
@@ -51,9 +52,10 @@ bool isOutranked(const ErrorRow& row, const std::vector<ErrorRow>& rows, const c
   return false;
 }
 
-/// The row that meets the wish and is best in the other figure; the one that comes nearest where none does. Rows that need more than
-/// `mostSetup` seconds before their first picture are passed over.
-const ErrorRow& choose(const std::vector<ErrorRow>& rows, const char* wish, double limit, const char* other, double mostSetup, bool& met) {
+/// The row that meets the wish and is best in the other figure; the one that comes nearest where none does. Rows that
+/// need more than `mostSetup` seconds before their first picture are passed over.
+const ErrorRow& choose(const std::vector<ErrorRow>& rows, const char* wish, double limit, const char* other,
+                       double mostSetup, bool& met) {
   const ErrorRow* best = nullptr;
   met = false;
   double leastSetup = std::numeric_limits<double>::infinity();
@@ -64,38 +66,57 @@ const ErrorRow& choose(const std::vector<ErrorRow>& rows, const char* wish, doub
     const double value = figure(row, wish), cost = figure(row, other);
     if (!std::isfinite(value) || !std::isfinite(cost)) continue;
     const bool meets = value <= limit;
-    const bool better = !best || (meets && !met) || (meets == met && (meets ? cost < figure(*best, other) : value < figure(*best, wish)));
+    const bool better = !best || (meets && !met) ||
+                        (meets == met && (meets ? cost < figure(*best, other) : value < figure(*best, wish)));
     if (better) best = &row;
     met |= meets;
   }
   if (!best && leastSetup > mostSetup)
-    throwBadInput("tune: no settings are ready within --setup-time {:g} s; the fastest need {:.3g} s", mostSetup, leastSetup);
+    throwBadInput("tune: no settings are ready within --setup-time {:g} s; the fastest need {:.3g} s", mostSetup,
+                  leastSetup);
   if (!best) throw Error(ErrorKind::fault, "tune: no row has a finite time and error");
   return *best;
 }
 
 std::string describe(const ErrorRow& row) {
-  return fmt::format("{}: {:.2f} ms per picture after {:.3g} s of set-up, NRMSE {:.3g} %", row.at("label").get<std::string>(), number(row, "ms"), setupSeconds(row),
+  return fmt::format("{}: {:.2f} ms per picture after {:.3g} s of set-up, NRMSE {:.3g} %",
+                     row.at("label").get<std::string>(), number(row, "ms"), setupSeconds(row),
                      100.0 * bench::rankedError(row, "nrmse"));
 }
 
 int run(Options options) {
-  if (options.frameTime.has_value() == options.error.has_value()) throwBadInput("tune: give either --frame-time MS or --error E");
+  if (options.frameTime.has_value() == options.error.has_value())
+    throwBadInput("tune: give either --frame-time MS or --error E");
   checkWritable(options.output);
   if (options.bench.out.empty()) options.bench.out = "bench-error";
-  if (options.bench.techniques.empty()) options.bench.techniques = bench::ladderTechniques();  // those that walk in real time; path tracing where it is asked for
+  if (options.bench.techniques.empty())
+    options.bench.techniques =
+        bench::ladderTechniques();  // those that walk in real time; path tracing where it is asked for
   const auto result = bench::benchScene(options.common, options.bench);
   if (!result) return exitCode();
 
   bool met = false;
-  const ErrorRow& row = options.frameTime ? choose(result->report.rows, "ms", *options.frameTime, "nrmse", options.setupTime, met)
-                                          : choose(result->report.rows, "nrmse", *options.error, "ms", options.setupTime, met);
-  if (!met) throwBadInput("tune: no settings meet {}; the closest are {}", options.frameTime ? fmt::format("{:g} ms", *options.frameTime) : fmt::format("NRMSE {:g}", *options.error), describe(row));
-  nlohmann::ordered_json settings = {{"technique", row.at("technique")}, {"fidelity", row.at("fidelity")}, {"deviations", row.at("deviations")}, {"settings", row.contains("spp") ? nlohmann::ordered_json::array() : row.at("settings")}};
+  const ErrorRow& row = options.frameTime
+                            ? choose(result->report.rows, "ms", *options.frameTime, "nrmse", options.setupTime, met)
+                            : choose(result->report.rows, "nrmse", *options.error, "ms", options.setupTime, met);
+  if (!met)
+    throwBadInput(
+        "tune: no settings meet {}; the closest are {}",
+        options.frameTime ? fmt::format("{:g} ms", *options.frameTime) : fmt::format("NRMSE {:g}", *options.error),
+        describe(row));
+  nlohmann::ordered_json settings = {
+      {"technique", row.at("technique")},
+      {"fidelity", row.at("fidelity")},
+      {"deviations", row.at("deviations")},
+      {"settings", row.contains("spp") ? nlohmann::ordered_json::array() : row.at("settings")}};
   if (row.contains("spp")) settings["spp"] = row.at("spp");
-  settings["measured"] = {{"ms", row.at("ms")}, {"setup_ms", row.at("setup_ms")}, {"nrmse", row.at("nrmse")}, {"size", options.bench.size}, {"scene", options.bench.scene}, {"renderer", result->report.renderer}};
+  settings["measured"] = {{"ms", row.at("ms")},           {"setup_ms", row.at("setup_ms")},
+                          {"nrmse", row.at("nrmse")},     {"size", options.bench.size},
+                          {"scene", options.bench.scene}, {"renderer", result->report.renderer}};
   writeFileAtomically(options.output, settings.dump(2) + "\n");
-  if (!options.common.quiet) fmt::print("{}\n{}: lucerna render {} --settings {} -o OUT.png\n", describe(row), options.output, options.bench.scene, options.output);
+  if (!options.common.quiet)
+    fmt::print("{}\n{}: lucerna render {} --settings {} -o OUT.png\n", describe(row), options.output,
+               options.bench.scene, options.output);
   options.common.writeJson(settings);
   return 0;
 }
@@ -105,10 +126,14 @@ int run(Options options) {
 Work addTune(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->bench.scene, "a scene file (default: the atrium)");
-  app.add_option("--frame-time", options->frameTime, "at most this many milliseconds per picture: settings with the least error")->check(CLI::PositiveNumber);
-  app.add_option("--error", options->error, "at most this NRMSE, such as 0.1: settings with the least time")->check(CLI::PositiveNumber);
-  app.add_option("--setup-time", options->setupTime,
-                 "at most this many seconds before the first picture (10); a radiosity solution of a large scene takes longer")
+  app.add_option("--frame-time", options->frameTime,
+                 "at most this many milliseconds per picture: settings with the least error")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--error", options->error, "at most this NRMSE, such as 0.1: settings with the least time")
+      ->check(CLI::PositiveNumber);
+  app.add_option(
+         "--setup-time", options->setupTime,
+         "at most this many seconds before the first picture (10); a radiosity solution of a large scene takes longer")
       ->check(CLI::PositiveNumber);
   app.add_option("-o,--output", options->output, "the settings file")->required();
   options->bench.declare(app);

@@ -1,4 +1,5 @@
-// lucerna bench all --out DIR: the whole report on one page, with an index: error, deviations, stability, needs, rays, and the three originals' tables and pictures.
+// lucerna bench all --out DIR: the whole report on one page, with an index: error, deviations, stability, needs, rays,
+// and the three originals' tables and pictures.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/bench.hpp"
@@ -30,7 +31,7 @@ struct AllOptions {
   std::string out;
   double scale = 0.25;
   std::vector<std::string> scenes;  ///< for error, needs and rays; empty: Cornell and atrium
-  std::vector<std::string> parts;   ///< empty: all
+  std::vector<std::string> parts;  ///< empty: all
 };
 
 constexpr const char* kParts[] = {"error", "deviations", "stability", "needs", "rays", "tables", "pictures"};
@@ -47,8 +48,11 @@ std::string sizeOf(double scale) {
 
 class Report {
  public:
-  Report(const AllOptions& options, const gl::Context& context, const std::string& host) : options_(options), context_(context), host_(host), page_("Lucerna: measurements") {
-    page_.preformatted(fmt::format("Renderer {}\nHost     {}, {}\nScale    {}; pictures {}\n", context.capabilities().renderer, host, cpuName(), options.scale, sizeOf(options.scale)));
+  Report(const AllOptions& options, const gl::Context& context, const std::string& host)
+      : options_(options), context_(context), host_(host), page_("Lucerna: measurements") {
+    page_.preformatted(fmt::format("Renderer {}\nHost     {}, {}\nScale    {}; pictures {}\n",
+                                   context.capabilities().renderer, host, cpuName(), options.scale,
+                                   sizeOf(options.scale)));
   }
 
   void errors(const std::string& file, bool deviations) {
@@ -57,7 +61,8 @@ class Report {
     ErrorBenchOptions options;
     options.scene = file;
     options.size = sizeOf(options_.scale);
-    options.out = (fs::path(options_.out) / fmt::format("{}-{}", deviations ? "deviations" : "error", scene.name)).string();
+    options.out =
+        (fs::path(options_.out) / fmt::format("{}-{}", deviations ? "deviations" : "error", scene.name)).string();
     options.budget = 240.0 * options_.scale;
     options.small = options_.scale < 0.5;
     options.deviations = deviations;
@@ -66,7 +71,8 @@ class Report {
     const auto result = runErrorBench(context_, programs, scene, options, host_);
     if (!result->complete) return;
     HtmlPage part("");
-    addToPage(part, options.out, result->report, kPageBytes / (options_.scenes.size() + 1));  // the scenes, and a study of deviations
+    addToPage(part, options.out, result->report,
+              kPageBytes / (options_.scenes.size() + 1));  // the scenes, and a study of deviations
     page_.append(part);
     json_[deviations ? "deviations" : "error"].push_back(errorBenchJson(*result, options));
   }
@@ -78,7 +84,8 @@ class Report {
     HtmlPage::Table table{{"technique", "case", "parameter", "expected", "measured", "verdict"}, {}, {}};
     int failed = 0;
     for (const StabilityRow& row : rows) {
-      table.rows.push_back({row.technique, row.name, row.parameter, expectedText(row.measurement), fmt::format("{:.7g}", row.measurement.measured), row.passed ? "pass" : "FAIL " + row.note});
+      table.rows.push_back({row.technique, row.name, row.parameter, expectedText(row.measurement),
+                            fmt::format("{:.7g}", row.measurement.measured), row.passed ? "pass" : "FAIL " + row.note});
       table.marked.push_back(!row.passed);
       failed += !row.passed;
     }
@@ -89,7 +96,8 @@ class Report {
 
   void needs(const std::vector<std::string>& files) {
     page_.section("What scenes leave out");
-    HtmlPage::Table table{{"scene", "left out", "compile ms", "GPU MiB", "ms a picture", "largest pixel difference"}, {}, {}};
+    HtmlPage::Table table{
+        {"scene", "left out", "compile ms", "GPU MiB", "ms a picture", "largest pixel difference"}, {}, {}};
     for (const std::string& file : files) {
       const Scene scene = loadScene(file);
       RenderSettings settings;
@@ -97,10 +105,13 @@ class Report {
       const NeedsResult r = measureNeeds(context_, scene, scene.cameras.front(), settings, 3);
       std::string names;
       for (const std::string& name : r.leftOut) names += (names.empty() ? "" : ", ") + name;
-      const auto both = [](double with, double without) { return fmt::format("{:.1f} instead of {:.1f}", without, with); };
-      table.rows.push_back({r.scene, names, both(r.with.compileMs, r.without.compileMs),
-                            both(static_cast<double>(r.with.gpuBytes) / 1048576.0, static_cast<double>(r.without.gpuBytes) / 1048576.0), both(r.with.ms, r.without.ms),
-                            fmt::format("{:.2g} of {:.2g}", r.maxDifference, r.maxRadiance)});
+      const auto both = [](double with, double without) {
+        return fmt::format("{:.1f} instead of {:.1f}", without, with);
+      };
+      table.rows.push_back(
+          {r.scene, names, both(r.with.compileMs, r.without.compileMs),
+           both(static_cast<double>(r.with.gpuBytes) / 1048576.0, static_cast<double>(r.without.gpuBytes) / 1048576.0),
+           both(r.with.ms, r.without.ms), fmt::format("{:.2g} of {:.2g}", r.maxDifference, r.maxRadiance)});
       json_["needs"].push_back(needsJson(r));
     }
     page_.paragraph("Left out as the scene does not need it, instead of forced on with data that change nothing.");
@@ -113,16 +124,21 @@ class Report {
     page_.section("Published tables, measured again");
     const double scale = std::min(1.0, options_.scale);
     const Scene scene = loadScene(file);
-    add("Light propagation volumes, on " + scene.name, measureLpvTables({context_, programs, scene, scale, options_.common.quiet}), "lpv");
+    add("Light propagation volumes, on " + scene.name,
+        measureLpvTables({context_, programs, scene, scale, options_.common.quiet}), "lpv");
     if (interrupted()) return;
-    add("Participating media", measureVptTables({context_, programs, kVptTables * scale, options_.common.quiet, Fidelity::original}), "vpt");
+    add("Participating media",
+        measureVptTables({context_, programs, kVptTables * scale, options_.common.quiet, Fidelity::original}), "vpt");
     if (interrupted()) return;
-    const nlohmann::ordered_json rad = measureRadTables(context_, programs, kRadTables * scale, options_.common.quiet, false);
+    const nlohmann::ordered_json rad =
+        measureRadTables(context_, programs, kRadTables * scale, options_.common.quiet, false);
     page_.heading("Radiosity");
     HtmlPage::Table table{{"table", "row", "published", "here", "unit", "here / published"}, {}, {}};
     for (const auto& row : rad.at("rows"))
-      table.rows.push_back({row.at("table").get<std::string>(), row.at("row").get<std::string>(), fmt::format("{:.4g}", row.at("published").get<double>()),
-                            fmt::format("{:.4g}", row.at("measured").get<double>()), row.at("unit").get<std::string>(), fmt::format("{:.3g}", row.at("ratio").get<double>())});
+      table.rows.push_back({row.at("table").get<std::string>(), row.at("row").get<std::string>(),
+                            fmt::format("{:.4g}", row.at("published").get<double>()),
+                            fmt::format("{:.4g}", row.at("measured").get<double>()), row.at("unit").get<std::string>(),
+                            fmt::format("{:.3g}", row.at("ratio").get<double>())});
     std::string notes;
     for (const auto& note : rad.at("notes")) notes += note.get<std::string>() + "\n";
     page_.preformatted(notes);
@@ -146,10 +162,16 @@ class Report {
     RenderSettings usual;
     applyFidelity(usual, Fidelity::original);
     usual.size = kSheetTile;
-    keep("lpv", "Light propagation volumes as published", drawLpvPictures({context_, programs, scene, scene.cameras.front(), usual, "original", {}, options_.common.quiet}));
+    keep("lpv", "Light propagation volumes as published",
+         drawLpvPictures(
+             {context_, programs, scene, scene.cameras.front(), usual, "original", {}, options_.common.quiet}));
     if (!interrupted())
-      keep("vpt", "Participating media as published, the corrected estimator beside", drawVptPictures({context_, programs, kVptPictures * scale, options_.common.quiet, Fidelity::original}, kSheetTile, {}));
-    if (!interrupted()) keep("rad", "Radiosity as published", drawRadPictures(programs, kSheetTile, kRadPictures * scale, options_.common.quiet));
+      keep("vpt", "Participating media as published, the corrected estimator beside",
+           drawVptPictures({context_, programs, kVptPictures * scale, options_.common.quiet, Fidelity::original},
+                           kSheetTile, {}));
+    if (!interrupted())
+      keep("rad", "Radiosity as published",
+           drawRadPictures(programs, kSheetTile, kRadPictures * scale, options_.common.quiet));
   }
 
   void rays(const std::vector<std::string>& files) {
@@ -158,7 +180,10 @@ class Report {
     options.rays = std::clamp(static_cast<int>(options.rays * options_.scale), 1024, 1 << 22);
     options.repeats = 5;
     page_.section("Rays per second");
-    HtmlPage::Table table{{"scene", "rays", "million rays a second", "Embree's", "ratio", "nodes a ray", "triangles a ray", "answers that differ"}, {}, {}};
+    HtmlPage::Table table{{"scene", "rays", "million rays a second", "Embree's", "ratio", "nodes a ray",
+                           "triangles a ray", "answers that differ"},
+                          {},
+                          {}};
     for (const std::string& file : files) {
       const Scene scene = loadScene(file);
       const RaysResult result = measureRays(context_, programs, scene, options, options_.common.quiet);
@@ -167,12 +192,16 @@ class Report {
         return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : std::string("not here");
       };
       for (const auto& row : result.json.at("rows"))
-        table.rows.push_back({scene.name, row.at("rays").get<std::string>(), figure(row, "mrays_per_s", "{:.3f}"), figure(row, "embree_mrays_per_s", "{:.3f}"), figure(row, "ratio", "{:.3f}"),
-                              figure(row, "nodes_per_ray", "{:.1f}"), figure(row, "triangles_per_ray", "{:.1f}"), fmt::format("{} of {}", row.at("differ").dump(), row.at("count").dump())});
+        table.rows.push_back({scene.name, row.at("rays").get<std::string>(), figure(row, "mrays_per_s", "{:.3f}"),
+                              figure(row, "embree_mrays_per_s", "{:.3f}"), figure(row, "ratio", "{:.3f}"),
+                              figure(row, "nodes_per_ray", "{:.1f}"), figure(row, "triangles_per_ray", "{:.1f}"),
+                              fmt::format("{} of {}", row.at("differ").dump(), row.at("count").dump())});
       json_["rays"].push_back(result.json);
     }
-    page_.paragraph(fmt::format("The compute-shader hierarchy beside Embree's single rays on the same {} rays of each kind, in turn, medians of {}; all of this machine's cores work for either.", options.rays,
-                                options.repeats));
+    page_.paragraph(
+        fmt::format("The compute-shader hierarchy beside Embree's single rays on the same {} rays of each kind, in "
+                    "turn, medians of {}; all of this machine's cores work for either.",
+                    options.rays, options.repeats));
     page_.table(table);
   }
 
@@ -182,7 +211,9 @@ class Report {
     HtmlPage::Table table{{"table", "row", "published ms", "here ms", "here / published"}, {}, {}};
     for (const Row& row : tables.rows)
       for (const Row::Published& published : row.published)
-        table.rows.push_back({row.table, row.name() + ", " + published.gpu, fmt::format("{:.4g}", published.ms), fmt::format("{:.4g}", row.measured()), fmt::format("{:.3g}", row.measured() / published.ms)});
+        table.rows.push_back({row.table, row.name() + ", " + published.gpu, fmt::format("{:.4g}", published.ms),
+                              fmt::format("{:.4g}", row.measured()),
+                              fmt::format("{:.3g}", row.measured() / published.ms)});
     std::string notes;
     for (const std::string& note : tables.notes) notes += note + "\n";
     page_.preformatted(notes + tables.summary);
@@ -212,13 +243,18 @@ class Report {
 
 int run(AllOptions options) {
   options.common.apply();
-  if (!(options.scale > 0.0 && options.scale <= 4.0)) throwBadInput("--scale {}: expected a number above 0, at most 4", options.scale);
+  if (!(options.scale > 0.0 && options.scale <= 4.0))
+    throwBadInput("--scale {}: expected a number above 0, at most 4", options.scale);
   for (const std::string& name : options.parts)
-    if (std::find(std::begin(kParts), std::end(kParts), name) == std::end(kParts)) throwBadInput("--parts {}: unknown; expected one of {}", name, fmt::join(kParts, ", "));
+    if (std::find(std::begin(kParts), std::end(kParts), name) == std::end(kParts))
+      throwBadInput("--parts {}: unknown; expected one of {}", name, fmt::join(kParts, ", "));
   std::error_code error;
   fs::create_directories(options.out, error);
-  if (error || !fs::is_directory(options.out)) throwBadInput("--out {}: cannot create folder ({})", options.out, error ? error.message() : "a file of that name exists");
-  const std::string originals = sceneOrAtrium(options.scenes.empty() ? "" : options.scenes.front());  // what has a scene of its own is made on that
+  if (error || !fs::is_directory(options.out))
+    throwBadInput("--out {}: cannot create folder ({})", options.out,
+                  error ? error.message() : "a file of that name exists");
+  const std::string originals = sceneOrAtrium(
+      options.scenes.empty() ? "" : options.scenes.front());  // what has a scene of its own is made on that
   if (options.scenes.empty()) options.scenes = {asset("cornell/cornell.json"), asset("atrium/atrium.json")};
   const auto host = options.common.makeHost(false);
   const gl::Context context;
@@ -226,7 +262,9 @@ int run(AllOptions options) {
   const auto start = std::chrono::steady_clock::now();
   Report report(options, context, std::string(nameOf(host->kind())));
   const auto part = [&](const char* name, auto make) {
-    if (interrupted() || (!options.parts.empty() && std::find(options.parts.begin(), options.parts.end(), name) == options.parts.end())) return;
+    if (interrupted() ||
+        (!options.parts.empty() && std::find(options.parts.begin(), options.parts.end(), name) == options.parts.end()))
+      return;
     if (!options.common.quiet) fmt::print("{}\n", name);
     try {
       make();
@@ -264,11 +302,17 @@ int run(AllOptions options) {
 
 Work addBenchAll(CLI::App& app) {
   auto options = std::make_shared<bench::AllOptions>();
-  app.add_option("SCENE", options->scenes, "scene files for error and needs (default: the Cornell box and the atrium); the first for the tables and pictures of lpv (default: the atrium)");
+  app.add_option("SCENE", options->scenes,
+                 "scene files for error and needs (default: the Cornell box and the atrium); the first for the tables "
+                 "and pictures of lpv (default: the atrium)");
   app.add_option("--out", options->out, "folder of the report; an interrupted one is resumed")->required();
-  offer(app.add_option("--parts", options->parts, "of error, deviations, stability, needs, rays, tables, pictures; default: all")->delimiter(','),
+  offer(app.add_option("--parts", options->parts,
+                       "of error, deviations, stability, needs, rays, tables, pictures; default: all")
+            ->delimiter(','),
         {std::begin(bench::kParts), std::end(bench::kParts)});
-  app.add_option("--scale", options->scale, "how much work: pixels and seconds; 1 takes four times as long as the default")->capture_default_str();
+  app.add_option("--scale", options->scale,
+                 "how much work: pixels and seconds; 1 takes four times as long as the default")
+      ->capture_default_str();
   options->common.declare(app);
   return [options] { return bench::run(*options); };
 }

@@ -10,14 +10,13 @@ namespace lucerna::demo {
 namespace bench {
 
 void checkOriginal(const std::string& name) {
-  if (name != "lpv" && name != "rad" && name != "vpt") throwBadInput("--original {}: unknown; expected one of lpv, rad, vpt", name);
+  if (name != "lpv" && name != "rad" && name != "vpt")
+    throwBadInput("--original {}: unknown; expected one of lpv, rad, vpt", name);
 }
 
 std::string asset(const std::string& file) { return (dataFolder() / "assets" / file).string(); }
 
-std::string sceneOrAtrium(const std::string& scene) {
-  return scene.empty() ? asset("atrium/atrium.json") : scene;
-}
+std::string sceneOrAtrium(const std::string& scene) { return scene.empty() ? asset("atrium/atrium.json") : scene; }
 
 }  // namespace bench
 
@@ -32,7 +31,8 @@ Work addBench(CLI::App& app) {
   add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);
   add("rays", "Rays per second of the compute-shader hierarchy, beside Embree on the same rays", addBenchRays);
   add("error", "Error against run time: every technique over a ladder of settings", addBenchError);
-  add("diff", "Two reports of bench error row by row: better, worse or undecided, by a test that knows both spreads", addBenchDiff);
+  add("diff", "Two reports of bench error row by row: better, worse or undecided, by a test that knows both spreads",
+      addBenchDiff);
   add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);
   add("needs", "What a scene leaves out, and what that saves", addBenchNeeds);
   add("all", "The whole report on one page: tables, error, stability, needs, rays", addBenchAll);

@@ -33,12 +33,12 @@ struct Row {
     double ms;
   };
   std::string table, setting, stage;
-  int grids = 0;                     ///< 0: does not matter
+  int grids = 0;  ///< 0: does not matter
   std::vector<Published> published;  ///< one a GPU
-  std::string fill, propagate;       ///< how ours was made; empty where it does not matter
-  std::vector<double> samples;       ///< ours, ms; empty: not measured
-  bool isMean = false;               ///< else the median
-  std::string missing;               ///< an extension that this driver lacks; empty: none
+  std::string fill, propagate;  ///< how ours was made; empty where it does not matter
+  std::vector<double> samples;  ///< ours, ms; empty: not measured
+  bool isMean = false;  ///< else the median
+  std::string missing;  ///< an extension that this driver lacks; empty: none
 
   std::string name() const;
   double measured() const;  ///< NaN where there is no sample
@@ -55,8 +55,8 @@ struct TablesInput {
 struct Tables {
   std::vector<std::string> notes;  ///< how it was measured, and how that differs from what was published
   std::vector<Row> rows;
-  std::string summary;             ///< printed after the tables
-  nlohmann::ordered_json json;     ///< the same, and the settings
+  std::string summary;  ///< printed after the tables
+  nlohmann::ordered_json json;  ///< the same, and the settings
 };
 
 struct VptTablesInput {
@@ -67,7 +67,8 @@ struct VptTablesInput {
   Fidelity fidelity = Fidelity::corrected;
 };
 
-/// The times under the pictures of the VPT original, on scenes of ours; with the published estimator also those of the corrected one.
+/// The times under the pictures of the VPT original, on scenes of ours; with the published estimator also those of the
+/// corrected one.
 Tables measureVptTables(const VptTablesInput& input);
 
 /// Those pictures on one sheet.

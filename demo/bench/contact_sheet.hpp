@@ -10,7 +10,7 @@ namespace lucerna::demo::bench {
 
 struct Tile {
   std::string label;  ///< letters become capitals; wrapped where it is too long
-  Bitmap picture;     ///< all of one size
+  Bitmap picture;  ///< all of one size
 };
 
 /// `columns` tiles a row, under a title.

@@ -1,11 +1,13 @@
-// lucerna bench diff A B: two reports of `bench error`, row by row: is B better or worse than A, by tests that know the spreads of both.
+// lucerna bench diff A B: two reports of `bench error`, row by row: is B better or worse than A, by tests that know the
+// spreads of both.
 //
-// Errors (relative L2, the same inside the model, bias): the difference over its standard error, which comes from the noise of the references and, for
-// path tracing, from seeds. Student's t where few seeds say how large it is. A figure below the reference's noise is an upper bound, and is decided only
-// where the other one is clear of it.
-// Times: the logarithm of B over A. Two runs of one program differ by more than the spread within each (load, clock, memory), and the rows say by how much:
-// the median of all rows is the machine's part and is reported apart; what rows scatter about it (median absolute deviation) adds to a row's own spread.
-// So many rows are so many chances to err: the level is Sidak's for all tests together [Sidak1967].
+// Errors (relative L2, the same inside the model, bias): the difference over its standard error, which comes from the
+// noise of the references and, for path tracing, from seeds. Student's t where few seeds say how large it is. A figure
+// below the reference's noise is an upper bound, and is decided only where the other one is clear of it. Times: the
+// logarithm of B over A. Two runs of one program differ by more than the spread within each (load, clock, memory), and
+// the rows say by how much: the median of all rows is the machine's part and is reported apart; what rows scatter about
+// it (median absolute deviation) adds to a row's own spread. So many rows are so many chances to err: the level is
+// Sidak's for all tests together [Sidak1967].
 #include "bench/diff.hpp"
 
 #include "base/error.hpp"
@@ -39,7 +41,9 @@ struct DiffOptions {
 constexpr double kRounding = 1e-5;
 
 enum class Verdict { undecided, better, worse };
-std::string_view nameOf(Verdict v) { return v == Verdict::better ? "better" : v == Verdict::worse ? "worse" : "undecided"; }
+std::string_view nameOf(Verdict v) {
+  return v == Verdict::better ? "better" : v == Verdict::worse ? "worse" : "undecided";
+}
 
 /// A figure with its standard error, of which `freedom` degrees tell; infinite: it is known.
 struct Estimate {
@@ -87,7 +91,8 @@ Estimate l2Of(const ErrorRow& errors, double freedom) {
 }
 /// Relative, signed.
 Estimate biasOf(const ErrorRow& row, double freedom) {
-  const double mean = number(row, "bias") / number(row, "relative_bias"), error = number(row, "bias_error") / std::abs(mean);
+  const double mean = number(row, "bias") / number(row, "relative_bias"),
+               error = number(row, "bias_error") / std::abs(mean);
   return {number(row, "relative_bias"), std::isfinite(error) ? error : 0.0, freedom, false};
 }
 double freedomOf(const ErrorRow& row) {
@@ -100,7 +105,8 @@ Finding judge(const std::string& what, const Estimate& a, const Estimate& b, dou
   Finding finding{what, a.value, b.value, NAN, Verdict::undecided};
   if (!std::isfinite(a.value) || !std::isfinite(b.value)) {
     // What is no longer finite is worse, whatever it was.
-    if (std::isfinite(a.value) != std::isfinite(b.value)) finding.verdict = std::isfinite(a.value) ? Verdict::worse : Verdict::better;
+    if (std::isfinite(a.value) != std::isfinite(b.value))
+      finding.verdict = std::isfinite(a.value) ? Verdict::worse : Verdict::better;
     return finding;
   }
   const double difference = b.value - a.value, error = std::hypot(a.error, b.error);
@@ -118,14 +124,16 @@ Estimate logTimeOf(const ErrorRow& row) {
   if (const auto found = row.find("wall_ms_samples"); found != row.end() && found->is_array())
     for (const auto& value : *found) samples.push_back(value.get<double>());
   const double error = medianError(samples) / median(samples);
-  return {std::log(number(row, "ms")), std::isfinite(error) ? error : 0.0, std::isfinite(error) ? static_cast<double>(samples.size()) - 1.0 : INFINITY, false};
+  return {std::log(number(row, "ms")), std::isfinite(error) ? error : 0.0,
+          std::isfinite(error) ? static_cast<double>(samples.size()) - 1.0 : INFINITY, false};
 }
 
 nlohmann::ordered_json readReport(const std::string& path) {
   namespace fs = std::filesystem;
   const fs::path file = fs::is_directory(path) ? fs::path(path) / "error.json" : fs::path(path);
   nlohmann::ordered_json report = nlohmann::ordered_json::parse(readFileText(file), nullptr, false);
-  if (report.is_discarded() || !report.is_object() || !report.contains("rows") || !report.at("rows").is_array() || !report.contains("bench"))
+  if (report.is_discarded() || !report.is_object() || !report.contains("rows") || !report.at("rows").is_array() ||
+      !report.contains("bench"))
     throwBadInput("{}: no report of lucerna bench error (its JSON, or the folder that holds error.json)", path);
   return report;
 }
@@ -141,13 +149,17 @@ std::map<std::string, ErrorRow> byLabel(const nlohmann::ordered_json& report, st
 
 int run(const DiffOptions& options) {
   options.common.apply();
-  const auto wants = [&](const char* what) { return std::find(options.what.begin(), options.what.end(), what) != options.what.end(); };
+  const auto wants = [&](const char* what) {
+    return std::find(options.what.begin(), options.what.end(), what) != options.what.end();
+  };
   for (const std::string& what : options.what)
     if (what != "error" && what != "time") throwBadInput("--only {}: unknown; there are error, time", what);
-  if (!(options.significance > 0.0 && options.significance < 1.0)) throwBadInput("--significance {}: expected a number between 0 and 1", options.significance);
+  if (!(options.significance > 0.0 && options.significance < 1.0))
+    throwBadInput("--significance {}: expected a number between 0 and 1", options.significance);
   const nlohmann::ordered_json reportA = readReport(options.a), reportB = readReport(options.b);
   if (reportA.at("bench") != reportB.at("bench"))
-    throwBadInput("{} is of '{}', {} of '{}': only reports of one scene, view and size are compared", options.a, reportA.at("bench").get<std::string>(), options.b, reportB.at("bench").get<std::string>());
+    throwBadInput("{} is of '{}', {} of '{}': only reports of one scene, view and size are compared", options.a,
+                  reportA.at("bench").get<std::string>(), options.b, reportB.at("bench").get<std::string>());
   std::vector<std::string> orderA, orderB;
   const auto a = byLabel(reportA, orderA), b = byLabel(reportB, orderB);
   std::vector<std::string> both, onlyA, onlyB;
@@ -157,11 +169,13 @@ int run(const DiffOptions& options) {
   if (both.empty()) throwBadInput("{} and {} have no row in common", options.a, options.b);
 
   // Sidak: four tests a row.
-  const double tests = 4.0 * static_cast<double>(both.size()), z = normalLimit(1.0 - std::pow(1.0 - options.significance, 1.0 / tests));
+  const double tests = 4.0 * static_cast<double>(both.size()),
+               z = normalLimit(1.0 - std::pow(1.0 - options.significance, 1.0 / tests));
   // What the machine does to all rows, and how far rows scatter about that.
   std::vector<double> ratios;
   for (const std::string& label : both)
-    if (const double ratio = logTimeOf(b.at(label)).value - logTimeOf(a.at(label)).value; std::isfinite(ratio)) ratios.push_back(ratio);
+    if (const double ratio = logTimeOf(b.at(label)).value - logTimeOf(a.at(label)).value; std::isfinite(ratio))
+      ratios.push_back(ratio);
   const double shift = ratios.empty() ? 0.0 : median(ratios);
   std::vector<double> deviations;
   for (const double ratio : ratios) deviations.push_back(std::abs(ratio - shift));
@@ -176,16 +190,19 @@ int run(const DiffOptions& options) {
     if (wants("error")) {
       diff.findings.push_back(judge("relative L2", l2Of(rowA, freedomA), l2Of(rowB, freedomB), z));
       if (rowA.contains("inside_model") && rowB.contains("inside_model"))
-        diff.findings.push_back(judge("inside model", l2Of(rowA.at("inside_model"), INFINITY), l2Of(rowB.at("inside_model"), INFINITY), z));
+        diff.findings.push_back(
+            judge("inside model", l2Of(rowA.at("inside_model"), INFINITY), l2Of(rowB.at("inside_model"), INFINITY), z));
       diff.findings.push_back(judge("bias", biasOf(rowA, INFINITY), biasOf(rowB, INFINITY), z));
     }
     if (wants("time")) {
       Estimate timeA = logTimeOf(rowA), timeB = logTimeOf(rowB);
       Finding time{"ms", number(rowA, "ms"), number(rowB, "ms"), NAN, Verdict::undecided};
-      const double change = timeB.value - timeA.value - shift, error = std::hypot(std::hypot(timeA.error, timeB.error), scatter);
+      const double change = timeB.value - timeA.value - shift,
+                   error = std::hypot(std::hypot(timeA.error, timeB.error), scatter);
       if (std::isfinite(change) && std::isfinite(error)) {
         time.apart = error > 0.0 ? change / error : change == 0.0 ? 0.0 : std::copysign(INFINITY, change);
-        if (std::abs(time.apart) > studentLimit(z, static_cast<double>(ratios.size()) - 1.0) && std::abs(change) > std::log1p(options.timeFloor))
+        if (std::abs(time.apart) > studentLimit(z, static_cast<double>(ratios.size()) - 1.0) &&
+            std::abs(change) > std::log1p(options.timeFloor))
           time.verdict = change > 0.0 ? Verdict::worse : Verdict::better;
       }
       diff.findings.push_back(time);
@@ -206,16 +223,21 @@ int run(const DiffOptions& options) {
       std::string line = fmt::format("{:<9}  {:<{}}", nameOf(diff.verdict), diff.label, width);
       for (const Finding& f : diff.findings) {
         const double scale = f.what == "ms" ? 1.0 : 100.0;
-        line += fmt::format("  {} {:.4g} -> {:.4g}{}{}", f.what, scale * f.a, scale * f.b, f.what == "ms" ? "" : " %", std::isfinite(f.apart) ? fmt::format(" ({:+.1f})", f.apart) : "");
+        line += fmt::format("  {} {:.4g} -> {:.4g}{}{}", f.what, scale * f.a, scale * f.b, f.what == "ms" ? "" : " %",
+                            std::isfinite(f.apart) ? fmt::format(" ({:+.1f})", f.apart) : "");
         if (f.verdict != Verdict::undecided) line += fmt::format(" {}", nameOf(f.verdict));
       }
       fmt::print("{}\n", line);
     }
     for (const std::string& label : onlyA) fmt::print("gone       {}\n", label);
     for (const std::string& label : onlyB) fmt::print("new        {}\n", label);
-    fmt::print("In brackets: standard errors of the difference; decided beyond {:.2f} (level {:g} for all {} rows).\n", z, options.significance, both.size());
+    fmt::print("In brackets: standard errors of the difference; decided beyond {:.2f} (level {:g} for all {} rows).\n",
+               z, options.significance, both.size());
     if (wants("time"))
-      fmt::print("All rows together: B takes {:.3f} times A's time (median), machine or program; rows scatter by {:.1f} % about that.\n", std::exp(shift), std::isfinite(scatter) ? 100.0 * scatter : NAN);
+      fmt::print(
+          "All rows together: B takes {:.3f} times A's time (median), machine or program; rows scatter by {:.1f} % "
+          "about that.\n",
+          std::exp(shift), std::isfinite(scatter) ? 100.0 * scatter : NAN);
     fmt::print("{} better, {} worse, {} undecided\n", better, worse, static_cast<int>(diffs.size()) - better - worse);
   }
   nlohmann::ordered_json json;
@@ -232,7 +254,9 @@ int run(const DiffOptions& options) {
   json["rows"] = nlohmann::ordered_json::array();
   for (const RowDiff& diff : diffs) {
     nlohmann::ordered_json row{{"label", diff.label}, {"verdict", nameOf(diff.verdict)}};
-    for (const Finding& f : diff.findings) row["findings"].push_back({{"what", f.what}, {"a", f.a}, {"b", f.b}, {"standard_errors", f.apart}, {"verdict", nameOf(f.verdict)}});
+    for (const Finding& f : diff.findings)
+      row["findings"].push_back(
+          {{"what", f.what}, {"a", f.a}, {"b", f.b}, {"standard_errors", f.apart}, {"verdict", nameOf(f.verdict)}});
     json["rows"].push_back(std::move(row));
   }
   options.common.writeJson(json);
@@ -246,10 +270,16 @@ int run(const DiffOptions& options) {
 Work addBenchDiff(CLI::App& app) {
   auto options = std::make_shared<bench::DiffOptions>();
   app.add_option("A", options->a, "a report: its JSON, or the folder of `bench error`")->required();
-  app.add_option("B", options->b, "another of the same scene, view and size; exit code 1 where a row of it is worse, or gone")->required();
+  app.add_option("B", options->b,
+                 "another of the same scene, view and size; exit code 1 where a row of it is worse, or gone")
+      ->required();
   offer(app.add_option("--only", options->what, "of error, time; default: both")->delimiter(','), {"error", "time"});
-  app.add_option("--significance", options->significance, "the chance that any row is called better or worse where nothing changed")->capture_default_str();
-  app.add_option("--time-floor", options->timeFloor, "smaller changes of a time, as a fraction, are undecided")->capture_default_str()->check(CLI::NonNegativeNumber);
+  app.add_option("--significance", options->significance,
+                 "the chance that any row is called better or worse where nothing changed")
+      ->capture_default_str();
+  app.add_option("--time-floor", options->timeFloor, "smaller changes of a time, as a fraction, are undecided")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   options->common.declare(app);
   return [options] {
     try {

@@ -34,8 +34,10 @@ EmbreeRays::EmbreeRays(const Scene& scene, const glm::dvec3& origin) : handles_(
   rtcSetSceneBuildQuality(handles_->scene, RTC_BUILD_QUALITY_HIGH);
   RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, scene.vertices.size()));
-  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, scene.triangleCount()));
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, scene.vertices.size()));
+  auto* indices = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, scene.triangleCount()));
   CHECK(vertices && indices, "Embree takes no buffers for {} triangles", scene.triangleCount());
   for (const Vertex& vertex : scene.vertices)
     for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(static_cast<double>(vertex.position[k]) - origin[k]);
@@ -56,21 +58,25 @@ void EmbreeRays::trace(std::span<const PlainRay> rays, std::span<PlainHit> hits,
     for (std::size_t i = begin; i < end; ++i) {
       const PlainRay& r = rays[i];
       RTCRayHit query{};
-      query.ray = {r.origin.x, r.origin.y, r.origin.z, r.tMin, r.direction.x, r.direction.y, r.direction.z, 0.0f, r.tMax, ~0u, 0, 0};
+      query.ray = {r.origin.x, r.origin.y, r.origin.z, r.tMin, r.direction.x, r.direction.y, r.direction.z, 0.0f,
+                   r.tMax,     ~0u,        0,          0};
       query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       if (anyHit) {
         rtcOccluded1(handles_->scene, &context, &query.ray);
         hits[i].triangle = query.ray.tfar < 0.0f ? 0u : PlainHit::kNone;
       } else {
         rtcIntersect1(handles_->scene, &context, &query);
-        hits[i] = {query.ray.tfar, query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? PlainHit::kNone : query.hit.primID, {query.hit.u, query.hit.v}};
+        hits[i] = {query.ray.tfar,
+                   query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? PlainHit::kNone : query.hit.primID,
+                   {query.hit.u, query.hit.v}};
       }
     }
   };
   std::atomic<std::size_t> next{0};
   const auto share = [&] {
     constexpr std::size_t kChunk = 4096;
-    for (std::size_t begin = next.fetch_add(kChunk); begin < rays.size(); begin = next.fetch_add(kChunk)) work(begin, std::min(begin + kChunk, rays.size()));
+    for (std::size_t begin = next.fetch_add(kChunk); begin < rays.size(); begin = next.fetch_add(kChunk))
+      work(begin, std::min(begin + kChunk, rays.size()));
   };
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::thread> others;

@@ -25,14 +25,16 @@ struct PlainHit {
 
 class EmbreeRays {
  public:
-  /// Whether Embree was there when this was built (LUCERNA_EMBREE); else the constructor throws Error(missingCapability).
+  /// Whether Embree was there when this was built (LUCERNA_EMBREE); else the constructor throws
+  /// Error(missingCapability).
   static bool isBuilt();
 
   /// The scene moved by -origin. Embree's robust mode, its best build quality.
   EmbreeRays(const Scene& scene, const glm::dvec3& origin);
   ~EmbreeRays();
 
-  /// rtcIntersect1 or rtcOccluded1, one ray after the other on all cores. anyHit: only whether `triangle` is kNone is meant.
+  /// rtcIntersect1 or rtcOccluded1, one ray after the other on all cores. anyHit: only whether `triangle` is kNone is
+  /// meant.
   void trace(std::span<const PlainRay> rays, std::span<PlainHit> hits, bool anyHit) const;
 
  private:

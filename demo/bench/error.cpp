@@ -1,4 +1,5 @@
-// lucerna bench error SCENE: every technique over a ladder of settings, its time and its error against a path-traced reference.
+// lucerna bench error SCENE: every technique over a ladder of settings, its time and its error against a path-traced
+// reference.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/hash.hpp"
@@ -18,14 +19,17 @@ namespace bench {
 
 namespace {
 
-/// Patches are never fewer than triangles, and form factors go with their square: above that the ladder of radiosity would take hours on two cores.
+/// Patches are never fewer than triangles, and form factors go with their square: above that the ladder of radiosity
+/// would take hours on two cores.
 constexpr std::size_t kMostTrianglesOfRadiosity = 30000;
 
 /// Techniques that a scene is too large for, a line each; only where none was asked for by name.
 std::vector<std::string> leftOutOf(const ErrorBenchOptions& options, const Scene& scene) {
   if (!options.techniques.empty() || scene.triangleCount() <= kMostTrianglesOfRadiosity) return {};
-  return {fmt::format("radiosity: left out; {} triangles, a patch each at least, and it is measured up to {} (--techniques radiosity measures it all the same)", scene.triangleCount(),
-                      kMostTrianglesOfRadiosity)};
+  return {
+      fmt::format("radiosity: left out; {} triangles, a patch each at least, and it is measured up to {} (--techniques "
+                  "radiosity measures it all the same)",
+                  scene.triangleCount(), kMostTrianglesOfRadiosity)};
 }
 
 std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
@@ -35,34 +39,40 @@ std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
   std::string list;
   for (const std::string& t : known) list += (list.empty() ? "" : ", ") + t;
   for (const std::string& t : options.techniques)
-    if (std::find(known.begin(), known.end(), t) == known.end()) throwBadInput("--techniques {}: unknown; expected one of {}", t, list);
+    if (std::find(known.begin(), known.end(), t) == known.end())
+      throwBadInput("--techniques {}: unknown; expected one of {}", t, list);
   return options.techniques;
 }
 
-/// The scene as references see it, Lambert's surfaces alone: forward shading would add highlights that they have not (in the atrium 1.3 % of direct light).
+/// The scene as references see it, Lambert's surfaces alone: forward shading would add highlights that they have not
+/// (in the atrium 1.3 % of direct light).
 Scene withoutHighlights(Scene scene) {
   for (Material& m : scene.materials)
     if (m.bsdf == Bsdf::diffuse) m.specular = glm::vec3(0.0f);
   return scene;
 }
 
-std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<std::string>& techniques, const Bounds& bounds) {
+std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<std::string>& techniques,
+                          const Bounds& bounds) {
   std::vector<std::string> raster;
   for (const std::string& t : techniques)
     if (t != "path") raster.push_back(t);
   if (options.deviations) return deviationRungs(raster);
   std::vector<Rung> rungs;
   for (const std::string& t : raster)
-    for (Rung& rung : ladderOf(t, options.small, std::max({bounds.extent().x, bounds.extent().y, bounds.extent().z}))) rungs.push_back(std::move(rung));
+    for (Rung& rung : ladderOf(t, options.small, std::max({bounds.extent().x, bounds.extent().y, bounds.extent().z})))
+      rungs.push_back(std::move(rung));
   return rungs;
 }
 
 /// The command that measures this, but for --techniques and the folder.
 std::string benchCommand(const ErrorBenchOptions& options) {
-  std::vector<std::string> words{"lucerna", "bench", "error", options.scene, "--size", options.size, "--frames", std::to_string(options.frames)};
+  std::vector<std::string> words{"lucerna", "bench",      "error",    options.scene,
+                                 "--size",  options.size, "--frames", std::to_string(options.frames)};
   if (!options.camera.empty()) words.insert(words.end(), {"--camera", options.camera});
   words.insert(words.end(), {"--budget", fmt::format("{:g}", options.budget)});
-  if (options.referenceSamples > 0) words.insert(words.end(), {"--reference-spp", std::to_string(options.referenceSamples)});
+  if (options.referenceSamples > 0)
+    words.insert(words.end(), {"--reference-spp", std::to_string(options.referenceSamples)});
   if (options.small) words.emplace_back("--small");
   if (options.deviations) words.emplace_back("--deviations");
   return shellCommand(words);
@@ -79,16 +89,23 @@ std::string pictureCommand(const ErrorBenchOptions& options) {
 void ErrorBenchOptions::declare(CLI::App& app) {
   app.add_option("--camera", camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.add_option("--size", size, "WIDTHxHEIGHT of the pictures")->capture_default_str();
-  app.add_option("--budget", budget, "seconds for references and path tracing; known references are used again")->capture_default_str()->check(CLI::Range(0.01, 1e6));
-  app.add_option("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")->check(CLI::Range(2, 1 << 30));
-  app.add_option("--references", references, "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
-  offer(app.add_option("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all")->delimiter(','), {"direct", "rsm", "lpv", "radiosity", "path"});
+  app.add_option("--budget", budget, "seconds for references and path tracing; known references are used again")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 1e6));
+  app.add_option("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")
+      ->check(CLI::Range(2, 1 << 30));
+  app.add_option("--references", references,
+                 "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
+  offer(
+      app.add_option("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all")->delimiter(','),
+      {"direct", "rsm", "lpv", "radiosity", "path"});
   app.add_option("--frames", frames, "pictures a rung at least")->capture_default_str()->check(CLI::Range(1, 10000));
   app.add_flag("--small", small, "without the most expensive rungs");
   app.add_option("--out", out, "folder of the report; an interrupted bench goes on where it was");
 }
 
-std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& original, const ErrorBenchOptions& options,
+std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs,
+                                                const Scene& original, const ErrorBenchOptions& options,
                                                 const std::string& hostName) {
   const Scene scene = withoutHighlights(original);
   const Camera camera = chooseCamera(scene, options.camera);
@@ -97,7 +114,8 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   const std::vector<std::string> leftOut = leftOutOf(options, scene);
   if (!leftOut.empty()) std::erase(techniques, "radiosity");
   const std::vector<Rung> rungs = rungsOf(options, techniques, scene.bounds);
-  const std::string title = fmt::format("{}, camera {}, {}x{}", scene.name, camera.name.empty() ? "default" : camera.name, size.x, size.y);
+  const std::string title =
+      fmt::format("{}, camera {}, {}x{}", scene.name, camera.name.empty() ? "default" : camera.name, size.x, size.y);
   const std::filesystem::path folder = options.out;
   makeFolder(folder);
 
@@ -119,11 +137,21 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                                   measure::keyOf(scene, camera, size, Transport::all, "rows 2").name(),
                                   result->references.all().samples));
 
-  const ErrorBench bench{context, programs, scene, camera, size, result->references, folder, 0.3 * options.budget, options.frames,
-                         benchCommand(options), pictureCommand(options)};
+  const ErrorBench bench{context,
+                         programs,
+                         scene,
+                         camera,
+                         size,
+                         result->references,
+                         folder,
+                         0.3 * options.budget,
+                         options.frames,
+                         benchCommand(options),
+                         pictureCommand(options)};
   writePng(folder / "pictures/reference.png", toneMapped(result->references.all().mean, scene.exposure));
   std::vector<ErrorRow> rows;
-  Progress progress(options.deviations ? "deviations" : "ladders", static_cast<int>(rungs.size()) + (withPath ? 1 : 0), options.quiet);
+  Progress progress(options.deviations ? "deviations" : "ladders", static_cast<int>(rungs.size()) + (withPath ? 1 : 0),
+                    options.quiet);
   for (const Rung& rung : rungs) {
     if (interrupted()) return result;
     if (auto known = finishedRow(folder, rung)) {
@@ -152,7 +180,9 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   report.isDeviationStudy = options.deviations;
   report.exposure = scene.exposure;
   report.driver = context.capabilities().version;
-  report.command = bench.command + (options.techniques.empty() ? "" : fmt::format(" --techniques {}", fmt::join(options.techniques, ",")));
+  report.command =
+      bench.command +
+      (options.techniques.empty() ? "" : fmt::format(" --techniques {}", fmt::join(options.techniques, ",")));
   report.leftOut = leftOut;
   writeFileAtomically(folder / "error.csv", csvOf(report));
   writeFileAtomically(folder / "error.json", errorBenchJson(*result, options).dump(2) + "\n");
@@ -215,7 +245,8 @@ int run(Options options) {
   if (options.bench.out.empty()) options.bench.out = options.bench.deviations ? "bench-deviations" : "bench-error";
   const auto result = bench::benchScene(options.common, options.bench);
   if (!result) return exitCode();
-  if (!options.common.quiet) fmt::print("{}\n{}/report.html\n", bench::terminalTable(result->report), options.bench.out);
+  if (!options.common.quiet)
+    fmt::print("{}\n{}/report.html\n", bench::terminalTable(result->report), options.bench.out);
   options.common.writeJson(bench::errorBenchJson(*result, options.bench));
   return 0;
 }
@@ -226,7 +257,8 @@ Work addBenchError(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->bench.scene, "a scene file (default: the atrium)");
   options->bench.declare(app);
-  app.add_flag("--deviations", options->bench.deviations, "each deviation of the originals alone, instead of ladders of settings");
+  app.add_flag("--deviations", options->bench.deviations,
+               "each deviation of the originals alone, instead of ladders of settings");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -8,8 +8,8 @@ namespace lucerna::demo::bench {
 struct ErrorBenchOptions {
   std::string scene, camera, size = "160x90", out, references;
   std::vector<std::string> techniques;  ///< empty: all
-  double budget = 120.0;                ///< seconds for references and path tracing together
-  std::uint64_t referenceSamples = 0;   ///< 0: by time
+  double budget = 120.0;  ///< seconds for references and path tracing together
+  std::uint64_t referenceSamples = 0;  ///< 0: by time
   int frames = 5;
   bool deviations = false, small = false, quiet = false;
 
@@ -18,12 +18,14 @@ struct ErrorBenchOptions {
 
 struct ErrorBenchResult {
   ErrorReport report;
-  References references;      ///< report.references points here once placed
-  bool complete = false;      ///< false: interrupted; what was finished lies in the folder
+  References references;  ///< report.references points here once placed
+  bool complete = false;  ///< false: interrupted; what was finished lies in the folder
 };
 
-/// Measures what the folder does not hold yet; writes rows, CSV, plots and page into it. Throws Error(badInput) for options that cannot be.
-std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const ErrorBenchOptions& options,
+/// Measures what the folder does not hold yet; writes rows, CSV, plots and page into it. Throws Error(badInput) for
+/// options that cannot be.
+std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs,
+                                                const Scene& scene, const ErrorBenchOptions& options,
                                                 const std::string& hostName);
 /// The same for a command: loads the scene, makes the host, says so where it was interrupted and is then null.
 std::unique_ptr<ErrorBenchResult> benchScene(const CommonOptions& common, ErrorBenchOptions& options);

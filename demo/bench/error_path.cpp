@@ -1,4 +1,5 @@
-// The path tracer's ladders, corrected and as published, and its deviations one by one: pictures that go on being sampled, observed at 1, 2, 4, ... samples a pixel.
+// The path tracer's ladders, corrected and as published, and its deviations one by one: pictures that go on being
+// sampled, observed at 1, 2, 4, ... samples a pixel.
 #include "base/error.hpp"
 #include "gl/draw.hpp"
 #include "base/files.hpp"
@@ -26,9 +27,9 @@ struct PathSeries {
   std::string name, fidelity;
   std::vector<std::string> deviations;
   PathDeviations switches;
-  int seeds = 1;         ///< the median of so many
+  int seeds = 1;  ///< the median of so many
   double seconds = 0.0;  ///< a seed's ladder
-  bool lastRung = false; ///< that one alone is kept
+  bool lastRung = false;  ///< that one alone is kept
   std::uint32_t samples = 0;  ///< the last rung; 0: by time
 
   std::string label() const {
@@ -89,7 +90,8 @@ PathTracer::Settings settingsOf(const ErrorBench& bench, const PathSeries& serie
   return settings;
 }
 
-void observe(const ErrorBench& bench, const PathSeries& series, int seed, std::vector<std::pair<std::uint32_t, Observation>>& ladder) {
+void observe(const ErrorBench& bench, const PathSeries& series, int seed,
+             std::vector<std::pair<std::uint32_t, Observation>>& ladder) {
   const auto made = Clock::now();
   PathTracer tracer(bench.context, bench.programs, bench.scene, settingsOf(bench, series, seed));
   tracer.setCamera(bench.camera);
@@ -102,7 +104,8 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed, std::v
   std::size_t step = 0;
   for (std::uint32_t samples = 1; !interrupted(); samples *= 2, ++step) {
     // The first seed decides how far the ladder goes; the others climb the same rungs.
-    if (seed == 0 && (series.samples ? samples > series.samples : samples > 4 && 2.0 * spent > 1e3 * series.seconds)) break;
+    if (seed == 0 && (series.samples ? samples > series.samples : samples > 4 && 2.0 * spent > 1e3 * series.seconds))
+      break;
     if (seed > 0 && step >= ladder.size()) break;
     const auto start = Clock::now();
     const std::clock_t cpuStart = std::clock();
@@ -179,8 +182,9 @@ ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t 
   measure::Flip flip{NAN, {}};
   if (first.pixels.measured.notFinite == 0) flip = measure::flipHdr(o.picture, bench.references.path().mean);
   row["flip"] = flip.mean;
-  row["picture"] = writePictures(bench, fmt::format("{} spp={}", series.label(), samples), o.picture, bench.references.path(), flip.map,
-                                 o.standardError.pixels.empty() ? nullptr : &o.standardError);
+  row["picture"] =
+      writePictures(bench, fmt::format("{} spp={}", series.label(), samples), o.picture, bench.references.path(),
+                    flip.map, o.standardError.pixels.empty() ? nullptr : &o.standardError);
   addProvenance(bench, row);
   return row;
 }
@@ -217,7 +221,8 @@ void addSeedSpread(std::vector<ErrorRow>& rows) {
       const std::string key = std::string(measure) + "_error";
       const double own = spread * ofMedian * number(row, measure), reference = number(row, key.c_str());
       row[key] = std::isfinite(reference) ? std::hypot(reference, own) : own;
-      row["error_freedom"] = std::max(1.0, 0.5 * freedom);  // a rung holds the samples of those below it: half as many are independent
+      row["error_freedom"] =
+          std::max(1.0, 0.5 * freedom);  // a rung holds the samples of those below it: half as many are independent
     }
   }
 }

@@ -51,9 +51,12 @@ const ErrorRow& part(const ErrorRow& row, const char* key) {
   return found == row.end() || !found->is_object() ? kNone : *found;
 }
 std::string biasText(const ErrorRow& row) {
-  const double mean = number(row, "bias") / number(row, "relative_bias"), error = 100.0 * number(row, "bias_error") / std::abs(mean);
-  if (!std::isfinite(error)) return fmt::format("{:+.3g} % +- ?", 100.0 * number(row, "relative_bias"));  // one sample has no spread
-  return fmt::format("{:+.3g} % +- {:.2g}{}", 100.0 * number(row, "relative_bias"), error, flag(row, "bias_at_noise") ? " (0)" : "");
+  const double mean = number(row, "bias") / number(row, "relative_bias"),
+               error = 100.0 * number(row, "bias_error") / std::abs(mean);
+  if (!std::isfinite(error))
+    return fmt::format("{:+.3g} % +- ?", 100.0 * number(row, "relative_bias"));  // one sample has no spread
+  return fmt::format("{:+.3g} % +- {:.2g}{}", 100.0 * number(row, "relative_bias"), error,
+                     flag(row, "bias_at_noise") ? " (0)" : "");
 }
 /// The bias of lit pixels, or of the others: "+275 %"; (0) below three standard errors.
 std::string partBiasText(const ErrorRow& errors, const char* key) {
@@ -168,14 +171,16 @@ constexpr const char* kInsideNote =
     "(exact radiance in the cells) is not measured: the bench has no such floors.";
 
 std::string notes(const ErrorReport& report) {
-  std::string line = fmt::format("Renderer {}\nHost     {}, {}\nBench    {}\n", report.renderer, report.host, report.cpu, report.title);
+  std::string line = fmt::format("Renderer {}\nHost     {}, {}\nBench    {}\n", report.renderer, report.host,
+                                 report.cpu, report.title);
   for (const std::string& left : report.leftOut) line += left + "\n";
   for (const auto& [paths, r] : report.references->of) {
     const measure::ReferenceNoise noise = report.references->noise(r);
     const glm::dvec3 mean = meanOf(r.mean);
     const double m = (mean.x + mean.y + mean.z) / 3.0;
     line += fmt::format(
-        "Reference {:<44} {} samples per pixel, {:.1f} s; mean {:.6g} +- {:.2g}; noise of a pixel {:.3g} % of the mean\n",
+        "Reference {:<44} {} samples per pixel, {:.1f} s; mean {:.6g} +- {:.2g}; noise of a pixel {:.3g} % of the "
+        "mean\n",
         nameOf(paths), r.samples, r.seconds, m, r.meanError, m > 0.0 ? 100.0 * std::sqrt(noise.variance) / m : 0.0);
   }
   return line;
@@ -193,14 +198,16 @@ std::string modelText(const ModelError& m) {
   return fmt::format("{:<64}relative L2 {}, bias {} of {}", m.name, modelErrorText(m), modelBiasText(m), m.of);
 }
 
-/// How the path tracer's error falls by samples, and from the eighth on by wall clock and processor time: a pass doubles what there is, and in the first ones lanes wait for
-/// the longest path of so few, so that a sample alone costs more than one of many.
+/// How the path tracer's error falls by samples, and from the eighth on by wall clock and processor time: a pass
+/// doubles what there is, and in the first ones lanes wait for the longest path of so few, so that a sample alone costs
+/// more than one of many.
 struct PathSlope {
   measure::Slope samples, time, processor;
   double first = 0.0, last = 0.0;  ///< samples
 };
 
-/// Those over time count from 32 samples on: in the first passes lanes wait for the longest path of so few. None with fewer than three such rows above the reference's noise.
+/// Those over time count from 32 samples on: in the first passes lanes wait for the longest path of so few. None with
+/// fewer than three such rows above the reference's noise.
 std::optional<PathSlope> pathSlope(const std::vector<ErrorRow>& rows) {
   std::vector<double> ms, cpuMs, samples, errors, errorsOverTime;
   for (const ErrorRow& row : rows) {
@@ -214,14 +221,18 @@ std::optional<PathSlope> pathSlope(const std::vector<ErrorRow>& rows) {
     errors.push_back(number(row, "nrmse"));
   }
   if (errorsOverTime.size() < 3) return std::nullopt;
-  return PathSlope{measure::logLogSlope(samples, errors), measure::logLogSlope(ms, errorsOverTime), measure::logLogSlope(cpuMs, errorsOverTime), samples.front(), samples.back()};
+  return PathSlope{measure::logLogSlope(samples, errors), measure::logLogSlope(ms, errorsOverTime),
+                   measure::logLogSlope(cpuMs, errorsOverTime), samples.front(), samples.back()};
 }
 
 std::string slopeText(const std::vector<ErrorRow>& rows) {
   const std::optional<PathSlope> s = pathSlope(rows);
   if (!s) return "";
-  return fmt::format("Path tracing: error ~ samples^({:.3f} +- {:.3f}), time^({:.3f} +- {:.3f}), processor time^({:.3f} +- {:.3f}) from {:g} to {:g} samples, by time from 32 on; -1/2 is what independent samples give.",
-                     s->samples.slope, s->samples.error, s->time.slope, s->time.error, s->processor.slope, s->processor.error, s->first, s->last);
+  return fmt::format(
+      "Path tracing: error ~ samples^({:.3f} +- {:.3f}), time^({:.3f} +- {:.3f}), processor time^({:.3f} +- {:.3f}) "
+      "from {:g} to {:g} samples, by time from 32 on; -1/2 is what independent samples give.",
+      s->samples.slope, s->samples.error, s->time.slope, s->time.error, s->processor.slope, s->processor.error,
+      s->first, s->last);
 }
 
 }  // namespace
@@ -271,8 +282,14 @@ std::string csvOf(const ErrorReport& report) {
 nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows) {
   const std::optional<PathSlope> s = pathSlope(rows);
   if (!s) return {};
-  return {{"samples", s->samples.slope}, {"samples_error", s->samples.error}, {"time", s->time.slope}, {"time_error", s->time.error}, {"processor_time", s->processor.slope},
-          {"processor_time_error", s->processor.error}, {"from", s->first}, {"to", s->last}};
+  return {{"samples", s->samples.slope},
+          {"samples_error", s->samples.error},
+          {"time", s->time.slope},
+          {"time_error", s->time.error},
+          {"processor_time", s->processor.slope},
+          {"processor_time_error", s->processor.error},
+          {"from", s->first},
+          {"to", s->last}};
 }
 
 nlohmann::ordered_json modelJson(const std::vector<ModelError>& model) {
@@ -402,10 +419,17 @@ namespace {
 /// The report as the figure takes it; pictures that the folder does not hold as linear ones are left out.
 Figure figureOf(const fs::path& folder, const ErrorReport& report, std::vector<Image>& store) {
   Figure figure;
-  figure.facts = {{"title", report.title},       {"renderer", report.renderer}, {"driver", report.driver},
-                  {"host", report.host},         {"cpu", report.cpu},           {"program", programVersion()},
-                  {"command", report.command},   {"exposure", report.exposure}, {"relmse_epsilon", measure::kRelativeEpsilon},
-                  {"references", referencesJson(*report.references)},           {"yardsticks", report.yardsticks},
+  figure.facts = {{"title", report.title},
+                  {"renderer", report.renderer},
+                  {"driver", report.driver},
+                  {"host", report.host},
+                  {"cpu", report.cpu},
+                  {"program", programVersion()},
+                  {"command", report.command},
+                  {"exposure", report.exposure},
+                  {"relmse_epsilon", measure::kRelativeEpsilon},
+                  {"references", referencesJson(*report.references)},
+                  {"yardsticks", report.yardsticks},
                   {"rows", report.rows}};
   const measure::Reference &all = report.references->all(), &path = report.references->path();
   figure.references.push_back({"reference, all light", &all.mean, &all.standardError});
@@ -422,7 +446,8 @@ Figure figureOf(const fs::path& folder, const ErrorReport& report, std::vector<I
     if (fs::exists(stem + ".error.pfm")) picture.standardError = &store.emplace_back(readImage(stem + ".error.pfm"));
     if (fs::exists(stem + ".flip.png")) picture.flip = readBitmap(stem + ".flip.png");
     // All of the front, and the last of every series; the rest where there is room.
-    const bool isLastOfSeries = i + 1 == report.rows.size() || text(row, "series") != text(report.rows[i + 1], "series");
+    const bool isLastOfSeries =
+        i + 1 == report.rows.size() || text(row, "series") != text(report.rows[i + 1], "series");
     picture.isFirstChoice = flag(row, "pareto") || isLastOfSeries;
     figure.pictures.push_back(std::move(picture));
   }
@@ -470,8 +495,12 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
   page.heading("Pictures");
   const Image& truth = report.references->all().mean;
   const double scale = 0.2 * measure::heatMapScale(Image(truth.width, truth.height), truth);
-  page.paragraph(fmt::format("Heat maps: absolute, 0 (black) to {0:.3g} and more (white) radiance; signed luminance, -{0:.3g} (blue), 0 (white), +{0:.3g} (red). One scale for all.", scale));
-  // Tone-mapped copies for those who read without scripts, as far as there is room: the figure above holds the pictures themselves.
+  page.paragraph(
+      fmt::format("Heat maps: absolute, 0 (black) to {0:.3g} and more (white) radiance; signed luminance, -{0:.3g} "
+                  "(blue), 0 (white), +{0:.3g} (red). One scale for all.",
+                  scale));
+  // Tone-mapped copies for those who read without scripts, as far as there is room: the figure above holds the pictures
+  // themselves.
   std::size_t room = bytes / 8;
   const auto show = [&](const std::vector<HtmlPage::Picture>& pictures) {
     std::size_t size = 0;
@@ -491,7 +520,8 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
                       {folder / (stem + ".absolute.png"), "absolute error, relative L2 " + errorText(row, "l2")},
                       {folder / (stem + ".signed.png"), "signed error, bias " + biasText(row)}});
   }
-  if (leftOut > 0) page.paragraph(fmt::format("{} more lie in the folder pictures: this page has no room for them.", leftOut));
+  if (leftOut > 0)
+    page.paragraph(fmt::format("{} more lie in the folder pictures: this page has no room for them.", leftOut));
 }
 
 }  // namespace lucerna::demo::bench

@@ -8,23 +8,24 @@
 namespace lucerna::demo::bench {
 
 struct ErrorReport {
-  std::string title;                     ///< scene, camera, size
+  std::string title;  ///< scene, camera, size
   std::string renderer, driver, host, cpu;
-  std::string command;                   ///< that measures it again, but for --out
-  float exposure = 1.0f;                 ///< of the pictures as they are shown first
+  std::string command;  ///< that measures it again, but for --out
+  float exposure = 1.0f;  ///< of the pictures as they are shown first
   std::vector<ErrorRow> rows;
-  std::vector<ErrorRow> yardsticks;      ///< "black" and "constant", against all light
+  std::vector<ErrorRow> yardsticks;  ///< "black" and "constant", against all light
   std::vector<ModelError> model;
-  std::vector<InsideModel> inside;       ///< the models of the rows' techniques
+  std::vector<InsideModel> inside;  ///< the models of the rows' techniques
   const References* references = nullptr;
   bool isDeviationStudy = false;
-  std::vector<std::string> leftOut;      ///< techniques that were not measured, and why
+  std::vector<std::string> leftOut;  ///< techniques that were not measured, and why
 };
 
 std::string terminalTable(const ErrorReport& report);
 /// Yardsticks and rows.
 std::string csvOf(const ErrorReport& report);
-/// The path tracer's corrected ladder: exponents of its error, null with fewer than three rows above the reference's noise.
+/// The path tracer's corrected ladder: exponents of its error, null with fewer than three rows above the reference's
+/// noise.
 nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows);
 nlohmann::ordered_json modelJson(const std::vector<ModelError>& model);
 nlohmann::ordered_json insideModelsJson(const std::vector<InsideModel>& inside);
@@ -32,7 +33,8 @@ nlohmann::ordered_json referencesJson(const References& references);
 /// error: all light; error_inside: indirect light inside each model. SVG and PNG beside each other; one warning where
 /// gnuplot is missing, and false.
 bool plotRows(const std::filesystem::path& folder, const ErrorReport& report);
-/// Adds its sections to `page`; pictures and plot are read from the folder. `bytes`: what the figure's linear pictures may take of the page.
+/// Adds its sections to `page`; pictures and plot are read from the folder. `bytes`: what the figure's linear pictures
+/// may take of the page.
 void addToPage(HtmlPage& page, const std::filesystem::path& folder, const ErrorReport& report, std::size_t bytes);
 
 }  // namespace lucerna::demo::bench

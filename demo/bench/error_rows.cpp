@@ -32,7 +32,8 @@ double msSince(Clock::time_point start) { return 1e3 * std::chrono::duration<dou
 std::string fileStem(const std::string& name) {
   Hash hash;
   hash.add(std::string_view(name));
-  std::string text = fmt::format("{}-{:08x}", name.substr(0, 48), static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32));
+  std::string text =
+      fmt::format("{}-{:08x}", name.substr(0, 48), static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32));
   for (char& c : text)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
   return text;
@@ -45,7 +46,7 @@ RenderSettings settingsOf(const ErrorBench& bench, const Rung& rung, Component c
   settings.size = bench.size;
   settings.fullFloatTarget = true;
   settings.textures.anisotropy = 1.0f;  // how textures are filtered anisotropically is each driver's own
-  settings.reuse = false;               // what a picture costs from nothing, not what a still scene saves
+  settings.reuse = false;  // what a picture costs from nothing, not what a still scene saves
   return settings;
 }
 
@@ -201,10 +202,12 @@ TechniqueModel modelOf(const Rung& rung, measure::LightKinds scene) {
   return {rung.picture.technique, paths, directLightsOf(settings) & scene};
 }
 
-fs::path rowFile(const fs::path& folder, const std::string& name) { return folder / "rows" / (fileStem(name) + ".json"); }
+fs::path rowFile(const fs::path& folder, const std::string& name) {
+  return folder / "rows" / (fileStem(name) + ".json");
+}
 
-std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture, const measure::Reference& reference,
-                          const std::vector<float>& flip, const Image* ownError) {
+std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture,
+                          const measure::Reference& reference, const std::vector<float>& flip, const Image* ownError) {
   const std::string stem = "pictures/" + fileStem(name);
   const Image& truth = reference.mean;
   // One scale for all rows, so that they can be compared: a fifth of what a black picture would have.
@@ -251,7 +254,8 @@ void addProvenance(const ErrorBench& bench, ErrorRow& row) {
   row["cpu"] = cpuName();
   row["command"] = bench.command + " --techniques " + technique;
   std::vector<std::string> words{"--technique", technique, "--fidelity", row.at("fidelity").get<std::string>()};
-  for (const auto& deviation : row.at("deviations")) words.insert(words.end(), {"--deviation", deviation.get<std::string>()});
+  for (const auto& deviation : row.at("deviations"))
+    words.insert(words.end(), {"--deviation", deviation.get<std::string>()});
   if (row.contains("spp"))
     words.insert(words.end(), {"--spp", row.at("spp").dump(), "--seed", row.at("seeds").at("seed").at(0).dump()});
   else
@@ -283,13 +287,16 @@ void claimFolder(const fs::path& folder, const std::string& identity) {
   const fs::path file = folder / "bench.txt";
   if (fs::exists(file)) {
     if (const std::string known = readFileText(file); known != identity + "\n")
-      throwBadInput("--out {}: holds another bench ({}); choose another folder", folder.string(), known.substr(0, known.find('\n')));
+      throwBadInput("--out {}: holds another bench ({}); choose another folder", folder.string(),
+                    known.substr(0, known.find('\n')));
     return;
   }
   writeFileAtomically(file, identity + "\n");
 }
 
-std::optional<ErrorRow> finishedRow(const fs::path& folder, const Rung& rung) { return readRow(rowFile(folder, rung.name())); }
+std::optional<ErrorRow> finishedRow(const fs::path& folder, const Rung& rung) {
+  return readRow(rowFile(folder, rung.name()));
+}
 
 ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
   const RenderSettings settings = settingsOf(bench, rung, Component::all);
@@ -364,8 +371,7 @@ void markFront(std::vector<ErrorRow>& rows) {
   }
   for (const auto& [name, group] : groups) {
     std::vector<measure::CostAndError> points;
-    for (const std::size_t i : group)
-      points.push_back(pointOf(rows[i], rows[i].at("inside_model")));
+    for (const std::size_t i : group) points.push_back(pointOf(rows[i], rows[i].at("inside_model")));
     const std::vector<bool> front = measure::paretoFront(points);
     for (std::size_t k = 0; k < group.size(); ++k) rows[group[k]]["inside_front"] = static_cast<bool>(front[k]);
   }

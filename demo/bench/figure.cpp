@@ -17,7 +17,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "planes are little-endian");
 
-glm::ivec2 shrunkSize(const Image& image, int block) { return {(image.width + block - 1) / block, (image.height + block - 1) / block}; }
+glm::ivec2 shrunkSize(const Image& image, int block) {
+  return {(image.width + block - 1) / block, (image.height + block - 1) / block};
+}
 
 /// Each block of block x block pixels, cut off at the edge, as one: f(sum of pixels, their number).
 template <typename Of>
@@ -134,7 +136,11 @@ std::string figureHtml(const Figure& figure, std::size_t bytes) {
     std::vector<glm::dvec3> difference = means(*p.picture, block);
     CHECK(difference.size() == truth.size(), "{} and {} pixels", difference.size(), truth.size());
     for (std::size_t i = 0; i < truth.size(); ++i) difference[i] -= truth[i];
-    nlohmann::ordered_json json{{"row", p.row}, {"truth", p.reference}, {"scale", halfScale(difference)}, {"flip", !p.flip.rgba.empty()}, {"error_scale", nullptr}};
+    nlohmann::ordered_json json{{"row", p.row},
+                                {"truth", p.reference},
+                                {"scale", halfScale(difference)},
+                                {"flip", !p.flip.rgba.empty()},
+                                {"error_scale", nullptr}};
     planes += plane(key, halves(difference, json["scale"].get<double>()));
     if (!p.flip.rgba.empty()) planes += plane(key + "f", bytesOf(p.flip, block));
     if (p.standardError) {
@@ -144,8 +150,10 @@ std::string figureHtml(const Figure& figure, std::size_t bytes) {
     }
     facts["pictures"].push_back(std::move(json));
   }
-  return "<div class=\"lf\" data-figure>\n<noscript><p>This figure needs a browser that runs scripts; tables and pictures below do not.</p></noscript>\n"
-         "<script type=\"application/json\">" + scriptJson(facts) + "</script>\n" + planes + "</div>\n";
+  return "<div class=\"lf\" data-figure>\n<noscript><p>This figure needs a browser that runs scripts; tables and "
+         "pictures below do not.</p></noscript>\n"
+         "<script type=\"application/json\">" +
+         scriptJson(facts) + "</script>\n" + planes + "</div>\n";
 }
 
 }  // namespace lucerna::demo::bench

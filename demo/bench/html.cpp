@@ -23,7 +23,10 @@ figure img { width: 340px; image-rendering: pixelated; border: 1px solid #ccc; }
 pre { background: #f5f5f7; padding: .8em; overflow-x: auto; font-size: 12px; } .plot svg { max-width: 100%; height: auto; }
 )";
 
-bool isNumber(const std::string& text) { return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' || text[0] == '+' || text[0] == '<' || text[0] == '>'); }
+bool isNumber(const std::string& text) {
+  return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' || text[0] == '+' ||
+                           text[0] == '<' || text[0] == '>');
+}
 
 }  // namespace
 
@@ -65,9 +68,11 @@ void HtmlPage::table(const Table& table) {
   // A column of numbers stands to the right; one that has words in it to the left, whatever its cells begin with.
   std::vector<bool> words(table.columns.size(), false);
   for (const auto& row : table.rows)
-    for (std::size_t c = 0; c < row.size() && c < words.size(); ++c) words[c] = words[c] || (!row[c].empty() && !isNumber(row[c]));
+    for (std::size_t c = 0; c < row.size() && c < words.size(); ++c)
+      words[c] = words[c] || (!row[c].empty() && !isNumber(row[c]));
   const auto cell = [&](const char* tag, std::size_t column, const std::string& text) {
-    body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, column < words.size() && words[column] ? " class=\"text\"" : "", escapeHtml(text));
+    body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, column < words.size() && words[column] ? " class=\"text\"" : "",
+                         escapeHtml(text));
   };
   body_ += "<div class=\"scroll\"><table><tr>";
   for (std::size_t c = 0; c < table.columns.size(); ++c) cell("th", c, table.columns[c]);
@@ -83,14 +88,16 @@ void HtmlPage::table(const Table& table) {
 void HtmlPage::pictures(const std::vector<Picture>& pictures) {
   body_ += "<div>\n";
   for (const Picture& picture : pictures)
-    body_ += fmt::format("<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n", escapeHtml(picture.caption),
-                         base64(readFileBytes(picture.png)));
+    body_ += fmt::format(
+        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
+        escapeHtml(picture.caption), base64(readFileBytes(picture.png)));
   body_ += "</div>\n";
 }
 
 void HtmlPage::svg(const std::filesystem::path& file) {
   std::string text = readFileText(file);
-  if (const auto start = text.find("<svg"); start != std::string::npos) text.erase(0, start);  // no XML head inside HTML
+  if (const auto start = text.find("<svg"); start != std::string::npos)
+    text.erase(0, start);  // no XML head inside HTML
   body_ += "<div class=\"plot\">\n" + text + "</div>\n";
 }
 
@@ -106,7 +113,8 @@ void HtmlPage::append(const HtmlPage& other) {
   const std::string prefix = fmt::format("p{}-", ++anchors_);
   for (const auto& [anchor, title] : other.index_) {
     const std::string from = "id=\"" + anchor + "\"";
-    if (const auto at = body.find(from); at != std::string::npos) body.replace(at, from.size(), "id=\"" + prefix + anchor + "\"");
+    if (const auto at = body.find(from); at != std::string::npos)
+      body.replace(at, from.size(), "id=\"" + prefix + anchor + "\"");
     index_.emplace_back(prefix + anchor, title);
   }
   body_ += body;
@@ -116,7 +124,8 @@ std::string HtmlPage::text() const {
   std::string index;
   if (index_.size() > 1) {
     index = "<nav>";
-    for (const auto& [anchor, title] : index_) index += fmt::format("<a href=\"#{}\">{}</a>", anchor, escapeHtml(title));
+    for (const auto& [anchor, title] : index_)
+      index += fmt::format("<a href=\"#{}\">{}</a>", anchor, escapeHtml(title));
     index += "</nav>\n";
   }
   std::string style(kStyle), script;
@@ -124,9 +133,12 @@ std::string HtmlPage::text() const {
     style += readFileText(dataFolder() / "assets/report/figure.css");
     script = "<script>\n" + readFileText(dataFolder() / "assets/report/figure.js") + "</script>\n";
   }
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\"><title>";
-  for (const std::string& part : {escapeHtml(title_), std::string("</title><style>"), style, std::string("</style></head>\n<body><h1>"), escapeHtml(title_),
-                                  std::string("</h1>\n"), index, body_, script, std::string("</body></html>\n")})
+  std::string page =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width\"><title>";
+  for (const std::string& part :
+       {escapeHtml(title_), std::string("</title><style>"), style, std::string("</style></head>\n<body><h1>"),
+        escapeHtml(title_), std::string("</h1>\n"), index, body_, script, std::string("</body></html>\n")})
     page += part;
   return page;
 }

@@ -11,7 +11,8 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-Rung rung(const std::string& technique, const std::string& series, std::vector<std::string> settings, const std::string& fidelity = "corrected") {
+Rung rung(const std::string& technique, const std::string& series, std::vector<std::string> settings,
+          const std::string& fidelity = "corrected") {
   Rung r;
   r.series = technique + (series.empty() ? "" : " " + series) + (fidelity == "original" ? " (original)" : "");
   r.picture.technique = technique;
@@ -25,7 +26,9 @@ std::vector<Rung> rsmLadder(bool shrink) {
   for (const bool interpolate : {true, false})
     for (int samples : {16, 50, 100, 200, 400, 800, 1600}) {
       if (shrink && samples > (interpolate ? 800 : 400)) continue;
-      rungs.push_back(rung("rsm", interpolate ? "interpolated" : "full", {fmt::format("rsm.samples={}", samples), fmt::format("rsm.interpolate={}", interpolate ? "on" : "off")}));
+      rungs.push_back(rung(
+          "rsm", interpolate ? "interpolated" : "full",
+          {fmt::format("rsm.samples={}", samples), fmt::format("rsm.interpolate={}", interpolate ? "on" : "off")}));
     }
   for (int samples : {50, 400}) rungs.push_back(rung("rsm", "", {fmt::format("rsm.samples={}", samples)}, "original"));
   return rungs;
@@ -34,17 +37,25 @@ std::vector<Rung> rsmLadder(bool shrink) {
 std::vector<Rung> lpvLadder(bool shrink) {
   std::vector<Rung> rungs;
   for (int cells : {8, 16, 32, 64})
-    if (!shrink || cells < 64) rungs.push_back(rung("lpv", "cells", {"lpv.transport=propagate", fmt::format("lpv.cells={}", cells)}));
-  for (int cascades : {1, 2, 3, 4}) rungs.push_back(rung("lpv", "cascades", {"lpv.transport=propagate", fmt::format("lpv.cascades={}", cascades)}));
-  for (int iterations : {2, 4, 8, 16, 32}) rungs.push_back(rung("lpv", "iterations", {"lpv.transport=propagate", fmt::format("lpv.iterations={}", iterations)}));
+    if (!shrink || cells < 64)
+      rungs.push_back(rung("lpv", "cells", {"lpv.transport=propagate", fmt::format("lpv.cells={}", cells)}));
+  for (int cascades : {1, 2, 3, 4})
+    rungs.push_back(rung("lpv", "cascades", {"lpv.transport=propagate", fmt::format("lpv.cascades={}", cascades)}));
+  for (int iterations : {2, 4, 8, 16, 32})
+    rungs.push_back(
+        rung("lpv", "iterations", {"lpv.transport=propagate", fmt::format("lpv.iterations={}", iterations)}));
   // Each number of bounces has a reference of its own.
   for (int bounces : {1, 2, 4})
-    if (!shrink || bounces != 2) rungs.push_back(rung("lpv", "bounces", {"lpv.transport=propagate", fmt::format("lpv.bounces={}", bounces)}));
-  for (int iterations : {8, 12}) rungs.push_back(rung("lpv", "", {fmt::format("lpv.iterations={}", iterations)}, "original"));
+    if (!shrink || bounces != 2)
+      rungs.push_back(rung("lpv", "bounces", {"lpv.transport=propagate", fmt::format("lpv.bounces={}", bounces)}));
+  for (int iterations : {8, 12})
+    rungs.push_back(rung("lpv", "", {fmt::format("lpv.iterations={}", iterations)}, "original"));
   for (int cells : {16, 32, 64})
-    if (!shrink || cells < 64) rungs.push_back(rung("lpv", "gather cells", {"lpv.transport=gather", fmt::format("lpv.cells={}", cells)}));
+    if (!shrink || cells < 64)
+      rungs.push_back(rung("lpv", "gather cells", {"lpv.transport=gather", fmt::format("lpv.cells={}", cells)}));
   for (int size : {64, 128, 256, 512})
-    if (!shrink || size < 512) rungs.push_back(rung("lpv", "gather map", {"lpv.transport=gather", fmt::format("rsm.size={}", size)}));
+    if (!shrink || size < 512)
+      rungs.push_back(rung("lpv", "gather map", {"lpv.transport=gather", fmt::format("rsm.size={}", size)}));
   // Paths to receivers: all light but in the ladder of bounces itself.
   const auto rays = [&](const char* series, std::string setting, bool allBounces = true) {
     std::vector<std::string> settings{"lpv.transport=rays", std::move(setting)};
@@ -64,10 +75,13 @@ std::vector<Rung> lpvLadder(bool shrink) {
 std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
   std::vector<Rung> rungs;
   for (int parts : {3, 6, 12, 24})
-    if (!shrink || parts < 24) rungs.push_back(rung("radiosity", "patches", {fmt::format("radiosity.edge={:.6g}", longestSide / parts)}));
+    if (!shrink || parts < 24)
+      rungs.push_back(rung("radiosity", "patches", {fmt::format("radiosity.edge={:.6g}", longestSide / parts)}));
   for (int pixels : {16, 32, 64, 128})
     if (!shrink || pixels < 128)
-      rungs.push_back(rung("radiosity", "hemicubes", {fmt::format("radiosity.edge={:.6g}", longestSide / 6), fmt::format("radiosity.resolution={}", pixels)}));
+      rungs.push_back(rung(
+          "radiosity", "hemicubes",
+          {fmt::format("radiosity.edge={:.6g}", longestSide / 6), fmt::format("radiosity.resolution={}", pixels)}));
   return rungs;
 }
 
@@ -81,16 +95,15 @@ std::string Rung::label() const {
   if (picture.fidelity != "corrected") text += " " + picture.fidelity;
   // "rsm samples=16", not "rsm rsm.samples=16".
   const std::string prefix = prefixOf(picture.technique);
-  for (const std::string& setting : picture.settings) text += " " + (setting.starts_with(prefix) ? setting.substr(prefix.size()) : setting);
+  for (const std::string& setting : picture.settings)
+    text += " " + (setting.starts_with(prefix) ? setting.substr(prefix.size()) : setting);
   for (const std::string& deviation : picture.deviations) text += " " + deviation;
   return text;
 }
 
 std::string Rung::name() const { return label(); }
 
-std::vector<std::string> ladderTechniques() {
-  return {"direct", "rsm", "lpv", "radiosity"};
-}
+std::vector<std::string> ladderTechniques() { return {"direct", "rsm", "lpv", "radiosity"}; }
 
 std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double longestSide) {
   if (technique == "direct") return {rung("direct", "", {})};
@@ -106,9 +119,12 @@ std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
   std::vector<Rung> rungs;
   for (const std::string& technique : techniques) {
     if (technique == "direct") continue;
-    rungs.push_back(rung(technique, "corrected", technique == "lpv" ? std::vector<std::string>{"lpv.transport=propagate"} : std::vector<std::string>{}));
+    rungs.push_back(
+        rung(technique, "corrected",
+             technique == "lpv" ? std::vector<std::string>{"lpv.transport=propagate"} : std::vector<std::string>{}));
     for (const Deviation& deviation : allDeviations()) {
-      // A deviation's name begins with the technique that it belongs to; the light propagation volume reads the reflective shadow map's flux too.
+      // A deviation's name begins with the technique that it belongs to; the light propagation volume reads the
+      // reflective shadow map's flux too.
       const std::string name(deviation.name);
       const bool reads = name.starts_with(prefixOf(technique)) || (technique == "lpv" && name == "rsm.flux-cosine");
       if (!reads) continue;

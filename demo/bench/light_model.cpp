@@ -48,7 +48,8 @@ LightPaths modelOf(const RenderSettings& settings) {
     case Technique::lpv:
       model.transport = settings.lpv.blocking ? Transport::oneBounce : Transport::oneBounceUnoccluded;
       if (settings.lpv.transport == LpvTransport::gather)
-        model.transport = settings.lpv.visibility == LpvVisibility::none ? Transport::oneBounceUnoccluded : Transport::oneBounce;
+        model.transport =
+            settings.lpv.visibility == LpvVisibility::none ? Transport::oneBounceUnoccluded : Transport::oneBounce;
       if (settings.lpv.transport == LpvTransport::rays) model.transport = Transport::oneBounce;
       if (settings.lpv.bounces != 1) model = {Transport::indirect, model.lights, settings.lpv.bounces};
       break;

@@ -12,8 +12,8 @@ struct LpvPicturesInput {
   gl::ProgramLibrary& programs;
   const Scene& scene;
   const Camera& camera;
-  RenderSettings usual;            ///< size, fidelity; what a picture changes comes on top
-  std::string fidelity;            ///< its name, for the title
+  RenderSettings usual;  ///< size, fidelity; what a picture changes comes on top
+  std::string fidelity;  ///< its name, for the title
   std::optional<double> exposure;  ///< else the scene's
   bool quiet;
 };

@@ -1,4 +1,5 @@
-// lucerna bench needs [SCENE]...: what a scene leaves out, and what leaving it out saves: the same picture with every feature forced on beside it.
+// lucerna bench needs [SCENE]...: what a scene leaves out, and what leaving it out saves: the same picture with every
+// feature forced on beside it.
 #include "base/error.hpp"
 #include "gl/draw.hpp"
 #include "base/statistics.hpp"
@@ -49,7 +50,8 @@ Scene withEverything(const Scene& scene, const RenderSettings& settings) {
   return full;
 }
 
-NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings, int frames) {
+NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings,
+                         int frames) {
   settings.fullFloatTarget = true;
   settings.reuse = false;  // what each frame would cost
   const Scene full = withEverything(scene, settings);
@@ -68,10 +70,14 @@ NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const C
   const Image leanPicture = lean.readRadiance();
   result.leftOut = lean.leftOut();
   for (const std::string& name : complete.leftOut()) std::erase(result.leftOut, name);
-  result.without = {lean.gpuBytes(), leanPrograms.programs().size(), 1e3 * leanPrograms.statistics().compileSeconds, median(leanMs)};
-  result.with = {complete.gpuBytes(), fullPrograms.programs().size(), 1e3 * fullPrograms.statistics().compileSeconds, median(fullMs)};
+  result.without = {lean.gpuBytes(), leanPrograms.programs().size(), 1e3 * leanPrograms.statistics().compileSeconds,
+                    median(leanMs)};
+  result.with = {complete.gpuBytes(), fullPrograms.programs().size(), 1e3 * fullPrograms.statistics().compileSeconds,
+                 median(fullMs)};
   result.maxDifference = largestDifference(leanPicture, complete.readRadiance());
-  for (const glm::vec3& p : leanPicture.pixels) result.maxRadiance = std::max({result.maxRadiance, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+  for (const glm::vec3& p : leanPicture.pixels)
+    result.maxRadiance =
+        std::max({result.maxRadiance, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
   result.scene = scene.name;
   result.technique = std::string(nameOf(settings.technique));
   return result;
@@ -99,9 +105,14 @@ std::string needsText(const NeedsResult& r) {
   const auto line = [](const char* what, double with, double without, const char* unit) {
     return fmt::format("  {:<22}{:>12.2f}{:>12.2f} {:<5}{:>8.2f}\n", what, with, without, unit, without / with);
   };
-  return fmt::format("{}, {}: left out: {}\n  {:<22}{:>12}{:>12} {:<5}{:>8}\n", r.scene, r.technique, names.empty() ? "nothing" : names, "", "forced on", "left out", "", "ratio") +
-         line("compile time", r.with.compileMs, r.without.compileMs, "ms") + line("GPU memory", static_cast<double>(r.with.gpuBytes) / 1048576.0, static_cast<double>(r.without.gpuBytes) / 1048576.0, "MiB") +
-         line("a picture", r.with.ms, r.without.ms, "ms") + fmt::format("  largest difference of a pixel {:.3g}, of radiances to {:.3g}\n", r.maxDifference, r.maxRadiance);
+  return fmt::format("{}, {}: left out: {}\n  {:<22}{:>12}{:>12} {:<5}{:>8}\n", r.scene, r.technique,
+                     names.empty() ? "nothing" : names, "", "forced on", "left out", "", "ratio") +
+         line("compile time", r.with.compileMs, r.without.compileMs, "ms") +
+         line("GPU memory", static_cast<double>(r.with.gpuBytes) / 1048576.0,
+              static_cast<double>(r.without.gpuBytes) / 1048576.0, "MiB") +
+         line("a picture", r.with.ms, r.without.ms, "ms") +
+         fmt::format("  largest difference of a pixel {:.3g}, of radiances to {:.3g}\n", r.maxDifference,
+                     r.maxRadiance);
 }
 
 }  // namespace bench
@@ -128,7 +139,8 @@ int run(Options options) {
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   for (const std::string& file : options.scenes) {
     const Scene scene = loadScene(file);
-    const bench::NeedsResult result = bench::measureNeeds(context, scene, chooseCamera(scene, options.camera), settings, options.frames);
+    const bench::NeedsResult result =
+        bench::measureNeeds(context, scene, chooseCamera(scene, options.camera), settings, options.frames);
     if (interrupted()) return exitCode();
     if (!options.common.quiet) fmt::print("{}", bench::needsText(result));
     results.push_back(bench::needsJson(result));
@@ -147,7 +159,9 @@ Work addBenchNeeds(CLI::App& app) {
   options->picture.size = "320x180";
   app.add_option("SCENE", options->scenes, "scene files (default: the atrium)");
   app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("--frames", options->frames, "pictures of each kind, in turn")->capture_default_str()->check(CLI::Range(1, 10000));
+  app.add_option("--frames", options->frames, "pictures of each kind, in turn")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10000));
   options->picture.declare(app);
   options->common.declare(app);
   return [options] { return run(*options); };

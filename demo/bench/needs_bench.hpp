@@ -21,7 +21,8 @@ struct NeedsResult {
 
 /// The scene with neutral data for all that it does not need and that has such data with these settings.
 Scene withEverything(const Scene& scene, const RenderSettings& settings);
-NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings, int frames);
+NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings,
+                         int frames);
 nlohmann::ordered_json needsJson(const NeedsResult& result);
 std::string needsText(const NeedsResult& result);
 

@@ -10,8 +10,7 @@
 namespace lucerna::demo::bench {
 
 PathSampler::PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-                         const Camera& camera, glm::ivec2 size, Transport transport, bool allMaterials,
-                         int bounces)
+                         const Camera& camera, glm::ivec2 size, Transport transport, bool allMaterials, int bounces)
     : context_(context),
       programs_(programs),
       scene_(scene),
@@ -66,7 +65,8 @@ Image PathSampler::sample(std::uint64_t first, std::uint32_t samples) {
   const Image mean = tracer_->mean();
   Image batch(size_.x, size_.y);
   for (std::size_t i = 0; i < batch.pixels.size(); ++i)
-    batch.pixels[i] = glm::vec3((after * glm::dvec3(mean.pixels[i]) - before * glm::dvec3(sum_.pixels[i])) / static_cast<double>(samples));
+    batch.pixels[i] = glm::vec3((after * glm::dvec3(mean.pixels[i]) - before * glm::dvec3(sum_.pixels[i])) /
+                                static_cast<double>(samples));
   sum_ = mean;
   return batch;
 }

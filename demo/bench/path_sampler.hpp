@@ -1,4 +1,5 @@
-// The path tracer as the sampler of references: corrected, restricted to one transport, surfaces Lambert's unless all materials are asked for, camera rays through pixel centres as forward shading has them.
+// The path tracer as the sampler of references: corrected, restricted to one transport, surfaces Lambert's unless all
+// materials are asked for, camera rays through pixel centres as forward shading has them.
 #pragma once
 
 #include "commands.hpp"
@@ -7,7 +8,9 @@
 #include <memory>
 #include <string>
 
-namespace lucerna { class PathTracer; }
+namespace lucerna {
+class PathTracer;
+}
 
 namespace lucerna::demo::bench {
 
@@ -18,8 +21,8 @@ class PathSampler {
   static constexpr std::string_view kVersionOfAllMaterials = "path tracer 2, pixel centres, all materials";
 
   /// bounces: of indirect light at most; 0: any number.
-  PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera, glm::ivec2 size, Transport transport,
-              bool allMaterials = false, int bounces = 0);
+  PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
+              glm::ivec2 size, Transport transport, bool allMaterials = false, int bounces = 0);
   ~PathSampler();
   PathSampler(const PathSampler&) = delete;
   PathSampler& operator=(const PathSampler&) = delete;
@@ -42,7 +45,7 @@ class PathSampler {
   int bounces_;
   std::unique_ptr<PathTracer> tracer_;
   std::uint64_t begin_ = 0, next_ = 0;  ///< paths of the running session
-  Image sum_;                           ///< mean of those so far
+  Image sum_;  ///< mean of those so far
 };
 
 /// What is seen of lights alone, nothing scattered: emissive surfaces, environment, background.

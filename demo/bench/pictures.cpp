@@ -1,4 +1,5 @@
-// lucerna bench pictures --original NAME [SCENE] -o FILE.png: pictures 7.3 to 7.7 of the LPV original, or those of the VPT one, on one labelled sheet.
+// lucerna bench pictures --original NAME [SCENE] -o FILE.png: pictures 7.3 to 7.7 of the LPV original, or those of the
+// VPT one, on one labelled sheet.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/bench.hpp"
@@ -33,7 +34,8 @@ struct Picture {
 Bitmap difference(const Bitmap& a, const Bitmap& b) {
   Bitmap result = a;
   for (std::size_t i = 0; i < a.rgba.size(); ++i)
-    result.rgba[i] = i % 4 == 3 ? std::uint8_t{255} : static_cast<std::uint8_t>(std::clamp(128 + 4 * (b.rgba[i] - a.rgba[i]), 0, 255));
+    result.rgba[i] = i % 4 == 3 ? std::uint8_t{255}
+                                : static_cast<std::uint8_t>(std::clamp(128 + 4 * (b.rgba[i] - a.rgba[i]), 0, 255));
   return result;
 }
 
@@ -51,9 +53,11 @@ VptSheet drawLpvPictures(const LpvPicturesInput& input) {
   const std::size_t rsm128 = add("RSM 128", [](RenderSettings& s) { s.rsm.size = 128; });
   const std::size_t plain = add("RSM 256", [](RenderSettings&) {});
   const std::size_t rsm512 = add("RSM 512", [](RenderSettings& s) { s.rsm.size = 512; });
-  const std::size_t single = add("one 64^3", [](RenderSettings& s) { s.lpv.cascades.cascades = 1, s.lpv.cascades.cells = 64; });
+  const std::size_t single =
+      add("one 64^3", [](RenderSettings& s) { s.lpv.cascades.cascades = 1, s.lpv.cascades.cells = 64; });
   const std::size_t unblocked = add("without blocking", [](RenderSettings& s) { s.lpv.blocking = false; });
-  const std::size_t indirect = add("indirect light alone", [](RenderSettings& s) { s.component = Component::indirect; });
+  const std::size_t indirect =
+      add("indirect light alone", [](RenderSettings& s) { s.component = Component::indirect; });
   const std::size_t direct = add("without indirect light", [](RenderSettings& s) { s.component = Component::direct; });
 
   Progress progress("bench pictures", static_cast<int>(pictures.size()), input.quiet);
@@ -70,7 +74,8 @@ VptSheet drawLpvPictures(const LpvPicturesInput& input) {
   const auto luminance = [](const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; };
   std::vector<Tile> tiles;
   const auto tile = [&](const std::string& label, std::size_t picture) {
-    tiles.push_back({fmt::format("{}  (mean {:.4g})", label, luminance(pictures[picture].mean)), pictures[picture].display});
+    tiles.push_back(
+        {fmt::format("{}  (mean {:.4g})", label, luminance(pictures[picture].mean)), pictures[picture].display});
   };
   const auto compare = [&](const std::string& label, std::size_t a, std::size_t b) {
     tiles.push_back({label, difference(pictures[a].display, pictures[b].display)});
@@ -87,11 +92,14 @@ VptSheet drawLpvPictures(const LpvPicturesInput& input) {
   tile("7.6  indirect alone, 8 iterations", indirect);
   tile("7.7  without indirect light", direct);
   tile("7.7  with indirect light", plain);
-  const std::string title = fmt::format("LPV original, pictures 7.3 to 7.7, {}: {}; three grids of 32^3, 8 iterations, RSM 256, blocking, where not said otherwise",
-                                        input.fidelity, input.scene.name);
+  const std::string title = fmt::format(
+      "LPV original, pictures 7.3 to 7.7, {}: {}; three grids of 32^3, 8 iterations, RSM 256, blocking, where not said "
+      "otherwise",
+      input.fidelity, input.scene.name);
   VptSheet result;
   result.tiles = tiles.size();
-  for (const Picture& picture : pictures) result.json.push_back({{"picture", picture.label}, {"mean", {picture.mean.x, picture.mean.y, picture.mean.z}}});
+  for (const Picture& picture : pictures)
+    result.json.push_back({{"picture", picture.label}, {"mean", {picture.mean.x, picture.mean.y, picture.mean.z}}});
   result.sheet = contactSheet(title, tiles, 3);
   return result;
 }
@@ -109,16 +117,22 @@ int runVpt(const Options& options) {
   const double scale = options.scale.value_or(kVptScale);
   if (size.x > 1920 || size.y > 1080) throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
   if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
-  if (!options.scene.empty()) throwBadInput("SCENE {}: the pictures of vpt are made of their own scenes", options.scene);
+  if (!options.scene.empty())
+    throwBadInput("SCENE {}: the pictures of vpt are made of their own scenes", options.scene);
   if (!options.camera.empty()) throwBadInput("--camera {}: the pictures of vpt have their own cameras", options.camera);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
   watchForInterrupt();
-  const bench::VptSheet sheet = bench::drawVptPictures({context, programs, scale, options.common.quiet, options.fidelity == "original" ? Fidelity::original : Fidelity::corrected}, size, options.exposure);
+  const bench::VptSheet sheet =
+      bench::drawVptPictures({context, programs, scale, options.common.quiet,
+                              options.fidelity == "original" ? Fidelity::original : Fidelity::corrected},
+                             size, options.exposure);
   if (interrupted()) return exitCode();
   writePng(options.output, sheet.sheet);
-  if (!options.common.quiet) fmt::print("{}: {} tiles of {}x{}, on {}\n", options.output, sheet.tiles, size.x, size.y, context.capabilities().renderer);
+  if (!options.common.quiet)
+    fmt::print("{}: {} tiles of {}x{}, on {}\n", options.output, sheet.tiles, size.x, size.y,
+               context.capabilities().renderer);
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
   json["host"] = nameOf(host->kind());
@@ -141,12 +155,16 @@ int run(const Options& options) {
   if (options.exposure && !(*options.exposure > 0.0 && *options.exposure <= 1e12))
     throwBadInput("--exposure {}: expected a number above 0, at most 1e12", *options.exposure);
   if (options.original == "vpt") return runVpt(options);
-  if (options.scale && options.original != "rad") throwBadInput("--scale {}: only with --original vpt and rad", *options.scale);
+  if (options.scale && options.original != "rad")
+    throwBadInput("--scale {}: only with --original vpt and rad", *options.scale);
   usual.size = parseSize(options.size.empty() ? "640x360" : options.size);
-  if (usual.size.x > 1920 || usual.size.y > 1080) throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
+  if (usual.size.x > 1920 || usual.size.y > 1080)
+    throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
   if (options.original == "rad") {
-    if (!options.scene.empty()) throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
-    if (!options.camera.empty()) throwBadInput("--camera {}: --original rad has one view of each model", options.camera);
+    if (!options.scene.empty())
+      throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
+    if (!options.camera.empty())
+      throwBadInput("--camera {}: --original rad has one view of each model", options.camera);
     const double scale = options.scale.value_or(1.0);
     if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
     return bench::runRadPictures(options.common, options.output, usual.size, scale);
@@ -158,10 +176,13 @@ int run(const Options& options) {
   const gl::Context context;
   gl::ProgramLibrary programs;
   watchForInterrupt();
-  const bench::VptSheet sheet = bench::drawLpvPictures({context, programs, scene, camera, usual, options.fidelity, options.exposure, options.common.quiet});
+  const bench::VptSheet sheet = bench::drawLpvPictures(
+      {context, programs, scene, camera, usual, options.fidelity, options.exposure, options.common.quiet});
   if (interrupted()) return exitCode();
   writePng(options.output, sheet.sheet);
-  if (!options.common.quiet) fmt::print("{}: {} tiles of {}x{}, on {}\n", options.output, sheet.tiles, usual.size.x, usual.size.y, context.capabilities().renderer);
+  if (!options.common.quiet)
+    fmt::print("{}: {} tiles of {}x{}, on {}\n", options.output, sheet.tiles, usual.size.x, usual.size.y,
+               context.capabilities().renderer);
 
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
@@ -179,13 +200,20 @@ int run(const Options& options) {
 
 Work addBenchPictures(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene, "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  offer(app.add_option("--original", options->original, "whose pictures: lpv, rad or vpt")->required(), {"lpv", "rad", "vpt"});
+  app.add_option("SCENE", options->scene,
+                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
+  offer(app.add_option("--original", options->original, "whose pictures: lpv, rad or vpt")->required(),
+        {"lpv", "rad", "vpt"});
   app.add_option("-o,--output", options->output, "FILE.png")->required();
   app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  offer(app.add_option("--fidelity", options->fidelity, "corrected; original: as published; lpv: thesis (original) or demo")->capture_default_str(), {"corrected", "original", "thesis", "demo"});
+  offer(app.add_option("--fidelity", options->fidelity,
+                       "corrected; original: as published; lpv: thesis (original) or demo")
+            ->capture_default_str(),
+        {"corrected", "original", "thesis", "demo"});
   app.add_option("--size", options->size, "WIDTHxHEIGHT of a tile in pixels (lpv and rad 640x360, vpt 320x180)");
-  app.add_option("--scale", options->scale, "vpt: the published samples times this (0.02); rad: triangles over and pixels times this (1); above 0, at most 1");
+  app.add_option("--scale", options->scale,
+                 "vpt: the published samples times this (0.02); rad: triangles over and pixels times this (1); above "
+                 "0, at most 1");
   app.add_option("--exposure", options->exposure, "multiplies radiance before tone mapping (the scene's)");
   options->common.declare(app);
   return [options] { return run(*options); };

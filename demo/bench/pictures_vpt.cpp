@@ -11,7 +11,8 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-/// That a picture with fewer than the published samples may take: what a slow machine does not get done is noisier, not left out.
+/// That a picture with fewer than the published samples may take: what a slow machine does not get done is noisier, not
+/// left out.
 constexpr double kMostSeconds = 20.0;
 constexpr int kZoom = 6;  // of figure 5.11
 
@@ -23,9 +24,12 @@ Bitmap zoomed(const Bitmap& picture) {
   const int left = (picture.width - picture.width / kZoom) / 2, top = (picture.height - picture.height / kZoom) / 2;
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x) {
-      const auto from = 4 * (static_cast<std::size_t>(top + y / kZoom) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(left + x / kZoom));
-      const auto to = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x));
-      std::copy_n(picture.rgba.begin() + static_cast<std::ptrdiff_t>(from), 4, result.rgba.begin() + static_cast<std::ptrdiff_t>(to));
+      const auto from = 4 * (static_cast<std::size_t>(top + y / kZoom) * static_cast<std::size_t>(picture.width) +
+                             static_cast<std::size_t>(left + x / kZoom));
+      const auto to =
+          4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x));
+      std::copy_n(picture.rgba.begin() + static_cast<std::ptrdiff_t>(from), 4,
+                  result.rgba.begin() + static_cast<std::ptrdiff_t>(to));
     }
   return result;
 }
@@ -49,19 +53,34 @@ int blackPixels(const Image& image) {
 class Drawing {
  public:
   Drawing(const VptTablesInput& input, glm::ivec2 size, std::optional<double> exposure)
-      : input_(input), size_(size), exposure_(exposure), published_(input.fidelity != Fidelity::corrected),
-        progress_("bench pictures", static_cast<int>((vptPictures().size() + (published_ ? vptUntimedPictures().size() + 1 : 0)) * (published_ ? 2 : 1)), input.quiet) {}
+      : input_(input),
+        size_(size),
+        exposure_(exposure),
+        published_(input.fidelity != Fidelity::corrected),
+        progress_("bench pictures",
+                  static_cast<int>((vptPictures().size() + (published_ ? vptUntimedPictures().size() + 1 : 0)) *
+                                   (published_ ? 2 : 1)),
+                  input.quiet) {}
 
   /// A tile of a picture by an estimator on the scene that is lit for it.
-  VptResult add(const VptPicture& picture, Fidelity fidelity, const PathDeviations& deviations, const std::string& note) {
+  VptResult add(const VptPicture& picture, Fidelity fidelity, const PathDeviations& deviations,
+                const std::string& note) {
     const Scene scene = loadVptScene(picture, fidelity);
-    VptResult drawn = renderVpt(input_.context, input_.programs, picture, scene, size_, vptSamples(picture, input_.scale), input_.scale < 1.0 ? kMostSeconds : 0.0, deviations);
+    VptResult drawn = renderVpt(input_.context, input_.programs, picture, scene, size_,
+                                vptSamples(picture, input_.scale), input_.scale < 1.0 ? kMostSeconds : 0.0, deviations);
     const glm::dvec3 mean = drawn.statistics.mean;
     const std::string label = fmt::format("{}  {}{}", picture.figure, picture.label, note);
-    tiles.push_back({fmt::format("{} ({:.3g} spp, mean {:.3g}, noise {:.2g})", label, drawn.statistics.samples, luminance(glm::vec3(mean)), drawn.statistics.relativeError),
+    tiles.push_back({fmt::format("{} ({:.3g} spp, mean {:.3g}, noise {:.2g})", label, drawn.statistics.samples,
+                                 luminance(glm::vec3(mean)), drawn.statistics.relativeError),
                      toneMapped(drawn.image, exposure_ ? static_cast<float>(*exposure_) : scene.exposure)});
-    json.push_back({{"picture", label}, {"mean", {mean.x, mean.y, mean.z}}, {"spp", drawn.statistics.samples}, {"ms", drawn.ms}, {"relative_error", drawn.statistics.relativeError},
-                    {"black_pixels", blackPixels(drawn.image)}, {"loop_turns", drawn.statistics.turns}, {"leaked_paths", drawn.statistics.leakedPaths},
+    json.push_back({{"picture", label},
+                    {"mean", {mean.x, mean.y, mean.z}},
+                    {"spp", drawn.statistics.samples},
+                    {"ms", drawn.ms},
+                    {"relative_error", drawn.statistics.relativeError},
+                    {"black_pixels", blackPixels(drawn.image)},
+                    {"loop_turns", drawn.statistics.turns},
+                    {"leaked_paths", drawn.statistics.leakedPaths},
                     {"wrong_crossings", drawn.statistics.wrongCrossings}});
     progress_.update(static_cast<int>(json.size()));
     return drawn;
@@ -99,10 +118,12 @@ VptSheet drawVptPictures(const VptTablesInput& input, glm::ivec2 size, std::opti
   std::vector<std::pair<std::string, std::size_t>> enlarged;
   for (const VptPicture& picture : vptPictures()) {
     if (interrupted()) break;
-    if (std::string_view(picture.figure).starts_with("5.10")) enlarged.emplace_back(picture.label, drawing.tiles.size());
+    if (std::string_view(picture.figure).starts_with("5.10"))
+      enlarged.emplace_back(picture.label, drawing.tiles.size());
     drawing.addBoth(picture);
     if (std::string_view(picture.figure) != "5.10 b") continue;
-    for (const auto& [label, tile] : enlarged) drawing.addZoom(fmt::format("5.11  {}, the middle {} times", label, kZoom), tile);
+    for (const auto& [label, tile] : enlarged)
+      drawing.addZoom(fmt::format("5.11  {}, the middle {} times", label, kZoom), tile);
     if (!drawing.published() || interrupted()) continue;
     // The black fragments that the text lays to the offsets of its rays, and their cure.
     PathDeviations cured = vptDeviations(picture, input.fidelity);
@@ -113,8 +134,12 @@ VptSheet drawVptPictures(const VptTablesInput& input, glm::ivec2 size, std::opti
   result.tiles = drawing.tiles.size();
   result.json = drawing.json;
   if (drawing.tiles.empty()) return result;
-  const std::string title = fmt::format("VPT original, pictures {} to 5.20, on scenes of our own, {}; samples: the published ones times {}, as far as {:.0f} s a picture go", drawing.published() ? "5.7" : "5.8",
-                                        drawing.published() ? "published estimator lit by points, corrected beside it" : "corrected estimator", input.scale, kMostSeconds);
+  const std::string title = fmt::format(
+      "VPT original, pictures {} to 5.20, on scenes of our own, {}; samples: the published ones times {}, as far as "
+      "{:.0f} s a picture go",
+      drawing.published() ? "5.7" : "5.8",
+      drawing.published() ? "published estimator lit by points, corrected beside it" : "corrected estimator",
+      input.scale, kMostSeconds);
   result.sheet = contactSheet(title, drawing.tiles, 4);
   return result;
 }

@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // Colours that stay apart for colour-blind eyes [Okabe2008], and marks that stay apart in grey.
-constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A4FBF", "#8C6D31", "#333333", "#B22222", "#3CB371", "#999900"};
+constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
+                                    "#7A4FBF", "#8C6D31", "#333333", "#B22222", "#3CB371", "#999900"};
 constexpr int kMarks[] = {7, 5, 9, 13, 11, 4, 6, 8, 2, 10, 12, 1};
 
 /// A string for gnuplot between double quotes; plain text, so the enhanced mode's signs are switched off by the script.
@@ -46,7 +47,8 @@ struct Range {
     std::string list;
     for (double power = std::pow(10.0, std::floor(std::log10(first))); power <= last * 1.001; power *= 10.0)
       for (double s : {1.0, 2.0, 5.0})
-        if (s * power >= first * 0.999 && s * power <= last * 1.001) list += fmt::format("{}{:g}", list.empty() ? "" : ", ", s * power);
+        if (s * power >= first * 0.999 && s * power <= last * 1.001)
+          list += fmt::format("{}{:g}", list.empty() ? "" : ", ", s * power);
     return fmt::format("set {}tics ({})\n", axis, list);
   }
   std::string text() const { return fmt::format("[{:g}:{:g}]", step(low / 1.15, false), step(high * 1.15, true)); }
@@ -74,13 +76,15 @@ std::string script(const std::string& stem, const LogLogPlot& plot, int& leftOut
     data += name + " << EOD\n" + points + "EOD\n";
     if (series.isFront) {
       line(fmt::format("{} using 1:2 with lines lw 7 lc rgb '#F0E2A8' title {}", name, quoted(series.name)));
-      if (labelled) line(fmt::format("{} using 1:2:3 with labels offset 0,1 font ',11' tc rgb '#6b5500' notitle", name));
+      if (labelled)
+        line(fmt::format("{} using 1:2:3 with labels offset 0,1 font ',11' tc rgb '#6b5500' notitle", name));
       continue;
     }
     const char* rgb = kColours[colour % 12];
     const int mark = kMarks[(colour + 5 * (colour / 12)) % 12];  // a colour that comes again has another mark
     ++colour;
-    line(fmt::format("{} using 1:2 with {} lw 1.5 pt {} ps 0.9 lc rgb '{}' title {}", name, series.joined ? "linespoints" : "points", mark, rgb, quoted(series.name)));
+    line(fmt::format("{} using 1:2 with {} lw 1.5 pt {} ps 0.9 lc rgb '{}' title {}", name,
+                     series.joined ? "linespoints" : "points", mark, rgb, quoted(series.name)));
   }
   if (block == 0) return "";
   constexpr const char* kGreys[] = {"#000000", "#777777", "#aaaaaa"};
@@ -96,16 +100,23 @@ std::string script(const std::string& stem, const LogLogPlot& plot, int& leftOut
     const Series& last = plot.series.back();
     const auto first = std::find_if(last.points.begin(), last.points.end(), drawable);
     if (first != last.points.end())
-      line(fmt::format("{:.9g} * (x / {:.9g}) ** ({:g}) with lines dt 3 lc rgb '#333333' title {}", first->y, first->x, plot.guideSlope,
-                       quoted(fmt::format("slope {:g}", plot.guideSlope))));
+      line(fmt::format("{:.9g} * (x / {:.9g}) ** ({:g}) with lines dt 3 lc rgb '#333333' title {}", first->y, first->x,
+                       plot.guideSlope, quoted(fmt::format("slope {:g}", plot.guideSlope))));
   }
   const std::string common = fmt::format(
-      "set encoding utf8\nset title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\nset logscale xy\nset xrange {}\nset yrange {}\n"
-      "set mxtics 10\nset mytics 10\nset format x '%g'\nset format y '%g'\nset grid xtics ytics back lt 1 lw 1 lc rgb '#e0e0e0'\nset border 3\nset tics nomirror out\n"
+      "set encoding utf8\nset title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\nset logscale "
+      "xy\nset xrange {}\nset yrange {}\n"
+      "set mxtics 10\nset mytics 10\nset format x '%g'\nset format y '%g'\nset grid xtics ytics back lt 1 lw 1 lc rgb "
+      "'#e0e0e0'\nset border 3\nset tics nomirror out\n"
       "set key outside right top vertical Left reverse samplen 2 noenhanced\nset samples 200\n",
       quoted(plot.title), quoted(plot.xLabel), quoted(plot.yLabel), x.text(), y.text());
-  return data + common + x.tics("x") + y.tics("y") + fmt::format("set terminal svg size 1060,560 font 'sans-serif,13' background '#ffffff'\nset output {}\n{}\n", quoted(stem + ".svg"), draw) +
-         fmt::format("set terminal pngcairo size 1060,560 font 'sans-serif,11' background '#ffffff'\nset output {}\n{}\nset output\n", quoted(stem + ".png"), draw);
+  return data + common + x.tics("x") + y.tics("y") +
+         fmt::format("set terminal svg size 1060,560 font 'sans-serif,13' background '#ffffff'\nset output {}\n{}\n",
+                     quoted(stem + ".svg"), draw) +
+         fmt::format(
+             "set terminal pngcairo size 1060,560 font 'sans-serif,11' background '#ffffff'\nset output {}\n{}\nset "
+             "output\n",
+             quoted(stem + ".png"), draw);
 }
 
 }  // namespace
@@ -117,12 +128,16 @@ int writeLogLogPlot(const fs::path& folder, const std::string& stem, const LogLo
   const std::string text = script(stem, plot, leftOut);
   if (text.empty()) throwBadInput("{}: nothing to plot: no figure is finite and above 0", stem);
   writeFileAtomically(folder / (stem + ".gp"), text);
-  if (!haveGnuplot()) throwMissingCapability("gnuplot is missing, which draws the plots (Debian package gnuplot-nox); the script is {}", (folder / (stem + ".gp")).string());
+  if (!haveGnuplot())
+    throwMissingCapability("gnuplot is missing, which draws the plots (Debian package gnuplot-nox); the script is {}",
+                           (folder / (stem + ".gp")).string());
   std::string quotedFolder = "'";
   for (char c : fs::absolute(folder).string()) quotedFolder += c == '\'' ? std::string("'\\''") : std::string(1, c);
   quotedFolder += "'";
   const int status = std::system(fmt::format("cd {} && gnuplot {}.gp >{}.log 2>&1", quotedFolder, stem, stem).c_str());
-  if (status != 0) throwMissingCapability("gnuplot fails on {}: see {}", (folder / (stem + ".gp")).string(), (folder / (stem + ".log")).string());
+  if (status != 0)
+    throwMissingCapability("gnuplot fails on {}: see {}", (folder / (stem + ".gp")).string(),
+                           (folder / (stem + ".log")).string());
   std::error_code ignored;
   fs::remove(folder / (stem + ".log"), ignored);
   return leftOut;

@@ -22,16 +22,17 @@ struct LogLogPlot {
   std::string title, xLabel, yLabel;  ///< labels with units
   std::vector<Series> series;
   struct Level {
-    double y;           ///< above 0; others are left out
+    double y;  ///< above 0; others are left out
     std::string label;
   };
-  std::vector<Level> levels;          ///< horizontal lines, such as a black picture's error and the reference's noise
-  double guideSlope = 0.0;            ///< a thin line of that slope through the first point of the last series; 0: none
+  std::vector<Level> levels;  ///< horizontal lines, such as a black picture's error and the reference's noise
+  double guideSlope = 0.0;  ///< a thin line of that slope through the first point of the last series; 0: none
 };
 
 bool haveGnuplot();
-/// Writes STEM.gp, STEM.svg and STEM.png into the folder. Points that are not finite and above 0 have no place on these axes: they are left out and counted in the return value.
-/// Throws Error(missingCapability) where gnuplot is missing or fails.
+/// Writes STEM.gp, STEM.svg and STEM.png into the folder. Points that are not finite and above 0 have no place on these
+/// axes: they are left out and counted in the return value. Throws Error(missingCapability) where gnuplot is missing or
+/// fails.
 int writeLogLogPlot(const std::filesystem::path& folder, const std::string& stem, const LogLogPlot& plot);
 
 }  // namespace lucerna::demo::bench

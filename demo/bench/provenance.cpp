@@ -25,7 +25,9 @@ std::string cpuName() {
 
 std::string shellWord(const std::string& word) {
   bool plain = !word.empty();
-  for (const char c : word) plain = plain && (std::isalnum(static_cast<unsigned char>(c)) || std::string_view("_-./,=:+@").find(c) != std::string_view::npos);
+  for (const char c : word)
+    plain = plain && (std::isalnum(static_cast<unsigned char>(c)) ||
+                      std::string_view("_-./,=:+@").find(c) != std::string_view::npos);
   if (plain) return word;
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -1,4 +1,5 @@
-// lucerna bench rays: rays per second of the hierarchy in a compute shader, beside Embree's single rays on the same rays in the same run.
+// lucerna bench rays: rays per second of the hierarchy in a compute shader, beside Embree's single rays on the same
+// rays in the same run.
 #include "bench/bench.hpp"
 
 #include "base/error.hpp"
@@ -34,14 +35,21 @@ double secondsOf(const std::function<void()>& work) {
 class Tracer {
  public:
   Tracer(gl::ProgramLibrary& programs, const RayScene& scene, std::size_t most)
-      : programs_(programs), scene_(scene), rays_("rays", most * sizeof(PlainRay), nullptr, GL_DYNAMIC_DRAW),
+      : programs_(programs),
+        scene_(scene),
+        rays_("rays", most * sizeof(PlainRay), nullptr, GL_DYNAMIC_DRAW),
         hits_("hits", most * sizeof(PlainHit), nullptr, GL_DYNAMIC_READ) {
     const std::vector<std::uint32_t> none(most, PlainHit::kNone);
     skipped_ = gl::Buffer("skipped", most * sizeof none[0], none.data(), GL_STATIC_DRAW);
   }
 
   const gl::Program& program(bool anyHit, bool countWork) {
-    return programs_.loadCompute("trace rays", "rays/trace_rays.comp", {{"ALPHA_MASKS", 0}, {"ANY_HIT", anyHit}, {"COUNT_WORK", countWork}, {"OFFSET_ORIGINS", 0}, {"SHARED_STACK", scene_.sharedStack()}});
+    return programs_.loadCompute("trace rays", "rays/trace_rays.comp",
+                                 {{"ALPHA_MASKS", 0},
+                                  {"ANY_HIT", anyHit},
+                                  {"COUNT_WORK", countWork},
+                                  {"OFFSET_ORIGINS", 0},
+                                  {"SHARED_STACK", scene_.sharedStack()}});
   }
   void upload(const std::vector<PlainRay>& rays) { rays_.upload(0, rays.size() * sizeof rays[0], rays.data()); }
   /// What was uploaded, in submissions that no watchdog minds.
@@ -77,15 +85,19 @@ struct SurfacePoint {
   glm::vec3 position, normal;
 };
 
-std::vector<SurfacePoint> surfacePoints(const Scene& scene, const glm::dvec3& origin, const std::vector<PlainRay>& rays, const std::vector<PlainHit>& hits) {
+std::vector<SurfacePoint> surfacePoints(const Scene& scene, const glm::dvec3& origin, const std::vector<PlainRay>& rays,
+                                        const std::vector<PlainHit>& hits) {
   std::vector<SurfacePoint> points;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (hits[i].triangle == PlainHit::kNone) continue;
-    const auto corner = [&](std::size_t k) { return glm::dvec3(scene.vertices[scene.indices[3 * hits[i].triangle + k]].position) - origin; };
+    const auto corner = [&](std::size_t k) {
+      return glm::dvec3(scene.vertices[scene.indices[3 * hits[i].triangle + k]].position) - origin;
+    };
     const glm::dvec3 a = corner(0), b = corner(1), c = corner(2);
     glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
     if (glm::dot(normal, glm::dvec3(rays[i].direction)) > 0.0) normal = -normal;
-    const glm::dvec3 p = a + static_cast<double>(hits[i].barycentrics.x) * (b - a) + static_cast<double>(hits[i].barycentrics.y) * (c - a);
+    const glm::dvec3 p = a + static_cast<double>(hits[i].barycentrics.x) * (b - a) +
+                         static_cast<double>(hits[i].barycentrics.y) * (c - a);
     const double magnitude = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     points.push_back({glm::vec3(p + normal * (magnitude * 0x1p-18)), glm::vec3(normal)});
   }
@@ -94,13 +106,15 @@ std::vector<SurfacePoint> surfacePoints(const Scene& scene, const glm::dvec3& or
 
 std::vector<PlainRay> primaryRays(const Camera& camera, const glm::dvec3& origin, int count) {
   const int side = static_cast<int>(std::sqrt(count));
-  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)), up = glm::cross(right, camera.direction);
+  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
+                   up = glm::cross(right, camera.direction);
   const double tangent = std::tan(0.5 * camera.verticalFov);
   std::vector<PlainRay> rays;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
       const double u = (2.0 * x + 1.0) / side - 1.0, v = (2.0 * y + 1.0) / side - 1.0;
-      rays.push_back({.origin = camera.position - origin, .direction = glm::normalize(camera.direction + tangent * (u * right + v * up))});
+      rays.push_back({.origin = camera.position - origin,
+                      .direction = glm::normalize(camera.direction + tangent * (u * right + v * up))});
     }
   return rays;
 }
@@ -111,7 +125,8 @@ std::vector<PlainRay> diffuseRays(const std::vector<SurfacePoint>& points, std::
   std::vector<PlainRay> rays;
   for (std::size_t i = 0; i < count && !points.empty(); ++i) {
     const SurfacePoint& p = points[i % points.size()];
-    const double z = 1.0 - 2.0 * unit(random), angle = 2.0 * std::numbers::pi * unit(random), r = std::sqrt(1.0 - z * z);
+    const double z = 1.0 - 2.0 * unit(random), angle = 2.0 * std::numbers::pi * unit(random),
+                 r = std::sqrt(1.0 - z * z);
     const glm::dvec3 d = glm::dvec3(p.normal) * 1.000001 + glm::dvec3(r * std::cos(angle), r * std::sin(angle), z);
     rays.push_back({.origin = p.position, .direction = glm::normalize(d)});
   }
@@ -164,13 +179,17 @@ std::size_t countDifferences(const std::vector<PlainHit>& a, const std::vector<P
 }
 
 std::string spread(const std::vector<double>& values) {
-  return values.empty() ? "-" : fmt::format("{:.3f} ({:.3f}..{:.3f})", median(values), percentile(values, 0.0), percentile(values, 1.0));
+  return values.empty()
+             ? "-"
+             : fmt::format("{:.3f} ({:.3f}..{:.3f})", median(values), percentile(values, 0.0), percentile(values, 1.0));
 }
 
 }  // namespace
 
-RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RaysOptions& options, bool quiet) {
-  if (options.rays < 1024 || options.rays > (1 << 22)) throwBadInput("--rays {}: from 1024 to {}", options.rays, 1 << 22);
+RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                       const RaysOptions& options, bool quiet) {
+  if (options.rays < 1024 || options.rays > (1 << 22))
+    throwBadInput("--rays {}: from 1024 to {}", options.rays, 1 << 22);
   if (options.repeats < 1) throwBadInput("--repeats {}: at least 1", options.repeats);
   RayScene::Settings settings;
   settings.bvh.splitBudget = options.splitBudget;
@@ -188,13 +207,18 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
   };
   std::mt19937 random(1);
   std::vector<Kind> kinds(3);
-  kinds[0] = {.name = "primary", .anyHit = false, .rays = primaryRays(chooseCamera(scene, options.camera), rayScene.origin(), options.rays)};
+  kinds[0] = {.name = "primary",
+              .anyHit = false,
+              .rays = primaryRays(chooseCamera(scene, options.camera), rayScene.origin(), options.rays)};
   std::vector<SurfacePoint> points = surfacePoints(scene, rayScene.origin(), kinds[0].rays, hitsOf(kinds[0].rays));
-  if (points.size() < 2) throwBadInput("{}: the camera sees nothing of it; choose another with --camera", scene.file.string());
+  if (points.size() < 2)
+    throwBadInput("{}: the camera sees nothing of it; choose another with --camera", scene.file.string());
   kinds[1] = {.name = "shadow", .anyHit = true, .rays = shadowRays(points, count, random)};
   // Of the second bounce where there is one: those of the first still start side by side.
   const std::vector<PlainRay> first = diffuseRays(points, count, random);
-  if (const std::vector<SurfacePoint> second = surfacePoints(scene, rayScene.origin(), first, hitsOf(first)); second.size() > points.size() / 4) points = second;
+  if (const std::vector<SurfacePoint> second = surfacePoints(scene, rayScene.origin(), first, hitsOf(first));
+      second.size() > points.size() / 4)
+    points = second;
   kinds[2] = {.name = "diffuse", .anyHit = false, .rays = diffuseRays(points, count, random)};
 
   Progress progress("bench rays", options.repeats * static_cast<int>(kinds.size()), quiet);
@@ -221,25 +245,48 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
   }
 
   const BvhStatistics& s = rayScene.statistics();
-  nlohmann::ordered_json json{{"renderer", context.capabilities().renderer}, {"scene", scene.file.string()}, {"triangles", s.triangles}, {"degenerate", s.degenerate},
-                              {"references", s.references}, {"nodes", s.nodes}, {"depth", s.depth}, {"sah_cost", s.sahCost}, {"build_seconds", s.seconds},
+  nlohmann::ordered_json json{{"renderer", context.capabilities().renderer},
+                              {"scene", scene.file.string()},
+                              {"triangles", s.triangles},
+                              {"degenerate", s.degenerate},
+                              {"references", s.references},
+                              {"nodes", s.nodes},
+                              {"depth", s.depth},
+                              {"sah_cost", s.sahCost},
+                              {"build_seconds", s.seconds},
                               {"gpu_bytes", rayScene.gpuBytes()}};
-  const auto number = [](const std::vector<double>& v) { return v.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(median(v)); };
+  const auto number = [](const std::vector<double>& v) {
+    return v.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(median(v));
+  };
   json["mrays_per_s"] = number(kinds[2].ours);
   json["embree_mrays_per_s"] = number(kinds[2].embree);
   json["ratio"] = number(kinds[2].ratios);
   if (embree) json["embree_build_seconds"] = embreeBuild;
   RaysResult result;
-  result.text = fmt::format("{}: {} triangles ({} degenerate dropped), {} references, {} nodes, depth {}, {:.1f} MB, built in {:.2f} s\non {}\n", scene.name, s.triangles, s.degenerate,
-             s.references, s.nodes, s.depth, 1e-6 * static_cast<double>(rayScene.gpuBytes()), s.seconds, context.capabilities().renderer);
-  result.text += fmt::format("{:<9}{:>24}{:>24}{:>22}{:>8}{:>11}{:>11}{:>11}{:>9}\n", "rays", "Mrays/s", "Embree Mrays/s", "ratio", "differ", "nodes/ray", "tris/ray", "bytes/ray", "lanes");
+  result.text = fmt::format(
+      "{}: {} triangles ({} degenerate dropped), {} references, {} nodes, depth {}, {:.1f} MB, built in {:.2f} s\non "
+      "{}\n",
+      scene.name, s.triangles, s.degenerate, s.references, s.nodes, s.depth,
+      1e-6 * static_cast<double>(rayScene.gpuBytes()), s.seconds, context.capabilities().renderer);
+  result.text += fmt::format("{:<9}{:>24}{:>24}{:>22}{:>8}{:>11}{:>11}{:>11}{:>9}\n", "rays", "Mrays/s",
+                             "Embree Mrays/s", "ratio", "differ", "nodes/ray", "tris/ray", "bytes/ray", "lanes");
   for (const Kind& k : kinds) {
     const double bytes = 16.0 * (BVH_NODE_TEXELS * k.nodes + BVH_TRIANGLE_TEXELS * k.triangles);
-    result.text += fmt::format("{:<9}{:>24}{:>24}{:>22}{:>8}{:>11.1f}{:>11.1f}{:>11.0f}{:>8.0f}%\n", k.name, spread(k.ours), spread(k.embree), spread(k.ratios), k.differ, k.nodes, k.triangles,
-               bytes, 100.0 * k.utilisation);
-    json["rows"].push_back({{"rays", k.name}, {"count", k.rays.size()}, {"mrays_per_s", number(k.ours)}, {"embree_mrays_per_s", number(k.embree)},
-                            {"ratio", number(k.ratios)}, {"samples", k.ours}, {"embree_samples", k.embree}, {"differ", k.differ}, {"nodes_per_ray", k.nodes},
-                            {"triangles_per_ray", k.triangles}, {"bytes_per_ray", bytes}, {"lane_utilisation", k.utilisation}});
+    result.text +=
+        fmt::format("{:<9}{:>24}{:>24}{:>22}{:>8}{:>11.1f}{:>11.1f}{:>11.0f}{:>8.0f}%\n", k.name, spread(k.ours),
+                    spread(k.embree), spread(k.ratios), k.differ, k.nodes, k.triangles, bytes, 100.0 * k.utilisation);
+    json["rows"].push_back({{"rays", k.name},
+                            {"count", k.rays.size()},
+                            {"mrays_per_s", number(k.ours)},
+                            {"embree_mrays_per_s", number(k.embree)},
+                            {"ratio", number(k.ratios)},
+                            {"samples", k.ours},
+                            {"embree_samples", k.embree},
+                            {"differ", k.differ},
+                            {"nodes_per_ray", k.nodes},
+                            {"triangles_per_ray", k.triangles},
+                            {"bytes_per_ray", bytes},
+                            {"lane_utilisation", k.utilisation}});
   }
   if (!embree) result.text += "Embree was not there when this was built (Debian: libembree-dev): no comparison\n";
   result.json = std::move(json);
@@ -275,11 +322,18 @@ Work addBenchRays(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file (default: the atrium)");
   app.add_option("--rays", options->bench.rays, "rays of each kind")->capture_default_str();
-  app.add_option("--repeats", options->bench.repeats, "measurements of each kind, after one to warm up")->capture_default_str();
-  app.add_option("--camera", options->bench.camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("--split-budget", options->bench.splitBudget, "references that spatial splits may add, a fraction")->check(CLI::Range(0.0, 10.0))->capture_default_str();
-  app.footer("Medians with least and most. Lanes: how much of the work of eight rays side by side is not waiting for the slowest of them, by nodes.\n"
-             "Differ: rays that Embree answers otherwise, by more than 1e-4 of the distance. All of this machine's cores work for either.");
+  app.add_option("--repeats", options->bench.repeats, "measurements of each kind, after one to warm up")
+      ->capture_default_str();
+  app.add_option("--camera", options->bench.camera,
+                 "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.add_option("--split-budget", options->bench.splitBudget, "references that spatial splits may add, a fraction")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  app.footer(
+      "Medians with least and most. Lanes: how much of the work of eight rays side by side is not waiting for the "
+      "slowest of them, by nodes.\n"
+      "Differ: rays that Embree answers otherwise, by more than 1e-4 of the distance. All of this machine's cores work "
+      "for either.");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -109,9 +109,11 @@ JudgedPicture References::judge(const Image& original, const Reference& referenc
 }
 
 std::optional<References> obtainReferences(const ReferenceRequest& request) {
-  const measure::ReferenceCache cache(request.folder.empty() ? measure::ReferenceCache::defaultFolder() : request.folder);
-  const bool own = request.path && std::any_of(request.scene.materials.begin(), request.scene.materials.end(),
-                                               [](const Material& m) { return m.bsdf != Bsdf::diffuse && m.bsdf != Bsdf::none; });
+  const measure::ReferenceCache cache(request.folder.empty() ? measure::ReferenceCache::defaultFolder()
+                                                             : request.folder);
+  const bool own =
+      request.path && std::any_of(request.scene.materials.begin(), request.scene.materials.end(),
+                                  [](const Material& m) { return m.bsdf != Bsdf::diffuse && m.bsdf != Bsdf::none; });
   References result;
   result.lights = measure::kindsOf(request.scene);
   result.models = request.models;
@@ -158,10 +160,8 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
     if (!result.seen.contains(paths.lights))
       result.seen.emplace(paths.lights,
                           seenLights(request.context, request.programs, scene, request.camera, request.size));
-    if (allMaterials)
-      result.own = std::move(*reference);
-    else
-      result.of.emplace(paths, std::move(*reference));
+    if (allMaterials) result.own = std::move(*reference);
+    else result.of.emplace(paths, std::move(*reference));
     progress.update(++done);
   }
   result.indirect_ = difference(result.all(), result.of.at({Transport::direct, result.lights}));
@@ -184,7 +184,8 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
 std::vector<ModelError> modelErrors(const References& r) {
   const auto judge = [&](const Reference& model, const Reference& truth) {
     const Reference d = difference(truth, model);
-    return measure::lessNoise(measure::errorsOf(model.mean, truth.mean), measure::noiseOf(truth.mean, d.standardError, d.meanError));
+    return measure::lessNoise(measure::errorsOf(model.mean, truth.mean),
+                              measure::noiseOf(truth.mean, d.standardError, d.meanError));
   };
   const auto addName = [](std::string& names, const std::string& name) {
     if ((", " + names + ",").find(", " + name + ",") == std::string::npos) names += (names.empty() ? "" : ", ") + name;

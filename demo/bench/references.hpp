@@ -25,22 +25,23 @@ struct ReferenceRequest {
   const Scene& scene;
   const Camera& camera;
   glm::ivec2 size;
-  double seconds;                 ///< for all of them together
+  double seconds;  ///< for all of them together
   std::vector<TechniqueModel> models;  ///< of the rungs
-  std::uint64_t samples = 0;      ///< a pixel; 0: by time
-  std::filesystem::path folder;   ///< of the cache; empty: the default
+  std::uint64_t samples = 0;  ///< a pixel; 0: by time
+  std::filesystem::path folder;  ///< of the cache; empty: the default
   bool quiet = false;
-  bool path = false;               ///< one for the path tracer too, where it sees more than Lambert's surfaces
-  std::filesystem::path own = {};  ///< the bench's copies: what its rows were judged by stays, though the cache goes on growing; empty: none
+  bool path = false;  ///< one for the path tracer too, where it sees more than Lambert's surfaces
+  std::filesystem::path own =
+      {};  ///< the bench's copies: what its rows were judged by stays, though the cache goes on growing; empty: none
 };
 
 /// A picture against a reference. What is seen of lights and background themselves is no achievement and would hide
 /// what is: a lamp in view has nearly all of sum r^2. So relative errors other than NRMSE are of the light that
 /// surfaces scatter: both pictures less what is seen of lights.
 struct JudgedPicture {
-  measure::JudgedErrors pixels;     ///< as the pictures are
+  measure::JudgedErrors pixels;  ///< as the pictures are
   measure::JudgedErrors scattered;  ///< of scattered light
-  measure::JudgedErrors blocks;     ///< the same averaged over blocks of 1/16 of the width
+  measure::JudgedErrors blocks;  ///< the same averaged over blocks of 1/16 of the width
   measure::PartErrors lit, other;
   /// Standard errors that the reference's noise gives to l2, nrmse and relmse; NaN where the error is 0.
   double l2Error = 0.0, nrmseError = 0.0, relmseError = 0.0;
@@ -48,11 +49,13 @@ struct JudgedPicture {
 
 struct References {
   std::map<LightPaths, measure::Reference> of;  ///< of kinds of light that the scene has
-  measure::LightKinds lights;                   ///< those of the scene
+  measure::LightKinds lights;  ///< those of the scene
   std::vector<TechniqueModel> models;
   /// all - direct: a difference of pictures, errors in quadrature.
   const measure::Reference& indirect() const { return indirect_; }
-  measure::ReferenceNoise noise(const measure::Reference& r) const { return measure::noiseOf(r.mean, r.standardError, r.meanError); }
+  measure::ReferenceNoise noise(const measure::Reference& r) const {
+    return measure::noiseOf(r.mean, r.standardError, r.meanError);
+  }
   const measure::Reference& all() const { return of.at({Transport::all, lights}); }
   /// What path tracing is judged by: mirrors, glass and rough metal as they are.
   const measure::Reference& path() const { return own ? *own : all(); }

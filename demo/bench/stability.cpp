@@ -26,7 +26,9 @@ bool Measurement::passes() const {
 
 std::string expectedText(const Measurement& m) {
   switch (m.rule) {
-    case Rule::equals: return m.tolerance > 0.0 ? fmt::format("{:.6g} +- {:.2g}", m.expected, m.tolerance) : fmt::format("{:.6g} exactly", m.expected);
+    case Rule::equals:
+      return m.tolerance > 0.0 ? fmt::format("{:.6g} +- {:.2g}", m.expected, m.tolerance)
+                               : fmt::format("{:.6g} exactly", m.expected);
     case Rule::atMost: return fmt::format("<= {:.6g}", m.expected);
     case Rule::atLeast: return fmt::format(">= {:.6g}", m.expected);
   }
@@ -79,7 +81,9 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
 nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows) {
   auto json = nlohmann::ordered_json::array();
   for (const StabilityRow& row : rows) {
-    const char* rule = row.measurement.rule == Rule::equals ? "equals" : row.measurement.rule == Rule::atMost ? "at most" : "at least";
+    const char* rule = row.measurement.rule == Rule::equals   ? "equals"
+                       : row.measurement.rule == Rule::atMost ? "at most"
+                                                              : "at least";
     json.push_back({{"technique", row.technique},
                     {"case", row.name},
                     {"parameter", row.parameter},
@@ -105,21 +109,26 @@ struct Options {
 
 int run(const Options& options) {
   options.common.apply();
-  const nlohmann::ordered_json kept = options.compare.empty() ? nlohmann::ordered_json() : bench::readKept(options.compare);
+  const nlohmann::ordered_json kept =
+      options.compare.empty() ? nlohmann::ordered_json() : bench::readKept(options.compare);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
   watchForInterrupt();
-  const std::vector<bench::StabilityRow> rows = bench::runStability({context, programs}, options.technique, options.common.quiet);
+  const std::vector<bench::StabilityRow> rows =
+      bench::runStability({context, programs}, options.technique, options.common.quiet);
   int failed = 0;
   double seconds = 0.0;
-  if (!options.common.quiet) fmt::print("Renderer {}\n\n{:<11}{:<66}{:<24}{:<26}{:<14}{:>7}\n", context.capabilities().renderer, "technique", "case", "parameter", "expected", "measured", "s");
+  if (!options.common.quiet)
+    fmt::print("Renderer {}\n\n{:<11}{:<66}{:<24}{:<26}{:<14}{:>7}\n", context.capabilities().renderer, "technique",
+               "case", "parameter", "expected", "measured", "s");
   for (const bench::StabilityRow& row : rows) {
     failed += !row.passed;
     seconds += row.seconds;
     if (options.common.quiet) continue;
-    fmt::print("{:<11}{:<66}{:<24}{:<26}{:<14.7g}{:>7.2f}  {}{}\n", row.technique, row.name, row.parameter, expectedText(row.measurement), row.measurement.measured, row.seconds,
-               row.passed ? "pass" : "FAIL", row.note.empty() ? "" : ": " + row.note);
+    fmt::print("{:<11}{:<66}{:<24}{:<26}{:<14.7g}{:>7.2f}  {}{}\n", row.technique, row.name, row.parameter,
+               expectedText(row.measurement), row.measurement.measured, row.seconds, row.passed ? "pass" : "FAIL",
+               row.note.empty() ? "" : ": " + row.note);
   }
   if (!options.common.quiet) fmt::print("\n{} rows, {} failed, {:.1f} s\n", rows.size(), failed, seconds);
   const nlohmann::ordered_json json = bench::stabilityJson(rows);
@@ -145,7 +154,9 @@ int run(const Options& options) {
 Work addBenchStability(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("--technique", options->technique, "only this one's rows");
-  app.add_option("--compare", options->compare, "a table kept by --json: rows that are gone, fail now, expect another answer or allow more are named, exit code 1");
+  app.add_option("--compare", options->compare,
+                 "a table kept by --json: rows that are gone, fail now, expect another answer or allow more are named, "
+                 "exit code 1");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -14,8 +14,8 @@ namespace lucerna::demo::bench {
 
 /// How `measured` is held against `expected`. What is not finite passes none of them.
 enum class Rule {
-  equals,   ///< |measured - expected| <= tolerance
-  atMost,   ///< measured <= expected
+  equals,  ///< |measured - expected| <= tolerance
+  atMost,  ///< measured <= expected
   atLeast,  ///< measured >= expected
 };
 
@@ -60,8 +60,10 @@ nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows);
 std::string expectedText(const Measurement& m);
 /// The rows of a table that `--json` kept. Throws Error(badInput).
 nlohmann::ordered_json readKept(const std::string& file);
-/// What is worse in `now` than in `kept`, both as stabilityJson() has them, a line each: rows that are gone, that failed not and fail, that expect something else or allow
-/// more. New rows are no harm. `technique`, unless empty: of its rows alone. Throws Error(badInput) where `kept` is no such table; `file` is for the message.
-std::vector<std::string> worseRows(const nlohmann::ordered_json& now, const nlohmann::ordered_json& kept, const std::string& technique, const std::string& file);
+/// What is worse in `now` than in `kept`, both as stabilityJson() has them, a line each: rows that are gone, that
+/// failed not and fail, that expect something else or allow more. New rows are no harm. `technique`, unless empty: of
+/// its rows alone. Throws Error(badInput) where `kept` is no such table; `file` is for the message.
+std::vector<std::string> worseRows(const nlohmann::ordered_json& now, const nlohmann::ordered_json& kept,
+                                   const std::string& technique, const std::string& file);
 
 }  // namespace lucerna::demo::bench

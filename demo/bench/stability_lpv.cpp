@@ -1,5 +1,6 @@
-// Stiff and extreme cases of the light propagation volume alone, fed by hand-made reflective shadow maps: its kernel has exact answers.
-// The published answers are those of [Kaplanyan2010] with exact solid angles, worked out in double precision (tests/support/lpv_twin.*).
+// Stiff and extreme cases of the light propagation volume alone, fed by hand-made reflective shadow maps: its kernel
+// has exact answers. The published answers are those of [Kaplanyan2010] with exact solid angles, worked out in double
+// precision (tests/support/lpv_twin.*).
 #include "bench/stability.hpp"
 #include "lpv/light_propagation_volume.hpp"
 
@@ -52,7 +53,8 @@ class Volume {
   std::size_t notFinite() const {
     std::size_t count = 0;
     for (const gl::Texture& channel : lpv_.result())
-      for (const glm::vec4& c : channel.readRgba()) count += !(std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z) && std::isfinite(c.w));
+      for (const glm::vec4& c : channel.readRgba())
+        count += !(std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z) && std::isfinite(c.w));
     return count;
   }
 
@@ -62,7 +64,8 @@ class Volume {
     explicit Map(const std::vector<Vpl>& vpls) {
       constexpr int kWidth = 64;
       const int height = std::max(1, (static_cast<int>(vpls.size()) + kWidth - 1) / kWidth);
-      std::vector<glm::vec4> position(static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(height)), normal = position, flux = position;
+      std::vector<glm::vec4> position(static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(height)),
+          normal = position, flux = position;
       for (std::size_t i = 0; i < vpls.size(); ++i) {
         position[i] = glm::vec4(vpls[i].position, 1.0f);
         normal[i] = glm::vec4(vpls[i].normal, 1.0f);
@@ -106,7 +109,10 @@ class Volume {
 };
 
 /// In the middle of cell n/2, looking along z. A light is moved half a cell along its normal before its cell is sought.
-Vpl inTheMiddle(int cells) { return {glm::vec3(static_cast<float>(cells / 2) + 0.5f, static_cast<float>(cells / 2) + 0.5f, static_cast<float>(cells / 2) + 0.25f)}; }
+Vpl inTheMiddle(int cells) {
+  return {glm::vec3(static_cast<float>(cells / 2) + 0.5f, static_cast<float>(cells / 2) + 0.5f,
+                    static_cast<float>(cells / 2) + 0.25f)};
+}
 
 double fluxOf(const StabilityContext& context, Setup setup, int iterations, const std::vector<Vpl>& vpls) {
   setup.iterations = iterations;
@@ -119,66 +125,79 @@ double frontFlux(const StabilityContext& context, const Setup& setup, int n) {
   return fluxOf(context, setup, n, light) - fluxOf(context, setup, n - 1, light);
 }
 
-void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter, std::function<Measurement(const StabilityContext&)> run) {
+void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
+         std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({"lpv", std::move(name), std::move(parameter), std::move(run)});
 }
 
 void addKernel(std::vector<StabilityCase>& cases) {
   // Decay through a border of 32 cells; a front's flux is a difference of sums in 32-bit floats.
-  constexpr std::pair<int, double> kDecay[] = {{1, 1.138208}, {16, 1.138208}, {32, 1.138115}, {64, 1.123262}, {128, 0.944911}};
+  constexpr std::pair<int, double> kDecay[] = {
+      {1, 1.138208}, {16, 1.138208}, {32, 1.138115}, {64, 1.123262}, {128, 0.944911}};
   for (const auto& [step, expected] : kDecay)  // clang 14 captures no structured bindings
-    add(cases, "one light in 32^3, flux after N steps", fmt::format("N = {}", step), [n = step, flux = expected](const StabilityContext& c) {
-      return Measurement{flux, frontFlux(c, {}, n), 3e-5};
-    });
+    add(cases, "one light in 32^3, flux after N steps", fmt::format("N = {}", step),
+        [n = step, flux = expected](const StabilityContext& c) {
+          return Measurement{flux, frontFlux(c, {}, n), 3e-5};
+        });
   struct Tiny {
     int cells, step;
     double flux;
   };
-  constexpr Tiny kTiny[] = {{1, 1, 0.0}, {2, 1, .333333}, {2, 2, .110472}, {2, 3, .042324}, {3, 1, 1.138208}, {3, 3, .566864}, {3, 6, .147829}};
+  constexpr Tiny kTiny[] = {{1, 1, 0.0},      {2, 1, .333333}, {2, 2, .110472}, {2, 3, .042324},
+                            {3, 1, 1.138208}, {3, 3, .566864}, {3, 6, .147829}};
   for (const Tiny& t : kTiny)
-    add(cases, "one light in a tiny grid, flux after N steps", fmt::format("{}^3, N = {}", t.cells, t.step), [t](const StabilityContext& c) {
-      Setup setup;
-      setup.cells = t.cells;
-      return Measurement{t.flux, frontFlux(c, setup, t.step), 5e-6};
-    });
-  for (const auto& [amplifier, gain] : {std::pair{3.0f, 0.75}, std::pair{4.0f, 1.0}, std::pair{4.2f, 1.05}, std::pair{5.0f, 1.25}})
-    add(cases, "4 pi kernel, gain of a step (amplifier / 4)", fmt::format("amplifier {:g}", amplifier), [amplifier = amplifier, gain = gain](const StabilityContext& c) {
-      Setup setup;
-      setup.amplifier = amplifier;
-      return Measurement{gain, frontFlux(c, setup, 5) / frontFlux(c, setup, 4), 1e-4};
-    });
+    add(cases, "one light in a tiny grid, flux after N steps", fmt::format("{}^3, N = {}", t.cells, t.step),
+        [t](const StabilityContext& c) {
+          Setup setup;
+          setup.cells = t.cells;
+          return Measurement{t.flux, frontFlux(c, setup, t.step), 5e-6};
+        });
+  for (const auto& [amplifier, gain] :
+       {std::pair{3.0f, 0.75}, std::pair{4.0f, 1.0}, std::pair{4.2f, 1.05}, std::pair{5.0f, 1.25}})
+    add(cases, "4 pi kernel, gain of a step (amplifier / 4)", fmt::format("amplifier {:g}", amplifier),
+        [amplifier = amplifier, gain = gain](const StabilityContext& c) {
+          Setup setup;
+          setup.amplifier = amplifier;
+          return Measurement{gain, frontFlux(c, setup, 5) / frontFlux(c, setup, 4), 1e-4};
+        });
 }
 
 void addIterations(std::vector<StabilityCase>& cases) {
-  add(cases, "no step: the injected light alone", "N = 0", [](const StabilityContext& c) { return Measurement{1.0, fluxOf(c, {}, 0, {inTheMiddle(32)}), 1e-6}; });
-  // The sum over all fronts of 8^3 is below what leaves in ever smaller parts: it is bounded by its value at 256 steps plus nothing that floats show.
+  add(cases, "no step: the injected light alone", "N = 0", [](const StabilityContext& c) {
+    return Measurement{1.0, fluxOf(c, {}, 0, {inTheMiddle(32)}), 1e-6};
+  });
+  // The sum over all fronts of 8^3 is below what leaves in ever smaller parts: it is bounded by its value at 256 steps
+  // plus nothing that floats show.
   for (const bool full : {true, false})
-    add(cases, fmt::format("ten thousand steps in 8^3 over 256, {} bits", full ? 32 : 16), "N = 10000", [full](const StabilityContext& c) {
-      Setup setup;
-      setup.cells = 8;
-      setup.full = full;
-      const std::vector<Vpl> light{inTheMiddle(8)};
-      return Measurement{1.0, fluxOf(c, setup, 10000, light) / fluxOf(c, setup, 256, light), full ? 1e-5 : 2e-3};
-    });
+    add(cases, fmt::format("ten thousand steps in 8^3 over 256, {} bits", full ? 32 : 16), "N = 10000",
+        [full](const StabilityContext& c) {
+          Setup setup;
+          setup.cells = 8;
+          setup.full = full;
+          const std::vector<Vpl> light{inTheMiddle(8)};
+          return Measurement{1.0, fluxOf(c, setup, 10000, light) / fluxOf(c, setup, 256, light), full ? 1e-5 : 2e-3};
+        });
 }
 
 void addInjection(std::vector<StabilityCase>& cases) {
   for (const float flux : {1e-12f, 1e-5f, 1e5f, 1e12f})
-    add(cases, "flux of a light over what it sends, 16 bits", fmt::format("{:g} W", static_cast<double>(flux)), [flux](const StabilityContext& c) {
-      Setup setup;
-      setup.full = false;
-      setup.referenceIrradiance = flux;
-      Vpl light = inTheMiddle(32);
-      light.flux = flux;
-      return Measurement{1.0, fluxOf(c, setup, 0, {light}) / static_cast<double>(flux), 1e-3};
-    });
+    add(cases, "flux of a light over what it sends, 16 bits", fmt::format("{:g} W", static_cast<double>(flux)),
+        [flux](const StabilityContext& c) {
+          Setup setup;
+          setup.full = false;
+          setup.referenceIrradiance = flux;
+          Vpl light = inTheMiddle(32);
+          light.flux = flux;
+          return Measurement{1.0, fluxOf(c, setup, 0, {light}) / static_cast<double>(flux), 1e-3};
+        });
   for (const LpvFill fill : {LpvFill::layered, LpvFill::fixed})
-    add(cases, "ten thousand equal lights in one cell, sum", fmt::format("{}", nameOf(fill)), [fill](const StabilityContext& c) {
-      Setup setup;
-      setup.fill = fill;
-      setup.referenceIrradiance = 1e4f;
-      return Measurement{1e4, fluxOf(c, setup, 0, std::vector<Vpl>(10000, inTheMiddle(32))), 10.0};
-    });
+    add(cases, "ten thousand equal lights in one cell, sum", fmt::format("{}", nameOf(fill)),
+        [fill](const StabilityContext& c) {
+          Setup setup;
+          setup.fill = fill;
+          setup.referenceIrradiance = 1e4f;
+          return Measurement{1e4, fluxOf(c, setup, 0, std::vector<Vpl>(10000, inTheMiddle(32))), 10.0};
+        });
   struct Place {
     const char* name;
     glm::vec3 position;
@@ -192,7 +211,9 @@ void addInjection(std::vector<StabilityCase>& cases) {
                                   {"at the far border", {kMiddle, 32.0f, kMiddle}, 0.0},
                                   {"at -1e30", {-1e30f, kMiddle, kMiddle}, 0.0}};
   for (const Place& place : kPlaces)
-    add(cases, "flux of a light, by place", place.name, [place](const StabilityContext& c) { return Measurement{place.flux, fluxOf(c, {}, 0, {{place.position}}), 1e-6}; });
+    add(cases, "flux of a light, by place", place.name, [place](const StabilityContext& c) {
+      return Measurement{place.flux, fluxOf(c, {}, 0, {{place.position}}), 1e-6};
+    });
 }
 
 void addBadTexels(std::vector<StabilityCase>& cases) {

@@ -1,4 +1,5 @@
-// Stiff and extreme cases of the path tracer. Statistical: an answer must lie within 4 standard errors (1 row in 16,000 fails by chance), and the error itself is bounded.
+// Stiff and extreme cases of the path tracer. Statistical: an answer must lie within 4 standard errors (1 row in 16,000
+// fails by chance), and the error itself is bounded.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -30,37 +31,42 @@ Answer trace(const StabilityContext& c, const Scene& scene, const View& view = {
   tracer.record(view.samples);
   Answer answer;
   const Image picture = tracer.mean();
-  for (const glm::vec3& p : picture.pixels) answer.notFinite += !(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+  for (const glm::vec3& p : picture.pixels)
+    answer.notFinite += !(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
   const glm::dvec3 mean = meanOf(picture), error = tracer.statistics().meanError;
   answer.mean = (mean.x + mean.y + mean.z) / 3.0;
   answer.error = (error.x + error.y + error.z) / 3.0;  // channels share their paths
   return answer;
 }
 
-/// The mean is `expected` within 4 standard errors, which may be at most `relative` of it; rounding of a long float sum is allowed 1e-5.
+/// The mean is `expected` within 4 standard errors, which may be at most `relative` of it; rounding of a long float sum
+/// is allowed 1e-5.
 Measurement within(const Answer& answer, double expected, double relative = 0.005) {
   const double tolerance = 4.0 * answer.error + 1e-5 * expected;
   const bool precise = tolerance <= relative * expected * 4.0;
   return {expected, precise ? answer.mean : NAN, tolerance};
 }
 
-void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter, std::function<Measurement(const StabilityContext&)> run) {
+void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
+         std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({"path", std::move(name), std::move(parameter), std::move(run)});
 }
 
 /// All surfaces emit 1 and reflect rho: 1 / (1 - rho) everywhere.
 void addFurnaces(std::vector<StabilityCase>& cases) {
   for (const float rho : {0.0f, 0.5f, 0.9f, 0.99f, 0.999f})
-    add(cases, "closed furnace, radiance 1 / (1 - albedo)", fmt::format("albedo {:g}", static_cast<double>(rho)), [rho](const StabilityContext& c) {
-      Room room;
-      room.closed = true;
-      room.albedo = rho;
-      room.emission = glm::vec3(1.0f);
-      View view;
-      // Paths grow as 1 / (1 - rho), and with them the work of a sample and its spread.
-      view.samples = rho > 0.995f ? 16 : rho > 0.95f ? 32 : 128;
-      return within(trace(c, makeRoom(room), view), 1.0 / (1.0 - static_cast<double>(rho)), rho > 0.95f ? 0.05 : 0.005);
-    });
+    add(cases, "closed furnace, radiance 1 / (1 - albedo)", fmt::format("albedo {:g}", static_cast<double>(rho)),
+        [rho](const StabilityContext& c) {
+          Room room;
+          room.closed = true;
+          room.albedo = rho;
+          room.emission = glm::vec3(1.0f);
+          View view;
+          // Paths grow as 1 / (1 - rho), and with them the work of a sample and its spread.
+          view.samples = rho > 0.995f ? 16 : rho > 0.95f ? 32 : 128;
+          return within(trace(c, makeRoom(room), view), 1.0 / (1.0 - static_cast<double>(rho)),
+                        rho > 0.95f ? 0.05 : 0.005);
+        });
 }
 
 /// Surfaces that lose nothing, lit by 1 from all around: radiance 1 in every pixel.
@@ -70,9 +76,10 @@ void addWhiteFurnaces(std::vector<StabilityCase>& cases) {
     Bsdf bsdf;
     float roughness, ior;
   };
-  static constexpr Kind kKinds[] = {{"diffuse", Bsdf::diffuse, 0.0f, 1.5f},      {"mirror", Bsdf::mirror, 0.0f, 1.5f},
-                                    {"glass, ior 1.5", Bsdf::dielectric, 0.0f, 1.5f}, {"ior 1.0001", Bsdf::dielectric, 0.0f, 1.0001f},
-                                    {"ior 1", Bsdf::dielectric, 0.0f, 1.0f},      {"ior 5", Bsdf::dielectric, 0.0f, 5.0f}};
+  static constexpr Kind kKinds[] = {
+      {"diffuse", Bsdf::diffuse, 0.0f, 1.5f},           {"mirror", Bsdf::mirror, 0.0f, 1.5f},
+      {"glass, ior 1.5", Bsdf::dielectric, 0.0f, 1.5f}, {"ior 1.0001", Bsdf::dielectric, 0.0f, 1.0001f},
+      {"ior 1", Bsdf::dielectric, 0.0f, 1.0f},          {"ior 5", Bsdf::dielectric, 0.0f, 5.0f}};
   for (const Kind& kind : kKinds)
     add(cases, "white furnace, radiance", kind.name, [kind](const StabilityContext& c) {
       Room room;
@@ -86,7 +93,8 @@ void addWhiteFurnaces(std::vector<StabilityCase>& cases) {
         for (Vertex& v : scene.vertices) v.normal = -v.normal;
         for (std::size_t i = 0; i < scene.indices.size(); i += 3) std::swap(scene.indices[i], scene.indices[i + 1]);
       }
-      for (Material& m : scene.materials) m.diffuse = m.specular = glm::vec3(1.0f), m.bsdf = kind.bsdf, m.roughness = kind.roughness, m.ior = kind.ior;
+      for (Material& m : scene.materials)
+        m.diffuse = m.specular = glm::vec3(1.0f), m.bsdf = kind.bsdf, m.roughness = kind.roughness, m.ior = kind.ior;
       scene.environment = Environment{glm::vec3(1.0f), {}, 0.0};
       return within(trace(c, scene), 1.0);
     });
@@ -96,13 +104,15 @@ void addUnits(std::vector<StabilityCase>& cases) {
   const auto against = [&](const std::string& name, const std::string& parameter, const Room& room, double factor) {
     add(cases, name, parameter, [room, factor](const StabilityContext& c) {
       const Answer usual = trace(c, makeRoom({})), other = trace(c, makeRoom(room));
-      return Measurement{1.0, other.mean / factor / usual.mean, 4.0 * std::hypot(usual.error, other.error / factor) / usual.mean};
+      return Measurement{1.0, other.mean / factor / usual.mean,
+                         4.0 * std::hypot(usual.error, other.error / factor) / usual.mean};
     });
   };
   for (const float factor : {1e-9f, 1e9f}) {
     Room room;
     room.irradiance *= factor;
-    against("mean over the sun's irradiance, against 1x", fmt::format("sun {:g}x", static_cast<double>(factor)), room, static_cast<double>(factor));
+    against("mean over the sun's irradiance, against 1x", fmt::format("sun {:g}x", static_cast<double>(factor)), room,
+            static_cast<double>(factor));
   }
   for (const double scale : {std::exp2(-20), std::exp2(20), 1e-3, 1e6}) {
     Room room;
@@ -121,7 +131,9 @@ void addUnits(std::vector<StabilityCase>& cases) {
 
 void addExtremes(std::vector<StabilityCase>& cases) {
   const auto finite = [&](const char* name, const char* parameter, const Room& room, const View& view) {
-    add(cases, std::string(name) + ": pixels not finite", parameter, [room, view](const StabilityContext& c) { return Measurement{0.0, trace(c, makeRoom(room), view).notFinite, 0.0}; });
+    add(cases, std::string(name) + ": pixels not finite", parameter, [room, view](const StabilityContext& c) {
+      return Measurement{0.0, trace(c, makeRoom(room), view).notFinite, 0.0};
+    });
   };
   Room room;
   room.place = glm::dvec3(1e6);

@@ -1,4 +1,5 @@
-// Stiff and extreme cases of whole pictures: units, scale, place, resolution, nothing to light. A room without a roof, lit by the sun; answers are ratios that must be 1, or exact zeros.
+// Stiff and extreme cases of whole pictures: units, scale, place, resolution, nothing to light. A room without a roof,
+// lit by the sun; answers are ratios that must be 1, or exact zeros.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
 #include "render/renderer.hpp"
@@ -51,38 +52,46 @@ double notFinite(const Image& image) {
   return count;
 }
 
-void add(std::vector<StabilityCase>& cases, Technique technique, std::string name, std::string parameter, std::function<Measurement(const StabilityContext&)> run) {
+void add(std::vector<StabilityCase>& cases, Technique technique, std::string name, std::string parameter,
+         std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({std::string(nameOf(technique)), std::move(name), std::move(parameter), std::move(run)});
 }
 
 void addUnits(std::vector<StabilityCase>& cases, const View& view) {
   for (const float factor : {1e-9f, 1e9f})
-    add(cases, view.technique, "mean over the sun's irradiance, against 1x", fmt::format("sun {:g}x", static_cast<double>(factor)), [view, factor](const StabilityContext& c) {
-      Room room;
-      const double usual = meanOfPicture(c, room, view);
-      room.irradiance *= factor;
-      return Measurement{1.0, meanOfPicture(c, room, view) / factor / usual, 1e-3};
-    });
+    add(cases, view.technique, "mean over the sun's irradiance, against 1x",
+        fmt::format("sun {:g}x", static_cast<double>(factor)), [view, factor](const StabilityContext& c) {
+          Room room;
+          const double usual = meanOfPicture(c, room, view);
+          room.irradiance *= factor;
+          return Measurement{1.0, meanOfPicture(c, room, view) / factor / usual, 1e-3};
+        });
   for (const double scale : {std::exp2(-20), std::exp2(20), 1e-3, 1e6})
-    add(cases, view.technique, "mean of a scaled scene, against 1x", fmt::format("scale {:g}", scale), [view, scale](const StabilityContext& c) {
-      Room room;
-      const double usual = meanOfPicture(c, room, view);
-      room.scale = scale;
-      // Powers of two change no rounding; others may shift a cell or a texel.
-      return Measurement{1.0, meanOfPicture(c, room, view) / usual, std::exp2(std::round(std::log2(scale))) == scale ? 1e-5 : 5e-3};
-    });
+    add(cases, view.technique, "mean of a scaled scene, against 1x", fmt::format("scale {:g}", scale),
+        [view, scale](const StabilityContext& c) {
+          Room room;
+          const double usual = meanOfPicture(c, room, view);
+          room.scale = scale;
+          // Powers of two change no rounding; others may shift a cell or a texel.
+          return Measurement{1.0, meanOfPicture(c, room, view) / usual,
+                             std::exp2(std::round(std::log2(scale))) == scale ? 1e-5 : 5e-3};
+        });
   for (const double distance : {1e3, 1e4})
-    add(cases, view.technique, "mean of a scene far from the origin", fmt::format("{:g} room sides", 0.1 * distance), [view, distance](const StabilityContext& c) {
-      Room room;
-      const double usual = meanOfPicture(c, room, view);
-      room.place = glm::dvec3(distance, -0.5 * distance, 0.7 * distance);
-      return Measurement{1.0, meanOfPicture(c, room, view) / usual, 0.02};
-    });
+    add(cases, view.technique, "mean of a scene far from the origin", fmt::format("{:g} room sides", 0.1 * distance),
+        [view, distance](const StabilityContext& c) {
+          Room room;
+          const double usual = meanOfPicture(c, room, view);
+          room.place = glm::dvec3(distance, -0.5 * distance, 0.7 * distance);
+          return Measurement{1.0, meanOfPicture(c, room, view) / usual, 0.02};
+        });
 }
 
 void addExtremes(std::vector<StabilityCase>& cases, const View& view) {
   const auto finite = [&](const char* name, const char* parameter, const Room& room, View v) {
-    add(cases, view.technique, std::string(name) + ": pixels not finite", parameter, [room, v](const StabilityContext& c) { return Measurement{0.0, notFinite(picture(c, room, v)), 0.0}; });
+    add(cases, view.technique, std::string(name) + ": pixels not finite", parameter,
+        [room, v](const StabilityContext& c) {
+          return Measurement{0.0, notFinite(picture(c, room, v)), 0.0};
+        });
   };
   Room room;
   room.place = glm::dvec3(1e6);
@@ -102,11 +111,12 @@ void addExtremes(std::vector<StabilityCase>& cases, const View& view) {
     dark.irradiance = 0.0f;
     return Measurement{0.0, meanOfPicture(c, dark, view), 0.0};
   });
-  add(cases, view.technique, "zero-area, needle and doubled triangles: mean", "3 more", [view](const StabilityContext& c) {
-    Room bad;
-    bad.badTriangles = true;
-    return Measurement{1.0, meanOfPicture(c, bad, view) / meanOfPicture(c, {}, view), 2e-3};
-  });
+  add(cases, view.technique, "zero-area, needle and doubled triangles: mean", "3 more",
+      [view](const StabilityContext& c) {
+        Room bad;
+        bad.badTriangles = true;
+        return Measurement{1.0, meanOfPicture(c, bad, view) / meanOfPicture(c, {}, view), 2e-3};
+      });
 }
 
 void addIndirect(std::vector<StabilityCase>& cases, View view) {
@@ -117,11 +127,12 @@ void addIndirect(std::vector<StabilityCase>& cases, View view) {
     return Measurement{0.0, meanOfPicture(c, room, view), 0.0};
   });
   for (const int size : {32, 64, 512})
-    add(cases, view.technique, "mean of indirect light, against a map of 128", fmt::format("rsm.size={}", size), [view, size](const StabilityContext& c) {
-      View other = view;
-      other.rsmSize = size;
-      return Measurement{1.0, meanOfPicture(c, {}, other) / meanOfPicture(c, {}, view), size < 64 ? 0.15 : 0.05};
-    });
+    add(cases, view.technique, "mean of indirect light, against a map of 128", fmt::format("rsm.size={}", size),
+        [view, size](const StabilityContext& c) {
+          View other = view;
+          other.rsmSize = size;
+          return Measurement{1.0, meanOfPicture(c, {}, other) / meanOfPicture(c, {}, view), size < 64 ? 0.15 : 0.05};
+        });
 }
 
 void addRsm(std::vector<StabilityCase>& cases) {
@@ -132,18 +143,20 @@ void addRsm(std::vector<StabilityCase>& cases) {
     one.samples = 1;
     return Measurement{0.0, notFinite(picture(c, {}, one)), 0.0};
   });
-  add(cases, Technique::rsm, "mean of 16384 samples, against 1024", "rsm.samples=16384", [view](const StabilityContext& c) {
-    View usual = view;
-    usual.size = {24, 16}, usual.samples = 1024, usual.interpolate = false;
-    View many = usual;
-    many.samples = 16384;
-    return Measurement{1.0, meanOfPicture(c, {}, many) / meanOfPicture(c, {}, usual), 0.03};
-  });
-  add(cases, Technique::rsm, "reach of half a texel: pixels not finite", "rsm.radius=0.004", [view](const StabilityContext& c) {
-    View near = view;
-    near.radius = 0.004f;
-    return Measurement{0.0, notFinite(picture(c, {}, near)), 0.0};
-  });
+  add(cases, Technique::rsm, "mean of 16384 samples, against 1024", "rsm.samples=16384",
+      [view](const StabilityContext& c) {
+        View usual = view;
+        usual.size = {24, 16}, usual.samples = 1024, usual.interpolate = false;
+        View many = usual;
+        many.samples = 16384;
+        return Measurement{1.0, meanOfPicture(c, {}, many) / meanOfPicture(c, {}, usual), 0.03};
+      });
+  add(cases, Technique::rsm, "reach of half a texel: pixels not finite", "rsm.radius=0.004",
+      [view](const StabilityContext& c) {
+        View near = view;
+        near.radius = 0.004f;
+        return Measurement{0.0, notFinite(picture(c, {}, near)), 0.0};
+      });
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Every technique with every kind of light far from the origin, and on a tilted floor that is far larger than what is seen of it. What the GPU computes in float must not be
-// rounded by the scene's place or by its largest face: the picture is that of the same scene at the origin, or on a small floor.
+// Every technique with every kind of light far from the origin, and on a tilted floor that is far larger than what is
+// seen of it. What the GPU computes in float must not be rounded by the scene's place or by its largest face: the
+// picture is that of the same scene at the origin, or on a small floor.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -33,9 +34,15 @@ void addLamp(SceneParts& parts, Lamp lamp, const glm::dvec3& place) {
   Scene& scene = parts.scene();
   switch (lamp) {
     case Lamp::sun: scene.sun = DirectionalLight{glm::normalize(glm::dvec3(-0.35, -1.0, -0.1)), glm::vec3(3.0f)}; break;
-    case Lamp::spot: scene.spots.push_back({place + glm::dvec3(2.0, 4.0, 2.0), glm::normalize(glm::dvec3(-0.4, -1.0, -0.5)), glm::vec3(60.0f), 0.5, 0.8}); break;
+    case Lamp::spot:
+      scene.spots.push_back({place + glm::dvec3(2.0, 4.0, 2.0), glm::normalize(glm::dvec3(-0.4, -1.0, -0.5)),
+                             glm::vec3(60.0f), 0.5, 0.8});
+      break;
     case Lamp::point: scene.points.push_back({place + glm::dvec3(1.0, 3.0, 1.0), glm::vec3(20.0f)}); break;
-    case Lamp::emissive: parts.plate(place + glm::dvec3(1.0, 4.0, 1.0), {2.0, 0.0, 0.0}, {0.0, 0.0, 2.0}, parts.material(glm::vec3(0.0f), glm::vec3(10.0f))); break;
+    case Lamp::emissive:
+      parts.plate(place + glm::dvec3(1.0, 4.0, 1.0), {2.0, 0.0, 0.0}, {0.0, 0.0, 2.0},
+                  parts.material(glm::vec3(0.0f), glm::vec3(10.0f)));
+      break;
     case Lamp::environment:
       scene.environment = Environment{};
       scene.environment->radiance = glm::vec3(1.0f, 0.7f, 0.4f);
@@ -50,7 +57,8 @@ void addCamera(SceneParts& parts, const glm::dvec3& position, const glm::dvec3& 
   parts.scene().cameras.push_back(camera);
 }
 
-/// Side 10, without roof and front; two tilted plates in it, one in the other's shadow. All coordinates are multiples of 1/4 about `place`.
+/// Side 10, without roof and front; two tilted plates in it, one in the other's shadow. All coordinates are multiples
+/// of 1/4 about `place`.
 Scene farRoom(Lamp lamp, const glm::dvec3& place) {
   SceneParts parts("far room");
   const int white = parts.material(glm::vec3(0.7f)), red = parts.material(glm::vec3(0.6f, 0.1f, 0.1f));
@@ -65,7 +73,8 @@ Scene farRoom(Lamp lamp, const glm::dvec3& place) {
   return std::move(parts.scene());
 }
 
-/// A floor that rises by 1/4 along x and 1/8 along z, seen at (640, 120, -320): from -1000 to 1000 along both, or as much as is seen.
+/// A floor that rises by 1/4 along x and 1/8 along z, seen at (640, 120, -320): from -1000 to 1000 along both, or as
+/// much as is seen.
 Scene tiltedFloor(Lamp lamp, bool large) {
   SceneParts parts("tilted floor");
   const auto at = [](double x, double z) { return glm::dvec3(x, 0.25 * x + 0.125 * z, z); };
@@ -127,14 +136,19 @@ double difference(const Image& a, const Image& b) {
   for (std::size_t i = 0; i < b.pixels.size(); ++i) {
     const glm::dvec3 d = glm::dvec3(a.pixels[i]) - glm::dvec3(b.pixels[i]);
     sum += glm::dot(d, d) / 3.0;
-    mean += (static_cast<double>(b.pixels[i].x) + static_cast<double>(b.pixels[i].y) + static_cast<double>(b.pixels[i].z)) / 3.0;
+    mean +=
+        (static_cast<double>(b.pixels[i].x) + static_cast<double>(b.pixels[i].y) + static_cast<double>(b.pixels[i].z)) /
+        3.0;
   }
   const auto count = static_cast<double>(b.pixels.size());
   return mean > 0.0 ? std::sqrt(sum / count) / (mean / count) : NAN;
 }
 
 std::string nameOf(How how, Lamp lamp, const char* what) {
-  return fmt::format("{}, {}{}", what, nameOf(lamp), how == How::pixels ? " by radiosity.direct=pixels" : how == How::rays ? " by rays" : "");
+  return fmt::format("{}, {}{}", what, nameOf(lamp),
+                     how == How::pixels ? " by radiosity.direct=pixels"
+                     : how == How::rays ? " by rays"
+                                        : "");
 }
 
 }  // namespace
@@ -144,14 +158,22 @@ void addPlaceCases(std::vector<StabilityCase>& cases) {
     for (const Lamp lamp : kLamps) {
       if (lamp == Lamp::environment && how != How::path && how != How::rays) continue;  // others have none
       for (const double sides : {1e3, 1e4})
-        cases.push_back({techniqueOf(how), nameOf(how, lamp, "room far away against near"), fmt::format("{:g} sides", sides), [how, lamp, sides](const StabilityContext& c) {
+        cases.push_back({techniqueOf(how), nameOf(how, lamp, "room far away against near"),
+                         fmt::format("{:g} sides", sides), [how, lamp, sides](const StabilityContext& c) {
                            const glm::dvec3 place = 10.0 * sides * glm::dvec3(1.0, -0.5, 0.75);
-                           return Measurement{1e-3, difference(picture(c, farRoom(lamp, place), how, Component::all), picture(c, farRoom(lamp, {}), how, Component::all)), 0.0, Rule::atMost};
+                           return Measurement{1e-3,
+                                              difference(picture(c, farRoom(lamp, place), how, Component::all),
+                                                         picture(c, farRoom(lamp, {}), how, Component::all)),
+                                              0.0, Rule::atMost};
                          }});
       // Direct light is technique direct's; patches and the cells of receivers are as large as the floor.
       if (how == How::rsm || how == How::lpv || how == How::rays || how == How::patches) continue;
-      cases.push_back({techniqueOf(how), nameOf(how, lamp, "tilted floor, large against small"), "+-1000 units", [how, lamp](const StabilityContext& c) {
-                         return Measurement{1e-3, difference(picture(c, tiltedFloor(lamp, true), how, Component::direct), picture(c, tiltedFloor(lamp, false), how, Component::direct)), 0.0, Rule::atMost};
+      cases.push_back({techniqueOf(how), nameOf(how, lamp, "tilted floor, large against small"), "+-1000 units",
+                       [how, lamp](const StabilityContext& c) {
+                         return Measurement{1e-3,
+                                            difference(picture(c, tiltedFloor(lamp, true), how, Component::direct),
+                                                       picture(c, tiltedFloor(lamp, false), how, Component::direct)),
+                                            0.0, Rule::atMost};
                        }});
     }
 }

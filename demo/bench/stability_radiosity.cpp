@@ -1,5 +1,6 @@
-// Stiff and extreme cases of radiosity: walls that absorb next to nothing, patches that nearly touch, patches tiny and huge, scale and place. Scenes without lamps, so that
-// all light comes by form factors and the linear system; answers are closed forms, or a solution that is a million times as exact.
+// Stiff and extreme cases of radiosity: walls that absorb next to nothing, patches that nearly touch, patches tiny and
+// huge, scale and place. Scenes without lamps, so that all light comes by form factors and the linear system; answers
+// are closed forms, or a solution that is a million times as exact.
 #include "base/error.hpp"
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
@@ -29,9 +30,12 @@ RadiositySolutionSettings settingsFor(double longestEdge, double error = 1e-6) {
   return settings;
 }
 
-RadiositySolution solve(const StabilityContext& c, const Scene& scene, const RadiositySolutionSettings& settings) { return solveScene(c.context, c.programs, scene, settings); }
+RadiositySolution solve(const StabilityContext& c, const Scene& scene, const RadiositySolutionSettings& settings) {
+  return solveScene(c.context, c.programs, scene, settings);
+}
 
-void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter, std::function<Measurement(const StabilityContext&)> run) {
+void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
+         std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({"radiosity", std::move(name), std::move(parameter), std::move(run)});
 }
 
@@ -55,7 +59,8 @@ double notFinite(const RadiositySolution& s) {
 double irradianceOf(const RadiositySolution& s, int material) {
   double sum = 0.0, area = 0.0;
   for (std::size_t i = 0; i < s.irradiance.size(); ++i)
-    if (s.mesh.patches[i].material == material) sum += s.mesh.patches[i].area * s.irradiance[i].x, area += s.mesh.patches[i].area;
+    if (s.mesh.patches[i].material == material)
+      sum += s.mesh.patches[i].area * s.irradiance[i].x, area += s.mesh.patches[i].area;
   return sum / area;
 }
 
@@ -83,23 +88,25 @@ std::string albedoText(float rho) { return fmt::format("albedo {:g}", static_cas
 
 void addStiff(std::vector<StabilityCase>& cases) {
   for (const float rho : {0.0f, 0.5f, 0.9f, 0.99f, 0.999f, 0.9999f})
-    add(cases, "closed furnace, worst exitance over pi / (1 - albedo)", albedoText(rho), [rho](const StabilityContext& c) {
-      Room room;
-      room.closed = true;
-      room.albedo = rho;
-      room.emission = glm::vec3(1.0f);
-      const RadiositySolution s = solve(c, makeRoom(room), settingsFor(kSide / 3.0));
-      const double exact = kPi / (1.0 - static_cast<double>(rho));
-      double worst = 1.0;
-      for (const glm::dvec3& b : s.exitance)
-        for (int k = 0; k < 3; ++k)
-          if (!(std::abs(b[k] / exact - 1.0) <= std::abs(worst - 1.0))) worst = b[k] / exact;
-      return Measurement{1.0, worst, 2e-6};
-    });
+    add(cases, "closed furnace, worst exitance over pi / (1 - albedo)", albedoText(rho),
+        [rho](const StabilityContext& c) {
+          Room room;
+          room.closed = true;
+          room.albedo = rho;
+          room.emission = glm::vec3(1.0f);
+          const RadiositySolution s = solve(c, makeRoom(room), settingsFor(kSide / 3.0));
+          const double exact = kPi / (1.0 - static_cast<double>(rho));
+          double worst = 1.0;
+          for (const glm::dvec3& b : s.exitance)
+            for (int k = 0; k < 3; ++k)
+              if (!(std::abs(b[k] / exact - 1.0) <= std::abs(worst - 1.0))) worst = b[k] / exact;
+          return Measurement{1.0, worst, 2e-6};
+        });
   for (const float rho : {0.9f, 0.99f, 0.999f, 0.9999f}) {
     add(cases, "one lit wall: true error over the guaranteed one", albedoText(rho), [rho](const StabilityContext& c) {
       const Scene scene = stiffRoom(rho);
-      const RadiositySolution exact = solve(c, scene, settingsFor(kSide / 3.0, 1e-9)), s = solve(c, scene, settingsFor(kSide / 3.0, 1e-2));
+      const RadiositySolution exact = solve(c, scene, settingsFor(kSide / 3.0, 1e-9)),
+                              s = solve(c, scene, settingsFor(kSide / 3.0, 1e-2));
       return Measurement{1.0, s.reached ? trueError(s, exact) / s.progress.errorBound : NAN, 0.0, Rule::atMost};
     });
     add(cases, "one lit wall: matrix products to 1e-6", albedoText(rho), [rho](const StabilityContext& c) {
@@ -110,15 +117,20 @@ void addStiff(std::vector<StabilityCase>& cases) {
       return Measurement{0.0, solve(c, stiffRoom(rho), settingsFor(kSide / 3.0)).progress.energyBalance, 2e-5};
     });
   }
-  for (const RadiositySolver solver : {RadiositySolver::jacobi, RadiositySolver::gaussSeidel, RadiositySolver::progressive, RadiositySolver::overshoot, RadiositySolver::anderson,
-                                       RadiositySolver::perRoom, RadiositySolver::conjugateGradients})
-    add(cases, "true error over the guaranteed one, albedo 0.99", std::string(nameOf(solver)), [solver](const StabilityContext& c) {
-      RadiositySolutionSettings settings = settingsFor(kSide / 3.0, 1e-2);
-      settings.solver = solver;
-      const Scene scene = stiffRoom(0.99f);
-      const RadiositySolution s = solve(c, scene, settings);
-      return Measurement{1.0, s.reached ? trueError(s, solve(c, scene, settingsFor(kSide / 3.0, 1e-9))) / s.progress.errorBound : NAN, 0.0, Rule::atMost};
-    });
+  for (const RadiositySolver solver :
+       {RadiositySolver::jacobi, RadiositySolver::gaussSeidel, RadiositySolver::progressive, RadiositySolver::overshoot,
+        RadiositySolver::anderson, RadiositySolver::perRoom, RadiositySolver::conjugateGradients})
+    add(cases, "true error over the guaranteed one, albedo 0.99", std::string(nameOf(solver)),
+        [solver](const StabilityContext& c) {
+          RadiositySolutionSettings settings = settingsFor(kSide / 3.0, 1e-2);
+          settings.solver = solver;
+          const Scene scene = stiffRoom(0.99f);
+          const RadiositySolution s = solve(c, scene, settings);
+          return Measurement{
+              1.0,
+              s.reached ? trueError(s, solve(c, scene, settingsFor(kSide / 3.0, 1e-9))) / s.progress.errorBound : NAN,
+              0.0, Rule::atMost};
+        });
   add(cases, "channels of albedo 0, 0.5 and 0.9999, furnace", "blue over green", [](const StabilityContext& c) {
     Room room;
     room.closed = true;
@@ -134,23 +146,22 @@ void addStiff(std::vector<StabilityCase>& cases) {
 double refused(const StabilityContext& c, const Scene& scene) {
   try {
     solve(c, scene, settingsFor(kSide / 2.0));
-  } catch (const Error& error) {
-    return error.kind() == ErrorKind::badInput ? 1.0 : 0.0;
-  }
+  } catch (const Error& error) { return error.kind() == ErrorKind::badInput ? 1.0 : 0.0; }
   return 0.0;
 }
 
 void addRefusals(std::vector<StabilityCase>& cases) {
   const auto refuses = [&](const char* parameter, double expected, bool closed, float albedo, float emission) {
-    add(cases, closed ? "closed room refused (1) or solved (0)" : "open room refused (1) or solved (0)", parameter, [=](const StabilityContext& c) {
-      Room room;
-      room.closed = closed;
-      room.albedo = albedo;
-      room.emission = glm::vec3(emission);
-      Scene scene = makeRoom(room);
-      for (Material& m : scene.materials) m.diffuse = glm::vec3(albedo);
-      return Measurement{expected, refused(c, scene), 0.0};
-    });
+    add(cases, closed ? "closed room refused (1) or solved (0)" : "open room refused (1) or solved (0)", parameter,
+        [=](const StabilityContext& c) {
+          Room room;
+          room.closed = closed;
+          room.albedo = albedo;
+          room.emission = glm::vec3(emission);
+          Scene scene = makeRoom(room);
+          for (Material& m : scene.materials) m.diffuse = glm::vec3(albedo);
+          return Measurement{expected, refused(c, scene), 0.0};
+        });
   };
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   refuses("albedo 1", 1.0, true, 1.0f, 1.0f);
@@ -165,64 +176,76 @@ void addRefusals(std::vector<StabilityCase>& cases) {
 /// Between two squares of side 1 that face each other at distance d [Howell C-11].
 double opposedSquares(double d) {
   const double x = 1.0 / d, s = 1.0 + x * x, r = std::sqrt(s);
-  return 2.0 / (kPi * x * x) * (std::log(s / std::sqrt(1.0 + 2.0 * x * x)) + 2.0 * x * r * std::atan(x / r) - 2.0 * x * std::atan(x));
+  return 2.0 / (kPi * x * x) *
+         (std::log(s / std::sqrt(1.0 + 2.0 * x * x)) + 2.0 * x * r * std::atan(x / r) - 2.0 * x * std::atan(x));
 }
 
 /// Black plates; the first shines with an exitance of 1: irradiance of the second is its form factor to the first.
 struct Plates {
   SceneParts parts{"plates"};
   int light, black;
-  Plates() : light(parts.material(glm::vec3(0.0f), glm::vec3(static_cast<float>(1.0 / kPi)))), black(parts.material(glm::vec3(0.0f))) {}
+  Plates()
+      : light(parts.material(glm::vec3(0.0f), glm::vec3(static_cast<float>(1.0 / kPi)))),
+        black(parts.material(glm::vec3(0.0f))) {}
 };
 
 void addNear(std::vector<StabilityCase>& cases) {
   for (const double d : {10.0, 1.0, 0.1, 1e-2, 1e-3, 1e-4})
-    add(cases, "squares of side 1 face to face, form factor", fmt::format("distance {:g}", d), [d](const StabilityContext& c) {
-      Plates p;
-      p.parts.plate({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, p.light);
-      p.parts.plate({0, d, 0}, {1, 0, 0}, {0, 0, 1}, p.black);
-      const double exact = opposedSquares(d);
-      RadiositySolutionSettings settings = settingsFor(0.25);
-      settings.hemicubes.resolution = 128;  // a patch at distance 10 covers two pixels
-      // 32 patches a square; their centres stand for them, which at the border of what is nearer than they are large costs up to 2 %.
-      return Measurement{exact, irradianceOf(solve(c, p.parts.scene(), settings), p.black), 0.02 * exact};
-    });
+    add(cases, "squares of side 1 face to face, form factor", fmt::format("distance {:g}", d),
+        [d](const StabilityContext& c) {
+          Plates p;
+          p.parts.plate({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, p.light);
+          p.parts.plate({0, d, 0}, {1, 0, 0}, {0, 0, 1}, p.black);
+          const double exact = opposedSquares(d);
+          RadiositySolutionSettings settings = settingsFor(0.25);
+          settings.hemicubes.resolution = 128;  // a patch at distance 10 covers two pixels
+          // 32 patches a square; their centres stand for them, which at the border of what is nearer than they are
+          // large costs up to 2 %.
+          return Measurement{exact, irradianceOf(solve(c, p.parts.scene(), settings), p.black), 0.02 * exact};
+        });
   add(cases, "squares at a right angle with a common edge", "32 patches each", [](const StabilityContext& c) {
     Plates p;
     p.parts.plate({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, p.light);
     p.parts.plate({0, 0.5, -0.5}, {1, 0, 0}, {0, 1, 0}, p.black);
     return Measurement{0.2000438, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.25)), p.black), 0.002};
   });
-  // Nothing gets past a wall that all but touches. (At 1e-4, 2e-5 of the distance to the light, hemicubes' depth in floats lets 0.9 % past.)
+  // Nothing gets past a wall that all but touches. (At 1e-4, 2e-5 of the distance to the light, hemicubes' depth in
+  // floats lets 0.9 % past.)
   for (const double d : {1e-3, 1e-2})
-    add(cases, "light behind a wall close to the patch, irradiance", fmt::format("distance {:g}", d), [d](const StabilityContext& c) {
-    Plates p;
-    p.parts.plate({0, 5, 0}, {4, 0, 0}, {0, 0, 4}, p.light);
-    p.parts.plate({0, d, 0}, {1, 0, 0}, {0, 0, 1}, p.parts.material(glm::vec3(0.0f)));
-    p.parts.plate({0, 0, 0}, {0, 0, 0.9}, {0.9, 0, 0}, p.black);
-    return Measurement{0.0, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.25)), p.black), 1e-6};
-  });
+    add(cases, "light behind a wall close to the patch, irradiance", fmt::format("distance {:g}", d),
+        [d](const StabilityContext& c) {
+          Plates p;
+          p.parts.plate({0, 5, 0}, {4, 0, 0}, {0, 0, 4}, p.light);
+          p.parts.plate({0, d, 0}, {1, 0, 0}, {0, 0, 1}, p.parts.material(glm::vec3(0.0f)));
+          p.parts.plate({0, 0, 0}, {0, 0, 0.9}, {0.9, 0, 0}, p.black);
+          return Measurement{0.0, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.25)), p.black), 1e-6};
+        });
 }
 
 void addSizes(std::vector<StabilityCase>& cases) {
   // Straight above the middle of a tiny probe: s^2 / pi in the limit.
   for (const double s : {0.1, 1e-2, 1e-3, 1e-4})
-    add(cases, "tiny light over a tiny patch at distance 1", fmt::format("side {:g}", s), [s](const StabilityContext& c) {
-      Plates p;
-      p.parts.plate({0, 1, 0}, {s, 0, 0}, {0, 0, s}, p.light);
-      p.parts.plate({0, 0, 0}, {0, 0, 1e-3}, {1e-3, 0, 0}, p.black);
-      p.parts.plate({0, 1.5, 0}, {20, 0, 0}, {0, 0, 20}, p.parts.material(glm::vec3(0.0f)));  // a light is small beside a room
-      const double x = 0.5 * s / std::sqrt(1.0 + 0.25 * s * s), exact = 4.0 / kPi * x * std::atan(x);  // four corners [Howell B-3]
-      return Measurement{1.0, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.0)), p.black) / exact, 0.005};
-    });
+    add(cases, "tiny light over a tiny patch at distance 1", fmt::format("side {:g}", s),
+        [s](const StabilityContext& c) {
+          Plates p;
+          p.parts.plate({0, 1, 0}, {s, 0, 0}, {0, 0, s}, p.light);
+          p.parts.plate({0, 0, 0}, {0, 0, 1e-3}, {1e-3, 0, 0}, p.black);
+          p.parts.plate({0, 1.5, 0}, {20, 0, 0}, {0, 0, 20},
+                        p.parts.material(glm::vec3(0.0f)));  // a light is small beside a room
+          const double x = 0.5 * s / std::sqrt(1.0 + 0.25 * s * s),
+                       exact = 4.0 / kPi * x * std::atan(x);  // four corners [Howell B-3]
+          return Measurement{1.0, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.0)), p.black) / exact, 0.005};
+        });
   // What a tiny light sends to a huge floor all arrives: flux over what was sent.
   for (const double side : {1e2, 1e4, 1e5})
-    add(cases, "light of side 1 over a huge patch, flux that arrives", fmt::format("side {:g}", side), [side](const StabilityContext& c) {
-      Plates p;
-      p.parts.plate({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, p.light);
-      p.parts.plate({0, 0, 0}, {0, 0, side}, {side, 0, 0}, p.black);
-      return Measurement{1.0, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.0)), p.black) * side * side, 0.01};
-    });
+    add(cases, "light of side 1 over a huge patch, flux that arrives", fmt::format("side {:g}", side),
+        [side](const StabilityContext& c) {
+          Plates p;
+          p.parts.plate({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, p.light);
+          p.parts.plate({0, 0, 0}, {0, 0, side}, {side, 0, 0}, p.black);
+          return Measurement{1.0, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.0)), p.black) * side * side,
+                             0.01};
+        });
   // The floor of a white furnace cut into strips of 1 : 1000.
   add(cases, "needles in a closed furnace of albedo 0.9", "1 : 1000", [](const StabilityContext& c) {
     Room room;
@@ -236,7 +259,8 @@ void addSizes(std::vector<StabilityCase>& cases) {
     const RadiositySolution s = solve(c, strip.scene(), settingsFor(0.0));
     double worst = 1.0;
     for (const glm::dvec3& b : s.exitance)
-      if (!(std::abs(b.x * (1.0 - static_cast<double>(0.9f)) / kPi - 1.0) <= std::abs(worst - 1.0))) worst = b.x * (1.0 - static_cast<double>(0.9f)) / kPi;
+      if (!(std::abs(b.x * (1.0 - static_cast<double>(0.9f)) / kPi - 1.0) <= std::abs(worst - 1.0)))
+        worst = b.x * (1.0 - static_cast<double>(0.9f)) / kPi;
     return Measurement{1.0, worst, 2e-3};
   });
 }
@@ -256,32 +280,42 @@ void addPlace(std::vector<StabilityCase>& cases) {
   };
   for (const double scale : {std::exp2(-20), 1e-3, 1e3, std::exp2(20)})
     add(cases, "mean of a scaled room, against 1x", fmt::format("scale {:g}", scale), [=](const StabilityContext& c) {
-      return Measurement{1.0, mean(c, scale, glm::dvec3(0.0)) / mean(c, 1.0, glm::dvec3(0.0)), std::exp2(std::round(std::log2(scale))) == scale ? 1e-6 : 2e-3};
+      return Measurement{1.0, mean(c, scale, glm::dvec3(0.0)) / mean(c, 1.0, glm::dvec3(0.0)),
+                         std::exp2(std::round(std::log2(scale))) == scale ? 1e-6 : 2e-3};
     });
   for (const double distance : {1e3, 1e4, 1e5})
-    add(cases, "mean of a room far from the origin", fmt::format("{:g} room sides", 0.1 * distance), [=](const StabilityContext& c) {
-      return Measurement{1.0, mean(c, 1.0, glm::dvec3(distance, -0.5 * distance, 0.7 * distance)) / mean(c, 1.0, glm::dvec3(0.0)), 5e-3};
-    });
+    add(cases, "mean of a room far from the origin", fmt::format("{:g} room sides", 0.1 * distance),
+        [=](const StabilityContext& c) {
+          return Measurement{
+              1.0, mean(c, 1.0, glm::dvec3(distance, -0.5 * distance, 0.7 * distance)) / mean(c, 1.0, glm::dvec3(0.0)),
+              5e-3};
+        });
   for (const float emission : {1e-12f, 1e12f})
-    add(cases, "mean over the light's radiance, against 1x", fmt::format("radiance {:g}", static_cast<double>(emission)), [=](const StabilityContext& c) {
-      return Measurement{1.0, mean(c, 1.0, glm::dvec3(0.0), emission) / static_cast<double>(emission) / mean(c, 1.0, glm::dvec3(0.0)), 1e-6};
-    });
+    add(cases, "mean over the light's radiance, against 1x",
+        fmt::format("radiance {:g}", static_cast<double>(emission)), [=](const StabilityContext& c) {
+          return Measurement{
+              1.0,
+              mean(c, 1.0, glm::dvec3(0.0), emission) / static_cast<double>(emission) / mean(c, 1.0, glm::dvec3(0.0)),
+              1e-6};
+        });
   add(cases, "zero-area, needle and doubled triangles: mean", "3 more", [=](const StabilityContext& c) {
     Room bad;
     bad.closed = bad.badTriangles = true;
     Scene scene = makeRoom(bad);
     scene.materials[1].emission = glm::vec3(1.0f);
-    return Measurement{1.0, meanExitance(solve(c, scene, settingsFor(kSide / 3.0))) / mean(c, 1.0, glm::dvec3(0.0)), 2e-3};
+    return Measurement{1.0, meanExitance(solve(c, scene, settingsFor(kSide / 3.0))) / mean(c, 1.0, glm::dvec3(0.0)),
+                       2e-3};
   });
-  add(cases, "a corner at infinity and one that is no number: exitances not finite", "2 more", [=](const StabilityContext& c) {
-    SceneParts parts("bad");
-    parts.scene() = room(1.0, glm::dvec3(0.0));
-    const glm::dvec3 a(0.0, 0.0, 0.0), b(1.0, 0.0, 0.0);
-    parts.triangles({a, b, {0.0, std::numeric_limits<double>::infinity(), 0.0}}, {0, 0, 1}, 0, {0, 1, 2});
-    parts.triangles({a, b, {0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}}, {0, 0, 1}, 0, {0, 1, 2});
-    parts.scene().bounds = room(1.0, glm::dvec3(0.0)).bounds;
-    return Measurement{0.0, notFinite(solve(c, parts.scene(), settingsFor(kSide / 3.0))), 0.0};
-  });
+  add(cases, "a corner at infinity and one that is no number: exitances not finite", "2 more",
+      [=](const StabilityContext& c) {
+        SceneParts parts("bad");
+        parts.scene() = room(1.0, glm::dvec3(0.0));
+        const glm::dvec3 a(0.0, 0.0, 0.0), b(1.0, 0.0, 0.0);
+        parts.triangles({a, b, {0.0, std::numeric_limits<double>::infinity(), 0.0}}, {0, 0, 1}, 0, {0, 1, 2});
+        parts.triangles({a, b, {0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}}, {0, 0, 1}, 0, {0, 1, 2});
+        parts.scene().bounds = room(1.0, glm::dvec3(0.0)).bounds;
+        return Measurement{0.0, notFinite(solve(c, parts.scene(), settingsFor(kSide / 3.0))), 0.0};
+      });
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Stiff and extreme cases of the light propagation volume's receivers (lpv.transport=rays): units, scale and place, light that is hardly absorbed, thin sheets, a lamp in a
-// corner, tiny and huge cells. Answers are exact, bounds, or ratios that must be 1 but for noise.
+// Stiff and extreme cases of the light propagation volume's receivers (lpv.transport=rays): units, scale and place,
+// light that is hardly absorbed, thin sheets, a lamp in a corner, tiny and huge cells. Answers are exact, bounds, or
+// ratios that must be 1 but for noise.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
 #include "render/renderer.hpp"
@@ -34,36 +35,43 @@ double mean(const Image& image) {
   return (m.x + m.y + m.z) / 3.0;
 }
 
-void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter, std::function<Measurement(const StabilityContext&)> run) {
+void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
+         std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({"lpv", "rays: " + std::move(name), std::move(parameter), std::move(run)});
 }
 
 void addUnits(std::vector<StabilityCase>& cases) {
   for (const float factor : {1e-9f, 1e9f})
-    add(cases, "mean over the sun's irradiance, against 1x", fmt::format("sun {:g}x", static_cast<double>(factor)), [factor](const StabilityContext& c) {
-      Room room;
-      const double usual = mean(picture(c, makeRoom(room), settingsOf()));
-      room.irradiance *= factor;
-      return Measurement{1.0, mean(picture(c, makeRoom(room), settingsOf())) / static_cast<double>(factor) / usual, 1e-3};
-    });
+    add(cases, "mean over the sun's irradiance, against 1x", fmt::format("sun {:g}x", static_cast<double>(factor)),
+        [factor](const StabilityContext& c) {
+          Room room;
+          const double usual = mean(picture(c, makeRoom(room), settingsOf()));
+          room.irradiance *= factor;
+          return Measurement{1.0, mean(picture(c, makeRoom(room), settingsOf())) / static_cast<double>(factor) / usual,
+                             1e-3};
+        });
   for (const double scale : {std::exp2(-20), std::exp2(20), 1e-3, 1e6})
-    add(cases, "mean of a scaled scene, against 1x", fmt::format("scale {:g}", scale), [scale](const StabilityContext& c) {
-      Room room;
-      const double usual = mean(picture(c, makeRoom(room), settingsOf()));
-      room.scale = scale;
-      // Powers of two change no rounding; others may choose other points of the same surfaces.
-      return Measurement{1.0, mean(picture(c, makeRoom(room), settingsOf())) / usual, std::exp2(std::round(std::log2(scale))) == scale ? 1e-5 : 5e-3};
-    });
+    add(cases, "mean of a scaled scene, against 1x", fmt::format("scale {:g}", scale),
+        [scale](const StabilityContext& c) {
+          Room room;
+          const double usual = mean(picture(c, makeRoom(room), settingsOf()));
+          room.scale = scale;
+          // Powers of two change no rounding; others may choose other points of the same surfaces.
+          return Measurement{1.0, mean(picture(c, makeRoom(room), settingsOf())) / usual,
+                             std::exp2(std::round(std::log2(scale))) == scale ? 1e-5 : 5e-3};
+        });
   for (const double sides : {1e3, 1e4})
-    add(cases, "mean of a scene far from the origin", fmt::format("{:g} room sides", sides), [sides](const StabilityContext& c) {
-      Room room;
-      const double usual = mean(picture(c, makeRoom(room), settingsOf()));
-      room.place = 10.0 * sides * glm::dvec3(1.0, -0.5, 0.7);
-      return Measurement{1.0, mean(picture(c, makeRoom(room), settingsOf())) / usual, 0.02};
-    });
+    add(cases, "mean of a scene far from the origin", fmt::format("{:g} room sides", sides),
+        [sides](const StabilityContext& c) {
+          Room room;
+          const double usual = mean(picture(c, makeRoom(room), settingsOf()));
+          room.place = 10.0 * sides * glm::dvec3(1.0, -0.5, 0.7);
+          return Measurement{1.0, mean(picture(c, makeRoom(room), settingsOf())) / usual, 0.02};
+        });
 }
 
-/// A closed room whose walls emit 1 and absorb next to nothing: after N bounces its radiance is that of N + 2 terms of 1 + a + a^2 + ...
+/// A closed room whose walls emit 1 and absorb next to nothing: after N bounces its radiance is that of N + 2 terms of
+/// 1 + a + a^2 + ...
 void addAlbedo(std::vector<StabilityCase>& cases) {
   constexpr double kAlbedo = 1.0 - 1e-6;
   static const auto shining = [] {
@@ -74,37 +82,46 @@ void addAlbedo(std::vector<StabilityCase>& cases) {
     return makeRoom(room);
   };
   for (const int bounces : {1, 8, 64})
-    add(cases, "closed room of albedo 1 - 1e-6, radiance over the exact one", fmt::format("lpv.bounces={}", bounces), [bounces](const StabilityContext& c) {
-      return Measurement{1.0, mean(picture(c, shining(), settingsOf(bounces, 64))) / (bounces + 2.0), 0.02};
-    });
+    add(cases, "closed room of albedo 1 - 1e-6, radiance over the exact one", fmt::format("lpv.bounces={}", bounces),
+        [bounces](const StabilityContext& c) {
+          return Measurement{1.0, mean(picture(c, shining(), settingsOf(bounces, 64))) / (bounces + 2.0), 0.02};
+        });
   add(cases, "the same, all bounces: no more than there is", "lpv.bounces=all", [](const StabilityContext& c) {
-    return Measurement{1.0 / (1.0 - kAlbedo), mean(picture(c, shining(), settingsOf(LightPropagationVolume::kAllBounces, 128))), 0.0, Rule::atMost};
+    return Measurement{1.0 / (1.0 - kAlbedo),
+                       mean(picture(c, shining(), settingsOf(LightPropagationVolume::kAllBounces, 128))), 0.0,
+                       Rule::atMost};
   });
   add(cases, "the same: more than 64 bounces have", "lpv.bounces=all", [](const StabilityContext& c) {
-    return Measurement{66.0, mean(picture(c, shining(), settingsOf(LightPropagationVolume::kAllBounces, 128))), 0.0, Rule::atLeast};
+    return Measurement{66.0, mean(picture(c, shining(), settingsOf(LightPropagationVolume::kAllBounces, 128))), 0.0,
+                       Rule::atLeast};
   });
 }
 
-/// A room without windows behind a sheet that is lit brightly on its other side: whatever the sheet's thickness, none of it comes through.
+/// A room without windows behind a sheet that is lit brightly on its other side: whatever the sheet's thickness, none
+/// of it comes through.
 void addThinSheet(std::vector<StabilityCase>& cases) {
   for (const double thickness : {0.0, 1e-4})
-    add(cases, "dark side of a thin sheet: largest radiance", fmt::format("thickness {:g} sides", thickness), [thickness](const StabilityContext& c) {
-      SceneParts parts("sheet");
-      const int white = parts.material(glm::vec3(0.8f));
-      const double t = 10.0 * thickness;
-      parts.plate({0, 0, 0}, {0, 0, 10}, {10, 0, 0}, white);
-      if (t > 0.0) parts.plate({0, -t, 0}, {0, 0, 10}, {10, 0, 0}, white);
-      parts.plate({0, -2, 0}, {0, 0, 40}, {40, 0, 0}, parts.material(glm::vec3(0.0f)));  // black ground: nothing comes round the sheet
-      parts.scene().sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(1e4f)};
-      Camera camera;
-      camera.position = {0.0, -1.9, 0.0};
-      camera.direction = glm::normalize(glm::dvec3(0.0, 1.0, 1e-3));
-      camera.up = {0.0, 0.0, -1.0};
-      parts.scene().cameras.push_back(camera);
-      double largest = 0.0;
-      for (const glm::vec3& p : picture(c, parts.scene(), settingsOf(LightPropagationVolume::kAllBounces, 64)).pixels) largest = std::max({largest, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
-      return Measurement{0.0, largest, 0.0};
-    });
+    add(cases, "dark side of a thin sheet: largest radiance", fmt::format("thickness {:g} sides", thickness),
+        [thickness](const StabilityContext& c) {
+          SceneParts parts("sheet");
+          const int white = parts.material(glm::vec3(0.8f));
+          const double t = 10.0 * thickness;
+          parts.plate({0, 0, 0}, {0, 0, 10}, {10, 0, 0}, white);
+          if (t > 0.0) parts.plate({0, -t, 0}, {0, 0, 10}, {10, 0, 0}, white);
+          parts.plate({0, -2, 0}, {0, 0, 40}, {40, 0, 0},
+                      parts.material(glm::vec3(0.0f)));  // black ground: nothing comes round the sheet
+          parts.scene().sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(1e4f)};
+          Camera camera;
+          camera.position = {0.0, -1.9, 0.0};
+          camera.direction = glm::normalize(glm::dvec3(0.0, 1.0, 1e-3));
+          camera.up = {0.0, 0.0, -1.0};
+          parts.scene().cameras.push_back(camera);
+          double largest = 0.0;
+          for (const glm::vec3& p :
+               picture(c, parts.scene(), settingsOf(LightPropagationVolume::kAllBounces, 64)).pixels)
+            largest = std::max({largest, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+          return Measurement{0.0, largest, 0.0};
+        });
 }
 
 /// A small shining plate or lamp in a corner of the room, all but touching both walls.
@@ -122,35 +139,42 @@ void addCornerLamp(std::vector<StabilityCase>& cases) {
       }
       SceneParts parts("corner");
       parts.scene() = scene;
-      const glm::dvec3 normal = glm::normalize(glm::dvec3(1.0)), u = glm::normalize(glm::dvec3(1.0, -1.0, 0.0)), v = glm::cross(normal, u);
-      parts.plate(corner + 10.0 * distance, 2.0 * distance * u, 2.0 * distance * v, parts.material(glm::vec3(0.0f), glm::vec3(static_cast<float>(1.0 / (distance * distance)))));
+      const glm::dvec3 normal = glm::normalize(glm::dvec3(1.0)), u = glm::normalize(glm::dvec3(1.0, -1.0, 0.0)),
+                       v = glm::cross(normal, u);
+      parts.plate(corner + 10.0 * distance, 2.0 * distance * u, 2.0 * distance * v,
+                  parts.material(glm::vec3(0.0f), glm::vec3(static_cast<float>(1.0 / (distance * distance)))));
       return parts.scene();
     };
     for (const bool emissive : {false, true})
-      add(cases, fmt::format("{} in a corner: pixels not finite or negative", emissive ? "a shining plate" : "a lamp"), fmt::format("{:g} sides away", distance), [room, emissive](const StabilityContext& c) {
-        double count = 0.0;
-        for (const glm::vec3& p : picture(c, room(emissive), settingsOf(LightPropagationVolume::kAllBounces, 64)).pixels) count += !(std::isfinite(p.x + p.y + p.z) && std::min({p.x, p.y, p.z}) >= 0.0f);
-        return Measurement{0.0, count, 0.0};
-      });
+      add(cases, fmt::format("{} in a corner: pixels not finite or negative", emissive ? "a shining plate" : "a lamp"),
+          fmt::format("{:g} sides away", distance), [room, emissive](const StabilityContext& c) {
+            double count = 0.0;
+            for (const glm::vec3& p :
+                 picture(c, room(emissive), settingsOf(LightPropagationVolume::kAllBounces, 64)).pixels)
+              count += !(std::isfinite(p.x + p.y + p.z) && std::min({p.x, p.y, p.z}) >= 0.0f);
+            return Measurement{0.0, count, 0.0};
+          });
   }
 }
 
 /// A room of one radiance has it in cells of any size; what differs elsewhere is how finely irradiance is interpolated.
 void addCells(std::vector<StabilityCase>& cases) {
   for (const double size : {1e-3, 0.1, 100.0, 1e5})
-    add(cases, "room in cells of one size, mean against the usual ones", fmt::format("lpv.cell-size={:g}", size), [size](const StabilityContext& c) {
-      Room room;
-      room.closed = true;
-      room.albedo = 0.5f;
-      room.emission = glm::vec3(1.0f);
-      const Scene scene = makeRoom(room);
-      RenderSettings settings = settingsOf(2, 256);
-      const double usual = mean(picture(c, scene, settings));
-      settings.lpv.cascades.cellSize = size;
-      // Cells far smaller than the room cover a part of it near the camera: there is nothing to look up elsewhere, and it shows what it emits by itself, no less.
-      const double now = mean(picture(c, scene, settings));
-      return size < 1.0 ? Measurement{1.0, now, 0.0, Rule::atLeast} : Measurement{1.0, now / usual, 0.02};
-    });
+    add(cases, "room in cells of one size, mean against the usual ones", fmt::format("lpv.cell-size={:g}", size),
+        [size](const StabilityContext& c) {
+          Room room;
+          room.closed = true;
+          room.albedo = 0.5f;
+          room.emission = glm::vec3(1.0f);
+          const Scene scene = makeRoom(room);
+          RenderSettings settings = settingsOf(2, 256);
+          const double usual = mean(picture(c, scene, settings));
+          settings.lpv.cascades.cellSize = size;
+          // Cells far smaller than the room cover a part of it near the camera: there is nothing to look up elsewhere,
+          // and it shows what it emits by itself, no less.
+          const double now = mean(picture(c, scene, settings));
+          return size < 1.0 ? Measurement{1.0, now, 0.0, Rule::atLeast} : Measurement{1.0, now / usual, 0.02};
+        });
 }
 
 }  // namespace

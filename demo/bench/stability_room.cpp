@@ -12,7 +12,8 @@ int SceneParts::material(const glm::vec3& albedo, const glm::vec3& emission) {
   return static_cast<int>(scene_.materials.size()) - 1;
 }
 
-void SceneParts::triangles(const std::vector<glm::dvec3>& corners, const glm::vec3& normal, int material, std::initializer_list<std::uint32_t> order) {
+void SceneParts::triangles(const std::vector<glm::dvec3>& corners, const glm::vec3& normal, int material,
+                           std::initializer_list<std::uint32_t> order) {
   Mesh& mesh = scene_.meshes.emplace_back();
   mesh.firstIndex = static_cast<std::uint32_t>(scene_.indices.size());
   mesh.indexCount = static_cast<std::uint32_t>(order.size());
@@ -28,12 +29,15 @@ void SceneParts::triangles(const std::vector<glm::dvec3>& corners, const glm::ve
 
 void SceneParts::plate(const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v, int material) {
   std::vector<glm::dvec3> corners;
-  for (const glm::dvec2& c : {glm::dvec2(-.5, -.5), glm::dvec2(.5, -.5), glm::dvec2(.5, .5), glm::dvec2(-.5, .5)}) corners.push_back(centre + c.x * u + c.y * v);
+  for (const glm::dvec2& c : {glm::dvec2(-.5, -.5), glm::dvec2(.5, -.5), glm::dvec2(.5, .5), glm::dvec2(-.5, .5)})
+    corners.push_back(centre + c.x * u + c.y * v);
   triangles(corners, glm::vec3(glm::normalize(glm::cross(u, v))), material, {0, 1, 2, 0, 2, 3});
 }
 
 void SceneParts::box(const glm::dvec3& min, const glm::dvec3& max, int material) {
-  const auto corner = [&](int i) { return glm::dvec3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z); };
+  const auto corner = [&](int i) {
+    return glm::dvec3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z);
+  };
   constexpr int kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   for (const auto& f : kFaces) {
     const std::vector<glm::dvec3> p{corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3])};
@@ -47,7 +51,9 @@ void addBad(SceneParts& parts, const glm::dvec3& o, double s) {
   const glm::dvec3 a = o + 0.3 * s * glm::dvec3(-1, -1, 0), b = a + glm::dvec3(0, 0.2 * s, 0);
   parts.triangles({a, a, a}, {0, 1, 0}, 0, {0, 1, 2});
   parts.triangles({a, b, 0.5 * (a + b)}, {0, 0, 1}, 0, {0, 1, 2});
-  parts.triangles({o + 0.5 * s * glm::dvec3(-1, -1, -1), o + 0.5 * s * glm::dvec3(1, -1, -1), o + 0.5 * s * glm::dvec3(1, -1.0 + 1e-12, -1)}, {0, 0, 1}, 0, {0, 1, 2});
+  parts.triangles({o + 0.5 * s * glm::dvec3(-1, -1, -1), o + 0.5 * s * glm::dvec3(1, -1, -1),
+                   o + 0.5 * s * glm::dvec3(1, -1.0 + 1e-12, -1)},
+                  {0, 0, 1}, 0, {0, 1, 2});
 }
 
 }  // namespace
@@ -62,7 +68,7 @@ Scene makeRoom(const Room& room) {
   parts.plate(room.place + glm::dvec3(0, -h, 0), {0, 0, s}, {s, 0, 0}, 0);  // floor
   parts.plate(room.place + glm::dvec3(0, 0, -h), {s, 0, 0}, {0, s, 0}, 0);  // back
   parts.plate(room.place + glm::dvec3(-h, 0, 0), {0, s, 0}, {0, 0, s}, 1);  // left
-  parts.plate(room.place + glm::dvec3(h, 0, 0), {0, 0, s}, {0, s, 0}, 2);   // right
+  parts.plate(room.place + glm::dvec3(h, 0, 0), {0, 0, s}, {0, s, 0}, 2);  // right
   if (room.closed) {
     parts.plate(room.place + glm::dvec3(0, h, 0), {s, 0, 0}, {0, 0, s}, 0);  // roof
     parts.plate(room.place + glm::dvec3(0, 0, h), {0, s, 0}, {s, 0, 0}, 0);  // front

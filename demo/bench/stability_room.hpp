@@ -1,4 +1,5 @@
-// Scenes of the stability rows, made in memory: a room without a roof, one wall missing, lit by the sun; and what else its parts can make.
+// Scenes of the stability rows, made in memory: a room without a roof, one wall missing, lit by the sun; and what else
+// its parts can make.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -11,12 +12,12 @@ namespace lucerna::demo::bench {
 
 struct Room {
   double scale = 1.0;
-  glm::dvec3 place{0.0};          ///< of its middle, scene units
+  glm::dvec3 place{0.0};  ///< of its middle, scene units
   float albedo = 0.7f, irradiance = 3.0f;
   glm::dvec3 sun{-0.35, -1.0, -0.1};
-  glm::vec3 emission{0.0f};       ///< of all surfaces
-  bool closed = false;            ///< with roof and all walls, the camera inside
-  bool badTriangles = false;      ///< zero area, slivers, twice the same
+  glm::vec3 emission{0.0f};  ///< of all surfaces
+  bool closed = false;  ///< with roof and all walls, the camera inside
+  bool badTriangles = false;  ///< zero area, slivers, twice the same
 };
 
 Scene makeRoom(const Room& room);
@@ -28,7 +29,8 @@ class SceneParts {
   /// Its index.
   int material(const glm::vec3& albedo, const glm::vec3& emission = glm::vec3(0.0f));
   Material& materialAt(int index) { return scene_.materials[static_cast<std::size_t>(index)]; }
-  void triangles(const std::vector<glm::dvec3>& corners, const glm::vec3& normal, int material, std::initializer_list<std::uint32_t> order);
+  void triangles(const std::vector<glm::dvec3>& corners, const glm::vec3& normal, int material,
+                 std::initializer_list<std::uint32_t> order);
   /// A rectangle, front along cross(u, v).
   void plate(const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v, int material);
   /// A closed box, fronts outwards.

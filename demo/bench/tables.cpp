@@ -64,7 +64,9 @@ void print(const bench::Tables& tables) {
       continue;
     }
     const double ms = row.measured();
-    fmt::print("{:>12}{:>32} ", column(ms), fmt::format("{} .. {} ({})", column(percentile(row.samples, 0.05)), column(percentile(row.samples, 0.95)), row.samples.size()));
+    fmt::print("{:>12}{:>32} ", column(ms),
+               fmt::format("{} .. {} ({})", column(percentile(row.samples, 0.05)),
+                           column(percentile(row.samples, 0.95)), row.samples.size()));
     for (const auto& published : row.published) fmt::print(" {:>9.4g}", ms / published.ms);
     fmt::print("\n");
   }
@@ -108,11 +110,18 @@ int run(Options options) {
   const bool vpt = options.original == "vpt";
   const double scale = options.scale.value_or(vpt ? kVptScale : 1.0);
   if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
-  if (!options.fidelity.empty() && !vpt) throwBadInput("--fidelity {}: the tables of {} are measured in each way that has a name of its own there; only --original vpt has estimators to choose from", options.fidelity, options.original);
-  if (!options.fidelity.empty() && options.fidelity != "corrected" && options.fidelity != "original") throwBadInput("--fidelity {}: unknown; expected one of corrected, original", options.fidelity);
-  if (vpt && !options.scene.empty()) throwBadInput("SCENE {}: the tables of vpt are measured on their own scenes", options.scene);
+  if (!options.fidelity.empty() && !vpt)
+    throwBadInput(
+        "--fidelity {}: the tables of {} are measured in each way that has a name of its own there; only --original "
+        "vpt has estimators to choose from",
+        options.fidelity, options.original);
+  if (!options.fidelity.empty() && options.fidelity != "corrected" && options.fidelity != "original")
+    throwBadInput("--fidelity {}: unknown; expected one of corrected, original", options.fidelity);
+  if (vpt && !options.scene.empty())
+    throwBadInput("SCENE {}: the tables of vpt are measured on their own scenes", options.scene);
   if (options.original == "rad") {
-    if (!options.scene.empty()) throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
+    if (!options.scene.empty())
+      throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
     return bench::runRadTables(options.common, scale);
   }
   Scene scene;
@@ -125,8 +134,10 @@ int run(Options options) {
   const gl::Context context;
   gl::ProgramLibrary programs;
   watchForInterrupt();
-  const bench::Tables tables = vpt ? bench::measureVptTables({context, programs, scale, options.common.quiet, options.fidelity == "original" ? Fidelity::original : Fidelity::corrected})
-                                   : bench::measureLpvTables({context, programs, scene, scale, options.common.quiet});
+  const bench::Tables tables =
+      vpt ? bench::measureVptTables({context, programs, scale, options.common.quiet,
+                                     options.fidelity == "original" ? Fidelity::original : Fidelity::corrected})
+          : bench::measureLpvTables({context, programs, scene, scale, options.common.quiet});
   const std::string& renderer = context.capabilities().renderer;
   fmt::print("Renderer {}\n", renderer);
   if (!vpt) fmt::print("Scene    {}, {} triangles\n", scene.file.string(), scene.triangleCount());
@@ -152,11 +163,19 @@ int run(Options options) {
 
 Work addBenchTables(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene, "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  offer(app.add_option("--original", options->original, "original whose tables are measured: lpv, rad or vpt")->required(), {"lpv", "rad", "vpt"});
-  app.add_option("--scale", options->scale, "less work on a slow machine, above 0, at most 1. lpv and rad (1): fewer frames or hemicubes; below 0.5 also smaller "
-                                           "grids and models. vpt (0.05): each side and the samples of the published pictures times this");
-  offer(app.add_option("--fidelity", options->fidelity, "vpt: original: the published estimator on scenes lit as published, the corrected beside it; or corrected (default)"), {"corrected", "original"});
+  app.add_option("SCENE", options->scene,
+                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
+  offer(app.add_option("--original", options->original, "original whose tables are measured: lpv, rad or vpt")
+            ->required(),
+        {"lpv", "rad", "vpt"});
+  app.add_option("--scale", options->scale,
+                 "less work on a slow machine, above 0, at most 1. lpv and rad (1): fewer frames or hemicubes; below "
+                 "0.5 also smaller "
+                 "grids and models. vpt (0.05): each side and the samples of the published pictures times this");
+  offer(app.add_option("--fidelity", options->fidelity,
+                       "vpt: original: the published estimator on scenes lit as published, the corrected beside it; or "
+                       "corrected (default)"),
+        {"corrected", "original"});
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -1,7 +1,7 @@
 // Tables 7.2 to 7.8 of the LPV original [LPV2015, 7.2] and its comparison of ways to clear, measured again.
 //
-// Every configuration keeps its own volume; a round runs each of them once, published and best path of a setting next to each other (A B A B), so
-// that what else the machine does meets both. The first round is a warm-up and is dropped.
+// Every configuration keeps its own volume; a round runs each of them once, published and best path of a setting next
+// to each other (A B A B), so that what else the machine does meets both. The first round is a warm-up and is dropped.
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
@@ -25,7 +25,8 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-// ---------------------------------------------------------------------------------------------------- what was published
+// ---------------------------------------------------------------------------------------------------- what was
+// published
 
 enum class Way { anyPath, geometryShader, atomics };
 
@@ -47,14 +48,86 @@ constexpr const char* kNvidia = "NVIDIA GTX 960";
 constexpr const char* kAmd = "AMD R9 270";
 
 constexpr PublishedRow kPublished[] = {
-    {"7.2", "8 iterations, blocking", Way::anyPath, 256, 32, 1, 8, true, {0.274104, 0.375929, 3.3704}, {0.363047, 1.35305, 9.99295}},
-    {"7.2", "8 iterations, blocking", Way::anyPath, 256, 32, 3, 8, true, {0.274104, 0.999607, 8.75379}, {0.363047, 3.48448, 29.2733}},
-    {"7.3", "8 iterations, no blocking", Way::anyPath, 256, 32, 1, 8, false, {0.265721, 0.397134, 3.05226}, {0.362724, 1.35732, 6.81374}},
-    {"7.3", "8 iterations, no blocking", Way::anyPath, 256, 32, 3, 8, false, {0.265721, 0.932677, 7.31519}, {0.362724, 3.50141, 19.7886}},
-    {"7.4", "12 iterations, blocking", Way::anyPath, 256, 32, 1, 12, true, {0.274104, 0.401629, 6.07258}, {0.363047, 1.35242, 15.5127}},
-    {"7.4", "12 iterations, blocking", Way::anyPath, 256, 32, 3, 12, true, {0.274104, 0.999594, 13.8813}, {0.363047, 3.4849, 45.6326}},
-    {"7.5", "12 iterations, no blocking", Way::anyPath, 256, 32, 1, 12, false, {0.265721, 0.399961, 5.02879}, {0.362724, 1.35757, 10.4721}},
-    {"7.5", "12 iterations, no blocking", Way::anyPath, 256, 32, 3, 12, false, {0.265721, 0.96792, 11.3734}, {0.362724, 3.50252, 30.7741}},
+    {"7.2",
+     "8 iterations, blocking",
+     Way::anyPath,
+     256,
+     32,
+     1,
+     8,
+     true,
+     {0.274104, 0.375929, 3.3704},
+     {0.363047, 1.35305, 9.99295}},
+    {"7.2",
+     "8 iterations, blocking",
+     Way::anyPath,
+     256,
+     32,
+     3,
+     8,
+     true,
+     {0.274104, 0.999607, 8.75379},
+     {0.363047, 3.48448, 29.2733}},
+    {"7.3",
+     "8 iterations, no blocking",
+     Way::anyPath,
+     256,
+     32,
+     1,
+     8,
+     false,
+     {0.265721, 0.397134, 3.05226},
+     {0.362724, 1.35732, 6.81374}},
+    {"7.3",
+     "8 iterations, no blocking",
+     Way::anyPath,
+     256,
+     32,
+     3,
+     8,
+     false,
+     {0.265721, 0.932677, 7.31519},
+     {0.362724, 3.50141, 19.7886}},
+    {"7.4",
+     "12 iterations, blocking",
+     Way::anyPath,
+     256,
+     32,
+     1,
+     12,
+     true,
+     {0.274104, 0.401629, 6.07258},
+     {0.363047, 1.35242, 15.5127}},
+    {"7.4",
+     "12 iterations, blocking",
+     Way::anyPath,
+     256,
+     32,
+     3,
+     12,
+     true,
+     {0.274104, 0.999594, 13.8813},
+     {0.363047, 3.4849, 45.6326}},
+    {"7.5",
+     "12 iterations, no blocking",
+     Way::anyPath,
+     256,
+     32,
+     1,
+     12,
+     false,
+     {0.265721, 0.399961, 5.02879},
+     {0.362724, 1.35757, 10.4721}},
+    {"7.5",
+     "12 iterations, no blocking",
+     Way::anyPath,
+     256,
+     32,
+     3,
+     12,
+     false,
+     {0.265721, 0.96792, 11.3734},
+     {0.362724, 3.50252, 30.7741}},
     {"7.6", "geometry shader, 32^3", Way::geometryShader, 256, 32, 1, 8, true, {0.0, 0.375929, 3.3704}, {}},
     {"7.6", "atomics, 32^3", Way::atomics, 256, 32, 1, 8, true, {0.0, 0.397899, 3.76333}, {}},
     {"7.6", "geometry shader, 32^3", Way::geometryShader, 256, 32, 3, 8, true, {0.0, 0.999607, 8.75379}, {}},
@@ -79,9 +152,12 @@ struct Config {
   bool published = false;  // cell sizes, steps, formats and atomics of the text, nothing joined; else ours
   auto operator<=>(const Config&) const = default;
   /// Atomics of ours are one a tile of texels that fall into the same cell; the published ones one a light.
-  std::string fillName() const { return std::string(nameOf(fill)) + (fill == LpvFill::layered || published ? "" : " tiles"); }
+  std::string fillName() const {
+    return std::string(nameOf(fill)) + (fill == LpvFill::layered || published ? "" : " tiles");
+  }
   std::string key() const {
-    return fmt::format("{} {} {} {} {} {}/{} {}", rsmSize, cells, grids, iterations, blocking, nameOf(fill), nameOf(propagate), published ? "published" : "ours");
+    return fmt::format("{} {} {} {} {} {}/{} {}", rsmSize, cells, grids, iterations, blocking, nameOf(fill),
+                       nameOf(propagate), published ? "published" : "ours");
   }
 };
 
@@ -109,7 +185,10 @@ std::string rsmStage(int size) { return fmt::format("rsm {}", size); }
 class Bench {
  public:
   explicit Bench(const TablesInput& input)
-      : input_(input), capabilities_(input.context.capabilities()), needs_(analyse(input.scene)), gpuScene_(input.scene, needs_, capabilities_),
+      : input_(input),
+        capabilities_(input.context.capabilities()),
+        needs_(analyse(input.scene)),
+        gpuScene_(input.scene, needs_, capabilities_),
         timer_(capabilities_.softwareRenderer) {
     if (!LightPropagationVolume::isNeeded(needs_))
       throwBadInput("{}: no sun, or nothing that reflects it: no indirect light to measure", input.scene.file.string());
@@ -152,7 +231,8 @@ class Bench {
       if (interrupted()) return;
       LightPropagationVolume& volume = volumes_.at(config);
       const LightPropagationVolume::Inputs inputs{
-          {outputs.at(config.rsmSize)}, placeCascades(volume.settings().cascades, input_.scene.bounds, camera.position, camera.direction),
+          {outputs.at(config.rsmSize)},
+          placeCascades(volume.settings().cascades, input_.scene.bounds, camera.position, camera.direction),
           std::max({sun.x, sun.y, sun.z})};
       {
         const gl::TimeQuery::Scope stage(timer_, config.key() + " injection");
@@ -198,12 +278,14 @@ class Bench {
 /// Reading and writing grids of that size once a step, lit or not: the least that propagation in all cells must do.
 class Copy {
  public:
-  Copy(gl::ProgramLibrary& programs, int cells, int grids, int iterations) : iterations_(iterations), cells_(cells * cells * cells * grids) {
+  Copy(gl::ProgramLibrary& programs, int cells, int grids, int iterations)
+      : iterations_(iterations), cells_(cells * cells * cells * grids) {
     for (int withSum = 0; withSum < 2; ++withSum)
-      copy_[static_cast<std::size_t>(withSum)] =
-          &programs.loadCompute(withSum ? "bench copy and sum" : "bench copy", "bench/copy_grids.comp", {{"WITH_SUM", withSum}});
+      copy_[static_cast<std::size_t>(withSum)] = &programs.loadCompute(
+          withSum ? "bench copy and sum" : "bench copy", "bench/copy_grids.comp", {{"WITH_SUM", withSum}});
     for (gl::BufferTexture& grid : grids_) {
-      grid = gl::BufferTexture("bench grids", GL_RGBA32F, 3 * 16 * static_cast<std::size_t>(cells_), nullptr, GL_DYNAMIC_COPY);
+      grid = gl::BufferTexture("bench grids", GL_RGBA32F, 3 * 16 * static_cast<std::size_t>(cells_), nullptr,
+                               GL_DYNAMIC_COPY);
       grid.clear();
     }
   }
@@ -249,13 +331,15 @@ void measureClearing(gl::TimeQuery& timer, bool haveClearTexture, int count) {
   timer.drain();
 }
 
-
 std::string spreadText(const std::vector<double>& samples) {
-  return fmt::format("{:.3f} ms ({:.3f} .. {:.3f}, {})", median(samples), percentile(samples, 0.05), percentile(samples, 0.95), samples.size());
+  return fmt::format("{:.3f} ms ({:.3f} .. {:.3f}, {})", median(samples), percentile(samples, 0.05),
+                     percentile(samples, 0.95), samples.size());
 }
 
 nlohmann::ordered_json samplesJson(const std::vector<double>& samples) {
-  return {{"measured", median(samples)}, {"spread", {percentile(samples, 0.05), percentile(samples, 0.95)}}, {"count", samples.size()}};
+  return {{"measured", median(samples)},
+          {"spread", {percentile(samples, 0.05), percentile(samples, 0.95)}},
+          {"count", samples.size()}};
 }
 
 }  // namespace
@@ -284,9 +368,8 @@ Tables measureLpvTables(const TablesInput& input) {
   bench.timer().drain();
   // The least time, not the median: what else the machine does only ever adds.
   const auto fastest = [&](LpvFill fill) { return percentile(bench.injection(trialOf(fill)), 0.0); };
-  const LpvFill bestFill = *std::min_element(fills.begin(), fills.end(), [&](LpvFill a, LpvFill b) {
-    return fastest(a) < fastest(b);
-  });
+  const LpvFill bestFill =
+      *std::min_element(fills.begin(), fills.end(), [&](LpvFill a, LpvFill b) { return fastest(a) < fastest(b); });
   std::string trialText;
   for (LpvFill fill : fills)
     trialText += fmt::format("{}{} {:.2f}", trialText.empty() ? "" : ", ", nameOf(fill), fastest(fill));
@@ -308,7 +391,8 @@ Tables measureLpvTables(const TablesInput& input) {
       if (there) bench.add(plan.back().config);
     };
     if (row.way != Way::atomics) add(LpvFill::layered, LpvPropagate::layered, true, true);
-    if (row.way == Way::anyPath && (row.iterations > 0 || bestFill != LpvFill::layered)) add(bestFill, LpvPropagate::compute, false);
+    if (row.way == Way::anyPath && (row.iterations > 0 || bestFill != LpvFill::layered))
+      add(bestFill, LpvPropagate::compute, false);
     if (row.way == Way::atomics) {
       add(LpvFill::atomic, LpvPropagate::layered, true, true);
       add(LpvFill::fixed, LpvPropagate::layered, false, true);
@@ -317,8 +401,10 @@ Tables measureLpvTables(const TablesInput& input) {
     }
   }
   const PublishedRow& usual = kPublished[1];  // 3 x 32^3, 8 iterations, blocking
-  const Config published = config(usual, LpvFill::layered, LpvPropagate::layered), best = config(usual, bestFill, LpvPropagate::compute);
-  const Config slices = config(usual, LpvFill::layered, LpvPropagate::slices);  // what the published pass could have been
+  const Config published = config(usual, LpvFill::layered, LpvPropagate::layered),
+               best = config(usual, bestFill, LpvPropagate::compute);
+  const Config slices =
+      config(usual, LpvFill::layered, LpvPropagate::slices);  // what the published pass could have been
   bench.add(published);
   bench.add(slices);
   const Copy copy(input.programs, usual.cells / shrink, usual.grids, usual.iterations);
@@ -338,16 +424,25 @@ Tables measureLpvTables(const TablesInput& input) {
   tables.notes = {
       fmt::format("Scale    {}: {} frame{} a figure after one of warm-up{}", input.scale, frames, frames > 1 ? "s" : "",
                   shrink > 1 ? "; grids of 16^3 where 32^3 was published, 32^3 for 64^3" : ""),
-      fmt::format("Clock    {}", capabilities.softwareRenderer ? "wall clock between glFinish (software renderer)" : "GL_TIME_ELAPSED"),
-      fmt::format("Paths    fill/propagate; layered/layered as published (the text's steps, formats and cell sizes, nothing joined), {}/compute the fastest here (filling 3 grids, least of {}: {} ms)", nameOf(bestFill), std::min(frames, 5), trialText),
-      "Stages   injection has the geometry volume's in it where there is blocking, propagation the joining of several grids (ours; the text joins none)",
-      "Atomics  atomic (floats, an extension) and fixed (integers, core): one a light and channel as published, propagated by layered passes; 'tiles' are ours: one a run of texels in the same cell, propagated by a compute shader"};
+      fmt::format("Clock    {}", capabilities.softwareRenderer ? "wall clock between glFinish (software renderer)"
+                                                               : "GL_TIME_ELAPSED"),
+      fmt::format("Paths    fill/propagate; layered/layered as published (the text's steps, formats and cell sizes, "
+                  "nothing joined), {}/compute the fastest here (filling 3 grids, least of {}: {} ms)",
+                  nameOf(bestFill), std::min(frames, 5), trialText),
+      "Stages   injection has the geometry volume's in it where there is blocking, propagation the joining of several "
+      "grids (ours; the text joins none)",
+      "Atomics  atomic (floats, an extension) and fixed (integers, core): one a light and channel as published, "
+      "propagated by layered passes; 'tiles' are ours: one a run of texels in the same cell, propagated by a compute "
+      "shader"};
   if (input.scene.triangleCount() != 262267)
-    tables.notes.push_back("Scene    not the published one: that is Crytek Sponza (262,267 triangles), no part of this repository; give its OBJ as SCENE");
+    tables.notes.push_back(
+        "Scene    not the published one: that is Crytek Sponza (262,267 triangles), no part of this repository; give "
+        "its OBJ as SCENE");
 
   for (const Planned& planned : plan) {
     const PublishedRow& row = *planned.row;
-    const auto add = [&](const char* stage, double nvidia, double amd, const std::vector<double>& samples, bool usesFill, bool usesPropagate) {
+    const auto add = [&](const char* stage, double nvidia, double amd, const std::vector<double>& samples,
+                         bool usesFill, bool usesPropagate) {
       if (nvidia == 0.0) return;
       Row result;
       result.table = row.table;
@@ -366,7 +461,8 @@ Tables measureLpvTables(const TablesInput& input) {
     add("injection", row.nvidia.injection, row.amd.injection, bench.injection(planned.config), true, true);
     add("propagation", row.nvidia.propagation, row.amd.propagation, bench.propagation(planned.config), true, true);
   }
-  for (const auto& [name, ms] : {std::pair("glClearTexImage", kClearTexImage), std::pair("glTexSubImage3D", kTexSubImage)}) {
+  for (const auto& [name, ms] :
+       {std::pair("glClearTexImage", kClearTexImage), std::pair("glTexSubImage3D", kTexSubImage)}) {
     Row row;
     row.table = "clear";
     row.setting = "one channel of a 32^3 grid";
@@ -379,27 +475,38 @@ Tables measureLpvTables(const TablesInput& input) {
   }
 
   // The summary.
-  const std::vector<double> publishedTotal = bench.total(published), bestTotal = bench.total(best), slicesTotal = bench.total(slices);
+  const std::vector<double> publishedTotal = bench.total(published), bestTotal = bench.total(best),
+                            slicesTotal = bench.total(slices);
   const std::vector<double>&copied = bench.samples("copy"), &copiedAndSummed = bench.samples("copy and sum");
   const double propagation = median(bench.propagation(best));
   const std::string paths = fmt::format("{}/compute", nameOf(bestFill));
   tables.summary = fmt::format(
-      "Speed: injection, geometry volume and propagation together; {} x {}^3, 8 iterations, RSM 256, our settings, same answer\n"
+      "Speed: injection, geometry volume and propagation together; {} x {}^3, 8 iterations, RSM 256, our settings, "
+      "same answer\n"
       "  layered/layered   {}\n  {:<18}{}\n  {:.2f} times as fast\n"
-      "  layered/slices    {}: the published pass with a triangle a slice in place of a point a cell; {:.2f} times as fast as that\n"
+      "  layered/slices    {}: the published pass with a triangle a slice in place of a point a cell; {:.2f} times as "
+      "fast as that\n"
       "Bound: propagation, {}: {}\n"
       "  reading and writing the grids once an iteration     {}: {:.2f} of it\n"
       "  the same, with the sum that they are added to       {}: {:.2f} of it\n",
-      usual.grids, usual.cells / shrink, spreadText(publishedTotal), paths, spreadText(bestTotal), median(publishedTotal) / median(bestTotal), spreadText(slicesTotal),
-      median(slicesTotal) / median(bestTotal), paths,
-      spreadText(bench.propagation(best)), spreadText(copied), propagation / median(copied), spreadText(copiedAndSummed),
-      propagation / median(copiedAndSummed));
+      usual.grids, usual.cells / shrink, spreadText(publishedTotal), paths, spreadText(bestTotal),
+      median(publishedTotal) / median(bestTotal), spreadText(slicesTotal), median(slicesTotal) / median(bestTotal),
+      paths, spreadText(bench.propagation(best)), spreadText(copied), propagation / median(copied),
+      spreadText(copiedAndSummed), propagation / median(copiedAndSummed));
   tables.json["frames"] = frames;
-  tables.json["speed"] = {{"cells", usual.cells / shrink}, {"grids", usual.grids}, {"iterations", usual.iterations}, {"rsm", usual.rsmSize},
-                          {"best_fill", nameOf(bestFill)}, {"published_paths_ms", samplesJson(publishedTotal)},
-                          {"best_paths_ms", samplesJson(bestTotal)}, {"slices_ms", samplesJson(slicesTotal)}, {"speedup", median(publishedTotal) / median(bestTotal)}};
-  tables.json["bound"] = {{"propagation_ms", samplesJson(bench.propagation(best))}, {"copy_ms", samplesJson(copied)},
-                          {"copy_and_sum_ms", samplesJson(copiedAndSummed)}, {"over_copy", propagation / median(copied)},
+  tables.json["speed"] = {{"cells", usual.cells / shrink},
+                          {"grids", usual.grids},
+                          {"iterations", usual.iterations},
+                          {"rsm", usual.rsmSize},
+                          {"best_fill", nameOf(bestFill)},
+                          {"published_paths_ms", samplesJson(publishedTotal)},
+                          {"best_paths_ms", samplesJson(bestTotal)},
+                          {"slices_ms", samplesJson(slicesTotal)},
+                          {"speedup", median(publishedTotal) / median(bestTotal)}};
+  tables.json["bound"] = {{"propagation_ms", samplesJson(bench.propagation(best))},
+                          {"copy_ms", samplesJson(copied)},
+                          {"copy_and_sum_ms", samplesJson(copiedAndSummed)},
+                          {"over_copy", propagation / median(copied)},
                           {"over_copy_and_sum", propagation / median(copiedAndSummed)}};
   return tables;
 }

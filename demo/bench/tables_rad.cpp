@@ -1,7 +1,8 @@
 // lucerna bench tables --original rad: the published program's times on model 2, and what each of its deviations costs.
 //
-// A whole published run takes minutes to days. Here hemicubes of triangles spread evenly over the scene are drawn for a while, and a run of 7 sweeps,
-// as many as published, is computed from their rate: every hemicube costs the same, since every view draws the whole scene.
+// A whole published run takes minutes to days. Here hemicubes of triangles spread evenly over the scene are drawn for a
+// while, and a run of 7 sweeps, as many as published, is computed from their rate: every hemicube costs the same, since
+// every view draws the whole scene.
 #include "bench/rad.hpp"
 
 #include "base/clock.hpp"
@@ -32,9 +33,10 @@ struct Published {
   int triangles;
   std::array<double, 3> minutes, secondsATriangle;  // at 100, 200 and 500 pixels
 };
-constexpr std::array kPublished{Published{5.0, 26360, {4.0 + 40.0 / 60.0, 8.75, 39.0 + 40.0 / 60.0}, {0.011, 0.020, 0.091}},
-                                Published{1.0, 136512, {58.0 + 20.0 / 60.0, 81.0 + 40.0 / 60.0, 233.0}, {0.026, 0.036, 0.102}},
-                                Published{0.25, 546048, {583.0, 700.0, 1516.0}, {0.064, 0.077, 0.166}}};
+constexpr std::array kPublished{
+    Published{5.0, 26360, {4.0 + 40.0 / 60.0, 8.75, 39.0 + 40.0 / 60.0}, {0.011, 0.020, 0.091}},
+    Published{1.0, 136512, {58.0 + 20.0 / 60.0, 81.0 + 40.0 / 60.0, 233.0}, {0.026, 0.036, 0.102}},
+    Published{0.25, 546048, {583.0, 700.0, 1516.0}, {0.064, 0.077, 0.166}}};
 constexpr std::array kViews{100, 200, 500};
 
 struct Rate {
@@ -44,7 +46,8 @@ struct Rate {
   double mtrianglesASecond() const { return static_cast<double>(triangles) / seconds / 1e6; }
 };
 
-Rate measure(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, int view, std::size_t most, double mostSeconds) {
+Rate measure(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, int view, std::size_t most,
+             double mostSeconds) {
   OriginalRadiosity::Settings settings;
   settings.view = view;
   OriginalRadiosity solver(programs, triangles, settings);
@@ -59,7 +62,8 @@ Rate measure(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangle
 }
 
 /// Sweeps to rest of the published solver, with the numbers of the manual's example; nothing where it was interrupted.
-std::optional<std::uint32_t> sweepsToRest(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, int view, bool quiet) {
+std::optional<std::uint32_t> sweepsToRest(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles,
+                                          int view, bool quiet) {
   OriginalRadiosity::Settings settings;
   settings.view = view;
   OriginalRadiosity solver(programs, triangles, settings);
@@ -80,7 +84,8 @@ struct Cost {
   double nrmse = 0.0, most = 0.0, bias = 0.0;
 };
 
-/// The lit cube as published, with one deviation turned off, and with all but the centroid off, each against that last one at four times the pixels.
+/// The lit cube as published, with one deviation turned off, and with all but the centroid off, each against that last
+/// one at four times the pixels.
 std::vector<Cost> deviationCosts(gl::ProgramLibrary& programs, int view, bool quiet) {
   const std::vector<RadTriangle> cube = makeRadModel(1, {20.0, 0.5, 100000});
   Progress bar("deviations", 8, quiet);
@@ -92,7 +97,8 @@ std::vector<Cost> deviationCosts(gl::ProgramLibrary& programs, int view, bool qu
     settings.deviations = deviations;
     OriginalRadiosity solver(programs, cube, settings);
     OriginalProgress progress = solver.start();
-    for (int sweep = 0; sweep < 6 && !interrupted(); ++sweep) solver.sweep(progress, [](const OriginalProgress&) { return !interrupted(); });
+    for (int sweep = 0; sweep < 6 && !interrupted(); ++sweep)
+      solver.sweep(progress, [](const OriginalProgress&) { return !interrupted(); });
     bar.update(++done);
     return progress.received;
   };
@@ -105,7 +111,8 @@ std::vector<Cost> deviationCosts(gl::ProgramLibrary& programs, int view, bool qu
     Cost cost;
     cost.name = name;
     for (std::size_t i = 0; i < cube.size(); ++i) {
-      const double a = areaOf(cube[i]), is = static_cast<double>(reference[i]), error = static_cast<double>(received[i]) - is;
+      const double a = areaOf(cube[i]), is = static_cast<double>(reference[i]),
+                   error = static_cast<double>(received[i]) - is;
       squares += a * error * error, sum += a * is, difference += a * error, area += a;
       cost.most = std::max(cost.most, std::abs(error) / is);
     }
@@ -170,15 +177,20 @@ void say(bool prints, fmt::format_string<Values...> format, Values&&... values) 
   std::fflush(stdout);
 }
 
-/// Hemicubes a second of the corrected solver: the whole stage, rows made, sorted out and kept. Median, least and most of five runs.
-void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, double scale, nlohmann::ordered_json& json, bool prints) {
-  say(prints, "\nCorrected: hemicubes/s in a closed box, 64x64, near pairs and closed forms included; 5 runs\n{:<24}{:<14}{:>10}{:>10}{:>10}{:>12}\n", "", "", "median", "least",
-             "most", "CPU ms each");
+/// Hemicubes a second of the corrected solver: the whole stage, rows made, sorted out and kept. Median, least and most
+/// of five runs.
+void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, double scale, nlohmann::ordered_json& json,
+                 bool prints) {
+  say(prints,
+      "\nCorrected: hemicubes/s in a closed box, 64x64, near pairs and closed forms included; 5 "
+      "runs\n{:<24}{:<14}{:>10}{:>10}{:>10}{:>12}\n",
+      "", "", "median", "least", "most", "CPU ms each");
   for (const int squares : kBoxes) {
     PatchSettings whole;
     whole.longestEdge = 0.0;
     const RadiosityMesh mesh = makePatches(closedBox(squares), whole);
-    for (const HemicubeVisibility way : {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
+    for (const HemicubeVisibility way :
+         {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
       if (interrupted()) return;
       HemicubeSettings settings;
       settings.visibility = way;
@@ -194,39 +206,53 @@ void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, doubl
         hemicubes.stream(first, first + count, [&](const FormFactorRows& rows) {
           std::size_t at = 0;
           for (const std::uint32_t entries : rows.counts) {
-            matrix.appendRow(std::span(rows.patches).subspan(at, entries), std::span(rows.factors).subspan(at, entries));
+            matrix.appendRow(std::span(rows.patches).subspan(at, entries),
+                             std::span(rows.factors).subspan(at, entries));
             at += entries;
           }
         });
         rates.push_back(count / secondsSince(start));
       }
-      const double milliseconds = 1000.0 * static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / (5.0 * count);
+      const double milliseconds =
+          1000.0 * static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / (5.0 * count);
       std::sort(rates.begin(), rates.end());
-      say(prints, "{:<24}{:<14}{:>10.0f}{:>10.0f}{:>10.0f}{:>12.3f}\n", fmt::format("{} triangles", hemicubes.patchCount()), nameOf(way), rates[2], rates[0], rates[4], milliseconds);
-      json["closed_box"].push_back({{"triangles", hemicubes.patchCount()}, {"view", settings.resolution}, {"visibility", nameOf(way)}, {"hemicubes", count}, {"hemicubes_per_s", rates[2]},
-                                    {"least", rates[0]}, {"most", rates[4]}, {"processor_ms", milliseconds}, {"renderer", context.capabilities().renderer}});
+      say(prints, "{:<24}{:<14}{:>10.0f}{:>10.0f}{:>10.0f}{:>12.3f}\n",
+          fmt::format("{} triangles", hemicubes.patchCount()), nameOf(way), rates[2], rates[0], rates[4], milliseconds);
+      json["closed_box"].push_back({{"triangles", hemicubes.patchCount()},
+                                    {"view", settings.resolution},
+                                    {"visibility", nameOf(way)},
+                                    {"hemicubes", count},
+                                    {"hemicubes_per_s", rates[2]},
+                                    {"least", rates[0]},
+                                    {"most", rates[4]},
+                                    {"processor_ms", milliseconds},
+                                    {"renderer", context.capabilities().renderer}});
     }
   }
 }
 
 }  // namespace
 
-nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramLibrary& programs, double scale, bool quiet, bool prints) {
+nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramLibrary& programs, double scale,
+                                        bool quiet, bool prints) {
   const std::string& renderer = context.capabilities().renderer;
   const auto most = static_cast<std::size_t>(std::max(8.0, std::round(400.0 * scale)));
   const double mostSeconds = std::max(1.0, 40.0 * scale);
 
   nlohmann::ordered_json json;
   const std::vector<std::string> notes{
-      fmt::format("Scale    {}: at most {} hemicubes or {:.0f} s a figure, of triangles spread evenly over the scene", scale, most, mostSeconds),
-      fmt::format("Whole    not run: {} sweeps over all triangles, computed from the rate (extrapolated); published are whole runs of {} sweeps", kSweeps, kSweeps),
+      fmt::format("Scale    {}: at most {} hemicubes or {:.0f} s a figure, of triangles spread evenly over the scene",
+                  scale, most, mostSeconds),
+      fmt::format("Whole    not run: {} sweeps over all triangles, computed from the rate (extrapolated); published "
+                  "are whole runs of {} sweeps",
+                  kSweeps, kSweeps),
       "Scene    model 2; its measures are ours, its numbers of triangles within 2 % of the published"};
   json["notes"] = notes;
   say(prints, "Renderer {}\n", renderer);
   for (const std::string& note : notes) say(prints, "{}\n", note);
 
-  say(prints, "\nTables 4.1 and 4.2\n{:<28}{:>14}{:>14}{:>9}{:>14}{:>14}{:>13}{:>14}\n", "", "whole, min", "here, min", "ratio", "s a triangle", "here, s", "hemicubes/s",
-             "Mtriangles/s");
+  say(prints, "\nTables 4.1 and 4.2\n{:<28}{:>14}{:>14}{:>9}{:>14}{:>14}{:>13}{:>14}\n", "", "whole, min", "here, min",
+      "ratio", "s a triangle", "here, s", "hemicubes/s", "Mtriangles/s");
   json["rows"] = nlohmann::ordered_json::array();
   for (const Published& published : kPublished) {
     if (interrupted()) break;
@@ -235,10 +261,12 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
     const std::vector<RadTriangle> triangles = makeRadModel(2, model);
     for (std::size_t v = 0; v < kViews.size() && !interrupted(); ++v) {
       const Rate rate = measure(programs, triangles, kViews[v], most, mostSeconds);
-      const double secondsATriangle = kSweeps / rate.hemicubesASecond(), minutes = secondsATriangle * static_cast<double>(triangles.size()) / 60.0;
+      const double secondsATriangle = kSweeps / rate.hemicubesASecond(),
+                   minutes = secondsATriangle * static_cast<double>(triangles.size()) / 60.0;
       const std::string name = fmt::format("{}x{}, {} triangles", kViews[v], kViews[v], published.triangles);
-      say(prints, "{:<28}{:>14.2f}{:>14.2f}{:>9.3g}{:>14.3f}{:>14.4f}{:>13.1f}{:>14.2f}\n", name, published.minutes[v], minutes, minutes / published.minutes[v],
-                 published.secondsATriangle[v], secondsATriangle, rate.hemicubesASecond(), rate.mtrianglesASecond());
+      say(prints, "{:<28}{:>14.2f}{:>14.2f}{:>9.3g}{:>14.3f}{:>14.4f}{:>13.1f}{:>14.2f}\n", name, published.minutes[v],
+          minutes, minutes / published.minutes[v], published.secondsATriangle[v], secondsATriangle,
+          rate.hemicubesASecond(), rate.mtrianglesASecond());
       for (const bool whole : {true, false}) {
         nlohmann::ordered_json row;
         row["table"] = whole ? "4.1" : "4.2";
@@ -267,23 +295,35 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
   model.areaThreshold = hall ? 100.0 : 30.0;
   const std::vector<RadTriangle> coarse = makeRadModel(hall ? 2 : 3, model);
   if (const auto sweeps = interrupted() ? std::nullopt : sweepsToRest(programs, coarse, 32, quiet)) {
-    say(prints, "\nSweeps   {} until nothing changes (model {}, {} triangles, 32x32, reflectance 0.15, power 100000); published {} (model 2)\n", *sweeps, hall ? 2 : 3, coarse.size(),
-               kSweeps);
-    json["rows"].push_back({{"table", "4.1"}, {"row", fmt::format("sweeps, model {}, {} triangles", hall ? 2 : 3, coarse.size())}, {"published", kSweeps}, {"measured", *sweeps},
-                            {"ratio", *sweeps / static_cast<double>(kSweeps)}, {"unit", "sweeps"}, {"renderer", renderer}});
+    say(prints,
+        "\nSweeps   {} until nothing changes (model {}, {} triangles, 32x32, reflectance 0.15, power 100000); "
+        "published {} (model 2)\n",
+        *sweeps, hall ? 2 : 3, coarse.size(), kSweeps);
+    json["rows"].push_back({{"table", "4.1"},
+                            {"row", fmt::format("sweeps, model {}, {} triangles", hall ? 2 : 3, coarse.size())},
+                            {"published", kSweeps},
+                            {"measured", *sweeps},
+                            {"ratio", *sweeps / static_cast<double>(kSweeps)},
+                            {"unit", "sweeps"},
+                            {"renderer", renderer}});
   }
 
   const int view = scale >= 0.5 ? 100 : scale >= 0.1 ? 64 : 32;
   const std::vector<Cost> costs = interrupted() ? std::vector<Cost>{} : deviationCosts(programs, view, quiet);
   if (!interrupted()) {
-    say(prints, "\nDeviations: model 1, threshold 20, reflectance 0.5, {}x{}; against floats, exact map, random roll at {}x{} and the same points\n{:<32}{:>10}{:>10}{:>10}\n", view, view,
-               4 * view, 4 * view, "", "NRMSE %", "worst %", "bias %");
+    say(prints,
+        "\nDeviations: model 1, threshold 20, reflectance 0.5, {}x{}; against floats, exact map, random roll at {}x{} "
+        "and the same points\n{:<32}{:>10}{:>10}{:>10}\n",
+        view, view, 4 * view, 4 * view, "", "NRMSE %", "worst %", "bias %");
     json["deviations"] = nlohmann::ordered_json::array();
     for (const Cost& cost : costs) {
-      say(prints, "{:<32}{:>10.2f}{:>10.2f}{:>+10.2f}\n", cost.name, 100.0 * cost.nrmse, 100.0 * cost.most, 100.0 * cost.bias);
-      json["deviations"].push_back({{"name", cost.name}, {"nrmse", cost.nrmse}, {"worst", cost.most}, {"bias", cost.bias}});
+      say(prints, "{:<32}{:>10.2f}{:>10.2f}{:>+10.2f}\n", cost.name, 100.0 * cost.nrmse, 100.0 * cost.most,
+          100.0 * cost.bias);
+      json["deviations"].push_back(
+          {{"name", cost.name}, {"nrmse", cost.nrmse}, {"worst", cost.most}, {"bias", cost.bias}});
     }
-    say(prints, "radiosity.centroid=off samples three corners; those on another wall see it edge on and lose its light\n");
+    say(prints,
+        "radiosity.centroid=off samples three corners; those on another wall see it edge on and lose its light\n");
   }
   if (!interrupted()) closedBoxes(context, programs, scale, json, prints);
   return json;

@@ -1,7 +1,8 @@
 // The published times of the VPT original [VPT2024, 5.7], measured again on scenes of ours.
 //
-// With --scale below 1 the pictures are smaller and have fewer samples; what was measured is then multiplied up to the published number of pixels times
-// samples, as a path tracer's work is proportional to both. A picture that would take too long ends early and is multiplied up likewise.
+// With --scale below 1 the pictures are smaller and have fewer samples; what was measured is then multiplied up to the
+// published number of pixels times samples, as a path tracer's work is proportional to both. A picture that would take
+// too long ends early and is multiplied up likewise.
 #include "bench/vpt_series.hpp"
 
 #include "measure/image_errors.hpp"
@@ -21,7 +22,8 @@ namespace {
 /// Seconds a picture below full scale may take.
 constexpr double kMostSeconds = 15.0;
 
-/// Of the picture that stands for the estimator: espresso, as much absorbed as scattered behind a boundary that refracts.
+/// Of the picture that stands for the estimator: espresso, as much absorbed as scattered behind a boundary that
+/// refracts.
 constexpr std::size_t kEstimatorPicture = 14;
 
 struct Estimator {
@@ -29,7 +31,8 @@ struct Estimator {
   PathDeviations deviations;
 };
 
-/// Of the corrected estimator: each deviation alone turned on. Of the published one: each alone turned off, as what it does among the others is what made the pictures.
+/// Of the corrected estimator: each deviation alone turned on. Of the published one: each alone turned off, as what it
+/// does among the others is what made the pictures.
 std::vector<Estimator> estimatorsOf(Fidelity fidelity) {
   const bool published = fidelity != Fidelity::corrected;
   RenderSettings corrected, original;
@@ -41,7 +44,8 @@ std::vector<Estimator> estimatorsOf(Fidelity fidelity) {
     RenderSettings alone = published ? original : corrected;
     const bool turned = !deviation.isOn(alone);
     deviation.turn(alone, turned);
-    estimators.push_back({fmt::format("{}{}", deviation.name, published ? (turned ? " too" : " off") : ""), alone.path.deviations});
+    estimators.push_back(
+        {fmt::format("{}{}", deviation.name, published ? (turned ? " too" : " off") : ""), alone.path.deviations});
   }
   return estimators;
 }
@@ -57,37 +61,55 @@ void measureEstimators(const VptTablesInput& input, glm::ivec2 size, double most
   // With the published random numbers all pixels and seeds share one sequence: the reference has others.
   PathDeviations independent = estimators[0].deviations;
   independent.linearSeeds = false;
-  const VptResult reference = renderVpt(input.context, input.programs, picture, scene, size, 4 * samples, 4.0 * mostSeconds, independent, 1);
+  const VptResult reference =
+      renderVpt(input.context, input.programs, picture, scene, size, 4 * samples, 4.0 * mostSeconds, independent, 1);
   const auto channelMean = [](const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; };
   const double right = channelMean(reference.statistics.mean);
-  tables.summary += fmt::format("\nThe estimator on {} ({}), beside the {} one with other random numbers and {:.4g} samples a pixel. Bias: of the picture's mean.\n{:<38}{:>12}{:>14}{:>22}{:>12}{:>14}\n", picture.label,
-                                picture.figure, estimators[0].name, reference.statistics.samples, "", "ms a sample", "NRMSE", "bias", "time", "loop turns");
+  tables.summary += fmt::format(
+      "\nThe estimator on {} ({}), beside the {} one with other random numbers and {:.4g} samples a pixel. Bias: of "
+      "the picture's mean.\n{:<38}{:>12}{:>14}{:>22}{:>12}{:>14}\n",
+      picture.label, picture.figure, estimators[0].name, reference.statistics.samples, "", "ms a sample", "NRMSE",
+      "bias", "time", "loop turns");
   double firstMs = 0.0, firstTurns = 0.0;
   for (const Estimator& estimator : estimators) {
     if (interrupted()) return;
-    const VptResult result = renderVpt(input.context, input.programs, picture, scene, size, samples, mostSeconds, estimator.deviations);
-    const double ms = result.ms / result.statistics.samples, turns = result.statistics.turns / result.statistics.samples;
+    const VptResult result =
+        renderVpt(input.context, input.programs, picture, scene, size, samples, mostSeconds, estimator.deviations);
+    const double ms = result.ms / result.statistics.samples,
+                 turns = result.statistics.turns / result.statistics.samples;
     if (firstMs == 0.0) firstMs = ms, firstTurns = turns;
     const double bias = channelMean(result.statistics.mean) / right - 1.0;
-    const double error = std::hypot(channelMean(result.statistics.meanError), channelMean(reference.statistics.meanError)) / right;
+    const double error =
+        std::hypot(channelMean(result.statistics.meanError), channelMean(reference.statistics.meanError)) / right;
     const double nrmse = measure::errorsOf(result.image, reference.image).nrmse;
-    tables.summary += fmt::format("{:<38}{:>12.4g}{:>14.4g}{:>22}{:>11.3g}x{:>13.3g}x\n", estimator.name, ms, nrmse, fmt::format("{:+.4f} +- {:.4f}", bias, error), ms / firstMs, turns / firstTurns);
-    tables.json["estimators"].push_back({{"estimator", estimator.name}, {"figure", picture.figure}, {"ms_a_sample", ms}, {"spp", result.statistics.samples}, {"nrmse", nrmse}, {"bias", bias},
-                                         {"bias_error", error}, {"time_ratio", ms / firstMs}, {"turns_ratio", turns / firstTurns}});
+    tables.summary += fmt::format("{:<38}{:>12.4g}{:>14.4g}{:>22}{:>11.3g}x{:>13.3g}x\n", estimator.name, ms, nrmse,
+                                  fmt::format("{:+.4f} +- {:.4f}", bias, error), ms / firstMs, turns / firstTurns);
+    tables.json["estimators"].push_back({{"estimator", estimator.name},
+                                         {"figure", picture.figure},
+                                         {"ms_a_sample", ms},
+                                         {"spp", result.statistics.samples},
+                                         {"nrmse", nrmse},
+                                         {"bias", bias},
+                                         {"bias_error", error},
+                                         {"time_ratio", ms / firstMs},
+                                         {"turns_ratio", turns / firstTurns}});
   }
 }
 
 /// How each series grows: time, and the turns of loops that it takes, a sample and over the series' first picture.
 std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<VptResult>& results) {
-  std::string text = fmt::format("\n{:<44}{:>12}{:>12}{:>12}{:>16}\n", "Growth a sample over a series", "published", "time here", "loop turns", "collisions a path");
+  std::string text = fmt::format("\n{:<44}{:>12}{:>12}{:>12}{:>16}\n", "Growth a sample over a series", "published",
+                                 "time here", "loop turns", "collisions a path");
   const double pixels = results.empty() ? 1.0 : static_cast<double>(results[0].image.width) * results[0].image.height;
   for (std::size_t i = 0, first = 0; i < results.size(); ++i) {
     if (std::string_view(pictures[i].table) != pictures[first].table) first = i;
     const auto over = [&](auto figure) { return figure(i) / figure(first); };
     const double published = over([&](std::size_t k) { return pictures[k].publishedMs / pictures[k].samples; });
     const double time = over([&](std::size_t k) { return results[k].ms / results[k].statistics.samples; });
-    const double turns = over([&](std::size_t k) { return results[k].statistics.turns / results[k].statistics.samples; });
-    text += fmt::format("{:<44}{:>12.3g}{:>12.3g}{:>12.3g}{:>16.4g}\n", fmt::format("{} {}", pictures[i].figure, pictures[i].label), published, time, turns,
+    const double turns =
+        over([&](std::size_t k) { return results[k].statistics.turns / results[k].statistics.samples; });
+    text += fmt::format("{:<44}{:>12.3g}{:>12.3g}{:>12.3g}{:>16.4g}\n",
+                        fmt::format("{} {}", pictures[i].figure, pictures[i].label), published, time, turns,
                         results[i].statistics.collisions / (results[i].statistics.samples * pixels));
   }
   return text;
@@ -100,11 +122,18 @@ Tables measureVptTables(const VptTablesInput& input) {
   const double mostSeconds = input.scale < 1.0 ? kMostSeconds : 0.0;
   Tables tables;
   const bool published = input.fidelity != Fidelity::corrected;
-  tables.notes.push_back(published ? fmt::format("Scenes of our own after the published pictures (assets/media) in the original's format, lit by points, by the published estimator; rows named corrected: the corrected one, lit by an area. Lowered ior: {}.", kVptLoweredIor)
-                                   : fmt::format("Scenes of our own after the published pictures (assets/media), lit by area lights; the estimator is the corrected one. Lowered ior: {}.", kVptLoweredIor));
+  tables.notes.push_back(published ? fmt::format("Scenes of our own after the published pictures (assets/media) in the "
+                                                 "original's format, lit by points, by the published estimator; rows "
+                                                 "named corrected: the corrected one, lit by an area. Lowered ior: {}.",
+                                                 kVptLoweredIor)
+                                   : fmt::format("Scenes of our own after the published pictures (assets/media), lit "
+                                                 "by area lights; the estimator is the corrected one. Lowered ior: {}.",
+                                                 kVptLoweredIor));
   if (input.scale < 1.0)
-    tables.notes.push_back(fmt::format("Scaled by {}: {}x{} pixels instead of {}x{}, samples times {} (a series on samples keeps different ones), at most {:.0f} s a picture; times are multiplied up to the published pixels and samples.",
-                                       input.scale, size.x, size.y, kVptSize.x, kVptSize.y, input.scale, mostSeconds));
+    tables.notes.push_back(fmt::format(
+        "Scaled by {}: {}x{} pixels instead of {}x{}, samples times {} (a series on samples keeps different ones), at "
+        "most {:.0f} s a picture; times are multiplied up to the published pixels and samples.",
+        input.scale, size.x, size.y, kVptSize.x, kVptSize.y, input.scale, mostSeconds));
   tables.json["size"] = {size.x, size.y};
   tables.json["fidelity"] = published ? "original" : "corrected";
   tables.json["pictures"] = nlohmann::ordered_json::array();
@@ -127,8 +156,10 @@ Tables measureVptTables(const VptTablesInput& input) {
       if (!interrupted()) {
         const auto start = std::chrono::steady_clock::now();
         const Scene scene = loadVptScene(picture, fidelity);
-        const double loadMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-        results.push_back(renderVpt(input.context, input.programs, picture, scene, size, vptSamples(picture, input.scale), mostSeconds, vptDeviations(picture, fidelity)));
+        const double loadMs =
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        results.push_back(renderVpt(input.context, input.programs, picture, scene, size,
+                                    vptSamples(picture, input.scale), mostSeconds, vptDeviations(picture, fidelity)));
         const VptResult& result = results.back();
         const double done = result.statistics.samples * size.x * size.y;
         const double wanted = static_cast<double>(picture.samples) * kVptSize.x * kVptSize.y;
@@ -136,7 +167,8 @@ Tables measureVptTables(const VptTablesInput& input) {
         measured += row.samples[0];
         publishedMs += picture.publishedMs;
         const std::string file = std::string(fidelity == Fidelity::corrected ? picture.scene : picture.original) + name;
-        const bool known = std::any_of(preparations.begin(), preparations.end(), [&](const Row& r) { return r.setting == file; });
+        const bool known =
+            std::any_of(preparations.begin(), preparations.end(), [&](const Row& r) { return r.setting == file; });
         if (!known) {
           Row& preparation = preparations.emplace_back();
           preparation.table = "preparation of a scene, 5.7";
@@ -145,24 +177,26 @@ Tables measureVptTables(const VptTablesInput& input) {
           preparation.published = {{"its CPU, about", 500.0}};
           preparation.samples = {loadMs + result.preparationMs};
         }
-        tables.json["pictures"].push_back({{"figure", picture.figure},
-                                           {"scene", fidelity == Fidelity::corrected ? picture.scene : picture.original},
-                                           {"fidelity", fidelity == Fidelity::corrected ? "corrected" : "original"},
-                                           {"ms", result.ms},
-                                           {"preparation_ms", loadMs + result.preparationMs},
-                                           {"spp", result.statistics.samples},
-                                           {"loop_turns", result.statistics.turns},
-                                           {"collisions", result.statistics.collisions},
-                                           {"million_paths_per_s", done / (1000.0 * result.ms)},
-                                           {"published_million_paths_per_s", wanted / (1000.0 * picture.publishedMs)},
-                                           {"mean", {result.statistics.mean.x, result.statistics.mean.y, result.statistics.mean.z}},
-                                           {"relative_error", result.statistics.relativeError}});
+        tables.json["pictures"].push_back(
+            {{"figure", picture.figure},
+             {"scene", fidelity == Fidelity::corrected ? picture.scene : picture.original},
+             {"fidelity", fidelity == Fidelity::corrected ? "corrected" : "original"},
+             {"ms", result.ms},
+             {"preparation_ms", loadMs + result.preparationMs},
+             {"spp", result.statistics.samples},
+             {"loop_turns", result.statistics.turns},
+             {"collisions", result.statistics.collisions},
+             {"million_paths_per_s", done / (1000.0 * result.ms)},
+             {"published_million_paths_per_s", wanted / (1000.0 * picture.publishedMs)},
+             {"mean", {result.statistics.mean.x, result.statistics.mean.y, result.statistics.mean.z}},
+             {"relative_error", result.statistics.relativeError}});
       }
       tables.rows.push_back(std::move(row));
       progress.update(++drawn);
     }
     tables.rows.insert(tables.rows.end(), preparations.begin(), preparations.end());
-    tables.summary += fmt::format("All pictures together{}: {:.4g} s here, {:.4g} s published ({:.4g} times).\n", name, measured / 1000.0, publishedMs / 1000.0, measured / publishedMs);
+    tables.summary += fmt::format("All pictures together{}: {:.4g} s here, {:.4g} s published ({:.4g} times).\n", name,
+                                  measured / 1000.0, publishedMs / 1000.0, measured / publishedMs);
     tables.summary += growthOf(pictures, results);
   }
   measureEstimators(input, size, 0.5 * mostSeconds, tables);

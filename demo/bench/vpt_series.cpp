@@ -30,8 +30,10 @@ const std::vector<VptPicture>& vptPictures() {
     double scattering = 1.0, absorption = 1.0, anisotropy = 1.0;
     float ior = 0.0f;
   };
-  const auto make = [](const char* table, const char* figure, const char* label, const Files& files, std::uint32_t samples, double ms, const Change& c = {}) {
-    return VptPicture{table, figure, label, files.scene, files.camera, files.original, samples, ms, c.scattering, c.absorption, c.anisotropy, c.ior};
+  const auto make = [](const char* table, const char* figure, const char* label, const Files& files,
+                       std::uint32_t samples, double ms, const Change& c = {}) {
+    return VptPicture{table,   figure, label,        files.scene,  files.camera, files.original,
+                      samples, ms,     c.scattering, c.absorption, c.anisotropy, c.ior};
   };
   static const std::vector<VptPicture> pictures = {
       make(kVptSampleSeries, "5.8 a", "four gems, 1 sample", gems, 1, 14.0),
@@ -40,14 +42,20 @@ const std::vector<VptPicture>& vptPictures() {
       make(kVptSampleSeries, "5.9 b", "four gems, 512 samples", gems, 512, 3619.0),
       make(kVptSampleSeries, "5.10 a", "four gems, 1024 samples", gems, 1024, 7289.0),
       make(kVptSampleSeries, "5.10 b", "four gems, 2048 samples", gems, 2048, 14580.0),
-      make("sigma_s, 5.12 and 5.13", "5.12 a", "milk, sigma_s / 1000", milk, 2048, 15500.0, {.scattering = 0.001, .ior = n}),
-      make("sigma_s, 5.12 and 5.13", "5.12 b", "milk, sigma_s / 100", milk, 2048, 23300.0, {.scattering = 0.01, .ior = n}),
-      make("sigma_s, 5.12 and 5.13", "5.13 a", "milk, sigma_s / 10", milk, 2048, 36500.0, {.scattering = 0.1, .ior = n}),
+      make("sigma_s, 5.12 and 5.13", "5.12 a", "milk, sigma_s / 1000", milk, 2048, 15500.0,
+           {.scattering = 0.001, .ior = n}),
+      make("sigma_s, 5.12 and 5.13", "5.12 b", "milk, sigma_s / 100", milk, 2048, 23300.0,
+           {.scattering = 0.01, .ior = n}),
+      make("sigma_s, 5.12 and 5.13", "5.13 a", "milk, sigma_s / 10", milk, 2048, 36500.0,
+           {.scattering = 0.1, .ior = n}),
       make("sigma_s, 5.12 and 5.13", "5.13 b", "milk, sigma_s", milk, 2048, 38000.0, {.ior = n}),
-      make("sigma_a, 5.14 and 5.15", "5.14 a", "grape juice, sigma_a / 10", juice, 2048, 14500.0, {.absorption = 0.1, .ior = n}),
+      make("sigma_a, 5.14 and 5.15", "5.14 a", "grape juice, sigma_a / 10", juice, 2048, 14500.0,
+           {.absorption = 0.1, .ior = n}),
       make("sigma_a, 5.14 and 5.15", "5.14 b", "grape juice, sigma_a", juice, 2048, 16700.0, {.ior = n}),
-      make("sigma_a, 5.14 and 5.15", "5.15 a", "grape juice, sigma_a x 10", juice, 2048, 21900.0, {.absorption = 10.0, .ior = n}),
-      make("sigma_a, 5.14 and 5.15", "5.15 b", "grape juice, sigma_a x 100", juice, 2048, 24300.0, {.absorption = 100.0, .ior = n}),
+      make("sigma_a, 5.14 and 5.15", "5.15 a", "grape juice, sigma_a x 10", juice, 2048, 21900.0,
+           {.absorption = 10.0, .ior = n}),
+      make("sigma_a, 5.14 and 5.15", "5.15 b", "grape juice, sigma_a x 100", juice, 2048, 24300.0,
+           {.absorption = 100.0, .ior = n}),
       make("g, 5.16", "5.16 a", "espresso, g as measured", coffee, 2048, 25800.0),
       make("g, 5.16", "5.16 b", "espresso, g = 0", coffee, 2048, 15100.0, {.anisotropy = 0.0}),
       make("g, 5.16", "5.16 c", "espresso, g negated", coffee, 2048, 23300.0, {.anisotropy = -1.0}),
@@ -60,7 +68,8 @@ const std::vector<VptPicture>& vptPictures() {
 }
 
 const std::vector<VptPicture>& vptUntimedPictures() {
-  // The text does not say of which scene figure 5.7 is: a medium that absorbs far more than it scatters, as grape juice does.
+  // The text does not say of which scene figure 5.7 is: a medium that absorbs far more than it scatters, as grape juice
+  // does.
   static const std::vector<VptPicture> pictures = [] {
     VptPicture picture = vptPictures()[11];
     picture.table = "interaction, 5.7";
@@ -96,11 +105,14 @@ PathDeviations vptDeviations(const VptPicture& picture, Fidelity fidelity) {
 }
 
 glm::ivec2 vptSize(double scale) {
-  return {std::max(16, static_cast<int>(std::lround(kVptSize.x * scale))), std::max(9, static_cast<int>(std::lround(kVptSize.y * scale)))};
+  return {std::max(16, static_cast<int>(std::lround(kVptSize.x * scale))),
+          std::max(9, static_cast<int>(std::lround(kVptSize.y * scale)))};
 }
 
 std::uint32_t vptSamples(const VptPicture& picture, double scale) {
-  const auto scaled = [&](std::uint32_t samples) { return std::max(1u, static_cast<std::uint32_t>(std::lround(samples * scale))); };
+  const auto scaled = [&](std::uint32_t samples) {
+    return std::max(1u, static_cast<std::uint32_t>(std::lround(samples * scale)));
+  };
   std::uint32_t samples = scaled(picture.samples);
   if (std::string_view(picture.table) != kVptSampleSeries) return samples;
   std::uint32_t before = 0;
@@ -111,8 +123,9 @@ std::uint32_t vptSamples(const VptPicture& picture, double scale) {
   return samples;
 }
 
-VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, const VptPicture& picture, const Scene& scene, glm::ivec2 size, std::uint32_t samples,
-                    double mostSeconds, const PathDeviations& deviations, std::uint32_t seed) {
+VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, const VptPicture& picture,
+                    const Scene& scene, glm::ivec2 size, std::uint32_t samples, double mostSeconds,
+                    const PathDeviations& deviations, std::uint32_t seed) {
   PathTracer::Settings settings;
   settings.deviations = deviations;
   settings.seed = seed;
@@ -131,8 +144,7 @@ VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, co
   tracer.setCamera(camera);
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  while (tracer.advance(samples) && !interrupted() && (mostSeconds <= 0.0 || seconds() < mostSeconds)) {
-  }
+  while (tracer.advance(samples) && !interrupted() && (mostSeconds <= 0.0 || seconds() < mostSeconds)) {}
   VptResult result;
   result.ms = 1000.0 * seconds();
   result.preparationMs = 1000.0 * preparation;

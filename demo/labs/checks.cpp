@@ -31,7 +31,9 @@ std::uint64_t hashOf(const std::string& text) {
   return Random(Hash::of(text.data(), text.size())).word();
 }
 
-bool isFinite(const glm::vec4& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w); }
+bool isFinite(const glm::vec4& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
 
 std::string vectorText(const glm::dvec4& v) {
   // Components behind the last that is not zero say nothing.
@@ -55,17 +57,25 @@ std::optional<Mistake> factorMistake(double ratio) {
     double value;
     const char* name;
   };
-  const std::array named{Named{kPi, "pi"}, Named{1.0 / kPi, "1 / pi"}, Named{2.0, "2"}, Named{0.5, "1 / 2"}, Named{4.0, "4"}, Named{0.25, "1 / 4"}, Named{2.0 * kPi, "2 pi"},
-                         Named{0.5 / kPi, "1 / (2 pi)"}, Named{4.0 * kPi, "4 pi"}, Named{0.25 / kPi, "1 / (4 pi)"}, Named{kPi * kPi, "pi^2"}, Named{1.0 / (kPi * kPi), "1 / pi^2"}};
+  const std::array named{Named{kPi, "pi"},         Named{1.0 / kPi, "1 / pi"},
+                         Named{2.0, "2"},          Named{0.5, "1 / 2"},
+                         Named{4.0, "4"},          Named{0.25, "1 / 4"},
+                         Named{2.0 * kPi, "2 pi"}, Named{0.5 / kPi, "1 / (2 pi)"},
+                         Named{4.0 * kPi, "4 pi"}, Named{0.25 / kPi, "1 / (4 pi)"},
+                         Named{kPi * kPi, "pi^2"}, Named{1.0 / (kPi * kPi), "1 / pi^2"}};
   for (const Named& f : named)
     for (const double sign : {1.0, -1.0})
       if (std::abs(ratio / (sign * f.value) - 1.0) < 2e-3)
-        return Mistake{"factor", fmt::format("everything is {}{} times what it should be: a constant is lost or counted twice", sign < 0.0 ? "-" : "", f.name)};
+        return Mistake{"factor",
+                       fmt::format("everything is {}{} times what it should be: a constant is lost or counted twice",
+                                   sign < 0.0 ? "-" : "", f.name)};
   if (std::abs(ratio + 1.0) < 2e-3) return Mistake{"sign", "everything has the wrong sign"};
   return std::nullopt;
 }
 
-const Mistake kNan{"nan", "a result is not a finite number: a division by zero, the square root or logarithm of a negative number, or a variable without a value"};
+const Mistake kNan{"nan",
+                   "a result is not a finite number: a division by zero, the square root or logarithm of a negative "
+                   "number, or a variable without a value"};
 const Mistake kOther{"other", "no typical mistake fits; compare the worst point by hand"};
 
 }  // namespace
@@ -94,7 +104,8 @@ glm::dvec3 Random::direction() {
 
 fs::path labsFolder() { return dataFolder() / "demo/labs"; }
 
-// ------------------------------------------------------------------------------------------------------------ the hand-in's files
+// ------------------------------------------------------------------------------------------------------------ the
+// hand-in's files
 
 namespace {
 
@@ -124,7 +135,8 @@ std::map<std::string, std::string> parseAnswers(const std::string& text) {
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) {
     if (const auto comment = line.find('#'); comment != std::string::npos) line.resize(comment);
-    if (const auto equals = line.find('='); equals != std::string::npos) answers[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
+    if (const auto equals = line.find('='); equals != std::string::npos)
+      answers[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
   }
   return answers;
 }
@@ -133,18 +145,21 @@ std::vector<int> tasksNotDone(const std::string& text) {
   std::vector<int> tasks;
   static const std::regex kMark(R"(\bNOT_DONE\s*\(\s*(\d+)\s*\))");
   const std::string code = withoutComments(text);
-  for (auto it = std::sregex_iterator(code.begin(), code.end(), kMark); it != std::sregex_iterator(); ++it) tasks.push_back(std::stoi((*it)[1]));
+  for (auto it = std::sregex_iterator(code.begin(), code.end(), kMark); it != std::sregex_iterator(); ++it)
+    tasks.push_back(std::stoi((*it)[1]));
   return tasks;
 }
 
 std::string forbiddenLine(const std::string& text, const std::string& name) {
-  static const std::regex kForbidden(R"(#|\b(layout|buffer|uniform|shared|imageStore|imageLoad|discard|gl_\w+|lab[A-Z]\w*)\b)");
+  static const std::regex kForbidden(
+      R"(#|\b(layout|buffer|uniform|shared|imageStore|imageLoad|discard|gl_\w+|lab[A-Z]\w*)\b)");
   std::istringstream stream(withoutComments(text));
   int number = 1;
   std::smatch match;
   for (std::string line; std::getline(stream, line); ++number)
     if (std::regex_search(line, match, kForbidden))
-      return fmt::format("{}:{}: '{}' has no place here: this file is functions and constants alone", name, number, match.str());
+      return fmt::format("{}:{}: '{}' has no place here: this file is functions and constants alone", name, number,
+                         match.str());
   return "";
 }
 
@@ -156,8 +171,10 @@ struct Checks::Gpu {
     static int count = 0;
     root = fs::temp_directory_path() / fmt::format("lucerna-lab-{}-{}", getpid(), ++count);
     fs::create_directories(root / "lab");
-    for (const auto& entry : fs::directory_iterator(dataFolder() / "shaders")) fs::create_symlink(entry.path(), root / entry.path().filename());
-    for (const char* file : {"kernel.comp", "common.glsl"}) fs::create_symlink(labsFolder() / file, root / "lab" / file);
+    for (const auto& entry : fs::directory_iterator(dataFolder() / "shaders"))
+      fs::create_symlink(entry.path(), root / entry.path().filename());
+    for (const char* file : {"kernel.comp", "common.glsl"})
+      fs::create_symlink(labsFolder() / file, root / "lab" / file);
     fs::create_symlink(labsFolder() / lab.folder / "probe.glsl", root / "lab/probe.glsl");
     writeFileAtomically(root / "lab/tasks.glsl", handIn.tasks);
     programs = std::make_unique<gl::ProgramLibrary>(root);
@@ -171,14 +188,22 @@ struct Checks::Gpu {
 };
 
 Checks::Checks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Report& report)
-    : lab_(lab), handIn_(handIn), report_(report), random_(nonce), notDone_(tasksNotDone(handIn.tasks)), noise_(static_cast<std::uint32_t>(Random(nonce).word())),
+    : lab_(lab),
+      handIn_(handIn),
+      report_(report),
+      random_(nonce),
+      notDone_(tasksNotDone(handIn.tasks)),
+      noise_(static_cast<std::uint32_t>(Random(nonce).word())),
       gpu_(std::make_unique<Gpu>(lab, handIn)) {}
 Checks::~Checks() = default;
 
 std::vector<glm::vec4> Checks::run(int probe, std::span<const glm::vec4> inputs, int stride, int count, int width) {
-  const gl::Program& program = gpu_->programs->loadCompute(fmt::format("lab {} probe {}", lab_.number, probe), "lab/kernel.comp", {{"PROBE", probe}});
-  const gl::Buffer points("lab inputs", std::max<std::size_t>(inputs.size_bytes(), 16), inputs.empty() ? nullptr : inputs.data(), GL_STATIC_DRAW);
-  const gl::Buffer results("lab outputs", static_cast<std::size_t>(count) * sizeof(glm::vec4), nullptr, GL_DYNAMIC_COPY);
+  const gl::Program& program = gpu_->programs->loadCompute(fmt::format("lab {} probe {}", lab_.number, probe),
+                                                           "lab/kernel.comp", {{"PROBE", probe}});
+  const gl::Buffer points("lab inputs", std::max<std::size_t>(inputs.size_bytes(), 16),
+                          inputs.empty() ? nullptr : inputs.data(), GL_STATIC_DRAW);
+  const gl::Buffer results("lab outputs", static_cast<std::size_t>(count) * sizeof(glm::vec4), nullptr,
+                           GL_DYNAMIC_COPY);
   points.bind(GL_SHADER_STORAGE_BUFFER, 0);
   results.bind(GL_SHADER_STORAGE_BUFFER, 1);
   program.use();
@@ -192,7 +217,9 @@ std::vector<glm::vec4> Checks::run(int probe, std::span<const glm::vec4> inputs,
 
 double Checks::parameter(const std::string& name, double least, double most, int digits) const {
   const double scale = std::pow(10.0, digits);
-  return std::round(Random(hashOf(handIn_.seed + "/" + std::to_string(lab_.number) + "/" + name)).uniform(least, most) * scale) / scale;
+  return std::round(Random(hashOf(handIn_.seed + "/" + std::to_string(lab_.number) + "/" + name)).uniform(least, most) *
+                    scale) /
+         scale;
 }
 
 double Checks::yours(const std::string& name, double least, double most, int digits) {
@@ -210,21 +237,27 @@ bool Checks::add(CheckResult result) {
 
 bool Checks::task(int number) {
   task_ = number;
-  const auto found = std::find_if(lab_.tasks.begin(), lab_.tasks.end(), [&](const Task& t) { return t.number == number; });
+  const auto found =
+      std::find_if(lab_.tasks.begin(), lab_.tasks.end(), [&](const Task& t) { return t.number == number; });
   CHECK(found != lab_.tasks.end(), "lab {}, task {}", lab_.number, number);
   if (std::find(notDone_.begin(), notDone_.end(), number) != notDone_.end()) {
-    add({.name = found->function, .verdict = Verdict::notDone, .mistake = {"not-done", fmt::format("task {} not done", number)}});
+    add({.name = found->function,
+         .verdict = Verdict::notDone,
+         .mistake = {"not-done", fmt::format("task {} not done", number)}});
     return false;
   }
   for (const int needed : found->needs)
     if (report_.verdictOf(needed) != Verdict::passed) {
-      add({.name = found->function, .verdict = Verdict::waiting, .mistake = {"waiting", fmt::format("waits for task {}", needed)}});
+      add({.name = found->function,
+           .verdict = Verdict::waiting,
+           .mistake = {"waiting", fmt::format("waits for task {}", needed)}});
       return false;
     }
   return true;
 }
 
-// ------------------------------------------------------------------------------------------------------------ the tests
+// ------------------------------------------------------------------------------------------------------------ the
+// tests
 
 bool Checks::twin(const std::string& name, const Twin& twin) {
   const auto stride = static_cast<std::size_t>(twin.stride), count = static_cast<std::size_t>(twin.points);
@@ -281,9 +314,11 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
     const double ratio = cross / square;
     bool proportional = true;
     for (std::size_t i = 0; i < count && proportional; ++i)
-      proportional = glm::length(glm::dvec4(measured[i]) - ratio * truth[i]) <= 10.0 * twin.tolerance * std::abs(ratio) * (glm::length(truth[i]) + scale);
+      proportional = glm::length(glm::dvec4(measured[i]) - ratio * truth[i]) <=
+                     10.0 * twin.tolerance * std::abs(ratio) * (glm::length(truth[i]) + scale);
     if (proportional)
-      return factorMistake(ratio).value_or(Mistake{"factor", fmt::format("everything is {:.6g} times what it should be: a constant is wrong", ratio)});
+      return factorMistake(ratio).value_or(
+          Mistake{"factor", fmt::format("everything is {:.6g} times what it should be: a constant is wrong", ratio)});
     if (best && most > agreeing && most >= count / 2) return best->mistake;
     return kOther;
   };
@@ -309,10 +344,13 @@ bool Checks::mean(const std::string& name, const Mean& test) {
     const double off = std::max(0.0, std::abs(mean - expected) - kFirmness * (std::abs(expected) + std::abs(mean)));
     return error > 0.0 ? studentTail(off / error, count - 1.0) : off > 0.0 ? 0.0 : 1.0;
   };
-  CheckResult result{.name = name, .expected = fmt::format("{:.6g}", test.expected), .measured = finite ? fmt::format("{:.6g} +- {:.2g}", mean, error) : "not a number"};
+  CheckResult result{.name = name,
+                     .expected = fmt::format("{:.6g}", test.expected),
+                     .measured = finite ? fmt::format("{:.6g} +- {:.2g}", mean, error) : "not a number"};
   if (finite) {
     result.pValue = tail(test.expected);
-    result.sigma = error > 0.0 ? fmt::format("{:.1f} sigma", std::abs(mean - test.expected) / error) : fmt::format("no noise, off by {:.2g}", std::abs(mean - test.expected));
+    result.sigma = error > 0.0 ? fmt::format("{:.1f} sigma", std::abs(mean - test.expected) / error)
+                               : fmt::format("no noise, off by {:.2g}", std::abs(mean - test.expected));
     if (result.pValue >= kFalseAlarm / kMostTests) {
       result.verdict = Verdict::passed;
       return add(result);
@@ -321,7 +359,8 @@ bool Checks::mean(const std::string& name, const Mean& test) {
   result.mistake = kOther;
   double nearest = 1e300;
   for (const Mean::Wrong& wrong : test.mistakes)
-    if (finite && tail(wrong.value) >= kFalseAlarm / kMostTests && std::abs(mean - wrong.value) < nearest) nearest = std::abs(mean - wrong.value), result.mistake = wrong.mistake;
+    if (finite && tail(wrong.value) >= kFalseAlarm / kMostTests && std::abs(mean - wrong.value) < nearest)
+      nearest = std::abs(mean - wrong.value), result.mistake = wrong.mistake;
   if (!finite) result.mistake = kNan;
   else if (nearest == 1e300 && mean == 0.0 && error == 0.0) result.mistake = {"zero", "the result is zero everywhere"};
   else if (nearest == 1e300) result.mistake = factorMistake(mean / test.expected).value_or(kOther);
@@ -345,13 +384,18 @@ bool Checks::chiSquare(const std::string& name, const ChiSquare& test) {
     for (std::size_t b = 0; b <= bins; ++b) {
       const double expected = (b < shares.size() ? shares[b] : 0.0) * static_cast<double>(test.samples);
       if (expected == 0.0 && least == 0.0) sum += counts[b] > 0.0 ? 1e9 : 0.0;
-      else if (expected > 0.0 || counts[b] > 0.0) sum += (counts[b] - expected) * (counts[b] - expected) / std::max(expected, least * static_cast<double>(test.samples));
+      else if (expected > 0.0 || counts[b] > 0.0)
+        sum += (counts[b] - expected) * (counts[b] - expected) /
+               std::max(expected, least * static_cast<double>(test.samples));
     }
     return sum;
   };
   const double degrees = static_cast<double>(bins) - 1.0, chi = statistic(test.shares, 0.0);
-  CheckResult result{.name = name, .expected = fmt::format("chi-square {:.0f} +- {:.0f}", degrees, std::sqrt(2.0 * degrees)),
-                     .measured = chi >= 1e9 ? fmt::format("{:.0f} of {} samples where none can be", counts[bins], test.samples) : fmt::format("{:.1f}", chi)};
+  CheckResult result{.name = name,
+                     .expected = fmt::format("chi-square {:.0f} +- {:.0f}", degrees, std::sqrt(2.0 * degrees)),
+                     .measured = chi >= 1e9
+                                     ? fmt::format("{:.0f} of {} samples where none can be", counts[bins], test.samples)
+                                     : fmt::format("{:.1f}", chi)};
   result.pValue = finite ? chiSquareTail(chi, degrees) : 0.0;
   result.sigma = fmt::format("{:.1f} sigma", (chi - degrees) / std::sqrt(2.0 * degrees));
   if (chi >= 1e9) result.sigma = "impossible";
@@ -362,7 +406,8 @@ bool Checks::chiSquare(const std::string& name, const ChiSquare& test) {
   result.mistake = finite ? kOther : kNan;
   double least = 0.25 * statistic(test.shares, 1e-3);
   for (const ChiSquare::Wrong& wrong : test.mistakes)
-    if (const double other = statistic(wrong.shares, 1e-3); finite && other < least) least = other, result.mistake = wrong.mistake;
+    if (const double other = statistic(wrong.shares, 1e-3); finite && other < least)
+      least = other, result.mistake = wrong.mistake;
   return add(result);
 }
 
@@ -389,7 +434,8 @@ bool Checks::picture(const std::string& name, const Picture& test, const std::ve
       square += glm::dot(reference, reference);
     }
   const double rms = std::sqrt(square / (3.0 * test.size.x * test.size.y));
-  CheckResult result{.name = name, .expected = fmt::format("relative L2 {}", noisy ? "of the noise alone" : "below 0.1 %"),
+  CheckResult result{.name = name,
+                     .expected = fmt::format("relative L2 {}", noisy ? "of the noise alone" : "below 0.1 %"),
                      .measured = fmt::format("relative L2 {:.3g} %", 100.0 * std::sqrt(squareOff / square))};
   if (noisy) {
     // Tiles: the mean difference against its standard error.
@@ -416,7 +462,8 @@ bool Checks::picture(const std::string& name, const Picture& test, const std::ve
   } else {
     double worst = 0.0;
     for (std::size_t i = 0; i < pixels.size(); ++i)
-      worst = std::max(worst, glm::length(glm::dvec3(shown.mine.pixels[i]) - glm::dvec3(shown.reference.pixels[i])) / (glm::length(glm::dvec3(shown.reference.pixels[i])) + rms));
+      worst = std::max(worst, glm::length(glm::dvec3(shown.mine.pixels[i]) - glm::dvec3(shown.reference.pixels[i])) /
+                                  (glm::length(glm::dvec3(shown.reference.pixels[i])) + rms));
     result.sigma = fmt::format("worst pixel off by {:.3g} %", 100.0 * worst);
     result.verdict = finite && worst <= 1e-3 ? Verdict::passed : Verdict::wrong;
   }
@@ -437,7 +484,8 @@ bool Checks::picture(const std::string& name, const Picture& test, const std::ve
   return add(result);
 }
 
-void Checks::answer(const std::string& name, double expected, double tolerance, const std::vector<Mean::Wrong>& mistakes) {
+void Checks::answer(const std::string& name, double expected, double tolerance,
+                    const std::vector<Mean::Wrong>& mistakes) {
   task_ = 0;
   report_.expectedAnswers.emplace_back(name, expected);
   const auto found = handIn_.answers.find(name);
@@ -453,21 +501,26 @@ void Checks::answer(const std::string& name, double expected, double tolerance, 
   result.measured = found->second;
   result.sigma = fmt::format("within {:.2g} %", 100.0 * tolerance);
   const auto isNear = [&](double wanted) { return std::abs(value - wanted) <= tolerance * std::abs(wanted) + 1e-12; };
-  if (!end || *end != '\0' || end == found->second.c_str() || !std::isfinite(value)) result.mistake = {"nan", fmt::format("answers.txt: {} is not a number", name)};
+  if (!end || *end != '\0' || end == found->second.c_str() || !std::isfinite(value))
+    result.mistake = {"nan", fmt::format("answers.txt: {} is not a number", name)};
   else if (isNear(expected)) result.verdict = Verdict::passed;
   else {
     // The right figure is not told: it would be the answer.
     result.mistake = {"other", "not the figure of this seed; README.md tells what it follows from"};
-    if (const auto factor = factorMistake(value / expected)) result.mistake = {factor->id, "right but for a constant factor"};
+    if (const auto factor = factorMistake(value / expected))
+      result.mistake = {factor->id, "right but for a constant factor"};
     for (const Mean::Wrong& wrong : mistakes)
       if (isNear(wrong.value)) result.mistake = wrong.mistake;
   }
   add(result);
 }
 
-void Checks::figure(const std::string& name, double value, int digits) { report_.figures.emplace_back(name, fmt::format("{:.{}g}", value, digits)); }
+void Checks::figure(const std::string& name, double value, int digits) {
+  report_.figures.emplace_back(name, fmt::format("{:.{}g}", value, digits));
+}
 
-// ------------------------------------------------------------------------------------------------------------ a whole check
+// ------------------------------------------------------------------------------------------------------------ a whole
+// check
 
 Verdict Report::verdictOf(int task) const {
   Verdict verdict = Verdict::waiting;
@@ -490,7 +543,8 @@ double Report::score(const Lab& lab) const {
 }
 
 bool Report::allPassed() const {
-  return compileError.empty() && !checks.empty() && std::all_of(checks.begin(), checks.end(), [](const CheckResult& c) { return c.verdict == Verdict::passed; });
+  return compileError.empty() && !checks.empty() &&
+         std::all_of(checks.begin(), checks.end(), [](const CheckResult& c) { return c.verdict == Verdict::passed; });
 }
 
 Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce) {
@@ -508,10 +562,12 @@ Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce) {
       // The driver's log names the copy; the student knows the file as it was given.
       std::string message = error.what();
       const auto replaceAll = [&](const std::string& from, const std::string& to) {
-        for (std::size_t at = 0; (at = message.find(from, at)) != std::string::npos; at += to.size()) message.replace(at, from.size(), to);
+        for (std::size_t at = 0; (at = message.find(from, at)) != std::string::npos; at += to.size())
+          message.replace(at, from.size(), to);
       };
       replaceAll("shaders/lab/tasks.glsl", handIn.tasksName);
-      if (message.find("shaders/lab/probe.glsl") != std::string::npos) message += "\nA function of " + handIn.tasksName + " is missing or has another signature than README.md says.";
+      if (message.find("shaders/lab/probe.glsl") != std::string::npos)
+        message += "\nA function of " + handIn.tasksName + " is missing or has another signature than README.md says.";
       report.compileError = message;
     }
   }

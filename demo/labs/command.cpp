@@ -41,7 +41,8 @@ constexpr unsigned kLongest = 300;  ///< seconds; a check takes at most 60
 /// A loop of the student's that never ends must not hang the check for ever: GL cannot be interrupted, the process can.
 void watchTime() {
   std::signal(SIGALRM, [](int) {
-    constexpr char kMessage[] = "lucerna: the check did not end within 300 s: is there a loop in tasks.glsl that never ends?\n";
+    constexpr char kMessage[] =
+        "lucerna: the check did not end within 300 s: is there a loop in tasks.glsl that never ends?\n";
     [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
     std::_Exit(kWrong);
   });
@@ -76,8 +77,10 @@ int start(const Options& options) {
   const Lab& lab = findLab(options.lab);
   const std::string seed = options.seed.empty() ? "example" : options.seed;
   startLab(lab, options.folder, seed);
-  fmt::print("Lab {}: {}, seed {}\n  read     {}/README.md\n  edit     {}/tasks.glsl, {}/answers.txt\n  check    lucerna lab check {} {}\n", lab.number, lab.title, seed, options.folder, options.folder,
-             options.folder, lab.number, options.folder);
+  fmt::print(
+      "Lab {}: {}, seed {}\n  read     {}/README.md\n  edit     {}/tasks.glsl, {}/answers.txt\n  check    lucerna lab "
+      "check {} {}\n",
+      lab.number, lab.title, seed, options.folder, options.folder, options.folder, lab.number, options.folder);
   return 0;
 }
 
@@ -103,7 +106,10 @@ void note(Judged& judged, const Lab& lab) {
   for (const Task& task : lab.tasks)
     if (judged.report.verdictOf(task.number) == Verdict::passed) passed.push_back(task.number);
   judged.folder.state["checks"].push_back(
-      {{"time", std::time(nullptr)}, {"seconds", judged.report.seconds}, {"score", judged.report.compileError.empty() ? judged.report.score(lab) : 0.0}, {"passed", passed}});
+      {{"time", std::time(nullptr)},
+       {"seconds", judged.report.seconds},
+       {"score", judged.report.compileError.empty() ? judged.report.score(lab) : 0.0},
+       {"passed", passed}});
   if (access(judged.folder.path.c_str(), W_OK) == 0) judged.folder.save();
 }
 
@@ -124,7 +130,8 @@ int hint(const Options& options) {
   const auto dot = options.lab.find('.');
   if (dot == std::string::npos) throwBadInput("hint {}: expected LAB.TASK, such as 1.2", options.lab);
   const std::string task = options.lab.substr(dot + 1);
-  if (task.size() != 1 || task[0] < '1' || task[0] > '9') throwBadInput("hint {}: expected LAB.TASK, such as 1.2", options.lab);
+  if (task.size() != 1 || task[0] < '1' || task[0] > '9')
+    throwBadInput("hint {}: expected LAB.TASK, such as 1.2", options.lab);
   fmt::print("{}", takeHint(findLab(options.lab.substr(0, dot)), task[0] - '0', options.folder));
   return 0;
 }
@@ -144,15 +151,18 @@ void writePictures(const fs::path& folder, const Report& report) {
   if (error) throwBadInput("{}: {}", folder.string(), error.message());
   for (const PictureResult& picture : report.pictures) {
     Image off(picture.mine.width, picture.mine.height);
-    for (std::size_t i = 0; i < off.pixels.size(); ++i) off.pixels[i] = 10.0f * glm::abs(picture.mine.pixels[i] - picture.reference.pixels[i]);
+    for (std::size_t i = 0; i < off.pixels.size(); ++i)
+      off.pixels[i] = 10.0f * glm::abs(picture.mine.pixels[i] - picture.reference.pixels[i]);
     writePng(folder / (picture.name + ".mine.png"), toneMapped(picture.mine, 1.0f));
     writePng(folder / (picture.name + ".reference.png"), toneMapped(picture.reference, 1.0f));
     writePng(folder / (picture.name + ".difference10.png"), toneMapped(off, 1.0f));
-    fmt::print("{}/{}.mine.png, .reference.png, .difference10.png: {}\n", folder.string(), picture.name, picture.caption);
+    fmt::print("{}/{}.mine.png, .reference.png, .difference10.png: {}\n", folder.string(), picture.name,
+               picture.caption);
   }
 }
 
-/// Mine to the left, the reference to the right, one picture below the other, as a window shows them: bottom row first, six pixels a pixel.
+/// Mine to the left, the reference to the right, one picture below the other, as a window shows them: bottom row first,
+/// six pixels a pixel.
 struct Shown {
   glm::ivec2 size{0};
   std::vector<std::uint8_t> rgba;
@@ -171,7 +181,8 @@ Shown sideBySide(const Report& report) {
     for (int y = 0; y < kScale * mine.height; ++y)
       for (int x = 0; x < 2 * kScale * mine.width; ++x) {
         const Bitmap& from = x < kScale * mine.width ? mine : reference;
-        const auto source = 4 * static_cast<std::size_t>(y / kScale * mine.width + x / kScale % mine.width), target = 4 * static_cast<std::size_t>((top - 1 - y) * shown.size.x + x);
+        const auto source = 4 * static_cast<std::size_t>(y / kScale * mine.width + x / kScale % mine.width),
+                   target = 4 * static_cast<std::size_t>((top - 1 - y) * shown.size.x + x);
         std::copy_n(&from.rgba[source], 4, &shown.rgba[target]);
       }
     top -= kScale * mine.height;
@@ -179,11 +190,12 @@ Shown sideBySide(const Report& report) {
   return shown;
 }
 
-/// Checks and pictures anew whenever the task file is saved, in a window where there is a display, until Escape or Ctrl-C. What does not compile
-/// leaves the last good pictures.
+/// Checks and pictures anew whenever the task file is saved, in a window where there is a display, until Escape or
+/// Ctrl-C. What does not compile leaves the last good pictures.
 int watch(const Options& options, const Lab& lab) {
   watchForInterrupt();
-  const auto host = options.common.makeHost(true, {.windowSize = {1152, 384}, .windowTitle = fmt::format("Lab {}: yours, and the reference", lab.number)});
+  const auto host = options.common.makeHost(
+      true, {.windowSize = {1152, 384}, .windowTitle = fmt::format("Lab {}: yours, and the reference", lab.number)});
   const gl::Context context;
   gl::Texture texture;
   gl::Framebuffer framebuffer;
@@ -227,7 +239,9 @@ int show(const Options& options) {
     fmt::print("{}\n", judged.report.compileError);
     return kWrong;
   }
-  if (judged.report.pictures.empty()) fmt::print("No picture yet: its tasks are not done (lucerna lab check {} {} says which).\n", lab.number, options.folder);
+  if (judged.report.pictures.empty())
+    fmt::print("No picture yet: its tasks are not done (lucerna lab check {} {} says which).\n", lab.number,
+               options.folder);
   writePictures(fs::path(options.folder) / "pictures", judged.report);
   return 0;
 }
@@ -291,14 +305,18 @@ int mystery(const Options& options) {
       throwBadInput("--answer {}: not one of {}", options.name, fmt::join(mystery.candidates, ", "));
     const bool right = options.name == mystery.hidden;
     fmt::print("seed {}: {} is {}\n", options.seed, options.name, right ? "right" : "not it");
-    options.common.writeJson({{"seed", options.seed}, {"answer", options.name}, {"right", right}, {"score", right ? 100 : 0}});
+    options.common.writeJson(
+        {{"seed", options.seed}, {"answer", options.name}, {"right", right}, {"score", right ? 100 : 0}});
     return right ? 0 : kWrong;
   }
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
   const Readings readings = readInstruments(context, programs, mystery.technique, mystery.hidden);
-  fmt::print("Mystery of seed {}: a Cornell box by technique {}, one deviation is on. Mean indirect radiance:\n{:<20}{:>12}{:>12}{:>10}\n", options.seed, mystery.technique, "instrument", "sound", "mystery", "ratio");
+  fmt::print(
+      "Mystery of seed {}: a Cornell box by technique {}, one deviation is on. Mean indirect "
+      "radiance:\n{:<20}{:>12}{:>12}{:>10}\n",
+      options.seed, mystery.technique, "instrument", "sound", "mystery", "ratio");
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const Reading& r : readings.readings) {
     fmt::print("{:<20}{:>12.5g}{:>12.5g}{:>10.4f}\n", r.instrument, r.sound, r.hidden, r.hidden / r.sound);
@@ -310,10 +328,16 @@ int mystery(const Options& options) {
   const double scale = measure::heatMapScale(readings.hidden, readings.sound);
   writePng(fs::path(options.folder) / "sound.png", toneMapped(readings.sound, 4.0f));
   writePng(fs::path(options.folder) / "mystery.png", toneMapped(readings.hidden, 4.0f));
-  writePng(fs::path(options.folder) / "heat_map.png", measure::heatMap(readings.hidden, readings.sound, measure::HeatMap::signedLuminance, scale));
-  fmt::print("{0}/sound.png, mystery.png, heat_map.png (signed, {1:.3g} is full red)\nWhich is it? {2}\nlucerna lab mystery --seed {3} --answer NAME; lucerna lab museum describes them all.\n", options.folder, scale,
-             fmt::join(mystery.candidates, ", "), options.seed);
-  options.common.writeJson({{"seed", options.seed}, {"technique", mystery.technique}, {"candidates", mystery.candidates}, {"readings", rows}});
+  writePng(fs::path(options.folder) / "heat_map.png",
+           measure::heatMap(readings.hidden, readings.sound, measure::HeatMap::signedLuminance, scale));
+  fmt::print(
+      "{0}/sound.png, mystery.png, heat_map.png (signed, {1:.3g} is full red)\nWhich is it? {2}\nlucerna lab mystery "
+      "--seed {3} --answer NAME; lucerna lab museum describes them all.\n",
+      options.folder, scale, fmt::join(mystery.candidates, ", "), options.seed);
+  options.common.writeJson({{"seed", options.seed},
+                            {"technique", mystery.technique},
+                            {"candidates", mystery.candidates},
+                            {"readings", rows}});
   return 0;
 }
 
@@ -334,7 +358,10 @@ std::function<int()> addLab(CLI::App& app) {
     command->add_option("DIR", options->folder, "folder of the hand-in")->capture_default_str();
   };
   const auto addSeed = [&](CLI::App* command, const char* what) { command->add_option("--seed", options->seed, what); };
-  const auto addNonce = [&](CLI::App* command) { command->add_option("--nonce", options->nonce, "probe points and noise of an earlier run; 0: new ones")->capture_default_str(); };
+  const auto addNonce = [&](CLI::App* command) {
+    command->add_option("--nonce", options->nonce, "probe points and noise of an earlier run; 0: new ones")
+        ->capture_default_str();
+  };
   add("list", "The labs and their tasks", list);
   CLI::App* startApp = add("start", "Copy a lab's files into a folder of your own", start);
   startApp->add_option("LAB", options->lab, "number of the lab")->required();
@@ -353,25 +380,31 @@ std::function<int()> addLab(CLI::App& app) {
   CLI::App* showApp = add("show", "Write the lab's pictures: yours, the reference, the difference", show);
   addLabAndFolder(showApp);
   addNonce(showApp);
-  showApp->add_flag("--watch", options->watch, "anew whenever tasks.glsl is saved, in a window where there is a display, until Escape or Ctrl-C");
+  showApp->add_flag("--watch", options->watch,
+                    "anew whenever tasks.glsl is saved, in a window where there is a display, until Escape or Ctrl-C");
   CLI::App* reportApp = add("report", "Write the hand-in as one self-contained HTML page", report);
   addLabAndFolder(reportApp);
   addNonce(reportApp);
   addSeed(reportApp, "for graders: instead of the hand-in's own");
   reportApp->add_option("-o,--output", options->html, "FILE.html (default: DIR/report.html)");
-  CLI::App* proveApp = add("prove", "For authors: stub, solution and every wrong answer of a lab, and what the checks say", prove);
+  CLI::App* proveApp =
+      add("prove", "For authors: stub, solution and every wrong answer of a lab, and what the checks say", prove);
   proveApp->add_option("LAB", options->lab, "number of the lab (default: all)");
-  proveApp->add_option("--runs", options->runs, "checks of the solution with other noise, to count false alarms")->check(CLI::Range(0, 1000000))->capture_default_str();
+  proveApp->add_option("--runs", options->runs, "checks of the solution with other noise, to count false alarms")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
   addNonce(proveApp);
   CLI::App* figuresApp = add("figures", "For authors: the figures that a lab's README quotes", figures);
   figuresApp->add_option("LAB", options->lab, "number of the lab")->required();
   addSeed(figuresApp, "default: example");
-  CLI::App* mysteryApp = add("mystery", "A picture with one hidden deviation: find it by instruments, and say which", mystery);
+  CLI::App* mysteryApp =
+      add("mystery", "A picture with one hidden deviation: find it by instruments, and say which", mystery);
   addSeed(mysteryApp, "which deviation is hidden follows from it");
   mysteryApp->get_option("--seed")->required();
   mysteryApp->add_option("--answer", options->name, "name of the deviation: graded");
   mysteryApp->add_option("-o,--output", options->folder, "folder of the pictures")->capture_default_str();
-  CLI::App* museumApp = add("museum", "One HTML page of every deviation: symptom, cause, formula, picture, the test that catches it", museum);
+  CLI::App* museumApp = add(
+      "museum", "One HTML page of every deviation: symptom, cause, formula, picture, the test that catches it", museum);
   museumApp->add_option("-o,--output", options->html, "FILE.html (default: museum.html)");
   return [options, commands] {
     for (const auto& [command, work] : commands)

@@ -23,7 +23,9 @@ std::vector<std::string> hintsOf(const Lab& lab, int task) {
   const std::string begin = fmt::format("{}.", task);
   for (std::string line; std::getline(stream, line);)
     if (line.starts_with(begin)) hints.push_back(line.substr(line.find(' ') + 1));
-  if (hints.size() != 3) throwBadInput("{}: task {} has {} hints, expected three lines '{}.1 ...' to '{}.3 ...'", lab.folder + "/hints.txt", task, hints.size(), task, task);
+  if (hints.size() != 3)
+    throwBadInput("{}: task {} has {} hints, expected three lines '{}.1 ...' to '{}.3 ...'", lab.folder + "/hints.txt",
+                  task, hints.size(), task, task);
   return hints;
 }
 
@@ -59,16 +61,23 @@ Folder Folder::open(const Lab& lab, const fs::path& path, const std::string& see
   if (fs::exists(file)) {
     try {
       folder.state = Json::parse(readFileText(file));
-      if (folder.state.at("lab") != lab.number) throwBadInput("{} belongs to lab {}, not to lab {}", path.string(), folder.state.at("lab").dump(), lab.number);
-      if (!folder.state.at("seed").is_string() || !folder.state.at("hints").is_array() || !folder.state.at("checks").is_array() || !folder.state.at("started").is_number())
+      if (folder.state.at("lab") != lab.number)
+        throwBadInput("{} belongs to lab {}, not to lab {}", path.string(), folder.state.at("lab").dump(), lab.number);
+      if (!folder.state.at("seed").is_string() || !folder.state.at("hints").is_array() ||
+          !folder.state.at("checks").is_array() || !folder.state.at("started").is_number())
         throwBadInput("{}: expected seed, started, hints and checks", file.string());
-    } catch (const Json::exception& error) {
-      throwBadInput("{}: {}", file.string(), error.what());
-    }
+    } catch (const Json::exception& error) { throwBadInput("{}: {}", file.string(), error.what()); }
   } else if (seed.empty()) {
-    throwBadInput("{} is no folder of a lab: lab.json is missing (lucerna lab start {} {} makes one; a grader names the seed: --seed ID)", path.string(), lab.number, path.string());
+    throwBadInput(
+        "{} is no folder of a lab: lab.json is missing (lucerna lab start {} {} makes one; a grader names the seed: "
+        "--seed ID)",
+        path.string(), lab.number, path.string());
   } else {
-    folder.state = {{"lab", lab.number}, {"seed", seed}, {"started", std::time(nullptr)}, {"hints", Json::array()}, {"checks", Json::array()}};
+    folder.state = {{"lab", lab.number},
+                    {"seed", seed},
+                    {"started", std::time(nullptr)},
+                    {"hints", Json::array()},
+                    {"checks", Json::array()}};
   }
   if (!seed.empty()) folder.state["seed"] = seed;
   return folder;
@@ -86,7 +95,8 @@ HandIn Folder::handIn() const {
 
 void startLab(const Lab& lab, const fs::path& path, const std::string& seed) {
   for (const char* name : {"tasks.glsl", "answers.txt", "lab.json"})
-    if (fs::exists(path / name)) throwBadInput("{} is there already: choose another folder, nothing is overwritten", (path / name).string());
+    if (fs::exists(path / name))
+      throwBadInput("{} is there already: choose another folder, nothing is overwritten", (path / name).string());
   std::error_code error;
   fs::create_directories(path, error);
   if (error) throwBadInput("{}: {}", path.string(), error.message());
@@ -94,7 +104,13 @@ void startLab(const Lab& lab, const fs::path& path, const std::string& seed) {
   writeFileAtomically(path / "README.md", readFileText(source / "README.md"));
   writeFileAtomically(path / "tasks.glsl", stubText(lab));
   writeFileAtomically(path / "answers.txt", readFileText(source / "answers.txt"));
-  Folder{path, {{"lab", lab.number}, {"seed", seed}, {"started", std::time(nullptr)}, {"hints", Json::array()}, {"checks", Json::array()}}}.save();
+  Folder{path,
+         {{"lab", lab.number},
+          {"seed", seed},
+          {"started", std::time(nullptr)},
+          {"hints", Json::array()},
+          {"checks", Json::array()}}}
+      .save();
 }
 
 void putSolution(const Lab& lab, const fs::path& path) {
@@ -118,7 +134,8 @@ std::string takeHint(const Lab& lab, int task, const fs::path& path) {
     if (hint.value("task", 0) == task) level = std::min(3, hint.value("level", 0) + 1);
   folder.state["hints"].push_back({{"task", task}, {"level", level}, {"time", std::time(nullptr)}});
   folder.save();
-  return fmt::format("Lab {}, task {}, hint {} of 3: {}\n", lab.number, task, level, hints[static_cast<std::size_t>(level) - 1]);
+  return fmt::format("Lab {}, task {}, hint {} of 3: {}\n", lab.number, task, level,
+                     hints[static_cast<std::size_t>(level) - 1]);
 }
 
 }  // namespace lucerna::demo::labs

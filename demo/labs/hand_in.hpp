@@ -1,4 +1,5 @@
-// A student's folder: tasks.glsl, answers.txt and lab.json, which keeps the seed, the hints taken and what each check found.
+// A student's folder: tasks.glsl, answers.txt and lab.json, which keeps the seed, the hints taken and what each check
+// found.
 #pragma once
 
 #include "labs/lab.hpp"
@@ -17,7 +18,8 @@ struct Folder {
   HandIn handIn() const;
 };
 
-/// Copies README.md, tasks.glsl and an empty answers.txt. Throws Error(badInput) where the folder holds any of them already.
+/// Copies README.md, tasks.glsl and an empty answers.txt. Throws Error(badInput) where the folder holds any of them
+/// already.
 void startLab(const Lab& lab, const std::filesystem::path& path, const std::string& seed);
 /// Puts the sample solution in the place of tasks.glsl, which stays as tasks.mine.glsl; lab.json notes it.
 void putSolution(const Lab& lab, const std::filesystem::path& path);

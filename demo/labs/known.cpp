@@ -29,10 +29,12 @@ double gammaTail(double a, double x) {
   return front * h;
 }
 
-/// I_x(a, b), the regularised incomplete beta function, by its continued fraction; good where x < (a + 1) / (a + b + 2).
+/// I_x(a, b), the regularised incomplete beta function, by its continued fraction; good where x < (a + 1) / (a + b +
+/// 2).
 double betaPart(double a, double b, double x) {
   if (x <= 0.0) return 0.0;
-  const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+  const double front =
+      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
   double c = 1.0, d = 1.0 / (1.0 - (a + b) * x / (a + 1.0)), h = d;
   for (int m = 1; m < 10000; ++m) {
     const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
@@ -60,7 +62,8 @@ double studentTail(double t, double degrees) {
 double polygonIrradiance(std::span<const glm::dvec3> corners, const glm::dvec3& x, const glm::dvec3& n) {
   double sum = 0.0;
   for (std::size_t k = 0; k < corners.size(); ++k) {
-    const glm::dvec3 a = glm::normalize(corners[k] - x), b = glm::normalize(corners[(k + 1) % corners.size()] - x), c = glm::cross(a, b);
+    const glm::dvec3 a = glm::normalize(corners[k] - x), b = glm::normalize(corners[(k + 1) % corners.size()] - x),
+                     c = glm::cross(a, b);
     if (const double sine = glm::length(c); sine > 0.0) sum += std::atan2(sine, glm::dot(a, b)) * glm::dot(c, n) / sine;
   }
   return 0.5 * std::abs(sum);

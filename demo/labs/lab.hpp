@@ -1,12 +1,15 @@
-// Teaching labs: what a lab is, and the checks that judge a hand-in. docs/teaching.md tells how to write a lab of one's own.
+// Teaching labs: what a lab is, and the checks that judge a hand-in. docs/teaching.md tells how to write a lab of one's
+// own.
 //
-// A lab is a folder (README.md, tasks.glsl, probe.glsl, hints.txt, mutants.txt), a solution (solutions/FOLDER.glsl) and one .cpp with a
-// Lab: its tasks and a function that checks them. The student edits tasks.glsl. Each check runs one probe: kernel.comp with the student's file
-// and the lab's probe.glsl, whose `vec4 probe()` is called once an invocation. Probe points are drawn anew in each run (from the nonce), what the
-// student's figures depend on (albedo, g, ...) from the student's seed.
+// A lab is a folder (README.md, tasks.glsl, probe.glsl, hints.txt, mutants.txt), a solution (solutions/FOLDER.glsl) and
+// one .cpp with a Lab: its tasks and a function that checks them. The student edits tasks.glsl. Each check runs one
+// probe: kernel.comp with the student's file and the lab's probe.glsl, whose `vec4 probe()` is called once an
+// invocation. Probe points are drawn anew in each run (from the nonce), what the student's figures depend on (albedo,
+// g, ...) from the student's seed.
 //
-// Statistics: each test refuses a correct answer with probability kFalseAlarm / kMostTests at most (Bonferroni), so a whole check does with
-// kFalseAlarm, below once in 10,000 runs. The thresholds come from Student's t and the chi-square distribution.
+// Statistics: each test refuses a correct answer with probability kFalseAlarm / kMostTests at most (Bonferroni), so a
+// whole check does with kFalseAlarm, below once in 10,000 runs. The thresholds come from Student's t and the chi-square
+// distribution.
 #pragma once
 
 #include "base/image.hpp"
@@ -27,17 +30,17 @@
 namespace lucerna::demo::labs {
 
 constexpr double kFalseAlarm = 2e-5;  ///< of a run of `lab check`
-constexpr int kMostTests = 40;        ///< statistical tests in a lab at most
-constexpr double kFirmness = 1e-6;    ///< a float's rounding, relative, that a mean may carry beside its noise
+constexpr int kMostTests = 40;  ///< statistical tests in a lab at most
+constexpr double kFirmness = 1e-6;  ///< a float's rounding, relative, that a mean may carry beside its noise
 
 /// splitmix64 [Steele2014]: the same numbers on every machine.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
   std::uint64_t word();
-  double uniform();                         ///< in [0,1), 53 bits
+  double uniform();  ///< in [0,1), 53 bits
   double uniform(double least, double most) { return least + (most - least) * uniform(); }
-  glm::dvec3 direction();                   ///< uniform on the sphere
+  glm::dvec3 direction();  ///< uniform on the sphere
 
  private:
   std::uint64_t state_;
@@ -45,7 +48,7 @@ class Random {
 
 /// A typical wrong answer: what it would give, and what to say of it.
 struct Mistake {
-  std::string id = {};    ///< such as "lost-cosine"; mutants.txt names it
+  std::string id = {};  ///< such as "lost-cosine"; mutants.txt names it
   std::string text = {};  ///< one sentence to the student
 };
 
@@ -64,11 +67,13 @@ struct Twin {
     Function value;
   };
   std::vector<Wrong> mistakes = {};
-  double tolerance = 1e-4;  ///< of |truth| plus a hundredth of its root mean square: rounding in float, far below any mistake
+  double tolerance =
+      1e-4;  ///< of |truth| plus a hundredth of its root mean square: rounding in float, far below any mistake
   int points = 2048;
 };
 
-/// The mean of what the invocations return in .x, independent of each other, against its expected value: Student's t test.
+/// The mean of what the invocations return in .x, independent of each other, against its expected value: Student's t
+/// test.
 struct Mean {
   int probe = 0;
   std::vector<glm::vec4> inputs = {};
@@ -81,12 +86,13 @@ struct Mean {
   int invocations = 4096;
 };
 
-/// Samples against the probabilities of bins: a chi-square test. A sample that falls into no bin refuses the answer by itself.
+/// Samples against the probabilities of bins: a chi-square test. A sample that falls into no bin refuses the answer by
+/// itself.
 struct ChiSquare {
   int probe = 0;
   std::vector<glm::vec4> inputs = {};
   std::function<int(const glm::vec4&)> bin = {};  ///< -1: no bin holds it
-  std::vector<double> shares = {};           ///< of each bin; their sum is 1
+  std::vector<double> shares = {};  ///< of each bin; their sum is 1
   struct Wrong {
     Mistake mistake;
     std::vector<double> shares;
@@ -95,8 +101,9 @@ struct ChiSquare {
   int samples = 1 << 16;
 };
 
-/// A picture, .rgb the mean of an invocation's samples and .a the variance of the mean of its three channels, against a reference: tiles of 8 by 8
-/// pixels by Student's t, each with its share of the false alarms. A picture without noise (.a = 0) keeps to 1e-3.
+/// A picture, .rgb the mean of an invocation's samples and .a the variance of the mean of its three channels, against a
+/// reference: tiles of 8 by 8 pixels by Student's t, each with its share of the false alarms. A picture without noise
+/// (.a = 0) keeps to 1e-3.
 struct Picture {
   int probe = 0;
   std::vector<glm::vec4> inputs = {};
@@ -117,8 +124,8 @@ struct CheckResult {
   int task = 0;
   std::string name = {}, expected = {}, measured = {}, sigma = {};
   Verdict verdict = Verdict::wrong;
-  Mistake mistake = {};    ///< the likeliest, where wrong
-  double pValue = -1.0;    ///< of a statistical test; -1: none
+  Mistake mistake = {};  ///< the likeliest, where wrong
+  double pValue = -1.0;  ///< of a statistical test; -1: none
 };
 
 struct PictureResult {
@@ -133,7 +140,7 @@ struct Curve {
 
 struct Task {
   int number = 0;
-  std::string function;    ///< as README.md names it
+  std::string function;  ///< as README.md names it
   int points = 0;
   std::vector<int> needs;  ///< tasks that must be right before this one can be judged
 };
@@ -157,23 +164,23 @@ std::filesystem::path labsFolder();
 
 /// What is judged: files, seed and figures of a hand-in.
 struct HandIn {
-  std::string tasks;                          ///< text of tasks.glsl
-  std::string tasksName = "tasks.glsl";       ///< as messages name it
-  std::filesystem::path tasksFile;            ///< where to look for changes (a window); empty: the text alone
-  std::map<std::string, std::string> answers; ///< answers.txt: name, what stands behind the =
+  std::string tasks;  ///< text of tasks.glsl
+  std::string tasksName = "tasks.glsl";  ///< as messages name it
+  std::filesystem::path tasksFile;  ///< where to look for changes (a window); empty: the text alone
+  std::map<std::string, std::string> answers;  ///< answers.txt: name, what stands behind the =
   std::string seed = "example";
 };
 
 struct Report {
   std::string renderer, seed;
   std::uint64_t nonce = 0;
-  std::string compileError;                     ///< file:line of the student's file; empty: it compiles
+  std::string compileError;  ///< file:line of the student's file; empty: it compiles
   std::vector<CheckResult> checks;
   std::vector<PictureResult> pictures;
   std::vector<Curve> curves;
-  std::vector<std::pair<std::string, std::string>> yours;        ///< the student's parameters
-  std::vector<std::pair<std::string, std::string>> figures;      ///< what README.md quotes, for this seed
-  std::vector<std::pair<std::string, double>> expectedAnswers;   ///< for tests; never shown
+  std::vector<std::pair<std::string, std::string>> yours;  ///< the student's parameters
+  std::vector<std::pair<std::string, std::string>> figures;  ///< what README.md quotes, for this seed
+  std::vector<std::pair<std::string, double>> expectedAnswers;  ///< for tests; never shown
   double seconds = 0.0;
 
   Verdict verdictOf(int task) const;  ///< task 0: the questions
@@ -188,7 +195,8 @@ Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce);
 std::map<std::string, std::string> parseAnswers(const std::string& text);
 /// NOT_DONE(n) that stand in the text outside comments.
 std::vector<int> tasksNotDone(const std::string& text);
-/// The first line that a task file must not have (other preprocessor lines, layout, gl_, buffer, ...), as "tasks.glsl:12: ..."; empty: none.
+/// The first line that a task file must not have (other preprocessor lines, layout, gl_, buffer, ...), as
+/// "tasks.glsl:12: ..."; empty: none.
 std::string forbiddenLine(const std::string& text, const std::string& name);
 
 /// What a lab's check function talks to.
@@ -197,7 +205,8 @@ class Checks {
   Checks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Report& report);
   ~Checks();
 
-  /// A parameter of the student's, uniform between the two, rounded to `digits` after the point so that it can be typed. The same for a seed and a name.
+  /// A parameter of the student's, uniform between the two, rounded to `digits` after the point so that it can be
+  /// typed. The same for a seed and a name.
   double parameter(const std::string& name, double least, double most, int digits = 3) const;
   /// A number that differs in each run: what was learnt by heart does not help.
   double fresh(double least, double most) { return random_.uniform(least, most); }
@@ -212,7 +221,8 @@ class Checks {
   /// The same of pixels that a lab put together itself.
   bool picture(const std::string& name, const Picture& picture, const std::vector<glm::vec4>& pixels);
   /// A question's figure in answers.txt. `tolerance` is relative.
-  void answer(const std::string& name, double expected, double tolerance = 0.005, const std::vector<Mean::Wrong>& mistakes = {});
+  void answer(const std::string& name, double expected, double tolerance = 0.005,
+              const std::vector<Mean::Wrong>& mistakes = {});
   /// What a probe returns, for curves and checks of a lab's own.
   std::vector<glm::vec4> run(int probe, std::span<const glm::vec4> inputs, int stride, int count, int width = 1);
   void curve(Curve curve) { report_.curves.push_back(std::move(curve)); }
@@ -234,14 +244,15 @@ class Checks {
   std::unique_ptr<Gpu> gpu_;
 };
 
-/// Irradiance at x, normal n, from a polygon of radiance 1 wholly in front of x's surface, by Lambert's formula: half the sum over edges of the
-/// angle they are seen under times the cosine between the edge's plane and the surface [Arvo1995].
+/// Irradiance at x, normal n, from a polygon of radiance 1 wholly in front of x's surface, by Lambert's formula: half
+/// the sum over edges of the angle they are seen under times the cosine between the edge's plane and the surface
+/// [Arvo1995].
 double polygonIrradiance(std::span<const glm::dvec3> corners, const glm::dvec3& x, const glm::dvec3& n);
 /// The same of a level square above the floor y = 0.
 double squareLampIrradiance(double side, double height, const glm::dvec3& x);
 
 // Distributions, by incomplete gamma and beta functions: continued fractions and series [Press2007, 6.2, 6.4].
-double chiSquareTail(double chiSquare, double degrees);   ///< P(X >= chiSquare)
-double studentTail(double t, double degrees);             ///< P(|T| >= t)
+double chiSquareTail(double chiSquare, double degrees);  ///< P(X >= chiSquare)
+double studentTail(double t, double degrees);  ///< P(|T| >= t)
 
 }  // namespace lucerna::demo::labs

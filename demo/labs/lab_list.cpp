@@ -7,10 +7,12 @@
 
 namespace lucerna::demo::labs {
 
-extern const Lab kFurnaceLab, kShadowsLab, kHarmonicsLab, kPropagationLab, kCascadesLab, kHemicubesLab, kPathsLab, kMediaLab, kTemplateLab;
+extern const Lab kFurnaceLab, kShadowsLab, kHarmonicsLab, kPropagationLab, kCascadesLab, kHemicubesLab, kPathsLab,
+    kMediaLab, kTemplateLab;
 
 std::span<const Lab> allLabs() {
-  static const std::vector<Lab> labs{kFurnaceLab, kShadowsLab, kHarmonicsLab, kPropagationLab, kCascadesLab, kHemicubesLab, kPathsLab, kMediaLab};
+  static const std::vector<Lab> labs{kFurnaceLab,  kShadowsLab,   kHarmonicsLab, kPropagationLab,
+                                     kCascadesLab, kHemicubesLab, kPathsLab,     kMediaLab};
   return labs;
 }
 

@@ -49,7 +49,8 @@ double meanOfAll(const Image& image) {
 std::string techniqueOf(const std::string& deviation) { return deviation.substr(0, deviation.find('.')); }
 
 std::string png(const Image& image, float exposure) {
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("lucerna-museum-{:x}.png", reinterpret_cast<std::uintptr_t>(&image));
+  const auto file = std::filesystem::temp_directory_path() /
+                    fmt::format("lucerna-museum-{:x}.png", reinterpret_cast<std::uintptr_t>(&image));
   writePng(file, toneMapped(image, exposure));
   const std::string text = bench::base64(readFileBytes(file));
   std::filesystem::remove(file);
@@ -65,36 +66,52 @@ nav { columns: 3; font-size: 13px; } nav a { display: block; }
 
 }  // namespace
 
-std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs, const std::function<void(int, int)>& progress) {
+std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
+                       const std::function<void(int, int)>& progress) {
   std::string index = "<nav>", body;
   int done = 0;
   std::map<std::string, Image> sound;
   for (const Room& room : museumRooms()) {
     progress(done++, static_cast<int>(museumRooms().size()));
     const std::string technique = techniqueOf(room.deviation);
-    std::string pictures = fmt::format("<div class=\"pair\">needs a medium: <code>lucerna render assets/media/block/coffee.json --technique path --deviation {}=on</code></div>", room.deviation);
+    std::string pictures = fmt::format(
+        "<div class=\"pair\">needs a medium: <code>lucerna render assets/media/block/coffee.json --technique path "
+        "--deviation {}=on</code></div>",
+        room.deviation);
     if (technique != "path") {
       if (!sound.contains(technique)) sound[technique] = rendered(context, programs, settingsOf(technique, ""));
       const Image with = rendered(context, programs, settingsOf(technique, room.deviation));
       const double change = meanOfAll(with) / meanOfAll(sound[technique]) - 1.0;
-      pictures = fmt::format("<div class=\"pair\"><figure><img alt=\"right\" src=\"data:image/png;base64,{}\">right</figure><figure><img alt=\"with the mistake\" src=\"data:image/png;base64,{}\">mean {:+.2f} %</figure></div>",
-                             png(sound[technique], 4.0f), png(with, 4.0f), 100.0 * change);
+      pictures = fmt::format(
+          "<div class=\"pair\"><figure><img alt=\"right\" src=\"data:image/png;base64,{}\">right</figure><figure><img "
+          "alt=\"with the mistake\" src=\"data:image/png;base64,{}\">mean {:+.2f} %</figure></div>",
+          png(sound[technique], 4.0f), png(with, 4.0f), 100.0 * change);
     } else {
       pictures.replace(0, 17, "<div class=\"pair\" style=\"max-width:300px\">");
     }
     index += fmt::format("<a href=\"#{0}\">{0}</a>", room.deviation);
-    body += fmt::format("<section id=\"{0}\">{1}<h2>{0}</h2><dl><dt>symptom</dt><dd>{2}</dd><dt>cause</dt><dd>{3}</dd><dt>formula</dt><dd><code>{4}</code> for <code>{5}</code></dd><dt>what finds it</dt><dd>{6}</dd><dt>the test that catches it</dt><dd><code>{7}</code></dd></dl></section>\n",
-                        room.deviation, pictures, escapeHtml(room.symptom), escapeHtml(room.cause), escapeHtml(room.published), escapeHtml(room.right), escapeHtml(room.instrument), escapeHtml(room.test));
+    body += fmt::format(
+        "<section "
+        "id=\"{0}\">{1}<h2>{0}</h2><dl><dt>symptom</dt><dd>{2}</dd><dt>cause</dt><dd>{3}</dd><dt>formula</"
+        "dt><dd><code>{4}</code> for <code>{5}</code></dd><dt>what finds it</dt><dd>{6}</dd><dt>the test that catches "
+        "it</dt><dd><code>{7}</code></dd></dl></section>\n",
+        room.deviation, pictures, escapeHtml(room.symptom), escapeHtml(room.cause), escapeHtml(room.published),
+        escapeHtml(room.right), escapeHtml(room.instrument), escapeHtml(room.test));
   }
-  return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Museum of mistakes</title><style>{}</style></head>\n<body><h1>Museum of mistakes</h1>\n"
-                     "<p>Every one of these was published or shipped. <code>--deviation NAME=on</code> turns one on. Pictures: indirect light alone in a Cornell box of 96 by 96 pixels, on {}.</p>{}</nav>\n{}</body></html>\n",
-                     kStyle, escapeHtml(context.capabilities().renderer), index, body);
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Museum of "
+      "mistakes</title><style>{}</style></head>\n<body><h1>Museum of mistakes</h1>\n"
+      "<p>Every one of these was published or shipped. <code>--deviation NAME=on</code> turns one on. Pictures: "
+      "indirect light alone in a Cornell box of 96 by 96 pixels, on {}.</p>{}</nav>\n{}</body></html>\n",
+      kStyle, escapeHtml(context.capabilities().renderer), index, body);
 }
 
 Mystery mysteryOf(const std::string& seed) {
   // Those that leave a mark in the Cornell box: the readings of any two differ.
   static const std::vector<std::pair<std::string, std::vector<std::string>>> kPool{
-      {"lpv", {"lpv.flux-units", "lpv.sum-cascades", "lpv.side-directions", "lpv.four-pi-kernel", "lpv.fewer-steps", "lpv.block-first-step", "lpv.unwindowed", "lpv.blocking-direction"}},
+      {"lpv",
+       {"lpv.flux-units", "lpv.sum-cascades", "lpv.side-directions", "lpv.four-pi-kernel", "lpv.fewer-steps",
+        "lpv.block-first-step", "lpv.unwindowed", "lpv.blocking-direction"}},
       {"rsm", {"rsm.flux-cosine", "rsm.gather-weight"}}};
   Random random(Hash::of(seed.data(), seed.size()));
   random.word();
@@ -108,7 +125,8 @@ Mystery mysteryOf(const std::string& seed) {
   return mystery;
 }
 
-Readings readInstruments(const gl::Context& context, gl::ProgramLibrary& programs, const std::string& technique, const std::string& deviation) {
+Readings readInstruments(const gl::Context& context, gl::ProgramLibrary& programs, const std::string& technique,
+                         const std::string& deviation) {
   Readings result;
   const auto read = [&](const std::string& name, const std::function<void(RenderSettings&)>& change) {
     Reading reading{name};

@@ -1,4 +1,5 @@
-// The museum of mistakes: every deviation of the project as a room, and the mystery, a picture with one of them hidden in it.
+// The museum of mistakes: every deviation of the project as a room, and the mystery, a picture with one of them hidden
+// in it.
 #pragma once
 
 #include "gl/context.hpp"
@@ -15,22 +16,24 @@ namespace lucerna::demo::labs {
 
 struct Room {
   const char* deviation;  ///< as --deviation takes it
-  const char* symptom;    ///< what the eye or an instrument notices
+  const char* symptom;  ///< what the eye or an instrument notices
   const char* cause;
   const char* published;  ///< formula with the mistake
   const char* right;
-  const char* instrument; ///< what finds it
-  const char* test;       ///< FILE: NAME of the test that catches it
+  const char* instrument;  ///< what finds it
+  const char* test;  ///< FILE: NAME of the test that catches it
 };
 std::span<const Room> museumRooms();
 
-/// One self-contained page; pictures of the Cornell box with and without each deviation that the real-time renderer has and that shows there.
-std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs, const std::function<void(int done, int all)>& progress);
+/// One self-contained page; pictures of the Cornell box with and without each deviation that the real-time renderer has
+/// and that shows there.
+std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
+                       const std::function<void(int done, int all)>& progress);
 
 /// The mystery: a deviation that follows from the seed alone.
 struct Mystery {
-  std::string technique;                 ///< "rsm", "lpv" or "radiosity"
-  std::vector<std::string> candidates;   ///< of that technique
+  std::string technique;  ///< "rsm", "lpv" or "radiosity"
+  std::vector<std::string> candidates;  ///< of that technique
   std::string hidden;
 };
 Mystery mysteryOf(const std::string& seed);
@@ -44,6 +47,7 @@ struct Readings {
   std::vector<Reading> readings;
   Image sound, hidden;
 };
-Readings readInstruments(const gl::Context& context, gl::ProgramLibrary& programs, const std::string& technique, const std::string& deviation);
+Readings readInstruments(const gl::Context& context, gl::ProgramLibrary& programs, const std::string& technique,
+                         const std::string& deviation);
 
 }  // namespace lucerna::demo::labs

@@ -13,10 +13,12 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 std::string lineOf(const CheckResult& check) {
-  if (check.verdict == Verdict::notDone || check.verdict == Verdict::waiting) return fmt::format("    {:<8}  {}\n", nameOf(check.verdict), check.mistake.text);
+  if (check.verdict == Verdict::notDone || check.verdict == Verdict::waiting)
+    return fmt::format("    {:<8}  {}\n", nameOf(check.verdict), check.mistake.text);
   std::string line = fmt::format("    {:<8}  {}", nameOf(check.verdict), check.name);
   if (check.verdict == Verdict::passed) return line + fmt::format(" ({})\n", check.sigma);
-  if (!check.expected.empty()) line += fmt::format("\n              expected {}\n              measured {}", check.expected, check.measured);
+  if (!check.expected.empty())
+    line += fmt::format("\n              expected {}\n              measured {}", check.expected, check.measured);
   line += fmt::format("\n              {}\n", check.sigma);
   return line + fmt::format("              likeliest: {}\n", check.mistake.text);
 }
@@ -28,7 +30,8 @@ struct Item {
 /// Tasks, then the questions.
 std::vector<Item> itemsOf(const Lab& lab) {
   std::vector<Item> items;
-  for (const Task& task : lab.tasks) items.push_back({fmt::format("task {} {}", task.number, task.function), task.number, task.points});
+  for (const Task& task : lab.tasks)
+    items.push_back({fmt::format("task {} {}", task.number, task.function), task.number, task.points});
   if (lab.answerPoints > 0) items.push_back({"questions", 0, lab.answerPoints});
   return items;
 }
@@ -48,20 +51,32 @@ std::string textOf(const Report& report, int task) {
 }  // namespace
 
 std::string reportText(const Lab& lab, const Report& report) {
-  std::string text = fmt::format("Lab {}: {}\nseed {}, {}, {:.1f} s, nonce {}\n", lab.number, lab.title, report.seed, report.renderer, report.seconds, report.nonce);
-  for (const auto& [name, value] : report.yours) text += fmt::format("{}{} {}", &name == &report.yours.front().first ? "yours: " : ", ", name, value);
+  std::string text = fmt::format("Lab {}: {}\nseed {}, {}, {:.1f} s, nonce {}\n", lab.number, lab.title, report.seed,
+                                 report.renderer, report.seconds, report.nonce);
+  for (const auto& [name, value] : report.yours)
+    text += fmt::format("{}{} {}", &name == &report.yours.front().first ? "yours: " : ", ", name, value);
   if (!report.yours.empty()) text += "\n";
-  if (!report.compileError.empty()) return text + report.compileError + "\nNothing can be judged before that compiles.\n";
+  if (!report.compileError.empty())
+    return text + report.compileError + "\nNothing can be judged before that compiles.\n";
   for (const Item& item : itemsOf(lab))
-    text += fmt::format("{:<44} {:>5.1f} of {}\n{}", item.title, earned(lab, report, item), item.points, textOf(report, item.number));
+    text += fmt::format("{:<44} {:>5.1f} of {}\n{}", item.title, earned(lab, report, item), item.points,
+                        textOf(report, item.number));
   return text + fmt::format("{:<44} {:>5.1f} of 100\n", "together", report.score(lab));
 }
 
 Json reportJson(const Lab& lab, const Report& report) {
-  Json json{{"lab", lab.number}, {"title", lab.title}, {"seed", report.seed}, {"nonce", report.nonce}, {"renderer", report.renderer}, {"seconds", report.seconds}, {"score", report.compileError.empty() ? report.score(lab) : 0.0},
-            {"compile_error", report.compileError}, {"checks", Json::array()}};
+  Json json{{"lab", lab.number},
+            {"title", lab.title},
+            {"seed", report.seed},
+            {"nonce", report.nonce},
+            {"renderer", report.renderer},
+            {"seconds", report.seconds},
+            {"score", report.compileError.empty() ? report.score(lab) : 0.0},
+            {"compile_error", report.compileError},
+            {"checks", Json::array()}};
   for (const CheckResult& c : report.checks) {
-    Json check{{"task", c.task}, {"name", c.name}, {"verdict", nameOf(c.verdict)}, {"expected", c.expected}, {"measured", c.measured}, {"sigma", c.sigma}};
+    Json check{{"task", c.task},         {"name", c.name},         {"verdict", nameOf(c.verdict)},
+               {"expected", c.expected}, {"measured", c.measured}, {"sigma", c.sigma}};
     if (c.pValue >= 0.0) check["p"] = c.pValue;
     if (c.verdict != Verdict::passed) check["mistake"] = c.mistake.id, check["hint"] = c.mistake.text;
     json["checks"].push_back(std::move(check));
@@ -75,7 +90,10 @@ std::string reportJunit(const Lab& lab, const Report& report) {
   int failures = 0;
   if (!report.compileError.empty()) {
     ++failures;
-    cases += fmt::format("  <testcase classname=\"lab{}\" name=\"compiles\"><failure message=\"does not compile\">{}</failure></testcase>\n", lab.number, escapeHtml(report.compileError));
+    cases += fmt::format(
+        "  <testcase classname=\"lab{}\" name=\"compiles\"><failure message=\"does not "
+        "compile\">{}</failure></testcase>\n",
+        lab.number, escapeHtml(report.compileError));
   }
   for (const CheckResult& c : report.checks) {
     cases += fmt::format("  <testcase classname=\"lab{}.task{}\" name=\"{}\">", lab.number, c.task, escapeHtml(c.name));
@@ -85,16 +103,26 @@ std::string reportJunit(const Lab& lab, const Report& report) {
     }
     cases += "</testcase>\n";
   }
-  return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"lab {}\" tests=\"{}\" failures=\"{}\" time=\"{:.2f}\">\n{}</testsuite>\n", lab.number,
-                     report.checks.size() + (report.compileError.empty() ? 0 : 1), failures, report.seconds, cases);
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"lab {}\" tests=\"{}\" failures=\"{}\" "
+      "time=\"{:.2f}\">\n{}</testsuite>\n",
+      lab.number, report.checks.size() + (report.compileError.empty() ? 0 : 1), failures, report.seconds, cases);
 }
 
 std::string reportGradescope(const Lab& lab, const Report& report) {
   // results.json as Gradescope's autograder reads it: score, tests with score, max_score, status, output.
-  Json json{{"score", report.compileError.empty() ? report.score(lab) : 0.0}, {"execution_time", report.seconds}, {"output", report.compileError}, {"visibility", "visible"}, {"tests", Json::array()}};
+  Json json{{"score", report.compileError.empty() ? report.score(lab) : 0.0},
+            {"execution_time", report.seconds},
+            {"output", report.compileError},
+            {"visibility", "visible"},
+            {"tests", Json::array()}};
   for (const Item& item : itemsOf(lab)) {
     const double points = earned(lab, report, item);
-    json["tests"].push_back({{"name", item.title}, {"score", points}, {"max_score", item.points}, {"status", points == item.points ? "passed" : "failed"}, {"output", textOf(report, item.number)}});
+    json["tests"].push_back({{"name", item.title},
+                             {"score", points},
+                             {"max_score", item.points},
+                             {"status", points == item.points ? "passed" : "failed"},
+                             {"output", textOf(report, item.number)}});
   }
   return json.dump(2) + "\n";
 }

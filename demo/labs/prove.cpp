@@ -14,11 +14,13 @@ std::map<std::string, std::string> rightAnswers(const Lab& lab, const std::strin
   handIn.tasks = stubText(lab);  // no task is judged
   handIn.seed = seed;
   std::map<std::string, std::string> answers;
-  for (const auto& [name, value] : runChecks(lab, handIn, 1).expectedAnswers) answers[name] = fmt::format("{:.9g}", value);
+  for (const auto& [name, value] : runChecks(lab, handIn, 1).expectedAnswers)
+    answers[name] = fmt::format("{:.9g}", value);
   return answers;
 }
 
-Proof::Row judged(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, const std::string& name, const std::string& wantedHint) {
+Proof::Row judged(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, const std::string& name,
+                  const std::string& wantedHint) {
   const Report report = runChecks(lab, handIn, nonce);
   Proof::Row row{name, wantedHint, "", !report.allPassed() && report.score(lab) < 99.99};
   if (!report.compileError.empty()) {
@@ -33,11 +35,13 @@ Proof::Row judged(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, con
 }  // namespace
 
 int Proof::rightHints() const {
-  return static_cast<int>(std::count_if(mutants.begin(), mutants.end(), [](const Row& r) { return r.rejected && r.hint == r.wantedHint; }));
+  return static_cast<int>(
+      std::count_if(mutants.begin(), mutants.end(), [](const Row& r) { return r.rejected && r.hint == r.wantedHint; }));
 }
 
 bool Proof::good() const {
-  return stubPolite && solutionPasses && mutants.size() >= 10 && std::all_of(mutants.begin(), mutants.end(), [](const Row& r) { return r.rejected; }) &&
+  return stubPolite && solutionPasses && mutants.size() >= 10 &&
+         std::all_of(mutants.begin(), mutants.end(), [](const Row& r) { return r.rejected; }) &&
          10 * rightHints() >= 9 * static_cast<int>(mutants.size());
 }
 
@@ -47,7 +51,10 @@ Proof proveLab(const Lab& lab, std::uint64_t nonce, int runs) {
   handIn.tasks = stubText(lab);
   const Report stub = runChecks(lab, handIn, nonce);
   proof.stubPolite = stub.compileError.empty() && stub.score(lab) == 0.0 &&
-                     std::all_of(lab.tasks.begin(), lab.tasks.end(), [&](const Task& t) { return stub.verdictOf(t.number) == Verdict::notDone || (!t.needs.empty() && stub.verdictOf(t.number) == Verdict::waiting); });
+                     std::all_of(lab.tasks.begin(), lab.tasks.end(), [&](const Task& t) {
+                       return stub.verdictOf(t.number) == Verdict::notDone ||
+                              (!t.needs.empty() && stub.verdictOf(t.number) == Verdict::waiting);
+                     });
 
   handIn.answers = rightAnswers(lab, handIn.seed);
   handIn.tasks = solutionText(lab);
@@ -74,29 +81,44 @@ Proof proveLab(const Lab& lab, std::uint64_t nonce, int runs) {
     ++proof.runs;
     proof.refusals += again.allPassed() ? 0 : 1;
     for (const CheckResult& check : again.checks)
-      if (check.pValue >= 0.0) ++proof.tests, proof.below1Percent += check.pValue < 0.01 ? 1 : 0, proof.leastP = std::min(proof.leastP, check.pValue);
+      if (check.pValue >= 0.0)
+        ++proof.tests, proof.below1Percent += check.pValue < 0.01 ? 1 : 0,
+            proof.leastP = std::min(proof.leastP, check.pValue);
   }
   return proof;
 }
 
 std::string proofText(const Lab& lab, const Proof& proof) {
-  std::string text = fmt::format("Lab {}: stub {}, solution {} in {:.1f} s, {} of {} wrong answers refused, {} with the right hint\n", lab.number, proof.stubPolite ? "polite" : "NOT POLITE",
-                                 proof.solutionPasses ? "passes" : "FAILS", proof.solutionSeconds, std::count_if(proof.mutants.begin(), proof.mutants.end(), [](const auto& r) { return r.rejected; }),
-                                 proof.mutants.size(), proof.rightHints());
+  std::string text = fmt::format(
+      "Lab {}: stub {}, solution {} in {:.1f} s, {} of {} wrong answers refused, {} with the right hint\n", lab.number,
+      proof.stubPolite ? "polite" : "NOT POLITE", proof.solutionPasses ? "passes" : "FAILS", proof.solutionSeconds,
+      std::count_if(proof.mutants.begin(), proof.mutants.end(), [](const auto& r) { return r.rejected; }),
+      proof.mutants.size(), proof.rightHints());
   if (!proof.solutionPasses) text += proof.solutionTrouble;
   for (const Proof::Row& row : proof.mutants)
-    text += fmt::format("  {:<28} {:<9} hint {}{}\n", row.name, row.rejected ? "refused" : "NOT REFUSED", row.hint, row.hint == row.wantedHint ? "" : fmt::format(" (wanted {})", row.wantedHint));
+    text += fmt::format("  {:<28} {:<9} hint {}{}\n", row.name, row.rejected ? "refused" : "NOT REFUSED", row.hint,
+                        row.hint == row.wantedHint ? "" : fmt::format(" (wanted {})", row.wantedHint));
   if (proof.runs > 0)
-    text += fmt::format("  {} further runs of the solution: {} refused; {} statistical tests, {:.2f} % with p < 1 %, least p {:.2g}\n", proof.runs, proof.refusals, proof.tests,
-                        100.0 * proof.below1Percent / std::max(1, proof.tests), proof.leastP);
+    text += fmt::format(
+        "  {} further runs of the solution: {} refused; {} statistical tests, {:.2f} % with p < 1 %, least p {:.2g}\n",
+        proof.runs, proof.refusals, proof.tests, 100.0 * proof.below1Percent / std::max(1, proof.tests), proof.leastP);
   return text;
 }
 
 nlohmann::ordered_json proofJson(const Lab& lab, const Proof& proof) {
-  nlohmann::ordered_json json{{"lab", lab.number}, {"good", proof.good()}, {"stub_polite", proof.stubPolite}, {"solution_passes", proof.solutionPasses}, {"seconds", proof.solutionSeconds},
-                              {"right_hints", proof.rightHints()}, {"mutants", nlohmann::ordered_json::array()}};
-  for (const Proof::Row& row : proof.mutants) json["mutants"].push_back({{"name", row.name}, {"rejected", row.rejected}, {"hint", row.hint}, {"wanted", row.wantedHint}});
-  if (proof.runs > 0) json["runs"] = proof.runs, json["refusals"] = proof.refusals, json["tests"] = proof.tests, json["below_1_percent"] = proof.below1Percent, json["least_p"] = proof.leastP;
+  nlohmann::ordered_json json{{"lab", lab.number},
+                              {"good", proof.good()},
+                              {"stub_polite", proof.stubPolite},
+                              {"solution_passes", proof.solutionPasses},
+                              {"seconds", proof.solutionSeconds},
+                              {"right_hints", proof.rightHints()},
+                              {"mutants", nlohmann::ordered_json::array()}};
+  for (const Proof::Row& row : proof.mutants)
+    json["mutants"].push_back(
+        {{"name", row.name}, {"rejected", row.rejected}, {"hint", row.hint}, {"wanted", row.wantedHint}});
+  if (proof.runs > 0)
+    json["runs"] = proof.runs, json["refusals"] = proof.refusals, json["tests"] = proof.tests,
+    json["below_1_percent"] = proof.below1Percent, json["least_p"] = proof.leastP;
   return json;
 }
 

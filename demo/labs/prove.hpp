@@ -1,5 +1,5 @@
-// What an author proves of a lab: its stub is refused politely, its solution passes, every typical wrong answer is refused with the right
-// hint, and a correct answer is not refused by chance.
+// What an author proves of a lab: its stub is refused politely, its solution passes, every typical wrong answer is
+// refused with the right hint, and a correct answer is not refused by chance.
 #pragma once
 
 #include "labs/hand_in.hpp"
@@ -11,12 +11,13 @@ struct Proof {
     std::string name, wantedHint, hint;  ///< the hint of the first wrong check
     bool rejected = false;
   };
-  bool stubPolite = false;      ///< it compiles, every task says "not done" or waits for one, no points
+  bool stubPolite = false;  ///< it compiles, every task says "not done" or waits for one, no points
   bool solutionPasses = false;
   std::string solutionTrouble;  ///< what the report says where it does not
   std::vector<Row> mutants;
   double solutionSeconds = 0.0;
-  int runs = 0, refusals = 0, tests = 0, below1Percent = 0;  ///< of further runs: statistical tests, and how many had p < 0.01
+  int runs = 0, refusals = 0, tests = 0,
+      below1Percent = 0;  ///< of further runs: statistical tests, and how many had p < 0.01
   double leastP = 1.0;
 
   int rightHints() const;

@@ -46,7 +46,8 @@ void Compare::record(const gl::Framebuffer& target, glm::ivec2 size, const Input
   compose_->set("exposure", in.exposure);
   compose_->set("errorScale", in.errorScale);
   glm::vec4 magnifier(0.0f);
-  if (in.magnifier) magnifier = {in.magnifier->x, static_cast<float>(size.y) - in.magnifier->y, kMagnifierRadius, kMagnification};
+  if (in.magnifier)
+    magnifier = {in.magnifier->x, static_cast<float>(size.y) - in.magnifier->y, kMagnifierRadius, kMagnification};
   compose_->set("magnifier", magnifier);
   gl::drawFullScreen(noAttributes_);
 }
@@ -75,7 +76,8 @@ std::optional<glm::ivec2> Compare::pictureAt(const Inputs& in, glm::ivec2 target
   const glm::vec2 fromBelow(pixel.x, pixels.y - pixel.y);
   const bool halves = in.layout == Layout::sideBySide;
   const glm::vec2 region = halves ? glm::vec2(0.5f * pixels.x, pixels.y) : pixels;
-  const glm::vec2 middle = halves ? glm::vec2(fromBelow.x >= 0.5f * pixels.x ? 0.75f : 0.25f, 0.5f) * pixels : 0.5f * pixels;
+  const glm::vec2 middle =
+      halves ? glm::vec2(fromBelow.x >= 0.5f * pixels.x ? 0.75f : 0.25f, 0.5f) * pixels : 0.5f * pixels;
   const float pixelsOfTexel = in.zoom * std::min(region.x / size.x, region.y / size.y);
   const glm::vec2 place = (fromBelow - middle) / pixelsOfTexel + in.centre * size;
   if (place.x < 0.0f || place.y < 0.0f || place.x >= size.x || place.y >= size.y) return {};

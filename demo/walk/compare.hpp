@@ -1,4 +1,5 @@
-// What the window shows of one or two pictures of a view: whole, wipe or side by side, as they are or as errors, under one exposure, tone map and zoom.
+// What the window shows of one or two pictures of a view: whole, wipe or side by side, as they are or as errors, under
+// one exposure, tone map and zoom.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -22,17 +23,17 @@ class Compare {
   struct Side {
     const gl::Texture* radiance = nullptr;  ///< linear, bottom row first
     Show show = Show::picture;
-    const gl::Texture* flip = nullptr;      ///< where show is flip
+    const gl::Texture* flip = nullptr;  ///< where show is flip
   };
   struct Inputs {
-    Side left, right;                ///< right is not read where the layout is one
+    Side left, right;  ///< right is not read where the layout is one
     Layout layout = Layout::one;
-    float split = 0.5f;              ///< of a wipe
+    float split = 0.5f;  ///< of a wipe
     float zoom = 1.0f;
-    glm::vec2 centre{0.5f};          ///< of the picture, (0,0) bottom left
+    glm::vec2 centre{0.5f};  ///< of the picture, (0,0) bottom left
     float exposure = 1.0f;
     const gl::Texture *reference = nullptr, *standardError = nullptr;  ///< where errors are shown
-    float errorScale = 1.0f;         ///< radiance
+    float errorScale = 1.0f;  ///< radiance
     std::optional<glm::vec2> magnifier;  ///< pixel of the target, from the top left
   };
 
@@ -40,7 +41,8 @@ class Compare {
   /// Into the left part of the target, of the target's height.
   void record(const gl::Framebuffer& target, glm::ivec2 size, const Inputs& inputs) const;
 
-  /// Exposure that puts the picture's geometric mean luminance at middle grey; none for a black picture. Waits for the GPU.
+  /// Exposure that puts the picture's geometric mean luminance at middle grey; none for a black picture. Waits for the
+  /// GPU.
   std::optional<float> meteredExposure(const gl::Texture& radiance) const;
 
   /// The pixel of the picture (from the top left) under a pixel of the target; none beside it.

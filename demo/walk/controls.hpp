@@ -1,4 +1,5 @@
-// Dear ImGui's controls, each noted by its name (Ui::note): what the panel's sections are made of. Between Ui::begin and Ui::end.
+// Dear ImGui's controls, each noted by its name (Ui::note): what the panel's sections are made of. Between Ui::begin
+// and Ui::end.
 #pragma once
 
 #include "walk/ui.hpp"
@@ -23,8 +24,10 @@ inline bool checkbox(Ui& ui, const char* label, bool& value) {
   return changed;
 }
 
-inline bool slider(Ui& ui, const char* label, float& value, float least, float most, const char* format, bool logarithmic = false) {
-  const bool changed = ImGui::SliderFloat(label, &value, least, most, format, logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+inline bool slider(Ui& ui, const char* label, float& value, float least, float most, const char* format,
+                   bool logarithmic = false) {
+  const bool changed =
+      ImGui::SliderFloat(label, &value, least, most, format, logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
   ui.note(label);
   return changed;
 }

@@ -16,7 +16,8 @@ void FreeCamera::move(const HostInput& input, double seconds) {
   const glm::dvec3 right(std::cos(yaw), 0.0, std::sin(yaw));
   camera_.up = glm::cross(right, camera_.direction);
   const double step = speed_ * seconds * (input.fast ? 4.0 : 1.0);
-  camera_.position += step * (input.move.x * right + glm::dvec3(0.0, input.move.y, 0.0) + input.move.z * camera_.direction);
+  camera_.position +=
+      step * (input.move.x * right + glm::dvec3(0.0, input.move.y, 0.0) + input.move.z * camera_.direction);
 }
 
 }  // namespace lucerna::demo

@@ -1,4 +1,5 @@
-// First-person camera: W A S D and Q E move, dragging with the left button looks around (the original's CControlCamera).
+// First-person camera: W A S D and Q E move, dragging with the left button looks around (the original's
+// CControlCamera).
 #pragma once
 
 #include "host/host.hpp"

@@ -9,14 +9,17 @@ bool wantsGround(const Scene& scene) { return scene.defaultSun; }
 void addGround(Scene& scene) {
   const glm::dvec3 extent = scene.bounds.extent(), centre = scene.bounds.centre();
   const double half = 1.5 * std::max({extent.x, extent.z, 0.1 * extent.y, 1e-9});
-  const double height = scene.bounds.min.y - 1e-4 * std::max(glm::length(extent), 1e-9);  // below, so that a model's own floor stays in sight
+  const double height =
+      scene.bounds.min.y -
+      1e-4 * std::max(glm::length(extent), 1e-9);  // below, so that a model's own floor stays in sight
   const auto first = static_cast<std::uint32_t>(scene.vertices.size());
   Mesh mesh;
   mesh.name = "ground";
   mesh.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
   mesh.indexCount = 6;
   mesh.material = static_cast<int>(scene.materials.size());
-  for (const glm::dvec2& corner : {glm::dvec2(-1.0, -1.0), glm::dvec2(-1.0, 1.0), glm::dvec2(1.0, 1.0), glm::dvec2(1.0, -1.0)}) {
+  for (const glm::dvec2& corner :
+       {glm::dvec2(-1.0, -1.0), glm::dvec2(-1.0, 1.0), glm::dvec2(1.0, 1.0), glm::dvec2(1.0, -1.0)}) {
     Vertex vertex;
     vertex.position = glm::vec3(centre.x + half * corner.x, height, centre.z + half * corner.y);
     vertex.normal = glm::vec3(0.0f, 1.0f, 0.0f);

@@ -5,7 +5,8 @@
 
 namespace lucerna::demo {
 
-/// A horizontal grey square just below the scene's lowest point, three times as wide as the scene. Changes vertices, meshes, materials and bounds.
+/// A horizontal grey square just below the scene's lowest point, three times as wide as the scene. Changes vertices,
+/// meshes, materials and bounds.
 void addGround(Scene& scene);
 /// Whether a scene looks like a model alone: no file said how it is lit.
 bool wantsGround(const Scene& scene);

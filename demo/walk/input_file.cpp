@@ -32,12 +32,15 @@ InputPlayer::InputPlayer(const std::filesystem::path& file) : file_(file) {
     if (!(words >> event.frame >> event.verb) || event.frame < 0) fail(number, "expected FRAME VERB ...");
     std::getline(words >> std::ws, event.rest);
     while (!event.rest.empty() && std::isspace(static_cast<unsigned char>(event.rest.back()))) event.rest.pop_back();
-    if (!events_.empty() && event.frame < events_.back().frame) fail(number, fmt::format("frame {} comes after frame {}", event.frame, events_.back().frame));
+    if (!events_.empty() && event.frame < events_.back().frame)
+      fail(number, fmt::format("frame {} comes after frame {}", event.frame, events_.back().frame));
     events_.push_back(event);
   }
 }
 
-void InputPlayer::fail(int line, const std::string& what) const { throwBadInput("{}:{}: {}", file_.string(), line, what); }
+void InputPlayer::fail(int line, const std::string& what) const {
+  throwBadInput("{}:{}: {}", file_.string(), line, what);
+}
 
 void InputPlayer::act(const Event& event) {
   std::istringstream words(event.rest);
@@ -75,7 +78,8 @@ void InputPlayer::act(const Event& event) {
   else if (event.verb == "cursor") state_.cursor(numbers());
   else if (event.verb == "press") button(true);
   else if (event.verb == "release") button(false);
-  else if (event.verb == "click") state_.cursor(numbers()), state_.button(MouseButton::left, true), state_.button(MouseButton::left, false);
+  else if (event.verb == "click")
+    state_.cursor(numbers()), state_.button(MouseButton::left, true), state_.button(MouseButton::left, false);
   else if (event.verb == "wheel") state_.wheel({0.0, std::strtod(event.rest.c_str(), nullptr)});
   else if (event.verb == "text") state_.text(event.rest);
   else if (event.verb == "drop") state_.drop(file_.parent_path() / event.rest);
@@ -89,15 +93,19 @@ void InputPlayer::act(const Event& event) {
     touchingLine_ = event.line;
     touchStep_ = waited_ = 0;
   } else {
-    fail(event.line, fmt::format("{}: unknown; there are key, down, up, cursor, press, release, click, wheel, text, touch, drop, resize, focus, save, close", event.verb));
+    fail(event.line, fmt::format("{}: unknown; there are key, down, up, cursor, press, release, click, wheel, text, "
+                                 "touch, drop, resize, focus, save, close",
+                                 event.verb));
   }
 }
 
-// What is there comes first: items of an open menu ("Section/menu: item", any of them closes it), then controls. Then what is not there: the section is
-// opened, or the menu, and what does not come by that has gone.
+// What is there comes first: items of an open menu ("Section/menu: item", any of them closes it), then controls. Then
+// what is not there: the section is opened, or the menu, and what does not come by that has gone.
 void InputPlayer::chooseNext(Ui& ui) {
   const auto isItem = [](const std::string& label) { return label.find(": ") != std::string::npos; };
-  const auto parentOf = [&](const std::string& label) { return isItem(label) ? label.substr(0, label.find(": ")) : label.substr(0, label.find('/')); };
+  const auto parentOf = [&](const std::string& label) {
+    return isItem(label) ? label.substr(0, label.find(": ")) : label.substr(0, label.find('/'));
+  };
   touchStep_ = waited_ = 0;
   touching_.clear();
   for (const std::string& label : ui.labels())

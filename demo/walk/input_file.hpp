@@ -1,4 +1,5 @@
-// Recorded input: what keyboard, mouse and window do, frame by frame, from a text file. Tests drive the window with it, on every host.
+// Recorded input: what keyboard, mouse and window do, frame by frame, from a text file. Tests drive the window with it,
+// on every host.
 //
 // A line an event, `FRAME VERB ...`, frames ascending from 0; '#' starts a comment:
 //   key NAME         down and up again: A, F1, space, tab, control+Z, ... (host/input.hpp)
@@ -32,7 +33,8 @@ class InputPlayer {
   /// Throws Error(badInput) naming file and line.
   explicit InputPlayer(const std::filesystem::path& file);
 
-  /// The input of the next frame. `ui` finds controls by name; throws Error(badInput) where one is not there after kPatience frames.
+  /// The input of the next frame. `ui` finds controls by name; throws Error(badInput) where one is not there after
+  /// kPatience frames.
   HostInput next(Ui* ui);
   /// Set by `resize` in this frame.
   std::optional<glm::ivec2> takeSize() { return std::exchange(size_, std::nullopt); }

@@ -32,16 +32,22 @@ void endSection() { ImGui::PopID(); }
 void showScene(Ui& ui, WalkState& s) {
   const Scene& scene = *s.scene;
   line(scene.name);
-  line(fmt::format("{} triangles, {} materials, {} textures", scene.triangleCount(), scene.materials.size(), scene.textures.size()));
-  line(fmt::format("{} spots, {} points{}{}{}", scene.spots.size(), scene.points.size(), scene.sun ? ", a sun" : "", scene.defaultSun ? " of ours" : "", scene.environment ? ", a sky" : ""));
+  line(fmt::format("{} triangles, {} materials, {} textures", scene.triangleCount(), scene.materials.size(),
+                   scene.textures.size()));
+  line(fmt::format("{} spots, {} points{}{}{}", scene.spots.size(), scene.points.size(), scene.sun ? ", a sun" : "",
+                   scene.defaultSun ? " of ours" : "", scene.environment ? ", a sky" : ""));
   const glm::dvec3 size = scene.bounds.extent();
   line(fmt::format("{:.4g} x {:.4g} x {:.4g} units of {:.4g} m", size.x, size.y, size.z, scene.metresPerUnit));
   if (textField(ui, "file", s.sceneText)) s.sceneToLoad = s.sceneText;
-  explain("A scene file: JSON, OBJ, glTF, PLY. Enter loads it; a file dropped on the window is loaded, too. One that cannot be read leaves this scene as it is.");
+  explain(
+      "A scene file: JSON, OBJ, glTF, PLY. Enter loads it; a file dropped on the window is loaded, too. One that "
+      "cannot be read leaves this scene as it is.");
   if (button(ui, "load")) s.sceneToLoad = s.sceneText;
   ImGui::SameLine();
   checkbox(ui, "on a ground", s.ground);
-  explain("Models that come without light of their own get a grey floor when they are loaded here, besides our sun and sky.");
+  explain(
+      "Models that come without light of their own get a grey floor when they are loaded here, besides our sun and "
+      "sky.");
 }
 
 void frameScene(WalkState& s) {
@@ -108,11 +114,13 @@ void showLight(Ui& ui, WalkState& s) {
     const glm::dvec3 to = -sun.direction;
     float height = static_cast<float>(glm::degrees(std::asin(std::clamp(to.y, -1.0, 1.0))));
     float azimuth = static_cast<float>(glm::degrees(std::atan2(to.x, -to.z)));
-    const bool raised = slider(ui, "sun height", height, 1.0f, 90.0f, "%.1f degrees");  // both are drawn, whichever moved
+    const bool raised =
+        slider(ui, "sun height", height, 1.0f, 90.0f, "%.1f degrees");  // both are drawn, whichever moved
     const bool turned = slider(ui, "sun azimuth", azimuth, -180.0f, 180.0f, "%.1f degrees");
     const bool moved = raised || turned;
     if (moved) {
-      const double h = glm::radians(std::clamp(static_cast<double>(height), 0.5, 89.9)), a = glm::radians(static_cast<double>(azimuth));
+      const double h = glm::radians(std::clamp(static_cast<double>(height), 0.5, 89.9)),
+                   a = glm::radians(static_cast<double>(azimuth));
       sun.direction = -glm::dvec3(std::cos(h) * std::sin(a), std::sin(h), -std::cos(h) * std::cos(a));
       changed = true;
     }
@@ -131,7 +139,8 @@ void showLight(Ui& ui, WalkState& s) {
     float strength = std::max({intensity.x, intensity.y, intensity.z});
     if (strength > 0.0f) {
       float asked = strength;
-      const bool moved = ImGui::SliderFloat("intensity", &asked, 1e-4f, 1e5f, "%.4g W/sr", ImGuiSliderFlags_Logarithmic);
+      const bool moved =
+          ImGui::SliderFloat("intensity", &asked, 1e-4f, 1e5f, "%.4g W/sr", ImGuiSliderFlags_Logarithmic);
       ui.note(name + " intensity");
       if (moved) {
         intensity *= asked / strength;
@@ -148,9 +157,12 @@ void showLight(Ui& ui, WalkState& s) {
     }
     ImGui::PopID();
   };
-  for (std::size_t i = 0; i < scene.spots.size() && i < 16; ++i) lamp(fmt::format("spot {}", i + 1), scene.spots[i].intensity, scene.spots[i].position);
-  for (std::size_t i = 0; i < scene.points.size() && i < 16; ++i) lamp(fmt::format("point {}", i + 1), scene.points[i].intensity, scene.points[i].position);
-  const bool shines = std::any_of(s.materialsAsLoaded.begin(), s.materialsAsLoaded.end(), [](const Material& m) { return m.emission != glm::vec3(0.0f); });
+  for (std::size_t i = 0; i < scene.spots.size() && i < 16; ++i)
+    lamp(fmt::format("spot {}", i + 1), scene.spots[i].intensity, scene.spots[i].position);
+  for (std::size_t i = 0; i < scene.points.size() && i < 16; ++i)
+    lamp(fmt::format("point {}", i + 1), scene.points[i].intensity, scene.points[i].position);
+  const bool shines = std::any_of(s.materialsAsLoaded.begin(), s.materialsAsLoaded.end(),
+                                  [](const Material& m) { return m.emission != glm::vec3(0.0f); });
   if (shines && slider(ui, "emissive surfaces", s.emissionFactor, 0.01f, 100.0f, "%.3g x", true)) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
       scene.materials[i].emission = s.emissionFactor * s.materialsAsLoaded[i].emission;
@@ -159,7 +171,8 @@ void showLight(Ui& ui, WalkState& s) {
     changed = true;
   }
   if (scene.environment) {
-    float strength = std::max({scene.environment->radiance.x, scene.environment->radiance.y, scene.environment->radiance.z});
+    float strength =
+        std::max({scene.environment->radiance.x, scene.environment->radiance.y, scene.environment->radiance.z});
     if (strength > 0.0f) {
       float asked = strength;
       if (slider(ui, "sky", asked, 1e-4f, 1e4f, "%.4g x", true)) {
@@ -183,12 +196,17 @@ void showSide(Ui& ui, WalkState& s, int index) {
   }
   if (side.shows == Shows::picture) {
     textField(ui, "picture", side.pictureFile);
-    explain("hdr, exr or pfm in linear radiance, png or jpg taken as sRGB. Enter loads it; a picture dropped on the window comes here as B.");
+    explain(
+        "hdr, exr or pfm in linear radiance, png or jpg taken as sRGB. Enter loads it; a picture dropped on the window "
+        "comes here as B.");
   }
-  if (menu(ui, "technique", side.options.technique, kTechniques)) side.options.settings.clear(), side.options.deviations.clear();
+  if (menu(ui, "technique", side.options.technique, kTechniques))
+    side.options.settings.clear(), side.options.deviations.clear();
   menu(ui, "light", side.options.component, kComponents);
   menu(ui, "fidelity", side.options.fidelity, kFidelities);
-  if (side.renderer) line(fmt::format("made in {:.2f} s, {:.1f} MiB on the GPU", side.buildSeconds, static_cast<double>(side.renderer->gpuBytes()) / 1048576.0));
+  if (side.renderer)
+    line(fmt::format("made in {:.2f} s, {:.1f} MiB on the GPU", side.buildSeconds,
+                     static_cast<double>(side.renderer->gpuBytes()) / 1048576.0));
   if (!side.failure.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 120, 90, 255));
     wrapped(side.failure);
@@ -205,11 +223,15 @@ void showJudgement(WalkState& s, int index) {
     return;
   }
   const measure::ErrorInterval& e = side.judgement.nrmse();
-  line(fmt::format("{}: error {:.2f} %, {:.2f} to {:.2f} (99 %)", name, 100.0 * e.value, 100.0 * e.low, 100.0 * e.high));
-  explain("Root mean square difference from the path-traced reference of this view, over the reference's mean, with the reference's own noise taken off. "
-          "The interval holds the true error but for one view in a hundred.");
+  line(
+      fmt::format("{}: error {:.2f} %, {:.2f} to {:.2f} (99 %)", name, 100.0 * e.value, 100.0 * e.low, 100.0 * e.high));
+  explain(
+      "Root mean square difference from the path-traced reference of this view, over the reference's mean, with the "
+      "reference's own noise taken off. "
+      "The interval holds the true error but for one view in a hundred.");
   const auto flip = side.judgement.flip();
-  line(fmt::format("   bias {:+.2f} %, FLIP {}", 100.0 * side.judgement.bias(), flip ? fmt::format("{:.4f}", *flip) : std::string("...")));
+  line(fmt::format("   bias {:+.2f} %, FLIP {}", 100.0 * side.judgement.bias(),
+                   flip ? fmt::format("{:.4f}", *flip) : std::string("...")));
 }
 
 void showCompare(Ui& ui, WalkState& s) {
@@ -224,12 +246,18 @@ void showCompare(Ui& ui, WalkState& s) {
   if (s.layout == Layout::wipe) slider(ui, "wipe", s.split, 0.0f, 1.0f, "%.2f");
   slider(ui, "zoom", s.zoom, 1.0f, 64.0f, "%.2f x", true);
   checkbox(ui, "magnifier", s.magnifier);
-  if (s.show == Show::signedError) slider(ui, "colours end at", s.errorScale, 0.0f, 100.0f, s.errorScale > 0.0f ? "%.4g radiance" : "half of the mean", true);
+  if (s.show == Show::signedError)
+    slider(ui, "colours end at", s.errorScale, 0.0f, 100.0f, s.errorScale > 0.0f ? "%.4g radiance" : "half of the mean",
+           true);
   ImGui::Separator();
   checkbox(ui, "live truth", s.truthOn);
-  explain("While the camera rests, the path tracer makes the reference of this view; it is kept with the bench's references.");
+  explain(
+      "While the camera rests, the path tracer makes the reference of this view; it is kept with the bench's "
+      "references.");
   slider(ui, "share of a frame", s.truthShare, 0.01f, 0.9f, "%.2f");
-  explain("Of a frame's time for the path tracer while the picture is still being made; on a still view it takes what is idle.");
+  explain(
+      "Of a frame's time for the path tracer while the picture is still being made; on a still view it takes what is "
+      "idle.");
   if (!s.truthOn) return;
   if (!s.truth || s.truth->samples() == 0) {
     line("the reference: when the camera rests");
@@ -281,14 +309,18 @@ void showTimings(Ui& ui, WalkState& s) {
     line(fmt::format("{}: {}", i == 0 ? "A" : "B", side.built.technique));
     const std::vector<gl::StageStatistics> stages = side.renderer->timer().statistics();
     double longest = 1e-9;
-    for (const gl::StageStatistics& stage : stages) longest = std::max(longest, std::isnan(stage.medianMs) ? 0.0 : stage.medianMs);
+    for (const gl::StageStatistics& stage : stages)
+      longest = std::max(longest, std::isnan(stage.medianMs) ? 0.0 : stage.medianMs);
     for (const gl::StageStatistics& stage : stages) {
       const double ms = std::isnan(stage.medianMs) ? 0.0 : stage.medianMs;
-      const double reused = stage.frames > 0 ? 1.0 - static_cast<double>(stage.ran) / static_cast<double>(stage.frames) : 0.0;
-      ImGui::ProgressBar(static_cast<float>(ms / longest), {6.0f * ImGui::GetFontSize(), 0.0f}, fmt::format("{:.2f} ms", ms).c_str());
+      const double reused =
+          stage.frames > 0 ? 1.0 - static_cast<double>(stage.ran) / static_cast<double>(stage.frames) : 0.0;
+      ImGui::ProgressBar(static_cast<float>(ms / longest), {6.0f * ImGui::GetFontSize(), 0.0f},
+                         fmt::format("{:.2f} ms", ms).c_str());
       ImGui::SameLine();
       line(stage.name + (reused > 0.0 ? fmt::format(", reused {:.0f} %", 100.0 * reused) : ""));
-      explain(fmt::format("median {:.3f} ms, 95 % {:.3f} ms of {} samples; ran in {} of {} frames", stage.medianMs, stage.p95Ms, stage.count, stage.ran, stage.frames));
+      explain(fmt::format("median {:.3f} ms, 95 % {:.3f} ms of {} samples; ran in {} of {} frames", stage.medianMs,
+                          stage.p95Ms, stage.count, stage.ran, stage.frames));
     }
   }
   if (button(ui, "begin again"))
@@ -304,7 +336,8 @@ void showMemory(Ui& ui, WalkState& s) {
     line(fmt::format("{:8.2f} MiB  {}", static_cast<double>(bytes) / 1048576.0, name));
   };
   for (int i = 0; i < 2; ++i)
-    if (const SideState& side = s.sides[static_cast<std::size_t>(i)]; side.renderer) mebibytes(std::string(i == 0 ? "A, " : "B, ") + side.built.technique, side.renderer->gpuBytes());
+    if (const SideState& side = s.sides[static_cast<std::size_t>(i)]; side.renderer)
+      mebibytes(std::string(i == 0 ? "A, " : "B, ") + side.built.technique, side.renderer->gpuBytes());
   if (s.truth) mebibytes("path tracer", s.truth->gpuBytes());
   line(fmt::format("{:8.2f} MiB  in all", total / 1048576.0));
   const SideState& side = s.side();
@@ -329,7 +362,8 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
   for (std::size_t i = 0; i < s.keyFrames.size(); ++i) {
     const KeyFrame& key = s.keyFrames[i];
     ImGui::PushID(static_cast<int>(i));
-    if (ImGui::SmallButton(fmt::format("{}: {:.3g}, {:.3g}, {:.3g}", i + 1, key.position.x, key.position.y, key.position.z).c_str())) {
+    if (ImGui::SmallButton(
+            fmt::format("{}: {:.3g}, {:.3g}, {:.3g}", i + 1, key.position.x, key.position.y, key.position.z).c_str())) {
       Camera camera = s.camera->camera();
       camera.position = key.position;
       camera.direction = key.direction;
@@ -351,9 +385,7 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
       if (s.keyFrames.size() < 2) throwBadInput("a path has at least two key frames; there are {}", s.keyFrames.size());
       writeFileAtomically(s.keyFramesFile, textOfKeyFrames(s.keyFrames, "Recorded in " + s.scene->name + "."));
       s.say(fmt::format("{}: {} key frames", s.keyFramesFile, s.keyFrames.size()));
-    } catch (const Error& error) {
-      s.say(error.what());
-    }
+    } catch (const Error& error) { s.say(error.what()); }
   }
   ImGui::SameLine();
   if (button(ui, "walk along them") && s.keyFrames.size() >= 2) {
@@ -374,7 +406,9 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
   ui.note("frames a second");
   s.frameLimit = limit;
   slider(ui, "render scale", s.renderScale, 0.25f, 2.0f, "%.2f x");
-  explain("Sides of the picture that is computed over those of the window. 2: four samples a pixel, averaged after the tone curve.");
+  explain(
+      "Sides of the picture that is computed over those of the window. 2: four samples a pixel, averaged after the "
+      "tone curve.");
 }
 
 }  // namespace
@@ -386,7 +420,9 @@ void Panel::show(Ui& ui, WalkState& s, Host& host) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x - std::min(width, screen.x), 0.0f}, ImGuiCond_Always);
   ImGui::SetNextWindowSize({std::min(width, screen.x), screen.y}, ImGuiCond_Always);
-  ImGui::Begin("Lucerna", nullptr, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar);
+  ImGui::Begin(
+      "Lucerna", nullptr,
+      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar);
   ImGui::PushItemWidth(0.52f * ImGui::GetContentRegionAvail().x);
   const auto part = [&](const char* name, bool open, auto content) {
     if (!section(ui, name, open)) return;
@@ -413,7 +449,8 @@ void Panel::showHelp(Ui& ui, WalkState& s) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.02f * screen.x, 0.04f * screen.y}, ImGuiCond_Always);
   ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, {0.96f * screen.x, 0.92f * screen.y});
-  ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
+  ImGui::Begin("Keys", nullptr,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
   line(keysHelp());
   if (ImGui::Button("close")) s.help = false;
   ui.section("Keys");
@@ -431,7 +468,9 @@ void Panel::showMessage(const WalkState& s, const std::string& work, double shar
   ImGui::SetNextWindowPos({8.0f, screen.y - 8.0f}, ImGuiCond_Always, {0.0f, 1.0f});
   ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, {0.6f * screen.x, screen.y});
   ImGui::SetNextWindowBgAlpha(work.empty() ? 0.6f : 1.0f);
-  ImGui::Begin("##message", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  ImGui::Begin("##message", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
   ImGui::PushTextWrapPos(0.58f * screen.x);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
@@ -445,7 +484,9 @@ void Panel::showValues(const WalkState& s) {
   if (!ImGui::IsMousePosValid(&mouse) || ImGui::GetIO().WantCaptureMouse) return;
   ImGui::SetNextWindowPos({mouse.x + 90.0f, mouse.y}, ImGuiCond_Always);
   ImGui::SetNextWindowBgAlpha(0.8f);
-  ImGui::Begin("##values", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  ImGui::Begin("##values", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
   line(fmt::format("pixel {}, {}, radiance", s.pixel->x, s.pixel->y));
   const auto value = [](const char* name, const std::optional<glm::vec3>& v) {
     if (v) line(fmt::format("{:<6} {:10.4g} {:10.4g} {:10.4g}", name, v->x, v->y, v->z));

@@ -14,7 +14,8 @@ std::vector<KeyFrame> orbit(const Scene& scene) {
   std::vector<KeyFrame> keys;
   for (int i = 0; i <= 8; ++i) {
     const double angle = 2.0 * M_PI * i / 8.0;
-    const glm::dvec3 turned(std::cos(angle) * arm.x + std::sin(angle) * arm.z, arm.y, std::cos(angle) * arm.z - std::sin(angle) * arm.x);
+    const glm::dvec3 turned(std::cos(angle) * arm.x + std::sin(angle) * arm.z, arm.y,
+                            std::cos(angle) * arm.z - std::sin(angle) * arm.x);
     const glm::dvec3 direction = glm::length(turned) > 0.0 ? -glm::normalize(turned) : glm::dvec3(0.0, 0.0, -1.0);
     keys.push_back({centre + turned, direction, {0.0, 1.0, 0.0}, first.verticalFov});
   }

@@ -16,7 +16,8 @@ namespace {
 /// What a setting is, where it comes from and what a change costs.
 std::string explanation(const Setting& setting) {
   std::string text = std::string(setting.meaning);
-  text += fmt::format("\n{}: {}{}", nameOf(setting.value.type), allowedValues(setting), setting.unit.empty() ? "" : fmt::format(", {}", setting.unit));
+  text += fmt::format("\n{}: {}{}", nameOf(setting.value.type), allowedValues(setting),
+                      setting.unit.empty() ? "" : fmt::format(", {}", setting.unit));
   text += "\nusually " + defaultValue(setting);
   if (!setting.source.empty()) text += fmt::format("\nsource: {} (shaders/REFERENCES.md)", setting.source);
   switch (setting.cost) {
@@ -34,7 +35,8 @@ std::string textOfNumber(const Setting& setting, const RenderSettings& settings,
   return printSetting(setting, copy);
 }
 
-/// A slider that says its value when it is let go: a change may make the technique anew. What is being dragged is kept in `dragged`.
+/// A slider that says its value when it is let go: a change may make the technique anew. What is being dragged is kept
+/// in `dragged`.
 std::optional<double> numberControl(Ui& ui, const std::string& key, const Setting& setting, double current) {
   static std::string dragged;
   static double draggedValue = 0.0;
@@ -61,7 +63,8 @@ void showSetting(Ui& ui, SideState& side, const RenderSettings& settings, const 
   const std::string key(setting.key);
   const auto set = [&](const std::string& value) { assign(side.options.settings, key, value); };
   ImGui::PushID(key.c_str());
-  const bool given = std::any_of(side.options.settings.begin(), side.options.settings.end(), [&](const std::string& a) { return a.starts_with(key + "="); });
+  const bool given = std::any_of(side.options.settings.begin(), side.options.settings.end(),
+                                 [&](const std::string& a) { return a.starts_with(key + "="); });
   if (given) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 210, 120, 255));
   bool reset = false;
   switch (setting.value.type) {
@@ -72,7 +75,8 @@ void showSetting(Ui& ui, SideState& side, const RenderSettings& settings, const 
     }
     case SettingType::choice: {
       int chosen = static_cast<int>(settingNumber(setting, settings));
-      if (menu(ui, key.c_str(), chosen, setting.value.choices)) set(std::string(setting.value.choices[static_cast<std::size_t>(chosen)]));
+      if (menu(ui, key.c_str(), chosen, setting.value.choices))
+        set(std::string(setting.value.choices[static_cast<std::size_t>(chosen)]));
       break;
     }
     case SettingType::file: {
@@ -82,7 +86,8 @@ void showSetting(Ui& ui, SideState& side, const RenderSettings& settings, const 
     }
     case SettingType::integer:
     case SettingType::real:
-      if (const auto number = numberControl(ui, key, setting, settingNumber(setting, settings))) set(textOfNumber(setting, settings, *number));
+      if (const auto number = numberControl(ui, key, setting, settingNumber(setting, settings)))
+        set(textOfNumber(setting, settings, *number));
       break;
   }
   explain(explanation(setting));
@@ -103,7 +108,9 @@ void showSettings(Ui& ui, WalkState& s) {
   menu(ui, "of", s.edited, kSides);
   SideState& side = s.sides[static_cast<std::size_t>(s.edited)];
   if (button(ui, "copy as command line"))
-    ImGui::SetClipboardText((commandLine("render", s.scene->file.string(), side.options) + " --camera " + cameraText(s.camera->camera()) + " -o picture.exr").c_str());
+    ImGui::SetClipboardText((commandLine("render", s.scene->file.string(), side.options) + " --camera " +
+                             cameraText(s.camera->camera()) + " -o picture.exr")
+                                .c_str());
   ImGui::SameLine();
   if (button(ui, "all defaults")) side.options.settings.clear(), side.options.deviations.clear();
   if (!side.renderer) {
@@ -115,7 +122,8 @@ void showSettings(Ui& ui, WalkState& s) {
   ui.note("find");
   const auto matches = [&](std::string_view key) { return key.find(s.settingsFilter) != std::string_view::npos; };
   for (const Setting& setting : allSettings())
-    if (setting.key != "exposure" && isRead(setting, settings) && matches(setting.key)) showSetting(ui, side, settings, setting);
+    if (setting.key != "exposure" && isRead(setting, settings) && matches(setting.key))
+      showSetting(ui, side, settings, setting);
 
   ImGui::Separator();
   const std::vector<std::string> active = activeDeviations(settings);

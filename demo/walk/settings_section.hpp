@@ -1,4 +1,5 @@
-// The panel's settings: every entry of engine/settings that the technique reads, with range, unit, default, reset and source.
+// The panel's settings: every entry of engine/settings that the technique reads, with range, unit, default, reset and
+// source.
 #pragma once
 
 #include "walk/state.hpp"

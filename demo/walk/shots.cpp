@@ -43,29 +43,31 @@ void writeChanged(const fs::path& file, Write write, Change change) {
 }  // namespace
 
 void writePngWithNote(const fs::path& file, const Bitmap& bitmap, const std::string& note) {
-  writeChanged(file, [&](const fs::path& draft) { writePng(draft, bitmap); },
-               [&](std::vector<std::uint8_t>& bytes) {
-                 constexpr std::size_t kHeaderEnd = 8 + 25;  // signature and IHDR, which comes first
-                 std::vector<std::uint8_t> body{'t', 'E', 'X', 't'}, chunk;
-                 const std::string text = std::string("Comment") + '\0' + note;
-                 body.insert(body.end(), text.begin(), text.end());
-                 append(chunk, static_cast<std::uint32_t>(text.size()));
-                 chunk.insert(chunk.end(), body.begin(), body.end());
-                 append(chunk, crc32(body));
-                 bytes.insert(bytes.begin() + kHeaderEnd, chunk.begin(), chunk.end());
-               });
+  writeChanged(
+      file, [&](const fs::path& draft) { writePng(draft, bitmap); },
+      [&](std::vector<std::uint8_t>& bytes) {
+        constexpr std::size_t kHeaderEnd = 8 + 25;  // signature and IHDR, which comes first
+        std::vector<std::uint8_t> body{'t', 'E', 'X', 't'}, chunk;
+        const std::string text = std::string("Comment") + '\0' + note;
+        body.insert(body.end(), text.begin(), text.end());
+        append(chunk, static_cast<std::uint32_t>(text.size()));
+        chunk.insert(chunk.end(), body.begin(), body.end());
+        append(chunk, crc32(body));
+        bytes.insert(bytes.begin() + kHeaderEnd, chunk.begin(), chunk.end());
+      });
 }
 
 void writeHdrWithNote(const fs::path& file, const Image& image, const std::string& note) {
-  writeChanged(file, [&](const fs::path& draft) { writeImage(draft, image); },
-               [&](std::vector<std::uint8_t>& bytes) {
-                 const auto firstLine = std::find(bytes.begin(), bytes.end(), '\n');
-                 CHECK(firstLine != bytes.end(), "{} bytes without a line", bytes.size());
-                 std::string lines = "# ";
-                 for (const char c : note) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
-                 lines += '\n';
-                 bytes.insert(firstLine + 1, lines.begin(), lines.end());
-               });
+  writeChanged(
+      file, [&](const fs::path& draft) { writeImage(draft, image); },
+      [&](std::vector<std::uint8_t>& bytes) {
+        const auto firstLine = std::find(bytes.begin(), bytes.end(), '\n');
+        CHECK(firstLine != bytes.end(), "{} bytes without a line", bytes.size());
+        std::string lines = "# ";
+        for (const char c : note) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
+        lines += '\n';
+        bytes.insert(firstLine + 1, lines.begin(), lines.end());
+      });
 }
 
 fs::path freeName(const fs::path& folder, const std::string& name) {
@@ -76,14 +78,19 @@ fs::path freeName(const fs::path& folder, const std::string& name) {
 }
 
 std::string textOf(const KeyFrame& key) {
-  const auto vector = [](char word, const glm::dvec3& v) { return fmt::format("{} {:.7g} {:.7g} {:.7g}", word, v.x, v.y, v.z); };
+  const auto vector = [](char word, const glm::dvec3& v) {
+    return fmt::format("{} {:.7g} {:.7g} {:.7g}", word, v.x, v.y, v.z);
+  };
   std::string line = vector('p', key.position) + "  " + vector('d', key.direction) + "  " + vector('u', key.up);
   if (key.verticalFov) line += fmt::format("  f {:.6g}", glm::degrees(*key.verticalFov));
   return line;
 }
 
 std::string textOfKeyFrames(const std::vector<KeyFrame>& keys, const std::string& comment) {
-  std::string text = fmt::format("# {}\n# p position, d viewing direction, u up, f vertical field of view in degrees. The format: engine/scene/key_frames.hpp.\n\n", comment);
+  std::string text = fmt::format(
+      "# {}\n# p position, d viewing direction, u up, f vertical field of view in degrees. The format: "
+      "engine/scene/key_frames.hpp.\n\n",
+      comment);
   for (const KeyFrame& key : keys) text += textOf(key) + "\n";
   return text;
 }

@@ -12,7 +12,8 @@ namespace lucerna::demo {
 
 /// PNG with a text of keyword "Comment" [PNG, ISO 15948, 11.3.4.3], in Latin-1; whole or not at all.
 void writePngWithNote(const std::filesystem::path& file, const Bitmap& bitmap, const std::string& note);
-/// Radiance HDR with the note as lines of its header that begin with '#' [Ward, RADIANCE picture format]; whole or not at all.
+/// Radiance HDR with the note as lines of its header that begin with '#' [Ward, RADIANCE picture format]; whole or not
+/// at all.
 void writeHdrWithNote(const std::filesystem::path& file, const Image& image, const std::string& note);
 
 /// FOLDER/NAME_0001, the first number that is free for both extensions.

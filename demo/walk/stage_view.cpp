@@ -37,7 +37,8 @@ const gl::Texture& StageView::record(const StagePicture& picture, int layer, flo
     const std::array<const gl::Texture*, 1> colors{&result_};
     target_ = gl::Framebuffer("stage view", colors);
   }
-  const gl::Program& program = programs_.loadRaster("stage view", "lib/fullscreen.vert", "walk/stage.frag", {{"SHAPE", shapeOf(picture)}});
+  const gl::Program& program =
+      programs_.loadRaster("stage view", "lib/fullscreen.vert", "walk/stage.frag", {{"SHAPE", shapeOf(picture)}});
   const gl::RasterPass pass("stage view", target_, {});
   program.use();
   texture->bind(0);

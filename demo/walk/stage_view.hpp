@@ -12,7 +12,8 @@ class StageView {
  public:
   explicit StageView(gl::ProgramLibrary& programs) : programs_(programs), noAttributes_("stage view") {}
 
-  /// Draws it; the picture is valid until the next call. factor: of flux, 1 shows the mean of what is lit as middle grey.
+  /// Draws it; the picture is valid until the next call. factor: of flux, 1 shows the mean of what is lit as middle
+  /// grey.
   const gl::Texture& record(const StagePicture& picture, int layer, float factor, const Bounds& bounds);
   static int layersOf(const StagePicture& picture) { return picture.texture->size().z; }
 

@@ -11,7 +11,9 @@ namespace {
 
 /// As a shell takes it.
 std::string quoted(const std::string& text) {
-  const bool plain = !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=,:+-") == std::string::npos;
+  const bool plain = !text.empty() &&
+                     text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=,:+-") ==
+                         std::string::npos;
   if (plain) return text;
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -21,7 +23,8 @@ std::string quoted(const std::string& text) {
 }  // namespace
 
 std::string textOf(const PictureOptions& o) {
-  return fmt::format("{} {} {} | {} | {}", o.technique, o.component, o.fidelity, fmt::join(o.deviations, " "), fmt::join(o.settings, " "));
+  return fmt::format("{} {} {} | {} | {}", o.technique, o.component, o.fidelity, fmt::join(o.deviations, " "),
+                     fmt::join(o.settings, " "));
 }
 
 std::string commandLine(const std::string& command, const std::string& scene, const PictureOptions& o) {
@@ -36,7 +39,8 @@ std::string commandLine(const std::string& command, const std::string& scene, co
 }
 
 void assign(std::vector<std::string>& assignments, const std::string& key, const std::string& value) {
-  const auto known = std::find_if(assignments.begin(), assignments.end(), [&](const std::string& a) { return a.starts_with(key + "="); });
+  const auto known = std::find_if(assignments.begin(), assignments.end(),
+                                  [&](const std::string& a) { return a.starts_with(key + "="); });
   if (value.empty()) {
     if (known != assignments.end()) assignments.erase(known);
   } else if (known != assignments.end()) {
@@ -48,7 +52,8 @@ void assign(std::vector<std::string>& assignments, const std::string& key, const
 
 std::string cameraText(const Camera& c) {
   const glm::dvec3 target = c.position + c.direction;
-  return fmt::format("{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.5g}", c.position.x, c.position.y, c.position.z, target.x, target.y, target.z, glm::degrees(c.verticalFov));
+  return fmt::format("{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.5g}", c.position.x, c.position.y, c.position.z,
+                     target.x, target.y, target.z, glm::degrees(c.verticalFov));
 }
 
 }  // namespace lucerna::demo

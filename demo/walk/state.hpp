@@ -24,19 +24,19 @@ constexpr std::array<std::string_view, 3> kShowsNames{"a technique", "the refere
 
 /// A or B.
 struct SideState {
-  PictureOptions options;          ///< what is asked for
+  PictureOptions options;  ///< what is asked for
   Shows shows = Shows::technique;
   std::string pictureFile;
 
   // What there is. The renderer is that of `built`; until one for `options` is ready it goes on being shown.
   std::unique_ptr<Renderer> renderer;
   PictureOptions built;
-  std::string builtAs, failedAs;   ///< textOf() of options, with the scene's version
-  std::string failure;             ///< why the options could not be had; empty: they could
+  std::string builtAs, failedAs;  ///< textOf() of options, with the scene's version
+  std::string failure;  ///< why the options could not be had; empty: they could
   double buildSeconds = 0.0;
   std::optional<gl::Texture> picture;
-  std::string pictureShown;        ///< the file of `picture`
-  bool settled = false;            ///< the picture stays as it is until something moves
+  std::string pictureShown;  ///< the file of `picture`
+  bool settled = false;  ///< the picture stays as it is until something moves
   std::uint64_t pictureVersion = 0, judgedPicture = 0, judgedTruth = 0;
   Judgement judgement;
 };
@@ -44,7 +44,7 @@ struct SideState {
 /// A camera path and where on it the walk is.
 struct PathState {
   std::optional<Spline> spline;
-  int first = 0, last = 0;         ///< views
+  int first = 0, last = 0;  ///< views
   bool follows = true, paused = false, loops = false;
   double seconds = 0.0, speed = 1.0;
   double duration() const { return SplinePlayback(last - first + 1).duration(); }
@@ -54,9 +54,9 @@ struct WalkState {
   // Scene
   std::unique_ptr<Scene> scene;
   std::uint64_t sceneVersion = 1;  ///< raised where lights or materials were changed
-  std::string sceneText;           ///< of the panel's text field
+  std::string sceneText;  ///< of the panel's text field
   std::optional<std::filesystem::path> sceneToLoad;
-  bool ground = true;              ///< under scenes that are loaded here and come without light of their own: models
+  bool ground = true;  ///< under scenes that are loaded here and come without light of their own: models
   float emissionFactor = 1.0f;
   std::vector<Material> materialsAsLoaded;
 
@@ -68,8 +68,8 @@ struct WalkState {
 
   // Techniques
   std::array<SideState, 2> sides;
-  int shown = 0;                   ///< of the sides, where the layout is one picture
-  int edited = 0;                  ///< of the sides, by the settings section
+  int shown = 0;  ///< of the sides, where the layout is one picture
+  int edited = 0;  ///< of the sides, by the settings section
   std::vector<std::array<PictureOptions, 2>> undo;
   std::string settingsFilter;
 
@@ -81,28 +81,28 @@ struct WalkState {
   bool magnifier = false;
   float exposure = 1.0f;
   bool autoExposure = false;
-  float renderScale = 1.0f;        ///< of the picture's side over the window's; 2: four samples a pixel
+  float renderScale = 1.0f;  ///< of the picture's side over the window's; 2: four samples a pixel
 
   // Debug view
-  std::string stage;               ///< of the shown side's Renderer::stagePictures(); empty: the frame
+  std::string stage;  ///< of the shown side's Renderer::stagePictures(); empty: the frame
   int stageLayer = 0;
-  float stageFactor = 0.0f;        ///< powers of two of flux
+  float stageFactor = 0.0f;  ///< powers of two of flux
 
   // Truth
   bool truthOn = false;
-  float truthShare = 0.1f;         ///< of a frame's time
+  float truthShare = 0.1f;  ///< of a frame's time
   std::unique_ptr<Truth> truth;
 
   // Window
   bool panel = true, help = false, hint = true;
   bool swapAtRefresh = true;
-  int frameLimit = 0;              ///< frames a second; 0: none
+  int frameLimit = 0;  ///< frames a second; 0: none
   float budgetMs = 16.7f;
   std::filesystem::path shotFolder = ".";
   bool shotWanted = false, meterWanted = false, reloadWanted = false, endWanted = false;
   std::deque<std::string> messages;  ///< the newest last
-  double messageAge = 0.0;         ///< seconds
-  std::vector<float> frameMs;      ///< the last ones
+  double messageAge = 0.0;  ///< seconds
+  std::vector<float> frameMs;  ///< the last ones
   std::string rendererName;
 
   // Under the cursor, for the magnifier.

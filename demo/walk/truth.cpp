@@ -29,9 +29,15 @@ gl::Texture textureOf(const std::string& name, const Image& image) {
   return texture;
 }
 
-// The settings are those of bench/path_sampler.cpp, so that both make the same picture; another seed makes it independent of what the cache holds.
-Truth::Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size, Component component)
-    : context_(context), scene_(scene), size_(size), component_(component), cache_(measure::ReferenceCache::defaultFolder()) {
+// The settings are those of bench/path_sampler.cpp, so that both make the same picture; another seed makes it
+// independent of what the cache holds.
+Truth::Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
+             Component component)
+    : context_(context),
+      scene_(scene),
+      size_(size),
+      component_(component),
+      cache_(measure::ReferenceCache::defaultFolder()) {
   PathTracer::Settings settings;
   settings.size = size;
   settings.transport = transportOf(component);
@@ -104,9 +110,7 @@ void Truth::keep() {
   if (!key_ || shownSamples_ < keptSamples_ + kWorthKeeping || shown_.samples == 0) return;
   try {
     cache_.store(*key_, shown_);
-  } catch (const Error& error) {
-    logWarning("{}; the reference of this view is not kept", error.what());
-  }
+  } catch (const Error& error) { logWarning("{}; the reference of this view is not kept", error.what()); }
   keptSamples_ = shownSamples_;
 }
 

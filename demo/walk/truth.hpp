@@ -1,7 +1,9 @@
-// Live truth: while the camera rests, the path tracer makes the reference of the view that is shown, and pictures are judged by it.
+// Live truth: while the camera rests, the path tracer makes the reference of the view that is shown, and pictures are
+// judged by it.
 //
-// In: the scene, the view, the size and which light; each frame, the time that may be spent. Out: mean and standard error as textures, and for a picture its
-// error with the interval that holds the true one. References come from and go to the bench's cache (measure/reference.hpp).
+// In: the scene, the view, the size and which light; each frame, the time that may be spent. Out: mean and standard
+// error as textures, and for a picture its error with the interval that holds the true one. References come from and go
+// to the bench's cache (measure/reference.hpp).
 #pragma once
 
 #include "gl/context.hpp"
@@ -20,7 +22,8 @@ namespace lucerna::demo {
 class Truth {
  public:
   /// Compiles, and builds the hierarchy of the scene; `scene` must outlive it.
-  Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size, Component component);
+  Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
+        Component component);
   ~Truth();
 
   glm::ivec2 size() const { return size_; }
@@ -33,7 +36,7 @@ class Truth {
   /// Samples a pixel, the cache's among them; 0: there is nothing yet.
   std::uint64_t samples() const { return cachedSamples_ + shownSamples_; }
   bool ready() const { return samples() >= kFewest; }
-  double seconds() const { return seconds_; }   ///< spent on this view
+  double seconds() const { return seconds_; }  ///< spent on this view
   const gl::Texture& mean() const { return meanTexture_; }
   const gl::Texture& standardError() const { return errorTexture_; }
   const measure::Reference& reference() const { return shown_; }
@@ -43,7 +46,7 @@ class Truth {
   /// Keeps what was sampled of this view in the cache.
   void keep();
 
-  static constexpr std::uint64_t kFewest = 16;   ///< samples before anything is said of errors
+  static constexpr std::uint64_t kFewest = 16;  ///< samples before anything is said of errors
   static constexpr std::uint64_t kWorthKeeping = 64;
 
  private:

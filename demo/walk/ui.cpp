@@ -7,13 +7,27 @@ namespace lucerna::demo {
 
 namespace {
 
-constexpr std::pair<ImGuiKey, int> kKeys[] = {
-    {ImGuiKey_Tab, key::kTab},     {ImGuiKey_LeftArrow, key::kLeft}, {ImGuiKey_RightArrow, key::kRight}, {ImGuiKey_UpArrow, key::kUp},
-    {ImGuiKey_DownArrow, key::kDown}, {ImGuiKey_PageUp, key::kPageUp}, {ImGuiKey_PageDown, key::kPageDown}, {ImGuiKey_Home, key::kHome},
-    {ImGuiKey_End, key::kEnd},     {ImGuiKey_Insert, key::kInsert},  {ImGuiKey_Delete, key::kDelete},    {ImGuiKey_Backspace, key::kBackspace},
-    {ImGuiKey_Space, ' '},         {ImGuiKey_Enter, key::kEnter},    {ImGuiKey_Escape, key::kEscape},    {ImGuiKey_A, 'A'},
-    {ImGuiKey_C, 'C'},             {ImGuiKey_V, 'V'},                {ImGuiKey_X, 'X'},                  {ImGuiKey_Y, 'Y'},
-    {ImGuiKey_Z, 'Z'}};
+constexpr std::pair<ImGuiKey, int> kKeys[] = {{ImGuiKey_Tab, key::kTab},
+                                              {ImGuiKey_LeftArrow, key::kLeft},
+                                              {ImGuiKey_RightArrow, key::kRight},
+                                              {ImGuiKey_UpArrow, key::kUp},
+                                              {ImGuiKey_DownArrow, key::kDown},
+                                              {ImGuiKey_PageUp, key::kPageUp},
+                                              {ImGuiKey_PageDown, key::kPageDown},
+                                              {ImGuiKey_Home, key::kHome},
+                                              {ImGuiKey_End, key::kEnd},
+                                              {ImGuiKey_Insert, key::kInsert},
+                                              {ImGuiKey_Delete, key::kDelete},
+                                              {ImGuiKey_Backspace, key::kBackspace},
+                                              {ImGuiKey_Space, ' '},
+                                              {ImGuiKey_Enter, key::kEnter},
+                                              {ImGuiKey_Escape, key::kEscape},
+                                              {ImGuiKey_A, 'A'},
+                                              {ImGuiKey_C, 'C'},
+                                              {ImGuiKey_V, 'V'},
+                                              {ImGuiKey_X, 'X'},
+                                              {ImGuiKey_Y, 'Y'},
+                                              {ImGuiKey_Z, 'Z'}};
 
 }  // namespace
 
@@ -93,7 +107,8 @@ void Ui::end(const gl::Framebuffer& target) {
     for (const ImDrawCmd& command : list.CmdBuffer) {
       const glm::ivec2 corner(static_cast<int>(command.ClipRect.x), static_cast<int>(command.ClipRect.y));
       const glm::ivec2 end(static_cast<int>(command.ClipRect.z), static_cast<int>(command.ClipRect.w));
-      runs_.push_back({corner, end - corner, static_cast<std::uint32_t>(indices_.size()), command.ElemCount, static_cast<const gl::Texture*>(command.GetTexID())});
+      runs_.push_back({corner, end - corner, static_cast<std::uint32_t>(indices_.size()), command.ElemCount,
+                       static_cast<const gl::Texture*>(command.GetTexID())});
       for (unsigned k = 0; k < command.ElemCount; ++k)
         indices_.push_back(firstVertex + command.VtxOffset + list.IdxBuffer[static_cast<int>(command.IdxOffset + k)]);
     }

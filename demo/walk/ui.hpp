@@ -1,8 +1,8 @@
-// Dear ImGui in the engine's terms: input from a host's HostInput, triangles through gl::Overlay. No GL loader of ImGui's own
-// (Debian's backend opens libGL.so.1 by itself, past EGL and OSMesa), so the panel works on every host.
+// Dear ImGui in the engine's terms: input from a host's HostInput, triangles through gl::Overlay. No GL loader of
+// ImGui's own (Debian's backend opens libGL.so.1 by itself, past EGL and OSMesa), so the panel works on every host.
 //
-// Controls are made through the functions below: each is known by its label, so that recorded input can ask for it by name
-// (walk/input_file.hpp) wherever it lies.
+// Controls are made through the functions below: each is known by its label, so that recorded input can ask for it by
+// name (walk/input_file.hpp) wherever it lies.
 #pragma once
 
 #include "gl/overlay.hpp"

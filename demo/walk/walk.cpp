@@ -1,5 +1,6 @@
-// lucerna walk [SCENE]: the walkthrough. In a window the path plays in real time, views are skipped where drawing is slow, and it
-// ends by itself; without one, or with --record, views spread over the path are drawn and written, with the time of every stage.
+// lucerna walk [SCENE]: the walkthrough. In a window the path plays in real time, views are skipped where drawing is
+// slow, and it ends by itself; without one, or with --record, views spread over the path are drawn and written, with
+// the time of every stage.
 #include "base/clock.hpp"
 #include "base/data.hpp"
 #include "base/error.hpp"
@@ -40,7 +41,8 @@ std::pair<int, int> parseViews(const std::string& text, int viewCount) {
   return {first, last};
 }
 
-// How much two pictures of one view differ: their means, and the 16x16 block that differs most, relative to its own mean or, in the dark, to the picture's.
+// How much two pictures of one view differ: their means, and the 16x16 block that differs most, relative to its own
+// mean or, in the dark, to the picture's.
 struct Change {
   double mean = 0.0, block = 0.0;
 };
@@ -65,8 +67,8 @@ Change changeBetween(const Image& before, const Image& after) {
   return change;
 }
 
-nlohmann::ordered_json resultJson(const Options& options, const Host& host, const gl::Context& context, Renderer& renderer, int frames,
-                                  double seconds) {
+nlohmann::ordered_json resultJson(const Options& options, const Host& host, const gl::Context& context,
+                                  Renderer& renderer, int frames, double seconds) {
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
   json["host"] = nameOf(host.kind());
@@ -87,11 +89,13 @@ nlohmann::ordered_json resultJson(const Options& options, const Host& host, cons
   return json;
 }
 
-int record(const Options& options, const Host& host, const gl::Context& context, Renderer& renderer, const Spline& path) {
+int record(const Options& options, const Host& host, const gl::Context& context, Renderer& renderer,
+           const Spline& path) {
   const fs::path folder = options.record.empty() ? fs::path("walk") : fs::path(options.record);
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) throwBadInput("--record {}: cannot create folder ({})", folder.string(), error.message());
+  if (error || !fs::is_directory(folder))
+    throwBadInput("--record {}: cannot create folder ({})", folder.string(), error.message());
   const auto [first, last] = parseViews(options.views, path.viewCount());
   const int frames = options.frames > 0 ? options.frames : 12;
 
@@ -103,7 +107,9 @@ int record(const Options& options, const Host& host, const gl::Context& context,
   Change largest;
   int done = 0;
   for (; done < frames && !interrupted(); ++done) {
-    const int view = frames > 1 ? first + static_cast<int>(std::lround(static_cast<double>(last - first) * done / (frames - 1))) : first;
+    const int view =
+        frames > 1 ? first + static_cast<int>(std::lround(static_cast<double>(last - first) * done / (frames - 1)))
+                   : first;
     const auto start = Clock::now();
     if (renderer.path()) renderer.renderToTheEnd(path.view(view));  // all samples: one alone is noise
     else renderer.render(path.view(view));
@@ -124,12 +130,15 @@ int record(const Options& options, const Host& host, const gl::Context& context,
   double seconds = 0.0;
   for (double s : frameSeconds) seconds += s;
   if (!options.common.quiet) {
-    fmt::print("{} pictures {}x{} in {}, {:.2f} frames per second\n", done, renderer.size().x, renderer.size().y, folder.string(), done / seconds);
+    fmt::print("{} pictures {}x{} in {}, {:.2f} frames per second\n", done, renderer.size().x, renderer.size().y,
+               folder.string(), done / seconds);
     fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
     if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
     if (options.flicker)
-      fmt::print("flicker, largest change of a view when its volume is that of the view before: {:.3f} % of the mean, {:.2f} % in any 16x16 block\n",
-                 100.0 * largest.mean, 100.0 * largest.block);
+      fmt::print(
+          "flicker, largest change of a view when its volume is that of the view before: {:.3f} % of the mean, {:.2f} "
+          "% in any 16x16 block\n",
+          100.0 * largest.mean, 100.0 * largest.block);
   }
   nlohmann::ordered_json json = resultJson(options, host, context, renderer, done, seconds);
   json["frames_per_second"] = done / seconds;
@@ -139,7 +148,8 @@ int record(const Options& options, const Host& host, const gl::Context& context,
 }
 
 /// In a window, or driven by recorded input.
-int play(const Options& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, Scene scene, Spline path) {
+int play(const Options& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, Scene scene,
+         Spline path) {
   watchForInterrupt();
   WalkState state;
   state.scene = std::make_unique<Scene>(std::move(scene));
@@ -166,7 +176,8 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
   if (!side.renderer) return exitCode();
   Renderer& renderer = *side.renderer;
   if (!options.common.quiet)
-    fmt::print("{} frames in {:.1f} s\n{}", window.frames(), window.seconds(), stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
+    fmt::print("{} frames in {:.1f} s\n{}", window.frames(), window.seconds(),
+               stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
   nlohmann::ordered_json json = resultJson(options, host, context, renderer, window.frames(), window.seconds());
   json["window"] = window.toJson();
   options.common.writeJson(json);
@@ -202,14 +213,21 @@ int run(Options options) {
 Work addWalk(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENE", options->scene, "a scene file (default: the atrium)");
-  app.add_option("--keys", options->keys, "key frames of the camera path (default: the scene's, else one round around it)");
-  app.add_option("--record", options->record, "draw off-screen and write pictures into this folder (without a window: walk)");
-  app.add_option("--frames", options->frames, "number of pictures (12), or frames in a window (the whole path)")->check(CLI::Range(1, 1000000));
+  app.add_option("--keys", options->keys,
+                 "key frames of the camera path (default: the scene's, else one round around it)");
+  app.add_option("--record", options->record,
+                 "draw off-screen and write pictures into this folder (without a window: walk)");
+  app.add_option("--frames", options->frames, "number of pictures (12), or frames in a window (the whole path)")
+      ->check(CLI::Range(1, 1000000));
   app.add_option("--views", options->views, "FIRST:LAST: only these views of the path; 200 between two key frames");
-  app.add_flag("--flicker", options->flicker, "measure how much the light itself changes between pictures, without the camera's motion");
-  app.add_option("--play-input", options->playInput, "drive the window by this file of recorded input (demo/walk/input_file.hpp), on any host");
+  app.add_flag("--flicker", options->flicker,
+               "measure how much the light itself changes between pictures, without the camera's motion");
+  app.add_option("--play-input", options->playInput,
+                 "drive the window by this file of recorded input (demo/walk/input_file.hpp), on any host");
   app.add_option("--shots", options->shots, "folder for screenshots")->capture_default_str();
-  offer(app.add_option("--panel", options->panel, "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"), {"on", "off", "auto"});
+  offer(app.add_option("--panel", options->panel,
+                       "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"),
+        {"on", "off", "auto"});
   options->picture.declare(app);
   options->common.declare(app);
   app.footer(keysHelp() + "\n" + app.get_footer());

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr double kPlayedFrame = 1.0 / 60.0;  // seconds, of recorded input: the same walk on every machine
 constexpr double kMessageSeconds = 8.0, kHintSeconds = 8.0;
-constexpr int kStillFrames = 3;              // before the truth of a view is sought
+constexpr int kStillFrames = 3;  // before the truth of a view is sought
 constexpr std::size_t kPlotFrames = 240;
 
 bool sameView(const Camera& a, const Camera& b) {
@@ -35,12 +35,14 @@ bool sameView(const Camera& a, const Camera& b) {
 
 bool isPicture(const fs::path& file) {
   const std::string extension = lowerExtension(file);
-  return extension == ".png" || extension == ".jpg" || extension == ".hdr" || extension == ".exr" || extension == ".pfm";
+  return extension == ".png" || extension == ".jpg" || extension == ".hdr" || extension == ".exr" ||
+         extension == ".pfm";
 }
 
 }  // namespace
 
-WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, WalkState state)
+WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs,
+                       WalkState state)
     : options_(options), host_(host), context_(context), programs_(programs), state_(std::move(state)) {
   state_.rendererName = context.capabilities().renderer;
   if (!options.playInput.empty()) player_.emplace(options.playInput);
@@ -84,10 +86,13 @@ bool WalkWindow::takeInput() {
     const glm::vec2 pixels(glm::max(view_, glm::ivec2(1)));
     if (input_.buttons[static_cast<std::size_t>(MouseButton::right)] && state_.layout == Layout::wipe)
       state_.split = std::clamp(static_cast<float>(input_.cursor.x) / pixels.x, 0.0f, 1.0f);
-    if (input_.wheel.y != 0.0) state_.zoom = std::clamp(state_.zoom * static_cast<float>(std::exp2(0.25 * input_.wheel.y)), 1.0f, 64.0f);
+    if (input_.wheel.y != 0.0)
+      state_.zoom = std::clamp(state_.zoom * static_cast<float>(std::exp2(0.25 * input_.wheel.y)), 1.0f, 64.0f);
     if (state_.zoom == 1.0f) state_.centre = glm::vec2(0.5f);
     if (input_.buttons[static_cast<std::size_t>(MouseButton::middle)])
-      state_.centre = glm::clamp(state_.centre - glm::vec2(1.0f, -1.0f) * glm::vec2(input_.cursor - cursorBefore_) / pixels / state_.zoom, 0.0f, 1.0f);
+      state_.centre = glm::clamp(
+          state_.centre - glm::vec2(1.0f, -1.0f) * glm::vec2(input_.cursor - cursorBefore_) / pixels / state_.zoom,
+          0.0f, 1.0f);
   }
   cursorBefore_ = input_.cursor;
   for (const fs::path& file : input_.dropped) {
@@ -148,7 +153,9 @@ void WalkWindow::act(Action action) {
     case Action::wipe: s.layout = s.layout == Layout::wipe ? Layout::one : Layout::wipe; break;
     case Action::sideBySide: s.layout = s.layout == Layout::sideBySide ? Layout::one : Layout::sideBySide; break;
     case Action::magnifier: s.magnifier = !s.magnifier; break;
-    case Action::nextView: s.show = static_cast<Show>((static_cast<int>(s.show) + 1) % static_cast<int>(kShowNames.size())); break;
+    case Action::nextView:
+      s.show = static_cast<Show>((static_cast<int>(s.show) + 1) % static_cast<int>(kShowNames.size()));
+      break;
     case Action::truth: s.truthOn = !s.truthOn; break;
     case Action::fit:
       s.zoom = 1.0f;
@@ -157,7 +164,8 @@ void WalkWindow::act(Action action) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------------- the frame's steps
+// ---------------------------------------------------------------------------------------------------- the frame's
+// steps
 
 void WalkWindow::moveCamera(double seconds) {
   PathState& path = state_.path;
@@ -224,9 +232,7 @@ void WalkWindow::loadWantedScene() {
     host_.setTitle("Lucerna - " + state_.scene->name);
     state_.say(fmt::format("{}: {} triangles", state_.scene->name, state_.scene->triangleCount()));
     changed();
-  } catch (const Error& error) {
-    state_.say(error.what());
-  } catch (const Stopped&) {
+  } catch (const Error& error) { state_.say(error.what()); } catch (const Stopped&) {
     state_.say("loading stopped");
   }
 }
@@ -239,9 +245,7 @@ void WalkWindow::make(SideState& side) {
       side.picture = textureOf("stored picture", readImage(side.pictureFile));
       side.judgedTruth = 0;
       ++side.pictureVersion;
-    } catch (const Error& error) {
-      state_.say(error.what());
-    }
+    } catch (const Error& error) { state_.say(error.what()); }
   }
   const std::string wanted = textOf(side.options) + fmt::format(" {}", state_.sceneVersion);
   if (side.shows != Shows::technique && side.renderer) return;
@@ -260,7 +264,9 @@ void WalkWindow::make(SideState& side) {
     side.failedAs.clear();
     if (!side.builtAs.empty() && textOf(side.built) != textOf(side.options)) {
       std::array<PictureOptions, 2> before{state_.sides[0].built, state_.sides[1].built};
-      if (state_.undo.empty() || textOf(state_.undo.back()[0]) != textOf(before[0]) || textOf(state_.undo.back()[1]) != textOf(before[1])) state_.undo.push_back(before);
+      if (state_.undo.empty() || textOf(state_.undo.back()[0]) != textOf(before[0]) ||
+          textOf(state_.undo.back()[1]) != textOf(before[1]))
+        state_.undo.push_back(before);
       if (state_.undo.size() > 100) state_.undo.erase(state_.undo.begin());
     }
     side.built = side.options;
@@ -305,7 +311,8 @@ void WalkWindow::makeReady() {
 const gl::Texture* WalkWindow::radianceOf(int index) const {
   const SideState& side = state_.sides[static_cast<std::size_t>(index)];
   if (side.shows == Shows::picture && side.picture) return &*side.picture;
-  if (side.shows == Shows::reference && state_.truth && state_.truth->samples() > 0 && still_ >= kStillFrames) return &state_.truth->mean();
+  if (side.shows == Shows::reference && state_.truth && state_.truth->samples() > 0 && still_ >= kStillFrames)
+    return &state_.truth->mean();
   return side.renderer ? &side.renderer->radiance() : nullptr;
 }
 
@@ -321,7 +328,8 @@ void WalkWindow::draw() {
   for (int i = 0; i < 2; ++i) {
     SideState& side = state_.sides[static_cast<std::size_t>(i)];
     if (!state_.isVisible(i) || !side.renderer || (side.shows == Shows::picture && side.picture)) continue;
-    const bool rests = state_.truthOn && still_ > kStillFrames && side.settled && side.renderer->exposure() == state_.exposure;
+    const bool rests =
+        state_.truthOn && still_ > kStillFrames && side.settled && side.renderer->exposure() == state_.exposure;
     if (rests) continue;
     side.renderer->setExposure(state_.exposure);
     side.renderer->render(state_.camera->camera());
@@ -336,7 +344,8 @@ void WalkWindow::seekTruth(double frameSeconds) {
   const SideState& shown = state_.side();
   const glm::ivec2 size = shown.renderer->size();
   const Component component = shown.renderer->settings().component;
-  if (!state_.truth || state_.truth->size() != size || state_.truth->component() != component || truthVersion_ != state_.sceneVersion) {
+  if (!state_.truth || state_.truth->size() != size || state_.truth->component() != component ||
+      truthVersion_ != state_.sceneVersion) {
     try {
       breathe("making the path tracer");
       const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
@@ -347,9 +356,7 @@ void WalkWindow::seekTruth(double frameSeconds) {
     } catch (const Error& error) {
       state_.truthOn = false;
       state_.say(error.what());
-    } catch (const Stopped&) {
-      state_.truthOn = false;
-    }
+    } catch (const Stopped&) { state_.truthOn = false; }
     if (!state_.truth) return;
   }
   if (!truthCamera_ || !sameView(*truthCamera_, state_.camera->camera())) {
@@ -385,7 +392,9 @@ void WalkWindow::judge() {
       Image image(side.picture->size().x, side.picture->size().y);
       for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
-          image.at(x, image.height - 1 - y) = glm::vec3(texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)]);
+          image.at(x, image.height - 1 - y) =
+              glm::vec3(texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                               static_cast<std::size_t>(x)]);
       side.judgement.judge(std::move(image), state_.truth->reference());
     } else if (side.renderer && side.renderer->size() == state_.truth->size()) {
       side.judgement.judge(side.renderer->readRadiance(), state_.truth->reference());
@@ -416,10 +425,13 @@ void WalkWindow::readPixel(const Compare::Inputs& inputs) {
 void WalkWindow::compose() {
   SideState& shown = state_.side();
   const bool truthThere = state_.truth && state_.truthOn && state_.truth->ready() && still_ >= kStillFrames;
-  const bool shows = state_.show == Show::picture || (truthThere && radianceOf(state_.shown) && radianceOf(state_.shown)->size2d() == state_.truth->size());
+  const bool shows = state_.show == Show::picture || (truthThere && radianceOf(state_.shown) &&
+                                                      radianceOf(state_.shown)->size2d() == state_.truth->size());
   const bool stage = !state_.stage.empty() && shown.renderer;
-  const bool plain = !stage && state_.layout == Layout::one && (state_.show == Show::picture || !shows) && state_.zoom == 1.0f && !state_.magnifier &&
-                     radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) && shown.renderer && shown.renderer->size() == view_;
+  const bool plain = !stage && state_.layout == Layout::one && (state_.show == Show::picture || !shows) &&
+                     state_.zoom == 1.0f && !state_.magnifier &&
+                     radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) &&
+                     shown.renderer && shown.renderer->size() == view_;
   presented_ = plain && !drawsUi() && !state_.shotWanted && view_ == window_;
   if (presented_) {
     host_.present(shown.renderer->displayFramebuffer().id(), window_);
@@ -430,7 +442,9 @@ void WalkWindow::compose() {
     const SideState& s = state_.sides[static_cast<std::size_t>(i)];
     Compare::Side result{radianceOf(i), truthThere ? state_.show : Show::picture, s.judgement.flipMap()};
     const bool isReference = truthThere && result.radiance == &state_.truth->mean();
-    if (isReference || (result.show == Show::flip && !result.flip) || (result.radiance && truthThere && result.radiance->size2d() != state_.truth->size())) result.show = Show::picture;
+    if (isReference || (result.show == Show::flip && !result.flip) ||
+        (result.radiance && truthThere && result.radiance->size2d() != state_.truth->size()))
+      result.show = Show::picture;
     return result;
   };
   inputs.layout = state_.layout;
@@ -445,15 +459,20 @@ void WalkWindow::compose() {
     inputs.reference = &state_.truth->mean();
     inputs.standardError = &state_.truth->standardError();
     const glm::dvec3 mean = meanOf(state_.truth->reference().mean);
-    inputs.errorScale = state_.errorScale > 0.0f ? state_.errorScale : std::max(0.5f * static_cast<float>(mean.x + mean.y + mean.z) / 3.0f, 1e-30f);
+    inputs.errorScale = state_.errorScale > 0.0f
+                            ? state_.errorScale
+                            : std::max(0.5f * static_cast<float>(mean.x + mean.y + mean.z) / 3.0f, 1e-30f);
   }
-  if (state_.magnifier && input_.cursor.x >= 0.0 && !(ui_ && ui_->wantsMouse())) inputs.magnifier = glm::vec2(input_.cursor);
+  if (state_.magnifier && input_.cursor.x >= 0.0 && !(ui_ && ui_->wantsMouse()))
+    inputs.magnifier = glm::vec2(input_.cursor);
   if (stage) {
     for (const StagePicture& picture : shown.renderer->stagePictures()) {
       if (picture.name != state_.stage) continue;
       if (!stageView_) stageView_.emplace(programs_);
       inputs.layout = Layout::one;
-      inputs.left = {&stageView_->record(picture, state_.stageLayer, std::exp2(state_.stageFactor), state_.scene->bounds), Show::values, nullptr};
+      inputs.left = {
+          &stageView_->record(picture, state_.stageLayer, std::exp2(state_.stageFactor), state_.scene->bounds),
+          Show::values, nullptr};
     }
   }
   if (plain) gl::copyTexels(shown.renderer->display(), {0, 0}, picture_, {0, 0}, view_);
@@ -471,7 +490,9 @@ Bitmap WalkWindow::shownPicture(glm::ivec2 size) const {
   for (int y = size.y - 1; y >= 0; --y)
     for (int x = 0; x < size.x; ++x)
       for (int c = 0; c < 4; ++c)
-        bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(window_.x) + static_cast<std::size_t>(x)][c])));
+        bitmap.rgba.push_back(static_cast<std::uint8_t>(
+            std::lround(255.0f * texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(window_.x) +
+                                        static_cast<std::size_t>(x)][c])));
   return bitmap;
 }
 
@@ -482,17 +503,18 @@ void WalkWindow::takeShot() {
     std::error_code ignored;
     fs::create_directories(state_.shotFolder, ignored);
     const fs::path stem = freeName(state_.shotFolder, state_.scene->name);
-    std::string note = fmt::format("Lucerna {} on {}\n{} --camera {} --size {}x{}\nexposure {:.6g}", LUCERNA_VERSION, state_.rendererName,
-                                   commandLine("render", state_.scene->file.string(), side.built), cameraText(state_.camera->camera()), side.renderer->size().x, side.renderer->size().y, state_.exposure);
+    std::string note = fmt::format("Lucerna {} on {}\n{} --camera {} --size {}x{}\nexposure {:.6g}", LUCERNA_VERSION,
+                                   state_.rendererName, commandLine("render", state_.scene->file.string(), side.built),
+                                   cameraText(state_.camera->camera()), side.renderer->size().x,
+                                   side.renderer->size().y, state_.exposure);
     if (side.judgement.known())
-      note += fmt::format("\nrelative error {:.4g}, {:.4g} to {:.4g} (99 %), against {} path-traced samples a pixel", side.judgement.nrmse().value, side.judgement.nrmse().low,
-                          side.judgement.nrmse().high, state_.truth ? state_.truth->samples() : 0);
+      note += fmt::format("\nrelative error {:.4g}, {:.4g} to {:.4g} (99 %), against {} path-traced samples a pixel",
+                          side.judgement.nrmse().value, side.judgement.nrmse().low, side.judgement.nrmse().high,
+                          state_.truth ? state_.truth->samples() : 0);
     writePngWithNote(stem.string() + ".png", shownPicture(view_), note);
     if (side.renderer) writeHdrWithNote(stem.string() + ".hdr", side.renderer->readRadiance(), note);
     state_.say(fmt::format("{}.png and .hdr written", stem.string()));
-  } catch (const Error& error) {
-    state_.say(error.what());
-  }
+  } catch (const Error& error) { state_.say(error.what()); }
 }
 
 // ---------------------------------------------------------------------------------------------------- showing it
@@ -519,7 +541,9 @@ void WalkWindow::resizeTo(glm::ivec2 window) {
     }
 }
 
-glm::ivec2 WalkWindow::pictureSize() const { return glm::max(glm::ivec2(glm::vec2(view_) * state_.renderScale), glm::ivec2(1)); }
+glm::ivec2 WalkWindow::pictureSize() const {
+  return glm::max(glm::ivec2(glm::vec2(view_) * state_.renderScale), glm::ivec2(1));
+}
 
 void WalkWindow::drawUi(const HostInput& input, double seconds, const std::string& work, double share) {
   if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
@@ -535,7 +559,8 @@ void WalkWindow::drawUi(const HostInput& input, double seconds, const std::strin
 
 // What recorded input touches by name must be there; else nothing that nobody looks at is made.
 bool WalkWindow::drawsUi() const {
-  return state_.panel || state_.help || state_.hint || (!state_.messages.empty() && state_.messageAge < kMessageSeconds) || player_.has_value();
+  return state_.panel || state_.help || state_.hint ||
+         (!state_.messages.empty() && state_.messageAge < kMessageSeconds) || player_.has_value();
 }
 
 void WalkWindow::breathe(const std::string& what, double share) {
@@ -554,7 +579,8 @@ void WalkWindow::breathe(const std::string& what, double share) {
 
 void WalkWindow::pace(Clock::time_point start) {
   if (state_.frameLimit <= 0 || player_) return;
-  std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / state_.frameLimit)));
+  std::this_thread::sleep_until(
+      start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / state_.frameLimit)));
 }
 
 void WalkWindow::run() {
@@ -598,7 +624,8 @@ void WalkWindow::run() {
     if (state_.frameMs.size() > kPlotFrames) state_.frameMs.erase(state_.frameMs.begin());
     ++framesOfTitle_;
     if (secondsSince(titleTime) > 0.5) {
-      host_.setTitle(fmt::format("Lucerna - {} - {:.1f} frames a second - F1 keys, F2 panel", state_.scene->name, framesOfTitle_ / secondsSince(titleTime)));
+      host_.setTitle(fmt::format("Lucerna - {} - {:.1f} frames a second - F1 keys, F2 panel", state_.scene->name,
+                                 framesOfTitle_ / secondsSince(titleTime)));
       titleTime = Clock::now();
       framesOfTitle_ = 0;
     }
@@ -614,7 +641,11 @@ nlohmann::ordered_json WalkWindow::toJson() const {
   nlohmann::ordered_json json;
   if (!state_.frameMs.empty()) {
     const std::vector<double> ms(state_.frameMs.begin(), state_.frameMs.end());
-    json["frame_ms"] = {{"median", median(ms)}, {"p25", percentile(ms, 0.25)}, {"p75", percentile(ms, 0.75)}, {"p95", percentile(ms, 0.95)}, {"count", ms.size()}};
+    json["frame_ms"] = {{"median", median(ms)},
+                        {"p25", percentile(ms, 0.25)},
+                        {"p75", percentile(ms, 0.75)},
+                        {"p95", percentile(ms, 0.95)},
+                        {"count", ms.size()}};
   }
   json["messages"] = state_.messages;
   if (ui_) {
@@ -629,7 +660,8 @@ nlohmann::ordered_json WalkWindow::toJson() const {
     json["truth"] = {{"samples", state_.truth->samples()}, {"seconds", state_.truth->seconds()}};
     for (std::size_t i = 0; i < 2; ++i)
       if (const Judgement& j = state_.sides[i].judgement; j.known())
-        json["truth"][i == 0 ? "a" : "b"] = {{"nrmse", j.nrmse().value}, {"low", j.nrmse().low}, {"high", j.nrmse().high}, {"bias", j.bias()}};
+        json["truth"][i == 0 ? "a" : "b"] = {
+            {"nrmse", j.nrmse().value}, {"low", j.nrmse().low}, {"high", j.nrmse().high}, {"bias", j.bias()}};
   }
   return json;
 }

@@ -1,4 +1,5 @@
-// The walkthrough in a window, or driven by recorded input on any host: path and free camera, panel, comparison, live truth.
+// The walkthrough in a window, or driven by recorded input on any host: path and free camera, panel, comparison, live
+// truth.
 #pragma once
 
 #include "base/clock.hpp"
@@ -16,7 +17,8 @@ namespace lucerna::demo {
 class WalkWindow {
  public:
   /// `state`: with scene, path and the first technique's renderer.
-  WalkWindow(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, WalkState state);
+  WalkWindow(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs,
+             WalkState state);
   ~WalkWindow();
 
   /// Until it is closed, the path ends or --frames are drawn.
@@ -30,7 +32,7 @@ class WalkWindow {
 
  private:
   // A frame, in this order.
-  bool takeInput();                    ///< false: it is to end
+  bool takeInput();  ///< false: it is to end
   void act(Action action);
   void moveCamera(double seconds);
   void loadWantedScene();
@@ -44,7 +46,8 @@ class WalkWindow {
   void takeShot();
   void pace(Clock::time_point start);
 
-  /// Called while something long is made: shows the old picture with what is going on; throws Stopped where Escape was pressed.
+  /// Called while something long is made: shows the old picture with what is going on; throws Stopped where Escape was
+  /// pressed.
   void breathe(const std::string& what, double share = -1.0);
   void resizeTo(glm::ivec2 window);
   void drawUi(const HostInput& input, double seconds, const std::string& work, double share);
@@ -66,16 +69,16 @@ class WalkWindow {
   HostInput input_;
   glm::dvec2 cursorBefore_{0.0};
   glm::ivec2 window_{0}, playedSize_{0};
-  glm::ivec2 view_{0};                 ///< the window less the panel: where the picture is
-  gl::Texture picture_;                ///< what is presented, where that is not the renderer's own
+  glm::ivec2 view_{0};  ///< the window less the panel: where the picture is
+  gl::Texture picture_;  ///< what is presented, where that is not the renderer's own
   gl::Framebuffer pictureTarget_;
   Camera lastCamera_;
-  int still_ = 0;                      ///< frames since something moved
-  bool touched_ = false;               ///< somebody is there: the walk does not end by itself
+  int still_ = 0;  ///< frames since something moved
+  bool touched_ = false;  ///< somebody is there: the walk does not end by itself
   bool stop_ = false;
-  bool presented_ = false;             ///< compose() showed the renderer's own picture
+  bool presented_ = false;  ///< compose() showed the renderer's own picture
   std::optional<Camera> truthCamera_;  ///< that the truth is of
-  std::uint64_t truthVersion_ = 0;     ///< of the scene that the truth is of
+  std::uint64_t truthVersion_ = 0;  ///< of the scene that the truth is of
   int frames_ = 0;
   double seconds_ = 0.0, sinceHint_ = 0.0;
   int framesOfTitle_ = 0;

@@ -43,7 +43,8 @@ std::optional<fs::path> findDataFolder() {
   if (const char* environment = std::getenv("LUCERNA_DATA"); environment && *environment) {
     const std::string missing = missingFolder(environment);
     if (!missing.empty())
-      throwBadInput("LUCERNA_DATA={}: expected a folder with shaders, assets and keyFrames; it has no folder {}", environment, missing);
+      throwBadInput("LUCERNA_DATA={}: expected a folder with shaders, assets and keyFrames; it has no folder {}",
+                    environment, missing);
     return fs::canonical(environment);
   }
   for (const fs::path& folder : candidates())
@@ -55,7 +56,9 @@ fs::path dataFolder() {
   if (auto folder = findDataFolder()) return *folder;
   std::string places;
   for (const fs::path& folder : candidates()) places += (places.empty() ? "" : ", ") + folder.string();
-  throwMissingCapability("shaders and assets not found: none of {} has the folders shaders, assets and keyFrames; set LUCERNA_DATA", places);
+  throwMissingCapability(
+      "shaders and assets not found: none of {} has the folders shaders, assets and keyFrames; set LUCERNA_DATA",
+      places);
 }
 
 }  // namespace lucerna

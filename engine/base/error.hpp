@@ -17,8 +17,8 @@ namespace lucerna {
 
 /// The kind decides the exit code of the program.
 enum class ErrorKind {
-  fault = 1,              ///< internal error
-  badInput = 2,           ///< a file or option that cannot be used
+  fault = 1,  ///< internal error
+  badInput = 2,  ///< a file or option that cannot be used
   missingCapability = 3,  ///< something is missing on this machine or in its driver
 };
 
@@ -55,8 +55,8 @@ namespace detail {
 }  // namespace lucerna
 
 /// CHECK(n < size, "n = {}, size = {}", n, size): a programmer error aborts, with values. On in every build.
-#define CHECK(condition, ...)                                                                                \
-  do {                                                                                                       \
-    if (!(condition)) [[unlikely]]                                                                           \
-      ::lucerna::detail::checkFailed(__FILE__, __LINE__, #condition, ::fmt::format(__VA_ARGS__));            \
+#define CHECK(condition, ...)                                                                     \
+  do {                                                                                            \
+    if (!(condition)) [[unlikely]]                                                                \
+      ::lucerna::detail::checkFailed(__FILE__, __LINE__, #condition, ::fmt::format(__VA_ARGS__)); \
   } while (false)

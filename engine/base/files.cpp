@@ -32,7 +32,8 @@ Container readWhole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throwCannotOpen(file, errno);
   Container content;
-  // Piece by piece, as pipes have no size; the first piece holds all of a regular file, plus one byte to detect its end.
+  // Piece by piece, as pipes have no size; the first piece holds all of a regular file, plus one byte to detect its
+  // end.
   std::size_t piece = 1u << 20, used = 0;
   if (const std::uintmax_t size = fs::file_size(file, error); !error) piece = static_cast<std::size_t>(size) + 1;
   for (; stream; piece = 1u << 20) {
@@ -60,7 +61,8 @@ const std::string& temporaryPrefix() {
   return prefix;
 }
 
-/// Removes the temporary files that killed processes of this machine left in a folder; once a folder and run, before the first file is written to it.
+/// Removes the temporary files that killed processes of this machine left in a folder; once a folder and run, before
+/// the first file is written to it.
 void sweepOnce(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<std::string> swept;
@@ -131,7 +133,8 @@ void replaceFile(const fs::path& file, std::span<const std::uint8_t> bytes, bool
 
 void throwCannotOpen(const fs::path& file, int reason) {
   if (reason == ENOENT) throwBadInput("{}: no such file", file.string());
-  if (reason == EMFILE || reason == ENFILE || reason == ENOMEM) throwMissingCapability("{}: cannot be opened: {}", file.string(), std::strerror(reason));
+  if (reason == EMFILE || reason == ENFILE || reason == ENOMEM)
+    throwMissingCapability("{}: cannot be opened: {}", file.string(), std::strerror(reason));
   throwBadInput("{}: cannot be opened: {}", file.string(), std::strerror(reason));
 }
 

@@ -19,7 +19,8 @@ class Hash {
   /// Only for types without padding: padding is not content.
   template <class T>
   void add(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T> && (std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>));
+    static_assert(std::is_trivially_copyable_v<T> &&
+                  (std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>));
     bytes(&value, sizeof value);
   }
   template <glm::length_t n, class T>

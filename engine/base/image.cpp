@@ -1,7 +1,9 @@
 // Images on disk. Which library does what, and why:
-// - 8-bit pictures (png, jpg, tga, bmp): DevIL, after the checks of base/picture_header.hpp. It keeps its current image, error
+// - 8-bit pictures (png, jpg, tga, bmp): DevIL, after the checks of base/picture_header.hpp. It keeps its current
+// image, error
 //   stack and modes in globals, so one mutex guards all of it.
-// - Radiance hdr: here. DevIL 1.7.8 reads every value 256/255 times too large (0.4 %), cuts mantissas off instead of rounding
+// - Radiance hdr: here. DevIL 1.7.8 reads every value 256/255 times too large (0.4 %), cuts mantissas off instead of
+// rounding
 //   them when writing, and accepts truncated files; comparisons here measure bias far below that.
 // - exr: OpenEXR, as Debian's DevIL has none. pfm: a header and raw floats.
 // Every format goes through memory, so file errors are handled in one place (base/files.hpp).
@@ -41,9 +43,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::size_t pixelCount(int width, int height) { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+std::size_t pixelCount(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
 
-// ---------------------------------------------------------------------------------------------------------------- DevIL
+// ----------------------------------------------------------------------------------------------------------------
+// DevIL
 
 /// Exclusive use of DevIL with one bound image, freed at the end.
 class DevilImage {
@@ -68,23 +73,26 @@ class DevilImage {
   DevilImage(const DevilImage&) = delete;
   DevilImage& operator=(const DevilImage&) = delete;
 
-  /// Decodes into the bound image, or throws. Pictures that are damaged may "succeed" with read errors on the stack: those are refused.
+  /// Decodes into the bound image, or throws. Pictures that are damaged may "succeed" with read errors on the stack:
+  /// those are refused.
   void decode(std::span<const std::uint8_t> bytes, const fs::path& file) {
     const PictureHeader header = checkPicture(bytes, file);
     constexpr ILenum kTypes[] = {IL_PNG, IL_JPG, IL_TGA, IL_BMP};
     const ILenum type = kTypes[static_cast<std::size_t>(header.format)];
-    const bool loaded = bytes.size() <= std::numeric_limits<ILuint>::max() && ilLoadL(type, bytes.data(), static_cast<ILuint>(bytes.size())) != IL_FALSE;
+    const bool loaded = bytes.size() <= std::numeric_limits<ILuint>::max() &&
+                        ilLoadL(type, bytes.data(), static_cast<ILuint>(bytes.size())) != IL_FALSE;
     const ILenum error = drainErrors();
     if (!loaded) throwBadInput("{}: a broken picture: {}", file.string(), describe(error));
     if (error == IL_FILE_READ_ERROR) throwBadInput("{}: truncated picture: the file ends too early", file.string());
     if (ilGetInteger(IL_IMAGE_WIDTH) != header.width || ilGetInteger(IL_IMAGE_HEIGHT) != header.height)
-      throwBadInput("{}: a broken picture: {} x {} pixels decoded, its header says {} x {}", file.string(), ilGetInteger(IL_IMAGE_WIDTH), ilGetInteger(IL_IMAGE_HEIGHT), header.width,
-                    header.height);
+      throwBadInput("{}: a broken picture: {} x {} pixels decoded, its header says {} x {}", file.string(),
+                    ilGetInteger(IL_IMAGE_WIDTH), ilGetInteger(IL_IMAGE_HEIGHT), header.width, header.height);
   }
 
   /// The bound image as RGBA, 8 bits a channel.
   std::span<const std::uint8_t> rgba(const fs::path& file) {
-    if (ilConvertImage(IL_RGBA, IL_UNSIGNED_BYTE) == IL_FALSE) throwBadInput("{}: a picture that cannot be converted", file.string());
+    if (ilConvertImage(IL_RGBA, IL_UNSIGNED_BYTE) == IL_FALSE)
+      throwBadInput("{}: a picture that cannot be converted", file.string());
     return {ilGetData(), 4 * pixelCount(ilGetInteger(IL_IMAGE_WIDTH), ilGetInteger(IL_IMAGE_HEIGHT))};
   }
 
@@ -118,15 +126,15 @@ class DevilImage {
   ILuint name_ = 0;
 };
 
-// ------------------------------------------------------------------------------------------------------------------ hdr
-// Radiance RGBE: Greg Ward, "Real Pixels", Graphics Gems II, 1991; file layout as in Radiance's reference manual (filefmts).
-// A value is mantissa * 2^(exponent - 136), so that the largest channel's mantissa lies in 128..255.
+// ------------------------------------------------------------------------------------------------------------------
+// hdr Radiance RGBE: Greg Ward, "Real Pixels", Graphics Gems II, 1991; file layout as in Radiance's reference manual
+// (filefmts). A value is mantissa * 2^(exponent - 136), so that the largest channel's mantissa lies in 128..255.
 
 std::array<std::uint8_t, 4> rgbeFromLinear(glm::vec3 colour) {
   const float largest = std::max({colour.x, colour.y, colour.z});
   int exponent = 0;
   const float fraction = std::frexp(largest, &exponent);  // in [0.5, 1)
-  if (fraction * 256.0f >= 255.5f) ++exponent;            // would round to 256
+  if (fraction * 256.0f >= 255.5f) ++exponent;  // would round to 256
   if (largest <= 0.0f || exponent < -127) return {0, 0, 0, 0};
   const auto mantissa = [&](float channel) {
     return static_cast<std::uint8_t>(std::lround(std::ldexp(std::max(channel, 0.0f), 8 - exponent)));
@@ -134,7 +142,8 @@ std::array<std::uint8_t, 4> rgbeFromLinear(glm::vec3 colour) {
   return {mantissa(colour.x), mantissa(colour.y), mantissa(colour.z), static_cast<std::uint8_t>(exponent + 128)};
 }
 
-/// One channel of one row, run-length encoded: a byte above 128 is a run of (byte - 128) equal values, else that many values.
+/// One channel of one row, run-length encoded: a byte above 128 is a run of (byte - 128) equal values, else that many
+/// values.
 void appendRunLengths(std::string& out, std::span<const std::uint8_t> row) {
   constexpr std::size_t kMinRun = 4, kMaxRun = 127, kMaxLiterals = 128;
   std::size_t literalsBegin = 0;
@@ -170,9 +179,11 @@ std::string encodeHdr(const Image& image, const fs::path& file) {
       negative += p[c] < 0.0f;
     }
   }
-  if (negative > 0) logWarning("{}: {} negative values become 0, as hdr cannot keep them; exr and pfm can", file.string(), negative);
+  if (negative > 0)
+    logWarning("{}: {} negative values become 0, as hdr cannot keep them; exr and pfm can", file.string(), negative);
 
-  std::string out = fmt::format("#?RADIANCE\nSOFTWARE=lucerna\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
+  std::string out =
+      fmt::format("#?RADIANCE\nSOFTWARE=lucerna\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
   const bool runLengths = image.width >= 8 && image.width <= 32767;  // outside, only flat pixels are allowed
   const auto width = static_cast<std::size_t>(image.width);
   std::vector<std::uint8_t> planes(4 * width);
@@ -201,7 +212,8 @@ class HdrBytes {
   std::size_t left() const { return bytes_.size(); }
   std::uint8_t next() { return take(1)[0]; }
   std::span<const std::uint8_t> take(std::size_t count) {
-    if (count > bytes_.size()) throwBadInput("{}: truncated: the hdr file ends within its pixels or header", file_.string());
+    if (count > bytes_.size())
+      throwBadInput("{}: truncated: the hdr file ends within its pixels or header", file_.string());
     const std::span<const std::uint8_t> taken = bytes_.first(count);
     bytes_ = bytes_.subspan(count);
     return taken;
@@ -230,14 +242,16 @@ void decodeHdrRow(HdrBytes& bytes, std::vector<std::array<std::uint8_t, 4>>& row
       for (std::size_t x = 0; x < row.size();) {
         const std::size_t code = bytes.next();
         const std::size_t count = code > 128 ? code - 128 : code;
-        if (count == 0 || count > row.size() - x) throwBadInput("{}: a broken hdr file: a run that does not fit its row", file.string());
+        if (count == 0 || count > row.size() - x)
+          throwBadInput("{}: a broken hdr file: a run that does not fit its row", file.string());
         const std::uint8_t value = code > 128 ? bytes.next() : std::uint8_t{0};
         for (std::size_t i = 0; i < count; ++i) row[x++][c] = code > 128 ? value : bytes.next();
       }
     }
     return;
   }
-  // Flat pixels; among them (1, 1, 1, n) repeats the last one n times, and one right after another counts in the next byte up.
+  // Flat pixels; among them (1, 1, 1, n) repeats the last one n times, and one right after another counts in the next
+  // byte up.
   int shift = 0;
   for (std::size_t x = 0; x < row.size();) {
     const std::span<const std::uint8_t> pixel = bytes.take(4);
@@ -247,7 +261,8 @@ void decodeHdrRow(HdrBytes& bytes, std::vector<std::array<std::uint8_t, 4>>& row
       continue;
     }
     const std::size_t count = shift < 32 ? std::size_t{pixel[3]} << shift : 0;
-    if (x == 0 || count > row.size() - x || shift >= 32) throwBadInput("{}: a broken hdr file: a run that does not fit its row", file.string());
+    if (x == 0 || count > row.size() - x || shift >= 32)
+      throwBadInput("{}: a broken hdr file: a run that does not fit its row", file.string());
     std::fill_n(row.begin() + static_cast<std::ptrdiff_t>(x), count, row[x - 1]);
     x += count;
     shift += 8;
@@ -257,13 +272,14 @@ void decodeHdrRow(HdrBytes& bytes, std::vector<std::array<std::uint8_t, 4>>& row
 Image decodeHdr(std::span<const std::uint8_t> content, const fs::path& file) {
   HdrBytes bytes(content, file);
   double exposure = 1.0;  // what the pixels were multiplied by; may be given several times
-  bytes.line();           // "#?RADIANCE" or another program's name
+  bytes.line();  // "#?RADIANCE" or another program's name
   for (std::string line = bytes.line(); !line.empty(); line = bytes.line()) {
     if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
       throwBadInput("{}: hdr pixels of '{}', expected FORMAT=32-bit_rle_rgbe", file.string(), line);
     if (line.starts_with("EXPOSURE=")) exposure *= std::strtod(line.c_str() + 9, nullptr);
   }
-  if (!(exposure > 0.0) || !std::isfinite(exposure)) throwBadInput("{}: an hdr header whose EXPOSURE is not a number above 0", file.string());
+  if (!(exposure > 0.0) || !std::isfinite(exposure))
+    throwBadInput("{}: an hdr header whose EXPOSURE is not a number above 0", file.string());
 
   const std::string resolution = bytes.line();
   char signY = 0, signX = 0;
@@ -271,7 +287,8 @@ Image decodeHdr(std::span<const std::uint8_t> content, const fs::path& file) {
   if (std::sscanf(resolution.c_str(), "%cY %lld %cX %lld", &signY, &height, &signX, &width) != 4)
     throwBadInput("{}: an hdr file with the size '{}', expected one like '-Y 512 +X 1024'", file.string(), resolution);
   checkPictureSize(file, width, height, content.size(), kFreeFloatPixels);
-  if (bytes.left() / 4 < static_cast<std::size_t>(height)) throwBadInput("{}: truncated: {} bytes of pixels for {} rows", file.string(), bytes.left(), height);
+  if (bytes.left() / 4 < static_cast<std::size_t>(height))
+    throwBadInput("{}: truncated: {} bytes of pixels for {} rows", file.string(), bytes.left(), height);
 
   Image image(static_cast<int>(width), static_cast<int>(height));
   std::vector<std::array<std::uint8_t, 4>> row(static_cast<std::size_t>(width));
@@ -287,11 +304,13 @@ Image decodeHdr(std::span<const std::uint8_t> content, const fs::path& file) {
   return image;
 }
 
-// ------------------------------------------------------------------------------------------------------------------ exr
+// ------------------------------------------------------------------------------------------------------------------
+// exr
 
 class MemoryInput : public Imf::IStream {
  public:
-  MemoryInput(const std::string& name, std::span<const std::uint8_t> bytes) : Imf::IStream(name.c_str()), bytes_(bytes) {}
+  MemoryInput(const std::string& name, std::span<const std::uint8_t> bytes)
+      : Imf::IStream(name.c_str()), bytes_(bytes) {}
   bool read(char target[], int count) override {
     const auto n = static_cast<std::uint64_t>(count);
     if (position_ > bytes_.size() || n > bytes_.size() - position_) throw std::runtime_error("the file ends too early");
@@ -337,7 +356,8 @@ std::vector<std::uint8_t> encodeExr(const Image& image, const fs::path& file) {
   char* base = const_cast<char*>(reinterpret_cast<const char*>(image.pixels.data()));
   for (std::size_t c = 0; c < 3; ++c) {
     header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
-    frame.insert(names[c], Imf::Slice(Imf::FLOAT, base + c * sizeof(float), kPixelStride, kPixelStride * static_cast<std::size_t>(image.width)));
+    frame.insert(names[c], Imf::Slice(Imf::FLOAT, base + c * sizeof(float), kPixelStride,
+                                      kPixelStride * static_cast<std::size_t>(image.width)));
   }
   MemoryOutput stream(file.string());
   {
@@ -348,10 +368,11 @@ std::vector<std::uint8_t> encodeExr(const Image& image, const fs::path& file) {
   return std::move(stream.bytes);
 }
 
-/// OpenEXR makes room for as many bytes as an attribute of the header says it has: those left are counted first. An attribute is its name and its type,
-/// each ended by a zero byte, its size in four bytes and its value; an empty name ends a part's header, and of a file of several parts another the last one's.
+/// OpenEXR makes room for as many bytes as an attribute of the header says it has: those left are counted first. An
+/// attribute is its name and its type, each ended by a zero byte, its size in four bytes and its value; an empty name
+/// ends a part's header, and of a file of several parts another the last one's.
 void checkExrHeader(std::span<const std::uint8_t> bytes, const fs::path& file) {
-  constexpr std::size_t kAttributes = 8;          // behind magic number and version
+  constexpr std::size_t kAttributes = 8;  // behind magic number and version
   constexpr std::uint8_t kSeveralParts = 0x10;  // of the version's second byte
   std::size_t at = kAttributes;
   const auto truncated = [&] { throwBadInput("{}: truncated: the EXR picture ends within its header", file.string()); };
@@ -372,7 +393,8 @@ void checkExrHeader(std::span<const std::uint8_t> bytes, const fs::path& file) {
     ended = false;
     skipText();
     if (bytes.size() - at < 4) truncated();
-    const std::uint32_t size = std::uint32_t{bytes[at]} | std::uint32_t{bytes[at + 1]} << 8 | std::uint32_t{bytes[at + 2]} << 16 | std::uint32_t{bytes[at + 3]} << 24;
+    const std::uint32_t size = std::uint32_t{bytes[at]} | std::uint32_t{bytes[at + 1]} << 8 |
+                               std::uint32_t{bytes[at + 2]} << 16 | std::uint32_t{bytes[at + 3]} << 24;
     at += 4;
     if (size > bytes.size() - at) truncated();
     at += size;
@@ -396,7 +418,8 @@ Image decodeExr(std::span<const std::uint8_t> bytes, const fs::path& file) {
   const char* names[3] = {"R", "G", "B"};
   for (std::size_t c = 0; c < (colour ? 3u : 1u); ++c)
     frame.insert(colour ? names[c] : "Y",
-                 Imf::Slice::Make(Imf::FLOAT, &image.pixels[0][static_cast<int>(c)], window, kPixelStride, kPixelStride * static_cast<std::size_t>(width)));
+                 Imf::Slice::Make(Imf::FLOAT, &image.pixels[0][static_cast<int>(c)], window, kPixelStride,
+                                  kPixelStride * static_cast<std::size_t>(width)));
   input.setFrameBuffer(frame);
   input.readPixels(window.min.y, window.max.y);
   if (!colour)
@@ -404,9 +427,10 @@ Image decodeExr(std::span<const std::uint8_t> bytes, const fs::path& file) {
   return image;
 }
 
-// ------------------------------------------------------------------------------------------------------------------ pfm
-// Paul Debevec's portable float map: "PF" (colour) or "Pf" (grey), width, height, a scale whose sign tells the byte order
-// (negative: little-endian), one white space, then floats from the bottom row up. The scale's size is a note on units: not used.
+// ------------------------------------------------------------------------------------------------------------------
+// pfm Paul Debevec's portable float map: "PF" (colour) or "Pf" (grey), width, height, a scale whose sign tells the byte
+// order (negative: little-endian), one white space, then floats from the bottom row up. The scale's size is a note on
+// units: not used.
 
 std::uint32_t byteSwapped(std::uint32_t v) { return v >> 24 | (v >> 8 & 0xff00u) | (v << 8 & 0xff0000u) | v << 24; }
 
@@ -441,7 +465,8 @@ Image decodePfm(std::span<const std::uint8_t> bytes, const fs::path& file) {
   const std::size_t channels = text[1] == 'F' ? 3 : 1;
   const std::size_t needed = static_cast<std::size_t>(width * height) * channels * sizeof(float);
   if (text.size() - at < needed)
-    throwBadInput("{}: truncated: {} bytes of pixels, {} x {} pixels need {}", file.string(), text.size() - at, width, height, needed);
+    throwBadInput("{}: truncated: {} bytes of pixels, {} x {} pixels need {}", file.string(), text.size() - at, width,
+                  height, needed);
   Image image(static_cast<int>(width), static_cast<int>(height));
   const bool swap = (scale < 0.0) != (std::endian::native == std::endian::little);
   for (int y = image.height - 1; y >= 0; --y) {
@@ -464,7 +489,8 @@ bool startsWith(std::span<const std::uint8_t> bytes, std::string_view magic) {
 }  // namespace
 
 Image::Image(int width_, int height_, glm::vec3 value) : width(width_), height(height_) {
-  CHECK(width_ >= 0 && height_ >= 0 && std::int64_t{width_} * height_ <= kMostPixels, "{} x {} pixels", width_, height_);
+  CHECK(width_ >= 0 && height_ >= 0 && std::int64_t{width_} * height_ <= kMostPixels, "{} x {} pixels", width_,
+        height_);
   pixels.assign(pixelCount(width_, height_), value);
 }
 
@@ -516,9 +542,7 @@ Image readImage(const fs::path& file) {
   if (startsWith(bytes, "\x76\x2f\x31\x01")) {
     try {
       return decodeExr(bytes, file);
-    } catch (const Error&) {
-      throw;
-    } catch (const std::exception& e) {
+    } catch (const Error&) { throw; } catch (const std::exception& e) {
       throwBadInput("{}: a broken EXR picture: {}", file.string(), e.what());
     }
   }
@@ -534,8 +558,8 @@ Image readImage(const fs::path& file) {
 }
 
 void writeImage(const fs::path& file, const Image& image) {
-  CHECK(image.pixels.size() == pixelCount(image.width, image.height), "{} pixels for {} x {}", image.pixels.size(), image.width,
-        image.height);
+  CHECK(image.pixels.size() == pixelCount(image.width, image.height), "{} pixels for {} x {}", image.pixels.size(),
+        image.width, image.height);
   checkPictureSize(file, image.width, image.height);
   const std::string extension = lowerExtension(file);
   if (extension == ".pfm") return writeFileAtomically(file, encodePfm(image));
@@ -545,8 +569,8 @@ void writeImage(const fs::path& file, const Image& image) {
 }
 
 void writePng(const fs::path& file, const Bitmap& bitmap) {
-  CHECK(bitmap.rgba.size() == 4 * pixelCount(bitmap.width, bitmap.height), "{} bytes for {} x {}", bitmap.rgba.size(), bitmap.width,
-        bitmap.height);
+  CHECK(bitmap.rgba.size() == 4 * pixelCount(bitmap.width, bitmap.height), "{} bytes for {} x {}", bitmap.rgba.size(),
+        bitmap.width, bitmap.height);
   checkPictureSize(file, bitmap.width, bitmap.height);
   if (lowerExtension(file) != ".png") throwBadInput("{}: 8-bit pictures are written as .png", file.string());
   const std::size_t count = pixelCount(bitmap.width, bitmap.height);
@@ -564,7 +588,9 @@ void writePng(const fs::path& file, const Bitmap& bitmap) {
       size = ilSaveL(IL_PNG, png.data(), static_cast<ILuint>(png.size()));
     }
   }
-  if (size == 0) throw Error(ErrorKind::fault, fmt::format("{}: DevIL could not encode {} x {} pixels as PNG", file.string(), bitmap.width, bitmap.height));
+  if (size == 0)
+    throw Error(ErrorKind::fault, fmt::format("{}: DevIL could not encode {} x {} pixels as PNG", file.string(),
+                                              bitmap.width, bitmap.height));
   writeFileAtomically(file, std::span(png).first(size));
 }
 

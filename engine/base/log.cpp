@@ -22,7 +22,8 @@ namespace detail {
 
 void writeLog(LogLevel level, const std::string& message) {
   // Repeating a warning for every rung of a bench or frame of a walk adds nothing.
-  const bool known = level == LogLevel::warnings && std::find(g_warnings.begin(), g_warnings.end(), message) != g_warnings.end();
+  const bool known =
+      level == LogLevel::warnings && std::find(g_warnings.begin(), g_warnings.end(), message) != g_warnings.end();
   if (level == LogLevel::warnings) g_warnings.push_back(message);
   if (level > g_level || known) return;
   fmt::print(stderr, "{}{}\n", level == LogLevel::warnings ? "lucerna: warning: " : "lucerna: ", message);

@@ -1,6 +1,7 @@
 // Names of enum values, as the command line, files and JSON spell them: one table an enum, one parser for all.
 //
-// An enum class whose values count from 0 has names once a function namesOf(E) stands beside it that returns them in order:
+// An enum class whose values count from 0 has names once a function namesOf(E) stands beside it that returns them in
+// order:
 //   constexpr std::array<std::string_view, 2> namesOf(LpvLookup) { return {"flux", "published"}; }
 #pragma once
 
@@ -14,7 +15,9 @@
 namespace lucerna {
 
 template <class E>
-concept NamedEnum = requires(E value) { namesOf(value).size(); };
+concept NamedEnum = requires(E value) {
+  namesOf(value).size();
+};
 
 template <NamedEnum E>
 constexpr std::string_view nameOf(E value) {

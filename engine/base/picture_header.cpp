@@ -39,7 +39,8 @@ bool startsWith(Bytes bytes, std::string_view magic) {
   throwBadInput("{}: truncated picture: the {} file ends too early", file.string(), format);
 }
 
-PictureHeader checkedHeader(const fs::path& file, Bytes bytes, PictureFormat format, std::int64_t width, std::int64_t height) {
+PictureHeader checkedHeader(const fs::path& file, Bytes bytes, PictureFormat format, std::int64_t width,
+                            std::int64_t height) {
   checkPictureSize(file, width, height, bytes.size(), kFreeBitmapPixels);
   return {format, static_cast<int>(width), static_cast<int>(height)};
 }
@@ -49,8 +50,10 @@ PictureHeader checkPng(Bytes bytes, const fs::path& file) {
   constexpr std::size_t kSignature = 8, kFrame = 12;  // of a chunk: length, type, checksum
   if (bytes.size() < kSignature + kFrame + 13) throwTruncated(file, "PNG");
   const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (bigEndian(bytes, 8, 4) != 13 || all.substr(12, 4) != "IHDR") throwBadInput("{}: a broken picture: a PNG that does not begin with IHDR", file.string());
-  const PictureHeader header = checkedHeader(file, bytes, PictureFormat::png, bigEndian(bytes, 16, 4), bigEndian(bytes, 20, 4));
+  if (bigEndian(bytes, 8, 4) != 13 || all.substr(12, 4) != "IHDR")
+    throwBadInput("{}: a broken picture: a PNG that does not begin with IHDR", file.string());
+  const PictureHeader header =
+      checkedHeader(file, bytes, PictureFormat::png, bigEndian(bytes, 16, 4), bigEndian(bytes, 20, 4));
   bool pixels = false;
   for (std::size_t at = kSignature;;) {
     if (bytes.size() - at < kFrame) throwTruncated(file, "PNG");
@@ -67,13 +70,15 @@ PictureHeader checkPng(Bytes bytes, const fs::path& file) {
 
 /// Segment by segment up to EOI; entropy-coded data, which follow SOS, end at the next marker that is not a restart.
 PictureHeader checkJpeg(Bytes bytes, const fs::path& file) {
-  constexpr std::uint8_t kSof0 = 0xc0, kSof2 = 0xc2, kDht = 0xc4, kJpg = 0xc8, kDac = 0xcc, kSof15 = 0xcf, kRst0 = 0xd0, kRst7 = 0xd7, kSoi = 0xd8, kEoi = 0xd9,
-                         kSos = 0xda, kTem = 0x01;
-  constexpr int kMostScans = 100;  // progressive pictures have about ten; each takes the decoder through the whole picture
+  constexpr std::uint8_t kSof0 = 0xc0, kSof2 = 0xc2, kDht = 0xc4, kJpg = 0xc8, kDac = 0xcc, kSof15 = 0xcf, kRst0 = 0xd0,
+                         kRst7 = 0xd7, kSoi = 0xd8, kEoi = 0xd9, kSos = 0xda, kTem = 0x01;
+  constexpr int kMostScans =
+      100;  // progressive pictures have about ten; each takes the decoder through the whole picture
   std::optional<PictureHeader> header;
   int scans = 0;
   for (std::size_t at = 2;;) {
-    while (at < bytes.size() && bytes[at] == 0xff && at + 1 < bytes.size() && bytes[at + 1] == 0xff) ++at;  // fill bytes
+    while (at < bytes.size() && bytes[at] == 0xff && at + 1 < bytes.size() && bytes[at + 1] == 0xff)
+      ++at;  // fill bytes
     if (bytes.size() - at < 2) throwTruncated(file, "JPEG");
     if (bytes[at] != 0xff) throwBadInput("{}: a broken picture: a JPEG without a marker at byte {}", file.string(), at);
     const std::uint8_t marker = bytes[at + 1];
@@ -89,13 +94,17 @@ PictureHeader checkJpeg(Bytes bytes, const fs::path& file) {
       if (header) throwBadInput("{}: a broken picture: a JPEG of two frames", file.string());
       const int bits = bytes[at + 2], components = bytes[at + 7];
       if (marker > kSof2 || bits != 8 || (components != 1 && components != 3))
-        throwBadInput("{}: a JPEG of a kind that is not read: expected baseline or progressive, 8 bits, grey or YCbCr", file.string());
-      header = checkedHeader(file, bytes, PictureFormat::jpeg, bigEndian(bytes, at + 5, 2), bigEndian(bytes, at + 3, 2));
+        throwBadInput("{}: a JPEG of a kind that is not read: expected baseline or progressive, 8 bits, grey or YCbCr",
+                      file.string());
+      header =
+          checkedHeader(file, bytes, PictureFormat::jpeg, bigEndian(bytes, at + 5, 2), bigEndian(bytes, at + 3, 2));
     }
     at += length;
     if (marker != kSos) continue;
     if (++scans > kMostScans) throwBadInput("{}: a JPEG of more than {} scans", file.string(), kMostScans);
-    while (at + 1 < bytes.size() && !(bytes[at] == 0xff && bytes[at + 1] != 0 && bytes[at + 1] != 0xff && !(bytes[at + 1] >= kRst0 && bytes[at + 1] <= kRst7))) ++at;
+    while (at + 1 < bytes.size() && !(bytes[at] == 0xff && bytes[at + 1] != 0 && bytes[at + 1] != 0xff &&
+                                      !(bytes[at + 1] >= kRst0 && bytes[at + 1] <= kRst7)))
+      ++at;
   }
   if (!header || scans == 0) throwBadInput("{}: a broken picture: a JPEG without pixels", file.string());
   return *header;
@@ -106,23 +115,30 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
   constexpr std::size_t kHead = 18;
   if (bytes.size() < kHead) throwTruncated(file, "Targa");
   const int paletteKind = bytes[1], kind = bytes[2];
-  const std::int64_t paletteEntries = littleEndian(bytes, 5, 2), width = littleEndian(bytes, 12, 2), height = littleEndian(bytes, 14, 2);
+  const std::int64_t paletteEntries = littleEndian(bytes, 5, 2), width = littleEndian(bytes, 12, 2),
+                     height = littleEndian(bytes, 14, 2);
   const int paletteBits = bytes[7], bits = bytes[16];
   const bool grey = kind == 3 || kind == 11, palette = kind == 1 || kind == 9, packets = kind >= 9;
   const bool known = (kind >= 1 && kind <= 3) || (kind >= 9 && kind <= 11);
   const bool depth = palette || grey ? bits == 8 : bits == 24 || bits == 32;
   // Palettes: entries from 0 on, of whole bytes; others may carry none (DevIL would read its bytes as pixels).
-  const bool paletteFits = palette ? paletteKind == 1 && paletteEntries >= 1 && paletteEntries <= 256 && littleEndian(bytes, 3, 2) == 0 && (paletteBits == 24 || paletteBits == 32)
+  const bool paletteFits = palette ? paletteKind == 1 && paletteEntries >= 1 && paletteEntries <= 256 &&
+                                         littleEndian(bytes, 3, 2) == 0 && (paletteBits == 24 || paletteBits == 32)
                                    : paletteKind == 0;
-  if (!known || !depth || !paletteFits) throwBadInput("{}: a Targa of a kind that is not read: expected grey of 8 bits, colours of 24 or 32, or a palette of them", file.string());
+  if (!known || !depth || !paletteFits)
+    throwBadInput(
+        "{}: a Targa of a kind that is not read: expected grey of 8 bits, colours of 24 or 32, or a palette of them",
+        file.string());
   const PictureHeader header = checkedHeader(file, bytes, PictureFormat::tga, width, height);
-  const std::size_t begin = kHead + bytes[0] + (palette ? static_cast<std::size_t>(paletteEntries * (paletteBits / 8)) : 0);
+  const std::size_t begin =
+      kHead + bytes[0] + (palette ? static_cast<std::size_t>(paletteEntries * (paletteBits / 8)) : 0);
   if (begin > bytes.size()) throwTruncated(file, "Targa");
   const Bytes data = bytes.subspan(begin);
   const auto pixelBytes = static_cast<std::size_t>(bits / 8), count = static_cast<std::size_t>(width * height);
   if (!packets) {
     if (data.size() / pixelBytes < count) throwTruncated(file, "Targa");
-    if (palette && std::any_of(data.begin(), data.begin() + static_cast<std::ptrdiff_t>(count), [&](std::uint8_t index) { return index >= paletteEntries; }))
+    if (palette && std::any_of(data.begin(), data.begin() + static_cast<std::ptrdiff_t>(count),
+                               [&](std::uint8_t index) { return index >= paletteEntries; }))
       throwBadInput("{}: a broken picture: a pixel beyond its palette of {}", file.string(), paletteEntries);
     return header;
   }
@@ -132,7 +148,8 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
     if (stored * pixelBytes > data.size() - at - 1) throwTruncated(file, "Targa");
     if (run > count - done) throwBadInput("{}: a broken picture: a Targa packet that runs over its end", file.string());
     for (std::size_t i = 0; palette && i < stored; ++i)
-      if (data[at + 1 + i] >= paletteEntries) throwBadInput("{}: a broken picture: a pixel beyond its palette of {}", file.string(), paletteEntries);
+      if (data[at + 1 + i] >= paletteEntries)
+        throwBadInput("{}: a broken picture: a pixel beyond its palette of {}", file.string(), paletteEntries);
     at += 1 + stored * pixelBytes;
     done += run;
   }
@@ -143,14 +160,19 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
 PictureHeader checkBmp(Bytes bytes, const fs::path& file) {
   constexpr std::size_t kHead = 14 + 40;
   if (bytes.size() < kHead) throwTruncated(file, "BMP");
-  const std::int64_t begin = littleEndian(bytes, 10, 4), headerBytes = littleEndian(bytes, 14, 4), width = littleEndian(bytes, 18, 4), planes = littleEndian(bytes, 26, 2),
-                     bits = littleEndian(bytes, 28, 2), compression = littleEndian(bytes, 30, 4), entries = littleEndian(bytes, 46, 4);
+  const std::int64_t begin = littleEndian(bytes, 10, 4), headerBytes = littleEndian(bytes, 14, 4),
+                     width = littleEndian(bytes, 18, 4), planes = littleEndian(bytes, 26, 2),
+                     bits = littleEndian(bytes, 28, 2), compression = littleEndian(bytes, 30, 4),
+                     entries = littleEndian(bytes, 46, 4);
   const auto height = std::int64_t{static_cast<std::int32_t>(littleEndian(bytes, 22, 4))};  // negative: top row first
-  if (headerBytes < 40 || headerBytes > 124 || planes != 1 || compression != 0 || (bits != 8 && bits != 24 && bits != 32))
+  if (headerBytes < 40 || headerBytes > 124 || planes != 1 || compression != 0 ||
+      (bits != 8 && bits != 24 && bits != 32))
     throwBadInput("{}: a BMP of a kind that is not read: expected 8, 24 or 32 bits, not compressed", file.string());
   const PictureHeader header = checkedHeader(file, bytes, PictureFormat::bmp, width, height < 0 ? -height : height);
-  const std::int64_t paletteEntries = bits == 8 ? (entries == 0 ? 256 : entries) : 0, rowBytes = (width * bits + 31) / 32 * 4;
-  if (paletteEntries > 256 || begin < 14 + headerBytes + 4 * paletteEntries) throwBadInput("{}: a broken picture: a BMP whose pixels begin within its header", file.string());
+  const std::int64_t paletteEntries = bits == 8 ? (entries == 0 ? 256 : entries) : 0,
+                     rowBytes = (width * bits + 31) / 32 * 4;
+  if (paletteEntries > 256 || begin < 14 + headerBytes + 4 * paletteEntries)
+    throwBadInput("{}: a broken picture: a BMP whose pixels begin within its header", file.string());
   if (begin + rowBytes * header.height > static_cast<std::int64_t>(bytes.size())) throwTruncated(file, "BMP");
   return header;
 }
@@ -159,14 +181,18 @@ PictureHeader checkBmp(Bytes bytes, const fs::path& file) {
 
 void checkPictureSize(const fs::path& file, std::int64_t width, std::int64_t height) {
   if (width < 1 || height < 1 || width > kMostSide || height > kMostSide || width * height > kMostPixels)
-    throwBadInput("{}: a picture of {} x {} pixels; sides must be 1 to {} and the whole at most {} pixels", file.string(), width, height, kMostSide, kMostPixels);
+    throwBadInput("{}: a picture of {} x {} pixels; sides must be 1 to {} and the whole at most {} pixels",
+                  file.string(), width, height, kMostSide, kMostPixels);
 }
 
-void checkPictureSize(const fs::path& file, std::int64_t width, std::int64_t height, std::size_t bytes, std::int64_t freePixels) {
+void checkPictureSize(const fs::path& file, std::int64_t width, std::int64_t height, std::size_t bytes,
+                      std::int64_t freePixels) {
   checkPictureSize(file, width, height);
   if (width * height > std::max(freePixels, kMostPixelsPerByte * static_cast<std::int64_t>(bytes)))
-    throwBadInput("{}: a picture of {} x {} pixels in {} bytes; above {} pixels at most {} a byte are taken: is its header broken?", file.string(), width, height, bytes, freePixels,
-                  kMostPixelsPerByte);
+    throwBadInput(
+        "{}: a picture of {} x {} pixels in {} bytes; above {} pixels at most {} a byte are taken: is its header "
+        "broken?",
+        file.string(), width, height, bytes, freePixels, kMostPixelsPerByte);
 }
 
 PictureHeader checkPicture(Bytes bytes, const fs::path& file) {

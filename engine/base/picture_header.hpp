@@ -1,9 +1,10 @@
 // Checks the header and structure of an 8-bit picture file before a decoder sees it (no GL).
 //
-// DevIL 1.7.8 crashes on damaged XPM, DDS, ICO and PNM, hangs on a truncated PNG, and allocates whatever a header asks for. So only
-// PNG, JPEG, Targa and BMP are decoded, recognised by content (Targa, which has no magic number, by extension and header). Each file is
-// walked completely before it is decoded: sizes, chunks and segments, remaining bytes against pixels.
-// Sources: PNG (ISO 15948) section 5; JPEG (ITU T.81) annex B; Truevision TGA 2.0; BITMAPINFOHEADER (Microsoft).
+// DevIL 1.7.8 crashes on damaged XPM, DDS, ICO and PNM, hangs on a truncated PNG, and allocates whatever a header asks
+// for. So only PNG, JPEG, Targa and BMP are decoded, recognised by content (Targa, which has no magic number, by
+// extension and header). Each file is walked completely before it is decoded: sizes, chunks and segments, remaining
+// bytes against pixels. Sources: PNG (ISO 15948) section 5; JPEG (ITU T.81) annex B; Truevision TGA 2.0;
+// BITMAPINFOHEADER (Microsoft).
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,8 @@ inline constexpr std::int64_t kFreeFloatPixels = std::int64_t{1} << 20;
 void checkPictureSize(const std::filesystem::path& file, std::int64_t width, std::int64_t height);
 
 /// The same, and if a file of that many bytes cannot hold them: memory stays proportional to the file.
-void checkPictureSize(const std::filesystem::path& file, std::int64_t width, std::int64_t height, std::size_t bytes, std::int64_t freePixels);
+void checkPictureSize(const std::filesystem::path& file, std::int64_t width, std::int64_t height, std::size_t bytes,
+                      std::int64_t freePixels);
 
 /// Throws Error(badInput) naming `file` and the problem if the bytes are not a complete picture of a supported format.
 PictureHeader checkPicture(std::span<const std::uint8_t> bytes, const std::filesystem::path& file);

@@ -12,19 +12,23 @@ constexpr GLuint kPictureUnit = 0;
 }
 
 EnvironmentView::EnvironmentView(gl::ProgramLibrary& programs, const Scene& scene)
-    : radiance_(scene.environment->radiance), turn_(std::cos(scene.environment->rotation), std::sin(scene.environment->rotation)) {
+    : radiance_(scene.environment->radiance),
+      turn_(std::cos(scene.environment->rotation), std::sin(scene.environment->rotation)) {
   if (scene.environment->picture) {
     const Image& picture = *scene.environment->picture;
     std::vector<glm::vec4> texels;
     texels.reserve(picture.pixels.size());
     for (const glm::vec3& p : picture.pixels) texels.emplace_back(p, 0.0f);
-    picture_.emplace("environment behind surfaces", static_cast<GLenum>(GL_RGBA32F), glm::ivec2(picture.width, picture.height));
+    picture_.emplace("environment behind surfaces", static_cast<GLenum>(GL_RGBA32F),
+                     glm::ivec2(picture.width, picture.height));
     picture_->upload(GL_RGBA, GL_FLOAT, texels.data());
   }
-  program_ = &programs.loadRaster("environment", "forward/environment.vert", "forward/environment.frag", {{"ENVIRONMENT_PICTURE", picture_.has_value()}});
+  program_ = &programs.loadRaster("environment", "forward/environment.vert", "forward/environment.frag",
+                                  {{"ENVIRONMENT_PICTURE", picture_.has_value()}});
 }
 
-void EnvironmentView::record(const gl::Framebuffer& target, const gl::VertexArray& noAttributes, const Camera& camera, glm::ivec2 size) const {
+void EnvironmentView::record(const gl::Framebuffer& target, const gl::VertexArray& noAttributes, const Camera& camera,
+                             glm::ivec2 size) const {
   gl::RasterState state;
   state.depth = gl::Depth::equalReadOnly;
   const gl::RasterPass pass("environment", target, state);

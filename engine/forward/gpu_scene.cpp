@@ -22,8 +22,9 @@ std::vector<std::uint8_t> flippedRows(const Bitmap& bitmap) {
   const std::size_t row = 4 * static_cast<std::size_t>(bitmap.width);
   std::vector<std::uint8_t> flipped(bitmap.rgba.size());
   for (int y = 0; y < bitmap.height; ++y)
-    std::copy_n(bitmap.rgba.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(bitmap.height - 1 - y)), row,
-                flipped.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y)));
+    std::copy_n(
+        bitmap.rgba.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(bitmap.height - 1 - y)), row,
+        flipped.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y)));
   return flipped;
 }
 
@@ -40,10 +41,12 @@ bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, con
 
 }  // namespace
 
-GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const GpuSceneSettings& settings)
+GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities,
+                   const GpuSceneSettings& settings)
     : scene_(&scene), needs_(needs) {
   gl::Sampling sampling{GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_REPEAT};
-  sampling.anisotropy = capabilities.anisotropicFilter ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
+  sampling.anisotropy =
+      capabilities.anisotropicFilter ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
 
   struct Use {
     const char* name;
@@ -59,7 +62,8 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
     const std::string name = fmt::format("{} {}", use.name, texture.file.filename().string());
     const int levels = mipLevels(bitmap.width, bitmap.height);
     std::vector<std::uint8_t> texels = flippedRows(bitmap);
-    gl::Texture& target = textures_.emplace_back(name, use.format, glm::ivec2(bitmap.width, bitmap.height), sampling, levels);
+    gl::Texture& target =
+        textures_.emplace_back(name, use.format, glm::ivec2(bitmap.width, bitmap.height), sampling, levels);
     if (use.format == GL_R8) {
       const std::size_t channel = bitmap.hasAlpha ? 3 : 0;
       for (std::size_t i = 0; i < texels.size() / 4; ++i) texels[i] = texels[4 * i + channel];
@@ -73,9 +77,11 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
 
   for (const Material& material : scene.materials) {
     Surface surface{material.diffuse, material.specular, material.emission, material.shininess};
-    if (needs.diffuseTextures && material.diffuseTexture >= 0) surface.diffuseTexture = upload(material.diffuseTexture, kColour);
+    if (needs.diffuseTextures && material.diffuseTexture >= 0)
+      surface.diffuseTexture = upload(material.diffuseTexture, kColour);
     surface.masked = needs.alphaMasks && material.alphaMasked;
-    if (surface.masked) surface.maskTexture = upload(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, kMask);
+    if (surface.masked)
+      surface.maskTexture = upload(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, kMask);
     if (needs.emissionTextures && material.emissionTexture >= 0) {
       surface.emission = material.emissionScale;
       surface.emissionTexture = upload(material.emissionTexture, kColour);
@@ -108,8 +114,8 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
   std::vector<std::uint32_t> indices;
   indices.reserve(scene.indices.size());
   for (const Mesh* mesh : order) {
-    const Draw draw{static_cast<std::uint32_t>(indices.size()), mesh->indexCount, mesh->material, glm::vec3(mesh->bounds.centre()),
-                    glm::vec3(0.5 * mesh->bounds.extent())};
+    const Draw draw{static_cast<std::uint32_t>(indices.size()), mesh->indexCount, mesh->material,
+                    glm::vec3(mesh->bounds.centre()), glm::vec3(0.5 * mesh->bounds.extent())};
     const auto first = scene.indices.begin() + mesh->firstIndex;
     indices.insert(indices.end(), first, first + mesh->indexCount);
     (isMasked(mesh) ? masked_ : opaque_).push_back(draw);
@@ -117,17 +123,20 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
   }
   CHECK(masked_.empty() || needs.alphaMasks, "{} masked meshes", masked_.size());
 
-  vertices_ = gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(), GL_STATIC_DRAW);
+  vertices_ =
+      gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(), GL_STATIC_DRAW);
   indices_ = gl::Buffer("scene indices", indices.size() * sizeof(std::uint32_t), indices.data(), GL_STATIC_DRAW);
-  const std::array<gl::VertexArray::Attribute, 3> attributes{{{0, 3, offsetof(Vertex, position)},
-                                                              {1, 2, offsetof(Vertex, texCoord)},
-                                                              {2, 3, offsetof(Vertex, normal)}}};
+  const std::array<gl::VertexArray::Attribute, 3> attributes{
+      {{0, 3, offsetof(Vertex, position)}, {1, 2, offsetof(Vertex, texCoord)}, {2, 3, offsetof(Vertex, normal)}}};
   vertexArray_ = gl::VertexArray("scene", vertices_, sizeof(Vertex), attributes, &indices_);
 }
 
 gl::ShaderFlags GpuScene::materialFlags(bool masked) const {
-  return {{"DIFFUSE_TEXTURES", needs_.diffuseTextures}, {"ALPHA_MASK", masked}, {"EMISSION_TEXTURES", needs_.emissionTextures},
-          {"NORMAL_MAPS", needs_.normalMaps}, {"METAL_MAPS", needs_.metalMaps}};
+  return {{"DIFFUSE_TEXTURES", needs_.diffuseTextures},
+          {"ALPHA_MASK", masked},
+          {"EMISSION_TEXTURES", needs_.emissionTextures},
+          {"NORMAL_MAPS", needs_.normalMaps},
+          {"METAL_MAPS", needs_.metalMaps}};
 }
 
 void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) const {
@@ -137,7 +146,9 @@ void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) c
     program.set("materialShininess", surface.shininess);
   }
   if (needs_.emission) program.set("materialEmission", surface.emission);
-  const auto bind = [&](int texture, GLuint unit) { (texture >= 0 ? textures_[static_cast<std::size_t>(texture)] : *white_).bind(unit); };
+  const auto bind = [&](int texture, GLuint unit) {
+    (texture >= 0 ? textures_[static_cast<std::size_t>(texture)] : *white_).bind(unit);
+  };
   if (needs_.diffuseTextures) bind(surface.diffuseTexture, kDiffuseUnit);
   if (needs_.emissionTextures) bind(surface.emissionTexture, kEmissionUnit);
   if (needs_.normalMaps) {
@@ -152,9 +163,7 @@ void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) c
   if (surface.masked) textures_[static_cast<std::size_t>(surface.maskTexture)].bind(kMaskUnit);
 }
 
-void GpuScene::drawRange(const Draw& draw) const {
-  gl::drawIndexedTriangles(draw.firstIndex, draw.indexCount);
-}
+void GpuScene::drawRange(const Draw& draw) const { gl::drawIndexedTriangles(draw.firstIndex, draw.indexCount); }
 
 void GpuScene::draw(const SurfacePrograms& programs, const View& view) const {
   vertexArray_.bind();

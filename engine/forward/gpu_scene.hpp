@@ -24,12 +24,14 @@ struct SurfacePrograms {
 
 class GpuScene {
  public:
-  GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const GpuSceneSettings& settings = {});
+  GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities,
+           const GpuSceneSettings& settings = {});
 
   /// Flags that every program with materials takes, masked or not.
   gl::ShaderFlags materialFlags(bool masked) const;
 
-  /// Draws the meshes inside `clipFromWorld`'s frustum (all if null), nearest first as seen from `viewPoint` (in mesh order if null).
+  /// Draws the meshes inside `clipFromWorld`'s frustum (all if null), nearest first as seen from `viewPoint` (in mesh
+  /// order if null).
   struct View {
     const glm::mat4* clipFromWorld = nullptr;
     const glm::vec3* viewPoint = nullptr;
@@ -48,8 +50,8 @@ class GpuScene {
     float shininess;
     int diffuseTexture = -1, maskTexture = -1, emissionTexture = -1, normalTexture = -1, metalTexture = -1;
     bool masked = false;
-    float normalScale = 0.0f;                 ///< 0: no picture of normals
-    float metallic = 0.0f, roughness = -1.0f; ///< factors on a MetalMap; these: none
+    float normalScale = 0.0f;  ///< 0: no picture of normals
+    float metallic = 0.0f, roughness = -1.0f;  ///< factors on a MetalMap; these: none
   };
   struct Draw {
     std::uint32_t firstIndex, indexCount;

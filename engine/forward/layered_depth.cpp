@@ -6,12 +6,15 @@
 
 namespace lucerna {
 
-LayeredDepth::LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, const std::string& name, const Shape& shape)
+LayeredDepth::LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, const std::string& name,
+                           const Shape& shape)
     : name_(name), shape_(shape) {
-  CHECK(shape.layersPerDraw > 0 && shape.layers % shape.layersPerDraw == 0, "{} layers, {} a draw", shape.layers, shape.layersPerDraw);
+  CHECK(shape.layersPerDraw > 0 && shape.layers % shape.layersPerDraw == 0, "{} layers, {} a draw", shape.layers,
+        shape.layersPerDraw);
   const auto load = [&](bool masked) {
     return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "forward/depth_layered.vert",
-                                masked ? "forward/depth.frag" : "", {{"ALPHA_MASK", masked}, {"LAYERS", shape.layersPerDraw}},
+                                masked ? "forward/depth.frag" : "",
+                                {{"ALPHA_MASK", masked}, {"LAYERS", shape.layersPerDraw}},
                                 "forward/depth_layered.geom");
   };
   programs_.opaque = load(false);
@@ -19,7 +22,8 @@ LayeredDepth::LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, 
   gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, glm::vec4(1.0f)};
   if (shape.target == GL_TEXTURE_CUBE_MAP_ARRAY) sampling.wrap = GL_CLAMP_TO_EDGE;  // seamless: there is no edge
   sampling.depthCompare = true;
-  depth_ = gl::Texture(name, GL_DEPTH_COMPONENT32F, glm::ivec3(shape.size, shape.size, shape.layers), sampling, 1, shape.target);
+  depth_ = gl::Texture(name, GL_DEPTH_COMPONENT32F, glm::ivec3(shape.size, shape.size, shape.layers), sampling, 1,
+                       shape.target);
   framebuffer_ = gl::Framebuffer(name, {}, &depth_);
 }
 

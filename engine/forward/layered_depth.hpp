@@ -1,5 +1,5 @@
-// Depth maps in the layers of one texture, several filled by one draw (a geometry shader instance per view). Used for the sun's
-// cascades, the spot lights (each kind a 2D array) and the omnidirectional lights (an array of cube maps).
+// Depth maps in the layers of one texture, several filled by one draw (a geometry shader instance per view). Used for
+// the sun's cascades, the spot lights (each kind a 2D array) and the omnidirectional lights (an array of cube maps).
 #pragma once
 
 #include "forward/gpu_scene.hpp"
@@ -13,9 +13,9 @@ namespace lucerna {
 class LayeredDepth {
  public:
   struct Shape {
-    GLenum target;      ///< GL_TEXTURE_2D_ARRAY or GL_TEXTURE_CUBE_MAP_ARRAY
-    int size;           ///< texels per side
-    int layers;         ///< of cube maps: 6 each
+    GLenum target;  ///< GL_TEXTURE_2D_ARRAY or GL_TEXTURE_CUBE_MAP_ARRAY
+    int size;  ///< texels per side
+    int layers;  ///< of cube maps: 6 each
     int layersPerDraw;  ///< that one draw of the scene fills; divides `layers`
   };
   LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, const std::string& name, const Shape& shape);

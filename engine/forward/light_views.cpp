@@ -14,8 +14,12 @@ struct Face {
   glm::dvec3 axis, up;
 };
 // OpenGL 4.3, table 8.18: the image of a cube map's face has its t axis downwards.
-constexpr std::array<Face, 6> kFaces{{{{1, 0, 0}, {0, -1, 0}}, {{-1, 0, 0}, {0, -1, 0}}, {{0, 1, 0}, {0, 0, 1}},
-                                      {{0, -1, 0}, {0, 0, -1}}, {{0, 0, 1}, {0, -1, 0}}, {{0, 0, -1}, {0, -1, 0}}}};
+constexpr std::array<Face, 6> kFaces{{{{1, 0, 0}, {0, -1, 0}},
+                                      {{-1, 0, 0}, {0, -1, 0}},
+                                      {{0, 1, 0}, {0, 0, 1}},
+                                      {{0, -1, 0}, {0, 0, -1}},
+                                      {{0, 0, 1}, {0, -1, 0}},
+                                      {{0, 0, -1}, {0, -1, 0}}}};
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
@@ -32,23 +36,28 @@ void placePlanes(LightViews& views, const Bounds& scene) {
 
 glm::dmat4 view(const LightViews& views, const glm::dvec3& axis, const glm::dvec3& up) {
   const double reach = views.near * views.tangent;
-  return glm::frustum(-reach, reach, -reach, reach, views.near, views.far) * glm::lookAt(views.position, views.position + axis, up);
+  return glm::frustum(-reach, reach, -reach, reach, views.near, views.far) *
+         glm::lookAt(views.position, views.position + axis, up);
 }
 
 }  // namespace
 
-glm::mat4 LightViews::clipFromPlace(std::size_t view) const { return glm::mat4(glm::translate(clipFromWorld[view], glm::dvec3(place()))); }
+glm::mat4 LightViews::clipFromPlace(std::size_t view) const {
+  return glm::mat4(glm::translate(clipFromWorld[view], glm::dvec3(place())));
+}
 
 double LightViews::largestSolidAngle(int size) const {
-  // A square pyramid of half opening angle with the tangent t has 4 asin(t^2 / (1 + t^2)) sr. The shader sums w^2 f at the texels' middles,
-  // f = (1 + x^2 + y^2)^(-3/2), which bends down nowhere by more than 3: each texel is above its integral by
-  // 3/2 * w^4 / 6 at most, N^2 of them by t^2 w^2. And f is 1 at most.
+  // A square pyramid of half opening angle with the tangent t has 4 asin(t^2 / (1 + t^2)) sr. The shader sums w^2 f at
+  // the texels' middles, f = (1 + x^2 + y^2)^(-3/2), which bends down nowhere by more than 3: each texel is above its
+  // integral by 3/2 * w^4 / 6 at most, N^2 of them by t^2 w^2. And f is 1 at most.
   const double t2 = tangent * tangent, width = texelWidth(size);
-  return static_cast<double>(clipFromWorld.size()) * std::min(4.0 * std::asin(t2 / (1.0 + t2)) + t2 * width * width, 4.0 * t2);
+  return static_cast<double>(clipFromWorld.size()) *
+         std::min(4.0 * std::asin(t2 / (1.0 + t2)) + t2 * width * width, 4.0 * t2);
 }
 
 LightViews lightViews(const SpotLight& light, const Bounds& scene) {
-  LightViews views{light.position, light.intensity, light.direction, std::cos(light.innerAngle), std::cos(light.outerAngle), {}};
+  LightViews views{
+      light.position, light.intensity, light.direction, std::cos(light.innerAngle), std::cos(light.outerAngle), {}};
   placePlanes(views, scene);
   views.tangent = 1.01 * std::tan(light.outerAngle);  // the cone's rim and its filter lie inside the map
   const glm::dvec3 up = std::abs(light.direction.y) < 0.99 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);

@@ -12,22 +12,29 @@ constexpr GLuint kSpotUnit = 10, kPointUnit = 11;
 
 LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
                          const std::vector<LightViews>& spots, const std::vector<LightViews>& points) {
-  CHECK(spots.size() <= kMaxSpotLights && points.size() <= kMaxPointLights, "{} spots, {} points", spots.size(), points.size());
+  CHECK(spots.size() <= kMaxSpotLights && points.size() <= kMaxPointLights, "{} spots, {} points", spots.size(),
+        points.size());
   shared::LightConstants constants{};
   for (std::size_t i = 0; i < spots.size(); ++i) {
     const LightViews& light = spots[i];
     spotViews_.push_back({light.clipFromPlace(0), light.place()});
-    constants.spots[i] = {light.clipFromPlace(0), light.place(), static_cast<float>(light.cosInner),
-                          glm::vec3(light.direction), static_cast<float>(light.cosOuter), light.intensity,
+    constants.spots[i] = {light.clipFromPlace(0),
+                          light.place(),
+                          static_cast<float>(light.cosInner),
+                          glm::vec3(light.direction),
+                          static_cast<float>(light.cosOuter),
+                          light.intensity,
                           static_cast<float>(light.texelWidth(settings.spotSize))};
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const LightViews& light = points[i];
-    for (std::size_t face = 0; face < light.clipFromWorld.size(); ++face) pointViews_.push_back({light.clipFromPlace(face), light.place()});
+    for (std::size_t face = 0; face < light.clipFromWorld.size(); ++face)
+      pointViews_.push_back({light.clipFromPlace(face), light.place()});
     // Window depth of a perspective view at the distance m along its axis: f / (f - n) - f n / ((f - n) m).
     const double span = light.far - light.near;
-    constants.points[i] = {light.place(), static_cast<float>(light.texelWidth(settings.pointSize)), light.intensity,
-                           static_cast<float>(light.far * light.near / span), glm::vec3(0.0f), static_cast<float>(light.far / span)};
+    constants.points[i] = {light.place(),   static_cast<float>(light.texelWidth(settings.pointSize)),
+                           light.intensity, static_cast<float>(light.far * light.near / span),
+                           glm::vec3(0.0f), static_cast<float>(light.far / span)};
   }
   constants_ = gl::Buffer("lights", sizeof constants, &constants, GL_STATIC_DRAW);
   const int spotLayers = static_cast<int>(spotViews_.size()), pointLayers = static_cast<int>(pointViews_.size());
@@ -46,7 +53,8 @@ void LocalLights::bindForShading() const {
 }
 
 std::size_t LocalLights::gpuBytes() const {
-  return constants_.bytes() + (spotShadows_ ? spotShadows_->gpuBytes() : 0) + (pointShadows_ ? pointShadows_->gpuBytes() : 0);
+  return constants_.bytes() + (spotShadows_ ? spotShadows_->gpuBytes() : 0) +
+         (pointShadows_ ? pointShadows_->gpuBytes() : 0);
 }
 
 }  // namespace lucerna

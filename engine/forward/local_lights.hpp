@@ -1,4 +1,5 @@
-// Spot and omnidirectional lights of a scene for forward shading: their uniform block and their shadow maps. Lights do not move.
+// Spot and omnidirectional lights of a scene for forward shading: their uniform block and their shadow maps. Lights do
+// not move.
 #pragma once
 
 #include "forward/layered_depth.hpp"
@@ -17,8 +18,8 @@ class LocalLights {
   };
   static bool isNeeded(const SceneNeeds& needs) { return needs.spotLights || needs.pointLights; }
 
-  LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings, const std::vector<LightViews>& spots,
-              const std::vector<LightViews>& points);
+  LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
+              const std::vector<LightViews>& spots, const std::vector<LightViews>& points);
 
   bool hasSpots() const { return spotShadows_.has_value(); }
   bool hasPoints() const { return pointShadows_.has_value(); }
@@ -30,7 +31,7 @@ class LocalLights {
 
  private:
   std::vector<LayeredDepth::View> spotViews_, pointViews_;
-  std::optional<LayeredDepth> spotShadows_;   ///< a layer per spot
+  std::optional<LayeredDepth> spotShadows_;  ///< a layer per spot
   std::optional<LayeredDepth> pointShadows_;  ///< six layers per light, a cube map
   gl::Buffer constants_;
 };

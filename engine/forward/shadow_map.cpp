@@ -3,9 +3,11 @@
 namespace lucerna {
 
 ShadowMap::ShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings) {
-  programs_.opaque = &programs.loadRaster("shadow opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 1}});
+  programs_.opaque =
+      &programs.loadRaster("shadow opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 1}});
   if (scene.needs().alphaMasks)
-    programs_.masked = &programs.loadRaster("shadow masked", "forward/depth.vert", "forward/depth.frag", {{"ALPHA_MASK", 1}, {"FROM_SUN", 1}});
+    programs_.masked = &programs.loadRaster("shadow masked", "forward/depth.vert", "forward/depth.frag",
+                                            {{"ALPHA_MASK", 1}, {"FROM_SUN", 1}});
   gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, glm::vec4(1.0f)};  // lit beyond the map
   sampling.depthCompare = true;
   depth_ = gl::Texture("shadow map", GL_DEPTH_COMPONENT32F, glm::ivec2(settings.size), sampling);

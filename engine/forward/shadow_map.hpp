@@ -1,4 +1,5 @@
-// The sun's shadow map: depth only, sized independently of the reflective shadow map, so shadows stay sharp [LPV2015, 6.3.1].
+// The sun's shadow map: depth only, sized independently of the reflective shadow map, so shadows stay sharp
+// [LPV2015, 6.3.1].
 #pragma once
 
 #include "forward/gpu_scene.hpp"

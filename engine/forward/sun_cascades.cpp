@@ -10,7 +10,8 @@
 namespace lucerna {
 
 namespace {
-constexpr double kFilterTexels = 4.0;  // border of a map, so that the filter and the normal offset stay inside: two texels a side
+constexpr double kFilterTexels =
+    4.0;  // border of a map, so that the filter and the normal offset stay inside: two texels a side
 }
 
 std::vector<double> splitDistances(double near, double far, int cascades, double lambda) {
@@ -24,13 +25,16 @@ std::vector<double> splitDistances(double near, double far, int cascades, double
   return distances;
 }
 
-std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, const Scene& scene, const glm::dvec3& sunDirection,
-                                         const SunFrustum& whole, const Camera& camera, double aspect, double near, int mapSize) {
+std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, const Scene& scene,
+                                         const glm::dvec3& sunDirection, const SunFrustum& whole, const Camera& camera,
+                                         double aspect, double near, int mapSize) {
   CHECK(settings.cascades >= 1 && settings.cascades <= SUN_MAX_CASCADES, "cascades = {}", settings.cascades);
   const Bounds& bounds = scene.bounds;
   const double diagonal = std::max(glm::length(bounds.extent()), 1e-6);
-  const double farthest = glm::length(glm::max(glm::abs(bounds.min - camera.position), glm::abs(bounds.max - camera.position)));
-  const double far = std::max(diagonal * std::exp2(std::ceil(4.0 * std::log2(std::max(farthest / diagonal, 1.0))) / 4.0), 2.0 * near);
+  const double farthest =
+      glm::length(glm::max(glm::abs(bounds.min - camera.position), glm::abs(bounds.max - camera.position)));
+  const double far =
+      std::max(diagonal * std::exp2(std::ceil(4.0 * std::log2(std::max(farthest / diagonal, 1.0))) / 4.0), 2.0 * near);
   const std::vector<double> splits = splitDistances(near, far, settings.cascades, settings.split);
 
   // Squared tangent of the angle between the view's axis and its corners.
@@ -46,7 +50,8 @@ std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, con
     const double a = splits[static_cast<std::size_t>(i)], b = splits[static_cast<std::size_t>(i) + 1];
     // The smallest sphere through the slice's corners with its centre on the axis; not beyond the far plane.
     const double along = std::min(0.5 * (a + b) * (1.0 + corner2), b);
-    const double radius = std::max(std::hypot(b - along, b * std::sqrt(corner2)), std::hypot(along - a, a * std::sqrt(corner2)));
+    const double radius =
+        std::max(std::hypot(b - along, b * std::sqrt(corner2)), std::hypot(along - a, a * std::sqrt(corner2)));
     SunCascade cascade;
     cascade.texel = 2.0 * radius / std::max(mapSize - kFilterTexels, 1.0);
     if (cascade.texel >= wholeTexel) {
@@ -56,7 +61,8 @@ std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, con
     const glm::dvec3 centre(lightFromWorld * glm::dvec4(camera.position + along * camera.direction, 1.0));
     const glm::dvec2 snapped = cascade.texel * glm::floor(glm::dvec2(centre) / cascade.texel);
     const double half = 0.5 * mapSize * cascade.texel;
-    glm::dmat4 clip = glm::ortho(snapped.x - half, snapped.x + half, snapped.y - half, snapped.y + half, -1.0, 1.0) * lightFromWorld;
+    glm::dmat4 clip =
+        glm::ortho(snapped.x - half, snapped.x + half, snapped.y - half, snapped.y + half, -1.0, 1.0) * lightFromWorld;
     for (int column = 0; column < 4; ++column) clip[column].z = whole.clipFromWorld[column].z;
     cascade.clipFromWorld = clip;
     cascades.push_back(cascade);

@@ -1,10 +1,11 @@
 // Cascaded shadow maps of the sun: placement of the cascades (no GL, pure).
 //
-// The view frustum is cut along its depth by the practical split scheme [Zhang2006, section 3.2]: C_i = lambda n (f/n)^(i/m) +
-// (1 - lambda) (n + (f - n) i/m). A cascade is the square around its slice's bounding sphere, across the rays: its size does not
-// depend on the camera's direction. Its centre moves by whole texels of a grid fixed in the world, so its texels stay where they
-// are while the camera moves and turns: nothing shimmers. In depth it covers the whole scene, so that casters
-// anywhere towards the sun are included. A cascade that would be larger than the scene is the scene's own frustum.
+// The view frustum is cut along its depth by the practical split scheme [Zhang2006, section 3.2]: C_i = lambda n
+// (f/n)^(i/m) + (1 - lambda) (n + (f - n) i/m). A cascade is the square around its slice's bounding sphere, across the
+// rays: its size does not depend on the camera's direction. Its centre moves by whole texels of a grid fixed in the
+// world, so its texels stay where they are while the camera moves and turns: nothing shimmers. In depth it covers the
+// whole scene, so that casters anywhere towards the sun are included. A cascade that would be larger than the scene is
+// the scene's own frustum.
 #pragma once
 
 #include "forward/sun_frustum.hpp"
@@ -18,8 +19,9 @@
 namespace lucerna {
 
 struct SunCascadeSettings {
-  int cascades = 1;     ///< 1: one map for the whole scene, no cascades at all; at most SUN_MAX_CASCADES
-  double split = 0.9;   ///< lambda: 0 uniform, 1 logarithmic. Near planes lie at 1/2000 of the scene, so 0.5 would be nearly uniform
+  int cascades = 1;  ///< 1: one map for the whole scene, no cascades at all; at most SUN_MAX_CASCADES
+  double split = 0.9;  ///< lambda: 0 uniform, 1 logarithmic. Near planes lie at 1/2000 of the scene, so 0.5 would be
+                       ///< nearly uniform
 };
 
 /// The split distances along the view axis, cascades + 1 of them, from near to far exactly. 0 < near < far.
@@ -30,9 +32,11 @@ struct SunCascade {
   double texel = 1.0;  ///< side of a texel, scene units
 };
 
-/// Finest first. The depth that is cut reaches from `near` to the first of diagonal * 2^(i/4), i = 0, 1, ..., that holds the whole
-/// scene, so that sizes do not change with every step of the camera. mapSize: texels per side; aspect: width over height.
-std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, const Scene& scene, const glm::dvec3& sunDirection,
-                                         const SunFrustum& whole, const Camera& camera, double aspect, double near, int mapSize);
+/// Finest first. The depth that is cut reaches from `near` to the first of diagonal * 2^(i/4), i = 0, 1, ..., that
+/// holds the whole scene, so that sizes do not change with every step of the camera. mapSize: texels per side; aspect:
+/// width over height.
+std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, const Scene& scene,
+                                         const glm::dvec3& sunDirection, const SunFrustum& whole, const Camera& camera,
+                                         double aspect, double near, int mapSize);
 
 }  // namespace lucerna

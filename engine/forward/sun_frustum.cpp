@@ -12,7 +12,8 @@ SunFrustum fitSunFrustum(const Scene& scene, const glm::dvec3& sunDirection) {
   const glm::dvec3 centre = scene.bounds.centre();
   const glm::dmat4 lightFromWorld = glm::lookAt(centre, centre + sunDirection, up);
   Bounds box;
-  for (const Vertex& vertex : scene.vertices) box.add(glm::dvec3(lightFromWorld * glm::dvec4(glm::dvec3(vertex.position), 1.0)));
+  for (const Vertex& vertex : scene.vertices)
+    box.add(glm::dvec3(lightFromWorld * glm::dvec4(glm::dvec3(vertex.position), 1.0)));
   // A flat scene still needs a volume; the margin keeps edge texels inside.
   const double smallest = 1e-3 * std::max({box.extent().x, box.extent().y, box.extent().z, 1e-30});
   const glm::dvec3 margin = glm::max(0.005 * box.extent(), glm::dvec3(smallest));
@@ -21,7 +22,8 @@ SunFrustum fitSunFrustum(const Scene& scene, const glm::dvec3& sunDirection) {
   SunFrustum frustum;
   frustum.width = box.extent().x;
   frustum.height = box.extent().y;
-  frustum.clipFromWorld = glm::ortho(box.min.x, box.max.x, box.min.y, box.max.y, -box.max.z, -box.min.z) * lightFromWorld;
+  frustum.clipFromWorld =
+      glm::ortho(box.min.x, box.max.x, box.min.y, box.max.y, -box.max.z, -box.min.z) * lightFromWorld;
   return frustum;
 }
 

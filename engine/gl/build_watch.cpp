@@ -8,7 +8,8 @@ namespace {
 thread_local BuildWatch* innermost = nullptr;
 }
 
-BuildWatch::BuildWatch(std::function<void(const std::string& name)> watch) : watch_(std::move(watch)), outer_(std::exchange(innermost, this)) {}
+BuildWatch::BuildWatch(std::function<void(const std::string& name)> watch)
+    : watch_(std::move(watch)), outer_(std::exchange(innermost, this)) {}
 
 BuildWatch::~BuildWatch() { innermost = outer_; }
 

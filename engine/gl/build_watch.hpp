@@ -6,8 +6,8 @@
 
 namespace lucerna::gl {
 
-/// For its lifetime, `watch` is called on this thread before each program that is built, with its name. It may draw with passes of its own, and may
-/// throw, which ends what the program was built for. The innermost watch alone is told.
+/// For its lifetime, `watch` is called on this thread before each program that is built, with its name. It may draw
+/// with passes of its own, and may throw, which ends what the program was built for. The innermost watch alone is told.
 class BuildWatch {
  public:
   explicit BuildWatch(std::function<void(const std::string& name)> watch);

@@ -16,7 +16,8 @@ std::string string(GLenum name) {
   return text ? text : "";
 }
 
-void GLAPIENTRY onDebugMessage(GLenum, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* message, const void* user) {
+void GLAPIENTRY onDebugMessage(GLenum, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* message,
+                               const void* user) {
   if (type == GL_DEBUG_TYPE_ERROR) {
     logVerbose("OpenGL error: {}", message);
     static_cast<std::vector<std::string>*>(const_cast<void*>(user))->emplace_back(message);
@@ -53,7 +54,8 @@ GLenum firstError() {
 void throwFirstError(const std::string& outOfMemory, const std::string& place) {
   const GLenum error = firstError();
   if (error == GL_OUT_OF_MEMORY) throwMissingCapability("{}", outOfMemory);
-  if (error != GL_NO_ERROR) throw Error(ErrorKind::fault, fmt::format("internal error: OpenGL reports {} ({})", nameOfError(error), place));
+  if (error != GL_NO_ERROR)
+    throw Error(ErrorKind::fault, fmt::format("internal error: OpenGL reports {} ({})", nameOfError(error), place));
 }
 
 }  // namespace
@@ -61,7 +63,8 @@ void throwFirstError(const std::string& outOfMemory, const std::string& place) {
 void throwIfError(const std::string& after) { throwFirstError("the driver is out of memory (" + after + ")", after); }
 
 void throwIfNotAllocated(const std::string& name, std::size_t bytes) {
-  throwFirstError(fmt::format("{}: the driver cannot allocate {} bytes", name, bytes), fmt::format("{}, {} bytes", name, bytes));
+  throwFirstError(fmt::format("{}: the driver cannot allocate {} bytes", name, bytes),
+                  fmt::format("{}, {} bytes", name, bytes));
 }
 
 std::string takePendingErrors() { return std::exchange(g_pendingErrors, {}); }
@@ -96,11 +99,15 @@ void throwIfReset() {
   if (status == GL_NO_ERROR) return;
   const bool ours = status == GL_GUILTY_CONTEXT_RESET_ARB;
   const char* whose = ours ? "for work of this program that took too long or went wrong"
-                           : status == GL_INNOCENT_CONTEXT_RESET_ARB ? "for work of another program" : "and does not say for whose work";
-  throw Error(ours ? ErrorKind::fault : ErrorKind::missingCapability, fmt::format("the driver reset the GPU {}: cannot continue", whose));
+                      : status == GL_INNOCENT_CONTEXT_RESET_ARB ? "for work of another program"
+                                                                : "and does not say for whose work";
+  throw Error(ours ? ErrorKind::fault : ErrorKind::missingCapability,
+              fmt::format("the driver reset the GPU {}: cannot continue", whose));
 }
 
-DebugOutput defaultDebugOutput() { return logLevel() == LogLevel::verbose ? DebugOutput::synchronous : DebugOutput::off; }
+DebugOutput defaultDebugOutput() {
+  return logLevel() == LogLevel::verbose ? DebugOutput::synchronous : DebugOutput::off;
+}
 
 Context::Context(DebugOutput debugOutput) {
   Capabilities& c = capabilities_;

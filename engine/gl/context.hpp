@@ -15,10 +15,10 @@ struct Capabilities {
   bool softwareRenderer = false;  ///< stage times then need glFinish and the wall clock
 
   // Probed extensions, each with its fall-back.
-  bool clearTexture = false;        ///< ARB_clear_texture; else glTexSubImage3D of zeros
-  bool anisotropicFilter = false;   ///< EXT/ARB_texture_filter_anisotropic; else trilinear
-  bool shaderAtomicFloat = false;   ///< NV_shader_atomic_float: atomic LPV injection on r32f
-  bool resetNotification = false;   ///< ARB_robustness, in a context that reports resets: see throwIfReset
+  bool clearTexture = false;  ///< ARB_clear_texture; else glTexSubImage3D of zeros
+  bool anisotropicFilter = false;  ///< EXT/ARB_texture_filter_anisotropic; else trilinear
+  bool shaderAtomicFloat = false;  ///< NV_shader_atomic_float: atomic LPV injection on r32f
+  bool resetNotification = false;  ///< ARB_robustness, in a context that reports resets: see throwIfReset
   bool shaderAtomicFp16Vector = false;  ///< NV_shader_atomic_fp16_vector: atomic LPV injection on rgba16f
 
   GLint maxTextureSize = 0, max3dTextureSize = 0, maxArrayTextureLayers = 0, maxTextureBufferSize = 0;
@@ -33,19 +33,21 @@ struct Capabilities {
   std::vector<std::pair<std::string, long>> limits() const;
 };
 
-/// Whether the driver reports errors and hazards as they happen (KHR_debug). It does so within the failing call (GL_DEBUG_OUTPUT_SYNCHRONOUS), for
-/// which drivers give up their own threads: for tests and verbose runs, not for measurements.
+/// Whether the driver reports errors and hazards as they happen (KHR_debug). It does so within the failing call
+/// (GL_DEBUG_OUTPUT_SYNCHRONOUS), for which drivers give up their own threads: for tests and verbose runs, not for
+/// measurements.
 enum class DebugOutput { off, synchronous };
 /// synchronous in a verbose run (LogLevel::verbose), else off.
 DebugOutput defaultDebugOutput();
 
-/// Throws if the driver has reset the GPU: from then on calls have no effect and pictures would be empty. Call it after waiting for a submission
-/// and once per frame. Needs a context that reports resets (the hosts ask for one); otherwise it has no effect.
+/// Throws if the driver has reset the GPU: from then on calls have no effect and pictures would be empty. Call it after
+/// waiting for a submission and once per frame. Needs a context that reports resets (the hosts ask for one); otherwise
+/// it has no effect.
 void throwIfReset();
 
-/// Throws if a GL call has failed since the last check: Error(missingCapability) if memory ran out, else Error(fault), with the error's name and
-/// `after`, the last operation. Called after allocations and read-backs, and now and then in a frame, so that a GPU failure is
-/// never a black picture and exit code 0.
+/// Throws if a GL call has failed since the last check: Error(missingCapability) if memory ran out, else Error(fault),
+/// with the error's name and `after`, the last operation. Called after allocations and read-backs, and now and then in
+/// a frame, so that a GPU failure is never a black picture and exit code 0.
 void throwIfError(const std::string& after);
 /// The same for `bytes` of storage that were just requested.
 void throwIfNotAllocated(const std::string& name, std::size_t bytes);
@@ -63,7 +65,8 @@ class Context {
 
   const Capabilities& capabilities() const { return capabilities_; }
 
-  /// GL errors reported by the driver since the last call (KHR_debug errors if listening, and glGetError). Tests fail on any.
+  /// GL errors reported by the driver since the last call (KHR_debug errors if listening, and glGetError). Tests fail
+  /// on any.
   std::vector<std::string> takeErrors();
 
  private:

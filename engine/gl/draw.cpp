@@ -12,14 +12,17 @@ void drawTriangles(int count, int instances) {
 }
 
 void drawIndexedTriangles(std::uint32_t firstIndex, std::uint32_t count) {
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT, reinterpret_cast<const void*>(sizeof(std::uint32_t) * firstIndex));
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(sizeof(std::uint32_t) * firstIndex));
 }
 
 PolygonMode::PolygonMode(Parts parts) { glPolygonMode(GL_FRONT_AND_BACK, parts == Parts::edges ? GL_LINE : GL_POINT); }
 
 PolygonMode::~PolygonMode() { glPolygonMode(GL_FRONT_AND_BACK, GL_FILL); }
 
-void clearWords(int attachment, const glm::uvec4& value) { glClearBufferuiv(GL_COLOR, attachment, glm::value_ptr(value)); }
+void clearWords(int attachment, const glm::uvec4& value) {
+  glClearBufferuiv(GL_COLOR, attachment, glm::value_ptr(value));
+}
 
 void readBytes(const Framebuffer& from, const glm::ivec2& corner, const glm::ivec2& size, std::uint8_t* rgba) {
   glBindFramebuffer(GL_FRAMEBUFFER, from.id());

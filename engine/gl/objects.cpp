@@ -127,9 +127,11 @@ Texture::Texture(const std::string& name, GLenum internalFormat, glm::ivec3 size
 
 void Texture::create(const std::string& name, const Sampling& s) {
   CHECK(size_.x > 0 && size_.y > 0 && size_.z > 0, "texture {}: {}x{}x{}", name, size_.x, size_.y, size_.z);
-  requireWithin(target_ == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE, static_cast<std::size_t>(std::max(size_.x, size_.y)), name);
+  requireWithin(target_ == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE,
+                static_cast<std::size_t>(std::max(size_.x, size_.y)), name);
   if (target_ != GL_TEXTURE_2D)
-    requireWithin(target_ == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_ARRAY_TEXTURE_LAYERS, static_cast<std::size_t>(size_.z), name);
+    requireWithin(target_ == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_ARRAY_TEXTURE_LAYERS,
+                  static_cast<std::size_t>(size_.z), name);
   throwIfError("before " + name);
   GLuint id = 0;
   glGenTextures(1, &id);
@@ -137,10 +139,8 @@ void Texture::create(const std::string& name, const Sampling& s) {
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id);
   label(GL_TEXTURE, id, name);
-  if (target_ == GL_TEXTURE_2D)
-    glTexStorage2D(target_, levels_, format_, size_.x, size_.y);
-  else
-    glTexStorage3D(target_, levels_, format_, size_.x, size_.y, size_.z);
+  if (target_ == GL_TEXTURE_2D) glTexStorage2D(target_, levels_, format_, size_.x, size_.y);
+  else glTexStorage3D(target_, levels_, format_, size_.x, size_.y, size_.z);
   throwIfNotAllocated(name, bytes());
   const auto parameter = [&](GLenum key, GLenum value) { glTexParameteri(target_, key, static_cast<GLint>(value)); };
   parameter(GL_TEXTURE_MIN_FILTER, s.minFilter);
@@ -177,10 +177,8 @@ void Texture::upload(GLenum format, GLenum type, const void* data, int level) {
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   const glm::ivec3 size = levelSize(level);
-  if (target_ == GL_TEXTURE_2D)
-    glTexSubImage2D(target_, level, 0, 0, size.x, size.y, format, type, data);
-  else
-    glTexSubImage3D(target_, level, 0, 0, 0, size.x, size.y, size.z, format, type, data);
+  if (target_ == GL_TEXTURE_2D) glTexSubImage2D(target_, level, 0, 0, size.x, size.y, format, type, data);
+  else glTexSubImage3D(target_, level, 0, 0, 0, size.x, size.y, size.z, format, type, data);
 }
 
 void Texture::copyFrom(const Buffer& buffer, std::size_t offset) {
@@ -216,7 +214,8 @@ void Texture::settle(GLbitfield barrier) const {
 std::vector<glm::vec4> Texture::readRgba(int level) const {
   settle(GL_TEXTURE_UPDATE_BARRIER_BIT);
   const glm::ivec3 size = levelSize(level);
-  std::vector<glm::vec4> texels(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
+  std::vector<glm::vec4> texels(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+                                static_cast<std::size_t>(size.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   glGetTexImage(target_, level, GL_RGBA, GL_FLOAT, texels.data());
@@ -225,7 +224,8 @@ std::vector<glm::vec4> Texture::readRgba(int level) const {
 }
 
 std::vector<float> Texture::readDepth() const {
-  std::vector<float> texels(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z));
+  std::vector<float> texels(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
+                            static_cast<std::size_t>(size_.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   glGetTexImage(target_, 0, GL_DEPTH_COMPONENT, GL_FLOAT, texels.data());
@@ -236,7 +236,8 @@ std::vector<float> Texture::readDepth() const {
 std::vector<glm::uvec4> Texture::readWords() const {
   CHECK(format_ == GL_RGBA32UI, "format {:#x}", format_);
   settle(GL_TEXTURE_UPDATE_BARRIER_BIT);
-  std::vector<glm::uvec4> words(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z));
+  std::vector<glm::uvec4> words(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
+                                static_cast<std::size_t>(size_.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target_, id());
   glGetTexImage(target_, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, words.data());
@@ -264,7 +265,8 @@ void BufferTexture::bind(GLuint unit) const {
 
 void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, glm::ivec2 toCorner, glm::ivec2 size) {
   CHECK(from.format() == to.format(), "formats {:#x} and {:#x}", from.format(), to.format());
-  glCopyImageSubData(from.id(), from.target(), 0, fromCorner.x, fromCorner.y, 0, to.id(), to.target(), 0, toCorner.x, toCorner.y, 0, size.x, size.y, 1);
+  glCopyImageSubData(from.id(), from.target(), 0, fromCorner.x, fromCorner.y, 0, to.id(), to.target(), 0, toCorner.x,
+                     toCorner.y, 0, size.x, size.y, 1);
 }
 
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture) {
@@ -274,10 +276,8 @@ void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture
     texture->settle(GL_TEXTURE_UPDATE_BARRIER_BIT);
     if (!haveClearTexture) zeros.resize(std::max(zeros.size(), texture->bytes()), std::byte{0});
     for (int level = 0; level < texture->levels(); ++level) {
-      if (haveClearTexture)
-        glClearTexImage(texture->id(), level, format.format, format.type, nullptr);
-      else
-        const_cast<Texture*>(texture)->upload(format.format, format.type, zeros.data(), level);
+      if (haveClearTexture) glClearTexImage(texture->id(), level, format.format, format.type, nullptr);
+      else const_cast<Texture*>(texture)->upload(format.format, format.type, zeros.data(), level);
     }
   }
 }
@@ -309,7 +309,8 @@ Framebuffer::Framebuffer(const std::string& name, std::span<const Texture* const
   }
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
   throwIfError(name);
-  if (status != GL_FRAMEBUFFER_COMPLETE) throwMissingCapability("framebuffer {}: this driver cannot draw into it (status {:#x})", name, status);
+  if (status != GL_FRAMEBUFFER_COMPLETE)
+    throwMissingCapability("framebuffer {}: this driver cannot draw into it (status {:#x})", name, status);
 }
 
 // ---------------------------------------------------------------------------------------------------- VertexArray

@@ -1,10 +1,10 @@
-// Move-only owners of OpenGL objects. Every object carries a debug name (KHR_debug), so that RenderDoc, apitrace and Nsight
-// show it, and knows its size in bytes. OpenGL 4.3 has no direct state access: buffers are edited through
+// Move-only owners of OpenGL objects. Every object carries a debug name (KHR_debug), so that RenderDoc, apitrace and
+// Nsight show it, and knows its size in bytes. OpenGL 4.3 has no direct state access: buffers are edited through
 // GL_COPY_WRITE_BUFFER, textures through the last texture unit, so that no other binding changes.
 //
-// Only barriers order shader writes to storage blocks and images [OpenGL 4.3, 7.12.2]. Between shaders, passes issue them
-// (pass.hpp). Between a shader and the API's own reads and writes it happens here: an object that was ever bound for shader writes issues
-// the barrier before an upload, clear, copy or read.
+// Only barriers order shader writes to storage blocks and images [OpenGL 4.3, 7.12.2]. Between shaders, passes issue
+// them (pass.hpp). Between a shader and the API's own reads and writes it happens here: an object that was ever bound
+// for shader writes issues the barrier before an upload, clear, copy or read.
 #pragma once
 
 #include "host/api.hpp"
@@ -67,7 +67,8 @@ class Buffer {
   void bind(GLenum target, GLuint index) const;
   /// Copies this buffer's first bytes into the beginning of `target`.
   void copyTo(Buffer& target, std::size_t bytes) const;
-  /// Issues a barrier if shaders may have written this buffer: GL_BUFFER_UPDATE_BARRIER_BIT before the API changes or reads it.
+  /// Issues a barrier if shaders may have written this buffer: GL_BUFFER_UPDATE_BARRIER_BIT before the API changes or
+  /// reads it.
   void settle(GLbitfield barrier) const;
   template <class T>
   std::vector<T> read() const {
@@ -111,9 +112,10 @@ struct Sampling {
 class Texture {
  public:
   Texture() = default;
-  Texture(const std::string& name, GLenum internalFormat, glm::ivec2 size, const Sampling& sampling = {}, int levels = 1);
-  Texture(const std::string& name, GLenum internalFormat, glm::ivec3 size, const Sampling& sampling = {}, int levels = 1,
-          GLenum target = GL_TEXTURE_3D);
+  Texture(const std::string& name, GLenum internalFormat, glm::ivec2 size, const Sampling& sampling = {},
+          int levels = 1);
+  Texture(const std::string& name, GLenum internalFormat, glm::ivec3 size, const Sampling& sampling = {},
+          int levels = 1, GLenum target = GL_TEXTURE_3D);
   Texture(Texture&&) noexcept = default;
   Texture& operator=(Texture&&) noexcept = default;
 
@@ -131,7 +133,8 @@ class Texture {
   void generateMipmaps();
   void bind(GLuint unit) const;
   void bindImage(GLuint unit, GLenum access, int level = 0) const;
-  /// Issues a barrier if shaders may have stored into this texture: GL_TEXTURE_UPDATE_BARRIER_BIT before the API changes or reads it.
+  /// Issues a barrier if shaders may have stored into this texture: GL_TEXTURE_UPDATE_BARRIER_BIT before the API
+  /// changes or reads it.
   void settle(GLbitfield barrier) const;
   /// All texels of a level as float RGBA (depth textures: one float per texel).
   std::vector<glm::vec4> readRgba(int level = 0) const;
@@ -149,12 +152,14 @@ class Texture {
   mutable bool shadersMayWrite_ = false;  ///< was bound as a writable image
 };
 
-/// A buffer that shaders read as texels (samplerBuffer): on llvmpipe gathers are three times as fast as from a storage block.
+/// A buffer that shaders read as texels (samplerBuffer): on llvmpipe gathers are three times as fast as from a storage
+/// block.
 class BufferTexture {
  public:
   BufferTexture() = default;
   /// format: GL_RGBA32F, GL_RGBA32UI, ...; `bytes` above 0.
-  BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data, GLenum usage = GL_STATIC_DRAW);
+  BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data,
+                GLenum usage = GL_STATIC_DRAW);
   BufferTexture(BufferTexture&&) noexcept = default;
   BufferTexture& operator=(BufferTexture&&) noexcept = default;
 
@@ -171,10 +176,12 @@ class BufferTexture {
   Handle<detail::deleteTexture> texture_;
 };
 
-/// Copies texels of level 0 between 2D textures of the same format. Shader writes need GL_TEXTURE_UPDATE_BARRIER_BIT first.
+/// Copies texels of level 0 between 2D textures of the same format. Shader writes need GL_TEXTURE_UPDATE_BARRIER_BIT
+/// first.
 void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, glm::ivec2 toCorner, glm::ivec2 size);
 
-/// Sets every texel of every level of every listed texture to zero: ARB_clear_texture if available, else an upload of zeros.
+/// Sets every texel of every level of every listed texture to zero: ARB_clear_texture if available, else an upload of
+/// zeros.
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture);
 
 class Framebuffer {
@@ -203,8 +210,8 @@ class VertexArray {
   VertexArray() = default;
   /// Without attributes, for draws whose vertices come from gl_VertexID.
   explicit VertexArray(const std::string& name);
-  VertexArray(const std::string& name, const Buffer& vertices, std::size_t stride, std::span<const Attribute> attributes,
-              const Buffer* indices);
+  VertexArray(const std::string& name, const Buffer& vertices, std::size_t stride,
+              std::span<const Attribute> attributes, const Buffer* indices);
   VertexArray(VertexArray&&) noexcept = default;
   VertexArray& operator=(VertexArray&&) noexcept = default;
 

@@ -1,7 +1,8 @@
-// Coloured, textured triangles over a picture, each run of them within a rectangle: what a user interface is drawn with.
+// Coloured, textured triangles over a picture, each run of them within a rectangle: what a user interface is drawn
+// with.
 //
-// Vertices are in pixels of the target, (0,0) top left. Colours are written as they are (an sRGB-encoded target takes sRGB-encoded
-// colours) and laid over what is there by their alpha.
+// Vertices are in pixels of the target, (0,0) top left. Colours are written as they are (an sRGB-encoded target takes
+// sRGB-encoded colours) and laid over what is there by their alpha.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -21,13 +22,14 @@ class Overlay {
     glm::vec4 color;  ///< 0..1, alpha not multiplied in
   };
   struct Run {
-    glm::ivec2 corner, size;      ///< only these pixels are drawn; corner from the top left
+    glm::ivec2 corner, size;  ///< only these pixels are drawn; corner from the top left
     std::uint32_t firstIndex = 0, indexCount = 0;
     const Texture* texture = nullptr;  ///< multiplies the colour
   };
 
   explicit Overlay(ProgramLibrary& programs);
-  void draw(const Framebuffer& target, std::span<const Vertex> vertices, std::span<const std::uint32_t> indices, std::span<const Run> runs);
+  void draw(const Framebuffer& target, std::span<const Vertex> vertices, std::span<const std::uint32_t> indices,
+            std::span<const Run> runs);
   std::size_t gpuBytes() const { return vertices_.bytes() + indices_.bytes(); }
 
  private:

@@ -8,11 +8,12 @@
 namespace lucerna::gl {
 
 void pushDebugGroup(const std::string& name) {
-  static const GLint most = [] {  // queried once: groups are pushed all the time, and a query stalls drivers with their own threads
-    GLint length = 0;
-    glGetIntegerv(GL_MAX_DEBUG_MESSAGE_LENGTH, &length);  // counts the terminating zero
-    return length;
-  }();
+  static const GLint most =
+      [] {  // queried once: groups are pushed all the time, and a query stalls drivers with their own threads
+        GLint length = 0;
+        glGetIntegerv(GL_MAX_DEBUG_MESSAGE_LENGTH, &length);  // counts the terminating zero
+        return length;
+      }();
   glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, std::min(static_cast<GLint>(name.size()), most - 1), name.c_str());
 }
 
@@ -29,8 +30,9 @@ RasterPass::RasterPass(const std::string& name, const Framebuffer& target, const
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_STENCIL_TEST);
   glDisable(GL_FRAMEBUFFER_SRGB);
-  for (const GLenum never : std::initializer_list<GLenum>{GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DITHER, GL_SAMPLE_ALPHA_TO_COVERAGE,
-                                                          GL_SAMPLE_MASK, GL_PRIMITIVE_RESTART})
+  for (const GLenum never :
+       std::initializer_list<GLenum>{GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DITHER, GL_SAMPLE_ALPHA_TO_COVERAGE,
+                                     GL_SAMPLE_MASK, GL_PRIMITIVE_RESTART})
     glDisable(never);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glDepthRange(0.0, 1.0);
@@ -51,7 +53,9 @@ RasterPass::RasterPass(const std::string& name, const Framebuffer& target, const
   enable(GL_DEPTH_CLAMP, state.depthClamp);
 }
 
-void RasterPass::clearColor(int attachment, const glm::vec4& value) const { glClearBufferfv(GL_COLOR, attachment, &value.x); }
+void RasterPass::clearColor(int attachment, const glm::vec4& value) const {
+  glClearBufferfv(GL_COLOR, attachment, &value.x);
+}
 
 void RasterPass::clearDepth(float value) const { glClearBufferfv(GL_DEPTH, 0, &value); }
 
@@ -64,7 +68,8 @@ void ComputePass::dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) 
   const glm::uvec3 groups((size + groupSize - 1) / groupSize);
   static const glm::uvec3 most = mostWorkGroups();  // asked once, as above
   if (glm::any(glm::greaterThan(groups, most)))
-    throwMissingCapability("{} x {} x {} work groups; this driver's limit is {} x {} x {}", groups.x, groups.y, groups.z, most.x, most.y, most.z);
+    throwMissingCapability("{} x {} x {} work groups; this driver's limit is {} x {} x {}", groups.x, groups.y,
+                           groups.z, most.x, most.y, most.z);
   glDispatchCompute(groups.x, groups.y, groups.z);
 }
 

@@ -10,8 +10,8 @@
 namespace lucerna::gl {
 
 enum class Cull { none, back, front };
-enum class Blend { none, add };                       ///< add: GL_ONE, GL_ONE, GL_FUNC_ADD
-enum class Depth { off, lessWrite, equalReadOnly };   ///< test and write
+enum class Blend { none, add };  ///< add: GL_ONE, GL_ONE, GL_FUNC_ADD
+enum class Depth { off, lessWrite, equalReadOnly };  ///< test and write
 
 struct RasterState {
   Depth depth = Depth::off;
@@ -54,7 +54,8 @@ class ComputePass {
   ~ComputePass() { glMemoryBarrier(barrier_); }
   /// Enough groups of `groupSize` to cover `size`.
   void dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const;
-  /// Group counts from three words of the buffer at `offset` (bytes), written by an earlier pass with GL_COMMAND_BARRIER_BIT at its end.
+  /// Group counts from three words of the buffer at `offset` (bytes), written by an earlier pass with
+  /// GL_COMMAND_BARRIER_BIT at its end.
   void dispatchIndirect(const Buffer& groups, std::size_t offset = 0) const;
 
  private:

@@ -1,11 +1,13 @@
-// Work cut into pieces, so that no submission blocks a GPU: a driver resets a GPU that does not respond (Windows after 2 s, Linux' i915 after 2.5 s, amdgpu
-// after 10 s), and until then nothing else is drawn.
+// Work cut into pieces, so that no submission blocks a GPU: a driver resets a GPU that does not respond (Windows after
+// 2 s, Linux' i915 after 2.5 s, amdgpu after 10 s), and until then nothing else is drawn.
 //
-// A piece consists of units: hemicubes, rows of pixels, turns of all lanes of a tile. Work is counted in turns: loop iterations of about the cost of one
-// step of a ray through its hierarchy, summed over work items. A GPU at the low end of OpenGL 4.3 does 0.3 to 0.5 billion per second. So:
+// A piece consists of units: hemicubes, rows of pixels, turns of all lanes of a tile. Work is counted in turns: loop
+// iterations of about the cost of one step of a ray through its hierarchy, summed over work items. A GPU at the low end
+// of OpenGL 4.3 does 0.3 to 0.5 billion per second. So:
 //   - before any measurement a piece has kUnmeasuredTurns, some 0.2 s there;
 //   - then pieces follow the clock, to at most twice the size of the one before;
-//   - they never exceed four times kUnmeasuredTurns, under a second there: the measured piece may be sky, and the next one is not.
+//   - they never exceed four times kUnmeasuredTurns, under a second there: the measured piece may be sky, and the next
+//   one is not.
 #pragma once
 
 #include <chrono>
@@ -20,7 +22,8 @@ constexpr double kTurnsOfRay = 64.0;  ///< about, for a ray through a hierarchy
 /// Units of the next piece, at least one: a unit cannot be cut.
 class PieceSize {
  public:
-  /// seconds: target time of a piece; turnsOfUnit: estimate, over all its work items; most: limit of units; unmeasured: turns of the first piece.
+  /// seconds: target time of a piece; turnsOfUnit: estimate, over all its work items; most: limit of units; unmeasured:
+  /// turns of the first piece.
   PieceSize(double seconds, double turnsOfUnit, std::uint32_t most, double unmeasured = kUnmeasuredTurns);
 
   std::uint32_t units() const { return units_; }

@@ -40,17 +40,22 @@ std::string programLog(GLuint program) {
 }
 
 const char* suffixOf(GLenum stage) {
-  return stage == GL_VERTEX_SHADER ? "vert" : stage == GL_GEOMETRY_SHADER ? "geom" : stage == GL_FRAGMENT_SHADER ? "frag" : "comp";
+  return stage == GL_VERTEX_SHADER     ? "vert"
+         : stage == GL_GEOMETRY_SHADER ? "geom"
+         : stage == GL_FRAGMENT_SHADER ? "frag"
+                                       : "comp";
 }
 
-/// A linked program's use of OpenGL's limits: lines "NAME VALUE", NAME of GL_MAX_NAME, zeros left out. Shared memory cannot be queried.
+/// A linked program's use of OpenGL's limits: lines "NAME VALUE", NAME of GL_MAX_NAME, zeros left out. Shared memory
+/// cannot be queried.
 std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::string>>& texts) {
   struct Stage {
     GLenum referenced;
     const char* name;
   };
-  constexpr std::array kStages{Stage{GL_REFERENCED_BY_VERTEX_SHADER, "VERTEX"}, Stage{GL_REFERENCED_BY_GEOMETRY_SHADER, "GEOMETRY"},
-                               Stage{GL_REFERENCED_BY_FRAGMENT_SHADER, "FRAGMENT"}, Stage{GL_REFERENCED_BY_COMPUTE_SHADER, "COMPUTE"}};
+  constexpr std::array kStages{
+      Stage{GL_REFERENCED_BY_VERTEX_SHADER, "VERTEX"}, Stage{GL_REFERENCED_BY_GEOMETRY_SHADER, "GEOMETRY"},
+      Stage{GL_REFERENCED_BY_FRAGMENT_SHADER, "FRAGMENT"}, Stage{GL_REFERENCED_BY_COMPUTE_SHADER, "COMPUTE"}};
   std::map<std::string, GLint> needs;
   const auto property = [&](GLenum interface, GLuint resource, GLenum key) {
     GLint value = 0;
@@ -73,10 +78,14 @@ std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::str
   for (GLuint i = 0; i < countOf(GL_SHADER_STORAGE_BLOCK); ++i) {
     // Mesa does not say which stages refer to most of them: those whose text declares an active block.
     std::array<char, 128> block{};
-    glGetProgramResourceName(program, GL_SHADER_STORAGE_BLOCK, i, static_cast<GLsizei>(block.size()), nullptr, block.data());
+    glGetProgramResourceName(program, GL_SHADER_STORAGE_BLOCK, i, static_cast<GLsizei>(block.size()), nullptr,
+                             block.data());
     for (const auto& [stage, text] : texts)
       if (text.find(fmt::format("buffer {} {{", block.data())) != std::string::npos) {
-        const char* name = stage == GL_VERTEX_SHADER ? "VERTEX" : stage == GL_GEOMETRY_SHADER ? "GEOMETRY" : stage == GL_FRAGMENT_SHADER ? "FRAGMENT" : "COMPUTE";
+        const char* name = stage == GL_VERTEX_SHADER     ? "VERTEX"
+                           : stage == GL_GEOMETRY_SHADER ? "GEOMETRY"
+                           : stage == GL_FRAGMENT_SHADER ? "FRAGMENT"
+                                                         : "COMPUTE";
         ++needs[fmt::format("{}_SHADER_STORAGE_BLOCKS", name)];
         ++needs["COMBINED_SHADER_STORAGE_BLOCKS"];
       }
@@ -92,7 +101,8 @@ std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::str
     if (location < 0) continue;  // in a block
     const auto type = static_cast<GLenum>(property(GL_UNIFORM, i, GL_TYPE));
     const bool image = type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
-    const bool sampler = (type >= GL_SAMPLER_1D && type <= GL_SAMPLER_2D_RECT_SHADOW) || (type >= GL_SAMPLER_1D_ARRAY && type <= GL_SAMPLER_CUBE_SHADOW) ||
+    const bool sampler = (type >= GL_SAMPLER_1D && type <= GL_SAMPLER_2D_RECT_SHADOW) ||
+                         (type >= GL_SAMPLER_1D_ARRAY && type <= GL_SAMPLER_CUBE_SHADOW) ||
                          (type >= GL_INT_SAMPLER_1D && type <= GL_UNSIGNED_INT_SAMPLER_BUFFER);
     if (!image && !sampler) continue;
     GLint unit = 0;
@@ -110,8 +120,9 @@ std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::str
   return text;
 }
 
-/// LUCERNA_DUMP_PROGRAMS=FOLDER stores the sources, for other drivers and validators: FOLDER/HASH.vert .geom .frag .comp per stage, HASH.name the
-/// program's name and flags, HASH.needs its requirements. Programs of the same text are stored once.
+/// LUCERNA_DUMP_PROGRAMS=FOLDER stores the sources, for other drivers and validators: FOLDER/HASH.vert .geom .frag
+/// .comp per stage, HASH.name the program's name and flags, HASH.needs its requirements. Programs of the same text are
+/// stored once.
 void dump(const std::string& name, GLuint program, const std::vector<std::pair<GLenum, std::string>>& texts) {
   const char* folder = std::getenv("LUCERNA_DUMP_PROGRAMS");
   if (!folder || !*folder) return;
@@ -120,7 +131,8 @@ void dump(const std::string& name, GLuint program, const std::vector<std::pair<G
   fs::create_directories(folder);
   const auto keep = [&](const char* suffix, const std::string& text) {
     const fs::path file = fs::path(folder) / fmt::format("{:016x}.{}", hash.value(), suffix);
-    if (!(std::ofstream(file) << text)) throwBadInput("LUCERNA_DUMP_PROGRAMS={}: cannot write {}", folder, file.filename().string());
+    if (!(std::ofstream(file) << text))
+      throwBadInput("LUCERNA_DUMP_PROGRAMS={}: cannot write {}", folder, file.filename().string());
   };
   for (const auto& [stage, text] : texts) keep(suffixOf(stage), text);
   keep("needs", needsOf(program, texts));
@@ -150,7 +162,9 @@ void Program::set(std::string_view u, const glm::uvec4& v) const { glProgramUnif
 void Program::set(std::string_view u, const glm::vec2& v) const { glProgramUniform2fv(id_, location(u), 1, &v.x); }
 void Program::set(std::string_view u, const glm::vec3& v) const { glProgramUniform3fv(id_, location(u), 1, &v.x); }
 void Program::set(std::string_view u, const glm::vec4& v) const { glProgramUniform4fv(id_, location(u), 1, &v.x); }
-void Program::set(std::string_view u, const glm::mat4& v) const { glProgramUniformMatrix4fv(id_, location(u), 1, GL_FALSE, &v[0][0]); }
+void Program::set(std::string_view u, const glm::mat4& v) const {
+  glProgramUniformMatrix4fv(id_, location(u), 1, GL_FALSE, &v[0][0]);
+}
 
 std::vector<std::string> Program::activeResources() const {
   std::vector<std::string> names;
@@ -174,14 +188,16 @@ ProgramLibrary::ProgramLibrary(fs::path root) : root_(std::move(root)) {
   if (!root_.empty()) return;
   const char* environment = std::getenv("LUCERNA_SHADERS");
   root_ = environment && *environment ? fs::path(environment) : dataFolder() / "shaders";
-  if (!fs::is_directory(root_)) throwBadInput("{}: the shaders folder is missing (LUCERNA_SHADERS names another)", root_.string());
+  if (!fs::is_directory(root_))
+    throwBadInput("{}: the shaders folder is missing (LUCERNA_SHADERS names another)", root_.string());
 }
 
 const Program& ProgramLibrary::load(const ProgramDescription& description) {
   for (const auto& program : programs_) {
     const auto& known = program->description_;
-    const bool sameStages = std::equal(known.stages.begin(), known.stages.end(), description.stages.begin(), description.stages.end(),
-                                       [](const ShaderStage& a, const ShaderStage& b) { return a.type == b.type && a.file == b.file; });
+    const bool sameStages =
+        std::equal(known.stages.begin(), known.stages.end(), description.stages.begin(), description.stages.end(),
+                   [](const ShaderStage& a, const ShaderStage& b) { return a.type == b.type && a.file == b.file; });
     if (sameStages && known.flags == description.flags) {
       ++statistics_.reused;
       return *program;
@@ -195,15 +211,17 @@ const Program& ProgramLibrary::load(const ProgramDescription& description) {
   return *programs_.back();
 }
 
-const Program& ProgramLibrary::loadRaster(const std::string& name, const std::string& vertex, const std::string& fragment,
-                                          const ShaderFlags& flags, const std::string& geometry) {
+const Program& ProgramLibrary::loadRaster(const std::string& name, const std::string& vertex,
+                                          const std::string& fragment, const ShaderFlags& flags,
+                                          const std::string& geometry) {
   ProgramDescription description{name, {{GL_VERTEX_SHADER, vertex}}, flags};
   if (!geometry.empty()) description.stages.push_back({GL_GEOMETRY_SHADER, geometry});
   if (!fragment.empty()) description.stages.push_back({GL_FRAGMENT_SHADER, fragment});
   return load(description);
 }
 
-const Program& ProgramLibrary::loadCompute(const std::string& name, const std::string& compute, const ShaderFlags& flags) {
+const Program& ProgramLibrary::loadCompute(const std::string& name, const std::string& compute,
+                                           const ShaderFlags& flags) {
   return load({name, {{GL_COMPUTE_SHADER, compute}}, flags});
 }
 
@@ -217,8 +235,8 @@ void ProgramLibrary::build(Program& program) {
   const auto fail = [&](const std::string& message, ErrorKind kind = ErrorKind::badInput) {
     for (GLuint shader : shaders) glDeleteShader(shader);
     glDeleteProgram(id);
-    // So that mending a file is noticed, and the same failure not met again until then: the files of old, as they are now, and those
-    // read since.
+    // So that mending a file is noticed, and the same failure not met again until then: the files of old, as they are
+    // now, and those read since.
     for (auto& [file, time] : program.dependencies_) {
       std::error_code gone;
       if (const auto now = fs::last_write_time(root_ / file, gone); !gone) time = now;
@@ -230,9 +248,7 @@ void ProgramLibrary::build(Program& program) {
     ExpandedSource source;
     try {
       source = expandShader(root_, stage.file, description.flags);
-    } catch (const Error& error) {
-      fail(error.what(), error.kind());
-    }
+    } catch (const Error& error) { fail(error.what(), error.kind()); }
     for (const fs::path& file : source.files) dependencies[file] = fs::last_write_time(root_ / file);
     const GLuint shader = glCreateShader(stage.type);
     shaders.push_back(shader);
@@ -280,9 +296,7 @@ ProgramLibrary::Reload ProgramLibrary::reloadChanged() {
     try {
       build(*program);
       ++result.reloaded;
-    } catch (const Error& error) {
-      result.failures.emplace_back(error.what());
-    }
+    } catch (const Error& error) { result.failures.emplace_back(error.what()); }
   }
   return result;
 }

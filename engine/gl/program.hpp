@@ -1,9 +1,10 @@
 // Shader programs from files.
 //
 // A small preprocessor runs before the driver's: it writes `#version 430 core`, the program's declared flags as
-// `#define NAME value`, then the file with its include-once, root-relative `#include "lib/x.glsl"`s. It refuses what drivers accept:
-// an undeclared identifier in #if (a misspelt one would silently disable a feature), a missing file, a cycle.
-// A branch that a flag leaves out (`#if FLAG`, `#if !FLAG`) includes nothing. Driver logs are rewritten to shaders/lib/x.glsl:12. Flags come only from SceneNeeds and Settings.
+// `#define NAME value`, then the file with its include-once, root-relative `#include "lib/x.glsl"`s. It refuses what
+// drivers accept: an undeclared identifier in #if (a misspelt one would silently disable a feature), a missing file, a
+// cycle. A branch that a flag leaves out (`#if FLAG`, `#if !FLAG`) includes nothing. Driver logs are rewritten to
+// shaders/lib/x.glsl:12. Flags come only from SceneNeeds and Settings.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -40,8 +41,8 @@ struct ExpandedSource {
     int file;
     int line;
   };
-  std::vector<Line> lines;                    ///< of each line of `text`
-  std::vector<std::filesystem::path> files;   ///< relative to the root, in order of first inclusion
+  std::vector<Line> lines;  ///< of each line of `text`
+  std::vector<std::filesystem::path> files;  ///< relative to the root, in order of first inclusion
 };
 
 /// Expands a shader file. Throws Error(badInput) naming file and line. Pure: tested without GL.
@@ -89,7 +90,8 @@ class Program {
 /// Builds programs, one per (files, flags), and reloads those whose files changed.
 class ProgramLibrary {
  public:
-  /// `root`: the shaders folder; empty: LUCERNA_SHADERS in the environment, else the one beside the assets (base/data.hpp).
+  /// `root`: the shaders folder; empty: LUCERNA_SHADERS in the environment, else the one beside the assets
+  /// (base/data.hpp).
   explicit ProgramLibrary(std::filesystem::path root = {});
 
   /// Throws Error(badInput) with the rewritten log if it does not compile or link.

@@ -75,15 +75,16 @@ class Expander {
         emit(line, {index, number});  // left out by a flag
         continue;
       }
-      if (std::regex_match(line, kVersion)) throwBadInput("{}: #version is written by the library, leave it out", where);
+      if (std::regex_match(line, kVersion))
+        throwBadInput("{}: #version is written by the library, leave it out", where);
       if (std::regex_match(line, match, kDefine)) known_.insert(match[1]);
       emit(line, {index, number});
     }
     open_.pop_back();
   }
 
-  // Tracks open branches, so that a branch disabled by a flag includes nothing. Only `#if FLAG`, `#if !FLAG` and their #elif, #else
-  // are evaluated; any other condition counts as taken, its #else too.
+  // Tracks open branches, so that a branch disabled by a flag includes nothing. Only `#if FLAG`, `#if !FLAG` and their
+  // #elif, #else are evaluated; any other condition counts as taken, its #else too.
   void followBranches(const std::string& line) {
     static const std::regex kFlag(R"(^\s*#\s*(if|elif)\s+(!?)\s*([A-Za-z_]\w*)\s*(//.*)?$)");
     static const std::regex kOpen(R"(^\s*#\s*(if|ifdef|ifndef)\b.*$)");
@@ -91,14 +92,17 @@ class Expander {
     static const std::regex kEnd(R"(^\s*#\s*endif\b.*$)");
     std::smatch match;
     std::optional<bool> value;
-    if (std::regex_match(line, match, kFlag) && values_.contains(match[3])) value = (values_[match[3]] != 0) == match[2].str().empty();
+    if (std::regex_match(line, match, kFlag) && values_.contains(match[3]))
+      value = (values_[match[3]] != 0) == match[2].str().empty();
     if (std::regex_match(line, kOpen)) {
       branches_.push_back(value.value_or(true));
       taken_.push_back(value);
     } else if (std::regex_match(line, kElse) && !branches_.empty()) {
-      // An earlier branch that is certainly taken closes the later ones; one that is certainly not leaves them to their own flag.
+      // An earlier branch that is certainly taken closes the later ones; one that is certainly not leaves them to their
+      // own flag.
       branches_.back() = taken_.back() == true ? false : value.value_or(true);
-      if (taken_.back() != true) taken_.back() = value == true ? std::optional(true) : taken_.back() == false ? value : std::nullopt;
+      if (taken_.back() != true)
+        taken_.back() = value == true ? std::optional(true) : taken_.back() == false ? value : std::nullopt;
     } else if (std::regex_match(line, kEnd) && !branches_.empty()) {
       branches_.pop_back();
       taken_.pop_back();
@@ -109,7 +113,8 @@ class Expander {
   void checkCondition(std::string condition, const std::string& where) {
     if (const auto comment = condition.find("//"); comment != std::string::npos) condition.resize(comment);
     static const std::regex kIdentifier(R"([A-Za-z_]\w*)");
-    for (auto it = std::sregex_iterator(condition.begin(), condition.end(), kIdentifier); it != std::sregex_iterator(); ++it) {
+    for (auto it = std::sregex_iterator(condition.begin(), condition.end(), kIdentifier); it != std::sregex_iterator();
+         ++it) {
       const std::string name = it->str();
       if (name == "defined" || name.starts_with("GL_") || name.starts_with("__") || known_.contains(name)) continue;
       throwBadInput("{}: flag {} is not declared by the program (declared: {})", where, name, fmt::join(known_, ", "));
@@ -119,8 +124,8 @@ class Expander {
   fs::path root_;
   std::set<std::string> known_;
   std::map<std::string, int> values_;
-  std::vector<bool> branches_;                 // whether each open #if's present branch counts as taken
-  std::vector<std::optional<bool>> taken_;     // whether one of its branches surely was, surely was not, or cannot be told
+  std::vector<bool> branches_;  // whether each open #if's present branch counts as taken
+  std::vector<std::optional<bool>> taken_;  // whether one of its branches surely was, surely was not, or cannot be told
   std::vector<std::string> open_;
   ExpandedSource result_;
 };
@@ -142,8 +147,8 @@ std::string rewriteShaderLog(const std::string& log, const ExpandedSource& sourc
       const auto number = static_cast<std::size_t>(std::stoul(match[2]));
       if (number >= 1 && number <= source.lines.size() && source.lines[number - 1].file >= 0) {
         const auto& place = source.lines[number - 1];
-        line = fmt::format("shaders/{}:{}: {}{}", source.files[static_cast<std::size_t>(place.file)].string(), place.line,
-                           match[1].str(), match[4].str());
+        line = fmt::format("shaders/{}:{}: {}{}", source.files[static_cast<std::size_t>(place.file)].string(),
+                           place.line, match[1].str(), match[4].str());
       }
     }
     if (!line.empty()) result += line + "\n";

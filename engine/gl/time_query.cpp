@@ -28,10 +28,8 @@ void TimeQuery::begin(const std::string& name) {
   start_ = std::chrono::steady_clock::now();
   fetch(*current_, false);
   currentQuery_ = !current_->pending[current_->next];
-  if (currentQuery_)
-    glBeginQuery(GL_TIME_ELAPSED, current_->queries[current_->next]);
-  else
-    ++dropped_;
+  if (currentQuery_) glBeginQuery(GL_TIME_ELAPSED, current_->queries[current_->next]);
+  else ++dropped_;
 }
 
 void TimeQuery::end() {
@@ -80,7 +78,9 @@ void TimeQuery::drain() {
   for (Stage& s : stages_) fetch(s, true);
 }
 
-double StageStatistics::savedMs() const { return ran < frames ? medianMs * static_cast<double>(frames - ran) / static_cast<double>(frames) : 0.0; }
+double StageStatistics::savedMs() const {
+  return ran < frames ? medianMs * static_cast<double>(frames - ran) / static_cast<double>(frames) : 0.0;
+}
 
 std::vector<StageStatistics> TimeQuery::statistics() const {
   std::vector<StageStatistics> result;

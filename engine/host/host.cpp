@@ -15,14 +15,14 @@ namespace {
 void loadPointers(HostKind kind) {
   glewExperimental = GL_TRUE;
   glewInit();
-  while (glGetError() != GL_NO_ERROR) {
-  }
+  while (glGetError() != GL_NO_ERROR) {}
   const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
   GLint major = 0, minor = 0;
   glGetIntegerv(GL_MAJOR_VERSION, &major);
   glGetIntegerv(GL_MINOR_VERSION, &minor);
   if (major * 10 + minor < 43)
-    throwMissingCapability("host {}: OpenGL 4.3 is required, the driver provides {}", nameOf(kind), version ? version : "nothing");
+    throwMissingCapability("host {}: OpenGL 4.3 is required, the driver provides {}", nameOf(kind),
+                           version ? version : "nothing");
   if (!glDispatchCompute || !glTexStorage3D || !glObjectLabel)
     throwMissingCapability("host {}: the driver says OpenGL {} but lacks entry points of 4.3", nameOf(kind), version);
 }
@@ -44,9 +44,10 @@ bool Host::isSoftwareRenderer(std::string_view renderer) {
 }
 
 std::unique_ptr<Host> Host::create(HostKind kind, const HostOptions& options) {
-  // Two faults of Mesa's zink, seen in 25.0 over a software Vulkan (docs/drivers.md); what is set in the environment already is kept. It compiles uniforms
-  // that branches depend on into the shader and runs a dispatch with another's (GlPasses.AUniformThatBranchesDependOnIsThatOfItsDispatch); and with
-  // descriptor buffers the first light propagation volume of a process reads what it should not (LpvBounces.AgainstTheTwin).
+  // Two faults of Mesa's zink, seen in 25.0 over a software Vulkan (docs/drivers.md); what is set in the environment
+  // already is kept. It compiles uniforms that branches depend on into the shader and runs a dispatch with another's
+  // (GlPasses.AUniformThatBranchesDependOnIsThatOfItsDispatch); and with descriptor buffers the first light propagation
+  // volume of a process reads what it should not (LpvBounces.AgainstTheTwin).
   ::setenv("ZINK_INLINE_UNIFORMS", "0", 0);
   ::setenv("ZINK_DESCRIPTORS", "lazy", 0);
   std::unique_ptr<Host> host;
@@ -63,9 +64,7 @@ std::unique_ptr<Host> Host::createDefault(bool wantsWindow, const HostOptions& o
   if (wantsWindow && displayAvailable()) {
     try {
       return create(HostKind::window, options);
-    } catch (const Error& error) {
-      logWarning("{}; continuing without a window", error.what());
-    }
+    } catch (const Error& error) { logWarning("{}; continuing without a window", error.what()); }
   }
   if (detail::chosenEglDevice()) return create(HostKind::egl, options);
   std::unique_ptr<Host> egl;
@@ -82,7 +81,8 @@ std::unique_ptr<Host> Host::createDefault(bool wantsWindow, const HostOptions& o
   try {
     return create(HostKind::osmesa, options);
   } catch (const Error& error) {
-    throwMissingCapability("no OpenGL without a window: {}; {}", reason.empty() ? "host egl: software alone" : reason, error.what());
+    throwMissingCapability("no OpenGL without a window: {}; {}", reason.empty() ? "host egl: software alone" : reason,
+                           error.what());
   }
 }
 

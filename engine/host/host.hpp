@@ -1,7 +1,7 @@
 // Owners of the OpenGL context: a GLFW window, EGL without a surface, or OSMesa (off-screen, Mesa's software renderer).
 //
-// One executable has all three. The rest of the engine draws only into framebuffer objects; framebuffer 0 exists only in a
-// window, so only a host presents.
+// One executable has all three. The rest of the engine draws only into framebuffer objects; framebuffer 0 exists only
+// in a window, so only a host presents.
 #pragma once
 
 #include "base/named_values.hpp"
@@ -49,7 +49,8 @@ class Host {
   static std::unique_ptr<Host> createDefault(bool wantsWindow, const HostOptions& options = {});
 
   virtual HostKind kind() const = 0;
-  /// Shows a framebuffer's first colour attachment (top row last, as in GL) and waits for the swap. No effect off-screen.
+  /// Shows a framebuffer's first colour attachment (top row last, as in GL) and waits for the swap. No effect
+  /// off-screen.
   virtual void present(unsigned framebuffer, glm::ivec2 size) = 0;
   virtual HostInput poll() { return {}; }
   virtual glm::ivec2 framebufferSize() const = 0;
@@ -82,10 +83,10 @@ bool osmesaAvailable();
 struct EglDevice {
   enum class Kind { discrete, unknown, integrated, software };
   Kind kind = Kind::unknown;
-  std::string driver;      ///< of the kernel or of EGL: "amdgpu", "i915", "swrast"; empty if unknown
-  std::string node;        ///< "/dev/dri/renderD128"; may be empty
-  std::string pci;         ///< vendor:device, "1002:73bf"; empty if not on PCI
-  double videoBytes = 0.0; ///< dedicated memory, if the kernel reports it (amdgpu)
+  std::string driver;  ///< of the kernel or of EGL: "amdgpu", "i915", "swrast"; empty if unknown
+  std::string node;  ///< "/dev/dri/renderD128"; may be empty
+  std::string pci;  ///< vendor:device, "1002:73bf"; empty if not on PCI
+  double videoBytes = 0.0;  ///< dedicated memory, if the kernel reports it (amdgpu)
 };
 
 std::string_view nameOf(EglDevice::Kind kind);
@@ -93,14 +94,14 @@ std::string_view nameOf(EglDevice::Kind kind);
 /// In EGL's order, as counted by LUCERNA_EGL_DEVICE=N. Empty without EGL or its extension for devices.
 std::vector<EglDevice> eglDevices();
 
-/// Indices into eglDevices() in the order in which host egl tries them: discrete, unknown, integrated, software; among equals
-/// the one with more dedicated memory first, then EGL's order.
+/// Indices into eglDevices() in the order in which host egl tries them: discrete, unknown, integrated, software; among
+/// equals the one with more dedicated memory first, then EGL's order.
 std::vector<std::size_t> eglPreference(const std::vector<EglDevice>& devices);
 
 /// Describes a device's render node; `sys` is /sys except in tests. Rules, since no interface says "discrete":
-/// NVIDIA (PCI vendor 10de): discrete. Intel (8086): integrated on PCI bus 0, else discrete. AMD (1002): discrete from 2 GiB of
-/// video memory on; an APU has less, as long as its firmware is not told otherwise. No PCI device: integrated (a chip's
-/// own). Others, virtual ones too: unknown.
+/// NVIDIA (PCI vendor 10de): discrete. Intel (8086): integrated on PCI bus 0, else discrete. AMD (1002): discrete from
+/// 2 GiB of video memory on; an APU has less, as long as its firmware is not told otherwise. No PCI device: integrated
+/// (a chip's own). Others, virtual ones too: unknown.
 EglDevice describeRenderNode(const std::filesystem::path& node, const std::filesystem::path& sys = "/sys");
 
 /// Whether a window could be opened (DISPLAY or WAYLAND_DISPLAY set).

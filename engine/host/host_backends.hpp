@@ -8,8 +8,8 @@ namespace lucerna::detail {
 using GlProc = void (*)();
 using GlProcLoader = GlProc (*)(const char* name);
 
-/// The current host's loader; the GL 1.x entry points and glXGetProcAddressARB forward to it. `inWindow`: whether names that
-/// begin with glX may be answered.
+/// The current host's loader; the GL 1.x entry points and glXGetProcAddressARB forward to it. `inWindow`: whether names
+/// that begin with glX may be answered.
 void setGlLoader(GlProcLoader loader, bool inWindow);
 
 /// LUCERNA_EGL_DEVICE, where it is set and not empty.

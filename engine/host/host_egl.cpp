@@ -1,6 +1,6 @@
 // EGL without a surface: a context on a GPU (or on Mesa's software driver) without a display server.
-// Devices are enumerated (a vendor's driver gives no surfaceless platform) and tried in the order of eglPreference, or the one
-// that LUCERNA_EGL_DEVICE names alone; Mesa's surfaceless platform comes before software.
+// Devices are enumerated (a vendor's driver gives no surfaceless platform) and tried in the order of eglPreference, or
+// the one that LUCERNA_EGL_DEVICE names alone; Mesa's surfaceless platform comes before software.
 #include "base/error.hpp"
 #include "host/host_backends.hpp"
 
@@ -38,8 +38,10 @@ struct DeviceFunctions {
 
   DeviceFunctions() {
     const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-    getPlatformDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
-    if (!hasExtension(extensions, "EGL_EXT_device_enumeration") && !hasExtension(extensions, "EGL_EXT_device_base")) return;
+    getPlatformDisplay =
+        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    if (!hasExtension(extensions, "EGL_EXT_device_enumeration") && !hasExtension(extensions, "EGL_EXT_device_base"))
+      return;
     queryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
     queryString = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(eglGetProcAddress("eglQueryDeviceStringEXT"));
   }
@@ -63,11 +65,13 @@ struct DeviceFunctions {
       return result;
     }
     const char* node = nullptr;
-    if (hasExtension(extensions, "EGL_EXT_device_drm_render_node")) node = queryString(device, EGL_DRM_RENDER_NODE_FILE_EXT);
+    if (hasExtension(extensions, "EGL_EXT_device_drm_render_node"))
+      node = queryString(device, EGL_DRM_RENDER_NODE_FILE_EXT);
     if (!node && hasExtension(extensions, "EGL_EXT_device_drm")) node = queryString(device, EGL_DRM_DEVICE_FILE_EXT);
     if (node) result = describeRenderNode(node);
     // NVIDIA's own driver, if its module has no node.
-    if (!node && hasExtension(extensions, "EGL_NV_device_cuda")) result.kind = EglDevice::Kind::discrete, result.driver = "nvidia";
+    if (!node && hasExtension(extensions, "EGL_NV_device_cuda"))
+      result.kind = EglDevice::Kind::discrete, result.driver = "nvidia";
     return result;
   }
 };
@@ -111,9 +115,11 @@ std::vector<EGLDisplay> candidateDisplays() {
     return {egl.display(handles[index])};
   }
 
-  // Mesa's surfaceless platform comes after the devices and before software: it may know hardware that is not enumerated.
+  // Mesa's surfaceless platform comes after the devices and before software: it may know hardware that is not
+  // enumerated.
   EGLDisplay surfaceless = EGL_NO_DISPLAY;
-  if (egl.getPlatformDisplay && hasExtension(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_MESA_platform_surfaceless"))
+  if (egl.getPlatformDisplay &&
+      hasExtension(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_MESA_platform_surfaceless"))
     surfaceless = egl.getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   std::vector<EGLDisplay> displays, software;
   for (std::size_t i : eglPreference(devices))
@@ -137,7 +143,8 @@ class EglHost final : public Host {
       reason = "no OpenGL 4.3 core context without a surface";
       eglTerminate(display);
     }
-    if (const auto chosen = chosenEglDevice()) throwMissingCapability("host egl: device {} (LUCERNA_EGL_DEVICE): {}", *chosen, reason);
+    if (const auto chosen = chosenEglDevice())
+      throwMissingCapability("host egl: device {} (LUCERNA_EGL_DEVICE): {}", *chosen, reason);
     throwMissingCapability("host egl: {}", reason);
   }
   ~EglHost() override {
@@ -162,15 +169,27 @@ class EglHost final : public Host {
       if (!hasExtension(extensions, "EGL_KHR_no_config_context")) return false;
       config = nullptr;  // EGL_NO_CONFIG_KHR
     }
-    // A context that reports resets if possible: by EGL 1.5 or EGL_KHR_create_context, else by EGL_EXT_create_context_robustness.
+    // A context that reports resets if possible: by EGL 1.5 or EGL_KHR_create_context, else by
+    // EGL_EXT_create_context_robustness.
     EGLContext context = EGL_NO_CONTEXT;
-    for (const auto& [reset, strategy] : {std::pair<EGLint, EGLint>{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET},
-                                          {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT},
-                                          {EGL_NONE, EGL_NONE}}) {
-      if (reset == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT && !hasExtension(extensions, "EGL_EXT_create_context_robustness")) continue;
-      const EGLint contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
-                                          EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                          EGL_CONTEXT_OPENGL_DEBUG, options.debugContext ? EGL_TRUE : EGL_FALSE, reset, strategy, EGL_NONE};
+    for (const auto& [reset, strategy] :
+         {std::pair<EGLint, EGLint>{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET},
+          {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT},
+          {EGL_NONE, EGL_NONE}}) {
+      if (reset == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT &&
+          !hasExtension(extensions, "EGL_EXT_create_context_robustness"))
+        continue;
+      const EGLint contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                          4,
+                                          EGL_CONTEXT_MINOR_VERSION,
+                                          3,
+                                          EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                          EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                          EGL_CONTEXT_OPENGL_DEBUG,
+                                          options.debugContext ? EGL_TRUE : EGL_FALSE,
+                                          reset,
+                                          strategy,
+                                          EGL_NONE};
       context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextAttributes);
       if (context != EGL_NO_CONTEXT) break;
     }
@@ -233,7 +252,8 @@ EglDevice describeRenderNode(const std::filesystem::path& node, const std::files
   EglDevice device;
   device.node = node.string();
   std::error_code missing;
-  const std::filesystem::path entry = std::filesystem::canonical(sys / "class/drm" / node.filename() / "device", missing);
+  const std::filesystem::path entry =
+      std::filesystem::canonical(sys / "class/drm" / node.filename() / "device", missing);
   if (missing) return device;
   device.driver = std::filesystem::read_symlink(entry / "driver", missing).filename().string();
   const std::string vendor = detail::hexDigits(entry / "vendor");
@@ -245,8 +265,10 @@ EglDevice describeRenderNode(const std::filesystem::path& node, const std::files
   device.videoBytes = std::strtod(detail::firstLine(entry / "mem_info_vram_total").c_str(), nullptr);
   const std::string slot = entry.filename().string();  // domain:bus:device.function
   if (vendor == "10de") device.kind = EglDevice::Kind::discrete;
-  if (vendor == "8086") device.kind = slot.starts_with("0000:00:") ? EglDevice::Kind::integrated : EglDevice::Kind::discrete;
-  if (vendor == "1002") device.kind = device.videoBytes >= 0x1p31 ? EglDevice::Kind::discrete : EglDevice::Kind::integrated;
+  if (vendor == "8086")
+    device.kind = slot.starts_with("0000:00:") ? EglDevice::Kind::integrated : EglDevice::Kind::discrete;
+  if (vendor == "1002")
+    device.kind = device.videoBytes >= 0x1p31 ? EglDevice::Kind::discrete : EglDevice::Kind::integrated;
   return device;
 }
 

@@ -1,5 +1,5 @@
-// OSMesa: off-screen rendering into client memory by Mesa's software rasteriser; needs no display, no device, no window system.
-// The library is loaded on demand, so that the other hosts do not load it (it brings LLVM along).
+// OSMesa: off-screen rendering into client memory by Mesa's software rasteriser; needs no display, no device, no window
+// system. The library is loaded on demand, so that the other hosts do not load it (it brings LLVM along).
 #include "base/error.hpp"
 #include "host/host_backends.hpp"
 
@@ -53,9 +53,21 @@ OsmesaLibrary& library() {
 class OsmesaHost final : public Host {
  public:
   OsmesaHost() {
-    const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 0, OSMESA_STENCIL_BITS, 0, OSMESA_ACCUM_BITS, 0,
-                              OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 4,
-                              OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+    const int attributes[] = {OSMESA_FORMAT,
+                              OSMESA_RGBA,
+                              OSMESA_DEPTH_BITS,
+                              0,
+                              OSMESA_STENCIL_BITS,
+                              0,
+                              OSMESA_ACCUM_BITS,
+                              0,
+                              OSMESA_PROFILE,
+                              OSMESA_CORE_PROFILE,
+                              OSMESA_CONTEXT_MAJOR_VERSION,
+                              4,
+                              OSMESA_CONTEXT_MINOR_VERSION,
+                              3,
+                              0};
     context_ = library().createContextAttribs(attributes, nullptr);
     if (!context_) throwMissingCapability("host osmesa: no OpenGL 4.3 core context");
     if (!library().makeCurrent(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1)) {
@@ -92,7 +104,8 @@ namespace lucerna {
 bool osmesaAvailable() { return false; }
 
 std::unique_ptr<Host> detail::createOsmesaHost(const HostOptions&) {
-  throwMissingCapability("host osmesa: this program was built without OSMesa (Debian package libosmesa6-dev); try --host egl");
+  throwMissingCapability(
+      "host osmesa: this program was built without OSMesa (Debian package libosmesa6-dev); try --host egl");
 }
 
 }  // namespace lucerna

@@ -18,7 +18,8 @@ std::string g_lastGlfwError;
 class WindowHost final : public Host {
  public:
   explicit WindowHost(const HostOptions& options) : swapInterval_(options.swapAtRefresh ? 1 : 0) {
-    if (!displayAvailable()) throwMissingCapability("host window: no display (neither DISPLAY nor WAYLAND_DISPLAY is set); try --host osmesa");
+    if (!displayAvailable())
+      throwMissingCapability("host window: no display (neither DISPLAY nor WAYLAND_DISPLAY is set); try --host osmesa");
     glfwSetErrorCallback([](int, const char* text) { g_lastGlfwError = text; });
     if (!glfwInit()) throwMissingCapability("host window: {}", g_lastGlfwError);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
@@ -28,9 +29,11 @@ class WindowHost final : public Host {
     glfwWindowHint(GLFW_VISIBLE, options.windowVisible ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {  // a context that reports resets, if possible
+    for (const int robustness :
+         {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {  // a context that reports resets, if possible
       glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
-      window_ = glfwCreateWindow(options.windowSize.x, options.windowSize.y, options.windowTitle.c_str(), nullptr, nullptr);
+      window_ =
+          glfwCreateWindow(options.windowSize.x, options.windowSize.y, options.windowTitle.c_str(), nullptr, nullptr);
       if (window_) break;
     }
     if (!window_) {
@@ -55,7 +58,8 @@ class WindowHost final : public Host {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     glDisable(GL_SCISSOR_TEST);
-    glBlitFramebuffer(0, 0, size.x, size.y, 0, 0, target.x, target.y, GL_COLOR_BUFFER_BIT, size == target ? GL_NEAREST : GL_LINEAR);
+    glBlitFramebuffer(0, 0, size.x, size.y, 0, 0, target.x, target.y, GL_COLOR_BUFFER_BIT,
+                      size == target ? GL_NEAREST : GL_LINEAR);
     glfwSwapBuffers(window_);
   }
 
@@ -92,7 +96,8 @@ class WindowHost final : public Host {
     for (int i = 0; i < count; ++i) {
       glm::ivec2 corner, extent;
       glfwGetMonitorWorkarea(monitors[i], &corner.x, &corner.y, &extent.x, &extent.y);
-      if (glm::all(glm::greaterThanEqual(centre, corner)) && glm::all(glm::lessThan(centre, corner + extent))) chosen = monitors[i];
+      if (glm::all(glm::greaterThanEqual(centre, corner)) && glm::all(glm::lessThan(centre, corner + extent)))
+        chosen = monitors[i];
     }
     if (!chosen) return;
     const GLFWvidmode* mode = glfwGetVideoMode(chosen);
@@ -115,14 +120,17 @@ class WindowHost final : public Host {
   }
 
  private:
-  static InputState& inputOf(GLFWwindow* window) { return static_cast<WindowHost*>(glfwGetWindowUserPointer(window))->input_; }
+  static InputState& inputOf(GLFWwindow* window) {
+    return static_cast<WindowHost*>(glfwGetWindowUserPointer(window))->input_;
+  }
   void listen() {
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
       inputOf(window).key(key, action != GLFW_RELEASE, action == GLFW_REPEAT);
     });
     glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned character) { inputOf(window).text(utf8(character)); });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
-      if (button <= GLFW_MOUSE_BUTTON_MIDDLE) inputOf(window).button(static_cast<MouseButton>(button), action == GLFW_PRESS);
+      if (button <= GLFW_MOUSE_BUTTON_MIDDLE)
+        inputOf(window).button(static_cast<MouseButton>(button), action == GLFW_PRESS);
     });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
       glm::ivec2 points, pixels;  // the cursor is told in screen coordinates, which are not pixels everywhere
@@ -134,7 +142,8 @@ class WindowHost final : public Host {
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** files) {
       for (int i = 0; i < count; ++i) inputOf(window).drop(files[i]);
     });
-    glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int focused) { inputOf(window).focus(focused == GLFW_TRUE); });
+    glfwSetWindowFocusCallback(window_,
+                               [](GLFWwindow* window, int focused) { inputOf(window).focus(focused == GLFW_TRUE); });
   }
   static std::string utf8(unsigned c) {
     const auto byte = [](unsigned value) { return static_cast<char>(value); };

@@ -10,12 +10,24 @@ namespace lucerna {
 
 namespace {
 
-constexpr std::pair<int, const char*> kNames[] = {
-    {' ', "space"},           {key::kEscape, "escape"}, {key::kEnter, "enter"},         {key::kTab, "tab"},
-    {key::kBackspace, "backspace"}, {key::kInsert, "insert"}, {key::kDelete, "delete"}, {key::kRight, "right"},
-    {key::kLeft, "left"},     {key::kDown, "down"},     {key::kUp, "up"},               {key::kPageUp, "page up"},
-    {key::kPageDown, "page down"}, {key::kHome, "home"}, {key::kEnd, "end"},            {key::kLeftShift, "shift"},
-    {key::kLeftControl, "control"}, {key::kLeftAlt, "alt"}};
+constexpr std::pair<int, const char*> kNames[] = {{' ', "space"},
+                                                  {key::kEscape, "escape"},
+                                                  {key::kEnter, "enter"},
+                                                  {key::kTab, "tab"},
+                                                  {key::kBackspace, "backspace"},
+                                                  {key::kInsert, "insert"},
+                                                  {key::kDelete, "delete"},
+                                                  {key::kRight, "right"},
+                                                  {key::kLeft, "left"},
+                                                  {key::kDown, "down"},
+                                                  {key::kUp, "up"},
+                                                  {key::kPageUp, "page up"},
+                                                  {key::kPageDown, "page down"},
+                                                  {key::kHome, "home"},
+                                                  {key::kEnd, "end"},
+                                                  {key::kLeftShift, "shift"},
+                                                  {key::kLeftControl, "control"},
+                                                  {key::kLeftAlt, "alt"}};
 
 }  // namespace
 
@@ -29,8 +41,9 @@ std::string key::nameOf(int key) {
 
 int key::named(std::string_view name) {
   const auto same = [&](const std::string& other) {
-    return std::equal(name.begin(), name.end(), other.begin(), other.end(),
-                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b)); });
+    return std::equal(name.begin(), name.end(), other.begin(), other.end(), [](char a, char b) {
+      return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+    });
   };
   for (int key = 0; key < kCount; ++key)
     if (const std::string known = nameOf(key); !known.empty() && same(known) && !(key >= 'a' && key <= 'z')) return key;

@@ -7,14 +7,14 @@
 
 namespace lucerna {
 
-std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds& scene, const glm::dvec3& cameraPosition,
-                                   const glm::dvec3& cameraDirection) {
+std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds& scene,
+                                   const glm::dvec3& cameraPosition, const glm::dvec3& cameraDirection) {
   CHECK(settings.cells >= 1 && settings.cascades >= 1, "cells = {}, cascades = {}", settings.cells, settings.cascades);
   const glm::dvec3 extent = scene.extent();
   double coarsest = settings.cellSize;
   if (coarsest <= 0.0) {
-    // Half the cells span the scene: eight steps then carry light across a quarter of it. Finer cells would have more detail, which
-    // is what the finer cascades are for, but would leave most of the scene dark.
+    // Half the cells span the scene: eight steps then carry light across a quarter of it. Finer cells would have more
+    // detail, which is what the finer cascades are for, but would leave most of the scene dark.
     const double longest = std::max({extent.x, extent.y, extent.z});
     coarsest = longest > 0.0 ? settings.spanOfScene * longest / settings.cells : 1.0;
   }
@@ -26,7 +26,8 @@ std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds
     const double half = 0.5 * settings.cells * cascade.cellSize;
     glm::dvec3 centre = cameraPosition + cameraDirection * (settings.push * half);
     if (!scene.empty() && settings.heldInScene) {
-      // Far enough out that the grid has weight at the scene's outer surfaces: it has faded out some three cells before its border.
+      // Far enough out that the grid has weight at the scene's outer surfaces: it has faded out some three cells before
+      // its border.
       const double beyond = std::min(4.0, 0.25 * settings.cells) * cascade.cellSize;
       const glm::dvec3 low = scene.min + half - beyond;
       const glm::dvec3 high = scene.max - half + beyond;
@@ -37,8 +38,8 @@ std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds
     // All but the coarsest move by two cells, so that joining always averages the same pairs of cells.
     const std::int64_t stride = k + 1 < settings.cascades ? 2 : 1;
     for (int axis = 0; axis < 3; ++axis)
-      cascade.firstCell[axis] =
-          stride * static_cast<std::int64_t>(std::floor((centre[axis] - half) / (cascade.cellSize * static_cast<double>(stride))));
+      cascade.firstCell[axis] = stride * static_cast<std::int64_t>(std::floor(
+                                             (centre[axis] - half) / (cascade.cellSize * static_cast<double>(stride))));
     cascades.push_back(cascade);
   }
   return cascades;

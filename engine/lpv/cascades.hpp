@@ -1,7 +1,7 @@
 // Placement of the light propagation volume's cascades (no GL, pure): the original's `Grid` and `translateGrid`.
 //
-// A grid's minimum is always an exact multiple of its cell size, found with floor in double precision from a 64-bit cell
-// index, so moving the camera by less than a cell leaves the grid where it is, at any distance from the origin.
+// A grid's minimum is always an exact multiple of its cell size, found with floor in double precision from a 64-bit
+// cell index, so moving the camera by less than a cell leaves the grid where it is, at any distance from the origin.
 // Source: [LPV2015, 6.4]; [Kaplanyan2010, section 5].
 #pragma once
 
@@ -15,19 +15,19 @@
 namespace lucerna {
 
 struct CascadeSettings {
-  int cells = 32;             ///< per side of every cascade; at least 1
-  int cascades = 3;           ///< 1..4
-  double cellSize = 0.0;      ///< of the coarsest, scene units; 0: so that half its cells span the scene
-  double ratio = 2.0;         ///< cell size of a cascade over that of the next finer one
-  double push = 0.8;          ///< how far the centre is pushed along the view, in half extents of the grid
-  double spanOfScene = 2.0;   ///< edge of the coarsest over the scene's longest side, if cellSize is 0
-  bool heldInScene = true;    ///< clamp centres so that grids do not stick out of the scene more than necessary
+  int cells = 32;  ///< per side of every cascade; at least 1
+  int cascades = 3;  ///< 1..4
+  double cellSize = 0.0;  ///< of the coarsest, scene units; 0: so that half its cells span the scene
+  double ratio = 2.0;  ///< cell size of a cascade over that of the next finer one
+  double push = 0.8;  ///< how far the centre is pushed along the view, in half extents of the grid
+  double spanOfScene = 2.0;  ///< edge of the coarsest over the scene's longest side, if cellSize is 0
+  bool heldInScene = true;  ///< clamp centres so that grids do not stick out of the scene more than necessary
 };
 
 struct Cascade {
   glm::i64vec3 firstCell{0};  ///< minimum = firstCell * cellSize
-  double cellSize = 1.0;      ///< scene units
-  glm::dvec3 centre{0.0};     ///< before snapping: blending follows it, so that it does not jump
+  double cellSize = 1.0;  ///< scene units
+  glm::dvec3 centre{0.0};  ///< before snapping: blending follows it, so that it does not jump
 
   glm::dvec3 minimum() const { return glm::dvec3(firstCell) * cellSize; }
 };
@@ -35,7 +35,7 @@ struct Cascade {
 /// The cascades for a view, finest first.
 /// Each follows the camera: its centre is the camera, pushed along the view, then clamped so that the grid does not
 /// stick out of the scene more than necessary, then snapped.
-std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds& scene, const glm::dvec3& cameraPosition,
-                                   const glm::dvec3& cameraDirection);
+std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds& scene,
+                                   const glm::dvec3& cameraPosition, const glm::dvec3& cameraDirection);
 
 }  // namespace lucerna

@@ -13,12 +13,13 @@ namespace {
 
 constexpr GLuint kConstantsBinding = 1;
 constexpr std::size_t kCellBytes = 16;  // of four coefficients in a buffer
-// Bindings of storage buffers: of the steps (lpv/propagate.comp) and of what makes the result from the sums (lpv/join.comp).
+// Bindings of storage buffers: of the steps (lpv/propagate.comp) and of what makes the result from the sums
+// (lpv/join.comp).
 constexpr GLuint kFrontBuffer = 0, kNextBuffer = 1, kSumBuffer = 2, kFacesBuffer = 3, kBricksBuffer = 4;
 constexpr GLuint kReceivedBuffer = 0, kResultBuffer = 1, kBalancedBuffer = 2, kBalancesBuffer = 3;
 constexpr glm::ivec3 kGroup{8, 8, 1};  // the fastest of those tried on llvmpipe, see README.md
-constexpr double kSmallestCosine = 0.05;                             // to which the reflective shadow map bounds a texel's area
-constexpr int kBrick = 4;              // cells a side, as in lpv/bricks.glsl
+constexpr double kSmallestCosine = 0.05;  // to which the reflective shadow map bounds a texel's area
+constexpr int kBrick = 4;  // cells a side, as in lpv/bricks.glsl
 constexpr std::array<GLuint, 4> kNoBricks{64, 0, 1, 0};  // groups of the dispatch, a row at a time, and their count
 constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 
@@ -55,13 +56,16 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
 
   constants_ = gl::Buffer("lpv constants", sizeof(shared::LpvConstants), nullptr, GL_DYNAMIC_DRAW);
   noAttributes_ = gl::VertexArray("lpv points");
-  const auto allocate = [](Volume& volume, const char* name, GLenum texelFormat, glm::ivec3 texels, const gl::Sampling& how) {
+  const auto allocate = [](Volume& volume, const char* name, GLenum texelFormat, glm::ivec3 texels,
+                           const gl::Sampling& how) {
     for (std::size_t channel = 0; channel < 3; ++channel)
       volume[channel] = gl::Texture(fmt::format("lpv {} {}", name, kChannels[channel]), texelFormat, texels, how);
   };
   const auto buffer = [&](const std::string& name, GLenum texelFormat, std::size_t bytes) {
     if (bytes / gl::bytesPerTexel(texelFormat) > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
-      throwMissingCapability("{}: {} bytes; the largest texture buffer of the driver has {} texels (GL_MAX_TEXTURE_BUFFER_SIZE)", name, bytes, capabilities.maxTextureBufferSize);
+      throwMissingCapability(
+          "{}: {} bytes; the largest texture buffer of the driver has {} texels (GL_MAX_TEXTURE_BUFFER_SIZE)", name,
+          bytes, capabilities.maxTextureBufferSize);
     return gl::BufferTexture(name, texelFormat, bytes, nullptr, GL_DYNAMIC_COPY);
   };
   const gl::ShaderFlags group{{"LPV_FULL_FLOAT", full}, {"GROUP_X", kGroup.x}, {"GROUP_Y", kGroup.y}};
@@ -84,35 +88,49 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   } else {
     const bool fixed = settings.fill == LpvFill::fixed;
     if (!fixed && !capabilities.shaderAtomicFloat && !capabilities.shaderAtomicFp16Vector)
-      throwMissingCapability("lpv.fill=atomic: the driver has neither NV_shader_atomic_fp16_vector nor NV_shader_atomic_float; "
-                             "lpv.fill=fixed needs no extension");
-    fillsHalfVectors_ = !fixed && !capabilities.shaderAtomicFloat;  // 16-bit sums stop growing: only where there is no other
-    const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed && !fillsHalfVectors_}, {"FILL_HALF", fillsHalfVectors_}};
-    inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(with(with(group, fill), vpl), tile));
-    if (fixed || fillsHalfVectors_) resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(with(group, fill), vpl));
+      throwMissingCapability(
+          "lpv.fill=atomic: the driver has neither NV_shader_atomic_fp16_vector nor NV_shader_atomic_float; "
+          "lpv.fill=fixed needs no extension");
+    fillsHalfVectors_ =
+        !fixed && !capabilities.shaderAtomicFloat;  // 16-bit sums stop growing: only where there is no other
+    const gl::ShaderFlags fill{
+        {"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed && !fillsHalfVectors_}, {"FILL_HALF", fillsHalfVectors_}};
+    inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp",
+                                    with(with(with(group, fill), vpl), tile));
+    if (fixed || fillsHalfVectors_)
+      resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", with(with(group, fill), vpl));
     if (fillsHalfVectors_) allocate(counts_, "count", GL_RGBA16F, size, {});
     fronts_[0] = buffer("lpv front even", GL_RGBA32F, volumeBytes);
   }
 
-  if (settings.bounces == kAllBounces) throwBadInput("lpv.bounces=all: lpv.transport=propagate needs a number of bounces");
+  if (settings.bounces == kAllBounces)
+    throwBadInput("lpv.bounces=all: lpv.transport=propagate needs a number of bounces");
   if (settings.bounces > 1 && (!settings.blocking || steps_ < 2))
-    throwBadInput("lpv.bounces={}: the geometry volume reflects light; this needs two iterations and lpv.blocking other than off",
-                  settings.bounces);
+    throwBadInput(
+        "lpv.bounces={}: the geometry volume reflects light; this needs two iterations and lpv.blocking other than off",
+        settings.bounces);
   const gl::ShaderFlags kernel{{"FACE_KERNEL", deviations.kernel()},
                                {"SIDE_DIRECTIONS", deviations.sideDirections},
                                {"SIDE_SOLID_ANGLE", deviations.sideSolidAngle},
                                {"FOUR_PI_KERNEL", deviations.fourPiKernel},
                                {"BLOCKING_DIRECTION", deviations.blockingDirection}};
-  const bool blocked = settings.blocking && (steps_ > 1 || (steps_ == 1 && deviations.blockFirstStep));  // the first step is not blocked by default
+  const bool blocked =
+      settings.blocking &&
+      (steps_ > 1 || (steps_ == 1 && deviations.blockFirstStep));  // the first step is not blocked by default
   if (blocked) {
     fillGeometryVolume_ = &programs.loadRaster("lpv geometry volume", "lpv/inject.vert", "lpv/geometry_volume.frag",
-                                               {{"LPV_FULL_FLOAT", full}, {"TRUNCATE", deviations.truncate}, {"SURFEL_AREA", deviations.surfelArea},
-                                                {"LOWEST_CELL", deviations.firstCell ? 1 : 0}, {"REFLECTS", reflects()}},
+                                               {{"LPV_FULL_FLOAT", full},
+                                                {"TRUNCATE", deviations.truncate},
+                                                {"SURFEL_AREA", deviations.surfelArea},
+                                                {"LOWEST_CELL", deviations.firstCell ? 1 : 0},
+                                                {"REFLECTS", reflects()}},
                                                "lpv/geometry_volume.geom");
     const glm::ivec3 corners(c.cells + 1, c.cells + 1, (c.cells + 1) * c.cascades);
     // Views are merged in place, in images of 32 bits.
-    geometryVolume_.emplace("lpv geometry volume", settings.mergeViews ? static_cast<GLenum>(GL_RGBA32F) : grid, corners, sampling);
-    const auto allocateView = [&](const std::string& name, gl::Texture& reflectance, const gl::Texture& potential, gl::Framebuffer& target) {
+    geometryVolume_.emplace("lpv geometry volume", settings.mergeViews ? static_cast<GLenum>(GL_RGBA32F) : grid,
+                            corners, sampling);
+    const auto allocateView = [&](const std::string& name, gl::Texture& reflectance, const gl::Texture& potential,
+                                  gl::Framebuffer& target) {
       std::vector<const gl::Texture*> targets{&potential};
       if (reflects()) {
         reflectance = gl::Texture(name + " reflectance", GL_RGBA32F, corners);
@@ -122,19 +140,25 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     };
     allocateView("lpv geometry volume", reflectance_, *geometryVolume_, geometryTarget_);
     if (settings.mergeViews) {
-      mergeViews_ = &programs.loadCompute("lpv merge views", "lpv/merge_views.comp", with(group, {{"REFLECTS", reflects()}}));
+      mergeViews_ =
+          &programs.loadCompute("lpv merge views", "lpv/merge_views.comp", with(group, {{"REFLECTS", reflects()}}));
       viewPotential_ = gl::Texture("lpv view", GL_RGBA32F, corners);
       allocateView("lpv view", viewReflectance_, viewPotential_, viewTarget_);
     }
     // Several views are merged, and reflection needs an albedo: then by blending, with any fill.
-    if (settings.fill != LpvFill::layered && !fillsHalfVectors_ && !settings.mergeViews && !reflects() && !deviations.surfelArea) {
-      const gl::ShaderFlags fill{{"FILL_FIXED", settings.fill == LpvFill::fixed}, {"FILL_FLOAT", settings.fill == LpvFill::atomic}, {"TRUNCATE", deviations.truncate}};
-      countSurfels_ = &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp", with(with(with(group, fill), vpl), tile));
+    if (settings.fill != LpvFill::layered && !fillsHalfVectors_ && !settings.mergeViews && !reflects() &&
+        !deviations.surfelArea) {
+      const gl::ShaderFlags fill{{"FILL_FIXED", settings.fill == LpvFill::fixed},
+                                 {"FILL_FLOAT", settings.fill == LpvFill::atomic},
+                                 {"TRUNCATE", deviations.truncate}};
+      countSurfels_ = &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp",
+                                            with(with(with(group, fill), vpl), tile));
       potential_ = buffer("lpv geometry volume's counts", GL_RGBA32F, cellsOf(corners) * kCellBytes);
     }
     if (!layered) {
       const auto average = [&](bool fromBuffer) {
-        return &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp", with(with(group, {{"FROM_BUFFER", fromBuffer}}), kernel));
+        return &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp",
+                                     with(with(group, {{"FROM_BUFFER", fromBuffer}}), kernel));
       };
       averageFaces_ = average(false);
       if (countSurfels_) averageCountedFaces_ = average(true);
@@ -165,8 +189,10 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   const bool firstBlocked = blocked && deviations.blockFirstStep;
   if (!layered) {
     const auto load = [&](const std::string& name, bool first, bool withBlocking) {
-      return &programs.loadCompute(name, "lpv/propagate.comp",
-                                   with(with(group, {{"FIRST", first}, {"WITH_INJECTED", !deviations.fewerSteps}, {"BLOCKED", withBlocking}}), kernel));
+      return &programs.loadCompute(
+          name, "lpv/propagate.comp",
+          with(with(group, {{"FIRST", first}, {"WITH_INJECTED", !deviations.fewerSteps}, {"BLOCKED", withBlocking}}),
+               kernel));
     };
     begin_ = &programs.loadCompute("lpv begin", "lpv/begin.comp", group);
     markBricks_ = &programs.loadCompute("lpv mark bricks", "lpv/mark_bricks.comp", group);
@@ -174,20 +200,25 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
     propagateFirst_ = load("lpv propagate first", true, firstBlocked);
     if (steps_ > 1) propagateFurther_ = load("lpv propagate", false, blocked);
     for (std::size_t i = 0; i < 2; ++i)
-      if (fronts_[i].bytes() == 0) fronts_[i] = buffer(i == 0 ? "lpv front even" : "lpv front odd", GL_RGBA32F, volumeBytes);
+      if (fronts_[i].bytes() == 0)
+        fronts_[i] = buffer(i == 0 ? "lpv front even" : "lpv front odd", GL_RGBA32F, volumeBytes);
     sums_ = buffer("lpv sums", GL_RGBA32F, volumeBytes);
     if (joins) farSums_ = buffer("lpv far sums", GL_RGBA32F, volumeBytes);
     const int bricksOfAxis = (c.cells + kBrick - 1) / kBrick;
     brickCount_ = bricksOfAxis * bricksOfAxis * bricksOfAxis * c.cascades;
-    bricks_ = gl::Buffer("lpv bricks", sizeof kNoBricks + 3 * static_cast<std::size_t>(brickCount_) * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
+    bricks_ = gl::Buffer("lpv bricks", sizeof kNoBricks + 3 * static_cast<std::size_t>(brickCount_) * sizeof(GLuint),
+                         nullptr, GL_DYNAMIC_COPY);
     return;
   }
   allocate(sum_, "sum", grid, size, sampling);
   if (joins) allocate(farSum_, "far sum", grid, size, sampling);
   const auto load = [&](bool withBlocking, bool withInjected) {
     return &programs.loadRaster("lpv propagate layered", "lpv/propagate_layered.vert", "lpv/propagate_layered.frag",
-                                with({{"LPV_FULL_FLOAT", full}, {"POINTS", settings.propagate == LpvPropagate::layered}, {"BLOCKED", withBlocking},
-                                      {"BEGINS_WITH_INJECTED", withInjected}}, kernel),
+                                with({{"LPV_FULL_FLOAT", full},
+                                      {"POINTS", settings.propagate == LpvPropagate::layered},
+                                      {"BLOCKED", withBlocking},
+                                      {"BEGINS_WITH_INJECTED", withInjected}},
+                                     kernel),
                                 "lpv/propagate_layered.geom");
   };
   propagateFirst_ = load(firstBlocked, !deviations.fewerSteps);
@@ -230,7 +261,8 @@ void LightPropagationVolume::bindSums() const {
 
 // From the buffer to the textures that are filtered: see lpv/result.glsl.
 void LightPropagationVolume::copyResult() {
-  for (std::size_t channel = 0; channel < 3; ++channel) result_[channel].copyFrom(resultTexels_, channel * result_[channel].bytes());
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    result_[channel].copyFrom(resultTexels_, channel * result_[channel].bytes());
 }
 
 void LightPropagationVolume::join() {
@@ -260,7 +292,8 @@ void LightPropagationVolume::join() {
   copyResult();
 }
 
-shared::LpvConstants lpvConstants(const LightPropagationVolume::Settings& settings, const std::vector<Cascade>& cascades, float referenceIrradiance) {
+shared::LpvConstants lpvConstants(const LightPropagationVolume::Settings& settings,
+                                  const std::vector<Cascade>& cascades, float referenceIrradiance) {
   CHECK(referenceIrradiance > 0.0f, "E_ref = {}", referenceIrradiance);
   CHECK(static_cast<int>(cascades.size()) == settings.cascades.cascades, "{} cascades", cascades.size());
   shared::LpvConstants constants{};
@@ -271,7 +304,8 @@ shared::LpvConstants lpvConstants(const LightPropagationVolume::Settings& settin
     auto& target = constants.cascades[k];
     target.minimum = glm::vec3(cascade.minimum());
     if (settings.deviations.truncate) {
-      // int(x + 0.5) cells from the world's origin, wrong where negative; then whole world units, off the raster of cells.
+      // int(x + 0.5) cells from the world's origin, wrong where negative; then whole world units, off the raster of
+      // cells.
       const glm::dvec3 inCells = (cascade.centre - 0.5 * cells * cascade.cellSize) / cascade.cellSize;
       target.minimum = glm::vec3(glm::trunc(glm::trunc(inCells + 0.5) * cascade.cellSize));
     }
@@ -317,14 +351,16 @@ void LightPropagationVolume::inject(const Inputs& inputs) {
 }
 
 void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
-  // The largest stored coefficient that there can be: all light of all maps, reflected by white, in one cell of the finest cascade. 2^30 steps for
-  // it, so that the rounding of a million lights cannot overflow 31 bits either.
+  // The largest stored coefficient that there can be: all light of all maps, reflected by white, in one cell of the
+  // finest cascade. 2^30 steps for it, so that the rounding of a million lights cannot overflow 31 bits either.
   const double finest = inputs.cascades.front().cellSize;
   const double unit = inputs.referenceIrradiance * (settings_.deviations.fluxUnits ? 1.0 : finest * finest);
   double flux = 0.0;
-  for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) flux += rsm.largestFlux * static_cast<double>(fluxScale(rsm));
+  for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms)
+    flux += rsm.largestFlux * static_cast<double>(fluxScale(rsm));
   const double largest = 1.0233267079464885 / 3.141592653589793 * flux / unit;  // of the sun alone E_ref cancels
-  const auto fixedScale = static_cast<float>(settings_.fill == LpvFill::fixed && largest > 0.0 ? 1073741824.0 / largest : 1.0);
+  const auto fixedScale =
+      static_cast<float>(settings_.fill == LpvFill::fixed && largest > 0.0 ? 1073741824.0 / largest : 1.0);
   fronts_[0].clear();
   if (fillsHalfVectors_) {
     const std::array<const gl::Texture*, 3> counts{&counts_[0], &counts_[1], &counts_[2]};
@@ -332,7 +368,8 @@ void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
   }
   {
     const gl::ComputePass pass("lpv inject by atomics",
-                               GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+                               GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                   GL_SHADER_STORAGE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
     inject_->use();
     inject_->set("fixedScale", fixedScale);
     fronts_[0].buffer().bind(GL_SHADER_STORAGE_BUFFER, kFrontBuffer);
@@ -353,11 +390,13 @@ void LightPropagationVolume::fillByAtomics(const Inputs& inputs) {
   } else if (resolve_) {
     resolveCounts(fronts_[0], injected_[0].size(), 3, fixedScale);
   }
-  for (std::size_t channel = 0; channel < 3; ++channel) injected_[channel].copyFrom(fronts_[0].buffer(), channel * injected_[channel].bytes());
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    injected_[channel].copyFrom(fronts_[0].buffer(), channel * injected_[channel].bytes());
   frontIsInjected_ = true;
 }
 
-void LightPropagationVolume::resolveCounts(const gl::BufferTexture& counts, const glm::ivec3& size, int channels, float fixedScale) {
+void LightPropagationVolume::resolveCounts(const gl::BufferTexture& counts, const glm::ivec3& size, int channels,
+                                           float fixedScale) {
   const gl::ComputePass pass("lpv resolve", GL_TEXTURE_FETCH_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
   resolve_->use();
   resolve_->set("fixedScale", fixedScale);
@@ -370,21 +409,26 @@ void LightPropagationVolume::resolveCounts(const gl::BufferTexture& counts, cons
 // The integers' unit follows from the area of all texels together, known only for the sun's map.
 bool LightPropagationVolume::countsSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps) const {
   if (!countSurfels_) return false;
-  return settings_.fill != LpvFill::fixed || std::all_of(maps.begin(), maps.end(), [](const ReflectiveShadowMap::Outputs* map) {
+  return settings_.fill != LpvFill::fixed ||
+         std::all_of(maps.begin(), maps.end(), [](const ReflectiveShadowMap::Outputs* map) {
            return map->light == ReflectiveShadowMap::Light::sun;
          });
 }
 
-void LightPropagationVolume::countSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps, const Inputs& inputs) {
-  // The largest coefficient that there can be: all texels of all maps in one cell of the finest cascade, and as steep as they are counted.
+void LightPropagationVolume::countSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps,
+                                          const Inputs& inputs) {
+  // The largest coefficient that there can be: all texels of all maps in one cell of the finest cascade, and as steep
+  // as they are counted.
   const double finest = inputs.cascades.front().cellSize;
   double area = 0.0;
-  for (const ReflectiveShadowMap::Outputs* map : maps) area += map->texelCount() * static_cast<double>(map->texelArea) / kSmallestCosine;
+  for (const ReflectiveShadowMap::Outputs* map : maps)
+    area += map->texelCount() * static_cast<double>(map->texelArea) / kSmallestCosine;
   const double largest = 1.0233267079464885 * area / (finest * finest);
   const auto fixedScale = static_cast<float>(resolve_ && largest > 0.0 ? 1073741824.0 / largest : 1.0);
   potential_.clear();
   {
-    const gl::ComputePass pass("lpv count surfels", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+    const gl::ComputePass pass("lpv count surfels", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                                                        GL_PIXEL_BUFFER_BARRIER_BIT);
     countSurfels_->use();
     countSurfels_->set("fixedScale", fixedScale);
     potential_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kFrontBuffer);
@@ -397,7 +441,8 @@ void LightPropagationVolume::countSurfels(const std::vector<const ReflectiveShad
   geometryVolume_->copyFrom(potential_.buffer(), 0);
 }
 
-void LightPropagationVolume::drawSurfels(const Inputs& inputs, const ReflectiveShadowMap::Outputs& map, const gl::Framebuffer& target) {
+void LightPropagationVolume::drawSurfels(const Inputs& inputs, const ReflectiveShadowMap::Outputs& map,
+                                         const gl::Framebuffer& target) {
   gl::RasterState state;
   state.blend = gl::Blend::add;
   const gl::RasterPass pass("lpv geometry volume", target, state);
@@ -413,7 +458,8 @@ void LightPropagationVolume::drawSurfels(const Inputs& inputs, const ReflectiveS
 }
 
 void LightPropagationVolume::mergeView() {
-  const gl::ComputePass pass("lpv merge views", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  const gl::ComputePass pass("lpv merge views", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                                    GL_FRAMEBUFFER_BARRIER_BIT);
   mergeViews_->use();
   viewPotential_.bind(0);
   geometryVolume_->bindImage(0, GL_READ_WRITE);
@@ -432,10 +478,8 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
   if (settings_.surfels != LpvSurfels::rsm)
     for (const ReflectiveShadowMap::Outputs& map : inputs.views) maps.push_back(&map);
   const bool counted = countsSurfels(maps);
-  if (counted)
-    countSurfels(maps, inputs);
-  else
-    drawAllSurfels(maps, inputs);
+  if (counted) countSurfels(maps, inputs);
+  else drawAllSurfels(maps, inputs);
   if (!averageFaces_) return;
   const gl::ComputePass pass("lpv geometry faces", GL_TEXTURE_FETCH_BARRIER_BIT);
   if (counted) {
@@ -449,7 +493,8 @@ void LightPropagationVolume::fillGeometryVolume(const Inputs& inputs) {
   pass.dispatch(geometryVolume_->size(), kGroup);
 }
 
-void LightPropagationVolume::drawAllSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps, const Inputs& inputs) {
+void LightPropagationVolume::drawAllSurfels(const std::vector<const ReflectiveShadowMap::Outputs*>& maps,
+                                            const Inputs& inputs) {
   std::vector<const gl::Texture*> targets{&*geometryVolume_};
   if (reflects()) targets.push_back(&reflectance_);
   gl::clearToZero(targets, haveClearTexture_);
@@ -494,10 +539,8 @@ void LightPropagationVolume::reflect(bool first) {
 }
 
 void LightPropagationVolume::propagateFrom(const Volume& source) {
-  if (settings_.propagate == LpvPropagate::compute)
-    propagateByCompute(source);
-  else
-    propagateLayered(source);
+  if (settings_.propagate == LpvPropagate::compute) propagateByCompute(source);
+  else propagateLayered(source);
   if (!finish_) return;
   {
     const gl::ComputePass pass("lpv finish", GL_PIXEL_BUFFER_BARRIER_BIT);
@@ -551,7 +594,8 @@ void LightPropagationVolume::propagateByCompute(const Volume& source) {
   }
 }
 
-// As published: one layered pass per step and cascade, blending adds to the sum. One point per cell, or one triangle per slice.
+// As published: one layered pass per step and cascade, blending adds to the sum. One point per cell, or one triangle
+// per slice.
 void LightPropagationVolume::propagateLayered(const Volume& source) {
   std::vector<const gl::Texture*> sums{&sum_[0], &sum_[1], &sum_[2]};
   if (join_) sums.insert(sums.end(), {&farSum_[0], &farSum_[1], &farSum_[2]});
@@ -574,10 +618,8 @@ void LightPropagationVolume::propagateLayered(const Volume& source) {
       program.set("cascade", k);
       program.set("firstLayer", k * cells);
       program.set("cells", cells);
-      if (settings_.propagate == LpvPropagate::layered)
-        gl::drawPoints(cells * cells * cells);
-      else
-        gl::drawTriangles(3, cells);
+      if (settings_.propagate == LpvPropagate::layered) gl::drawPoints(cells * cells * cells);
+      else gl::drawTriangles(3, cells);
     }
     front = &layeredFronts_[next];
   }
@@ -590,7 +632,9 @@ void LightPropagationVolume::bindForLookup() const {
 
 std::size_t LightPropagationVolume::gpuBytes() const {
   std::size_t bytes = constants_.bytes() + bricks_.bytes() + resultTexels_.bytes();
-  for (const gl::BufferTexture* buffer : {&fronts_[0], &fronts_[1], &sums_, &farSums_, &potential_, &faces_, &received_, &balances_, &balanced_}) bytes += buffer->bytes();
+  for (const gl::BufferTexture* buffer :
+       {&fronts_[0], &fronts_[1], &sums_, &farSums_, &potential_, &faces_, &received_, &balances_, &balanced_})
+    bytes += buffer->bytes();
   const auto add = [&](const gl::Texture& texture) {
     if (texture.id()) bytes += texture.bytes();
   };

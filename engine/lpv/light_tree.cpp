@@ -10,18 +10,22 @@ constexpr GLuint kNodesBuffer = 0;
 constexpr std::size_t kNodeBytes = 48;
 }  // namespace
 
-LightTree::LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers) : size_(size), layers_(layers) {
+LightTree::LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers)
+    : size_(size), layers_(layers) {
   const auto widthOf = [&](int level) { return (size + (1 << level) - 1) >> level; };
   std::size_t nodes = 0;
   for (int level = 1;; ++level) {
     levels_ = level;
-    nodes += static_cast<std::size_t>(widthOf(level)) * static_cast<std::size_t>(widthOf(level)) * static_cast<std::size_t>(layers);
+    nodes += static_cast<std::size_t>(widthOf(level)) * static_cast<std::size_t>(widthOf(level)) *
+             static_cast<std::size_t>(layers);
     if (widthOf(level) <= kTop) break;
   }
   const std::size_t texels = nodes * kNodeBytes / 16;
   if (texels > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
-    throwMissingCapability("light tree of a map of {} texels per side: {} texels; this driver's texture buffers have at most {} (GL_MAX_TEXTURE_BUFFER_SIZE)", size, texels,
-                           capabilities.maxTextureBufferSize);
+    throwMissingCapability(
+        "light tree of a map of {} texels per side: {} texels; this driver's texture buffers have at most {} "
+        "(GL_MAX_TEXTURE_BUFFER_SIZE)",
+        size, texels, capabilities.maxTextureBufferSize);
   nodes_ = gl::BufferTexture("light tree", GL_RGBA32UI, nodes * kNodeBytes, nullptr, GL_DYNAMIC_COPY);
   fromTexels_ = &programs.loadCompute("light tree of texels", "lpv/gather/build.comp", {{"FROM_TEXELS", 1}});
   fromNodes_ = &programs.loadCompute("light tree of nodes", "lpv/gather/build.comp", {{"FROM_TEXELS", 0}});

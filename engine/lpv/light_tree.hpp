@@ -1,5 +1,5 @@
-// A hierarchy over the texels of a reflective shadow map, for gathering from all of them: a quadtree in a buffer, each node the mean of four
-// (shaders/lpv/gather/tree.glsl). In: a map. Out: nodes, in the units of the map: W, scene units.
+// A hierarchy over the texels of a reflective shadow map, for gathering from all of them: a quadtree in a buffer, each
+// node the mean of four (shaders/lpv/gather/tree.glsl). In: a map. Out: nodes, in the units of the map: W, scene units.
 #pragma once
 
 #include "gl/context.hpp"

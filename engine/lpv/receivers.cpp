@@ -16,7 +16,8 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kLpvBinding = 1, kPathBinding = 5, kConstantsBinding = 6;  // GL_UNIFORM_BUFFER
-constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3,
+                 kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kIrradianceUnit = 5, kSeenUnit = 6, kVoxelsUnit = 6, kTreeUnit = 7;
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that finds no receivers to end at; it misses albedo^64
 constexpr float kFullPaths = 256.0f;  // from which a receiver has full weight, without its neighbours
@@ -54,8 +55,8 @@ bool LpvReceivers::isNeeded(const SceneNeeds& needs, LpvTransport transport, Lig
   return light == Light::direct ? extended : needs.indirect || extended;
 }
 
-LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene, const glm::dvec3& origin,
-                           const LightPropagationVolume::Settings& settings, Light light)
+LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
+                           const glm::dvec3& origin, const LightPropagationVolume::Settings& settings, Light light)
     : settings_(settings),
       programs_(&programs),
       capabilities_(&capabilities),
@@ -65,11 +66,13 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
       clearTexture_(capabilities.clearTexture),
       cached_(settings.bounces == LightPropagationVolume::kAllBounces && light != Light::direct) {
   CHECK(settings.rays >= 1 && settings.rays <= LPV_LANES && LPV_LANES % settings.rays == 0, "rays = {}", settings.rays);
-  const auto cells = static_cast<std::size_t>(settings.cascades.cells), cascades = static_cast<std::size_t>(settings.cascades.cascades);
+  const auto cells = static_cast<std::size_t>(settings.cascades.cells),
+             cascades = static_cast<std::size_t>(settings.cascades.cascades);
   const int layers = settings.cascades.cells * settings.cascades.cascades * LPV_FACES;
   if (layers > capabilities.max3dTextureSize)
-    throwMissingCapability("lpv.cells={}: receivers take {} layers of a 3D texture; this driver has at most {} (GL_MAX_3D_TEXTURE_SIZE)", settings.cascades.cells,
-                           layers, capabilities.max3dTextureSize);
+    throwMissingCapability(
+        "lpv.cells={}: receivers take {} layers of a 3D texture; this driver has at most {} (GL_MAX_3D_TEXTURE_SIZE)",
+        settings.cascades.cells, layers, capabilities.max3dTextureSize);
   const int lanes = settings.transport == LpvTransport::rays ? settings.rays : LPV_LANES;  // of a receiver
   slots_ = cells * cells * cells * cascades * LPV_FACES;
   // Surfaces cross a grid in some cells^2 cells; times four, for the faces that each normal covers.
@@ -77,7 +80,9 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
 
   const auto words = [&](const std::string& name, std::size_t count) {
     if (count > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
-      throwMissingCapability("{}: {} texels; this driver's texture buffers have at most {} (GL_MAX_TEXTURE_BUFFER_SIZE)", name, count, capabilities.maxTextureBufferSize);
+      throwMissingCapability(
+          "{}: {} texels; this driver's texture buffers have at most {} (GL_MAX_TEXTURE_BUFFER_SIZE)", name, count,
+          capabilities.maxTextureBufferSize);
     return gl::BufferTexture(name, GL_R32UI, count * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
   };
   slotTable_ = words("lpv slots", slots_);
@@ -86,19 +91,25 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   for (gl::Buffer& buffer : receivers_)
     buffer = gl::Buffer("lpv receivers", capacity_ * sizeof(shared::LpvReceiver), nullptr, GL_DYNAMIC_COPY);
   for (gl::Buffer& buffer : work_) buffer = gl::Buffer("lpv receivers' work", sizeof kNoWork, nullptr, GL_DYNAMIC_COPY);
-  lit_ = gl::Buffer("lpv lit receivers", std::min(capacity_, kMostPaths / static_cast<std::size_t>(lanes)) * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
+  lit_ = gl::Buffer("lpv lit receivers",
+                    std::min(capacity_, kMostPaths / static_cast<std::size_t>(lanes)) * sizeof(GLuint), nullptr,
+                    GL_DYNAMIC_COPY);
   for (gl::Buffer* buffer : {&lpvConstants_, &lpvConstantsBefore_})
     *buffer = gl::Buffer("lpv constants", sizeof(shared::LpvConstants), nullptr, GL_DYNAMIC_DRAW);
   constants_ = gl::Buffer("lpv receiver constants", sizeof(shared::LpvReceiverConstants), nullptr, GL_DYNAMIC_DRAW);
   pathConstants_ = gl::Buffer("lpv path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW);
   const gl::Sampling linear{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};
-  irradiance_ = gl::Texture("lpv received irradiance", settings.storage == LightPropagationVolume::Storage::full ? GL_RGBA32F : GL_RGBA16F,
+  irradiance_ = gl::Texture("lpv received irradiance",
+                            settings.storage == LightPropagationVolume::Storage::full ? GL_RGBA32F : GL_RGBA16F,
                             glm::ivec3(settings.cascades.cells, settings.cascades.cells, layers), linear);
   ring_ = std::make_unique<gl::ReadBackRing>("lpv receiver counts", sizeof kNoWork);
 
   scene_.fill(path_);
   path_.minScatterings = light == Light::indirect ? 2 : 1;
-  path_.maxScatterings = light == Light::direct ? 1 : settings.bounces == LightPropagationVolume::kAllBounces ? 0xffffu : static_cast<std::uint32_t>(settings.bounces) + 1;
+  path_.maxScatterings = light == Light::direct ? 1
+                         : settings.bounces == LightPropagationVolume::kAllBounces
+                             ? 0xffffu
+                             : static_cast<std::uint32_t>(settings.bounces) + 1;
   path_.turns = capabilities.softwareRenderer ? kSoftwareTurns : kMostTurns;
 
   const gl::ShaderFlags common = lookupFlags(settings);
@@ -106,31 +117,45 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
     flags.insert(flags.end(), more.begin(), more.end());
     return flags;
   };
-  const gl::ShaderFlags rays = with(with(common, scene_.flags()), {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", lanes}});
+  const gl::ShaderFlags rays =
+      with(with(common, scene_.flags()),
+           {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", lanes}});
   mark_ = &programs.loadCompute("lpv mark receivers", "lpv/receivers/mark.comp", with(common, {{"CLAIM", 0}}));
   claim_ = &programs.loadCompute("lpv claim receivers", "lpv/receivers/mark.comp", with(common, {{"CLAIM", 1}}));
   keep_ = &programs.loadCompute("lpv keep receivers", "lpv/receivers/keep.comp", common);
   list_ = &programs.loadCompute("lpv list receivers", "lpv/receivers/list.comp", rays);
-  if (settings.transport == LpvTransport::rays) paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
+  if (settings.transport == LpvTransport::rays)
+    paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
   store_ = &programs.loadCompute("lpv store receivers", "lpv/receivers/store.comp", common);
   if (settings.transport == LpvTransport::gather) {
-    if (settings.bounces != 1) throwBadInput("lpv.bounces={}: lpv.transport=gather has one bounce; rays has more", settings.bounces == LightPropagationVolume::kAllBounces ? "all" : std::to_string(settings.bounces));
+    if (settings.bounces != 1)
+      throwBadInput("lpv.bounces={}: lpv.transport=gather has one bounce; rays has more",
+                    settings.bounces == LightPropagationVolume::kAllBounces ? "all" : std::to_string(settings.bounces));
     const SceneNeeds needs = analyse(scene);
     const bool voxels = settings.visibility == LpvVisibility::voxels;
     const auto load = [&](const char* name, bool sky, bool perspective) {
       return &programs.loadCompute(name, "lpv/gather/gather.comp",
-                                   with(common, {{"SKY", sky}, {"PERSPECTIVE", perspective}, {"VOXELS", voxels}, {"NEAR", static_cast<int>(RsmGather::Near::quad)}, {"MAP_LIGHT", 0}, {"LINEAR_SEEDS", 0}, {"GLOSSY", 0},
-                                                 {"ENVIRONMENT", needs.environment}, {"ENVIRONMENT_PICTURE", needs.environmentPicture}}));
+                                   with(common, {{"SKY", sky},
+                                                 {"PERSPECTIVE", perspective},
+                                                 {"VOXELS", voxels},
+                                                 {"NEAR", static_cast<int>(RsmGather::Near::quad)},
+                                                 {"MAP_LIGHT", 0},
+                                                 {"LINEAR_SEEDS", 0},
+                                                 {"GLOSSY", 0},
+                                                 {"ENVIRONMENT", needs.environment},
+                                                 {"ENVIRONMENT_PICTURE", needs.environmentPicture}}));
     };
     if (needs.directionalLight && light != Light::direct) gatherSun_ = load("lpv gather sun", false, false);
-    if ((needs.spotLights || needs.pointLights) && light != Light::direct) gatherLamp_ = load("lpv gather lamp", false, true);
+    if ((needs.spotLights || needs.pointLights) && light != Light::direct)
+      gatherLamp_ = load("lpv gather lamp", false, true);
     if (needs.environment && light != Light::indirect) gatherSky_ = load("lpv gather sky", true, false);
     if (voxels) {
       const SurfaceVoxels surfaces = surfaceVoxels(scene, settings.voxels);
       voxelMinimum_ = glm::vec3(surfaces.minimum - origin);
       voxelSize_ = static_cast<float>(surfaces.size);
       voxelBricks_ = surfaces.bricks;
-      voxels_ = gl::BufferTexture("lpv voxels", GL_RG32UI, surfaces.bits.size() * sizeof(glm::uvec2), surfaces.bits.data());
+      voxels_ =
+          gl::BufferTexture("lpv voxels", GL_RG32UI, surfaces.bits.size() * sizeof(glm::uvec2), surfaces.bits.data());
     }
   }
   forget();
@@ -156,18 +181,22 @@ void LpvReceivers::place(const Inputs& inputs) {
   lpvConstants_.upload(0, sizeof lpv, &lpv);
   if (cascades_.empty()) lpvConstantsBefore_.upload(0, sizeof lpv, &lpv);
   shared::LpvReceiverConstants constants{};
-  for (std::size_t k = 0; k < inputs.cascades.size(); ++k) constants.firstCell[k] = glm::ivec4(glm::ivec3(inputs.cascades[k].firstCell), 0);
+  for (std::size_t k = 0; k < inputs.cascades.size(); ++k)
+    constants.firstCell[k] = glm::ivec4(glm::ivec3(inputs.cascades[k].firstCell), 0);
   constants.rayOrigin = glm::vec3(rayOrigin_);
   constants.frame = ++frame_;
   constants.capacity = static_cast<std::uint32_t>(capacity_);
-  constants.mostSegments = std::min(path_.maxScatterings, settings_.bounces == LightPropagationVolume::kAllBounces ? kSegmentsOfAll : path_.maxScatterings);
+  constants.mostSegments =
+      std::min(path_.maxScatterings,
+               settings_.bounces == LightPropagationVolume::kAllBounces ? kSegmentsOfAll : path_.maxScatterings);
   const glm::ivec2 size = inputs.visible.size();
   const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   constants.markEvery = static_cast<std::uint32_t>((pixels + kKeyPixels - 1) / kKeyPixels);
   constants_.upload(0, sizeof constants, &constants);
 
   const Camera& camera = inputs.camera;
-  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)), up = glm::cross(right, camera.direction);
+  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
+                   up = glm::cross(right, camera.direction);
   const double pixel = 2.0 * std::tan(0.5 * camera.verticalFov) / size.y;
   path_.cameraPosition = glm::vec3(camera.position - rayOrigin_);
   path_.pixelRight = glm::vec3(pixel * right);
@@ -191,7 +220,8 @@ void LpvReceivers::keep() {
   std::swap(work_[0], work_[1]);
   work_[0].upload(0, sizeof kNoWork, kNoWork.data());
   slotTable_.clear();
-  const gl::ComputePass pass("lpv keep receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  const gl::ComputePass pass("lpv keep receivers",
+                             GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   keep_->use();
   bindReceivers();
   receivers_[1].bind(GL_SHADER_STORAGE_BUFFER, kReceiversBuffer);
@@ -214,7 +244,8 @@ void LpvReceivers::mark(const Inputs& inputs) {
     keys_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
     pass.dispatch(size, group);
   }
-  const gl::ComputePass pass("lpv claim receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  const gl::ComputePass pass("lpv claim receivers",
+                             GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   claim_->use();
   bindReceivers();
   inputs.visible.bind(*claim_, inputs.worldFromClip);
@@ -264,7 +295,8 @@ void LpvReceivers::gather(const Inputs& inputs) {
   list(1);
   std::vector<const gl::Program*> todo;
   if (gatherSun_ || gatherLamp_)
-    for (const ReflectiveShadowMap::Outputs& map : inputs.maps) todo.push_back(map.light == ReflectiveShadowMap::Light::sun ? gatherSun_ : gatherLamp_);
+    for (const ReflectiveShadowMap::Outputs& map : inputs.maps)
+      todo.push_back(map.light == ReflectiveShadowMap::Light::sun ? gatherSun_ : gatherLamp_);
   if (gatherSky_) todo.push_back(gatherSky_);
   for (std::size_t i = 0; i < todo.size(); ++i) {
     const gl::ComputePass pass("lpv gather", GL_SHADER_STORAGE_BARRIER_BIT);
@@ -298,8 +330,9 @@ void LpvReceivers::store(float mostChange) {
 }
 
 void LpvReceivers::update(const Inputs& inputs, int rounds) {
-  const bool moved = !cascades_.empty() && !std::equal(cascades_.begin(), cascades_.end(), inputs.cascades.begin(), inputs.cascades.end(),
-                                                       [](const Cascade& a, const Cascade& b) { return a.firstCell == b.firstCell; });
+  const bool moved = !cascades_.empty() &&
+                     !std::equal(cascades_.begin(), cascades_.end(), inputs.cascades.begin(), inputs.cascades.end(),
+                                 [](const Cascade& a, const Cascade& b) { return a.firstCell == b.firstCell; });
   const bool cut = cascades_.empty() || isCut(cascades_.front(), inputs.cascades.front());
   const float mostChange = inputs.fades && !cut ? settings_.mostChange : 0.0f;
   place(inputs);
@@ -317,7 +350,9 @@ void LpvReceivers::update(const Inputs& inputs, int rounds) {
     if (cached_ && round > 0) store(mostChange);
     light(settings_.samples);
   }
-  for (int paths = rounds * settings_.rays; paths < std::min(settings_.leastRays, settings_.samples); paths += settings_.rays) light(settings_.leastRays);
+  for (int paths = rounds * settings_.rays; paths < std::min(settings_.leastRays, settings_.samples);
+       paths += settings_.rays)
+    light(settings_.leastRays);
   store(mostChange);
   list(settings_.samples, true);  // the remaining work
   ring_->copy(work_[0]);
@@ -339,8 +374,9 @@ void LpvReceivers::collect(bool wait) {
 }
 
 std::size_t LpvReceivers::gpuBytes() const {
-  std::size_t bytes = scene_.gpuBytes() + lpvConstants_.bytes() + lpvConstantsBefore_.bytes() + constants_.bytes() + pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() +
-                      seen_.bytes() + irradiance_.bytes() + ring_->bytes() + voxels_.bytes();
+  std::size_t bytes = scene_.gpuBytes() + lpvConstants_.bytes() + lpvConstantsBefore_.bytes() + constants_.bytes() +
+                      pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() + seen_.bytes() +
+                      irradiance_.bytes() + ring_->bytes() + voxels_.bytes();
   for (const LightTree& tree : trees_) bytes += tree.gpuBytes();
   for (std::size_t i = 0; i < 2; ++i) bytes += receivers_[i].bytes() + work_[i].bytes();
   return bytes;

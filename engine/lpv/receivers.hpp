@@ -1,13 +1,16 @@
-// Receivers: irradiance stored at surface points, in the cascades of the light propagation volume, gathered from the lights' maps or found by paths.
+// Receivers: irradiance stored at surface points, in the cascades of the light propagation volume, gathered from the
+// lights' maps or found by paths.
 //
-// Irradiance along a surface is smooth even in a corner, where a field of radiance in space is not; so surface points are interpolated. Each cell of
-// each cascade has six slots, one per axis and sign; a slot holds one real point that the camera has seen and whose normal points that way. Points
-// are kept while the camera moves, and their paths accumulate while light and geometry are static.
+// Irradiance along a surface is smooth even in a corner, where a field of radiance in space is not; so surface points
+// are interpolated. Each cell of each cascade has six slots, one per axis and sign; a slot holds one real point that
+// the camera has seen and whose normal points that way. Points are kept while the camera moves, and their paths
+// accumulate while light and geometry are static.
 //
-// In: a scene (PathScene), cascades, the visible surfaces, the lights' maps for gather. Out: a layered 3D texture that shaders/lpv/receivers/lookup.glsl interpolates: irradiance in W per square scene
-// unit. Light: emissive surfaces, the sky, and everything scattered `bounces` times; forward shading adds the direct light of sun and lamps.
-// Errors: Error(missingCapability) if a texture or buffer exceeds the driver's limits.
-// Source: README.md in this folder, section "Receivers".
+// In: a scene (PathScene), cascades, the visible surfaces, the lights' maps for gather. Out: a layered 3D texture that
+// shaders/lpv/receivers/lookup.glsl interpolates: irradiance in W per square scene unit. Light: emissive surfaces, the
+// sky, and everything scattered `bounces` times; forward shading adds the direct light of sun and lamps. Errors:
+// Error(missingCapability) if a texture or buffer exceeds the driver's limits. Source: README.md in this folder,
+// section "Receivers".
 #pragma once
 
 #include "forward/visible_surfaces.hpp"
@@ -28,12 +31,13 @@ namespace lucerna {
 
 class LpvReceivers {
  public:
-  /// Stored light: everything but the direct light of sun and lamps. `direct`: of emissive surfaces and the sky, scattered once.
+  /// Stored light: everything but the direct light of sun and lamps. `direct`: of emissive surfaces and the sky,
+  /// scattered once.
   enum class Light { all, direct, indirect };
   struct Inputs {
     std::vector<Cascade> cascades;  ///< finest first, as many as in the settings
-    Camera camera;                  ///< of the visible surfaces, in the frame's coordinates
-    glm::mat4 worldFromClip;        ///< the same
+    Camera camera;  ///< of the visible surfaces, in the frame's coordinates
+    glm::mat4 worldFromClip;  ///< the same
     const VisibleSurfaces& visible;
     /// For LpvTransport::gather, one per light; the same ones every frame. Read if `mapsAreNew`, and by new receivers.
     const std::vector<ReflectiveShadowMap::Outputs>& maps;
@@ -43,19 +47,19 @@ class LpvReceivers {
   /// Of the last frame whose counts have arrived.
   struct Counts {
     std::uint64_t receivers = 0;  ///< in total
-    std::uint64_t waiting = 0;    ///< visible ones that still lack paths
-    std::uint64_t left = 0;       ///< without room
-    std::uint32_t frame = 0;      ///< as frame() counts them
+    std::uint64_t waiting = 0;  ///< visible ones that still lack paths
+    std::uint64_t left = 0;  ///< without room
+    std::uint32_t frame = 0;  ///< as frame() counts them
   };
 
   /// `scene`: as loaded. `origin`: of the frame's positions, in the scene's coordinates.
-  LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene, const glm::dvec3& origin,
-               const LightPropagationVolume::Settings& settings, Light light);
+  LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
+               const glm::dvec3& origin, const LightPropagationVolume::Settings& settings, Light light);
 
   static bool isNeeded(const SceneNeeds& needs, LpvTransport transport, Light light);
 
-  /// One frame: finds receivers for visible surfaces, and traces Settings::rays paths for those that lack some, Settings::leastRays for new ones.
-  /// rounds: the paths of this many frames at once.
+  /// One frame: finds receivers for visible surfaces, and traces Settings::rays paths for those that lack some,
+  /// Settings::leastRays for new ones. rounds: the paths of this many frames at once.
   void update(const Inputs& inputs, int rounds = 1);
   /// Drops everything stored, as before the first frame.
   void forget();
@@ -96,12 +100,13 @@ class LpvReceivers {
   const gl::Program *mark_, *claim_, *keep_, *list_, *store_;
   const gl::Program* paths_ = nullptr;  ///< only rays; the following only gather
   const gl::Program *gatherSun_ = nullptr, *gatherLamp_ = nullptr, *gatherSky_ = nullptr;
-  std::vector<LightTree> trees_;        ///< one per map
-  glm::vec3 voxelMinimum_{0.0f};        ///< in the frame's coordinates
+  std::vector<LightTree> trees_;  ///< one per map
+  glm::vec3 voxelMinimum_{0.0f};  ///< in the frame's coordinates
   float voxelSize_ = 1.0f;
   glm::ivec3 voxelBricks_{1};
   gl::BufferTexture voxels_;
-  gl::Buffer lpvConstants_, lpvConstantsBefore_;  ///< the second: of the cascades that irradiance_ is of when an update begins
+  gl::Buffer lpvConstants_,
+      lpvConstantsBefore_;  ///< the second: of the cascades that irradiance_ is of when an update begins
   gl::Buffer constants_, pathConstants_, lit_;
   std::array<gl::Buffer, 2> receivers_, work_;  ///< the second of each: before the cascades moved
   gl::BufferTexture slotTable_, keys_, seen_;

@@ -13,14 +13,15 @@ namespace lucerna {
 
 struct SurfaceVoxels {
   static constexpr int kBrick = 4;  ///< voxels per side of a brick
-  glm::dvec3 minimum{0.0};          ///< of voxel 0, in the scene's coordinates
-  double size = 1.0;                ///< of a voxel
-  glm::ivec3 bricks{1};             ///< per axis
-  std::vector<glm::uvec2> bits;     ///< a brick's 64 voxels, x fastest, bricks too
+  glm::dvec3 minimum{0.0};  ///< of voxel 0, in the scene's coordinates
+  double size = 1.0;  ///< of a voxel
+  glm::ivec3 bricks{1};  ///< per axis
+  std::vector<glm::uvec2> bits;  ///< a brick's 64 voxels, x fastest, bricks too
   bool isSet(const glm::ivec3& voxel) const;
 };
 
-/// `across`: voxels along the longest side of the scene, 1..1024. A voxel is set if a point of a surface lies in it; points are sampled half a voxel apart.
+/// `across`: voxels along the longest side of the scene, 1..1024. A voxel is set if a point of a surface lies in it;
+/// points are sampled half a voxel apart.
 SurfaceVoxels surfaceVoxels(const Scene& scene, int across);
 
 }  // namespace lucerna

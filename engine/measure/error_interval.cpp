@@ -8,8 +8,10 @@
 namespace lucerna::measure {
 
 ErrorInterval nrmseInterval(const Image& image, const Image& reference, const Image& standardError, double sigmas) {
-  if (image.width != reference.width || image.height != reference.height || standardError.pixels.size() != reference.pixels.size() || image.pixels.empty())
-    throwBadInput("an error between pictures of {}x{} and {}x{}", image.width, image.height, reference.width, reference.height);
+  if (image.width != reference.width || image.height != reference.height ||
+      standardError.pixels.size() != reference.pixels.size() || image.pixels.empty())
+    throwBadInput("an error between pictures of {}x{} and {}x{}", image.width, image.height, reference.width,
+                  reference.height);
   double squares = 0.0, variance = 0.0, mean = 0.0, meanVariance = 0.0;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     double deviation = 0.0, error = 0.0;  // of this pixel's sums, channels fully correlated
@@ -27,7 +29,9 @@ ErrorInterval nrmseInterval(const Image& image, const Image& reference, const Im
   squares /= count;
   mean /= count;
   const double half = sigmas * std::sqrt(variance) / count, meanError = sigmas * std::sqrt(meanVariance) / count;
-  const auto over = [](double square, double m) { return m > 0.0 ? std::sqrt(std::max(square, 0.0)) / m : square > 0.0 ? INFINITY : 0.0; };
+  const auto over = [](double square, double m) {
+    return m > 0.0 ? std::sqrt(std::max(square, 0.0)) / m : square > 0.0 ? INFINITY : 0.0;
+  };
   return {over(squares, mean), over(squares - half, mean + meanError), over(squares + half, mean - meanError)};
 }
 

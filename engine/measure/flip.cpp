@@ -17,12 +17,14 @@ constexpr double kPi = std::numbers::pi;
 // ---------------------------------------------------------------------------------------------------- colour spaces
 
 /// Linear sRGB to XYZ, IEC 61966-2-1; rows.
-constexpr std::array<std::array<double, 3>, 3> kXyzFromRgb{{{10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0},
-                                                            {2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0},
-                                                            {1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0}}};
+constexpr std::array<std::array<double, 3>, 3> kXyzFromRgb{
+    {{10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0},
+     {2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0},
+     {1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0}}};
 
 glm::dvec3 times(const std::array<std::array<double, 3>, 3>& m, const glm::dvec3& v) {
-  return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z, m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z, m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
+  return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z, m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
+          m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
 }
 
 std::array<std::array<double, 3>, 3> inverse(const std::array<std::array<double, 3>, 3>& m) {
@@ -75,7 +77,8 @@ using Kernel = std::vector<double>;
 struct Size {
   int width, height;
   std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) + static_cast<std::size_t>(std::clamp(x, 0, width - 1));
+    return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(std::clamp(x, 0, width - 1));
   }
 };
 
@@ -94,7 +97,8 @@ Plane convolve(const Plane& in, Size size, const std::array<const Kernel*, 3>& k
       }
   return out;
 }
-Plane convolve(const Plane& in, Size size, const std::array<const Kernel*, 3>& x, const std::array<const Kernel*, 3>& y) {
+Plane convolve(const Plane& in, Size size, const std::array<const Kernel*, 3>& x,
+               const std::array<const Kernel*, 3>& y) {
   return convolve(convolve(in, size, x, true), size, y, false);
 }
 
@@ -106,7 +110,8 @@ Kernel gaussian(double sigma, int radius) {
   return kernel;
 }
 
-/// Positive weights sum to 1, negative ones to -1, as those of the two-dimensional filter do [Andersson2020, 4.2.1]: the other axis' Gaussian sums to 1.
+/// Positive weights sum to 1, negative ones to -1, as those of the two-dimensional filter do [Andersson2020, 4.2.1]:
+/// the other axis' Gaussian sums to 1.
 Kernel balanced(Kernel kernel) {
   double positive = 0.0, negative = 0.0;
   for (double w : kernel) (w > 0.0 ? positive : negative) += std::abs(w);
@@ -114,9 +119,11 @@ Kernel balanced(Kernel kernel) {
   return kernel;
 }
 
-// ---------------------------------------------------------------------------------------------------- the two pipelines
+// ---------------------------------------------------------------------------------------------------- the two
+// pipelines
 
-/// A picture filtered by the eye's contrast sensitivity [Andersson2020, table 1]: a sum of Gaussians a sqrt(pi/b) exp(-pi^2 x^2 / b), x in degrees.
+/// A picture filtered by the eye's contrast sensitivity [Andersson2020, table 1]: a sum of Gaussians a sqrt(pi/b)
+/// exp(-pi^2 x^2 / b), x in degrees.
 Plane seen(const Plane& ycxcz, Size size, double ppd) {
   struct Term {
     double a, b;
@@ -128,7 +135,8 @@ Plane seen(const Plane& ycxcz, Size size, double ppd) {
   const Kernel first = gaussian(sigma(kBlueYellow[0]), radius), second = gaussian(sigma(kBlueYellow[1]), radius);
   Plane result = convolve(ycxcz, size, {&y, &cx, &first}, {&y, &cx, &first});
   const Plane narrow = convolve(ycxcz, size, {&second, &second, &second}, {&second, &second, &second});
-  // In two dimensions a term weighs a sqrt(pi/b) times its Gaussian's sum, which is that of exp(-pi^2 (x^2 + y^2) / b): b / pi where it is sampled finely.
+  // In two dimensions a term weighs a sqrt(pi/b) times its Gaussian's sum, which is that of exp(-pi^2 (x^2 + y^2) / b):
+  // b / pi where it is sampled finely.
   const auto weight = [&](const Term& t) {
     double sum = 0.0;
     for (int k = -radius; k <= radius; ++k) sum += std::exp(-kPi * kPi * (k / ppd) * (k / ppd) / t.b);
@@ -188,7 +196,8 @@ double luminanceOf(const glm::vec3& c) { return times(kXyzFromRgb, glm::dvec3(c)
 
 Flip flipLdr(const Image& image, const Image& reference, double ppd) {
   if (image.width != reference.width || image.height != reference.height || image.pixels.empty())
-    throwBadInput("pictures of {}x{} and {}x{}: FLIP needs pictures of the same size", image.width, image.height, reference.width, reference.height);
+    throwBadInput("pictures of {}x{} and {}x{}: FLIP needs pictures of the same size", image.width, image.height,
+                  reference.width, reference.height);
   const Size size{image.width, image.height};
   const auto convert = [](const Image& in) {
     Plane out;
@@ -201,7 +210,8 @@ Flip flipLdr(const Image& image, const Image& reference, double ppd) {
   Flip flip;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double feature = std::max(std::abs(fa.edge[i] - fb.edge[i]), std::abs(fa.point[i] - fb.point[i]));
-    const double value = std::pow(colourDifference(seenA[i], seenB[i]), 1.0 - std::sqrt(feature * std::numbers::sqrt2 / 2.0));
+    const double value =
+        std::pow(colourDifference(seenA[i], seenB[i]), 1.0 - std::sqrt(feature * std::numbers::sqrt2 / 2.0));
     flip.map.push_back(static_cast<float>(value));
     flip.mean += value / static_cast<double>(a.size());
   }
@@ -209,7 +219,8 @@ Flip flipLdr(const Image& image, const Image& reference, double ppd) {
 }
 
 FlipExposures flipExposures(const Image& reference) {
-  // Radiance that the curve maps to 0.85: the larger root of (2.51 - 0.85 2.43) x^2 + (0.03 - 0.85 0.59) x - 0.85 0.14, x = 0.6 radiance [Andersson2021, 3].
+  // Radiance that the curve maps to 0.85: the larger root of (2.51 - 0.85 2.43) x^2 + (0.03 - 0.85 0.59) x - 0.85 0.14,
+  // x = 0.6 radiance [Andersson2021, 3].
   constexpr double kTarget = 0.85;
   const double a = 2.51 - kTarget * 2.43, b = 0.03 - kTarget * 0.59, c = -kTarget * 0.14;
   const double bright = (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a) / 0.6;
@@ -218,7 +229,8 @@ FlipExposures flipExposures(const Image& reference) {
   FlipExposures exposures;
   const double largest = percentile(luminance, 1.0);
   if (!(largest > 0.0)) return exposures;
-  const double middle = std::max(median(luminance), largest * std::exp2(-16.0));  // a half-black picture would need infinite exposure
+  const double middle =
+      std::max(median(luminance), largest * std::exp2(-16.0));  // a half-black picture would need infinite exposure
   exposures.start = std::log2(bright / largest);
   exposures.stop = std::log2(bright / middle);
   exposures.count = std::max(2, static_cast<int>(std::ceil(exposures.stop - exposures.start)));
@@ -233,7 +245,8 @@ Flip flipHdr(const Image& image, const Image& reference, double ppd) {
     const double stops = exposures.start + (exposures.stop - exposures.start) * i / (exposures.count - 1);
     const auto expose = [&](const Image& in) {
       Image out(in.width, in.height);
-      for (std::size_t p = 0; p < in.pixels.size(); ++p) out.pixels[p] = glm::vec3(toneMapped(std::exp2(stops) * glm::dvec3(in.pixels[p])));
+      for (std::size_t p = 0; p < in.pixels.size(); ++p)
+        out.pixels[p] = glm::vec3(toneMapped(std::exp2(stops) * glm::dvec3(in.pixels[p])));
       return out;
     };
     const Flip one = flipLdr(expose(image), expose(reference), ppd);

@@ -29,7 +29,8 @@ std::vector<bool> paretoFront(std::span<const CostAndError> points) {
   for (const std::size_t i : order)
     if (std::all_of(kept.begin(), kept.end(), [&](std::size_t j) { return errsLess(i, j); })) kept.push_back(i);
   for (const std::size_t i : kept)
-    front[i] = std::none_of(kept.begin(), kept.end(), [&](std::size_t j) { return errsLess(j, i) && !costsLess(i, j); });
+    front[i] =
+        std::none_of(kept.begin(), kept.end(), [&](std::size_t j) { return errsLess(j, i) && !costsLess(i, j); });
   return front;
 }
 

@@ -7,7 +7,7 @@
 namespace lucerna::measure {
 
 struct CostAndError {
-  double cost = 0.0;   ///< such as ms
+  double cost = 0.0;  ///< such as ms
   double error = 0.0;  ///< such as NRMSE
   double costSpread = 0.0, errorSpread = 0.0;  ///< standard errors; 0: exact
 };
@@ -15,10 +15,10 @@ struct CostAndError {
 inline constexpr double kApart = 2.0;
 /// Whether a (standard error ea) is below b by more than both spreads explain.
 bool isBelow(double a, double ea, double b, double eb);
-/// From the cheapest to the dearest, a point joins the front where its error isBelow() that of all on it: what cannot be
-/// told apart counts as equal, and of equal ones the cheapest stays. Then those leave that cost the same as one of the
-/// front and err more. Without spreads: no other is as good in both and better in one, of equal ones the first. Points
-/// that are not finite are never on it.
+/// From the cheapest to the dearest, a point joins the front where its error isBelow() that of all on it: what cannot
+/// be told apart counts as equal, and of equal ones the cheapest stays. Then those leave that cost the same as one of
+/// the front and err more. Without spreads: no other is as good in both and better in one, of equal ones the first.
+/// Points that are not finite are never on it.
 std::vector<bool> paretoFront(std::span<const CostAndError> points);
 
 /// Least squares of log y over log x; NaN with fewer than two points of different x. All values above 0.

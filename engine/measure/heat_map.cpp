@@ -15,9 +15,12 @@ namespace {
 
 using Colour = std::array<double, 3>;  // sRGB-encoded, 0..255
 
-// Stops of even distance; lightness grows (or grows towards white from both sides) so that they remain readable in grey.
-constexpr Colour kAbsolute[] = {{0, 0, 0}, {66, 10, 74}, {147, 26, 72}, {222, 66, 37}, {250, 146, 14}, {252, 228, 120}, {255, 255, 255}};
-constexpr Colour kSigned[] = {{8, 48, 120}, {52, 122, 190}, {150, 199, 226}, {247, 247, 247}, {246, 178, 144}, {206, 74, 64}, {110, 4, 28}};
+// Stops of even distance; lightness grows (or grows towards white from both sides) so that they remain readable in
+// grey.
+constexpr Colour kAbsolute[] = {{0, 0, 0},      {66, 10, 74},    {147, 26, 72},  {222, 66, 37},
+                                {250, 146, 14}, {252, 228, 120}, {255, 255, 255}};
+constexpr Colour kSigned[] = {{8, 48, 120},    {52, 122, 190}, {150, 199, 226}, {247, 247, 247},
+                              {246, 178, 144}, {206, 74, 64},  {110, 4, 28}};
 constexpr Colour kNotFinite{0, 255, 0};
 
 Colour colourAt(std::span<const Colour> stops, double t) {
@@ -30,7 +33,9 @@ Colour colourAt(std::span<const Colour> stops, double t) {
   return result;
 }
 
-Colour colourOf(HeatMap kind, double t) { return kind == HeatMap::absolute ? colourAt(kAbsolute, t) : colourAt(kSigned, 0.5 + 0.5 * t); }
+Colour colourOf(HeatMap kind, double t) {
+  return kind == HeatMap::absolute ? colourAt(kAbsolute, t) : colourAt(kSigned, 0.5 + 0.5 * t);
+}
 
 double difference(HeatMap kind, const glm::vec3& a, const glm::vec3& b) {
   const glm::dvec3 d = glm::dvec3(a) - glm::dvec3(b);
@@ -46,7 +51,8 @@ void put(Bitmap& bitmap, const Colour& colour) {
 
 void checkSizes(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
-    throwBadInput("pictures of {}x{} and {}x{}: pictures must have the same size", a.width, a.height, b.width, b.height);
+    throwBadInput("pictures of {}x{} and {}x{}: pictures must have the same size", a.width, a.height, b.width,
+                  b.height);
 }
 
 }  // namespace
@@ -58,7 +64,8 @@ double heatMapScale(const Image& image, const Image& reference) {
     const double d = difference(HeatMap::absolute, image.pixels[i], reference.pixels[i]);
     if (!std::isnan(d)) differences.push_back(d);
   }
-  const double high = percentile(differences, 0.99), largest = differences.empty() ? 0.0 : *std::max_element(differences.begin(), differences.end());
+  const double high = percentile(differences, 0.99),
+               largest = differences.empty() ? 0.0 : *std::max_element(differences.begin(), differences.end());
   const double value = high > 0.0 ? high : largest;
   if (!(value > 0.0)) return 0.0;
   const double power = std::pow(10.0, std::floor(std::log10(value)));
@@ -73,7 +80,8 @@ Bitmap heatMap(const Image& image, const Image& reference, HeatMap kind, double 
   Bitmap bitmap;
   bitmap.width = image.width;
   bitmap.height = image.height;
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) put(bitmap, colourOf(kind, difference(kind, image.pixels[i], reference.pixels[i]) / scale));
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    put(bitmap, colourOf(kind, difference(kind, image.pixels[i], reference.pixels[i]) / scale));
   return bitmap;
 }
 

@@ -17,7 +17,8 @@ double sum(const glm::dvec3& v) { return v.x + v.y + v.z; }
 
 void checkSizes(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
-    throwBadInput("pictures of {}x{} and {}x{}: pictures must have the same size", a.width, a.height, b.width, b.height);
+    throwBadInput("pictures of {}x{} and {}x{}: pictures must have the same size", a.width, a.height, b.width,
+                  b.height);
   if (a.pixels.empty()) throwBadInput("pictures without pixels cannot be compared");
 }
 
@@ -31,7 +32,8 @@ double ratio(double x, double y) { return x == 0.0 ? 0.0 : x / y; }
 ImageErrors errorsOf(const Image& image, const Image& reference) {
   checkSizes(image, reference);
   ImageErrors result;
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) result.notFinite += !finite(image.pixels[i]) || !finite(reference.pixels[i]);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    result.notFinite += !finite(image.pixels[i]) || !finite(reference.pixels[i]);
   if (result.notFinite > 0) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     result.rmse = result.nrmse = result.l2 = result.relmse = result.bias = result.relativeBias = result.p99 =
@@ -70,10 +72,12 @@ ReferenceNoise noiseOf(const Image& reference, const Image& standardError, doubl
   checkSizes(reference, standardError);
   ReferenceNoise noise;
   noise.meanError = meanError;
-  const double floor = relativeFloor(sum(meanOf(reference)) / 3.0), count = 3.0 * static_cast<double>(reference.pixels.size());
+  const double floor = relativeFloor(sum(meanOf(reference)) / 3.0),
+               count = 3.0 * static_cast<double>(reference.pixels.size());
   for (std::size_t i = 0; i < reference.pixels.size(); ++i)
     for (int c = 0; c < 3; ++c) {
-      const double r = reference.pixels[i][c], square = static_cast<double>(standardError.pixels[i][c]) * standardError.pixels[i][c];
+      const double r = reference.pixels[i][c],
+                   square = static_cast<double>(standardError.pixels[i][c]) * standardError.pixels[i][c];
       noise.variance += square / count;
       noise.relativeVariance += ratio(square, r * r + floor) / count;
     }

@@ -28,10 +28,10 @@ inline constexpr double kRelativeEpsilon = 0.01;
 
 struct ImageErrors {
   double rmse = 0.0, nrmse = 0.0, l2 = 0.0, relmse = 0.0, bias = 0.0, relativeBias = 0.0, p99 = 0.0, max = 0.0;
-  glm::dvec3 channelBias{0.0};    ///< mean d of each channel
-  double referenceMean = 0.0;     ///< m
-  double referenceSquare = 0.0;   ///< mean r^2 over pixels and channels
-  std::size_t notFinite = 0;      ///< pixels, in either picture
+  glm::dvec3 channelBias{0.0};  ///< mean d of each channel
+  double referenceMean = 0.0;  ///< m
+  double referenceSquare = 0.0;  ///< mean r^2 over pixels and channels
+  std::size_t notFinite = 0;  ///< pixels, in either picture
 };
 
 /// Throws Error(badInput) if the sizes differ or there are no pixels.
@@ -39,9 +39,9 @@ ImageErrors errorsOf(const Image& image, const Image& reference);
 
 /// The contribution of a sampled reference's noise to those measures.
 struct ReferenceNoise {
-  double variance = 0.0;          ///< mean over pixels and channels of the squared standard error
+  double variance = 0.0;  ///< mean over pixels and channels of the squared standard error
   double relativeVariance = 0.0;  ///< the same of se^2 / (r^2 + epsilon m^2)
-  double meanError = 0.0;         ///< standard error of m
+  double meanError = 0.0;  ///< standard error of m
 };
 /// standardError: of each pixel and channel.
 ReferenceNoise noiseOf(const Image& reference, const Image& standardError, double meanError);
@@ -58,12 +58,12 @@ struct JudgedErrors {
   ImageErrors measured;
   double rmse = 0.0, nrmse = 0.0, l2 = 0.0,
          relmse = 0.0;  ///< less the reference's noise, at least 0; l2 over sum r^2 less its noise too
-  double noiseNrmse = 0.0;                       ///< that share: sqrt(variance) / m
-  double noiseL2 = 0.0;                          ///< the same over sqrt(mean r^2)
-  double noiseRelmse = 0.0;                      ///< what was taken off relmse
-  double biasError = 0.0;                        ///< standard error of the bias
-  bool atNoise = false;                          ///< measured rmse is below 3 standard errors of the reference
-  bool biasAtNoise = false;                      ///< |bias| is below 3 biasError
+  double noiseNrmse = 0.0;  ///< that share: sqrt(variance) / m
+  double noiseL2 = 0.0;  ///< the same over sqrt(mean r^2)
+  double noiseRelmse = 0.0;  ///< what was taken off relmse
+  double biasError = 0.0;  ///< standard error of the bias
+  bool atNoise = false;  ///< measured rmse is below 3 standard errors of the reference
+  bool biasAtNoise = false;  ///< |bias| is below 3 biasError
 };
 /// ownBiasError: the image's own standard error of its mean, where it is sampled too.
 JudgedErrors lessNoise(const ImageErrors& measured, const ReferenceNoise& noise, double ownBiasError = 0.0);
@@ -78,14 +78,14 @@ Image blockStandardErrors(const Image& standardError, int side);
 
 /// Errors of some pixels, such as those that the sun lights.
 struct PartErrors {
-  double pixels = 0.0;        ///< their share of the picture, 0..1
-  double bias = 0.0;          ///< mean d of them, radiance
+  double pixels = 0.0;  ///< their share of the picture, 0..1
+  double bias = 0.0;  ///< mean d of them, radiance
   double relativeBias = 0.0;  ///< over their mean r; NaN without pixels
-  double biasError = 0.0;     ///< standard error of the relative bias
-  double squares = 0.0;       ///< their share of sum d^2, 0..1; 0 where that is 0
+  double biasError = 0.0;  ///< standard error of the relative bias
+  double squares = 0.0;  ///< their share of sum d^2, 0..1; 0 where that is 0
 };
-/// isPart: one value per pixel. ownBiasError: as in lessNoise(), of the whole picture; a part of its pixels is taken to be
-/// as noisy as all of them.
+/// isPart: one value per pixel. ownBiasError: as in lessNoise(), of the whole picture; a part of its pixels is taken to
+/// be as noisy as all of them.
 PartErrors partErrorsOf(const Image& image, const Image& reference, const Image& standardError,
                         const std::vector<bool>& isPart, double ownBiasError = 0.0);
 

@@ -12,8 +12,8 @@ namespace lucerna::measure {
 /// The kinds of emitters that a scene has, a technique supports, or a reference contains.
 struct LightKinds {
   bool sun = true;
-  bool lamps = true;        ///< spots and omnidirectional lamps
-  bool surfaces = true;     ///< emissive surfaces and media
+  bool lamps = true;  ///< spots and omnidirectional lamps
+  bool surfaces = true;  ///< emissive surfaces and media
   bool environment = true;  ///< what is seen behind the scene and lights it; a background that lights nothing is none
 
   auto operator<=>(const LightKinds&) const = default;

@@ -29,8 +29,9 @@ bool isNeeded(const Scene& scene, std::string_view need) {
 }  // namespace
 
 const std::vector<std::string>& neutralNeeds() {
-  static const std::vector<std::string> names{"diffuseTextures", "alphaMasks", "specular", "emission", "background", "environment", "environmentPicture", "spotLights", "pointLights",
-                                              "emissionTextures", "normalMaps", "metalMaps"};
+  static const std::vector<std::string> names{"diffuseTextures", "alphaMasks",       "specular",           "emission",
+                                              "background",      "environment",      "environmentPicture", "spotLights",
+                                              "pointLights",     "emissionTextures", "normalMaps",         "metalMaps"};
   return names;
 }
 
@@ -53,7 +54,8 @@ void addNeutral(Scene& scene, std::string_view need) {
     material.normalTexture = addWhiteTexture(scene);
     material.normalScale = kNothing;
   } else if (need == "metalMaps") {
-    material.metalMap = MetalMap{material.diffuse, 0.0f, -1.0f, addWhiteTexture(scene)};  // no roughness: no highlight of its own
+    material.metalMap =
+        MetalMap{material.diffuse, 0.0f, -1.0f, addWhiteTexture(scene)};  // no roughness: no highlight of its own
   } else if (need == "background") {
     scene.background = glm::vec3(kNothing);
   } else if (need == "environment") {

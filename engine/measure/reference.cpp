@@ -24,7 +24,8 @@ void BatchMean::add(const Image& batch) {
     sum_.assign(batch.pixels.size(), glm::dvec3(0.0));
     squares_ = sum_;
   }
-  CHECK(batch.width == width_ && batch.height == height_, "a batch of {}x{} after {}x{}", batch.width, batch.height, width_, height_);
+  CHECK(batch.width == width_ && batch.height == height_, "a batch of {}x{} after {}x{}", batch.width, batch.height,
+        width_, height_);
   const double n = ++batches_;
   for (std::size_t i = 0; i < batch.pixels.size(); ++i) {
     const glm::dvec3 value(batch.pixels[i]), before = value - sum_[i];
@@ -47,7 +48,8 @@ Image BatchMean::standardError() const {
   CHECK(batches_ >= 2, "{} batches", batches_);
   Image image(width_, height_);
   const double n = batches_;
-  for (std::size_t i = 0; i < squares_.size(); ++i) image.pixels[i] = glm::vec3(glm::sqrt(squares_[i] / (n * (n - 1.0))));
+  for (std::size_t i = 0; i < squares_.size(); ++i)
+    image.pixels[i] = glm::vec3(glm::sqrt(squares_[i] / (n * (n - 1.0))));
   return image;
 }
 
@@ -58,9 +60,11 @@ double BatchMean::meanError() const {
 }
 
 Reference merged(const Reference& a, const Reference& b) {
-  CHECK(a.mean.width == b.mean.width && a.mean.height == b.mean.height && a.transport == b.transport, "{} and {}", nameOf(a.transport), nameOf(b.transport));
+  CHECK(a.mean.width == b.mean.width && a.mean.height == b.mean.height && a.transport == b.transport, "{} and {}",
+        nameOf(a.transport), nameOf(b.transport));
   Reference result = a;
-  const double total = static_cast<double>(a.samples + b.samples), wa = static_cast<double>(a.samples) / total, wb = 1.0 - wa;
+  const double total = static_cast<double>(a.samples + b.samples), wa = static_cast<double>(a.samples) / total,
+               wb = 1.0 - wa;
   for (std::size_t i = 0; i < a.mean.pixels.size(); ++i) {
     result.mean.pixels[i] = glm::vec3(wa * glm::dvec3(a.mean.pixels[i]) + wb * glm::dvec3(b.mean.pixels[i]));
     const glm::dvec3 ea = wa * glm::dvec3(a.standardError.pixels[i]), eb = wb * glm::dvec3(b.standardError.pixels[i]);
@@ -73,14 +77,17 @@ Reference merged(const Reference& a, const Reference& b) {
   return result;
 }
 
-std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first, const SamplingGoal& goal,
-                                         const std::function<bool()>& stop) {
+std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first,
+                                         const SamplingGoal& goal, const std::function<bool()>& stop) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   const bool byCount = goal.samples > 0;
-  // By time: the batch doubles until a sixteenth of the time is spent on one; then all begin again at that size, so that they are equal.
-  std::uint32_t size = byCount ? static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (goal.samples + SamplingGoal::kBatches - 1) / SamplingGoal::kBatches)) : 1;
+  // By time: the batch doubles until a sixteenth of the time is spent on one; then all begin again at that size, so
+  // that they are equal.
+  std::uint32_t size = byCount ? static_cast<std::uint32_t>(std::max<std::uint64_t>(
+                                     1, (goal.samples + SamplingGoal::kBatches - 1) / SamplingGoal::kBatches))
+                               : 1;
   std::uint64_t next = first;
   if (!byCount) sampler(next, 1);  // one-time work, such as compiling, does not belong to a batch's time
   if (!byCount)
@@ -159,18 +166,24 @@ std::optional<Reference> decode(const ReferenceKey& key, const std::vector<std::
   std::uint64_t stored;
   std::memcpy(&stored, bytes.data() + bytes.size() - sizeof stored, sizeof stored);
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (stored != check.value() || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.key != key.value) return std::nullopt;
+  if (stored != check.value() || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.key != key.value)
+    return std::nullopt;
   Reference r;
   r.samples = header.samples;
   r.seconds = header.seconds;
   r.meanError = header.meanError;
   const std::size_t rest = bytes.size() - sizeof header - sizeof stored;
-  if (header.width < 1 || header.height < 1 || header.rendererLength < 0 || static_cast<std::size_t>(header.rendererLength) > rest ||
-      static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.height) > rest / (2 * sizeof(glm::vec3)))
+  if (header.width < 1 || header.height < 1 || header.rendererLength < 0 ||
+      static_cast<std::size_t>(header.rendererLength) > rest ||
+      static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.height) >
+          rest / (2 * sizeof(glm::vec3)))
     return std::nullopt;
-  const std::size_t size = static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height) * sizeof(glm::vec3);
+  const std::size_t size =
+      static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height) * sizeof(glm::vec3);
   if (rest != static_cast<std::size_t>(header.rendererLength) + 2 * size) return std::nullopt;
-  if (header.samples < 1 || !(header.seconds >= 0.0) || !(header.meanError >= 0.0) || !std::isfinite(header.seconds + header.meanError)) return std::nullopt;
+  if (header.samples < 1 || !(header.seconds >= 0.0) || !(header.meanError >= 0.0) ||
+      !std::isfinite(header.seconds + header.meanError))
+    return std::nullopt;
   if (header.transport < 0 || header.transport > static_cast<std::int32_t>(Transport::indirect)) return std::nullopt;
   r.transport = static_cast<Transport>(header.transport);
   r.mean = Image(header.width, header.height);
@@ -187,7 +200,8 @@ std::optional<Reference> decode(const ReferenceKey& key, const std::vector<std::
 
 std::string ReferenceKey::name() const { return fmt::format("{:016x}", value); }
 
-ReferenceKey keyOf(const Scene& scene, const Camera& camera, glm::ivec2 size, Transport transport, std::string_view sampler) {
+ReferenceKey keyOf(const Scene& scene, const Camera& camera, glm::ivec2 size, Transport transport,
+                   std::string_view sampler) {
   Hash hash;
   addScene(hash, scene);
   addCamera(hash, camera);
@@ -201,7 +215,8 @@ ReferenceCache::ReferenceCache(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error || !fs::is_directory(folder_))
-    throwBadInput("{}: cannot create the folder for references ({})", folder_.string(), error ? error.message() : "a file of that name exists");
+    throwBadInput("{}: cannot create the folder for references ({})", folder_.string(),
+                  error ? error.message() : "a file of that name exists");
 }
 
 fs::path ReferenceCache::fileOf(const ReferenceKey& key) const { return folder_ / (key.name() + ".lucref"); }
@@ -214,7 +229,9 @@ std::optional<Reference> ReferenceCache::load(const ReferenceKey& key) const {
   return reference;
 }
 
-void ReferenceCache::store(const ReferenceKey& key, const Reference& reference) const { writeFileAtomically(fileOf(key), encode(key, reference)); }
+void ReferenceCache::store(const ReferenceKey& key, const Reference& reference) const {
+  writeFileAtomically(fileOf(key), encode(key, reference));
+}
 
 fs::path ReferenceCache::defaultFolder() {
   const auto variable = [](const char* name) -> std::string {
@@ -227,8 +244,9 @@ fs::path ReferenceCache::defaultFolder() {
   return fs::path(".lucerna-references");
 }
 
-std::optional<Reference> obtainReference(const ReferenceCache& cache, const ReferenceKey& key, const Sampler& sampler, Transport transport, const SamplingGoal& goal,
-                                         const std::string& renderer, const std::function<bool()>& stop) {
+std::optional<Reference> obtainReference(const ReferenceCache& cache, const ReferenceKey& key, const Sampler& sampler,
+                                         Transport transport, const SamplingGoal& goal, const std::string& renderer,
+                                         const std::function<bool()>& stop) {
   std::optional<Reference> known = cache.load(key);
   SamplingGoal rest = goal;
   if (known) {

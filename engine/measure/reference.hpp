@@ -1,4 +1,5 @@
-// References: pictures of one transport with many samples and their standard errors, cached on disk (no GL: the sampler is passed in).
+// References: pictures of one transport with many samples and their standard errors, cached on disk (no GL: the sampler
+// is passed in).
 #pragma once
 
 #include "base/image.hpp"
@@ -14,20 +15,22 @@
 
 namespace lucerna::measure {
 
-/// The mean picture of `samples` paths per pixel, numbered from `first`: other numbers are independent, the same ones give the same picture.
+/// The mean picture of `samples` paths per pixel, numbered from `first`: other numbers are independent, the same ones
+/// give the same picture.
 using Sampler = std::function<Image(std::uint64_t first, std::uint32_t samples)>;
 
 struct Reference {
   Transport transport = Transport::all;
   Image mean;
-  Image standardError;        ///< of each pixel and channel
-  double meanError = 0.0;     ///< standard error of the mean over pixels and channels
+  Image standardError;  ///< of each pixel and channel
+  double meanError = 0.0;  ///< standard error of the mean over pixels and channels
   std::uint64_t samples = 0;  ///< paths per pixel
-  double seconds = 0.0;       ///< spent on it
-  std::string renderer;       ///< of the sampler
+  double seconds = 0.0;  ///< spent on it
+  std::string renderer;  ///< of the sampler
 };
 
-/// Mean and standard errors from batches of equal size, each a separate picture: correlation within a batch does not bias the error.
+/// Mean and standard errors from batches of equal size, each a separate picture: correlation within a batch does not
+/// bias the error.
 class BatchMean {
  public:
   void add(const Image& batch);
@@ -47,21 +50,24 @@ class BatchMean {
 Reference merged(const Reference& a, const Reference& b);
 
 struct SamplingGoal {
-  std::uint64_t samples = 0;   ///< stop at this many per pixel; 0: by time
-  double seconds = 60.0;       ///< stop after this time; at least kBatches batches of one sample are made
+  std::uint64_t samples = 0;  ///< stop at this many per pixel; 0: by time
+  double seconds = 60.0;  ///< stop after this time; at least kBatches batches of one sample are made
   static constexpr int kBatches = 16;
 };
 
-/// Samples from path number `first` until the goal is met. `stop` is asked between batches; fewer than two batches give no reference.
-std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first, const SamplingGoal& goal,
-                                         const std::function<bool()>& stop = {});
+/// Samples from path number `first` until the goal is met. `stop` is asked between batches; fewer than two batches give
+/// no reference.
+std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first,
+                                         const SamplingGoal& goal, const std::function<bool()>& stop = {});
 
-/// Identity of a reference: the scene's content, view, size, transport, and the sampler (version and switches, as text).
+/// Identity of a reference: the scene's content, view, size, transport, and the sampler (version and switches, as
+/// text).
 struct ReferenceKey {
   std::uint64_t value = 0;
   std::string name() const;  ///< 16 hexadecimal digits
 };
-ReferenceKey keyOf(const Scene& scene, const Camera& camera, glm::ivec2 size, Transport transport, std::string_view sampler);
+ReferenceKey keyOf(const Scene& scene, const Camera& camera, glm::ivec2 size, Transport transport,
+                   std::string_view sampler);
 
 /// References in a folder, one file each, written completely or not at all and checked when read.
 class ReferenceCache {
@@ -81,7 +87,8 @@ class ReferenceCache {
 };
 
 /// From the cache if it meets the goal; otherwise sampled further and stored. Empty if stopped before two batches.
-std::optional<Reference> obtainReference(const ReferenceCache& cache, const ReferenceKey& key, const Sampler& sampler, Transport transport, const SamplingGoal& goal,
-                                         const std::string& renderer, const std::function<bool()>& stop = {});
+std::optional<Reference> obtainReference(const ReferenceCache& cache, const ReferenceKey& key, const Sampler& sampler,
+                                         Transport transport, const SamplingGoal& goal, const std::string& renderer,
+                                         const std::function<bool()>& stop = {});
 
 }  // namespace lucerna::measure

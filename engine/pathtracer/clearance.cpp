@@ -35,8 +35,10 @@ class Filler {
       nearest = std::min(nearest, distances[i]);
     }
     if (side == 1) {
-      const std::size_t row = static_cast<std::size_t>(first.y) + static_cast<std::size_t>(grid_.size.y) * static_cast<std::size_t>(first.z);
-      grid_.radius[static_cast<std::size_t>(first.x) + static_cast<std::size_t>(grid_.size.x) * row] = static_cast<float>(nearest * (1.0 - 1e-6));
+      const std::size_t row = static_cast<std::size_t>(first.y) +
+                              static_cast<std::size_t>(grid_.size.y) * static_cast<std::size_t>(first.z);
+      grid_.radius[static_cast<std::size_t>(first.x) + static_cast<std::size_t>(grid_.size.x) * row] =
+          static_cast<float>(nearest * (1.0 - 1e-6));
       return;
     }
     const double reach = nearest + std::sqrt(3.0) * side * grid_.cell;  // the cube's diameter
@@ -46,7 +48,9 @@ class Filler {
     std::vector<std::future<void>> parts;
     for (int k = 0; k < 8; ++k) {
       const glm::ivec3 child = first + side / 2 * glm::ivec3(k & 1, k >> 1 & 1, k >> 2);
-      if (onManyThreads) parts.push_back(std::async(std::launch::async, [this, child, side, &kept] { fill(child, side / 2, kept, false); }));
+      if (onManyThreads)
+        parts.push_back(
+            std::async(std::launch::async, [this, child, side, &kept] { fill(child, side / 2, kept, false); }));
       else fill(child, side / 2, kept, false);
     }
     for (std::future<void>& part : parts) part.get();
@@ -63,12 +67,17 @@ double distanceTo(const Corners& triangle, const glm::dvec3& point) {
   const auto& [a, b, c] = triangle;
   const glm::dvec3 normal = glm::cross(b - a, c - a);
   const double area = glm::dot(normal, normal);
-  const auto within = [&](const glm::dvec3& from, const glm::dvec3& to) { return glm::dot(glm::cross(to - from, point - from), normal) >= 0.0; };
-  if (area > 0.0 && within(a, b) && within(b, c) && within(c, a)) return std::abs(glm::dot(point - a, normal)) / std::sqrt(area);
-  return std::sqrt(std::min({squaredDistanceToSegment(a, b, point), squaredDistanceToSegment(b, c, point), squaredDistanceToSegment(c, a, point)}));
+  const auto within = [&](const glm::dvec3& from, const glm::dvec3& to) {
+    return glm::dot(glm::cross(to - from, point - from), normal) >= 0.0;
+  };
+  if (area > 0.0 && within(a, b) && within(b, c) && within(c, a))
+    return std::abs(glm::dot(point - a, normal)) / std::sqrt(area);
+  return std::sqrt(std::min({squaredDistanceToSegment(a, b, point), squaredDistanceToSegment(b, c, point),
+                             squaredDistanceToSegment(c, a, point)}));
 }
 
-ClearanceGrid clearanceGrid(const std::vector<Corners>& triangles, const glm::dvec3& min, const glm::dvec3& max, int cells) {
+ClearanceGrid clearanceGrid(const std::vector<Corners>& triangles, const glm::dvec3& min, const glm::dvec3& max,
+                            int cells) {
   CHECK(cells > 0 && std::has_single_bit(static_cast<unsigned>(cells)), "{} cells", cells);
   ClearanceGrid grid;
   const glm::dvec3 extent = max - min;
@@ -76,10 +85,12 @@ ClearanceGrid clearanceGrid(const std::vector<Corners>& triangles, const glm::dv
   grid.cell = std::max({extent.x, extent.y, extent.z}) / cells;
   CHECK(grid.cell > 0.0, "an empty box");
   grid.size = glm::clamp(glm::ivec3(glm::ceil(extent / grid.cell)), glm::ivec3(1), glm::ivec3(cells));
-  grid.radius.resize(static_cast<std::size_t>(grid.size.x) * static_cast<std::size_t>(grid.size.y) * static_cast<std::size_t>(grid.size.z));
+  grid.radius.resize(static_cast<std::size_t>(grid.size.x) * static_cast<std::size_t>(grid.size.y) *
+                     static_cast<std::size_t>(grid.size.z));
   std::vector<int> all;
   for (std::size_t i = 0; i < triangles.size(); ++i)
-    if (std::isfinite(glm::dot(triangles[i][0] + triangles[i][1] + triangles[i][2], glm::dvec3(1.0)))) all.push_back(static_cast<int>(i));
+    if (std::isfinite(glm::dot(triangles[i][0] + triangles[i][1] + triangles[i][2], glm::dvec3(1.0))))
+      all.push_back(static_cast<int>(i));
   Filler(triangles, grid).fill(glm::ivec3(0), cells, all, true);
   return grid;
 }

@@ -31,7 +31,9 @@ std::uint64_t hashOf(const std::uint8_t* words, std::size_t size, std::uint32_t 
   return hash.value();
 }
 
-glm::vec3 floatsOf(const glm::uvec4& w) { return {std::bit_cast<float>(w.x), std::bit_cast<float>(w.y), std::bit_cast<float>(w.z)}; }
+glm::vec3 floatsOf(const glm::uvec4& w) {
+  return {std::bit_cast<float>(w.x), std::bit_cast<float>(w.y), std::bit_cast<float>(w.z)};
+}
 glm::uvec4 wordsOf(const glm::vec3& v, std::uint32_t w) {
   return {std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y), std::bit_cast<std::uint32_t>(v.z), w};
 }
@@ -48,7 +50,8 @@ Image toImage(const Film& film, Value value) {
   const std::vector<FilmPixel> pixels = film.pixels();
   for (int y = 0; y < film.size.y; ++y)
     for (int x = 0; x < film.size.x; ++x)
-      image.at(x, film.size.y - 1 - y) = value(pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(film.size.x) + static_cast<std::size_t>(x)]);
+      image.at(x, film.size.y - 1 - y) = value(
+          pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(film.size.x) + static_cast<std::size_t>(x)]);
   return image;
 }
 
@@ -92,11 +95,15 @@ Image Film::standardError() const { return toImage(*this, standardErrorOf); }
 
 Film filmOf(std::span<const std::uint8_t> bytes, const std::string& name) {
   Header header;
-  if (bytes.size() < sizeof header) throwBadInput("{}: not a checkpoint of a path-traced picture ({} bytes)", name, bytes.size());
+  if (bytes.size() < sizeof header)
+    throwBadInput("{}: not a checkpoint of a path-traced picture ({} bytes)", name, bytes.size());
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.magic != kMagic) throwBadInput("{}: not a checkpoint of a path-traced picture, or one of another version", name);
-  const std::size_t texels = static_cast<std::size_t>(header.width) * header.height, plane = texels * sizeof(glm::uvec4);
-  if (header.width > (1u << 16) || header.height > (1u << 16) || texels == 0 || bytes.size() != sizeof header + 3 * plane ||
+  if (header.magic != kMagic)
+    throwBadInput("{}: not a checkpoint of a path-traced picture, or one of another version", name);
+  const std::size_t texels = static_cast<std::size_t>(header.width) * header.height,
+                    plane = texels * sizeof(glm::uvec4);
+  if (header.width > (1u << 16) || header.height > (1u << 16) || texels == 0 ||
+      bytes.size() != sizeof header + 3 * plane ||
       header.hash != hashOf(bytes.data() + sizeof header, 3 * plane, header.first))
     throwBadInput("{}: the checkpoint is damaged or truncated", name);
   Film film;
@@ -139,7 +146,8 @@ std::uint32_t firstSampleOf(const std::filesystem::path& file) {
 
 void FilmMerge::add(const Film& film, const std::string& name) {
   const std::uint32_t samples = film.mean.front().w;
-  if (samples == 0 || std::any_of(film.mean.begin(), film.mean.end(), [&](const glm::uvec4& w) { return w.w != samples; }))
+  if (samples == 0 ||
+      std::any_of(film.mean.begin(), film.mean.end(), [&](const glm::uvec4& w) { return w.w != samples; }))
     throwBadInput("{}: the part is not finished; the command that makes it goes on with it", name);
   if (films_ == 0) {
     head_ = film;
@@ -148,14 +156,20 @@ void FilmMerge::add(const Film& film, const std::string& name) {
     mean_.assign(film.mean.size(), glm::dvec3(0.0));
     spread_ = mean_;
   }
-  if (film.size != head_.size) throwBadInput("{}: {} x {} pixels; {} has {} x {}", name, film.size.x, film.size.y, headName_, head_.size.x, head_.size.y);
+  if (film.size != head_.size)
+    throwBadInput("{}: {} x {} pixels; {} has {} x {}", name, film.size.x, film.size.y, headName_, head_.size.x,
+                  head_.size.y);
   if (film.identity != head_.identity) throwBadInput("{}: of another scene, view or setting than {}", name, headName_);
-  if (film.first < next_) throwBadInput("{} and {} hold the same samples ({} to {})", before_, name, film.first, std::min<std::uint64_t>(next_, film.first + std::uint64_t{samples}) - 1);
-  if (film.first > next_) throwBadInput("samples {} to {} are in no part (between {} and {})", next_, film.first - 1, before_, name);
+  if (film.first < next_)
+    throwBadInput("{} and {} hold the same samples ({} to {})", before_, name, film.first,
+                  std::min<std::uint64_t>(next_, film.first + std::uint64_t{samples}) - 1);
+  if (film.first > next_)
+    throwBadInput("samples {} to {} are in no part (between {} and {})", next_, film.first - 1, before_, name);
 
   const double n = static_cast<double>(next_ - head_.first), m = samples, all = n + m;
   for (std::size_t i = 0; i < mean_.size(); ++i) {
-    const glm::dvec3 own = glm::dvec3(floatsOf(film.mean[i])) + glm::dvec3(floatsOf(film.rest[i])), difference = own - mean_[i];
+    const glm::dvec3 own = glm::dvec3(floatsOf(film.mean[i])) + glm::dvec3(floatsOf(film.rest[i])),
+                     difference = own - mean_[i];
     spread_[i] += glm::dvec3(floatsOf(film.spread[i])) + difference * difference * (n * m / all);
     mean_[i] += difference * (m / all);
   }

@@ -35,9 +35,11 @@ std::vector<float> blockBounds(const DensityGrid& grid, const glm::ivec3& blocks
         for (int z = first.z; z <= last.z; ++z)
           for (int y = first.y; y <= last.y; ++y)
             for (int x = first.x; x <= last.x; ++x)
-              bound = std::max(bound, grid.density[static_cast<std::size_t>(x) +
-                                                   static_cast<std::size_t>(grid.size.x) *
-                                                       (static_cast<std::size_t>(y) + static_cast<std::size_t>(grid.size.y) * static_cast<std::size_t>(z))]);
+              bound = std::max(bound,
+                               grid.density[static_cast<std::size_t>(x) +
+                                            static_cast<std::size_t>(grid.size.x) *
+                                                (static_cast<std::size_t>(y) +
+                                                 static_cast<std::size_t>(grid.size.y) * static_cast<std::size_t>(z))]);
         bounds.push_back(bound);
       }
   return bounds;
@@ -47,11 +49,15 @@ shared::DensityRecord packGrid(const Medium& medium, const glm::dvec3& origin, s
   const DensityGrid& grid = *medium.grid;
   const glm::dvec3 extent = grid.max - grid.min;
   if (glm::any(glm::lessThan(grid.size, glm::ivec3(1))) || !glm::all(glm::greaterThan(extent, glm::dvec3(0.0))))
-    throwBadInput("medium {}: a density grid needs one cell at least along each axis and a box of positive volume", medium.name);
-  const std::size_t cells = static_cast<std::size_t>(grid.size.x) * static_cast<std::size_t>(grid.size.y) * static_cast<std::size_t>(grid.size.z);
-  if (grid.density.size() != cells) throwBadInput("medium {}: the density grid has {} values for {} cells", medium.name, grid.density.size(), cells);
+    throwBadInput("medium {}: a density grid needs one cell at least along each axis and a box of positive volume",
+                  medium.name);
+  const std::size_t cells = static_cast<std::size_t>(grid.size.x) * static_cast<std::size_t>(grid.size.y) *
+                            static_cast<std::size_t>(grid.size.z);
+  if (grid.density.size() != cells)
+    throwBadInput("medium {}: the density grid has {} values for {} cells", medium.name, grid.density.size(), cells);
   for (const float d : grid.density)
-    if (!(std::isfinite(d) && d >= 0.0f)) throwBadInput("medium {}: a density is {}; it must be finite and 0 or more", medium.name, d);
+    if (!(std::isfinite(d) && d >= 0.0f))
+      throwBadInput("medium {}: a density is {}; it must be finite and 0 or more", medium.name, d);
   const glm::ivec3 blocks = (grid.size + kBlockEdge - 1) / kBlockEdge;
   const std::vector<float> bounds = blockBounds(grid, blocks);
   shared::DensityRecord record{};
@@ -78,9 +84,11 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
     const glm::dvec3 extinction = glm::dvec3(medium.scattering) + glm::dvec3(medium.absorption);
     for (int c = 0; c < 3; ++c) {
       const double g = medium.phase == PhaseFunction::rayleigh ? 0.0 : static_cast<double>(medium.anisotropy[c]);
-      if (!(g > -1.0 && g < 1.0)) throwBadInput("medium {}: g must lie between -1 and 1, both left out, and is {}", medium.name, g);
+      if (!(g > -1.0 && g < 1.0))
+        throwBadInput("medium {}: g must lie between -1 and 1, both left out, and is {}", medium.name, g);
       // A channel that does not scatter has no g: it copies the others, so that all can be equal.
-      record.albedo[c] = extinction[c] > 0.0 ? static_cast<float>(static_cast<double>(medium.scattering[c]) / extinction[c]) : 0.0f;
+      record.albedo[c] =
+          extinction[c] > 0.0 ? static_cast<float>(static_cast<double>(medium.scattering[c]) / extinction[c]) : 0.0f;
       record.oneMinusG[c] = static_cast<float>(1.0 - g);
       record.onePlusG[c] = static_cast<float>(1.0 + g);
     }
@@ -103,7 +111,8 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
       // A medium that only emits still needs points to look up its emission: some four per crossing of the box.
       if (record.majorant <= 0.0f && largest(medium.emission) > 0.0) {
         const double bound = *std::max_element(medium.grid->density.begin(), medium.grid->density.end());
-        record.majorant = static_cast<float>(4.0 / (glm::length(medium.grid->max - medium.grid->min) * std::max(bound, 1e-30)));
+        record.majorant =
+            static_cast<float>(4.0 / (glm::length(medium.grid->max - medium.grid->min) * std::max(bound, 1e-30)));
       }
     }
     packed.media.push_back(record);
@@ -113,7 +122,9 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
 
 PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
   using Key = std::tuple<int, bool, float, int>;  // priority, dielectric, index, medium
-  const auto bounds = [&](const Material& m) { return m.bsdf == Bsdf::none || (m.bsdf == Bsdf::dielectric && !diffuseOnly); };
+  const auto bounds = [&](const Material& m) {
+    return m.bsdf == Bsdf::none || (m.bsdf == Bsdf::dielectric && !diffuseOnly);
+  };
   const auto keyOf = [](const Material& m) {
     const bool dielectric = m.bsdf == Bsdf::dielectric;
     return Key{m.priority, dielectric, dielectric ? m.ior : 1.0f, m.interior};
@@ -121,7 +132,8 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
   std::vector<Key> keys;
   for (const Material& material : scene.materials) {
     if (!bounds(material)) continue;
-    if (!(std::isfinite(material.ior) && material.ior > 0.0f)) throwBadInput("material {}: an index of refraction must be above 0, and is {}", material.name, material.ior);
+    if (!(std::isfinite(material.ior) && material.ior > 0.0f))
+      throwBadInput("material {}: an index of refraction must be above 0, and is {}", material.name, material.ior);
     if (material.interior < -1 || material.interior >= static_cast<int>(scene.media.size()))
       throwBadInput("material {}: no such medium: {}", material.name, material.interior);
     keys.push_back(keyOf(material));
@@ -129,7 +141,8 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   if (keys.size() > static_cast<std::size_t>(kMaxBoundaryRanks))
-    throwBadInput("{}: {} different dielectrics and boundaries of media, at most {} are supported", scene.name, keys.size(), kMaxBoundaryRanks);
+    throwBadInput("{}: {} different dielectrics and boundaries of media, at most {} are supported", scene.name,
+                  keys.size(), kMaxBoundaryRanks);
 
   PackedBoundaries packed;
   for (std::size_t rank = 0; rank < keys.size(); ++rank) {
@@ -142,7 +155,9 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
     if (dielectric) packed.dielectricRanks[static_cast<int>(rank / 8)] |= 15u << (4 * (rank % 8));
   }
   for (const Material& material : scene.materials)
-    packed.rankOfMaterial.push_back(bounds(material) ? static_cast<int>(std::lower_bound(keys.begin(), keys.end(), keyOf(material)) - keys.begin()) : -1);
+    packed.rankOfMaterial.push_back(
+        bounds(material) ? static_cast<int>(std::lower_bound(keys.begin(), keys.end(), keyOf(material)) - keys.begin())
+                         : -1);
   for (const Mesh& mesh : scene.meshes) {
     const int rank = packed.rankOfMaterial[static_cast<std::size_t>(mesh.material)];
     if (rank < 0) continue;
@@ -160,10 +175,14 @@ std::vector<Bounds> boundsOfRanks(const PackedBoundaries& boundaries) {
   return bounds;
 }
 
-bool overlap(const Bounds& a, const Bounds& b) { return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max)); }
+bool overlap(const Bounds& a, const Bounds& b) {
+  return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
+}
 
 bool boundariesMayTouch(const Scene& scene, const PackedBoundaries& boundaries) {
-  const auto rankOf = [&](const Mesh& mesh) { return boundaries.rankOfMaterial[static_cast<std::size_t>(mesh.material)]; };
+  const auto rankOf = [&](const Mesh& mesh) {
+    return boundaries.rankOfMaterial[static_cast<std::size_t>(mesh.material)];
+  };
   for (const Mesh& a : scene.meshes) {
     if (rankOf(a) < 0) continue;
     for (const Mesh& b : scene.meshes)
@@ -175,24 +194,29 @@ bool boundariesMayTouch(const Scene& scene, const PackedBoundaries& boundaries) 
 Surroundings surroundingsOf(const PackedBoundaries& boundaries, const glm::dvec3& point) {
   std::array<double, kMaxBoundaryRanks> solidAngle{};
   for (const BoundaryTriangle& triangle : boundaries.triangles) {
-    const glm::dvec3 a = glm::dvec3(triangle.a) - point, b = glm::dvec3(triangle.b) - point, c = glm::dvec3(triangle.c) - point;
+    const glm::dvec3 a = glm::dvec3(triangle.a) - point, b = glm::dvec3(triangle.b) - point,
+                     c = glm::dvec3(triangle.c) - point;
     const double ra = glm::length(a), rb = glm::length(b), rc = glm::length(c);
-    const double volume = glm::dot(a, glm::cross(b, c)), rest = ra * rb * rc + glm::dot(a, b) * rc + glm::dot(b, c) * ra + glm::dot(c, a) * rb;
-    if (volume != 0.0 || rest != 0.0) solidAngle[static_cast<std::size_t>(triangle.rank)] += 2.0 * std::atan2(volume, rest);
+    const double volume = glm::dot(a, glm::cross(b, c)),
+                 rest = ra * rb * rc + glm::dot(a, b) * rc + glm::dot(b, c) * ra + glm::dot(c, a) * rb;
+    if (volume != 0.0 || rest != 0.0)
+      solidAngle[static_cast<std::size_t>(triangle.rank)] += 2.0 * std::atan2(volume, rest);
   }
   Surroundings result;
   for (std::size_t rank = 0; rank < boundaries.interiors.size(); ++rank) {
     const double winding = solidAngle[rank] / (4.0 * std::numbers::pi);
     const double whole = std::round(winding);
     result.openness = std::max(result.openness, std::abs(winding - whole));
-    result.inside[static_cast<int>(rank / 8)] |= static_cast<std::uint32_t>(std::clamp(whole, 0.0, 15.0)) << (4 * (rank % 8));
+    result.inside[static_cast<int>(rank / 8)] |= static_cast<std::uint32_t>(std::clamp(whole, 0.0, 15.0))
+                                                 << (4 * (rank % 8));
   }
   return result;
 }
 
 float iorInside(const PackedBoundaries& boundaries, const InsideCounts& inside) {
   for (int rank = static_cast<int>(boundaries.interiors.size()) - 1; rank >= 0; --rank)
-    if (inside[rank / 8] & boundaries.dielectricRanks[rank / 8] & (15u << (4 * (rank % 8)))) return boundaries.interiors[static_cast<std::size_t>(rank)].ior;
+    if (inside[rank / 8] & boundaries.dielectricRanks[rank / 8] & (15u << (4 * (rank % 8))))
+      return boundaries.interiors[static_cast<std::size_t>(rank)].ior;
   return 1.0f;
 }
 

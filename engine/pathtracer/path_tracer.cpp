@@ -19,26 +19,33 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kConstantsBinding = 0;                                                               // GL_UNIFORM_BUFFER
-constexpr GLuint kStateBinding = 5, kMediaBinding = 6, kInteriorsBinding = 7, kGridsBinding = 0, kDensitiesBinding = 1;  // GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kConstantsBinding = 0;  // GL_UNIFORM_BUFFER
+constexpr GLuint kStateBinding = 5, kMediaBinding = 6, kInteriorsBinding = 7, kGridsBinding = 0,
+                 kDensitiesBinding = 1;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kClearancesUnit = 3;
 constexpr int kGroupSide = 8;
 constexpr int kClearanceCells = 64;
-// llvmpipe leaves all loops of a shader after 65,535 turns, those of all lanes of a vector (8, 16 at most) counted together.
+// llvmpipe leaves all loops of a shader after 65,535 turns, those of all lanes of a vector (8, 16 at most) counted
+// together.
 constexpr std::uint32_t kSoftwareTurns = 3500, kMostTurns = 1u << 16;
-constexpr double kLanesOfTile = 512.0 * 512.0;  // on a GPU; a smaller tile, a software renderer's too, begins with as many turns a lane
+constexpr double kLanesOfTile =
+    512.0 * 512.0;  // on a GPU; a smaller tile, a software renderer's too, begins with as many turns a lane
 /// What path.comp's StateBlock begins with; std430 aligns the lanes' vectors behind it to 16 bytes.
 struct StateHeader {
-  std::uint32_t unfinished = 0, leakedPaths = 0, wrongCrossings = 0, longest = 0, allTurns = 0, collisions = 0, padding[2]{};
+  std::uint32_t unfinished = 0, leakedPaths = 0, wrongCrossings = 0, longest = 0, allTurns = 0, collisions = 0,
+                padding[2]{};
 };
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
 
-/// Whether every lamp is in the open, where the index is 1. Conservative: emissive triangles are tested by bounding box.
+/// Whether every lamp is in the open, where the index is 1. Conservative: emissive triangles are tested by bounding
+/// box.
 bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
   std::vector<Bounds> refracting = boundsOfRanks(boundaries);
   for (std::size_t rank = 0; rank < refracting.size(); ++rank)
     if ((boundaries.dielectricRanks[static_cast<int>(rank / 8)] >> (4 * (rank % 8)) & 15u) == 0) refracting[rank] = {};
-  const auto isOutside = [&](const Bounds& lamp) { return std::none_of(refracting.begin(), refracting.end(), [&](const Bounds& box) { return overlap(lamp, box); }); };
+  const auto isOutside = [&](const Bounds& lamp) {
+    return std::none_of(refracting.begin(), refracting.end(), [&](const Bounds& box) { return overlap(lamp, box); });
+  };
   for (const Mesh& mesh : scene.meshes) {
     if (scene.materials[static_cast<std::size_t>(mesh.material)].emission == glm::vec3(0.0f)) continue;
     for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3) {
@@ -47,22 +54,30 @@ bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
       if (!isOutside(box)) return false;
     }
   }
-  const auto isPlaceOutside = [&](const glm::dvec3& place) { return isOutside({glm::dvec3(glm::vec3(place)), glm::dvec3(glm::vec3(place))}); };
-  return std::all_of(scene.points.begin(), scene.points.end(), [&](const PointLight& light) { return isPlaceOutside(light.position); }) &&
-         std::all_of(scene.spots.begin(), scene.spots.end(), [&](const SpotLight& light) { return isPlaceOutside(light.position); });
+  const auto isPlaceOutside = [&](const glm::dvec3& place) {
+    return isOutside({glm::dvec3(glm::vec3(place)), glm::dvec3(glm::vec3(place))});
+  };
+  return std::all_of(scene.points.begin(), scene.points.end(),
+                     [&](const PointLight& light) { return isPlaceOutside(light.position); }) &&
+         std::all_of(scene.spots.begin(), scene.spots.end(),
+                     [&](const SpotLight& light) { return isPlaceOutside(light.position); });
 }
 
 /// The state of a tile's lanes fits in a storage block.
 int tileSideOn(const gl::Capabilities& capabilities) {
   int side = capabilities.softwareRenderer ? 128 : 512;
-  const auto bytes = [&] { return kStateHeaderBytes + static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * kStateWords * kVec4Bytes; };
+  const auto bytes = [&] {
+    return kStateHeaderBytes +
+           static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * kStateWords * kVec4Bytes;
+  };
   while (bytes() > static_cast<std::size_t>(capabilities.maxShaderStorageBlockSize)) side /= 2;
   return side;
 }
 
 }  // namespace
 
-PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings)
+PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                       const Settings& settings)
     : settings_(settings),
       needs_(analyse(scene)),
       constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW),
@@ -78,12 +93,16 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   touching_ = boundariesMayTouch(scene, boundaries_);
   lampsOutside_ = needs_.dielectrics && !settings.deviations.straightShadowRays && areLampsOutside(scene, boundaries_);
   const bool published = settings.deviations.distanceWithoutPdf || settings.deviations.boostedInteraction;
-  needs_.denseMedia = needs_.denseMedia && needs_.dielectrics && settings.walks && !published && (!settings.nextEvent || lampsOutside_);
-  scene_.emplace(scene, needs_, capabilities, PathScene::Settings{settings.diffuseOnly, settings.nextEvent, settings.rays}, boundaries_.rankOfMaterial);
+  needs_.denseMedia =
+      needs_.denseMedia && needs_.dielectrics && settings.walks && !published && (!settings.nextEvent || lampsOutside_);
+  scene_.emplace(scene, needs_, capabilities,
+                 PathScene::Settings{settings.diffuseOnly, settings.nextEvent, settings.rays},
+                 boundaries_.rankOfMaterial);
   scene_->fill(constants_);
   sceneHash_ = scene_->hash();
   if (needs_.denseMedia) addClearances(scene);
-  if (needs_.dielectrics || needs_.nullBoundaries) interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
+  if (needs_.dielectrics || needs_.nullBoundaries)
+    interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
   if (needs_.media) {
     const PackedMedia packed = packMedia(scene.media, scene_->origin());
     media_ = storageOf("path media", packed.media, capabilities);
@@ -148,7 +167,8 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
                          {"ROUGH_DIELECTRICS", needs_.roughDielectrics},
                          {"BACKGROUND", needs_.background},
-                         {"MIS", asked && (needs_.emission || needs_.environmentPicture) && settings_.transport != Transport::oneBounceUnoccluded},
+                         {"MIS", asked && (needs_.emission || needs_.environmentPicture) &&
+                                     settings_.transport != Transport::oneBounceUnoccluded},
                          {"SCATTERED_LIGHT", needs_.emission || needs_.environment || needs_.volumeEmission},
                          {"DISTANCE_WITHOUT_PDF", settings_.deviations.distanceWithoutPdf},
                          {"BOOSTED_INTERACTION", settings_.deviations.boostedInteraction},
@@ -167,21 +187,26 @@ gl::ShaderFlags PathTracer::flags() const {
 
 gl::ShaderFlags PathTracer::kernelFlags() const {
   gl::ShaderFlags all = flags();
-  all.insert(all.end(), {{"SHARED_STACK", scene_->rays().sharedStack()}, {"SHADOW_AT_ONCE", scene_->rays().sharedStack() == 0 && !hasInteriors()}});
+  all.insert(all.end(), {{"SHARED_STACK", scene_->rays().sharedStack()},
+                         {"SHADOW_AT_ONCE", scene_->rays().sharedStack() == 0 && !hasInteriors()}});
   return all;
 }
 
 void PathTracer::addClearances(const Scene& scene) {
   std::vector<Corners> triangles(scene.triangleCount());
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) triangles[t][k] = glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - scene_->origin();
+    for (std::size_t k = 0; k < 3; ++k)
+      triangles[t][k] = glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - scene_->origin();
   std::vector<float> radii;
   const std::vector<Bounds> bounds = boundsOfRanks(boundaries_);
   for (std::size_t rank = 0; rank < boundaries_.interiors.size(); ++rank) {
     shared::InteriorRecord& interior = boundaries_.interiors[rank];
     const double extent = glm::length(bounds[rank].extent());
-    if (interior.medium < 0 || !(extent > 0.0) || !isDense(scene.media[static_cast<std::size_t>(interior.medium)], extent)) continue;
-    const ClearanceGrid grid = clearanceGrid(triangles, bounds[rank].min - scene_->origin(), bounds[rank].max - scene_->origin(), kClearanceCells);
+    if (interior.medium < 0 || !(extent > 0.0) ||
+        !isDense(scene.media[static_cast<std::size_t>(interior.medium)], extent))
+      continue;
+    const ClearanceGrid grid = clearanceGrid(triangles, bounds[rank].min - scene_->origin(),
+                                             bounds[rank].max - scene_->origin(), kClearanceCells);
     interior.clearance = static_cast<int>(radii.size());
     interior.cell = static_cast<float>(grid.cell);
     interior.min = glm::vec3(grid.min);
@@ -189,22 +214,27 @@ void PathTracer::addClearances(const Scene& scene) {
     radii.insert(radii.end(), grid.radius.begin(), grid.radius.end());
   }
   needs_.denseMedia = !radii.empty();
-  if (needs_.denseMedia) clearances_ = gl::BufferTexture("path clearances", GL_R32F, radii.size() * sizeof(float), radii.data());
+  if (needs_.denseMedia)
+    clearances_ = gl::BufferTexture("path clearances", GL_R32F, radii.size() * sizeof(float), radii.data());
 }
 
 void PathTracer::setCamera(const Camera& camera) {
-  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)), up = glm::cross(right, camera.direction);
+  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
+                   up = glm::cross(right, camera.direction);
   const double pixel = 2.0 * std::tan(0.5 * camera.verticalFov) / settings_.size.y;
   constants_.cameraPosition = glm::vec3(camera.position - scene_->origin());
   constants_.pixelRight = glm::vec3(pixel * right);
   constants_.pixelUp = glm::vec3(pixel * up);
-  constants_.firstPixel = glm::vec3(camera.direction - 0.5 * settings_.size.x * pixel * right - 0.5 * settings_.size.y * pixel * up);
+  constants_.firstPixel =
+      glm::vec3(camera.direction - 0.5 * settings_.size.x * pixel * right - 0.5 * settings_.size.y * pixel * up);
   if (hasInteriors()) {
     const Surroundings surroundings = surroundingsOf(boundaries_, camera.position);
     // Said when paths start there: another camera may be set before.
-    cameraWarning_ = surroundings.openness > 0.01
-                         ? fmt::format("camera {}: lies on a closed boundary, or inside one that is open by {:.3g} of a sphere", camera.name, surroundings.openness)
-                         : std::string();
+    cameraWarning_ =
+        surroundings.openness > 0.01
+            ? fmt::format("camera {}: lies on a closed boundary, or inside one that is open by {:.3g} of a sphere",
+                          camera.name, surroundings.openness)
+            : std::string();
     cameraInside_ = surroundings.inside;
     cameraIor_ = iorInside(boundaries_, cameraInside_);
   }
@@ -254,7 +284,8 @@ std::vector<std::uint8_t> PathTracer::checkpoint() const {
 void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::string& name) {
   const Film film = filmOf(bytes, name);
   if (film.size != settings_.size)
-    throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, film.size.x, film.size.y, settings_.size.x, settings_.size.y);
+    throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, film.size.x, film.size.y,
+                  settings_.size.x, settings_.size.y);
   if (film.identity != identity()) throwBadInput("{}: a checkpoint of another scene, view or setting", name);
   filmMean_.upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, film.mean.data());
   filmSpread_.upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, film.spread.data());
@@ -286,7 +317,8 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   if (done_ >= samples) return false;
   if (!cameraWarning_.empty()) logWarning("{}", std::exchange(cameraWarning_, {}));
   if (passTarget_ == done_ || passTarget_ > samples) {
-    // At the end of a pass lanes wait for the last path of a tile. A pass that doubles the samples lets them wait seldom and yet pictures come early.
+    // At the end of a pass lanes wait for the last path of a tile. A pass that doubles the samples lets them wait
+    // seldom and yet pictures come early.
     const std::uint32_t most = needs_.media ? 1024 : 64;
     passTarget_ = done_ + std::min(samples - done_, passes == Passes::whole ? most : std::clamp(done_, 1u, most));
     if (!tileBegun_) tile_ = 0;
@@ -335,8 +367,8 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
   constants_.sampleTarget = target;
   constants_.turns = turns_.units();
   constantsBuffer_.upload(0, sizeof constants_, &constants_);
-  const gl::ComputePass pass("path tracing", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                                 GL_TEXTURE_UPDATE_BARRIER_BIT);
+  const gl::ComputePass pass("path tracing", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+                                                 GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   program_->use();
   scene_->bind();
   constantsBuffer_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
@@ -363,7 +395,9 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
 std::vector<PathTracer::Pixel> PathTracer::readFilm() const {
   const std::vector<glm::uvec4> mean = filmMean_.readWords(), spread = filmSpread_.readWords();
   std::vector<Pixel> pixels(mean.size());
-  const auto floats = [](const glm::uvec4& w) { return glm::vec3(std::bit_cast<float>(w.x), std::bit_cast<float>(w.y), std::bit_cast<float>(w.z)); };
+  const auto floats = [](const glm::uvec4& w) {
+    return glm::vec3(std::bit_cast<float>(w.x), std::bit_cast<float>(w.y), std::bit_cast<float>(w.z));
+  };
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = {floats(mean[i]), floats(spread[i]), mean[i].w};
   return pixels;
 }
@@ -374,7 +408,8 @@ Image toImage(const Pixels& pixels, glm::ivec2 size, Value value) {
   Image image(size.x, size.y);
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x)
-      image.at(x, size.y - 1 - y) = value(pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x)]);
+      image.at(x, size.y - 1 - y) =
+          value(pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x)]);
   return image;
 }
 
@@ -385,7 +420,9 @@ Image PathTracer::mean() const {
 }
 
 Image PathTracer::standardError() const {
-  return toImage(readFilm(), settings_.size, [](const Pixel& p) { return standardErrorOf({p.mean, p.spread, p.samples}); });
+  return toImage(readFilm(), settings_.size, [](const Pixel& p) {
+    return standardErrorOf({p.mean, p.spread, p.samples});
+  });
 }
 
 PathTracer::Statistics PathTracer::statistics() const {
@@ -408,7 +445,8 @@ PathTracer::Statistics PathTracer::statistics() const {
 }
 
 std::size_t PathTracer::gpuBytes() const {
-  std::size_t bytes = scene_->gpuBytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() + media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
+  std::size_t bytes = scene_->gpuBytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() +
+                      media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
                       filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
   for (const gl::Texture& texture : kept_) bytes += texture.bytes();
   return bytes;

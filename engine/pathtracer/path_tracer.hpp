@@ -1,8 +1,9 @@
 // The path tracer: unbiased light transport between surfaces, by a compute program (shaders/pathtracer/path.comp).
 // See README.md in this folder for inputs, outputs, units, sources and measurements.
 //
-// Progressive: each submission is bounded to about Settings::submissionSeconds of work and adds to a film of means and variances in
-// float that does not stall; samples can be added later, and the picture is the same however the work is divided.
+// Progressive: each submission is bounded to about Settings::submissionSeconds of work and adds to a film of means and
+// variances in float that does not stall; samples can be added later, and the picture is the same however the work is
+// divided.
 #pragma once
 
 #include "base/hash.hpp"
@@ -36,11 +37,12 @@ class PathTracer {
     glm::ivec2 size{1280, 720};
     Transport transport = Transport::all;
     std::uint32_t bounces = kUnlimited;  ///< most scatterings; below kUnlimited longer paths are missing
-    bool diffuseOnly = false;            ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
-    bool walks = true;                   ///< no rays in dense media where no triangle is near; the picture is the same, bit by bit
-    bool nextEvent = true;               ///< sample lights directly; without it only lights that rays can hit contribute
-    bool pixelCentres = false;           ///< camera rays through pixel centres, as raster techniques shade; else a box filter
-    std::uint32_t seed = 0;              ///< pictures of different seeds are independent
+    bool diffuseOnly =
+        false;  ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
+    bool walks = true;  ///< no rays in dense media where no triangle is near; the picture is the same, bit by bit
+    bool nextEvent = true;  ///< sample lights directly; without it only lights that rays can hit contribute
+    bool pixelCentres = false;  ///< camera rays through pixel centres, as raster techniques shade; else a box filter
+    std::uint32_t seed = 0;  ///< pictures of different seeds are independent
     double submissionSeconds = 0.05;
     RayScene::Settings rays;
     PathDeviations deviations;
@@ -48,15 +50,18 @@ class PathTracer {
   /// Of the current film.
   struct Statistics {
     std::uint32_t fewestSamples = 0, mostSamples = 0;  ///< of a pixel
-    double samples = 0.0;                              ///< mean over pixels
-    glm::dvec3 mean{0.0};           ///< radiance
-    glm::dvec3 meanError{0.0};      ///< standard error of `mean`
-    double standardError = 0.0;     ///< of a pixel, root mean square over pixels and channels; infinite before 2 samples
-    double leakedPaths = 0.0;    ///< ended because found outside the scene yet inside a closed boundary, since setCamera
-    double wrongCrossings = 0.0; ///< of boundaries left without having been entered, or entered too often: open or turned meshes
-    double turns = 0.0;          ///< of loops, in all lanes since setCamera: rays' nodes and triangles, steps in media: what time is spent on, whatever the clock
-    double collisions = 0.0;     ///< in media, likewise
-    double relativeError = 0.0;     ///< standardError over the picture's mean, channels averaged; 0 for a black picture without error
+    double samples = 0.0;  ///< mean over pixels
+    glm::dvec3 mean{0.0};  ///< radiance
+    glm::dvec3 meanError{0.0};  ///< standard error of `mean`
+    double standardError = 0.0;  ///< of a pixel, root mean square over pixels and channels; infinite before 2 samples
+    double leakedPaths = 0.0;  ///< ended because found outside the scene yet inside a closed boundary, since setCamera
+    double wrongCrossings =
+        0.0;  ///< of boundaries left without having been entered, or entered too often: open or turned meshes
+    double turns = 0.0;  ///< of loops, in all lanes since setCamera: rays' nodes and triangles, steps in media: what
+                         ///< time is spent on, whatever the clock
+    double collisions = 0.0;  ///< in media, likewise
+    double relativeError =
+        0.0;  ///< standardError over the picture's mean, channels averaged; 0 for a black picture without error
   };
 
   /// Compiles and allocates. Throws Error(missingCapability) if the scene exceeds the driver's limits.
@@ -69,10 +74,13 @@ class PathTracer {
   /// One submission towards `samples` samples in every pixel, waited for. False once all have them.
   bool advance(std::uint32_t samples) { return submit(samples, Passes::doubling); }
   /// Everything that is missing, in as few passes as possible, without intermediate pictures.
-  void record(std::uint32_t samples) { while (submit(samples, Passes::whole)) {} }
+  void record(std::uint32_t samples) {
+    while (submit(samples, Passes::whole)) {}
+  }
 
-  /// Restores a tile in the middle of a pass to the pass's beginning. Unfinished paths are the long ones: a picture of the finished ones
-  /// alone would be too dark. Call this when stopping between two calls of advance(), before reading the film.
+  /// Restores a tile in the middle of a pass to the pass's beginning. Unfinished paths are the long ones: a picture of
+  /// the finished ones alone would be too dark. Call this when stopping between two calls of advance(), before reading
+  /// the film.
   void dropUnfinishedPass();
 
   std::uint32_t samples() const { return done_; }  ///< that every pixel has
@@ -81,18 +89,21 @@ class PathTracer {
   /// The film's means, as shaders/pathtracer/film.frag reads them.
   void bindMean(GLuint unit) const { filmMean_.bind(unit); }
 
-  Image mean() const;           ///< radiance, linear, scene units, top row first; pixels without a sample are 0
+  Image mean() const;  ///< radiance, linear, scene units, top row first; pixels without a sample are 0
   Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
   Statistics statistics() const;
-  /// The film without the unfinished pass, and its identity; resume() continues from it to the same picture, bit by bit.
+  /// The film without the unfinished pass, and its identity; resume() continues from it to the same picture, bit by
+  /// bit.
   std::vector<std::uint8_t> checkpoint() const;
-  /// `name` is for messages. Throws Error(badInput) if the bytes are damaged or of another scene, view, size or setting.
+  /// `name` is for messages. Throws Error(badInput) if the bytes are damaged or of another scene, view, size or
+  /// setting.
   void resume(const std::vector<std::uint8_t>& bytes, const std::string& name);
   const Settings& settings() const { return settings_; }
   const SceneNeeds& needs() const { return needs_; }
   std::size_t gpuBytes() const;
-  /// Lanes times turns of the slowest lane, of the largest submission so far; `begun`: among those that began a tile, of which
-  /// nothing was known. A lane begins no segment after its share of turns, so it exceeds it by at most one segment.
+  /// Lanes times turns of the slowest lane, of the largest submission so far; `begun`: among those that began a tile,
+  /// of which nothing was known. A lane begins no segment after its share of turns, so it exceeds it by at most one
+  /// segment.
   struct Submissions {
     std::uint64_t largest = 0, begun = 0;
   };

@@ -14,9 +14,9 @@ constexpr double kPi = 3.14159265358979323846;
 
 /// Input of blocked.comp.
 struct Ray {
-  glm::vec4 origin;     ///< in the hierarchy's space; w: the patch
+  glm::vec4 origin;  ///< in the hierarchy's space; w: the patch
   glm::vec4 direction;  ///< to the light, its length the distance
-  glm::vec4 normal;     ///< of the patch; w: the largest of its coordinates
+  glm::vec4 normal;  ///< of the patch; w: the largest of its coordinates
 };
 
 /// Unoccluded light at a point: the vector to the light, and the irradiance across it.
@@ -29,8 +29,10 @@ std::vector<Arrival> arrivals(const Scene& scene, const glm::dvec3& point, doubl
   if (scene.sun) result.push_back({-beyond * scene.sun->direction, glm::dvec3(scene.sun->irradiance)});
   for (const SpotLight& light : scene.spots) {
     const glm::dvec3 to = light.position - point;
-    const double cosine = glm::dot(-to, light.direction) / glm::length(to), inner = std::cos(light.innerAngle), outer = std::cos(light.outerAngle);
-    const double t = inner > outer ? std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0) : (cosine >= outer ? 1.0 : 0.0);
+    const double cosine = glm::dot(-to, light.direction) / glm::length(to), inner = std::cos(light.innerAngle),
+                 outer = std::cos(light.outerAngle);
+    const double t =
+        inner > outer ? std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0) : (cosine >= outer ? 1.0 : 0.0);
     result.push_back({to, glm::dvec3(light.intensity) * (t * t * (3.0 - 2.0 * t) / glm::dot(to, to))});
   }
   for (const PointLight& light : scene.points) {
@@ -57,7 +59,9 @@ class ShadowRays {
   static constexpr std::size_t kEach = 1 << 16;
 
   ShadowRays(gl::ProgramLibrary& programs, const RayScene& rays)
-      : program_(programs.loadCompute("direct light", "radiosity/blocked.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}})), rays_(rays) {}
+      : program_(programs.loadCompute("direct light", "radiosity/blocked.comp",
+                                      {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}})),
+        rays_(rays) {}
 
   /// Not 0 if occluded.
   std::vector<GLuint> blocked(const std::vector<Ray>& batch) const {
@@ -84,27 +88,33 @@ class ShadowRays {
 /// A patch's normal, and the largest coordinate of its corners in the hierarchy's space, which decides the rounding.
 glm::vec4 faceOf(const RadiosityMesh& mesh, const Patch& patch, const glm::dvec3& origin) {
   double largest = 0.0;
-  for (const glm::dvec3& corner : mesh.corners(patch)) largest = std::max({largest, std::abs(corner.x - origin.x), std::abs(corner.y - origin.y), std::abs(corner.z - origin.z)});
+  for (const glm::dvec3& corner : mesh.corners(patch))
+    largest = std::max(
+        {largest, std::abs(corner.x - origin.x), std::abs(corner.y - origin.y), std::abs(corner.z - origin.z)});
   return glm::vec4(glm::vec3(patch.faceNormal), static_cast<float>(largest));
 }
 
 /// Of those that are not hidden; at least one.
-std::vector<glm::dvec3> pointsOf(const RadiosityMesh& mesh, const Patch& patch, const std::vector<glm::dvec2>& centroids) {
+std::vector<glm::dvec3> pointsOf(const RadiosityMesh& mesh, const Patch& patch,
+                                 const std::vector<glm::dvec2>& centroids) {
   const auto c = mesh.corners(patch);
   std::vector<glm::dvec3> points;
   for (const glm::dvec2& w : centroids)
-    if (!(patch.hidden >> partAt(kPatchParts, w) & 1)) points.push_back(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]));
+    if (!(patch.hidden >> partAt(kPatchParts, w) & 1))
+      points.push_back(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]));
   if (points.empty()) points.push_back(patch.centroid);
   return points;
 }
 
 }  // namespace
 
-std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene, const RadiosityMesh& mesh, std::size_t most) {
+std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene,
+                                    const RadiosityMesh& mesh, std::size_t most) {
   std::vector<glm::dvec3> irradiance(mesh.patches.size(), glm::dvec3(0.0));
   const std::size_t lights = (scene.sun ? 1 : 0) + scene.spots.size() + scene.points.size();
   if (lights == 0) return irradiance;
-  const int parts = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(most) / static_cast<double>(lights * mesh.patches.size()))), 1, 4);
+  const int parts = std::clamp(
+      static_cast<int>(std::sqrt(static_cast<double>(most) / static_cast<double>(lights * mesh.patches.size()))), 1, 4);
   const double beyond = 4.0 * mesh.extent;
   const std::vector<glm::dvec2> centroids = partCentroids(parts);
   const ShadowRays shadowRays(programs, rays);
@@ -127,7 +137,8 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
         for (const Arrival& arrival : arrivals(scene, point, beyond)) {
           const double cosine = glm::dot(glm::normalize(arrival.toLight), patch.faceNormal);
           if (cosine <= 0.0 || arrival.irradiance == glm::dvec3(0.0)) continue;
-          batch.push_back({glm::vec4(glm::vec3(point - rays.origin()), static_cast<float>(p)), glm::vec4(glm::vec3(arrival.toLight), 0.0f), normal});
+          batch.push_back({glm::vec4(glm::vec3(point - rays.origin()), static_cast<float>(p)),
+                           glm::vec4(glm::vec3(arrival.toLight), 0.0f), normal});
           samples.push_back({p, arrival.irradiance * (cosine / static_cast<double>(points.size()))});
         }
     }
@@ -138,10 +149,13 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
   return irradiance;
 }
 
-std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene, const RadiosityMesh& mesh, std::size_t most) {
-  constexpr double kPlastic = 0.75487766624669276;  // 1 / the plastic number: with its square the steps of a lattice in two more dimensions, angle and point
+std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene,
+                                 const RadiosityMesh& mesh, std::size_t most) {
+  constexpr double kPlastic = 0.75487766624669276;  // 1 / the plastic number: with its square the steps of a lattice in
+                                                    // two more dimensions, angle and point
   std::vector<glm::dvec3> irradiance(mesh.patches.size(), glm::dvec3(0.0));
-  const std::size_t raysOfPatch = std::clamp<std::size_t>(most / std::max<std::size_t>(mesh.patches.size(), 1), 64, 1024);
+  const std::size_t raysOfPatch =
+      std::clamp<std::size_t>(most / std::max<std::size_t>(mesh.patches.size(), 1), 64, 1024);
   const double beyond = 4.0 * mesh.extent;
   const std::vector<glm::dvec2> centroids = partCentroids(4);
   const ShadowRays shadowRays(programs, rays);
@@ -153,14 +167,21 @@ std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& r
       const Patch& patch = mesh.patches[p];
       const glm::vec4 face = faceOf(mesh, patch, rays.origin());
       const std::vector<glm::dvec3> points = pointsOf(mesh, patch, centroids);
-      const glm::dvec3 n = patch.faceNormal, u = glm::normalize(std::abs(n.x) < 0.5 ? glm::cross(n, glm::dvec3(1, 0, 0)) : glm::cross(n, glm::dvec3(0, 1, 0))), v = glm::cross(n, u);
+      const glm::dvec3 n = patch.faceNormal,
+                       u = glm::normalize(std::abs(n.x) < 0.5 ? glm::cross(n, glm::dvec3(1, 0, 0))
+                                                              : glm::cross(n, glm::dvec3(0, 1, 0))),
+                       v = glm::cross(n, u);
       for (std::size_t k = 0; k < raysOfPatch; ++k) {
         // Uniform points on the unit disc are cosine-distributed on the hemisphere above it. Each patch turns them.
-        const double r2 = (static_cast<double>(k) + 0.5) / static_cast<double>(raysOfPatch), angle = 2.0 * kPi * kPlastic * static_cast<double>(k + p);
+        const double r2 = (static_cast<double>(k) + 0.5) / static_cast<double>(raysOfPatch),
+                     angle = 2.0 * kPi * kPlastic * static_cast<double>(k + p);
         const double which = kPlastic * kPlastic * static_cast<double>(k);
-        const glm::dvec3& point = points[static_cast<std::size_t>((which - std::floor(which)) * static_cast<double>(points.size()))];
-        const glm::dvec3 direction = std::sqrt(r2) * (std::cos(angle) * u + std::sin(angle) * v) + std::sqrt(1.0 - r2) * n;
-        batch.push_back({glm::vec4(glm::vec3(point - rays.origin()), static_cast<float>(p)), glm::vec4(glm::vec3(beyond * direction), 0.0f), face});
+        const glm::dvec3& point =
+            points[static_cast<std::size_t>((which - std::floor(which)) * static_cast<double>(points.size()))];
+        const glm::dvec3 direction =
+            std::sqrt(r2) * (std::cos(angle) * u + std::sin(angle) * v) + std::sqrt(1.0 - r2) * n;
+        batch.push_back({glm::vec4(glm::vec3(point - rays.origin()), static_cast<float>(p)),
+                         glm::vec4(glm::vec3(beyond * direction), 0.0f), face});
         radiance.push_back(radianceOf(*scene.environment, direction));
       }
     }

@@ -1,5 +1,6 @@
-// Irradiance of patches from the sun, spot and omnidirectional lights, and the environment. Rays through the path tracer's hierarchy: one per light
-// and part of a patch; towards the environment some hundreds per patch, cosine-distributed.
+// Irradiance of patches from the sun, spot and omnidirectional lights, and the environment. Rays through the path
+// tracer's hierarchy: one per light and part of a patch; towards the environment some hundreds per patch,
+// cosine-distributed.
 #pragma once
 
 #include "gl/program.hpp"
@@ -10,13 +11,17 @@
 
 namespace lucerna {
 
-/// Mean over the visible parts of each patch, scene units; zeros if the scene has no such light. A patch is sampled at the centroids of parts x parts equal
-/// triangles, `parts` at most 4, so that there are about `most` rays at most. `rays`: of sceneOf(mesh).
-std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene, const RadiosityMesh& mesh, std::size_t most = 5'000'000);
+/// Mean over the visible parts of each patch, scene units; zeros if the scene has no such light. A patch is sampled at
+/// the centroids of parts x parts equal triangles, `parts` at most 4, so that there are about `most` rays at most.
+/// `rays`: of sceneOf(mesh).
+std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene,
+                                    const RadiosityMesh& mesh, std::size_t most = 5'000'000);
 
-/// Irradiance of patches from Scene::environment, which must exist: pi times the mean radiance of rays that hit nothing, each ray from one of the
-/// patch's parts. 64 to 1024 rays per patch, about `most` in all; points of a regular lattice, so that a constant, unoccluded sky is exact.
-/// Light from a few bright texels of a picture is noisy: they are not sampled specially.
-std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene, const RadiosityMesh& mesh, std::size_t most = 5'000'000);
+/// Irradiance of patches from Scene::environment, which must exist: pi times the mean radiance of rays that hit
+/// nothing, each ray from one of the patch's parts. 64 to 1024 rays per patch, about `most` in all; points of a regular
+/// lattice, so that a constant, unoccluded sky is exact. Light from a few bright texels of a picture is noisy: they are
+/// not sampled specially.
+std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene,
+                                 const RadiosityMesh& mesh, std::size_t most = 5'000'000);
 
 }  // namespace lucerna

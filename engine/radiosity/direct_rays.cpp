@@ -24,7 +24,9 @@ struct Light {
 /// Emissive triangles as patches are: turned to their fronts, without those that have no area.
 std::vector<Patch> emittersOf(const Scene& scene, RadiosityMesh& mesh) {
   std::vector<Patch> emitters;
-  if (std::none_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.emission != glm::vec3(0.0f); })) return emitters;
+  if (std::none_of(scene.materials.begin(), scene.materials.end(),
+                   [](const Material& m) { return m.emission != glm::vec3(0.0f); }))
+    return emitters;
   mesh = makePatches(scene, {});
   for (const Patch& patch : mesh.patches)
     if (patch.emission != glm::dvec3(0.0)) emitters.push_back(patch);
@@ -38,7 +40,9 @@ std::size_t DirectRays::emitterCount(const Scene& scene) {
   return emittersOf(scene, mesh).size();
 }
 
-DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays, const glm::dvec3& pixelOrigin) : rays_(scene, capabilities) {
+DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays,
+                       const glm::dvec3& pixelOrigin)
+    : rays_(scene, capabilities) {
   RadiosityMesh mesh;
   const std::vector<Patch> emitters = emittersOf(scene, mesh);
   const glm::dvec3 origin = rays_.origin();
@@ -50,15 +54,20 @@ DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities,
   }
   if (scene.sun) lights.push_back({vec(-scene.sun->direction, kSun), {}, {}, vec(glm::dvec3(scene.sun->irradiance))});
   for (const SpotLight& l : scene.spots)
-    lights.push_back({vec(l.position - origin, kSpot), vec(l.direction, std::cos(l.innerAngle)), vec({}, std::cos(l.outerAngle)), vec(glm::dvec3(l.intensity))});
-  for (const PointLight& l : scene.points) lights.push_back({vec(l.position - origin, kPoint), {}, {}, vec(glm::dvec3(l.intensity))});
+    lights.push_back({vec(l.position - origin, kSpot), vec(l.direction, std::cos(l.innerAngle)),
+                      vec({}, std::cos(l.outerAngle)), vec(glm::dvec3(l.intensity))});
+  for (const PointLight& l : scene.points)
+    lights.push_back({vec(l.position - origin, kPoint), {}, {}, vec(glm::dvec3(l.intensity))});
   const int each = std::max(1, rays / static_cast<int>(std::max<std::size_t>(emitters.size(), 1)));
   // GL buffers cannot be empty: without lights upload one dummy; the count in the head is 0.
-  const double raysOfPixel = static_cast<double>(emitters.size()) * each + static_cast<double>(lights.size() - emitters.size());
+  const double raysOfPixel =
+      static_cast<double>(emitters.size()) * each + static_cast<double>(lights.size() - emitters.size());
   turnsOfPixel_ = gl::kTurnsOfRay * std::max(raysOfPixel, 1.0);
   const int head[4] = {static_cast<int>(lights.size()), each, 0, 0};
   std::vector<std::uint8_t> bytes;
-  const auto put = [&](const void* data, std::size_t size) { bytes.insert(bytes.end(), static_cast<const std::uint8_t*>(data), static_cast<const std::uint8_t*>(data) + size); };
+  const auto put = [&](const void* data, std::size_t size) {
+    bytes.insert(bytes.end(), static_cast<const std::uint8_t*>(data), static_cast<const std::uint8_t*>(data) + size);
+  };
   put(head, sizeof head);
   const glm::vec4 start = vec(origin - pixelOrigin);
   put(&start, sizeof start);

@@ -1,7 +1,8 @@
 // Direct light per pixel by shadow rays, for the radiosity view: sharp shadows, where patches have one value each.
 //
-// Input: a Scene. Output, to fragment shaders that include shaders/radiosity/direct_rays.glsl: irradiance by emissive triangles (their closed form
-// [Lambert1760] times their visible fraction, by rays), sun, spot and omnidirectional lights (a ray each). Scene units.
+// Input: a Scene. Output, to fragment shaders that include shaders/radiosity/direct_rays.glsl: irradiance by emissive
+// triangles (their closed form [Lambert1760] times their visible fraction, by rays), sun, spot and omnidirectional
+// lights (a ray each). Scene units.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -16,8 +17,10 @@ class DirectRays {
   static constexpr std::size_t kMostEmitters = 64;
   static std::size_t emitterCount(const Scene& scene);
 
-  /// `rays`: per pixel, divided among the emissive triangles (at least one each). `origin`: of the pixels' positions, in the scene's coordinates.
-  DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays, const glm::dvec3& origin = glm::dvec3(0.0));
+  /// `rays`: per pixel, divided among the emissive triangles (at least one each). `origin`: of the pixels' positions,
+  /// in the scene's coordinates.
+  DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays,
+             const glm::dvec3& origin = glm::dvec3(0.0));
   void bind() const;  ///< storage block 1, texture units 60 and 61
   /// Estimated work per pixel: gl/pieces.hpp.
   double turnsOfPixel() const { return turnsOfPixel_; }

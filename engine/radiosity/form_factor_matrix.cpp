@@ -22,11 +22,13 @@ FormFactorMatrix::Row FormFactorMatrix::row(std::size_t i) const {
 }
 
 void FormFactorMatrix::multiply(std::span<const glm::dvec3> x, std::span<glm::dvec3> y) const {
-  CHECK(x.size() == rowCount() && y.size() == rowCount(), "{} rows, vectors of {} and {}", rowCount(), x.size(), y.size());
+  CHECK(x.size() == rowCount() && y.size() == rowCount(), "{} rows, vectors of {} and {}", rowCount(), x.size(),
+        y.size());
   onAllCores(rowCount(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       glm::dvec3 sum(0.0);
-      for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) sum += static_cast<double>(factors_[k]) * x[patches_[k]];
+      for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k)
+        sum += static_cast<double>(factors_[k]) * x[patches_[k]];
       y[i] = scales_[i] * sum;
     }
   });
@@ -39,7 +41,8 @@ std::vector<double> FormFactorMatrix::rowSums() const {
   return sums;
 }
 
-double FormFactorMatrix::repair(std::span<const double> areas, std::span<const double> sums, std::span<const std::uint32_t> sources, double fewPixels) {
+double FormFactorMatrix::repair(std::span<const double> areas, std::span<const double> sums,
+                                std::span<const std::uint32_t> sources, double fewPixels) {
   const auto isSource = [&](std::size_t i) { return !sources.empty() && sources[i] != 0; };
   const std::size_t n = rowCount();
   // The transposed matrix, its rows in order as the rows are visited in order.
@@ -67,12 +70,16 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
     double whole = 0.0;
     std::size_t a = starts_[i], b = starts[i];
     while (a < starts_[i + 1] || b < starts[i + 1]) {
-      const std::uint32_t ja = a < starts_[i + 1] ? patches_[a] : ~0u, jb = b < starts[i + 1] ? from[b] : ~0u, j = std::min(ja, jb);
+      const std::uint32_t ja = a < starts_[i + 1] ? patches_[a] : ~0u, jb = b < starts[i + 1] ? from[b] : ~0u,
+                          j = std::min(ja, jb);
       // In float as in the transposed copy, and in the order of patches, so that S_ij and S_ji have the same bits.
-      const double own = ja == j ? static_cast<double>(static_cast<float>(areas[i] * static_cast<double>(factors_[a]))) : 0.0, other = jb == j ? static_cast<double>(flux[b]) : 0.0;
+      const double own = ja == j ? static_cast<double>(static_cast<float>(areas[i] * static_cast<double>(factors_[a])))
+                                 : 0.0,
+                   other = jb == j ? static_cast<double>(flux[b]) : 0.0;
       // Weight of the own one. Both sums add the same numbers in the same order.
       double weight = areas[j] / (areas[i] + areas[j]), against = areas[i] / (areas[i] + areas[j]);
-      if (isSource(i) != isSource(j) && std::max(own, other) < fewPixels * areas[isSource(i) ? i : j]) weight = isSource(j) ? 1.0 : 0.0, against = 1.0 - weight;
+      if (isSource(i) != isSource(j) && std::max(own, other) < fewPixels * areas[isSource(i) ? i : j])
+        weight = isSource(j) ? 1.0 : 0.0, against = 1.0 - weight;
       const double sum = i < j ? weight * own + against * other : against * other + weight * own;
       whole += sum;
       a += ja == j;
@@ -96,7 +103,8 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
       next[i] = d[i];
       if (!known[i]) continue;
       double sum = 0.0;
-      for (std::size_t k = mean.starts_[i]; k < mean.starts_[i + 1]; ++k) sum += static_cast<double>(mean.factors_[k]) * d[mean.patches_[k]];
+      for (std::size_t k = mean.starts_[i]; k < mean.starts_[i + 1]; ++k)
+        sum += static_cast<double>(mean.factors_[k]) * d[mean.patches_[k]];
       if (sum <= 0.0) continue;
       next[i] = std::sqrt(d[i] * areas[i] / sum);
       worst = std::max(worst, std::abs(areas[i] / (d[i] * sum) - 1.0));
@@ -107,7 +115,8 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
   onAllCores(n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t k = mean.starts_[i]; k < mean.starts_[i + 1]; ++k)
-        mean.factors_[k] = static_cast<float>(static_cast<double>(mean.factors_[k]) * d[i] * d[mean.patches_[k]] / areas[i]);
+        mean.factors_[k] =
+            static_cast<float>(static_cast<double>(mean.factors_[k]) * d[i] * d[mean.patches_[k]] / areas[i]);
   });
   *this = std::move(mean);
   const std::vector<double> are = rowSums();
@@ -124,7 +133,9 @@ double FormFactorMatrix::reciprocityError(std::span<const double> areas) const {
       const Row other = row(j);
       const auto found = std::lower_bound(other.patches.begin(), other.patches.end(), static_cast<std::uint32_t>(i));
       const bool is = found != other.patches.end() && *found == i;
-      const double back = is ? areas[j] * static_cast<double>(other.factors[static_cast<std::size_t>(found - other.patches.begin())]) : 0.0;
+      const double back =
+          is ? areas[j] * static_cast<double>(other.factors[static_cast<std::size_t>(found - other.patches.begin())])
+             : 0.0;
       sum += there;
       worst = std::max(worst, std::abs(there - back));
     }

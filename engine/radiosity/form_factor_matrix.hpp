@@ -11,8 +11,8 @@
 
 namespace lucerna {
 
-/// F as compressed rows; entries in the order of patches, factors in float, sums in double. Products use all cores and have the same bits on
-/// any number of them: each row is one sum.
+/// F as compressed rows; entries in the order of patches, factors in float, sums in double. Products use all cores and
+/// have the same bits on any number of them: each row is one sum.
 class FormFactorMatrix {
  public:
   FormFactorMatrix() : starts_{0} {}
@@ -21,7 +21,9 @@ class FormFactorMatrix {
   void appendRow(std::span<const std::uint32_t> patches, std::span<const float> factors);
   std::size_t rowCount() const { return starts_.size() - 1; }
   std::size_t entryCount() const { return patches_.size(); }
-  std::size_t bytes() const { return patches_.size() * (sizeof(std::uint32_t) + sizeof(float)) + starts_.size() * sizeof(std::size_t); }
+  std::size_t bytes() const {
+    return patches_.size() * (sizeof(std::uint32_t) + sizeof(float)) + starts_.size() * sizeof(std::size_t);
+  }
 
   struct Row {
     std::span<const std::uint32_t> patches;
@@ -34,12 +36,15 @@ class FormFactorMatrix {
   void multiply(std::span<const glm::dvec3> x, std::span<glm::dvec3> y) const;
   std::vector<double> rowSums() const;
 
-  /// Repairs errors of hemicubes: A_i F_ij = A_j F_ji for all pairs, by the mean of both, in which the smaller patch's factor is weighted by the larger one's
-  /// area: its centre represents it, and what it sees covers pixels. Closed rows, `sums[i]` = 1, then sum to 1; open rows stay unconstrained: forcing a wrong
-  /// near-field sum would move the error to far entries. By a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]. Returns the largest relative error of a sum before
-  /// the last rounding, which is then corrected row by row in double (reciprocity holds to the floats' 1e-7), since a white room amplifies it by 1 / (1 - rho).
-  /// `sources`, if given, marks columns whose factors are closed forms: what a source sees below `fewPixels` of its hemisphere is taken from the other row.
-  double repair(std::span<const double> areas, std::span<const double> sums, std::span<const std::uint32_t> sources = {}, double fewPixels = 0.0);
+  /// Repairs errors of hemicubes: A_i F_ij = A_j F_ji for all pairs, by the mean of both, in which the smaller patch's
+  /// factor is weighted by the larger one's area: its centre represents it, and what it sees covers pixels. Closed
+  /// rows, `sums[i]` = 1, then sum to 1; open rows stay unconstrained: forcing a wrong near-field sum would move the
+  /// error to far entries. By a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]. Returns the largest relative
+  /// error of a sum before the last rounding, which is then corrected row by row in double (reciprocity holds to the
+  /// floats' 1e-7), since a white room amplifies it by 1 / (1 - rho). `sources`, if given, marks columns whose factors
+  /// are closed forms: what a source sees below `fewPixels` of its hemisphere is taken from the other row.
+  double repair(std::span<const double> areas, std::span<const double> sums,
+                std::span<const std::uint32_t> sources = {}, double fewPixels = 0.0);
   /// Largest |A_i F_ij - A_j F_ji| over the mean of A_i F_ij.
   double reciprocityError(std::span<const double> areas) const;
 

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Antiderivatives over the rectangle from the origin to (x, y) of a face at distance 1: of 1/(pi r^4) and of y/(pi r^4).
+// Antiderivatives over the rectangle from the origin to (x, y) of a face at distance 1: of 1/(pi r^4) and of y/(pi
+// r^4).
 double fullFace(double x, double y) {
   const double rx = std::sqrt(1.0 + x * x), ry = std::sqrt(1.0 + y * y);
   return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2.0 * kPi);
@@ -36,7 +37,8 @@ std::vector<double> deltaFormFactors(int n, DeltaMap map) {
         const auto antiderivative = face == 0 ? fullFace : halfFace;
         switch (map) {
           case DeltaMap::exact:
-            factors.push_back(antiderivative(x + side, y + side) - antiderivative(x, y + side) - antiderivative(x + side, y) + antiderivative(x, y));
+            factors.push_back(antiderivative(x + side, y + side) - antiderivative(x, y + side) -
+                              antiderivative(x + side, y) + antiderivative(x, y));
             break;
           case DeltaMap::centre: factors.push_back((face == 0 ? 1.0 : b) / (kPi * r2 * r2) * side * side); break;
           case DeltaMap::published: factors.push_back((face == 0 ? 1.0 : b) / r2); break;

@@ -19,14 +19,17 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kItemsUnit = 56, kKeysUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kKeys = 2, kFactors = 4, kSources = 5, kExactList = 6, kKeptList = 7, kLargeList = 3;
+constexpr GLuint kItemsUnit = 56, kKeysUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kKeys = 2,
+                 kFactors = 4, kSources = 5, kExactList = 6, kKeptList = 7, kLargeList = 3;
 constexpr int kGroup = 64;
 constexpr int kHemicubesEach = 8;
-constexpr std::size_t kMostKept = std::size_t{65535} * kGroup;  // what an indirect dispatch reaches that has a lane an entry
+constexpr std::size_t kMostKept =
+    std::size_t{65535} * kGroup;  // what an indirect dispatch reaches that has a lane an entry
 constexpr std::size_t kMostHemicubes = 256;  // of hemicube.glsl: their frames are 16 KiB, what every driver has
 constexpr double kSmallSources = 0.1;  // of the area: sources that cover more need no care, each pixel meets one
 constexpr int kExactGroups = 256;
-constexpr double kSecondsOfPiece = 0.25, kTurnsOfPatch = 8.0, kTurnsOfPixel = 32.0;  // by raster: a patch's setting up; a pixel's layers
+constexpr double kSecondsOfPiece = 0.25, kTurnsOfPatch = 8.0,
+                 kTurnsOfPixel = 32.0;  // by raster: a patch's setting up; a pixel's layers
 constexpr int kMeasured = 32;  // hemicubes of a batch that a cost is taken from
 
 /// The same for a seed and a patch in every run and batch; 0..1. [Steele2014], its finaliser.
@@ -37,7 +40,9 @@ double hashed(std::uint32_t seed, std::uint32_t patch) {
   return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
 }
 
-gl::Buffer storage(const char* name, std::size_t bytes) { return gl::Buffer(name, std::max<std::size_t>(bytes, 16), nullptr, GL_DYNAMIC_COPY); }
+gl::Buffer storage(const char* name, std::size_t bytes) {
+  return gl::Buffer(name, std::max<std::size_t>(bytes, 16), nullptr, GL_DYNAMIC_COPY);
+}
 
 }  // namespace
 
@@ -51,14 +56,19 @@ double turnsOfHemicube(const RadiosityMesh& mesh, int resolution) {
 
 Hemicubes::~Hemicubes() = default;
 
-Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh, const HemicubeSettings& settings, const RayScene* rays)
-    : mesh_(&mesh), settings_(settings), patchCount_(static_cast<int>(mesh.patches.size())), rays_(rays),
+Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const RadiosityMesh& mesh,
+                     const HemicubeSettings& settings, const RayScene* rays)
+    : mesh_(&mesh),
+      settings_(settings),
+      patchCount_(static_cast<int>(mesh.patches.size())),
+      rays_(rays),
       pieces_(kSecondsOfPiece, turnsOfHemicube(mesh, settings.resolution), kMostHemicubes, settings.unmeasuredTurns) {
   CHECK(settings.resolution >= 2 && settings.resolution % 2 == 0, "hemicubes of {} pixels", settings.resolution);
   if (settings_.visibility == HemicubeVisibility::automatic) choose(programs, capabilities);
   const auto patches = static_cast<std::size_t>(patchCount_);
   const auto limit = static_cast<std::size_t>(std::max(capabilities.maxShaderStorageBlockSize, 1 << 24));
-  const std::size_t keyBytes = 3 * static_cast<std::size_t>(settings.resolution * settings.resolution) * sizeof(GLuint), factorBytes = patches * sizeof(float);
+  const std::size_t keyBytes = 3 * static_cast<std::size_t>(settings.resolution * settings.resolution) * sizeof(GLuint),
+                    factorBytes = patches * sizeof(float);
   const bool items = listsKept();
   double emitting = 0.0;
   for (const Patch& patch : mesh.patches) emitting += patch.emission != glm::dvec3(0.0) ? patch.area : 0.0;
@@ -72,17 +82,28 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   const std::size_t listed = items ? std::min(patches, keyBytes / sizeof(GLuint)) + sources.size() - patches : patches;
   const std::size_t each = std::max({keyBytes, factorBytes, listed * sizeof(glm::uvec2) + 16});
   if (each > limit)
-    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need storage blocks of {} bytes, this driver's limit is {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE): use longer edges or smaller hemicubes",
-                           patches, settings.resolution, each, limit);
+    throwMissingCapability(
+        "radiosity: {} patches and hemicubes of {} pixels need storage blocks of {} bytes, this driver's limit is {} "
+        "(GL_MAX_SHADER_STORAGE_BLOCK_SIZE): use longer edges or smaller hemicubes",
+        patches, settings.resolution, each, limit);
   const auto texels = static_cast<std::size_t>(std::max(capabilities.maxTextureBufferSize, 1 << 16));
   if (3 * patches > texels || keyBytes / sizeof(GLuint) > texels)
-    throwMissingCapability("radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's limit is {} (GL_MAX_TEXTURE_BUFFER_SIZE)", patches, settings.resolution,
-                           std::max(3 * patches, keyBytes / sizeof(GLuint)), texels);
-  // A software renderer is fastest inside the processor's cache, a GPU with work for all of its cores. Rays touch little memory, so batch at least 16 hemicubes.
+    throwMissingCapability(
+        "radiosity: {} patches and hemicubes of {} pixels need buffer textures of {} texels, this driver's limit is {} "
+        "(GL_MAX_TEXTURE_BUFFER_SIZE)",
+        patches, settings.resolution, std::max(3 * patches, keyBytes / sizeof(GLuint)), texels);
+  // A software renderer is fastest inside the processor's cache, a GPU with work for all of its cores. Rays touch
+  // little memory, so batch at least 16 hemicubes.
   const std::size_t some = settings_.visibility == HemicubeVisibility::rays ? 16 * each : 0;
-  const std::size_t wanted = settings.batchBytes ? settings.batchBytes : std::max(some, std::size_t{capabilities.softwareRenderer ? 4u : 64u} << 20);
-  batch_ = static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1, std::min({patches, kMostHemicubes, texels * sizeof(GLuint) / keyBytes, std::max<std::size_t>(kMostKept / listed, 1)})));
-  if (settings_.visibility == HemicubeVisibility::itemBuffer) batch_ = std::clamp(std::min(batch_, capabilities.maxArrayTextureLayers / 5), 1, batch_);
+  const std::size_t wanted = settings.batchBytes
+                                 ? settings.batchBytes
+                                 : std::max(some, std::size_t{capabilities.softwareRenderer ? 4u : 64u} << 20);
+  batch_ =
+      static_cast<int>(std::clamp<std::size_t>(std::min(wanted, limit) / each, 1,
+                                               std::min({patches, kMostHemicubes, texels * sizeof(GLuint) / keyBytes,
+                                                         std::max<std::size_t>(kMostKept / listed, 1)})));
+  if (settings_.visibility == HemicubeVisibility::itemBuffer)
+    batch_ = std::clamp(std::min(batch_, capabilities.maxArrayTextureLayers / 5), 1, batch_);
 
   std::vector<glm::vec4> corners;
   corners.reserve(3 * patches);
@@ -111,7 +132,8 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
     depth_ = &programs.loadCompute("hemicube depth", "radiosity/hemicube_depth.comp", {{"LARGE", 0}});
     depthLarge_ = &programs.loadCompute("hemicube depth large", "radiosity/hemicube_depth.comp", {{"LARGE", 1}});
   } else if (settings_.visibility == HemicubeVisibility::rays) {
-    traceRays_ = &programs.loadCompute("hemicube rays", "radiosity/hemicube_rays.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays_->sharedStack()}});
+    traceRays_ = &programs.loadCompute("hemicube rays", "radiosity/hemicube_rays.comp",
+                                       {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays_->sharedStack()}});
   } else {
     const glm::ivec3 layers(settings.resolution, settings.resolution, 5 * batch_);
     ItemBuffer& buffer = itemBuffer_.emplace();
@@ -120,19 +142,27 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
     const std::array<const gl::Texture*, 1> colors{&buffer.items};
     buffer.target = gl::Framebuffer("hemicube items", colors, &buffer.depth);
     buffer.noAttributes = gl::VertexArray("hemicube items");
-    buffer.draw = &programs.loadRaster("hemicube items", "radiosity/hemicube_item.vert", "radiosity/hemicube_item.frag", {}, "radiosity/hemicube_item.geom");
+    buffer.draw = &programs.loadRaster("hemicube items", "radiosity/hemicube_item.vert", "radiosity/hemicube_item.frag",
+                                       {}, "radiosity/hemicube_item.geom");
     buffer.sum = &programs.loadCompute("hemicube items sum", "radiosity/hemicube_items.comp");
   }
   const bool drawn = settings_.visibility == HemicubeVisibility::itemBuffer;
-  sum_ = &programs.loadCompute("hemicube sum", "radiosity/hemicube_sum.comp", {{"LARGE", 0}, {"ITEMS", items}, {"DRAWN", drawn}});
-  sumLarge_ = &programs.loadCompute("hemicube sum large", "radiosity/hemicube_sum.comp", {{"LARGE", 1}, {"ITEMS", items}, {"DRAWN", drawn}});
+  sum_ = &programs.loadCompute("hemicube sum", "radiosity/hemicube_sum.comp",
+                               {{"LARGE", 0}, {"ITEMS", items}, {"DRAWN", drawn}});
+  sumLarge_ = &programs.loadCompute("hemicube sum large", "radiosity/hemicube_sum.comp",
+                                    {{"LARGE", 1}, {"ITEMS", items}, {"DRAWN", drawn}});
   exact_ = &programs.loadCompute("hemicube exact", "radiosity/hemicube_exact.comp",
-                                 {{"ITEMS", items}, {"SOURCES", asksForSources}, {"ALPHA_MASKS", 0}, {"SHARED_STACK", asksForSources ? rays_->sharedStack() : 0}});
+                                 {{"ITEMS", items},
+                                  {"SOURCES", asksForSources},
+                                  {"ALPHA_MASKS", 0},
+                                  {"SHARED_STACK", asksForSources ? rays_->sharedStack() : 0}});
 }
 
 void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities) {
-  // Raster first: where all the work takes it less time than compiling and measuring the others would, they are left out.
-  for (const HemicubeVisibility one : {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
+  // Raster first: where all the work takes it less time than compiling and measuring the others would, they are left
+  // out.
+  for (const HemicubeVisibility one :
+       {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
     if (!costs_.empty() && costs_[0].milliseconds * patchCount_ < 1000.0 * settings_.worthMeasuring) break;
     HemicubeSettings settings = settings_;
     settings.visibility = one;
@@ -143,16 +173,20 @@ void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& cap
       const int first = static_cast<int>(static_cast<std::int64_t>(patchCount_ - count) * k / 2);
       const auto start = std::chrono::steady_clock::now();
       hemicubes.draw(first, count);
-      const double took = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / count;
+      const double took =
+          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / count;
       if (k == 1 || (k == 2 && took < cost.milliseconds)) cost.milliseconds = took;
     }
     costs_.push_back(cost);
   }
-  const auto best = std::min_element(costs_.begin(), costs_.end(), [](const Cost& a, const Cost& b) { return a.milliseconds < b.milliseconds; });
+  const auto best = std::min_element(costs_.begin(), costs_.end(),
+                                     [](const Cost& a, const Cost& b) { return a.milliseconds < b.milliseconds; });
   settings_.visibility = best->visibility;
   std::string measured;
-  for (const Cost& cost : costs_) measured += fmt::format("{}{} {:.3g} ms", measured.empty() ? "" : ", ", nameOf(cost.visibility), cost.milliseconds);
-  logInfo("radiosity: hemicubes by {} (a hemicube: {}{})", nameOf(settings_.visibility), measured, costs_.size() == 1 ? "; too few to measure the other methods" : "");
+  for (const Cost& cost : costs_)
+    measured += fmt::format("{}{} {:.3g} ms", measured.empty() ? "" : ", ", nameOf(cost.visibility), cost.milliseconds);
+  logInfo("radiosity: hemicubes by {} (a hemicube: {}{})", nameOf(settings_.visibility), measured,
+          costs_.size() == 1 ? "; too few to measure the other methods" : "");
 }
 
 Hemicubes::Frame Hemicubes::frameOf(int index) const {
@@ -160,15 +194,18 @@ Hemicubes::Frame Hemicubes::frameOf(int index) const {
   const auto corners = mesh_->corners(patch);
   // Towards the first corner: never parallel to the normal, whatever the patch.
   const glm::dvec3 u0 = glm::normalize(corners[0] - patch.centroid), v0 = glm::cross(patch.faceNormal, u0);
-  const double roll = settings_.randomRoll ? 2.0 * std::numbers::pi * hashed(settings_.seed, static_cast<std::uint32_t>(index)) : 0.0;
+  const double roll =
+      settings_.randomRoll ? 2.0 * std::numbers::pi * hashed(settings_.seed, static_cast<std::uint32_t>(index)) : 0.0;
   const glm::dvec3 u = std::cos(roll) * u0 + std::sin(roll) * v0, v = glm::cross(patch.faceNormal, u);
   const double inPlane = std::max(1e-4 * std::sqrt(patch.area), 4e-7 * mesh_->extent);
-  return {glm::vec4(glm::vec3(patch.centroid), static_cast<float>(1.0 / inPlane)), glm::vec4(glm::vec3(u), patch.hidden), glm::vec4(glm::vec3(v), 0.0f),
+  return {glm::vec4(glm::vec3(patch.centroid), static_cast<float>(1.0 / inPlane)),
+          glm::vec4(glm::vec3(u), patch.hidden), glm::vec4(glm::vec3(v), 0.0f),
           glm::vec4(glm::vec3(patch.faceNormal), 0.0f)};
 }
 
 DrawnHemicubes Hemicubes::draw(int first, int count) {
-  CHECK(first >= 0 && count > 0 && count <= batch_ && first + count <= patchCount_, "rows {} + {} of {}, at most {}", first, count, patchCount_, batch_);
+  CHECK(first >= 0 && count > 0 && count <= batch_ && first + count <= patchCount_, "rows {} + {} of {}, at most {}",
+        first, count, patchCount_, batch_);
   const auto start = std::chrono::steady_clock::now();
   std::vector<Frame> frames;
   for (int i = 0; i < count; ++i) frames.push_back(frameOf(first + i));
@@ -186,8 +223,10 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   largeList_.bind(GL_SHADER_STORAGE_BUFFER, kLargeList);
   constexpr GLuint kNoGroups[4] = {0, 1, 1, 0};
   largeList_.upload(0, sizeof kNoGroups, kNoGroups);
-  constexpr GLbitfield kBarrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
-  const glm::ivec3 triangles((count + kHemicubesEach - 1) / kHemicubesEach, patchCount_, 1), trianglesGroup(1, kGroup, 1);
+  constexpr GLbitfield kBarrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+                                  GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
+  const glm::ivec3 triangles((count + kHemicubesEach - 1) / kHemicubesEach, patchCount_, 1),
+      trianglesGroup(1, kGroup, 1);
   // Pixels in rows along z: an axis has 65,535 groups.
   constexpr int kRow = 1024 * kGroup;
   const int all = 3 * settings_.resolution * settings_.resolution;
@@ -248,13 +287,15 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
     drawn.kept = staging_.read<glm::uvec2>(keptList_, kHead + staging_.readFirst<std::array<GLuint, 4>>(keptList_)[3]);
     drawn.kept.erase(drawn.kept.begin(), drawn.kept.begin() + kHead);
   } else {
-    drawn.factors = staging_.read<float>(factors_, static_cast<std::size_t>(count) * static_cast<std::size_t>(patchCount_));
+    drawn.factors =
+        staging_.read<float>(factors_, static_cast<std::size_t>(count) * static_cast<std::size_t>(patchCount_));
   }
   drawn.exact = staging_.read<glm::uvec2>(exactList_, 1 + staging_.readFirst<GLuint>(exactList_));
   drawn.exact.erase(drawn.exact.begin());
   gl::throwIfReset();
   gl::throwIfError("hemicubes");
-  pieces_.took(static_cast<std::uint32_t>(count), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  pieces_.took(static_cast<std::uint32_t>(count),
+               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return drawn;
 }
 
@@ -274,13 +315,15 @@ FormFactorRows Hemicubes::rows(int first, int count) {
   return all;
 }
 
-void Hemicubes::stream(int first, int end, const std::function<void(const FormFactorRows&)>& take, const std::function<bool(int done)>& goOn) {
+void Hemicubes::stream(int first, int end, const std::function<void(const FormFactorRows&)>& take,
+                       const std::function<bool(int done)>& goOn) {
   std::future<void> taken;
   for (bool stopped = false; first < end && !stopped;) {
     DrawnHemicubes drawn = draw(first, std::min(end - first, pieceSize()));
     first += drawn.count;
     if (taken.valid()) taken.get();
-    taken = std::async(std::launch::async, [&take, batch = std::move(drawn)]() mutable { take(rowsOf(std::move(batch))); });
+    taken =
+        std::async(std::launch::async, [&take, batch = std::move(drawn)]() mutable { take(rowsOf(std::move(batch))); });
     stopped = goOn && !goOn(first);
   }
   if (taken.valid()) taken.get();
@@ -311,7 +354,8 @@ FormFactorRows rowsOfListed(const DrawnHemicubes& drawn) {
   };
   std::vector<Entry> entries;
   entries.reserve(drawn.kept.size());
-  for (const glm::uvec2& kept : drawn.kept) entries.push_back({kept.x, std::bit_cast<float>(kept.y), std::bit_cast<float>(kept.y)});
+  for (const glm::uvec2& kept : drawn.kept)
+    entries.push_back({kept.x, std::bit_cast<float>(kept.y), std::bit_cast<float>(kept.y)});
   for (const glm::uvec2& exact : drawn.exact) entries[exact.x].factor = std::bit_cast<float>(exact.y);
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.at < b.at; });
   FormFactorRows result;
@@ -363,7 +407,8 @@ FormFactorRows rowsOf(DrawnHemicubes drawn) {
   for (std::size_t row = 0; row < rowCount; ++row) {
     const float* factors = drawn.factors.data() + row * patches;
     const std::size_t before = at;
-    for (std::size_t i = 0; i < patches; ++i) {  // written over by the next where there is none: no branch to guess wrong
+    for (std::size_t i = 0; i < patches;
+         ++i) {  // written over by the next where there is none: no branch to guess wrong
       result.patches[at] = static_cast<std::uint32_t>(i);
       result.factors[at] = factors[i];
       at += factors[i] > 0.0f;
@@ -376,8 +421,10 @@ FormFactorRows rowsOf(DrawnHemicubes drawn) {
 }
 
 std::size_t Hemicubes::gpuBytes() const {
-  return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + keys_.bytes() + factors_.bytes() + keptList_.bytes() + exactList_.bytes() + largeList_.bytes() + staging_.bytes() +
-         (ownRays_ ? ownRays_->gpuBytes() : 0) + (itemBuffer_ ? itemBuffer_->items.bytes() + itemBuffer_->depth.bytes() : 0);
+  return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + keys_.bytes() +
+         factors_.bytes() + keptList_.bytes() + exactList_.bytes() + largeList_.bytes() + staging_.bytes() +
+         (ownRays_ ? ownRays_->gpuBytes() : 0) +
+         (itemBuffer_ ? itemBuffer_->items.bytes() + itemBuffer_->depth.bytes() : 0);
 }
 
 }  // namespace lucerna

@@ -16,8 +16,8 @@ namespace lucerna {
 namespace {
 
 constexpr std::size_t kParts = kPatchParts * kPatchParts, kRaysEach = 8, kRaysASubmission = 1 << 16;
-constexpr std::size_t kSteps = 16;     // of walks: a walk that has not hit a back by then is in the open
-constexpr float kHidden = 0.3f;        // of the most open part. Of 0.1 to 0.5 Sponza's sunlight agrees best at 0.3 and 0.5
+constexpr std::size_t kSteps = 16;  // of walks: a walk that has not hit a back by then is in the open
+constexpr float kHidden = 0.3f;  // of the most open part. Of 0.1 to 0.5 Sponza's sunlight agrees best at 0.3 and 0.5
 constexpr float kOpen = 0.3f;
 constexpr GLuint kNothing = 0, kBack = ~0u;
 
@@ -27,7 +27,8 @@ struct Receiver {
 };
 
 /// For each part of the patches the hits of `raysEach` rays: kNothing, kBack, or a part + 1.
-std::vector<GLuint> seenFrom(const gl::Program& program, const RayScene& rays, const RadiosityMesh& mesh, std::span<const std::uint32_t> patches, std::size_t raysEach) {
+std::vector<GLuint> seenFrom(const gl::Program& program, const RayScene& rays, const RadiosityMesh& mesh,
+                             std::span<const std::uint32_t> patches, std::size_t raysEach) {
   std::vector<GLuint> seen;
   seen.reserve(patches.size() * kParts * raysEach);
   const std::size_t patchesEach = kRaysASubmission / (kParts * raysEach);
@@ -37,11 +38,14 @@ std::vector<GLuint> seenFrom(const gl::Program& program, const RayScene& rays, c
       auto corners = mesh.corners(mesh.patches[p]);
       glm::dvec3 largest(0.0);
       for (glm::dvec3& corner : corners) corner -= rays.origin(), largest = glm::max(largest, glm::abs(corner));
-      receivers.push_back({glm::vec4(glm::vec3(corners[0]), static_cast<float>(p)), glm::vec4(glm::vec3(corners[1]), 0.0f), glm::vec4(glm::vec3(corners[2]), 0.0f),
-                           glm::vec4(glm::vec3(mesh.patches[p].faceNormal), static_cast<float>(std::max({largest.x, largest.y, largest.z})))});
+      receivers.push_back({glm::vec4(glm::vec3(corners[0]), static_cast<float>(p)),
+                           glm::vec4(glm::vec3(corners[1]), 0.0f), glm::vec4(glm::vec3(corners[2]), 0.0f),
+                           glm::vec4(glm::vec3(mesh.patches[p].faceNormal),
+                                     static_cast<float>(std::max({largest.x, largest.y, largest.z})))});
     }
     const std::size_t rayCount = receivers.size() * kParts * raysEach;
-    const gl::Buffer in("hidden parts receivers", receivers.size() * sizeof(Receiver), receivers.data(), GL_STREAM_DRAW);
+    const gl::Buffer in("hidden parts receivers", receivers.size() * sizeof(Receiver), receivers.data(),
+                        GL_STREAM_DRAW);
     const gl::Buffer out("hidden parts seen", rayCount * sizeof(GLuint), nullptr, GL_DYNAMIC_READ);
     {
       const gl::ComputePass pass("hidden parts", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -84,13 +88,16 @@ void cut(Patch& patch, const RadiosityMesh& mesh, std::uint16_t hidden) {
 }  // namespace
 
 double cutHiddenParts(gl::ProgramLibrary& programs, const RayScene& rays, RadiosityMesh& mesh) {
-  const gl::Program& program = programs.loadCompute("hidden parts", "radiosity/hidden_parts.comp", {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
+  const gl::Program& program = programs.loadCompute("hidden parts", "radiosity/hidden_parts.comp",
+                                                    {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
   // One ray per part finds the patches that may have hidden parts; most scenes have none.
   std::vector<std::uint32_t> suspects(mesh.patches.size());
   std::iota(suspects.begin(), suspects.end(), 0u);
   {
     const std::vector<GLuint> seen = seenFrom(program, rays, mesh, suspects, 1);
-    std::erase_if(suspects, [&](std::uint32_t p) { return std::ranges::count(std::span(seen).subspan(kParts * p, kParts), kBack) == 0; });
+    std::erase_if(suspects, [&](std::uint32_t p) {
+      return std::ranges::count(std::span(seen).subspan(kParts * p, kParts), kBack) == 0;
+    });
   }
   if (suspects.empty()) return 0.0;
   const std::vector<GLuint> seen = seenFrom(program, rays, mesh, suspects, kRaysEach);
@@ -101,7 +108,8 @@ double cutHiddenParts(gl::ProgramLibrary& programs, const RayScene& rays, Radios
         for (std::size_t part = 0; part < kParts; ++part) {
           const auto met = std::span(seen).subspan((s * kParts + part) * kRaysEach, kRaysEach);
           float sum = 0.0f;
-          for (const GLuint one : met) sum += one == kNothing ? static_cast<float>(kRaysEach) : one == kBack ? 0.0f : open[one - 1];
+          for (const GLuint one : met)
+            sum += one == kNothing ? static_cast<float>(kRaysEach) : one == kBack ? 0.0f : open[one - 1];
           next[suspects[s] * kParts + part] = std::min(sum / static_cast<float>(kRaysEach), 1.0f);
         }
     });

@@ -21,14 +21,16 @@ glm::dvec3 cross3(const std::array<glm::dvec3, 3>& c) { return glm::cross(c[1] -
 
 /// A triangle whose doubled area is this small relative to its longest edge squared is a line in floats.
 bool hasArea(const std::array<glm::dvec3, 3>& c) {
-  const double longest = std::max({glm::dot(c[1] - c[0], c[1] - c[0]), glm::dot(c[2] - c[1], c[2] - c[1]), glm::dot(c[0] - c[2], c[0] - c[2])});
+  const double longest = std::max(
+      {glm::dot(c[1] - c[0], c[1] - c[0]), glm::dot(c[2] - c[1], c[2] - c[1]), glm::dot(c[0] - c[2], c[0] - c[2])});
   return glm::length(cross3(c)) > 1e-7 * longest;
 }
 
 /// Merges positions closer than `tolerance` into one point.
 class Welder {
  public:
-  Welder(std::vector<glm::dvec3>& points, double tolerance) : points_(points), tolerance_(tolerance), cell_(std::max(4.0 * tolerance, 1e-300)) {}
+  Welder(std::vector<glm::dvec3>& points, double tolerance)
+      : points_(points), tolerance_(tolerance), cell_(std::max(4.0 * tolerance, 1e-300)) {}
 
   std::uint32_t add(const glm::dvec3& place) {
     const glm::dvec3 cell = glm::floor(place / cell_);
@@ -71,7 +73,9 @@ void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
   patch.reflectance = meanAlbedo(scene, material, patch.texCoord);
   patch.emission = std::numbers::pi * glm::dvec3(material.emission);
   if (material.emissionTexture >= 0)
-    patch.emission = std::numbers::pi * glm::dvec3(material.emissionScale) * meanTexture(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap, patch.texCoord);
+    patch.emission =
+        std::numbers::pi * glm::dvec3(material.emissionScale) *
+        meanTexture(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap, patch.texCoord);
 }
 
 /// Corners share a light vertex where point and material are the same and their normals differ by less than the crease.
@@ -87,7 +91,9 @@ void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings) {
     for (int k = 0; k < 3; ++k) {
       auto& here = groups[patch.point[static_cast<std::size_t>(k)]];
       const glm::vec3 normal = patch.normal[static_cast<std::size_t>(k)];
-      const auto same = [&](const Group& g) { return g.material == patch.material && static_cast<double>(glm::dot(g.normal, normal)) >= settings.crease; };
+      const auto same = [&](const Group& g) {
+        return g.material == patch.material && static_cast<double>(glm::dot(g.normal, normal)) >= settings.crease;
+      };
       auto found = std::find_if(here.begin(), here.end(), same);
       if (found == here.end()) found = here.insert(here.end(), {patch.material, normal, count++});
       patch.light[static_cast<std::size_t>(k)] = found->index;
@@ -97,7 +103,9 @@ void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings) {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 struct EdgeHash {
-  std::size_t operator()(const Edge& e) const { return (static_cast<std::size_t>(e.first) << 32 | e.second) * 0x9e3779b97f4a7c15u; }
+  std::size_t operator()(const Edge& e) const {
+    return (static_cast<std::size_t>(e.first) << 32 | e.second) * 0x9e3779b97f4a7c15u;
+  }
 };
 Edge edgeOf(std::uint32_t a, std::uint32_t b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
@@ -106,12 +114,14 @@ int longestEdge(const RadiosityMesh& mesh, const Patch& patch) {
   double most = -1.0;
   Edge mostEdge{};
   for (int k = 0; k < 3; ++k) {
-    const std::uint32_t a = patch.point[static_cast<std::size_t>(k)], b = patch.point[static_cast<std::size_t>((k + 1) % 3)];
+    const std::uint32_t a = patch.point[static_cast<std::size_t>(k)],
+                        b = patch.point[static_cast<std::size_t>((k + 1) % 3)];
     const glm::dvec3 d = mesh.points[a] - mesh.points[b];
     const double length = glm::dot(d, d);
     const Edge edge = edgeOf(a, b);
     // Equal edges: the same one must win in both of its patches, or marks would not terminate.
-    if (length > most * (1.0 + 1e-12) || (length > most * (1.0 - 1e-12) && edge < mostEdge)) most = length, longest = k, mostEdge = edge;
+    if (length > most * (1.0 + 1e-12) || (length > most * (1.0 - 1e-12) && edge < mostEdge))
+      most = length, longest = k, mostEdge = edge;
   }
   return longest;
 }
@@ -145,7 +155,8 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
   std::unordered_map<Edge, std::uint32_t, EdgeHash> middles;  // of marked edges
   RadiosityMesh result = mesh;
   const auto mark = [&](const Patch& patch, int k) {
-    const std::uint32_t a = patch.point[static_cast<std::size_t>(k)], b = patch.point[static_cast<std::size_t>((k + 1) % 3)];
+    const std::uint32_t a = patch.point[static_cast<std::size_t>(k)],
+                        b = patch.point[static_cast<std::size_t>((k + 1) % 3)];
     const auto [it, fresh] = middles.try_emplace(edgeOf(a, b), 0u);
     if (fresh) {
       it->second = static_cast<std::uint32_t>(result.points.size());
@@ -157,7 +168,8 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
     for (int k = 0; k < 3; ++k)
       if (marked(i, k)) mark(mesh.patches[i], k);
   const auto middleOf = [&](const Patch& patch, int k) -> std::optional<std::uint32_t> {
-    const auto it = middles.find(edgeOf(patch.point[static_cast<std::size_t>(k)], patch.point[static_cast<std::size_t>((k + 1) % 3)]));
+    const auto it = middles.find(
+        edgeOf(patch.point[static_cast<std::size_t>(k)], patch.point[static_cast<std::size_t>((k + 1) % 3)]));
     return it == middles.end() ? std::nullopt : std::optional(it->second);
   };
   for (bool grown = true; grown;) {
@@ -199,8 +211,11 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
   for (const Material& m : scene.materials)
     for (int c = 0; c < 3; ++c) {
       if (!(m.diffuse[c] >= 0.0f && m.diffuse[c] <= 1.0f))
-        throwBadInput("material {}: reflectance {} is not from 0 to 1: such a surface would reflect more light than it receives", m.name, m.diffuse[c]);
-      if (!(m.emission[c] >= 0.0f && std::isfinite(m.emission[c]))) throwBadInput("material {}: emission {} is not a finite number >= 0", m.name, m.emission[c]);
+        throwBadInput(
+            "material {}: reflectance {} is not from 0 to 1: such a surface would reflect more light than it receives",
+            m.name, m.diffuse[c]);
+      if (!(m.emission[c] >= 0.0f && std::isfinite(m.emission[c])))
+        throwBadInput("material {}: emission {} is not a finite number >= 0", m.name, m.emission[c]);
     }
   RadiosityMesh mesh;
   Bounds bounds;
@@ -255,7 +270,8 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
       mesh.patches.push_back(patch);
     }
   if (mesh.patches.empty())
-    throwBadInput("{}: no triangle with an area ({} without, {} with corners that are not finite)", scene.name, mesh.degenerate, mesh.notFinite);
+    throwBadInput("{}: no triangle with an area ({} without, {} with corners that are not finite)", scene.name,
+                  mesh.degenerate, mesh.notFinite);
   numberLightVertices(mesh, settings);
   if (settings.longestEdge > 0.0) {
     const double most = settings.longestEdge * settings.longestEdge * (1.0 + 1e-9);

@@ -14,12 +14,14 @@ namespace {
 
 constexpr GLuint kLightBinding = 0, kFacesBinding = 2;  // 1: direct light
 
-RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiosityView::Settings& settings) {
+RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                              const RadiosityView::Settings& settings) {
   gl::requireWithin(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, 2, "the view of a radiosity solution");
   if (!settings.file.empty() && std::filesystem::exists(settings.file)) {
     RadiositySolution solution = loadSolution(settings.file, scene);
     if (activeRadiosityDeviations(solution.deviations) != activeRadiosityDeviations(settings.solution.deviations))
-      throwBadInput("{}: solved with other deviations ({}): name another file", settings.file.string(), fmt::join(activeRadiosityDeviations(solution.deviations), ", "));
+      throwBadInput("{}: solved with other deviations ({}): name another file", settings.file.string(),
+                    fmt::join(activeRadiosityDeviations(solution.deviations), ", "));
     checkSettings(settings.file, solution, settings.solution);
     return solution;
   }
@@ -35,8 +37,11 @@ RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& pr
 
 }  // namespace
 
-RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings, const glm::dvec3& origin)
-    : settings_(settings), solution_(solveOrLoad(context, programs, scene, settings)), lit_(litScene(scene, solution_.mesh, origin)) {
+RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                             const Settings& settings, const glm::dvec3& origin)
+    : settings_(settings),
+      solution_(solveOrLoad(context, programs, scene, settings)),
+      lit_(litScene(scene, solution_.mesh, origin)) {
   std::vector<glm::dvec3> patchLight = solution_.irradiance;
   for (std::size_t i = 0; i < patchLight.size(); ++i) {
     // Pixels ask for what may have sharp shadows; the sky's light is always that of the patches.
@@ -56,14 +61,19 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
     }
   light_ = gl::Buffer("radiosity light", corners.size() * sizeof(float), corners.data(), GL_STATIC_DRAW);
   if (settings.direct != Direct::pixels) return;
-  // A face's plane, and the largest coordinate of the triangle that it is part of: that is what rounds where rays meet it.
+  // A face's plane, and the largest coordinate of the triangle that it is part of: that is what rounds where rays meet
+  // it.
   std::vector<float> faces;
   for (const Patch& patch : solution_.mesh.patches) {
     const glm::vec3 normal(patch.faceNormal);
     glm::dvec3 largest(0.0);
-    for (std::size_t k = 0; k < 3; ++k) largest = glm::max(largest, glm::abs(glm::dvec3(scene.vertices[scene.indices[3 * patch.triangle + k]].position) - origin));
-    faces.insert(faces.end(), {normal.x, normal.y, normal.z, static_cast<float>(glm::dot(glm::dvec3(normal), solution_.mesh.corners(patch)[0] - origin)),
-                               static_cast<float>(std::max({largest.x, largest.y, largest.z}))});
+    for (std::size_t k = 0; k < 3; ++k)
+      largest = glm::max(largest,
+                         glm::abs(glm::dvec3(scene.vertices[scene.indices[3 * patch.triangle + k]].position) - origin));
+    faces.insert(faces.end(),
+                 {normal.x, normal.y, normal.z,
+                  static_cast<float>(glm::dot(glm::dvec3(normal), solution_.mesh.corners(patch)[0] - origin)),
+                  static_cast<float>(std::max({largest.x, largest.y, largest.z}))});
   }
   faces_ = gl::Buffer("radiosity faces", faces.size() * sizeof(float), faces.data(), GL_STATIC_DRAW);
 }
@@ -71,7 +81,11 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
 SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene) const {
   const auto load = [&](const char* name, bool masked) {
     gl::ShaderFlags flags = gpuScene.materialFlags(masked);
-    flags.insert(flags.end(), {{"EMISSION", gpuScene.needs().emission && settings_.light != Light::indirect}, {"MESH", settings_.mesh}, {"DIRECT_RAYS", takesDirectRays()}, {"ALPHA_MASKS", 0}, {"SHARED_STACK", 0}});
+    flags.insert(flags.end(), {{"EMISSION", gpuScene.needs().emission && settings_.light != Light::indirect},
+                               {"MESH", settings_.mesh},
+                               {"DIRECT_RAYS", takesDirectRays()},
+                               {"ALPHA_MASKS", 0},
+                               {"SHARED_STACK", 0}});
     return &programs.loadRaster(name, "radiosity/view.vert", "radiosity/view.frag", flags);
   };
   SurfacePrograms result;
@@ -82,7 +96,8 @@ SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const 
 
 const gl::Program* RadiosityView::loadMapping(gl::ProgramLibrary& programs) const {
   if (settings_.mapping == Mapping::tone) return nullptr;
-  const gl::Program& program = programs.loadRaster("radiosity display", "lib/fullscreen.vert", "radiosity/display.frag", {{"MAPPING", static_cast<int>(settings_.mapping)}});
+  const gl::Program& program = programs.loadRaster("radiosity display", "lib/fullscreen.vert", "radiosity/display.frag",
+                                                   {{"MAPPING", static_cast<int>(settings_.mapping)}});
   program.use();
   program.set("decades", settings_.decades);
   return &program;

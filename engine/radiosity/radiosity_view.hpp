@@ -1,8 +1,9 @@
 // A radiosity solution in the frame: solved or loaded once, then rendered from anywhere in real time.
 //
-// Input: a Scene. Output, each frame: radiance of the patches into the bound target, irradiance interpolated between light vertices (never across an
-// edge or to another material) and multiplied by the texture. Direct light is included, or left to shadow rays per pixel
-// (shaders/radiosity/direct_rays.glsl, bound by the caller): then patches give only reflected light.
+// Input: a Scene. Output, each frame: radiance of the patches into the bound target, irradiance interpolated between
+// light vertices (never across an edge or to another material) and multiplied by the texture. Direct light is included,
+// or left to shadow rays per pixel (shaders/radiosity/direct_rays.glsl, bound by the caller): then patches give only
+// reflected light.
 #pragma once
 
 #include "base/named_values.hpp"
@@ -20,23 +21,28 @@ namespace lucerna {
 class RadiosityView {
  public:
   enum class Mapping { tone, linear, logarithmic, falseColours };  ///< tone: the engine's own
-  enum class Light { all, direct, indirect };                      ///< direct: of lamps, the sky and emissive patches
-  enum class Direct { automatic, patches, pixels };                ///< pixels: shadow rays per pixel instead of a value per patch; automatic: patches
+  enum class Light { all, direct, indirect };  ///< direct: of lamps, the sky and emissive patches
+  enum class Direct {
+    automatic,
+    patches,
+    pixels
+  };  ///< pixels: shadow rays per pixel instead of a value per patch; automatic: patches
 
   struct Settings {
     RadiositySolutionSettings solution;
     std::filesystem::path file;  ///< loaded if it exists, else saved here once solved; empty: neither
     Mapping mapping = Mapping::tone;
-    float decades = 4.0f;        ///< spanned by logarithmic and false colours below 1 / exposure
-    bool mesh = false;           ///< patch edges drawn over
-    bool flat = false;           ///< patches not interpolated
+    float decades = 4.0f;  ///< spanned by logarithmic and false colours below 1 / exposure
+    bool mesh = false;  ///< patch edges drawn over
+    bool flat = false;  ///< patches not interpolated
     Light light = Light::all;
     Direct direct = Direct::automatic;
-    int shadowRays = 32;         ///< per pixel, divided among the emissive triangles; not read here
+    int shadowRays = 32;  ///< per pixel, divided among the emissive triangles; not read here
   };
 
   /// Solves or loads; throws as solveScene and loadSolution do. scene() is drawn about `origin`.
-  RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings, const glm::dvec3& origin = glm::dvec3(0.0));
+  RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings,
+                const glm::dvec3& origin = glm::dvec3(0.0));
 
   /// The patches, for GpuScene.
   const Scene& scene() const { return lit_; }
@@ -56,7 +62,9 @@ class RadiosityView {
   gl::Buffer light_, faces_;
 };
 
-constexpr std::array<std::string_view, 4> namesOf(RadiosityView::Mapping) { return {"tone", "linear", "log", "false-colours"}; }
+constexpr std::array<std::string_view, 4> namesOf(RadiosityView::Mapping) {
+  return {"tone", "linear", "log", "false-colours"};
+}
 constexpr std::array<std::string_view, 3> namesOf(RadiosityView::Direct) { return {"auto", "patches", "pixels"}; }
 
 }  // namespace lucerna

@@ -18,7 +18,7 @@ namespace {
 constexpr char kMagic[8] = {'L', 'U', 'C', 'R', 'O', 'W', 'S', '\n'};
 constexpr std::uint32_t kVersion = 2;  // 2: rows depend on the visibility method
 
-constexpr float kMostFactor = 1.01f;      // fractions of a hemisphere, with rounding
+constexpr float kMostFactor = 1.01f;  // fractions of a hemisphere, with rounding
 
 struct Header {
   char magic[8];
@@ -39,7 +39,9 @@ std::uint64_t checksumOf(const BlockHeader& header, std::span<const std::uint8_t
   return sum.value();
 }
 
-std::size_t dataBytes(const BlockHeader& h) { return 12 * static_cast<std::size_t>(h.rows) + 8 * static_cast<std::size_t>(h.entries); }
+std::size_t dataBytes(const BlockHeader& h) {
+  return 12 * static_cast<std::size_t>(h.rows) + 8 * static_cast<std::size_t>(h.entries);
+}
 
 bool readAll(int descriptor, void* data, std::size_t bytes) {
   auto* at = static_cast<std::uint8_t*>(data);
@@ -55,7 +57,9 @@ bool readAll(int descriptor, void* data, std::size_t bytes) {
 
 }  // namespace
 
-RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches, const std::function<void(const FormFactorRows&)>& take) : file_(file), patches_(patches) {
+RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches,
+                 const std::function<void(const FormFactorRows&)>& take)
+    : file_(file), patches_(patches) {
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) throwBadInput("{}: cannot be opened for writing: {}", file.string(), std::strerror(errno));
   const auto refuse = [&](const char* why) {
@@ -68,7 +72,8 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
   Header header{};
   if (status.st_size > 0) {
     if (!readAll(descriptor_, &header, sizeof header)) {
-      // Killed before its first bytes were written, or a foreign file: only a prefix of our own magic may be overwritten.
+      // Killed before its first bytes were written, or a foreign file: only a prefix of our own magic may be
+      // overwritten.
       char start[sizeof kMagic] = {};
       const auto got = static_cast<std::size_t>(std::max<ssize_t>(::pread(descriptor_, start, sizeof start, 0), 0));
       if (std::memcmp(start, kMagic, got) != 0) refuse("is not a checkpoint of radiosity");
@@ -76,7 +81,8 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
     } else {
       if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) refuse("is not a checkpoint of radiosity");
       if (header.version != kVersion) refuse("is a checkpoint of another version of this program");
-      if (header.fingerprint != fingerprint || header.patches != patches) refuse("is the checkpoint of another scene or of other settings");
+      if (header.fingerprint != fingerprint || header.patches != patches)
+        refuse("is the checkpoint of another scene or of other settings");
     }
   }
   end_ = header.version ? sizeof(Header) : 0;
@@ -87,14 +93,16 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
       expected += static_cast<std::uint32_t>(rows->counts.size());
     }
   }
-  if (::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) throwBadInput("{}: {}", file.string(), std::strerror(errno));
+  if (::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0)
+    throwBadInput("{}: {}", file.string(), std::strerror(errno));
   ::lseek(descriptor_, static_cast<off_t>(end_), SEEK_SET);
   if (end_ == 0) {
     std::memcpy(header.magic, kMagic, sizeof kMagic);
     header.version = kVersion;
     header.patches = patches;
     header.fingerprint = fingerprint;
-    if (::write(descriptor_, &header, sizeof header) != static_cast<ssize_t>(sizeof header)) refuse("cannot be written: is the disk full?");
+    if (::write(descriptor_, &header, sizeof header) != static_cast<ssize_t>(sizeof header))
+      refuse("cannot be written: is the disk full?");
     end_ = sizeof header;
   }
 }
@@ -102,8 +110,11 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
 std::optional<FormFactorRows> RowFile::readBlock(std::uint32_t expected, std::uint64_t& end) {
   struct stat status {};
   BlockHeader block{};
-  if (::fstat(descriptor_, &status) != 0 || !readAll(descriptor_, &block, sizeof block) || block.first != expected || block.rows == 0 || block.rows > patches_ - expected ||
-      block.entries > static_cast<std::uint64_t>(status.st_size) || block.entries > static_cast<std::uint64_t>(block.rows) * patches_ || end + sizeof block + dataBytes(block) > static_cast<std::uint64_t>(status.st_size))
+  if (::fstat(descriptor_, &status) != 0 || !readAll(descriptor_, &block, sizeof block) || block.first != expected ||
+      block.rows == 0 || block.rows > patches_ - expected ||
+      block.entries > static_cast<std::uint64_t>(status.st_size) ||
+      block.entries > static_cast<std::uint64_t>(block.rows) * patches_ ||
+      end + sizeof block + dataBytes(block) > static_cast<std::uint64_t>(status.st_size))
     return std::nullopt;
   std::vector<std::uint8_t> data(dataBytes(block));
   if (!readAll(descriptor_, data.data(), data.size()) || checksumOf(block, data) != block.checksum) return std::nullopt;
@@ -123,9 +134,11 @@ std::optional<FormFactorRows> RowFile::readBlock(std::uint32_t expected, std::ui
   // The checksum finds damage; this finds foreign writes.
   if (std::accumulate(rows.counts.begin(), rows.counts.end(), std::uint64_t{0}) != block.entries) return std::nullopt;
   for (std::size_t i = 0; i < rows.patches.size(); ++i)
-    if (rows.patches[i] >= patches_ || !(rows.factors[i] >= 0.0f && rows.factors[i] <= kMostFactor)) return std::nullopt;
+    if (rows.patches[i] >= patches_ || !(rows.factors[i] >= 0.0f && rows.factors[i] <= kMostFactor))
+      return std::nullopt;
   for (std::size_t i = 0; i < rows.fronts.size(); ++i)
-    if (!(rows.fronts[i] >= 0.0f && rows.backs[i] >= 0.0f && rows.fronts[i] + rows.backs[i] <= kMostFactor)) return std::nullopt;
+    if (!(rows.fronts[i] >= 0.0f && rows.backs[i] >= 0.0f && rows.fronts[i] + rows.backs[i] <= kMostFactor))
+      return std::nullopt;
   end += sizeof block + data.size();
   return rows;
 }
@@ -135,7 +148,8 @@ void RowFile::forEach(const std::function<void(const FormFactorRows&)>& take) {
   std::uint32_t expected = 0;
   for (std::uint64_t at = sizeof(Header); at < end_;) {
     const auto rows = readBlock(expected, at);
-    if (!rows) throwBadInput("{}: was changed or damaged by something else while rows were read from it", file_.string());
+    if (!rows)
+      throwBadInput("{}: was changed or damaged by something else while rows were read from it", file_.string());
     expected += static_cast<std::uint32_t>(rows->counts.size());
     take(*rows);
   }
@@ -144,7 +158,9 @@ void RowFile::forEach(const std::function<void(const FormFactorRows&)>& take) {
 std::optional<std::uint64_t> RowFile::fingerprintOf(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   Header header{};
-  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion) return std::nullopt;
+  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) ||
+      std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion)
+    return std::nullopt;
   return header.fingerprint;
 }
 
@@ -153,11 +169,14 @@ RowFile::~RowFile() {
 }
 
 void RowFile::append(const FormFactorRows& rows) {
-  struct stat here {}, there {};
-  if (::fstat(descriptor_, &here) != 0 || ::stat(file_.c_str(), &there) != 0 || here.st_ino != there.st_ino || here.st_dev != there.st_dev ||
-      static_cast<std::uint64_t>(here.st_size) != end_)
-    throwBadInput("{}: was changed or replaced by something else while rows were written to it; it is left as it is", file_.string());
-  BlockHeader block{static_cast<std::uint32_t>(rows.first), static_cast<std::uint32_t>(rows.counts.size()), rows.patches.size(), 0};
+  struct stat here {
+  }, there{};
+  if (::fstat(descriptor_, &here) != 0 || ::stat(file_.c_str(), &there) != 0 || here.st_ino != there.st_ino ||
+      here.st_dev != there.st_dev || static_cast<std::uint64_t>(here.st_size) != end_)
+    throwBadInput("{}: was changed or replaced by something else while rows were written to it; it is left as it is",
+                  file_.string());
+  BlockHeader block{static_cast<std::uint32_t>(rows.first), static_cast<std::uint32_t>(rows.counts.size()),
+                    rows.patches.size(), 0};
   std::vector<std::uint8_t> bytes(sizeof block + dataBytes(block));
   std::uint8_t* at = bytes.data() + sizeof block;
   const auto put = [&](const auto& values) {

@@ -1,7 +1,7 @@
 // Rows of the form factor matrix on disk, appended per submission (no GL), so that a killed run can be resumed.
 //
-// A header (magic, version, fingerprint, patches), then blocks, each with its own length and checksum. A truncated or damaged block
-// ends the file: it and everything after it is recomputed.
+// A header (magic, version, fingerprint, patches), then blocks, each with its own length and checksum. A truncated or
+// damaged block ends the file: it and everything after it is recomputed.
 #pragma once
 
 #include "radiosity/hemicubes.hpp"
@@ -15,16 +15,18 @@ namespace lucerna {
 
 class RowFile {
  public:
-  /// Opens or creates the file; calls `take` for each complete block, in order. Throws Error(badInput) if the file is not a row file, of
-  /// another version, or of another scene or settings (`fingerprint`); it is then left unchanged.
-  RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches, const std::function<void(const FormFactorRows&)>& take);
+  /// Opens or creates the file; calls `take` for each complete block, in order. Throws Error(badInput) if the file is
+  /// not a row file, of another version, or of another scene or settings (`fingerprint`); it is then left unchanged.
+  RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches,
+          const std::function<void(const FormFactorRows&)>& take);
   ~RowFile();
   /// Of the existing file; empty if it is not a row file or of another version.
   static std::optional<std::uint64_t> fingerprintOf(const std::filesystem::path& file);
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;
 
-  /// Rows must follow the previous ones. On a full disk the file is cut back to its last complete block, and Error(badInput) is thrown.
+  /// Rows must follow the previous ones. On a full disk the file is cut back to its last complete block, and
+  /// Error(badInput) is thrown.
   void append(const FormFactorRows& rows);
   /// All its rows, block by block, in order. Throws Error(badInput) if they are gone.
   void forEach(const std::function<void(const FormFactorRows&)>& take);

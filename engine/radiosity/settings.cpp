@@ -12,11 +12,16 @@ namespace lucerna {
 namespace {
 
 constexpr std::array kDeviations{
-    RadiosityDeviation{"radiosity.published-map", "pixels weighted by 1/r^2 and b/r^2 instead of the delta form factor", &RadiosityDeviations::publishedMap},
-    RadiosityDeviation{"radiosity.24-bit", "radiosity in whole numbers of 24 bits, rounded down", &RadiosityDeviations::values24Bit},
-    RadiosityDeviation{"radiosity.centroid", "one hemicube a patch, at its centroid, whatever its size", &RadiosityDeviations::centroid},
-    RadiosityDeviation{"radiosity.fixed-orientation", "hemicubes turned towards the first corner, not rolled at random", &RadiosityDeviations::fixedOrientation},
-    RadiosityDeviation{"radiosity.no-near-field", "near pairs and small sources by pixels alone, without a repair", &RadiosityDeviations::noNearField},
+    RadiosityDeviation{"radiosity.published-map", "pixels weighted by 1/r^2 and b/r^2 instead of the delta form factor",
+                       &RadiosityDeviations::publishedMap},
+    RadiosityDeviation{"radiosity.24-bit", "radiosity in whole numbers of 24 bits, rounded down",
+                       &RadiosityDeviations::values24Bit},
+    RadiosityDeviation{"radiosity.centroid", "one hemicube a patch, at its centroid, whatever its size",
+                       &RadiosityDeviations::centroid},
+    RadiosityDeviation{"radiosity.fixed-orientation", "hemicubes turned towards the first corner, not rolled at random",
+                       &RadiosityDeviations::fixedOrientation},
+    RadiosityDeviation{"radiosity.no-near-field", "near pairs and small sources by pixels alone, without a repair",
+                       &RadiosityDeviations::noNearField},
 };
 
 }  // namespace
@@ -38,7 +43,8 @@ void applyRadiosityDeviation(RadiosityDeviations& deviations, std::string_view a
   }
   const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
   if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
-  const auto found = std::find_if(kDeviations.begin(), kDeviations.end(), [&](const RadiosityDeviation& d) { return d.name == name; });
+  const auto found =
+      std::find_if(kDeviations.begin(), kDeviations.end(), [&](const RadiosityDeviation& d) { return d.name == name; });
   if (found == kDeviations.end()) {
     std::string known;
     for (const RadiosityDeviation& d : kDeviations) known += (known.empty() ? "" : ", ") + std::string(d.name);

@@ -1,6 +1,7 @@
 // Settings shared by the published program (original_solver) and the corrected one (no GL, pure).
 //
-// Radiosity here is exitance in the scene's own units; the original counts it in steps of its 24-bit numbers (rad_file.hpp).
+// Radiosity here is exitance in the scene's own units; the original counts it in steps of its 24-bit numbers
+// (rad_file.hpp).
 #pragma once
 
 #include "base/named_values.hpp"
@@ -14,18 +15,27 @@
 namespace lucerna {
 
 /// How the linear system is solved. The original has the first two.
-enum class RadiositySolver { automatic, jacobi, gaussSeidel, progressive, overshoot, anderson, perRoom, conjugateGradients };
+enum class RadiositySolver {
+  automatic,
+  jacobi,
+  gaussSeidel,
+  progressive,
+  overshoot,
+  anderson,
+  perRoom,
+  conjugateGradients
+};
 constexpr std::array<std::string_view, 8> namesOf(RadiositySolver) {
   return {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "per-room", "cg"};
 }
 
 /// Deviations of the published program; false is correct.
 struct RadiosityDeviations {
-  bool publishedMap = false;      ///< pixels weighted 1/r^2 (top) and b/r^2 (sides) instead of the delta form factor
-  bool values24Bit = false;       ///< 24-bit integers, rounded down, instead of floats
-  bool centroid = false;          ///< one hemicube at a triangle's centroid, whatever its size
+  bool publishedMap = false;  ///< pixels weighted 1/r^2 (top) and b/r^2 (sides) instead of the delta form factor
+  bool values24Bit = false;  ///< 24-bit integers, rounded down, instead of floats
+  bool centroid = false;  ///< one hemicube at a triangle's centroid, whatever its size
   bool fixedOrientation = false;  ///< hemicubes turned towards the first corner instead of rolled at random
-  bool noNearField = false;       ///< no correction closer than the near plane or a patch's own size
+  bool noNearField = false;  ///< no correction closer than the near plane or a patch's own size
 };
 
 /// A named switch, as in engine/settings/deviations.hpp. Names begin with "radiosity.", once "rad.".

@@ -26,10 +26,12 @@ namespace lucerna {
 namespace {
 
 constexpr double kEdges = 12.0;  // default: longest edges that span the scene
-constexpr std::size_t kBytesPerEntry = 32;  // of a form factor, its mirrored copy and their mean, while they are repaired
+constexpr std::size_t kBytesPerEntry =
+    32;  // of a form factor, its mirrored copy and their mean, while they are repaired
 
 std::size_t freeMemory() {
-  return static_cast<std::size_t>(std::max(sysconf(_SC_AVPHYS_PAGES), 1L)) * static_cast<std::size_t>(std::max(sysconf(_SC_PAGESIZE), 1L));
+  return static_cast<std::size_t>(std::max(sysconf(_SC_AVPHYS_PAGES), 1L)) *
+         static_cast<std::size_t>(std::max(sysconf(_SC_PAGESIZE), 1L));
 }
 
 std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings& s) {
@@ -60,8 +62,9 @@ void append(FormFactorMatrix& matrix, const FormFactorRows& rows) {
 }
 
 /// One mesh solved: direct light, form factors, system.
-void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& settings, int refinement,
-               const std::filesystem::path& checkpoint, const std::function<bool(const RadiosityStage&)>& onStage, RadiositySolution& solution) {
+void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+               const RadiositySolutionSettings& settings, int refinement, const std::filesystem::path& checkpoint,
+               const std::function<bool(const RadiosityStage&)>& onStage, RadiositySolution& solution) {
   const RadiosityMesh& mesh = solution.mesh;
   const std::size_t n = mesh.patches.size();
   const auto stage = [&](RadiosityStage::Kind kind, std::size_t done, const RadiosityProgress& progress = {}) {
@@ -71,7 +74,8 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   const RayScene rays(sceneOf(mesh), context.capabilities());
   if (!settings.deviations.centroid) cutHiddenParts(programs, rays, solution.mesh);
   solution.direct = directLight(programs, rays, scene, mesh);
-  solution.fromSky = analyse(scene).environment ? skyLight(programs, rays, scene, mesh) : std::vector<glm::dvec3>(n, glm::dvec3(0.0));
+  solution.fromSky =
+      analyse(scene).environment ? skyLight(programs, rays, scene, mesh) : std::vector<glm::dvec3>(n, glm::dvec3(0.0));
 
   FormFactorMatrix matrix;
   solution.fronts.clear();
@@ -80,27 +84,35 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
   bool kept = true, stopped = false;
   const auto stop = [&] {
-    throw Stopped(fmt::format("stopped after {} of {} hemicubes{}", solution.fronts.size(), n,
-                              checkpoint.empty() ? std::string() : fmt::format("; the same command resumes from {}", checkpoint.string())));
+    throw Stopped(fmt::format(
+        "stopped after {} of {} hemicubes{}", solution.fronts.size(), n,
+        checkpoint.empty() ? std::string() : fmt::format("; the same command resumes from {}", checkpoint.string())));
   };
   const auto take = [&](const FormFactorRows& rows) {
     if (kept) append(matrix, rows);
     auto factor = rows.factors.begin();
-    for (const std::uint32_t count : rows.counts) rowSums.push_back(std::accumulate(factor, factor + count, 0.0)), factor += count;
+    for (const std::uint32_t count : rows.counts)
+      rowSums.push_back(std::accumulate(factor, factor + count, 0.0)), factor += count;
     solution.fronts.insert(solution.fronts.end(), rows.fronts.begin(), rows.fronts.end());
     solution.backs.insert(solution.backs.end(), rows.backs.begin(), rows.backs.end());
-    const double perPatch = static_cast<double>(matrix.entryCount()) / static_cast<double>(solution.fronts.size()), bytes = perPatch * static_cast<double>(n) * static_cast<double>(kBytesPerEntry);
+    const double perPatch = static_cast<double>(matrix.entryCount()) / static_cast<double>(solution.fronts.size()),
+                 bytes = perPatch * static_cast<double>(n) * static_cast<double>(kBytesPerEntry);
     if (kept && bytes > static_cast<double>(memory)) {
-      logWarning("radiosity: the form factors of {} patches need about {} MiB, {} are available: they are {} for each product", n, static_cast<std::size_t>(bytes) >> 20, memory >> 20,
-                 checkpoint.empty() ? "recomputed" : "read from " + checkpoint.string());
+      logWarning(
+          "radiosity: the form factors of {} patches need about {} MiB, {} are available: they are {} for each product",
+          n, static_cast<std::size_t>(bytes) >> 20, memory >> 20,
+          checkpoint.empty() ? "recomputed" : "read from " + checkpoint.string());
       kept = false;
       matrix = {};
     }
   };
   // Rows by different ways differ in their last bits: a checkpoint is gone on with as it was begun.
   HemicubeSettings asked = settings.hemicubes;
-  if (const auto begun = asked.visibility == HemicubeVisibility::automatic && !checkpoint.empty() ? RowFile::fingerprintOf(checkpoint) : std::nullopt)
-    for (const HemicubeVisibility one : {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
+  if (const auto begun = asked.visibility == HemicubeVisibility::automatic && !checkpoint.empty()
+                             ? RowFile::fingerprintOf(checkpoint)
+                             : std::nullopt)
+    for (const HemicubeVisibility one :
+         {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
       HemicubeSettings as = asked;
       as.visibility = one;
       if (rowsFingerprint(mesh, as) == *begun) asked.visibility = one;
@@ -136,8 +148,8 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     system.areas.push_back(patch.area);
     system.reflectance.push_back(patch.reflectance);
     system.emission.push_back(patch.emission + patch.reflectance * (solution.direct[i] + solution.fromSky[i]));
-    // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed. An open row sums to what its factors say: closed forms know of
-    // lights that no pixel meets.
+    // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed. An open row sums to what its
+    // factors say: closed forms know of lights that no pixel meets.
     sums.push_back(static_cast<double>(solution.fronts[i]) > 1.0 - 1e-5 ? 1.0 : std::min(1.0, rowSums[i]));
   }
   if (kept) {
@@ -145,7 +157,8 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     for (std::size_t i = 0; i < n; ++i) off += std::abs(rowSums[i] - sums[i]);
     solution.repaired = off / static_cast<double>(n);
     if (settings.repair) {
-      const double pixel = 4.0 / (std::numbers::pi * settings.hemicubes.resolution * settings.hemicubes.resolution);  // the largest delta form factor
+      const double pixel = 4.0 / (std::numbers::pi * settings.hemicubes.resolution *
+                                  settings.hemicubes.resolution);  // the largest delta form factor
       matrix.repair(system.areas, sums, hemicubes.smallSources(), settings.hemicubes.exactPixels * pixel);
       system.reciprocal = true;
     }
@@ -154,22 +167,25 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
     solution.entries = matrix.entryCount();
     system.product = [&](auto x, auto y) { matrix.multiply(x, y); };
   } else {
-    // Each product reads all rows from the checkpoint, or draws all hemicubes again where there is none. Of the repair rows get their sums; reciprocity stays as
-    // hemicubes have it.
+    // Each product reads all rows from the checkpoint, or draws all hemicubes again where there is none. Of the repair
+    // rows get their sums; reciprocity stays as hemicubes have it.
     system.rowSums = settings.repair ? sums : rowSums;
     system.product = [&](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
       const auto multiply = [&](const FormFactorRows& rows) {
         std::size_t at = 0, row = static_cast<std::size_t>(rows.first);
         for (const std::uint32_t count : rows.counts) {
           glm::dvec3 sum(0.0);
-          for (const std::size_t end = at + count; at < end; ++at) sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
+          for (const std::size_t end = at + count; at < end; ++at)
+            sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
           y[row] = settings.repair && rowSums[row] > 0.0 ? sum * (sums[row] / rowSums[row]) : sum;
           ++row;
         }
       };
       if (file) return file->forEach(multiply);
       for (std::size_t first = 0; first < n;) {
-        const FormFactorRows rows = hemicubes.rows(static_cast<int>(first), static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
+        const FormFactorRows rows =
+            hemicubes.rows(static_cast<int>(first),
+                           static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
         multiply(rows);
         first += rows.counts.size();
         solution.hemicubes += rows.counts.size();
@@ -183,7 +199,8 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
   for (std::size_t i = 0; i < n; ++i) emission[i] = mesh.patches[i].emission;
   if (std::any_of(emission.begin(), emission.end(), [](const glm::dvec3& e) { return e != glm::dvec3(0.0); })) {
     system.product(emission, solution.fromEmitters);
-    // Solvers begin with this very product where there are no lamps besides: not a second time, which is dear where rows are computed anew.
+    // Solvers begin with this very product where there are no lamps besides: not a second time, which is dear where
+    // rows are computed anew.
     system.product = [&, product = std::move(system.product)](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
       if (std::ranges::equal(x, emission)) std::ranges::copy(solution.fromEmitters, y.begin());
       else product(x, y);
@@ -211,7 +228,8 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
 double mean3(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
 /// Patches on both sides of a step in the light, and those along it, are marked.
-RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution, const PatchSettings& patches, double steep, double shortest) {
+RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution, const PatchSettings& patches,
+                          double steep, double shortest) {
   const RadiosityMesh& mesh = solution.mesh;
   double mean = 0.0, area = 0.0;
   for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
@@ -219,7 +237,8 @@ RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution,
     area += mesh.patches[i].area;
   }
   mean /= area;
-  std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::size_t>> across;  // light vertices of an edge: patch and edge
+  std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::size_t>>
+      across;  // light vertices of an edge: patch and edge
   std::vector<bool> steepPatch(mesh.patches.size(), false);
   for (std::size_t i = 0; i < mesh.patches.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -233,14 +252,19 @@ RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution,
     }
   return refined(scene, mesh, patches, [&](std::size_t i, int k) {
     const auto c = mesh.corners(mesh.patches[i]);
-    return steepPatch[i] && glm::length(c[static_cast<std::size_t>((k + 1) % 3)] - c[static_cast<std::size_t>(k)]) > 2.0 * shortest;
+    return steepPatch[i] &&
+           glm::length(c[static_cast<std::size_t>((k + 1) % 3)] - c[static_cast<std::size_t>(k)]) > 2.0 * shortest;
   });
 }
 
-/// What each deviation is in this solver. The published map knows neither closed forms nor a repair, which would hide it.
+/// What each deviation is in this solver. The published map knows neither closed forms nor a repair, which would hide
+/// it.
 RadiositySolutionSettings withDeviations(RadiositySolutionSettings settings) {
   const RadiosityDeviations& d = settings.deviations;
-  if (d.values24Bit) throwBadInput("--deviation radiosity.24-bit=on: whole numbers are the published solver's; use lucerna radiosity solve --fidelity original");
+  if (d.values24Bit)
+    throwBadInput(
+        "--deviation radiosity.24-bit=on: whole numbers are the published solver's; use lucerna radiosity solve "
+        "--fidelity original");
   if (d.publishedMap) settings.hemicubes.map = DeltaMap::published;
   if (d.publishedMap || d.noNearField) settings.hemicubes.exactPixels = 0, settings.repair = false;
   if (d.centroid) settings.hemicubes.nearDistance = 0.0f;
@@ -257,11 +281,13 @@ std::filesystem::path checkpointOf(std::filesystem::path checkpoint, int refinem
 
 void removeCheckpoints(const std::filesystem::path& checkpoint) {
   std::error_code ignored;
-  for (int refinement = 0; std::filesystem::remove(checkpointOf(checkpoint, refinement), ignored); ++refinement) continue;
+  for (int refinement = 0; std::filesystem::remove(checkpointOf(checkpoint, refinement), ignored); ++refinement)
+    continue;
 }
 
-RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& asked,
-                             const std::filesystem::path& checkpoint, const std::function<bool(const RadiosityStage&)>& onStage) {
+RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                             const RadiositySolutionSettings& asked, const std::filesystem::path& checkpoint,
+                             const std::function<bool(const RadiosityStage&)>& onStage) {
   // Far from the origin float would not hold the patches: solved near it, told in the scene's own coordinates.
   if (const glm::dvec3 origin = exactOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
     RadiositySolution solution = solveScene(context, programs, movedTo(scene, origin), asked, checkpoint, onStage);
@@ -279,7 +305,8 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
   solution.deviations = settings.deviations;
   solution.settings = textOf(asked);
   solution.mesh = makePatches(scene, patches);
-  const double shortest = (patches.longestEdge > 0.0 ? patches.longestEdge : largest / kEdges) / std::pow(2.0, settings.refinements + 1);
+  const double shortest =
+      (patches.longestEdge > 0.0 ? patches.longestEdge : largest / kEdges) / std::pow(2.0, settings.refinements + 1);
   for (int refinement = 0;; ++refinement) {
     solveMesh(context, programs, scene, settings, refinement, checkpointOf(checkpoint, refinement), onStage, solution);
     if (refinement >= settings.refinements) return solution;
@@ -289,7 +316,8 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
   }
 }
 
-std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution, std::span<const glm::dvec3> ofPatches) {
+std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution,
+                                              std::span<const glm::dvec3> ofPatches) {
   std::vector<glm::dvec3> sum(solution.mesh.lightVertices, glm::dvec3(0.0));
   std::vector<double> weight(sum.size(), 0.0);
   for (std::size_t i = 0; i < solution.mesh.patches.size(); ++i) {
@@ -302,7 +330,8 @@ std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution,
     }
   }
   std::vector<glm::vec3> values;
-  for (std::size_t v = 0; v < sum.size(); ++v) values.emplace_back(weight[v] > 0.0 ? sum[v] / weight[v] : glm::dvec3(0.0));
+  for (std::size_t v = 0; v < sum.size(); ++v)
+    values.emplace_back(weight[v] > 0.0 ? sum[v] / weight[v] : glm::dvec3(0.0));
   return values;
 }
 
@@ -312,9 +341,11 @@ Scene litScene(const Scene& scene, const RadiosityMesh& mesh, const glm::dvec3& 
   lit.indices.clear();
   lit.meshes.clear();
   for (const Patch& patch : mesh.patches)
-    for (std::size_t k = 0; k < 3; ++k) lit.vertices.push_back({glm::vec3(mesh.points[patch.point[k]] - origin), patch.texCoord[k], patch.normal[k]});
+    for (std::size_t k = 0; k < 3; ++k)
+      lit.vertices.push_back({glm::vec3(mesh.points[patch.point[k]] - origin), patch.texCoord[k], patch.normal[k]});
   std::vector<std::vector<std::uint32_t>> ofMaterial(scene.materials.size());
-  for (std::uint32_t i = 0; i < mesh.patches.size(); ++i) ofMaterial[static_cast<std::size_t>(mesh.patches[i].material)].push_back(i);
+  for (std::uint32_t i = 0; i < mesh.patches.size(); ++i)
+    ofMaterial[static_cast<std::size_t>(mesh.patches[i].material)].push_back(i);
   for (std::size_t m = 0; m < ofMaterial.size(); ++m) {
     if (ofMaterial[m].empty()) continue;
     Mesh& part = lit.meshes.emplace_back();

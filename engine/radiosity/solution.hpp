@@ -1,7 +1,9 @@
-// Corrected radiosity from start to end: patches, direct light of lamps, form factors, solution, refinement; and its files.
+// Corrected radiosity from start to end: patches, direct light of lamps, form factors, solution, refinement; and its
+// files.
 //
-// Input: a Scene. Output: irradiance and exitance of each patch (scene units), with a guaranteed error of the linear system.
-// The bound excludes errors of the mesh (constant exitance in a patch) and of form factors (visibility by pixels): README.md.
+// Input: a Scene. Output: irradiance and exitance of each patch (scene units), with a guaranteed error of the linear
+// system. The bound excludes errors of the mesh (constant exitance in a patch) and of form factors (visibility by
+// pixels): README.md.
 #pragma once
 
 #include "gl/context.hpp"
@@ -18,21 +20,22 @@
 namespace lucerna {
 
 struct RadiositySolutionSettings {
-  PatchSettings patches;           ///< longestEdge 0: a 12th of the scene's largest extent
-  bool wholeTriangles = false;     ///< patches are the scene's triangles, whatever longestEdge says
+  PatchSettings patches;  ///< longestEdge 0: a 12th of the scene's largest extent
+  bool wholeTriangles = false;  ///< patches are the scene's triangles, whatever longestEdge says
   HemicubeSettings hemicubes;
   RadiosityDeviations deviations;  ///< of the original; values24Bit is refused: only the published solver has it
   RadiositySolver solver = RadiositySolver::automatic;
-  double error = 1e-3;             ///< guaranteed: max |B - exact| over the mean of B
+  double error = 1e-3;  ///< guaranteed: max |B - exact| over the mean of B
   int mostProducts = 100000;
-  bool repair = true;              ///< reciprocity and row sums
-  int refinements = 0;             ///< how often patches are halved where light changes steeply
-  double steep = 0.1;              ///< change between patches, relative to the mean irradiance, that is refined
-  std::size_t memoryBytes = 0;     ///< for form factors; the rest is read from the checkpoint for each product, or recomputed. 0: half of the free memory
+  bool repair = true;  ///< reciprocity and row sums
+  int refinements = 0;  ///< how often patches are halved where light changes steeply
+  double steep = 0.1;  ///< change between patches, relative to the mean irradiance, that is refined
+  std::size_t memoryBytes = 0;  ///< for form factors; the rest is read from the checkpoint for each product, or
+                                ///< recomputed. 0: half of the free memory
 };
 
-/// What decides a solution, as on the command line: "radiosity.edge=0 radiosity.resolution=64 ...". Solver, memory and visibility are no part of it: with them a solution
-/// differs at most within its error.
+/// What decides a solution, as on the command line: "radiosity.edge=0 radiosity.resolution=64 ...". Solver, memory and
+/// visibility are no part of it: with them a solution differs at most within its error.
 std::string textOf(const RadiositySolutionSettings& settings);
 
 struct RadiosityStage {
@@ -45,47 +48,51 @@ struct RadiosityStage {
 struct RadiositySolution {
   RadiosityMesh mesh;
   RadiosityDeviations deviations;
-  std::string settings;                ///< textOf() its settings
-  std::vector<glm::dvec3> direct;      ///< irradiance from sun, spot and omnidirectional lights
+  std::string settings;  ///< textOf() its settings
+  std::vector<glm::dvec3> direct;  ///< irradiance from sun, spot and omnidirectional lights
   std::vector<glm::dvec3> fromEmitters;  ///< irradiance directly from emissive patches
-  std::vector<glm::dvec3> fromSky;     ///< irradiance directly from the environment
+  std::vector<glm::dvec3> fromSky;  ///< irradiance directly from the environment
   std::vector<glm::dvec3> irradiance;  ///< in total
-  std::vector<glm::dvec3> exitance;    ///< emission + reflectance * irradiance
-  std::vector<float> fronts, backs;    ///< fractions of each hemisphere
+  std::vector<glm::dvec3> exitance;  ///< emission + reflectance * irradiance
+  std::vector<float> fronts, backs;  ///< fractions of each hemisphere
   RadiosityProgress progress;
   RadiositySolver solver = RadiositySolver::automatic;
   bool reached = false;
   bool keptRows = true;
   HemicubeVisibility visibility = HemicubeVisibility::automatic;  ///< method of this run's hemicubes
-  std::size_t hemicubes = 0;           ///< computed in this run
+  std::size_t hemicubes = 0;  ///< computed in this run
   double hemicubeSeconds = 0.0, solveSeconds = 0.0;
-  std::size_t entries = 0;             ///< stored form factors
-  double repaired = 0.0;               ///< mean |row sum - fraction of fronts| before repair
+  std::size_t entries = 0;  ///< stored form factors
+  double repaired = 0.0;  ///< mean |row sum - fraction of fronts| before repair
 };
 
-/// Throws Error(badInput) for scenes without a solution and for checkpoints of another scene, other settings or another version.
-/// `checkpoint`: every submission's rows are appended to it; a later run with the same scene and settings resumes from it, to the same bits.
-/// It stays (and one more per refinement) until removeCheckpoints(). `onStage`: false stops: throws Stopped, and finished
-/// work stays in the checkpoint.
-RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RadiositySolutionSettings& settings,
-                             const std::filesystem::path& checkpoint = {}, const std::function<bool(const RadiosityStage&)>& onStage = {});
+/// Throws Error(badInput) for scenes without a solution and for checkpoints of another scene, other settings or another
+/// version. `checkpoint`: every submission's rows are appended to it; a later run with the same scene and settings
+/// resumes from it, to the same bits. It stays (and one more per refinement) until removeCheckpoints(). `onStage`:
+/// false stops: throws Stopped, and finished work stays in the checkpoint.
+RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                             const RadiositySolutionSettings& settings, const std::filesystem::path& checkpoint = {},
+                             const std::function<bool(const RadiosityStage&)>& onStage = {});
 
 /// Call it after the solution has been saved.
 void removeCheckpoints(const std::filesystem::path& checkpoint);
 
-/// Values of patches at light vertices, for interpolation: area-weighted means of the patches around; patches that see backs (inside something)
-/// count less.
+/// Values of patches at light vertices, for interpolation: area-weighted means of the patches around; patches that see
+/// backs (inside something) count less.
 std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution, std::span<const glm::dvec3> ofPatches);
 
-/// The patches as a scene of their own, three vertices per patch in order, so that gl_VertexID finds a corner's light; relative to `origin`.
+/// The patches as a scene of their own, three vertices per patch in order, so that gl_VertexID finds a corner's light;
+/// relative to `origin`.
 Scene litScene(const Scene& scene, const RadiosityMesh& mesh, const glm::dvec3& origin = glm::dvec3(0.0));
 
-/// Solution files. Versioned, checked, written completely or not at all; loading one of another scene, or a damaged one, throws Error(badInput).
+/// Solution files. Versioned, checked, written completely or not at all; loading one of another scene, or a damaged
+/// one, throws Error(badInput).
 void saveSolution(const std::filesystem::path& file, const Scene& scene, const RadiositySolution& solution);
 RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& scene);
 
-/// Compares a solution's settings with the requested ones. Throws Error(badInput) naming `file` and all differences where a setting was given
-/// (is not the default); differences from defaults give one warning.
-void checkSettings(const std::filesystem::path& file, const RadiositySolution& solution, const RadiositySolutionSettings& asked);
+/// Compares a solution's settings with the requested ones. Throws Error(badInput) naming `file` and all differences
+/// where a setting was given (is not the default); differences from defaults give one warning.
+void checkSettings(const std::filesystem::path& file, const RadiositySolution& solution,
+                   const RadiositySolutionSettings& asked);
 
 }  // namespace lucerna

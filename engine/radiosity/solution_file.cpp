@@ -33,7 +33,8 @@ struct FilePatch {
   std::int32_t material;
   std::uint32_t triangle;
   float fronts, backs;
-  double centroid[3], faceNormal[3], area, reflectance[3], emission[3], direct[3], fromEmitters[3], fromSky[3], irradiance[3], exitance[3];
+  double centroid[3], faceNormal[3], area, reflectance[3], emission[3], direct[3], fromEmitters[3], fromSky[3],
+      irradiance[3], exitance[3];
 };
 
 std::uint64_t fingerprint(const Scene& scene) {
@@ -63,14 +64,19 @@ std::uint32_t bitsOf(const RadiosityDeviations& deviations) {
 
 std::string textOf(const RadiositySolutionSettings& s) {
   std::string text = s.wholeTriangles ? "patches=triangles" : fmt::format("radiosity.edge={}", s.patches.longestEdge);
-  text += fmt::format(" radiosity.resolution={} radiosity.exact-pixels={} radiosity.part-distance={} radiosity.parts={} radiosity.seed={} radiosity.repair={} radiosity.refinements={}", s.hemicubes.resolution, s.hemicubes.exactPixels,
-                      s.hemicubes.nearDistance, s.hemicubes.mostParts, s.hemicubes.seed, s.repair ? "on" : "off", s.refinements);
+  text += fmt::format(
+      " radiosity.resolution={} radiosity.exact-pixels={} radiosity.part-distance={} radiosity.parts={} "
+      "radiosity.seed={} radiosity.repair={} radiosity.refinements={}",
+      s.hemicubes.resolution, s.hemicubes.exactPixels, s.hemicubes.nearDistance, s.hemicubes.mostParts,
+      s.hemicubes.seed, s.repair ? "on" : "off", s.refinements);
   if (s.refinements > 0) text += fmt::format(" radiosity.steep={}", s.steep);
   return text;
 }
 
-void checkSettings(const std::filesystem::path& file, const RadiositySolution& solution, const RadiositySolutionSettings& asked) {
-  const std::vector<std::string> had = wordsOf(solution.settings), now = wordsOf(textOf(asked)), usual = wordsOf(textOf({}));
+void checkSettings(const std::filesystem::path& file, const RadiositySolution& solution,
+                   const RadiositySolutionSettings& asked) {
+  const std::vector<std::string> had = wordsOf(solution.settings), now = wordsOf(textOf(asked)),
+                                 usual = wordsOf(textOf({}));
   std::string wrong, other;
   for (const std::string& word : now) {
     const std::string key = word.substr(0, word.find('=') + 1);
@@ -78,13 +84,17 @@ void checkSettings(const std::filesystem::path& file, const RadiositySolution& s
     if (before != had.end() && *before == word) continue;
     const bool isDefault = std::find(usual.begin(), usual.end(), word) != usual.end();
     const std::string was = before != had.end() ? *before : "without " + key.substr(0, key.size() - 1);
-    (isDefault ? other : wrong) += fmt::format("{}{}{}", (isDefault ? other : wrong).empty() ? "" : ", ", was, isDefault ? "" : fmt::format(" (asked for: {})", word));
+    (isDefault ? other : wrong) += fmt::format("{}{}{}", (isDefault ? other : wrong).empty() ? "" : ", ", was,
+                                               isDefault ? "" : fmt::format(" (asked for: {})", word));
   }
   if (!(solution.progress.errorBound <= asked.error)) {
     const bool isDefault = asked.error == RadiositySolutionSettings{}.error;
-    (isDefault ? other : wrong) += fmt::format("{}an error of {:.3g} (asked for: radiosity.error={:.3g})", (isDefault ? other : wrong).empty() ? "" : ", ", solution.progress.errorBound, asked.error);
+    (isDefault ? other : wrong) +=
+        fmt::format("{}an error of {:.3g} (asked for: radiosity.error={:.3g})",
+                    (isDefault ? other : wrong).empty() ? "" : ", ", solution.progress.errorBound, asked.error);
   }
-  if (!wrong.empty()) throwBadInput("{}: solved with {}: leave that out, or name another file for a new solution", file.string(), wrong);
+  if (!wrong.empty())
+    throwBadInput("{}: solved with {}: leave that out, or name another file for a new solution", file.string(), wrong);
   if (!other.empty()) logWarning("{}: shown as solved, with {}", file.string(), other);
 }
 
@@ -132,7 +142,9 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
   header.energyBalance = s.progress.energyBalance;
   header.extent = s.mesh.extent;
   std::vector<std::uint8_t> bytes;
-  const auto put = [&](const void* data, std::size_t size) { bytes.insert(bytes.end(), static_cast<const std::uint8_t*>(data), static_cast<const std::uint8_t*>(data) + size); };
+  const auto put = [&](const void* data, std::size_t size) {
+    bytes.insert(bytes.end(), static_cast<const std::uint8_t*>(data), static_cast<const std::uint8_t*>(data) + size);
+  };
   Hash checksum;
   checksum.bytes(s.settings.data(), s.settings.size());
   checksum.bytes(s.mesh.points.data(), s.mesh.points.size() * sizeof(glm::dvec3));
@@ -148,20 +160,30 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
 RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& scene) {
   const std::vector<std::uint8_t> bytes = readFileBytes(file);
   FileHeader header{};
-  if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) throwBadInput("{}: not a radiosity solution", file.string());
+  if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
+    throwBadInput("{}: not a radiosity solution", file.string());
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.version != kVersion) throwBadInput("{}: a solution of version {}, this program reads {}: solve it again", file.string(), header.version, kVersion);
-  if (header.scene != fingerprint(scene)) throwBadInput("{}: the solution of another scene, or of this one before it was changed: solve it again", file.string());
+  if (header.version != kVersion)
+    throwBadInput("{}: a solution of version {}, this program reads {}: solve it again", file.string(), header.version,
+                  kVersion);
+  if (header.scene != fingerprint(scene))
+    throwBadInput("{}: the solution of another scene, or of this one before it was changed: solve it again",
+                  file.string());
   const std::size_t most = bytes.size() / sizeof(glm::dvec3) + 1;
   if (header.points > most || header.patches > most ||
-      bytes.size() != sizeof header + header.settingsBytes + header.points * sizeof(glm::dvec3) + header.patches * sizeof(FilePatch))
-    throwBadInput("{}: {} bytes do not fit {} points and {} patches: was it truncated?", file.string(), bytes.size(), header.points, header.patches);
+      bytes.size() != sizeof header + header.settingsBytes + header.points * sizeof(glm::dvec3) +
+                          header.patches * sizeof(FilePatch))
+    throwBadInput("{}: {} bytes do not fit {} points and {} patches: was it truncated?", file.string(), bytes.size(),
+                  header.points, header.patches);
   const std::uint8_t* at = bytes.data() + sizeof header;
-  if (Hash::of(at, bytes.size() - sizeof header) != header.checksum) throwBadInput("{}: is damaged: wrong checksum", file.string());
+  if (Hash::of(at, bytes.size() - sizeof header) != header.checksum)
+    throwBadInput("{}: is damaged: wrong checksum", file.string());
   // The checksum finds damage; what was written by something else is found here.
   if (header.points == 0 || header.patches == 0) throwBadInput("{}: a solution without patches", file.string());
-  if (header.lightVertices > 3 * header.patches) throwBadInput("{}: {} light vertices for {} patches", file.string(), header.lightVertices, header.patches);
-  if (header.solver > static_cast<std::uint32_t>(RadiositySolver::conjugateGradients)) throwBadInput("{}: no such solver: {}", file.string(), header.solver);
+  if (header.lightVertices > 3 * header.patches)
+    throwBadInput("{}: {} light vertices for {} patches", file.string(), header.lightVertices, header.patches);
+  if (header.solver > static_cast<std::uint32_t>(RadiositySolver::conjugateGradients))
+    throwBadInput("{}: no such solver: {}", file.string(), header.solver);
   for (const double figure : {header.products, header.residual, header.errorBound, header.energyBalance, header.extent})
     if (!std::isfinite(figure)) throwBadInput("{}: a figure of its header is not finite", file.string());
   RadiositySolution s;
@@ -180,13 +202,15 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
     std::memcpy(&from, at + i * sizeof from, sizeof from);
     Patch& to = s.mesh.patches.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
-      if (from.point[k] >= header.points || from.light[k] >= header.lightVertices) throwBadInput("{}: patch {} has no such corner", file.string(), i);
+      if (from.point[k] >= header.points || from.light[k] >= header.lightVertices)
+        throwBadInput("{}: patch {} has no such corner", file.string(), i);
       to.point[k] = from.point[k];
       to.light[k] = from.light[k];
       to.texCoord[k] = {from.texCoord[2 * k], from.texCoord[2 * k + 1]};
       to.normal[k] = {from.normal[3 * k], from.normal[3 * k + 1], from.normal[3 * k + 2]};
     }
-    if (from.material < 0 || static_cast<std::size_t>(from.material) >= scene.materials.size()) throwBadInput("{}: patch {} has no such material", file.string(), i);
+    if (from.material < 0 || static_cast<std::size_t>(from.material) >= scene.materials.size())
+      throwBadInput("{}: patch {} has no such material", file.string(), i);
     to.material = from.material;
     if (from.triangle >= scene.triangleCount()) throwBadInput("{}: patch {} has no such triangle", file.string(), i);
     to.triangle = from.triangle;
@@ -203,7 +227,8 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
     s.fronts.push_back(from.fronts);
     s.backs.push_back(from.backs);
     double sum = from.area + from.fronts + from.backs;
-    for (const auto& values : {from.centroid, from.faceNormal, from.reflectance, from.emission, from.direct, from.fromEmitters, from.fromSky, from.irradiance, from.exitance})
+    for (const auto& values : {from.centroid, from.faceNormal, from.reflectance, from.emission, from.direct,
+                               from.fromEmitters, from.fromSky, from.irradiance, from.exitance})
       for (int c = 0; c < 3; ++c) sum += values[c];
     for (const float value : from.texCoord) sum += value;
     for (const float value : from.normal) sum += value;
@@ -213,7 +238,8 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
   s.progress = {header.products, header.residual, header.errorBound, header.energyBalance};
   s.solver = static_cast<RadiositySolver>(header.solver);
   std::uint32_t bit = 1;
-  for (const RadiosityDeviation& d : allRadiosityDeviations()) s.deviations.*d.member = (header.deviations & bit) != 0, bit *= 2;
+  for (const RadiosityDeviation& d : allRadiosityDeviations())
+    s.deviations.*d.member = (header.deviations & bit) != 0, bit *= 2;
   s.reached = true;
   return s;
 }

@@ -23,7 +23,8 @@ glm::dvec3 largest(std::span<const glm::dvec3> v) {
 /// Shared by all solvers: the system, the error bound, the count.
 class Solve {
  public:
-  Solve(const RadiositySystem& system, const SolverSettings& settings) : system_(system), settings_(settings), n_(system.areas.size()) {
+  Solve(const RadiositySystem& system, const SolverSettings& settings)
+      : system_(system), settings_(settings), n_(system.areas.size()) {
     result_.exitance = system.emission;
     result_.irradiance.assign(n_, glm::dvec3(0.0));
     double leaks = 0.0;
@@ -41,8 +42,11 @@ class Solve {
       if (q_[c] < 1.0) {
         factor_[c] = q_[c] / (1.0 - q_[c]);
       } else if (lost[c] < 1e-7 * area_) {
-        throwBadInput("reflectance 1 everywhere in a closed scene ({:.2g} of the light gets out): what is emitted can never be absorbed, so there is no "
-                      "solution; lower a reflectance or open the scene", leaks / area_);
+        throwBadInput(
+            "reflectance 1 everywhere in a closed scene ({:.2g} of the light gets out): what is emitted can never be "
+            "absorbed, so there is no "
+            "solution; lower a reflectance or open the scene",
+            leaks / area_);
       } else {
         factor_[c] = -1.0;
       }
@@ -131,7 +135,10 @@ class Solve {
       if (done) return;
       w.swap(image);
     }
-    throwBadInput("surfaces of reflectance 1 enclose light almost without a way out: no bound on the error was found in {} products; lower a reflectance", kSweeps);
+    throwBadInput(
+        "surfaces of reflectance 1 enclose light almost without a way out: no bound on the error was found in {} "
+        "products; lower a reflectance",
+        kSweeps);
   }
 
   const RadiositySystem& system_;
@@ -172,7 +179,8 @@ void gaussSeidel(Solve& solve) {
     for (std::size_t i = 0; i < solve.size(); ++i) {
       const FormFactorMatrix::Row row = s.matrix->row(i);
       glm::dvec3 sum(0.0);
-      for (std::size_t k = 0; k < row.patches.size(); ++k) sum += static_cast<double>(row.factors[k]) * exitance[row.patches[k]];
+      for (std::size_t k = 0; k < row.patches.size(); ++k)
+        sum += static_cast<double>(row.factors[k]) * exitance[row.patches[k]];
       irradiance[i] = row.scale * sum;
       const glm::dvec3 next = s.emission[i] + s.reflectance[i] * irradiance[i];
       change = glm::max(change, glm::abs(next - exitance[i]));
@@ -184,7 +192,8 @@ void gaussSeidel(Solve& solve) {
   }
 }
 
-/// Southwell's method: the patch with the most unshot light shoots [Gortler1993]; overshoot: plus the light it will receive and reflect [FedaPurgathofer1992].
+/// Southwell's method: the patch with the most unshot light shoots [Gortler1993]; overshoot: plus the light it will
+/// receive and reflect [FedaPurgathofer1992].
 void progressive(Solve& solve, bool overshoot) {
   const RadiositySystem& s = solve.system();
   const std::size_t n = solve.size();
@@ -206,7 +215,8 @@ void progressive(Solve& solve, bool overshoot) {
     const FormFactorMatrix::Row row = s.matrix->row(best);
     for (std::size_t k = 0; k < row.patches.size(); ++k) {
       const std::size_t j = row.patches[k];
-      const glm::dvec3 arrives = row.scale * static_cast<double>(row.factors[k]) * s.areas[best] / s.areas[j] * shoots;  // F_ji by reciprocity
+      const glm::dvec3 arrives =
+          row.scale * static_cast<double>(row.factors[k]) * s.areas[best] / s.areas[j] * shoots;  // F_ji by reciprocity
       irradiance[j] += arrives;
       unshot[j] += s.reflectance[j] * arrives;
       unshotFlux += s.areas[j] * s.reflectance[j] * arrives;
@@ -215,7 +225,8 @@ void progressive(Solve& solve, bool overshoot) {
     if (count % std::max<std::size_t>(n / 10, 1) != 0) continue;
     Vector exitance = jacobiStep(s, irradiance);
     // Shooting assumes exact reciprocity; the last step must include its rounding errors.
-    if (solve.boundOf(largest(unshot), solve.meanOf(exitance)) <= solve.error()) return jacobi(solve, std::move(exitance));
+    if (solve.boundOf(largest(unshot), solve.meanOf(exitance)) <= solve.error())
+      return jacobi(solve, std::move(exitance));
     if (!solve.report(irradiance, largest(unshot))) return;
   }
 }
@@ -291,8 +302,9 @@ void anderson(Solve& solve) {
   }
 }
 
-/// Jacobi with a Galerkin correction on groups of patches: the slow modes are constant in a room, so each room adds one unknown.
-/// Groups are found from the matrix itself: the sign of the slowest mode left splits every group in two [Fiedler1973].
+/// Jacobi with a Galerkin correction on groups of patches: the slow modes are constant in a room, so each room adds one
+/// unknown. Groups are found from the matrix itself: the sign of the slowest mode left splits every group in two
+/// [Fiedler1973].
 void perRoom(Solve& solve) {
   const RadiositySystem& s = solve.system();
   const std::size_t n = solve.size();
@@ -302,7 +314,8 @@ void perRoom(Solve& solve) {
   for (int split = 0; split < kSplits; ++split) {
     // Smoothing a rough start leaves the slow modes; without each group's mean, their sign tells two rooms apart.
     Vector mode(n), image(n);
-    for (std::size_t i = 0; i < n; ++i) mode[i] = glm::dvec3(static_cast<double>((i * 2654435761u) >> 7 & 1023u) / 1023.0 - 0.5, 0.0, 0.0);
+    for (std::size_t i = 0; i < n; ++i)
+      mode[i] = glm::dvec3(static_cast<double>((i * 2654435761u) >> 7 & 1023u) / 1023.0 - 0.5, 0.0, 0.0);
     for (int k = 0; k < kSmoothing; ++k) {
       std::vector<double> sum(groups, 0.0), area(groups, 0.0);
       for (std::size_t i = 0; i < n; ++i) sum[group[i]] += s.areas[i] * mode[i].x, area[group[i]] += s.areas[i];
@@ -351,7 +364,8 @@ void perRoom(Solve& solve) {
   }
 }
 
-/// Conjugate gradients on H - F rho H = F E, which is self-adjoint with vectors weighted by A rho [HestenesStiefel1952].
+/// Conjugate gradients on H - F rho H = F E, which is self-adjoint with vectors weighted by A rho
+/// [HestenesStiefel1952].
 void conjugateGradients(Solve& solve) {
   const RadiositySystem& s = solve.system();
   const std::size_t n = solve.size();
@@ -409,9 +423,13 @@ void conjugateGradients(Solve& solve) {
 RadiositySolved solveRadiosity(const RadiositySystem& system, const SolverSettings& settings) {
   Solve solve(system, settings);
   RadiositySolver solver = settings.solver;
-  if (solver == RadiositySolver::automatic) solver = system.reciprocal ? RadiositySolver::conjugateGradients : RadiositySolver::anderson;
-  const bool needsRows = solver == RadiositySolver::gaussSeidel || solver == RadiositySolver::progressive || solver == RadiositySolver::overshoot;
-  if (needsRows && !system.matrix) throwBadInput("solver {}: needs single rows, which are not stored here; give more memory or use anderson", nameOf(solver));
+  if (solver == RadiositySolver::automatic)
+    solver = system.reciprocal ? RadiositySolver::conjugateGradients : RadiositySolver::anderson;
+  const bool needsRows = solver == RadiositySolver::gaussSeidel || solver == RadiositySolver::progressive ||
+                         solver == RadiositySolver::overshoot;
+  if (needsRows && !system.matrix)
+    throwBadInput("solver {}: needs single rows, which are not stored here; give more memory or use anderson",
+                  nameOf(solver));
   if (solver == RadiositySolver::conjugateGradients && !system.reciprocal)
     throwBadInput("solver cg: needs form factors repaired to A_i F_ij = A_j F_ji; use anderson otherwise");
   switch (solver) {

@@ -97,14 +97,16 @@ struct BinaryNode {
   Box box;
   std::uint32_t left = 0, right = 0;  // 0, 0: a leaf of one reference
   std::uint32_t triangle = 0;
-  std::uint32_t references = 1;       // of the subtree
+  std::uint32_t references = 1;  // of the subtree
   bool leaf() const { return right == 0; }
 };
 
 class BinaryBuilder {
  public:
   BinaryBuilder(const std::vector<BvhTriangle>& triangles, const BvhSettings& settings) : triangles_(triangles) {
-    spareThreads_ = (settings.threads > 0 ? settings.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))) - 1;
+    spareThreads_ = (settings.threads > 0 ? settings.threads
+                                          : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))) -
+                    1;
     std::vector<Reference> all;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       all.push_back({boxOf(triangles[i]), static_cast<std::uint32_t>(i)});
@@ -141,9 +143,11 @@ class BinaryBuilder {
     std::vector<Reference> left, right;
     divide(references, node.box, spare, depth, left, right);
     const std::size_t added = left.size() + right.size() - references.size();
-    CHECK(!left.empty() && !right.empty() && added <= spare, "{} + {} references of {}, {} to spare", left.size(), right.size(), references.size(), spare);
+    CHECK(!left.empty() && !right.empty() && added <= spare, "{} + {} references of {}, {} to spare", left.size(),
+          right.size(), references.size(), spare);
     references = {};
-    const std::size_t leftSpare = (spare - added) * left.size() / (left.size() + right.size()), rightSpare = spare - added - leftSpare;
+    const std::size_t leftSpare = (spare - added) * left.size() / (left.size() + right.size()),
+                      rightSpare = spare - added - leftSpare;
     std::future<std::uint32_t> other;
     if (left.size() >= kParallelFrom && right.size() >= kParallelFrom && spareThreads_.fetch_sub(1) > 0) {
       other = std::async(std::launch::async, [&] { return build(std::move(left), leftSpare, depth + 1); });
@@ -182,8 +186,8 @@ class BinaryBuilder {
   }
 
   // `enter`: how many references begin in a bin, `leave`: how many end there.
-  static void improve(Cut& best, int axis, const std::array<Box, kBins>& boxes, const std::array<std::size_t, kBins>& enter,
-                      const std::array<std::size_t, kBins>& leave) {
+  static void improve(Cut& best, int axis, const std::array<Box, kBins>& boxes,
+                      const std::array<std::size_t, kBins>& enter, const std::array<std::size_t, kBins>& leave) {
     std::array<Box, kBins> rightBoxes{};
     std::array<std::size_t, kBins> rightCounts{};
     Box sum;
@@ -196,7 +200,8 @@ class BinaryBuilder {
     for (std::size_t b = 0; b + 1 < kBins; ++b) {
       sum.add(boxes[b]), n += enter[b];
       if (n == 0 || rightCounts[b + 1] == 0) continue;
-      const double cost = sum.halfArea() * static_cast<double>(n) + rightBoxes[b + 1].halfArea() * static_cast<double>(rightCounts[b + 1]);
+      const double cost = sum.halfArea() * static_cast<double>(n) +
+                          rightBoxes[b + 1].halfArea() * static_cast<double>(rightCounts[b + 1]);
       if (cost < best.cost) best = {cost, axis, static_cast<int>(b), sum, rightBoxes[b + 1]};
     }
   }
@@ -243,11 +248,13 @@ class BinaryBuilder {
       std::array<Box, kBins> boxes{};
       std::array<std::size_t, kBins> enter{}, leave{};
       for (const Reference& r : references) {
-        const int first = binOf(r.box.min[axis], low, width), last = std::max(first, binOf(r.box.max[axis], low, width));
+        const int first = binOf(r.box.min[axis], low, width),
+                  last = std::max(first, binOf(r.box.max[axis], low, width));
         ++enter[static_cast<std::size_t>(first)], ++leave[static_cast<std::size_t>(last)];
         for (int b = first; b <= last; ++b) {
           if (first == last) boxes[static_cast<std::size_t>(b)].add(r.box);
-          else if (const auto part = clip(r, axis, plane(box, axis, b), plane(box, axis, b + 1))) boxes[static_cast<std::size_t>(b)].add(*part);
+          else if (const auto part = clip(r, axis, plane(box, axis, b), plane(box, axis, b + 1)))
+            boxes[static_cast<std::size_t>(b)].add(*part);
         }
       }
       improve(best, axis, boxes, enter, leave);
@@ -256,8 +263,8 @@ class BinaryBuilder {
   }
 
   // Splits references crossed by the plane if that costs less than keeping them on one side [Stich2009 section 4.4].
-  bool divideInSpace(const std::vector<Reference>& references, const Box& box, const Cut& cut, std::size_t spare, std::vector<Reference>& left,
-                     std::vector<Reference>& right) const {
+  bool divideInSpace(const std::vector<Reference>& references, const Box& box, const Cut& cut, std::size_t spare,
+                     std::vector<Reference>& left, std::vector<Reference>& right) const {
     const float at = plane(box, cut.axis, cut.bin + 1);
     Box leftBox = cut.left, rightBox = cut.right;
     std::vector<const Reference*> crossing;
@@ -273,9 +280,11 @@ class BinaryBuilder {
       const auto cost = [](const Box& a, std::size_t n, const Box& b, std::size_t m) {
         return a.halfArea() * static_cast<double>(n) + b.halfArea() * static_cast<double>(m);
       };
-      const double both = cost(leftBox, nLeft, rightBox, nRight), onlyLeft = cost(leftWhole, nLeft, rightBox, nRight - 1),
+      const double both = cost(leftBox, nLeft, rightBox, nRight),
+                   onlyLeft = cost(leftWhole, nLeft, rightBox, nRight - 1),
                    onlyRight = cost(leftBox, nLeft - 1, rightWhole, nRight);
-      const auto partLeft = clip(*r, cut.axis, r->box.min[cut.axis], at), partRight = clip(*r, cut.axis, at, r->box.max[cut.axis]);
+      const auto partLeft = clip(*r, cut.axis, r->box.min[cut.axis], at),
+                 partRight = clip(*r, cut.axis, at, r->box.max[cut.axis]);
       if (both < std::min(onlyLeft, onlyRight) && spare > 0 && partLeft && partRight) {
         left.push_back({*partLeft, r->triangle}), right.push_back({*partRight, r->triangle});
         --spare;
@@ -285,12 +294,14 @@ class BinaryBuilder {
         right.push_back(*r), rightBox = rightWhole, --nLeft;
       }
     }
-    const bool good = !left.empty() && !right.empty() && left.size() < references.size() && right.size() < references.size();
+    const bool good =
+        !left.empty() && !right.empty() && left.size() < references.size() && right.size() < references.size();
     if (!good) left.clear(), right.clear();
     return good;
   }
 
-  void divide(std::vector<Reference>& references, const Box& box, std::size_t spare, int depth, std::vector<Reference>& left, std::vector<Reference>& right) const {
+  void divide(std::vector<Reference>& references, const Box& box, std::size_t spare, int depth,
+              std::vector<Reference>& left, std::vector<Reference>& right) const {
     Box centres;
     for (const Reference& r : references) centres.add(r.box.centre());
     // Halve once only halving keeps the depth below its bound.
@@ -304,7 +315,8 @@ class BinaryBuilder {
       }
       if (object.axis >= 0) {
         const float low = centres.min[object.axis], width = centres.max[object.axis] - low;
-        for (const Reference& r : references) (binOf(r.box.centre()[object.axis], low, width) <= object.bin ? left : right).push_back(r);
+        for (const Reference& r : references)
+          (binOf(r.box.centre()[object.axis], low, width) <= object.bin ? left : right).push_back(r);
         return;
       }
     }
@@ -354,7 +366,8 @@ void encodeBoxes(BvhNode& node, const std::array<Box, BVH_WIDTH>& children) {
   }
 }
 
-// Chooses which nodes of the binary hierarchy become wide nodes and leaves, for the least expected cost [Ylitie2017 section 3.1].
+// Chooses which nodes of the binary hierarchy become wide nodes and leaves, for the least expected cost [Ylitie2017
+// section 3.1].
 class Collapse {
  public:
   Collapse(const std::vector<BinaryNode>& binary, const std::vector<BvhTriangle>& triangles, Bvh& result)
@@ -372,7 +385,8 @@ class Collapse {
 
  private:
   static constexpr std::size_t kMaxRoots = BVH_WIDTH - 1;
-  // cost[i - 1]: of a subtree as a forest of at most i trees; left[i - 1]: how many of those are in its left child, 0: one tree less is as good.
+  // cost[i - 1]: of a subtree as a forest of at most i trees; left[i - 1]: how many of those are in its left child, 0:
+  // one tree less is as good.
   struct Choice {
     std::array<float, kMaxRoots> cost;
     std::array<std::uint8_t, kMaxRoots> left;
@@ -384,7 +398,8 @@ class Collapse {
     const BinaryNode& node = binary_[n];
     Choice& c = choices_[n];
     const auto area = static_cast<float>(node.box.halfArea());
-    const float leafCost = node.references <= BVH_MAX_LEAF ? area * static_cast<float>(node.references) * kBvhTriangleCost : kInfinity;
+    const float leafCost =
+        node.references <= BVH_MAX_LEAF ? area * static_cast<float>(node.references) * kBvhTriangleCost : kInfinity;
     if (node.leaf()) {
       c.cost.fill(leafCost), c.left.fill(0), c.leaf = true;
       return;
@@ -394,7 +409,8 @@ class Collapse {
     const auto distribute = [&](std::size_t roots) {
       std::pair<float, std::size_t> best{kInfinity, 0};
       for (std::size_t k = 1; k < roots; ++k)
-        if (k <= kMaxRoots && roots - k <= kMaxRoots) best = std::min(best, std::pair{l.cost[k - 1] + r.cost[roots - k - 1], k});
+        if (k <= kMaxRoots && roots - k <= kMaxRoots)
+          best = std::min(best, std::pair{l.cost[k - 1] + r.cost[roots - k - 1], k});
       return best;
     };
     const auto [childrenCost, childrenOfLeft] = distribute(BVH_WIDTH);
@@ -424,8 +440,8 @@ class Collapse {
     gatherTriangles(binary_[n].left, out), gatherTriangles(binary_[n].right, out);
   }
 
-  // A child's place says when rays visit it: those whose direction has the signs s = place bits (4: x, 2: y, 1: z; set: negative) visit it
-  // first, so it should lie far back against such directions. Greedily by what a place gains.
+  // A child's place says when rays visit it: those whose direction has the signs s = place bits (4: x, 2: y, 1: z; set:
+  // negative) visit it first, so it should lie far back against such directions. Greedily by what a place gains.
   std::array<int, BVH_WIDTH> arrange(const std::vector<std::uint32_t>& children, const Box& box) const {
     std::array<int, BVH_WIDTH> childAt;
     childAt.fill(-1);
@@ -460,7 +476,8 @@ class Collapse {
     CHECK(depth <= BVH_MAX_DEPTH && children.size() <= BVH_WIDTH, "depth {}, {} children", depth, children.size());
     BvhStatistics& statistics = result_.statistics;
     statistics.depth = std::max(statistics.depth, depth);
-    const double rootArea = binary_[0].box.halfArea(), area = rootArea > 0.0 ? binary_[n].box.halfArea() / rootArea : 1.0;
+    const double rootArea = binary_[0].box.halfArea(),
+                 area = rootArea > 0.0 ? binary_[n].box.halfArea() / rootArea : 1.0;
     statistics.sahCost += area;
 
     const std::array<int, BVH_WIDTH> childAt = arrange(children, binary_[n].box);
@@ -480,10 +497,12 @@ class Collapse {
         // Two parts of one triangle in a leaf are that triangle once.
         std::sort(leaf.begin(), leaf.end());
         leaf.erase(std::unique(leaf.begin(), leaf.end()), leaf.end());
-        meta = ((1u << leaf.size()) - 1u) << 5 | (static_cast<std::uint32_t>(result_.triangles.size()) - node.firstTriangle);
+        meta = ((1u << leaf.size()) - 1u) << 5 |
+               (static_cast<std::uint32_t>(result_.triangles.size()) - node.firstTriangle);
         for (const std::uint32_t t : leaf) result_.triangles.push_back(triangles_[t]);
         ++statistics.leaves;
-        statistics.sahCost += kBvhTriangleCost * static_cast<double>(leaf.size()) * (rootArea > 0.0 ? boxes[k].halfArea() / rootArea : 1.0);
+        statistics.sahCost += kBvhTriangleCost * static_cast<double>(leaf.size()) *
+                              (rootArea > 0.0 ? boxes[k].halfArea() / rootArea : 1.0);
       } else {
         meta = 1u << 5 | static_cast<std::uint32_t>(24 + k);
         node.exponents |= 1u << (24 + k);
@@ -526,7 +545,8 @@ bool refitBvh(Bvh& bvh, const Scene& scene) {
   const Triangles moved = collect(scene);
   if (moved.kept.size() != bvh.statistics.triangles || moved.origin != bvh.origin) return false;
   std::vector<std::uint32_t> place(scene.triangleCount(), ~0u);
-  for (std::size_t i = 0; i < moved.kept.size(); ++i) place[moved.kept[i].id & BVH_TRIANGLE_ID_MASK] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < moved.kept.size(); ++i)
+    place[moved.kept[i].id & BVH_TRIANGLE_ID_MASK] = static_cast<std::uint32_t>(i);
   for (const BvhTriangle& triangle : bvh.triangles) {
     const std::uint32_t id = triangle.id & BVH_TRIANGLE_ID_MASK;
     if (id >= place.size() || place[id] == ~0u) return false;
@@ -543,7 +563,8 @@ bool refitBvh(Bvh& bvh, const Scene& scene) {
       if (node.exponents >> (24 + k) & 1u) {
         children[k] = boxes[child++];
       } else {
-        for (std::uint32_t bits = meta >> 5, t = node.firstTriangle + (meta & 31u); bits; bits >>= 1, ++t) children[k].add(boxOf(bvh.triangles[t]));
+        for (std::uint32_t bits = meta >> 5, t = node.firstTriangle + (meta & 31u); bits; bits >>= 1, ++t)
+          children[k].add(boxOf(bvh.triangles[t]));
       }
       boxes[n].add(children[k]);
     }

@@ -1,8 +1,9 @@
 // A bounding volume hierarchy of a scene's triangles, for shaders/rays/bvh.glsl. No GL.
 //
-// Space: the scene moved by -origin, so that no precision is lost far from the world's origin; lengths in scene units. An axis
-// is moved only where the scene lies so far along it that every difference is exact in float, so the triangles are those of the scene.
-// Sources: binned surface area heuristic [Wald2007], collapse to eight children and node layout [Ylitie2017]; README.md, section "Ray casting".
+// Space: the scene moved by -origin, so that no precision is lost far from the world's origin; lengths in scene units.
+// An axis is moved only where the scene lies so far along it that every difference is exact in float, so the triangles
+// are those of the scene. Sources: binned surface area heuristic [Wald2007], collapse to eight children and node layout
+// [Ylitie2017]; README.md, section "Ray casting".
 #pragma once
 
 #include "scene/scene.hpp"
@@ -14,17 +15,18 @@
 namespace lucerna {
 
 struct BvhSettings {
-  int threads = 0;        ///< for building; 0: all cores. The result is the same.
+  int threads = 0;  ///< for building; 0: all cores. The result is the same.
   double splitBudget = 0.3;  ///< spatial splits add at most this fraction of references [Stich2009]; 0: none
 };
 
 struct BvhStatistics {
-  std::size_t triangles = 0;   ///< that rays can hit
+  std::size_t triangles = 0;  ///< that rays can hit
   std::size_t degenerate = 0;  ///< dropped: no area, or a corner that is not finite
   std::size_t references = 0;  ///< of leaves to triangles; above `triangles` if spatial splits paid off
   std::size_t nodes = 0, leaves = 0;
-  int depth = 0;         ///< of the deepest node; the root has 1
-  double sahCost = 0.0;  ///< expected cost of a ray that meets the root's box: 1 per node visit, kBvhTriangleCost per triangle
+  int depth = 0;  ///< of the deepest node; the root has 1
+  double sahCost =
+      0.0;  ///< expected cost of a ray that meets the root's box: 1 per node visit, kBvhTriangleCost per triangle
   double seconds = 0.0;  ///< wall clock
 };
 
@@ -33,10 +35,10 @@ inline constexpr float kBvhTriangleCost = 0.25f;
 
 /// Ready for upload.
 struct Bvh {
-  std::vector<shared::BvhNode> nodes;          ///< never empty: 0 is the root
+  std::vector<shared::BvhNode> nodes;  ///< never empty: 0 is the root
   std::vector<shared::BvhTriangle> triangles;  ///< in the order of the leaves
-  glm::dvec3 origin{0.0};                      ///< world position of the space's origin
-  float magnitude = 0.0f;                      ///< largest coordinate in that space
+  glm::dvec3 origin{0.0};  ///< world position of the space's origin
+  float magnitude = 0.0f;  ///< largest coordinate in that space
   BvhStatistics statistics;
 };
 

@@ -50,7 +50,8 @@ AliasTable aliasTable(const std::vector<double>& weights) {
       small.push_back(l);
     }
   }
-  // What rounding has left in `small` has a share of 1 but for rounding, unless it weighs nothing and must never come up.
+  // What rounding has left in `small` has a share of 1 but for rounding, unless it weighs nothing and must never come
+  // up.
   for (const std::uint32_t s : small)
     if (weights[s] == 0.0) {
       table.threshold[s] = 0.0f;
@@ -108,10 +109,12 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
       if (!(area > 0.0) || !std::isfinite(area)) continue;
       double brightness = worth(material.emission);
       if (material.emissionTexture >= 0) {
-        // By the mean over the triangle, plus a part of the picture's own: the lookups here may have missed a bright spot.
+        // By the mean over the triangle, plus a part of the picture's own: the lookups here may have missed a bright
+        // spot.
         const auto uv = [&](std::uint32_t k) { return scene.vertices[scene.indices[i + k]].texCoord; };
         const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap;
-        brightness = 0.9 * worth(glm::dvec3(material.emissionScale) * meanTexture(bitmap, {uv(0), uv(1), uv(2)})) + 0.1 * brightness;
+        brightness = 0.9 * worth(glm::dvec3(material.emissionScale) * meanTexture(bitmap, {uv(0), uv(1), uv(2)})) +
+                     0.1 * brightness;
       }
       shared::PathLight light{};
       light.kind = PATH_LIGHT_TRIANGLE;
@@ -129,7 +132,8 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
   if (scene.environment && scene.environment->picture) {
     shared::PathLight light{};
     light.kind = PATH_LIGHT_ENVIRONMENT;
-    add(light, worth(glm::dvec3(scene.environment->radiance) * meanRadiance(*scene.environment->picture)) * 4.0 * kPi * disc);
+    add(light,
+        worth(glm::dvec3(scene.environment->radiance) * meanRadiance(*scene.environment->picture)) * 4.0 * kPi * disc);
   }
   if (table.lights.empty()) return table;
   const bool environment = table.lights.back().kind == PATH_LIGHT_ENVIRONMENT;
@@ -172,8 +176,11 @@ glm::dvec3 meanRadiance(const Image& picture) {
 
 EnvironmentTable environmentTable(const Image& picture) {
   const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
-  // A number below 2^32 is below the threshold with its probability; all of them where that is 1, as the alias then is the entry itself.
-  const auto wordOf = [](float threshold) { return static_cast<std::uint32_t>(std::min(static_cast<double>(threshold) * 4294967296.0, 4294967295.0)); };
+  // A number below 2^32 is below the threshold with its probability; all of them where that is 1, as the alias then is
+  // the entry itself.
+  const auto wordOf = [](float threshold) {
+    return static_cast<std::uint32_t>(std::min(static_cast<double>(threshold) * 4294967296.0, 4294967295.0));
+  };
   EnvironmentTable table;
   table.texels.resize(width * height);
   std::vector<double> weights(width), ofRows(height);
@@ -184,14 +191,16 @@ EnvironmentTable environmentTable(const Image& picture) {
     ofRows[y] = sum * texelSolidAngle(picture, row);
     if (!(sum > 0.0)) continue;  // is never sampled
     const AliasTable picks = aliasTable(weights);
-    for (std::size_t x = 0; x < width; ++x) table.texels[y * width + x] = glm::uvec4(wordOf(picks.threshold[x]), picks.alias[x], 0u, 0u);
+    for (std::size_t x = 0; x < width; ++x)
+      table.texels[y * width + x] = glm::uvec4(wordOf(picks.threshold[x]), picks.alias[x], 0u, 0u);
   }
   const double all = std::accumulate(ofRows.begin(), ofRows.end(), 0.0);
   const AliasTable picks = aliasTable(ofRows);
   for (std::size_t y = 0; y < height; ++y) {
     table.rows.emplace_back(wordOf(picks.threshold[y]), picks.alias[y], 0u, 0u);
     for (std::size_t x = 0; x < width; ++x)  // the solid angle cancels
-      table.texels[y * width + x].z = std::bit_cast<std::uint32_t>(static_cast<float>(worth(glm::dvec3(picture.at(static_cast<int>(x), static_cast<int>(y)))) / all));
+      table.texels[y * width + x].z = std::bit_cast<std::uint32_t>(
+          static_cast<float>(worth(glm::dvec3(picture.at(static_cast<int>(x), static_cast<int>(y)))) / all));
   }
   return table;
 }

@@ -1,8 +1,8 @@
 // The lights of a scene for next-event estimation, chosen by one random number. No GL.
 //
-// Lamps (sun, spots, omnidirectional), each emissive triangle and an environment picture are entries of one alias table [Vose1991]. Half of
-// the probability goes in equal parts to the lamps, to all triangles together and to the environment, half in proportion to power, so that none
-// is neglected; any choice converges to the same picture.
+// Lamps (sun, spots, omnidirectional), each emissive triangle and an environment picture are entries of one alias table
+// [Vose1991]. Half of the probability goes in equal parts to the lamps, to all triangles together and to the
+// environment, half in proportion to power, so that none is neglected; any choice converges to the same picture.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -23,16 +23,18 @@ AliasTable aliasTable(const std::vector<double>& weights);
 
 struct LightTable {
   std::vector<shared::PathLight> lights;  ///< positions relative to `origin`; empty: no lights to sample
-  std::vector<float> pickDensity;         ///< per triangle: probability density of sampling a point of it, per unit of area; empty: nothing emits
-  double environmentPick = 0.0;           ///< probability of sampling the environment picture
+  std::vector<float> pickDensity;  ///< per triangle: probability density of sampling a point of it, per unit of area;
+                                   ///< empty: nothing emits
+  double environmentPick = 0.0;  ///< probability of sampling the environment picture
 };
 LightTable lightTable(const Scene& scene, const glm::dvec3& origin);
 
-/// Sampling tables of an environment picture: a row, then a texel of it, each by an alias table [Vose1991] in integers, so that pictures of any size are sampled
-/// by texel (a float counts to 2^24). The picture must not be black.
+/// Sampling tables of an environment picture: a row, then a texel of it, each by an alias table [Vose1991] in integers,
+/// so that pictures of any size are sampled by texel (a float counts to 2^24). The picture must not be black.
 struct EnvironmentTable {
-  std::vector<glm::uvec4> texels;  ///< row by row: threshold of 2^32, alias (a column), bits of the density over solid angle in 1/sr
-  std::vector<glm::uvec4> rows;    ///< threshold of 2^32, alias (a row)
+  std::vector<glm::uvec4>
+      texels;  ///< row by row: threshold of 2^32, alias (a column), bits of the density over solid angle in 1/sr
+  std::vector<glm::uvec4> rows;  ///< threshold of 2^32, alias (a row)
 };
 EnvironmentTable environmentTable(const Image& picture);
 /// Mean radiance over all directions, without Environment::radiance.

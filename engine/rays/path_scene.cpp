@@ -13,7 +13,8 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kEnvironmentRowsUnit = 4, kValuesUnit = 62;
+constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kEnvironmentRowsUnit = 4,
+                 kValuesUnit = 62;
 constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
 
 std::uint32_t kindOf(const Material& material) {
@@ -29,8 +30,8 @@ std::uint32_t kindOf(const Material& material) {
 
 }  // namespace
 
-PathScene::PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const Settings& settings,
-                     const std::vector<int>& rankOfMaterial)
+PathScene::PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities,
+                     const Settings& settings, const std::vector<int>& rankOfMaterial)
     : needs_(needs), rays_(scene, capabilities, settings.rays) {
   std::vector<shared::PathMaterial> materials(scene.materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i) {
@@ -51,9 +52,11 @@ PathScene::PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capa
       to.roughness = from.metalMap->roughness * from.metalMap->roughness;
       if (to.kind == PATH_CONDUCTOR) to.kind = PATH_DIFFUSE;  // the texel says
     }
-    to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = to.normalTexture.layer = to.metalTexture.layer = PATH_NO_TEXTURE;
+    to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = to.normalTexture.layer =
+        to.metalTexture.layer = PATH_NO_TEXTURE;
   }
-  const bool textured = needs_.diffuseTextures || needs_.alphaMasks || needs_.emissionTextures || needs_.normalMaps || needs_.metalMaps;
+  const bool textured =
+      needs_.diffuseTextures || needs_.alphaMasks || needs_.emissionTextures || needs_.normalMaps || needs_.metalMaps;
   if (textured) uploadTextures(scene, capabilities, materials);
 
   std::vector<float> pickDensity;
@@ -112,27 +115,34 @@ struct AtlasContent {
 };
 
 /// Nothing where there is nothing to put into it.
-std::optional<gl::Texture> makeAtlas(const Scene& scene, const gl::Capabilities& capabilities, const char* name, GLenum format, const AtlasContent& content) {
+std::optional<gl::Texture> makeAtlas(const Scene& scene, const gl::Capabilities& capabilities, const char* name,
+                                     GLenum format, const AtlasContent& content) {
   if (content.entries.empty()) return std::nullopt;
   std::vector<glm::ivec2> sizes;
   for (const AtlasEntry& entry : content.entries) {
     const Texture& texture = scene.textures[static_cast<std::size_t>(entry.texture)];
     sizes.emplace_back(texture.bitmap.width, texture.bitmap.height);
     if (std::max(sizes.back().x, sizes.back().y) > capabilities.maxTextureSize)
-      throwMissingCapability("{}: {} x {} texels; this driver's textures have at most {} (GL_MAX_TEXTURE_SIZE)", texture.file.string(), sizes.back().x, sizes.back().y,
-                             capabilities.maxTextureSize);
+      throwMissingCapability("{}: {} x {} texels; this driver's textures have at most {} (GL_MAX_TEXTURE_SIZE)",
+                             texture.file.string(), sizes.back().x, sizes.back().y, capabilities.maxTextureSize);
   }
   const AtlasLayout layout = layOutAtlas(sizes, std::min(capabilities.maxTextureSize, 8192));
   if (layout.size.z > capabilities.maxArrayTextureLayers)
-    throwMissingCapability("{} layers of textures; this driver has at most {} (GL_MAX_ARRAY_TEXTURE_LAYERS)", layout.size.z, capabilities.maxArrayTextureLayers);
-  std::vector<std::uint8_t> texels(4 * static_cast<std::size_t>(layout.size.x) * static_cast<std::size_t>(layout.size.y) * static_cast<std::size_t>(layout.size.z));
+    throwMissingCapability("{} layers of textures; this driver has at most {} (GL_MAX_ARRAY_TEXTURE_LAYERS)",
+                           layout.size.z, capabilities.maxArrayTextureLayers);
+  std::vector<std::uint8_t> texels(4 * static_cast<std::size_t>(layout.size.x) *
+                                   static_cast<std::size_t>(layout.size.y) * static_cast<std::size_t>(layout.size.z));
   for (std::size_t i = 0; i < content.entries.size(); ++i) {
     const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(content.entries[i].texture)].bitmap;
     const AtlasPlace& place = layout.places[i];
     for (int y = 0; y < sizes[i].y; ++y) {  // rows bottom first, as v = 0 is the bottom row
-      const std::uint8_t* from = bitmap.rgba.data() + 4 * static_cast<std::size_t>(sizes[i].y - 1 - y) * static_cast<std::size_t>(sizes[i].x);
-      std::uint8_t* to = texels.data() + 4 * ((static_cast<std::size_t>(place.layer) * static_cast<std::size_t>(layout.size.y) + static_cast<std::size_t>(place.corner.y + y)) *
-                                                  static_cast<std::size_t>(layout.size.x) + static_cast<std::size_t>(place.corner.x));
+      const std::uint8_t* from =
+          bitmap.rgba.data() + 4 * static_cast<std::size_t>(sizes[i].y - 1 - y) * static_cast<std::size_t>(sizes[i].x);
+      std::uint8_t* to =
+          texels.data() + 4 * ((static_cast<std::size_t>(place.layer) * static_cast<std::size_t>(layout.size.y) +
+                                static_cast<std::size_t>(place.corner.y + y)) *
+                                   static_cast<std::size_t>(layout.size.x) +
+                               static_cast<std::size_t>(place.corner.x));
       std::copy_n(from, 4 * static_cast<std::size_t>(sizes[i].x), to);
       if (content.entries[i].mask && !bitmap.hasAlpha)
         for (int x = 0; x < sizes[i].x; ++x) to[4 * x + 3] = from[4 * x];
@@ -142,32 +152,48 @@ std::optional<gl::Texture> makeAtlas(const Scene& scene, const gl::Capabilities&
   atlas.emplace(name, format, layout.size, gl::Sampling{}, 1, static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
   atlas->upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
   for (const auto& [entry, use] : content.uses)
-    *use = {layout.places[entry].layer, layout.places[entry].corner.x, layout.places[entry].corner.y, sizes[entry].x, sizes[entry].y, 0, 0, 0};
+    *use = {layout.places[entry].layer,
+            layout.places[entry].corner.x,
+            layout.places[entry].corner.y,
+            sizes[entry].x,
+            sizes[entry].y,
+            0,
+            0,
+            0};
   return atlas;
 }
 
 }  // namespace
 
-void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials) {
+void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities,
+                               std::vector<shared::PathMaterial>& materials) {
   AtlasContent colours, values;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& material = scene.materials[i];
-    if (needs_.diffuseTextures && material.diffuseTexture >= 0) colours.add(material.diffuseTexture, false, materials[i].diffuseTexture);
-    if (needs_.alphaMasks && material.alphaMasked) colours.add(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true, materials[i].maskTexture);
-    if (needs_.emissionTextures && material.emissionTexture >= 0) colours.add(material.emissionTexture, false, materials[i].emissionTexture);
-    if (needs_.normalMaps && material.normalTexture >= 0) values.add(material.normalTexture, false, materials[i].normalTexture);
-    if (needs_.metalMaps && material.metalMap && material.metalMap->texture >= 0) values.add(material.metalMap->texture, false, materials[i].metalTexture);
+    if (needs_.diffuseTextures && material.diffuseTexture >= 0)
+      colours.add(material.diffuseTexture, false, materials[i].diffuseTexture);
+    if (needs_.alphaMasks && material.alphaMasked)
+      colours.add(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true,
+                  materials[i].maskTexture);
+    if (needs_.emissionTextures && material.emissionTexture >= 0)
+      colours.add(material.emissionTexture, false, materials[i].emissionTexture);
+    if (needs_.normalMaps && material.normalTexture >= 0)
+      values.add(material.normalTexture, false, materials[i].normalTexture);
+    if (needs_.metalMaps && material.metalMap && material.metalMap->texture >= 0)
+      values.add(material.metalMap->texture, false, materials[i].metalTexture);
   }
   atlas_ = makeAtlas(scene, capabilities, "texture atlas", GL_SRGB8_ALPHA8, colours);
   values_ = makeAtlas(scene, capabilities, "value atlas", GL_RGBA8, values);
 }
 
-void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured, const std::vector<float>& pickDensity) {
+void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured,
+                                const std::vector<float>& pickDensity) {
   std::vector<std::uint32_t> words;
   words.reserve(scene.triangleCount() * static_cast<std::size_t>(triangleWords_) * 4);
   std::vector<std::uint32_t> materialOf(scene.triangleCount(), 0);
   for (const Mesh& mesh : scene.meshes)
-    std::fill_n(materialOf.begin() + mesh.firstIndex / 3, mesh.indexCount / 3, static_cast<std::uint32_t>(mesh.material));
+    std::fill_n(materialOf.begin() + mesh.firstIndex / 3, mesh.indexCount / 3,
+                static_cast<std::uint32_t>(mesh.material));
   const auto add = [&](float value) { words.push_back(std::bit_cast<std::uint32_t>(value)); };
   const auto add3 = [&](const glm::vec3& v) { add(v.x), add(v.y), add(v.z); };
   for (std::size_t t = 0; t < scene.triangleCount(); ++t) {
@@ -176,7 +202,8 @@ void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capa
     const auto place = [&](int k) { return glm::dvec3(corners[k]->position) - rays_.origin(); };
     const glm::dvec3 cross = glm::cross(place(1) - place(0), place(2) - place(0));
     const double length = glm::length(cross);
-    const glm::vec3 normal = length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0f);  // rays meet no triangle without area
+    const glm::vec3 normal =
+        length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0f);  // rays meet no triangle without area
     add3(glm::vec3(place(0)));
     words.push_back(materialOf[t]);
     add3(glm::vec3(place(1)));
@@ -230,7 +257,8 @@ void PathScene::fill(shared::PathConstants& constants) const {
 
 std::size_t PathScene::gpuBytes() const {
   std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes();
-  for (const std::optional<gl::Texture>* texture : {&atlas_, &values_, &environmentPicture_, &environmentTable_, &environmentRows_})
+  for (const std::optional<gl::Texture>* texture :
+       {&atlas_, &values_, &environmentPicture_, &environmentTable_, &environmentRows_})
     if (*texture) bytes += (*texture)->bytes();
   return bytes;
 }

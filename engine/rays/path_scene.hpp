@@ -1,6 +1,6 @@
-// A scene on the GPU for path tracing: triangles and their hierarchy, materials and textures in one atlas, lights and environment, for programs
-// that include shaders/rays/{materials,bvh,environment,lights}.glsl. The path tracer follows paths from a camera in it, the light
-// propagation volume's receivers from points of surfaces (lpv/receivers.hpp).
+// A scene on the GPU for path tracing: triangles and their hierarchy, materials and textures in one atlas, lights and
+// environment, for programs that include shaders/rays/{materials,bvh,environment,lights}.glsl. The path tracer follows
+// paths from a camera in it, the light propagation volume's receivers from points of surfaces (lpv/receivers.hpp).
 //
 // Space: the scene moved by -origin() (ray_scene.hpp). Units: scene units.
 #pragma once
@@ -27,8 +27,9 @@ template <class T>
 gl::Buffer storageOf(const std::string& name, const std::vector<T>& values, const gl::Capabilities& capabilities) {
   const std::size_t bytes = std::max(values.size(), std::size_t{1}) * sizeof(T);
   if (bytes > static_cast<std::size_t>(capabilities.maxShaderStorageBlockSize))
-    throwMissingCapability("{}: {} bytes; this driver's storage blocks have at most {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE)", name, bytes,
-                           capabilities.maxShaderStorageBlockSize);
+    throwMissingCapability(
+        "{}: {} bytes; this driver's storage blocks have at most {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE)", name, bytes,
+        capabilities.maxShaderStorageBlockSize);
   gl::Buffer buffer(name, bytes, nullptr, GL_STATIC_DRAW);
   if (!values.empty()) buffer.upload(0, values.size() * sizeof(T), values.data());
   return buffer;
@@ -37,13 +38,15 @@ gl::Buffer storageOf(const std::string& name, const std::vector<T>& values, cons
 class PathScene {
  public:
   struct Settings {
-    bool diffuseOnly = false;  ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
-    bool nextEvent = true;     ///< with a table of lights for sampling
+    bool diffuseOnly =
+        false;  ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
+    bool nextEvent = true;  ///< with a table of lights for sampling
     RaySceneSettings rays;
   };
-  /// `needs`: of the scene, without what the programs leave out. rankOfMaterial: of closed boundaries (media.hpp); may be empty.
-  /// Throws Error(missingCapability) if the scene exceeds the driver's limits.
-  PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const Settings& settings, const std::vector<int>& rankOfMaterial = {});
+  /// `needs`: of the scene, without what the programs leave out. rankOfMaterial: of closed boundaries (media.hpp); may
+  /// be empty. Throws Error(missingCapability) if the scene exceeds the driver's limits.
+  PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const Settings& settings,
+            const std::vector<int>& rankOfMaterial = {});
 
   /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62.
   void bind() const;
@@ -58,8 +61,10 @@ class PathScene {
   std::size_t gpuBytes() const;
 
  private:
-  void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities, std::vector<shared::PathMaterial>& materials);
-  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured, const std::vector<float>& pickDensity);
+  void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities,
+                      std::vector<shared::PathMaterial>& materials);
+  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured,
+                       const std::vector<float>& pickDensity);
   void uploadEnvironment(const Environment& environment);
 
   SceneNeeds needs_;

@@ -7,11 +7,14 @@
 
 namespace lucerna {
 
-static_assert(sizeof(shared::BvhNode) == 16 * BVH_NODE_TEXELS && sizeof(shared::BvhTriangle) == 16 * BVH_TRIANGLE_TEXELS);
-static_assert(BVH_MAX_DEPTH * 2 * sizeof(GLuint) * 64 <= 1 << 15, "a group's stacks fit in the shared memory that OpenGL 4.3 guarantees");
+static_assert(sizeof(shared::BvhNode) == 16 * BVH_NODE_TEXELS &&
+              sizeof(shared::BvhTriangle) == 16 * BVH_TRIANGLE_TEXELS);
+static_assert(BVH_MAX_DEPTH * 2 * sizeof(GLuint) * 64 <= 1 << 15,
+              "a group's stacks fit in the shared memory that OpenGL 4.3 guarantees");
 
 RayScene::RayScene(const Scene& scene, const gl::Capabilities& capabilities, const Settings& settings)
-    : settings_(settings), limit_(16 * static_cast<std::size_t>(capabilities.maxTextureBufferSize)),
+    : settings_(settings),
+      limit_(16 * static_cast<std::size_t>(capabilities.maxTextureBufferSize)),
       sharedStack_(settings.sharedStack.value_or(!capabilities.softwareRenderer)) {
   Bvh bvh = buildBvh(scene, settings_.bvh);
   upload(scene, bvh);
@@ -28,11 +31,15 @@ void RayScene::upload(const Scene& scene, const Bvh& bvh) {
   // Texel 0 of the triangles holds the magnitude.
   std::vector<float> words(4 + bvh.triangles.size() * sizeof(shared::BvhTriangle) / sizeof(float));
   words[0] = bvh.magnitude;
-  if (!bvh.triangles.empty()) std::memcpy(words.data() + 4, bvh.triangles.data(), bvh.triangles.size() * sizeof(shared::BvhTriangle));
-  const std::size_t nodeBytes = bvh.nodes.size() * sizeof(shared::BvhNode), triangleBytes = words.size() * sizeof(float);
+  if (!bvh.triangles.empty())
+    std::memcpy(words.data() + 4, bvh.triangles.data(), bvh.triangles.size() * sizeof(shared::BvhTriangle));
+  const std::size_t nodeBytes = bvh.nodes.size() * sizeof(shared::BvhNode),
+                    triangleBytes = words.size() * sizeof(float);
   if (std::max(nodeBytes, triangleBytes) > limit_)
-    throwMissingCapability("{}: its {} triangles need a buffer texture of {} bytes; this driver has at most {} (GL_MAX_TEXTURE_BUFFER_SIZE)", scene.name, scene.triangleCount(),
-                           std::max(nodeBytes, triangleBytes), limit_);
+    throwMissingCapability(
+        "{}: its {} triangles need a buffer texture of {} bytes; this driver has at most {} "
+        "(GL_MAX_TEXTURE_BUFFER_SIZE)",
+        scene.name, scene.triangleCount(), std::max(nodeBytes, triangleBytes), limit_);
   const auto put = [](gl::BufferTexture& texture, const char* name, std::size_t bytes, const void* data) {
     if (texture.bytes() == bytes) texture.upload(0, bytes, data);
     else texture = gl::BufferTexture(name, GL_RGBA32UI, bytes, data);

@@ -1,6 +1,7 @@
 // A scene's triangles and their hierarchy on the GPU, for programs that include shaders/rays/bvh.glsl.
 //
-// Space: rays and hits are in the scene moved by -origin() (see bvh.hpp): subtract it in double from cameras and lights.
+// Space: rays and hits are in the scene moved by -origin() (see bvh.hpp): subtract it in double from cameras and
+// lights.
 #pragma once
 
 #include "gl/context.hpp"
@@ -14,7 +15,8 @@ namespace lucerna {
 struct RaySceneSettings {
   BvhSettings bvh;
   bool moves = false;  ///< update() will be called: keep the hierarchy in main memory too
-  std::optional<bool> sharedStack;  ///< traversal stacks of compute programs in shared memory; not set: except on software renderers
+  std::optional<bool>
+      sharedStack;  ///< traversal stacks of compute programs in shared memory; not set: except on software renderers
 };
 
 class RayScene {
@@ -30,7 +32,8 @@ class RayScene {
   void update(const Scene& scene);
 
   void bind() const;
-  /// Flag SHARED_STACK for compute programs of at most 64 invocations per group: entries of the stack, 0 if it is a local array.
+  /// Flag SHARED_STACK for compute programs of at most 64 invocations per group: entries of the stack, 0 if it is a
+  /// local array.
   int sharedStack() const;
   const glm::dvec3& origin() const { return origin_; }
   const BvhStatistics& statistics() const { return statistics_; }

@@ -13,7 +13,8 @@ AtlasLayout layOutAtlas(const std::vector<glm::ivec2>& sizes, int limit) {
   int side = 1;
   long area = 0;
   for (const glm::ivec2& size : sizes) {
-    CHECK(size.x > 0 && size.y > 0 && std::max(size.x, size.y) <= limit, "{} x {} in an atlas of at most {}", size.x, size.y, limit);
+    CHECK(size.x > 0 && size.y > 0 && std::max(size.x, size.y) <= limit, "{} x {} in an atlas of at most {}", size.x,
+          size.y, limit);
     side = std::max({side, size.x, size.y});
     area += static_cast<long>(size.x) * size.y;
   }

@@ -19,8 +19,8 @@ struct FrameParts {
   gl::ProgramLibrary& programs;
   const RenderSettings& settings;
   const SceneNeeds& needs;
-  const Scene& scene;         ///< as loaded
-  const glm::dvec3& origin;   ///< of what is drawn, in the scene's coordinates
+  const Scene& scene;  ///< as loaded
+  const glm::dvec3& origin;  ///< of what is drawn, in the scene's coordinates
   const GpuScene& drawn;
   const SunFrustum& sun;
   const std::vector<LightViews>& spots;
@@ -31,7 +31,7 @@ struct FrameParts {
 struct FrameView {
   Camera camera;
   Camera volumeCamera;  ///< that the light propagation volume is placed for
-  glm::dmat4 clip;      ///< from world
+  glm::dmat4 clip;  ///< from world
   glm::mat4 clipFromWorld;
   glm::vec3 viewPoint;
 
@@ -41,7 +41,7 @@ struct FrameView {
 /// How much of a picture that is added up over frames a frame makes.
 struct FrameEffort {
   bool wholePicture = false;  ///< all samples at once
-  bool fadesIn = true;        ///< what is new is shown by and by, so that nothing flickers while the camera moves
+  bool fadesIn = true;  ///< what is new is shown by and by, so that nothing flickers while the camera moves
 };
 
 }  // namespace lucerna

@@ -1,5 +1,5 @@
-// The reflective shadow maps of the lights whose light a technique reflects. They do not depend on the camera: lights and geometry stand still, so they
-// are drawn once (with frame.reuse=off each frame).
+// The reflective shadow maps of the lights whose light a technique reflects. They do not depend on the camera: lights
+// and geometry stand still, so they are drawn once (with frame.reuse=off each frame).
 #pragma once
 
 #include "gl/time_query.hpp"

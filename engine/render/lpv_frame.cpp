@@ -8,11 +8,14 @@ namespace lucerna {
 namespace {
 
 /// Whether the geometry volume has surfels of what the camera sees.
-bool takesCameraSurfels(const LightPropagationVolume::Settings& volume) { return volume.blocking && volume.iterations > 1 && volume.surfels != LpvSurfels::rsm; }
+bool takesCameraSurfels(const LightPropagationVolume::Settings& volume) {
+  return volume.blocking && volume.iterations > 1 && volume.surfels != LpvSurfels::rsm;
+}
 
 LightPropagationVolume::Settings volumeSettings(const RenderSettings& settings, std::size_t lightMaps) {
   LightPropagationVolume::Settings volume = settings.lpv;
-  const std::size_t views = (volume.surfels == LpvSurfels::camera ? 0 : lightMaps) + (takesCameraSurfels(volume) ? 1 : 0);
+  const std::size_t views =
+      (volume.surfels == LpvSurfels::camera ? 0 : lightMaps) + (takesCameraSurfels(volume) ? 1 : 0);
   volume.mergeViews = volume.blocking && views > 1;
   return volume;
 }
@@ -50,12 +53,18 @@ std::vector<ReflectiveShadowMap::Outputs> LpvFrame::recordCameraMap(gl::TimeQuer
 void LpvFrame::record(gl::TimeQuery& timer, const FrameView& view) {
   const Scene& scene = parts_.drawn.scene();
   const glm::dvec4 lightPosition = glm::inverse(parts_.sun.clipFromWorld) * glm::dvec4(0.0, 0.0, -1.0, 1.0);
-  const LightPropagationVolume::Inputs inputs{maps_.record(timer), placeCascades(parts_.settings.lpv.cascades, scene.bounds, view.volumeCamera.position, view.volumeCamera.direction),
-                                              typicalIrradiance(scene), glm::vec3(lightPosition), recordCameraMap(timer, view.volumeCamera)};
+  const LightPropagationVolume::Inputs inputs{maps_.record(timer),
+                                              placeCascades(parts_.settings.lpv.cascades, scene.bounds,
+                                                            view.volumeCamera.position, view.volumeCamera.direction),
+                                              typicalIrradiance(scene), glm::vec3(lightPosition),
+                                              recordCameraMap(timer, view.volumeCamera)};
   // The volume's light is kept while its grids lie where they did, unless surfels come from what the camera sees.
   const shared::LpvConstants constants = lpvConstants(parts_.settings.lpv, inputs.cascades, inputs.referenceIrradiance);
-  const auto liesWhere = [](const shared::LpvCascade& a, const shared::LpvCascade& b) { return a.minimum == b.minimum && a.cellSize == b.cellSize; };
-  const bool same = parts_.settings.reuse && !cameraMap_ && cascades_.size() == inputs.cascades.size() && std::equal(cascades_.begin(), cascades_.end(), constants.cascades, liesWhere);
+  const auto liesWhere = [](const shared::LpvCascade& a, const shared::LpvCascade& b) {
+    return a.minimum == b.minimum && a.cellSize == b.cellSize;
+  };
+  const bool same = parts_.settings.reuse && !cameraMap_ && cascades_.size() == inputs.cascades.size() &&
+                    std::equal(cascades_.begin(), cascades_.end(), constants.cascades, liesWhere);
   if (same) {
     volume_.place(inputs);  // where cascades fade into each other follows the camera
     return;

@@ -1,7 +1,9 @@
-// Technique lpv with transport propagate in the frame: light injected from the lights' maps, propagated through nested grids, looked up in shading.
+// Technique lpv with transport propagate in the frame: light injected from the lights' maps, propagated through nested
+// grids, looked up in shading.
 //
-// Stages, with their inputs:  rsm (lights, geometry) -> camera surfels (camera; where lpv.blocking asks for them) -> injection, geometry volume, propagation
-// (maps, placement of the cascades). They run again where a grid has moved, or surfels come from what the camera sees.
+// Stages, with their inputs:  rsm (lights, geometry) -> camera surfels (camera; where lpv.blocking asks for them) ->
+// injection, geometry volume, propagation (maps, placement of the cascades). They run again where a grid has moved, or
+// surfels come from what the camera sees.
 #pragma once
 
 #include "lpv/light_propagation_volume.hpp"
@@ -16,8 +18,8 @@ namespace lucerna {
 class LpvFrame {
  public:
   static bool isNeeded(const RenderSettings& settings, const SceneNeeds& needs) {
-    return settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::propagate && settings.component != Component::direct &&
-           LightPropagationVolume::isNeeded(needs);
+    return settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::propagate &&
+           settings.component != Component::direct && LightPropagationVolume::isNeeded(needs);
   }
   explicit LpvFrame(const FrameParts& parts);
 
@@ -32,16 +34,19 @@ class LpvFrame {
   bool hasMaps() const { return maps_.count() > 0; }
   void addStagePictures(std::vector<StagePicture>& pictures) const;
   void addLeftOut(std::vector<std::string>& names) const;
-  std::size_t gpuBytes() const { return maps_.gpuBytes() + volume_.gpuBytes() + (cameraMap_ ? cameraMap_->gpuBytes() : 0); }
+  std::size_t gpuBytes() const {
+    return maps_.gpuBytes() + volume_.gpuBytes() + (cameraMap_ ? cameraMap_->gpuBytes() : 0);
+  }
 
  private:
-  std::vector<ReflectiveShadowMap::Outputs> recordCameraMap(gl::TimeQuery& timer, const Camera& camera);  ///< empty where none is needed
+  std::vector<ReflectiveShadowMap::Outputs> recordCameraMap(gl::TimeQuery& timer,
+                                                            const Camera& camera);  ///< empty where none is needed
 
   FrameParts parts_;
   LightMaps maps_;
   std::optional<ReflectiveShadowMap> cameraMap_;  ///< what the camera sees, for the geometry volume
   LightPropagationVolume volume_;
-  std::vector<shared::LpvCascade> cascades_;      ///< that the propagated light is of
+  std::vector<shared::LpvCascade> cascades_;  ///< that the propagated light is of
 };
 
 }  // namespace lucerna

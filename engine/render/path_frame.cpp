@@ -18,11 +18,14 @@ PathTracer::Settings tracerSettings(const RenderSettings& settings) {
   return tracer;
 }
 
-bool isSameView(const Camera& a, const Camera& b) { return a.position == b.position && a.direction == b.direction && a.up == b.up && a.verticalFov == b.verticalFov; }
+bool isSameView(const Camera& a, const Camera& b) {
+  return a.position == b.position && a.direction == b.direction && a.up == b.up && a.verticalFov == b.verticalFov;
+}
 
 }  // namespace
 
-PathFrame::PathFrame(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings)
+PathFrame::PathFrame(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                     const RenderSettings& settings)
     : settings_(settings),
       tracer_(context, programs, scene, tracerSettings(settings)),
       film_(&programs.loadRaster("film", "lib/fullscreen.vert", "pathtracer/film.frag")) {}
@@ -32,7 +35,8 @@ void PathFrame::resize(glm::ivec2 size) {
   hasView_ = false;
 }
 
-void PathFrame::record(gl::TimeQuery& timer, const Camera& camera, const gl::Framebuffer& target, const gl::VertexArray& noAttributes, bool wholePicture) {
+void PathFrame::record(gl::TimeQuery& timer, const Camera& camera, const gl::Framebuffer& target,
+                       const gl::VertexArray& noAttributes, bool wholePicture) {
   const bool isNew = !hasView_ || !isSameView(camera, camera_);
   if (isNew) tracer_.setCamera(camera);
   camera_ = camera;

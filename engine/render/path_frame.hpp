@@ -1,6 +1,8 @@
-// Technique path in the frame: a path traced picture that gets better while the view stands still, shown with the frame's tone mapping.
+// Technique path in the frame: a path traced picture that gets better while the view stands still, shown with the
+// frame's tone mapping.
 //
-// Stages, with their inputs:  path tracing (scene, camera) -> film (the means so far). It draws nothing else: no shadow maps, no depth.
+// Stages, with their inputs:  path tracing (scene, camera) -> film (the means so far). It draws nothing else: no shadow
+// maps, no depth.
 #pragma once
 
 #include "gl/time_query.hpp"
@@ -12,12 +14,14 @@ namespace lucerna {
 class PathFrame {
  public:
   /// `settings`: the frame's, which outlive it.
-  PathFrame(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings);
+  PathFrame(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+            const RenderSettings& settings);
   void resize(glm::ivec2 size);
 
-  /// `camera`: in the scene's coordinates. A new view gets PathSettings::leastSamples in each pixel at once, the same view one more submission.
-  /// `wholePicture`: all samples at once.
-  void record(gl::TimeQuery& timer, const Camera& camera, const gl::Framebuffer& target, const gl::VertexArray& noAttributes, bool wholePicture);
+  /// `camera`: in the scene's coordinates. A new view gets PathSettings::leastSamples in each pixel at once, the same
+  /// view one more submission. `wholePicture`: all samples at once.
+  void record(gl::TimeQuery& timer, const Camera& camera, const gl::Framebuffer& target,
+              const gl::VertexArray& noAttributes, bool wholePicture);
   void forget() { hasView_ = false; }
   bool isSettled() const { return settled_; }
 
@@ -28,7 +32,7 @@ class PathFrame {
   const RenderSettings& settings_;
   PathTracer tracer_;
   const gl::Program* film_;
-  Camera camera_;         ///< that the film is of
+  Camera camera_;  ///< that the film is of
   bool hasView_ = false, settled_ = false;
 };
 

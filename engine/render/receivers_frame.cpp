@@ -8,7 +8,9 @@ namespace {
 
 LpvReceivers::Light receivedLight(Component component) {
   using Light = LpvReceivers::Light;
-  return component == Component::direct ? Light::direct : component == Component::indirect ? Light::indirect : Light::all;
+  return component == Component::direct     ? Light::direct
+         : component == Component::indirect ? Light::indirect
+                                            : Light::all;
 }
 
 std::optional<LightMaps> lightMaps(const FrameParts& parts) {
@@ -28,7 +30,8 @@ ReceiversFrame::ReceiversFrame(const FrameParts& parts, const gl::Texture& depth
     : parts_(parts),
       maps_(lightMaps(parts)),
       visible_(parts.programs, parts.drawn, depth),
-      receivers_(parts.programs, parts.context.capabilities(), parts.scene, parts.origin, parts.settings.lpv, receivedLight(parts.settings.component)) {}
+      receivers_(parts.programs, parts.context.capabilities(), parts.scene, parts.origin, parts.settings.lpv,
+                 receivedLight(parts.settings.component)) {}
 
 void ReceiversFrame::resize(const gl::Texture& depth) {
   visible_.resize(depth);
@@ -38,7 +41,8 @@ void ReceiversFrame::resize(const gl::Texture& depth) {
 bool ReceiversFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort) {
   receivers_.collect();
   const Camera& volume = view.volumeCamera;
-  const bool sameView = view.clip == clip_ && volume.position == volumePosition_ && volume.direction == volumeDirection_;
+  const bool sameView =
+      view.clip == clip_ && volume.position == volumePosition_ && volume.direction == volumeDirection_;
   if (!sameView) {
     clip_ = view.clip;
     volumePosition_ = volume.position;
@@ -58,8 +62,8 @@ bool ReceiversFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEf
   const gl::TimeQuery::Scope stage(timer, "receivers");
   const LightPropagationVolume::Settings& lpv = parts_.settings.lpv;
   const int rounds = effort.wholePicture ? (lpv.samples + lpv.rays - 1) / lpv.rays : 1;
-  receivers_.update({placeCascades(lpv.cascades, parts_.drawn.scene().bounds, volume.position, volume.direction), view.camera, glm::mat4(glm::inverse(view.clip)), visible_, maps,
-                     mapsAreNew, effort.fadesIn},
+  receivers_.update({placeCascades(lpv.cascades, parts_.drawn.scene().bounds, volume.position, volume.direction),
+                     view.camera, glm::mat4(glm::inverse(view.clip)), visible_, maps, mapsAreNew, effort.fadesIn},
                     rounds);
   return true;
 }

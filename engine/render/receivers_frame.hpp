@@ -1,7 +1,8 @@
-// Technique lpv with transport gather or rays in the frame: irradiance kept at points of surfaces, which camera and grids choose.
+// Technique lpv with transport gather or rays in the frame: irradiance kept at points of surfaces, which camera and
+// grids choose.
 //
-// Stages, with their inputs:  rsm (lights, geometry; gather alone) -> geometry (camera) -> receivers (maps, visible surfaces, placement of the cascades).
-// Nothing is done for a view whose receivers have all their paths.
+// Stages, with their inputs:  rsm (lights, geometry; gather alone) -> geometry (camera) -> receivers (maps, visible
+// surfaces, placement of the cascades). Nothing is done for a view whose receivers have all their paths.
 #pragma once
 
 #include "forward/visible_surfaces.hpp"
@@ -17,7 +18,8 @@ class ReceiversFrame {
   static bool isNeeded(const RenderSettings& settings, const SceneNeeds& needs);
   /// Whether they gather light from the lights' maps.
   static bool takesMaps(const RenderSettings& settings, const SceneNeeds& needs) {
-    return isNeeded(settings, needs) && settings.lpv.transport == LpvTransport::gather && settings.component != Component::direct;
+    return isNeeded(settings, needs) && settings.lpv.transport == LpvTransport::gather &&
+           settings.component != Component::direct;
   }
   /// `depth`: the frame's, of the picture's size.
   ReceiversFrame(const FrameParts& parts, const gl::Texture& depth);

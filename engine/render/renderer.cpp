@@ -40,7 +40,8 @@ glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 
 
 }  // namespace
 
-Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings)
+Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                   const RenderSettings& settings)
     : settings_(settings),
       needs_(analyse(scene)),
       origin_(exactOrigin(scene.bounds)),
@@ -57,32 +58,40 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     return;
   }
   if (technique == Technique::radiosity) radiosity_.emplace(context, programs, scene, settings_, origin_);
-  gpuScene_.emplace(radiosity_ ? radiosity_->scene() : aboutOrigin(scene), needs_, context.capabilities(), settings.textures);
+  gpuScene_.emplace(radiosity_ ? radiosity_->scene() : aboutOrigin(scene), needs_, context.capabilities(),
+                    settings.textures);
   if (moved_) moved_->textures.clear();  // they are on the GPU
   const Scene& drawn = gpuScene_->scene();
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   spots_ = spotViews(drawn);
   points_ = pointViews(drawn);
-  const bool reflectsLamps = LpvFrame::isNeeded(settings, needs_) || RsmFrame::isNeeded(settings, needs_) || ReceiversFrame::takesMaps(settings, needs_);
+  const bool reflectsLamps = LpvFrame::isNeeded(settings, needs_) || RsmFrame::isNeeded(settings, needs_) ||
+                             ReceiversFrame::takesMaps(settings, needs_);
   if ((showsDirect() || reflectsLamps) && LocalLights::isNeeded(needs_)) {
     keepMostImportant(programs, *gpuScene_, spots_, kMaxSpotLights);
     keepMostImportant(programs, *gpuScene_, points_, kMaxPointLights);
   }
   if (showsDirect()) makeShadowMaps(programs);
 
-  const FrameParts frame{context, programs, settings_, needs_, scene, origin_, *gpuScene_, sunFrustum_, spots_, points_};
+  const FrameParts frame{context, programs,   settings_,   needs_, scene,
+                         origin_, *gpuScene_, sunFrustum_, spots_, points_};
   if (RsmFrame::isNeeded(settings, needs_)) rsm_.emplace(frame, depth_);
   if (LpvFrame::isNeeded(settings, needs_)) lpv_.emplace(frame);
   if (ReceiversFrame::isNeeded(settings, needs_)) receivers_.emplace(frame, depth_);
-  if (EnvironmentView::isNeeded(needs_) && settings.component != Component::indirect) environmentView_.emplace(programs, scene);
+  if (EnvironmentView::isNeeded(needs_) && settings.component != Component::indirect)
+    environmentView_.emplace(programs, scene);
   loadPrograms(programs);
 
   if (needs_.environment && !receivers_ && !radiosity_)
-    logWarning("technique {}{}: the environment lights nothing (path and radiosity support it, and lpv with lpv.transport=gather or rays)", nameOf(technique),
-               technique == Technique::lpv ? " with lpv.transport=propagate" : "");
+    logWarning(
+        "technique {}{}: the environment lights nothing (path and radiosity support it, and lpv with "
+        "lpv.transport=gather or rays)",
+        nameOf(technique), technique == Technique::lpv ? " with lpv.transport=propagate" : "");
 }
 
-bool Renderer::showsDirect() const { return needs_.anyLight() && settings_.component != Component::indirect && !radiosity_; }
+bool Renderer::showsDirect() const {
+  return needs_.anyLight() && settings_.component != Component::indirect && !radiosity_;
+}
 
 const Scene& Renderer::aboutOrigin(const Scene& scene) {
   return origin_ == glm::dvec3(0.0) ? scene : moved_.emplace(movedTo(scene, origin_));
@@ -92,7 +101,8 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   const bool showsSunLight = ShadowMap::isNeeded(needs_);
   const int cascades = settings_.sunCascades.cascades;
   if (showsSunLight && cascades > 1) {
-    sunCascades_.emplace(programs, *gpuScene_, "sun cascades", LayeredDepth::Shape{GL_TEXTURE_2D_ARRAY, settings_.shadow.size, cascades, cascades});
+    sunCascades_.emplace(programs, *gpuScene_, "sun cascades",
+                         LayeredDepth::Shape{GL_TEXTURE_2D_ARRAY, settings_.shadow.size, cascades, cascades});
     sunCascadeConstants_ = gl::Buffer("sun cascades", sizeof(shared::SunCascadeConstants), nullptr, GL_DYNAMIC_DRAW);
   } else if (showsSunLight) {
     shadowMap_.emplace(programs, *gpuScene_, settings_.shadow);
@@ -111,10 +121,14 @@ void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
                                {"SPECULAR", needs_.specular && showsDirect()},
                                {"EMISSION", needs_.emission && showsRest}});
     // Of the technique, which has one of the first three; the others are not there.
-    const gl::ShaderFlags own = lpv_ ? lpv_->shadingFlags() : receivers_ ? receivers_->shadingFlags() : rsm_ ? rsm_->shadingFlags() : gl::ShaderFlags{};
+    const gl::ShaderFlags own = lpv_         ? lpv_->shadingFlags()
+                                : receivers_ ? receivers_->shadingFlags()
+                                : rsm_       ? rsm_->shadingFlags()
+                                             : gl::ShaderFlags{};
     flags.insert(flags.end(), own.begin(), own.end());
     for (const char* flag : {"PROPAGATED", "RECEIVED", "GATHERED", "SHOW_REFUSED"})
-      if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; })) flags.push_back({flag, 0});
+      if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
+        flags.push_back({flag, 0});
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
   };
   if (radiosity_) {
@@ -123,9 +137,11 @@ void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
     surfacePrograms_.opaque = loadSurface("surface opaque", false);
     if (needs_.alphaMasks) surfacePrograms_.masked = loadSurface("surface masked", true);
   }
-  depthPrograms_.opaque = &programs.loadRaster("depth opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}});
+  depthPrograms_.opaque =
+      &programs.loadRaster("depth opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}});
   if (needs_.alphaMasks)
-    depthPrograms_.masked = &programs.loadRaster("depth masked", "forward/depth.vert", "forward/depth.frag", {{"ALPHA_MASK", 1}, {"FROM_SUN", 0}});
+    depthPrograms_.masked = &programs.loadRaster("depth masked", "forward/depth.vert", "forward/depth.frag",
+                                                 {{"ALPHA_MASK", 1}, {"FROM_SUN", 0}});
   toneMap_ = radiosity_ ? radiosity_->loadMapping(programs) : nullptr;
   if (!toneMap_) toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
 }
@@ -174,8 +190,8 @@ void Renderer::recordShadows(const Camera& camera) {
     const double aspect = static_cast<double>(settings_.size.x) / settings_.size.y;
     shared::SunCascadeConstants constants{};
     std::vector<LayeredDepth::View> views;
-    for (const SunCascade& cascade : placeSunCascades(settings_.sunCascades, scene, scene.sun->direction, sunFrustum_, camera, aspect,
-                                                      nearPlane(scene.bounds), sunCascades_->size())) {
+    for (const SunCascade& cascade : placeSunCascades(settings_.sunCascades, scene, scene.sun->direction, sunFrustum_,
+                                                      camera, aspect, nearPlane(scene.bounds), sunCascades_->size())) {
       constants.clipFromWorld[views.size()] = glm::mat4(cascade.clipFromWorld);
       constants.normalOffset[static_cast<int>(views.size())] = kShadowNormalOffset * static_cast<float>(cascade.texel);
       views.push_back({glm::mat4(cascade.clipFromWorld), glm::vec3(0.0f)});
@@ -216,7 +232,8 @@ void Renderer::bindFrameConstants(const FrameView& view) {
     frame.sunDirection = glm::vec3(scene.sun->direction);
     frame.sunIrradiance = scene.sun->irradiance;
     frame.shadowNormalOffset =
-        kShadowNormalOffset * static_cast<float>(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
+        kShadowNormalOffset *
+        static_cast<float>(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
     frame.shadowTexelUv = 1.0f / static_cast<float>(settings_.shadow.size);
   }
   frame.background = scene.background;
@@ -257,7 +274,8 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
     state.polygonOffset = sides.polygonOffset;
     const gl::RasterPass pass("surfaces", radianceTarget_, state);
     const bool showsBackground = settings_.component != Component::indirect;
-    if (&sides == &all.front()) pass.clearColor(0, glm::vec4(showsBackground ? gpuScene_->scene().background : glm::vec3(0.0f), 1.0f));
+    if (&sides == &all.front())
+      pass.clearColor(0, glm::vec4(showsBackground ? gpuScene_->scene().background : glm::vec3(0.0f), 1.0f));
     if (radiosity_) radiosity_->draw(pass, *gpuScene_, surfacePrograms_, view);
     else gpuScene_->draw(surfacePrograms_, view.drawn());
   }
@@ -320,8 +338,9 @@ Image Renderer::readRadiance() const {
   Image image(settings_.size.x, settings_.size.y);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      image.at(x, y) = glm::vec3(texels[static_cast<std::size_t>(image.height - 1 - y) * static_cast<std::size_t>(image.width) +
-                                        static_cast<std::size_t>(x)]);
+      image.at(x, y) =
+          glm::vec3(texels[static_cast<std::size_t>(image.height - 1 - y) * static_cast<std::size_t>(image.width) +
+                           static_cast<std::size_t>(x)]);
   return image;
 }
 
@@ -333,8 +352,10 @@ Bitmap Renderer::readDisplay() const {
   bitmap.rgba.reserve(4 * texels.size());
   for (int y = bitmap.height - 1; y >= 0; --y)
     for (int x = 0; x < bitmap.width; ++x) {
-      const glm::vec4& texel = texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x)];
-      for (int channel = 0; channel < 4; ++channel) bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * texel[channel])));
+      const glm::vec4& texel =
+          texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x)];
+      for (int channel = 0; channel < 4; ++channel)
+        bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * texel[channel])));
     }
   return bitmap;
 }

@@ -1,8 +1,9 @@
-// A frame, from a scene and a camera to an HDR picture and a display picture: the techniques in order, each built only where needed.
+// A frame, from a scene and a camera to an HDR picture and a display picture: the techniques in order, each built only
+// where needed.
 //
-// Renderer::render reads from top to bottom: direct light's shadow maps, then what the technique makes, then shading (or the path tracer's film), the
-// environment and tone mapping. A technique is one object (rsm_frame, lpv_frame, receivers_frame, radiosity_frame, path_frame) with its stages, what shading
-// takes of it and its bytes.
+// Renderer::render reads from top to bottom: direct light's shadow maps, then what the technique makes, then shading
+// (or the path tracer's film), the environment and tone mapping. A technique is one object (rsm_frame, lpv_frame,
+// receivers_frame, radiosity_frame, path_frame) with its stages, what shading takes of it and its bytes.
 #pragma once
 
 #include "base/image.hpp"
@@ -38,8 +39,10 @@ namespace lucerna {
 class Renderer {
  public:
   /// Compiles and allocates only what `scene` and `settings` need. The scene must outlive the renderer.
-  /// A scene far from the origin is moved to it (scene/place.hpp), with cameras and lamps, so that its picture does not depend on its position.
-  Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const RenderSettings& settings);
+  /// A scene far from the origin is moved to it (scene/place.hpp), with cameras and lamps, so that its picture does not
+  /// depend on its position.
+  Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+           const RenderSettings& settings);
   Renderer(const Renderer&) = delete;  // its techniques refer to it
   Renderer& operator=(const Renderer&) = delete;
 
@@ -51,14 +54,15 @@ class Renderer {
   /// The picture that frames of this view converge to: everything accumulated over frames, at once.
   void renderToTheEnd(const Camera& camera);
 
-  Image readRadiance() const;   ///< linear, scene units, top row first
-  Bitmap readDisplay() const;   ///< tone mapped, sRGB, top row first
+  Image readRadiance() const;  ///< linear, scene units, top row first
+  Bitmap readDisplay() const;  ///< tone mapped, sRGB, top row first
   const gl::Framebuffer& displayFramebuffer() const { return displayTarget_; }
-  const gl::Texture& display() const { return display_; }    ///< of that framebuffer
+  const gl::Texture& display() const { return display_; }  ///< of that framebuffer
   const gl::Texture& radiance() const { return radiance_; }  ///< linear, scene units, bottom row first
   glm::ivec2 size() const { return settings_.size; }
   void resize(glm::ivec2 size);
-  /// Takes over the settings whose cost is SettingCost::uniform (exposure, frame.reuse); for others a new Renderer is made.
+  /// Takes over the settings whose cost is SettingCost::uniform (exposure, frame.reuse); for others a new Renderer is
+  /// made.
   void apply(const RenderSettings& settings);
   void setExposure(float exposure) { exposure_ = exposure; }
   float exposure() const { return exposure_; }
@@ -101,12 +105,12 @@ class Renderer {
   RenderSettings settings_;
   std::uint64_t frames_ = 0;
   SceneNeeds needs_;
-  glm::dvec3 origin_;                ///< of what is drawn, in the scene's coordinates
-  std::optional<Scene> moved_;       ///< the scene about it, where that is not 0
+  glm::dvec3 origin_;  ///< of what is drawn, in the scene's coordinates
+  std::optional<Scene> moved_;  ///< the scene about it, where that is not 0
   float sceneExposure_, exposure_;
   gl::TimeQuery timer_;
   std::optional<RadiosityFrame> radiosity_;  ///< before gpuScene_, which draws its patches
-  std::optional<GpuScene> gpuScene_;         ///< not for path tracing, which has a scene of its own
+  std::optional<GpuScene> gpuScene_;  ///< not for path tracing, which has a scene of its own
   SunFrustum sunFrustum_;
   std::vector<LightViews> spots_, points_;
   gl::Buffer frameConstants_;

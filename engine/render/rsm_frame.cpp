@@ -20,7 +20,9 @@ void RsmFrame::resize(const gl::Texture& depth) {
 }
 
 void RsmFrame::record(gl::TimeQuery& timer, const FrameView& view) {
-  RsmGather::Inputs inputs{{}, glm::mat4(glm::inverse(view.clip)), static_cast<float>(2.0 * std::tan(0.5 * view.camera.verticalFov) / visible_.size().y)};
+  RsmGather::Inputs inputs{{},
+                           glm::mat4(glm::inverse(view.clip)),
+                           static_cast<float>(2.0 * std::tan(0.5 * view.camera.verticalFov) / visible_.size().y)};
   auto spot = parts_.spots.begin(), point = parts_.points.begin();
   for (const ReflectiveShadowMap::Outputs& map : maps_.record(timer)) {
     using Light = ReflectiveShadowMap::Light;

@@ -1,6 +1,7 @@
 // Technique rsm in the frame: every light's reflective shadow map gathered at visible pixels.
 //
-// Stages, with their inputs:  rsm (lights, geometry) -> geometry (camera) -> gather low, interpolation (both) -> gather full.
+// Stages, with their inputs:  rsm (lights, geometry) -> geometry (camera) -> gather low, interpolation (both) -> gather
+// full.
 #pragma once
 
 #include "forward/visible_surfaces.hpp"
@@ -12,7 +13,8 @@ namespace lucerna {
 class RsmFrame {
  public:
   static bool isNeeded(const RenderSettings& settings, const SceneNeeds& needs) {
-    return settings.technique == Technique::rsm && settings.component != Component::direct && RsmGather::isNeeded(needs);
+    return settings.technique == Technique::rsm && settings.component != Component::direct &&
+           RsmGather::isNeeded(needs);
   }
   /// `depth`: the frame's, of the picture's size.
   RsmFrame(const FrameParts& parts, const gl::Texture& depth);

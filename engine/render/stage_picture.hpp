@@ -14,7 +14,7 @@ struct StagePicture {
     normal,
     flux,
     depth,
-    irradiance,   ///< of receivers: a slice of cells a layer, faces and cascades one after the other
+    irradiance,  ///< of receivers: a slice of cells a layer, faces and cascades one after the other
     coefficients  ///< spherical harmonics of light in cells: a slice a layer, cascades one after the other
   };
   Kind kind;

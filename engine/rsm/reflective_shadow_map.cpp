@@ -22,9 +22,12 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
   const int layers = settings.light == Light::point ? 6 : 1;
   const auto load = [&](bool masked) {
     gl::ShaderFlags flags = scene.materialFlags(masked);
-    flags.insert(flags.end(), {{"PERSPECTIVE", settings.light != Light::sun}, {"LAYERS", layers}, {"FLUX_COSINE", settings.fluxCosine}, {"ALBEDO", settings.albedo}});
-    return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "rsm/rsm.vert", "rsm/rsm.frag", flags,
-                                layers > 1 ? "rsm/rsm.geom" : "");
+    flags.insert(flags.end(), {{"PERSPECTIVE", settings.light != Light::sun},
+                               {"LAYERS", layers},
+                               {"FLUX_COSINE", settings.fluxCosine},
+                               {"ALBEDO", settings.albedo}});
+    return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "rsm/rsm.vert",
+                                "rsm/rsm.frag", flags, layers > 1 ? "rsm/rsm.geom" : "");
   };
   programs_.opaque = load(false);
   if (scene.needs().alphaMasks) programs_.masked = load(true);
@@ -61,11 +64,13 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, 
   if (programs_.masked) programs_.masked->set("texelArea", static_cast<float>(texelArea));
   draw(scene, false);
   const double irradiance = scene.scene().sun ? largest(scene.scene().sun->irradiance) : 0.0;
-  return {position_, normal_, flux_, static_cast<float>(texelArea), irradiance * texelArea * size() * size(), light_, albedo()};
+  return {position_, normal_, flux_, static_cast<float>(texelArea), irradiance * texelArea * size() * size(),
+          light_,    albedo()};
 }
 
 ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, const LightViews& light) {
-  CHECK(light_ == (light.omnidirectional() ? Light::point : Light::spot), "a map of light kind {}", static_cast<int>(light_));
+  CHECK(light_ == (light.omnidirectional() ? Light::point : Light::spot), "a map of light kind {}",
+        static_cast<int>(light_));
   for (const gl::Program* program : {programs_.opaque, programs_.masked}) {
     if (!program) continue;
     for (std::size_t i = 0; i < light.clipFromWorld.size(); ++i) {
@@ -82,7 +87,8 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, 
     program->set("cosOuter", static_cast<float>(light.cosOuter));
   }
   draw(scene, true);  // geometry before the near plane reflects too
-  return {position_, normal_, flux_, 1.0f, largest(light.intensity) * light.largestSolidAngle(size()), light_, albedo()};
+  return {position_, normal_, flux_, 1.0f, largest(light.intensity) * light.largestSolidAngle(size()),
+          light_,    albedo()};
 }
 
 }  // namespace lucerna

@@ -1,5 +1,5 @@
-// Reflective shadow map of a light [Dachsbacher2005]: what the light sees, each texel a virtual point light. One map per light: of
-// the sun, of a spot light, or of an omnidirectional light with its six faces drawn in one pass.
+// Reflective shadow map of a light [Dachsbacher2005]: what the light sees, each texel a virtual point light. One map
+// per light: of the sun, of a spot light, or of an omnidirectional light with its six faces drawn in one pass.
 #pragma once
 
 #include "forward/gpu_scene.hpp"
@@ -15,15 +15,18 @@ class ReflectiveShadowMap {
     int size = 256;  ///< texels per side of every layer
     Light light = Light::sun;
     bool fluxCosine = false;  ///< deviation rsm.flux-cosine: flux times N.L
-    bool albedo = false;      ///< a fourth target, for several bounces
+    bool albedo = false;  ///< a fourth target, for several bounces
   };
   /// 2D arrays: one layer, or the six faces of an omnidirectional light.
   struct Outputs {
     const gl::Texture& position;  ///< RGBA32F, world; w = 1 where there is a surface, 0 background
-    const gl::Texture& normal;    ///< RGBA16F, unit, on the light's side; w = cosine to the light
-    const gl::Texture& flux;      ///< RGBA32F, reflected flux of the texel, W; w = area of the surface in it, scene units squared
-    float texelArea = 1.0f;       ///< sun: across the rays, scene units squared; other lights have no such area: 1. Only for deviations
-    double largestFlux = 0.0;     ///< of all texels together, W: the light's flux into the map, an upper bound for any albedo up to 1
+    const gl::Texture& normal;  ///< RGBA16F, unit, on the light's side; w = cosine to the light
+    const gl::Texture&
+        flux;  ///< RGBA32F, reflected flux of the texel, W; w = area of the surface in it, scene units squared
+    float texelArea =
+        1.0f;  ///< sun: across the rays, scene units squared; other lights have no such area: 1. Only for deviations
+    double largestFlux =
+        0.0;  ///< of all texels together, W: the light's flux into the map, an upper bound for any albedo up to 1
     Light light = Light::sun;
     const gl::Texture* albedo = nullptr;  ///< RGBA16F, linear; null unless asked for
     /// Texels of all layers.
@@ -39,13 +42,16 @@ class ReflectiveShadowMap {
 
   ReflectiveShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings);
 
-  /// The sun's: draws the scene into it; the frame's uniform block must be bound. texelArea: SunFrustum::texelArea(size).
+  /// The sun's: draws the scene into it; the frame's uniform block must be bound. texelArea:
+  /// SunFrustum::texelArea(size).
   Outputs record(const GpuScene& scene, double texelArea);
   /// A spot's or an omnidirectional light's; the frame's uniform block is not read.
   Outputs record(const GpuScene& scene, const LightViews& light);
   int size() const { return position_.size().x; }
   Light light() const { return light_; }
-  std::size_t gpuBytes() const { return position_.bytes() + normal_.bytes() + flux_.bytes() + albedo_.bytes() + depth_.bytes(); }
+  std::size_t gpuBytes() const {
+    return position_.bytes() + normal_.bytes() + flux_.bytes() + albedo_.bytes() + depth_.bytes();
+  }
 
  private:
   void draw(const GpuScene& scene, bool depthClamp);

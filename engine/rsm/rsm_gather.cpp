@@ -38,25 +38,33 @@ std::vector<glm::vec4> RsmGather::pattern(int samples, Weight weight, const glm:
   for (int i = 0; i < samples; ++i) {
     const double xi1 = std::fmod((i + 0.5) / samples + shift.x, 1.0);
     const double angle = 2.0 * std::numbers::pi * (radicalInverse(static_cast<std::uint32_t>(i)) + shift.y);
-    result.emplace_back(xi1 * std::sin(angle), xi1 * std::cos(angle), weight == Weight::published ? xi1 * xi1 : xi1, 0.0);
+    result.emplace_back(xi1 * std::sin(angle), xi1 * std::cos(angle), weight == Weight::published ? xi1 * xi1 : xi1,
+                        0.0);
   }
   return result;
 }
 
 gl::ShaderFlags RsmGather::flags(const Settings& settings, Light light) {
-  return {{"NEAR", static_cast<int>(settings.nearField)}, {"ROTATION", settings.rotation == Rotation::noise}, {"MAP_LIGHT", static_cast<int>(light)}};
+  return {{"NEAR", static_cast<int>(settings.nearField)},
+          {"ROTATION", settings.rotation == Rotation::noise},
+          {"MAP_LIGHT", static_cast<int>(light)}};
 }
 
-RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings, const VisibleSurfaces& visible)
+RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings,
+                     const VisibleSurfaces& visible)
     : settings_(settings), visible_(&visible) {
-  const std::array<std::pair<bool, const char*>, 3> lights{{{needs.directionalLight, ""}, {needs.spotLights, " spot"}, {needs.pointLights, " lamp"}}};
+  const std::array<std::pair<bool, const char*>, 3> lights{
+      {{needs.directionalLight, ""}, {needs.spotLights, " spot"}, {needs.pointLights, " lamp"}}};
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto& [needed, name] = lights[i];
     if (!needed) continue;
     const gl::ShaderFlags flagsOfLight = flags(settings, static_cast<Light>(i));
-    if (settings.interpolates()) low_[i] = &programs.loadCompute(fmt::format("rsm gather{} low", name), "rsm/gather_low.comp", flagsOfLight);
-    full_[i] = settings.interpolates() ? &programs.loadCompute(fmt::format("rsm gather{} refused", name), "rsm/gather_refused.comp", flagsOfLight)
-                                       : &programs.loadCompute(fmt::format("rsm gather{} all", name), "rsm/gather_all.comp", flagsOfLight);
+    if (settings.interpolates())
+      low_[i] = &programs.loadCompute(fmt::format("rsm gather{} low", name), "rsm/gather_low.comp", flagsOfLight);
+    full_[i] =
+        settings.interpolates()
+            ? &programs.loadCompute(fmt::format("rsm gather{} refused", name), "rsm/gather_refused.comp", flagsOfLight)
+            : &programs.loadCompute(fmt::format("rsm gather{} all", name), "rsm/gather_all.comp", flagsOfLight);
   }
   if (settings.interpolates()) interpolate_ = &programs.loadCompute("rsm interpolate", "rsm/interpolate.comp");
   const std::vector<glm::vec4> samples = pattern(settings.samples, settings.weight);
@@ -81,10 +89,12 @@ void RsmGather::bindMap(const gl::Program& program, const Settings& settings, co
   map.rsm.bind();
   program.set("adds", adds ? 1 : 0);
   program.set("gatherRadius", settings.radius);
-  if (settings.nearField == Near::clamp) program.set("minimumDistance2", settings.clampTexels * settings.clampTexels * map.rsm.texelArea);
+  if (settings.nearField == Near::clamp)
+    program.set("minimumDistance2", settings.clampTexels * settings.clampTexels * map.rsm.texelArea);
   if (map.rsm.light == Light::sun) return;
   CHECK(map.views, "no views of a light of kind {}", static_cast<int>(map.rsm.light));
-  for (std::size_t i = 0; i < map.views->clipFromWorld.size(); ++i) program.set(fmt::format("clipFromPlace[{}]", i), map.views->clipFromPlace(i));
+  for (std::size_t i = 0; i < map.views->clipFromWorld.size(); ++i)
+    program.set(fmt::format("clipFromPlace[{}]", i), map.views->clipFromPlace(i));
   program.set("lightPlace", map.views->place());
   program.set("texelWidth", static_cast<float>(map.views->texelWidth(map.rsm.position.size().x)));
 }
@@ -101,7 +111,8 @@ void RsmGather::gatherLow(const Inputs& inputs) {
   const GatherCounts start;
   work_.upload(0, sizeof start, &start);
   for (const Map& map : inputs.maps) {
-    const gl::ComputePass pass("gather low", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    const gl::ComputePass pass("gather low", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                                                 GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     const gl::Program& program = *low_[static_cast<std::size_t>(map.rsm.light)];
     bindMap(program, settings_, map, &map != &inputs.maps.front());
     bindVisible(program, inputs);
@@ -111,7 +122,8 @@ void RsmGather::gatherLow(const Inputs& inputs) {
 }
 
 void RsmGather::interpolate(const Inputs& inputs) {
-  const gl::ComputePass pass("interpolation", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  const gl::ComputePass pass("interpolation", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                                                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   bindVisible(*interpolate_, inputs);
   lowIrradiance_.bind(kLowUnit);
   interpolate_->set("pixelWidth", inputs.pixelWidth);
@@ -129,16 +141,15 @@ void RsmGather::gatherFull(const Inputs& inputs) {
     work_.upload(0, sizeof start, &start);
   }
   for (const Map& map : inputs.maps) {
-    const gl::ComputePass pass("gather full", GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    const gl::ComputePass pass("gather full", GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+                                                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     const gl::Program& program = *full_[static_cast<std::size_t>(map.rsm.light)];
     bindMap(program, settings_, map, &map != &inputs.maps.front());
     bindVisible(program, inputs);
     irradiance_.bindImage(0, GL_READ_WRITE);
     if (settings_.interpolates()) refused_.bind(kRefusedUnit);
-    if (settings_.interpolates())
-      pass.dispatchIndirect(work_);
-    else
-      pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));
+    if (settings_.interpolates()) pass.dispatchIndirect(work_);
+    else pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));
   }
   ring_->copy(work_);
 }

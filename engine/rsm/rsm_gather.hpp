@@ -1,6 +1,6 @@
-// The gather over the reflective shadow map [Dachsbacher2005]: indirect irradiance at every visible surface point, gathered
-// from samples of the map around the point's projection, with screen-space interpolation. Unoccluded, one bounce.
-// See README.md in this folder for inputs, outputs, units, sources, deviations and measurements.
+// The gather over the reflective shadow map [Dachsbacher2005]: indirect irradiance at every visible surface point,
+// gathered from samples of the map around the point's projection, with screen-space interpolation. Unoccluded, one
+// bounce. See README.md in this folder for inputs, outputs, units, sources, deviations and measurements.
 #pragma once
 
 #include "base/named_values.hpp"
@@ -19,21 +19,21 @@ namespace lucerna {
 class RsmGather {
  public:
   enum class Weight { unbiased, published };  ///< xi1, or xi1^2 [Dachsbacher2005]
-  enum class Rotation { none, noise };        ///< the same pattern for every pixel, or turned by interleaved gradient noise
-  enum class Near { none, clamp, disc, quad };///< replacement of 1/d^2 near a surfel; see README.md
+  enum class Rotation { none, noise };  ///< the same pattern for every pixel, or turned by interleaved gradient noise
+  enum class Near { none, clamp, disc, quad };  ///< replacement of 1/d^2 near a surfel; see README.md
   struct Settings {
     int samples = 400;
-    float radius = 0.3f;          ///< r, fraction of the map's side
+    float radius = 0.3f;  ///< r, fraction of the map's side
     Weight weight = Weight::unbiased;
     Rotation rotation = Rotation::none;
     Near nearField = Near::quad;
-    float clampTexels = 1.0f;     ///< Near::clamp: least distance, in texel sides across the rays
+    float clampTexels = 1.0f;  ///< Near::clamp: least distance, in texel sides across the rays
     bool interpolate = true;
-    int lowResolution = 4;        ///< pixels between low-resolution samples; 1 is the same as interpolate = false
-    float fitNormal = 0.9f;       ///< least cosine between the normals of a pixel and a fitting sample
-    float fitPlane = 0.25f;       ///< most distance from each other's tangent plane, in steps between samples at the pixel
-    float fitDistance = 8.0f;     ///< most distance, in the same unit
-    bool showRefused = false;     ///< paint the refused pixels red
+    int lowResolution = 4;  ///< pixels between low-resolution samples; 1 is the same as interpolate = false
+    float fitNormal = 0.9f;  ///< least cosine between the normals of a pixel and a fitting sample
+    float fitPlane = 0.25f;  ///< most distance from each other's tangent plane, in steps between samples at the pixel
+    float fitDistance = 8.0f;  ///< most distance, in the same unit
+    bool showRefused = false;  ///< paint the refused pixels red
     bool interpolates() const { return interpolate && lowResolution > 1; }
   };
   using Light = ReflectiveShadowMap::Light;
@@ -42,9 +42,9 @@ class RsmGather {
     const LightViews* views = nullptr;  ///< a spot's or an omnidirectional light's; the sun's lie in the frame's block
   };
   struct Inputs {
-    std::vector<Map> maps;    ///< one a light, at least one; what they give is added up
+    std::vector<Map> maps;  ///< one a light, at least one; what they give is added up
     glm::mat4 worldFromClip;  ///< the camera's
-    float pixelWidth;         ///< of a pixel, scene units across the view per unit of distance
+    float pixelWidth;  ///< of a pixel, scene units across the view per unit of distance
   };
   /// Pixels, summed over `frames` whose counts have arrived.
   struct Counts {
@@ -53,8 +53,10 @@ class RsmGather {
   };
   static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
 
-  /// Gathers at the pixels of `visible`, which outlives it and is drawn before. Compiles for the kinds of light in `needs`.
-  RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings, const VisibleSurfaces& visible);
+  /// Gathers at the pixels of `visible`, which outlives it and is drawn before. Compiles for the kinds of light in
+  /// `needs`.
+  RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings,
+            const VisibleSurfaces& visible);
   void resize();  ///< to the size that the visible surfaces have now
 
   // In this order; the first two only where settings().interpolates().

@@ -1,15 +1,17 @@
 // A clear sky as an environment picture, from the sun's position (no GL, pure).
 //
-// Luminance and chromaticity over the sky: [Preetham1999], fitted to computed skies; +y is up. Turbidity: the optical thickness of air with haze over that of
-// air alone; 2 is very clear, 3 clear, 6 warm and moist, 10 hazy.
-// Amount of light, sun and sky in proportion, with m the air mass [Preetham1999, A.1] and a = 0.1 / (1 + 0.0045 m) the extinction of clean air:
-//   sun, across its rays     E_n = 127.5 klx exp(-a m T)                                                      [Navvab1984]
-//   sky, on the ground       E_h = 127.5 klx / m  0.79 (0.5 (1 - e^-am) + 0.84 (1 - e^-am(T-1))) / (1 - m + m^1.02)     [Bird1981]
-// The second is what air and haze remove from sunlight and scatter downwards, half and 84 % of it, written for light (as if nothing were absorbed) and with 1/m for the
-// cosine of the sun's zenith angle, equal except for the Earth's curvature. The zenith luminance of [Preetham1999] is not used: with it and the sun in the zenith,
-// T = 3, sun and sky would give 135 klx, more than arrives.
-// The sun's disc is not in the picture: the sun stays a DirectionalLight.
-// With the sun within a few degrees of the horizon its light vanishes before the sky's, so that for a given sun irradiance the sky grows without bound, though finite.
+// Luminance and chromaticity over the sky: [Preetham1999], fitted to computed skies; +y is up. Turbidity: the optical
+// thickness of air with haze over that of air alone; 2 is very clear, 3 clear, 6 warm and moist, 10 hazy. Amount of
+// light, sun and sky in proportion, with m the air mass [Preetham1999, A.1] and a = 0.1 / (1 + 0.0045 m) the extinction
+// of clean air:
+//   sun, across its rays     E_n = 127.5 klx exp(-a m T) [Navvab1984] sky, on the ground       E_h = 127.5 klx / m 0.79
+//   (0.5 (1 - e^-am) + 0.84 (1 - e^-am(T-1))) / (1 - m + m^1.02)     [Bird1981]
+// The second is what air and haze remove from sunlight and scatter downwards, half and 84 % of it, written for light
+// (as if nothing were absorbed) and with 1/m for the cosine of the sun's zenith angle, equal except for the Earth's
+// curvature. The zenith luminance of [Preetham1999] is not used: with it and the sun in the zenith, T = 3, sun and sky
+// would give 135 klx, more than arrives. The sun's disc is not in the picture: the sun stays a DirectionalLight. With
+// the sun within a few degrees of the horizon its light vanishes before the sky's, so that for a given sun irradiance
+// the sky grows without bound, though finite.
 #pragma once
 
 #include "base/image.hpp"
@@ -33,15 +35,17 @@ struct SkyColour {
 /// `direction`, `toSun`: unit, at or above the horizon.
 SkyColour skyColour(double turbidity, const glm::dvec3& toSun, const glm::dvec3& direction);
 
-/// Linear sRGB (white D65) whose 0.2126 r + 0.7152 g + 0.0722 b is the luminance; colours outside sRGB are mixed with white of that luminance until inside.
+/// Linear sRGB (white D65) whose 0.2126 r + 0.7152 g + 0.0722 b is the luminance; colours outside sRGB are mixed with
+/// white of that luminance until inside.
 glm::dvec3 linearSrgb(const SkyColour& colour);
 
 /// Illuminance by the sun across its rays and by the sky on the ground, klx. zenithAngle: the sun's, 0..pi/2.
 double sunIlluminance(double turbidity, double zenithAngle);
 double skyIlluminance(double turbidity, double zenithAngle);
 
-/// Latitude-longitude picture, 2 height by height (even), of the sky in the units of the sun's irradiance: irradiances have the ratio of the illuminances.
-/// Throws Error(badInput) if the sun is below the horizon, or turbidity or albedo out of range.
+/// Latitude-longitude picture, 2 height by height (even), of the sky in the units of the sun's irradiance: irradiances
+/// have the ratio of the illuminances. Throws Error(badInput) if the sun is below the horizon, or turbidity or albedo
+/// out of range.
 Image clearSkyPicture(const ClearSky& sky, const DirectionalLight& sun, int height = 256);
 
 }  // namespace lucerna

@@ -4,7 +4,8 @@ namespace lucerna {
 
 namespace {
 
-// A field added to one of these changes its size: then add it below (or here, where light does not see it) and correct the figure.
+// A field added to one of these changes its size: then add it below (or here, where light does not see it) and correct
+// the figure.
 #if defined(__x86_64__) && defined(__GLIBCXX__)
 static_assert(sizeof(Material) == 160, "add what is new to the fingerprint");
 static_assert(sizeof(Medium) == 184, "add what is new to the fingerprint");
@@ -18,7 +19,8 @@ void add(Hash& h, const Material& m) {
   h.add(m.shininess), h.add(m.opacity), h.add(m.diffuseTexture), h.add(m.alphaTexture), h.add(m.alphaMasked);
   if (m.emissionTexture >= 0) h.add(m.emissionTexture), h.add(m.emissionScale);
   if (m.normalTexture >= 0) h.add(m.normalTexture), h.add(m.normalScale);
-  if (m.metalMap) h.add(m.metalMap->base), h.add(m.metalMap->metallic), h.add(m.metalMap->roughness), h.add(m.metalMap->texture);
+  if (m.metalMap)
+    h.add(m.metalMap->base), h.add(m.metalMap->metallic), h.add(m.metalMap->roughness), h.add(m.metalMap->texture);
 }
 
 void add(Hash& h, const Image& image) {
@@ -49,13 +51,15 @@ void addScene(Hash& h, const Scene& scene) {
   }
   h.add(scene.sun.has_value());
   if (scene.sun) h.add(scene.sun->direction), h.add(scene.sun->irradiance);
-  for (const SpotLight& l : scene.spots) h.add(l.position), h.add(l.direction), h.add(l.intensity), h.add(l.innerAngle), h.add(l.outerAngle);
+  for (const SpotLight& l : scene.spots)
+    h.add(l.position), h.add(l.direction), h.add(l.intensity), h.add(l.innerAngle), h.add(l.outerAngle);
   for (const PointLight& l : scene.points) h.add(l.position), h.add(l.intensity);
   for (const Medium& m : scene.media) add(h, m);
   h.add(scene.cameraMedium);
   h.add(scene.environment.has_value());
   if (scene.environment) {
-    h.add(scene.environment->radiance), h.add(scene.environment->rotation), h.add(scene.environment->picture.has_value());
+    h.add(scene.environment->radiance), h.add(scene.environment->rotation),
+        h.add(scene.environment->picture.has_value());
     if (scene.environment->picture) add(h, *scene.environment->picture);
   }
   h.add(scene.background);

@@ -1,5 +1,5 @@
-// Hash of everything that light in a scene depends on (no GL): geometry, materials, textures, lights and media, and the view.
-// It covers what was loaded: a changed texture or MTL changes it, a moved folder or a renamed file does not.
+// Hash of everything that light in a scene depends on (no GL): geometry, materials, textures, lights and media, and the
+// view. It covers what was loaded: a changed texture or MTL changes it, a moved folder or a renamed file does not.
 #pragma once
 
 #include "base/hash.hpp"

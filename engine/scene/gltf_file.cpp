@@ -20,22 +20,29 @@ namespace {
 constexpr std::uint64_t kMostZeroElements = 1u << 24;
 
 std::uint32_t wordAt(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return std::uint32_t{bytes[at]} | std::uint32_t{bytes[at + 1]} << 8 | std::uint32_t{bytes[at + 2]} << 16 | std::uint32_t{bytes[at + 3]} << 24;
+  return std::uint32_t{bytes[at]} | std::uint32_t{bytes[at + 1]} << 8 | std::uint32_t{bytes[at + 2]} << 16 |
+         std::uint32_t{bytes[at + 3]} << 24;
 }
 
-/// The JSON text: the whole file, or the first chunk of a binary one (section 4.4: 12 bytes of header, then length, type and data of each chunk).
+/// The JSON text: the whole file, or the first chunk of a binary one (section 4.4: 12 bytes of header, then length,
+/// type and data of each chunk).
 std::string_view jsonText(const fs::path& file, std::span<const std::uint8_t> bytes) {
   const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!all.starts_with("glTF")) return all;
-  if (bytes.size() < 20) throwBadInput("{}: {} bytes are too few for a binary glTF; is the file truncated?", file.string(), bytes.size());
+  if (bytes.size() < 20)
+    throwBadInput("{}: {} bytes are too few for a binary glTF; is the file truncated?", file.string(), bytes.size());
   if (wordAt(bytes, 4) == 1) {  // version 1: length and format (0: JSON) of the scene stand in the header
     const std::uint32_t length = wordAt(bytes, 12);
-    if (length > bytes.size() - 20) throwBadInput("{}: a scene of {} bytes, {} are there; is the file truncated?", file.string(), length, bytes.size() - 20);
+    if (length > bytes.size() - 20)
+      throwBadInput("{}: a scene of {} bytes, {} are there; is the file truncated?", file.string(), length,
+                    bytes.size() - 20);
     return all.substr(20, length);
   }
   const std::uint32_t length = wordAt(bytes, 12);
   if (all.substr(16, 4) != "JSON") throwBadInput("{}: the first chunk of a binary glTF must be JSON", file.string());
-  if (length > bytes.size() - 20) throwBadInput("{}: a JSON chunk of {} bytes, {} are there; is the file truncated?", file.string(), length, bytes.size() - 20);
+  if (length > bytes.size() - 20)
+    throwBadInput("{}: a JSON chunk of {} bytes, {} are there; is the file truncated?", file.string(), length,
+                  bytes.size() - 20);
   return all.substr(20, length);
 }
 
@@ -48,7 +55,9 @@ std::map<std::string, const Json*> membersOf(const Json& root, const char* key) 
   return members;
 }
 
-std::string nameOfReference(const Json& reference) { return reference.is_string() ? reference.get<std::string>() : reference.dump(); }
+std::string nameOfReference(const Json& reference) {
+  return reference.is_string() ? reference.get<std::string>() : reference.dump();
+}
 
 void checkNodes(const fs::path& file, const Json& root) {
   const std::map<std::string, const Json*> nodes = membersOf(root, "nodes");
@@ -61,7 +70,9 @@ void checkNodes(const fs::path& file, const Json& root) {
       const std::string childName = nameOfReference(child);
       if (!nodes.contains(childName)) throwBadInput("{}: node {}: no such node: {}", file.string(), name, childName);
       const auto [before, isNew] = parents.emplace(childName, name);
-      if (!isNew) throwBadInput("{}: node {} is a child of node {} and of node {}; nodes must be trees", file.string(), childName, before->second, name);
+      if (!isNew)
+        throwBadInput("{}: node {} is a child of node {} and of node {}; nodes must be trees", file.string(), childName,
+                      before->second, name);
     }
   }
   // Every node has one parent at most, so that only a walk upwards that does not end is a cycle.
@@ -72,7 +83,8 @@ void checkNodes(const fs::path& file, const Json& root) {
     for (; !depths.contains(at); at = parents.at(at)) {
       way.push_back(at);
       if (way.size() > static_cast<std::size_t>(kMostNodeDepth))
-        throwBadInput("{}: node {} is its own descendant, or nested more than {} deep", file.string(), name, kMostNodeDepth);
+        throwBadInput("{}: node {} is its own descendant, or nested more than {} deep", file.string(), name,
+                      kMostNodeDepth);
       if (parents.contains(at)) continue;
       depths[at] = 0;
       way.pop_back();
@@ -80,7 +92,8 @@ void checkNodes(const fs::path& file, const Json& root) {
     }
     int depth = depths.at(at);
     for (auto step = way.rbegin(); step != way.rend(); ++step) depths[*step] = ++depth;
-    if (depth > kMostNodeDepth) throwBadInput("{}: node {} is nested more than {} deep", file.string(), name, kMostNodeDepth);
+    if (depth > kMostNodeDepth)
+      throwBadInput("{}: node {} is nested more than {} deep", file.string(), name, kMostNodeDepth);
   }
 }
 
@@ -97,13 +110,17 @@ void checkAccessors(const fs::path& file, const Json& root) {
     const std::uint64_t count = wholeNumber(*accessor, "count");
     const auto view = accessor->find("bufferView");
     if (view == accessor->end()) {
-      if (count > kMostZeroElements) throwBadInput("{}: accessor {}: {} elements without a buffer view, at most {} are supported", file.string(), name, count, kMostZeroElements);
+      if (count > kMostZeroElements)
+        throwBadInput("{}: accessor {}: {} elements without a buffer view, at most {} are supported", file.string(),
+                      name, count, kMostZeroElements);
       continue;
     }
     const auto found = views.find(nameOfReference(*view));
-    if (found == views.end() || !found->second->is_object()) throwBadInput("{}: accessor {}: no such buffer view: {}", file.string(), name, nameOfReference(*view));
+    if (found == views.end() || !found->second->is_object())
+      throwBadInput("{}: accessor {}: no such buffer view: {}", file.string(), name, nameOfReference(*view));
     const std::uint64_t bytes = wholeNumber(*found->second, "byteLength");
-    if (count > bytes) throwBadInput("{}: accessor {}: {} elements in a buffer view of {} bytes", file.string(), name, count, bytes);
+    if (count > bytes)
+      throwBadInput("{}: accessor {}: {} elements in a buffer view of {} bytes", file.string(), name, count, bytes);
   }
 }
 
@@ -124,7 +141,8 @@ std::vector<std::uint8_t> withNumberedMaterials(const Json& root, std::span<cons
     if (!materials[i].is_object()) continue;
     const auto name = materials[i].find("name");
     if (name != materials[i].end() && !name->is_string()) continue;  // Assimp refuses it
-    materials[i]["name"] = fmt::format("{}#{}", i, name == materials[i].end() ? std::string() : name->get<std::string>());
+    materials[i]["name"] =
+        fmt::format("{}#{}", i, name == materials[i].end() ? std::string() : name->get<std::string>());
   }
   std::string text = numbered.dump(-1, ' ', false, Json::error_handler_t::replace);
   const std::size_t oldLength = jsonText({}, bytes).size();
@@ -164,13 +182,17 @@ glm::dvec2 pairOf(const Value& v) {
 
 TextureTransform transformOf(const Value& texture) {
   TextureTransform result;
-  if (texture.has("texCoord")) result.texCoord = static_cast<unsigned>(texture.at("texCoord").numberBetween(0.0, 7.0, "a number of texture coordinates, 0 to 7"));
+  if (texture.has("texCoord"))
+    result.texCoord = static_cast<unsigned>(
+        texture.at("texCoord").numberBetween(0.0, 7.0, "a number of texture coordinates, 0 to 7"));
   if (!texture.has("extensions") || !texture.at("extensions").has("KHR_texture_transform")) return result;
   const Value given = texture.at("extensions").at("KHR_texture_transform");
   if (given.has("offset")) result.offset = pairOf(given.at("offset"));
   if (given.has("scale")) result.scale = pairOf(given.at("scale"));
   if (given.has("rotation")) result.rotation = given.at("rotation").number();
-  if (given.has("texCoord")) result.texCoord = static_cast<unsigned>(given.at("texCoord").numberBetween(0.0, 7.0, "a number of texture coordinates, 0 to 7"));
+  if (given.has("texCoord"))
+    result.texCoord =
+        static_cast<unsigned>(given.at("texCoord").numberBetween(0.0, 7.0, "a number of texture coordinates, 0 to 7"));
   return result;
 }
 
@@ -178,7 +200,9 @@ TextureTransform transformOf(const Value& texture) {
 bool clamps(const Json& root, const Value& texture) {
   constexpr int kRepeat = 10497;
   const auto member = [&](const char* array, const Json& index) -> const Json* {
-    if (!root.contains(array) || !root.at(array).is_array() || !index.is_number_unsigned() || index.get<std::uint64_t>() >= root.at(array).size()) return nullptr;
+    if (!root.contains(array) || !root.at(array).is_array() || !index.is_number_unsigned() ||
+        index.get<std::uint64_t>() >= root.at(array).size())
+      return nullptr;
     const Json& found = root.at(array).at(index.get<std::size_t>());
     return found.is_object() ? &found : nullptr;
   };
@@ -192,7 +216,8 @@ bool clamps(const Json& root, const Value& texture) {
 
 GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t index) {
   GltfMaterial result;
-  if (!root.contains("materials") || !root.at("materials").is_array() || index >= root.at("materials").size()) return result;
+  if (!root.contains("materials") || !root.at("materials").is_array() || index >= root.at("materials").size())
+    return result;
   const Value material = Value{root, file, ""}.at("materials").at(index);
   if (!material.json.is_object()) material.fail("an object {...}");
   if (material.has("name") && material.at("name").json.is_string()) result.name = material.at("name").text();
@@ -219,7 +244,9 @@ GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t in
   }
   if (material.has("normalTexture")) {
     read(material.at("normalTexture"), "normal");
-    if (material.at("normalTexture").has("scale")) result.normalScale = static_cast<float>(material.at("normalTexture").at("scale").numberBetween(-1e3, 1e3, "a number from -1000 to 1000"));
+    if (material.at("normalTexture").has("scale"))
+      result.normalScale = static_cast<float>(
+          material.at("normalTexture").at("scale").numberBetween(-1e3, 1e3, "a number from -1000 to 1000"));
   }
   if (material.has("emissiveTexture")) read(material.at("emissiveTexture"), "emissive");
   result.transform = baseTransform.value_or(TextureTransform{});
@@ -227,10 +254,13 @@ GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t in
   if (material.has("alphaMode")) {
     const std::string mode = material.at("alphaMode").text();
     if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND") material.at("alphaMode").fail("OPAQUE, MASK or BLEND");
-    result.alpha = mode == "MASK" ? GltfMaterial::Alpha::mask : mode == "BLEND" ? GltfMaterial::Alpha::blend : GltfMaterial::Alpha::opaque;
+    result.alpha = mode == "MASK"    ? GltfMaterial::Alpha::mask
+                   : mode == "BLEND" ? GltfMaterial::Alpha::blend
+                                     : GltfMaterial::Alpha::opaque;
     if (mode == "BLEND") lacks("not blended (BLEND) but cut out where alpha is below 0.5");
   }
-  if (material.has("alphaCutoff")) result.alphaCutoff = material.at("alphaCutoff").numberBetween(0.0, 1e6, "a number, 0 or more");
+  if (material.has("alphaCutoff"))
+    result.alphaCutoff = material.at("alphaCutoff").numberBetween(0.0, 1e6, "a number, 0 or more");
 
   if (!material.has("extensions")) return result;
   const Value extensions = material.at("extensions");
@@ -240,19 +270,26 @@ GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t in
     const Value extension = extensions.at(name);
     if (!extension.json.is_object()) extension.fail("an object {...}");
     if (name == "KHR_materials_emissive_strength") {
-      if (extension.has("emissiveStrength")) result.emissiveStrength = static_cast<float>(extension.at("emissiveStrength").numberBetween(0.0, 1e30, "a number, 0 or more"));
+      if (extension.has("emissiveStrength"))
+        result.emissiveStrength =
+            static_cast<float>(extension.at("emissiveStrength").numberBetween(0.0, 1e30, "a number, 0 or more"));
     } else if (name == "KHR_materials_ior") {
-      if (extension.has("ior")) result.ior = static_cast<float>(extension.at("ior").numberBetween(1.0, 10.0, "a number from 1 to 10"));
+      if (extension.has("ior"))
+        result.ior = static_cast<float>(extension.at("ior").numberBetween(1.0, 10.0, "a number from 1 to 10"));
     } else if (name == "KHR_materials_volume") {
-      if (extension.has("thicknessFactor")) result.thickness = extension.at("thicknessFactor").numberBetween(0.0, 1e30, "a number, 0 or more");
+      if (extension.has("thicknessFactor"))
+        result.thickness = extension.at("thicknessFactor").numberBetween(0.0, 1e30, "a number, 0 or more");
       if (!extension.has("attenuationDistance")) continue;  // no absorption
       const double distance = extension.at("attenuationDistance").positiveNumber();
       if (!extension.has("attenuationColor")) continue;
       // Light is `colour` of itself after `distance`. Black would be infinitely dense: a millionth is black too.
-      const glm::dvec3 colour = glm::max(extension.at("attenuationColor").vectorBetween(0.0, 1.0, "an array of 3 numbers from 0 to 1"), glm::dvec3(1e-6));
+      const glm::dvec3 colour =
+          glm::max(extension.at("attenuationColor").vectorBetween(0.0, 1.0, "an array of 3 numbers from 0 to 1"),
+                   glm::dvec3(1e-6));
       result.absorption = glm::vec3(-glm::log(colour) / distance);
     } else if (name == "KHR_materials_transmission") {
-      if (extension.has("transmissionFactor")) result.transmission = extension.at("transmissionFactor").numberBetween(0.0, 1.0, "a number from 0 to 1");
+      if (extension.has("transmissionFactor"))
+        result.transmission = extension.at("transmissionFactor").numberBetween(0.0, 1.0, "a number from 0 to 1");
       if (extension.has("transmissionTexture")) lacks("transmission without its texture");
     } else if (name != "KHR_materials_pbrSpecularGlossiness") {  // Assimp's own
       lacks("no " + name);
@@ -268,7 +305,8 @@ std::string gltfLightsWithRange(const Json& root) {
   for (const Json& light : root.at(place)) {
     if (!light.is_object() || !light.contains("range")) continue;
     const auto name = light.find("name");
-    names += (names.empty() ? "" : ", ") + (name != light.end() && name->is_string() ? name->get<std::string>() : std::string("(no name)"));
+    names += (names.empty() ? "" : ", ") +
+             (name != light.end() && name->is_string() ? name->get<std::string>() : std::string("(no name)"));
   }
   return names;
 }

@@ -1,5 +1,5 @@
-// Checks a glTF file before Assimp reads it, and reads from its JSON what Assimp 5.2.5 leaves out (no GL; private to engine/scene).
-// Source: glTF 2.0 specification, Khronos Group, 2021.
+// Checks a glTF file before Assimp reads it, and reads from its JSON what Assimp 5.2.5 leaves out (no GL; private to
+// engine/scene). Source: glTF 2.0 specification, Khronos Group, 2021.
 #pragma once
 
 #include "scene/json_value.hpp"
@@ -17,12 +17,13 @@ namespace lucerna {
 /// Maximum depth of nodes: importers recurse once per level.
 inline constexpr int kMostNodeDepth = 1000;
 
-/// The JSON of a .gltf or .glb file. Throws Error(badInput) naming `file` if it is not glTF, if nodes are not trees (a node with two parents or
-/// its own descendant makes an importer loop forever or exponentially long) or nested deeper than kMostNodeDepth, and if an accessor has more elements
-/// than its bytes can hold.
+/// The JSON of a .gltf or .glb file. Throws Error(badInput) naming `file` if it is not glTF, if nodes are not trees (a
+/// node with two parents or its own descendant makes an importer loop forever or exponentially long) or nested deeper
+/// than kMostNodeDepth, and if an accessor has more elements than its bytes can hold.
 Json checkedGltf(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 
-/// The file with the number of each material before its name, "3#paint": Assimp returns materials in the order of their first use. `root` is its JSON.
+/// The file with the number of each material before its name, "3#paint": Assimp returns materials in the order of their
+/// first use. `root` is its JSON.
 std::vector<std::uint8_t> withNumberedMaterials(const Json& root, std::span<const std::uint8_t> bytes);
 
 /// The number before such a name; empty if there is none (Assimp's material for meshes without one).
@@ -42,19 +43,21 @@ struct GltfMaterial {
   std::string name;
   enum class Alpha { opaque, mask, blend };
   Alpha alpha = Alpha::opaque;
-  double alphaCutoff = 0.5, baseAlpha = 1.0;  ///< cut out where baseAlpha * texture's alpha * vertex's alpha is below alphaCutoff (mask)
-  float emissiveStrength = 1.0f;              ///< KHR_materials_emissive_strength
-  float ior = 1.5f;                           ///< KHR_materials_ior
-  double transmission = 0.0;                  ///< KHR_materials_transmission
-  double thickness = 0.0;                     ///< KHR_materials_volume; 0: a thin wall
-  glm::vec3 absorption{0.0f};                 ///< of what fills it, 1 / scene unit: -ln(attenuationColor) / attenuationDistance
-  float normalScale = 1.0f;                   ///< of its normal map
-  TextureTransform transform;                 ///< of the base colour's texture; where there is none, of the first other one
-  bool clamped = false;                       ///< a texture is to be clamped or mirrored beyond its edge; it repeats here
-  std::string notDone;                        ///< what of it no technique shows, for one warning; empty: nothing
+  double alphaCutoff = 0.5,
+         baseAlpha = 1.0;  ///< cut out where baseAlpha * texture's alpha * vertex's alpha is below alphaCutoff (mask)
+  float emissiveStrength = 1.0f;  ///< KHR_materials_emissive_strength
+  float ior = 1.5f;  ///< KHR_materials_ior
+  double transmission = 0.0;  ///< KHR_materials_transmission
+  double thickness = 0.0;  ///< KHR_materials_volume; 0: a thin wall
+  glm::vec3 absorption{0.0f};  ///< of what fills it, 1 / scene unit: -ln(attenuationColor) / attenuationDistance
+  float normalScale = 1.0f;  ///< of its normal map
+  TextureTransform transform;  ///< of the base colour's texture; where there is none, of the first other one
+  bool clamped = false;  ///< a texture is to be clamped or mirrored beyond its edge; it repeats here
+  std::string notDone;  ///< what of it no technique shows, for one warning; empty: nothing
 };
 
-/// Material `index` of a glTF 2; the default material if there is none of that number. Throws Error(badInput) naming file and key.
+/// Material `index` of a glTF 2; the default material if there is none of that number. Throws Error(badInput) naming
+/// file and key.
 GltfMaterial gltfMaterial(const Json& root, const std::filesystem::path& file, std::size_t index);
 
 /// Names of lights (KHR_lights_punctual) that have a range, which contradicts 1/d^2; may be empty.

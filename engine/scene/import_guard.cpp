@@ -30,7 +30,9 @@ extern "C" void onFault(int signal) {
 }  // namespace
 
 ImportGuard::ImportGuard(const std::filesystem::path& file) : stack_(kStackBytes) {
-  g_message = fmt::format("lucerna: {}: cannot be read as a model: the model library fails on it (it is broken, or nested too deep)\n", file.string());
+  g_message = fmt::format(
+      "lucerna: {}: cannot be read as a model: the model library fails on it (it is broken, or nested too deep)\n",
+      file.string());
   stack_t stack{};
   stack.ss_sp = stack_.data();
   stack.ss_size = stack_.size();

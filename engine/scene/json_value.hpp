@@ -30,7 +30,9 @@ struct Value {
     throwBadInput("{}: key \"{}\": found {}, expected {}", file.string(), key, found, expected);
   }
 
-  Value at(std::string_view name) const { return {json.at(std::string(name)), file, key.empty() ? std::string(name) : fmt::format("{}.{}", key, name)}; }
+  Value at(std::string_view name) const {
+    return {json.at(std::string(name)), file, key.empty() ? std::string(name) : fmt::format("{}.{}", key, name)};
+  }
   Value at(std::size_t index) const { return {json.at(index), file, fmt::format("{}[{}]", key, index)}; }
   bool has(std::string_view name) const { return json.contains(std::string(name)); }
 
@@ -107,7 +109,8 @@ inline void readObject(const Value& object, const std::vector<Key>& keys) {
     if (key == keys.end()) {
       std::string known;
       for (const Key& k : keys) known += fmt::format("{}{}", known.empty() ? "" : ", ", k.name);
-      throwBadInput("{}: unknown key \"{}\"; expected one of {}", object.file.string(), object.key.empty() ? name : fmt::format("{}.{}", object.key, name), known);
+      throwBadInput("{}: unknown key \"{}\"; expected one of {}", object.file.string(),
+                    object.key.empty() ? name : fmt::format("{}.{}", object.key, name), known);
     }
     key->read(object.at(name));
   }

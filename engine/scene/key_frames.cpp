@@ -1,9 +1,9 @@
 // Key frames and the natural cubic spline through them.
 //
-// Spline: on segment i, with u = t - i in [0,1], the cubic Hermite polynomial of the values P_i, P_(i+1) and the tangents
-// D_i, D_(i+1). The tangents make the second derivative continuous at inner keys and 0 at both ends, which gives a
-// tridiagonal system (R. Bartels, J. Beatty, B. Barsky, "An Introduction to Splines for Use in Computer Graphics and
-// Geometric Modeling", 1987, chapter 3):
+// Spline: on segment i, with u = t - i in [0,1], the cubic Hermite polynomial of the values P_i, P_(i+1) and the
+// tangents D_i, D_(i+1). The tangents make the second derivative continuous at inner keys and 0 at both ends, which
+// gives a tridiagonal system (R. Bartels, J. Beatty, B. Barsky, "An Introduction to Splines for Use in Computer
+// Graphics and Geometric Modeling", 1987, chapter 3):
 //   2 D_0 + D_1                     = 3 (P_1 - P_0)
 //   D_(i-1) + 4 D_i + D_(i+1)       = 3 (P_(i+1) - P_(i-1))
 //   D_(n-1) + 2 D_n                 = 3 (P_n - P_(n-1))
@@ -25,11 +25,13 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 /// Below this length (of vectors that are unit at the keys) a direction is taken as lost.
 constexpr double kLost = 1e-6;
 
-// -------------------------------------------------------------------------------------------------------------- reading
+// --------------------------------------------------------------------------------------------------------------
+// reading
 
 class LineReader {
  public:
-  LineReader(std::string_view line, const std::filesystem::path& file, int number) : rest_(line), file_(file), number_(number) {}
+  LineReader(std::string_view line, const std::filesystem::path& file, int number)
+      : rest_(line), file_(file), number_(number) {}
 
   /// The next word, empty at the end of the line.
   std::string_view word() {
@@ -46,7 +48,8 @@ class LineReader {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (text.empty() || error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-      fail(fmt::format("'{}' after '{}', expected a finite number", text.empty() ? std::string_view("end of line") : text, after));
+      fail(fmt::format("'{}' after '{}', expected a finite number",
+                       text.empty() ? std::string_view("end of line") : text, after));
     return value;
   }
 
@@ -81,10 +84,12 @@ KeyFrame readKey(LineReader line) {
       line.number(word);  // follows from the picture's size
     } else if (word == "f") {
       const double degrees = line.number(word);
-      if (!(degrees > 0.0 && degrees < 180.0)) line.fail(fmt::format("field of view {}, expected degrees between 0 and 180", degrees));
+      if (!(degrees > 0.0 && degrees < 180.0))
+        line.fail(fmt::format("field of view {}, expected degrees between 0 and 180", degrees));
       key.verticalFov = degrees * kDegree;
     } else {
-      line.fail(fmt::format("unknown word '{}'; a key is: p X Y Z  d X Y Z  u X Y Z  [r X Y Z]  [f DEGREES]  [a ASPECT]", word));
+      line.fail(fmt::format(
+          "unknown word '{}'; a key is: p X Y Z  d X Y Z  u X Y Z  [r X Y Z]  [f DEGREES]  [a ASPECT]", word));
     }
   }
   if (!position) line.fail("no position: expected p X Y Z");
@@ -95,12 +100,14 @@ KeyFrame readKey(LineReader line) {
   key.position = *position;
   key.direction = glm::normalize(*direction);
   const glm::dvec3 unitUp = glm::normalize(*up);
-  if (glm::length(glm::cross(unitUp, key.direction)) < kLost) line.fail("the up vector u is parallel to the viewing direction d");
+  if (glm::length(glm::cross(unitUp, key.direction)) < kLost)
+    line.fail("the up vector u is parallel to the viewing direction d");
   key.up = glm::normalize(unitUp - glm::dot(unitUp, key.direction) * key.direction);
   return key;
 }
 
-// --------------------------------------------------------------------------------------------------------------- spline
+// ---------------------------------------------------------------------------------------------------------------
+// spline
 
 /// The tangents D of the head comment; Gauss elimination of the tridiagonal matrix, which is diagonally dominant.
 /// Value is double or dvec3.
@@ -108,7 +115,8 @@ template <class Value>
 std::vector<Value> naturalTangents(const std::vector<Value>& points) {
   const std::size_t last = points.size() - 1;
   std::vector<Value> tangents(points.size(), Value(0.0));
-  std::vector<double> above(points.size(), 0.0);  // the matrix's upper diagonal after elimination, its main diagonal being 1
+  std::vector<double> above(points.size(),
+                            0.0);  // the matrix's upper diagonal after elimination, its main diagonal being 1
   for (std::size_t i = 0; i <= last; ++i) {
     const double below = i > 0 ? 1.0 : 0.0;
     const double main = i > 0 && i < last ? 4.0 : 2.0;
@@ -152,7 +160,8 @@ std::vector<KeyFrame> readKeyFrames(const std::filesystem::path& file) {
   return keys;
 }
 
-Spline::Spline(std::vector<KeyFrame> keys, int viewsPerSegment) : keys_(std::move(keys)), viewsPerSegment_(viewsPerSegment) {
+Spline::Spline(std::vector<KeyFrame> keys, int viewsPerSegment)
+    : keys_(std::move(keys)), viewsPerSegment_(viewsPerSegment) {
   CHECK(keys_.size() >= 2, "{} keys", keys_.size());
   CHECK(viewsPerSegment_ >= 1, "{} views per segment", viewsPerSegment_);
   std::vector<glm::dvec3> positions, directions, ups;
@@ -183,15 +192,19 @@ Camera Spline::at(double t) const {
 
   Camera camera;
   camera.position = hermite(k0.position, k1.position, d0.position, d1.position, u);
-  // Between opposite directions the spline may pass through zero, and up may meet the direction: then the nearest key's.
+  // Between opposite directions the spline may pass through zero, and up may meet the direction: then the nearest
+  // key's.
   const glm::dvec3 direction = hermite(k0.direction, k1.direction, d0.direction, d1.direction, u);
   camera.direction = glm::length(direction) > kLost ? glm::normalize(direction) : nearest.direction;
-  const auto acrossDirection = [&](const glm::dvec3& up) { return up - glm::dot(up, camera.direction) * camera.direction; };
+  const auto acrossDirection = [&](const glm::dvec3& up) {
+    return up - glm::dot(up, camera.direction) * camera.direction;
+  };
   glm::dvec3 up = acrossDirection(hermite(k0.up, k1.up, d0.up, d1.up, u));
   if (glm::length(up) < kLost) up = acrossDirection(nearest.up);
   camera.up = glm::length(up) < kLost ? perpendicularTo(camera.direction) : glm::normalize(up);
   // A spline overshoots; a field of view must not leave (0, 180) degrees.
-  camera.verticalFov = std::clamp(hermite(*k0.verticalFov, *k1.verticalFov, *d0.verticalFov, *d1.verticalFov, u), 0.1 * kDegree, 179.0 * kDegree);
+  camera.verticalFov = std::clamp(hermite(*k0.verticalFov, *k1.verticalFov, *d0.verticalFov, *d1.verticalFov, u),
+                                  0.1 * kDegree, 179.0 * kDegree);
   return camera;
 }
 

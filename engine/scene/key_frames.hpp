@@ -2,8 +2,8 @@
 //
 // File: one key per line, words and numbers separated by blanks; '#' starts a comment.
 //   p X Y Z  d X Y Z  u X Y Z  [r X Y Z]  [f DEGREES]  [a ASPECT]
-// p position, d viewing direction, u up, f vertical field of view; r (right) and a (aspect) are accepted and ignored, as
-// they follow from the others and from the picture's size. This is the format of the LPV original's public demo.
+// p position, d viewing direction, u up, f vertical field of view; r (right) and a (aspect) are accepted and ignored,
+// as they follow from the others and from the picture's size. This is the format of the LPV original's public demo.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -22,8 +22,8 @@ struct KeyFrame {
   std::optional<double> verticalFov;  ///< radians
 };
 
-/// Reads a key-frame file. Throws Error(badInput) naming file and line if a number is missing, a word unknown, a direction
-/// zero, up parallel to direction, or there are fewer than two keys.
+/// Reads a key-frame file. Throws Error(badInput) naming file and line if a number is missing, a word unknown, a
+/// direction zero, up parallel to direction, or there are fewer than two keys.
 std::vector<KeyFrame> readKeyFrames(const std::filesystem::path& file);
 
 /// Natural cubic spline through key frames (position, direction and up separately; knots at 0, 1, 2, ...):
@@ -51,7 +51,8 @@ class Spline {
 /// One view every `secondsPerView` (1/60 s as in the original's 17 ms); ends after the last view.
 class SplinePlayback {
  public:
-  SplinePlayback(int viewCount, double secondsPerView = 1.0 / 60.0) : viewCount_(viewCount), secondsPerView_(secondsPerView) {}
+  SplinePlayback(int viewCount, double secondsPerView = 1.0 / 60.0)
+      : viewCount_(viewCount), secondsPerView_(secondsPerView) {}
   /// The view due at `seconds` after the start, or nothing once the walk is over.
   std::optional<int> viewAt(double seconds) const;
   double duration() const { return viewCount_ * secondsPerView_; }

@@ -1,5 +1,6 @@
-// The catalogue's numbers. Measured liquids were diluted: `millilitres` of the substance in 23 litres of water [Narasimhan2006]; as single scattering
-// makes coefficients proportional to concentration, the undiluted ones are 23000 / millilitres times what was measured.
+// The catalogue's numbers. Measured liquids were diluted: `millilitres` of the substance in 23 litres of water
+// [Narasimhan2006]; as single scattering makes coefficients proportional to concentration, the undiluted ones are 23000
+// / millilitres times what was measured.
 #include "scene/media_catalogue.hpp"
 
 #include <fmt/format.h>
@@ -73,8 +74,8 @@ const Measured kMeasured[] = {
     {"head & shoulders shampoo", 240, {.3674, .4527, .5211}, {.2791, .2890, .3086}, {.911, .896, .884}},
 };
 
-constexpr double kWater = 23000.0;    // ml
-constexpr double kTableUnit = 0.01;   // 1/mm
+constexpr double kWater = 23000.0;  // ml
+constexpr double kTableUnit = 0.01;  // 1/mm
 
 std::vector<CatalogueMedium> makeCatalogue() {
   std::vector<CatalogueMedium> catalogue;
@@ -83,7 +84,8 @@ std::vector<CatalogueMedium> makeCatalogue() {
                          p.measured ? "VPT2024 table 4.1, after Narasimhan2006" : "VPT2024 table 4.1, invented there"});
   for (const Measured& m : kMeasured) {
     const double undiluted = kTableUnit * kWater / m.millilitres;
-    catalogue.push_back({fmt::format("measured {}", m.name), undiluted * m.scattering, undiluted * (m.extinction - m.scattering), m.anisotropy, 1.33, false,
+    catalogue.push_back({fmt::format("measured {}", m.name), undiluted * m.scattering,
+                         undiluted * (m.extinction - m.scattering), m.anisotropy, 1.33, false,
                          fmt::format("Narasimhan2006, {:g} ml in 23 l of water", m.millilitres)});
   }
   return catalogue;
@@ -104,10 +106,14 @@ std::string lettersOf(std::string_view text) {
 
 /// Other words for the original's media, letters alone; the Czech ones as they come without accents.
 constexpr std::pair<const char*, const char*> kOtherWords[] = {
-    {"mleko", "milk"},           {"kava", "espresso"},   {"coffee", "espresso"},      {"coke", "coca cola"},   {"cola", "coca cola"},
-    {"jablecnydzus", "apple juice"}, {"juice", "apple juice"}, {"hroznovydzus", "grape juice"}, {"grape", "grape juice"}, {"wine", "chardonnay"},
-    {"pivo", "budweiser"},       {"beer", "budweiser"},  {"smaragd", "emerald"},      {"rubin", "ruby"},       {"safir", "sapphire"},
-    {"sklo", "glass"},
+    {"mleko", "milk"},        {"kava", "espresso"},
+    {"coffee", "espresso"},   {"coke", "coca cola"},
+    {"cola", "coca cola"},    {"jablecnydzus", "apple juice"},
+    {"juice", "apple juice"}, {"hroznovydzus", "grape juice"},
+    {"grape", "grape juice"}, {"wine", "chardonnay"},
+    {"pivo", "budweiser"},    {"beer", "budweiser"},
+    {"smaragd", "emerald"},   {"rubin", "ruby"},
+    {"safir", "sapphire"},    {"sklo", "glass"},
 };
 
 }  // namespace
@@ -134,7 +140,8 @@ const std::vector<CatalogueMedium>& mediaCatalogue() {
 const CatalogueMedium* findCatalogueMedium(std::string_view name) {
   const std::string wanted = lower(name);
   const auto& catalogue = mediaCatalogue();
-  const auto found = std::find_if(catalogue.begin(), catalogue.end(), [&](const CatalogueMedium& m) { return m.name == wanted; });
+  const auto found =
+      std::find_if(catalogue.begin(), catalogue.end(), [&](const CatalogueMedium& m) { return m.name == wanted; });
   return found == catalogue.end() ? nullptr : &*found;
 }
 

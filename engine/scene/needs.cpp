@@ -12,10 +12,11 @@ bool anyPositive(const Image& picture) {
   return std::any_of(picture.pixels.begin(), picture.pixels.end(), [](const glm::vec3& v) { return anyPositive(v); });
 }
 
-/// Whether a corner's normal is not that of the triangle, by more than its rounding; which way round the normals look counts too, as
-/// surfaces are turned by the triangle's side.
+/// Whether a corner's normal is not that of the triangle, by more than its rounding; which way round the normals look
+/// counts too, as surfaces are turned by the triangle's side.
 bool isSmooth(const Scene& scene, const Mesh& mesh) {
-  if (mesh.firstIndex + std::size_t{mesh.indexCount} > scene.indices.size()) return false;  // a scene without geometry, for its settings alone
+  if (mesh.firstIndex + std::size_t{mesh.indexCount} > scene.indices.size())
+    return false;  // a scene without geometry, for its settings alone
   for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; i += 3) {
     const auto corner = [&](std::uint32_t k) -> const Vertex& { return scene.vertices[scene.indices[i + k]]; };
     const glm::dvec3 a(corner(0).position);
@@ -33,7 +34,8 @@ bool isDense(const Medium& medium, double extent) {
   if (medium.grid) return false;
   for (int c = 0; c < 3; ++c) {
     const double scattering = medium.scattering[c], absorption = medium.absorption[c];
-    const double depth = (scattering + absorption) * extent, g = medium.phase == PhaseFunction::rayleigh ? 0.0 : static_cast<double>(medium.anisotropy[c]);
+    const double depth = (scattering + absorption) * extent,
+                 g = medium.phase == PhaseFunction::rayleigh ? 0.0 : static_cast<double>(medium.anisotropy[c]);
     // Collisions before absorption; and before leaving, which is a random walk.
     if (scattering > 31.0 * absorption && depth * std::max(1.0, depth * (1.0 - g)) > 32.0) return true;
   }
@@ -95,13 +97,16 @@ SceneNeeds analyse(const Scene& scene) {
     needs.smoothNormals = needs.smoothNormals || isSmooth(scene, mesh);
     needs.mirrors |= material.bsdf == Bsdf::mirror;
     // A picture's mean may be no metal where texels are.
-    needs.conductors |= material.bsdf == Bsdf::conductor || (material.bsdf == Bsdf::diffuse && material.metalMap && material.metalMap->metallic > 0.5f);
+    needs.conductors |= material.bsdf == Bsdf::conductor ||
+                        (material.bsdf == Bsdf::diffuse && material.metalMap && material.metalMap->metallic > 0.5f);
     needs.dielectrics |= material.bsdf == Bsdf::dielectric;
     needs.roughDielectrics |= material.bsdf == Bsdf::dielectric && material.roughness > 0.0f;
     needs.nullBoundaries |= material.bsdf == Bsdf::none;
     if (material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::none) addMedium(material.interior);
-    if (material.bsdf == Bsdf::dielectric && material.interior >= 0 && material.interior < static_cast<int>(scene.media.size()))
-      needs.denseMedia = needs.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)], glm::length(mesh.bounds.extent()));
+    if (material.bsdf == Bsdf::dielectric && material.interior >= 0 &&
+        material.interior < static_cast<int>(scene.media.size()))
+      needs.denseMedia = needs.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)],
+                                                     glm::length(mesh.bounds.extent()));
     // A texture only scales the factor down, so the factor alone tells whether anything can be reflected.
     reflects |= anyPositive(material.diffuse);
   }
@@ -109,7 +114,8 @@ SceneNeeds analyse(const Scene& scene) {
   needs.background = anyPositive(scene.background);
   for (const SpotLight& light : scene.spots) needs.spotLights |= anyPositive(light.intensity);
   for (const PointLight& light : scene.points) needs.pointLights |= anyPositive(light.intensity);
-  needs.environment = scene.environment && anyPositive(scene.environment->radiance) && (!scene.environment->picture || anyPositive(*scene.environment->picture));
+  needs.environment = scene.environment && anyPositive(scene.environment->radiance) &&
+                      (!scene.environment->picture || anyPositive(*scene.environment->picture));
   needs.environmentPicture = needs.environment && scene.environment->picture.has_value();
   needs.indirect = reflects && (needs.anyLight() || needs.emission);
   return needs;

@@ -13,30 +13,31 @@ namespace lucerna {
 
 struct SceneNeeds {
   bool diffuseTextures = false;  ///< any drawn mesh has an albedo texture
-  bool alphaMasks = false;       ///< any drawn mesh is cut out by a mask
-  bool specular = false;         ///< any drawn mesh has Ks > 0
-  bool emission = false;         ///< any drawn mesh emits
-  bool directionalLight = false; ///< a sun with irradiance > 0
-  bool background = false;       ///< background radiance > 0
-  bool indirect = false;         ///< a light and an albedo > 0
-  bool spotLights = false;       ///< a spot light with intensity > 0
-  bool pointLights = false;      ///< an omnidirectional light with intensity > 0
-  bool environment = false;      ///< light from all around, seen behind surfaces; whoever does not let it light them says so
+  bool alphaMasks = false;  ///< any drawn mesh is cut out by a mask
+  bool specular = false;  ///< any drawn mesh has Ks > 0
+  bool emission = false;  ///< any drawn mesh emits
+  bool directionalLight = false;  ///< a sun with irradiance > 0
+  bool background = false;  ///< background radiance > 0
+  bool indirect = false;  ///< a light and an albedo > 0
+  bool spotLights = false;  ///< a spot light with intensity > 0
+  bool pointLights = false;  ///< an omnidirectional light with intensity > 0
+  bool environment =
+      false;  ///< light from all around, seen behind surfaces; whoever does not let it light them says so
   bool environmentPicture = false;
-  bool emissionTextures = false; ///< any drawn mesh emits by a picture
-  bool normalMaps = false;       ///< any drawn mesh has a picture of normals
-  bool metalMaps = false;        ///< any drawn mesh is a metal, or rough, by a picture
+  bool emissionTextures = false;  ///< any drawn mesh emits by a picture
+  bool normalMaps = false;  ///< any drawn mesh has a picture of normals
+  bool metalMaps = false;  ///< any drawn mesh is a metal, or rough, by a picture
   // Of the path tracer alone:
-  bool smoothNormals = false;    ///< a vertex normal that is not its triangle's
+  bool smoothNormals = false;  ///< a vertex normal that is not its triangle's
   bool mirrors = false;
   bool conductors = false;
-  bool dielectrics = false;      ///< refracting ones, smooth or rough
+  bool dielectrics = false;  ///< refracting ones, smooth or rough
   bool roughDielectrics = false;
-  bool nullBoundaries = false;   ///< a boundary that changes only the medium
-  bool media = false;            ///< a medium with an effect, inside a drawn boundary or around the camera
-  bool denseMedia = false;       ///< homogeneous, inside a drawn dielectric, where paths scatter many times (isDense)
+  bool nullBoundaries = false;  ///< a boundary that changes only the medium
+  bool media = false;  ///< a medium with an effect, inside a drawn boundary or around the camera
+  bool denseMedia = false;  ///< homogeneous, inside a drawn dielectric, where paths scatter many times (isDense)
   bool heterogeneousMedia = false;  ///< one of them has a density grid
-  bool volumeEmission = false;   ///< one of them emits
+  bool volumeEmission = false;  ///< one of them emits
 
   /// (name, needed) in declaration order, for `info` and reports.
   std::vector<std::pair<std::string, bool>> named() const;
@@ -47,7 +48,8 @@ struct SceneNeeds {
 
 SceneNeeds analyse(const Scene& scene);
 
-/// Whether light scatters some 32 times or more in a body of that extent: the path tracer then walks without rays if possible.
+/// Whether light scatters some 32 times or more in a body of that extent: the path tracer then walks without rays if
+/// possible.
 bool isDense(const Medium& medium, double extent);
 
 }  // namespace lucerna

@@ -41,7 +41,8 @@ class ObjChecker {
     for (std::size_t part = 0; part < 3; ++part) {
       if (highest_[part] <= counts_[part]) continue;
       line_ = highestLine_[part];
-      fail(fmt::format("a face refers to {} number {}, the file holds {}; is it cut off?", kPartNames[part], highest_[part], counts_[part]));
+      fail(fmt::format("a face refers to {} number {}, the file holds {}; is it cut off?", kPartNames[part],
+                       highest_[part], counts_[part]));
     }
   }
 
@@ -59,12 +60,14 @@ class ObjChecker {
       }
     }
     const std::size_t begin = at_;
-    while (at_ < text_.size() && text_[at_] != ' ' && text_[at_] != '\t' && text_[at_] != '\r' && text_[at_] != '\n') ++at_;
+    while (at_ < text_.size() && text_[at_] != ' ' && text_[at_] != '\t' && text_[at_] != '\r' && text_[at_] != '\n')
+      ++at_;
     return text_.substr(begin, at_ - begin);
   }
 
   bool isLineEnd(std::size_t at) const {
-    return at >= text_.size() || text_[at] == '\n' || (text_[at] == '\r' && (at + 1 >= text_.size() || text_[at + 1] == '\n'));
+    return at >= text_.size() || text_[at] == '\n' ||
+           (text_[at] == '\r' && (at + 1 >= text_.size() || text_[at + 1] == '\n'));
   }
 
   void skipLine() { at_ = std::min(text_.find('\n', at_), text_.size() - 1) + 1; }
@@ -96,8 +99,12 @@ class ObjChecker {
         if (*next != '/') {
           long index = 0;
           const auto [stop, error] = std::from_chars(next, end, index);
-          if (error != std::errc() || index == 0 || (stop != end && *stop != '/')) fail(fmt::format("'{}' in a face, expected index, index/index or index/index/index from 1 up or from -1 down", text));
-          if (index < 0 && index < -counts_[part]) fail(fmt::format("a face refers to {} number {}, only {} come before it", kPartNames[part], index, counts_[part]));
+          if (error != std::errc() || index == 0 || (stop != end && *stop != '/'))
+            fail(fmt::format(
+                "'{}' in a face, expected index, index/index or index/index/index from 1 up or from -1 down", text));
+          if (index < 0 && index < -counts_[part])
+            fail(fmt::format("a face refers to {} number {}, only {} come before it", kPartNames[part], index,
+                             counts_[part]));
           if (index > highest_[part]) {
             highest_[part] = index;
             highestLine_[part] = line_;
@@ -107,16 +114,19 @@ class ObjChecker {
         }
         if (next < end) ++next;  // the slash
       }
-      if (next < end || !parts[0]) fail(fmt::format("'{}' in a face, expected index, index/index or index/index/index", text));
+      if (next < end || !parts[0])
+        fail(fmt::format("'{}' in a face, expected index, index/index or index/index/index", text));
       if (vertices == 0) partsOfFirst = parts;
       else if (lastLine() && parts != partsOfFirst) fail(fmt::format("the file ends within a face, at '{}'", text));
       ++vertices;
     }
     // Elsewhere such faces are only useless; at the very end they are what a cut leaves behind.
-    if (vertices < 3 && lastLine()) fail(fmt::format("the file ends within a face: {} vertices, expected at least 3", vertices));
+    if (vertices < 3 && lastLine())
+      fail(fmt::format("the file ends within a face: {} vertices, expected at least 3", vertices));
   }
 
-  /// Vertices come before the faces that use them: a last line that defines one no face uses, and has no line end, was cut.
+  /// Vertices come before the faces that use them: a last line that defines one no face uses, and has no line end, was
+  /// cut.
   void endsInUnusedVertex() const {
     if (endsWithLineEnd_ || lastPart_ < 0) return;
     const auto part = static_cast<std::size_t>(lastPart_);
@@ -134,10 +144,10 @@ class ObjChecker {
   std::string_view text_;
   std::size_t at_ = 0;
   int line_ = 0;
-  std::array<long, 3> counts_{};       ///< lines v, vt, vn so far
-  std::array<long, 3> highest_{};      ///< the highest index any face has
-  std::array<int, 3> highestLine_{};   ///< where
-  int lastPart_ = -1;                  ///< what the last line among v, vt, vn, f defines; -1: a face
+  std::array<long, 3> counts_{};  ///< lines v, vt, vn so far
+  std::array<long, 3> highest_{};  ///< the highest index any face has
+  std::array<int, 3> highestLine_{};  ///< where
+  int lastPart_ = -1;  ///< what the last line among v, vt, vn, f defines; -1: a face
   bool endsWithLineEnd_ = true;
 };
 
@@ -149,7 +159,8 @@ std::string repairedObj(std::string_view obj) {
   std::string text;
   text.reserve(obj.size() + obj.size() / 16);
   const auto isBlank = [](char c) { return c == ' ' || c == '\t'; };
-  bool vertex = false, continued = false;  // within a line of v, vt or vn; whether the line goes on one that a backslash ended
+  bool vertex = false,
+       continued = false;  // within a line of v, vt or vn; whether the line goes on one that a backslash ended
   for (std::size_t i = 0; i < obj.size(); ++i) {
     if (i == 0 || obj[i - 1] == '\n') {
       const std::size_t end = obj.substr(0, i).find_last_not_of("\r\n");

@@ -33,27 +33,33 @@ SceneKeys readSceneKeys(const Value& object) {
   std::optional<glm::vec3> lightColor;
   std::optional<double> fov, lightIntensity;
   readObject(object, {
-      {"camera", [&](const Value& v) { position = v.vector(); }},
-      {"cameraLookAt", [&](const Value& v) { target = v.vector(); }},
-      {"fov", [&](const Value& v) {
-         fov = v.number("degrees between 0 and 180");
-         if (!(*fov > 0.0 && *fov < 180.0)) v.fail("degrees between 0 and 180");
-       }},
-      {"lightPos", [&](const Value& v) { lightPosition = v.vector(); }},
-      {"lightColor", [&](const Value& v) { lightColor = v.light(); }},
-      {"lightIntensity", [&](const Value& v) { lightIntensity = v.numberBetween(0.0, 1e30, "a number, 0 or more"); }},
-      {"scale", [&](const Value& v) { keys.scale = v.positiveNumber(); }},
-  });
-  const std::pair<const char*, bool> needed[] = {{"camera", position.has_value()},        {"cameraLookAt", target.has_value()},
-                                                 {"fov", fov.has_value()},                {"lightPos", lightPosition.has_value()},
-                                                 {"lightColor", lightColor.has_value()},  {"lightIntensity", lightIntensity.has_value()}};
+                         {"camera", [&](const Value& v) { position = v.vector(); }},
+                         {"cameraLookAt", [&](const Value& v) { target = v.vector(); }},
+                         {"fov",
+                          [&](const Value& v) {
+                            fov = v.number("degrees between 0 and 180");
+                            if (!(*fov > 0.0 && *fov < 180.0)) v.fail("degrees between 0 and 180");
+                          }},
+                         {"lightPos", [&](const Value& v) { lightPosition = v.vector(); }},
+                         {"lightColor", [&](const Value& v) { lightColor = v.light(); }},
+                         {"lightIntensity",
+                          [&](const Value& v) { lightIntensity = v.numberBetween(0.0, 1e30, "a number, 0 or more"); }},
+                         {"scale", [&](const Value& v) { keys.scale = v.positiveNumber(); }},
+                     });
+  const std::pair<const char*, bool> needed[] = {{"camera", position.has_value()},
+                                                 {"cameraLookAt", target.has_value()},
+                                                 {"fov", fov.has_value()},
+                                                 {"lightPos", lightPosition.has_value()},
+                                                 {"lightColor", lightColor.has_value()},
+                                                 {"lightIntensity", lightIntensity.has_value()}};
   for (const auto& [name, given] : needed)
     if (!given) throwBadInput("{}: key \"scene\": no \"{}\"", object.file.string(), name);
   if (!(glm::length(*target - *position) > 0.0)) object.at("cameraLookAt").fail("a point other than \"camera\"");
   keys.camera.name = "default";
   keys.camera.position = *position;
   keys.camera.direction = glm::normalize(*target - *position);
-  const glm::dvec3 up = std::abs(keys.camera.direction.y) < 0.99999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
+  const glm::dvec3 up =
+      std::abs(keys.camera.direction.y) < 0.99999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
   keys.camera.up = glm::normalize(glm::cross(glm::cross(keys.camera.direction, up), keys.camera.direction));
   keys.camera.verticalFov = *fov * kPi / 180.0;
   keys.light = {*lightPosition, *lightColor * static_cast<float>(*lightIntensity)};
@@ -69,11 +75,11 @@ PublishedMedium readMedium(const Value& object) {
   PublishedMedium result;
   std::set<std::string> given;
   readObject(object, {
-      {"sigma_s", [&](const Value& v) { result.medium.scattering = glm::vec3(readCoefficient(v)); }},
-      {"sigma_a", [&](const Value& v) { result.medium.absorption = glm::vec3(readCoefficient(v)); }},
-      {"g", [&](const Value& v) { result.medium.anisotropy = readAnisotropy(v); }},
-      {"ior", [&](const Value& v) { result.ior = static_cast<float>(readIor(v)); }},
-  });
+                         {"sigma_s", [&](const Value& v) { result.medium.scattering = glm::vec3(readCoefficient(v)); }},
+                         {"sigma_a", [&](const Value& v) { result.medium.absorption = glm::vec3(readCoefficient(v)); }},
+                         {"g", [&](const Value& v) { result.medium.anisotropy = readAnisotropy(v); }},
+                         {"ior", [&](const Value& v) { result.ior = static_cast<float>(readIor(v)); }},
+                     });
   for (const char* name : {"sigma_s", "sigma_a", "g", "ior"})
     if (!object.has(name)) throwBadInput("{}: key \"{}\": no \"{}\"", object.file.string(), object.key, name);
   return result;
@@ -88,7 +94,8 @@ fs::path modelBeside(const fs::path& json) {
   for (const auto& entry : fs::directory_iterator(folder))
     if (lowerExtension(entry.path()) == ".obj") models.push_back(entry.path());
   if (models.size() == 1) return models.front();
-  throwBadInput("{}: no {} beside it, and {} other .obj files in its folder, where one would do", json.string(), sameStem.filename().string(), models.size());
+  throwBadInput("{}: no {} beside it, and {} other .obj files in its folder, where one would do", json.string(),
+                sameStem.filename().string(), models.size());
 }
 
 /// The words of a line, split at blanks.
@@ -106,7 +113,8 @@ std::string restOf(const std::string& line, const std::string& firstWord) {
   return from == std::string::npos || to < from ? std::string() : line.substr(from, to - from + 1);
 }
 
-/// The materials of all libraries that an OBJ names, in order; those that cannot be read are left out (the loader has warned).
+/// The materials of all libraries that an OBJ names, in order; those that cannot be read are left out (the loader has
+/// warned).
 std::vector<std::string> materialNames(const fs::path& obj) {
   std::istringstream text(readFileText(obj));
   std::vector<std::string> names;
@@ -160,14 +168,16 @@ Scene loadOriginalScene(const Value& root) {
     if (name.empty()) {
       std::string known;
       for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
-      throwBadInput("{}: key \"{}\": {} has no material of that name or number; it has {}", root.file.string(), id, model.string(), known);
+      throwBadInput("{}: key \"{}\": {} has no material of that name or number; it has {}", root.file.string(), id,
+                    model.string(), known);
     }
     Medium medium = published.medium;
     medium.name = name;
     medium.scattering *= static_cast<float>(keys.scale);
     medium.absorption *= static_cast<float>(keys.scale);
     for (int c = 0; c < 3; ++c)
-      if (!std::isfinite(medium.scattering[c] + medium.absorption[c])) root.at(id).fail("coefficients that fit into a float at this scale");
+      if (!std::isfinite(medium.scattering[c] + medium.absorption[c]))
+        root.at(id).fail("coefficients that fit into a float at this scale");
     for (Material& material : scene.materials) {
       if (material.name != name) continue;
       material.bsdf = Bsdf::dielectric;
@@ -234,16 +244,22 @@ std::pair<std::string, std::vector<std::string>> draftOriginalScene(const fs::pa
   const double intensity = 10.0 * glm::dot(light - target, light - target);  // 10 W/m^2 in the middle
 
   const auto vector = [](const glm::dvec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); };
-  const auto quoted = [](const std::string& text) { return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace); };
-  std::string text = fmt::format("{{\n  \"scene\": {{\n    \"camera\": {},\n    \"cameraLookAt\": {},\n    \"fov\": {:.6g},\n    \"lightPos\": {},\n", vector(camera.position),
-                                 vector(target), camera.verticalFov * 180.0 / kPi, vector(light));
-  text += fmt::format("    \"lightColor\": [1, 1, 1],\n    \"lightIntensity\": {:.6g},\n    \"scale\": 1.0\n  }}", intensity);
+  const auto quoted = [](const std::string& text) {
+    return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  std::string text = fmt::format(
+      "{{\n  \"scene\": {{\n    \"camera\": {},\n    \"cameraLookAt\": {},\n    \"fov\": {:.6g},\n    \"lightPos\": "
+      "{},\n",
+      vector(camera.position), vector(target), camera.verticalFov * 180.0 / kPi, vector(light));
+  text += fmt::format("    \"lightColor\": [1, 1, 1],\n    \"lightIntensity\": {:.6g},\n    \"scale\": 1.0\n  }}",
+                      intensity);
   std::set<std::string> written = {"scene"};
   for (const MtlEntry& entry : entries) {
     const CatalogueMedium* medium = resemblingMedium(entry.name);
     std::string key = entry.name;
     double ior = 1.0;
-    if (key == "scene" || isComment(key)) throwBadInput("{}: a material named {}, which the scene JSON cannot name", mtl.string(), key);
+    if (key == "scene" || isComment(key))
+      throwBadInput("{}: a material named {}, which the scene JSON cannot name", mtl.string(), key);
     if (medium) {
       ior = medium->ior;
       report.push_back(fmt::format("{}: {}", entry.name, medium->name));
@@ -251,12 +267,14 @@ std::pair<std::string, std::vector<std::string>> draftOriginalScene(const fs::pa
       medium = findCatalogueMedium("glass");
       ior = entry.ior > 1.0 ? entry.ior : medium->ior;
       key = "// " + key;
-      report.push_back(fmt::format("{}: resembles no medium, diffuse{}; commented out as glass of ior {:g}", entry.name,
-                                   entry.opacity < 1.0 || entry.ior > 1.0 ? ", though the MTL has it transparent or gives it an ior" : "", ior));
+      report.push_back(fmt::format(
+          "{}: resembles no medium, diffuse{}; commented out as glass of ior {:g}", entry.name,
+          entry.opacity < 1.0 || entry.ior > 1.0 ? ", though the MTL has it transparent or gives it an ior" : "", ior));
     }
     if (!written.insert(key).second) continue;  // named twice in the MTL
-    text += fmt::format(",\n  {}: {{\n    \"sigma_s\": {},\n    \"sigma_a\": {},\n    \"g\": {},\n    \"ior\": {:g}\n  }}", quoted(key), vector(medium->scattering),
-                        vector(medium->absorption), vector(medium->anisotropy), ior);
+    text += fmt::format(
+        ",\n  {}: {{\n    \"sigma_s\": {},\n    \"sigma_a\": {},\n    \"g\": {},\n    \"ior\": {:g}\n  }}", quoted(key),
+        vector(medium->scattering), vector(medium->absorption), vector(medium->anisotropy), ior);
   }
   return {text + "\n}\n", report};
 }

@@ -21,7 +21,8 @@ glm::dvec3 exactOrigin(const Bounds& bounds) {
   for (int k = 0; k < 3; ++k) {
     const double low = bounds.min[k], high = bounds.max[k];
     const double near = std::min(std::abs(low), std::abs(high)), far = std::max(std::abs(low), std::abs(high));
-    if ((low > 0.0 || high < 0.0) && far <= 2.0 * near) origin[k] = static_cast<double>(static_cast<float>(0.5 * low + 0.5 * high));
+    if ((low > 0.0 || high < 0.0) && far <= 2.0 * near)
+      origin[k] = static_cast<double>(static_cast<float>(0.5 * low + 0.5 * high));
   }
   return origin;
 }

@@ -1,7 +1,7 @@
 // A scene as plain data (no GL): what the loaders produce and what every technique reads.
 //
-// Space: right-handed, +y up unless the file says otherwise, lengths in scene units; `metresPerUnit` says how long a unit is.
-// Colours are linear. Reflectances are Lambertian albedos (exitance over irradiance), 0..1.
+// Space: right-handed, +y up unless the file says otherwise, lengths in scene units; `metresPerUnit` says how long a
+// unit is. Colours are linear. Reflectances are Lambertian albedos (exitance over irradiance), 0..1.
 #pragma once
 
 #include "base/image.hpp"
@@ -23,8 +23,14 @@ struct Bounds {
   glm::dvec3 min{1e300};
   glm::dvec3 max{-1e300};
   bool empty() const { return min.x > max.x; }
-  void add(const glm::dvec3& p) { min = glm::min(min, p); max = glm::max(max, p); }
-  void add(const Bounds& b) { min = glm::min(min, b.min); max = glm::max(max, b.max); }
+  void add(const glm::dvec3& p) {
+    min = glm::min(min, p);
+    max = glm::max(max, p);
+  }
+  void add(const Bounds& b) {
+    min = glm::min(min, b.min);
+    max = glm::max(max, b.max);
+  }
   glm::dvec3 centre() const { return 0.5 * (min + max); }
   glm::dvec3 extent() const { return empty() ? glm::dvec3(0.0) : max - min; }
 };
@@ -39,20 +45,21 @@ struct Vertex {
 /// A picture used by materials; several materials may share one.
 struct Texture {
   std::filesystem::path file;  ///< where it came from; messages name it
-  Bitmap bitmap;               ///< 8-bit; albedo maps are sRGB-encoded
+  Bitmap bitmap;  ///< 8-bit; albedo maps are sRGB-encoded
 };
 
 /// How a surface scatters light in the path tracer. The real-time techniques read only `diffuse` and `specular`.
 enum class Bsdf {
-  diffuse,     ///< Lambert; a `diffuse` of 0 is black
-  mirror,      ///< reflects `specular`, smooth
-  conductor,   ///< GGX of `roughness`, Fresnel by Schlick between `specular` at normal incidence and 1
+  diffuse,  ///< Lambert; a `diffuse` of 0 is black
+  mirror,  ///< reflects `specular`, smooth
+  conductor,  ///< GGX of `roughness`, Fresnel by Schlick between `specular` at normal incidence and 1
   dielectric,  ///< reflects and refracts by `ior`; smooth at roughness 0, else GGX
-  none,        ///< only a boundary between media: light passes straight
+  none,  ///< only a boundary between media: light passes straight
 };
 
-/// A surface whose metallic share, roughness or highlight differ from texel to texel [GLTF2, appendix B]: base colour b = `base` * diffuseTexture,
-/// m = `metallic` * blue, r = `roughness` * green; then diffuse b (1 - m), specular mix(0.04, b, m), GGX alpha r^2, Blinn-Phong exponent 2 / r^4 - 2.
+/// A surface whose metallic share, roughness or highlight differ from texel to texel [GLTF2, appendix B]: base colour b
+/// = `base` * diffuseTexture, m = `metallic` * blue, r = `roughness` * green; then diffuse b (1 - m), specular
+/// mix(0.04, b, m), GGX alpha r^2, Blinn-Phong exponent 2 / r^4 - 2.
 struct MetalMap {
   glm::vec3 base{1.0f};
   float metallic = 1.0f;
@@ -63,24 +70,26 @@ struct MetalMap {
 struct Material {
   std::string name;
   Bsdf bsdf = Bsdf::diffuse;
-  float roughness = 0.0f;            ///< GGX alpha, 0..1; 0: smooth
-  float ior = 1.5f;                  ///< of the inside (against the normal) over vacuum
-  int interior = -1;                 ///< index into Scene::media of what fills a dielectric or none; -1: vacuum
-  int priority = 0;                  ///< where two closed dielectrics overlap, the higher one counts [SchmidtBudge2002]
-  glm::vec3 diffuse{0.5f};           ///< albedo factor (Kd), multiplies the texture
-  glm::vec3 specular{0.0f};          ///< Ks
-  float shininess = 1.0f;            ///< Blinn-Phong exponent (Ns)
-  glm::vec3 emission{0.0f};          ///< emitted radiance (Ke); with a picture of it, its mean over the picture
-  glm::vec3 emissionScale{0.0f};     ///< with a picture: emitted radiance where that is white
-  float opacity = 1.0f;              ///< d
-  int emissionTexture = -1;          ///< picture of the emission (map_Ke), sRGB-encoded; radiosity takes its mean over a patch
-  int diffuseTexture = -1;           ///< index into Scene::textures, -1: none
-  int alphaTexture = -1;             ///< mask in its own file (map_d); its red channel, or its alpha where it has one
-                                     ///< (bitmap.hasAlpha); not sRGB-encoded, and never a diffuseTexture of this material
-  bool alphaMasked = false;          ///< cut out where alpha < 0.5, from alphaTexture or the diffuse texture's alpha
-  int normalTexture = -1;            ///< normals, x along u and y along v, as 0.5 + 0.5 n; not sRGB-encoded (shaders/lib/normal_map.glsl)
-  float normalScale = 1.0f;          ///< on their x and y
-  std::optional<MetalMap> metalMap;  ///< then diffuse, specular, shininess, roughness and bsdf are those of the picture's mean
+  float roughness = 0.0f;  ///< GGX alpha, 0..1; 0: smooth
+  float ior = 1.5f;  ///< of the inside (against the normal) over vacuum
+  int interior = -1;  ///< index into Scene::media of what fills a dielectric or none; -1: vacuum
+  int priority = 0;  ///< where two closed dielectrics overlap, the higher one counts [SchmidtBudge2002]
+  glm::vec3 diffuse{0.5f};  ///< albedo factor (Kd), multiplies the texture
+  glm::vec3 specular{0.0f};  ///< Ks
+  float shininess = 1.0f;  ///< Blinn-Phong exponent (Ns)
+  glm::vec3 emission{0.0f};  ///< emitted radiance (Ke); with a picture of it, its mean over the picture
+  glm::vec3 emissionScale{0.0f};  ///< with a picture: emitted radiance where that is white
+  float opacity = 1.0f;  ///< d
+  int emissionTexture = -1;  ///< picture of the emission (map_Ke), sRGB-encoded; radiosity takes its mean over a patch
+  int diffuseTexture = -1;  ///< index into Scene::textures, -1: none
+  int alphaTexture = -1;  ///< mask in its own file (map_d); its red channel, or its alpha where it has one
+                          ///< (bitmap.hasAlpha); not sRGB-encoded, and never a diffuseTexture of this material
+  bool alphaMasked = false;  ///< cut out where alpha < 0.5, from alphaTexture or the diffuse texture's alpha
+  int normalTexture =
+      -1;  ///< normals, x along u and y along v, as 0.5 + 0.5 n; not sRGB-encoded (shaders/lib/normal_map.glsl)
+  float normalScale = 1.0f;  ///< on their x and y
+  std::optional<MetalMap>
+      metalMap;  ///< then diffuse, specular, shininess, roughness and bsdf are those of the picture's mean
 };
 
 /// A run of indices drawn with one material.
@@ -95,19 +104,19 @@ struct Mesh {
 /// Light from one direction, the sun: parallel rays.
 struct DirectionalLight {
   glm::dvec3 direction{0.0, -1.0, 0.0};  ///< unit vector along which the light travels
-  glm::vec3 irradiance{0.0f};            ///< on a plane across the rays, W/m^2 in scene units
+  glm::vec3 irradiance{0.0f};  ///< on a plane across the rays, W/m^2 in scene units
 };
 
 /// A lamp with a cone of light. Radiant intensity at an angle theta from `direction`:
-/// I(theta) = intensity * smoothstep((cos theta - cos outerAngle) / (cos innerAngle - cos outerAngle)), smoothstep(t) = t^2 (3 - 2 t)
-/// for t clamped to [0,1]; equal angles make a hard edge. Since smoothstep is antisymmetric about t = 1/2, the whole cone's flux is
-/// intensity * 2 pi * (1 - (cos innerAngle + cos outerAngle) / 2).
+/// I(theta) = intensity * smoothstep((cos theta - cos outerAngle) / (cos innerAngle - cos outerAngle)), smoothstep(t) =
+/// t^2 (3 - 2 t) for t clamped to [0,1]; equal angles make a hard edge. Since smoothstep is antisymmetric about t =
+/// 1/2, the whole cone's flux is intensity * 2 pi * (1 - (cos innerAngle + cos outerAngle) / 2).
 struct SpotLight {
   glm::dvec3 position{0.0};
   glm::dvec3 direction{0.0, -1.0, 0.0};  ///< unit, the cone's axis, away from the lamp
-  glm::vec3 intensity{0.0f};             ///< radiant intensity on the axis, W/sr
-  double innerAngle = 0.5;               ///< half angle of the cone of full intensity, radians; 0..outerAngle
-  double outerAngle = 0.7;               ///< half angle of the cone, radians; above 0, at most kLargestSpotAngle
+  glm::vec3 intensity{0.0f};  ///< radiant intensity on the axis, W/sr
+  double innerAngle = 0.5;  ///< half angle of the cone of full intensity, radians; 0..outerAngle
+  double outerAngle = 0.7;  ///< half angle of the cone, radians; above 0, at most kLargestSpotAngle
 };
 
 /// A lamp of the same intensity in all directions; its flux is 4 pi intensity.
@@ -118,7 +127,8 @@ struct PointLight {
 
 /// A spot light has one perspective shadow map, so its cone must be well below a half space: 80 degrees.
 inline constexpr double kLargestSpotAngle = 80.0 * 3.14159265358979323846 / 180.0;
-/// Lamps of a kind drawn with shadow maps, the size of the shaders' arrays. A scene may have more (rsm/lamp_choice.hpp).
+/// Lamps of a kind drawn with shadow maps, the size of the shaders' arrays. A scene may have more
+/// (rsm/lamp_choice.hpp).
 inline constexpr std::size_t kMaxSpotLights = LIGHTS_MAX_SPOTS;
 inline constexpr std::size_t kMaxPointLights = LIGHTS_MAX_POINTS;
 
@@ -127,41 +137,44 @@ struct Camera {
   std::string name;
   glm::dvec3 position{0.0};
   glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit
-  glm::dvec3 up{0.0, 1.0, 0.0};          ///< unit, not parallel to direction
-  double verticalFov = 0.9;              ///< radians
+  glm::dvec3 up{0.0, 1.0, 0.0};  ///< unit, not parallel to direction
+  double verticalFov = 0.9;  ///< radians
 };
 
-/// Light from infinitely far all around. A latitude-longitude picture: u grows with atan2(x, -z), v from +y (top row) to -y.
+/// Light from infinitely far all around. A latitude-longitude picture: u grows with atan2(x, -z), v from +y (top row)
+/// to -y.
 struct Environment {
-  glm::vec3 radiance{0.0f};          ///< constant, or a factor on the picture
-  std::optional<Image> picture;      ///< linear radiance
-  double rotation = 0.0;             ///< about +y, radians
+  glm::vec3 radiance{0.0f};  ///< constant, or a factor on the picture
+  std::optional<Image> picture;  ///< linear radiance
+  double rotation = 0.0;  ///< about +y, radians
 };
 
 struct Scene {
-  std::string name;                    ///< file stem
-  std::filesystem::path file;          ///< what was loaded
+  std::string name;  ///< file stem
+  std::filesystem::path file;  ///< what was loaded
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  ///< triangles
   std::vector<Mesh> meshes;
-  std::vector<Material> materials;     ///< at least one where there is a mesh
+  std::vector<Material> materials;  ///< at least one where there is a mesh
   std::vector<Texture> textures;
   std::optional<DirectionalLight> sun;
-  bool defaultSun = false;             ///< no file has a light: the sun is the default
+  bool defaultSun = false;  ///< no file has a light: the sun is the default
   std::vector<SpotLight> spots;
   std::vector<PointLight> points;
   std::vector<Medium> media;
-  int cameraMedium = -1;               ///< index of the medium that the camera is in where no boundary tells; -1: vacuum
-  std::optional<Environment> environment;  ///< seen behind the scene; lights it in the path tracer, in radiosity and with lpv.transport=gather or rays
-  std::vector<Camera> cameras;         ///< never empty after loading: the first is the default view
+  int cameraMedium = -1;  ///< index of the medium that the camera is in where no boundary tells; -1: vacuum
+  std::optional<Environment> environment;  ///< seen behind the scene; lights it in the path tracer, in radiosity and
+                                           ///< with lpv.transport=gather or rays
+  std::vector<Camera> cameras;  ///< never empty after loading: the first is the default view
   Bounds bounds;
   double metresPerUnit = 1.0;
-  glm::vec3 background{0.0f};          ///< radiance seen where there is neither surface nor environment; it lights nothing
-  float exposure = 1.0f;               ///< multiplies radiance before tone mapping; 3 with the default sun
-  std::filesystem::path keyFrames;     ///< the walk's camera path; empty: none named
-  std::size_t degenerateTriangles = 0; ///< of zero area, kept so that counts agree with the file's (Crytek Sponza has one):
-                                       ///< code that divides by an area or normalises a face normal must expect them
-  std::size_t droppedTriangles = 0;    ///< left out while loading: a position is not finite
+  glm::vec3 background{0.0f};  ///< radiance seen where there is neither surface nor environment; it lights nothing
+  float exposure = 1.0f;  ///< multiplies radiance before tone mapping; 3 with the default sun
+  std::filesystem::path keyFrames;  ///< the walk's camera path; empty: none named
+  std::size_t degenerateTriangles =
+      0;  ///< of zero area, kept so that counts agree with the file's (Crytek Sponza has one):
+          ///< code that divides by an area or normalises a face normal must expect them
+  std::size_t droppedTriangles = 0;  ///< left out while loading: a position is not finite
 
   std::size_t triangleCount() const { return indices.size() / 3; }
 };

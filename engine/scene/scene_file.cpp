@@ -2,19 +2,21 @@
 //   "description": text for people
 //   "model":       path of the model, relative to the JSON
 //   "scale":       millimetres a scene unit
-//   "camera":      {"position": [x,y,z], "target": [x,y,z] or "direction": [x,y,z], "up": [x,y,z], "fov": vertical, degrees}
-//   "cameras":     an array of such, each with a "name"; instead of "camera"
-//   "sun":         {"direction": [x,y,z] along which the light travels, "irradiance": [r,g,b]}, or null for none
-//   "spots":       [{"position": [x,y,z], "direction": [x,y,z] or "target": [x,y,z], "intensity": [r,g,b] on the axis, W/sr,
+//   "camera":      {"position": [x,y,z], "target": [x,y,z] or "direction": [x,y,z], "up": [x,y,z], "fov": vertical,
+//   degrees} "cameras":     an array of such, each with a "name"; instead of "camera" "sun":         {"direction":
+//   [x,y,z] along which the light travels, "irradiance": [r,g,b]}, or null for none "spots":       [{"position":
+//   [x,y,z], "direction": [x,y,z] or "target": [x,y,z], "intensity": [r,g,b] on the axis, W/sr,
 //                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula}]
 //   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr}]
 //                  Where one of these is given and "sun" is not, there is no default sun.
 //   "background":  [r,g,b], radiance seen where there is no environment
 //   "exposure":    factor before tone mapping
 //   "keyFrames":   path of the camera path, relative to the JSON
-//   "environment": {"radiance": [r,g,b], constant or a factor (1) on "picture": path of a latitude-longitude hdr, exr or pfm; "rotation": degrees about +y},
-//                  or {"sky": {"turbidity": 1.7 to 10 (3), "ground": albedo below the horizon (0.2)}, "radiance": a factor (1)}: a clear sky as the sun asks for,
-//                  which must stand above the horizon (scene/clear_sky.hpp); or null for none. Not given, the default sun has its clear sky.
+//   "environment": {"radiance": [r,g,b], constant or a factor (1) on "picture": path of a latitude-longitude hdr, exr
+//   or pfm; "rotation": degrees about +y},
+//                  or {"sky": {"turbidity": 1.7 to 10 (3), "ground": albedo below the horizon (0.2)}, "radiance": a
+//                  factor (1)}: a clear sky as the sun asks for, which must stand above the horizon
+//                  (scene/clear_sky.hpp); or null for none. Not given, the default sun has its clear sky.
 //   "media", "materials", "cameraMedium": see scene_media.hpp
 // A top-level key "scene" marks the JSON of the VPT original instead: see original_scene_file.cpp.
 // Unknown keys are errors. A new key is one more entry in the table in loadSceneFile.
@@ -47,24 +49,27 @@ Camera readCamera(const Value& object) {
   std::optional<glm::dvec3> position, target, direction;
   glm::dvec3 up(0.0, 1.0, 0.0);
   readObject(object, {
-      {"name", [&](const Value& v) { camera.name = v.text(); }},
-      {"position", [&](const Value& v) { position = v.vector(); }},
-      {"target", [&](const Value& v) { target = v.vector(); }},
-      {"direction", [&](const Value& v) { direction = v.unitVector(); }},
-      {"up", [&](const Value& v) { up = v.unitVector(); }},
-      {"fov", [&](const Value& v) {
-         const double degrees = v.number("degrees between 0 and 180");
-         if (!(degrees > 0.0 && degrees < 180.0)) v.fail("degrees between 0 and 180");
-         camera.verticalFov = degrees * kPi / 180.0;
-       }},
-  });
+                         {"name", [&](const Value& v) { camera.name = v.text(); }},
+                         {"position", [&](const Value& v) { position = v.vector(); }},
+                         {"target", [&](const Value& v) { target = v.vector(); }},
+                         {"direction", [&](const Value& v) { direction = v.unitVector(); }},
+                         {"up", [&](const Value& v) { up = v.unitVector(); }},
+                         {"fov",
+                          [&](const Value& v) {
+                            const double degrees = v.number("degrees between 0 and 180");
+                            if (!(degrees > 0.0 && degrees < 180.0)) v.fail("degrees between 0 and 180");
+                            camera.verticalFov = degrees * kPi / 180.0;
+                          }},
+                     });
   if (!position) object.fail("a camera with \"position\"");
   if (target.has_value() == direction.has_value()) object.fail("a camera with either \"target\" or \"direction\"");
-  if (target && !(glm::length(*target - *position) > 0.0)) object.fail("a camera whose \"target\" is not its \"position\"");
+  if (target && !(glm::length(*target - *position) > 0.0))
+    object.fail("a camera whose \"target\" is not its \"position\"");
   camera.position = *position;
   camera.direction = direction ? *direction : glm::normalize(*target - *position);
   const glm::dvec3 right = glm::cross(camera.direction, up);
-  if (!(glm::length(right) > 1e-6)) object.fail("a camera whose \"up\" (default [0,1,0]) is not parallel to its direction");
+  if (!(glm::length(right) > 1e-6))
+    object.fail("a camera whose \"up\" (default [0,1,0]) is not parallel to its direction");
   camera.up = glm::normalize(glm::cross(right, camera.direction));
   return camera;
 }
@@ -87,9 +92,9 @@ DirectionalLight readSun(const Value& object) {
   std::optional<glm::dvec3> direction;
   std::optional<glm::vec3> irradiance;
   readObject(object, {
-      {"direction", [&](const Value& v) { direction = v.unitVector(); }},
-      {"irradiance", [&](const Value& v) { irradiance = v.light(); }},
-  });
+                         {"direction", [&](const Value& v) { direction = v.unitVector(); }},
+                         {"irradiance", [&](const Value& v) { irradiance = v.light(); }},
+                     });
   if (!direction || !irradiance) object.fail("a sun with \"direction\" and \"irradiance\"");
   return {*direction, *irradiance};
 }
@@ -103,17 +108,20 @@ SpotLight readSpot(const Value& object) {
     return [&result](const Value& v) { result = v.number("a half angle in degrees") * kDegree; };
   };
   readObject(object, {
-      {"position", [&](const Value& v) { position = v.vector(); }},
-      {"direction", [&](const Value& v) { direction = v.unitVector(); }},
-      {"target", [&](const Value& v) { target = v.vector(); }},
-      {"intensity", [&](const Value& v) { intensity = v.light(); }},
-      {"innerAngle", angle(inner)},
-      {"outerAngle", angle(outer)},
-  });
-  if (!position || !intensity || !inner || !outer) object.fail("a spot with \"position\", \"intensity\", \"innerAngle\" and \"outerAngle\"");
+                         {"position", [&](const Value& v) { position = v.vector(); }},
+                         {"direction", [&](const Value& v) { direction = v.unitVector(); }},
+                         {"target", [&](const Value& v) { target = v.vector(); }},
+                         {"intensity", [&](const Value& v) { intensity = v.light(); }},
+                         {"innerAngle", angle(inner)},
+                         {"outerAngle", angle(outer)},
+                     });
+  if (!position || !intensity || !inner || !outer)
+    object.fail("a spot with \"position\", \"intensity\", \"innerAngle\" and \"outerAngle\"");
   if (target.has_value() == direction.has_value()) object.fail("a spot with either \"target\" or \"direction\"");
-  if (target && !(glm::length(*target - *position) > 0.0)) object.fail("a spot whose \"target\" is not its \"position\"");
-  if (!(*outer > 0.0 && *outer <= kLargestSpotAngle * (1.0 + 1e-12))) object.at("outerAngle").fail("a half angle above 0 and at most 80 degrees");
+  if (target && !(glm::length(*target - *position) > 0.0))
+    object.fail("a spot whose \"target\" is not its \"position\"");
+  if (!(*outer > 0.0 && *outer <= kLargestSpotAngle * (1.0 + 1e-12)))
+    object.at("outerAngle").fail("a half angle above 0 and at most 80 degrees");
   if (!(*inner >= 0.0 && *inner <= *outer)) object.at("innerAngle").fail("a half angle from 0 to \"outerAngle\"");
   return {*position, direction ? *direction : glm::normalize(*target - *position), *intensity, *inner, *outer};
 }
@@ -122,9 +130,9 @@ PointLight readPoint(const Value& object) {
   std::optional<glm::dvec3> position;
   std::optional<glm::vec3> intensity;
   readObject(object, {
-      {"position", [&](const Value& v) { position = v.vector(); }},
-      {"intensity", [&](const Value& v) { intensity = v.light(); }},
-  });
+                         {"position", [&](const Value& v) { position = v.vector(); }},
+                         {"intensity", [&](const Value& v) { intensity = v.light(); }},
+                     });
   if (!position || !intensity) object.fail("a point light with \"position\" and \"intensity\"");
   return {*position, *intensity};
 }
@@ -146,8 +154,11 @@ bool checkRadiance(const Image& picture, const std::filesystem::path& file, cons
       const auto isRadiance = [](float v) { return v >= 0.0f && std::isfinite(v); };
       for (int c = 0; c < 3; ++c)
         if (!isRadiance(texel[c]) || !isRadiance(texel[c] * factor[c]))
-          throwBadInput("{}: texel {}, {} (column and row, from the upper left) is {} {} {}: radiance must be finite and at least 0{}", file.string(), x, y, texel.x, texel.y, texel.z,
-                        factor == glm::vec3(1.0f) ? "" : ", also times the environment's \"radiance\"");
+          throwBadInput(
+              "{}: texel {}, {} (column and row, from the upper left) is {} {} {}: radiance must be finite and at "
+              "least 0{}",
+              file.string(), x, y, texel.x, texel.y, texel.z,
+              factor == glm::vec3(1.0f) ? "" : ", also times the environment's \"radiance\"");
       lights = lights || texel * factor != glm::vec3(0.0f);
     }
   return lights;
@@ -155,10 +166,15 @@ bool checkRadiance(const Image& picture, const std::filesystem::path& file, cons
 
 ClearSky readSky(const Value& object) {
   ClearSky sky;
-  readObject(object, {
-      {"turbidity", [&](const Value& v) { sky.turbidity = v.numberBetween(ClearSky::kLeastTurbidity, ClearSky::kMostTurbidity, "a turbidity from 1.7 to 10"); }},
-      {"ground", [&](const Value& v) { sky.ground = v.numberBetween(0.0, 1.0, "an albedo from 0 to 1"); }},
-  });
+  readObject(object,
+             {
+                 {"turbidity",
+                  [&](const Value& v) {
+                    sky.turbidity = v.numberBetween(ClearSky::kLeastTurbidity, ClearSky::kMostTurbidity,
+                                                    "a turbidity from 1.7 to 10");
+                  }},
+                 {"ground", [&](const Value& v) { sky.ground = v.numberBetween(0.0, 1.0, "an albedo from 0 to 1"); }},
+             });
   return sky;
 }
 
@@ -167,29 +183,32 @@ Environment readEnvironment(const Value& object, const std::optional<Directional
   std::optional<glm::vec3> radiance;
   std::optional<ClearSky> sky;
   std::filesystem::path file;
-  readObject(object, {
-      {"radiance", [&](const Value& v) { radiance = v.light(); }},
-      {"picture", [&](const Value& v) { environment.picture = readImage(file = v.path()); }},
-      {"sky", [&](const Value& v) { sky = readSky(v); }},
-      {"rotation", [&](const Value& v) { environment.rotation = v.number("degrees") * kPi / 180.0; }},
-  });
-  if (!radiance && !environment.picture && !sky) object.fail("an environment with \"radiance\", \"picture\" or \"sky\"");
+  readObject(object,
+             {
+                 {"radiance", [&](const Value& v) { radiance = v.light(); }},
+                 {"picture", [&](const Value& v) { environment.picture = readImage(file = v.path()); }},
+                 {"sky", [&](const Value& v) { sky = readSky(v); }},
+                 {"rotation", [&](const Value& v) { environment.rotation = v.number("degrees") * kPi / 180.0; }},
+             });
+  if (!radiance && !environment.picture && !sky)
+    object.fail("an environment with \"radiance\", \"picture\" or \"sky\"");
   environment.radiance = radiance.value_or(glm::vec3(1.0f));
   if (sky) {
-    if (environment.picture || object.has("rotation")) object.fail("a \"sky\" without \"picture\" and \"rotation\": the sun says how it lies");
-    if (!sun || !(sun->direction.y <= 0.0)) object.at("sky").fail("a scene with a sun above the horizon, whose sky it is");
+    if (environment.picture || object.has("rotation"))
+      object.fail("a \"sky\" without \"picture\" and \"rotation\": the sun says how it lies");
+    if (!sun || !(sun->direction.y <= 0.0))
+      object.at("sky").fail("a scene with a sun above the horizon, whose sky it is");
     environment.picture = clearSkyPicture(*sky, *sun);
     file = object.file;
   }
-  if (environment.picture && !checkRadiance(*environment.picture, file, environment.radiance)) logWarning("{}: the environment is black: it lights nothing", file.string());
+  if (environment.picture && !checkRadiance(*environment.picture, file, environment.radiance))
+    logWarning("{}: the environment is black: it lights nothing", file.string());
   return environment;
 }
 
 }  // namespace
 
-Json readJson(const std::filesystem::path& file) {
-  return parseJson(readFileText(file), file.string());
-}
+Json readJson(const std::filesystem::path& file) { return parseJson(readFileText(file), file.string()); }
 
 Scene loadSceneFile(const std::filesystem::path& file) {
   const Json json = readJson(file);
@@ -205,25 +224,27 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   std::optional<std::vector<SpotLight>> spots;
   std::optional<std::vector<PointLight>> points;
   std::optional<glm::vec3> background;
-  readObject(root, {
-      {"description", [&](const Value& v) { static_cast<void>(v.text()); }},
-      {"model", [&](const Value& v) { model = v.path(); }},
-      {"scale", [&](const Value& v) { scale = v.positiveNumber(); }},
-      {"camera", [&](const Value& v) { cameras = {readCamera(v)}; }},
-      {"cameras", [&](const Value& v) { cameras = readCameras(v); }},
-      {"sun", [&](const Value& v) { sun = v.json.is_null() ? std::nullopt : std::optional(readSun(v)); }},
-      {"spots", [&](const Value& v) { spots = readLights(v, readSpot); }},
-      {"points", [&](const Value& v) { points = readLights(v, readPoint); }},
-      {"background", [&](const Value& v) { background = v.light(); }},
-      {"exposure", [&](const Value& v) { exposure = v.positiveNumber(); }},
-      {"keyFrames", [&](const Value& v) { keyFrames = v.path(); }},
-      {"environment", [](const Value&) {}},  // once it is known where the sun stands
-      {"media", [](const Value&) {}},        // these three by readSceneMedia, once the model is there
-      {"materials", [](const Value&) {}},
-      {"cameraMedium", [](const Value&) {}},
-  });
+  readObject(root,
+             {
+                 {"description", [&](const Value& v) { static_cast<void>(v.text()); }},
+                 {"model", [&](const Value& v) { model = v.path(); }},
+                 {"scale", [&](const Value& v) { scale = v.positiveNumber(); }},
+                 {"camera", [&](const Value& v) { cameras = {readCamera(v)}; }},
+                 {"cameras", [&](const Value& v) { cameras = readCameras(v); }},
+                 {"sun", [&](const Value& v) { sun = v.json.is_null() ? std::nullopt : std::optional(readSun(v)); }},
+                 {"spots", [&](const Value& v) { spots = readLights(v, readSpot); }},
+                 {"points", [&](const Value& v) { points = readLights(v, readPoint); }},
+                 {"background", [&](const Value& v) { background = v.light(); }},
+                 {"exposure", [&](const Value& v) { exposure = v.positiveNumber(); }},
+                 {"keyFrames", [&](const Value& v) { keyFrames = v.path(); }},
+                 {"environment", [](const Value&) {}},  // once it is known where the sun stands
+                 {"media", [](const Value&) {}},  // these three by readSceneMedia, once the model is there
+                 {"materials", [](const Value&) {}},
+                 {"cameraMedium", [](const Value&) {}},
+             });
   if (model.empty()) throwBadInput("{}: no key \"model\", the path of the model relative to this file", file.string());
-  if (root.has("camera") && root.has("cameras")) throwBadInput("{}: both \"camera\" and \"cameras\", expected one of them", file.string());
+  if (root.has("camera") && root.has("cameras"))
+    throwBadInput("{}: both \"camera\" and \"cameras\", expected one of them", file.string());
   if (lowerExtension(model) == ".json") root.at("model").fail("a model, not another scene JSON");
 
   Scene scene = loadModel(model);
@@ -247,7 +268,8 @@ Scene loadSceneFile(const std::filesystem::path& file) {
     setKeyFrames(scene, keyFrames);
   }
   if (!root.has("environment")) setDefaultSky(scene);
-  else if (const Value environment = root.at("environment"); !environment.json.is_null()) scene.environment = readEnvironment(environment, scene.sun);
+  else if (const Value environment = root.at("environment"); !environment.json.is_null())
+    scene.environment = readEnvironment(environment, scene.sun);
   return scene;
 }
 

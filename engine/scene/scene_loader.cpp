@@ -2,26 +2,38 @@
 //
 // What is decided here, as files do not say it:
 // - Normals that are missing are made by Assimp, smooth across edges up to kCreaseAngle.
-// - Triangles with positions that are not finite are dropped and counted (Scene::droppedTriangles); lines and points are
+// - Triangles with positions that are not finite are dropped and counted (Scene::droppedTriangles); lines and points
+// are
 //   dropped. Triangles of zero area are counted (Scene::degenerateTriangles) and kept: Crytek Sponza has one, and its
 //   published count of 262,267 is to be met.
-// - Equal vertices of a mesh are joined where all their floats are equal, bit by bit: no tolerance, so that scenes of any
+// - Equal vertices of a mesh are joined where all their floats are equal, bit by bit: no tolerance, so that scenes of
+// any
 //   scale keep their shape.
-// - A material with opacity 0 would be invisible; exporters that mix up `d` and `Tr` write it for solid things: taken as 1.
-// - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic), Blinn-Phong
-//   exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). glTF's pictures of it are read texel by
-//   texel (MetalMap); what takes a material as a whole, and files of other formats, have their mean, which keeps a surface's total.
-// - glTF 2 by its own JSON where Assimp 5.2.5 leaves things out (gltf_file.hpp): KHR_texture_transform goes into the texture coordinates, alphaCutoff over
-//   baseColorFactor's alpha into the mask, KHR_materials_emissive_strength into the emission, KHR_materials_volume into a medium, colours that all vertices
-//   of a mesh share into its material. What is not shown is one warning a material. Occlusion textures are light that techniques find themselves: not read.
-// - How surfaces scatter in the path tracer (Material::bsdf; the real-time techniques do not read it). MTL: illum 5 is a mirror of Ks;
-//   illum 4, 6, 7 and 9 with an Ni are a smooth dielectric of that index (Ni 1: a boundary that does nothing). glTF: transmission
-//   above 0.5 a dielectric of index 1.5, else metallic above 0.5 a conductor of the base colour; alpha = roughness^2. All else is Lambert.
-// - Lights: a directional light's colour is its irradiance, that of a spot or point light its radiant intensity in W/sr, as
-//   the file has it (glTF's candela are not divided by a luminous efficacy); where other formats give a quadratic attenuation
-//   q, colour / q. Constant and linear attenuation are no physics and are ignored.
+// - A material with opacity 0 would be invisible; exporters that mix up `d` and `Tr` write it for solid things: taken
+// as 1.
+// - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic),
+// Blinn-Phong
+//   exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). glTF's pictures of
+//   it are read texel by texel (MetalMap); what takes a material as a whole, and files of other formats, have their
+//   mean, which keeps a surface's total.
+// - glTF 2 by its own JSON where Assimp 5.2.5 leaves things out (gltf_file.hpp): KHR_texture_transform goes into the
+// texture coordinates, alphaCutoff over
+//   baseColorFactor's alpha into the mask, KHR_materials_emissive_strength into the emission, KHR_materials_volume into
+//   a medium, colours that all vertices of a mesh share into its material. What is not shown is one warning a material.
+//   Occlusion textures are light that techniques find themselves: not read.
+// - How surfaces scatter in the path tracer (Material::bsdf; the real-time techniques do not read it). MTL: illum 5 is
+// a mirror of Ks;
+//   illum 4, 6, 7 and 9 with an Ni are a smooth dielectric of that index (Ni 1: a boundary that does nothing). glTF:
+//   transmission above 0.5 a dielectric of index 1.5, else metallic above 0.5 a conductor of the base colour; alpha =
+//   roughness^2. All else is Lambert.
+// - Lights: a directional light's colour is its irradiance, that of a spot or point light its radiant intensity in
+// W/sr, as
+//   the file has it (glTF's candela are not divided by a luminous efficacy); where other formats give a quadratic
+//   attenuation q, colour / q. Constant and linear attenuation are no physics and are ignored.
 // - Lamps far too weak or strong for an exposure of 1, as their units are anybody's: another exposure, with a warning.
-// - No light in the file: a sun, over the shoulder of a view that we chose, else slanted as suits courts and halls, and its clear sky (loadScene, as the sun may still be turned). No camera: the first key of keyFrames/<stem>.txt where the repository has one, else a
+// - No light in the file: a sun, over the shoulder of a view that we chose, else slanted as suits courts and halls, and
+// its clear sky (loadScene, as the sun may still be turned). No camera: the first key of keyFrames/<stem>.txt where the
+// repository has one, else a
 //   view from outside that frames the bounding sphere.
 #include "scene/scene_file.hpp"
 
@@ -64,9 +76,11 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr float kCreaseAngle = 60.0f;  // degrees between faces
 constexpr double kDefaultFov = 50.0 * kPi / 180.0;
 
-/// Slanted, so that walls are lit too. In Crytek Sponza it reaches a quarter of the court's floor and the curtains on +z.
+/// Slanted, so that walls are lit too. In Crytek Sponza it reaches a quarter of the court's floor and the curtains on
+/// +z.
 const glm::dvec3 kDefaultSunDirection = glm::normalize(glm::dvec3(0.12, -1.0, 0.2));
-/// For the default view from outside: over its right shoulder, so that all visible sides of a box are lit, and so is a sheet that faces +z.
+/// For the default view from outside: over its right shoulder, so that all visible sides of a box are lit, and so is a
+/// sheet that faces +z.
 const glm::dvec3 kSunOverShoulder = glm::normalize(glm::dvec3(-0.3, -1.0, -0.6));
 const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
 /// Goes with that sun: bright where it shines, still readable where only its reflection comes.
@@ -78,7 +92,8 @@ bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(
 
 /// Row-major Assimp to column-major GLM.
 glm::dmat4 toGlm(const aiMatrix4x4& m) {
-  return glm::transpose(glm::dmat4(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4));
+  return glm::transpose(
+      glm::dmat4(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4));
 }
 
 /// File names as Windows exporters write them.
@@ -87,8 +102,8 @@ std::string withForwardSlashes(std::string path) {
   return path;
 }
 
-/// Files for Assimp: back slashes turned, the model itself from memory as it was checked, and the material libraries that are missing remembered
-/// (Assimp only logs them).
+/// Files for Assimp: back slashes turned, the model itself from memory as it was checked, and the material libraries
+/// that are missing remembered (Assimp only logs them).
 class ModelFiles : public Assimp::DefaultIOSystem {
  public:
   ModelFiles(std::string model, std::span<const std::uint8_t> content) : model_(std::move(model)), content_(content) {}
@@ -113,7 +128,8 @@ class ModelFiles : public Assimp::DefaultIOSystem {
   std::span<const std::uint8_t> content_;
 };
 
-// ------------------------------------------------------------------------------------------------------------- textures
+// -------------------------------------------------------------------------------------------------------------
+// textures
 
 Bitmap checkerBitmap() {
   constexpr int kSize = 64, kSquare = 8;
@@ -129,14 +145,16 @@ Bitmap checkerBitmap() {
 /// Mean over all texels, values as they are in 0..1.
 glm::vec3 meanValue(const Bitmap& bitmap) {
   glm::dvec3 sum(0.0);
-  for (std::size_t i = 0; i < bitmap.rgba.size(); i += 4) sum += glm::dvec3(bitmap.rgba[i], bitmap.rgba[i + 1], bitmap.rgba[i + 2]);
+  for (std::size_t i = 0; i < bitmap.rgba.size(); i += 4)
+    sum += glm::dvec3(bitmap.rgba[i], bitmap.rgba[i + 1], bitmap.rgba[i + 2]);
   return glm::vec3(sum / (255.0 * static_cast<double>(bitmap.rgba.size() / 4)));
 }
 
 /// Reads every picture once; a picture that cannot be read is one warning.
 class TextureLoader {
  public:
-  TextureLoader(Scene& scene, const aiScene& source) : scene_(scene), source_(source), folder_(scene.file.parent_path()) {}
+  TextureLoader(Scene& scene, const aiScene& source)
+      : scene_(scene), source_(source), folder_(scene.file.parent_path()) {}
 
   /// Index of an albedo map; the shared checker where it cannot be read; -1 where the material has none.
   int albedo(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
@@ -146,8 +164,8 @@ class TextureLoader {
     return index >= 0 ? index : checker();
   }
 
-  /// An albedo map whose alpha is moved so that what lay at `threshold` lies at 0.5, where masks are cut: to the same texture coordinates, as moving
-  /// by a constant and interpolating may be exchanged.
+  /// An albedo map whose alpha is moved so that what lay at `threshold` lies at 0.5, where masks are cut: to the same
+  /// texture coordinates, as moving by a constant and interpolating may be exchanged.
   int withThreshold(int texture, double threshold) {
     const auto [known, isNew] = moved_.try_emplace({texture, threshold}, static_cast<int>(scene_.textures.size()));
     if (!isNew) return known->second;
@@ -173,7 +191,9 @@ class TextureLoader {
     return texture ? meanValue(texture->bitmap) : glm::vec3(1.0f);
   }
 
-  static bool has(const aiMaterial& material, std::initializer_list<aiTextureType> types) { return !nameOf(material, types).empty(); }
+  static bool has(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
+    return !nameOf(material, types).empty();
+  }
 
  private:
   static std::string nameOf(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
@@ -251,14 +271,17 @@ class TextureLoader {
   int checker_ = -1;
 };
 
-// ------------------------------------------------------------------------------------------------------------ materials
+// ------------------------------------------------------------------------------------------------------------
+// materials
 
 float clampedNumber(float value, float low, float high, float fallback) {
   return std::isfinite(value) ? std::clamp(value, low, high) : fallback;
 }
 
-/// `gltf`: where the file is one, what Assimp does not hand on. `tint`: the vertices' colour, a factor on the base colour.
-Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scene& scene, const GltfMaterial* gltf, const glm::vec3& tint) {
+/// `gltf`: where the file is one, what Assimp does not hand on. `tint`: the vertices' colour, a factor on the base
+/// colour.
+Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scene& scene, const GltfMaterial* gltf,
+                         const glm::vec3& tint) {
   Material material;
   material.name = gltf ? gltf->name : source.GetName().C_Str();
   const auto colour = [&](const char* key, unsigned type, unsigned index, glm::vec3& value, float highest) {
@@ -283,8 +306,10 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
     // glTF: roughness in green, metallic in blue. Its own texture slot in Assimp 5.2.
     const int picture = gltf ? textures.optional(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN}) : -1;
     const glm::vec3 map = picture >= 0 ? meanValue(scene.textures[static_cast<std::size_t>(picture)].bitmap)
-                                       : gltf ? glm::vec3(1.0f) : textures.mean(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN});
-    const MetalMap factors{glm::vec3(1.0f), clampedNumber(metallic, 0.0f, 1.0f, 0.0f), clampedNumber(roughness, 0.0f, 1.0f, 1.0f), picture};
+                          : gltf       ? glm::vec3(1.0f)
+                                       : textures.mean(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN});
+    const MetalMap factors{glm::vec3(1.0f), clampedNumber(metallic, 0.0f, 1.0f, 0.0f),
+                           clampedNumber(roughness, 0.0f, 1.0f, 1.0f), picture};
     metallic = clampedNumber(metallic * map.z, 0.0f, 1.0f, 0.0f);
     roughness = clampedNumber(roughness * map.y, 0.0f, 1.0f, 1.0f);
     glm::vec3 base = material.diffuse;
@@ -299,11 +324,13 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
     material.shininess = std::max(2.0f / alpha2 - 2.0f, 1.0f);
     material.roughness = roughness * roughness;
     // A metal's picture is the colour of its reflection.
-    if (gltf && (picture >= 0 || (factors.metallic > 0.0f && textures.has(source, {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR})))) {
+    if (gltf && (picture >= 0 || (factors.metallic > 0.0f &&
+                                  textures.has(source, {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR})))) {
       material.metalMap = factors;
       material.metalMap->base = base;
     }
-    if ((gltf ? static_cast<float>(gltf->transmission) : number(AI_MATKEY_TRANSMISSION_FACTOR, 0.0f)) > 0.5f) material.bsdf = Bsdf::dielectric;
+    if ((gltf ? static_cast<float>(gltf->transmission) : number(AI_MATKEY_TRANSMISSION_FACTOR, 0.0f)) > 0.5f)
+      material.bsdf = Bsdf::dielectric;
     else if (metallic > 0.5f) material.bsdf = Bsdf::conductor;
   }
 
@@ -333,7 +360,9 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
     material.emissionScale = material.emission * clampedNumber(strength, 0.0f, 1e30f, 1.0f);
     material.emissionTexture = textures.optional(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR});
     material.emission = material.emissionScale;
-    if (material.emissionTexture >= 0) material.emission *= glm::vec3(meanColour(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap));
+    if (material.emissionTexture >= 0)
+      material.emission *=
+          glm::vec3(meanColour(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap));
   }
 
   if (gltf) {
@@ -349,7 +378,9 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
 
   material.diffuseTexture = textures.albedo(source, {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR});
   material.alphaTexture = textures.optional(source, {aiTextureType_OPACITY});
-  const auto hasAlpha = [&](int texture) { return texture >= 0 && scene.textures[static_cast<std::size_t>(texture)].bitmap.hasAlpha; };
+  const auto hasAlpha = [&](int texture) {
+    return texture >= 0 && scene.textures[static_cast<std::size_t>(texture)].bitmap.hasAlpha;
+  };
   // A colour picture named as its own mask means its alpha channel; without one it masks nothing.
   if (material.alphaTexture >= 0 && material.alphaTexture == material.diffuseTexture) material.alphaTexture = -1;
   material.alphaMasked = material.alphaTexture >= 0 || hasAlpha(material.diffuseTexture);
@@ -359,23 +390,31 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
   // Nothing is blended: what alpha leaves is cut at the cut-off, or at a half.
   if (gltf->alpha == GltfMaterial::Alpha::opaque) return material;
   const double cutoff = gltf->alpha == GltfMaterial::Alpha::mask ? gltf->alphaCutoff : 0.5;
-  const double threshold = gltf->alpha == GltfMaterial::Alpha::blend ? 0.5 : gltf->baseAlpha > 0.0 ? cutoff / gltf->baseAlpha : cutoff > 0.0 ? 2.0 : 0.0;
+  const double threshold = gltf->alpha == GltfMaterial::Alpha::blend ? 0.5
+                           : gltf->baseAlpha > 0.0                   ? cutoff / gltf->baseAlpha
+                           : cutoff > 0.0                            ? 2.0
+                                                                     : 0.0;
   if (threshold > 1.0) material.opacity = 0.0f;  // cut out everywhere
   else if (threshold <= 0.0) material.alphaMasked = false;
-  else if (material.alphaMasked && threshold != 0.5) material.diffuseTexture = textures.withThreshold(material.diffuseTexture, threshold);
+  else if (material.alphaMasked && threshold != 0.5)
+    material.diffuseTexture = textures.withThreshold(material.diffuseTexture, threshold);
   return material;
 }
 
 /// Whether vertices are transparent in part. Colours of three numbers come with an alpha of 0.
 bool haveAlpha(const aiMesh& mesh) {
   if (!mesh.HasVertexColors(0)) return false;
-  return std::any_of(mesh.mColors[0], mesh.mColors[0] + mesh.mNumVertices, [](const aiColor4D& colour) { return colour.a > 0.0f && colour.a < 1.0f; });
+  return std::any_of(mesh.mColors[0], mesh.mColors[0] + mesh.mNumVertices,
+                     [](const aiColor4D& colour) { return colour.a > 0.0f && colour.a < 1.0f; });
 }
 
-/// The colour that a mesh's vertices have, a factor on the base colour: its mean over the surface, and whether all have that one.
+/// The colour that a mesh's vertices have, a factor on the base colour: its mean over the surface, and whether all have
+/// that one.
 std::pair<glm::vec3, bool> vertexColour(const aiMesh& mesh) {
   if (!mesh.HasVertexColors(0)) return {glm::vec3(1.0f), true};
-  const auto at = [&](unsigned i) { return glm::dvec3(mesh.mColors[0][i].r, mesh.mColors[0][i].g, mesh.mColors[0][i].b); };
+  const auto at = [&](unsigned i) {
+    return glm::dvec3(mesh.mColors[0][i].r, mesh.mColors[0][i].g, mesh.mColors[0][i].b);
+  };
   glm::dvec3 sum(0.0);
   double area = 0.0;
   bool same = true;
@@ -383,7 +422,8 @@ std::pair<glm::vec3, bool> vertexColour(const aiMesh& mesh) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices != 3) continue;
     const unsigned a = face.mIndices[0], b = face.mIndices[1], c = face.mIndices[2];
-    const double weight = glm::length(glm::cross(toGlm(mesh.mVertices[b]) - toGlm(mesh.mVertices[a]), toGlm(mesh.mVertices[c]) - toGlm(mesh.mVertices[a])));
+    const double weight = glm::length(glm::cross(toGlm(mesh.mVertices[b]) - toGlm(mesh.mVertices[a]),
+                                                 toGlm(mesh.mVertices[c]) - toGlm(mesh.mVertices[a])));
     if (!std::isfinite(weight) || !isFinite(at(a) + at(b) + at(c))) continue;
     sum += weight * (at(a) + at(b) + at(c)) / 3.0;
     area += weight;
@@ -392,7 +432,8 @@ std::pair<glm::vec3, bool> vertexColour(const aiMesh& mesh) {
   return {area > 0.0 ? glm::clamp(glm::vec3(sum / area), 0.0f, 1.0f) : glm::vec3(1.0f), same};
 }
 
-// ------------------------------------------------------------------------------------------------------------- geometry
+// -------------------------------------------------------------------------------------------------------------
+// geometry
 
 struct VertexHash {
   std::size_t operator()(const std::array<std::uint32_t, 8>& words) const {
@@ -406,17 +447,21 @@ struct VertexHash {
 };
 static_assert(sizeof(Vertex) == 8 * sizeof(float), "compared bit by bit, so without padding");
 
-/// Assimp makes room for as many vertices as an OFF file says it has, whatever its size. A vertex or face takes two bytes at least.
+/// Assimp makes room for as many vertices as an OFF file says it has, whatever its size. A vertex or face takes two
+/// bytes at least.
 void checkOff(const fs::path& file, std::span<const std::uint8_t> content) {
-  std::istringstream text(std::string(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(content.size(), 4096))));
+  std::istringstream text(std::string(
+      content.begin(), content.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(content.size(), 4096))));
   std::string word;
   double vertices = 0.0, faces = 0.0;
   text >> word;
   if (text >> vertices >> faces && vertices + faces > static_cast<double>(content.size()) / 2.0)
-    throwBadInput("{}: {:.0f} vertices and {:.0f} faces in {} bytes; is the file truncated?", file.string(), vertices, faces, content.size());
+    throwBadInput("{}: {:.0f} vertices and {:.0f} faces in {} bytes; is the file truncated?", file.string(), vertices,
+                  faces, content.size());
 }
 
-/// Assimp hands on whatever its readers made: RAW files leave nodes that are not there, and any mesh number may be wrong.
+/// Assimp hands on whatever its readers made: RAW files leave nodes that are not there, and any mesh number may be
+/// wrong.
 void checkNodes(const aiScene& source, const fs::path& file) {
   std::vector<std::pair<const aiNode*, int>> open = {{source.mRootNode, 0}};
   while (!open.empty()) {
@@ -426,7 +471,8 @@ void checkNodes(const aiScene& source, const fs::path& file) {
     if (depth > kMostNodeDepth) throwBadInput("{}: nodes nested more than {} deep", file.string(), kMostNodeDepth);
     for (unsigned i = 0; i < node->mNumMeshes; ++i)
       if (node->mMeshes[i] >= source.mNumMeshes || !source.mMeshes[node->mMeshes[i]])
-        throwBadInput("{}: a node names mesh {}, the file holds {}", file.string(), node->mMeshes[i], source.mNumMeshes);
+        throwBadInput("{}: a node names mesh {}, the file holds {}", file.string(), node->mMeshes[i],
+                      source.mNumMeshes);
     for (unsigned i = 0; i < node->mNumChildren; ++i) open.emplace_back(node->mChildren[i], depth + 1);
   }
 }
@@ -439,12 +485,15 @@ void checkFaces(const aiScene& source, const fs::path& file) {
     mesh.mPrimitiveTypes = 0;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices == 0) throwBadInput("{}: face {} of mesh '{}' has no vertices; is the file truncated?", file.string(), f, mesh.mName.C_Str());
+      if (face.mNumIndices == 0)
+        throwBadInput("{}: face {} of mesh '{}' has no vertices; is the file truncated?", file.string(), f,
+                      mesh.mName.C_Str());
       for (unsigned i = 0; i < face.mNumIndices; ++i)
         if (face.mIndices[i] >= mesh.mNumVertices)
-          throwBadInput("{}: face {} of mesh '{}' refers to vertex {}, the mesh holds {}; is the file truncated?", file.string(), f,
-                        mesh.mName.C_Str(), face.mIndices[i], mesh.mNumVertices);
-      constexpr unsigned kTypes[] = {aiPrimitiveType_POINT, aiPrimitiveType_LINE, aiPrimitiveType_TRIANGLE, aiPrimitiveType_POLYGON};
+          throwBadInput("{}: face {} of mesh '{}' refers to vertex {}, the mesh holds {}; is the file truncated?",
+                        file.string(), f, mesh.mName.C_Str(), face.mIndices[i], mesh.mNumVertices);
+      constexpr unsigned kTypes[] = {aiPrimitiveType_POINT, aiPrimitiveType_LINE, aiPrimitiveType_TRIANGLE,
+                                     aiPrimitiveType_POLYGON};
       mesh.mPrimitiveTypes |= kTypes[std::min(face.mNumIndices, 4u) - 1];
     }
   }
@@ -469,11 +518,14 @@ bool leavesPicture(const aiMesh& mesh, const TextureTransform& transform) {
 }
 
 /// Appends one mesh as placed by one node.
-void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromNode, int material, const TextureTransform& transform, const std::string& name) {
+void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromNode, int material,
+                const TextureTransform& transform, const std::string& name) {
   const glm::dmat3 linear(worldFromNode);
   const bool mirrored = glm::determinant(linear) < 0.0;
-  // Normals go with the inverse transpose; the cofactor matrix is that times the determinant, and exists for flat scalings too.
-  const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+  // Normals go with the inverse transpose; the cofactor matrix is that times the determinant, and exists for flat
+  // scalings too.
+  const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                            glm::cross(linear[0], linear[1]));
 
   std::vector<Vertex> vertices(source.mNumVertices);
   for (unsigned i = 0; i < source.mNumVertices; ++i) {
@@ -481,14 +533,16 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
     vertex.position = glm::vec3(worldFromNode * glm::dvec4(toGlm(source.mVertices[i]), 1.0));
     if (source.HasTextureCoords(transform.texCoord)) vertex.texCoord = texCoordOf(source, i, transform);
     if (!std::isfinite(vertex.texCoord.x) || !std::isfinite(vertex.texCoord.y)) vertex.texCoord = glm::vec2(0.0f);
-    const glm::dvec3 normal = source.HasNormals() ? cofactor * toGlm(source.mNormals[i]) * (mirrored ? -1.0 : 1.0) : glm::dvec3(0.0);
+    const glm::dvec3 normal =
+        source.HasNormals() ? cofactor * toGlm(source.mNormals[i]) * (mirrored ? -1.0 : 1.0) : glm::dvec3(0.0);
     const double length = glm::length(normal);
     vertex.normal = std::isfinite(length) && length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f);
   }
 
   std::vector<std::array<unsigned, 3>> triangles;
   triangles.reserve(source.mNumFaces);
-  std::vector<glm::dvec3> lentNormals(source.mNumVertices, glm::dvec3(0.0));  // area-weighted, for vertices that have none
+  std::vector<glm::dvec3> lentNormals(source.mNumVertices,
+                                      glm::dvec3(0.0));  // area-weighted, for vertices that have none
   double agreement = 0.0;  // of faces' sides with vertices' normals, by area
   for (unsigned f = 0; f < source.mNumFaces; ++f) {
     const aiFace& face = source.mFaces[f];
@@ -502,21 +556,23 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
       ++scene.droppedTriangles;
       continue;
     }
-    // Exact up to rounding in double: float corners in one line give 0, or 1e-16 of the square built on the longest side.
+    // Exact up to rounding in double: float corners in one line give 0, or 1e-16 of the square built on the longest
+    // side.
     if (!(glm::length(cross) > 1e-14 * longest2)) ++scene.degenerateTriangles;
     for (const unsigned i : t) lentNormals[i] += cross, agreement += glm::dot(cross, glm::dvec3(vertices[i].normal));
     triangles.push_back(t);
   }
   if (triangles.empty()) return;
-  // A mesh that turns its backs to where its normals point was written for another handedness. Its normals are what was looked at: faces follow them, as
-  // shading turns normals to the viewer by the side of the face.
+  // A mesh that turns its backs to where its normals point was written for another handedness. Its normals are what was
+  // looked at: faces follow them, as shading turns normals to the viewer by the side of the face.
   if (agreement < 0.0) {
     for (std::array<unsigned, 3>& t : triangles) std::swap(t[1], t[2]);
     for (glm::dvec3& normal : lentNormals) normal = -normal;
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const double length = glm::length(lentNormals[i]);
-    if (vertices[i].normal == glm::vec3(0.0f)) vertices[i].normal = length > 0.0 ? glm::vec3(lentNormals[i] / length) : glm::vec3(0.0f, 1.0f, 0.0f);
+    if (vertices[i].normal == glm::vec3(0.0f))
+      vertices[i].normal = length > 0.0 ? glm::vec3(lentNormals[i] / length) : glm::vec3(0.0f, 1.0f, 0.0f);
   }
 
   Mesh mesh;
@@ -546,12 +602,14 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
     throwBadInput("{}: more than {} triangles", scene.file.string(), std::numeric_limits<std::uint32_t>::max() / 6);
 }
 
-// ---------------------------------------------------------------------------------------------------- cameras and lights
+// ---------------------------------------------------------------------------------------------------- cameras and
+// lights
 
 /// The placement of the node of that name (Assimp ties cameras and lights to nodes by name).
 glm::dmat4 worldFromNamedNode(const aiScene& source, const aiString& name) {
   aiMatrix4x4 world;
-  for (const aiNode* node = source.mRootNode->FindNode(name); node; node = node->mParent) world = node->mTransformation * world;
+  for (const aiNode* node = source.mRootNode->FindNode(name); node; node = node->mParent)
+    world = node->mTransformation * world;
   return toGlm(world);
 }
 
@@ -569,11 +627,15 @@ void appendCameras(Scene& scene, const aiScene& source) {
     camera.up = glm::dmat3(world) * toGlm(given.mUp);
     const double horizontal = given.mHorizontalFOV;
     camera.verticalFov = horizontal;  // where no aspect is known
-    if (given.mAspect > 0.0f) camera.verticalFov = gltf ? horizontal / given.mAspect : 2.0 * std::atan(std::tan(0.5 * horizontal) / given.mAspect);
+    if (given.mAspect > 0.0f)
+      camera.verticalFov =
+          gltf ? horizontal / given.mAspect : 2.0 * std::atan(std::tan(0.5 * horizontal) / given.mAspect);
     const glm::dvec3 right = glm::cross(camera.direction, camera.up);
-    const bool usable = isFinite(camera.position) && glm::length(right) > 0.0 && camera.verticalFov > 0.0 && camera.verticalFov < kPi;
+    const bool usable =
+        isFinite(camera.position) && glm::length(right) > 0.0 && camera.verticalFov > 0.0 && camera.verticalFov < kPi;
     if (!usable) {
-      logWarning("{}: camera '{}' has an invalid direction, up or field of view; ignored", scene.file.string(), camera.name);
+      logWarning("{}: camera '{}' has an invalid direction, up or field of view; ignored", scene.file.string(),
+                 camera.name);
       continue;
     }
     camera.direction = glm::normalize(camera.direction);
@@ -606,7 +668,8 @@ void appendLights(Scene& scene, const aiScene& source) {
       const double half = gltf ? 1.0 : 0.5;
       const double outer = std::min(half * light.mAngleOuterCone, kLargestSpotAngle);
       if (half * light.mAngleOuterCone > kLargestSpotAngle)
-        logWarning("{}: spot light '{}' is wider than 80 degrees from its axis; clamped to that", scene.file.string(), light.mName.C_Str());
+        logWarning("{}: spot light '{}' is wider than 80 degrees from its axis; clamped to that", scene.file.string(),
+                   light.mName.C_Str());
       const double inner = std::clamp(half * light.mAngleInnerCone, 0.0, outer);
       scene.spots.push_back({position, glm::normalize(direction), intensity, inner, outer});
     } else {
@@ -614,7 +677,9 @@ void appendLights(Scene& scene, const aiScene& source) {
     }
   }
   if (others > 0)
-    logWarning("{}: {} lights ignored; supported are one directional light, spot and point lights and emissive surfaces", scene.file.string(), others);
+    logWarning(
+        "{}: {} lights ignored; supported are one directional light, spot and point lights and emissive surfaces",
+        scene.file.string(), others);
   if (scene.sun || !scene.spots.empty() || !scene.points.empty()) return;
   scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
   scene.defaultSun = true;
@@ -627,7 +692,8 @@ bool seesAnything(const Camera& camera, const Bounds& bounds) {
   const double distance = glm::length(away), radius = 0.5 * glm::length(bounds.extent());
   if (distance <= radius) return true;
   const double corner = std::atan(std::tan(0.5 * camera.verticalFov) * std::hypot(1.0, 16.0 / 9.0));
-  return std::acos(std::clamp(glm::dot(away, camera.direction) / distance, -1.0, 1.0)) - std::asin(radius / distance) < corner;
+  return std::acos(std::clamp(glm::dot(away, camera.direction) / distance, -1.0, 1.0)) - std::asin(radius / distance) <
+         corner;
 }
 
 Camera outsideView(const Bounds& bounds) {
@@ -687,22 +753,24 @@ Scene loadModel(const fs::path& file) {
     if (source) checkNodes(*source, file);
     if (source) checkFaces(*source, file);
     if (source) source = importer->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {
+  } catch (const Error&) { throw; } catch (const std::exception& e) {
     throwBadInput("{}: cannot be read as a model: {}", file.string(), e.what());
   }
-  if (!source || !source->mRootNode) throwBadInput("{}: cannot be read as a model: {}", file.string(), importer->GetErrorString());
+  if (!source || !source->mRootNode)
+    throwBadInput("{}: cannot be read as a model: {}", file.string(), importer->GetErrorString());
   if (!files->foundMaterials && !files->missingMaterials.empty())
-    logWarning("{}: material library {} is missing; using default materials", file.string(), files->missingMaterials.front());
+    logWarning("{}: material library {} is missing; using default materials", file.string(),
+               files->missingMaterials.front());
 
   TextureLoader textures(scene, *source);
   // Only those in use are converted; of glTF once for each colour that vertices give it.
   std::map<std::pair<unsigned, std::array<float, 3>>, int> materialOf;
   std::map<unsigned, GltfMaterial> gltfMaterials;
   const auto convertedMaterial = [&](unsigned index, const glm::vec3& tint, const GltfMaterial* gltfMaterial) {
-    const auto [known, isNew] = materialOf.try_emplace({index, {tint.x, tint.y, tint.z}}, static_cast<int>(scene.materials.size()));
-    if (isNew) scene.materials.push_back(convertMaterial(*source->mMaterials[index], textures, scene, gltfMaterial, tint));
+    const auto [known, isNew] =
+        materialOf.try_emplace({index, {tint.x, tint.y, tint.z}}, static_cast<int>(scene.materials.size()));
+    if (isNew)
+      scene.materials.push_back(convertMaterial(*source->mMaterials[index], textures, scene, gltfMaterial, tint));
     return known->second;
   };
   std::vector<std::pair<const aiNode*, glm::dmat4>> open = {{source->mRootNode, glm::dmat4(1.0)}};
@@ -715,23 +783,28 @@ Scene loadModel(const fs::path& file) {
       if (!(mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) continue;
       const std::string name = mesh.mName.length > 0 ? mesh.mName.C_Str() : node->mName.C_Str();
       const unsigned index = mesh.mMaterialIndex;
-      if (index >= source->mNumMaterials) throwBadInput("{}: a mesh names material {}, the file holds {}", file.string(), index, source->mNumMaterials);
+      if (index >= source->mNumMaterials)
+        throwBadInput("{}: a mesh names material {}, the file holds {}", file.string(), index, source->mNumMaterials);
       if (!isGltf2) {
         appendMesh(scene, mesh, worldFromNode, convertedMaterial(index, glm::vec3(1.0f), nullptr), {}, name);
         continue;
       }
       const auto [known, isNew] = gltfMaterials.try_emplace(index);
       GltfMaterial& rest = known->second;
-      if (const auto number = numberOfMaterial(source->mMaterials[index]->GetName().C_Str()); isNew && number) rest = gltfMaterial(gltf, file, *number);
+      if (const auto number = numberOfMaterial(source->mMaterials[index]->GetName().C_Str()); isNew && number)
+        rest = gltfMaterial(gltf, file, *number);
       const auto [tint, same] = vertexColour(mesh);
       const auto lacks = [&](std::string_view what) {
-        if (rest.notDone.find(what) == std::string::npos) rest.notDone += fmt::format("{}{}", rest.notDone.empty() ? "" : ", ", what);
+        if (rest.notDone.find(what) == std::string::npos)
+          rest.notDone += fmt::format("{}{}", rest.notDone.empty() ? "" : ", ", what);
       };
       if (!same) lacks("vertex colours are their mean");
       if (haveAlpha(mesh) && rest.alpha != GltfMaterial::Alpha::opaque) lacks("vertices' alpha is not read");
-      if (rest.clamped && leavesPicture(mesh, rest.transform)) lacks("its texture repeats where it should be clamped or mirrored");
+      if (rest.clamped && leavesPicture(mesh, rest.transform))
+        lacks("its texture repeats where it should be clamped or mirrored");
       const int material = convertedMaterial(index, tint, &rest);
-      if (scene.materials[static_cast<std::size_t>(material)].opacity > 0.0f) appendMesh(scene, mesh, worldFromNode, material, rest.transform, name);
+      if (scene.materials[static_cast<std::size_t>(material)].opacity > 0.0f)
+        appendMesh(scene, mesh, worldFromNode, material, rest.transform, name);
     }
     for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], worldFromNode);
   }
@@ -740,9 +813,12 @@ Scene loadModel(const fs::path& file) {
   if (const std::string ranged = gltfLightsWithRange(gltf); !ranged.empty())
     logWarning("{}: lights {}: range ignored, falloff is 1/d^2 without a limit", file.string(), ranged);
   if (scene.indices.empty())
-    throwBadInput("{}: nothing to draw: no triangles ({} dropped as not finite)", file.string(), scene.droppedTriangles);
-  if (scene.degenerateTriangles == scene.triangleCount()) throwBadInput("{}: nothing to draw: all triangles have zero area", file.string());
-  if (scene.droppedTriangles > 0) logWarning("{}: {} triangles with positions that are not finite ignored", file.string(), scene.droppedTriangles);
+    throwBadInput("{}: nothing to draw: no triangles ({} dropped as not finite)", file.string(),
+                  scene.droppedTriangles);
+  if (scene.degenerateTriangles == scene.triangleCount())
+    throwBadInput("{}: nothing to draw: all triangles have zero area", file.string());
+  if (scene.droppedTriangles > 0)
+    logWarning("{}: {} triangles with positions that are not finite ignored", file.string(), scene.droppedTriangles);
 
   appendLights(scene, *source);
   appendCameras(scene, *source);
@@ -750,9 +826,12 @@ Scene loadModel(const fs::path& file) {
     const fs::path walk = *data / "keyFrames" / (scene.name + ".txt");
     if (fs::exists(walk)) setKeyFrames(scene, walk);
   }
-  // Cameras that animations would have turned, or that were read with the other handedness, may see nothing at all: then they do not come first.
+  // Cameras that animations would have turned, or that were read with the other handedness, may see nothing at all:
+  // then they do not come first.
   const bool blind = !scene.cameras.empty() && !seesAnything(scene.cameras.front(), scene.bounds);
-  if (blind) logWarning("{}: camera '{}' sees nothing of the scene; the default view is from outside", file.string(), scene.cameras.front().name);
+  if (blind)
+    logWarning("{}: camera '{}' sees nothing of the scene; the default view is from outside", file.string(),
+               scene.cameras.front().name);
   if (scene.cameras.empty() || blind) {
     scene.cameras.insert(scene.cameras.begin(), outsideView(scene.bounds));
     if (scene.defaultSun) scene.sun->direction = kSunOverShoulder;
@@ -770,7 +849,8 @@ void setDefaultSky(Scene& scene) {
 
 namespace {
 
-/// Lamps of model files are in the units of whoever wrote them. Where what they give in the scene's middle is far from what an exposure of 1 shows, another is taken.
+/// Lamps of model files are in the units of whoever wrote them. Where what they give in the scene's middle is far from
+/// what an exposure of 1 shows, another is taken.
 void setExposureForLamps(Scene& scene) {
   if (scene.defaultSun) return;
   const auto strongest = [](const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); };
@@ -784,8 +864,9 @@ void setExposureForLamps(Scene& scene) {
   for (const PointLight& light : scene.points) irradiance += lamp(light.position, light.intensity);
   if (!(irradiance > 1e-30 && irradiance < 1e30) || (irradiance > 0.3 && irradiance < 30.0)) return;
   scene.exposure = static_cast<float>(3.0 / irradiance);
-  logWarning("{}: its lamps give an irradiance of about {:.2g}, so that pictures would be {} at exposure 1; {:.2g} is taken", scene.file.string(), irradiance, irradiance < 1.0 ? "black" : "white",
-             scene.exposure);
+  logWarning(
+      "{}: its lamps give an irradiance of about {:.2g}, so that pictures would be {} at exposure 1; {:.2g} is taken",
+      scene.file.string(), irradiance, irradiance < 1.0 ? "black" : "white", scene.exposure);
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ struct NamedMedium {
 /// Adds media to a scene as names ask for them.
 class Media {
  public:
-  Media(Scene& scene, std::optional<double> millimetresPerUnit) : scene_(scene), millimetresPerUnit_(millimetresPerUnit) {}
+  Media(Scene& scene, std::optional<double> millimetresPerUnit)
+      : scene_(scene), millimetresPerUnit_(millimetresPerUnit) {}
 
   void readAll(const Value& object) {
     if (!object.json.is_object()) object.fail("an object {\"name\": medium, ...}");
@@ -70,26 +71,29 @@ class Media {
     if (value.has("catalogue")) result = catalogued(value.at("catalogue"), scale);
     Medium& medium = result.medium;
     double concentration = 1.0;
-    readObject(value, {
-        {"catalogue", [](const Value&) {}},
-        {"sigma_s", [&](const Value& v) { medium.scattering = glm::vec3(readCoefficient(v) * scale); }},
-        {"sigma_a", [&](const Value& v) { medium.absorption = glm::vec3(readCoefficient(v) * scale); }},
-        {"g", [&](const Value& v) { medium.anisotropy = readAnisotropy(v); }},
-        {"ior", [&](const Value& v) { result.ior = readIor(v); }},
-        {"concentration", [&](const Value& v) { concentration = v.positiveNumber(); }},
-        {"phase", [&](const Value& v) {
-           const std::string phase = v.text();
-           if (phase == "henyey-greenstein") medium.phase = PhaseFunction::henyeyGreenstein;
-           else if (phase == "rayleigh") medium.phase = PhaseFunction::rayleigh;
-           else v.fail("henyey-greenstein or rayleigh");
-         }},
-        {"emission", [&](const Value& v) { medium.emission = glm::vec3(glm::dvec3(v.light()) * scale); }},
-        {"grid", [&](const Value& v) { medium.grid = readGrid(v); }},
-    });
+    readObject(value,
+               {
+                   {"catalogue", [](const Value&) {}},
+                   {"sigma_s", [&](const Value& v) { medium.scattering = glm::vec3(readCoefficient(v) * scale); }},
+                   {"sigma_a", [&](const Value& v) { medium.absorption = glm::vec3(readCoefficient(v) * scale); }},
+                   {"g", [&](const Value& v) { medium.anisotropy = readAnisotropy(v); }},
+                   {"ior", [&](const Value& v) { result.ior = readIor(v); }},
+                   {"concentration", [&](const Value& v) { concentration = v.positiveNumber(); }},
+                   {"phase",
+                    [&](const Value& v) {
+                      const std::string phase = v.text();
+                      if (phase == "henyey-greenstein") medium.phase = PhaseFunction::henyeyGreenstein;
+                      else if (phase == "rayleigh") medium.phase = PhaseFunction::rayleigh;
+                      else v.fail("henyey-greenstein or rayleigh");
+                    }},
+                   {"emission", [&](const Value& v) { medium.emission = glm::vec3(glm::dvec3(v.light()) * scale); }},
+                   {"grid", [&](const Value& v) { medium.grid = readGrid(v); }},
+               });
     medium.scattering *= static_cast<float>(concentration);
     medium.absorption *= static_cast<float>(concentration);
     for (int c = 0; c < 3; ++c)
-      if (!std::isfinite(medium.scattering[c] + medium.absorption[c])) value.fail(fmt::format("coefficients of {} that fit into a float at this scale", name));
+      if (!std::isfinite(medium.scattering[c] + medium.absorption[c]))
+        value.fail(fmt::format("coefficients of {} that fit into a float at this scale", name));
     return result;
   }
 
@@ -99,19 +103,21 @@ class Media {
     std::optional<glm::dvec3> low, high;
     double factor = 1.0;
     readObject(object, {
-        {"file", [&](const Value& v) { file = v.path(); }},
-        {"size", [&](const Value& v) {
-           constexpr const char* kExpected = "an array of 3 whole numbers, 1 or more";
-           const glm::dvec3 read = v.vectorBetween(1.0, 65536.0, kExpected);
-           size = glm::ivec3(read);
-           if (glm::dvec3(*size) != read) v.fail(kExpected);
-         }},
-        {"min", [&](const Value& v) { low = v.vector(); }},
-        {"max", [&](const Value& v) { high = v.vector(); }},
-        {"factor", [&](const Value& v) { factor = v.positiveNumber(); }},
-    });
+                           {"file", [&](const Value& v) { file = v.path(); }},
+                           {"size",
+                            [&](const Value& v) {
+                              constexpr const char* kExpected = "an array of 3 whole numbers, 1 or more";
+                              const glm::dvec3 read = v.vectorBetween(1.0, 65536.0, kExpected);
+                              size = glm::ivec3(read);
+                              if (glm::dvec3(*size) != read) v.fail(kExpected);
+                            }},
+                           {"min", [&](const Value& v) { low = v.vector(); }},
+                           {"max", [&](const Value& v) { high = v.vector(); }},
+                           {"factor", [&](const Value& v) { factor = v.positiveNumber(); }},
+                       });
     if (file.empty() || !low || !high) object.fail("a grid with \"file\", \"min\" and \"max\"");
-    if (!(low->x < high->x && low->y < high->y && low->z < high->z)) object.fail("a grid whose \"max\" is above its \"min\" in all three");
+    if (!(low->x < high->x && low->y < high->y && low->z < high->z))
+      object.fail("a grid whose \"max\" is above its \"min\" in all three");
     DensityGrid grid = readDensityGrid(file, size);
     grid.min = *low;
     grid.max = *high;
@@ -141,23 +147,30 @@ void readMaterial(const Value& object, Media& media, Material& material) {
   bool hasIor = false;
   std::optional<NamedMedium> interior;
   constexpr const char* kReflectance = "an array of 3 numbers from 0 to 1";
-  readObject(object, {
-      {"bsdf", [&](const Value& v) { material.bsdf = readBsdf(v); }},
-      {"ior", [&](const Value& v) { material.ior = static_cast<float>(readIor(v)), hasIor = true; }},
-      {"roughness", [&](const Value& v) { material.roughness = static_cast<float>(v.numberBetween(0.0, 1.0, "a number from 0 to 1")); }},
-      {"interior", [&](const Value& v) { interior = v.json.is_null() ? NamedMedium{} : media.named(v); }},
-      {"priority", [&](const Value& v) {
-         constexpr const char* kExpected = "a whole number from -1000 to 1000";
-         const double priority = v.numberBetween(-1000.0, 1000.0, kExpected);
-         if (priority != std::floor(priority)) v.fail(kExpected);
-         material.priority = static_cast<int>(priority);
-       }},
-      {"diffuse", [&](const Value& v) { material.diffuse = glm::vec3(v.vectorBetween(0.0, 1.0, kReflectance)); }},
-      {"specular", [&](const Value& v) { material.specular = glm::vec3(v.vectorBetween(0.0, 1.0, kReflectance)); }},
-      {"emission", [&](const Value& v) { material.emission = v.light(); }},
-  });
+  readObject(
+      object,
+      {
+          {"bsdf", [&](const Value& v) { material.bsdf = readBsdf(v); }},
+          {"ior", [&](const Value& v) { material.ior = static_cast<float>(readIor(v)), hasIor = true; }},
+          {"roughness",
+           [&](const Value& v) {
+             material.roughness = static_cast<float>(v.numberBetween(0.0, 1.0, "a number from 0 to 1"));
+           }},
+          {"interior", [&](const Value& v) { interior = v.json.is_null() ? NamedMedium{} : media.named(v); }},
+          {"priority",
+           [&](const Value& v) {
+             constexpr const char* kExpected = "a whole number from -1000 to 1000";
+             const double priority = v.numberBetween(-1000.0, 1000.0, kExpected);
+             if (priority != std::floor(priority)) v.fail(kExpected);
+             material.priority = static_cast<int>(priority);
+           }},
+          {"diffuse", [&](const Value& v) { material.diffuse = glm::vec3(v.vectorBetween(0.0, 1.0, kReflectance)); }},
+          {"specular", [&](const Value& v) { material.specular = glm::vec3(v.vectorBetween(0.0, 1.0, kReflectance)); }},
+          {"emission", [&](const Value& v) { material.emission = v.light(); }},
+      });
   if (interior && !object.has("bsdf")) material.bsdf = Bsdf::dielectric;
-  if (interior && material.bsdf != Bsdf::dielectric && material.bsdf != Bsdf::none) object.at("interior").fail("no interior, as only \"dielectric\" and \"none\" have an inside");
+  if (interior && material.bsdf != Bsdf::dielectric && material.bsdf != Bsdf::none)
+    object.at("interior").fail("no interior, as only \"dielectric\" and \"none\" have an inside");
   if (!interior) return;
   material.interior = interior->index;
   if (!hasIor && interior->index >= 0) material.ior = static_cast<float>(interior->ior);
@@ -179,7 +192,9 @@ glm::vec3 readAnisotropy(const Value& value) {
   return g;
 }
 
-double readIor(const Value& value) { return value.numberBetween(0.01, 100.0, "an index of refraction from 0.01 to 100"); }
+double readIor(const Value& value) {
+  return value.numberBetween(0.01, 100.0, "an index of refraction from 0.01 to 100");
+}
 
 void readSceneMedia(const Value& root, std::optional<double> millimetresPerUnit, Scene& scene) {
   Media media(scene, millimetresPerUnit);
@@ -196,10 +211,13 @@ void readSceneMedia(const Value& root, std::optional<double> millimetresPerUnit,
         readMaterial(object.at(name), media, material);
         found = true;
       }
-      if (!found) throwBadInput("{}: key \"materials.{}\": the model has no material of that name; it has {}", root.file.string(), name, known);
+      if (!found)
+        throwBadInput("{}: key \"materials.{}\": the model has no material of that name; it has {}", root.file.string(),
+                      name, known);
     }
   }
-  if (root.has("cameraMedium") && !root.at("cameraMedium").json.is_null()) scene.cameraMedium = media.named(root.at("cameraMedium")).index;
+  if (root.has("cameraMedium") && !root.at("cameraMedium").json.is_null())
+    scene.cameraMedium = media.named(root.at("cameraMedium")).index;
 }
 
 }  // namespace lucerna

@@ -12,7 +12,8 @@ namespace {
 const std::uint8_t* bytesAt(const Bitmap& bitmap, const glm::dvec2& uv) {
   const auto wrap = [](double t, int n) { return std::min(static_cast<int>((t - std::floor(t)) * n), n - 1); };
   const int x = wrap(uv.x, bitmap.width), y = bitmap.height - 1 - wrap(uv.y, bitmap.height);
-  return bitmap.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x));
+  return bitmap.rgba.data() +
+         4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x));
 }
 
 glm::dvec3 texelAt(const Bitmap& bitmap, const glm::dvec2& uv) {
@@ -28,7 +29,8 @@ glm::dvec3 meanColour(const Bitmap& bitmap) {
   std::array<double, 256> values{};
   for (std::size_t i = 0; i < 256; ++i) values[i] = static_cast<double>(linearFromSrgb(static_cast<float>(i) / 255.0f));
   glm::dvec3 sum(0.0);
-  for (std::size_t i = 0; i < bitmap.rgba.size(); i += 4) sum += glm::dvec3(values[bitmap.rgba[i]], values[bitmap.rgba[i + 1]], values[bitmap.rgba[i + 2]]);
+  for (std::size_t i = 0; i < bitmap.rgba.size(); i += 4)
+    sum += glm::dvec3(values[bitmap.rgba[i]], values[bitmap.rgba[i + 1]], values[bitmap.rgba[i + 2]]);
   return sum / static_cast<double>(bitmap.rgba.size() / 4);
 }
 
@@ -37,7 +39,8 @@ template <class F>
 glm::dvec3 meanOverParts(const std::array<glm::vec2, 3>& uv, const F& valueAt) {
   static const std::vector<glm::dvec2> centroids = partCentroids(8);
   glm::dvec3 sum(0.0);
-  for (const glm::dvec2& w : centroids) sum += valueAt((1.0 - w.x - w.y) * glm::dvec2(uv[0]) + w.x * glm::dvec2(uv[1]) + w.y * glm::dvec2(uv[2]));
+  for (const glm::dvec2& w : centroids)
+    sum += valueAt((1.0 - w.x - w.y) * glm::dvec2(uv[0]) + w.x * glm::dvec2(uv[1]) + w.y * glm::dvec2(uv[2]));
   return sum / static_cast<double>(centroids.size());
 }
 }  // namespace
@@ -47,9 +50,12 @@ glm::dvec3 meanTexture(const Bitmap& bitmap, const std::array<glm::vec2, 3>& uv)
 }
 
 glm::dvec3 meanAlbedo(const Scene& scene, const Material& material, const std::array<glm::vec2, 3>& uv) {
-  const auto bitmap = [&](int texture) { return texture >= 0 ? &scene.textures[static_cast<std::size_t>(texture)].bitmap : nullptr; };
+  const auto bitmap = [&](int texture) {
+    return texture >= 0 ? &scene.textures[static_cast<std::size_t>(texture)].bitmap : nullptr;
+  };
   const Bitmap* colour = bitmap(material.diffuseTexture);
-  if (!material.metalMap) return colour ? glm::dvec3(material.diffuse) * meanTexture(*colour, uv) : glm::dvec3(material.diffuse);
+  if (!material.metalMap)
+    return colour ? glm::dvec3(material.diffuse) * meanTexture(*colour, uv) : glm::dvec3(material.diffuse);
   const MetalMap& map = *material.metalMap;
   const Bitmap* metal = bitmap(map.texture);
   return glm::dvec3(map.base) * meanOverParts(uv, [&](const glm::dvec2& at) {

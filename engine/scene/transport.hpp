@@ -1,4 +1,5 @@
-// Which light paths a picture holds, by the number of scatterings between lamp and camera; passing a boundary straight is not a scattering.
+// Which light paths a picture holds, by the number of scatterings between lamp and camera; passing a boundary straight
+// is not a scattering.
 #pragma once
 
 #include <array>
@@ -8,13 +9,18 @@ namespace lucerna {
 
 /// Stored in files: append new ones at the end.
 enum class Transport {
-  direct,               ///< 0 and 1: visible lights, and what they light
-  oneBounce,            ///< exactly 2
-  oneBounceUnoccluded,  ///< exactly 2, without occlusion between the two scatterings: what a reflective shadow map gathers
-  all,                  ///< any number
-  indirect              ///< 2 and more
+  direct,  ///< 0 and 1: visible lights, and what they light
+  oneBounce,  ///< exactly 2
+  oneBounceUnoccluded,  ///< exactly 2, without occlusion between the two scatterings: what a reflective shadow map
+                        ///< gathers
+  all,  ///< any number
+  indirect  ///< 2 and more
 };
-constexpr std::array<std::string_view, 5> namesOf(Transport) { return {"direct", "one-bounce", "one-bounce-unoccluded", "all", "indirect"}; }
-constexpr std::string_view nameOf(Transport transport) { return namesOf(transport)[static_cast<std::size_t>(transport)]; }
+constexpr std::array<std::string_view, 5> namesOf(Transport) {
+  return {"direct", "one-bounce", "one-bounce-unoccluded", "all", "indirect"};
+}
+constexpr std::string_view nameOf(Transport transport) {
+  return namesOf(transport)[static_cast<std::size_t>(transport)];
+}
 
 }  // namespace lucerna

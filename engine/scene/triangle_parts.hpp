@@ -1,6 +1,7 @@
 // A triangle as n x n equal triangles: where values over it are sampled (no GL, pure).
 //
-// Strip i = 0..n-1 along the second corner holds 2 (n - i) - 1 parts, every second upside down. Shaders: radiosity/triangle_parts.glsl.
+// Strip i = 0..n-1 along the second corner holds 2 (n - i) - 1 parts, every second upside down. Shaders:
+// radiosity/triangle_parts.glsl.
 #pragma once
 
 #include <glm/glm.hpp>

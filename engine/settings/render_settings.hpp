@@ -1,5 +1,5 @@
-// What a picture is made with: the technique, what of its light is shown, and the settings of every stage (no GL calls).
-// engine/settings/settings.hpp lists those that people set, by key.
+// What a picture is made with: the technique, what of its light is shown, and the settings of every stage (no GL
+// calls). engine/settings/settings.hpp lists those that people set, by key.
 #pragma once
 
 #include "base/named_values.hpp"
@@ -29,10 +29,13 @@ enum class Component { all, direct, indirect };
 constexpr std::array<std::string_view, 3> namesOf(Component) { return {"all", "direct", "indirect"}; }
 /// The light paths that a picture of it holds.
 constexpr Transport transportOf(Component component) {
-  return component == Component::direct ? Transport::direct : component == Component::indirect ? Transport::indirect : Transport::all;
+  return component == Component::direct     ? Transport::direct
+         : component == Component::indirect ? Transport::indirect
+                                            : Transport::all;
 }
 
-/// `original` is the thesis; `demo` the program published with it, where that is another (the light propagation volume's).
+/// `original` is the thesis; `demo` the program published with it, where that is another (the light propagation
+/// volume's).
 enum class Fidelity { corrected, original, thesis, demo };
 constexpr std::array<std::string_view, 4> namesOf(Fidelity) { return {"corrected", "original", "thesis", "demo"}; }
 
@@ -40,19 +43,22 @@ struct RenderSettings {
   Technique technique = Technique::lpv;
   Component component = Component::all;
   glm::ivec2 size{1280, 720};
-  bool reuse = true;             ///< stages whose inputs are those of the frame before are not run again; the same picture, bit by bit
+  bool reuse =
+      true;  ///< stages whose inputs are those of the frame before are not run again; the same picture, bit by bit
   bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits: for pictures that are measured
-  std::optional<float> exposure; ///< multiplies radiance before tone mapping; not set: the scene's
+  std::optional<float> exposure;  ///< multiplies radiance before tone mapping; not set: the scene's
   GpuSceneSettings textures;
-  ShadowMap::Settings shadow;          ///< of the sun; the size is that of each cascade where there are several
+  ShadowMap::Settings shadow;  ///< of the sun; the size is that of each cascade where there are several
   SunCascadeSettings sunCascades;
   LocalLights::Settings lights;
-  ReflectiveShadowMap::Settings rsm;   ///< the size serves the sun and spots; each face of an omnidirectional light has half of it. `light` is not read
+  ReflectiveShadowMap::Settings rsm;  ///< the size serves the sun and spots; each face of an omnidirectional light has
+                                      ///< half of it. `light` is not read
   RsmGather::Settings gather;
   LightPropagationVolume::Settings lpv;
   PathSettings path;
-  RadiosityView::Settings radiosity;   ///< `light` is not read: the component says it
-  double unmeasuredTurns = gl::kUnmeasuredTurns;  ///< of a piece of radiosity's shadow rays of which nothing is known (gl/pieces.hpp)
+  RadiosityView::Settings radiosity;  ///< `light` is not read: the component says it
+  double unmeasuredTurns =
+      gl::kUnmeasuredTurns;  ///< of a piece of radiosity's shadow rays of which nothing is known (gl/pieces.hpp)
 };
 
 }  // namespace lucerna

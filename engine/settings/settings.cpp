@@ -17,12 +17,14 @@ namespace {
 // ---------------------------------------------------------------------------------------------------- kinds of values
 
 /// The place of a value in RenderSettings.
-#define FIELD(member) [](auto& s) -> auto& { return s.member; }
+#define FIELD(member) \
+  [](auto& s) -> auto& { return s.member; }
 
 template <class Field>
 using FieldType = std::remove_cvref_t<decltype(Field{}(std::declval<RenderSettings&>()))>;
 
-SettingValue valueOf(SettingType type, double least = 0.0, double most = 0.0, std::vector<std::string_view> choices = {}) {
+SettingValue valueOf(SettingType type, double least = 0.0, double most = 0.0,
+                     std::vector<std::string_view> choices = {}) {
   SettingValue value;
   value.type = type;
   value.least = least;
@@ -141,106 +143,171 @@ constexpr SettingReaders kGather{bit(Technique::lpv), bit(LpvTransport::gather)}
 constexpr SettingReaders kRays{bit(Technique::lpv), bit(LpvTransport::rays)};
 constexpr SettingReaders kReceivers{bit(Technique::lpv), bit(LpvTransport::gather) | bit(LpvTransport::rays)};
 constexpr SettingReaders kBounces{bit(Technique::lpv), bit(LpvTransport::propagate) | bit(LpvTransport::rays)};
-constexpr SettingReaders kMaps{bit(Technique::rsm) | bit(Technique::lpv), bit(LpvTransport::propagate) | bit(LpvTransport::gather)};
+constexpr SettingReaders kMaps{bit(Technique::rsm) | bit(Technique::lpv),
+                               bit(LpvTransport::propagate) | bit(LpvTransport::gather)};
 
 const std::vector<Setting>& table() {
   constexpr auto uniform = SettingCost::uniform, rebuild = SettingCost::rebuild, solution = SettingCost::solution;
   static const std::vector<Setting> settings{
       {"lpv.transport", choice(FIELD(lpv.transport)), "",
-       "how light travels: propagate, through the grids' cells; to surface points: gather, from the lights' maps, or rays, along paths",
-       "[Kaplanyan2010]", rebuild, kLpv, "rays, unless a setting or deviation is given that only another transport reads"},
-      {"lpv.cells", number(FIELD(lpv.cascades.cells), 1, 128), "cells", "along each side of every cascade", "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
-      {"lpv.cascades", number(FIELD(lpv.cascades.cascades), 1, LPV_MAX_CASCADES), "", "nested grids", "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
-      {"lpv.cell-size", number(FIELD(lpv.cascades.cellSize), 0.0, 1e12, "auto"), "scene units", "cell size of the coarsest cascade; auto: half of its cells span the scene",
-       "", rebuild, kLpv, ""},
-      {"lpv.ratio", number(FIELD(lpv.cascades.ratio), 1.0, 16.0), "", "ratio of a cascade's cell size to the next finer one's", "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
-      {"lpv.push", number(FIELD(lpv.cascades.push), 0.0, 1.0), "half extents", "offset of the grids ahead of the camera", "[LPV2015, 6.4]", rebuild, kLpv, ""},
-      {"lpv.blend", number(FIELD(lpv.blendBand), 0.001, 1.0), "half extents", "width of the band over which a cascade fades into the next", "[Kaplanyan2010, section 5]", rebuild, kLpv,
-       ""},
+       "how light travels: propagate, through the grids' cells; to surface points: gather, from the lights' maps, or "
+       "rays, along paths",
+       "[Kaplanyan2010]", rebuild, kLpv,
+       "rays, unless a setting or deviation is given that only another transport reads"},
+      {"lpv.cells", number(FIELD(lpv.cascades.cells), 1, 128), "cells", "along each side of every cascade",
+       "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
+      {"lpv.cascades", number(FIELD(lpv.cascades.cascades), 1, LPV_MAX_CASCADES), "", "nested grids",
+       "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
+      {"lpv.cell-size", number(FIELD(lpv.cascades.cellSize), 0.0, 1e12, "auto"), "scene units",
+       "cell size of the coarsest cascade; auto: half of its cells span the scene", "", rebuild, kLpv, ""},
+      {"lpv.ratio", number(FIELD(lpv.cascades.ratio), 1.0, 16.0), "",
+       "ratio of a cascade's cell size to the next finer one's", "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
+      {"lpv.push", number(FIELD(lpv.cascades.push), 0.0, 1.0), "half extents",
+       "offset of the grids ahead of the camera", "[LPV2015, 6.4]", rebuild, kLpv, ""},
+      {"lpv.blend", number(FIELD(lpv.blendBand), 0.001, 1.0), "half extents",
+       "width of the band over which a cascade fades into the next", "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
       {"lpv.bounces", number(FIELD(lpv.bounces), 1, 64, "all", LightPropagationVolume::kAllBounces), "",
-       "reflections before light reaches a surface; all: only with transport rays", "[Kaplanyan2010]", rebuild, kBounces,
-       "all with transport rays, else 1"},
-      {"lpv.iterations", number(FIELD(lpv.iterations), 0, 100000), "steps", "propagation steps", "[Kaplanyan2010, section 4.3]", rebuild, kPropagate, ""},
-      {"lpv.blocking", blocking(), "", "source of the surfels in the geometry volume, which blocks light; off: none", "[Kaplanyan2010, section 4.2]", rebuild, kPropagate, ""},
-      {"lpv.lookup", choice(FIELD(lpv.lookup)), "", "irradiance from propagated light: flux, as the kernel sends it through a face; published, 1.91 times as much", "[Kaplanyan2010]",
-       rebuild, kPropagate, ""},
-      {"lpv.lookup-offset", optionalNumber(FIELD(lpv.lookupOffset), 0.0, 4.0), "cells", "offset along the normal before the lookup",
-       "[Kaplanyan2010]", rebuild, kPropagate, "auto: 0, with lpv.lookup=published 0.5"},
-      {"lpv.hand-over", number(FIELD(lpv.handOver), 0, 100000, "auto"), "steps", "steps after which finer cascades take a coarser one's light; auto: from iterations and ratio", "",
-       rebuild, kPropagate, ""},
-      {"lpv.fill", choice(FIELD(lpv.fill)), "", "how the grid is filled: layered, by blending; atomic, in floats; fixed, in integers, the same bits every run", "", rebuild, kPropagate,
-       ""},
-      {"lpv.tile", number(FIELD(lpv.tile), 1, 16), "texels", "with lpv.fill=atomic or fixed: side of the square added up before an atomic; 1: one atomic per texel, as published", "[LPV2015]",
-       rebuild, kPropagate, ""},
-      {"lpv.propagate", choice(FIELD(lpv.propagate)), "", "compute; layered: one pass per step and cascade, one point per cell, as published; slices: the same, one triangle per slice",
+       "reflections before light reaches a surface; all: only with transport rays", "[Kaplanyan2010]", rebuild,
+       kBounces, "all with transport rays, else 1"},
+      {"lpv.iterations", number(FIELD(lpv.iterations), 0, 100000), "steps", "propagation steps",
+       "[Kaplanyan2010, section 4.3]", rebuild, kPropagate, ""},
+      {"lpv.blocking", blocking(), "", "source of the surfels in the geometry volume, which blocks light; off: none",
+       "[Kaplanyan2010, section 4.2]", rebuild, kPropagate, ""},
+      {"lpv.lookup", choice(FIELD(lpv.lookup)), "",
+       "irradiance from propagated light: flux, as the kernel sends it through a face; published, 1.91 times as much",
+       "[Kaplanyan2010]", rebuild, kPropagate, ""},
+      {"lpv.lookup-offset", optionalNumber(FIELD(lpv.lookupOffset), 0.0, 4.0), "cells",
+       "offset along the normal before the lookup", "[Kaplanyan2010]", rebuild, kPropagate,
+       "auto: 0, with lpv.lookup=published 0.5"},
+      {"lpv.hand-over", number(FIELD(lpv.handOver), 0, 100000, "auto"), "steps",
+       "steps after which finer cascades take a coarser one's light; auto: from iterations and ratio", "", rebuild,
+       kPropagate, ""},
+      {"lpv.fill", choice(FIELD(lpv.fill)), "",
+       "how the grid is filled: layered, by blending; atomic, in floats; fixed, in integers, the same bits every run",
+       "", rebuild, kPropagate, ""},
+      {"lpv.tile", number(FIELD(lpv.tile), 1, 16), "texels",
+       "with lpv.fill=atomic or fixed: side of the square added up before an atomic; 1: one atomic per texel, as "
+       "published",
        "[LPV2015]", rebuild, kPropagate, ""},
-      {"lpv.amplifier", number(FIELD(lpv.amplifier), 0.0, 100.0), "", "factor of the deviation lpv.four-pi-kernel; 4 conserves energy", "[LPV2015]", rebuild, kPropagate, ""},
-      {"lpv.visibility", choice(FIELD(lpv.visibility)), "", "occlusion of gathered light: none, or by voxels that surfaces touch", "", rebuild,
+      {"lpv.propagate", choice(FIELD(lpv.propagate)), "",
+       "compute; layered: one pass per step and cascade, one point per cell, as published; slices: the same, one "
+       "triangle per slice",
+       "[LPV2015]", rebuild, kPropagate, ""},
+      {"lpv.amplifier", number(FIELD(lpv.amplifier), 0.0, 100.0), "",
+       "factor of the deviation lpv.four-pi-kernel; 4 conserves energy", "[LPV2015]", rebuild, kPropagate, ""},
+      {"lpv.visibility", choice(FIELD(lpv.visibility)), "",
+       "occlusion of gathered light: none, or by voxels that surfaces touch", "", rebuild, kGather, ""},
+      {"lpv.voxels", number(FIELD(lpv.voxels), 1, 1024), "voxels", "along the longest side of the scene", "", rebuild,
        kGather, ""},
-      {"lpv.voxels", number(FIELD(lpv.voxels), 1, 1024), "voxels", "along the longest side of the scene", "", rebuild, kGather, ""},
       {"lpv.rays", raysOfFrame(), "paths", "per receiver and frame", "", rebuild, kRays, ""},
-      {"lpv.least-rays", number(FIELD(lpv.leastRays), 1, 1 << 20), "paths", "at least, of a receiver in its first frame", "", rebuild, kRays, ""},
-      {"lpv.samples", number(FIELD(lpv.samples), 1, 1 << 24), "paths", "of a receiver while light and geometry are static", "", rebuild, kRays, ""},
-      {"lpv.most-change", number(FIELD(lpv.mostChange), 0.0, 1.0), "", "largest relative change of a receiver's light that is shown in a frame; 0: any", "", rebuild, kReceivers, ""},
-      {"rsm.size", number(FIELD(rsm.size), 1, 8192), "texels", "side of the reflective shadow map; an omnidirectional light's faces have half of it", "[Dachsbacher2005]", rebuild, kMaps, ""},
-      {"rsm.samples", number(FIELD(gather.samples), 1, 65536), "samples", "of the map for a gathered point", "[Dachsbacher2005]", rebuild, kRsm, ""},
-      {"rsm.radius", number(FIELD(gather.radius), 1e-4, 2.0), "sides of the map", "reach of the gather", "[Dachsbacher2005]", rebuild, kRsm, ""},
-      {"rsm.weight", choice(FIELD(gather.weight)), "", "of a sample: unbiased, xi; published, xi^2", "[Dachsbacher2005]", rebuild, kRsm, ""},
-      {"rsm.rotation", choice(FIELD(gather.rotation)), "", "noise: the sample pattern is turned from pixel to pixel", "[Jimenez2014]", rebuild, kRsm, ""},
-      {"rsm.near-field", choice(FIELD(gather.nearField)), "", "replacement of 1/d^2 near a texel's surface: quad or disc, closed forms; clamp, a least distance; none", "", rebuild,
-       kRsm, ""},
-      {"rsm.clamp", number(FIELD(gather.clampTexels), 0.0, 1000.0), "texels", "least distance with rsm.near-field=clamp", "", rebuild, kRsm, ""},
-      {"rsm.interpolate", boolean(FIELD(gather.interpolate)), "", "gather at few pixels, interpolate the others where they fit", "[Dachsbacher2005]", rebuild, kRsm, ""},
-      {"rsm.low-resolution", number(FIELD(gather.lowResolution), 1, 64), "pixels", "between gathered ones, each way", "[Dachsbacher2005]", rebuild, kRsm, ""},
-      {"rsm.fit-normal", number(FIELD(gather.fitNormal), -1.0, 1.0), "", "least cosine between normals that fit", "", rebuild, kRsm, ""},
-      {"rsm.fit-plane", number(FIELD(gather.fitPlane), 0.0, 1e6), "low-resolution steps", "greatest distance off the tangent plane that fits", "", rebuild, kRsm, ""},
-      {"rsm.fit-distance", number(FIELD(gather.fitDistance), 0.0, 1e6), "low-resolution steps", "greatest distance that fits", "", rebuild, kRsm, ""},
-      {"rsm.show-refused", boolean(FIELD(gather.showRefused)), "", "paint the pixels red that interpolation refused", "", rebuild, kRsm, ""},
-      {"radiosity.edge", number(FIELD(radiosity.solution.patches.longestEdge), 0.0, 1e12, "auto"), "scene units", "longest edge of a patch; auto: a 12th of the scene", "", solution,
-       kRadiosity, ""},
-      {"radiosity.resolution", evenNumber(FIELD(radiosity.solution.hemicubes.resolution), 2, 4096), "pixels", "side of a hemicube; even", "[CohenGreenberg1985]", solution, kRadiosity, ""},
+      {"lpv.least-rays", number(FIELD(lpv.leastRays), 1, 1 << 20), "paths",
+       "at least, of a receiver in its first frame", "", rebuild, kRays, ""},
+      {"lpv.samples", number(FIELD(lpv.samples), 1, 1 << 24), "paths",
+       "of a receiver while light and geometry are static", "", rebuild, kRays, ""},
+      {"lpv.most-change", number(FIELD(lpv.mostChange), 0.0, 1.0), "",
+       "largest relative change of a receiver's light that is shown in a frame; 0: any", "", rebuild, kReceivers, ""},
+      {"rsm.size", number(FIELD(rsm.size), 1, 8192), "texels",
+       "side of the reflective shadow map; an omnidirectional light's faces have half of it", "[Dachsbacher2005]",
+       rebuild, kMaps, ""},
+      {"rsm.samples", number(FIELD(gather.samples), 1, 65536), "samples", "of the map for a gathered point",
+       "[Dachsbacher2005]", rebuild, kRsm, ""},
+      {"rsm.radius", number(FIELD(gather.radius), 1e-4, 2.0), "sides of the map", "reach of the gather",
+       "[Dachsbacher2005]", rebuild, kRsm, ""},
+      {"rsm.weight", choice(FIELD(gather.weight)), "", "of a sample: unbiased, xi; published, xi^2",
+       "[Dachsbacher2005]", rebuild, kRsm, ""},
+      {"rsm.rotation", choice(FIELD(gather.rotation)), "", "noise: the sample pattern is turned from pixel to pixel",
+       "[Jimenez2014]", rebuild, kRsm, ""},
+      {"rsm.near-field", choice(FIELD(gather.nearField)), "",
+       "replacement of 1/d^2 near a texel's surface: quad or disc, closed forms; clamp, a least distance; none", "",
+       rebuild, kRsm, ""},
+      {"rsm.clamp", number(FIELD(gather.clampTexels), 0.0, 1000.0), "texels",
+       "least distance with rsm.near-field=clamp", "", rebuild, kRsm, ""},
+      {"rsm.interpolate", boolean(FIELD(gather.interpolate)), "",
+       "gather at few pixels, interpolate the others where they fit", "[Dachsbacher2005]", rebuild, kRsm, ""},
+      {"rsm.low-resolution", number(FIELD(gather.lowResolution), 1, 64), "pixels", "between gathered ones, each way",
+       "[Dachsbacher2005]", rebuild, kRsm, ""},
+      {"rsm.fit-normal", number(FIELD(gather.fitNormal), -1.0, 1.0), "", "least cosine between normals that fit", "",
+       rebuild, kRsm, ""},
+      {"rsm.fit-plane", number(FIELD(gather.fitPlane), 0.0, 1e6), "low-resolution steps",
+       "greatest distance off the tangent plane that fits", "", rebuild, kRsm, ""},
+      {"rsm.fit-distance", number(FIELD(gather.fitDistance), 0.0, 1e6), "low-resolution steps",
+       "greatest distance that fits", "", rebuild, kRsm, ""},
+      {"rsm.show-refused", boolean(FIELD(gather.showRefused)), "", "paint the pixels red that interpolation refused",
+       "", rebuild, kRsm, ""},
+      {"radiosity.edge", number(FIELD(radiosity.solution.patches.longestEdge), 0.0, 1e12, "auto"), "scene units",
+       "longest edge of a patch; auto: a 12th of the scene", "", solution, kRadiosity, ""},
+      {"radiosity.resolution", evenNumber(FIELD(radiosity.solution.hemicubes.resolution), 2, 4096), "pixels",
+       "side of a hemicube; even", "[CohenGreenberg1985]", solution, kRadiosity, ""},
       {"radiosity.visibility", choice(FIELD(radiosity.solution.hemicubes.visibility)), "",
-       "how a hemicube's pixels find the visible patch; auto: the fastest, measured at start", "[CohenGreenberg1985]", solution, kRadiosity, ""},
-      {"radiosity.error", number(FIELD(radiosity.solution.error), 1e-12, 10.0), "", "guaranteed relative error of the solution", "", solution, kRadiosity, ""},
-      {"radiosity.solver", choice(FIELD(radiosity.solution.solver)), "", "of the linear system", "[Gortler1993]", solution, kRadiosity, ""},
-      {"radiosity.products", number(FIELD(radiosity.solution.mostProducts), 1, 100000000), "products", "with the form factor matrix, at most", "", solution, kRadiosity, ""},
-      {"radiosity.refinements", number(FIELD(radiosity.solution.refinements), 0, 8), "", "how often patches are halved where light changes steeply", "[Rivara1984]", solution, kRadiosity, ""},
-      {"radiosity.steep", number(FIELD(radiosity.solution.steep), 1e-6, 1e6), "mean irradiance", "difference between neighbouring patches that is refined", "", solution, kRadiosity, ""},
-      {"radiosity.seed", number(FIELD(radiosity.solution.hemicubes.seed), 0, 4294967295.0), "", "of the hemicubes' random roll", "", solution, kRadiosity, ""},
-      {"radiosity.exact-pixels", number(FIELD(radiosity.solution.hemicubes.exactPixels), 0, 1 << 24), "pixels", "covered by a patch that gets its closed form factor; 0: never",
-       "[Lambert1760]", solution, kRadiosity, ""},
+       "how a hemicube's pixels find the visible patch; auto: the fastest, measured at start", "[CohenGreenberg1985]",
+       solution, kRadiosity, ""},
+      {"radiosity.error", number(FIELD(radiosity.solution.error), 1e-12, 10.0), "",
+       "guaranteed relative error of the solution", "", solution, kRadiosity, ""},
+      {"radiosity.solver", choice(FIELD(radiosity.solution.solver)), "", "of the linear system", "[Gortler1993]",
+       solution, kRadiosity, ""},
+      {"radiosity.products", number(FIELD(radiosity.solution.mostProducts), 1, 100000000), "products",
+       "with the form factor matrix, at most", "", solution, kRadiosity, ""},
+      {"radiosity.refinements", number(FIELD(radiosity.solution.refinements), 0, 8), "",
+       "how often patches are halved where light changes steeply", "[Rivara1984]", solution, kRadiosity, ""},
+      {"radiosity.steep", number(FIELD(radiosity.solution.steep), 1e-6, 1e6), "mean irradiance",
+       "difference between neighbouring patches that is refined", "", solution, kRadiosity, ""},
+      {"radiosity.seed", number(FIELD(radiosity.solution.hemicubes.seed), 0, 4294967295.0), "",
+       "of the hemicubes' random roll", "", solution, kRadiosity, ""},
+      {"radiosity.exact-pixels", number(FIELD(radiosity.solution.hemicubes.exactPixels), 0, 1 << 24), "pixels",
+       "covered by a patch that gets its closed form factor; 0: never", "[Lambert1760]", solution, kRadiosity, ""},
       {"radiosity.part-distance", number(FIELD(radiosity.solution.hemicubes.nearDistance), 0.0, 1e6), "part sizes",
-       "receivers are divided until their sources are this far away; 0: never", "[BaumRushmeierWinget1989]", solution, kRadiosity, ""},
-      {"radiosity.parts", number(FIELD(radiosity.solution.hemicubes.mostParts), 1, 64), "parts", "along each side of a divided receiver, at most", "[BaumRushmeierWinget1989]", solution,
+       "receivers are divided until their sources are this far away; 0: never", "[BaumRushmeierWinget1989]", solution,
        kRadiosity, ""},
-      {"radiosity.repair", boolean(FIELD(radiosity.solution.repair)), "", "repair reciprocity and row sums of the form factors", "[Sinkhorn1964]", solution, kRadiosity, ""},
+      {"radiosity.parts", number(FIELD(radiosity.solution.hemicubes.mostParts), 1, 64), "parts",
+       "along each side of a divided receiver, at most", "[BaumRushmeierWinget1989]", solution, kRadiosity, ""},
+      {"radiosity.repair", boolean(FIELD(radiosity.solution.repair)), "",
+       "repair reciprocity and row sums of the form factors", "[Sinkhorn1964]", solution, kRadiosity, ""},
       {"radiosity.memory", mebibytes(FIELD(radiosity.solution.memoryBytes), 1 << 30), "MiB",
        "for form factors; the rest is recomputed; auto: half of the free memory", "", solution, kRadiosity, ""},
       {"radiosity.batch", mebibytes(FIELD(radiosity.solution.hemicubes.batchBytes), 1e6), "MiB",
-       "of GPU memory for the hemicubes of one submission; auto: depends on the renderer", "", solution, kRadiosity, ""},
-      {"radiosity.file", file(FIELD(radiosity.file)), "", "a solution: loaded if it exists, else saved there", "", rebuild, kRadiosity, "none"},
-      {"radiosity.mapping", choice(FIELD(radiosity.mapping)), "", "of radiance to the display", "[RAD2008]", rebuild, kRadiosity, ""},
-      {"radiosity.decades", number(FIELD(radiosity.decades), 0.1, 30.0), "powers of ten", "that the mappings log and false-colours span", "", rebuild, kRadiosity, ""},
-      {"radiosity.mesh", boolean(FIELD(radiosity.mesh)), "", "draw the edges of patches", "", rebuild, kRadiosity, ""},
-      {"radiosity.flat", boolean(FIELD(radiosity.flat)), "", "show patches without interpolation", "", rebuild, kRadiosity, ""},
-      {"radiosity.direct", choice(FIELD(radiosity.direct)), "", "direct light: pixels, by shadow rays per pixel; patches, one value per patch; auto: pixels in render, patches elsewhere", "", rebuild,
+       "of GPU memory for the hemicubes of one submission; auto: depends on the renderer", "", solution, kRadiosity,
+       ""},
+      {"radiosity.file", file(FIELD(radiosity.file)), "", "a solution: loaded if it exists, else saved there", "",
+       rebuild, kRadiosity, "none"},
+      {"radiosity.mapping", choice(FIELD(radiosity.mapping)), "", "of radiance to the display", "[RAD2008]", rebuild,
        kRadiosity, ""},
-      {"radiosity.shadow-rays", number(FIELD(radiosity.shadowRays), 1, 4096), "rays", "a pixel with radiosity.direct=pixels, divided among the emissive triangles", "", rebuild, kRadiosity, ""},
-      {"path.samples", number(FIELD(path.samples), 1, 4000000000.0), "samples", "a pixel, of a finished picture (--spp)", "", rebuild, kPath, ""},
-      {"path.least-samples", number(FIELD(path.leastSamples), 1, 4000000000.0), "samples", "a pixel in the first frame of a view, at least", "", rebuild, kPath, ""},
+      {"radiosity.decades", number(FIELD(radiosity.decades), 0.1, 30.0), "powers of ten",
+       "that the mappings log and false-colours span", "", rebuild, kRadiosity, ""},
+      {"radiosity.mesh", boolean(FIELD(radiosity.mesh)), "", "draw the edges of patches", "", rebuild, kRadiosity, ""},
+      {"radiosity.flat", boolean(FIELD(radiosity.flat)), "", "show patches without interpolation", "", rebuild,
+       kRadiosity, ""},
+      {"radiosity.direct", choice(FIELD(radiosity.direct)), "",
+       "direct light: pixels, by shadow rays per pixel; patches, one value per patch; auto: pixels in render, patches "
+       "elsewhere",
+       "", rebuild, kRadiosity, ""},
+      {"radiosity.shadow-rays", number(FIELD(radiosity.shadowRays), 1, 4096), "rays",
+       "a pixel with radiosity.direct=pixels, divided among the emissive triangles", "", rebuild, kRadiosity, ""},
+      {"path.samples", number(FIELD(path.samples), 1, 4000000000.0), "samples",
+       "a pixel, of a finished picture (--spp)", "", rebuild, kPath, ""},
+      {"path.least-samples", number(FIELD(path.leastSamples), 1, 4000000000.0), "samples",
+       "a pixel in the first frame of a view, at least", "", rebuild, kPath, ""},
       {"path.scatterings", number(FIELD(path.scatterings), 0, 1000000, "all", PathSettings::kAllScatterings), "",
-       "between light and camera; light that was scattered more often is left out (--bounces; 2 is one bounce)", "", rebuild, kPath, ""},
-      {"path.seed", number(FIELD(path.seed), 0, 4294967295.0), "", "of the random numbers (--seed)", "", rebuild, kPath, ""},
-      {"shadow.size", number(FIELD(shadow.size), 1, 16384), "texels", "side of the sun's shadow map, of each cascade", "", rebuild, kShadowed, ""},
-      {"shadow.cascades", number(FIELD(sunCascades.cascades), 1, SUN_MAX_CASCADES), "", "shadow maps of the sun along the view; 1: one for the whole scene", "[Zhang2006]", rebuild, kShadowed,
+       "between light and camera; light that was scattered more often is left out (--bounces; 2 is one bounce)", "",
+       rebuild, kPath, ""},
+      {"path.seed", number(FIELD(path.seed), 0, 4294967295.0), "", "of the random numbers (--seed)", "", rebuild, kPath,
        ""},
-      {"shadow.split", number(FIELD(sunCascades.split), 0.0, 1.0), "", "how cascades divide the view's depth: 0 uniformly, 1 logarithmically", "[Zhang2006, section 3.2]", rebuild, kShadowed,
-       ""},
-      {"shadow.spot-size", number(FIELD(lights.spotSize), 1, 16384), "texels", "side of a spot light's shadow map", "", rebuild, kShadowed, ""},
-      {"shadow.point-size", number(FIELD(lights.pointSize), 1, 16384), "texels", "side of each face of an omnidirectional light's shadow map", "", rebuild, kShadowed, ""},
-      {"texture.anisotropy", number(FIELD(textures.anisotropy), 1.0, 16.0), "", "anisotropic filtering, at most", "", rebuild, kTextured, ""},
-      {"frame.reuse", boolean(FIELD(reuse)), "", "reuse unchanged results of the previous frame: maps, volume, receivers", "", uniform, kTextured, ""},
-      {"exposure", optionalNumber(FIELD(exposure), 1e-12, 1e12), "", "multiplies radiance before tone mapping", "", uniform, kAll, "auto: the scene's"},
+      {"shadow.size", number(FIELD(shadow.size), 1, 16384), "texels", "side of the sun's shadow map, of each cascade",
+       "", rebuild, kShadowed, ""},
+      {"shadow.cascades", number(FIELD(sunCascades.cascades), 1, SUN_MAX_CASCADES), "",
+       "shadow maps of the sun along the view; 1: one for the whole scene", "[Zhang2006]", rebuild, kShadowed, ""},
+      {"shadow.split", number(FIELD(sunCascades.split), 0.0, 1.0), "",
+       "how cascades divide the view's depth: 0 uniformly, 1 logarithmically", "[Zhang2006, section 3.2]", rebuild,
+       kShadowed, ""},
+      {"shadow.spot-size", number(FIELD(lights.spotSize), 1, 16384), "texels", "side of a spot light's shadow map", "",
+       rebuild, kShadowed, ""},
+      {"shadow.point-size", number(FIELD(lights.pointSize), 1, 16384), "texels",
+       "side of each face of an omnidirectional light's shadow map", "", rebuild, kShadowed, ""},
+      {"texture.anisotropy", number(FIELD(textures.anisotropy), 1.0, 16.0), "", "anisotropic filtering, at most", "",
+       rebuild, kTextured, ""},
+      {"frame.reuse", boolean(FIELD(reuse)), "",
+       "reuse unchanged results of the previous frame: maps, volume, receivers", "", uniform, kTextured, ""},
+      {"exposure", optionalNumber(FIELD(exposure), 1e-12, 1e12), "", "multiplies radiance before tone mapping", "",
+       uniform, kAll, "auto: the scene's"},
   };
   return settings;
 }
@@ -251,12 +318,15 @@ const std::vector<Setting>& table() {
 struct Former {
   std::string_view was, is;
 };
-constexpr Former kFormer[] = {{"rsm.near", "rsm.near-field"}, {"rad.near", "radiosity.part-distance"}, {"radiosity.near", "radiosity.part-distance"}};
+constexpr Former kFormer[] = {{"rsm.near", "rsm.near-field"},
+                              {"rad.near", "radiosity.part-distance"},
+                              {"radiosity.near", "radiosity.part-distance"}};
 
 // ---------------------------------------------------------------------------------------------------- text
 
 std::string numberText(const SettingValue& value, double number) {
-  if (!value.word.empty() && (number == value.wordNumber || (std::isnan(number) && std::isnan(value.wordNumber)))) return std::string(value.word);
+  if (!value.word.empty() && (number == value.wordNumber || (std::isnan(number) && std::isnan(value.wordNumber))))
+    return std::string(value.word);
   if (value.type == SettingType::integer) return fmt::format("{}", static_cast<long long>(number));
   return value.singlePrecision ? fmt::format("{}", static_cast<float>(number)) : fmt::format("{}", number);
 }
@@ -264,7 +334,9 @@ std::string numberText(const SettingValue& value, double number) {
 std::string joined(const std::vector<std::string_view>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
 
 /// As the setting's own type holds it: what a float was read as is within its bounds again.
-double held(const SettingValue& value, double number) { return value.singlePrecision ? static_cast<double>(static_cast<float>(number)) : number; }
+double held(const SettingValue& value, double number) {
+  return value.singlePrecision ? static_cast<double>(static_cast<float>(number)) : number;
+}
 
 bool isWithin(const SettingValue& value, double number) {
   return held(value, number) >= held(value, value.least) && held(value, number) <= held(value, value.most);
@@ -362,7 +434,8 @@ double settingNumber(const Setting& setting, const RenderSettings& settings) {
 void setSettingNumber(const Setting& setting, RenderSettings& settings, double number) {
   const SettingValue& value = setting.value;
   CHECK(value.set, "{} is no number", setting.key);
-  const bool isWord = !value.word.empty() && (number == value.wordNumber || (std::isnan(number) && std::isnan(value.wordNumber)));
+  const bool isWord =
+      !value.word.empty() && (number == value.wordNumber || (std::isnan(number) && std::isnan(value.wordNumber)));
   if (value.type != SettingType::real && std::isfinite(number)) number = std::round(number);
   if (!isWord && !isWithin(value, number)) refuse(setting, fmt::format("{}", number), "");
   value.set(settings, number);
@@ -380,19 +453,25 @@ std::string allowedValues(const Setting& setting) {
   // Bounds as numbers, even where a word stands for one of them.
   SettingValue plain;
   plain.type = value.type;
-  return fmt::format("{} to {}{}", numberText(plain, value.least), numberText(plain, value.most), value.word.empty() ? "" : fmt::format(", or {}", value.word));
+  return fmt::format("{} to {}{}", numberText(plain, value.least), numberText(plain, value.most),
+                     value.word.empty() ? "" : fmt::format(", or {}", value.word));
 }
 
-std::string defaultValue(const Setting& setting) { return setting.usually.empty() ? printSetting(setting, RenderSettings{}) : std::string(setting.usually); }
+std::string defaultValue(const Setting& setting) {
+  return setting.usually.empty() ? printSetting(setting, RenderSettings{}) : std::string(setting.usually);
+}
 
-bool isReadBy(const Setting& setting, Technique technique) { return (setting.readers.techniques & bit(technique)) != 0; }
+bool isReadBy(const Setting& setting, Technique technique) {
+  return (setting.readers.techniques & bit(technique)) != 0;
+}
 
 bool isReadBy(const Setting& setting, LpvTransport transport) {
   return isReadBy(setting, Technique::lpv) && (setting.readers.transports & bit(transport)) != 0;
 }
 
 bool isRead(const Setting& setting, const RenderSettings& settings) {
-  return settings.technique == Technique::lpv ? isReadBy(setting, settings.lpv.transport) : isReadBy(setting, settings.technique);
+  return settings.technique == Technique::lpv ? isReadBy(setting, settings.lpv.transport)
+                                              : isReadBy(setting, settings.technique);
 }
 
 std::optional<LpvTransport> onlyTransport(const Setting& setting) {

@@ -24,12 +24,15 @@ TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
   EXPECT_NE(result.out.find("extrapolated"), std::string::npos);
   // Published, of [RAD2008 tables 4.1 and 4.2].
   const std::map<std::pair<std::string, std::string>, double> published{
-      {{"4.1", "100x100, 26360 triangles"}, 280.0 / 60.0},   {{"4.1", "200x200, 26360 triangles"}, 525.0 / 60.0},   {{"4.1", "500x500, 26360 triangles"}, 2380.0 / 60.0},
-      {{"4.1", "100x100, 136512 triangles"}, 3500.0 / 60.0}, {{"4.1", "200x200, 136512 triangles"}, 4900.0 / 60.0}, {{"4.1", "500x500, 136512 triangles"}, 233.0},
-      {{"4.1", "100x100, 546048 triangles"}, 583.0},         {{"4.1", "200x200, 546048 triangles"}, 700.0},         {{"4.1", "500x500, 546048 triangles"}, 1516.0},
-      {{"4.2", "100x100, 26360 triangles"}, 0.011},          {{"4.2", "200x200, 26360 triangles"}, 0.020},          {{"4.2", "500x500, 26360 triangles"}, 0.091},
-      {{"4.2", "100x100, 136512 triangles"}, 0.026},         {{"4.2", "200x200, 136512 triangles"}, 0.036},         {{"4.2", "500x500, 136512 triangles"}, 0.102},
-      {{"4.2", "100x100, 546048 triangles"}, 0.064},         {{"4.2", "200x200, 546048 triangles"}, 0.077},         {{"4.2", "500x500, 546048 triangles"}, 0.166},
+      {{"4.1", "100x100, 26360 triangles"}, 280.0 / 60.0},   {{"4.1", "200x200, 26360 triangles"}, 525.0 / 60.0},
+      {{"4.1", "500x500, 26360 triangles"}, 2380.0 / 60.0},  {{"4.1", "100x100, 136512 triangles"}, 3500.0 / 60.0},
+      {{"4.1", "200x200, 136512 triangles"}, 4900.0 / 60.0}, {{"4.1", "500x500, 136512 triangles"}, 233.0},
+      {{"4.1", "100x100, 546048 triangles"}, 583.0},         {{"4.1", "200x200, 546048 triangles"}, 700.0},
+      {{"4.1", "500x500, 546048 triangles"}, 1516.0},        {{"4.2", "100x100, 26360 triangles"}, 0.011},
+      {{"4.2", "200x200, 26360 triangles"}, 0.020},          {{"4.2", "500x500, 26360 triangles"}, 0.091},
+      {{"4.2", "100x100, 136512 triangles"}, 0.026},         {{"4.2", "200x200, 136512 triangles"}, 0.036},
+      {{"4.2", "500x500, 136512 triangles"}, 0.102},         {{"4.2", "100x100, 546048 triangles"}, 0.064},
+      {{"4.2", "200x200, 546048 triangles"}, 0.077},         {{"4.2", "500x500, 546048 triangles"}, 0.166},
   };
   std::size_t found = 0;
   for (const auto& row : json["rows"]) {
@@ -47,8 +50,10 @@ TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
     EXPECT_TRUE(row["extrapolated"].get<bool>());
     // Seven sweeps over all triangles at this rate; five views of the whole scene a hemicube.
     const double triangles = row["triangles"].get<double>(), rate = row["hemicubes_per_s"].get<double>();
-    EXPECT_NEAR(row["measured"].get<double>(), row["table"] == "4.1" ? 7.0 * triangles / rate / 60.0 : 7.0 / rate, 1e-6 * row["measured"].get<double>());
-    EXPECT_NEAR(row["mtriangles_per_s"].get<double>(), 5.0 * triangles * rate / 1e6, 1e-3 * row["mtriangles_per_s"].get<double>());
+    EXPECT_NEAR(row["measured"].get<double>(), row["table"] == "4.1" ? 7.0 * triangles / rate / 60.0 : 7.0 / rate,
+                1e-6 * row["measured"].get<double>());
+    EXPECT_NEAR(row["mtriangles_per_s"].get<double>(), 5.0 * triangles * rate / 1e6,
+                1e-3 * row["mtriangles_per_s"].get<double>());
     ++found;
   }
   EXPECT_EQ(found, published.size());
@@ -74,11 +79,13 @@ TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
 TEST(BenchRad, PicturesShowWhatTheFiguresShow) {
   const TempFolder folder;
   const std::string file = (folder / "p.json").string(), sheet = (folder / "p.png").string();
-  const RunResult result = RUN_LUCERNA("bench pictures --original rad --scale 0.05 --size 96x72 --quiet -o '" + sheet + "' --json '" + file + "'");
+  const RunResult result = RUN_LUCERNA("bench pictures --original rad --scale 0.05 --size 96x72 --quiet -o '" + sheet +
+                                       "' --json '" + file + "'");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
   EXPECT_EQ(json["pictures"].size(), 27u);
-  // The right map's weights over all five faces come to pi where its middle is 1; the published map gives more, most of it at the faces' rims.
+  // The right map's weights over all five faces come to pi where its middle is 1; the published map gives more, most of
+  // it at the faces' rims.
   const double faces = std::pow(0.24 * 72.0, 2.0) / (96.0 * 72.0);
   EXPECT_EQ(json["pictures"][3]["picture"], "the delta form factor: 1/r^4 and b/r^4");
   EXPECT_NEAR(json["pictures"][3]["mean"].get<double>(), M_PI * faces, 0.02 * M_PI * faces);

@@ -1,4 +1,5 @@
-// lucerna bench: the published tables stand in the output exactly as they were published, ratios are what they say, wrong options are refused.
+// lucerna bench: the published tables stand in the output exactly as they were published, ratios are what they say,
+// wrong options are refused.
 #include "base/image.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
@@ -37,7 +38,8 @@ class Bench : public ::testing::Test {
     const RunResult result = RUN_LUCERNA("bench " + arguments);
     EXPECT_EQ(result.exitCode, 2) << arguments << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << arguments << "\n" << result.err;
-    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
   }
 
  private:
@@ -51,14 +53,20 @@ struct PublishedFigure {
   const char* stage;
   const char* gpu;
   double ms;
-  auto key() const { return std::tuple<std::string, std::string, int, std::string, std::string>(table, setting, grids, stage, gpu); }
+  auto key() const {
+    return std::tuple<std::string, std::string, int, std::string, std::string>(table, setting, grids, stage, gpu);
+  }
 };
 
 // RSM, injection, propagation of one grid, then of three.
-std::vector<PublishedFigure> stagesOf(const char* table, const char* setting, const char* gpu, double rsm, double inject1, double propagate1, double inject3,
-                                      double propagate3) {
-  return {{table, setting, 1, "RSM", gpu, rsm},       {table, setting, 1, "injection", gpu, inject1}, {table, setting, 1, "propagation", gpu, propagate1},
-          {table, setting, 3, "RSM", gpu, rsm},       {table, setting, 3, "injection", gpu, inject3}, {table, setting, 3, "propagation", gpu, propagate3}};
+std::vector<PublishedFigure> stagesOf(const char* table, const char* setting, const char* gpu, double rsm,
+                                      double inject1, double propagate1, double inject3, double propagate3) {
+  return {{table, setting, 1, "RSM", gpu, rsm},
+          {table, setting, 1, "injection", gpu, inject1},
+          {table, setting, 1, "propagation", gpu, propagate1},
+          {table, setting, 3, "RSM", gpu, rsm},
+          {table, setting, 3, "injection", gpu, inject3},
+          {table, setting, 3, "propagation", gpu, propagate3}};
 }
 
 std::vector<PublishedFigure> publishedFigures() {
@@ -74,7 +82,8 @@ std::vector<PublishedFigure> publishedFigures() {
   add(stagesOf("7.5", "12 iterations, no blocking", nvidia, 0.265721, 0.399961, 5.02879, 0.96792, 11.3734));
   add(stagesOf("7.5", "12 iterations, no blocking", amd, 0.362724, 1.35757, 10.4721, 3.50252, 30.7741));
   const auto both = [&](const char* table, const char* setting, int grids, double injection, double propagation) {
-    add({{table, setting, grids, "injection", nvidia, injection}, {table, setting, grids, "propagation", nvidia, propagation}});
+    add({{table, setting, grids, "injection", nvidia, injection},
+         {table, setting, grids, "propagation", nvidia, propagation}});
   };
   both("7.6", "geometry shader, 32^3", 1, 0.375929, 3.3704);
   both("7.6", "geometry shader, 32^3", 3, 0.999607, 8.75379);
@@ -96,16 +105,19 @@ std::vector<PublishedFigure> publishedFigures() {
 }
 
 TEST_F(Bench, TablesOfTheLpvOriginalStandBesideOurs) {
-  const RunResult result = RUN_LUCERNA("bench tables --original lpv " + path("scene.obj") + " --scale 0.05 --quiet --json " + path("tables.json"));
+  const RunResult result = RUN_LUCERNA("bench tables --original lpv " + path("scene.obj") +
+                                       " --scale 0.05 --quiet --json " + path("tables.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  for (const char* text : {"llvmpipe", "Scale    0.05", "16^3", "Crytek Sponza", "Speed:", "Bound:"}) EXPECT_NE(result.out.find(text), std::string::npos) << text;
+  for (const char* text : {"llvmpipe", "Scale    0.05", "16^3", "Crytek Sponza", "Speed:", "Bound:"})
+    EXPECT_NE(result.out.find(text), std::string::npos) << text;
   const auto tables = json("tables.json");
   std::map<decltype(PublishedFigure{}.key()), double> expected;
   for (const PublishedFigure& figure : publishedFigures()) expected[figure.key()] = figure.ms;
   std::set<decltype(PublishedFigure{}.key())> seen;
   std::set<std::string> fills, names;
   for (const auto& row : tables.at("rows")) {
-    const std::tuple key(row.at("table").get<std::string>(), row.at("setting").get<std::string>(), row.value("grids", 0), row.at("stage").get<std::string>(),
+    const std::tuple key(row.at("table").get<std::string>(), row.at("setting").get<std::string>(),
+                         row.value("grids", 0), row.at("stage").get<std::string>(),
                          row.at("published_on").get<std::string>());
     const std::string name = row.at("table").get<std::string>() + " " + row.at("row").get<std::string>();
     ASSERT_TRUE(expected.contains(key)) << row.dump();
@@ -130,14 +142,18 @@ TEST_F(Bench, TablesOfTheLpvOriginalStandBesideOurs) {
     }
   }
   for (const auto& [key, ms] : expected)
-    EXPECT_TRUE(seen.contains(key)) << std::get<0>(key) << " " << std::get<1>(key) << " " << std::get<2>(key) << " " << std::get<3>(key) << " " << std::get<4>(key);
-  for (const char* paths : {"layered/layered", "atomic/layered", "fixed/layered", "atomic tiles/compute", "fixed tiles/compute", "/"}) EXPECT_TRUE(fills.contains(paths)) << paths;
+    EXPECT_TRUE(seen.contains(key)) << std::get<0>(key) << " " << std::get<1>(key) << " " << std::get<2>(key) << " "
+                                    << std::get<3>(key) << " " << std::get<4>(key);
+  for (const char* paths :
+       {"layered/layered", "atomic/layered", "fixed/layered", "atomic tiles/compute", "fixed tiles/compute", "/"})
+    EXPECT_TRUE(fills.contains(paths)) << paths;
   EXPECT_GT(tables.at("speed").at("speedup"), 0.0);
   EXPECT_GT(tables.at("bound").at("over_copy"), 0.0);
 }
 
 TEST_F(Bench, PicturesOfTheLpvOriginalAreOneSheet) {
-  const RunResult result = RUN_LUCERNA("bench pictures --original lpv " + path("scene.obj") + " --size 96x54 --json " + path("p.json") + " -o " + path("p.png"));
+  const RunResult result = RUN_LUCERNA("bench pictures --original lpv " + path("scene.obj") + " --size 96x54 --json " +
+                                       path("p.json") + " -o " + path("p.png"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const lucerna::Bitmap sheet = lucerna::readBitmap(path("p.png"));
   EXPECT_GT(sheet.width, 3 * 96);
@@ -147,26 +163,33 @@ TEST_F(Bench, PicturesOfTheLpvOriginalAreOneSheet) {
 }
 
 TEST_F(Bench, PicturesOfTheVptOriginalAreOneSheet) {
-  const RunResult result = RUN_LUCERNA("bench pictures --original vpt --scale 0.0005 --size 48x27 --quiet --json " + path("p.json") + " -o " + path("p.png"));
+  const RunResult result = RUN_LUCERNA("bench pictures --original vpt --scale 0.0005 --size 48x27 --quiet --json " +
+                                       path("p.json") + " -o " + path("p.png"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(json("p.json").at("pictures").size(), 21u);
   const lucerna::Bitmap sheet = lucerna::readBitmap(path("p.png"));
   EXPECT_GE(sheet.width * sheet.height, 21 * 48 * 27);
   // Every tile shows something.
   std::set<std::array<int, 3>> colours;
-  for (std::size_t i = 0; i + 3 < sheet.rgba.size(); i += 4) colours.insert({sheet.rgba[i], sheet.rgba[i + 1], sheet.rgba[i + 2]});
+  for (std::size_t i = 0; i + 3 < sheet.rgba.size(); i += 4)
+    colours.insert({sheet.rgba[i], sheet.rgba[i + 1], sheet.rgba[i + 2]});
   EXPECT_GT(colours.size(), 1000u);
 }
 
 TEST_F(Bench, VptAsPublishedHasTheCorrectedBeside) {
-  const RunResult result = RUN_LUCERNA("bench pictures --original vpt --fidelity original --scale 0.0005 --size 24x14 --quiet --json " + path("p.json") + " -o " + path("p.png"));
+  const RunResult result =
+      RUN_LUCERNA("bench pictures --original vpt --fidelity original --scale 0.0005 --size 24x14 --quiet --json " +
+                  path("p.json") + " -o " + path("p.png"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto pictures = json("p.json").at("pictures");
   ASSERT_EQ(pictures.size(), 2u + 2u * 21u + 1u);  // figure 5.7, each picture twice, the cure of black pixels
   EXPECT_EQ(pictures[0].at("picture"), "5.7 a  grape juice, probability as it is");
   // A series on samples has more in each picture, whatever the scale.
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(pictures[2 + 2 * i].at("spp").get<double>(), static_cast<double>(i + 1), 1e-9) << pictures[2 + 2 * i].at("picture");
-  const RunResult measured = RUN_LUCERNA("bench tables --original vpt --fidelity original --scale 0.001 --quiet --json " + path("vpt.json"));
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_NEAR(pictures[2 + 2 * i].at("spp").get<double>(), static_cast<double>(i + 1), 1e-9)
+        << pictures[2 + 2 * i].at("picture");
+  const RunResult measured =
+      RUN_LUCERNA("bench tables --original vpt --fidelity original --scale 0.001 --quiet --json " + path("vpt.json"));
   ASSERT_EQ(measured.exitCode, 0) << measured.err;
   const auto tables = json("vpt.json");
   EXPECT_EQ(tables.at("fidelity"), "original");
@@ -179,7 +202,8 @@ TEST_F(Bench, VptAsPublishedHasTheCorrectedBeside) {
 }
 
 TEST_F(Bench, RaysHitWhatEmbreeHits) {
-  const RunResult result = RUN_LUCERNA("bench rays " + path("scene.obj") + " --rays 4096 --repeats 2 --quiet --json " + path("rays.json"));
+  const RunResult result =
+      RUN_LUCERNA("bench rays " + path("scene.obj") + " --rays 4096 --repeats 2 --quiet --json " + path("rays.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   if (result.out.find("Embree was not there") != std::string::npos) GTEST_SKIP() << "built without Embree";
   const auto rays = json("rays.json");
@@ -208,13 +232,15 @@ TEST_F(Bench, WrongOptionsAreRefused) {
   expectRefused("tables --original rad --fidelity original", {"--fidelity", "vpt"});
   expectRefused("pictures --original lpv --scale 0.5 -o " + path("x.png") + " " + scene, {"--scale"});
   expectRefused("tables --original lpv --colour red " + scene, {"--colour", "bench tables --help"});
-  for (const char* scale : {"0", "-1", "1.5", "nan", "half"}) expectRefused("tables --original lpv --scale " + std::string(scale) + " " + scene, {"--scale"});
+  for (const char* scale : {"0", "-1", "1.5", "nan", "half"})
+    expectRefused("tables --original lpv --scale " + std::string(scale) + " " + scene, {"--scale"});
   expectRefused("tables --original lpv --host vulkan " + scene, {"vulkan", "osmesa"});
   expectRefused("tables --original lpv " + path("nothing.obj"), {"nothing.obj"});
   expectRefused("pictures --original lpv " + scene, {"--output"});
   expectRefused("pictures --original lpv -o " + path("x.exr") + " " + scene, {"x.exr", "png"});
   expectRefused("pictures --original lpv --size 4000x4000 -o " + path("x.png") + " " + scene, {"--size", "4000x4000"});
-  expectRefused("pictures --original lpv --fidelity exact -o " + path("x.png") + " " + scene, {"--fidelity", "exact", "original"});
+  expectRefused("pictures --original lpv --fidelity exact -o " + path("x.png") + " " + scene,
+                {"--fidelity", "exact", "original"});
   expectRefused("pictures --original lpv --exposure 0 -o " + path("x.png") + " " + scene, {"--exposure"});
   expectRefused("pictures --original lpv --camera nowhere -o " + path("x.png") + " " + scene, {"--camera", "nowhere"});
   EXPECT_FALSE(fs::exists(path("x.png")));
@@ -224,8 +250,9 @@ TEST_F(Bench, VptTablesHoldWhatWasPublished) {
   const RunResult result = RUN_LUCERNA("bench tables --original vpt --scale 0.001 --quiet --json " + path("vpt.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_NE(result.out.find("Scaled by 0.001: 16x9 pixels instead of 1920x1080"), std::string::npos) << result.out;
-  const double published[] = {14,    61,    445,   3619,  7289,  14580, 15500, 23300, 36500, 38000, 14500,
-                              16700, 21900, 24300, 25800, 15100, 23300, 14500, 18500, 27200, 51300};  // ms, figures 5.8 a to 5.20
+  const double published[] = {
+      14,    61,    445,   3619,  7289,  14580, 15500, 23300, 36500, 38000, 14500,
+      16700, 21900, 24300, 25800, 15100, 23300, 14500, 18500, 27200, 51300};  // ms, figures 5.8 a to 5.20
   const auto tables = json("vpt.json");
   const auto& rows = tables.at("rows");
   ASSERT_EQ(rows.size(), std::size(published) + 7);  // and the preparation of seven scenes
@@ -236,12 +263,14 @@ TEST_F(Bench, VptTablesHoldWhatWasPublished) {
   for (std::size_t i = 0; i < std::size(published); ++i) {
     EXPECT_EQ(rows[i].at("published"), published[i]) << rows[i].at("row");
     EXPECT_GT(rows[i].at("measured").get<double>(), 0.0) << rows[i].at("row");
-    EXPECT_NEAR(rows[i].at("ratio").get<double>(), rows[i].at("measured").get<double>() / published[i], 1e-9 * rows[i].at("ratio").get<double>());
+    EXPECT_NEAR(rows[i].at("ratio").get<double>(), rows[i].at("measured").get<double>() / published[i],
+                1e-9 * rows[i].at("ratio").get<double>());
     const auto& picture = tables.at("pictures")[i];
     // Multiplied up from the samples that were drawn to the published ones.
     const double samples = i < 6 ? std::array{1, 8, 64, 512, 1024, 2048}[i] : i < 17 ? 2048 : 1024;
     const double factor = samples * 1920 * 1080 / (picture.at("spp").get<double>() * 16 * 9);
-    EXPECT_NEAR(rows[i].at("measured").get<double>(), picture.at("ms").get<double>() * factor, 1e-6 * rows[i].at("measured").get<double>());
+    EXPECT_NEAR(rows[i].at("measured").get<double>(), picture.at("ms").get<double>() * factor,
+                1e-6 * rows[i].at("measured").get<double>());
   }
   // The estimator: corrected, as published, and each deviation alone.
   const auto& estimators = tables.at("estimators");

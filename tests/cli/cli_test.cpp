@@ -41,11 +41,13 @@ class CommandLine : public ::testing::Test {
   std::string scene() const { return path("scene.obj"); }
 
   /// Exit code, one line on standard error that holds every given part, and no file of that name.
-  void expectRefused(const std::string& arguments, int exitCode, const std::vector<std::string>& parts, const std::string& notWritten = {}) const {
+  void expectRefused(const std::string& arguments, int exitCode, const std::vector<std::string>& parts,
+                     const std::string& notWritten = {}) const {
     const RunResult result = RUN_LUCERNA(arguments);
     EXPECT_EQ(result.exitCode, exitCode) << arguments << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << arguments << "\n" << result.err;
-    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
     if (notWritten.empty()) return;
     EXPECT_FALSE(fs::exists(path(notWritten))) << notWritten;
   }
@@ -61,7 +63,8 @@ TEST_F(CommandLine, HelpListsEverySubcommandAndTheirOptions) {
     EXPECT_NE(top.out.find(std::string(name).substr(0, std::string(name).find(' '))), std::string::npos) << name;
     const RunResult help = RUN_LUCERNA(std::string(name) + " --help");
     EXPECT_EQ(help.exitCode, 0);
-    for (const char* option : {"--host", "--json", "--quiet"}) EXPECT_NE(help.out.find(option), std::string::npos) << name << option;
+    for (const char* option : {"--host", "--json", "--quiet"})
+      EXPECT_NE(help.out.find(option), std::string::npos) << name << option;
   }
 }
 
@@ -81,8 +84,8 @@ TEST_F(CommandLine, InfoReportsHostAndScene) {
 TEST_F(CommandLine, RenderWritesEveryFormatWithTheSameMean) {
   for (const char* extension : {"png", "hdr", "exr", "pfm"}) {
     const std::string out = path(std::string("picture.") + extension);
-    const RunResult result =
-        RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.cells=8 -o " + out + " --json " + path("render.json"));
+    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.cells=8 -o " + out +
+                                         " --json " + path("render.json"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const auto render = json("render.json");
     EXPECT_EQ(render.at("technique"), "lpv");
@@ -94,7 +97,9 @@ TEST_F(CommandLine, RenderWritesEveryFormatWithTheSameMean) {
     ASSERT_EQ(image.height, 32);
     if (std::string(extension) == "png") continue;  // tone mapped
     const glm::dvec3 mean = lucerna::meanOf(image);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(render.at("mean").at(static_cast<std::size_t>(c)).get<double>(), mean[c], 0.01 * mean[c] + 1e-6) << extension;
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(render.at("mean").at(static_cast<std::size_t>(c)).get<double>(), mean[c], 0.01 * mean[c] + 1e-6)
+          << extension;
   }
 }
 
@@ -102,7 +107,9 @@ TEST_F(CommandLine, ComponentsAddUp) {
   glm::dvec3 means[3];
   const char* names[] = {"all", "direct", "indirect"};
   for (int i = 0; i < 3; ++i) {
-    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.transport=propagate --set lpv.cells=8 --component " + names[i] + " -o " + path("x.pfm"));
+    const RunResult result =
+        RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.transport=propagate --set lpv.cells=8 --component " +
+                    names[i] + " -o " + path("x.pfm"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     means[i] = lucerna::meanOf(lucerna::readImage(path("x.pfm")));
   }
@@ -112,15 +119,16 @@ TEST_F(CommandLine, ComponentsAddUp) {
 
 TEST_F(CommandLine, DeviationsAreReported) {
   const auto deviations = [&](const std::string& arguments) {
-    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 32x24 --set lpv.cells=8 -o " + path("x.pfm") + " --json " +
-                                         path("render.json") + arguments);
+    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 32x24 --set lpv.cells=8 -o " + path("x.pfm") +
+                                         " --json " + path("render.json") + arguments);
     EXPECT_EQ(result.exitCode, 0) << result.err;
     const auto render = json("render.json");
     return std::pair(render.at("fidelity").get<std::string>(), render.at("deviations").get<std::vector<std::string>>());
   };
   using Names = std::vector<std::string>;
   EXPECT_EQ(deviations(""), std::pair(std::string("corrected"), Names{}));
-  EXPECT_EQ(deviations(" --deviation lpv.side-directions=on"), std::pair(std::string("corrected"), Names{"lpv.side-directions"}));
+  EXPECT_EQ(deviations(" --deviation lpv.side-directions=on"),
+            std::pair(std::string("corrected"), Names{"lpv.side-directions"}));
   const auto [fidelity, original] = deviations(" --fidelity original");
   EXPECT_EQ(fidelity, "original");
   // What --help marks with a star.
@@ -134,7 +142,9 @@ TEST_F(CommandLine, DeviationsAreReported) {
     const bool isMarked = star.starts_with("*");
     if (isMarked || star == "+") words >> name;
     else name = star;
-    if (!name.starts_with("lpv.") && !name.starts_with("rsm.") && !name.starts_with("path.") && !name.starts_with("radiosity.")) continue;
+    if (!name.starts_with("lpv.") && !name.starts_with("rsm.") && !name.starts_with("path.") &&
+        !name.starts_with("radiosity."))
+      continue;
     ++known;
     if (isMarked) marked.push_back(name);
   }
@@ -150,13 +160,17 @@ TEST_F(CommandLine, DeviationsAreReported) {
   const Names demo = deviations(" --fidelity demo").second;
   EXPECT_EQ(std::count(demo.begin(), demo.end(), "lpv.sum-cascades"), 1);
   EXPECT_EQ(std::count(original.begin(), original.end(), "lpv.sum-cascades"), 0);
-  expectRefused("render " + scene() + " --fidelity faithful -o " + path("y.pfm"), 2, {"faithful", "thesis", "demo"}, "y.pfm");
-  expectRefused("render " + scene() + " --deviation lpv.nothing=on -o " + path("y.pfm"), 2, {"lpv.nothing", "lpv.side-directions"}, "y.pfm");
-  expectRefused("render " + scene() + " --deviation lpv.truncate=maybe -o " + path("y.pfm"), 2, {"lpv.truncate=maybe", "=on or"}, "y.pfm");
+  expectRefused("render " + scene() + " --fidelity faithful -o " + path("y.pfm"), 2, {"faithful", "thesis", "demo"},
+                "y.pfm");
+  expectRefused("render " + scene() + " --deviation lpv.nothing=on -o " + path("y.pfm"), 2,
+                {"lpv.nothing", "lpv.side-directions"}, "y.pfm");
+  expectRefused("render " + scene() + " --deviation lpv.truncate=maybe -o " + path("y.pfm"), 2,
+                {"lpv.truncate=maybe", "=on or"}, "y.pfm");
 }
 
 TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
-  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --set lpv.transport=propagate --set frame.reuse=off --record " + path("out") +
+  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") +
+                                       " --set lpv.transport=propagate --set frame.reuse=off --record " + path("out") +
                                        " --frames 3 --size 64x36 --json " + path("walk.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), 3);
@@ -172,22 +186,26 @@ TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
 }
 
 TEST_F(CommandLine, WalkPathTracesEachPictureToItsEnd) {
-  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --technique path --set path.samples=2 --record " + path("out") +
+  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") +
+                                       " --technique path --set path.samples=2 --record " + path("out") +
                                        " --frames 2 --size 32x18 --json " + path("walk.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), 2);
   const auto walk = json("walk.json");
   EXPECT_EQ(walk.at("technique"), "path");
-  for (const char* stage : {"path tracing", "film", "tone mapping"}) EXPECT_EQ(walk.at("stages").at(stage).at("count"), 2) << stage;
+  for (const char* stage : {"path tracing", "film", "tone mapping"})
+    EXPECT_EQ(walk.at("stages").at(stage).at("count"), 2) << stage;
   for (const char* stage : {"shadow", "shading", "receivers"}) EXPECT_FALSE(walk.at("stages").contains(stage)) << stage;
 }
 
 TEST_F(CommandLine, DirectLightLeavesTheIndirectStagesOut) {
-  const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --technique direct --record " + path("out") +
-                                       " --frames 1 --size 64x36 --json " + path("walk.json"));
+  const RunResult result =
+      RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --technique direct --record " + path("out") +
+                  " --frames 1 --size 64x36 --json " + path("walk.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto walk = json("walk.json");
-  for (const char* stage : {"rsm", "injection", "geometry volume", "propagation"}) EXPECT_FALSE(walk.at("stages").contains(stage)) << stage;
+  for (const char* stage : {"rsm", "injection", "geometry volume", "propagation"})
+    EXPECT_FALSE(walk.at("stages").contains(stage)) << stage;
   const auto& left = walk.at("left_out");
   EXPECT_NE(std::find(left.begin(), left.end(), "light propagation volume"), left.end());
 }
@@ -195,8 +213,9 @@ TEST_F(CommandLine, DirectLightLeavesTheIndirectStagesOut) {
 TEST_F(CommandLine, RsmReportsWhatInterpolationSaved) {
   for (const char* command : {"render ", "walk "}) {
     const bool walks = std::string(command) == "walk ";
-    const RunResult result = RUN_LUCERNA(command + scene() + " --technique rsm --size 64x36 --json " + path("rsm.json") +
-                                         (walks ? " --frames 2 --keys " + path("path.txt") + " --record " + path("out") : " -o " + path("x.pfm")));
+    const RunResult result = RUN_LUCERNA(
+        command + scene() + " --technique rsm --size 64x36 --json " + path("rsm.json") +
+        (walks ? " --frames 2 --keys " + path("path.txt") + " --record " + path("out") : " -o " + path("x.pfm")));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_NE(result.out.find("refused by interpolation"), std::string::npos) << result.out;
     const auto report = json("rsm.json");
@@ -210,7 +229,10 @@ TEST_F(CommandLine, RsmReportsWhatInterpolationSaved) {
       EXPECT_TRUE(report.at("stages").contains(stage)) << stage;
   }
   // Other techniques have nothing of it.
-  ASSERT_EQ(RUN_LUCERNA("render " + scene() + " --technique direct --size 32x32 --json " + path("direct.json") + " -o " + path("x.pfm")).exitCode, 0);
+  ASSERT_EQ(RUN_LUCERNA("render " + scene() + " --technique direct --size 32x32 --json " + path("direct.json") +
+                        " -o " + path("x.pfm"))
+                .exitCode,
+            0);
   const auto direct = json("direct.json");
   EXPECT_FALSE(direct.contains("rsm"));
   const auto& left = direct.at("left_out");
@@ -218,13 +240,15 @@ TEST_F(CommandLine, RsmReportsWhatInterpolationSaved) {
 }
 
 TEST_F(CommandLine, HowLightIsTransportedAndLookedUpIsChosenByName) {
-  const std::string common = "render " + scene() + " --size 32x24 --set lpv.cells=8 --component indirect --json " + path("lpv.json") + " -o " + path("x.pfm");
+  const std::string common = "render " + scene() + " --size 32x24 --set lpv.cells=8 --component indirect --json " +
+                             path("lpv.json") + " -o " + path("x.pfm");
   const auto mean = [&](const std::string& arguments) {
     const RunResult result = RUN_LUCERNA(common + arguments);
     EXPECT_EQ(result.exitCode, 0) << result.err;
     return lucerna::meanOf(lucerna::readImage(path("x.pfm"))).x;
   };
-  const double usual = mean(" --set lpv.transport=propagate"), flux = mean(" --set lpv.lookup=flux --set lpv.transport=propagate --set lpv.lookup-offset=0");
+  const double usual = mean(" --set lpv.transport=propagate"),
+               flux = mean(" --set lpv.lookup=flux --set lpv.transport=propagate --set lpv.lookup-offset=0");
   EXPECT_EQ(usual, flux);
   EXPECT_EQ(mean(" --set lpv.iterations=8"), flux);  // a setting of one transport alone chooses it
   EXPECT_FALSE(json("lpv.json").contains("lpv"));
@@ -234,7 +258,8 @@ TEST_F(CommandLine, HowLightIsTransportedAndLookedUpIsChosenByName) {
   EXPECT_GT(mean(" --set lpv.lookup=published"), 1.2 * flux);
   EXPECT_EQ(mean(" --set lpv.lookup=published"), mean(" --set lpv.lookup=published --set lpv.lookup-offset=0.5"));
   for (const char* bounces : {"1", "all"}) {
-    const RunResult result = RUN_LUCERNA(common + " --set lpv.transport=rays --set lpv.samples=32 --set lpv.rays=8 --set lpv.bounces=" + bounces);
+    const RunResult result = RUN_LUCERNA(
+        common + " --set lpv.transport=rays --set lpv.samples=32 --set lpv.rays=8 --set lpv.bounces=" + bounces);
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_NE(result.out.find("receivers, 32 paths each"), std::string::npos) << result.out;
     const auto report = json("lpv.json");
@@ -248,17 +273,22 @@ TEST_F(CommandLine, HowLightIsTransportedAndLookedUpIsChosenByName) {
   const std::string end = " -o " + path("y.pfm"), begin = "render " + scene() + " --size 32x24 ";
   expectRefused(begin + "--set lpv.transport=rain" + end, 2, {"lpv.transport", "rain", "propagate", "rays"}, "y.pfm");
   expectRefused(begin + "--set lpv.lookup=none" + end, 2, {"lpv.lookup", "none", "flux", "published"}, "y.pfm");
-  for (const char* rays : {"3", "0", "128", "-1", "many"}) expectRefused(begin + "--set lpv.transport=rays --set lpv.rays=" + rays + end, 2, {"lpv.rays", rays}, "y.pfm");
-  for (const char* samples : {"0", "nan"}) expectRefused(begin + "--set lpv.transport=rays --set lpv.samples=" + samples + end, 2, {"lpv.samples", samples}, "y.pfm");
-  expectRefused(begin + "--set lpv.transport=propagate --set lpv.bounces=all" + end, 2, {"lpv.bounces=all", "lpv.transport=propagate"}, "y.pfm");
+  for (const char* rays : {"3", "0", "128", "-1", "many"})
+    expectRefused(begin + "--set lpv.transport=rays --set lpv.rays=" + rays + end, 2, {"lpv.rays", rays}, "y.pfm");
+  for (const char* samples : {"0", "nan"})
+    expectRefused(begin + "--set lpv.transport=rays --set lpv.samples=" + samples + end, 2, {"lpv.samples", samples},
+                  "y.pfm");
+  expectRefused(begin + "--set lpv.transport=propagate --set lpv.bounces=all" + end, 2,
+                {"lpv.bounces=all", "lpv.transport=propagate"}, "y.pfm");
   expectRefused(begin + "--set lpv.bounces=0 --set lpv.transport=rays" + end, 2, {"lpv.bounces", "0"}, "y.pfm");
   expectRefused(begin + "--set frame.reuse=maybe" + end, 2, {"frame.reuse", "maybe"}, "y.pfm");
 }
 
 TEST_F(CommandLine, AWalkSaysWhatIsMadeOnce) {
   for (const char* reuse : {"on", "off"}) {
-    const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --set frame.reuse=" + reuse + " --record " + path("out") +
-                                         " --frames 3 --size 64x36 --json " + path("walk.json"));
+    const RunResult result =
+        RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") + " --set frame.reuse=" + reuse + " --record " +
+                    path("out") + " --frames 3 --size 64x36 --json " + path("walk.json"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const auto stages = json("walk.json").at("stages");
     EXPECT_EQ(stages.at("shading").at("ran"), stages.at("shading").at("frames"));
@@ -292,13 +322,16 @@ TEST_F(CommandLine, WrongOptionsAreRefused) {
   expectRefused("render " + scene() + " --set lpv.cells=many -o " + path("x.png"), 2, {"lpv.cells", "many"}, "x.png");
   expectRefused("render " + scene() + " --set lpv.cells=nan -o " + path("x.png"), 2, {"lpv.cells"}, "x.png");
   expectRefused("render " + scene() + " --set exposure=nan -o " + path("x.png"), 2, {"exposure"}, "x.png");
-  expectRefused("render " + scene() + " --technique rsm --set rsm.weight=heavy -o " + path("x.png"), 2, {"rsm.weight", "heavy", "published"}, "x.png");
-  expectRefused("render " + scene() + " --technique rsm --set rsm.radius=0 -o " + path("x.png"), 2, {"rsm.radius"}, "x.png");
+  expectRefused("render " + scene() + " --technique rsm --set rsm.weight=heavy -o " + path("x.png"), 2,
+                {"rsm.weight", "heavy", "published"}, "x.png");
+  expectRefused("render " + scene() + " --technique rsm --set rsm.radius=0 -o " + path("x.png"), 2, {"rsm.radius"},
+                "x.png");
   expectRefused("render " + scene() + " --host vulkan -o " + path("x.png"), 2, {"vulkan", "osmesa"}, "x.png");
   expectRefused("render " + scene() + " --camera 1,2,3 -o " + path("x.png"), 2, {"--camera", "px,py,pz"}, "x.png");
   expectRefused("render " + scene() + " -o " + path("x.bmp"), 2, {"x.bmp", "png"}, "x.bmp");
   expectRefused("walk " + scene() + " --frames 0", 2, {"--frames"});
-  expectRefused("walk " + scene() + " --keys " + path("path.txt") + " --views 5:9999 --record " + path("w"), 2, {"--views", "0:200"}, "w");
+  expectRefused("walk " + scene() + " --keys " + path("path.txt") + " --views 5:9999 --record " + path("w"), 2,
+                {"--views", "0:200"}, "w");
 }
 
 TEST_F(CommandLine, WrongFilesAreRefused) {
@@ -315,11 +348,14 @@ TEST_F(CommandLine, WrongFilesAreRefused) {
   write("file", "in the way");
   expectRefused("walk " + scene() + " --record " + path("file"), 2, {"file", "folder"});
   expectRefused("render " + scene() + " --size 32x32 -o " + path("no/such/folder/x.png"), 2, {"x.png"});
-  expectRefused("render " + scene() + " --size 32x32 -o " + path("y.png") + " --json " + path("no/such/x.json"), 2, {"x.json"});
+  expectRefused("render " + scene() + " --size 32x32 -o " + path("y.png") + " --json " + path("no/such/x.json"), 2,
+                {"x.json"});
 }
 
 TEST_F(CommandLine, ATextureThatIsNoImageIsOneWarning) {
-  write("scene.mtl", "newmtl white\nKd 0.8 0.8 0.8\nmap_Kd broken.png\nnewmtl red\nKd 0.7 0.1 0.1\nmap_Kd textures\\\\missing.png\n");
+  write(
+      "scene.mtl",
+      "newmtl white\nKd 0.8 0.8 0.8\nmap_Kd broken.png\nnewmtl red\nKd 0.7 0.1 0.1\nmap_Kd textures\\\\missing.png\n");
   write("broken.png", "this is no picture");
   const RunResult result = RUN_LUCERNA("render " + scene() + " --size 32x32 --set lpv.cells=8 -o " + path("x.png"));
   EXPECT_EQ(result.exitCode, 0) << result.err;
@@ -331,7 +367,8 @@ TEST_F(CommandLine, ATextureThatIsNoImageIsOneWarning) {
 }
 
 TEST_F(CommandLine, AnOldDriverIsAMissingCapability) {
-  const RunResult result = run("MESA_GL_VERSION_OVERRIDE=3.3 '" LUCERNA_BINARY "' render " + scene() + " --size 32x32 -o " + path("x.png"));
+  const RunResult result =
+      run("MESA_GL_VERSION_OVERRIDE=3.3 '" LUCERNA_BINARY "' render " + scene() + " --size 32x32 -o " + path("x.png"));
   EXPECT_EQ(result.exitCode, 3) << result.err;
   EXPECT_NE(result.err.find("4.3"), std::string::npos) << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
@@ -339,14 +376,16 @@ TEST_F(CommandLine, AnOldDriverIsAMissingCapability) {
 }
 
 TEST_F(CommandLine, AWindowWithoutADisplayIsAMissingCapability) {
-  const RunResult result = run("env -u DISPLAY -u WAYLAND_DISPLAY '" LUCERNA_BINARY "' walk " + scene() + " --host window");
+  const RunResult result =
+      run("env -u DISPLAY -u WAYLAND_DISPLAY '" LUCERNA_BINARY "' walk " + scene() + " --host window");
   EXPECT_EQ(result.exitCode, 3) << result.err;
   EXPECT_NE(result.err.find("display"), std::string::npos) << result.err;
 }
 
 TEST_F(CommandLine, InterruptedWalkKeepsWholePicturesAndItsTable) {
-  const RunResult result = run("timeout --signal=INT 3 '" LUCERNA_BINARY "' walk " + scene() + " --keys " + path("path.txt") + " --record " +
-                               path("out") + " --frames 100000 --size 320x180 --json " + path("walk.json"));
+  const RunResult result =
+      run("timeout --signal=INT 3 '" LUCERNA_BINARY "' walk " + scene() + " --keys " + path("path.txt") + " --record " +
+          path("out") + " --frames 100000 --size 320x180 --json " + path("walk.json"));
   EXPECT_EQ(result.exitCode, 124) << result.err;  // timeout's own code; the program ends by itself after the signal
   ASSERT_TRUE(fs::exists(path("walk.json"))) << result.err;
   const int frames = json("walk.json").at("frames");
@@ -377,7 +416,10 @@ TEST_F(CommandLine, PathTracingSaysHowGoodThePictureIs) {
   EXPECT_LT(json("seconds.json").at("seconds"), 20.0);
   // Of whole passes, whenever it is stopped: this picture is one tile, so all pixels have the same samples.
   for (const char* seconds : {"0.05", "0.11", "0.17", "0.23", "0.31"}) {
-    ASSERT_EQ(RUN_LUCERNA(common + "--seconds " + std::string(seconds) + " -o " + path("d.png") + " --json " + path("seconds.json")).exitCode, 0);
+    ASSERT_EQ(RUN_LUCERNA(common + "--seconds " + std::string(seconds) + " -o " + path("d.png") + " --json " +
+                          path("seconds.json"))
+                  .exitCode,
+              0);
     const double samples = json("seconds.json").at("spp");
     EXPECT_EQ(samples, std::round(samples)) << seconds;
   }
@@ -385,16 +427,22 @@ TEST_F(CommandLine, PathTracingSaysHowGoodThePictureIs) {
 
 TEST_F(CommandLine, PathTracingAsPublishedNamesItsDeviations) {
   const std::string common = "render " + scene() + " --technique path --size 16x12 --spp 4 ";
-  ASSERT_EQ(RUN_LUCERNA(common + "--fidelity original -o " + path("o.pfm") + " --json " + path("original.json")).exitCode, 0);
+  ASSERT_EQ(
+      RUN_LUCERNA(common + "--fidelity original -o " + path("o.pfm") + " --json " + path("original.json")).exitCode, 0);
   EXPECT_EQ(json("original.json").at("fidelity"), "original");
-  EXPECT_EQ(json("original.json").at("deviations").size(), 9u);  // all but path.schlick, which is a switch of the original's
-  ASSERT_EQ(RUN_LUCERNA(common + "--deviation path.fixed-epsilon=on -o " + path("one.pfm") + " --json " + path("one.json")).exitCode, 0);
+  EXPECT_EQ(json("original.json").at("deviations").size(),
+            9u);  // all but path.schlick, which is a switch of the original's
+  ASSERT_EQ(
+      RUN_LUCERNA(common + "--deviation path.fixed-epsilon=on -o " + path("one.pfm") + " --json " + path("one.json"))
+          .exitCode,
+      0);
   EXPECT_EQ(json("one.json").at("deviations"), nlohmann::json::array({"path.fixed-epsilon"}));
   EXPECT_NE(lucerna::readImage(path("o.pfm")).pixels, lucerna::readImage(path("one.pfm")).pixels);
 }
 
 TEST_F(CommandLine, PathTracingRefusesWhatItDoesNotHave) {
-  expectRefused("render " + scene() + " --technique path --deviation lpv.truncate=on -o " + path("no.png"), 2, {"lpv.truncate", "path."}, "no.png");
+  expectRefused("render " + scene() + " --technique path --deviation lpv.truncate=on -o " + path("no.png"), 2,
+                {"lpv.truncate", "path."}, "no.png");
   expectRefused("render " + scene() + " --technique lpv --spp 4 -o " + path("no.png"), 2, {"--spp", "path"}, "no.png");
 }
 

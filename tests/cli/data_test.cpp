@@ -1,4 +1,5 @@
-// The program finds its data wherever it lies: in a build tree, in a prefix that was moved, by a link, through PATH, by LUCERNA_DATA.
+// The program finds its data wherever it lies: in a build tree, in a prefix that was moved, by a link, through PATH, by
+// LUCERNA_DATA.
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -28,12 +29,14 @@ class DataFolder : public ::testing::Test {
   /// A prefix's share/lucerna, with the source tree's folders.
   void addData(const fs::path& data) const {
     fs::create_directories(data);
-    for (const char* name : {"shaders", "assets", "keyFrames"}) fs::create_directory_symlink(fs::path(LUCERNA_SOURCE_DIR) / name, data / name);
+    for (const char* name : {"shaders", "assets", "keyFrames"})
+      fs::create_directory_symlink(fs::path(LUCERNA_SOURCE_DIR) / name, data / name);
   }
   /// `program` draws in this test's folder, with nothing in the environment that says where data lies.
   RunResult render(const std::string& program, const std::string& environment = "XDG_DATA_DIRS=/nowhere") const {
     fs::remove(folder_ / "out.pfm");
-    return run("cd '" + folder_.path().string() + "' && unset LUCERNA_DATA LUCERNA_SHADERS && " + environment + " " + program + kRender + "out.pfm");
+    return run("cd '" + folder_.path().string() + "' && unset LUCERNA_DATA LUCERNA_SHADERS && " + environment + " " +
+               program + kRender + "out.pfm");
   }
   void expectDraws(const std::string& program, const std::string& environment = "XDG_DATA_DIRS=/nowhere") const {
     const RunResult result = render(program, environment);
@@ -72,7 +75,9 @@ TEST_F(DataFolder, LucernaDataComesFirstAndIsRefusedWithoutTheThreeFolders) {
   fs::create_directories(folder_ / "wrong/shaders");
   const RunResult refused = render("prefix/bin/lucerna", "LUCERNA_DATA=wrong");
   EXPECT_EQ(refused.exitCode, 2);
-  EXPECT_EQ(refused.err, "lucerna: LUCERNA_DATA=wrong: expected a folder with shaders, assets and keyFrames; it has no folder assets\n");
+  EXPECT_EQ(
+      refused.err,
+      "lucerna: LUCERNA_DATA=wrong: expected a folder with shaders, assets and keyFrames; it has no folder assets\n");
   EXPECT_FALSE(fs::exists(folder_ / "out.pfm"));
 }
 
@@ -87,8 +92,10 @@ TEST_F(DataFolder, NoneIsALackWithThePlacesNamed) {
 // With data of its own the walk's default scene comes from there too.
 TEST_F(DataFolder, TheWalksSceneIsTheDataFolders) {
   fs::create_directories(folder_ / "data/assets");
-  for (const char* name : {"shaders", "keyFrames"}) fs::create_directory_symlink(fs::path(LUCERNA_SOURCE_DIR) / name, folder_ / "data" / name);
-  const RunResult result = run("LUCERNA_DATA='" + (folder_ / "data").string() + "' '" LUCERNA_BINARY "' walk --record '" + (folder_ / "out").string() + "'");
+  for (const char* name : {"shaders", "keyFrames"})
+    fs::create_directory_symlink(fs::path(LUCERNA_SOURCE_DIR) / name, folder_ / "data" / name);
+  const RunResult result = run("LUCERNA_DATA='" + (folder_ / "data").string() +
+                               "' '" LUCERNA_BINARY "' walk --record '" + (folder_ / "out").string() + "'");
   EXPECT_EQ(result.exitCode, 2);
   EXPECT_NE(result.err.find("data/assets/atrium/atrium.json: no such file"), std::string::npos) << result.err;
 }

@@ -1,5 +1,6 @@
-// What people hand to the program and what the machine refuses it: settings, settings files, numbers, standard output, descriptors, leftovers. For each
-// wrong input one clear line and the right exit code. Runs the built executable on OSMesa.
+// What people hand to the program and what the machine refuses it: settings, settings files, numbers, standard output,
+// descriptors, leftovers. For each wrong input one clear line and the right exit code. Runs the built executable on
+// OSMesa.
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -21,18 +22,22 @@ using lucerna::test::TempFolder;
 class Inputs : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_.write("m.obj", "mtllib m.mtl\nusemtl w\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 1 0\nf 1 4 3 2\nf 1 2 5\n");
+    folder_.write("m.obj",
+                  "mtllib m.mtl\nusemtl w\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 1 0\nf 1 4 3 2\nf 1 2 5\n");
     folder_.write("m.mtl", "newmtl w\nKd 0.5 0.5 0.5\n");
   }
   std::string path(const std::string& name) const { return "'" + (folder_.path() / name).string() + "'"; }
-  std::string render(const std::string& more) const { return "render " + path("m.obj") + " --size 8x6 -o " + path("x.pfm") + " " + more; }
+  std::string render(const std::string& more) const {
+    return "render " + path("m.obj") + " --size 8x6 -o " + path("x.pfm") + " " + more;
+  }
   const TempFolder& folder() const { return folder_; }
 
   void expectRefused(const std::string& arguments, int exitCode, const std::vector<std::string>& parts) const {
     const RunResult result = run("timeout 60 '" LUCERNA_BINARY "' " + arguments);
     EXPECT_EQ(result.exitCode, exitCode) << arguments << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << arguments << "\n" << result.err;
-    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
     EXPECT_FALSE(fs::exists(folder_.path() / "x.pfm")) << arguments;
   }
 
@@ -65,16 +70,21 @@ TEST_F(Inputs, NumbersThatAreNoneAreRefused) {
   for (const char* value : {"nan", "NAN", "inf", "-inf", "1e300", "-1e300"}) {
     expectRefused(render(std::string("--technique path --seconds ") + value), 2, {"--seconds"});
     expectRefused(render(std::string("--technique path --error ") + value), 2, {"--error"});
-    expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --edge " + value, 2, {"--edge"});
-    expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --memory " + value, 2, {"--memory"});
-    expectRefused(std::string("tune ") + path("m.obj") + " -o " + path("x.pfm") + " --frame-time " + value, 2, {"--frame-time"});
-    expectRefused(render(std::string("--set radiosity.edge=") + value + " --technique radiosity"), 2, {"radiosity.edge"});
+    expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --edge " + value, 2,
+                  {"--edge"});
+    expectRefused(std::string("radiosity solve ") + path("m.obj") + " " + path("x.pfm") + " --memory " + value, 2,
+                  {"--memory"});
+    expectRefused(std::string("tune ") + path("m.obj") + " -o " + path("x.pfm") + " --frame-time " + value, 2,
+                  {"--frame-time"});
+    expectRefused(render(std::string("--set radiosity.edge=") + value + " --technique radiosity"), 2,
+                  {"radiosity.edge"});
   }
 }
 
 TEST_F(Inputs, NumbersBeyondTheirRangeAreRefused) {
   const std::string solve = "radiosity solve " + path("m.obj") + " " + path("x.pfm") + " ";
-  for (const char* option : {"--error 0", "--error -1", "--memory -5", "--near-plane -1", "--edge -1", "--save-every -1", "--max-sweeps -1", "--refinements 99"})
+  for (const char* option : {"--error 0", "--error -1", "--memory -5", "--near-plane -1", "--edge -1",
+                             "--save-every -1", "--max-sweeps -1", "--refinements 99"})
     expectRefused(solve + option, 2, {std::string(option).substr(0, std::string(option).find(' '))});
   expectRefused("bench rays " + path("m.obj") + " --split-budget -1", 2, {"--split-budget"});
   expectRefused("tune " + path("m.obj") + " -o " + path("x.pfm") + " --frame-time 0", 2, {"--frame-time"});
@@ -84,10 +94,15 @@ TEST_F(Inputs, SettingsThatATechniqueDoesNotReadAreOneWarning) {
   const RunResult path_ = RUN_LUCERNA(render("--technique path --spp 1 --set lpv.cells=8 --set radiosity.edge=1"));
   EXPECT_EQ(path_.exitCode, 0) << path_.err;
   EXPECT_EQ(std::count(path_.err.begin(), path_.err.end(), '\n'), 1) << path_.err;
-  for (const char* part : {"lpv.cells, radiosity.edge", "path does not use"}) EXPECT_NE(path_.err.find(part), std::string::npos) << path_.err;
-  EXPECT_NE(RUN_LUCERNA(render("--technique direct --set rsm.size=8")).err.find("rsm.size: technique direct"), std::string::npos);
-  for (const char* read : {"lpv --set lpv.transport=gather --set lpv.cells=8 --set rsm.size=8", "direct --set shadow.size=64 --set exposure=2", "rsm --set rsm.samples=9 --set texture.anisotropy=1"})
-    EXPECT_EQ(RUN_LUCERNA(render(std::string("--technique ") + read)).err.find("does not use"), std::string::npos) << read;
+  for (const char* part : {"lpv.cells, radiosity.edge", "path does not use"})
+    EXPECT_NE(path_.err.find(part), std::string::npos) << path_.err;
+  EXPECT_NE(RUN_LUCERNA(render("--technique direct --set rsm.size=8")).err.find("rsm.size: technique direct"),
+            std::string::npos);
+  for (const char* read :
+       {"lpv --set lpv.transport=gather --set lpv.cells=8 --set rsm.size=8",
+        "direct --set shadow.size=64 --set exposure=2", "rsm --set rsm.samples=9 --set texture.anisotropy=1"})
+    EXPECT_EQ(RUN_LUCERNA(render(std::string("--technique ") + read)).err.find("does not use"), std::string::npos)
+        << read;
 }
 
 TEST_F(Inputs, FormerSpellingsWorkAndSayTheNewOne) {
@@ -97,8 +112,10 @@ TEST_F(Inputs, FormerSpellingsWorkAndSayTheNewOne) {
     EXPECT_NE(result.err.find(line), std::string::npos) << result.err;
     EXPECT_EQ(result.err.find("does not use"), std::string::npos) << result.err;
   };
-  warned("--technique radiosity --set rad.edge=1 --set radiosity.resolution=16", "--set rad.edge: now written radiosity.edge");
-  warned("--technique radiosity --set radiosity.edge=1 --set radiosity.resolution=16 --deviation rad.centroid=on", "--deviation rad.centroid: now written radiosity.centroid");
+  warned("--technique radiosity --set rad.edge=1 --set radiosity.resolution=16",
+         "--set rad.edge: now written radiosity.edge");
+  warned("--technique radiosity --set radiosity.edge=1 --set radiosity.resolution=16 --deviation rad.centroid=on",
+         "--deviation rad.centroid: now written radiosity.centroid");
   warned("--technique rsm --set rsm.samples=9 --set rsm.near=disc", "--set rsm.near: now written rsm.near-field");
 }
 
@@ -106,16 +123,23 @@ TEST_F(Inputs, ASolutionOfOtherSettingsIsSaidSo) {
   const std::string file = "--technique radiosity --set radiosity.file=" + path("s.lit") + " ";
   ASSERT_EQ(RUN_LUCERNA(render(file + "--set radiosity.edge=1 --set radiosity.resolution=16")).exitCode, 0);
   fs::remove(folder().path() / "x.pfm");
-  expectRefused(render(file + "--set radiosity.edge=0.25"), 2, {"s.lit", "radiosity.edge=1 (asked for: radiosity.edge=0.25)", "another file"});
-  expectRefused(render(file + "--set radiosity.refinements=1"), 2, {"s.lit", "radiosity.refinements=0 (asked for: radiosity.refinements=1)"});
+  expectRefused(render(file + "--set radiosity.edge=0.25"), 2,
+                {"s.lit", "radiosity.edge=1 (asked for: radiosity.edge=0.25)", "another file"});
+  expectRefused(render(file + "--set radiosity.refinements=1"), 2,
+                {"s.lit", "radiosity.refinements=0 (asked for: radiosity.refinements=1)"});
   const RunResult shown = RUN_LUCERNA(render(file));
   EXPECT_EQ(shown.exitCode, 0) << shown.err;
-  for (const char* part : {"shown as solved", "radiosity.edge=1", "radiosity.resolution=16"}) EXPECT_NE(shown.err.find(part), std::string::npos) << shown.err;
-  EXPECT_EQ(RUN_LUCERNA(render(file + "--set radiosity.edge=1 --set radiosity.resolution=16")).err.find("shown as solved"), std::string::npos);
+  for (const char* part : {"shown as solved", "radiosity.edge=1", "radiosity.resolution=16"})
+    EXPECT_NE(shown.err.find(part), std::string::npos) << shown.err;
+  EXPECT_EQ(
+      RUN_LUCERNA(render(file + "--set radiosity.edge=1 --set radiosity.resolution=16")).err.find("shown as solved"),
+      std::string::npos);
 }
 
 TEST_F(Inputs, PicturesOfOtherFormatsAreOneLine) {
-  folder().write("a.xpm", "/* XPM */\nstatic char *a[] = {\n\"2 2 2 1\",\n\"a c #000000\",\n\"b c #ffffff\",\n\"ab\",\n\"ba\"};\n");
+  folder().write(
+      "a.xpm",
+      "/* XPM */\nstatic char *a[] = {\n\"2 2 2 1\",\n\"a c #000000\",\n\"b c #ffffff\",\n\"ab\",\n\"ba\"};\n");
   expectRefused("compare " + path("a.xpm") + " " + path("a.xpm"), 2, {"a.xpm", "png, jpg, tga and bmp"});
 }
 
@@ -126,14 +150,20 @@ TEST_F(Inputs, ModelsNestedWithoutEndAreOneLine) {
     for (int i = 0; i < 100000; ++i) text += part;
     return text;
   };
-  folder().write("a.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset/><library_visual_scenes><visual_scene id=\"s\">" +
-                              repeated("<node>") + repeated("</node>") + "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>");
+  folder().write(
+      "a.dae",
+      "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+      "version=\"1.4.1\"><asset/><library_visual_scenes><visual_scene id=\"s\">" +
+          repeated("<node>") + repeated("</node>") +
+          "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>");
   folder().write("a.x", "xof 0303txt 0032\n" + repeated("Frame a {\n") + repeated("}\n"));
   folder().write("a.ogex", repeated("Node {") + repeated("}"));
-  folder().write("a.ac", "AC3Db\nMATERIAL \"\" rgb 1 1 1  amb 0 0 0  emis 0 0 0  spec 0 0 0  shi 0  trans 0\n" + repeated("OBJECT group\nkids 1\n") + "OBJECT poly\nkids 0\n");
+  folder().write("a.ac", "AC3Db\nMATERIAL \"\" rgb 1 1 1  amb 0 0 0  emis 0 0 0  spec 0 0 0  shi 0  trans 0\n" +
+                             repeated("OBJECT group\nkids 1\n") + "OBJECT poly\nkids 0\n");
   folder().write("a.gltf", "{\"extras\":" + repeated("[") + repeated("]") + "}");
   folder().write("a.json", "{\"model\":" + repeated("[") + repeated("]") + "}");
-  for (const char* name : {"a.dae", "a.x", "a.ogex", "a.ac", "a.gltf", "a.json"}) expectRefused("info " + path(name), 2, {name});
+  for (const char* name : {"a.dae", "a.x", "a.ogex", "a.ac", "a.gltf", "a.json"})
+    expectRefused("info " + path(name), 2, {name});
 }
 
 TEST_F(Inputs, AFullStandardOutputIsNoSuccess) {
@@ -164,10 +194,13 @@ TEST_F(Inputs, LinesOfErrorsAreNotBrokenByWhatFilesHold) {
 // Found out before the work, not after it.
 TEST_F(Inputs, WhatCannotBeWrittenIsToldAtOnce) {
   fs::create_directory(folder().path() / "folder");
-  for (const std::string& command : {"radiosity solve " + path("m.obj") + " " + path("folder"), "radiosity solve --fidelity original " + path("m.obj") + " " + path("folder"),
-                                     "radiosity solve " + path("m.obj") + " " + path("none/x.sol"), "render " + path("m.obj") + " --technique path --seconds 50 -o " + path("none/x.pfm"),
-                                     "render " + path("m.obj") + " --technique path --seconds 50 -o " + path("x.pfm") + " --json " + path("folder"),
-                                     "tune " + path("m.obj") + " --frame-time 16 -o " + path("folder")}) {
+  for (const std::string& command :
+       {"radiosity solve " + path("m.obj") + " " + path("folder"),
+        "radiosity solve --fidelity original " + path("m.obj") + " " + path("folder"),
+        "radiosity solve " + path("m.obj") + " " + path("none/x.sol"),
+        "render " + path("m.obj") + " --technique path --seconds 50 -o " + path("none/x.pfm"),
+        "render " + path("m.obj") + " --technique path --seconds 50 -o " + path("x.pfm") + " --json " + path("folder"),
+        "tune " + path("m.obj") + " --frame-time 16 -o " + path("folder")}) {
     const auto begun = std::chrono::steady_clock::now();
     const RunResult result = run("timeout 60 '" LUCERNA_BINARY "' " + command);
     EXPECT_EQ(result.exitCode, 2) << command << "\n" << result.err;

@@ -27,7 +27,8 @@ class Installed : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TempFolder>();
-    const RunResult result = run(std::string("cmake --install ") + inQuotes(kBuild) + " --prefix " + inQuotes(*folder_ / "first"));
+    const RunResult result =
+        run(std::string("cmake --install ") + inQuotes(kBuild) + " --prefix " + inQuotes(*folder_ / "first"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     fs::rename(*folder_ / "first", prefix());
     canHide_ = run("unshare -rm true").exitCode == 0;
@@ -40,9 +41,13 @@ class Installed : public ::testing::Test {
   /// `command` in this test's folder where the source and build trees are empty folders (a mount namespace of its own).
   static RunResult runWithoutSources(const std::string& command) {
     std::string hide;
-    for (const fs::path& tree : {fs::path(LUCERNA_SOURCE_DIR), kBuild}) hide += std::string("[ ! -d ") + inQuotes(tree) + " ] || mount -t tmpfs none " + inQuotes(tree) + " || exit 99; ";
-    std::ofstream(path("hidden.sh")) << hide << "test ! -e " << inQuotes(fs::path(LUCERNA_SOURCE_DIR) / "shaders") << " || exit 98\n"
-                                     << "unset LUCERNA_DATA LUCERNA_SHADERS; export XDG_DATA_DIRS=/nowhere; cd " << inQuotes(folder_->path()) << "\n" << command << "\n";
+    for (const fs::path& tree : {fs::path(LUCERNA_SOURCE_DIR), kBuild})
+      hide += std::string("[ ! -d ") + inQuotes(tree) + " ] || mount -t tmpfs none " + inQuotes(tree) + " || exit 99; ";
+    std::ofstream(path("hidden.sh")) << hide << "test ! -e " << inQuotes(fs::path(LUCERNA_SOURCE_DIR) / "shaders")
+                                     << " || exit 98\n"
+                                     << "unset LUCERNA_DATA LUCERNA_SHADERS; export XDG_DATA_DIRS=/nowhere; cd "
+                                     << inQuotes(folder_->path()) << "\n"
+                                     << command << "\n";
     return run(std::string("cd / && unshare -rm sh ") + inQuotes(path("hidden.sh")));
   }
 
@@ -56,9 +61,11 @@ bool Installed::canHide_ = false;
   if (!canHide_) GTEST_SKIP() << "no mount namespaces here (unshare -rm): the source tree cannot be hidden"
 
 TEST_F(Installed, HasWhatTheProgramNeedsAndNothingElse) {
-  for (const char* name : {"bin/lucerna", "share/lucerna/shaders/forward/surface.frag", "share/lucerna/assets/atrium/atrium.json", "share/lucerna/keyFrames/atrium.txt",
-                           "include/lucerna/base/error.hpp", "include/lucerna/shared/lights.h", "share/man/man1/lucerna.1.gz",
-                           "share/bash-completion/completions/lucerna", "share/fish/vendor_completions.d/lucerna.fish", "share/applications/alt.lucerna.Lucerna.desktop"})
+  for (const char* name :
+       {"bin/lucerna", "share/lucerna/shaders/forward/surface.frag", "share/lucerna/assets/atrium/atrium.json",
+        "share/lucerna/keyFrames/atrium.txt", "include/lucerna/base/error.hpp", "include/lucerna/shared/lights.h",
+        "share/man/man1/lucerna.1.gz", "share/bash-completion/completions/lucerna",
+        "share/fish/vendor_completions.d/lucerna.fish", "share/applications/alt.lucerna.Lucerna.desktop"})
     EXPECT_TRUE(fs::exists(prefix() / name)) << name;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix())) {
     EXPECT_NE(entry.path().extension(), ".py") << entry.path();
@@ -68,7 +75,8 @@ TEST_F(Installed, HasWhatTheProgramNeedsAndNothingElse) {
 }
 
 TEST_F(Installed, HoldsNoPathOfTheSourceTreeNorOfThePrefix) {
-  if (run(std::string("grep -qF .debug_info ") + inQuotes(prefix() / "bin/lucerna")).exitCode == 0) GTEST_SKIP() << "debug information names the sources";
+  if (run(std::string("grep -qF .debug_info ") + inQuotes(prefix() / "bin/lucerna")).exitCode == 0)
+    GTEST_SKIP() << "debug information names the sources";
   for (const fs::path& tree : {fs::path(LUCERNA_SOURCE_DIR), *folder_ / "first"}) {
     const RunResult found = run(std::string("grep -rlF ") + inQuotes(tree) + " " + inQuotes(prefix()));
     EXPECT_EQ(found.exitCode, 1) << tree << " is named in\n" << found.out << "with ccache, set base_dir";
@@ -77,8 +85,9 @@ TEST_F(Installed, HoldsNoPathOfTheSourceTreeNorOfThePrefix) {
 
 TEST_F(Installed, ProgramRunsWithTheSourceTreeAway) {
   NEEDS_NAMESPACES();
-  const RunResult result =
-      runWithoutSources("moved/bin/lucerna render moved/share/lucerna/assets/cornell/cornell.json --technique direct --size 32x32 --host osmesa -o direct.png");
+  const RunResult result = runWithoutSources(
+      "moved/bin/lucerna render moved/share/lucerna/assets/cornell/cornell.json --technique direct --size 32x32 --host "
+      "osmesa -o direct.png");
   EXPECT_EQ(result.exitCode, 0) << result.err;
   EXPECT_TRUE(fs::exists(path("direct.png")));
 }
@@ -91,7 +100,8 @@ TEST_F(Installed, ConsumerDrawsWhatTheProgramDraws) {
 #endif
   fs::copy(fs::path(LUCERNA_SOURCE_DIR) / "tests/consumer", path("consumer"), fs::copy_options::recursive);
   const RunResult built = runWithoutSources(
-      "cmake -S consumer -B consumer/build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=" LUCERNA_COMPILER " -DCMAKE_PREFIX_PATH=\"$PWD/moved\" && cmake --build consumer/build");
+      "cmake -S consumer -B consumer/build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=" LUCERNA_COMPILER
+      " -DCMAKE_PREFIX_PATH=\"$PWD/moved\" && cmake --build consumer/build");
   ASSERT_EQ(built.exitCode, 0) << built.out << built.err;
   const std::string scene = "moved/share/lucerna/assets/cornell/cornell.json";
   const RunResult consumer = runWithoutSources("consumer/build/consumer " + scene + " consumer.pfm osmesa");
@@ -99,7 +109,8 @@ TEST_F(Installed, ConsumerDrawsWhatTheProgramDraws) {
   EXPECT_TRUE(fs::exists(path("consumer.pfm")));
 
   const RunResult program = runWithoutSources("moved/bin/lucerna render " + scene +
-                                              " --technique lpv --set lpv.transport=propagate --set lpv.cells=16 --size 96x64 --host osmesa --quiet -o program.pfm --json program.json");
+                                              " --technique lpv --set lpv.transport=propagate --set lpv.cells=16 "
+                                              "--size 96x64 --host osmesa --quiet -o program.pfm --json program.json");
   ASSERT_EQ(program.exitCode, 0) << program.err;
   const auto mean = nlohmann::json::parse(std::ifstream(path("program.json"))).at("mean").get<std::vector<double>>();
   std::istringstream numbers(consumer.out);
@@ -116,7 +127,8 @@ TEST_F(Installed, ConsumerDrawsWhatTheProgramDraws) {
 
 TEST_F(Installed, DesktopEntryIsValid) {
   if (!installed("desktop-file-validate")) GTEST_SKIP() << "desktop-file-validate is not installed";
-  const RunResult result = run(std::string("desktop-file-validate ") + inQuotes(prefix() / "share/applications/alt.lucerna.Lucerna.desktop"));
+  const RunResult result = run(std::string("desktop-file-validate ") +
+                               inQuotes(prefix() / "share/applications/alt.lucerna.Lucerna.desktop"));
   EXPECT_EQ(result.exitCode, 0);
   EXPECT_EQ(result.out, "");
 }
@@ -125,7 +137,8 @@ TEST_F(Installed, MetainfoIsValid) {
   if (!installed("appstreamcli")) GTEST_SKIP() << "appstreamcli is not installed";
   const RunResult tree = run(std::string("appstreamcli validate-tree --no-net ") + inQuotes(prefix()));
   EXPECT_EQ(tree.exitCode, 0) << tree.out << tree.err;
-  const RunResult file = run(std::string("appstreamcli validate --no-net ") + inQuotes(prefix() / "share/metainfo/alt.lucerna.Lucerna.metainfo.xml"));
+  const RunResult file = run(std::string("appstreamcli validate --no-net ") +
+                             inQuotes(prefix() / "share/metainfo/alt.lucerna.Lucerna.metainfo.xml"));
   EXPECT_EQ(file.exitCode, 0) << file.out << file.err;
 }
 
@@ -136,13 +149,17 @@ TEST(DebianPackages, PassLintian) {
   GTEST_SKIP() << "a sanitizer build is not packaged";
 #endif
   const TempFolder folder;
-  const RunResult made = run(std::string("cpack --config ") + inQuotes(kBuild / "CPackConfig.cmake") + " -G DEB -B " + inQuotes(folder.path()));
+  const RunResult made = run(std::string("cpack --config ") + inQuotes(kBuild / "CPackConfig.cmake") + " -G DEB -B " +
+                             inQuotes(folder.path()));
   ASSERT_EQ(made.exitCode, 0) << made.out << made.err;
   const std::string program = run(std::string("ls ") + inQuotes(folder.path()) + "/lucerna_*.deb").out;
   const RunResult fields = run("dpkg-deb --field " + program.substr(0, program.find('\n')));
-  for (const char* part : {"Package: lucerna\n", "Section: graphics\n", "libglew", "libassimp", "libosmesa6", "gnuplot-nox"})
+  for (const char* part :
+       {"Package: lucerna\n", "Section: graphics\n", "libglew", "libassimp", "libosmesa6", "gnuplot-nox"})
     EXPECT_NE(fields.out.find(part), std::string::npos) << part << " is not in\n" << fields.out;
-  const RunResult lint = run(std::string("lintian --allow-root --no-cfg --fail-on error,warning --tag-display-limit 0 ") + inQuotes(folder.path()) + "/*.deb");
+  const RunResult lint =
+      run(std::string("lintian --allow-root --no-cfg --fail-on error,warning --tag-display-limit 0 ") +
+          inQuotes(folder.path()) + "/*.deb");
   EXPECT_EQ(lint.exitCode, 0) << lint.out << lint.err;
   EXPECT_EQ(lint.out, "");
 }

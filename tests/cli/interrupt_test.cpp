@@ -1,5 +1,5 @@
-// One rule for every command that is stopped by Ctrl-C or SIGTERM: state is kept, no final file is written, the exit code is 130 or 143, and the same
-// command ends with the file that an undisturbed run writes, bit by bit.
+// One rule for every command that is stopped by Ctrl-C or SIGTERM: state is kept, no final file is written, the exit
+// code is 130 or 143, and the same command ends with the file that an undisturbed run writes, bit by bit.
 #include "base/files.hpp"
 #include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
@@ -47,7 +47,8 @@ f 9 10 11 12
   }
   std::string path(const char* name) const { return (folder_ / name).string(); }
 
-  /// Runs `command` undisturbed for its file and its time; then stops it at a share of that time and lets it go on. The long form does so three times.
+  /// Runs `command` undisturbed for its file and its time; then stops it at a share of that time and lets it go on. The
+  /// long form does so three times.
   void expectGoesOn(const std::string& command, const std::string& out, const char* signal, int code, bool cleanStart) {
     const auto begun = std::chrono::steady_clock::now();
     const RunResult whole = run(command);
@@ -58,22 +59,22 @@ f 9 10 11 12
     for (const double share : {0.5, 0.7, 0.85}) {
       if (stops > 0 && !longTests()) break;
       fs::remove(out);
-      const RunResult stopped = run("timeout --preserve-status --signal=" + std::string(signal) + " " + std::to_string(share * seconds) + " " + command);
+      const RunResult stopped = run("timeout --preserve-status --signal=" + std::string(signal) + " " +
+                                    std::to_string(share * seconds) + " " + command);
       if (stopped.exitCode == 0) continue;  // a quiet moment: it had ended
       ++stops;
       // Before it watches, in the first tenths of a second, the signal ends it in its own way.
       EXPECT_TRUE(stopped.exitCode == code) << stopped.exitCode << stopped.err;
       EXPECT_FALSE(fs::exists(out)) << "a final file of unfinished work";
-      if (cleanStart) {
-        EXPECT_NE(stopped.err.find("resumes from"), std::string::npos) << stopped.err;
-      }
+      if (cleanStart) { EXPECT_NE(stopped.err.find("resumes from"), std::string::npos) << stopped.err; }
       const RunResult rest = run(command);
       ASSERT_EQ(rest.exitCode, 0) << rest.err;
       EXPECT_EQ(readFileBytes(out), expected) << signal << " at " << share;
     }
     EXPECT_GT(stops, 0) << "it was never stopped: " << seconds << " s";
     for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(out).parent_path()))
-      EXPECT_TRUE(entry.path() == out || entry.path().extension() == ".obj" || entry.path().extension() == ".mtl") << entry.path() << " is left over";
+      EXPECT_TRUE(entry.path() == out || entry.path().extension() == ".obj" || entry.path().extension() == ".mtl")
+          << entry.path() << " is left over";
   }
 
  private:
@@ -88,19 +89,24 @@ TEST_F(Interrupt, ASolutionIsNotWrittenBeforeItIsOne) {
 }
 
 TEST_F(Interrupt, ARefinedSolutionTakesUpItsOwnRows) {
-  expectGoesOn("'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.sol") +
-                   "' 16 --edge 0.3 --memory 0.01 --refinements 1 --visibility rays --solver jacobi --error 1e-5 --quiet",
-               path("o.sol"), "TERM", 143, true);
+  expectGoesOn(
+      "'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.sol") +
+          "' 16 --edge 0.3 --memory 0.01 --refinements 1 --visibility rays --solver jacobi --error 1e-5 --quiet",
+      path("o.sol"), "TERM", 143, true);
 }
 
 TEST_F(Interrupt, APathTracedPictureGoesOnFromItsFilm) {
-  expectGoesOn("'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique path --camera 0,1,0.9,0,1,0,70 --size 64x64 --spp 192 --quiet -o '" + path("o.pfm") + "'",
+  expectGoesOn("'" LUCERNA_BINARY "' render '" + path("room.obj") +
+                   "' --technique path --camera 0,1,0.9,0,1,0,70 --size 64x64 --spp 192 --quiet -o '" + path("o.pfm") +
+                   "'",
                path("o.pfm"), "INT", 130, true);
 }
 
 TEST_F(Interrupt, AFullDiskDoesNotCostTheFinishedPicture) {
-  const RunResult result = run("'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique path --camera 0,1,0.9,0,1,0,70 --size 16x16 --spp 2 --quiet --checkpoint /dev/full/none -o '" +
-                               path("o.pfm") + "'");
+  const RunResult result =
+      run("'" LUCERNA_BINARY "' render '" + path("room.obj") +
+          "' --technique path --camera 0,1,0.9,0,1,0,70 --size 16x16 --spp 2 --quiet --checkpoint /dev/full/none -o '" +
+          path("o.pfm") + "'");
   EXPECT_EQ(result.exitCode, 2) << result.err;
   EXPECT_TRUE(fs::exists(path("o.pfm")));
 }

@@ -1,4 +1,5 @@
-// lucerna lab: each lab's stub, solution and typical wrong answers; a student's way from start to report; figures of the READMEs.
+// lucerna lab: each lab's stub, solution and typical wrong answers; a student's way from start to report; figures of
+// the READMEs.
 #include "base/files.hpp"
 #include "settings/deviations.hpp"
 #include "support/long_tests.hpp"
@@ -66,14 +67,16 @@ TEST(LabList, EightLabsOfThreeToSevenTasks) {
   }
 }
 
-// A correct answer fails less than once in 10,000 runs: at most one of 10,000 may, and about 1 % of the tests have p < 1 %.
+// A correct answer fails less than once in 10,000 runs: at most one of 10,000 may, and about 1 % of the tests have p <
+// 1 %.
 TEST(LabFalseAlarms, FewerThanOneIn10000) {
   if (!longTests()) GTEST_SKIP() << "minutes to hours: LUCERNA_LONG_TESTS";
   const char* wanted = std::getenv("LUCERNA_LAB_RUNS");
   const int runs = wanted ? std::atoi(wanted) : 10000;
   for (const json& lab : labs()) {
     TempFolder folder;
-    const RunResult proved = RUN_LUCERNA(fmt::format("lab prove {} --runs {} --json {}", lab.at("lab").dump(), runs, (folder / "proof.json").string()));
+    const RunResult proved = RUN_LUCERNA(
+        fmt::format("lab prove {} --runs {} --json {}", lab.at("lab").dump(), runs, (folder / "proof.json").string()));
     const json proof = readJson(folder / "proof.json").at("labs").at(0);
     EXPECT_EQ(proof.at("runs"), runs);
     EXPECT_LE(proof.at("refusals"), 1) << proved.out;
@@ -84,15 +87,18 @@ TEST(LabFalseAlarms, FewerThanOneIn10000) {
 
 TEST(LabReadme, FiguresAreThoseOfTheCheck) {
   for (const json& lab : labs()) {
-    const std::string readme = readFileText(std::filesystem::path(LUCERNA_SOURCE_DIR) / "demo/labs" / lab.at("folder").get<std::string>() / "README.md");
+    const std::string readme = readFileText(std::filesystem::path(LUCERNA_SOURCE_DIR) / "demo/labs" /
+                                            lab.at("folder").get<std::string>() / "README.md");
     const RunResult figures = RUN_LUCERNA(fmt::format("lab figures {}", lab.at("lab").dump()));
     ASSERT_EQ(figures.exitCode, 0) << figures.err;
     std::istringstream stream(figures.out);
     int count = 0;
-    for (std::string line; std::getline(stream, line); ++count) EXPECT_NE(readme.find(line + "\n"), std::string::npos) << lab.at("folder") << ": " << line;
+    for (std::string line; std::getline(stream, line); ++count)
+      EXPECT_NE(readme.find(line + "\n"), std::string::npos) << lab.at("folder") << ": " << line;
     EXPECT_GE(count, 3) << lab.at("folder");
     for (const json& task : lab.at("tasks"))
-      EXPECT_NE(readme.find(fmt::format("\n{}. ", task.at("number").dump())), std::string::npos) << lab.at("folder") << ": README.md does not name task " << task.at("number");
+      EXPECT_NE(readme.find(fmt::format("\n{}. ", task.at("number").dump())), std::string::npos)
+          << lab.at("folder") << ": README.md does not name task " << task.at("number");
   }
 }
 
@@ -105,7 +111,8 @@ TEST(LabMuseum, EveryDeviationHasARoomAndATest) {
   const RunResult made = RUN_LUCERNA(fmt::format("lab museum -o {}", (folder / "museum.html").string()));
   ASSERT_EQ(made.exitCode, 0) << made.err;
   const std::string html = readFileText(folder / "museum.html");
-  for (const Deviation& deviation : allDeviations()) EXPECT_NE(html.find(fmt::format("<section id=\"{}\">", deviation.name)), std::string::npos) << deviation.name;
+  for (const Deviation& deviation : allDeviations())
+    EXPECT_NE(html.find(fmt::format("<section id=\"{}\">", deviation.name)), std::string::npos) << deviation.name;
   static const std::regex kTest(R"(<code>(tests/[a-z_/]+\.cpp): (\w+)</code>)");
   int rooms = 0;
   for (auto it = std::sregex_iterator(html.begin(), html.end(), kTest); it != std::sregex_iterator(); ++it, ++rooms) {
@@ -119,15 +126,18 @@ TEST(LabMuseum, EveryDeviationHasARoomAndATest) {
 // The answer follows from the seed; one candidate alone is right; the hidden one leaves a mark on the instruments.
 TEST(LabMystery, OneCandidateIsRightAndLeavesAMark) {
   TempFolder folder;
-  const RunResult shown = RUN_LUCERNA(fmt::format("lab mystery --seed ada -o {} --json {}", (folder / "m").string(), (folder / "m.json").string()));
+  const RunResult shown = RUN_LUCERNA(
+      fmt::format("lab mystery --seed ada -o {} --json {}", (folder / "m").string(), (folder / "m.json").string()));
   ASSERT_EQ(shown.exitCode, 0) << shown.err;
   const json mystery = readJson(folder / "m.json");
   double largest = 0.0;
-  for (const json& r : mystery.at("readings")) largest = std::max(largest, std::abs(r.at("mystery").get<double>() / r.at("sound").get<double>() - 1.0));
+  for (const json& r : mystery.at("readings"))
+    largest = std::max(largest, std::abs(r.at("mystery").get<double>() / r.at("sound").get<double>() - 1.0));
   EXPECT_GT(largest, 0.01) << mystery.dump(1);
   int right = 0;
   for (const json& name : mystery.at("candidates")) {
-    right += RUN_LUCERNA(fmt::format("lab mystery --seed ada --answer {}", name.get<std::string>())).exitCode == 0 ? 1 : 0;
+    right +=
+        RUN_LUCERNA(fmt::format("lab mystery --seed ada --answer {}", name.get<std::string>())).exitCode == 0 ? 1 : 0;
   }
   EXPECT_EQ(right, 1);
   EXPECT_EQ(RUN_LUCERNA("lab mystery --seed ada --answer lpv.nothing").exitCode, 2);
@@ -166,7 +176,8 @@ TEST_F(LabWay, CompileErrorsNameFileAndLine) {
 }
 
 TEST_F(LabWay, ProbesAreOutOfReach) {
-  for (const char* line : {"#define PROBE 2", "uint hack = gl_GlobalInvocationID.x;", "layout(std430) buffer B { float b[]; };", "float x = float(labNoise);"}) {
+  for (const char* line : {"#define PROBE 2", "uint hack = gl_GlobalInvocationID.x;",
+                           "layout(std430) buffer B { float b[]; };", "float x = float(labNoise);"}) {
     std::filesystem::remove_all(dir);
     start();
     edit("// TASK 1", fmt::format("{}\n// TASK 1", line));
@@ -194,8 +205,10 @@ TEST_F(LabWay, FromHintToReport) {
   }
   ASSERT_EQ(lab(fmt::format("solution 1 {}", dir.string())).exitCode, 0);
   EXPECT_TRUE(std::filesystem::exists(dir / "tasks.mine.glsl")) << "the student's own file is kept";
-  const std::string files = fmt::format("--json {} --junit {} --gradescope {}", (folder / "r.json").string(), (folder / "r.xml").string(), (folder / "g.json").string());
-  EXPECT_EQ(lab(fmt::format("check 1 {} {} --nonce 7", dir.string(), files)).exitCode, 2) << "answers.txt is empty still";
+  const std::string files = fmt::format("--json {} --junit {} --gradescope {}", (folder / "r.json").string(),
+                                        (folder / "r.xml").string(), (folder / "g.json").string());
+  EXPECT_EQ(lab(fmt::format("check 1 {} {} --nonce 7", dir.string(), files)).exitCode, 2)
+      << "answers.txt is empty still";
   const json result = readJson(folder / "r.json");
   EXPECT_EQ(result.at("score"), 85.0) << result.dump(1);
   EXPECT_EQ(result.at("seed"), "ada");
@@ -230,7 +243,8 @@ TEST_F(LabWay, NonceAndSeed) {
     result.erase("seconds");
     return result;
   };
-  const json once = checked("--nonce 11"), again = checked("--nonce 11"), otherNonce = checked("--nonce 12"), otherSeed = checked("--nonce 11 --seed bob");
+  const json once = checked("--nonce 11"), again = checked("--nonce 11"), otherNonce = checked("--nonce 12"),
+             otherSeed = checked("--nonce 11 --seed bob");
   EXPECT_EQ(once, again);
   EXPECT_NE(once.at("checks"), otherNonce.at("checks"));
   EXPECT_NE(once.at("checks"), otherSeed.at("checks"));

@@ -1,4 +1,5 @@
-// lucerna compare, bench error|stability|needs, tune, --settings: contracts, what is refused, and that an interrupted bench goes on.
+// lucerna compare, bench error|stability|needs, tune, --settings: contracts, what is refused, and that an interrupted
+// bench goes on.
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "support/long_tests.hpp"
@@ -34,12 +35,15 @@ class Measure : public ::testing::Test {
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(std::ifstream(path(name))); }
   std::string benchError(const std::string& more) const {
-    return "bench error '" + path("scene.obj") + "' --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --out '" + path("out") + "' --json '" + path("error.json") + "' " + more;
+    return "bench error '" + path("scene.obj") +
+           "' --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --out '" + path("out") + "' --json '" +
+           path("error.json") + "' " + more;
   }
   void expectOneLine(const RunResult& result, int exitCode, const std::vector<std::string>& parts) const {
     EXPECT_EQ(result.exitCode, exitCode) << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
   }
 
  private:
@@ -51,7 +55,8 @@ TEST_F(Measure, CompareSaysHowFarTwoPicturesAreApart) {
   image.at(3, 4).y = 5.0f;
   writeImage(path("a.pfm"), image);
   writeImage(path("b.pfm"), reference);
-  const RunResult result = RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("b.pfm") + "' --heatmap '" + path("heat.png") + "' --json '" + path("c.json") + "'");
+  const RunResult result = RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("b.pfm") + "' --heatmap '" +
+                                       path("heat.png") + "' --json '" + path("c.json") + "'");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto c = json("c.json");
   EXPECT_NEAR(c.at("rmse"), std::sqrt((0.04 * 599 + 9.0) / 600.0), 1e-6);
@@ -67,7 +72,8 @@ TEST_F(Measure, CompareSaysHowFarTwoPicturesAreApart) {
   EXPECT_GT(readBitmap(path("heat.png")).width, 40);
   writeImage(path("small.pfm"), Image(3, 3));
   expectOneLine(RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("small.pfm") + "'"), 2, {"20x10", "3x3"});
-  expectOneLine(RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("b.pfm") + "' --heatmap x.jpg"), 2, {"--heatmap", "png"});
+  expectOneLine(RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("b.pfm") + "' --heatmap x.jpg"), 2,
+                {"--heatmap", "png"});
 }
 
 TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
@@ -91,8 +97,12 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     return value.is_number() ? value.get<double>() : 0.0;
   };
   // Equal within two standard errors is equal.
-  const auto spread = [&](const nlohmann::json& a, const nlohmann::json& b) { return 2.0 * std::hypot(number(a, "l2_error"), number(b, "l2_error")); };
-  const auto slowest = [](const nlohmann::json& row) { return *std::max_element(row.at("wall_ms_samples").begin(), row.at("wall_ms_samples").end()); };
+  const auto spread = [&](const nlohmann::json& a, const nlohmann::json& b) {
+    return 2.0 * std::hypot(number(a, "l2_error"), number(b, "l2_error"));
+  };
+  const auto slowest = [](const nlohmann::json& row) {
+    return *std::max_element(row.at("wall_ms_samples").begin(), row.at("wall_ms_samples").end());
+  };
   int beaten = 0;
   for (const auto& row : report.at("rows")) {
     if (row.at("inside_front")) continue;
@@ -100,9 +110,11 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     EXPECT_FALSE(row.at("pareto")) << row.at("label");
     bool isBeaten = false;
     for (const auto& other : report.at("rows"))
-      isBeaten |= other.contains("inside_model") && other.at("inside_model").at("model") == row.at("inside_model").at("model") &&
-                  other != row && (other.at("ms") <= row.at("ms") || other.at("ms") <= slowest(row)) &&
-                  number(other, "l2") <= std::max(number(row, "l2") + spread(row, other), 3.0 * number(row, "noise_l2"));
+      isBeaten |=
+          other.contains("inside_model") &&
+          other.at("inside_model").at("model") == row.at("inside_model").at("model") && other != row &&
+          (other.at("ms") <= row.at("ms") || other.at("ms") <= slowest(row)) &&
+          number(other, "l2") <= std::max(number(row, "l2") + spread(row, other), 3.0 * number(row, "noise_l2"));
     EXPECT_TRUE(isBeaten) << row.at("label");
   }
   EXPECT_GT(beaten, 0);
@@ -111,7 +123,8 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     if (row.at("technique") == "path") ++ofPath[row.at("fidelity").get<std::string>()];
   EXPECT_GE(ofPath["corrected"], 3);
   EXPECT_GE(ofPath["original"], 3);
-  EXPECT_EQ(report.at("references").size(), 6u);  // light that paths to receivers are given and that propagation is given are two
+  EXPECT_EQ(report.at("references").size(),
+            6u);  // light that paths to receivers are given and that propagation is given are two
   EXPECT_EQ(report.at("model").size(), 5u);
   // What techniques must beat stands beside them: nothing scattered has 100 %, by pixels and in blocks, of all light
   // and inside each model.
@@ -127,7 +140,8 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   expectYardsticks(report.at("yardsticks")[0], report.at("yardsticks")[1]);
   ASSERT_EQ(report.at("inside_models").size(), 2u);  // direct light, and the gather's
   for (const auto& model : report.at("inside_models")) expectYardsticks(model.at("black"), model.at("constant"));
-  for (const char* file : {"report.html", "error.csv", "error.json"}) EXPECT_TRUE(fs::exists(path("out") + "/" + file)) << file;
+  for (const char* file : {"report.html", "error.csv", "error.json"})
+    EXPECT_TRUE(fs::exists(path("out") + "/" + file)) << file;
   // A page of its own: nothing is fetched.
   const std::string page = readFileText(path("out") + "/report.html");
   EXPECT_EQ(page.find("src=\"http"), std::string::npos);
@@ -137,7 +151,8 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   // One row is lost and one damaged: these are measured again, the others stay as they are.
   std::vector<fs::path> rows;
   for (const auto& entry : fs::directory_iterator(path("out") + "/rows"))
-    if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with("path")) rows.push_back(entry.path());
+    if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with("path"))
+      rows.push_back(entry.path());
   std::sort(rows.begin(), rows.end());
   fs::remove(rows[0]);
   std::ofstream(rows[1]) << "{ half";
@@ -151,7 +166,9 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   EXPECT_EQ(json("error.json").at("rows").size(), report.at("rows").size());
 
   // Another scene or size is another bench.
-  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --size 32x18 --reference-spp 16 --out '" + path("out") + "'"), 2, {"another bench", "out"});
+  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --size 32x18 --reference-spp 16 --out '" +
+                            path("out") + "'"),
+                2, {"another bench", "out"});
 }
 
 // A sun and an emissive lamp. RSM and LPV know no emissive surfaces: what they are judged by holds none of the lamp's
@@ -208,9 +225,7 @@ TEST_F(Measure, TechniquesAreJudgedByTheLightThatTheyAreGiven) {
     EXPECT_FALSE(line.at("leaves_out").get<std::string>().starts_with("no light of")) << line.dump();
   for (const auto& row : on.at("rows")) {
     EXPECT_EQ(row.contains("inside_model"), row.at("technique") != "radiosity") << "it has all of this scene's lights";
-    if (row.contains("inside_model")) {
-      EXPECT_EQ(row.at("inside_model").at("lights"), "sun");
-    }
+    if (row.contains("inside_model")) { EXPECT_EQ(row.at("inside_model").at("lights"), "sun"); }
     // Forward shading of the sun is right inside its model, and far off all light.
     if (row.at("technique") == "direct") {
       EXPECT_LT(row.at("inside_model").at("l2").get<double>(), 0.15);
@@ -226,13 +241,15 @@ TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
   for (const auto& row : ladder.at("rows")) {
     EXPECT_EQ(row.at("technique"), "radiosity");
     for (const std::string setting : row.at("settings")) {
-      if (row.at("series") == "radiosity patches" && setting.starts_with("radiosity.edge=")) edges[setting.substr(15)] = row;
+      if (row.at("series") == "radiosity patches" && setting.starts_with("radiosity.edge="))
+        edges[setting.substr(15)] = row;
       if (setting.starts_with("radiosity.resolution=")) resolutions[setting.substr(21)] = row;
     }
   }
   ASSERT_EQ(edges.size(), 3u);
   EXPECT_EQ(resolutions.size(), 3u);
-  // Solving is baking, and smaller patches take longer; the settings reach the solver: the biases differ (errors may both be below the reference's noise).
+  // Solving is baking, and smaller patches take longer; the settings reach the solver: the biases differ (errors may
+  // both be below the reference's noise).
   const auto &coarse = edges.at("1.33333"), &fine = edges.at("0.333333");
   EXPECT_GT(fine.at("setup_ms").get<double>(), coarse.at("setup_ms").get<double>());
   EXPECT_NE(fine.at("bias"), coarse.at("bias"));
@@ -241,35 +258,51 @@ TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
   ASSERT_EQ(RUN_LUCERNA(benchError("--techniques radiosity --deviations")).exitCode, 0);
   std::map<std::string, double> bias;
   const nlohmann::json deviations = json("error.json");
-  for (const auto& row : deviations.at("rows")) bias[row.at("fidelity") == "original" ? "original" : row.at("deviations").empty() ? "" : row.at("deviations")[0].get<std::string>()] = row.at("bias");
-  for (const char* name : {"", "original", "radiosity.published-map=on", "radiosity.centroid=on", "radiosity.fixed-orientation=on", "radiosity.no-near-field=on"}) EXPECT_TRUE(bias.contains(name)) << name;
+  for (const auto& row : deviations.at("rows"))
+    bias[row.at("fidelity") == "original" ? "original"
+         : row.at("deviations").empty()   ? ""
+                                          : row.at("deviations")[0].get<std::string>()] = row.at("bias");
+  for (const char* name : {"", "original", "radiosity.published-map=on", "radiosity.centroid=on",
+                           "radiosity.fixed-orientation=on", "radiosity.no-near-field=on"})
+    EXPECT_TRUE(bias.contains(name)) << name;
   EXPECT_NE(bias[""], bias["radiosity.published-map=on"]);
 }
 
 TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {
-  const std::string common = "tune '" + path("scene.obj") + "' --size 32x16 --reference-spp 16 --budget 1 --frames 1 --small --techniques direct,rsm --out '" + path("out") + "' ";
+  const std::string common =
+      "tune '" + path("scene.obj") +
+      "' --size 32x16 --reference-spp 16 --budget 1 --frames 1 --small --techniques direct,rsm --out '" + path("out") +
+      "' ";
   ASSERT_EQ(RUN_LUCERNA(common + "--frame-time 100000 -o '" + path("s.json") + "'").exitCode, 0);
   const auto settings = json("s.json");
   EXPECT_TRUE(settings.contains("technique"));
   EXPECT_GT(settings.at("measured").at("setup_ms").get<double>(), 0.0);
-  const RunResult picture = RUN_LUCERNA("render '" + path("scene.obj") + "' --size 32x16 --settings '" + path("s.json") + "' -o '" + path("p.pfm") + "' --json '" + path("p.json") + "'");
+  const RunResult picture =
+      RUN_LUCERNA("render '" + path("scene.obj") + "' --size 32x16 --settings '" + path("s.json") + "' -o '" +
+                  path("p.pfm") + "' --json '" + path("p.json") + "'");
   ASSERT_EQ(picture.exitCode, 0) << picture.err;
   EXPECT_EQ(json("p.json").at("technique"), settings.at("technique"));
   EXPECT_EQ(json("p.json").at("settings"), settings.at("settings"));
-  expectOneLine(RUN_LUCERNA(common + "--quiet --error 1e-9 -o '" + path("s.json") + "'"), 2, {"no settings meet", "closest", "set-up"});
-  expectOneLine(RUN_LUCERNA(common + "--quiet --frame-time 100000 --setup-time 1e-6 -o '" + path("s.json") + "'"), 2, {"--setup-time", "fastest"});
+  expectOneLine(RUN_LUCERNA(common + "--quiet --error 1e-9 -o '" + path("s.json") + "'"), 2,
+                {"no settings meet", "closest", "set-up"});
+  expectOneLine(RUN_LUCERNA(common + "--quiet --frame-time 100000 --setup-time 1e-6 -o '" + path("s.json") + "'"), 2,
+                {"--setup-time", "fastest"});
   expectOneLine(RUN_LUCERNA(common + "-o '" + path("s.json") + "'"), 2, {"--frame-time", "--error"});
   std::ofstream(path("bad.json")) << "[1, 2";
-  expectOneLine(RUN_LUCERNA("render '" + path("scene.obj") + "' --settings '" + path("bad.json") + "' -o '" + path("p.pfm") + "'"), 2, {"--settings", "bad.json"});
+  expectOneLine(RUN_LUCERNA("render '" + path("scene.obj") + "' --settings '" + path("bad.json") + "' -o '" +
+                            path("p.pfm") + "'"),
+                2, {"--settings", "bad.json"});
 }
 
 TEST_F(Measure, WhatCannotBeIsOneLine) {
   std::ofstream(path("file")) << "x";
-  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --out '" + path("file") + "'"), 2, {"--out", "file"});
+  expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --out '" + path("file") + "'"), 2,
+                {"--out", "file"});
   expectOneLine(RUN_LUCERNA(benchError("--techniques magic")), 2, {"magic", "rsm"});
   expectOneLine(RUN_LUCERNA("bench stability --technique magic"), 2, {"magic", "lpv"});
   expectOneLine(RUN_LUCERNA("bench all --out '" + path("file") + "'"), 2, {"--out"});
-  expectOneLine(RUN_LUCERNA("bench all --parts magic --out '" + path("out") + "'"), 2, {"--parts", "magic", "stability"});
+  expectOneLine(RUN_LUCERNA("bench all --parts magic --out '" + path("out") + "'"), 2,
+                {"--parts", "magic", "stability"});
 }
 
 TEST_F(Measure, StabilityRowsSayWhatWasExpected) {
@@ -278,7 +311,8 @@ TEST_F(Measure, StabilityRowsSayWhatWasExpected) {
   const auto rows = json("s.json").at("rows");
   EXPECT_GE(rows.size(), 10u);
   for (const auto& row : rows) {
-    for (const char* key : {"technique", "case", "parameter", "expected", "measured", "verdict"}) EXPECT_TRUE(row.contains(key)) << key;
+    for (const char* key : {"technique", "case", "parameter", "expected", "measured", "verdict"})
+      EXPECT_TRUE(row.contains(key)) << key;
     EXPECT_EQ(row.at("verdict"), "pass") << row.dump();
   }
 }
@@ -295,7 +329,8 @@ TEST_F(Measure, StabilityIsComparedWithATableThatWasKept) {
   EXPECT_EQ(same.exitCode, 0) << same.out;
   EXPECT_TRUE(json("now.json").at("worse").empty());
 
-  // A row that is gone, one that allowed less, one that expected something else, and one of another technique, which is not asked for.
+  // A row that is gone, one that allowed less, one that expected something else, and one of another technique, which is
+  // not asked for.
   auto stricter = kept;
   auto gone = kept.at("rows")[0];
   gone["case"] = "no such case";
@@ -307,21 +342,25 @@ TEST_F(Measure, StabilityIsComparedWithATableThatWasKept) {
   const RunResult worse = against(stricter);
   EXPECT_EQ(worse.exitCode, 1) << worse.out;
   EXPECT_EQ(json("now.json").at("worse").size(), 3u) << worse.out;
-  for (const char* part : {"no such case, sun 1e-09x: gone", "allows", "expects 1, was 7"}) EXPECT_NE(worse.out.find(part), std::string::npos) << part << " in " << worse.out;
+  for (const char* part : {"no such case, sun 1e-09x: gone", "allows", "expects 1, was 7"})
+    EXPECT_NE(worse.out.find(part), std::string::npos) << part << " in " << worse.out;
 
   expectOneLine(against({{"rows", {{{"case", 1}}}}}), 2, {"--compare", "old.json"});
   expectOneLine(RUN_LUCERNA(run + "--compare '" + path("scene.obj") + "'"), 2, {"--compare", "scene.obj"});
 }
 
-// What continuous integration keeps: tests/stability.json, made by `lucerna bench stability --json tests/stability.json`. The short form leaves out the techniques
-// whose rows take long.
+// What continuous integration keeps: tests/stability.json, made by `lucerna bench stability --json
+// tests/stability.json`. The short form leaves out the techniques whose rows take long.
 TEST_F(Measure, NoStabilityRowIsWorseThanTheKeptTable) {
   const std::vector<std::string> techniques =
-      test::longTests() ? std::vector<std::string>{"direct", "rsm", "lpv", "radiosity", "path"} : std::vector<std::string>{"direct", "rsm"};
+      test::longTests() ? std::vector<std::string>{"direct", "rsm", "lpv", "radiosity", "path"}
+                        : std::vector<std::string>{"direct", "rsm"};
   std::size_t rows = 0;
   double seconds = 0.0;
   for (const std::string& technique : techniques) {
-    const RunResult result = RUN_LUCERNA("bench stability --technique " + technique + " --compare '" LUCERNA_SOURCE_DIR "/tests/stability.json' --json '" + path("s.json") + "'");
+    const RunResult result =
+        RUN_LUCERNA("bench stability --technique " + technique +
+                    " --compare '" LUCERNA_SOURCE_DIR "/tests/stability.json' --json '" + path("s.json") + "'");
     EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
     const auto table = json("s.json");
     EXPECT_GE(table.at("rows").size(), 14u) << technique;
@@ -330,29 +369,35 @@ TEST_F(Measure, NoStabilityRowIsWorseThanTheKeptTable) {
     seconds += table.at("seconds").get<double>();
   }
   EXPECT_LT(seconds, 600.0);
-  if (test::longTests()) {
-    EXPECT_GE(rows, 247u);
-  }
+  if (test::longTests()) { EXPECT_GE(rows, 247u); }
 }
 
 TEST_F(Measure, AFullDiskIsOneLine) {
-  if (test::run("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'").exitCode != 0) GTEST_SKIP() << "no permission to mount a tmpfs";
+  if (test::run("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'").exitCode != 0)
+    GTEST_SKIP() << "no permission to mount a tmpfs";
   fs::create_directory(path("small"));
   const std::string small = path("small");
-  const RunResult result = test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench error '" + path("scene.obj") +
-                                "' --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --quiet --techniques direct,rsm --out '" + small + "/out'\"");
+  const RunResult result = test::run(
+      "unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench error '" +
+      path("scene.obj") +
+      "' --size 32x16 --reference-spp 32 --budget 1 --frames 1 --small --quiet --techniques direct,rsm --out '" +
+      small + "/out'\"");
   expectOneLine(result, 2, {"No space left on device", small});
   // Nor a page half written, where the rows fit and the page does not.
-  const RunResult all = test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY + " bench all '" + path("scene.obj") + "' --scale 0.01 --quiet --out '" +
-                             small + "/out'; code=\\$?; test -e '" + small + "/out/index.html' && exit 99; exit \\$code\"");
+  const RunResult all =
+      test::run("unshare -rm sh -c \"mount -t tmpfs -o size=32k none '" + small + "' && " + LUCERNA_BINARY +
+                " bench all '" + path("scene.obj") + "' --scale 0.01 --quiet --out '" + small +
+                "/out'; code=\\$?; test -e '" + small + "/out/index.html' && exit 99; exit \\$code\"");
   expectOneLine(all, 2, {"No space left on device", small});
 }
 
 TEST_F(Measure, NeedsSayWhatLeavingOutSaves) {
-  const RunResult result = RUN_LUCERNA("bench needs '" + path("scene.obj") + "' --size 32x16 --frames 1 --technique direct --json '" + path("n.json") + "'");
+  const RunResult result = RUN_LUCERNA("bench needs '" + path("scene.obj") +
+                                       "' --size 32x16 --frames 1 --technique direct --json '" + path("n.json") + "'");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto n = json("n.json");
-  for (const char* key : {"left_out", "gpu_bytes_with", "gpu_bytes_without", "ms_with", "ms_without", "max_difference"}) ASSERT_TRUE(n.contains(key)) << key;
+  for (const char* key : {"left_out", "gpu_bytes_with", "gpu_bytes_without", "ms_with", "ms_without", "max_difference"})
+    ASSERT_TRUE(n.contains(key)) << key;
   EXPECT_GE(n.at("left_out").size(), 5u);
   EXPECT_LT(n.at("gpu_bytes_without").get<double>(), n.at("gpu_bytes_with").get<double>());
   EXPECT_LE(n.at("max_difference").get<double>(), 1e-5 * n.at("max_radiance").get<double>());

@@ -1,4 +1,5 @@
-// lucerna media and the original's scene JSON on the command line: what they print and write, and that whatever is wrong is one line and exit code 2.
+// lucerna media and the original's scene JSON on the command line: what they print and write, and that whatever is
+// wrong is one line and exit code 2.
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -23,7 +24,8 @@ class MediaCommand : public ::testing::Test {
     const RunResult result = RUN_LUCERNA(arguments);
     EXPECT_EQ(result.exitCode, 2) << arguments << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << arguments << "\n" << result.err;
-    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
   }
 
  private:
@@ -34,7 +36,9 @@ TEST_F(MediaCommand, ListPrintsTheCatalogue) {
   const RunResult result = RUN_LUCERNA("media list --json " + path("media.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1 + 39);
-  for (const char* text : {"grape juice", "measured merlot", "Narasimhan2006, 15 ml in 23 l of water", "18.205 20.383 22.37"}) EXPECT_NE(result.out.find(text), std::string::npos) << text;
+  for (const char* text :
+       {"grape juice", "measured merlot", "Narasimhan2006, 15 ml in 23 l of water", "18.205 20.383 22.37"})
+    EXPECT_NE(result.out.find(text), std::string::npos) << text;
   const auto media = json("media.json").at("media");
   ASSERT_EQ(media.size(), 39u);
   EXPECT_EQ(media[0].at("name"), "milk");
@@ -46,7 +50,9 @@ TEST_F(MediaCommand, ListPrintsTheCatalogue) {
 
 TEST_F(MediaCommand, DraftBecomesASceneThatLoads) {
   write("cup.mtl", "newmtl Milk.001\nnewmtl wall\nKd 0.5 0.5 0.5\n");
-  write("cup.obj", "mtllib cup.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl wall\nf 1 2 3\nusemtl Milk.001\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  write("cup.obj",
+        "mtllib cup.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl wall\nf 1 2 3\nusemtl Milk.001\nf 1 3 2\nf 1 2 "
+        "4\nf 2 3 4\nf 1 4 3\n");
   const RunResult draft = RUN_LUCERNA("media draft " + path("cup.mtl") + " -o " + path("cup.json"));
   ASSERT_EQ(draft.exitCode, 0) << draft.err;
   EXPECT_NE(draft.err.find("Milk.001: milk"), std::string::npos) << draft.err;
@@ -63,8 +69,11 @@ TEST_F(MediaCommand, DraftBecomesASceneThatLoads) {
 TEST_F(MediaCommand, TheOriginalsFilesHaveItsSize) {
   write("a.mtl", "newmtl wall\nKd 0.5 0.5 0.5\n");
   write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wall\nf 1 2 3\n");
-  write("a.json", R"({"scene": {"camera": [0, 0, 900], "cameraLookAt": [0, 0, 0], "fov": 30, "lightPos": [1, 1, 3], "lightColor": [1, 1, 1], "lightIntensity": 9, "scale": 1}})");
-  const std::string options = " --technique path --spp 1 --bounces 0 --quiet --json " + path("r.json") + " -o " + path("r.hdr");
+  write(
+      "a.json",
+      R"({"scene": {"camera": [0, 0, 900], "cameraLookAt": [0, 0, 0], "fov": 30, "lightPos": [1, 1, 3], "lightColor": [1, 1, 1], "lightIntensity": 9, "scale": 1}})");
+  const std::string options =
+      " --technique path --spp 1 --bounces 0 --quiet --json " + path("r.json") + " -o " + path("r.hdr");
   ASSERT_EQ(RUN_LUCERNA("render " + path("a.json") + options).exitCode, 0);
   EXPECT_EQ(json("r.json").at("size"), (std::vector<int>{1920, 1080}));
   ASSERT_EQ(RUN_LUCERNA("render " + path("a.json") + " --size 40x20" + options).exitCode, 0);

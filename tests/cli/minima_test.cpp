@@ -1,4 +1,5 @@
-// On a driver with no more than OpenGL 4.3 guarantees (LUCERNA_GL_MINIMA=1) techniques render, or say in one line which limit they need more of.
+// On a driver with no more than OpenGL 4.3 guarantees (LUCERNA_GL_MINIMA=1) techniques render, or say in one line which
+// limit they need more of.
 #include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
@@ -17,7 +18,8 @@ using lucerna::test::TempFolder;
 class Minima : public ::testing::Test {
  protected:
   RunResult render(const std::string& scene, const std::string& arguments, const std::string& size = "24x24") const {
-    return lucerna::test::run("LUCERNA_GL_MINIMA=1 '" LUCERNA_BINARY "' render '" + scene + "' --host osmesa --size " + size + " --quiet -o '" + picture().string() + "' " + arguments);
+    return lucerna::test::run("LUCERNA_GL_MINIMA=1 '" LUCERNA_BINARY "' render '" + scene + "' --host osmesa --size " +
+                              size + " --quiet -o '" + picture().string() + "' " + arguments);
   }
   void expectRendered(const std::string& arguments, const std::string& size = "24x24") const {
     const RunResult result = render(kCornell, arguments, size);

@@ -1,5 +1,5 @@
-// docs/originals.md: every command of its tables runs, in their order and in one folder, each made small by arguments added to it.
-// The benches take minutes even so: the short form leaves them out.
+// docs/originals.md: every command of its tables runs, in their order and in one folder, each made small by arguments
+// added to it. The benches take minutes even so: the short form leaves them out.
 #include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
@@ -57,7 +57,8 @@ std::vector<Row> rowsOf(const fs::path& file) {
   return rows;
 }
 
-/// What makes a command small: pictures of 32x18, one sample, a sweep, a view of 8 pixels, a thousandth of the published work.
+/// What makes a command small: pictures of 32x18, one sample, a sweep, a view of 8 pixels, a thousandth of the
+/// published work.
 std::string small(const std::string& command) {
   const auto is = [&](const char* beginning) { return command.starts_with(std::string("lucerna ") + beginning); };
   const auto has = [&](const char* part) { return command.find(part) != std::string::npos; };
@@ -70,8 +71,12 @@ std::string small(const std::string& command) {
   }
   if (is("walk")) more = " --record walk --frames 2 --size 32x18 --set lpv.cells=8 --quiet";
   if (is("bench all")) more = " --parts tables,pictures --scale 0.02 --quiet";
-  if (is("bench tables")) more = has("lpv") ? " --scale 0.05 --quiet" : has("vpt") ? " --scale 0.001 --quiet" : " --scale 0.0005 --quiet";
-  if (is("bench pictures")) more = has("lpv") ? " --size 32x18 --quiet" : has("vpt") ? " --scale 0.0005 --size 24x14 --quiet" : " --scale 0.01 --size 48x36 --quiet";
+  if (is("bench tables"))
+    more = has("lpv") ? " --scale 0.05 --quiet" : has("vpt") ? " --scale 0.001 --quiet" : " --scale 0.0005 --quiet";
+  if (is("bench pictures"))
+    more = has("lpv")   ? " --size 32x18 --quiet"
+           : has("vpt") ? " --scale 0.0005 --size 24x14 --quiet"
+                        : " --scale 0.01 --size 48x36 --quiet";
   if (is("radiosity generate")) more = has("assets") ? " --edge 1e9 --quiet" : " --quiet";
   if (is("radiosity show")) more = " --size 48x36 --quiet";
   std::string arguments = command.substr(std::string("lucerna ").size());
@@ -83,7 +88,9 @@ std::string small(const std::string& command) {
     const bool original = has("--fidelity original");
     arguments = fmt::format("{} {} {} {} {}", verb, noun, in, out, original ? 8 : 16);
     while (words >> word) arguments += " " + word;
-    more = original ? " --max-sweeps 1 --quiet" : has("model1") ? " --error 0.5 --quiet" : " --error 0.5 --edge 1e9 --quiet";
+    more = original        ? " --max-sweeps 1 --quiet"
+           : has("model1") ? " --error 0.5 --quiet"
+                           : " --error 0.5 --edge 1e9 --quiet";
   }
   return arguments + more;
 }
@@ -105,10 +112,14 @@ TEST(Originals, EveryCommandOfThePageRuns) {
     if (row.command.starts_with("lucerna bench") && !lucerna::test::longTests()) continue;
     std::string arguments = small(row.command);
     // Models of a few triangles: the published thresholds take minutes to solve.
-    if (arguments.starts_with("radiosity generate model1")) arguments = "radiosity generate model1.out 1 2000 0.15 100000 --quiet";
-    if (arguments.starts_with("radiosity generate model2")) arguments = "radiosity generate model2.out 2 20000 0.3 1000000 --quiet";
-    if (arguments.starts_with("radiosity generate model3")) arguments = "radiosity generate model3.out 3 5000 0.3 10000000 --quiet";
-    const RunResult result = lucerna::test::run("cd '" + folder.path().string() + "' && '" LUCERNA_BINARY "' " + arguments);
+    if (arguments.starts_with("radiosity generate model1"))
+      arguments = "radiosity generate model1.out 1 2000 0.15 100000 --quiet";
+    if (arguments.starts_with("radiosity generate model2"))
+      arguments = "radiosity generate model2.out 2 20000 0.3 1000000 --quiet";
+    if (arguments.starts_with("radiosity generate model3"))
+      arguments = "radiosity generate model3.out 3 5000 0.3 10000000 --quiet";
+    const RunResult result =
+        lucerna::test::run("cd '" + folder.path().string() + "' && '" LUCERNA_BINARY "' " + arguments);
     EXPECT_EQ(result.exitCode, 0) << row.heading << ", " << row.item << "\n" << arguments << "\n" << result.err;
     // What it was to write is there.
     for (const char* option : {" -o ", " --json "})
@@ -127,7 +138,8 @@ TEST(Originals, EveryCommandOfThePageRuns) {
     EXPECT_TRUE(fs::exists(folder.path() / "report" / name)) << name;
   std::ifstream report(folder.path() / "report/index.html");
   const std::string html((std::istreambuf_iterator<char>(report)), std::istreambuf_iterator<char>());
-  for (const char* part : {"Light propagation volumes, on", "Participating media", "5.16 a: espresso", "500x500, 26360 triangles"})
+  for (const char* part :
+       {"Light propagation volumes, on", "Participating media", "5.16 a: espresso", "500x500, 26360 triangles"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 

@@ -1,4 +1,5 @@
-// lucerna radiosity solve in its corrected form, and render --technique radiosity, as a user runs them: settings, wrong input, runs that are killed, disks that are full.
+// lucerna radiosity solve in its corrected form, and render --technique radiosity, as a user runs them: settings, wrong
+// input, runs that are killed, disks that are full.
 #include "base/files.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
@@ -28,24 +29,33 @@ class RadiosityCorrected : public ::testing::Test {
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(std::ifstream(path(name))); }
   std::vector<std::uint8_t> bytes(const std::string& name) const { return lucerna::readFileBytes(path(name)); }
   /// A closed room of side 2 with a lamp in its ceiling, as OBJ; no light of its own is added, since something shines.
-  void room(const std::string& name, const std::string& walls, const std::string& corner = "-1 -1 -1", bool lamp = true) const {
+  void room(const std::string& name, const std::string& walls, const std::string& corner = "-1 -1 -1",
+            bool lamp = true) const {
     std::ofstream(path(name + ".mtl")) << "newmtl wall\n" << walls << "\nnewmtl lamp\nKd 0 0 0\nKe 5 5 5\n";
-    std::ofstream(path(name + ".obj")) << "mtllib " << name << ".mtl\nv " << corner << "\nv 1 -1 -1\nv 1 -1 1\nv -1 -1 1\nv -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\n"
-                                       << "v -0.3 0.999 -0.3\nv 0.3 0.999 -0.3\nv 0.3 0.999 0.3\nv -0.3 0.999 0.3\nusemtl wall\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 4 1 5 8\nf 2 3 7 6\n"
-                                       << (lamp ? "usemtl lamp\nf 9 10 11 12\n" : "");
+    std::ofstream(path(name + ".obj"))
+        << "mtllib " << name << ".mtl\nv " << corner
+        << "\nv 1 -1 -1\nv 1 -1 1\nv -1 -1 1\nv -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\n"
+        << "v -0.3 0.999 -0.3\nv 0.3 0.999 -0.3\nv 0.3 0.999 0.3\nv -0.3 0.999 0.3\nusemtl wall\nf 1 4 3 2\nf 5 6 7 "
+           "8\nf 1 2 6 5\nf 3 4 8 7\nf 4 1 5 8\nf 2 3 7 6\n"
+        << (lamp ? "usemtl lamp\nf 9 10 11 12\n" : "");
   }
   // Pixels learn what they see in one way: automatic chooses by time, and ways differ in their last bits.
   std::string solve(const std::string& in, const std::string& out, const std::string& more = "") const {
-    return "'" LUCERNA_BINARY "' radiosity solve '" + path(in) + "' '" + path(out) + "' 16 --set radiosity.edge=0.5 --set radiosity.visibility=raster " + more;
+    return "'" LUCERNA_BINARY "' radiosity solve '" + path(in) + "' '" + path(out) +
+           "' 16 --set radiosity.edge=0.5 --set radiosity.visibility=raster " + more;
   }
   std::string render(const std::string& more, const std::string& out = "p.pfm") const {
-    return "'" LUCERNA_BINARY "' render '" + path("room.obj") + "' --technique radiosity --set radiosity.visibility=raster --size 24x16 --camera 0,0,0.9,0,0,-1,70 --json '" + path("r.json") + "' -o '" + path(out) + "' " + more;
+    return "'" LUCERNA_BINARY "' render '" + path("room.obj") +
+           "' --technique radiosity --set radiosity.visibility=raster --size 24x16 --camera 0,0,0.9,0,0,-1,70 --json "
+           "'" +
+           path("r.json") + "' -o '" + path(out) + "' " + more;
   }
   void expectRefused(const std::string& command, const std::vector<std::string>& parts, int exitCode = 2) const {
     const RunResult result = run(command);
     EXPECT_EQ(result.exitCode, exitCode) << command << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << command << "\n" << result.err;
-    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
   }
   void expectWorks(const std::string& command) const {
     const RunResult result = run(command);
@@ -58,8 +68,11 @@ class RadiosityCorrected : public ::testing::Test {
 };
 
 TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
-  const std::string all = "--set radiosity.edge=0.7 --set radiosity.resolution=24 --set radiosity.solver=anderson --set radiosity.error=1e-4 --set radiosity.seed=5 --set radiosity.exact-pixels=6 --set radiosity.part-distance=2 "
-                          "--set radiosity.parts=4 --set radiosity.products=50 --set radiosity.memory=100 --set radiosity.repair=off --set radiosity.refinements=1 --set radiosity.steep=0.2 --deviation radiosity.fixed-orientation=on ";
+  const std::string all =
+      "--set radiosity.edge=0.7 --set radiosity.resolution=24 --set radiosity.solver=anderson --set "
+      "radiosity.error=1e-4 --set radiosity.seed=5 --set radiosity.exact-pixels=6 --set radiosity.part-distance=2 "
+      "--set radiosity.parts=4 --set radiosity.products=50 --set radiosity.memory=100 --set radiosity.repair=off --set "
+      "radiosity.refinements=1 --set radiosity.steep=0.2 --deviation radiosity.fixed-orientation=on ";
   expectWorks(solve("room.obj", "a.lit", all + "--json '" + path("s.json") + "'"));
   const nlohmann::json s = json("s.json");
   EXPECT_EQ(s["solver"], "anderson");
@@ -68,7 +81,8 @@ TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
   EXPECT_FALSE(fs::exists(path("a.lit.rows")));
   EXPECT_FALSE(fs::exists(path("a.lit.rows.1")));
   // The picture of that file and the one that render solves itself are the same to the bit.
-  expectWorks(render("--deviation radiosity.fixed-orientation=on --set radiosity.file='" + path("a.lit") + "'", "file.pfm"));
+  expectWorks(
+      render("--deviation radiosity.fixed-orientation=on --set radiosity.file='" + path("a.lit") + "'", "file.pfm"));
   EXPECT_EQ(json("r.json")["radiosity"]["hemicubes"], 0);
   expectWorks(render(all, "own.pfm"));
   EXPECT_EQ(json("r.json")["radiosity"]["patches"], s["patches"]);
@@ -76,18 +90,24 @@ TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
   EXPECT_EQ(bytes("file.pfm"), bytes("own.pfm"));
   // Each does something: another number of patches, or another picture.
   std::set<std::string> pictures{lucerna::readFileText(path("own.pfm"))};
-  for (const char* other : {"--set radiosity.edge=1.2", "--set radiosity.resolution=32", "--set radiosity.seed=6 --deviation radiosity.fixed-orientation=off", "--set radiosity.exact-pixels=0", "--set radiosity.part-distance=0", "--set radiosity.repair=on",
-                            "--deviation radiosity.published-map=on", "--deviation radiosity.fixed-orientation=off"}) {
+  for (const char* other :
+       {"--set radiosity.edge=1.2", "--set radiosity.resolution=32",
+        "--set radiosity.seed=6 --deviation radiosity.fixed-orientation=off", "--set radiosity.exact-pixels=0",
+        "--set radiosity.part-distance=0", "--set radiosity.repair=on", "--deviation radiosity.published-map=on",
+        "--deviation radiosity.fixed-orientation=off"}) {
     expectWorks(render(all + other));
     EXPECT_TRUE(pictures.insert(lucerna::readFileText(path("p.pfm"))).second) << other;
   }
   expectWorks(render(all + "--deviation radiosity.no-near-field=on"));
-  EXPECT_FALSE(pictures.insert(lucerna::readFileText(path("p.pfm"))).second) << "no closed forms and no repair: the picture of radiosity.exact-pixels=0";
+  EXPECT_FALSE(pictures.insert(lucerna::readFileText(path("p.pfm"))).second)
+      << "no closed forms and no repair: the picture of radiosity.exact-pixels=0";
   expectWorks(render(all + "--set radiosity.solver=jacobi"));
   EXPECT_EQ(json("r.json")["radiosity"]["solver"], "jacobi");
   expectWorks(render("--fidelity original --set radiosity.edge=1.2"));
   EXPECT_EQ(json("r.json")["deviations"].dump().find("radiosity.24-bit"), std::string::npos);
-  for (const char* name : {"radiosity.published-map", "radiosity.centroid", "radiosity.fixed-orientation", "radiosity.no-near-field"}) EXPECT_NE(json("r.json")["deviations"].dump().find(name), std::string::npos) << name;
+  for (const char* name :
+       {"radiosity.published-map", "radiosity.centroid", "radiosity.fixed-orientation", "radiosity.no-near-field"})
+    EXPECT_NE(json("r.json")["deviations"].dump().find(name), std::string::npos) << name;
 }
 
 TEST_F(RadiosityCorrected, WrongInputIsOneClearLine) {
@@ -95,12 +115,16 @@ TEST_F(RadiosityCorrected, WrongInputIsOneClearLine) {
   expectRefused(render("--set radiosity.resolution=x"), {"radiosity.resolution", "x"});
   expectRefused(render("--set radiosity.solver=magic"), {"magic", "cg", "jacobi"});
   expectRefused(render("--deviation radiosity.24-bit=on"), {"radiosity.24-bit", "--fidelity original"});
-  expectRefused(solve("room.obj", "o.lit", "--deviation radiosity.24-bit=on"), {"radiosity.24-bit", "--fidelity original"});
-  expectRefused(solve("room.obj", "o.lit", "--set radiosity.mesh=on"), {"radiosity.mesh", "unknown key", "radiosity.edge"});
+  expectRefused(solve("room.obj", "o.lit", "--deviation radiosity.24-bit=on"),
+                {"radiosity.24-bit", "--fidelity original"});
+  expectRefused(solve("room.obj", "o.lit", "--set radiosity.mesh=on"),
+                {"radiosity.mesh", "unknown key", "radiosity.edge"});
   expectRefused(solve("room.obj", "o.lit", "--set lpv.cells=8"), {"lpv.cells", "unknown key"});
   expectRefused(solve("room.obj", "o.lit", "--near-plane 0.1"), {"--near-plane", "no near plane"});
   expectRefused(solve("no.obj", "o.lit"), {"no.obj"});
-  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.rad") + "' --fidelity original --set radiosity.edge=1", {"--set radiosity.edge=1"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.rad") +
+                    "' --fidelity original --set radiosity.edge=1",
+                {"--set radiosity.edge=1"});
   room("white", "Kd 1 1 1\nKe 1 1 1", "-1 -1 -1", false);
   expectRefused(solve("white.obj", "w.lit"), {"reflectance 1 everywhere in a closed scene"});
   EXPECT_FALSE(fs::exists(path("o.lit")));
@@ -116,20 +140,25 @@ TEST_F(RadiosityCorrected, WrongInputIsOneClearLine) {
   // A solution that was cut short, that is another scene's, or made with other deviations.
   expectRefused(render("--set radiosity.file='" + path("room.obj") + "'"), {"room.obj", "not a radiosity solution"});
   expectRefused(render("--set radiosity.file='" + path("h.lit") + "'"), {"h.lit", "another scene"});
-  expectRefused(render("--deviation radiosity.centroid=on --set radiosity.file='" + path("o.lit") + "'"), {"o.lit", "other deviations"});
+  expectRefused(render("--deviation radiosity.centroid=on --set radiosity.file='" + path("o.lit") + "'"),
+                {"o.lit", "other deviations"});
   fs::resize_file(path("o.lit"), fs::file_size(path("o.lit")) - 100);
   const auto cut = bytes("o.lit");
   expectRefused(render("--set radiosity.file='" + path("o.lit") + "'"), {"o.lit", "cut short"});
   EXPECT_EQ(bytes("o.lit"), cut);
 }
 
-// ---------------------------------------------------------------------------------------------------- killed, full, changed
+// ---------------------------------------------------------------------------------------------------- killed, full,
+// changed
 
 /// Many small submissions, two meshes.
-const std::string kLong = "--set radiosity.edge=0.5 --set radiosity.refinements=1 --set radiosity.steep=0.3 --set radiosity.batch=0.05 --quiet ";
+const std::string kLong =
+    "--set radiosity.edge=0.5 --set radiosity.refinements=1 --set radiosity.steep=0.3 --set radiosity.batch=0.05 "
+    "--quiet ";
 
 TEST_F(RadiosityCorrected, KilledRunsGoOnToTheSameBits) {
-  double seconds = 1e9;  // the shorter of two runs: on a busy machine one alone may say too much, and every kill would come too late
+  double seconds =
+      1e9;  // the shorter of two runs: on a busy machine one alone may say too much, and every kill would come too late
   for (int i = 0; i < 2; ++i) {
     const auto start = std::chrono::steady_clock::now();
     expectWorks(solve("room.obj", "whole.lit", kLong + "--json '" + path("w.json") + "'"));
@@ -140,7 +169,8 @@ TEST_F(RadiosityCorrected, KilledRunsGoOnToTheSameBits) {
   int killed = 0, savedAny = 0, refinedRows = 0;
   for (const double share : {0.3, 0.5, 0.7, 0.85, 0.95}) {
     const std::string out = "k.lit";
-    const RunResult first = run("timeout -s KILL " + std::to_string(share * seconds) + " " + solve("room.obj", out, kLong));
+    const RunResult first =
+        run("timeout -s KILL " + std::to_string(share * seconds) + " " + solve("room.obj", out, kLong));
     killed += first.exitCode == 137 || first.exitCode == 124;
     refinedRows += fs::exists(path(out + ".rows.1"));
     if (fs::exists(path(out))) {  // killed after it was saved
@@ -163,7 +193,8 @@ TEST_F(RadiosityCorrected, ACheckpointThatIsCutShortOrAnothersIsHandled) {
   expectWorks(solve("room.obj", "whole.lit", edge));
   // Stopped by Ctrl-C as soon as the first rows are down.
   const auto stopped = [&](const std::string& out) {
-    run("sh -c 'exec \"$0\" \"$@\"' " + solve("room.obj", out, edge + "--set radiosity.seed=2") + " >/dev/null 2>&1 & pid=$!; while kill -0 $pid 2>/dev/null && ! [ $(stat -c %s '" + path(out + ".rows") +
+    run("sh -c 'exec \"$0\" \"$@\"' " + solve("room.obj", out, edge + "--set radiosity.seed=2") +
+        " >/dev/null 2>&1 & pid=$!; while kill -0 $pid 2>/dev/null && ! [ $(stat -c %s '" + path(out + ".rows") +
         "' 2>/dev/null || echo 0) -gt 9000 ]; do :; done; kill -INT $pid; wait $pid");
     return fs::exists(path(out + ".rows"));
   };
@@ -194,7 +225,8 @@ TEST_F(RadiosityCorrected, ACheckpointThatIsCutShortOrAnothersIsHandled) {
 
 TEST_F(RadiosityCorrected, FilesThatChangeUnderTheRunAreLeftAlone) {
   const auto during = [&](const std::string& change) {
-    return run(solve("room.obj", "o.lit", kLong) + " & pid=$!; while kill -0 $pid 2>/dev/null && ! [ -s '" + path("o.lit.rows") + "' ]; do :; done; " + change + "; wait $pid");
+    return run(solve("room.obj", "o.lit", kLong) + " & pid=$!; while kill -0 $pid 2>/dev/null && ! [ -s '" +
+               path("o.lit.rows") + "' ]; do :; done; " + change + "; wait $pid");
   };
   const RunResult out = during("printf theirs > '" + path("o.lit") + "'");
   EXPECT_EQ(out.exitCode, 2) << out.err;
@@ -204,7 +236,8 @@ TEST_F(RadiosityCorrected, FilesThatChangeUnderTheRunAreLeftAlone) {
   ASSERT_TRUE(fs::exists(path("o.lit.rows")));
   expectWorks(solve("room.obj", "o.lit", kLong + "--json '" + path("j.json") + "'"));
   EXPECT_EQ(json("j.json")["hemicubes"], 0);
-  const RunResult rows = during("printf theirs > '" + path("new") + "' && mv '" + path("new") + "' '" + path("o.lit.rows") + "'");
+  const RunResult rows =
+      during("printf theirs > '" + path("new") + "' && mv '" + path("new") + "' '" + path("o.lit.rows") + "'");
   EXPECT_EQ(rows.exitCode, 2) << rows.err;
   EXPECT_NE(rows.err.find("changed or replaced by something else"), std::string::npos) << rows.err;
   EXPECT_EQ(lucerna::readFileText(path("o.lit.rows")), "theirs");
@@ -224,14 +257,18 @@ TEST_F(RadiosityCorrected, ADiskThatIsFullLeavesCheckpointAndSolution) {
   const auto kept = bytes("o.lit.rows");
   EXPECT_GT(kept.size(), 24u);
 
-  if (run("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'").exitCode != 0) GTEST_SKIP() << "no permission to mount a tmpfs; the file size limit above was tried";
+  if (run("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'").exitCode != 0)
+    GTEST_SKIP() << "no permission to mount a tmpfs; the file size limit above was tried";
   // A disk with the checkpoint, the old solution and 8 KiB more.
   fs::create_directory(path("small"));
   const auto kib = (kept.size() + old.size()) / 1024 + 16;
   const std::string command = solve("room.obj", "small/o.lit", kLong), small = path("small");
-  const RunResult full = run("unshare -rm sh -c \"mount -t tmpfs -o size=" + std::to_string(kib) + "k none '" + small + "' && cp '" + path("o.lit") + "' '" + path("o.lit.rows") + "' '" + small +
-                             "/'; head -c 1000000 /dev/zero > '" + small + "/filler' 2>/dev/null; " + command + "; code=\\$?; cmp '" + path("o.lit") + "' '" + small + "/o.lit' && cmp -n " +
-                             std::to_string(kept.size()) + " '" + path("o.lit.rows") + "' '" + small + "/o.lit.rows' && cp '" + small + "/o.lit.rows' '" + path("after.rows") + "' && exit \\$code; exit 99\"");
+  const RunResult full =
+      run("unshare -rm sh -c \"mount -t tmpfs -o size=" + std::to_string(kib) + "k none '" + small + "' && cp '" +
+          path("o.lit") + "' '" + path("o.lit.rows") + "' '" + small + "/'; head -c 1000000 /dev/zero > '" + small +
+          "/filler' 2>/dev/null; " + command + "; code=\\$?; cmp '" + path("o.lit") + "' '" + small +
+          "/o.lit' && cmp -n " + std::to_string(kept.size()) + " '" + path("o.lit.rows") + "' '" + small +
+          "/o.lit.rows' && cp '" + small + "/o.lit.rows' '" + path("after.rows") + "' && exit \\$code; exit 99\"");
   EXPECT_EQ(full.exitCode, 2) << full.out << full.err;
   EXPECT_EQ(std::count(full.err.begin(), full.err.end(), '\n'), 1) << full.err;
   EXPECT_NE(full.err.find("No space left on device"), std::string::npos) << full.err;
@@ -243,7 +280,8 @@ TEST_F(RadiosityCorrected, ADiskThatIsFullLeavesCheckpointAndSolution) {
 
 TEST_F(RadiosityCorrected, WithLittleMemoryTheAnswerIsTheSame) {
   expectWorks(solve("room.obj", "kept.lit", "--error 1e-5 --quiet --json '" + path("k.json") + "'"));
-  const RunResult anew = run(solve("room.obj", "anew.lit", "--error 1e-5 --memory 0.05 --set radiosity.repair=off --json '" + path("a.json") + "'"));
+  const RunResult anew = run(solve(
+      "room.obj", "anew.lit", "--error 1e-5 --memory 0.05 --set radiosity.repair=off --json '" + path("a.json") + "'"));
   ASSERT_EQ(anew.exitCode, 0) << anew.err;
   EXPECT_NE(anew.err.find("read from " + path("anew.lit.rows")), std::string::npos) << anew.err;
   EXPECT_EQ(json("k.json")["hemicubes"], json("k.json")["patches"]);
@@ -280,22 +318,30 @@ TEST_F(RadiosityCorrected, WithLittleMemoryTheAnswerIsTheSame) {
 
 TEST_F(RadiosityCorrected, AgreesWithThePathTracer) {
   const auto bias = [&](const std::string& scene, const std::string& radiosity, const std::string& path_) {
-    const std::string picture = "'" LUCERNA_BINARY "' render '" + scene + "' --component indirect --size 64x64 --quiet ";
+    const std::string picture =
+        "'" LUCERNA_BINARY "' render '" + scene + "' --component indirect --size 64x64 --quiet ";
     expectWorks(picture + "--technique radiosity -o '" + path("radiosity.pfm") + "' " + radiosity);
     expectWorks(picture + "--technique path -o '" + path("path.pfm") + "' " + path_);
-    expectWorks("'" LUCERNA_BINARY "' compare '" + path("radiosity.pfm") + "' '" + path("path.pfm") + "' --json '" + path("c.json") + "'");
+    expectWorks("'" LUCERNA_BINARY "' compare '" + path("radiosity.pfm") + "' '" + path("path.pfm") + "' --json '" +
+                path("c.json") + "'");
     return json("c.json")["relative_bias"].get<double>();
   };
-  EXPECT_LT(std::abs(bias(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json", "--set radiosity.edge=0.1 --set radiosity.resolution=32", "--spp 512")), 0.012);
+  EXPECT_LT(std::abs(bias(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json",
+                          "--set radiosity.edge=0.1 --set radiosity.resolution=32", "--spp 512")),
+            0.012);
 
-  // A court under the sun: pillars go on under its floor, beams lie in them and end in its walls. What runs on inside of something must not darken what is seen of it.
+  // A court under the sun: pillars go on under its floor, beams lie in them and end in its walls. What runs on inside
+  // of something must not darken what is seen of it.
   std::ofstream(path("court.mtl")) << "newmtl stone\nKd 0.7 0.65 0.6\n";
   std::ofstream obj(path("court.obj"));
   obj << "mtllib court.mtl\nusemtl stone\n";
   int vertices = 0;
   const auto box = [&](const std::array<double, 3>& low, const std::array<double, 3>& high, bool inside, bool lid) {
-    for (int corner = 0; corner < 8; ++corner) obj << "v " << (corner & 1 ? high : low)[0] << " " << (corner & 2 ? high : low)[1] << " " << (corner & 4 ? high : low)[2] << "\n";
-    constexpr int kFaces[6][4] = {{0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}, {0, 2, 3, 1}, {4, 5, 7, 6}};  // outwards; the second is the lid
+    for (int corner = 0; corner < 8; ++corner)
+      obj << "v " << (corner & 1 ? high : low)[0] << " " << (corner & 2 ? high : low)[1] << " "
+          << (corner & 4 ? high : low)[2] << "\n";
+    constexpr int kFaces[6][4] = {{0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2},
+                                  {1, 3, 7, 5}, {0, 2, 3, 1}, {4, 5, 7, 6}};  // outwards; the second is the lid
     for (int face = 0; face < 6; ++face) {
       if (face == 1 && !lid) continue;
       obj << "f";
@@ -311,9 +357,11 @@ TEST_F(RadiosityCorrected, AgreesWithThePathTracer) {
   box({-2.2, 1.2, -1.3}, {2.2, 1.45, -1.05}, false, true);
   box({0.75, 1.2, -2.2}, {1.0, 1.5, 2.2}, false, true);
   obj.close();
-  const std::string camera = "--camera -1.8,1.9,1.8,1,0,-1,70 ", coarse = camera + "--set radiosity.edge=0.4 --set radiosity.resolution=32 ";
+  const std::string camera = "--camera -1.8,1.9,1.8,1,0,-1,70 ",
+                    coarse = camera + "--set radiosity.edge=0.4 --set radiosity.resolution=32 ";
   EXPECT_LT(std::abs(bias(path("court.obj"), coarse, camera + "--spp 512")), 0.02);
-  EXPECT_LT(bias(path("court.obj"), coarse + "--deviation radiosity.centroid=on", camera + "--spp 512"), -0.025);  // -0.029: what the right one must not be
+  EXPECT_LT(bias(path("court.obj"), coarse + "--deviation radiosity.centroid=on", camera + "--spp 512"),
+            -0.025);  // -0.029: what the right one must not be
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// lucerna radiosity generate|solve|show as a user runs them, and what happens to the files when a run is stopped, killed, or cannot write.
+// lucerna radiosity generate|solve|show as a user runs them, and what happens to the files when a run is stopped,
+// killed, or cannot write.
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "radiosity/original/rad_file.hpp"
@@ -38,7 +39,8 @@ class Radiosity : public ::testing::Test {
     const RunResult result = run(command);
     EXPECT_EQ(result.exitCode, exitCode) << command << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << command << "\n" << result.err;
-    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
   }
   const TempFolder& folder() const { return folder_; }
 
@@ -47,11 +49,14 @@ class Radiosity : public ::testing::Test {
 };
 
 TEST_F(Radiosity, AnySceneBecomesAFileOfTriangles) {
-  // A floor under a lamp half as large: what the file says of each, in its units; then the published solver and display run on it.
+  // A floor under a lamp half as large: what the file says of each, in its units; then the published solver and display
+  // run on it.
   std::ofstream(path("room.mtl")) << "newmtl floor\nKd 0.6 0.3 0\nnewmtl lamp\nKd 0 0 0\nKe 2 2 2\n";
-  std::ofstream(path("room.obj")) << "mtllib room.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n"
-                                     "usemtl floor\nf 1 4 3 2\nusemtl lamp\nf 5 6 7 8\n";
-  const RunResult made = RUN_LUCERNA("radiosity generate '" + path("room.rad") + "' '" + path("room.obj") + "' --edge 1 --power 1000000 --json '" + path("g.json") + "'");
+  std::ofstream(path("room.obj"))
+      << "mtllib room.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n"
+         "usemtl floor\nf 1 4 3 2\nusemtl lamp\nf 5 6 7 8\n";
+  const RunResult made = RUN_LUCERNA("radiosity generate '" + path("room.rad") + "' '" + path("room.obj") +
+                                     "' --edge 1 --power 1000000 --json '" + path("g.json") + "'");
   ASSERT_EQ(made.exitCode, 0) << made.err;
   const nlohmann::json g = json("g.json");
   EXPECT_NEAR(g["exitance_of_step"].get<double>(), 2.0 * M_PI / 1000000.0, 1e-9);
@@ -65,27 +70,35 @@ TEST_F(Radiosity, AnySceneBecomesAFileOfTriangles) {
     EXPECT_EQ(t.b, 0u);
     EXPECT_NEAR(t.ro, t.e > 0 ? 0.0f : 0.3f, 1e-6f);
     EXPECT_NEAR(t.c[1], t.e > 0 ? 1.0f : 0.5f, 1e-6f);
-    for (const auto& [a, b] : {std::pair(t.p1, t.p2), std::pair(t.p2, t.p3), std::pair(t.p3, t.p1)}) EXPECT_LE(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 1.0f + 1e-6f);
+    for (const auto& [a, b] : {std::pair(t.p1, t.p2), std::pair(t.p2, t.p3), std::pair(t.p3, t.p1)})
+      EXPECT_LE(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 1.0f + 1e-6f);
   }
   EXPECT_NEAR(floor, 16.0, 1e-4);
   EXPECT_NEAR(lamp, 4.0, 1e-4);
   ASSERT_EQ(run(solve(path("room.rad"), path("lit.rad"))).exitCode, 0);
   double received = 0.0;
-  for (const RadTriangle& t : lucerna::readRadFile(path("lit.rad"))) received += t.e == 0 ? t.b * lucerna::areaOf(t) : 0.0;
+  for (const RadTriangle& t : lucerna::readRadFile(path("lit.rad")))
+    received += t.e == 0 ? t.b * lucerna::areaOf(t) : 0.0;
   EXPECT_GT(received, 0.0);
-  EXPECT_EQ(RUN_LUCERNA("radiosity show '" + path("lit.rad") + "' -o '" + path("lit.png") + "' --size 32x24").exitCode, 0);
+  EXPECT_EQ(RUN_LUCERNA("radiosity show '" + path("lit.rad") + "' -o '" + path("lit.png") + "' --size 32x24").exitCode,
+            0);
   // What is no file of triangles is told, and how to make one.
   expectRefused(solve(path("room.obj"), path("x.rad")), {"room.obj", "scene (obj)", "radiosity generate FILE"});
-  expectRefused("'" LUCERNA_BINARY "' radiosity show '" + path("room.obj") + "' -o '" + path("x.png") + "'", {"room.obj", "radiosity generate FILE"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity show '" + path("room.obj") + "' -o '" + path("x.png") + "'",
+                {"room.obj", "radiosity generate FILE"});
   std::ofstream(path("dark.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' '" + path("dark.obj") + "'", {"dark.obj", "no surface emits"});
-  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' '" + path("room.obj") + "' 2 0.5 100", {"--edge and --power"});
-  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' 1 --edge 2", {"--edge", "AREA_THRESHOLD"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' '" + path("dark.obj") + "'",
+                {"dark.obj", "no surface emits"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' '" + path("room.obj") + "' 2 0.5 100",
+                {"--edge and --power"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' 1 --edge 2",
+                {"--edge", "AREA_THRESHOLD"});
   EXPECT_FALSE(fs::exists(path("x.rad")));
 }
 
 TEST_F(Radiosity, GenerateSolveShow) {
-  const RunResult made = RUN_LUCERNA("radiosity generate '" + path("m.rad") + "' 1 40 0.5 1000000 --json '" + path("g.json") + "'");
+  const RunResult made =
+      RUN_LUCERNA("radiosity generate '" + path("m.rad") + "' 1 40 0.5 1000000 --json '" + path("g.json") + "'");
   ASSERT_EQ(made.exitCode, 0) << made.err;
   const auto triangles = json("g.json")["triangles"].get<std::size_t>();
   EXPECT_EQ(bytes("m.rad").size(), 4 + 72 * triangles);
@@ -98,7 +111,8 @@ TEST_F(Radiosity, GenerateSolveShow) {
   EXPECT_TRUE(s["settled"].get<bool>());
   EXPECT_GT(s["sweeps"].get<int>(), 5);
   EXPECT_GT(s["seconds"].get<double>(), 0.0);
-  EXPECT_NEAR(s["hemicubes_per_s"].get<double>(), s["hemicubes"].get<double>() / s["seconds"].get<double>(), 1e-6 * s["hemicubes_per_s"].get<double>());
+  EXPECT_NEAR(s["hemicubes_per_s"].get<double>(), s["hemicubes"].get<double>() / s["seconds"].get<double>(),
+              1e-6 * s["hemicubes_per_s"].get<double>());
   EXPECT_TRUE(s["error_bound"].is_null());
   EXPECT_LT(std::abs(s["energy_balance"].get<double>()), 0.3);
   EXPECT_EQ(s["deviations"].size(), 5u);
@@ -118,7 +132,8 @@ TEST_F(Radiosity, GenerateSolveShow) {
   EXPECT_EQ(lucerna::encodeRadFile(after), bytes("s.rad"));
 
   for (const char* mode : {"", "s", "c", "--mapping linear", "--mapping filmic", "--false-colours", "--mesh"}) {
-    const RunResult shown = RUN_LUCERNA("radiosity show '" + path("s.rad") + "' " + mode + " -o '" + path("s.png") + "' --size 80x60");
+    const RunResult shown =
+        RUN_LUCERNA("radiosity show '" + path("s.rad") + "' " + mode + " -o '" + path("s.png") + "' --size 80x60");
     EXPECT_EQ(shown.exitCode, 0) << mode << shown.err;
     EXPECT_EQ(lucerna::readBitmap(path("s.png")).width, 80);
     fs::remove(path("s.png"));
@@ -135,32 +150,41 @@ TEST_F(Radiosity, WrongInputIsOneClearLine) {
     return path(name);
   };
   const std::string size = std::to_string(bytes("m.rad").size());
-  expectRefused(solve(broken("cut.rad", [](auto& b) { b.resize(b.size() - 10); }), out), {"cut.rad", size, std::to_string(bytes("m.rad").size() - 10)});
-  expectRefused(solve(broken("turned.rad", [](auto& b) { std::reverse(b.begin(), b.begin() + 4); }), out), {"turned.rad", "byte order"});
-  expectRefused(solve(broken("nan.rad", [](auto& b) { b[6] = 0xc0, b[7] = 0x7f; }), out), {"nan.rad", "triangle 0", "finite"});
-  expectRefused(solve(broken("ro.rad", [](auto& b) { b[4 + 60 + 3] = 0x40; }), out), {"ro.rad", "triangle 0", "reflectance"});
+  expectRefused(solve(broken("cut.rad", [](auto& b) { b.resize(b.size() - 10); }), out),
+                {"cut.rad", size, std::to_string(bytes("m.rad").size() - 10)});
+  expectRefused(solve(broken("turned.rad", [](auto& b) { std::reverse(b.begin(), b.begin() + 4); }), out),
+                {"turned.rad", "byte order"});
+  expectRefused(solve(broken("nan.rad", [](auto& b) { b[6] = 0xc0, b[7] = 0x7f; }), out),
+                {"nan.rad", "triangle 0", "finite"});
+  expectRefused(solve(broken("ro.rad", [](auto& b) { b[4 + 60 + 3] = 0x40; }), out),
+                {"ro.rad", "triangle 0", "reflectance"});
   expectRefused(solve(path("missing.rad"), out), {"missing.rad", "no such file"});
   expectRefused(solve(good, path("no/such/o.rad")), {"no/such", "no such folder"});
   expectRefused(solve(good, "/proc/o.rad"), {"/proc/o.rad", "cannot be written"});
   expectRefused(solve(good, out, "--solver cg"), {"cg", "jacobi", "gauss-seidel"});
   expectRefused(solve(good, out, "--deviation radiosity.x=on"), {"radiosity.x", "radiosity.24-bit"});
-  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + good + "' '" + out + "' 1 --fidelity original", {"RESOLUTION 1"});
-  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + good + "' '" + out + "' --fidelity exact", {"exact", "original"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + good + "' '" + out + "' 1 --fidelity original",
+                {"RESOLUTION 1"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity solve '" + good + "' '" + out + "' --fidelity exact",
+                {"exact", "original"});
   expectRefused("'" LUCERNA_BINARY "' radiosity show '" + good + "' x -o '" + path("o.png") + "'", {"x", "s ", "c "});
   expectRefused("'" LUCERNA_BINARY "' radiosity show '" + good + "' -o '" + path("o.jpg") + "'", {"png"});
   expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 7", {"MODEL 7"});
   expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 1 2.5", {"all three or none"});
-  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 1 2.5 0.15 20000000", {"LIGHT_POWER 20000000", "16777215"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 1 2.5 0.15 20000000",
+                {"LIGHT_POWER 20000000", "16777215"});
   EXPECT_FALSE(fs::exists(out));
   EXPECT_EQ(folder().listing().find("tmp"), std::string::npos) << folder().listing();
 }
 
-/// Ends a run by a signal `seconds` after its start, again and again, until it ends by itself; returns how many it took.
+/// Ends a run by a signal `seconds` after its start, again and again, until it ends by itself; returns how many it
+/// took.
 int runInPieces(const std::string& command, const std::string& signal, double seconds) {
   for (int pieces = 0; pieces < 200; ++pieces) {
     const RunResult result = run("timeout -s " + signal + " " + std::to_string(seconds) + " " + command);
     if (result.exitCode == 0) return pieces;
-    EXPECT_TRUE(result.exitCode == 124 || result.exitCode == 130 || result.exitCode == 137) << result.exitCode << result.err;
+    EXPECT_TRUE(result.exitCode == 124 || result.exitCode == 130 || result.exitCode == 137)
+        << result.exitCode << result.err;
   }
   ADD_FAILURE() << "never ended";
   return 0;
@@ -186,7 +210,8 @@ TEST_F(Radiosity, CheckpointOfAnotherRunIsNotTakenUp) {
   // As many sweeps as asked for are there: nothing is done.
   EXPECT_EQ(run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 2")).exitCode, 0);
   EXPECT_EQ(bytes("whole.rad"), two);
-  const RunResult other = run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1 --solver gauss-seidel --json '" + path("j.json") + "'"));
+  const RunResult other = run(
+      solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1 --solver gauss-seidel --json '" + path("j.json") + "'"));
   EXPECT_EQ(other.exitCode, 0) << other.err;
   EXPECT_NE(other.err.find("not resumed (made with other settings"), std::string::npos) << other.err;
   EXPECT_EQ(json("j.json")["sweeps_here"], 1);
@@ -206,8 +231,9 @@ TEST_F(Radiosity, CheckpointOfAnotherRunIsNotTakenUp) {
 TEST_F(Radiosity, FileThatChangesUnderTheRunIsLeftAlone) {
   generate("m.rad", "10 0.5 1000000");
   // Another program replaces OUT while the first sweep runs.
-  const std::string command = solve(path("m.rad"), path("o.rad"), "--save-every 0") + " & pid=$!; while ! [ -s '" + path("o.rad") + "' ]; do sleep 0.02; done; sleep 0.3; printf theirs > '" +
-                              path("o.rad") + "'; wait $pid";
+  const std::string command = solve(path("m.rad"), path("o.rad"), "--save-every 0") + " & pid=$!; while ! [ -s '" +
+                              path("o.rad") + "' ]; do sleep 0.02; done; sleep 0.3; printf theirs > '" + path("o.rad") +
+                              "'; wait $pid";
   const RunResult result = run(command);
   EXPECT_EQ(result.exitCode, 2) << result.out << result.err;
   EXPECT_NE(result.err.find("changed by something else"), std::string::npos) << result.err;
@@ -226,11 +252,15 @@ TEST_F(Radiosity, DiskThatIsFullLeavesTheOldCheckpoint) {
   EXPECT_EQ(bytes("o.rad.sweep"), oldCheckpoint);
   EXPECT_EQ(folder().listing().find("tmp"), std::string::npos) << folder().listing();
 
-  if (run("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'").exitCode != 0) GTEST_SKIP() << "no permission to mount a tmpfs; the file size limit above was tried";
+  if (run("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'").exitCode != 0)
+    GTEST_SKIP() << "no permission to mount a tmpfs; the file size limit above was tried";
   fs::create_directory(path("small"));
-  const std::string full = "unshare -rm sh -c \"mount -t tmpfs -o size=40k none '" + path("small") + "' && cp '" + path("o.rad") + "' '" + path("o.rad.sweep") + "' '" + path("small") +
-                           "/' && head -c 100000 /dev/zero > '" + path("small") + "/filler'; " + solve(path("m.rad"), path("small") + "/o.rad") + "; code=\\$?; cmp '" + path("o.rad") + "' '" +
-                           path("small") + "/o.rad' && cmp '" + path("o.rad.sweep") + "' '" + path("small") + "/o.rad.sweep' && exit \\$code; exit 99\"";
+  const std::string full = "unshare -rm sh -c \"mount -t tmpfs -o size=40k none '" + path("small") + "' && cp '" +
+                           path("o.rad") + "' '" + path("o.rad.sweep") + "' '" + path("small") +
+                           "/' && head -c 100000 /dev/zero > '" + path("small") + "/filler'; " +
+                           solve(path("m.rad"), path("small") + "/o.rad") + "; code=\\$?; cmp '" + path("o.rad") +
+                           "' '" + path("small") + "/o.rad' && cmp '" + path("o.rad.sweep") + "' '" + path("small") +
+                           "/o.rad.sweep' && exit \\$code; exit 99\"";
   const RunResult result = run(full);
   EXPECT_EQ(result.exitCode, 2) << result.out << result.err;
   EXPECT_NE(result.err.find("No space left on device"), std::string::npos) << result.err;

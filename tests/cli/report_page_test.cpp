@@ -1,4 +1,5 @@
-// bench diff; and the page of a report, driven in headless Chromium: every number shown is the JSON's, every key does what its help says.
+// bench diff; and the page of a report, driven in headless Chromium: every number shown is the JSON's, every key does
+// what its help says.
 #include "base/files.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
@@ -17,14 +18,19 @@ namespace fs = std::filesystem;
 using namespace lucerna;
 
 TEST(ReportPage, ShowsTheNumbersOfItsJsonAndObeysItsKeys) {
-  if (test::run("command -v node && command -v chromium").exitCode != 0) GTEST_SKIP() << "node or chromium is missing (Debian packages nodejs, chromium)";
+  if (test::run("command -v node && command -v chromium").exitCode != 0)
+    GTEST_SKIP() << "node or chromium is missing (Debian packages nodejs, chromium)";
   const test::TempFolder folder;
   const std::string out = (folder.path() / "out").string(), references = (folder.path() / "references").string();
   const std::string source = LUCERNA_SOURCE_DIR;
-  const auto bench = RUN_LUCERNA("bench error '" + source + "/assets/cornell/cornell.json' --size 32x18 --reference-spp 64 --budget 2 --frames 2 --small --techniques direct,rsm,path --out '" + out +
-                                 "' --references '" + references + "' --quiet");
+  const auto bench = RUN_LUCERNA("bench error '" + source +
+                                 "/assets/cornell/cornell.json' --size 32x18 --reference-spp 64 --budget 2 --frames 2 "
+                                 "--small --techniques direct,rsm,path --out '" +
+                                 out + "' --references '" + references + "' --quiet");
   ASSERT_EQ(bench.exitCode, 0) << bench.err;
-  const auto driven = test::run("timeout 300 node '" + source + "/tests/cli/report_page.js' \"$(command -v chromium)\" '" + out + "/report.html' '" + out + "/error.json'");
+  const auto driven =
+      test::run("timeout 300 node '" + source + "/tests/cli/report_page.js' \"$(command -v chromium)\" '" + out +
+                "/report.html' '" + out + "/error.json'");
   EXPECT_EQ(driven.exitCode, 0) << driven.out << driven.err;
   EXPECT_NE(driven.out.find(" 0 faults"), std::string::npos) << driven.out;
 }
@@ -34,19 +40,30 @@ nlohmann::json reportOf(double l2Error, double factor = 1.0) {
   nlohmann::json report{{"bench", "room, 32x18"}, {"rows", nlohmann::json::array()}};
   for (int i = 0; i < 12; ++i) {
     const double l2 = 0.1 * (i + 1) * factor, ms = 10.0 * (i + 1);
-    report["rows"].push_back({{"label", "rsm samples=" + std::to_string(i)}, {"ms", ms}, {"wall_ms_samples", {0.98 * ms, ms, 1.03 * ms}}, {"l2", l2}, {"l2_error", l2Error * l2}, {"noise_l2", 0.01},
-                              {"at_noise", false}, {"bias", 0.02}, {"relative_bias", 0.02}, {"bias_error", 0.0005}});
+    report["rows"].push_back({{"label", "rsm samples=" + std::to_string(i)},
+                              {"ms", ms},
+                              {"wall_ms_samples", {0.98 * ms, ms, 1.03 * ms}},
+                              {"l2", l2},
+                              {"l2_error", l2Error * l2},
+                              {"noise_l2", 0.01},
+                              {"at_noise", false},
+                              {"bias", 0.02},
+                              {"relative_bias", 0.02},
+                              {"bias_error", 0.0005}});
   }
   return report;
 }
 
 class BenchDiff : public ::testing::Test {
  protected:
-  void write(const std::string& name, const nlohmann::json& report) { std::ofstream(folder_.path() / name) << report.dump(); }
+  void write(const std::string& name, const nlohmann::json& report) {
+    std::ofstream(folder_.path() / name) << report.dump();
+  }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   /// The verdicts, by label; the exit code first.
   int diff(const std::string& more = "") {
-    const auto result = RUN_LUCERNA("bench diff '" + path("a.json") + "' '" + path("b.json") + "' --json '" + path("diff.json") + "' --quiet " + more);
+    const auto result = RUN_LUCERNA("bench diff '" + path("a.json") + "' '" + path("b.json") + "' --json '" +
+                                    path("diff.json") + "' --quiet " + more);
     err_ = result.err;
     if (std::filesystem::exists(path("diff.json"))) verdicts_ = nlohmann::json::parse(std::ifstream(path("diff.json")));
     return result.exitCode;
@@ -64,12 +81,14 @@ TEST_F(BenchDiff, FindsAPlantedLossOfOnePercentAndNothingElse) {
   const nlohmann::json a = reportOf(0.001);
   write("a.json", a);
   nlohmann::json b = a;
-  b["rows"][4]["l2"] = 1.01 * a["rows"][4]["l2"].get<double>();                       // seven standard errors of the difference
-  b["rows"][7]["relative_bias"] = 0.02 - 0.01, b["rows"][7]["bias"] = 0.02 - 0.01;     // light is lost: nearer to none, so better here
+  b["rows"][4]["l2"] = 1.01 * a["rows"][4]["l2"].get<double>();  // seven standard errors of the difference
+  b["rows"][7]["relative_bias"] = 0.02 - 0.01,
+  b["rows"][7]["bias"] = 0.02 - 0.01;  // light is lost: nearer to none, so better here
   b["rows"][8]["relative_bias"] = 0.02 + 0.01, b["rows"][8]["bias"] = 0.02 + 0.01;
   write("b.json", b);
   EXPECT_EQ(diff(), 1) << err_;
-  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(verdict(i), i == 4 || i == 8 ? "worse" : i == 7 ? "better" : "undecided") << i;
+  for (std::size_t i = 0; i < 12; ++i)
+    EXPECT_EQ(verdict(i), i == 4 || i == 8 ? "worse" : i == 7 ? "better" : "undecided") << i;
   // The same loss within spreads ten times as large is nobody's.
   write("a.json", reportOf(0.01));
   b = reportOf(0.01);
@@ -79,8 +98,8 @@ TEST_F(BenchDiff, FindsAPlantedLossOfOnePercentAndNothingElse) {
   EXPECT_EQ(verdict(4), "undecided");
 }
 
-// Errors drawn again and times of a machine that is slower by 30 % and scatters by 5 %: thirty runs, of which one in a hundred may
-// find something: three of them have a chance of 0.3 %.
+// Errors drawn again and times of a machine that is slower by 30 % and scatters by 5 %: thirty runs, of which one in a
+// hundred may find something: three of them have a chance of 0.3 %.
 TEST_F(BenchDiff, DoesNotCryAtASecondRunOfTheSame) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;

@@ -1,4 +1,5 @@
-// Completions and the manual page, both made from the command line's own tree: asked as the shells ask, rendered as man renders.
+// Completions and the manual page, both made from the command line's own tree: asked as the shells ask, rendered as man
+// renders.
 #include "base/files.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
@@ -35,8 +36,11 @@ Words bashOffers(const Words& words, const std::string& folder = ".") {
   script.write("lucerna.bash", RUN_LUCERNA("completion bash").out);
   std::string line;
   for (const std::string& word : words) line += fmt::format(" '{}'", word);
-  const RunResult result = run(std::string("cd ") + inQuotes(folder) + " && bash --norc --noprofile -c 'source \"$0\"; COMP_WORDS=(lucerna \"$@\"); COMP_CWORD=$#; _lucerna; " +
-                               std::string("((${#COMPREPLY[@]} == 0)) || printf \"%s\\n\" \"${COMPREPLY[@]}\"' ") + inQuotes((script / "lucerna.bash").string()) + line);
+  const RunResult result =
+      run(std::string("cd ") + inQuotes(folder) +
+          " && bash --norc --noprofile -c 'source \"$0\"; COMP_WORDS=(lucerna \"$@\"); COMP_CWORD=$#; _lucerna; " +
+          std::string("((${#COMPREPLY[@]} == 0)) || printf \"%s\\n\" \"${COMPREPLY[@]}\"' ") +
+          inQuotes((script / "lucerna.bash").string()) + line);
   EXPECT_EQ(result.exitCode, 0) << line;
   EXPECT_EQ(result.err, "") << line;
   return linesOf(result.out);
@@ -59,7 +63,8 @@ TEST(Completions, BashOffersValues) {
   EXPECT_EQ(bashOffers({"render", "--technique", "=", "lp"}), Words{"lpv"});
   EXPECT_EQ(bashOffers({"render", "--set", "lpv.casc"}), Words{"lpv.cascades="});
   EXPECT_EQ(bashOffers({"render", "--set", "=", "lpv.casc"}), Words{"lpv.cascades="});
-  EXPECT_EQ(bashOffers({"radiosity", "solve", "--set", "radiosity.m"}), Words{"radiosity.memory="}) << "radiosity.mesh and radiosity.mapping belong to the view";
+  EXPECT_EQ(bashOffers({"radiosity", "solve", "--set", "radiosity.m"}), Words{"radiosity.memory="})
+      << "radiosity.mesh and radiosity.mapping belong to the view";
   EXPECT_EQ(bashOffers({"radiosity", "generate", "out.bin", ""}), (Words{"1", "2", "3"}));
   EXPECT_EQ(bashOffers({"render", "--repeat", ""}), Words{}) << "a number";
   // Bash puts the answer in the place of what follows '='.
@@ -84,11 +89,14 @@ TEST(Completions, OfferWhatTheProgramTakes) {
     const char* before;  ///< the command and what must be given
     const char* option;
   };
-  for (const Case& c : {Case{"render x -o x.png", "--component"}, Case{"render x -o x.png", "--fidelity"}, Case{"walk", "--technique"},
-                        Case{"bench tables", "--original"}, Case{"bench pictures -o x.png", "--original"}, Case{"bench pictures -o x.png --original lpv", "--fidelity"},
-                        Case{"bench all --out x", "--parts"}, Case{"bench error", "--techniques"}, Case{"radiosity solve scene.obj x", "--solver"},
-                        Case{"radiosity solve x x", "--fidelity"}, Case{"radiosity show x", "--mapping"}, Case{"info", "--host"}}) {
-    const RunResult refused = run(fmt::format("cd '{}' && '{}' {} {} nonsense", folder.path().string(), LUCERNA_BINARY, c.before, c.option));
+  for (const Case& c :
+       {Case{"render x -o x.png", "--component"}, Case{"render x -o x.png", "--fidelity"}, Case{"walk", "--technique"},
+        Case{"bench tables", "--original"}, Case{"bench pictures -o x.png", "--original"},
+        Case{"bench pictures -o x.png --original lpv", "--fidelity"}, Case{"bench all --out x", "--parts"},
+        Case{"bench error", "--techniques"}, Case{"radiosity solve scene.obj x", "--solver"},
+        Case{"radiosity solve x x", "--fidelity"}, Case{"radiosity show x", "--mapping"}, Case{"info", "--host"}}) {
+    const RunResult refused =
+        run(fmt::format("cd '{}' && '{}' {} {} nonsense", folder.path().string(), LUCERNA_BINARY, c.before, c.option));
     EXPECT_EQ(refused.exitCode, 2) << c.before << " " << c.option;
     const auto start = refused.err.find("expected one of ");
     ASSERT_NE(start, std::string::npos) << refused.err;
@@ -116,7 +124,8 @@ TEST(Completions, EveryDeviationThatIsOfferedIsTaken) {
   for (const std::string& deviation : deviations) all.append(" --deviation ").append(deviation);
   const RunResult result = RUN_LUCERNA(all);
   EXPECT_EQ(result.exitCode, 2);
-  EXPECT_NE(result.err.find("nowhere.obj: no such file"), std::string::npos) << "options are read before the scene; " << result.err;
+  EXPECT_NE(result.err.find("nowhere.obj: no such file"), std::string::npos)
+      << "options are read before the scene; " << result.err;
 }
 
 TEST(Completions, FishOffersCommandsOptionsAndValues) {
@@ -124,7 +133,9 @@ TEST(Completions, FishOffersCommandsOptionsAndValues) {
   const TempFolder folder;
   folder.write("lucerna.fish", RUN_LUCERNA("completion fish").out);
   const auto offers = [&](const std::string& line) {
-    const RunResult result = run(std::string("cd ") + inQuotes(folder.path().string()) + " && HOME=\"$PWD\" fish --no-config -c 'source lucerna.fish; complete -C \"" + line + "\"'");
+    const RunResult result =
+        run(std::string("cd ") + inQuotes(folder.path().string()) +
+            " && HOME=\"$PWD\" fish --no-config -c 'source lucerna.fish; complete -C \"" + line + "\"'");
     EXPECT_EQ(result.err, "");
     Words words;
     for (const std::string& text : linesOf(result.out)) words.push_back(text.substr(0, text.find('\t')));
@@ -144,19 +155,21 @@ TEST(Completions, ZshOffersCommandsOptionsAndValues) {
   if (!installed("zsh")) GTEST_SKIP() << "zsh is not installed";
   const TempFolder folder;
   folder.write("_lucerna", RUN_LUCERNA("completion zsh").out);
-  folder.write("ask.zsh",
-               "zmodload zsh/zpty\n"
-               "zpty shell TERM=dumb HOME=$PWD zsh -f -i\n"
-               "zpty -w shell 'PS1=; autoload -Uz compinit; fpath=($PWD $fpath); compinit -u -D; stty -echo; print ready'\n"
-               "zpty -r -m shell text '*ready*ready*' || exit 1\n"
-               // Ctrl-X e shows the line as it is.
-               "zpty -w shell $'show() { print \"<$BUFFER>\"; BUFFER=; }; zle -N show; bindkey \"^Xe\" show; print set'\n"
-               "zpty -r -m shell text '*set*set*' || zpty -r -m shell text '*set*'\n"
-               "zpty -w -n shell \"$1\"$'\\t\\030e'\n"
-               "zpty -r -m shell text '*<*>*'\n"
-               "text=${text##*<}; print -r -- ${text%%>*}\n");
+  folder.write(
+      "ask.zsh",
+      "zmodload zsh/zpty\n"
+      "zpty shell TERM=dumb HOME=$PWD zsh -f -i\n"
+      "zpty -w shell 'PS1=; autoload -Uz compinit; fpath=($PWD $fpath); compinit -u -D; stty -echo; print ready'\n"
+      "zpty -r -m shell text '*ready*ready*' || exit 1\n"
+      // Ctrl-X e shows the line as it is.
+      "zpty -w shell $'show() { print \"<$BUFFER>\"; BUFFER=; }; zle -N show; bindkey \"^Xe\" show; print set'\n"
+      "zpty -r -m shell text '*set*set*' || zpty -r -m shell text '*set*'\n"
+      "zpty -w -n shell \"$1\"$'\\t\\030e'\n"
+      "zpty -r -m shell text '*<*>*'\n"
+      "text=${text##*<}; print -r -- ${text%%>*}\n");
   const auto completed = [&](const std::string& line) {
-    const RunResult result = run(std::string("cd ") + inQuotes(folder.path().string()) + " && timeout 60 zsh -f ask.zsh " + inQuotes(line));
+    const RunResult result =
+        run(std::string("cd ") + inQuotes(folder.path().string()) + " && timeout 60 zsh -f ask.zsh " + inQuotes(line));
     return linesOf(result.out).empty() ? result.err : linesOf(result.out).front();
   };
   EXPECT_EQ(completed("lucerna ben"), "lucerna bench ");
@@ -180,7 +193,8 @@ TEST(ManualPage, IsFormattedWithoutWarnings) {
   bool tried = false;
   if (installed("man") && installed("groff")) {
     tried = true;
-    const RunResult man = run("LC_ALL=C.UTF-8 MANROFFSEQ= MANWIDTH=80 man --warnings -E UTF-8 -l -Tutf8 -Z " + file + " >/dev/null");
+    const RunResult man =
+        run("LC_ALL=C.UTF-8 MANROFFSEQ= MANWIDTH=80 man --warnings -E UTF-8 -l -Tutf8 -Z " + file + " >/dev/null");
     EXPECT_EQ(man.exitCode, 0);
     EXPECT_EQ(man.err, "");
   }
@@ -194,12 +208,14 @@ TEST(ManualPage, IsFormattedWithoutWarnings) {
 }
 
 TEST(SettingsPage, IsWhatTheProgramPrints) {
-  EXPECT_EQ(lucerna::readFileText(LUCERNA_SOURCE_DIR "/docs/settings.md"), RUN_LUCERNA("info --settings").out) << "lucerna info --settings > docs/settings.md";
+  EXPECT_EQ(lucerna::readFileText(LUCERNA_SOURCE_DIR "/docs/settings.md"), RUN_LUCERNA("info --settings").out)
+      << "lucerna info --settings > docs/settings.md";
 }
 
 TEST(ManualPage, TellsEveryCommandAndItsOptions) {
   const std::string page = RUN_LUCERNA("manual").out;
-  for (const char* part : {".SS \"lucerna walk\"", ".SS \"lucerna bench error\"", "\\fB\\-\\-reference\\-spp\\fR", "\\fBlpv.cascades\\fR", "LUCERNA_DATA", ".SH EXIT STATUS"})
+  for (const char* part : {".SS \"lucerna walk\"", ".SS \"lucerna bench error\"", "\\fB\\-\\-reference\\-spp\\fR",
+                           "\\fBlpv.cascades\\fR", "LUCERNA_DATA", ".SH EXIT STATUS"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   // Every option that --help lists for a command stands in the command's own part.
   const auto begin = page.find(".SS \"lucerna radiosity solve\"");

@@ -1,5 +1,5 @@
-// The walkthrough's window, driven by recorded input (demo/walk/input_file.hpp): on the off-screen test host, and in a window of a virtual display.
-// LUCERNA_LONG_TESTS=1: 1,000 frames of it.
+// The walkthrough's window, driven by recorded input (demo/walk/input_file.hpp): on the off-screen test host, and in a
+// window of a virtual display. LUCERNA_LONG_TESTS=1: 1,000 frames of it.
 #include "base/image.hpp"
 #include "scene/key_frames.hpp"
 #include "support/long_tests.hpp"
@@ -45,9 +45,12 @@ class Window : public ::testing::Test {
     return text.str();
   }
   /// Plays an input file in a small window; GL errors end the command with exit code 1.
-  RunResult play(const std::string& input, const std::string& arguments = "", const std::string& before = "", const std::string& size = "128x72") const {
-    return run("cd '" + folder_.path().string() + "' && " + before + " LUCERNA_VERBOSE=1 LUCERNA_REFERENCES=" + path("references") + " '" LUCERNA_BINARY "' walk room.json --keys path.txt --size " + size + " --set lpv.cells=8 --set lpv.samples=64 --set rad.edge=1 --play-input '" +
-               input + "' --json walk.json " + arguments);
+  RunResult play(const std::string& input, const std::string& arguments = "", const std::string& before = "",
+                 const std::string& size = "128x72") const {
+    return run("cd '" + folder_.path().string() + "' && " + before + " LUCERNA_VERBOSE=1 LUCERNA_REFERENCES=" +
+               path("references") + " '" LUCERNA_BINARY "' walk room.json --keys path.txt --size " + size +
+               " --set lpv.cells=8 --set lpv.samples=64 --set rad.edge=1 --play-input '" + input +
+               "' --json walk.json " + arguments);
   }
   static std::string kept(const std::string& name) { return LUCERNA_SOURCE_DIR "/tests/input/" + name; }
   nlohmann::json json() const { return nlohmann::json::parse(std::ifstream(path("walk.json"))); }
@@ -61,7 +64,8 @@ std::string glComplaints(const std::string& err) {
   std::istringstream lines(err);
   std::string line, found;
   while (std::getline(lines, line))
-    if (line.find("OpenGL error: ") != std::string::npos || line.find("OpenGL: ") != std::string::npos) found += line + "\n";
+    if (line.find("OpenGL error: ") != std::string::npos || line.find("OpenGL: ") != std::string::npos)
+      found += line + "\n";
   return found;
 }
 
@@ -73,21 +77,26 @@ TEST_F(Window, EveryKeyDoesItsWork) {
   EXPECT_EQ(lucerna::readImage(path("shots/room_0001.hdr")).width, 128);
   EXPECT_EQ(lucerna::readBitmap(path("shots/room_0001.png")).height, 72);
   for (const char* file : {"shots/room_0001.hdr", "shots/room_0001.png"})
-    for (const char* part : {"render", "room.json", "--technique direct", "--camera ", "exposure "}) EXPECT_NE(read(file).find(part), std::string::npos) << file << ": " << part;
+    for (const char* part : {"render", "room.json", "--technique direct", "--camera ", "exposure "})
+      EXPECT_NE(read(file).find(part), std::string::npos) << file << ": " << part;
 }
 
-// A minute of a quiet machine: a menu choice makes the technique anew. Not passed yet: controls that a technique's choice takes away are told as gone.
+// A minute of a quiet machine: a menu choice makes the technique anew. Not passed yet: controls that a technique's
+// choice takes away are told as gone.
 TEST_F(Window, EveryControlOnce) {
   if (!lucerna::test::longTests()) GTEST_SKIP() << "LUCERNA_LONG_TESTS is not set";
   const RunResult result = play(kept("every_control.txt"), "", "", "420x300");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
   const auto window = json().at("window");
-  const auto controls = window.at("controls").get<std::vector<std::string>>(), touched = window.at("touched").get<std::vector<std::string>>();
+  const auto controls = window.at("controls").get<std::vector<std::string>>(),
+             touched = window.at("touched").get<std::vector<std::string>>();
   EXPECT_GT(controls.size(), 60u);
-  for (const char* label : {"Technique A/technique: rsm", "Compare/layout: wipe", "Light/sun height", "Camera/second", "Timings/begin again", "Record and window/add key frame"})
+  for (const char* label : {"Technique A/technique: rsm", "Compare/layout: wipe", "Light/sun height", "Camera/second",
+                            "Timings/begin again", "Record and window/add key frame"})
     EXPECT_NE(std::find(touched.begin(), touched.end(), label), touched.end()) << label;
-  for (const std::string& label : controls) EXPECT_NE(std::find(touched.begin(), touched.end(), label), touched.end()) << label << " was never touched";
+  for (const std::string& label : controls)
+    EXPECT_NE(std::find(touched.begin(), touched.end(), label), touched.end()) << label << " was never touched";
   EXPECT_EQ(window.at("gone"), nlohmann::json::array());
 }
 
@@ -97,7 +106,8 @@ TEST_F(Window, SizesOfAllKinds) {
   EXPECT_EQ(glComplaints(result.err), "");
 }
 
-// While the camera rests the reference comes, and the picture's error with its interval; what was sampled is in the cache for the next time.
+// While the camera rests the reference comes, and the picture's error with its interval; what was sampled is in the
+// cache for the next time.
 TEST_F(Window, TruthComesWhileTheCameraRests) {
   write("input.txt", "1 key R\n2 key T\n400 key F2\n");
   const RunResult result = play(path("input.txt"), "--technique direct");
@@ -128,7 +138,9 @@ TEST_F(Window, AFileThatFailsSaysWhyAndTheSceneStays) {
 }
 
 TEST_F(Window, KeyFramesAreWrittenAsTheyAreRead) {
-  write("input.txt", "1 key R\n2 key K\n3 down W\n30 up W\n31 key K\n32 touch Record and window\n33 touch Record and window/write\n");
+  write(
+      "input.txt",
+      "1 key R\n2 key K\n3 down W\n30 up W\n31 key K\n32 touch Record and window\n33 touch Record and window/write\n");
   const RunResult result = play(path("input.txt"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto keys = lucerna::readKeyFrames(path("key_frames.txt"));
@@ -137,8 +149,12 @@ TEST_F(Window, KeyFramesAreWrittenAsTheyAreRead) {
 }
 
 TEST_F(Window, InputFilesAreChecked) {
-  for (const auto& [text, part] : {std::pair{"1 jump\n", "unknown"}, {"x key A\n", "FRAME VERB"}, {"5 key A\n3 key A\n", "comes after"}, {"1 key NoSuchKey\n", "NoSuchKey"},
-                                   {"1 cursor 3\n", "two numbers"}, {"1 touch No such control\n", "No such control"}}) {
+  for (const auto& [text, part] : {std::pair{"1 jump\n", "unknown"},
+                                   {"x key A\n", "FRAME VERB"},
+                                   {"5 key A\n3 key A\n", "comes after"},
+                                   {"1 key NoSuchKey\n", "NoSuchKey"},
+                                   {"1 cursor 3\n", "two numbers"},
+                                   {"1 touch No such control\n", "No such control"}}) {
     write("input.txt", text);
     const RunResult result = play(path("input.txt"), "--technique direct");
     EXPECT_EQ(result.exitCode, 2) << text << result.err;
@@ -149,7 +165,8 @@ TEST_F(Window, InputFilesAreChecked) {
 
 TEST_F(Window, HelpListsTheKeys) {
   const RunResult result = RUN_LUCERNA("walk --help");
-  for (const char* part : {"Keys in the window", "F12", "control Z", "magnifier"}) EXPECT_NE(result.out.find(part), std::string::npos) << part;
+  for (const char* part : {"Keys in the window", "F12", "control Z", "magnifier"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part;
 }
 
 // The same in a window of its own, where there is Xvfb.

@@ -1,5 +1,5 @@
-// consumer SCENE OUT.{png,hdr,exr,pfm} [HOST]: one picture of a scene's first camera, drawn off-screen with lucerna::engine.
-// HOST is egl or osmesa; without it the library chooses. Prints the mean radiance.
+// consumer SCENE OUT.{png,hdr,exr,pfm} [HOST]: one picture of a scene's first camera, drawn off-screen with
+// lucerna::engine. HOST is egl or osmesa; without it the library chooses. Prints the mean radiance.
 #include <base/error.hpp>
 #include <base/files.hpp>
 #include <base/image.hpp>
@@ -35,10 +35,8 @@ void draw(const std::filesystem::path& sceneFile, const std::filesystem::path& o
   renderer.drain();
 
   const lucerna::Image radiance = renderer.readRadiance();
-  if (lucerna::lowerExtension(output) == ".png")
-    lucerna::writePng(output, renderer.readDisplay());
-  else
-    lucerna::writeImage(output, radiance);
+  if (lucerna::lowerExtension(output) == ".png") lucerna::writePng(output, renderer.readDisplay());
+  else lucerna::writeImage(output, radiance);
   const glm::dvec3 mean = lucerna::meanOf(radiance);
   std::printf("%.9g %.9g %.9g\n", mean.x, mean.y, mean.z);
 }

@@ -21,8 +21,8 @@ class Absorption {
   };
   struct Inputs {
     const gl::Texture& radiance;  ///< RGBA, scene units
-    const gl::Texture& depth;     ///< of the same size, 0 to 1
-    glm::mat4 clipFromView;       ///< perspective
+    const gl::Texture& depth;  ///< of the same size, 0 to 1
+    glm::mat4 clipFromView;  ///< perspective
   };
   struct Outputs {
     const gl::Texture& radiance;  ///< RGBA32F

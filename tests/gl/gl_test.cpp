@@ -36,7 +36,8 @@ using test::TempFolder;
   return ::testing::AssertionFailure() << "\"" << text << "\" has no \"" << part << "\"";
 }
 
-// ---- objects -----------------------------------------------------------------------------------------------------------
+// ---- objects
+// -----------------------------------------------------------------------------------------------------------
 
 class GlObjects : public test::GlTest {
  protected:
@@ -86,12 +87,15 @@ class GlObjects : public test::GlTest {
 };
 
 TEST_F(GlObjects, AreMoveOnlyAndDeletedOnce) {
-  expectMoveOnly<Buffer>([] { return Buffer("b", 16, nullptr, GL_STATIC_DRAW); }, [](GLuint id) { return glIsBuffer(id) == GL_TRUE; });
+  expectMoveOnly<Buffer>([] { return Buffer("b", 16, nullptr, GL_STATIC_DRAW); },
+                         [](GLuint id) { return glIsBuffer(id) == GL_TRUE; });
   expectMoveOnly<Texture>([] { return small(); }, [](GLuint id) { return glIsTexture(id) == GL_TRUE; });
   const Texture target = small();
   const std::array<const Texture*, 1> targets{&target};
-  expectMoveOnly<Framebuffer>([&] { return Framebuffer("f", targets); }, [](GLuint id) { return glIsFramebuffer(id) == GL_TRUE; });
-  expectMoveOnly<VertexArray>([] { return VertexArray("v"); }, [](GLuint id) { return glIsVertexArray(id) == GL_TRUE; });
+  expectMoveOnly<Framebuffer>([&] { return Framebuffer("f", targets); },
+                              [](GLuint id) { return glIsFramebuffer(id) == GL_TRUE; });
+  expectMoveOnly<VertexArray>([] { return VertexArray("v"); },
+                              [](GLuint id) { return glIsVertexArray(id) == GL_TRUE; });
 }
 
 TEST_F(GlObjects, AMovedFromObjectHoldsNoBytes) {
@@ -115,7 +119,9 @@ TEST_F(GlObjects, CarryTheirNames) {
   EXPECT_EQ(labelOf(GL_TEXTURE, texture.id()), "my texture");
   EXPECT_EQ(labelOf(GL_FRAMEBUFFER, framebuffer.id()), "my framebuffer");
   EXPECT_EQ(labelOf(GL_VERTEX_ARRAY, vertexArray.id()), "my vertex array");
-  EXPECT_EQ(labelOf(GL_PROGRAM, programs().loadRaster("my program", "lib/fullscreen.vert", "forward/tonemap.frag").id()), "my program");
+  EXPECT_EQ(
+      labelOf(GL_PROGRAM, programs().loadRaster("my program", "lib/fullscreen.vert", "forward/tonemap.frag").id()),
+      "my program");
 }
 
 TEST_F(GlObjects, NamesAreCutAtTheDriversLength) {
@@ -137,7 +143,9 @@ TEST_F(GlObjects, NamesAreCutAtTheDriversLength) {
 
 /// Stands in for glMemoryBarrier and keeps what it was asked for.
 struct BarrierSpy {
-  BarrierSpy() { seen() = 0, __glewMemoryBarrier = [](GLbitfield bits) { seen() |= bits; }; }
+  BarrierSpy() {
+    seen() = 0, __glewMemoryBarrier = [](GLbitfield bits) { seen() |= bits; };
+  }
   ~BarrierSpy() { __glewMemoryBarrier = real_; }
   static GLbitfield take() { return std::exchange(seen(), 0); }
 
@@ -151,7 +159,8 @@ struct BarrierSpy {
 
 TEST_F(GlObjects, BuffersThatShadersMayWriteAreSettledBeforeTheApiTouchesThem) {
   const std::array<GLuint, 4> words{1, 2, 3, 4};
-  Buffer buffer("words", sizeof words, words.data(), GL_DYNAMIC_COPY), other("other", sizeof words, nullptr, GL_STREAM_READ);
+  Buffer buffer("words", sizeof words, words.data(), GL_DYNAMIC_COPY),
+      other("other", sizeof words, nullptr, GL_STREAM_READ);
   BufferTexture texels("texels", GL_R32UI, sizeof words, words.data());
   Texture copy("copy", GL_R32UI, glm::ivec2(2));
   const BarrierSpy spy;
@@ -297,7 +306,8 @@ TEST_F(GlObjects, TexturesKeepWhatIsUploaded) {
     layered.upload(GL_RGBA, GL_FLOAT, values.data());
     layered.upload(GL_RGBA, GL_FLOAT, values.data(), 1);
     EXPECT_EQ(layered.readRgba(), values);
-    EXPECT_EQ(layered.readRgba(1), std::vector<glm::vec4>(values.begin(), values.begin() + 3));  // layers stay, texels halve
+    EXPECT_EQ(layered.readRgba(1),
+              std::vector<glm::vec4>(values.begin(), values.begin() + 3));  // layers stay, texels halve
   }
   // 32-bit floats to the last bit, huge and tiny, and what 16-bit ones make of them.
   const std::vector<glm::vec4> extremes{{3.0e38f, 1e-38f, 1.0f / 3.0f, 70000.0f}};
@@ -348,8 +358,8 @@ TEST_F(GlObjects, ClearToZeroWithAndWithoutTheExtension) {
       continue;
     }
     const std::vector<glm::vec4> ones(4 * 4 * 2, glm::vec4(1.0f));
-    Texture deep("3d", GL_RGBA16F, glm::ivec3(4, 4, 2)), flat("2d", GL_RGBA32F, glm::ivec2(4, 4), {}, 3), red("red", GL_R8, glm::ivec2(3, 3)),
-        depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(2, 2));
+    Texture deep("3d", GL_RGBA16F, glm::ivec3(4, 4, 2)), flat("2d", GL_RGBA32F, glm::ivec2(4, 4), {}, 3),
+        red("red", GL_R8, glm::ivec2(3, 3)), depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(2, 2));
     deep.upload(GL_RGBA, GL_FLOAT, ones.data());
     for (int level = 0; level < 3; ++level) flat.upload(GL_RGBA, GL_FLOAT, ones.data(), level);
     red.upload(GL_RED, GL_FLOAT, ones.data());
@@ -386,17 +396,21 @@ TEST_F(GlObjects, EditingLeavesTheUnitsOfOthersAlone) {
   EXPECT_EQ(static_cast<GLuint>(bound), mine.id());
 }
 
-// ---- programs ------------------------------------------------------------------------------------------------------------
+// ---- programs
+// ------------------------------------------------------------------------------------------------------------
 
 class GlPrograms : public test::GlTest {
  protected:
   void SetUp() override {
     GlTest::SetUp();
     write("lib/value.glsl", "float value() { return 0.25; }\n");
-    write("fill.vert", "void main() { gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.5, 1.0); }\n");
+    write("fill.vert",
+          "void main() { gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.5, 1.0); }\n");
     write("fill.frag",
-          "#include \"lib/value.glsl\"\nlayout(location = 0) out vec4 colour;\nuniform float unused;\nuniform float factor;\n"
-          "void main() {\n#if TWICE\n  colour = vec4(2.0 * value() * factor);\n#else\n  colour = vec4(value() * factor);\n#endif\n}\n");
+          "#include \"lib/value.glsl\"\nlayout(location = 0) out vec4 colour;\nuniform float unused;\nuniform float "
+          "factor;\n"
+          "void main() {\n#if TWICE\n  colour = vec4(2.0 * value() * factor);\n#else\n  colour = vec4(value() * "
+          "factor);\n#endif\n}\n");
     library_ = std::make_unique<ProgramLibrary>(folder_.path());
   }
   void TearDown() override {
@@ -404,7 +418,9 @@ class GlPrograms : public test::GlTest {
     GlTest::TearDown();
   }
   ProgramLibrary& library() { return *library_; }
-  const Program& fill(bool twice = false) { return library().loadRaster("fill", "fill.vert", "fill.frag", {{"TWICE", twice}}); }
+  const Program& fill(bool twice = false) {
+    return library().loadRaster("fill", "fill.vert", "fill.frag", {{"TWICE", twice}});
+  }
 
   /// Writes a shader and makes sure that its time of change differs.
   void write(const std::string& name, const std::string& text) {
@@ -483,8 +499,11 @@ TEST_F(GlPrograms, ErrorsBeforeTheDriverReachTheCaller) {
 }
 
 TEST_F(GlPrograms, ALinkErrorIsAnError) {
-  write("wants.frag", "in vec3 nobodyWritesThis;\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(nobodyWritesThis, 1.0); }\n");
-  EXPECT_TRUE(has(badInputMessage([&] { library().loadRaster("p", "fill.vert", "wants.frag"); }), "program p: does not link"));
+  write("wants.frag",
+        "in vec3 nobodyWritesThis;\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(nobodyWritesThis, 1.0); "
+        "}\n");
+  EXPECT_TRUE(
+      has(badInputMessage([&] { library().loadRaster("p", "fill.vert", "wants.frag"); }), "program p: does not link"));
 }
 
 TEST_F(GlPrograms, HotReloadTakesAChangedInclude) {
@@ -499,18 +518,23 @@ TEST_F(GlPrograms, HotReloadTakesAChangedInclude) {
 }
 
 TEST_F(GlPrograms, HotReloadKeepsTheOldProgramUntilTheFileIsMended) {
-  // Broken in each of the ways there are: for the driver, for our preprocessor, in linking; the file itself and an include.
+  // Broken in each of the ways there are: for the driver, for our preprocessor, in linking; the file itself and an
+  // include.
   struct Break {
     const char* file;
     const char* text;
     const char* message;
   };
-  const std::string goodFragment = "layout(location = 0) out vec4 colour;\nuniform float factor;\nvoid main() { colour = vec4(0.5 * factor); }\n";
-  for (const Break& broken : {Break{"lib/value.glsl", "float value() { return ; }\n", "shaders/lib/value.glsl:1"},
-                              Break{"lib/value.glsl", "#if UNKNOWN\n#endif\n", "flag UNKNOWN is not declared"},
-                              Break{"fill.frag", "#include \"lib/none.glsl\"\n", "shaders/lib/none.glsl is missing"},
-                              Break{"fill.vert", "#version 430\n", "#version"},
-                              Break{"fill.frag", "in vec3 nobody;\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(nobody, 1.0); }\n", "does not link"}}) {
+  const std::string goodFragment =
+      "layout(location = 0) out vec4 colour;\nuniform float factor;\nvoid main() { colour = vec4(0.5 * factor); }\n";
+  for (const Break& broken :
+       {Break{"lib/value.glsl", "float value() { return ; }\n", "shaders/lib/value.glsl:1"},
+        Break{"lib/value.glsl", "#if UNKNOWN\n#endif\n", "flag UNKNOWN is not declared"},
+        Break{"fill.frag", "#include \"lib/none.glsl\"\n", "shaders/lib/none.glsl is missing"},
+        Break{"fill.vert", "#version 430\n", "#version"},
+        Break{"fill.frag",
+              "in vec3 nobody;\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(nobody, 1.0); }\n",
+              "does not link"}}) {
     SetUp();
     const Program& program = fill();
     const GLuint before = program.id();
@@ -544,7 +568,8 @@ TEST_F(GlPrograms, AShaderFolderThatIsMissingIsNamed) {
   EXPECT_TRUE(has(message, "LUCERNA_SHADERS"));
 }
 
-// ---- passes --------------------------------------------------------------------------------------------------------------
+// ---- passes
+// --------------------------------------------------------------------------------------------------------------
 
 class GlPasses : public GlPrograms {
  protected:
@@ -592,8 +617,10 @@ class GlPasses : public GlPrograms {
 
 TEST_F(GlPasses, SetTheirStateWhateverWasBefore) {
   write("depth.vert",
-        "uniform float z;\nvoid main() { gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, z, 1.0); }\n");
-  write("colour.frag", "uniform float value;\nlayout(location = 0) out vec4 colour;\nvoid main() { colour = vec4(value); }\n");
+        "uniform float z;\nvoid main() { gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, "
+        "z, 1.0); }\n");
+  write("colour.frag",
+        "uniform float value;\nlayout(location = 0) out vec4 colour;\nvoid main() { colour = vec4(value); }\n");
   const Program& program = library().loadRaster("p", "depth.vert", "colour.frag");
   const VertexArray empty("empty");
   const auto draw = [&](float value, float z) {
@@ -603,7 +630,8 @@ TEST_F(GlPasses, SetTheirStateWhateverWasBefore) {
     drawFullScreen(empty);
   };
   const auto picture = [&](bool poisoned) {
-    const Texture color("colour", GL_RGBA32F, glm::ivec2(5, 3)), depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(5, 3));
+    const Texture color("colour", GL_RGBA32F, glm::ivec2(5, 3)),
+        depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(5, 3));
     const std::array<const Texture*, 1> targets{&color};
     const Framebuffer framebuffer("target", targets, &depth);
     if (poisoned) poison();
@@ -613,7 +641,7 @@ TEST_F(GlPasses, SetTheirStateWhateverWasBefore) {
       const RasterPass pass("depth", framebuffer, state);
       pass.clearColor(0, glm::vec4(8.0f));
       pass.clearDepth();
-      draw(1.0f, 0.5f);   // nearer than the clear
+      draw(1.0f, 0.5f);  // nearer than the clear
       draw(2.0f, 0.75f);  // behind: hidden
     }
     if (poisoned) poison();
@@ -630,7 +658,7 @@ TEST_F(GlPasses, SetTheirStateWhateverWasBefore) {
       state.depth = Depth::equalReadOnly;
       state.cull = Cull::back;
       const RasterPass pass("equal", framebuffer, state);
-      draw(7.0f, 0.6f);   // not equal
+      draw(7.0f, 0.6f);  // not equal
     }
     auto result = color.readRgba();
     for (const float z : depth.readDepth()) result.emplace_back(z);
@@ -644,7 +672,8 @@ TEST_F(GlPasses, SetTheirStateWhateverWasBefore) {
 
 TEST_F(GlPasses, ComputeCoversWhatIsAskedForAndMakesItVisible) {
   write("count.comp",
-        "layout(local_size_x = 4, local_size_y = 2, local_size_z = 1) in;\nlayout(binding = 0, rgba32f) writeonly uniform image3D target;\n"
+        "layout(local_size_x = 4, local_size_y = 2, local_size_z = 1) in;\nlayout(binding = 0, rgba32f) writeonly "
+        "uniform image3D target;\n"
         "void main() { imageStore(target, ivec3(gl_GlobalInvocationID), vec4(gl_GlobalInvocationID + 1u, 1.0)); }\n");
   Texture target("t", GL_RGBA32F, glm::ivec3(5, 3, 2));
   poison();
@@ -655,22 +684,30 @@ TEST_F(GlPasses, ComputeCoversWhatIsAskedForAndMakesItVisible) {
     pass.dispatch(target.size(), {4, 2, 1});
   }
   const auto texels = target.readRgba();
-  for (int i = 0; i < 30; ++i) EXPECT_EQ(texels[static_cast<std::size_t>(i)], glm::vec4(i % 5 + 1, i / 5 % 3 + 1, i / 15 + 1, 1)) << i;
+  for (int i = 0; i < 30; ++i)
+    EXPECT_EQ(texels[static_cast<std::size_t>(i)], glm::vec4(i % 5 + 1, i / 5 % 3 + 1, i / 15 + 1, 1)) << i;
 }
 
-// ---- timer queries -------------------------------------------------------------------------------------------------------
+// ---- timer queries
+// -------------------------------------------------------------------------------------------------------
 
 TEST_F(GlPasses, AUniformThatBranchesDependOnIsThatOfItsDispatch) {
-  // Dispatches of two programs in turns, each with other values: zink, as it is by default over a software Vulkan, runs one of them with stale ones.
-  write("choose.comp", "layout(local_size_x = 1) in;\nlayout(std430, binding = 0) buffer Seen { int last; int seen[]; };\n"
-                       "uniform bool first;\nuniform float share;\nuniform int slot;\n"
-                       "void main() {\n  int value = 7;\n  if (!first) value = seen[30] + 1;\n  seen[slot] = value + (share > 0.5 ? 100 : 0);\n}\n");
-  write("other.comp", "layout(local_size_x = 1) in;\nlayout(std430, binding = 0) buffer Seen { int last; int seen[]; };\nuniform int number;\n"
-                      "void main() { if (number > 0) last = number; }\n");
+  // Dispatches of two programs in turns, each with other values: zink, as it is by default over a software Vulkan, runs
+  // one of them with stale ones.
+  write("choose.comp",
+        "layout(local_size_x = 1) in;\nlayout(std430, binding = 0) buffer Seen { int last; int seen[]; };\n"
+        "uniform bool first;\nuniform float share;\nuniform int slot;\n"
+        "void main() {\n  int value = 7;\n  if (!first) value = seen[30] + 1;\n  seen[slot] = value + (share > 0.5 ? "
+        "100 : 0);\n}\n");
+  write("other.comp",
+        "layout(local_size_x = 1) in;\nlayout(std430, binding = 0) buffer Seen { int last; int seen[]; };\nuniform int "
+        "number;\n"
+        "void main() { if (number > 0) last = number; }\n");
   std::array<GLint, 32> words{};
   words[31] = 40;
   const Buffer seen("seen", sizeof words, words.data(), GL_DYNAMIC_COPY);
-  const Program &choose = library().loadCompute("choose", "choose.comp"), &other = library().loadCompute("other", "other.comp");
+  const Program &choose = library().loadCompute("choose", "choose.comp"),
+                &other = library().loadCompute("other", "other.comp");
   const std::array<bool, 8> firsts{true, false, false, true, false, true, true, false};
   seen.bind(GL_SHADER_STORAGE_BUFFER, 0);
   for (int k = 0; k < 8; ++k) {
@@ -724,7 +761,8 @@ TEST_F(GlTimeQuery, DropsTheWarmUpAndCountsTheRest) {
     for (const double ms : timer.querySamples("fill")) EXPECT_TRUE(ms >= 0.0 && ms < 10000.0) << ms;
     timer.reset();
     EXPECT_EQ(timer.statistics()[0].count, 0u);
-    EXPECT_TRUE(std::isfinite(timer.statistics()[0].medianMs));  // the warm-up's time is kept: what a stage that runs no more would take
+    EXPECT_TRUE(std::isfinite(
+        timer.statistics()[0].medianMs));  // the warm-up's time is kept: what a stage that runs no more would take
     EXPECT_TRUE(std::isnan(timer.statistics()[0].queryMedianMs));
     EXPECT_TRUE(timer.querySamples("no such stage").empty());
   }
@@ -789,7 +827,8 @@ TEST_F(GlTimeQueryDeathTest, StagesDoNotNest) {
   EXPECT_DEATH(timer.end(), "no stage was begun");
 }
 
-// ---- shared structs ------------------------------------------------------------------------------------------------------
+// ---- shared structs
+// ------------------------------------------------------------------------------------------------------
 
 class GlSharedStructs : public test::GlTest {
  protected:
@@ -814,7 +853,8 @@ class GlSharedStructs : public test::GlTest {
 TEST_F(GlSharedStructs, FrameBlock) {
   using shared::FrameConstants;
   const Program& program = programs().loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
-#define EXPECT_OFFSET(member) EXPECT_EQ(offsetOf(program, "frame." #member), static_cast<GLint>(offsetof(FrameConstants, member))) << #member
+#define EXPECT_OFFSET(member) \
+  EXPECT_EQ(offsetOf(program, "frame." #member), static_cast<GLint>(offsetof(FrameConstants, member))) << #member
   EXPECT_OFFSET(clipFromWorld);
   EXPECT_OFFSET(sunClipFromWorld);
   EXPECT_OFFSET(cameraPosition);
@@ -831,7 +871,8 @@ TEST_F(GlSharedStructs, FrameBlock) {
 TEST_F(GlSharedStructs, LpvBlock) {
   using shared::LpvCascade;
   using shared::LpvConstants;
-  const Program& program = programs().loadCompute("probe", "lpv/probe.comp", lucerna::LightPropagationVolume::lookupFlags({}));
+  const Program& program =
+      programs().loadCompute("probe", "lpv/probe.comp", lucerna::LightPropagationVolume::lookupFlags({}));
   const auto inCascade = [](std::size_t k, std::size_t member) {
     return static_cast<GLint>(offsetof(LpvConstants, cascades) + k * sizeof(LpvCascade) + member);
   };
@@ -843,7 +884,8 @@ TEST_F(GlSharedStructs, LpvBlock) {
     EXPECT_EQ(offsetOf(program, name("blendHalf").c_str()), inCascade(k, offsetof(LpvCascade, blendHalf)));
   }
   EXPECT_EQ(offsetOf(program, "lpv.shape"), static_cast<GLint>(offsetof(LpvConstants, shape)));
-  EXPECT_EQ(offsetOf(program, "lpv.referenceIrradiance"), static_cast<GLint>(offsetof(LpvConstants, referenceIrradiance)));
+  EXPECT_EQ(offsetOf(program, "lpv.referenceIrradiance"),
+            static_cast<GLint>(offsetof(LpvConstants, referenceIrradiance)));
   EXPECT_EQ(offsetOf(program, "lpv.blendBand"), static_cast<GLint>(offsetof(LpvConstants, blendBand)));
   EXPECT_EQ(offsetOf(program, "lpv.lookupOffset"), static_cast<GLint>(offsetof(LpvConstants, lookupOffset)));
   EXPECT_EQ(sizeOf(program, "LpvBlock"), static_cast<GLint>(sizeof(LpvConstants)));
@@ -853,7 +895,9 @@ TEST_F(GlSharedStructs, ReceiverBlockAndBuffer) {
   using shared::LpvReceiver;
   using shared::LpvReceiverConstants;
   const Program& program = programs().loadCompute("keep", "lpv/receivers/keep.comp", {{"LPV_FULL_FLOAT", 0}});
-#define EXPECT_OFFSET(member) EXPECT_EQ(offsetOf(program, "receiving." #member), static_cast<GLint>(offsetof(LpvReceiverConstants, member))) << #member
+#define EXPECT_OFFSET(member)                                                                                    \
+  EXPECT_EQ(offsetOf(program, "receiving." #member), static_cast<GLint>(offsetof(LpvReceiverConstants, member))) \
+      << #member
   EXPECT_EQ(offsetOf(program, "receiving.firstCell[0]"), static_cast<GLint>(offsetof(LpvReceiverConstants, firstCell)));
   EXPECT_OFFSET(rayOrigin);
   EXPECT_OFFSET(frame);
@@ -865,10 +909,12 @@ TEST_F(GlSharedStructs, ReceiverBlockAndBuffer) {
   const auto property = [&](const char* name, GLenum which) {
     const GLuint index = glGetProgramResourceIndex(program.id(), GL_BUFFER_VARIABLE, name);
     GLint value = -1;
-    if (index != GL_INVALID_INDEX) glGetProgramResourceiv(program.id(), GL_BUFFER_VARIABLE, index, 1, &which, 1, nullptr, &value);
+    if (index != GL_INVALID_INDEX)
+      glGetProgramResourceiv(program.id(), GL_BUFFER_VARIABLE, index, 1, &which, 1, nullptr, &value);
     return value;
   };
-#define EXPECT_OFFSET(member) EXPECT_EQ(property("before[0]." #member, GL_OFFSET), static_cast<GLint>(offsetof(LpvReceiver, member))) << #member
+#define EXPECT_OFFSET(member) \
+  EXPECT_EQ(property("before[0]." #member, GL_OFFSET), static_cast<GLint>(offsetof(LpvReceiver, member))) << #member
   EXPECT_OFFSET(cell);
   EXPECT_OFFSET(triangle);
   EXPECT_OFFSET(state);

@@ -24,7 +24,8 @@ using test::RunResult;
 using test::TempFolder;
 
 TEST(HostNames, ParseAndRefuse) {
-  for (const HostKind kind : {HostKind::window, HostKind::egl, HostKind::osmesa}) EXPECT_EQ(parseHostKind(nameOf(kind)), kind);
+  for (const HostKind kind : {HostKind::window, HostKind::egl, HostKind::osmesa})
+    EXPECT_EQ(parseHostKind(nameOf(kind)), kind);
   for (const char* wrong : {"", "EGL", "glx", "osmesa "}) {
     const std::string message = test::badInputMessage([&] { parseHostKind(wrong); });
     for (const char* known : {"window", "egl", "osmesa"}) EXPECT_NE(message.find(known), std::string::npos) << message;
@@ -43,18 +44,20 @@ class HostPictures : public ::testing::Test {
  protected:
   HostPictures() {
     folder_.write("room.obj",
-                  "mtllib room.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 2 -2\nv 2 2 -2\nv -0.5 1 -0.5\nv 0.5 1 -0.5\nv 0 1 0.5\n"
+                  "mtllib room.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 2 -2\nv 2 2 -2\nv -0.5 1 -0.5\nv 0.5 "
+                  "1 -0.5\nv 0 1 0.5\n"
                   "usemtl grey\nf 1 4 3 2\nusemtl red\nf 1 2 6 5\nusemtl grey\nf 7 9 8\n");
     folder_.write("room.mtl", "newmtl grey\nKd 0.7 0.7 0.7\nnewmtl red\nKd 0.6 0.1 0.1\n");
-    folder_.write("room.json",
-                  "{\"model\": \"room.obj\", \"camera\": {\"position\": [0, 1.5, 4], \"target\": [0, 0.5, 0], \"fov\": 50},\n"
-                  " \"sun\": {\"direction\": [0.2, -1, -0.6], \"irradiance\": [3, 3, 3]}}\n");
+    folder_.write(
+        "room.json",
+        "{\"model\": \"room.obj\", \"camera\": {\"position\": [0, 1.5, 4], \"target\": [0, 0.5, 0], \"fov\": 50},\n"
+        " \"sun\": {\"direction\": [0.2, -1, -0.6], \"irradiance\": [3, 3, 3]}}\n");
   }
   /// The program's picture of the room; empty where the host cannot run here, with the reason printed.
   Image picture(const std::string& host, const std::string& prefix = {}) {
     const std::string file = (folder_ / (host + ".pfm")).string();
-    const RunResult result = test::run(prefix + "'" LUCERNA_BINARY "' render '" + (folder_ / "room.json").string() + "' --host " + host + " -o '" +
-                                       file + "' --size 64x64 --set lpv.cells=16");
+    const RunResult result = test::run(prefix + "'" LUCERNA_BINARY "' render '" + (folder_ / "room.json").string() +
+                                       "' --host " + host + " -o '" + file + "' --size 64x64 --set lpv.cells=16");
     if (result.exitCode == 3) {
       std::cout << "[ skipped  ] host " << host << ": " << result.err;
       return {};
@@ -62,7 +65,8 @@ class HostPictures : public ::testing::Test {
     EXPECT_EQ(result.exitCode, 0) << result.err;
     return result.exitCode == 0 ? readImage(file) : Image();
   }
-  /// Mesa's software hosts differ in nothing but who holds the context; a GPU may round otherwise and move an edge by a pixel.
+  /// Mesa's software hosts differ in nothing but who holds the context; a GPU may round otherwise and move an edge by a
+  /// pixel.
   void expectSamePicture(const std::string& host, const std::string& prefix = {}) {
     const Image reference = picture("osmesa");
     if (reference.pixels.empty()) GTEST_SKIP() << "no OSMesa to compare with";
@@ -79,8 +83,8 @@ class HostPictures : public ::testing::Test {
       if (largest > 0.0f) ++different;
       if (!(largest <= 1e-6f + 1.0f / 255.0f)) ++off;
     }
-    std::cout << "[ measured ] host " << host << ": " << different << " of " << reference.pixels.size() << " pixels differ, " << off
-              << " by more than 1/255\n";
+    std::cout << "[ measured ] host " << host << ": " << different << " of " << reference.pixels.size()
+              << " pixels differ, " << off << " by more than 1/255\n";
     EXPECT_LE(off, reference.pixels.size() / 1000);
   }
 
@@ -95,7 +99,8 @@ TEST_F(HostPictures, EglDrawsWhatOsmesaDraws) { expectSamePicture("egl"); }
 TEST_F(HostPictures, AWindowDrawsWhatOsmesaDraws) {
   std::string prefix;
   if (!displayAvailable()) {
-    if (test::run("command -v xvfb-run").exitCode != 0) GTEST_SKIP() << "no display, and xvfb-run is missing (Debian package xvfb)";
+    if (test::run("command -v xvfb-run").exitCode != 0)
+      GTEST_SKIP() << "no display, and xvfb-run is missing (Debian package xvfb)";
     prefix = "xvfb-run -a ";
   }
   expectSamePicture("window", prefix);
@@ -104,10 +109,13 @@ TEST_F(HostPictures, AWindowDrawsWhatOsmesaDraws) {
 TEST_F(HostPictures, AWindowDoesNotWaitForTheDisplayWhereFramesAreMeasured) {
   std::string prefix;
   if (!displayAvailable()) {
-    if (test::run("command -v xvfb-run").exitCode != 0) GTEST_SKIP() << "no display, and xvfb-run is missing (Debian package xvfb)";
+    if (test::run("command -v xvfb-run").exitCode != 0)
+      GTEST_SKIP() << "no display, and xvfb-run is missing (Debian package xvfb)";
     prefix = "xvfb-run -a ";
   }
-  const RunResult result = test::run(prefix + "'" LUCERNA_BINARY "' walk '" + scene() + "' --host window --technique direct --size 64x64 --frames 2 --json '" + json() + "'");
+  const RunResult result =
+      test::run(prefix + "'" LUCERNA_BINARY "' walk '" + scene() +
+                "' --host window --technique direct --size 64x64 --frames 2 --json '" + json() + "'");
   if (result.exitCode == 3) GTEST_SKIP() << result.err;
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(readFileText(json())).at("swap_interval"), 0);
@@ -132,17 +140,20 @@ TEST_F(HostPictures, ADeviceOfEglIsChosenByItsNumberOrRefusedWithAList) {
   std::ifstream file(folder_ / "devices.json");
   const auto devices = nlohmann::json::parse(file).at("devices");
   for (const char* wrong : {"99", "-1", "0x", "first", "1.5"}) {
-    const RunResult refused = test::run(std::string("LUCERNA_EGL_DEVICE=") + wrong + " '" LUCERNA_BINARY "' info --host egl");
+    const RunResult refused =
+        test::run(std::string("LUCERNA_EGL_DEVICE=") + wrong + " '" LUCERNA_BINARY "' info --host egl");
     EXPECT_EQ(refused.exitCode, 2) << wrong << ": " << refused.err;
     EXPECT_NE(refused.err.find(wrong), std::string::npos) << refused.err;
-    for (const auto& device : devices) EXPECT_NE(refused.err.find(device.at("kind").get<std::string>()), std::string::npos) << refused.err;
+    for (const auto& device : devices)
+      EXPECT_NE(refused.err.find(device.at("kind").get<std::string>()), std::string::npos) << refused.err;
   }
   if (devices.empty()) GTEST_SKIP() << "EGL lists no devices";
   std::size_t firsts = 0;
   for (const auto& device : devices) {
     firsts += device.at("first").get<bool>();
     if (!device.at("fault").get<std::string>().empty()) continue;
-    const RunResult info = test::run(fmt::format("LUCERNA_EGL_DEVICE={} '{}' info --host egl --quiet", device.at("index").get<int>(), LUCERNA_BINARY));
+    const RunResult info = test::run(fmt::format("LUCERNA_EGL_DEVICE={} '{}' info --host egl --quiet",
+                                                 device.at("index").get<int>(), LUCERNA_BINARY));
     EXPECT_EQ(info.exitCode, 0) << info.err;
     EXPECT_NE(info.out.find(device.at("renderer").get<std::string>()), std::string::npos) << info.out;
   }
@@ -152,7 +163,8 @@ TEST_F(HostPictures, ADeviceOfEglIsChosenByItsNumberOrRefusedWithAList) {
 TEST_F(HostPictures, WithoutItsLibraryOsmesaIsAMissingCapabilityAndEglServes) {
   // An empty file that stands before the library on the loader's path.
   folder_.write("libOSMesa.so.8", "");
-  const std::string program = "env -u LUCERNA_HOST -u DISPLAY -u WAYLAND_DISPLAY LD_LIBRARY_PATH='" + folder_.path().string() + "' '" LUCERNA_BINARY "' info --quiet";
+  const std::string program = "env -u LUCERNA_HOST -u DISPLAY -u WAYLAND_DISPLAY LD_LIBRARY_PATH='" +
+                              folder_.path().string() + "' '" LUCERNA_BINARY "' info --quiet";
   const RunResult osmesa = test::run(program + " --host osmesa");
   EXPECT_EQ(osmesa.exitCode, 3) << osmesa.err;
   EXPECT_NE(osmesa.err.find("libosmesa6"), std::string::npos) << osmesa.err;
@@ -210,7 +222,8 @@ TEST_F(RenderNodes, AreToldApartByVendorBusAndMemory) {
   EXPECT_EQ(large.driver, "amdgpu");
   EXPECT_EQ(large.pci, "1002:73bf");
   EXPECT_EQ(large.node, "/dev/dri/renderD132");
-  EXPECT_EQ(eglPreference({software, iris, nothing, small, large, apu, arc}), (std::vector<std::size_t>{4, 3, 6, 2, 5, 1, 0}));
+  EXPECT_EQ(eglPreference({software, iris, nothing, small, large, apu, arc}),
+            (std::vector<std::size_t>{4, 3, 6, 2, 5, 1, 0}));
   EXPECT_TRUE(eglPreference({}).empty());
 }
 

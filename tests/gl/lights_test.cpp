@@ -1,4 +1,5 @@
-// Spot, omnidirectional and cascaded lights on GL: irradiance, shadows, flux and area of reflective shadow maps, what is left out.
+// Spot, omnidirectional and cascaded lights on GL: irradiance, shadows, flux and area of reflective shadow maps, what
+// is left out.
 #include "base/log.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
@@ -131,16 +132,15 @@ TEST_F(LightsGl, ASpotFallsOffBetweenItsAngles) {
     if (t == 1.0) ++full;
     else if (t > 0.0) ++between;
     else ++none;
-    if (t == 0.0) {
-      EXPECT_EQ(irradiance, 0.0);
-    }
+    if (t == 0.0) { EXPECT_EQ(irradiance, 0.0); }
   });
   EXPECT_LT(largest, 1e-3);
   EXPECT_TRUE(full > 100 && none > 100 && between > 100) << full << " " << none << " " << between;
   std::cout << "[ measured ] spot on a plate, largest error of the falloff: " << largest << "\n";
 }
 
-// A box around the lamp with a hole in each side, each of another shape and off its middle, in a room: each wall is lit through its hole.
+// A box around the lamp with a hole in each side, each of another shape and off its middle, in a room: each wall is lit
+// through its hole.
 TEST_F(LightsGl, AllSixFacesOfAnOmnidirectionalLightCastShadows) {
   constexpr double kInner = 0.5, kOuter = 2.0;
   LitScene scene;
@@ -205,7 +205,8 @@ TEST_F(LightsGl, TotalFluxOfASpotIsTheAlbedoTimesItsOwn) {
   light.outerAngle = 0.8;
   scene.spots = {light};
   const GpuScene gpuScene(scene, analyse(scene), capabilities());
-  const double expected = static_cast<double>(kAlbedo) * 3.0 * 2.0 * kPi * (1.0 - 0.5 * (std::cos(0.4) + std::cos(0.8)));
+  const double expected =
+      static_cast<double>(kAlbedo) * 3.0 * 2.0 * kPi * (1.0 - 0.5 * (std::cos(0.4) + std::cos(0.8)));
   for (const int size : {64, 128, 256, 512}) {
     ReflectiveShadowMap rsm(programs(), gpuScene, {size, ReflectiveShadowMap::Light::spot});
     const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, lightViews(light, scene.bounds));
@@ -232,16 +233,19 @@ TEST_F(LightsGl, TotalFluxAndAreaOfAnOmnidirectionalLightAreTheRooms) {
     const double flux = sum.flux / (static_cast<double>(kAlbedo) * 4.0 * kPi * 3.0), area = sum.area / (6.0 * 9.0);
     EXPECT_NEAR(flux, 1.0, 0.01) << size;
     EXPECT_NEAR(area, 1.0, 0.03) << size;
-    std::cout << "[ measured ] omni in a room, RSM 6 x " << size << ": flux / expected " << flux << ", area / expected " << area << "\n";
+    std::cout << "[ measured ] omni in a room, RSM 6 x " << size << ": flux / expected " << flux << ", area / expected "
+              << area << "\n";
   }
 }
 
-// A plate below an omnidirectional lamp, a quarter of its texture white: its flux is that of the solid angle, a quarter of it.
+// A plate below an omnidirectional lamp, a quarter of its texture white: its flux is that of the solid angle, a quarter
+// of it.
 TEST_F(LightsGl, AnOmnidirectionalLightsFluxIsTexturedAllOverATriangle) {
   LitScene scene;
   scene.quad({-0.9, -0.9, 0}, {0.9, -0.9, 0}, {0.9, 0.9, 0}, {-0.9, 0.9, 0});
   // Short of the border, where filtering would mix in the opposite side.
-  for (Vertex& vertex : scene.vertices) vertex.texCoord = {vertex.position.x > 0.0f ? 0.875f : 0.125f, vertex.position.y > 0.0f ? 0.875f : 0.125f};
+  for (Vertex& vertex : scene.vertices)
+    vertex.texCoord = {vertex.position.x > 0.0f ? 0.875f : 0.125f, vertex.position.y > 0.0f ? 0.875f : 0.125f};
   constexpr int kTexels = 8;
   scene.textures.push_back({"quarter.png", {}});
   Bitmap& bitmap = scene.textures[0].bitmap;
@@ -305,7 +309,8 @@ TEST_F(LightsGl, TheVolumeAddsLightsUp) {
   s.storage = LightPropagationVolume::Storage::full;
   const auto grids = [&](std::vector<ReflectiveShadowMap::Outputs> rsms) {
     LightPropagationVolume lpv(programs(), capabilities(), s);
-    const LightPropagationVolume::Inputs inputs{std::move(rsms), placeCascades(s.cascades, scene.bounds, glm::dvec3(0.0), {0, 0, -1}),
+    const LightPropagationVolume::Inputs inputs{std::move(rsms),
+                                                placeCascades(s.cascades, scene.bounds, glm::dvec3(0.0), {0, 0, -1}),
                                                 typicalIrradiance(scene)};
     lpv.place(inputs);
     lpv.inject(inputs);
@@ -315,13 +320,16 @@ TEST_F(LightsGl, TheVolumeAddsLightsUp) {
     return result;
   };
   const auto both = grids({a, b}), onlyA = grids({a}), onlyB = grids({b}), neither = grids({});
-  // Integers hold the same, to half a step a texel and coefficient; the bound of the sum of all lights leaves steps enough.
+  // Integers hold the same, to half a step a texel and coefficient; the bound of the sum of all lights leaves steps
+  // enough.
   s.fill = LpvFill::fixed;
   const auto counted = grids({a, b});
   for (std::size_t grid = 0; grid < both.size(); ++grid)
     for (std::size_t i = 0; i < both[grid].size(); ++i)
-      for (int c = 0; c < 4; ++c) EXPECT_NEAR(counted[grid][i][c], both[grid][i][c], 1e-4f * (1e-2f + std::abs(both[grid][i][c]))) << grid;
-  // Perspective lights have true areas and no area across the rays: the deviations of the sun's leave theirs finite and unchanged.
+      for (int c = 0; c < 4; ++c)
+        EXPECT_NEAR(counted[grid][i][c], both[grid][i][c], 1e-4f * (1e-2f + std::abs(both[grid][i][c]))) << grid;
+  // Perspective lights have true areas and no area across the rays: the deviations of the sun's leave theirs finite and
+  // unchanged.
   s.deviations.surfelArea = s.deviations.fluxUnits = true;
   const auto deviating = grids({a, b});
   EXPECT_EQ(deviating[0], both[0]);
@@ -360,7 +368,9 @@ bool meets(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& low, cons
 }
 
 void block(LitScene& scene, const glm::dvec3& low, const glm::dvec3& high) {
-  const auto p = [&](int x, int y, int z) { return glm::dvec3(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z); };
+  const auto p = [&](int x, int y, int z) {
+    return glm::dvec3(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z);
+  };
   scene.quad(p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1));
   scene.quad(p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1));
   scene.quad(p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1));
@@ -368,11 +378,13 @@ void block(LitScene& scene, const glm::dvec3& low, const glm::dvec3& high) {
   scene.quad(p(0, 1, 0), p(0, 0, 0), p(0, 0, 1), p(0, 1, 1));
 }
 
-// A block on a floor: lit places are lit in full (no acne), the shadow begins at the block (no peter-panning), at slanting light too.
+// A block on a floor: lit places are lit in full (no acne), the shadow begins at the block (no peter-panning), at
+// slanting light too.
 TEST_F(LightsGl, ShadowsOfABlockNeitherSpeckleNorComeLoose) {
   const glm::dvec3 low(-0.3, -0.3, 0.0), high(0.3, 0.3, 0.5);
   for (const bool spot : {false, true})
-    for (const glm::dvec3& position : {glm::dvec3(0.9, 0.5, 1.2), glm::dvec3(1.6, -0.7, 0.7), glm::dvec3(-1.5, 1.4, 0.6)}) {
+    for (const glm::dvec3& position :
+         {glm::dvec3(0.9, 0.5, 1.2), glm::dvec3(1.6, -0.7, 0.7), glm::dvec3(-1.5, 1.4, 0.6)}) {
       LitScene scene;
       scene.quad({-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0});
       block(scene, low, high);
@@ -380,15 +392,19 @@ TEST_F(LightsGl, ShadowsOfABlockNeitherSpeckleNorComeLoose) {
       if (spot) scene.spots = {SpotLight{position, axis, glm::vec3(5.0f), 1.0, 1.2}};
       else scene.points = {PointLight{position, glm::vec3(5.0f)}};
       int lit = 0, dark = 0, wrong = 0;
-      eachPixel(scene, viewFrom({0, 0, 4}, {0, 0, -1}, 0.8), {0, 0, 1}, 0.0, [&](const glm::dvec3& p, double irradiance) {
-        const double inBox = std::max(std::abs(p.x), std::abs(p.y));
-        const glm::dvec3 away = position - p;
-        const double cosine = -glm::dot(away, axis) / glm::length(away);
-        if (inBox < 0.37 || (spot && cosine < std::cos(0.98))) return;  // the block's top hides what is behind it
-        const double expected = 5.0 * away.z / std::pow(glm::length(away), 3.0), margin = 0.02;
-        if (!meets(p, position, low - margin, high + margin)) ++lit, wrong += std::abs(irradiance / expected - 1.0) > 2e-3;
-        if (meets(p, position, low + margin * glm::dvec3(1, 1, 0), high - margin)) ++dark, wrong += irradiance > 1e-3 * expected;
-      });
+      eachPixel(scene, viewFrom({0, 0, 4}, {0, 0, -1}, 0.8), {0, 0, 1}, 0.0,
+                [&](const glm::dvec3& p, double irradiance) {
+                  const double inBox = std::max(std::abs(p.x), std::abs(p.y));
+                  const glm::dvec3 away = position - p;
+                  const double cosine = -glm::dot(away, axis) / glm::length(away);
+                  if (inBox < 0.37 || (spot && cosine < std::cos(0.98)))
+                    return;  // the block's top hides what is behind it
+                  const double expected = 5.0 * away.z / std::pow(glm::length(away), 3.0), margin = 0.02;
+                  if (!meets(p, position, low - margin, high + margin))
+                    ++lit, wrong += std::abs(irradiance / expected - 1.0) > 2e-3;
+                  if (meets(p, position, low + margin * glm::dvec3(1, 1, 0), high - margin))
+                    ++dark, wrong += irradiance > 1e-3 * expected;
+                });
       EXPECT_EQ(wrong, 0) << (spot ? "spot " : "point ") << position.x;
       EXPECT_TRUE(lit > 1000 && dark > 100) << lit << " lit, " << dark << " dark";
     }
@@ -401,11 +417,21 @@ TEST_F(LightsGl, DirectLightAddsUp) {
   block(scene, {-0.3, -0.3, 0.0}, {0.3, 0.3, 0.5});
   const auto spot = [](const glm::dvec3& p) { return SpotLight{p, glm::normalize(-p), glm::vec3(3.0f), 0.5, 0.7}; };
   const std::vector<std::function<void(Scene&)>> lights = {
-      [](Scene& s) { s.sun = DirectionalLight{glm::normalize(glm::dvec3(0.3, 0.4, -1.0)), glm::vec3(1.0f)}; },
-      [](Scene& s) { s.points.push_back({{1.0, 0.2, 0.9}, glm::vec3(2.0f)}); },
-      [](Scene& s) { s.points.push_back({{-1.0, -0.5, 1.1}, glm::vec3(1.0f)}); },
-      [&](Scene& s) { s.spots.push_back(spot({0.3, 1.2, 1.0})); },
-      [&](Scene& s) { s.spots.push_back(spot({-0.6, -1.3, 1.3})); },
+      [](Scene& s) {
+        s.sun = DirectionalLight{glm::normalize(glm::dvec3(0.3, 0.4, -1.0)), glm::vec3(1.0f)};
+      },
+      [](Scene& s) {
+        s.points.push_back({{1.0, 0.2, 0.9}, glm::vec3(2.0f)});
+      },
+      [](Scene& s) {
+        s.points.push_back({{-1.0, -0.5, 1.1}, glm::vec3(1.0f)});
+      },
+      [&](Scene& s) {
+        s.spots.push_back(spot({0.3, 1.2, 1.0}));
+      },
+      [&](Scene& s) {
+        s.spots.push_back(spot({-0.6, -1.3, 1.3}));
+      },
   };
   const auto picture = [&](const LitScene& lit) {
     Renderer renderer(context(), programs(), lit, settings(Technique::direct, {96, 96}));
@@ -429,7 +455,8 @@ TEST_F(LightsGl, DirectLightAddsUp) {
     }
 }
 
-// A sheet between lamp and floor whose left half a mask cuts out, in the shadow maps of every kind and the reflective shadow maps.
+// A sheet between lamp and floor whose left half a mask cuts out, in the shadow maps of every kind and the reflective
+// shadow maps.
 TEST_F(LightsGl, MasksCutShadowsOut) {
   const SpotLight spot{{0, 0, 2}, {0, 0, -1}, glm::vec3(2.0f), 0.7, 0.8};
   for (const int kind : {0, 1, 2})
@@ -441,7 +468,8 @@ TEST_F(LightsGl, MasksCutShadowsOut) {
       scene.textures[0].bitmap.width = 2;
       scene.textures[0].bitmap.height = 1;
       scene.textures[0].bitmap.rgba = {0, 0, 0, 255, 255, 255, 255, 255};
-      for (std::size_t i = 4; i < 8; ++i) scene.vertices[i].texCoord = {scene.vertices[i].position.x > 0.0f ? 1.0f : 0.0f, 0.5f};
+      for (std::size_t i = 4; i < 8; ++i)
+        scene.vertices[i].texCoord = {scene.vertices[i].position.x > 0.0f ? 1.0f : 0.0f, 0.5f};
       scene.materials.push_back(scene.materials[0]);
       scene.materials[1].alphaTexture = 0;
       scene.materials[1].alphaMasked = true;
@@ -515,7 +543,8 @@ TEST_F(LightsGl, WhatASceneHasNoneOfLeavesNoTrace) {
   EXPECT_EQ(bytes(withoutSun, cascades), bytes(withoutSun, s));
 }
 
-// All the light of three lamps falls into one cell, from white walls: the fixed point's sum stays below 2^31, at any size of the maps.
+// All the light of three lamps falls into one cell, from white walls: the fixed point's sum stays below 2^31, at any
+// size of the maps.
 TEST_F(LightsGl, FixedPointSumsOfAllLightsDoNotOverflow) {
   LitScene scene;
   scene.room(1.0);
@@ -523,7 +552,8 @@ TEST_F(LightsGl, FixedPointSumsOfAllLightsDoNotOverflow) {
   // Into the middle of the one cell, 0 to 4, so that no light leaves it when it is moved half a cell.
   for (Vertex& vertex : scene.vertices) vertex.position += 2.0f;
   scene.bounds = {glm::dvec3(1.0), glm::dvec3(3.0)};
-  for (const glm::dvec3& at : {glm::dvec3(2.0), glm::dvec3(2.3, 1.8, 2.1)}) scene.points.push_back({at, glm::vec3(30.0f, 20.0f, 10.0f)});
+  for (const glm::dvec3& at : {glm::dvec3(2.0), glm::dvec3(2.3, 1.8, 2.1)})
+    scene.points.push_back({at, glm::vec3(30.0f, 20.0f, 10.0f)});
   scene.spots = {SpotLight{glm::dvec3(2.0), {0, -1, 0}, glm::vec3(70.0f, 1.0f, 1.0f), 0.3, 1.3}};
   const GpuScene gpuScene(scene, analyse(scene), capabilities());
   LightPropagationVolume::Settings s;
@@ -535,16 +565,19 @@ TEST_F(LightsGl, FixedPointSumsOfAllLightsDoNotOverflow) {
     std::vector<ReflectiveShadowMap> maps;
     std::vector<ReflectiveShadowMap::Outputs> outputs;
     double flux = 0.0;
-    for (std::size_t i = 0; i < 2; ++i) maps.emplace_back(programs(), gpuScene, ReflectiveShadowMap::Settings{size, ReflectiveShadowMap::Light::point});
+    for (std::size_t i = 0; i < 2; ++i)
+      maps.emplace_back(programs(), gpuScene, ReflectiveShadowMap::Settings{size, ReflectiveShadowMap::Light::point});
     maps.emplace_back(programs(), gpuScene, ReflectiveShadowMap::Settings{size, ReflectiveShadowMap::Light::spot});
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      outputs.push_back(maps[i].record(gpuScene, i < 2 ? lightViews(scene.points[i], scene.bounds) : lightViews(scene.spots[0], scene.bounds)));
+      outputs.push_back(maps[i].record(
+          gpuScene, i < 2 ? lightViews(scene.points[i], scene.bounds) : lightViews(scene.spots[0], scene.bounds)));
       flux += totals(outputs.back()).flux;
       EXPECT_GE(outputs.back().largestFlux * (1.0 + 1e-6), totals(outputs.back()).flux) << size;
     }
     s.fill = LpvFill::fixed;
     LightPropagationVolume lpv(programs(), capabilities(), s);
-    const LightPropagationVolume::Inputs inputs{outputs, placeCascades(s.cascades, scene.bounds, glm::dvec3(2.0), glm::dvec3(0.0)), typicalIrradiance(scene)};
+    const LightPropagationVolume::Inputs inputs{
+        outputs, placeCascades(s.cascades, scene.bounds, glm::dvec3(2.0), glm::dvec3(0.0)), typicalIrradiance(scene)};
     lpv.place(inputs);
     lpv.inject(inputs);
     const double stored = static_cast<double>(lpv.injected()[0].readRgba()[0].x) * std::sqrt(4.0 * kPi);
@@ -553,11 +586,13 @@ TEST_F(LightsGl, FixedPointSumsOfAllLightsDoNotOverflow) {
 }
 
 TEST_F(LightsGl, TheGatherOfEachLightIsThatOfPathsThroughWalls) {
-  // A room with a spot and two lamps: what the gather finds is one bounce that nothing stands in the way of, and the lights
-  // add up. Against paths of just that transport, each light alone and all together. The pattern has 1024 samples over all of each map.
+  // A room with a spot and two lamps: what the gather finds is one bounce that nothing stands in the way of, and the
+  // lights add up. Against paths of just that transport, each light alone and all together. The pattern has 1024
+  // samples over all of each map.
   LitScene room;
   room.room(1.0);
-  room.quad({-0.4, -0.5, -0.5}, {-0.4, -0.5, 0.1}, {0.2, -0.5, 0.1}, {0.2, -0.5, -0.5});  // a shelf, which blocks direct light alone
+  room.quad({-0.4, -0.5, -0.5}, {-0.4, -0.5, 0.1}, {0.2, -0.5, 0.1},
+            {0.2, -0.5, -0.5});  // a shelf, which blocks direct light alone
   const Camera camera = viewFrom({0.2, 0.1, 0.9}, {-0.2, -0.2, -1.0}, 1.2);
   const auto gathered = [&](const LitScene& scene, bool interpolate) {
     RenderSettings s = settings(Technique::rsm, {24, 18});
@@ -598,7 +633,8 @@ TEST_F(LightsGl, TheGatherOfEachLightIsThatOfPathsThroughWalls) {
         bias += (d.x + d.y + d.z) / (3.0 * static_cast<double>(right.pixels.size()));
       }
       const glm::dvec3 mean = meanOf(right);
-      std::printf("gather of %s%s: relative L2 %.4f, bias %+.4f\n", name, interpolate ? ", interpolated" : "", std::sqrt(square / sum), 3.0 * bias / (mean.x + mean.y + mean.z));
+      std::printf("gather of %s%s: relative L2 %.4f, bias %+.4f\n", name, interpolate ? ", interpolated" : "",
+                  std::sqrt(square / sum), 3.0 * bias / (mean.x + mean.y + mean.z));
       EXPECT_LT(std::abs(3.0 * bias / (mean.x + mean.y + mean.z)), 0.03) << name;
       EXPECT_LT(std::sqrt(square / sum), interpolate ? 0.20 : 0.15) << name;
     }
@@ -606,7 +642,9 @@ TEST_F(LightsGl, TheGatherOfEachLightIsThatOfPathsThroughWalls) {
   // Lights add up.
   const Image both = gathered(all, false), one = gathered(spot, false), other = gathered(lamps, false);
   for (std::size_t i = 0; i < both.pixels.size(); ++i)
-    EXPECT_LE(glm::length(both.pixels[i] - one.pixels[i] - other.pixels[i]), 1e-4f * glm::length(both.pixels[i]) + 1e-6f) << i;
+    EXPECT_LE(glm::length(both.pixels[i] - one.pixels[i] - other.pixels[i]),
+              1e-4f * glm::length(both.pixels[i]) + 1e-6f)
+        << i;
 }
 
 TEST_F(LightsGl, WithoutLightThereIsNoGather) {
@@ -640,18 +678,20 @@ TEST_F(LightsGl, EveryStageOfEveryLightIsTimed) {
     names.push_back(stage.name);
     EXPECT_GT(stage.medianMs, 0.0) << stage.name;
   }
-  for (const char* name : {"shadow", "spot shadows", "point shadows", "rsm", "injection", "geometry volume", "propagation", "shading"})
+  for (const char* name :
+       {"shadow", "spot shadows", "point shadows", "rsm", "injection", "geometry volume", "propagation", "shading"})
     EXPECT_TRUE(std::count(names.begin(), names.end(), name) == 1) << name;
 }
 
 /// The sun's visibility in each pixel of a floor y = 0.
-std::vector<double> sunVisibility(const gl::Context& context, gl::ProgramLibrary& programs, const LitScene& scene, RenderSettings s, int cascades,
-                                  const Camera& camera) {
+std::vector<double> sunVisibility(const gl::Context& context, gl::ProgramLibrary& programs, const LitScene& scene,
+                                  RenderSettings s, int cascades, const Camera& camera) {
   s.sunCascades.cascades = cascades;
   Renderer renderer(context, programs, scene, s);
   renderer.render(camera);
   const Image image = renderer.readRadiance();
-  const double full = static_cast<double>(kAlbedo) / kPi * static_cast<double>(scene.sun->irradiance.x) * -scene.sun->direction.y;
+  const double full =
+      static_cast<double>(kAlbedo) / kPi * static_cast<double>(scene.sun->irradiance.x) * -scene.sun->direction.y;
   std::vector<double> result;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) result.push_back(static_cast<double>(image.at(x, y).x) / full);
@@ -681,7 +721,8 @@ LitScene columns(double half, double spacing) {
 }
 
 int partial(const std::vector<double>& visibility) {
-  return static_cast<int>(std::count_if(visibility.begin(), visibility.end(), [](double v) { return v > 0.02 && v < 0.98; }));
+  return static_cast<int>(
+      std::count_if(visibility.begin(), visibility.end(), [](double v) { return v > 0.02 && v < 0.98; }));
 }
 
 TEST_F(LightsGl, CascadesShowTheShadowOfOneMapOnASmallScene) {
@@ -697,7 +738,8 @@ TEST_F(LightsGl, CascadesShowTheShadowOfOneMapOnASmallScene) {
       differing += std::abs(one[i] - several[i]) > 1e-3;
       sum += several[i] - one[i];
     }
-    std::cout << "[ measured ] " << cascades << " cascades: " << 100.0 * differing / static_cast<double>(one.size()) << " % of pixels differ, at edges\n";
+    std::cout << "[ measured ] " << cascades << " cascades: " << 100.0 * differing / static_cast<double>(one.size())
+              << " % of pixels differ, at edges\n";
     EXPECT_GT(differing, 0);  // else no cascade is in the picture
     EXPECT_LT(differing, static_cast<int>(one.size()) / 25);
     EXPECT_LT(std::abs(sum), 2e-3 * static_cast<double>(one.size()));
@@ -715,7 +757,8 @@ TEST_F(LightsGl, OfManyLampsThoseThatLightTheSceneMostAreDrawn) {
   }
   LitScene many = few;
   many.points.insert(many.points.begin(), {{{0.0, 0.0, 0.0}, glm::vec3(0.01f)}, {{0.0, 1e4, 0.0}, glm::vec3(1000.0f)}});
-  many.spots.insert(many.spots.begin() + 1, {{{0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(0.01f), 0.3, 0.6}, {{0.0, 3.0, 0.0}, {0.0, 1.0, 0.0}, glm::vec3(1000.0f), 0.3, 0.6}});
+  many.spots.insert(many.spots.begin() + 1, {{{0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(0.01f), 0.3, 0.6},
+                                             {{0.0, 3.0, 0.0}, {0.0, 1.0, 0.0}, glm::vec3(1000.0f), 0.3, 0.6}});
   for (const Technique technique : {Technique::direct, Technique::lpv}) {
     const auto picture = [&](const LitScene& scene) {
       Renderer renderer(context(), programs(), scene, settings(technique, {48, 48}));

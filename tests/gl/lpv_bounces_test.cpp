@@ -1,5 +1,5 @@
-// Light that is reflected several times, and surfels that the camera sees, in the light propagation volume on GL: against the
-// double-precision twin and against what must hold whatever the scene.
+// Light that is reflected several times, and surfels that the camera sees, in the light propagation volume on GL:
+// against the double-precision twin and against what must hold whatever the scene.
 #include "support/gl_fixture.hpp"
 #include "support/lpv_on_gl.hpp"
 #include "support/small_scenes.hpp"
@@ -37,10 +37,12 @@ class LpvMoreLight : public test::SharedProgramsTest {
   static std::vector<Cascade> place(const LightPropagationVolume::Settings& s) {
     return placeCascades(s.cascades, Bounds{}, glm::dvec3(0.0), glm::dvec3(0.0));
   }
-  static LightPropagationVolume run(const LightPropagationVolume::Settings& s, const LightPropagationVolume::Inputs& inputs) {
+  static LightPropagationVolume run(const LightPropagationVolume::Settings& s,
+                                    const LightPropagationVolume::Inputs& inputs) {
     return test::runVolume(library(), capabilities(), s, inputs);
   }
-  /// Coloured surfels, off the borders of cells (multiples of 1/4) for axis-aligned normals, so that 32 bits choose the twin's cell.
+  /// Coloured surfels, off the borders of cells (multiples of 1/4) for axis-aligned normals, so that 32 bits choose the
+  /// twin's cell.
   static std::vector<RsmTexel> randomTexels(unsigned seed, int count) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
@@ -52,19 +54,23 @@ class LpvMoreLight : public test::SharedProgramsTest {
       const int side = axis(random);
       normal[side / 2] = side % 2 ? 1.0f : -1.0f;
       const glm::vec3 p = glm::vec3(cell(random), cell(random), cell(random)) + glm::vec3(off(), off(), off());
-      texels.push_back({glm::vec4(p, 1.0f), glm::vec4(normal, 0.1f + uniform(random)), glm::vec3(uniform(random), 1.0f, 0.1f),
-                        glm::vec3(uniform(random), 1.0f, 0.2f)});
+      texels.push_back({glm::vec4(p, 1.0f), glm::vec4(normal, 0.1f + uniform(random)),
+                        glm::vec3(uniform(random), 1.0f, 0.1f), glm::vec3(uniform(random), 1.0f, 0.2f)});
     }
     return texels;
   }
-  static void report(const std::string& what, double value) { std::cout << "[ measured ] " << what << ": " << value << "\n"; }
+  static void report(const std::string& what, double value) {
+    std::cout << "[ measured ] " << what << ": " << value << "\n";
+  }
 };
 
-// ---- bounces ----------------------------------------------------------------------------------------------------------------
+// ---- bounces
+// ----------------------------------------------------------------------------------------------------------------
 
 class LpvBounces : public LpvMoreLight {
  protected:
-  /// A closed box of albedo rho, walls of one surfel a corner in the planes 2 and 8 of 10^3 cells, and one light in it, away from the walls.
+  /// A closed box of albedo rho, walls of one surfel a corner in the planes 2 and 8 of 10^3 cells, and one light in it,
+  /// away from the walls.
   static std::vector<RsmTexel> closedBox(float rho) {
     std::vector<RsmTexel> texels{{{0.4f, 0.3f, -0.9f, 1.0f}, {0, 0, 1, 1e30f}, glm::vec3(1.0f, 0.5f, 0.25f)}};
     for (int axis = 0; axis < 3; ++axis)
@@ -103,7 +109,8 @@ TEST_F(LpvBounces, AgainstTheTwin) {
         const VolumeRgb reflectance = twin::injectReflectance(grid, vpls);
         expected.push_back(twin::propagateBounces(injected, 4, bounces, geometry, reflectance).light);
         once.push_back(twin::propagateBounces(injected, 4, 1, geometry, reflectance).light);
-        EXPECT_GT(twin::totalFlux(expected.back()).y, 1.05 * twin::totalFlux(once.back()).y);  // there is something to see
+        EXPECT_GT(twin::totalFlux(expected.back()).y,
+                  1.05 * twin::totalFlux(once.back()).y);  // there is something to see
       }
       for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered})
         for (const Storage storage : {Storage::full, Storage::half}) {
@@ -112,16 +119,19 @@ TEST_F(LpvBounces, AgainstTheTwin) {
           const std::vector<VolumeRgb> actual = test::readVolume(run(s, inputs).result(), inputs);
           for (std::size_t k = 0; k < actual.size(); ++k) {
             const double error = test::relativeError(expected[k], actual[k]);
-            EXPECT_LT(error, storage == Storage::full ? 1e-5 : 1e-3) << nameOf(propagate) << ", cascade " << k << ", " << bounces << " bounces";
-            report(fmt::format("{} bounces, {}, {} bits", bounces, nameOf(propagate), storage == Storage::full ? 32 : 16), error);
+            EXPECT_LT(error, storage == Storage::full ? 1e-5 : 1e-3)
+                << nameOf(propagate) << ", cascade " << k << ", " << bounces << " bounces";
+            report(
+                fmt::format("{} bounces, {}, {} bits", bounces, nameOf(propagate), storage == Storage::full ? 32 : 16),
+                error);
           }
         }
     }
 }
 
 TEST_F(LpvBounces, JoinedCascadesBounceAllTheirLight) {
-  // With a hand-over the sum lies in two parts: one cascade's light must come back whole. Joined, one cascade's part that no finer grid
-  // takes over is the same as without; so the coarsest is held against the twin.
+  // With a hand-over the sum lies in two parts: one cascade's light must come back whole. Joined, one cascade's part
+  // that no finer grid takes over is the same as without; so the coarsest is held against the twin.
   const std::vector<RsmTexel> texels = randomTexels(2, 800);
   const RsmTextures textures(texels, 0.05);
   LightPropagationVolume::Settings s = settings(8, 5, 3, 2);
@@ -133,13 +143,14 @@ TEST_F(LpvBounces, JoinedCascadesBounceAllTheirLight) {
   twin::inject(injected, vpls);
   twin::Volume geometry(twin::geometryGrid(grid));
   twin::injectSurfels(geometry, grid, vpls);
-  const VolumeRgb expected = twin::propagateBounces(injected, 5, 3, geometry, twin::injectReflectance(grid, vpls)).light;
+  const VolumeRgb expected =
+      twin::propagateBounces(injected, 5, 3, geometry, twin::injectReflectance(grid, vpls)).light;
   EXPECT_LT(test::relativeError(expected, test::readVolume(run(s, inputs).result(), inputs)[1]), 1e-5);
 }
 
 TEST_F(LpvBounces, TheSumOfAllBouncesIsBounded) {
-  // A source of flux S0 in a closed box: S_b <= S0 (1 + rho + ... + rho^(b-1)) for any albedo up to 1, and every front carries at most the
-  // clamp gain times its source, so T <= S (1 + 1.138208 n). More bounces are never darker.
+  // A source of flux S0 in a closed box: S_b <= S0 (1 + rho + ... + rho^(b-1)) for any albedo up to 1, and every front
+  // carries at most the clamp gain times its source, so T <= S (1 + 1.138208 n). More bounces are never darker.
   constexpr int kSteps = 12;
   for (const float rho : {0.0f, 0.5f, 0.99f, 1.0f - 1e-6f}) {
     const std::vector<RsmTexel> texels = closedBox(rho);
@@ -185,7 +196,8 @@ TEST_F(LpvBounces, TheTwinsSourcesFollowTheGeometricSeries) {
     const VolumeRgb reflectance = twin::injectReflectance(grid, vpls);
     double before = 0.0, added = 0.0;
     for (int bounces = 1; bounces <= 6; ++bounces) {
-      const double source = twin::totalFlux(twin::propagateBounces(injected, 8, bounces, geometry, reflectance).source).x;
+      const double source =
+          twin::totalFlux(twin::propagateBounces(injected, 8, bounces, geometry, reflectance).source).x;
       if (bounces > 1) {
         EXPECT_GT(source - before, 0.0);
         EXPECT_LE(source - before, static_cast<double>(rho) * added * (1.0 + 1e-9)) << rho << ", bounce " << bounces;
@@ -214,11 +226,13 @@ TEST_F(LpvBounces, OneBounceCostsNothingAndMoreNeedSurfels) {
   }
 }
 
-// ---- surfels of several views -------------------------------------------------------------------------------------------------
+// ---- surfels of several views
+// -------------------------------------------------------------------------------------------------
 
 class LpvViews : public LpvMoreLight {
  protected:
-  static std::vector<twin::Volume> geometryOf(const LightPropagationVolume::Settings& s, const LightPropagationVolume::Inputs& inputs) {
+  static std::vector<twin::Volume> geometryOf(const LightPropagationVolume::Settings& s,
+                                              const LightPropagationVolume::Inputs& inputs) {
     LightPropagationVolume lpv(library(), capabilities(), s);
     lpv.place(inputs);
     lpv.fillGeometryVolume(inputs);
@@ -234,7 +248,8 @@ TEST_F(LpvViews, OfASurfaceSeenTwiceTheLongerVectorCounts) {
       LightPropagationVolume::Settings s = settings(8, 4, 2, 2);
       s.surfels = surfels;
       s.mergeViews = surfels == LpvSurfels::both || twice;
-      LightPropagationVolume::Inputs inputs{{lightMap.outputs()}, place(s), 1.0f, glm::vec3(0.0f), {cameraMap.outputs()}};
+      LightPropagationVolume::Inputs inputs{
+          {lightMap.outputs()}, place(s), 1.0f, glm::vec3(0.0f), {cameraMap.outputs()}};
       if (twice) {  // every view once more must not change anything
         inputs.rsms.push_back(lightMap.outputs());
         inputs.views.push_back(cameraMap.outputs());
@@ -246,7 +261,8 @@ TEST_F(LpvViews, OfASurfaceSeenTwiceTheLongerVectorCounts) {
         if (surfels != LpvSurfels::camera) twin::injectSurfels(expected, grid, test::vplsOf(lit, 0.05));
         if (surfels != LpvSurfels::rsm) twin::injectSurfels(camera, grid, test::vplsOf(seen, 0.08));
         twin::mergeByGreatest(expected, camera);
-        EXPECT_LT(test::relativeError(expected, actual[k]), 1e-5) << static_cast<int>(surfels) << ", cascade " << k << ", twice " << twice;
+        EXPECT_LT(test::relativeError(expected, actual[k]), 1e-5)
+            << static_cast<int>(surfels) << ", cascade " << k << ", twice " << twice;
         EXPECT_GT(twin::length(expected.cells[grid.cellCount() / 2]) + twin::totalFlux(expected), 1.0);
       }
     }
@@ -257,7 +273,8 @@ TEST_F(LpvViews, TheAlbedoOfTheLongerVectorCounts) {
   const auto wall = [](float area, const glm::vec3& albedo) {
     std::vector<RsmTexel> texels{{{0.25f, 0.25f, -1.25f, 1.0f}, {0, 0, 1, 1e30f}, glm::vec3(1.0f)}};
     for (int x = -2; x <= 2; ++x)
-      for (int y = -2; y <= 2; ++y) texels.push_back({{x, y, 1.0f, 1.0f}, {0, 0, -1, 1.0f / area}, glm::vec3(0.0f), albedo});
+      for (int y = -2; y <= 2; ++y)
+        texels.push_back({{x, y, 1.0f, 1.0f}, {0, 0, -1, 1.0f / area}, glm::vec3(0.0f), albedo});
     return texels;
   };
   const RsmTextures lightMap(wall(0.5f, {1.0f, 0.0f, 0.0f}), 1.0), cameraMap(wall(1.0f, {0.0f, 0.0f, 1.0f}), 1.0);
@@ -281,7 +298,8 @@ TEST_F(LpvViews, TheAlbedoOfTheLongerVectorCounts) {
 }
 
 TEST_F(LpvViews, TheCamerasSurfelsHaveTheAreaOfWhatItSees) {
-  // A plate of 4 x 3 before the camera, tilted by 40 degrees: the geometry volume holds its true area, whatever the light sees.
+  // A plate of 4 x 3 before the camera, tilted by 40 degrees: the geometry volume holds its true area, whatever the
+  // light sees.
   for (const double tilt : {0.0, 0.7}) {
     test::SceneBuilder builder;
     const int grey = builder.material(glm::vec3(0.5f));
@@ -296,7 +314,8 @@ TEST_F(LpvViews, TheCamerasSurfelsHaveTheAreaOfWhatItSees) {
     Renderer renderer(context(), programs(), builder.scene(), s);
     const Camera camera = test::lookingAt({0.3, 0.2, 8.0}, {0.0, 0.0, 0.0});
     renderer.render(camera);
-    const double cell = placeCascades(s.lpv.cascades, builder.scene().bounds, camera.position, camera.direction)[0].cellSize;
+    const double cell =
+        placeCascades(s.lpv.cascades, builder.scene().bounds, camera.position, camera.direction)[0].cellSize;
     double area = 0.0;
     for (const glm::vec4& potential : renderer.lpv()->geometryVolume()->readRgba())
       area += static_cast<double>(potential.x) / twin::kLobeBand0 * cell * cell;

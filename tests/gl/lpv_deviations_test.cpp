@@ -1,7 +1,8 @@
-// Each deviation of engine/settings/deviations.cpp by its own known figure: what is right without it, and what it does when it is on.
+// Each deviation of engine/settings/deviations.cpp by its own known figure: what is right without it, and what it does
+// when it is on.
 //
-// Switches are turned by name, as on the command line. Where the twin has the matching option, the GL is held against it too.
-// Expected values follow from the formulas beside them [Kaplanyan2010; Kirsch2010].
+// Switches are turned by name, as on the command line. Where the twin has the matching option, the GL is held against
+// it too. Expected values follow from the formulas beside them [Kaplanyan2010; Kirsch2010].
 #include "settings/deviations.hpp"
 #include "shared/frame.h"
 #include "support/gl_fixture.hpp"
@@ -47,7 +48,8 @@ RsmTexel lightIn(const glm::ivec3& cell, const glm::vec3& normal, const glm::vec
 std::vector<RsmTexel> isotropic(int cells) {
   std::vector<RsmTexel> texels;
   for (int i = 0; i < cells * cells * cells; ++i)
-    for (const float way : {1.0f, -1.0f}) texels.push_back(lightIn({i % cells, i / cells % cells, i / cells / cells}, {0, 0, way}, glm::vec3(1.0f)));
+    for (const float way : {1.0f, -1.0f})
+      texels.push_back(lightIn({i % cells, i / cells % cells, i / cells / cells}, {0, 0, way}, glm::vec3(1.0f)));
   return texels;
 }
 
@@ -69,7 +71,8 @@ class LpvDeviations : public test::SharedProgramsTest {
     return s;
   }
   /// The settings with one deviation turned on, by name; and propagated as asked for.
-  static LpvSettings with(const LpvSettings& s, const std::string& deviation, LpvPropagate propagate = LpvPropagate::compute) {
+  static LpvSettings with(const LpvSettings& s, const std::string& deviation,
+                          LpvPropagate propagate = LpvPropagate::compute) {
     RenderSettings all;
     all.lpv = s;
     all.lpv.propagate = propagate;
@@ -88,12 +91,17 @@ class LpvDeviations : public test::SharedProgramsTest {
     RsmTextures textures;
     LightPropagationVolume::Inputs inputs;
     Lights(std::vector<RsmTexel> lights, std::vector<Cascade> cascades, double area = 1.0, float irradiance = 1.0f)
-        : texels(std::move(lights)), texelArea(area), textures(texels, area), inputs{{textures.outputs()}, std::move(cascades), irradiance} {}
+        : texels(std::move(lights)),
+          texelArea(area),
+          textures(texels, area),
+          inputs{{textures.outputs()}, std::move(cascades), irradiance} {}
   };
   static LightPropagationVolume run(const LpvSettings& s, const LightPropagationVolume::Inputs& inputs) {
     return test::runVolume(library(), capabilities(), s, inputs);
   }
-  static VolumeRgb resultOf(const LpvSettings& s, const Lights& lights) { return test::readVolume(run(s, lights.inputs).result(), lights.inputs)[0]; }
+  static VolumeRgb resultOf(const LpvSettings& s, const Lights& lights) {
+    return test::readVolume(run(s, lights.inputs).result(), lights.inputs)[0];
+  }
   static float seen(const LpvSettings& s, const Lights& lights, const Probe& probe) {
     return test::probeIrradiance(library(), run(s, lights.inputs), std::array{probe})[0].x;
   }
@@ -106,12 +114,14 @@ class LpvDeviations : public test::SharedProgramsTest {
     std::vector<RsmTexel> texels;
     for (int i = 0; i < 400; ++i) {
       const glm::vec3 n = glm::normalize(glm::vec3(gauss(random), gauss(random), gauss(random)));
-      const glm::vec3 cell = glm::floor(static_cast<float>(cells) * 0.999f * glm::vec3(uniform(random), uniform(random), uniform(random)));
+      const glm::vec3 cell =
+          glm::floor(static_cast<float>(cells) * 0.999f * glm::vec3(uniform(random), uniform(random), uniform(random)));
       // 0.6 of a cell about its middle after the half-cell shift: in no doubt which cell is its.
       const glm::vec3 p = cell + 0.2f + 0.6f * glm::vec3(uniform(random), uniform(random), uniform(random)) - 0.5f * n;
       const glm::vec3 inCorners = p + 0.5f;
       if (glm::any(glm::lessThan(glm::abs(inCorners - glm::round(inCorners)), glm::vec3(1e-3f)))) continue;
-      texels.push_back({glm::vec4(p, 1.0f), glm::vec4(n, 0.2f + 0.8f * uniform(random)), glm::vec3(uniform(random), 0.3f, 1.0f)});
+      texels.push_back(
+          {glm::vec4(p, 1.0f), glm::vec4(n, 0.2f + 0.8f * uniform(random)), glm::vec3(uniform(random), 0.3f, 1.0f)});
     }
     return Lights(std::move(texels), unitCascade(cells), 0.1);
   }
@@ -125,7 +135,8 @@ class LpvDeviations : public test::SharedProgramsTest {
     twin::inject(injected, vpls);
     twin::Volume geometry(twin::geometryGrid(grid));
     twin::injectSurfels(geometry, grid, vpls);
-    const VolumeRgb expected = twin::propagate(injected, s.iterations, options, s.blocking ? &geometry : nullptr).accumulated;
+    const VolumeRgb expected =
+        twin::propagate(injected, s.iterations, options, s.blocking ? &geometry : nullptr).accumulated;
     return test::relativeError(expected, resultOf(s, lights));
   }
   /// A kernel's deviation in both ways to propagate: the twin with the option is met, the twin without is not.
@@ -149,22 +160,25 @@ class LpvDeviations : public test::SharedProgramsTest {
     EXPECT_NEAR((sums[1] - sums[0]) / sums[0], (sums[2] - sums[1]) / (sums[1] - sums[0]), 5e-6);
     return (sums[1] - sums[0]) / sums[0];
   }
-
 };
 
-// ---- the list ----------------------------------------------------------------------------------------------------------
+// ---- the list
+// ----------------------------------------------------------------------------------------------------------
 
 /// The deviations that have a test here.
-const std::array kTested{"rsm.flux-cosine",      "rsm.gather-weight",   "rsm.unbounded",        "lpv.flux-units",     "lpv.sum-cascades",
-                         "lpv.unjoined",         "lpv.truncate",        "lpv.first-cell",       "lpv.side-directions", "lpv.side-solid-angle",
-                         "lpv.four-pi-kernel",   "lpv.fewer-steps",     "lpv.block-first-step", "lpv.surfel-area",    "lpv.unwindowed",
-                         "lpv.blocking-direction", "lpv.half-grids"};
+const std::array kTested{"rsm.flux-cosine",      "rsm.gather-weight",    "rsm.unbounded",      "lpv.flux-units",
+                         "lpv.sum-cascades",     "lpv.unjoined",         "lpv.truncate",       "lpv.first-cell",
+                         "lpv.side-directions",  "lpv.side-solid-angle", "lpv.four-pi-kernel", "lpv.fewer-steps",
+                         "lpv.block-first-step", "lpv.surfel-area",      "lpv.unwindowed",     "lpv.blocking-direction",
+                         "lpv.half-grids"};
 
 TEST_F(LpvDeviations, EachOneHasATestHere) {
   std::size_t others = 0;
   for (const Deviation& deviation : allDeviations()) {
     const std::string_view name = deviation.name;
-    if (name.starts_with("path.") || name.starts_with("radiosity.")) {  // tests/physics/media_deviations_test.cpp, tests/gl/radiosity_solution_test.cpp
+    if (name.starts_with("path.") ||
+        name.starts_with(
+            "radiosity.")) {  // tests/physics/media_deviations_test.cpp, tests/gl/radiosity_solution_test.cpp
       ++others;
       continue;
     }
@@ -173,7 +187,8 @@ TEST_F(LpvDeviations, EachOneHasATestHere) {
   EXPECT_EQ(allDeviations().size(), kTested.size() + others);
 }
 
-// ---- the kernel --------------------------------------------------------------------------------------------------------
+// ---- the kernel
+// --------------------------------------------------------------------------------------------------------
 
 TEST_F(LpvDeviations, SideSolidAngle) {
   const LpvSettings off = settings(5, 0);
@@ -208,14 +223,15 @@ TEST_F(LpvDeviations, FourPiKernel) {
   for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered})
     for (const float amplifier : {1.0f, 1.75f, 3.0f, 3.8f, 4.0f}) {
       s.amplifier = amplifier;
-      EXPECT_NEAR(isotropicGain(with(s, "lpv.four-pi-kernel", propagate)), amplifier / 4.0, 2e-6) << amplifier << nameOf(propagate);
+      EXPECT_NEAR(isotropicGain(with(s, "lpv.four-pi-kernel", propagate)), amplifier / 4.0, 2e-6)
+          << amplifier << nameOf(propagate);
     }
   expectKernelOfTwin("lpv.four-pi-kernel", twin::fourPiKernel(static_cast<double>(3.8f)), 3.8f);
 }
 
 TEST_F(LpvDeviations, SideDirections) {
-  // Band 0 of the sum of 8 steps, three cells away along an axis. Isotropic source: 0.006257 on every axis; with the degenerate
-  // sides 0.004866 on x and y, 0.006729 on z. A lobe along z beside one along x: 2.17 times as much.
+  // Band 0 of the sum of 8 steps, three cells away along an axis. Isotropic source: 0.006257 on every axis; with the
+  // degenerate sides 0.004866 on x and y, 0.006729 on z. A lobe along z beside one along x: 2.17 times as much.
   const auto along = [](int axis, const LpvSettings& s, bool isotropicSource) {
     glm::vec3 way(0.0f);
     way[isotropicSource ? 2 : axis] = 1.0f;
@@ -242,20 +258,24 @@ TEST_F(LpvDeviations, SideDirections) {
 }
 
 TEST_F(LpvDeviations, FewerSteps) {
-  // A lobe in 3^3 cells: 1 + 1.138208 + 0.880462 + 0.566864 of flux after three steps; with the deviation the middle two.
+  // A lobe in 3^3 cells: 1 + 1.138208 + 0.880462 + 0.566864 of flux after three steps; with the deviation the middle
+  // two.
   const Lights lights({lightIn(glm::ivec3(1), {0, 0, 1}, glm::vec3(1.0f))}, unitCascade(3));
   const LpvSettings s = settings(3, 3);
   EXPECT_NEAR(twin::totalFlux(resultOf(s, lights)[0]), 1.0 + 1.138208 + 0.880462 + 0.566864, 3e-6);
   for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered})
-    EXPECT_NEAR(twin::totalFlux(resultOf(with(s, "lpv.fewer-steps", propagate), lights)[0]), 1.138208 + 0.880462, 3e-6) << nameOf(propagate);
+    EXPECT_NEAR(twin::totalFlux(resultOf(with(s, "lpv.fewer-steps", propagate), lights)[0]), 1.138208 + 0.880462, 3e-6)
+        << nameOf(propagate);
 }
 
-// ---- blocking ----------------------------------------------------------------------------------------------------------
+// ---- blocking
+// ----------------------------------------------------------------------------------------------------------
 
 TEST_F(LpvDeviations, BlockFirstStep) {
-  // A light on a wall in the plane x = 4 that faces up the x axis, one cell of wall on each corner. The light lies in cell 4; across y and z it
-  // leaves through faces with the wall at half of their corners, so up to B = lobe / 2 of its first step is taken: 1.138208 becomes
-  // 0.471575 ahead (through faces without wall) and four times what passes across.
+  // A light on a wall in the plane x = 4 that faces up the x axis, one cell of wall on each corner. The light lies in
+  // cell 4; across y and z it leaves through faces with the wall at half of their corners, so up to B = lobe / 2 of its
+  // first step is taken: 1.138208 becomes 0.471575 ahead (through faces without wall) and four times what passes
+  // across.
   std::vector<RsmTexel> texels{lightIn({4, 4, 4}, {1, 0, 0}, glm::vec3(1.0f))};
   addWall(texels, 8, 4.0f, 1.0f);
   const Lights lights(texels, unitCascade(8));
@@ -272,7 +292,8 @@ TEST_F(LpvDeviations, BlockFirstStep) {
   const auto firstStep = [&](const LpvSettings& of) { return twin::totalFlux(resultOf(of, lights)[0]) - 1.0; };
   EXPECT_NEAR(firstStep(s), 1.138208, 3e-6);
   for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered})
-    EXPECT_NEAR(firstStep(with(s, "lpv.block-first-step", propagate)), ahead + 4.0 * across(true), 3e-6) << nameOf(propagate);
+    EXPECT_NEAR(firstStep(with(s, "lpv.block-first-step", propagate)), ahead + 4.0 * across(true), 3e-6)
+        << nameOf(propagate);
   report("first step of a light on a wall, lpv.block-first-step", firstStep(with(s, "lpv.block-first-step")));
   twin::KernelOptions options;
   options.blockFirstStep = true;
@@ -280,15 +301,18 @@ TEST_F(LpvDeviations, BlockFirstStep) {
 }
 
 TEST_F(LpvDeviations, BlockingDirection) {
-  // Isotropic light, a wall in the plane x = 4 that faces down the x axis. Light up the x axis meets its front and loses 3/4 head on; light
-  // down the x axis meets its back and passes. With the deviation it is the other way round.
+  // Isotropic light, a wall in the plane x = 4 that faces down the x axis. Light up the x axis meets its front and
+  // loses 3/4 head on; light down the x axis meets its back and passes. With the deviation it is the other way round.
   std::vector<RsmTexel> texels = isotropic(8);
   addWall(texels, 8, 4.0f, -1.0f);
   const Lights lights(texels, unitCascade(8));
   const double b = 1.0 / std::sqrt(5.0);
-  // Band 1 along x of the second step in the cells on both sides: front and sides of the neighbour across the wall, sides of the others.
+  // Band 1 along x of the second step in the cells on both sides: front and sides of the neighbour across the wall,
+  // sides of the others.
   const auto expected = [&](int x, double towards) {
-    const auto passes = [&](double share, double wx) { return 1.0 - std::clamp(share * (0.25 + towards * 0.5 * wx), 0.0, 1.0); };
+    const auto passes = [&](double share, double wx) {
+      return 1.0 - std::clamp(share * (0.25 + towards * 0.5 * wx), 0.0, 1.0);
+    };
     const double up = x == 4 ? passes(1.0, 1.0) : 1.0, down = x == 3 ? passes(1.0, -1.0) : 1.0;
     const double difference = kFront * (up - down) + 4.0 * kSide * (passes(0.5, b) - passes(0.5, -b));
     return twin::kLobeBand1 / kPi * (2.0 / (4.0 * kPi)) * difference;  // intensity of flux 2 a cell
@@ -304,7 +328,8 @@ TEST_F(LpvDeviations, BlockingDirection) {
   for (const int x : {3, 4}) {
     EXPECT_NEAR(measured(s, x), expected(x, 1.0), 3e-6) << x;
     for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered})
-      EXPECT_NEAR(measured(with(s, "lpv.blocking-direction", propagate), x), expected(x, -1.0), 3e-6) << x << nameOf(propagate);
+      EXPECT_NEAR(measured(with(s, "lpv.blocking-direction", propagate), x), expected(x, -1.0), 3e-6)
+          << x << nameOf(propagate);
     EXPECT_GT(std::abs(expected(x, 1.0) - expected(x, -1.0)), 0.01);
   }
   twin::KernelOptions options;
@@ -313,8 +338,8 @@ TEST_F(LpvDeviations, BlockingDirection) {
 }
 
 TEST_F(LpvDeviations, SurfelArea) {
-  // The demo's floor: an orthographic map of 256^2 texels of 0.098 square units, seen from 68 units away: 4 * 68^2 / 256^2 = 0.2822, 2.88
-  // times too much. On a slope at 60 degrees twice the texel is meant and half of that is taken.
+  // The demo's floor: an orthographic map of 256^2 texels of 0.098 square units, seen from 68 units away: 4 * 68^2 /
+  // 256^2 = 0.2822, 2.88 times too much. On a slope at 60 degrees twice the texel is meant and half of that is taken.
   for (const double cosine : {1.0, 0.5}) {
     std::vector<RsmTexel> texels(256 * 256);
     texels[77] = {{2.0f, 2.0f, 2.0f, 1.0f}, {0, 1, 0, static_cast<float>(cosine)}, glm::vec3(0.0f)};
@@ -332,10 +357,12 @@ TEST_F(LpvDeviations, SurfelArea) {
   }
 }
 
-// ---- where and how much is injected ---------------------------------------------------------------------------------------
+// ---- where and how much is injected
+// ---------------------------------------------------------------------------------------
 
 TEST_F(LpvDeviations, Truncate) {
-  // Cells of 1.625 and grids at negative places: right minima are multiples of 1.625, published ones whole units off that raster.
+  // Cells of 1.625 and grids at negative places: right minima are multiples of 1.625, published ones whole units off
+  // that raster.
   constexpr int kCells = 6;
   LpvSettings s = settings(kCells, 2, true);
   s.cascades.cellSize = 1.625;
@@ -347,16 +374,19 @@ TEST_F(LpvDeviations, Truncate) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> uniform(-6.0f, 6.0f);
     for (int i = 0; i < 500; ++i)
-      texels.push_back({glm::vec4(glm::vec3(placed[0].centre) + glm::vec3(uniform(random), uniform(random), uniform(random)), 1.0f), {0, 0, 1, 1},
-                        glm::vec3(1.0f)});
+      texels.push_back(
+          {glm::vec4(glm::vec3(placed[0].centre) + glm::vec3(uniform(random), uniform(random), uniform(random)), 1.0f),
+           {0, 0, 1, 1},
+           glm::vec3(1.0f)});
     const Lights lights(texels, placed, 0.1);
     const std::vector<twin::Vpl> vpls = test::vplsOf(texels, 0.1);
     const LpvSettings published = with(s, "lpv.truncate");
     for (const bool on : {false, true}) {
       const LightPropagationVolume lpv = run(on ? published : s, lights.inputs);
       for (const bool expectedOn : {false, true}) {
-        twin::GridSpec grid =
-            twin::cameraGrid(camera, direction, glm::ivec3(kCells), 1.625, expectedOn ? twin::SnapRule::truncate : twin::SnapRule::floor).grid;
+        twin::GridSpec grid = twin::cameraGrid(camera, direction, glm::ivec3(kCells), 1.625,
+                                               expectedOn ? twin::SnapRule::truncate : twin::SnapRule::floor)
+                                  .grid;
         const bool onRaster = glm::length(grid.minimum / 1.625 - glm::round(grid.minimum / 1.625)) < 1e-9;
         EXPECT_EQ(onRaster, !expectedOn);
         VolumeRgb injected = twin::makeVolumeRgb(grid);
@@ -375,16 +405,20 @@ TEST_F(LpvDeviations, Truncate) {
       }
     }
   }
-  // A surfel three quarters of a cell below the geometry volume's first centre, index -0.25: outside; truncated it blocks in cell 0.
+  // A surfel three quarters of a cell below the geometry volume's first centre, index -0.25: outside; truncated it
+  // blocks in cell 0.
   const Lights below({{{1.5f, 1.5f, -0.75f, 1.0f}, {0, 0, 1, 1}, glm::vec3(0.0f)}}, unitCascade(4));
-  const auto blocks = [&](const LpvSettings& of) { return test::readGeometryVolume(run(of, below.inputs), below.inputs)[0].at({2, 2, 0}).c0; };
+  const auto blocks = [&](const LpvSettings& of) {
+    return test::readGeometryVolume(run(of, below.inputs), below.inputs)[0].at({2, 2, 0}).c0;
+  };
   LpvSettings unit = settings(4, 2, true);
   EXPECT_EQ(blocks(unit), 0.0);
   EXPECT_NEAR(blocks(with(unit, "lpv.truncate")), twin::kLobeBand0, 1e-6);
 }
 
 TEST_F(LpvDeviations, FirstCell) {
-  // One light in every cell of 4^3: 64 of flux; without the first cells of each axis 27. The same in the geometry volume.
+  // One light in every cell of 4^3: 64 of flux; without the first cells of each axis 27. The same in the geometry
+  // volume.
   std::vector<RsmTexel> texels;
   for (int i = 0; i < 64; ++i) texels.push_back(lightIn({i % 4, i / 4 % 4, i / 16}, {0, 1, 0}, glm::vec3(1.0f)));
   const Lights lights(texels, unitCascade(4));
@@ -396,7 +430,9 @@ TEST_F(LpvDeviations, FirstCell) {
     EXPECT_NEAR(twin::totalFlux(resultOf(with(right, "lpv.first-cell"), lights)[0]), 27.0, 1e-4);
   }
   const Lights surfel({{{0.0f, 2.0f, 2.0f, 1.0f}, {1, 0, 0, 1}, glm::vec3(0.0f)}}, unitCascade(4));
-  const auto blocks = [&](const LpvSettings& of) { return test::readGeometryVolume(run(of, surfel.inputs), surfel.inputs)[0].at({0, 2, 2}).c0; };
+  const auto blocks = [&](const LpvSettings& of) {
+    return test::readGeometryVolume(run(of, surfel.inputs), surfel.inputs)[0].at({0, 2, 2}).c0;
+  };
   EXPECT_NEAR(blocks(settings(4, 2, true)), twin::kLobeBand0, 1e-6);
   EXPECT_EQ(blocks(with(settings(4, 2, true), "lpv.first-cell")), 0.0);
   // Against the twin's bounds test.
@@ -409,9 +445,10 @@ TEST_F(LpvDeviations, FirstCell) {
 }
 
 TEST_F(LpvDeviations, FluxUnits) {
-  // A plate z = 4 of albedo 1/2 lit by E = 3, seen from the middle of the cells before it: E_seen = 4/pi <c, lobe(-n) windowed> with
-  // c = E albedo lobe / pi a unit area: (2 / pi) E albedo, for any number of texels and any cell. Published: 1.7 I(-n) and E albedo a texel
-  // in place of E albedo A_texel / s^2: 1.7 * 0.75 / pi E albedo times the texels in a cell.
+  // A plate z = 4 of albedo 1/2 lit by E = 3, seen from the middle of the cells before it: E_seen = 4/pi <c, lobe(-n)
+  // windowed> with c = E albedo lobe / pi a unit area: (2 / pi) E albedo, for any number of texels and any cell.
+  // Published: 1.7 I(-n) and E albedo a texel in place of E albedo A_texel / s^2: 1.7 * 0.75 / pi E albedo times the
+  // texels in a cell.
   const double exitance = 0.5 * 3.0;
   for (const int perUnit : {1, 2, 4})
     for (const double cellSize : {1.0, 2.0}) {
@@ -432,20 +469,25 @@ TEST_F(LpvDeviations, FluxUnits) {
       for (const LpvFill fill : {LpvFill::layered, LpvFill::fixed}) {
         LpvSettings on = with(s, "lpv.flux-units");
         on.fill = fill;
-        EXPECT_NEAR(seen(on, lights, probe) / (1.7 * 0.75 / kPi * exitance * texelsInCell), 1.0, 1e-5) << perUnit << " " << cellSize << nameOf(fill);
+        EXPECT_NEAR(seen(on, lights, probe) / (1.7 * 0.75 / kPi * exitance * texelsInCell), 1.0, 1e-5)
+            << perUnit << " " << cellSize << nameOf(fill);
       }
     }
 }
 
-// ---- cascades ----------------------------------------------------------------------------------------------------------
+// ---- cascades
+// ----------------------------------------------------------------------------------------------------------
 
 TEST_F(LpvDeviations, HalfGrids) {
-  // 10,000 equal lights in one cell. Sums in 16 bits end at 2048 steps of what is added at the latest: a step is lost where it is less than half a unit
-  // in the last of 11 places. By compute or by layered passes as asked for, the deviation is the same, as it has passes of its own.
+  // 10,000 equal lights in one cell. Sums in 16 bits end at 2048 steps of what is added at the latest: a step is lost
+  // where it is less than half a unit in the last of 11 places. By compute or by layered passes as asked for, the
+  // deviation is the same, as it has passes of its own.
   const std::vector<RsmTexel> lights(10000, lightIn({1, 1, 1}, {0, 0, 1}, glm::vec3(1.0f)));
   const Lights all(lights, unitCascade(3));
   LpvSettings s = settings(3, 0);
-  const auto band0 = [&](const LpvSettings& how) { return static_cast<double>(test::readVolume(run(how, all.inputs).injected(), all.inputs)[0][0].at({1, 1, 1}).c0); };
+  const auto band0 = [&](const LpvSettings& how) {
+    return static_cast<double>(test::readVolume(run(how, all.inputs).injected(), all.inputs)[0][0].at({1, 1, 1}).c0);
+  };
   const double right = band0(s), halves = band0(with(s, "lpv.half-grids"));
   report("10,000 lights in 16 bits over 32", halves / right);
   EXPECT_LT(halves / right, 0.2049);
@@ -476,8 +518,8 @@ TEST_F(LpvDeviations, SumCascades) {
   EXPECT_NEAR(seen(with(s, "lpv.sum-cascades"), lights, probe) / one, 3.0, 1e-5);
 }
 
-/// Isotropic light that is emitted all through the scene, f(p) = exp(-|p|^2 / 200) a unit volume, from the middles of the cells of the finest
-/// cascade that holds the place; see lpv_test.cpp.
+/// Isotropic light that is emitted all through the scene, f(p) = exp(-|p|^2 / 200) a unit volume, from the middles of
+/// the cells of the finest cascade that holds the place; see lpv_test.cpp.
 struct SmoothField {
   static constexpr int kCells = 12;
   std::vector<Cascade> all;
@@ -494,7 +536,8 @@ struct SmoothField {
         const glm::dvec3 p = grid.centre({i % kCells, i / kCells % kCells, i / (kCells * kCells)});
         if (k > 0 && twin::cellOf(test::gridOf(all[k - 1], kCells), p)) continue;
         const auto flux = static_cast<float>(std::exp(-glm::dot(p, p) / 200.0) * std::pow(grid.cellSize, 3.0));
-        for (const float way : {1.0f, -1.0f}) texels.push_back({glm::vec4(0.999f * glm::vec3(p), 1.0f), {0, 0, way, 1}, glm::vec3(flux)});
+        for (const float way : {1.0f, -1.0f})
+          texels.push_back({glm::vec4(0.999f * glm::vec3(p), 1.0f), {0, 0, way, 1}, glm::vec3(flux)});
       }
     for (int i = 0; i < 125; ++i)
       for (const glm::vec3& normal : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, -1)})
@@ -503,8 +546,9 @@ struct SmoothField {
 };
 
 TEST_F(LpvDeviations, Unjoined) {
-  // A grid of half the cell size gathers light from half as far. Blended as they are, each cascade more nearly halves the picture (not quite: the
-  // coarsest grid's border takes some light of the one that is compared with); joined it stays; summed it is all of these together.
+  // A grid of half the cell size gathers light from half as far. Blended as they are, each cascade more nearly halves
+  // the picture (not quite: the coarsest grid's border takes some light of the one that is compared with); joined it
+  // stays; summed it is all of these together.
   LpvSettings s = settings(SmoothField::kCells, 8, false, 3);
   s.lookup = LpvLookup::published;
   s.cascades.cellSize = 2.0;
@@ -512,16 +556,20 @@ TEST_F(LpvDeviations, Unjoined) {
   const RsmTextures textures(field.texels, 0.0);
   const auto mean = [&](LpvSettings of, int cascades) {
     of.cascades.cascades = cascades;
-    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, {field.all.end() - cascades, field.all.end()}, 1.0f};
+    const LightPropagationVolume::Inputs inputs{
+        {textures.outputs()}, {field.all.end() - cascades, field.all.end()}, 1.0f};
     double sum = 0.0;
-    for (const glm::vec3& value : test::probeIrradiance(library(), run(of, inputs), field.probes)) sum += static_cast<double>(value.x);
+    for (const glm::vec3& value : test::probeIrradiance(library(), run(of, inputs), field.probes))
+      sum += static_cast<double>(value.x);
     return sum / static_cast<double>(field.probes.size());
   };
   const double one = mean(s, 1);
   double sum = 1.0;
   for (int cascades = 2; cascades <= 3; ++cascades) {
-    const double unjoined = mean(with(s, "lpv.unjoined"), cascades) / one, summed = mean(with(s, "lpv.sum-cascades"), cascades) / one;
-    std::cout << "[ measured ] " << cascades << " cascades over one: unjoined " << unjoined << ", summed " << summed << "\n";
+    const double unjoined = mean(with(s, "lpv.unjoined"), cascades) / one,
+                 summed = mean(with(s, "lpv.sum-cascades"), cascades) / one;
+    std::cout << "[ measured ] " << cascades << " cascades over one: unjoined " << unjoined << ", summed " << summed
+              << "\n";
     EXPECT_NEAR(mean(s, cascades) / one, 1.0, 0.01);
     sum += unjoined;
     EXPECT_NEAR(unjoined, cascades == 2 ? 0.559 : 0.329, 0.002);
@@ -539,9 +587,11 @@ TEST_F(LpvDeviations, Unjoined) {
     blend.centres.push_back(cascade.centre);
   }
   std::vector<Probe> probes = field.probes;
-  for (std::size_t i = 0; i < probes.size(); ++i) probes[i].position *= 1.0f + 0.08f * static_cast<float>(i % 100);  // into all three and the bands between
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    probes[i].position *= 1.0f + 0.08f * static_cast<float>(i % 100);  // into all three and the bands between
   const std::vector<glm::vec3> blended = test::probeIrradiance(library(), run(with(s, "lpv.unjoined"), inputs), probes);
-  const std::vector<glm::vec3> summed = test::probeIrradiance(library(), run(with(s, "lpv.sum-cascades"), inputs), probes);
+  const std::vector<glm::vec3> summed =
+      test::probeIrradiance(library(), run(with(s, "lpv.sum-cascades"), inputs), probes);
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const glm::dvec3 p(probes[i].position), n(probes[i].normal);
     EXPECT_NEAR(blended[i].x, twin::blendedIrradiance(cascades, blend, p, n), 2e-5 * one) << i;
@@ -549,12 +599,14 @@ TEST_F(LpvDeviations, Unjoined) {
   }
 }
 
-// ---- lookup ------------------------------------------------------------------------------------------------------------
+// ---- lookup
+// ------------------------------------------------------------------------------------------------------------
 
 TEST_F(LpvDeviations, Unwindowed) {
-  // Two lights of unit flux in one cell, one towards the receiver and one away from it: 4/pi^2 (pi/4 + w pi/3) and 4/pi^2 (pi/4 - w pi/3). With
-  // w = 3/4 the second is nothing, with w = 1 it takes 1 / (3 pi) of 7 / (3 pi).
-  const RsmTexel towards = lightIn(glm::ivec3(2), {1, 0, 0}, glm::vec3(1.0f)), away = lightIn(glm::ivec3(2), {-1, 0, 0}, glm::vec3(1.0f));
+  // Two lights of unit flux in one cell, one towards the receiver and one away from it: 4/pi^2 (pi/4 + w pi/3) and
+  // 4/pi^2 (pi/4 - w pi/3). With w = 3/4 the second is nothing, with w = 1 it takes 1 / (3 pi) of 7 / (3 pi).
+  const RsmTexel towards = lightIn(glm::ivec3(2), {1, 0, 0}, glm::vec3(1.0f)),
+                 away = lightIn(glm::ivec3(2), {-1, 0, 0}, glm::vec3(1.0f));
   const Lights one({towards}, unitCascade(5)), two({towards, away}, unitCascade(5)), behind({away}, unitCascade(5));
   LpvSettings s = settings(5, 0);
   s.lookup = LpvLookup::published;
@@ -571,21 +623,25 @@ TEST_F(LpvDeviations, Unwindowed) {
   const Lights random = randomLights(5, 9);
   const VolumeRgb injected = resultOf(s, random);
   for (int i = 0; i < 40; ++i) {
-    const Probe at{{1.0f + 0.07f * static_cast<float>(i), 2.6f, 2.0f}, glm::normalize(glm::vec3(1, i % 5 - 2, i % 3 - 1))};
+    const Probe at{{1.0f + 0.07f * static_cast<float>(i), 2.6f, 2.0f},
+                   glm::normalize(glm::vec3(1, i % 5 - 2, i % 3 - 1))};
     const glm::dvec3 p(at.position), n(at.normal);
     EXPECT_NEAR(seen(on, random, at), twin::irradiance(injected[0], p, n, {twin::Lookup::cosine, 0.0}), 1e-5);
     EXPECT_NEAR(seen(s, random, at), twin::irradiance(injected[0], p, n, {twin::Lookup::windowed, 0.0}), 1e-5);
   }
 }
 
-// ---- the reflective shadow map --------------------------------------------------------------------------------------------
+// ---- the reflective shadow map
+// --------------------------------------------------------------------------------------------
 
 TEST_F(LpvDeviations, RsmFluxCosine) {
-  // A plate tilted by 60 degrees under a sun that falls straight down reflects albedo E (projected area), not half of it.
+  // A plate tilted by 60 degrees under a sun that falls straight down reflects albedo E (projected area), not half of
+  // it.
   for (const double degrees : {0.0, 60.0}) {
     const double tilt = degrees * kPi / 180.0;
     test::SceneBuilder builder;
-    builder.plate({0.0, 0.0, 0.0}, {0.0, 0.0, 2.0}, {2.0 * std::cos(tilt), 2.0 * std::sin(tilt), 0.0}, builder.material(glm::vec3(0.5f)));
+    builder.plate({0.0, 0.0, 0.0}, {0.0, 0.0, 2.0}, {2.0 * std::cos(tilt), 2.0 * std::sin(tilt), 0.0},
+                  builder.material(glm::vec3(0.5f)));
     builder.sun({0.0, -1.0, 0.0}, glm::vec3(4.0f));
     const Scene& scene = builder.scene();
     const GpuScene gpuScene(scene, analyse(scene), capabilities());
@@ -601,7 +657,8 @@ TEST_F(LpvDeviations, RsmFluxCosine) {
       const gl::Buffer constants("frame", sizeof frame, &frame, GL_STATIC_DRAW);
       constants.bind(GL_UNIFORM_BUFFER, 0);
       double sum = 0.0;
-      for (const glm::vec4& texel : rsm.record(gpuScene, frustum.texelArea(s.size)).flux.readRgba()) sum += static_cast<double>(texel.x);
+      for (const glm::vec4& texel : rsm.record(gpuScene, frustum.texelArea(s.size)).flux.readRgba())
+        sum += static_cast<double>(texel.x);
       return sum;
     };
     const double cosine = std::cos(tilt), right = flux("");
@@ -613,7 +670,8 @@ TEST_F(LpvDeviations, RsmFluxCosine) {
 class RsmGatherDeviations : public LpvDeviations {
  protected:
   /// Irradiance at one point of a map, with the engine's shaders.
-  static double gathered(const twin::RsmMap& map, RsmGather::Settings s, const glm::dvec3& position, const glm::dvec3& normal) {
+  static double gathered(const twin::RsmMap& map, RsmGather::Settings s, const glm::dvec3& position,
+                         const glm::dvec3& normal) {
     std::vector<glm::vec4> data[3];
     for (const twin::RsmMap::Texel& t : map.texels) {
       data[0].emplace_back(glm::vec3(t.position), 1.0f);
@@ -631,12 +689,14 @@ class RsmGatherDeviations : public LpvDeviations {
     const gl::Buffer constants("frame", sizeof frame, &frame, GL_STATIC_DRAW);
     const std::array probes{glm::vec4(glm::vec3(position), 0.0f), glm::vec4(glm::vec3(normal), 0.0f)};
     const std::vector<glm::vec4> pattern = RsmGather::pattern(s.samples, s.weight);
-    const gl::Buffer in("probes", sizeof probes, probes.data(), GL_STATIC_DRAW), out("irradiances", sizeof(glm::vec4), nullptr, GL_STREAM_READ);
+    const gl::Buffer in("probes", sizeof probes, probes.data(), GL_STATIC_DRAW),
+        out("irradiances", sizeof(glm::vec4), nullptr, GL_STREAM_READ);
     const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), GL_STATIC_DRAW);
     {
       const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
-      RsmGather::bindMap(library().loadCompute("rsm gather probe", "rsm/gather_probe.comp", RsmGather::flags(s, RsmGather::Light::sun)), s,
-                         {{textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())}});
+      RsmGather::bindMap(library().loadCompute("rsm gather probe", "rsm/gather_probe.comp",
+                                               RsmGather::flags(s, RsmGather::Light::sun)),
+                         s, {{textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())}});
       constants.bind(GL_UNIFORM_BUFFER, 0);
       samples.bind(GL_SHADER_STORAGE_BUFFER, 0);
       in.bind(GL_SHADER_STORAGE_BUFFER, 1);
@@ -650,13 +710,15 @@ class RsmGatherDeviations : public LpvDeviations {
     twin::RsmMap map;
     map.size = glm::ivec2(side);
     map.corner = {-0.5, -0.5, 0.0};
-    map.texels.assign(static_cast<std::size_t>(side * side), {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, glm::dvec3(1.0), 1.0, true});
+    map.texels.assign(static_cast<std::size_t>(side * side),
+                      {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, glm::dvec3(1.0), 1.0, true});
     return map;
   }
 };
 
 TEST_F(RsmGatherDeviations, GatherWeight) {
-  // Within r = 0.3 of a map of 64 texels there are pi (0.3 * 64)^2, each gives Phi/pi / d^2 to a point straight above. xi^2 for xi leaves 2/3.
+  // Within r = 0.3 of a map of 64 texels there are pi (0.3 * 64)^2, each gives Phi/pi / d^2 to a point straight above.
+  // xi^2 for xi leaves 2/3.
   const twin::RsmMap map = mapOfOnePlace(64);
   RsmGather::Settings right = with("").gather;
   right.samples = 4096;
@@ -670,8 +732,8 @@ TEST_F(RsmGatherDeviations, GatherWeight) {
 }
 
 TEST_F(RsmGatherDeviations, Unbounded) {
-  // One texel of area 1 and exitance 1, 0.1 of its side above its middle: the reach holds pi/4 of it. No receiver can get more than the exitance;
-  // Phi/pi / d^2 gives 100/pi.
+  // One texel of area 1 and exitance 1, 0.1 of its side above its middle: the reach holds pi/4 of it. No receiver can
+  // get more than the exitance; Phi/pi / d^2 gives 100/pi.
   const twin::RsmMap map = mapOfOnePlace(1);
   RsmGather::Settings right = with("").gather, published = with("rsm.unbounded").gather;
   right.radius = published.radius = 0.5f;

@@ -1,8 +1,10 @@
-// Receivers of the light propagation volume (lpv.transport=rays): irradiance at points of surfaces against exact answers and the path tracer, what
-// must not change it, what is kept from frame to frame and what happens when there is no room.
+// Receivers of the light propagation volume (lpv.transport=rays): irradiance at points of surfaces against exact
+// answers and the path tracer, what must not change it, what is kept from frame to frame and what happens when there is
+// no room.
 //
-// Noise: a pixel is filtered from some four receivers of as many paths as the settings say, so that the pixels' standard deviation over the root of a quarter of the receivers
-// bounds the error of a picture's mean where the picture is of one value; kSignificant of these are allowed.
+// Noise: a pixel is filtered from some four receivers of as many paths as the settings say, so that the pixels'
+// standard deviation over the root of a quarter of the receivers bounds the error of a picture's mean where the picture
+// is of one value; kSignificant of these are allowed.
 #include "base/error.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
@@ -56,7 +58,9 @@ class LpvReceiversGl : public test::SharedProgramsTest {
     EXPECT_EQ(renderer.receivers()->counts().waiting, 0u);
     return {renderer.readRadiance(), renderer.receivers()->counts()};
   }
-  static void report(const std::string& what, double value) { std::cout << "[ measured ] " << what << ": " << value << "\n"; }
+  static void report(const std::string& what, double value) {
+    std::cout << "[ measured ] " << what << ": " << value << "\n";
+  }
 
   /// Of a picture that ought to show one value: how many standard errors of its mean it is off, in the worst channel.
   static double deviationsFrom(const Picture& seen, const glm::dvec3& expected) {
@@ -76,7 +80,8 @@ class LpvReceiversGl : public test::SharedProgramsTest {
 double largestDifference(const Image& a, const Image& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c) largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
+    for (int c = 0; c < 3; ++c)
+      largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
   return largest;
 }
 double largestValue(const Image& image) { return largestDifference(image, Image(image.width, image.height)); }
@@ -92,7 +97,8 @@ double relativeError(const Image& seen, const Image& reference) {
   return std::sqrt(difference / scale);
 }
 
-// ---- exact answers -----------------------------------------------------------------------------------------------------
+// ---- exact answers
+// -----------------------------------------------------------------------------------------------------
 
 /// A closed room whose walls all shine alike.
 Scene furnace(const glm::vec3& albedo, const glm::vec3& emission) {
@@ -106,15 +112,19 @@ Scene furnace(const glm::vec3& albedo, const glm::vec3& emission) {
 const Camera kInside = lookingAt({0.2, 0.1, 0.3}, {1.0, 0.7, -0.9}, 1.0);
 
 TEST_F(LpvReceiversGl, AClosedRoomThatShines) {
-  // L = emission (1 + a + ... + a^(N + 1)): seen itself, its light, and that reflected up to N times; emission / (1 - a) with all.
+  // L = emission (1 + a + ... + a^(N + 1)): seen itself, its light, and that reflected up to N times; emission / (1 -
+  // a) with all.
   const Scene scene = furnace({0.8f, 0.5f, 0.0f}, {1.0f, 2.0f, 3.0f});
   for (const int bounces : {1, 2, 5, kAll}) {
     const Picture seen = picture(scene, kInside, settings(bounces, 256));
     glm::dvec3 expected;
     const glm::dvec3 albedo(0.8f, 0.5f, 0.0f), emission(1.0, 2.0, 3.0);
-    for (int c = 0; c < 3; ++c) expected[c] = emission[c] * (bounces == kAll ? 1.0 : 1.0 - std::pow(albedo[c], bounces + 2.0)) / (1.0 - albedo[c]);
+    for (int c = 0; c < 3; ++c)
+      expected[c] =
+          emission[c] * (bounces == kAll ? 1.0 : 1.0 - std::pow(albedo[c], bounces + 2.0)) / (1.0 - albedo[c]);
     const glm::dvec3 mean = meanOf(seen.image);
-    report(fmt::format("furnace, bounces {}: red over expected", bounces == kAll ? "all" : std::to_string(bounces)), mean.x / expected.x);
+    report(fmt::format("furnace, bounces {}: red over expected", bounces == kAll ? "all" : std::to_string(bounces)),
+           mean.x / expected.x);
     report("green", mean.y / expected.y);
     // Receivers that give each other light pass their noise on as they do light: up to 1 / (1 - albedo) times.
     const double errors = deviationsFrom(seen, expected) * (bounces == kAll ? 1.0 - albedo.x : 1.0);
@@ -172,8 +182,8 @@ TEST_F(LpvReceiversGl, AFloorUnderAConstantSky) {
 }
 
 TEST_F(LpvReceiversGl, AFloorUnderAPictureOfTheSky) {
-  // Rows of radiance 8, 2, 1, 1/2 above the horizon, of equal height each: E = sum of L pi (sin^2 of the angle to the zenith, from border to border). And in one column
-  // of eight a lamp ten times as bright.
+  // Rows of radiance 8, 2, 1, 1/2 above the horizon, of equal height each: E = sum of L pi (sin^2 of the angle to the
+  // zenith, from border to border). And in one column of eight a lamp ten times as bright.
   SceneBuilder builder = floorAlone();
   Image sky(8, 8, glm::vec3(100.0f));  // below the horizon nothing counts
   const float rows[] = {8.0f, 2.0f, 1.0f, 0.5f};
@@ -221,7 +231,8 @@ struct FloorAndWall {
     return sum * 4.0 / (kSteps * kSteps);
   }
   /// The picture's pixels that show the wall at least 0.1 above the plate, beside what is expected there.
-  void expect(const Image& seen, const std::function<double(const glm::dvec3&)>& irradianceAt, const char* what, double mostError = 0.06) const {
+  void expect(const Image& seen, const std::function<double(const glm::dvec3&)>& irradianceAt, const char* what,
+              double mostError = 0.06) const {
     Image expected(seen.width, seen.height), shown(seen.width, seen.height);
     double sum = 0.0, expectedSum = 0.0;
     int count = 0;
@@ -237,7 +248,8 @@ struct FloorAndWall {
         ++count;
       }
     ASSERT_GT(count, seen.width * seen.height / 2);
-    std::cout << "[ measured ] wall beside " << what << ": mean over the exact one " << sum / expectedSum << ", relative error " << relativeError(shown, expected) << "\n";
+    std::cout << "[ measured ] wall beside " << what << ": mean over the exact one " << sum / expectedSum
+              << ", relative error " << relativeError(shown, expected) << "\n";
     EXPECT_NEAR(sum / expectedSum, 1.0, 0.01) << what;
     EXPECT_LT(relativeError(shown, expected), mostError) << what;
   }
@@ -245,10 +257,18 @@ struct FloorAndWall {
 
 TEST_F(LpvReceiversGl, AWallBesideASunlitFloor) {
   FloorAndWall room;
-  room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));  // along the wall: it has no light but the floor's, radiance 0.8
-  const Picture seen = picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
+  room.builder.sun(
+      {0, -1, 0},
+      glm::vec3(std::numbers::pi_v<float>));  // along the wall: it has no light but the floor's, radiance 0.8
+  const Picture seen =
+      picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
   const glm::dvec3 plate[] = {{0, 0, -1}, {2, 0, -1}, {2, 0, 1}, {0, 0, 1}};
-  room.expect(seen.image, [&](const glm::dvec3& p) { return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate); }, "a sunlit floor");
+  room.expect(
+      seen.image,
+      [&](const glm::dvec3& p) {
+        return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
+      },
+      "a sunlit floor");
 }
 
 TEST_F(LpvReceiversGl, AWallBesideAFloorUnderALamp) {
@@ -259,9 +279,13 @@ TEST_F(LpvReceiversGl, AWallBesideAFloorUnderALamp) {
       const double d2 = (x - 1.2) * (x - 1.2) + 1.0 + (z - 0.3) * (z - 0.3);
       return 0.8 / kPi * 5.0 / (d2 * std::sqrt(d2));
     };
-    // The floor gives a millimetre of itself back by the wall: that is on the floor, which the wall does not see again with one bounce.
-    const Picture seen = picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
-    room.expect(seen.image, [&](const glm::dvec3& p) { return FloorAndWall::irradiance(p, radiance); }, "a floor under an omnidirectional lamp");
+    // The floor gives a millimetre of itself back by the wall: that is on the floor, which the wall does not see again
+    // with one bounce.
+    const Picture seen =
+        picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
+    room.expect(
+        seen.image, [&](const glm::dvec3& p) { return FloorAndWall::irradiance(p, radiance); },
+        "a floor under an omnidirectional lamp");
   }
   FloorAndWall room;
   room.builder.scene().spots.push_back({{1.0, 2.0, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(9.0f), 0.2, 0.4});
@@ -270,24 +294,33 @@ TEST_F(LpvReceiversGl, AWallBesideAFloorUnderALamp) {
     const double t = std::clamp((cosine - std::cos(0.4)) / (std::cos(0.2) - std::cos(0.4)), 0.0, 1.0);
     return 0.8 / kPi * 9.0 * t * t * (3.0 - 2.0 * t) * cosine / d2;
   };
-  const Picture seen = picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
-  room.expect(seen.image, [&](const glm::dvec3& p) { return FloorAndWall::irradiance(p, radiance); }, "a floor under a spot");
+  const Picture seen =
+      picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
+  room.expect(
+      seen.image, [&](const glm::dvec3& p) { return FloorAndWall::irradiance(p, radiance); }, "a floor under a spot");
 }
 
 TEST_F(LpvReceiversGl, AWallBesideAPlateThatShines) {
-  // The plate itself shines: its light is direct, and there is nothing that reflects it back but what the plate's own albedo does.
+  // The plate itself shines: its light is direct, and there is nothing that reflects it back but what the plate's own
+  // albedo does.
   FloorAndWall room;
   room.builder.materialAt(0).emission = glm::vec3(1.5f);
   room.builder.materialAt(0).diffuse = glm::vec3(0.0f);
   const glm::dvec3 plate[] = {{0, 0, -1}, {2, 0, -1}, {2, 0, 1}, {0, 0, 1}};
   for (const Component component : {Component::all, Component::direct}) {
     const Picture seen = picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 256, component)));
-    room.expect(seen.image, [&](const glm::dvec3& p) { return 1.5 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate); }, "a plate that shines");
+    room.expect(
+        seen.image,
+        [&](const glm::dvec3& p) {
+          return 1.5 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
+        },
+        "a plate that shines");
   }
   EXPECT_EQ(largestValue(picture(room.builder.scene(), room.camera, settings(1, 64, Component::indirect)).image), 0.0);
 }
 
-// ---- gathered from the lights' maps ------------------------------------------------------------------------------------
+// ---- gathered from the lights' maps
+// ------------------------------------------------------------------------------------
 
 RenderSettings gathered(RenderSettings s, LpvVisibility visibility = LpvVisibility::voxels) {
   s.lpv.transport = LpvTransport::gather;
@@ -307,32 +340,41 @@ TEST_F(LpvGatherGl, AWallBesideAFloorUnderTheSunALampAndASpot) {
       for (const int size : {256, 32}) {
         RenderSettings ofMap = s;
         ofMap.rsm.size = size;
-        room.expect(picture(room.builder.scene(), room.camera, ofMap).image, [&](const glm::dvec3& p) { return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate); },
-                    "a sunlit floor, gathered", 0.03);
+        room.expect(
+            picture(room.builder.scene(), room.camera, ofMap).image,
+            [&](const glm::dvec3& p) {
+              return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
+            },
+            "a sunlit floor, gathered", 0.03);
       }
     }
     FloorAndWall room;
     room.builder.scene().points.push_back({{1.2, 1.0, 0.3}, glm::vec3(5.0f)});
-    room.expect(picture(room.builder.scene(), room.camera, s).image,
-                [&](const glm::dvec3& p) {
-                  return FloorAndWall::irradiance(p, [](double x, double z) {
-                    const double d2 = (x - 1.2) * (x - 1.2) + 1.0 + (z - 0.3) * (z - 0.3);
-                    return 0.8 / kPi * 5.0 / (d2 * std::sqrt(d2));
-                  });
-                },
-                "a floor under an omnidirectional lamp, gathered", 0.03);
+    room.expect(
+        picture(room.builder.scene(), room.camera, s).image,
+        [&](const glm::dvec3& p) {
+          return FloorAndWall::irradiance(p, [](double x, double z) {
+            const double d2 = (x - 1.2) * (x - 1.2) + 1.0 + (z - 0.3) * (z - 0.3);
+            return 0.8 / kPi * 5.0 / (d2 * std::sqrt(d2));
+          });
+        },
+        "a floor under an omnidirectional lamp, gathered", 0.03);
   }
 }
 
 TEST_F(LpvGatherGl, AScreenBlocksWhatVoxelsSee) {
-  // A screen behind the wall: all that the plate sends to it passes the wall. What is not blocked is the plate's strip at the wall's foot, some three voxels of 256 wide,
-  // whose voxels are one run with the wall's.
+  // A screen behind the wall: all that the plate sends to it passes the wall. What is not blocked is the plate's strip
+  // at the wall's foot, some three voxels of 256 wide, whose voxels are one run with the wall's.
   const auto mean = [](LpvVisibility visibility) {
     FloorAndWall room;
     room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));
     room.builder.plate({-0.6, 1.5, 0.0}, {0, 3, 0}, {0, 0, 4}, room.builder.material(glm::vec3(0.5f)));
-    room.camera = lookingAt({-0.2, 1.2, 0.3}, {-0.6, 1.2, 0.3}, 1.0);  // at the screen's side that faces the wall's back
-    return meanOf(picture(room.builder.scene(), room.camera, gathered(FloorAndWall::fine(settings(1, 1, Component::indirect)), visibility)).image).x;
+    room.camera =
+        lookingAt({-0.2, 1.2, 0.3}, {-0.6, 1.2, 0.3}, 1.0);  // at the screen's side that faces the wall's back
+    return meanOf(picture(room.builder.scene(), room.camera,
+                          gathered(FloorAndWall::fine(settings(1, 1, Component::indirect)), visibility))
+                      .image)
+        .x;
   };
   EXPECT_GT(mean(LpvVisibility::none), 0.01);
   EXPECT_LT(mean(LpvVisibility::voxels), 0.05 * mean(LpvVisibility::none));
@@ -346,7 +388,8 @@ TEST_F(LpvGatherGl, TheSkyAboveAFloorAndInAPit) {
     for (int c = 0; c < 3; ++c) ASSERT_NEAR(p[c] / (0.5f * builder.scene().environment->radiance[c]), 1.0f, 1e-5f);
   // Under a lid that is as wide as the floor and 0.2 above it the middle is dark.
   builder.plate({0.0, 0.2, 0.0}, {0, 0, 8}, {8, 0, 0}, builder.material(glm::vec3(0.5f)));
-  const Picture dark = picture(builder.scene(), lookingAt({0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, 0.5), gathered(settings(1, 1)));
+  const Picture dark =
+      picture(builder.scene(), lookingAt({0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, 0.5), gathered(settings(1, 1)));
   EXPECT_LT(meanOf(dark.image).x, 0.1);
 }
 
@@ -357,7 +400,8 @@ TEST_F(LpvGatherGl, OneBounceAloneIsTaken) {
   EXPECT_THROW(Renderer(context(), library(), room.builder.scene(), gathered(settings(kAll, 1))), Error);
 }
 
-// ---- against the path tracer ---------------------------------------------------------------------------------------------
+// ---- against the path tracer
+// ---------------------------------------------------------------------------------------------
 
 /// A closed room with all kinds of light: a sun through a window, a lamp, a shining square and a sky.
 Scene richRoom() {
@@ -367,7 +411,8 @@ Scene richRoom() {
   scene.environment = Environment{};
   scene.environment->radiance = {0.2f, 0.3f, 0.6f};
   scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
-  scene.spots.push_back({{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
+  scene.spots.push_back(
+      {{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
   const int lamp = builder.material(glm::vec3(0.3f));
   builder.materialAt(lamp).emission = {6.0f, 5.0f, 3.0f};
   builder.plate({1.5, 3.0, -2.0}, {2, 0, 0}, {0, 0, 2}, lamp);
@@ -377,7 +422,9 @@ Scene richRoom() {
 TEST_F(LpvReceiversGl, ComponentsAddUp) {
   const Scene scene = richRoom();
   for (const int bounces : {1, kAll}) {
-    const auto of = [&](Component component) { return picture(scene, test::openBoxCamera(), settings(bounces, 512, component)).image; };
+    const auto of = [&](Component component) {
+      return picture(scene, test::openBoxCamera(), settings(bounces, 512, component)).image;
+    };
     const Image all = of(Component::all), direct = of(Component::direct), indirect = of(Component::indirect);
     Image sum = direct;
     for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += indirect.pixels[i];
@@ -413,11 +460,15 @@ class LpvReceiversAgainstPaths : public LpvReceiversGl {
     return reference;
   }
   /// The picture's mean within `ofMean`, and its error beyond the reference's noise within `beyondNoise`.
-  static void expectNear(const Image& seen, const Reference& reference, double ofMean, double beyondNoise, const std::string& what) {
+  static void expectNear(const Image& seen, const Reference& reference, double ofMean, double beyondNoise,
+                         const std::string& what) {
     const glm::dvec3 ratio = meanOf(seen) / meanOf(reference.mean);
-    const double error = relativeError(seen, reference.mean), beyond = std::sqrt(std::max(error * error - reference.noise * reference.noise, 0.0));
-    std::cout << fmt::format("[ measured ] {}: mean over the path traced one {:.4f} {:.4f} {:.4f}; relative error {:.4f}, the reference's noise {:.4f}, beyond it {:.4f}\n", what,
-                             ratio.x, ratio.y, ratio.z, error, reference.noise, beyond);
+    const double error = relativeError(seen, reference.mean),
+                 beyond = std::sqrt(std::max(error * error - reference.noise * reference.noise, 0.0));
+    std::cout << fmt::format(
+        "[ measured ] {}: mean over the path traced one {:.4f} {:.4f} {:.4f}; relative error {:.4f}, the reference's "
+        "noise {:.4f}, beyond it {:.4f}\n",
+        what, ratio.x, ratio.y, ratio.z, error, reference.noise, beyond);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(ratio[c], 1.0, ofMean) << what;
     EXPECT_LT(beyond, beyondNoise) << what;
   }
@@ -433,8 +484,10 @@ TEST_F(LpvReceiversAgainstPaths, CornellBox) {
     Transport transport;
     std::uint32_t scatterings;
   };
-  for (const Row& row : {Row{1, Component::indirect, Transport::oneBounce, PathTracer::kUnlimited}, Row{2, Component::indirect, Transport::indirect, 3},
-                         Row{kAll, Component::indirect, Transport::indirect, PathTracer::kUnlimited}, Row{kAll, Component::all, Transport::all, PathTracer::kUnlimited}}) {
+  for (const Row& row : {Row{1, Component::indirect, Transport::oneBounce, PathTracer::kUnlimited},
+                         Row{2, Component::indirect, Transport::indirect, 3},
+                         Row{kAll, Component::indirect, Transport::indirect, PathTracer::kUnlimited},
+                         Row{kAll, Component::all, Transport::all, PathTracer::kUnlimited}}) {
     RenderSettings s = settings(row.bounces, 512, row.component);
     s.lpv.cascades.cells = 32;
     s.lpv.cascades.cascades = 3;
@@ -455,7 +508,8 @@ TEST_F(LpvReceiversAgainstPaths, ARoomWithEveryKindOfLight) {
   }
 }
 
-// ---- what must not change the picture -------------------------------------------------------------------------------------
+// ---- what must not change the picture
+// -------------------------------------------------------------------------------------
 
 TEST_F(LpvReceiversGl, FarFromTheOriginThePictureIsTheSame) {
   const Scene near = richRoom();
@@ -507,7 +561,8 @@ TEST_F(LpvReceiversGl, UnitsOfLightDoNotMatter) {
   }
 }
 
-// ---- what is kept ------------------------------------------------------------------------------------------------------
+// ---- what is kept
+// ------------------------------------------------------------------------------------------------------
 
 class LpvReceiversKept : public LpvReceiversGl {
  protected:
@@ -523,7 +578,8 @@ TEST_F(LpvReceiversKept, PathsGoOnWhereTheCameraHasBeen) {
   RenderSettings s = settings(1, 256);
   s.lpv.leastRays = 16;
   s.lpv.mostChange = 0.0f;
-  const Camera here = test::openBoxCamera(), there = lookingAt({2.0, 1.0, 11.0}, {0.5, -1.0, 0.0}, 0.9);  // the finer grid moves
+  const Camera here = test::openBoxCamera(),
+               there = lookingAt({2.0, 1.0, 11.0}, {0.5, -1.0, 0.0}, 0.9);  // the finer grid moves
   Renderer renderer(context(), library(), scene, s);
   const LpvReceivers::Counts first = frame(renderer, here);
   EXPECT_GT(first.receivers, 100u);
@@ -543,7 +599,8 @@ TEST_F(LpvReceiversKept, PathsGoOnWhereTheCameraHasBeen) {
   EXPECT_FALSE(renderer.isSettled());
   Renderer fresh(context(), library(), scene, s);
   const LpvReceivers::Counts alone = frame(fresh, there);
-  std::cout << "[ measured ] after a step aside " << moved.waiting << " receivers wait, " << alone.waiting << " without those kept\n";
+  std::cout << "[ measured ] after a step aside " << moved.waiting << " receivers wait, " << alone.waiting
+            << " without those kept\n";
   EXPECT_GT(moved.waiting, 0u);
   EXPECT_LT(moved.waiting, alone.waiting / 2);
   // And back: none waits.
@@ -562,7 +619,8 @@ TEST_F(LpvReceiversKept, PathsGoOnWhereTheCameraHasBeen) {
 }
 
 TEST_F(LpvReceiversKept, WhatIsSeenAfterAMoveIsWhatIsSeenFromTheStart) {
-  // Grids move by whole cells, receivers with them: none may turn up in another place, however far the way. Beside a renderer that has seen nothing else.
+  // Grids move by whole cells, receivers with them: none may turn up in another place, however far the way. Beside a
+  // renderer that has seen nothing else.
   SceneBuilder builder = floorAlone();
   const int red = builder.material({0.5f, 0.1f, 0.1f});
   for (const double x : {-3.0, -1.0, 1.0, 3.0}) builder.plate({x, 0.5, 0.0}, {0, 1, 0}, {0, 0, 8}, red);
@@ -582,13 +640,16 @@ TEST_F(LpvReceiversKept, WhatIsSeenAfterAMoveIsWhatIsSeenFromTheStart) {
     worst = std::max(worst, relativeError(renderer.readRadiance(), fresh.readRadiance()));
   }
   report("after a move, largest relative difference from what a new renderer shows", worst);
-  EXPECT_LT(worst, 0.03);  // other points of the same cells, where irradiance changes from a wall's foot to the middle between two
+  EXPECT_LT(
+      worst,
+      0.03);  // other points of the same cells, where irradiance changes from a wall's foot to the middle between two
   EXPECT_GT(worst, 0.0);
   renderer.drain();
   EXPECT_EQ(renderer.receivers()->counts().left, 0u);
 }
 
-// New receivers begin with what was seen in their place and move by at most lpv.most-change of it a frame, until they show what a renderer without that bound shows.
+// New receivers begin with what was seen in their place and move by at most lpv.most-change of it a frame, until they
+// show what a renderer without that bound shows.
 TEST_F(LpvReceiversKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
   const Scene scene = test::openBox();
   const Camera here = test::openBoxCamera();
@@ -597,7 +658,8 @@ TEST_F(LpvReceiversKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
     double largest = 0.0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
       for (int c = 0; c < 3; ++c)
-        largest = std::max(largest, std::abs(b.pixels[i][c] - a.pixels[i][c]) / std::max<double>(a.pixels[i][c], mean[c]));
+        largest =
+            std::max(largest, std::abs(b.pixels[i][c] - a.pixels[i][c]) / std::max<double>(a.pixels[i][c], mean[c]));
     return largest;
   };
   // The view stays and the volume moves, so that nothing but the volume changes the picture.
@@ -639,13 +701,15 @@ TEST_F(LpvReceiversKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
   report("without the bound", free.largestStep);
   report("frames until it has arrived", bounded.framesToArrive);
   EXPECT_GT(free.largestStep, 0.05);  // else there is nothing to bound
-  EXPECT_LT(bounded.largestStep, 0.015);  // 0.004, and the step by which the finer grid's blending moves over the coarser one
+  EXPECT_LT(bounded.largestStep,
+            0.015);  // 0.004, and the step by which the finer grid's blending moves over the coarser one
   EXPECT_LT(bounded.framesToArrive, 200);
   EXPECT_LT(largestDifference(bounded.last, free.last), 1e-6);
 }
 
 TEST_F(LpvReceiversKept, WithoutRoomReceiversAreLeftOutAndCounted) {
-  // Triangles that face every way in every cell of a small grid, seen from all sides: more slots are asked for than there is room (24 of a grid's 6 cells^3 by cells^2).
+  // Triangles that face every way in every cell of a small grid, seen from all sides: more slots are asked for than
+  // there is room (24 of a grid's 6 cells^3 by cells^2).
   SceneBuilder builder = test::inEnvironment(1.0f);
   const int grey = builder.material(glm::vec3(0.5f));
   std::mt19937 random(3);
@@ -661,7 +725,8 @@ TEST_F(LpvReceiversKept, WithoutRoomReceiversAreLeftOutAndCounted) {
   s.lpv.cascades.cellSize = 2.1 / 12.0;
   Renderer renderer(context(), library(), builder.scene(), s);
   LpvReceivers::Counts counts;
-  for (const glm::dvec3& from : {glm::dvec3(4, 0, 0), glm::dvec3(-4, 0.1, 0), glm::dvec3(0, 4, 0), glm::dvec3(0, -4, 0.1), glm::dvec3(0.1, 0, 4), glm::dvec3(0, 0.1, -4)}) {
+  for (const glm::dvec3& from : {glm::dvec3(4, 0, 0), glm::dvec3(-4, 0.1, 0), glm::dvec3(0, 4, 0),
+                                 glm::dvec3(0, -4, 0.1), glm::dvec3(0.1, 0, 4), glm::dvec3(0, 0.1, -4)}) {
     counts = frame(renderer, lookingAt(from, {0, 0, 0}, 0.55));
     for (const glm::vec3& p : renderer.readRadiance().pixels) {
       ASSERT_TRUE(std::isfinite(p.x));
@@ -682,7 +747,8 @@ TEST_F(LpvReceiversKept, TinyAndHugeGridsAreDrawn) {
     RenderSettings s = settings(1, 16, Component::direct);
     s.lpv.cascades.cells = cells;
     s.lpv.cascades.cascades = cascades;
-    for (const glm::vec3& p : picture(builder.scene(), kAboveFloor, s).image.pixels) ASSERT_NEAR(p.x, 0.5f, 1e-5f) << cells << " " << cascades;
+    for (const glm::vec3& p : picture(builder.scene(), kAboveFloor, s).image.pixels)
+      ASSERT_NEAR(p.x, 0.5f, 1e-5f) << cells << " " << cascades;
   }
 }
 

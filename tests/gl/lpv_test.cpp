@@ -2,7 +2,8 @@
 //
 // Errors are relative to the largest coefficient of the grid that is compared (see relativeError).
 // - Storage::full: 1e-5.
-// - Storage::half: 1e-3, after any number of steps: fronts and the result are rounded to the nearest half, sums are kept in 32 bits.
+// - Storage::half: 1e-3, after any number of steps: fronts and the result are rounded to the nearest half, sums are
+// kept in 32 bits.
 #include "support/gl_fixture.hpp"
 #include "support/lpv_on_gl.hpp"
 #include "support/temp_folder.hpp"
@@ -51,11 +52,10 @@ class LpvGlTest : public test::SharedProgramsTest {
   }
 
   /// Runs all stages, join() where asked for.
-  static LightPropagationVolume run(const LightPropagationVolume::Settings& s, const LightPropagationVolume::Inputs& inputs,
-                                    bool join = false) {
+  static LightPropagationVolume run(const LightPropagationVolume::Settings& s,
+                                    const LightPropagationVolume::Inputs& inputs, bool join = false) {
     return test::runVolume(library(), capabilities(), s, inputs, join);
   }
-
 };
 
 /// One cascade with its minimum in the origin and cells of size 1.
@@ -92,9 +92,9 @@ std::vector<RsmTexel> badTexels() {
   return result;
 }
 
-/// Random virtual point lights in and around the cascades: axis-aligned and oblique normals, some ten per cell of the coarse
-/// grids, those on borders exactly representable, and the bad ones. Where rounding to 32 bits could choose another cell than
-/// the twin's 64 (within 1e-3 cells of a border), a light is drawn again.
+/// Random virtual point lights in and around the cascades: axis-aligned and oblique normals, some ten per cell of the
+/// coarse grids, those on borders exactly representable, and the bad ones. Where rounding to 32 bits could choose
+/// another cell than the twin's 64 (within 1e-3 cells of a border), a light is drawn again.
 std::vector<RsmTexel> randomTexels(unsigned seed, std::size_t count, std::span<const Cascade> cascades, double reach) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
@@ -112,7 +112,8 @@ std::vector<RsmTexel> randomTexels(unsigned seed, std::size_t count, std::span<c
   for (std::size_t i = 0; i < count; ++i) {
     RsmTexel texel;
     do {
-      const glm::vec3 p = static_cast<float>(reach) * (2.0f * glm::vec3(uniform(random), uniform(random), uniform(random)) - 1.0f);
+      const glm::vec3 p =
+          static_cast<float>(reach) * (2.0f * glm::vec3(uniform(random), uniform(random), uniform(random)) - 1.0f);
       glm::vec3 n = kAxes[i % 6];
       if (i % 2) n = glm::normalize(glm::vec3(gauss(random), gauss(random), gauss(random)));
       texel.position = glm::vec4(p, 1.0f);
@@ -140,10 +141,11 @@ std::vector<RsmTexel> borderTexels(std::span<const Cascade> cascades, int cells)
       for (const double half : {0.0, 0.5})
         for (const glm::vec3& normal : kAxes) {
           const glm::dvec3 inCells(i + half, cells / 2, cells / 2 + 0.25);
-          for (const glm::dvec3& p : {inCells, glm::dvec3(inCells.z, inCells.x, inCells.y), glm::dvec3(inCells.y, inCells.z, inCells.x)}) {
+          for (const glm::dvec3& p :
+               {inCells, glm::dvec3(inCells.z, inCells.x, inCells.y), glm::dvec3(inCells.y, inCells.z, inCells.x)}) {
             flux = flux > 4.0f ? 1.0f : flux + 0.125f;  // all different, so that a swap shows
-            texels.push_back({glm::vec4(glm::vec3(cascade.minimum() + cascade.cellSize * p), 1.0f), glm::vec4(normal, 0.5f),
-                              glm::vec3(flux, 1.0f, 5.0f - flux)});
+            texels.push_back({glm::vec4(glm::vec3(cascade.minimum() + cascade.cellSize * p), 1.0f),
+                              glm::vec4(normal, 0.5f), glm::vec3(flux, 1.0f, 5.0f - flux)});
           }
         }
   return texels;
@@ -153,7 +155,8 @@ struct Case {
   int cells, cascades;
   double cellSize, ratio;  ///< of the coarsest; dyadic where lights on borders are wanted
 };
-const std::array<Case, 5> kCases{{{8, 1, 2.0, 2.0}, {16, 2, 1.0, 2.0}, {8, 3, 2.0, 2.0}, {12, 4, 1.5, 2.0}, {9, 3, 1.37, 1.7}}};
+const std::array<Case, 5> kCases{
+    {{8, 1, 2.0, 2.0}, {16, 2, 1.0, 2.0}, {8, 3, 2.0, 2.0}, {12, 4, 1.5, 2.0}, {9, 3, 1.37, 1.7}}};
 
 struct CaseInputs {
   std::vector<Cascade> cascades;
@@ -163,7 +166,9 @@ struct CaseInputs {
   LightPropagationVolume::Inputs inputs;
 
   explicit CaseInputs(const Case& c, unsigned seed)
-      : cascades(place(c)), texels(makeTexels(c, seed, cascades)), textures(texels, texelArea),
+      : cascades(place(c)),
+        texels(makeTexels(c, seed, cascades)),
+        textures(texels, texelArea),
         inputs{{textures.outputs()}, cascades, 3.5f} {}
 
   static std::vector<Cascade> place(const Case& c) {
@@ -208,7 +213,8 @@ TwinRun runTwin(const CaseInputs& c, int cells, int iterations, bool blocking) {
 
 void report(const char* what, double error) { std::cout << "[ measured ] " << what << ": " << error << "\n"; }
 
-// ---- against the twin ------------------------------------------------------------------------------------------------
+// ---- against the twin
+// ------------------------------------------------------------------------------------------------
 
 class LpvAgainstTwin : public LpvGlTest {};
 
@@ -263,8 +269,8 @@ TEST_F(LpvAgainstTwin, PropagationAndLookup) {
         const std::vector<VolumeRgb> actual = test::readVolume(lpv.result(), inputs.inputs);
         for (std::size_t k = 0; k < actual.size(); ++k) {
           const double error = test::relativeError(expected.result[k], actual[k]);
-          EXPECT_LT(error, kFullTolerance) << c.cells << "^3, cascade " << k << " of " << c.cascades << ", " << iterations
-                                           << " steps, blocking " << blocking;
+          EXPECT_LT(error, kFullTolerance) << c.cells << "^3, cascade " << k << " of " << c.cascades << ", "
+                                           << iterations << " steps, blocking " << blocking;
           worst[static_cast<std::size_t>(iterations)] = std::max(worst[static_cast<std::size_t>(iterations)], error);
         }
         if (c.cascades > 1) continue;
@@ -283,7 +289,8 @@ TEST_F(LpvAgainstTwin, PropagationAndLookup) {
           glm::dvec3 largest(0.0);
           std::vector<glm::dvec3> all;
           for (const Probe& probe : probes) {
-            all.push_back(twin::irradiance(expected.result[0], glm::dvec3(probe.position), glm::dvec3(probe.normal), options));
+            all.push_back(
+                twin::irradiance(expected.result[0], glm::dvec3(probe.position), glm::dvec3(probe.normal), options));
             largest = glm::max(largest, all.back());
           }
           for (std::size_t i = 0; i < probes.size(); ++i)
@@ -317,14 +324,17 @@ TEST_F(LpvAgainstTwin, HalfStorage) {
             for (std::size_t channel = 0; channel < 3; ++channel) {
               const double error = test::relativeError(expected.result[k][channel], actual[k][channel]);
               EXPECT_LT(error, kHalfTolerance);  // what is promised
-              // And what one rounding to the nearest leaves, half a unit in the last place; a store that cuts off would leave a whole one.
-              EXPECT_LT(error, 0.5 * kHalfUlp + kFullTolerance) << c.cells << "^3, cascade " << k << " of " << c.cascades << ", " << iterations << " steps, blocking "
-                                               << blocking << ", " << nameOf(propagate);
+              // And what one rounding to the nearest leaves, half a unit in the last place; a store that cuts off would
+              // leave a whole one.
+              EXPECT_LT(error, 0.5 * kHalfUlp + kFullTolerance)
+                  << c.cells << "^3, cascade " << k << " of " << c.cascades << ", " << iterations << " steps, blocking "
+                  << blocking << ", " << nameOf(propagate);
               worst = std::max(worst, error);
             }
         }
       }
-      report(fmt::format("{}, {} steps in 16-bit storage, largest error", nameOf(propagate), iterations).c_str(), worst);
+      report(fmt::format("{}, {} steps in 16-bit storage, largest error", nameOf(propagate), iterations).c_str(),
+             worst);
     }
 }
 
@@ -347,10 +357,12 @@ TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
       std::vector<twin::CascadeParts> parts;
       for (std::size_t k = 0; k < separate.injected.size(); ++k)
         parts.push_back(twin::propagateParts(separate.injected[k], kIterations, kHandOver, {}, &separate.geometry[k]));
-      const std::vector<VolumeRgb> expected = twin::joinCascades(parts, {4.0, 1e-4 * static_cast<double>(inputs.inputs.referenceIrradiance)});
+      const std::vector<VolumeRgb> expected =
+          twin::joinCascades(parts, {4.0, 1e-4 * static_cast<double>(inputs.inputs.referenceIrradiance)});
       for (std::size_t k = 0; k < actual.size(); ++k) {
         const double error = test::relativeError(expected[k], actual[k]);
-        EXPECT_LT(error, tolerance) << c.cells << "^3, cascade " << k << " of " << c.cascades << ", half " << (storage == Storage::half);
+        EXPECT_LT(error, tolerance) << c.cells << "^3, cascade " << k << " of " << c.cascades << ", half "
+                                    << (storage == Storage::half);
         worst = std::max(worst, error);
       }
       twin::CascadeBlend blend{{}, static_cast<double>(s.blendBand)};
@@ -359,23 +371,27 @@ TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
       for (int i = 0; i < 1500; ++i) {
         const Cascade& around = inputs.cascades[static_cast<std::size_t>(i) % inputs.cascades.size()];
         const auto reach = static_cast<float>(0.55 * c.cells * around.cellSize);
-        probes.push_back({glm::vec3(around.centre) + reach * glm::vec3(uniform(random), uniform(random), uniform(random)),
-                          glm::normalize(glm::vec3(uniform(random), uniform(random), uniform(random)))});
+        probes.push_back(
+            {glm::vec3(around.centre) + reach * glm::vec3(uniform(random), uniform(random), uniform(random)),
+             glm::normalize(glm::vec3(uniform(random), uniform(random), uniform(random)))});
       }
       for (const LpvLookup lookup : {LpvLookup::flux, LpvLookup::published}) {
         s.lookup = lookup;
-        const twin::LookupOptions options{lookup == LpvLookup::flux ? twin::Lookup::flux : twin::Lookup::windowed, static_cast<double>(*s.lookupOffset)};
+        const twin::LookupOptions options{lookup == LpvLookup::flux ? twin::Lookup::flux : twin::Lookup::windowed,
+                                          static_cast<double>(*s.lookupOffset)};
         const std::vector<glm::vec3> seen = test::probeIrradiance(library(), run(s, inputs.inputs, true), probes);
         for (std::size_t channel = 0; channel < 3; ++channel) {
           std::vector<twin::Volume> cascades;
           for (const VolumeRgb& cascade : expected) cascades.push_back(cascade[channel]);
           std::vector<double> all;
           for (const Probe& probe : probes)
-            all.push_back(twin::blendedIrradiance(cascades, blend, glm::dvec3(probe.position), glm::dvec3(probe.normal), options));
+            all.push_back(twin::blendedIrradiance(cascades, blend, glm::dvec3(probe.position), glm::dvec3(probe.normal),
+                                                  options));
           const double largest = *std::max_element(all.begin(), all.end());
           for (std::size_t i = 0; i < probes.size(); ++i) {
             const double error = std::abs(all[i] - static_cast<double>(seen[i][static_cast<int>(channel)])) / largest;
-            EXPECT_LT(error, tolerance) << c.cells << "^3, " << c.cascades << " cascades, probe " << i << ", " << nameOf(lookup);
+            EXPECT_LT(error, tolerance) << c.cells << "^3, " << c.cascades << " cascades, probe " << i << ", "
+                                        << nameOf(lookup);
             worstLookup = std::max(worstLookup, error);
           }
         }
@@ -387,16 +403,18 @@ TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
 }
 
 TEST_F(LpvAgainstTwin, HandOverStepFollowsTheSpreadOfLight) {
-  // Root mean square distances after 1, 2, 4, 8, 16, 24 steps (tests/physics, LpvTransport.MeanDisplacementAndRms): the step whose distance times the ratio is nearest.
-  EXPECT_EQ(LightPropagationVolume::handOverStep(8, 2.0), 2);    // 3.222 / 2 = 1.611 beside 1.496
-  EXPECT_EQ(LightPropagationVolume::handOverStep(16, 2.0), 4);   // 4.619 / 2 = 2.310 beside 2.216
+  // Root mean square distances after 1, 2, 4, 8, 16, 24 steps (tests/physics, LpvTransport.MeanDisplacementAndRms): the
+  // step whose distance times the ratio is nearest.
+  EXPECT_EQ(LightPropagationVolume::handOverStep(8, 2.0), 2);  // 3.222 / 2 = 1.611 beside 1.496
+  EXPECT_EQ(LightPropagationVolume::handOverStep(16, 2.0), 4);  // 4.619 / 2 = 2.310 beside 2.216
   EXPECT_EQ(LightPropagationVolume::handOverStep(8, 1.0), 8);
   EXPECT_EQ(LightPropagationVolume::handOverStep(1, 2.0), 1);
   EXPECT_EQ(LightPropagationVolume::handOverStep(0, 2.0), 1);
   EXPECT_EQ(LightPropagationVolume::handOverStep(8, 16.0), 1);
 }
 
-// ---- known answers ------------------------------------------------------------------------------------------------------
+// ---- known answers
+// ------------------------------------------------------------------------------------------------------
 
 class LpvKnownAnswers : public LpvGlTest {
  protected:
@@ -406,7 +424,9 @@ class LpvKnownAnswers : public LpvGlTest {
     RsmTextures textures;
     LightPropagationVolume::Inputs inputs;
     Field(std::vector<RsmTexel> lights, int cells, double texelArea = 1.0)
-        : texels(std::move(lights)), textures(texels, texelArea), inputs{{textures.outputs()}, unitCascade(cells), 1.0f} {}
+        : texels(std::move(lights)),
+          textures(texels, texelArea),
+          inputs{{textures.outputs()}, unitCascade(cells), 1.0f} {}
   };
   static std::vector<RsmTexel> one(int cells, const glm::vec3& normal, const glm::vec3& flux) {
     return {lightIn(glm::ivec3(cells / 2), normal, flux)};
@@ -425,15 +445,16 @@ class LpvKnownAnswers : public LpvGlTest {
           for (const float way : {1.0f, -1.0f}) texels.push_back(lightIn({x, y, z}, {0, 0, way}, glm::vec3(1.0f)));
     return texels;
   }
-  static VolumeRgb resultOf(const Field& field, int cells, int iterations, bool blocking = false, Storage storage = Storage::full) {
+  static VolumeRgb resultOf(const Field& field, int cells, int iterations, bool blocking = false,
+                            Storage storage = Storage::full) {
     const LightPropagationVolume lpv = run(settings(cells, 1, iterations, blocking, storage), field.inputs);
     return test::readVolume(lpv.result(), field.inputs)[0];
   }
 };
 
 TEST_F(LpvKnownAnswers, GainsOfAHomogeneousField) {
-  // Isotropic light of flux 2 a cell and lobes of flux 1/2 along some axis: every direction stays above the clamp, so the two
-  // bands go their own ways; the middle of 3^3 equal cells sees no border.
+  // Isotropic light of flux 2 a cell and lobes of flux 1/2 along some axis: every direction stays above the clamp, so
+  // the two bands go their own ways; the middle of 3^3 equal cells sees no border.
   std::vector<RsmTexel> texels = isotropic(3);
   const glm::vec3 axis = glm::normalize(glm::vec3(0.3f, -0.5f, 0.8f));
   for (int i = 0; i < 27; ++i) texels.push_back(lightIn({i % 3, i / 3 % 3, i / 9}, axis, {0.5f, 0.25f, 0.0f}));
@@ -442,10 +463,10 @@ TEST_F(LpvKnownAnswers, GainsOfAHomogeneousField) {
   for (std::size_t channel = 0; channel < 3; ++channel) {
     const twin::Sh injected = before[channel].at(glm::ivec3(1)), step = after[channel].at(glm::ivec3(1)) - injected;
     EXPECT_NEAR(step.c0 / injected.c0, 1.0, 1e-6);
-    if (channel == 2)
-      EXPECT_LT(glm::length(step.c1), 1e-6);
+    if (channel == 2) EXPECT_LT(glm::length(step.c1), 1e-6);
     else
-      for (int i = 0; i < 3; ++i) EXPECT_NEAR(step.c1[i] / injected.c1[i], 0.36864318, 2e-6) << i;  // a difference of two sums near 1
+      for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(step.c1[i] / injected.c1[i], 0.36864318, 2e-6) << i;  // a difference of two sums near 1
   }
 }
 
@@ -470,9 +491,9 @@ TEST_F(LpvKnownAnswers, InjectedFluxIsBand0TimesTheRootOf4Pi) {
 }
 
 TEST_F(LpvKnownAnswers, LightFromAheadIsSeenAndFromBehindIsNot) {
-  // One light of flux 1 in a cell of size 1, looked up in the cell's middle: E = 4/pi <c, lobe(-n)>, c = lobe(axis)/pi, which is
-  // 4/pi^2 (pi/4 + w pi/3 cos) with the window w of the receiver's lobe: 2/pi ahead and nothing behind for w = 3/4. For w = 1, as
-  // published, it is 7/(3 pi) ahead, and behind it would be negative, which is no light.
+  // One light of flux 1 in a cell of size 1, looked up in the cell's middle: E = 4/pi <c, lobe(-n)>, c = lobe(axis)/pi,
+  // which is 4/pi^2 (pi/4 + w pi/3 cos) with the window w of the receiver's lobe: 2/pi ahead and nothing behind for w =
+  // 3/4. For w = 1, as published, it is 7/(3 pi) ahead, and behind it would be negative, which is no light.
   const glm::vec3 axis = glm::normalize(glm::vec3(2, -1, 2)), across = glm::normalize(glm::vec3(1, 2, 0));
   const Field field(one(5, axis, glm::vec3(1.0f)), 5);
   const std::vector<Probe> probes{{glm::vec3(2.5f), -axis}, {glm::vec3(2.5f), axis}, {glm::vec3(2.5f), across}};
@@ -491,27 +512,32 @@ TEST_F(LpvKnownAnswers, LightFromAheadIsSeenAndFromBehindIsNot) {
 }
 
 TEST_F(LpvKnownAnswers, AnIsotropicFillGivesTwoThirdsOfPiTimesItsIntensity) {
-  // Two opposite lobes of flux 1 in each cell of size 1 are isotropic, I = 2 / (4 pi). The kernel sends 2 pi / 3 I through a face, whatever way it looks; the
-  // published lookup reports 4 I, 6 / pi times as much.
+  // Two opposite lobes of flux 1 in each cell of size 1 are isotropic, I = 2 / (4 pi). The kernel sends 2 pi / 3 I
+  // through a face, whatever way it looks; the published lookup reports 4 I, 6 / pi times as much.
   const Field field(isotropic(5), 5);
   std::vector<Probe> probes;
   for (const glm::vec3& axis : kAxes) probes.push_back({{2.4f, 2.6f, 2.3f}, axis});
   probes.push_back({glm::vec3(2.5f), glm::normalize(glm::vec3(1, -2, 3))});
   constexpr double kIntensity = 2.0 / (4.0 * twin::kPi);
   LightPropagationVolume::Settings s = settings(5, 1, 0);
-  for (const glm::vec3& seen : test::probeIrradiance(library(), run(s, field.inputs), probes)) EXPECT_NEAR(seen.x, 2.0 * twin::kPi / 3.0 * kIntensity, 2e-6);
+  for (const glm::vec3& seen : test::probeIrradiance(library(), run(s, field.inputs), probes))
+    EXPECT_NEAR(seen.x, 2.0 * twin::kPi / 3.0 * kIntensity, 2e-6);
   s.lookup = LpvLookup::published;
-  for (const glm::vec3& seen : test::probeIrradiance(library(), run(s, field.inputs), probes)) EXPECT_NEAR(seen.x, 4.0 * kIntensity, 2e-6);
+  for (const glm::vec3& seen : test::probeIrradiance(library(), run(s, field.inputs), probes))
+    EXPECT_NEAR(seen.x, 4.0 * kIntensity, 2e-6);
 }
 
 TEST_F(LpvKnownAnswers, AlongAnAxisTheLookupIsWhatTheKernelSendsThroughThatFace) {
-  // Isotropic light and two oblique lobes a cell: no direction is negative, so that what is propagated through a face is linear. A volume of two cells of size 1, the light in
-  // one: its front in the other, by the twin, is what crossed their face (all lobes of the gather have the flux that they were given).
+  // Isotropic light and two oblique lobes a cell: no direction is negative, so that what is propagated through a face
+  // is linear. A volume of two cells of size 1, the light in one: its front in the other, by the twin, is what crossed
+  // their face (all lobes of the gather have the flux that they were given).
   std::mt19937 random(11);
   std::normal_distribution<float> gauss;
   for (int trial = 0; trial < 6; ++trial) {
-    std::vector<RsmTexel> texels{lightIn(glm::ivec3(2), {0, 0, 1}, glm::vec3(1.0f)), lightIn(glm::ivec3(2), {0, 0, -1}, glm::vec3(1.0f))};
-    for (const float flux : {0.4f, 0.25f}) texels.push_back(lightIn(glm::ivec3(2), {gauss(random), gauss(random), gauss(random)}, glm::vec3(flux)));
+    std::vector<RsmTexel> texels{lightIn(glm::ivec3(2), {0, 0, 1}, glm::vec3(1.0f)),
+                                 lightIn(glm::ivec3(2), {0, 0, -1}, glm::vec3(1.0f))};
+    for (const float flux : {0.4f, 0.25f})
+      texels.push_back(lightIn(glm::ivec3(2), {gauss(random), gauss(random), gauss(random)}, glm::vec3(flux)));
     const Field field(texels, 5);
     const twin::Volume injected = resultOf(field, 5, 0)[0];
     const twin::Sh light = injected.at(glm::ivec3(2));
@@ -528,7 +554,8 @@ TEST_F(LpvKnownAnswers, AlongAnAxisTheLookupIsWhatTheKernelSendsThroughThatFace)
 }
 
 TEST_F(LpvKnownAnswers, BorderDecay) {
-  // Red: a cosine lobe. Green: two opposite lobes of half the flux each, isotropic. The front of step N is what the sum gains.
+  // Red: a cosine lobe. Green: two opposite lobes of half the flux each, isotropic. The front of step N is what the sum
+  // gains.
   std::vector<RsmTexel> texels = one(32, {0, 0, 1}, {1.0f, 0.5f, 0.0f});
   texels.push_back(lightIn(glm::ivec3(16), {0, 0, -1}, {0.0f, 0.5f, 0.0f}));
   const Field field(texels, 32);
@@ -550,7 +577,8 @@ TEST_F(LpvKnownAnswers, BorderDecay) {
 }
 
 TEST_F(LpvKnownAnswers, TinyGrids) {
-  const std::array<std::vector<double>, 3> rows = {std::vector<double>{0.0}, {0.333333, 0.110472, 0.042324},
+  const std::array<std::vector<double>, 3> rows = {std::vector<double>{0.0},
+                                                   {0.333333, 0.110472, 0.042324},
                                                    {1.138208, 0.880462, 0.566864, 0.355257, 0.233236, 0.147829}};
   for (int cells = 1; cells <= 3; ++cells) {
     const Field field(one(cells, {0, 0, 1}, glm::vec3(1.0f)), cells);
@@ -595,36 +623,46 @@ TEST_F(LpvKnownAnswers, WhatWasInTheVolumeBeforeDoesNotMatter) {
 }
 
 TEST_F(LpvKnownAnswers, AWallBlocksThreeQuartersHeadOnAQuarterAcrossAndNothingFromItsBack) {
-  // A wall in the plane x = 4 of 8^3 cells facing down the x axis: a black surfel of one cell's area on each corner. Isotropic
-  // light, which the first, unblocked step leaves as it is away from the border; in the second, light that travels along w
-  // through a face with the wall at all (`share` = 1) or half of its corners passes 1 - B, B = share * (1/4 + w.x/2) in [0, 1].
-  // With surfels of twice the area the half-covered faces show the whole wall: B = 1/4 for light that travels along it.
+  // A wall in the plane x = 4 of 8^3 cells facing down the x axis: a black surfel of one cell's area on each corner.
+  // Isotropic light, which the first, unblocked step leaves as it is away from the border; in the second, light that
+  // travels along w through a face with the wall at all (`share` = 1) or half of its corners passes 1 - B, B = share *
+  // (1/4 + w.x/2) in [0, 1]. With surfels of twice the area the half-covered faces show the whole wall: B = 1/4 for
+  // light that travels along it.
   for (const float area : {1.0f, 2.0f}) {
     std::vector<RsmTexel> texels = isotropic(8);
     for (int z = 0; z <= 8; ++z)
-      for (int y = 0; y <= 8; ++y) texels.push_back({{4.0f, y, z, 1.0f}, {-1.0f, 0.0f, 0.0f, 1.0f / area}, glm::vec3(0.0f)});
+      for (int y = 0; y <= 8; ++y)
+        texels.push_back({{4.0f, y, z, 1.0f}, {-1.0f, 0.0f, 0.0f, 1.0f / area}, glm::vec3(0.0f)});
     const Field field(texels, 8);
-    const twin::Volume blocked = resultOf(field, 8, 2, true)[0], first = resultOf(field, 8, 1)[0], injected = resultOf(field, 8, 0)[0];
+    const twin::Volume blocked = resultOf(field, 8, 2, true)[0], first = resultOf(field, 8, 1)[0],
+                       injected = resultOf(field, 8, 0)[0];
     const double front = twin::frontSolidAngle(), side = twin::sideSolidAngle();
-    const auto passes = [&](double share, double wx) { return 1.0 - std::clamp(share * area * (0.25 + 0.5 * wx), 0.0, 1.0); };
-    const double a = 2.0 / std::sqrt(5.0), b = 1.0 / std::sqrt(5.0);  // a side face's direction: along travel, across it
+    const auto passes = [&](double share, double wx) {
+      return 1.0 - std::clamp(share * area * (0.25 + 0.5 * wx), 0.0, 1.0);
+    };
+    const double a = 2.0 / std::sqrt(5.0),
+                 b = 1.0 / std::sqrt(5.0);  // a side face's direction: along travel, across it
     struct Side {
-      int x;              // of the cell that is looked at
-      double up, down;    // transmittance of light that comes along +x and -x: towards the far face
+      int x;  // of the cell that is looked at
+      double up, down;  // transmittance of light that comes along +x and -x: towards the far face
       double upSides, downSides;
     };
     // Right of the wall light along +x crosses it; left of it light along -x does, which meets its back.
-    for (const Side& cell : {Side{4, passes(1.0, 1.0), 1.0, passes(1.0, a), 1.0}, Side{3, 1.0, passes(1.0, -1.0), 1.0, passes(1.0, -a)}}) {
+    for (const Side& cell :
+         {Side{4, passes(1.0, 1.0), 1.0, passes(1.0, a), 1.0}, Side{3, 1.0, passes(1.0, -1.0), 1.0, passes(1.0, -a)}}) {
       const glm::ivec3 at(cell.x, 4, 4);
       const double intensity = twin::kY00 * injected.at(at).c0;
       ASSERT_NEAR((first.at(at) - injected.at(at)).c0, injected.at(at).c0, 1e-6);
       // Four neighbours across, each through a face with the wall at half of its corners.
       const double towardsUp = front * cell.up + 4.0 * side * passes(0.5, b);
       const double towardsDown = front * cell.down + 4.0 * side * passes(0.5, -b);
-      // To each of the faces across: its own neighbour's front, two side faces of neighbours across, one each of those along x.
-      const double across = front * passes(0.5, 0.0) + 2.0 * side * passes(0.5, 0.0) + side * (cell.upSides + cell.downSides);
+      // To each of the faces across: its own neighbour's front, two side faces of neighbours across, one each of those
+      // along x.
+      const double across =
+          front * passes(0.5, 0.0) + 2.0 * side * passes(0.5, 0.0) + side * (cell.upSides + cell.downSides);
       const twin::Sh step = blocked.at(at) - first.at(at);
-      EXPECT_NEAR(step.c0, twin::kLobeBand0 / twin::kPi * intensity * (towardsUp + towardsDown + 4.0 * across), 2e-6) << cell.x;
+      EXPECT_NEAR(step.c0, twin::kLobeBand0 / twin::kPi * intensity * (towardsUp + towardsDown + 4.0 * across), 2e-6)
+          << cell.x;
       EXPECT_NEAR(step.c1.x, twin::kLobeBand1 / twin::kPi * intensity * (towardsUp - towardsDown), 2e-6) << cell.x;
       EXPECT_NEAR(step.c1.y, 0.0, 1e-6);
       EXPECT_NEAR(step.c1.z, 0.0, 1e-6);
@@ -647,7 +685,8 @@ TEST_F(LpvKnownAnswers, FortyEightSymmetriesOfTheCube) {
   for (int i = 0; i < 300; ++i) {
     RsmTexel texel;
     // Off the borders, so that a mirrored light falls into the mirrored cell.
-    const glm::vec3 p = glm::vec3(glm::ivec3(i % 8, i / 8 % 8, i * 7 % 8)) + 0.6f + 0.3f * glm::vec3(uniform(random), uniform(random), uniform(random));
+    const glm::vec3 p = glm::vec3(glm::ivec3(i % 8, i / 8 % 8, i * 7 % 8)) + 0.6f +
+                        0.3f * glm::vec3(uniform(random), uniform(random), uniform(random));
     texel.normal = glm::vec4(kAxes[static_cast<std::size_t>(i) % 6], 1.0f);
     if (i % 2) texel.normal = glm::vec4(glm::normalize(glm::vec3(gauss(random), gauss(random), gauss(random))), 0.5f);
     texel.position = glm::vec4(p + 0.1f * glm::vec3(texel.normal), 1.0f);
@@ -673,10 +712,12 @@ TEST_F(LpvKnownAnswers, FortyEightSymmetriesOfTheCube) {
   do {
     for (int signs = 0; signs < 8; ++signs, ++symmetries) {
       glm::dmat3 matrix(0.0);
-      for (int axis = 0; axis < 3; ++axis) matrix[axis][order[static_cast<std::size_t>(axis)]] = ((signs >> axis) & 1) == 1 ? -1.0 : 1.0;
+      for (int axis = 0; axis < 3; ++axis)
+        matrix[axis][order[static_cast<std::size_t>(axis)]] = ((signs >> axis) & 1) == 1 ? -1.0 : 1.0;
       std::vector<RsmTexel> turned = texels;
       for (RsmTexel& texel : turned) {
-        texel.position = glm::vec4(glm::vec3(matrix * (glm::dvec3(texel.position) - 0.5 * kCells) + 0.5 * kCells), 1.0f);
+        texel.position =
+            glm::vec4(glm::vec3(matrix * (glm::dvec3(texel.position) - 0.5 * kCells) + 0.5 * kCells), 1.0f);
         texel.normal = glm::vec4(glm::vec3(matrix * glm::dvec3(texel.normal)), texel.normal.w);
       }
       const VolumeRgb actual = resultOf(Field(turned, kCells, 0.3), kCells, 6, true);
@@ -692,14 +733,15 @@ TEST_F(LpvKnownAnswers, FortyEightSymmetriesOfTheCube) {
 }
 
 TEST_F(LpvKnownAnswers, StoredValuesDoNotDependOnTheLightsUnit) {
-  // The same scene lit with 1e-3, 1 and 1e5 (lux of the sun): stored as c / (E_ref s^2) the grids are the same, finite, and where
-  // light is injected far above 6.1e-5, the smallest normal 16-bit float.
+  // The same scene lit with 1e-3, 1 and 1e5 (lux of the sun): stored as c / (E_ref s^2) the grids are the same, finite,
+  // and where light is injected far above 6.1e-5, the smallest normal 16-bit float.
   std::vector<std::vector<glm::vec4>> stored;
   for (const float irradiance : {1e-3f, 1.0f, 1e5f}) {
     const float texelArea = 0.01f;
     std::vector<RsmTexel> texels;
     for (int i = 0; i < 100; ++i)
-      texels.push_back({{0.05f + 0.1f * static_cast<float>(i % 10) + 3.0f, 0.05f + 0.1f * static_cast<float>(i / 10) + 3.0f, 3.0f, 1.0f},
+      texels.push_back({{0.05f + 0.1f * static_cast<float>(i % 10) + 3.0f,
+                         0.05f + 0.1f * static_cast<float>(i / 10) + 3.0f, 3.0f, 1.0f},
                         {0, 0, 1, 1},
                         glm::vec3(0.5f * irradiance * texelArea)});
     const RsmTextures textures(texels, texelArea);
@@ -737,7 +779,8 @@ TEST_F(LpvKnownAnswers, AnyNumberOfStepsIsFiniteAndTheSumNeverFalls) {
           for (std::size_t i = 0; i < now[channel].cells.size(); ++i) {
             const twin::Sh &cell = now[channel].cells[i], &before = previous[channel].cells[i];
             ASSERT_TRUE(std::isfinite(cell.c0) && std::isfinite(cell.c1.x + cell.c1.y + cell.c1.z)) << iterations;
-            // Injected light is kept in 32 bits, so its first sum in 16 may be rounded down by half a unit in the last place.
+            // Injected light is kept in 32 bits, so its first sum in 16 may be rounded down by half a unit in the last
+            // place.
             const double allowed = storage == Storage::half && iterations == 1 ? 0.5 * kHalfUlp * before.c0 : 0.0;
             ASSERT_GE(cell.c0, before.c0 - allowed) << iterations;
           }
@@ -748,10 +791,11 @@ TEST_F(LpvKnownAnswers, AnyNumberOfStepsIsFiniteAndTheSumNeverFalls) {
 }
 
 TEST_F(LpvKnownAnswers, TheMeanOfASmoothFieldDoesNotDependOnTheNumberOfCascades) {
-  // Isotropic light that is emitted all through the scene, f(p) = exp(-|p|^2/200) per unit volume. Each cascade by itself gathers it
-  // from so many of its own cells around, so a grid of half the cell size holds half the light: blended as they are, four cascades
-  // would show an eighth of what one does, summed nearly twice as much. Joined they show the same.
-  // Lights stand in the middle of the cells of the finest cascade that holds the place, so that no grid sees a gap.
+  // Isotropic light that is emitted all through the scene, f(p) = exp(-|p|^2/200) per unit volume. Each cascade by
+  // itself gathers it from so many of its own cells around, so a grid of half the cell size holds half the light:
+  // blended as they are, four cascades would show an eighth of what one does, summed nearly twice as much. Joined they
+  // show the same. Lights stand in the middle of the cells of the finest cascade that holds the place, so that no grid
+  // sees a gap.
   constexpr int kCells = 12;
   LightPropagationVolume::Settings s = settings(kCells, 4, 8);
   s.cascades.cellSize = 2.0;
@@ -782,7 +826,8 @@ TEST_F(LpvKnownAnswers, TheMeanOfASmoothFieldDoesNotDependOnTheNumberOfCascades)
     const LightPropagationVolume::Inputs inputs{{textures.outputs()}, {all.end() - cascades, all.end()}, 1.0f};
     const LightPropagationVolume lpv = run(s, inputs, true);
     double mean = 0.0;
-    for (const glm::vec3& seen : test::probeIrradiance(library(), lpv, probes)) mean += static_cast<double>(seen.x) / static_cast<double>(probes.size());
+    for (const glm::vec3& seen : test::probeIrradiance(library(), lpv, probes))
+      mean += static_cast<double>(seen.x) / static_cast<double>(probes.size());
     if (cascades == 1) one = mean;
     std::cout << "[ measured ] " << cascades << " cascades: mean irradiance over that of one " << mean / one << "\n";
     EXPECT_NEAR(mean / one, 1.0, 0.01) << cascades;

@@ -1,4 +1,5 @@
-// GLSL functions for participating media against their double-precision twins, and their samples against their densities.
+// GLSL functions for participating media against their double-precision twins, and their samples against their
+// densities.
 #include "pathtracer/media.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/media_twin.hpp"
@@ -34,17 +35,20 @@ class MediaFunctions : public test::SharedProgramsTest {
   template <class T>
   static gl::Buffer bufferOf(const std::vector<T>& data, GLuint binding) {
     const T nothing{};
-    gl::Buffer buffer("test", std::max<std::size_t>(data.size(), 1) * sizeof(T), data.empty() ? &nothing : data.data(), GL_STATIC_DRAW);
+    gl::Buffer buffer("test", std::max<std::size_t>(data.size(), 1) * sizeof(T), data.empty() ? &nothing : data.data(),
+                      GL_STATIC_DRAW);
     buffer.bind(GL_SHADER_STORAGE_BUFFER, binding);
     return buffer;
   }
 
-  std::vector<Answer> probe(What what, const std::vector<Probe>& probes, const std::vector<Medium>& media = {}, const PackedBoundaries& boundaries = {},
-                            int outerMedium = -1, const gl::ShaderFlags& deviations = {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}}) {
+  std::vector<Answer> probe(What what, const std::vector<Probe>& probes, const std::vector<Medium>& media = {},
+                            const PackedBoundaries& boundaries = {}, int outerMedium = -1,
+                            const gl::ShaderFlags& deviations = {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}}) {
     const gl::Program& program = library().loadCompute("media probe", "pathtracer/media_probe.comp", deviations);
     const PackedMedia packed = packMedia(media);
-    const gl::Buffer in = bufferOf(probes, 3), out = bufferOf(std::vector<Answer>(probes.size()), 4), records = bufferOf(packed.media, 2),
-                     grids = bufferOf(packed.grids, 0), densities = bufferOf(packed.densities, 1), interiors = bufferOf(boundaries.interiors, 7);
+    const gl::Buffer in = bufferOf(probes, 3), out = bufferOf(std::vector<Answer>(probes.size()), 4),
+                     records = bufferOf(packed.media, 2), grids = bufferOf(packed.grids, 0),
+                     densities = bufferOf(packed.densities, 1), interiors = bufferOf(boundaries.interiors, 7);
     {
       const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
       program.use();
@@ -99,26 +103,27 @@ TEST_F(MediaFunctions, HenyeyGreensteinForEveryG) {
       worstAngle = std::max(worstAngle, std::abs(std::sqrt(2.0 * answers[i].b.x) - std::sqrt(2.0 * back)));
       // The density against the direction that was given, since near |g| = 1 it changes manifold within that angle.
       const double given = g >= 0.0 ? 1.0 - 0.5 * glm::dot(to - w, to - w) : 0.5 * glm::dot(to + w, to + w) - 1.0;
-      if (std::abs(g) < 0.995) worstPdf = std::max(worstPdf, relative(answers[i].a.w, twin::henyeyGreensteinPdf(g, given)));
+      if (std::abs(g) < 0.995)
+        worstPdf = std::max(worstPdf, relative(answers[i].a.w, twin::henyeyGreensteinPdf(g, given)));
       // 1 - cos as the GPU has it: its spread is that of cos, and near g = 1 it keeps the digits that cos has lost.
       sum += answers[i].b.x;
       squares += static_cast<double>(answers[i].b.x) * static_cast<double>(answers[i].b.x);
       ASSERT_NEAR(glm::length(to), 1.0, 1e-6) << g;
       ASSERT_TRUE(std::isfinite(answers[i].a.w)) << g;
     }
-    const double n = static_cast<double>(probes.size()), mean = sum / n, deviation = std::sqrt((squares / n - mean * mean) / n);
+    const double n = static_cast<double>(probes.size()), mean = sum / n,
+                 deviation = std::sqrt((squares / n - mean * mean) / n);
     std::printf("%-11g %.1e  %.1e  %.2f\n", g, worstAngle, worstPdf, (1.0 - mean - g) / std::max(deviation, 1e-12));
     EXPECT_LT(worstAngle, 8e-7) << g;
     EXPECT_LT(worstPdf, 5e-5) << g;
     // Beyond, the mean hangs on samples so rare that these have none of them.
-    if (std::abs(g) < 0.99995) {
-      EXPECT_LT(std::abs(1.0 - mean - g), 4.0 * deviation + 1e-9) << g;
-    }
+    if (std::abs(g) < 0.99995) { EXPECT_LT(std::abs(1.0 - mean - g), 4.0 * deviation + 1e-9) << g; }
   }
 }
 
 TEST_F(MediaFunctions, PhaseFunctionsIntegrateToOneAndHaveTheirMeanCosine) {
-  // By the GPU's own values on a Gauss-like grid in the cosine, substituted so that a peak of |g| = 0.99 is resolved: x = cdf.
+  // By the GPU's own values on a Gauss-like grid in the cosine, substituted so that a peak of |g| = 0.99 is resolved: x
+  // = cdf.
   const glm::dvec3 w(0.0, 0.0, 1.0);
   for (const double g : {0.0, 1e-3, 0.5, -0.75, 0.99, -0.99}) {
     const int n = 20000;
@@ -137,24 +142,25 @@ TEST_F(MediaFunctions, PhaseFunctionsIntegrateToOneAndHaveTheirMeanCosine) {
       one += answers[static_cast<std::size_t>(i)].a.x * perXi / n;
       mean += answers[static_cast<std::size_t>(i)].a.x * perXi * c / n;
       // The third channel has the opposite g: p(-g, c) = p(g, -c).
-      mirrored = std::max(mirrored, relative(answers[static_cast<std::size_t>(i)].a.z, twin::henyeyGreensteinPdf(-g, c)));
+      mirrored =
+          std::max(mirrored, relative(answers[static_cast<std::size_t>(i)].a.z, twin::henyeyGreensteinPdf(-g, c)));
       rayleighSum += answers[static_cast<std::size_t>(i)].a.w * perXi / n;
     }
     EXPECT_NEAR(one, 1.0, 2e-5) << g;
     EXPECT_NEAR(mean, g, 2e-5) << g;
     EXPECT_LT(mirrored, std::abs(g) < 0.9 ? 1e-5 : 1e-3) << g;
-    if (std::abs(g) < 0.6) {
-      EXPECT_NEAR(rayleighSum, 1.0, 1e-4) << g;
-    }
+    if (std::abs(g) < 0.6) { EXPECT_NEAR(rayleighSum, 1.0, 1e-4) << g; }
   }
 }
 
-/// Pearson's chi-square of samples over 40 cosines x 8 azimuths of equal probability; its p-value by Wilson and Hilferty.
+/// Pearson's chi-square of samples over 40 cosines x 8 azimuths of equal probability; its p-value by Wilson and
+/// Hilferty.
 double chiSquareP(const std::vector<glm::dvec2>& cdfAndTurn) {
   constexpr int kRows = 40, kColumns = 8;
   std::vector<double> count(kRows * kColumns);
   for (const glm::dvec2& s : cdfAndTurn) {
-    const int row = std::clamp(static_cast<int>(s.x * kRows), 0, kRows - 1), column = std::clamp(static_cast<int>(s.y * kColumns), 0, kColumns - 1);
+    const int row = std::clamp(static_cast<int>(s.x * kRows), 0, kRows - 1),
+              column = std::clamp(static_cast<int>(s.y * kColumns), 0, kColumns - 1);
     ++count[static_cast<std::size_t>(row * kColumns + column)];
   }
   const double expected = static_cast<double>(cdfAndTurn.size()) / (kRows * kColumns), freedom = kRows * kColumns - 1;
@@ -172,7 +178,8 @@ TEST_F(MediaFunctions, SamplesFollowTheirDensities) {
   for (std::size_t which = 0; which <= gs.size(); ++which) {
     const bool isRayleigh = which == gs.size();
     const double g = isRayleigh ? 0.0 : gs[which];
-    const glm::dvec3 w = unitVector(random), t = glm::normalize(glm::cross(w, glm::dvec3(0.3, -0.5, 0.8))), b = glm::cross(w, t);
+    const glm::dvec3 w = unitVector(random), t = glm::normalize(glm::cross(w, glm::dvec3(0.3, -0.5, 0.8))),
+                     b = glm::cross(w, t);
     std::vector<Probe> probes(1 << 17);
     for (Probe& p : probes) {
       p.a = glm::vec4(glm::vec3(w), 0.0f);
@@ -208,7 +215,8 @@ TEST_F(MediaFunctions, FresnelIsExactAndItsDeviationsAreTheTabledOnes) {
     ASSERT_NEAR(answers[i].a.x, twin::fresnel(c, eta), 3e-6) << c << " " << eta;
   }
   // The angles inside glass of n = 1.5, and its average over the hemisphere outside.
-  const double degrees[] = {0, 20, 30, 40, 41, 41.8, 42, 60, 80}, exact[] = {.0400, .0417, .0552, .2453, .3798, .8908, 1, 1, 1},
+  const double degrees[] = {0, 20, 30, 40, 41, 41.8, 42, 60, 80},
+               exact[] = {.0400, .0417, .0552, .2453, .3798, .8908, 1, 1, 1},
                schlick[] = {.0400, .0400, .0400, .0407, .0409, .0410, 1, 1, 1};
   std::vector<Probe> angles;
   for (const double d : degrees) {
@@ -216,7 +224,8 @@ TEST_F(MediaFunctions, FresnelIsExactAndItsDeviationsAreTheTabledOnes) {
     p.a = glm::vec4(static_cast<float>(std::cos(d * M_PI / 180.0)), 1.5f, 0.0f, 0.0f);
     angles.push_back(p);
   }
-  const auto right = probe(fresnel, angles), wrong = probe(fresnel, angles, {}, {}, -1, {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 1}}),
+  const auto right = probe(fresnel, angles),
+             wrong = probe(fresnel, angles, {}, {}, -1, {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 1}}),
              amplitudes = probe(fresnel, angles, {}, {}, -1, {{"FRESNEL_AMPLITUDES", 1}, {"FRESNEL_SCHLICK", 0}});
   for (std::size_t i = 0; i < angles.size(); ++i) {
     EXPECT_NEAR(right[i].a.x, exact[i], 6e-5) << degrees[i];
@@ -243,8 +252,9 @@ Medium mediumOf(const glm::vec3& scattering, const glm::vec3& absorption) {
 }
 
 TEST_F(MediaFunctions, SpectralWeightsAreTheTwinsAndConserveTheSumOfChannels) {
-  const std::vector<Medium> media{mediumOf({1.0f, 5.0f, 1000.0f}, glm::vec3(0.0f)), mediumOf({0.0f, 2.0f, 0.3f}, {0.0f, 0.1f, 7.0f}),
-                                  mediumOf(glm::vec3(3.0f), {0.0f, 1.0f, 2.0f}), mediumOf({1e-6f, 1e-3f, 1e4f}, glm::vec3(0.0f))};
+  const std::vector<Medium> media{
+      mediumOf({1.0f, 5.0f, 1000.0f}, glm::vec3(0.0f)), mediumOf({0.0f, 2.0f, 0.3f}, {0.0f, 0.1f, 7.0f}),
+      mediumOf(glm::vec3(3.0f), {0.0f, 1.0f, 2.0f}), mediumOf({1e-6f, 1e-3f, 1e4f}, glm::vec3(0.0f))};
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::vector<Probe> probes;
@@ -260,7 +270,8 @@ TEST_F(MediaFunctions, SpectralWeightsAreTheTwinsAndConserveTheSumOfChannels) {
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const Medium& medium = media[probes[i].k.x];
     const glm::dvec3 beta(glm::vec3(probes[i].a)), q = beta / (beta.x + beta.y + beta.z);
-    const glm::dvec3 scatter = twin::scatteringWeight(medium, q, probes[i].a.w), pass = twin::passageWeight(medium, q, probes[i].a.w);
+    const glm::dvec3 scatter = twin::scatteringWeight(medium, q, probes[i].a.w),
+                     pass = twin::passageWeight(medium, q, probes[i].a.w);
     glm::dvec3 after(0.0), passed(0.0);
     for (int c = 0; c < 3; ++c) {
       ASSERT_TRUE(std::isfinite(answers[i].a[c]) && std::isfinite(answers[i].b[c])) << i;
@@ -277,9 +288,7 @@ TEST_F(MediaFunctions, SpectralWeightsAreTheTwinsAndConserveTheSumOfChannels) {
     }
     const double sum = beta.x + beta.y + beta.z;
     ASSERT_NEAR((passed.x + passed.y + passed.z) / sum, 1.0, 2e-6) << i;
-    if (probes[i].k.x == 0 || probes[i].k.x == 3) {
-      ASSERT_NEAR((after.x + after.y + after.z) / sum, 1.0, 2e-6) << i;
-    }
+    if (probes[i].k.x == 0 || probes[i].k.x == 3) { ASSERT_NEAR((after.x + after.y + after.z) / sum, 1.0, 2e-6) << i; }
     // The channel that was picked has throughput, and a flight of it ends.
     ASSERT_GT(q[static_cast<int>(answers[i].a.w)], 0.0) << i;
     ASSERT_GT(answers[i].b.w, 0.0) << i;
@@ -293,7 +302,8 @@ DensityGrid unevenGrid() {
   grid.max = {2.0, 3.0, 4.5};
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(0.0f, 1.0f);
-  for (int i = 0; i < 19 * 8 * 13; ++i) grid.density.push_back(i % 5 == 0 ? 0.0f : unit(random) * (i % 11 == 0 ? 20.0f : 1.0f));
+  for (int i = 0; i < 19 * 8 * 13; ++i)
+    grid.density.push_back(i % 5 == 0 ? 0.0f : unit(random) * (i % 11 == 0 ? 20.0f : 1.0f));
   return grid;
 }
 
@@ -349,7 +359,9 @@ TEST_F(MediaFunctions, TheDensitysIntegralIsExactAndEndsByItself) {
     Probe p;
     p.a = glm::vec4(glm::vec3(medium.grid->min + extent * glm::dvec3(unit(random), unit(random), unit(random))), 3.0f);
     glm::dvec3 d = unitVector(random);
-    if (i % 10 == 0) d = glm::dvec3(i % 3 == 0, i % 3 == 1, i % 3 == 2) * (i % 20 == 0 ? 1.0 : -1.0);  // along an axis, and along planes between cells
+    if (i % 10 == 0)
+      d = glm::dvec3(i % 3 == 0, i % 3 == 1, i % 3 == 2) *
+          (i % 20 == 0 ? 1.0 : -1.0);  // along an axis, and along planes between cells
     p.b = glm::vec4(glm::vec3(d), 0.0f);
     rays.push_back(p);
   }
@@ -391,10 +403,10 @@ TEST_F(MediaFunctions, BoundariesNestOverlapAndTouchByPriority) {
     scene.materials.push_back(m);
   };
   add(Bsdf::diffuse, 0, 1.0f, -1);
-  add(Bsdf::dielectric, 2, 1.5f, -1);    // glass
-  add(Bsdf::dielectric, 1, 1.33f, 0);    // milk
-  add(Bsdf::none, 3, 1.0f, 1);           // smoke
-  add(Bsdf::dielectric, 2, 1.5f, -1);    // more of the same glass
+  add(Bsdf::dielectric, 2, 1.5f, -1);  // glass
+  add(Bsdf::dielectric, 1, 1.33f, 0);  // milk
+  add(Bsdf::none, 3, 1.0f, 1);  // smoke
+  add(Bsdf::dielectric, 2, 1.5f, -1);  // more of the same glass
   const PackedBoundaries packed = rankBoundaries(scene);
   ASSERT_EQ(packed.interiors.size(), 3u);
   EXPECT_EQ(packed.rankOfMaterial[0], -1);
@@ -417,16 +429,16 @@ TEST_F(MediaFunctions, BoundariesNestOverlapAndTouchByPriority) {
     EXPECT_FLOAT_EQ(s.z, ior);
     EXPECT_EQ(s.w != 0.0f, sound);
   };
-  expect({}, {}, 2, 1.0f, true);                      // the outer medium
+  expect({}, {}, 2, 1.0f, true);  // the outer medium
   expect({milk}, {}, 0, 1.33f, true);
-  expect({milk, glass}, {}, -1, 1.5f, true);          // the overlap is glass, in either order
+  expect({milk, glass}, {}, -1, 1.5f, true);  // the overlap is glass, in either order
   expect({glass, milk}, {}, -1, 1.5f, true);
   expect({milk, glass}, {glass}, 0, 1.33f, true);
   expect({glass, milk}, {glass}, 0, 1.33f, true);
-  expect({glass, smoke}, {}, 1, 1.5f, true);          // smoke in glass keeps the glass' index
-  expect({glass, glass}, {glass}, -1, 1.5f, true);    // the same glass twice is left twice
+  expect({glass, smoke}, {}, 1, 1.5f, true);  // smoke in glass keeps the glass' index
+  expect({glass, glass}, {glass}, -1, 1.5f, true);  // the same glass twice is left twice
   expect({glass, glass}, {glass, glass}, 2, 1.0f, true);
-  expect({milk}, {glass}, 0, 1.33f, false);           // left without having been entered
+  expect({milk}, {glass}, 0, 1.33f, false);  // left without having been entered
 }
 
 }  // namespace

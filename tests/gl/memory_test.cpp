@@ -23,9 +23,11 @@
 namespace lucerna {
 namespace {
 
-// ------------------------------------------------------------------------------------------------ what the driver holds
+// ------------------------------------------------------------------------------------------------ what the driver
+// holds
 
-/// Buffers and textures that were given storage while it lives, by the driver's own answers about those that are still there.
+/// Buffers and textures that were given storage while it lives, by the driver's own answers about those that are still
+/// there.
 class Allocations {
  public:
   Allocations() {
@@ -42,10 +44,11 @@ class Allocations {
       remember(target, levels);
       storage2d_(target, levels, format, width, height);
     };
-    __glewTexStorage3D = [](GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei depth) GLAPIENTRY {
-      remember(target, levels);
-      storage3d_(target, levels, format, width, height, depth);
-    };
+    __glewTexStorage3D = [](GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei depth)
+                             GLAPIENTRY {
+                               remember(target, levels);
+                               storage3d_(target, levels, format, width, height, depth);
+                             };
   }
   ~Allocations() { __glewBufferData = bufferData_, __glewTexStorage2D = storage2d_, __glewTexStorage3D = storage3d_; }
   Allocations(const Allocations&) = delete;
@@ -72,8 +75,11 @@ class Allocations {
           return static_cast<std::size_t>(value);
         };
         std::size_t bits = 0;
-        for (const int part : {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE, GL_TEXTURE_DEPTH_SIZE}) bits += ask(static_cast<GLenum>(part));
-        bytes += bits / 8 * ask(GL_TEXTURE_WIDTH) * ask(GL_TEXTURE_HEIGHT) * ask(GL_TEXTURE_DEPTH) * (target == GL_TEXTURE_CUBE_MAP ? 6 : 1);
+        for (const int part : {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE,
+                               GL_TEXTURE_DEPTH_SIZE})
+          bits += ask(static_cast<GLenum>(part));
+        bytes += bits / 8 * ask(GL_TEXTURE_WIDTH) * ask(GL_TEXTURE_HEIGHT) * ask(GL_TEXTURE_DEPTH) *
+                 (target == GL_TEXTURE_CUBE_MAP ? 6 : 1);
       }
     }
     return bytes;
@@ -152,7 +158,8 @@ TEST_F(Memory, GpuBytesAreWhatTheDriverWasAskedFor) {
           const Allocations allocations;
           Renderer renderer(context(), programs(), *scene, settings);
           for (int frame = 0; frame < 3; ++frame) renderer.render(test::openBoxCamera());
-          EXPECT_EQ(renderer.gpuBytes(), allocations.liveBytes()) << nameOf(technique) << " " << nameOf(transport) << " " << cascades << (scene == &full ? " full" : "");
+          EXPECT_EQ(renderer.gpuBytes(), allocations.liveBytes())
+              << nameOf(technique) << " " << nameOf(transport) << " " << cascades << (scene == &full ? " full" : "");
         }
   for (const Scene* scene : {&lean, &full}) {
     PathTracer::Settings settings;
@@ -204,9 +211,7 @@ TEST_F(Memory, AWalkTakesNoMoreInTheEndThanAtItsBeginning) {
       camera.direction = glm::normalize(-camera.position);
       renderer.render(camera);
       if (i == 8) bytes = renderer.gpuBytes();
-      if (i > 8) {
-        EXPECT_EQ(renderer.gpuBytes(), bytes) << i;
-      }
+      if (i > 8) { EXPECT_EQ(renderer.gpuBytes(), bytes) << i; }
     });
   }
 }
@@ -216,14 +221,17 @@ TEST_F(Memory, ReloadedScenesLeaveNothing) {
   std::string text = "mtllib m.mtl\nusemtl a\n";
   constexpr int kSide = 60;
   for (int y = 0; y <= kSide; ++y)
-    for (int x = 0; x <= kSide; ++x) text += fmt::format("v {} {} {}\nvt {} {}\n", x, 0.3 * std::sin(0.5 * x) * std::cos(0.4 * y), y, 0.1 * x, 0.1 * y);
+    for (int x = 0; x <= kSide; ++x)
+      text +=
+          fmt::format("v {} {} {}\nvt {} {}\n", x, 0.3 * std::sin(0.5 * x) * std::cos(0.4 * y), y, 0.1 * x, 0.1 * y);
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) {
       const int i = y * (kSide + 1) + x + 1;
       text += fmt::format("f {0}/{0} {1}/{1} {2}/{2} {3}/{3}\n", i, i + kSide + 1, i + kSide + 2, i + 1);
     }
   folder.write("m.mtl", "newmtl a\nKd 0.5 0.4 0.3\nmap_Kd t.tga\n");
-  folder.write("t.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\0\1\0\1\x20\x28", 18) + std::string(256 * 256 * 4, '\x60'));
+  folder.write("t.tga",
+               std::string("\0\0\2\0\0\0\0\0\0\0\0\0\0\1\0\1\x20\x28", 18) + std::string(256 * 256 * 4, '\x60'));
   const auto file = folder.write("m.obj", text);
   expectFlat("reloads", test::longTests() ? 50 : 12, [&](int) {
     const Scene scene = loadScene(file);

@@ -1,4 +1,5 @@
-// What a scene does not need: no resource of it in any program, none of its bytes, no pass of its name; and leaving it out changes nothing but rounding.
+// What a scene does not need: no resource of it in any program, none of its bytes, no pass of its name; and leaving it
+// out changes nothing but rounding.
 #include "measure/neutral.hpp"
 #include "render/renderer.hpp"
 #include "support/gl_fixture.hpp"
@@ -14,7 +15,7 @@ using namespace lucerna;
 struct Need {
   const char* name;
   std::vector<const char*> resources;  ///< of programs
-  std::vector<const char*> stages;     ///< timed passes
+  std::vector<const char*> stages;  ///< timed passes
 };
 
 const Need kNeeds[] = {{"diffuseTextures", {"diffuseTexture"}, {}},
@@ -47,7 +48,8 @@ class NeedsOff : public test::GlTest {
     settings.rsm.size = 64;
     settings.lights.spotSize = settings.lights.pointSize = 64;
     settings.lpv.cascades.cells = 8;
-    settings.lpv.blocking = false;  // a lamp however dark adds what it sees to the geometry volume: such data are not neutral there
+    settings.lpv.blocking =
+        false;  // a lamp however dark adds what it sees to the geometry volume: such data are not neutral there
     Renderer renderer(context(), library, scene, settings);
     renderer.render(test::openBoxCamera());
     renderer.render(test::openBoxCamera());  // the first times of a stage are dropped
@@ -63,20 +65,23 @@ class NeedsOff : public test::GlTest {
     return drawn;
   }
   static bool contains(const std::vector<std::string>& names, const std::string& name) {
-    return std::any_of(names.begin(), names.end(), [&](const std::string& n) { return n == name || n.find(name) != std::string::npos; });
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& n) { return n == name || n.find(name) != std::string::npos; });
   }
 };
 
 TEST_F(NeedsOff, EveryNeutralNeedHasARow) {
   ASSERT_EQ(measure::neutralNeeds().size(), std::size(kNeeds));
-  for (const Need& need : kNeeds) EXPECT_EQ(std::count(measure::neutralNeeds().begin(), measure::neutralNeeds().end(), need.name), 1) << need.name;
+  for (const Need& need : kNeeds)
+    EXPECT_EQ(std::count(measure::neutralNeeds().begin(), measure::neutralNeeds().end(), need.name), 1) << need.name;
 }
 
 TEST_F(NeedsOff, LeavesNothingBehindAndChangesNothing) {
   const Scene lean = test::openBox();
   const Drawn off = draw(lean);
   double brightest = 0.0;
-  for (const glm::vec3& p : off.picture.pixels) brightest = std::max({brightest, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+  for (const glm::vec3& p : off.picture.pixels)
+    brightest = std::max({brightest, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
   for (const Need& need : kNeeds) {
     SCOPED_TRACE(need.name);
     Scene scene = lean;
@@ -94,7 +99,9 @@ TEST_F(NeedsOff, LeavesNothingBehindAndChangesNothing) {
     }
     // A uniform has no bytes of its own; what has a texture or a buffer does.
     const bool isConstant = std::string_view(need.name) == "environment";
-    const bool isPicture = std::string_view(need.name).ends_with("Textures") || std::string_view(need.name).ends_with("Maps") || std::string_view(need.name).ends_with("Masks");
+    const bool isPicture = std::string_view(need.name).ends_with("Textures") ||
+                           std::string_view(need.name).ends_with("Maps") ||
+                           std::string_view(need.name).ends_with("Masks");
     if ((!need.stages.empty() && !isConstant) || isPicture) {
       EXPECT_LT(off.gpuBytes, on.gpuBytes);
     } else {
@@ -102,7 +109,9 @@ TEST_F(NeedsOff, LeavesNothingBehindAndChangesNothing) {
     }
     double largest = 0.0;
     for (std::size_t i = 0; i < off.picture.pixels.size(); ++i)
-      for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(static_cast<double>(off.picture.pixels[i][c]) - static_cast<double>(on.picture.pixels[i][c])));
+      for (int c = 0; c < 3; ++c)
+        largest = std::max(largest, std::abs(static_cast<double>(off.picture.pixels[i][c]) -
+                                             static_cast<double>(on.picture.pixels[i][c])));
     EXPECT_LE(largest, 1e-5 * brightest);
   }
 }
@@ -131,7 +140,8 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
     Made drawn;
     for (const std::string& name : library.names()) drawn.programs += name + "\n";
     for (const auto& program : library.programs())
-      for (const std::string& resource : program->activeResources()) drawn.programs += program->name() + ":" + resource + "\n";
+      for (const std::string& resource : program->activeResources())
+        drawn.programs += program->name() + ":" + resource + "\n";
     for (const gl::StageStatistics& stage : renderer.timer().statistics()) drawn.stages += stage.name + "\n";
     drawn.leftOut = renderer.leftOut();
     drawn.receivers = renderer.receivers() != nullptr;
@@ -140,9 +150,12 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
     return drawn;
   };
   const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
-  const auto leaves = [](const Made& drawn, const char* name) { return std::count(drawn.leftOut.begin(), drawn.leftOut.end(), name) > 0; };
+  const auto leaves = [](const Made& drawn, const char* name) {
+    return std::count(drawn.leftOut.begin(), drawn.leftOut.end(), name) > 0;
+  };
   Scene scene = test::openBox();
-  const Made propagated = draw(LpvTransport::propagate, Component::all, scene), traced = draw(LpvTransport::rays, Component::all, scene);
+  const Made propagated = draw(LpvTransport::propagate, Component::all, scene),
+             traced = draw(LpvTransport::rays, Component::all, scene);
   for (const char* part : {"receivers", "lpv paths", "lpvReceived", "TriangleBlock", "visibleDepth", "PathBlock"}) {
     EXPECT_FALSE(has(propagated.programs, part)) << part << " in\n" << propagated.programs;
     EXPECT_TRUE(has(traced.programs, part)) << part << " in\n" << traced.programs;
@@ -170,7 +183,8 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
     EXPECT_FALSE(leaves(propagated, name)) << name;
   }
 
-  // Direct light of a scene without emissive surfaces and sky is shadow maps alone: no receivers, and as many bytes as direct light has.
+  // Direct light of a scene without emissive surfaces and sky is shadow maps alone: no receivers, and as many bytes as
+  // direct light has.
   const Made direct = draw(LpvTransport::rays, Component::direct, scene);
   EXPECT_FALSE(direct.receivers);
   EXPECT_FALSE(has(direct.programs, "lpv")) << direct.programs;

@@ -1,4 +1,5 @@
-// The path tracer as a technique of the frame: the film's pictures, bit by bit, shown with the frame's own tone mapping; more samples while the view stands still.
+// The path tracer as a technique of the frame: the film's pictures, bit by bit, shown with the frame's own tone
+// mapping; more samples while the view stands still.
 #include "render/renderer.hpp"
 #include "support/path_scenes.hpp"
 
@@ -20,7 +21,8 @@ class PathFrameGl : public test::PathTest {
     return s;
   }
   /// The same picture by the path tracer alone.
-  Image alone(const Scene& scene, const Camera& camera, const RenderSettings& s, Transport transport, std::uint32_t samples) {
+  Image alone(const Scene& scene, const Camera& camera, const RenderSettings& s, Transport transport,
+              std::uint32_t samples) {
     PathTracer::Settings path;
     path.size = s.size;
     path.transport = transport;
@@ -36,7 +38,9 @@ class PathFrameGl : public test::PathTest {
 
 TEST_F(PathFrameGl, APictureIsThePathTracersAndItsDisplayTheFrames) {
   const Scene scene = openBox();
-  for (const auto& [component, transport] : {std::pair{Component::all, Transport::all}, {Component::direct, Transport::direct}, {Component::indirect, Transport::indirect}}) {
+  for (const auto& [component, transport] : {std::pair{Component::all, Transport::all},
+                                             {Component::direct, Transport::direct},
+                                             {Component::indirect, Transport::indirect}}) {
     RenderSettings s = settings(6);
     s.component = component;
     s.path.seed = 3;

@@ -1,5 +1,5 @@
-// The path tracer's GLSL functions against twins in double precision, and the distributions of what they draw. Statistical tests: seeds are
-// fixed; chi-square at significance 1e-4.
+// The path tracer's GLSL functions against twins in double precision, and the distributions of what they draw.
+// Statistical tests: seeds are fixed; chi-square at significance 1e-4.
 #include "support/gl_fixture.hpp"
 
 #include "gl/pass.hpp"
@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// ------------------------------------------------------------------------------------------------------------- the twins
+// ------------------------------------------------------------------------------------------------------------- the
+// twins
 
 std::array<std::uint32_t, 4> pcg4d(std::array<std::uint32_t, 4> v) {  // [JarzynskiOlano2020]
   for (auto& x : v) x = x * 1664525u + 1013904223u;
@@ -69,7 +70,9 @@ struct Ggx {
   double g1(const glm::dvec3& w) const { return 1.0 / (1.0 + lambda(w)); }
   double g2(const glm::dvec3& o, const glm::dvec3& i) const { return 1.0 / (1.0 + lambda(o) + lambda(i)); }
   /// Density of visible normals [Heitz2018].
-  double visible(const glm::dvec3& o, const glm::dvec3& h) const { return g1(o) * std::max(0.0, glm::dot(o, h)) * density(h) / o.z; }
+  double visible(const glm::dvec3& o, const glm::dvec3& h) const {
+    return g1(o) * std::max(0.0, glm::dot(o, h)) * density(h) / o.z;
+  }
   double reflectPdf(const glm::dvec3& o, const glm::dvec3& i) const {
     if (i.z <= 0.0) return 0.0;
     const glm::dvec3 h = glm::normalize(o + i);
@@ -101,14 +104,16 @@ double fresnel(double cosI, double eta) {  // amplitudes of both polarisations, 
   return 0.5 * (s * s + p * p);
 }
 
-// ------------------------------------------------------------------------------------------------------------- the tests
+// ------------------------------------------------------------------------------------------------------------- the
+// tests
 
 class PathFunctionsTest : public SharedProgramsTest {
  protected:
   using Pair = std::array<glm::vec4, 2>;
   std::vector<Pair> probe(int which, const std::vector<Pair>& inputs) {
-    const gl::Program& program = library().loadCompute("path probe", "pathtracer/path_probe.comp",
-                                                       {{"PROBE", which}, {"GLOSSY", 1}, {"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LINEAR_SEEDS", 0}});
+    const gl::Program& program = library().loadCompute(
+        "path probe", "pathtracer/path_probe.comp",
+        {{"PROBE", which}, {"GLOSSY", 1}, {"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LINEAR_SEEDS", 0}});
     const gl::Buffer in("inputs", inputs.size() * sizeof(Pair), inputs.data(), GL_STATIC_DRAW);
     const gl::Buffer out("outputs", inputs.size() * sizeof(Pair), nullptr, GL_DYNAMIC_READ);
     in.bind(GL_SHADER_STORAGE_BUFFER, 0);
@@ -121,7 +126,8 @@ class PathFunctionsTest : public SharedProgramsTest {
     return out.read<Pair>();
   }
   glm::dvec3 upper(double least = 0.05) {
-    const double z = least + (1.0 - least) * uniform_(engine_), a = 2.0 * kPi * uniform_(engine_), r = std::sqrt(1.0 - z * z);
+    const double z = least + (1.0 - least) * uniform_(engine_), a = 2.0 * kPi * uniform_(engine_),
+                 r = std::sqrt(1.0 - z * z);
     return {r * std::cos(a), r * std::sin(a), z};
   }
   double uniform() { return uniform_(engine_); }
@@ -133,7 +139,8 @@ class PathFunctionsTest : public SharedProgramsTest {
 
 TEST_F(PathFunctionsTest, RandomNumbersAreTheTwinsBitByBit) {
   std::vector<Pair> inputs;
-  for (int i = 0; i < 4096; ++i) inputs.push_back({glm::vec4(i * 7 % 1000, i, i % 6, i % 5), glm::vec4(i % 3, 0, 0, 0)});
+  for (int i = 0; i < 4096; ++i)
+    inputs.push_back({glm::vec4(i * 7 % 1000, i, i % 6, i % 5), glm::vec4(i % 3, 0, 0, 0)});
   const std::vector<Pair> results = probe(0, inputs);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const auto word = [&](int k) { return static_cast<std::uint32_t>(inputs[i][0][k]); };
@@ -161,7 +168,9 @@ TEST_F(PathFunctionsTest, FirstPairsAreEvenlySpread) {
   for (int wide = 0; wide <= 8; ++wide) {
     std::vector<int> counts(256, 0);
     const int columns = 1 << wide, rows = 256 / columns;
-    for (const Pair& r : results) ++counts[static_cast<std::size_t>(static_cast<int>(r[0].y * static_cast<float>(rows)) * columns + static_cast<int>(r[0].x * static_cast<float>(columns)))];
+    for (const Pair& r : results)
+      ++counts[static_cast<std::size_t>(static_cast<int>(r[0].y * static_cast<float>(rows)) * columns +
+                                        static_cast<int>(r[0].x * static_cast<float>(columns)))];
     EXPECT_EQ(counts, std::vector<int>(256, 1)) << columns;
   }
 }
@@ -170,7 +179,8 @@ TEST_F(PathFunctionsTest, MicrofacetsAndFresnelAreTheTwins) {
   std::vector<Pair> inputs;
   for (int i = 0; i < 4096; ++i) {
     const double alpha = std::pow(10.0, -2.0 + 2.0 * uniform()), eta = i % 2 ? 1.0 / 1.5 : 1.33;
-    inputs.push_back({glm::vec4(glm::vec3(upper()), static_cast<float>(alpha)), glm::vec4(glm::vec3(upper()), static_cast<float>(eta))});
+    inputs.push_back({glm::vec4(glm::vec3(upper()), static_cast<float>(alpha)),
+                      glm::vec4(glm::vec3(upper()), static_cast<float>(eta))});
   }
   const std::vector<Pair> results = probe(1, inputs);
   for (std::size_t k = 0; k < inputs.size(); ++k) {
@@ -189,13 +199,12 @@ TEST_F(PathFunctionsTest, MicrofacetsAndFresnelAreTheTwins) {
     near(results[k][1].y, pdf, 1.0);
     near(results[k][1].z, 0.04 + 0.96 * std::pow(1.0 - o.z, 5.0), 1.0);  // [Schlick1994]
     near(results[k][1].w, 0.9 + 0.1 * std::pow(1.0 - o.z, 5.0), 1.0);
-    // Reciprocity of the reflection, and of the refraction over n^2: f(o, i) = f(i, o), where value is f times a cosine.
+    // Reciprocity of the reflection, and of the refraction over n^2: f(o, i) = f(i, o), where value is f times a
+    // cosine.
     EXPECT_NEAR(ggx.reflect(o, i) / i.z, ggx.reflect(i, o) / o.z, 1e-9 * ggx.reflect(o, i) / i.z);
     double other = 0.0;
     const double back = ggx.refract(i, {o.x, o.y, -o.z}, 1.0 / b.w, other);
-    if (value > 0.0 && back > 0.0) {
-      EXPECT_NEAR(value / i.z * b.w * b.w, back / o.z, 1e-9 * back / o.z);
-    }
+    if (value > 0.0 && back > 0.0) { EXPECT_NEAR(value / i.z * b.w * b.w, back / o.z, 1e-9 * back / o.z); }
   }
 }
 
@@ -206,12 +215,14 @@ TEST_F(PathFunctionsTest, DrawnDirectionsHaveTheirDensity) {
     glm::dvec3 o;
     double alpha;  // 0: about the normal
   };
-  for (const Case& c : {Case{glm::normalize(glm::dvec3(0.3, 0.2, 0.9)), 0.3}, Case{glm::normalize(glm::dvec3(0.9, 0.0, 0.25)), 0.6},
-                        Case{glm::normalize(glm::dvec3(-0.5, 0.6, 0.4)), 1.0}, Case{glm::dvec3(0, 0, 1), 0.0}}) {
+  for (const Case& c :
+       {Case{glm::normalize(glm::dvec3(0.3, 0.2, 0.9)), 0.3}, Case{glm::normalize(glm::dvec3(0.9, 0.0, 0.25)), 0.6},
+        Case{glm::normalize(glm::dvec3(-0.5, 0.6, 0.4)), 1.0}, Case{glm::dvec3(0, 0, 1), 0.0}}) {
     std::vector<Pair> inputs;
     for (int i = 0; i < kSamples; ++i)
       inputs.push_back({glm::vec4(glm::vec3(c.o), static_cast<float>(std::max(c.alpha, 0.1))),
-                        glm::vec4(static_cast<float>(std::min(uniform(), 0.99999997)), static_cast<float>(std::min(uniform(), 0.99999997)), 0, 0)});
+                        glm::vec4(static_cast<float>(std::min(uniform(), 0.99999997)),
+                                  static_cast<float>(std::min(uniform(), 0.99999997)), 0, 0)});
     const std::vector<Pair> results = probe(2, inputs);
     std::vector<double> counts(kRows * kColumns + 1, 0.0);  // the last: below
     for (std::size_t k = 0; k < results.size(); ++k) {
@@ -223,7 +234,8 @@ TEST_F(PathFunctionsTest, DrawnDirectionsHaveTheirDensity) {
         EXPECT_NEAR(r[0].w, Ggx{c.alpha}.reflectPdf(c.o, glm::normalize(d)), 1e-3 * r[0].w + 1e-5);
       }
       const int row = std::min(static_cast<int>(d.z * kRows), kRows - 1);
-      const int column = std::min(static_cast<int>((std::atan2(d.y, d.x) + kPi) / (2.0 * kPi) * kColumns), kColumns - 1);
+      const int column =
+          std::min(static_cast<int>((std::atan2(d.y, d.x) + kPi) / (2.0 * kPi) * kColumns), kColumns - 1);
       ++counts[static_cast<std::size_t>(d.z <= 0.0 ? kRows * kColumns : row * kColumns + column)];
     }
     std::vector<double> expected(counts.size(), 0.0);
@@ -233,7 +245,8 @@ TEST_F(PathFunctionsTest, DrawnDirectionsHaveTheirDensity) {
         double sum = 0.0;
         for (int i = 0; i < kFine; ++i)
           for (int j = 0; j < kFine; ++j) {
-            const double z = (row + (i + 0.5) / kFine) / kRows, a = 2.0 * kPi * (column + (j + 0.5) / kFine) / kColumns - kPi, r = std::sqrt(1.0 - z * z);
+            const double z = (row + (i + 0.5) / kFine) / kRows,
+                         a = 2.0 * kPi * (column + (j + 0.5) / kFine) / kColumns - kPi, r = std::sqrt(1.0 - z * z);
             const glm::dvec3 d(r * std::cos(a), r * std::sin(a), z);
             sum += c.alpha > 0.0 ? Ggx{c.alpha}.reflectPdf(c.o, d) : z / kPi;
           }
@@ -242,9 +255,7 @@ TEST_F(PathFunctionsTest, DrawnDirectionsHaveTheirDensity) {
         left -= share;
       }
     EXPECT_GT(left, -1e-3);
-    if (c.alpha == 0.0) {
-      EXPECT_NEAR(left, 0.0, 1e-6);
-    }
+    if (c.alpha == 0.0) { EXPECT_NEAR(left, 0.0, 1e-6); }
     expected.back() = std::max(left, 0.0) * kSamples;
     double chi2 = 0.0, pooledExpected = 0.0, pooledCount = 0.0;
     int cells = 0;
@@ -256,7 +267,8 @@ TEST_F(PathFunctionsTest, DrawnDirectionsHaveTheirDensity) {
       chi2 += (counts[k] - expected[k]) * (counts[k] - expected[k]) / expected[k];
       ++cells;
     }
-    if (pooledExpected >= 10.0) chi2 += (pooledCount - pooledExpected) * (pooledCount - pooledExpected) / pooledExpected, ++cells;
+    if (pooledExpected >= 10.0)
+      chi2 += (pooledCount - pooledExpected) * (pooledCount - pooledExpected) / pooledExpected, ++cells;
     // Wilson and Hilferty's normal approximation; 3.72 standard deviations are 1e-4.
     const double n = cells - 1, limit = n * std::pow(1.0 - 2.0 / (9.0 * n) + 3.72 * std::sqrt(2.0 / (9.0 * n)), 3.0);
     EXPECT_LT(chi2, limit) << "alpha " << c.alpha << ", " << cells << " cells";

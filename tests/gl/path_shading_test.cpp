@@ -1,5 +1,6 @@
-// The path tracer where several things meet: interpolated normals, pairs of lights of different kinds that share the picks, lamps behind a dense
-// density grid, channels that differ. Statistical tests: seeds are fixed; 4 standard errors.
+// The path tracer where several things meet: interpolated normals, pairs of lights of different kinds that share the
+// picks, lamps behind a dense density grid, channels that differ. Statistical tests: seeds are fixed; 4 standard
+// errors.
 #include "support/form_factor_twin.hpp"
 #include "support/media_scenes.hpp"
 #include "support/path_scenes.hpp"
@@ -27,7 +28,8 @@ class PathShading : public PathTest {};
 /// One triangle in the plane y = 0 whose corners have different normals, seen from above or below.
 struct SmoothTriangle {
   std::array<glm::dvec3, 3> corner{{{-4, 0, 3}, {4, 0, 3}, {0, 0, -5}}};
-  std::array<glm::dvec3, 3> normal{{glm::normalize(glm::dvec3(-0.5, 1.0, 0.2)), glm::normalize(glm::dvec3(0.6, 1.0, 0.0)),
+  std::array<glm::dvec3, 3> normal{{glm::normalize(glm::dvec3(-0.5, 1.0, 0.2)),
+                                    glm::normalize(glm::dvec3(0.6, 1.0, 0.0)),
                                     glm::normalize(glm::dvec3(0.1, 1.0, -0.7))}};
   Scene scene(const glm::dvec3& sun) const {
     SceneBuilder builder;
@@ -38,7 +40,9 @@ struct SmoothTriangle {
   }
   /// Unit; false outside of the triangle.
   bool normalAt(const glm::dvec3& p, glm::dvec3& n) const {
-    const auto area = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) { return glm::cross(b - a, c - a).y; };
+    const auto area = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+      return glm::cross(b - a, c - a).y;
+    };
     const double all = area(corner[0], corner[1], corner[2]);
     const double wa = area(p, corner[1], corner[2]) / all, wb = area(corner[0], p, corner[2]) / all, wc = 1.0 - wa - wb;
     if (std::min({wa, wb, wc}) < 0.01) return false;
@@ -94,9 +98,11 @@ TEST_F(PathShading, ASmoothMirrorSphereShowsTheEnvironmentWhereItsNormalsSay) {
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) {
       const glm::dvec3 d = glm::normalize(pixelRay(camera, x, y, glm::ivec2(32)));
-      const double b = glm::dot(d, camera.position), disc = b * b - glm::dot(camera.position, camera.position) + 0.97 * 0.97;
+      const double b = glm::dot(d, camera.position),
+                   disc = b * b - glm::dot(camera.position, camera.position) + 0.97 * 0.97;
       if (disc < 0.0) continue;
-      const glm::dvec3 n = glm::normalize(camera.position + (-b - std::sqrt(disc)) * d), r = d - 2.0 * glm::dot(d, n) * n;
+      const glm::dvec3 n = glm::normalize(camera.position + (-b - std::sqrt(disc)) * d),
+                       r = d - 2.0 * glm::dot(d, n) * n;
       if (std::abs(r.y) < 0.1) continue;  // facets are flat: the place on the sphere is known to a few per cent
       (r.y > 0.0 ? up : down)++;
       EXPECT_NEAR(image.at(x, y).x, r.y > 0.0 ? 0.9 : 0.0, 1e-5) << x << " " << y;
@@ -106,7 +112,8 @@ TEST_F(PathShading, ASmoothMirrorSphereShowsTheEnvironmentWhereItsNormalsSay) {
   EXPECT_GT(down, 150);
 }
 
-// A boundary whose interpolated normal turns away from the sun though its face does not: what would pass by it is not counted.
+// A boundary whose interpolated normal turns away from the sun though its face does not: what would pass by it is not
+// counted.
 TEST_F(PathShading, ARoughBoundaryIsNotLitFromBehindItsNormal) {
   SmoothTriangle triangle;
   triangle.normal.fill(glm::normalize(glm::dvec3(2.0, 1.0, 0.0)));
@@ -126,8 +133,8 @@ TEST_F(PathShading, ARoughBoundaryIsNotLitFromBehindItsNormal) {
 
 // -------------------------------------------------------------------------------------------------------------- metals
 
-// Reflectance by Schlick [Schlick1994]: of a constant sky in a smooth one, of the sun in a rough one (GGX with height-correlated shadowing
-// [Walter2007], [Heitz2014]).
+// Reflectance by Schlick [Schlick1994]: of a constant sky in a smooth one, of the sun in a rough one (GGX with
+// height-correlated shadowing [Walter2007], [Heitz2014]).
 TEST_F(PathShading, MetalsReflectByTheirAngle) {
   const glm::dvec3 f0{0.04f, 0.5, 0.9f};
   for (const float alpha : {0.0f, 0.4f})
@@ -155,16 +162,22 @@ TEST_F(PathShading, MetalsReflectByTheirAngle) {
           const glm::dvec3 schlick = f0 + (1.0 - f0) * std::pow(1.0 - glm::dot(o, h), 5.0);
           double times = 2.0;
           if (alpha > 0.0f) {
-            const double a2 = static_cast<double>(alpha) * static_cast<double>(alpha), t = (1.0 - h.y * h.y) / a2 + h.y * h.y;
-            const auto lambda = [&](const glm::dvec3& w) { return 0.5 * (std::sqrt(1.0 + a2 * (1.0 / (w.y * w.y) - 1.0)) - 1.0); };
+            const double a2 = static_cast<double>(alpha) * static_cast<double>(alpha),
+                         t = (1.0 - h.y * h.y) / a2 + h.y * h.y;
+            const auto lambda = [&](const glm::dvec3& w) {
+              return 0.5 * (std::sqrt(1.0 + a2 * (1.0 / (w.y * w.y) - 1.0)) - 1.0);
+            };
             times *= 1.0 / (kPi * a2 * t * t) / (1.0 + lambda(o) + lambda(toSun)) / (4.0 * o.y);
           }
-          for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(x, y)[c], times * schlick[c], 2e-4 * times * schlick[c]) << alpha << " from " << eye.y << ", channel " << c;
+          for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(image.at(x, y)[c], times * schlick[c], 2e-4 * times * schlick[c])
+                << alpha << " from " << eye.y << ", channel " << c;
         }
     }
 }
 
-// ------------------------------------------------------------------------------------------------------ pairs of lights
+// ------------------------------------------------------------------------------------------------------ pairs of
+// lights
 
 /// A floor of albedo 0.6, 0.5, 0.4, seen from above in a small part of it.
 SceneBuilder floor() {
@@ -226,7 +239,8 @@ TEST_F(PathShading, AnEnvironmentPictureAndLampsOfEveryKindShareThePicks) {
 }
 
 TEST_F(PathShading, EmissiveTrianglesThatSharePicksWithALampAreWeighedOnce) {
-  // Half of the light of a large near emitter is found by scattered rays: the weight of a hit must know the pick's probability.
+  // Half of the light of a large near emitter is found by scattered rays: the weight of a hit must know the pick's
+  // probability.
   SceneBuilder builder = floor();
   const int lamp = builder.material(glm::vec3(0.0f));
   builder.materialAt(lamp).emission = glm::vec3(1.0f);
@@ -236,7 +250,8 @@ TEST_F(PathShading, EmissiveTrianglesThatSharePicksWithALampAreWeighedOnce) {
   const double expected = 0.6f / kPi * (kPi * twin::pointToPolygon({0, 0, 0}, {0, 1, 0}, corners) + 2.0 / 0.25);
   PathTracer::Settings settings = sized(16);
   settings.transport = Transport::direct;
-  const PathTracer::Statistics result = tracer(builder.scene(), cameraAt({0.0, 0.4, 0.0}, {0, 0, 0}), settings, 1024).statistics();
+  const PathTracer::Statistics result =
+      tracer(builder.scene(), cameraAt({0.0, 0.4, 0.0}, {0, 0, 0}), settings, 1024).statistics();
   EXPECT_LT(deviations(result, expected * kAlbedo / kAlbedo.x), 4.0) << result.mean.x << " for " << expected;
   EXPECT_LT(result.meanError.x, 3e-3 * expected);
 }
@@ -244,7 +259,8 @@ TEST_F(PathShading, EmissiveTrianglesThatSharePicksWithALampAreWeighedOnce) {
 TEST_F(PathShading, ATexelOfTheSkyThatTheHorizonCutsIsSampledAllOver) {
   // One texel of 8 x 4 shines, and the floor is tilted so that it rises from the horizon within that texel.
   SceneBuilder builder;
-  const glm::dvec3 n = glm::normalize(glm::dvec3(0.8, 0.55, 0.1)), u = glm::normalize(glm::cross(n, glm::dvec3(0, 0, 1))), v = glm::cross(n, u);
+  const glm::dvec3 n = glm::normalize(glm::dvec3(0.8, 0.55, 0.1)),
+                   u = glm::normalize(glm::cross(n, glm::dvec3(0, 0, 1))), v = glm::cross(n, u);
   builder.plate({0, 0, 0}, 40.0 * u, 40.0 * v, builder.material({0.6f, 0.5f, 0.4f}));
   builder.scene().sun.reset();
   builder.scene().environment = sky(glm::vec3(0.0f));
@@ -254,20 +270,23 @@ TEST_F(PathShading, ATexelOfTheSkyThatTheHorizonCutsIsSampledAllOver) {
   constexpr int kFine = 800;
   for (int i = 0; i < kFine; ++i)
     for (int j = 0; j < kFine; ++j) {
-      const double azimuth = 2.0 * kPi * ((3.0 + (i + 0.5) / kFine) / 8.0 - 0.5), polar = kPi * (1.0 + (j + 0.5) / kFine) / 4.0;
+      const double azimuth = 2.0 * kPi * ((3.0 + (i + 0.5) / kFine) / 8.0 - 0.5),
+                   polar = kPi * (1.0 + (j + 0.5) / kFine) / 4.0;
       const glm::dvec3 w(std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth));
       cosines += std::max(glm::dot(n, w), 0.0) * std::sin(polar) * (2.0 * kPi / 8.0 / kFine) * (kPi / 4.0 / kFine);
     }
   ASSERT_GT(cosines, 0.01);
   PathTracer::Settings settings = sized(16);
   settings.transport = Transport::direct;
-  const PathTracer::Statistics result = tracer(builder.scene(), cameraAt(3.0 * n, {0, 0, 0}), settings, 1024).statistics();
+  const PathTracer::Statistics result =
+      tracer(builder.scene(), cameraAt(3.0 * n, {0, 0, 0}), settings, 1024).statistics();
   const glm::dvec3 expected = kAlbedo / kPi * glm::dvec3(5.0, 3.0, 2.0) * cosines;
   EXPECT_LT(deviations(result, expected), 4.0) << result.mean.x << " for " << expected.x;
   EXPECT_LT(result.meanError.x, 5e-3 * expected.x);
 }
 
-// ------------------------------------------------------------------------------------------------------------- textures
+// -------------------------------------------------------------------------------------------------------------
+// textures
 
 /// Repeated bilinear lookup between texel centres, v = 0 at the bottom row.
 double bilinear(int size, const std::function<double(int, int)>& texel, double u, double v) {
@@ -283,14 +302,17 @@ TEST_F(PathShading, TexturesAndMasksAreReadBetweenTexelCentres) {
   // Colours of 4 x 4 texels, and a mask that ramps in both directions: its edge lies where alpha passes a half.
   constexpr int kTexels = 4, kMaskTexels = 16, kPixels = 64;
   std::vector<std::uint8_t> colours, ramp;
-  for (int i = 0; i < kTexels * kTexels; ++i) colours.insert(colours.end(), {static_cast<std::uint8_t>(20 + (i * 89) % 230), static_cast<std::uint8_t>(250 - (i * 53) % 200), 128, 255});
+  for (int i = 0; i < kTexels * kTexels; ++i)
+    colours.insert(colours.end(), {static_cast<std::uint8_t>(20 + (i * 89) % 230),
+                                   static_cast<std::uint8_t>(250 - (i * 53) % 200), 128, 255});
   for (int y = 0; y < kMaskTexels; ++y)
     for (int x = 0; x < kMaskTexels; ++x) {
       const auto alpha = static_cast<std::uint8_t>(12 * x + 4 * y);
       ramp.insert(ramp.end(), {alpha, alpha, alpha, 255});
     }
   SceneBuilder builder;
-  const int picture = builder.texture(kTexels, kTexels, colours), mask = builder.texture(kMaskTexels, kMaskTexels, ramp), plain = builder.material(glm::vec3(1.0f)),
+  const int picture = builder.texture(kTexels, kTexels, colours),
+            mask = builder.texture(kMaskTexels, kMaskTexels, ramp), plain = builder.material(glm::vec3(1.0f)),
             masked = builder.material(glm::vec3(0.25f)), below = builder.material(glm::vec3(1.0f));
   builder.materialAt(plain).diffuseTexture = picture;
   builder.materialAt(masked).alphaTexture = mask;
@@ -320,7 +342,8 @@ TEST_F(PathShading, TexturesAndMasksAreReadBetweenTexelCentres) {
   int plainPixels = 0, holes = 0, kept = 0;
   for (int y = 0; y < kPixels; ++y)
     for (int x = 0; x < kPixels; ++x) {
-      const glm::dvec3 ray = pixelRay(camera, x, y, glm::ivec2(kPixels)), p = camera.position - camera.position.z / ray.z * ray;
+      const glm::dvec3 ray = pixelRay(camera, x, y, glm::ivec2(kPixels)),
+                       p = camera.position - camera.position.z / ray.z * ray;
       const double v = 0.5 * p.y + 0.5;
       if (v < 0.05 || v > 0.95) continue;
       if (const double u = 0.5 * (p.x + 1.5) + 0.5; u > 0.02 && u < 0.98) {
@@ -345,7 +368,8 @@ TEST_F(PathShading, TexturesAndMasksAreReadBetweenTexelCentres) {
 // ---------------------------------------------------------------------------------------------------- density grids
 
 TEST_F(PathShading, ALampBehindAThickDensityGridIsDimmedByItsOpticalDepth) {
-  // A slab of density 1 (in the grid's middle; cell centres at its faces) between lamp and floor: E = I / d^2 exp(-integral). Red passes, green hardly, blue not.
+  // A slab of density 1 (in the grid's middle; cell centres at its faces) between lamp and floor: E = I / d^2
+  // exp(-integral). Red passes, green hardly, blue not.
   for (const double scale : {1.0, 4.0}) {
     Scene scene;
     {
@@ -360,7 +384,8 @@ TEST_F(PathShading, ALampBehindAThickDensityGridIsDimmedByItsOpticalDepth) {
     grid.density.resize(64);
     for (int z = 0; z < 4; ++z)
       for (int y = 0; y < 4; ++y)
-        for (int x = 0; x < 4; ++x) grid.density[static_cast<std::size_t>(x + 4 * (y + 4 * z))] = y == 1 || y == 2 ? 1.0f : 0.25f;
+        for (int x = 0; x < 4; ++x)
+          grid.density[static_cast<std::size_t>(x + 4 * (y + 4 * z))] = y == 1 || y == 2 ? 1.0f : 0.25f;
     medium.grid = grid;
     scene.media.push_back(medium);
     addBox(scene, {-10.0, 0.5, -10.0}, {10.0, 1.5, 10.0}, addBoundary(scene, Bsdf::none, 1.0, 0));
@@ -369,13 +394,12 @@ TEST_F(PathShading, ALampBehindAThickDensityGridIsDimmedByItsOpticalDepth) {
     const double depth = scale * (0.25 * 0.25 + 0.5 * (0.25 + 1.0) * 0.5 + 0.25);
     PathTracer::Settings settings = sized(16);
     settings.transport = Transport::direct;
-    const PathTracer::Statistics result = tracer(scene, cameraAt({0.0, 0.4, 0.0}, {0, 0, 0}), settings, 1024).statistics();
+    const PathTracer::Statistics result =
+        tracer(scene, cameraAt({0.0, 0.4, 0.0}, {0, 0, 0}), settings, 1024).statistics();
     for (int c = 0; c < 3; ++c) {
       const double expected = kAlbedo[c] / kPi * 100.0 * std::exp(-depth * (0.5 + c));
       EXPECT_NEAR(result.mean[c], expected, 4.0 * result.meanError[c]) << scale << " channel " << c;
-      if (expected > 1e-3) {
-        EXPECT_LT(result.meanError[c], 0.06 * expected) << scale << " channel " << c;
-      }
+      if (expected > 1e-3) { EXPECT_LT(result.meanError[c], 0.06 * expected) << scale << " channel " << c; }
     }
   }
 }
@@ -383,20 +407,22 @@ TEST_F(PathShading, ALampBehindAThickDensityGridIsDimmedByItsOpticalDepth) {
 // ----------------------------------------------------------------------------------------------------------- interiors
 
 TEST_F(PathShading, MediaOfManyBoundariesAreKnownByRank) {
-  // Twenty-eight boxes side by side, each with its own medium, and so with its own rank, in every word of the counts. Each absorbs by itself; every
-  // second is within another of lower priority that fills the row.
+  // Twenty-eight boxes side by side, each with its own medium, and so with its own rank, in every word of the counts.
+  // Each absorbs by itself; every second is within another of lower priority that fills the row.
   Scene scene;
   constexpr int kBoxes = 28;
   scene.media.push_back(homogeneous(glm::dvec3(0.0), glm::dvec3(0.1, 0.2, 0.3), 0.0));
   addBox(scene, {-1.0, -0.6, -0.6}, {2.0 * kBoxes, 0.6, 0.6}, addBoundary(scene, Bsdf::none, 1.0, 0, -1));
   for (int i = 0; i < kBoxes; ++i) {
     scene.media.push_back(homogeneous(glm::dvec3(0.0), glm::dvec3(0.05 * (i + 1), 0.1, 0.02 * i), 0.0));
-    addBox(scene, {2.0 * i + 0.25, -0.5, -0.5}, {2.0 * i + 1.25, 0.5, 0.5}, addBoundary(scene, Bsdf::none, 1.0, i + 1, i));
+    addBox(scene, {2.0 * i + 0.25, -0.5, -0.5}, {2.0 * i + 1.25, 0.5, 0.5},
+           addBoundary(scene, Bsdf::none, 1.0, i + 1, i));
   }
   scene.environment = constantEnvironment(1.0);
   for (int i = 0; i < kBoxes; ++i) {
     const double x = 2.0 * i + 0.75;
-    const PathTracer::Statistics result = tracer(scene, cameraAt({x, 0.1, 5.0}, {x, 0.1, 0.0}), sized(8), 64).statistics();
+    const PathTracer::Statistics result =
+        tracer(scene, cameraAt({x, 0.1, 5.0}, {x, 0.1, 0.0}), sized(8), 64).statistics();
     const glm::dvec3 depth = glm::dvec3(0.1, 0.2, 0.3) * 0.2 + glm::dvec3(0.05 * (i + 1), 0.1, 0.02 * i);
     EXPECT_LT(deviations(result, glm::exp(-depth)), 4.0) << "box " << i;
     EXPECT_LT(result.meanError.x, 0.015) << "box " << i;

@@ -20,7 +20,8 @@ class PathTracerTest : public PathTest {
  protected:
   static Scene litBox() {
     Scene scene = openBox();
-    scene.spots.push_back({{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
+    scene.spots.push_back(
+        {{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
     scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
     return scene;
   }
@@ -45,7 +46,8 @@ TEST_F(PathTracerTest, ThePictureDoesNotDependOnHowWorkIsCut) {
 }
 
 TEST_F(PathTracerTest, NoSubmissionTakesMoreTurnsThanIsSafeHoweverEmptyThePictureIs) {
-  // Three tiles of sky, one with a box in its midst: what the sky's clock says must not be granted to the box. Nothing ever seems slow here.
+  // Three tiles of sky, one with a box in its midst: what the sky's clock says must not be granted to the box. Nothing
+  // ever seems slow here.
   Scene scene = litBox();
   scene.environment = Environment{};
   scene.environment->radiance = glm::vec3(0.3f);
@@ -58,7 +60,8 @@ TEST_F(PathTracerTest, NoSubmissionTakesMoreTurnsThanIsSafeHoweverEmptyThePictur
   const PathTracer::Submissions submissions = picture.submissions();
   const std::uint64_t lanes = capabilities().softwareRenderer ? 128u * 128u : 256u * 256u;
   // A tile's first: the share of each lane, 256 turns, and one segment more; here some 200.
-  std::printf("[ measured ] largest submission %.3g turns; of those that begin a tile %.3g\n", static_cast<double>(submissions.largest), static_cast<double>(submissions.begun));
+  std::printf("[ measured ] largest submission %.3g turns; of those that begin a tile %.3g\n",
+              static_cast<double>(submissions.largest), static_cast<double>(submissions.begun));
   EXPECT_GE(submissions.begun, lanes * 200);  // the box took its share
   EXPECT_LE(submissions.begun, lanes * 512);
   EXPECT_LE(static_cast<double>(submissions.largest), gl::kMostOverUnmeasured * gl::kUnmeasuredTurns);
@@ -76,7 +79,8 @@ TEST_F(PathTracerTest, AResetOfTheGpuIsSaid) {
     int exitCode;
     const char* says;
   };
-  for (const Case& c : {Case{GL_GUILTY_CONTEXT_RESET_ARB, 1, "of this program"}, Case{GL_INNOCENT_CONTEXT_RESET_ARB, 3, "of another program"},
+  for (const Case& c : {Case{GL_GUILTY_CONTEXT_RESET_ARB, 1, "of this program"},
+                        Case{GL_INNOCENT_CONTEXT_RESET_ARB, 3, "of another program"},
                         Case{GL_UNKNOWN_CONTEXT_RESET_ARB, 3, "does not say"}}) {
     status = c.status;
     try {
@@ -116,8 +120,8 @@ TEST_F(PathTracerTest, AResumedPictureIsTheUninterruptedOne) {
   EXPECT_THROW(second.resume(damaged, "memory"), Error);
 }
 
-// Stopped anywhere, the film is that of whole passes: the paths that are under way then are the long ones, and must not be missing beside short ones that
-// have ended.
+// Stopped anywhere, the film is that of whole passes: the paths that are under way then are the long ones, and must not
+// be missing beside short ones that have ended.
 TEST_F(PathTracerTest, AStoppedPictureIsOneOfWholePasses) {
   SceneBuilder room;  // a bright closed room: paths of very different lengths
   addBox(room, 1.0, room.material(glm::vec3(0.9f)), true);
@@ -126,7 +130,7 @@ TEST_F(PathTracerTest, AStoppedPictureIsOneOfWholePasses) {
   scene.sun.reset();
   const Camera camera = lookingAt({0, 0, 0.9}, {0, 0, 0});
   PathTracer::Settings settings = sized(150);  // four tiles
-  settings.submissionSeconds = 1e-9;           // a segment a submission: a pass takes many
+  settings.submissionSeconds = 1e-9;  // a segment a submission: a pass takes many
   std::map<std::uint32_t, Image> whole;
   const auto afterPasses = [&](std::uint32_t samples) -> const Image& {
     Image& image = whole[samples];
@@ -153,10 +157,12 @@ TEST_F(PathTracerTest, AStoppedPictureIsOneOfWholePasses) {
         bool same = true;
         for (int y = tile.y; y < std::min(tile.y + 128, 150); ++y)
           for (int x = tile.x; x < std::min(tile.x + 128, 150); ++x)
-            same = same && mean.at(x, 149 - y) == (n == 0 ? glm::vec3(0.0f) : afterPasses(static_cast<std::uint32_t>(n)).at(x, 149 - y));
+            same = same && mean.at(x, 149 - y) ==
+                               (n == 0 ? glm::vec3(0.0f) : afterPasses(static_cast<std::uint32_t>(n)).at(x, 149 - y));
         if (same) samples = n;
       }
-      EXPECT_GE(samples, 0) << submissions << ": tile " << tile.x << ", " << tile.y << " of " << statistics.fewestSamples << " to " << statistics.mostSamples << " samples";
+      EXPECT_GE(samples, 0) << submissions << ": tile " << tile.x << ", " << tile.y << " of "
+                            << statistics.fewestSamples << " to " << statistics.mostSamples << " samples";
     }
     stopped.record(3);
     EXPECT_EQ(stopped.mean().pixels, afterPasses(3).pixels) << submissions;
@@ -176,7 +182,8 @@ TEST_F(PathTracerTest, EveryTexelOfALargeEnvironmentIsPicked) {
     scene.environment->picture->at(texel.x, texel.y) = glm::vec3(1e6f);
     const double pi = 3.14159265358979324, top = pi * texel.y / kHeight, bottom = pi * (texel.y + 1) / kHeight;
     // Irradiance on a plate that faces it from above or from below: the integral of cos over the texel.
-    const double expected = 0.5 / pi * 1e6 * 2.0 * pi / kWidth * 0.5 * std::abs(std::pow(std::sin(bottom), 2) - std::pow(std::sin(top), 2));
+    const double expected =
+        0.5 / pi * 1e6 * 2.0 * pi / kWidth * 0.5 * std::abs(std::pow(std::sin(bottom), 2) - std::pow(std::sin(top), 2));
     const double side = 2 * texel.y < kHeight ? 1.0 : -1.0;
     Camera camera = lookingAt({0.0, 3.0 * side, 0.01}, {0, 0, 0}, 0.6);
     PathTracer::Settings settings = sized(4);
@@ -197,7 +204,8 @@ TEST_F(PathTracerTest, EveryLampOfManyGivesItsLight) {
   for (int i = 0; i < 9; ++i) {
     Scene one = dark;
     const PointLight point{{i - 4.0, 3.0, 2.0 - 0.5 * i}, glm::vec3(2.0f + static_cast<float>(i))};
-    const SpotLight spot{{4.0 - i, 4.0, 1.0}, glm::normalize(glm::dvec3(0.1 * i, -1.0, -0.5)), glm::vec3(9.0f), 0.4, 0.7};
+    const SpotLight spot{
+        {4.0 - i, 4.0, 1.0}, glm::normalize(glm::dvec3(0.1 * i, -1.0, -0.5)), glm::vec3(9.0f), 0.4, 0.7};
     one.points.push_back(point), one.spots.push_back(spot);
     all.points.push_back(point), all.spots.push_back(spot);
     settings.seed = static_cast<std::uint32_t>(i + 1);
@@ -211,7 +219,8 @@ TEST_F(PathTracerTest, EveryLampOfManyGivesItsLight) {
 
 TEST_F(PathTracerTest, SmallestPicturesAndScenes) {
   SceneBuilder empty;
-  EXPECT_EQ(tracer(empty.scene(), lookingAt({0, 0, 1}, {0, 0, 0}), 1, 1).mean().pixels, std::vector<glm::vec3>{glm::vec3(0.0f)});
+  EXPECT_EQ(tracer(empty.scene(), lookingAt({0, 0, 1}, {0, 0, 0}), 1, 1).mean().pixels,
+            std::vector<glm::vec3>{glm::vec3(0.0f)});
   empty.scene().background = {1.0f, 2.0f, 3.0f};
   const PathTracer background = tracer(empty.scene(), lookingAt({0, 0, 1}, {0, 0, 0}), 1, 3);
   EXPECT_EQ(background.mean().pixels, std::vector<glm::vec3>{glm::vec3(1.0f, 2.0f, 3.0f)});
@@ -219,7 +228,8 @@ TEST_F(PathTracerTest, SmallestPicturesAndScenes) {
   Scene dark = openBox();
   dark.sun.reset();
   EXPECT_EQ(tracer(dark, openBoxCamera(), 4, 2).statistics().mean, glm::dvec3(0.0));
-  EXPECT_EQ(tracer(openBox(), openBoxCamera(), 3, 1).statistics().standardError, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(tracer(openBox(), openBoxCamera(), 3, 1).statistics().standardError,
+            std::numeric_limits<double>::infinity());
   Camera far = openBoxCamera(1e6);
   for (const glm::vec3& p : tracer(openBox(1e6), far, 8, 2).mean().pixels) EXPECT_TRUE(std::isfinite(p.x));
 }
@@ -237,9 +247,7 @@ TEST_F(PathTracerTest, TheErrorFallsWithTheRootOfTheSamplesAndIsHonest) {
   for (const std::uint32_t samples : {16u, 64u, 256u}) {
     picture.record(samples);
     const double error = picture.statistics().standardError;
-    if (last > 0.0) {
-      EXPECT_NEAR(last / error, 2.0, 0.3) << samples;
-    }
+    if (last > 0.0) { EXPECT_NEAR(last / error, 2.0, 0.3) << samples; }
     last = error;
     const Image mean = picture.mean();
     double sum = 0.0;
@@ -273,8 +281,8 @@ TEST_F(PathTracerTest, ComponentsAddUp) {
   EXPECT_GT(indirect.mean.x, 1.2 * result(Transport::oneBounce).mean.x);
 }
 
-// Units: the direct light of forward shading is the path tracer's, but for the filtered edges of shadows. (Surfaces that
-// shine light others in the path tracer alone.)
+// Units: the direct light of forward shading is the path tracer's, but for the filtered edges of shadows. (Surfaces
+// that shine light others in the path tracer alone.)
 TEST_F(PathTracerTest, DirectLightIsThatOfForwardShading) {
   Scene scene = litBox();
   scene.background = {0.1f, 0.2f, 0.3f};
@@ -301,7 +309,9 @@ TEST_F(PathTracerTest, DirectLightIsThatOfForwardShading) {
   double rasterSum = 0.0, tracedSum = 0.0;
   for (std::size_t i = 0; i < traced.pixels.size(); ++i) {
     bool isOff = false;
-    for (int c = 0; c < 3; ++c) isOff |= std::abs(traced.pixels[i][c] - raster.pixels[i][c]) > 5.0f * error.pixels[i][c] + 0.004f * raster.pixels[i][c] + 1e-5f;
+    for (int c = 0; c < 3; ++c)
+      isOff |= std::abs(traced.pixels[i][c] - raster.pixels[i][c]) >
+               5.0f * error.pixels[i][c] + 0.004f * raster.pixels[i][c] + 1e-5f;
     off += isOff ? 1 : 0;
     rasterSum += raster.pixels[i].y;
     tracedSum += traced.pixels[i].y;
@@ -310,7 +320,8 @@ TEST_F(PathTracerTest, DirectLightIsThatOfForwardShading) {
   EXPECT_NEAR(tracedSum / rasterSum, 1.0, 0.01);
 }
 
-// Each kind of lamp by itself, on Lambert's surfaces with a pillar and a shelf that cast shadows: the mean to 1 %, and where neither picture has a border of a shadow, pixel by pixel.
+// Each kind of lamp by itself, on Lambert's surfaces with a pillar and a shelf that cast shadows: the mean to 1 %, and
+// where neither picture has a border of a shadow, pixel by pixel.
 TEST_F(PathTracerTest, DirectLightOfEachKindOfLampIsThatOfForwardShading) {
   for (const char* kind : {"sun", "spot", "point"}) {
     Scene scene = openBox();
@@ -320,7 +331,9 @@ TEST_F(PathTracerTest, DirectLightOfEachKindOfLampIsThatOfForwardShading) {
     builder.plate({1.5, 0.5, -1.0}, {2, 0, 0}, {0, 0, 2}, 0);
     scene = builder.scene();
     if (kind != std::string_view("sun")) scene.sun.reset();
-    if (kind == std::string_view("spot")) scene.spots.push_back({{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
+    if (kind == std::string_view("spot"))
+      scene.spots.push_back(
+          {{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
     if (kind == std::string_view("point")) scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
     constexpr int kSize = 96;
     RenderSettings forward;
@@ -341,7 +354,8 @@ TEST_F(PathTracerTest, DirectLightOfEachKindOfLampIsThatOfForwardShading) {
       tracedSum += traced.pixels[i].y;
       off += std::abs(traced.pixels[i].y - raster.pixels[i].y) > 1e-3f * traced.pixels[i].y + 1e-6f;
     }
-    std::printf("%-6s forward over path traced %.5f, %d of %d pixels off by 0.1 %%\n", kind, rasterSum / tracedSum, off, kSize * kSize);
+    std::printf("%-6s forward over path traced %.5f, %d of %d pixels off by 0.1 %%\n", kind, rasterSum / tracedSum, off,
+                kSize * kSize);
     EXPECT_GT(tracedSum, 0.0);
     EXPECT_NEAR(rasterSum / tracedSum, 1.0, 0.01) << kind;
     EXPECT_LT(off, kSize * kSize / 25) << kind;

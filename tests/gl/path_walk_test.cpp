@@ -1,4 +1,5 @@
-// Walks through dense media: the same picture, bit by bit, with and without asking the clearance grid, and however long a submission is.
+// Walks through dense media: the same picture, bit by bit, with and without asking the clearance grid, and however long
+// a submission is.
 #include "pathtracer/path_tracer.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/media_scenes.hpp"
@@ -44,7 +45,8 @@ TEST_F(PathWalkTest, LongSubmissionsLoseNoLoopTurns) {
 }
 
 TEST_F(PathWalkTest, ShadowRaysEndHoweverFarABoundLiesAboveTheDensity) {
-  // A floor under a block of smoke that is thin where the sun shines through, and a million times as dense beside that: a million null collisions a ray.
+  // A floor under a block of smoke that is thin where the sun shines through, and a million times as dense beside that:
+  // a million null collisions a ray.
   Scene scene;
   Medium smoke = homogeneous(glm::dvec3(0.0), glm::dvec3(1.0), 0.0);
   DensityGrid grid;

@@ -45,37 +45,47 @@ TEST_F(RadOriginal, FactorsFromAPointAreKnownForBothMaps) {
     double distance, exact, faultPercent;
   };
   const Case cases[] = {
-      {"opposed square 0.5", false, 0.5, 0.554126423979572, -5.0},  {"opposed square 1", false, 1.0, 0.239456470460774, -25.8},
-      {"opposed square 2", false, 2.0, 0.0734776348125214, -32.8},  {"opposed square 4", false, 4.0, 0.0194887650518050, -34.7},
-      {"wall 0.1", true, 0.1, 0.422544860239058, 2.6},              {"wall 0.5", true, 0.5, 0.190135882384807, 8.1},
-      {"wall 1", true, 1.0, 0.0710934390469455, -5.1},              {"wall 2", true, 2.0, 0.0153474494524923, -26.6},
+      {"opposed square 0.5", false, 0.5, 0.554126423979572, -5.0},
+      {"opposed square 1", false, 1.0, 0.239456470460774, -25.8},
+      {"opposed square 2", false, 2.0, 0.0734776348125214, -32.8},
+      {"opposed square 4", false, 4.0, 0.0194887650518050, -34.7},
+      {"wall 0.1", true, 0.1, 0.422544860239058, 2.6},
+      {"wall 0.5", true, 0.5, 0.190135882384807, 8.1},
+      {"wall 1", true, 1.0, 0.0710934390469455, -5.1},
+      {"wall 2", true, 2.0, 0.0153474494524923, -26.6},
   };
   for (const Case& c : cases) {
-    // The point is the origin, the normal +y; the unit square above it, or standing on the plane with its foot's middle at distance c.
+    // The point is the origin, the normal +y; the unit square above it, or standing on the plane with its foot's middle
+    // at distance c.
     const auto d = static_cast<float>(c.distance);
     std::vector<RadTriangle> square;
     if (c.wall)
       square = {corner({d, 0, -0.5f}, {d, 1, -0.5f}, {d, 0, 0.5f}), corner({d, 1, 0.5f}, {d, 0, 0.5f}, {d, 1, -0.5f})};
     else
-      square = {corner({-0.5f, d, -0.5f}, {0.5f, d, -0.5f}, {-0.5f, d, 0.5f}), corner({0.5f, d, 0.5f}, {-0.5f, d, 0.5f}, {0.5f, d, -0.5f})};
-    square.push_back(corner({0, -4, 0}, {0.01f, -4, 0}, {0, -4, 0.01f}));  // below the plane: the scene reaches beyond the square
+      square = {corner({-0.5f, d, -0.5f}, {0.5f, d, -0.5f}, {-0.5f, d, 0.5f}),
+                corner({0.5f, d, 0.5f}, {-0.5f, d, 0.5f}, {0.5f, d, -0.5f})};
+    square.push_back(
+        corner({0, -4, 0}, {0.01f, -4, 0}, {0, -4, 0.01f}));  // below the plane: the scene reaches beyond the square
     for (bool published : {false, true}) {
       OriginalRadiosity solver(library(), square, settings(512, true, published));
       const double factor = solver.gatherAt({0, 0, 0}, {0, 1, 0}, {1, 0, 0}) / kQuadPower;
       const double percent = 100.0 * (factor / c.exact - 1.0);
       // Pixels at the edges: half a percent of the smaller squares.
-      EXPECT_NEAR(percent, published ? c.faultPercent : 0.0, 0.5) << c.name << (published ? ", published map" : ", exact map");
+      EXPECT_NEAR(percent, published ? c.faultPercent : 0.0, 0.5)
+          << c.name << (published ? ", published map" : ", exact map");
     }
   }
 }
 
-// A closed room that sends one number everywhere receives that number: the three bytes go to the screen and back unharmed.
+// A closed room that sends one number everywhere receives that number: the three bytes go to the screen and back
+// unharmed.
 TEST_F(RadOriginal, TwentyFourBitsGoThereAndBack) {
   for (std::uint32_t e : {1u, 255u, 256u, 0x00ff00u, 0x010203u, 0xfedcbau, kRadMost}) {
     std::vector<RadTriangle> room = test::litUnitCube(1, 0.0f, 0);
     for (RadTriangle& t : room) t.e = e;
     OriginalRadiosity solver(library(), room, settings(64, false, true));
-    for (std::size_t i = 0; i < room.size(); i += 5) EXPECT_NEAR(solver.gather(i), e, 1.0 + 4e-7 * e) << e << ", triangle " << i;
+    for (std::size_t i = 0; i < room.size(); i += 5)
+      EXPECT_NEAR(solver.gather(i), e, 1.0 + 4e-7 * e) << e << ", triangle " << i;
   }
 }
 
@@ -88,7 +98,8 @@ TEST_F(RadOriginal, NumbersThatDoNotFitLoseTheirUpperBits) {
   EXPECT_EQ(solver.sentBy(0, 0.0f), 16777215.0f);
 }
 
-// Furnace: B = E / (1 - ro) whatever the map, so that no furnace finds a wrong one; whole numbers end below it and at rest.
+// Furnace: B = E / (1 - ro) whatever the map, so that no furnace finds a wrong one; whole numbers end below it and at
+// rest.
 TEST_F(RadOriginal, FurnaceIsBlindToTheMapAndWholeNumbersComeToRest) {
   std::vector<RadTriangle> room = test::litUnitCube(1, 0.5f, 0);
   for (RadTriangle& t : room) t.e = 1000;
@@ -130,8 +141,8 @@ TEST_F(RadOriginal, SphereWithALitCapFindsTheWrongMap) {
   EXPECT_GT(published, 0.10);
 }
 
-// The known error of the published map: 12 to 14 % RMS of the mean in a cube lit from its ceiling (1/96 of its area) at reflectance 0.5, 30 to 39 % at worst;
-// 0.7 to 3 % with the exact one.
+// The known error of the published map: 12 to 14 % RMS of the mean in a cube lit from its ceiling (1/96 of its area) at
+// reflectance 0.5, 30 to 39 % at worst; 0.7 to 3 % with the exact one.
 TEST_F(RadOriginal, LitCubeShowsThePublishedMapsError) {
   const std::vector<RadTriangle> cube = test::litUnitCube(8, 0.5f, 1000000);
   const std::vector<double> exact = test::receivedInConvex(cube);
@@ -164,7 +175,8 @@ TEST_F(RadOriginal, LitCubeShowsThePublishedMapsError) {
   EXPECT_LT(right, 0.03);
 }
 
-// A run stopped within a sweep, written, read and taken up by another solver ends with the same bits as one that was not stopped.
+// A run stopped within a sweep, written, read and taken up by another solver ends with the same bits as one that was
+// not stopped.
 TEST_F(RadOriginal, ResumedEqualsUninterrupted) {
   const test::TempFolder folder;
   const std::vector<RadTriangle> room = test::litUnitCube(2, 0.5f, 500000);
@@ -207,7 +219,8 @@ TEST_F(RadOriginal, GaussSeidelNeedsFewerSweepsForTheSameAnswer) {
   EXPECT_EQ(jacobi.change, 0.0);
   EXPECT_EQ(seidel.change, 0.0);
   EXPECT_LT(seidel.sweeps, jacobi.sweeps);
-  // Rounding down stops either a little below the answer, at most 1/(1 - ro) = 5 units and as much again from the other.
+  // Rounding down stops either a little below the answer, at most 1/(1 - ro) = 5 units and as much again from the
+  // other.
   for (std::size_t i = 0; i < room.size(); ++i) EXPECT_NEAR(jacobi.received[i], seidel.received[i], 10.0) << i;
 }
 
@@ -219,9 +232,13 @@ TEST_F(RadOriginal, ThreeCornersAreAveraged) {
   const std::size_t i = 0;  // on the floor
   double sum = 0.0;
   for (const auto* p : {&room[i].p1, &room[i].p2, &room[i].p3}) {
-    const glm::dvec3 point((*p)[0], (*p)[1], (*p)[2]), middle = (glm::dvec3(room[i].p1[0], room[i].p1[1], room[i].p1[2]) + glm::dvec3(room[i].p2[0], room[i].p2[1], room[i].p2[2]) +
-                                                                 glm::dvec3(room[i].p3[0], room[i].p3[1], room[i].p3[2])) / 3.0;
-    sum += solver.gatherAt(point, {0, 1, 0}, glm::normalize(glm::dvec3(room[i].p1[0], room[i].p1[1], room[i].p1[2]) - middle));
+    const glm::dvec3 point((*p)[0], (*p)[1], (*p)[2]),
+        middle = (glm::dvec3(room[i].p1[0], room[i].p1[1], room[i].p1[2]) +
+                  glm::dvec3(room[i].p2[0], room[i].p2[1], room[i].p2[2]) +
+                  glm::dvec3(room[i].p3[0], room[i].p3[1], room[i].p3[2])) /
+                 3.0;
+    sum += solver.gatherAt(point, {0, 1, 0},
+                           glm::normalize(glm::dvec3(room[i].p1[0], room[i].p1[1], room[i].p1[2]) - middle));
   }
   const std::size_t before = solver.hemicubes();
   EXPECT_NEAR(static_cast<double>(solver.gather(i)), sum / 3.0, 1e-3 * sum);
@@ -288,13 +305,18 @@ TEST_F(RadOriginal, ShowLooksIntoRoomsAndDrawsBackCornersAndMesh) {
   };
   const auto differing = [](const Bitmap& a, const Bitmap& b) {
     int count = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); i += 4) count += !std::equal(a.rgba.begin() + static_cast<std::ptrdiff_t>(i), a.rgba.begin() + static_cast<std::ptrdiff_t>(i) + 3, b.rgba.begin() + static_cast<std::ptrdiff_t>(i));
+    for (std::size_t i = 0; i < a.rgba.size(); i += 4)
+      count += !std::equal(a.rgba.begin() + static_cast<std::ptrdiff_t>(i),
+                           a.rgba.begin() + static_cast<std::ptrdiff_t>(i) + 3,
+                           b.rgba.begin() + static_cast<std::ptrdiff_t>(i));
     return count;
   };
   const Bitmap plain = picture(false, false);
-  // What faces the camera received nothing: it is black, and the bright faces turned away hide none of it. The background is grey.
+  // What faces the camera received nothing: it is black, and the bright faces turned away hide none of it. The
+  // background is grey.
   int walls = 0;
-  for (std::size_t i = 0; i < plain.rgba.size(); i += 4) walls += plain.rgba[i] == 0 && plain.rgba[i + 1] == 0 && plain.rgba[i + 2] == 0;
+  for (std::size_t i = 0; i < plain.rgba.size(); i += 4)
+    walls += plain.rgba[i] == 0 && plain.rgba[i + 1] == 0 && plain.rgba[i + 2] == 0;
   EXPECT_GT(walls, 200 * 150 / 5);
   EXPECT_EQ(plain.rgba[0], 26);
   EXPECT_GT(differing(plain, picture(true, false)), 20);

@@ -1,5 +1,5 @@
-// Direct light of a radiosity picture by shadow rays in each pixel: against closed forms where nothing is between, against many rays in double where
-// something is; and the parts of the picture add up.
+// Direct light of a radiosity picture by shadow rays in each pixel: against closed forms where nothing is between,
+// against many rays in double where something is; and the parts of the picture add up.
 #include "render/renderer.hpp"
 #include "support/form_factor_twin.hpp"
 #include "support/gl_fixture.hpp"
@@ -19,8 +19,8 @@ using test::SceneBuilder;
 
 class RadiosityDirect : public test::SharedProgramsTest {
  protected:
-  static Image picture(const Scene& scene, const Camera& camera, Component component, RadiosityView::Direct direct, int size = 48,
-                       double unmeasuredTurns = gl::kUnmeasuredTurns, double* largestTurns = nullptr) {
+  static Image picture(const Scene& scene, const Camera& camera, Component component, RadiosityView::Direct direct,
+                       int size = 48, double unmeasuredTurns = gl::kUnmeasuredTurns, double* largestTurns = nullptr) {
     RenderSettings settings;
     settings.technique = Technique::radiosity;
     settings.component = component;
@@ -37,7 +37,8 @@ class RadiosityDirect : public test::SharedProgramsTest {
     return renderer.readRadiance();
   }
   static glm::dvec3 rayOf(const Camera& camera, int x, int y, int size) {
-    const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)), up = glm::cross(right, camera.direction);
+    const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
+                     up = glm::cross(right, camera.direction);
     const double t = std::tan(0.5 * camera.verticalFov);
     return camera.direction + ((2.0 * x + 1.0) / size - 1.0) * t * right + (1.0 - (2.0 * y + 1.0) / size) * t * up;
   }
@@ -61,7 +62,8 @@ TEST_F(RadiosityDirect, ALampsShadowIsThatOfManyRays) {
   const Image image = picture(scene, kAbove, Component::direct, RadiosityView::Direct::pixels, size);
   const test::RayCaster caster(scene);
   const glm::dvec3 c{0.2, 2, 0.1}, u{0.7, 0, 0}, v{0, 0, 0.5};
-  const std::vector<glm::dvec3> lamp{c - 0.5 * u - 0.5 * v, c + 0.5 * u - 0.5 * v, c + 0.5 * u + 0.5 * v, c - 0.5 * u + 0.5 * v};
+  const std::vector<glm::dvec3> lamp{c - 0.5 * u - 0.5 * v, c + 0.5 * u - 0.5 * v, c + 0.5 * u + 0.5 * v,
+                                     c - 0.5 * u + 0.5 * v};
   int lit = 0, dark = 0, between = 0;
   double bias = 0.0, squares = 0.0;
   for (int y = 1; y < size; y += 2)
@@ -100,7 +102,8 @@ TEST_F(RadiosityDirect, ALampsShadowIsThatOfManyRays) {
   EXPECT_GT(lit, 100);
   EXPECT_GT(dark, 3);
   ASSERT_GT(between, 20);
-  // 64 points in two triangles, of low discrepancy: below the noise of 64 random rays, 0.0625 at most; and no bias beyond three of its standard errors.
+  // 64 points in two triangles, of low discrepancy: below the noise of 64 random rays, 0.0625 at most; and no bias
+  // beyond three of its standard errors.
   EXPECT_LT(std::sqrt(squares / between), 0.04);
   EXPECT_LT(std::abs(bias / between), 3.0 * 0.04 / std::sqrt(between) + 0.5 / (24 * 24));
 }
@@ -108,7 +111,8 @@ TEST_F(RadiosityDirect, ALampsShadowIsThatOfManyRays) {
 TEST_F(RadiosityDirect, ThePictureDoesNotDependOnHowRowsAreCut) {
   const Scene scene = tableScene();
   double all = 0.0, cut = 0.0;
-  const Image whole = picture(scene, kAbove, Component::all, RadiosityView::Direct::pixels, 48, gl::kUnmeasuredTurns, &all);
+  const Image whole =
+      picture(scene, kAbove, Component::all, RadiosityView::Direct::pixels, 48, gl::kUnmeasuredTurns, &all);
   EXPECT_EQ(all, 48 * 48 * 64 * gl::kTurnsOfRay);  // one piece
   EXPECT_EQ(picture(scene, kAbove, Component::all, RadiosityView::Direct::pixels, 48, 1e6, &cut).pixels, whole.pixels);
   EXPECT_LE(cut, gl::kMostOverUnmeasured * 1e6);
@@ -136,22 +140,27 @@ TEST_F(RadiosityDirect, TheSunsShadowIsSharpAndPartsAddUp) {
       const glm::dvec3 d = rayOf(kAbove, x, y, size);
       const auto hit = caster.firstHit(kAbove.position, d);
       if (!hit || hit->triangle > 1) continue;
-      const glm::dvec3 p = kAbove.position + hit->distance * d, above = p + toSun / toSun.y;  // where the ray to the sun passes the screen
+      const glm::dvec3 p = kAbove.position + hit->distance * d,
+                       above = p + toSun / toSun.y;  // where the ray to the sun passes the screen
       const double edge = std::max(std::abs(above.x), std::abs(above.z)) - 0.5;
       if (std::abs(edge) < 1e-3 || std::max(std::abs(p.x), std::abs(p.z)) > 1.98) continue;
       const auto lampBetween = caster.firstHit(p + 1e-6 * toSun, toSun);
       if (lampBetween && lampBetween->triangle > 3) continue;
       (edge < 0.0 ? dark : lit) += 1;
-      ASSERT_NEAR(static_cast<double>(sun.at(x, y).x), edge < 0.0 ? 0.0 : 0.5 / std::numbers::pi * 3.0 * toSun.y, 1e-5) << x << " " << y;
+      ASSERT_NEAR(static_cast<double>(sun.at(x, y).x), edge < 0.0 ? 0.0 : 0.5 / std::numbers::pi * 3.0 * toSun.y, 1e-5)
+          << x << " " << y;
     }
   EXPECT_GT(lit, 400);
   EXPECT_GT(dark, 20);
   // All = direct + indirect by pixels as by patches; both have the same indirect light, and about the same in all.
   using Direct = RadiosityView::Direct;
   builder.plate({0, 1, -2}, {4, 0, 0}, {0, 2, 0}, grey);  // something that floor and screen reflect light to
-  const Image all = picture(builder.scene(), kAbove, Component::all, Direct::pixels, size), indirect = picture(builder.scene(), kAbove, Component::indirect, Direct::pixels, size);
-  const Image direct = picture(builder.scene(), kAbove, Component::direct, Direct::pixels, size), patches = picture(builder.scene(), kAbove, Component::all, Direct::patches, size);
-  const Image patchIndirect = picture(builder.scene(), kAbove, Component::indirect, Direct::patches, size), patchDirect = picture(builder.scene(), kAbove, Component::direct, Direct::patches, size);
+  const Image all = picture(builder.scene(), kAbove, Component::all, Direct::pixels, size),
+              indirect = picture(builder.scene(), kAbove, Component::indirect, Direct::pixels, size);
+  const Image direct = picture(builder.scene(), kAbove, Component::direct, Direct::pixels, size),
+              patches = picture(builder.scene(), kAbove, Component::all, Direct::patches, size);
+  const Image patchIndirect = picture(builder.scene(), kAbove, Component::indirect, Direct::patches, size),
+              patchDirect = picture(builder.scene(), kAbove, Component::direct, Direct::patches, size);
   double mean = 0.0, patchMean = 0.0, bounced = 0.0;
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
@@ -167,11 +176,13 @@ TEST_F(RadiosityDirect, TheSunsShadowIsSharpAndPartsAddUp) {
 }
 
 TEST_F(RadiosityDirect, NoBackShowsAtASilhouette) {
-  // All that can be seen shines with radiance 1. A back is black; a face on edge, just hidden, must not come through by the rounding of its depth.
+  // All that can be seen shines with radiance 1. A back is black; a face on edge, just hidden, must not come through by
+  // the rounding of its depth.
   SceneBuilder builder;
   const int m = lambertian(builder, 0.0, std::numbers::pi);
   test::addBox(builder, {{-2, -1, -2}, {2, 1, 2}}, m, true);
-  for (const double x : {-0.9, 0.1, 0.8}) test::addBox(builder, {{x - 0.2, -1, x * x - 0.5}, {x + 0.21, 0.3 * x, x * x - 0.1}}, m);
+  for (const double x : {-0.9, 0.1, 0.8})
+    test::addBox(builder, {{x - 0.2, -1, x * x - 0.5}, {x + 0.21, 0.3 * x, x * x - 0.1}}, m);
   builder.scene().sun.reset();
   RenderSettings settings;
   settings.technique = Technique::radiosity;

@@ -43,10 +43,12 @@ class Hemicube : public test::SharedProgramsTest {
     c.mesh = makePatches(scene, patches);
     Hemicubes hemicubes(library(), capabilities(), c.mesh, settings);
     for (int first = 0; first < hemicubes.patchCount(); first += hemicubes.batchSize()) {
-      const FormFactorRows rows = hemicubes.rows(first, std::min(hemicubes.batchSize(), hemicubes.patchCount() - first));
+      const FormFactorRows rows =
+          hemicubes.rows(first, std::min(hemicubes.batchSize(), hemicubes.patchCount() - first));
       std::size_t at = 0;
       for (std::size_t k = 0; k < rows.counts.size(); ++k) {
-        c.matrix.appendRow(std::span(rows.patches).subspan(at, rows.counts[k]), std::span(rows.factors).subspan(at, rows.counts[k]));
+        c.matrix.appendRow(std::span(rows.patches).subspan(at, rows.counts[k]),
+                           std::span(rows.factors).subspan(at, rows.counts[k]));
         at += rows.counts[k];
         c.fronts.push_back(static_cast<double>(rows.fronts[k]));
         c.backs.push_back(static_cast<double>(rows.backs[k]));
@@ -67,7 +69,8 @@ SceneBuilder probeScene(double size = 1e-3) {
 
 TEST_F(Hemicube, PointToOpposedSquareAndToWall) {
   // Centre to area: tolerances from the aliasing of N pixels; the closed form where patches cover enough of them.
-  const double opposed[][2] = {{0.1, 0.968339556974040}, {0.5, 0.554126423979572}, {1, 0.239456470460774}, {2, 0.0734776348125214}, {4, 0.0194887650518050}, {10, 0.0031725255325526}};
+  const double opposed[][2] = {{0.1, 0.968339556974040}, {0.5, 0.554126423979572}, {1, 0.239456470460774},
+                               {2, 0.0734776348125214},  {4, 0.0194887650518050},  {10, 0.0031725255325526}};
   for (const auto& [d, exact] : opposed) {
     SceneBuilder builder = probeScene();
     builder.plate({0, d, 0}, {1, 0, 0}, {0, 0, 1}, 0);
@@ -76,7 +79,9 @@ TEST_F(Hemicube, PointToOpposedSquareAndToWall) {
     EXPECT_NEAR(pixels.fronts[0], pixels.sum(0, 1, 2), 1e-6);
     EXPECT_NEAR(closed.sum(0, 1, 2) / exact, 1.0, d > 4.0 ? 0.2 : 2e-5) << d;  // at 10 it covers too few pixels
   }
-  const double wall[][2] = {{2, 0.0153474494524923}, {1, 0.0710934390469455}, {0.5, 0.190135882384807}, {0.25, 0.317549609028599}, {0.1, 0.422544860239058}, {0.05, 0.460912443330788}, {0.01, 0.492158952163455}};
+  const double wall[][2] = {{2, 0.0153474494524923},   {1, 0.0710934390469455},  {0.5, 0.190135882384807},
+                            {0.25, 0.317549609028599}, {0.1, 0.422544860239058}, {0.05, 0.460912443330788},
+                            {0.01, 0.492158952163455}};
   for (const auto& [c, exact] : wall) {
     SceneBuilder builder = probeScene(1e-4);
     builder.plate({0, 0.5, -c}, {1, 0, 0}, {0, 1, 0}, 0);
@@ -102,13 +107,18 @@ TEST_F(Hemicube, NothingIsLostInAClosedRoomAndNoPixelFallsBetweenPatches) {
   Scene open = cubeRoom(5, 0.5, 1.0);
   open.meshes.resize(open.meshes.size() - 25);
   const Computed c = compute(open, pixelsAlone(64));
-  EXPECT_NEAR(c.fronts[24], 1.0 - twin::pointToPolygon(c.mesh.patches[24].centroid, {0, 1, 0}, std::vector<glm::dvec3>{{.5, -.5, -.5}, {.5, -.5, .5}, {.5, .5, .5}, {.5, .5, -.5}}), 0.003);
+  EXPECT_NEAR(
+      c.fronts[24],
+      1.0 - twin::pointToPolygon(c.mesh.patches[24].centroid, {0, 1, 0},
+                                 std::vector<glm::dvec3>{{.5, -.5, -.5}, {.5, -.5, .5}, {.5, .5, .5}, {.5, .5, -.5}}),
+      0.003);
 }
 
 TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {
   const Scene scene = cubeRoom(4, 0.5, 1.0);
   const RadiosityMesh mesh = makePatches(scene, {});
-  for (const HemicubeVisibility visibility : {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
+  for (const HemicubeVisibility visibility :
+       {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
     HemicubeSettings settings;
     settings.visibility = visibility;
     settings.resolution = 32;
@@ -119,7 +129,8 @@ TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {
       if (streamed)
         hemicubes.stream(0, hemicubes.patchCount(), [&](const FormFactorRows& rows) { all.push_back(rows); });
       else
-        for (int first = 0, count = hemicubes.batchSize(); first < hemicubes.patchCount(); first += count) all.push_back(hemicubes.rows(first, std::min(count, hemicubes.patchCount() - first)));
+        for (int first = 0, count = hemicubes.batchSize(); first < hemicubes.patchCount(); first += count)
+          all.push_back(hemicubes.rows(first, std::min(count, hemicubes.patchCount() - first)));
       largest = hemicubes.largestTurns();
       std::vector<float> values;
       for (const FormFactorRows& rows : all) {
@@ -146,7 +157,8 @@ TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {
 }
 
 TEST_F(Hemicube, PixelsSeeWhatRaysSee) {
-  // A room with two boxes of fronts and a thin sheet: every pixel's patch by a ray from the CPU caster, weights from the map.
+  // A room with two boxes of fronts and a thin sheet: every pixel's patch by a ray from the CPU caster, weights from
+  // the map.
   SceneBuilder builder;
   const int m = lambertian(builder, 0.5);
   addSphere(builder, 2.0, 1, true, [&](const glm::dvec3&) { return m; });
@@ -161,7 +173,8 @@ TEST_F(Hemicube, PixelsSeeWhatRaysSee) {
   double worst = 0.0, total = 0.0, different = 0.0;
   for (std::size_t i = 0; i < c.mesh.patches.size(); i += 7) {
     const Patch& patch = c.mesh.patches[i];
-    const glm::dvec3 n = patch.faceNormal, u = glm::normalize(c.mesh.corners(patch)[0] - patch.centroid), v = glm::cross(n, u);
+    const glm::dvec3 n = patch.faceNormal, u = glm::normalize(c.mesh.corners(patch)[0] - patch.centroid),
+                     v = glm::cross(n, u);
     std::vector<double> expected(c.mesh.patches.size(), 0.0);
     double backs = 0.0;
     const glm::dvec3 forward[5] = {n, u, v, -u, -v};
@@ -169,7 +182,8 @@ TEST_F(Hemicube, PixelsSeeWhatRaysSee) {
     for (int face = 0; face < 5; ++face)
       for (int y = 0; y < (face == 0 ? 32 : 16); ++y)
         for (int x = 0; x < 32; ++x) {
-          const glm::dvec3 d = forward[face] + ((x + 0.5) / 16.0 - 1.0) * right[face] + ((y + 0.5) / 16.0 - (face == 0 ? 1.0 : 0.0)) * (face == 0 ? v : n);
+          const glm::dvec3 d = forward[face] + ((x + 0.5) / 16.0 - 1.0) * right[face] +
+                               ((y + 0.5) / 16.0 - (face == 0 ? 1.0 : 0.0)) * (face == 0 ? v : n);
           const auto hit = caster.firstHit(patch.centroid + 1e-7 * d, d);
           ASSERT_TRUE(hit);
           const double delta = deltas[static_cast<std::size_t>((face == 0 ? 0 : 32 * 32) + y * 32 + x)];
@@ -205,7 +219,8 @@ TEST_F(Hemicube, AreaFactorsOfACube) {
   EXPECT_GT(std::abs(0.5 * (centroid.sum(0, 2, 3) + centroid.sum(1, 2, 3)) / 0.199824895698387 - 1.0), 0.03);
 }
 
-// Centroids of parts are off by the square of the parts; what halving them shows of it is taken off [Richardson1911], which leaves the fourth power.
+// Centroids of parts are off by the square of the parts; what halving them shows of it is taken off [Richardson1911],
+// which leaves the fourth power.
 TEST_F(Hemicube, ReceiverErrorFallsWithTheFourthPowerOfItsParts) {
   double error[3] = {};
   const int parts[3] = {2, 4, 8};
@@ -241,7 +256,8 @@ TEST_F(Hemicube, SmallSourcesAreNeitherMissedNorExaggerated) {
     settings.seed = static_cast<std::uint32_t>(t);
     HemicubeSettings pixels = pixelsAlone(64);
     pixels.seed = settings.seed;
-    const double with = compute(builder.scene(), settings).sum(0, 1, 2) / exact, alone = compute(builder.scene(), pixels).sum(0, 1, 2) / exact;
+    const double with = compute(builder.scene(), settings).sum(0, 1, 2) / exact,
+                 alone = compute(builder.scene(), pixels).sum(0, 1, 2) / exact;
     missed += alone == 0.0;
     squares[0] += (with - 1.0) * (with - 1.0) / kTries;
     squares[1] += (alone - 1.0) * (alone - 1.0) / kTries;
@@ -290,7 +306,8 @@ TEST_F(Hemicube, BatchesScaleAndPlaceChangeNothing) {
   const Computed a = compute(scene, settings), b = compute(scene, small);
   ASSERT_EQ(a.matrix.entryCount(), b.matrix.entryCount());
   for (std::size_t i = 0; i < a.areas.size(); ++i)
-    for (std::size_t k = 0; k < a.matrix.row(i).factors.size(); ++k) ASSERT_EQ(a.matrix.row(i).factors[k], b.matrix.row(i).factors[k]);  // to the bit
+    for (std::size_t k = 0; k < a.matrix.row(i).factors.size(); ++k)
+      ASSERT_EQ(a.matrix.row(i).factors[k], b.matrix.row(i).factors[k]);  // to the bit
   // The same up to rounding when scaled by a thousand, and moved.
   for (const double scale : {1e-3, 1e3}) {
     Scene moved = scene;

@@ -33,12 +33,14 @@ class HiddenParts : public test::SharedProgramsTest {
 
 TEST_F(HiddenParts, AreThoseInsideOfSolidsOrOutsideOfTheRoom) {
   const Box room{{-2, 0, -2}, {2, 3, 2}};
-  const Box solids[] = {{{-1.33, 0, -1.21}, {-0.27, 1.1, -0.52}},   // stands on the floor
-                        {{0.41, 0, -1.4}, {1.13, 0.7, -0.37}},      // the same, without a bottom
-                        {{0.2, -0.6, 0.35}, {1.3, 2.2, 1.45}},      // goes on under the floor
-                        {{-2.7, 1.55, 0.31}, {0.6, 1.95, 0.93}}};     // a beam that ends in the wall and in the pillar
-  // Within a building all of them are found; where the room stands alone, what sticks out of it and sees the void is not, but never is one cut that is in the room.
-  for (const auto& [scale, building] : {std::pair{1e-3, true}, std::pair{1.0, true}, std::pair{1e4, true}, std::pair{1.0, false}}) {
+  const Box solids[] = {{{-1.33, 0, -1.21}, {-0.27, 1.1, -0.52}},  // stands on the floor
+                        {{0.41, 0, -1.4}, {1.13, 0.7, -0.37}},  // the same, without a bottom
+                        {{0.2, -0.6, 0.35}, {1.3, 2.2, 1.45}},  // goes on under the floor
+                        {{-2.7, 1.55, 0.31}, {0.6, 1.95, 0.93}}};  // a beam that ends in the wall and in the pillar
+  // Within a building all of them are found; where the room stands alone, what sticks out of it and sees the void is
+  // not, but never is one cut that is in the room.
+  for (const auto& [scale, building] :
+       {std::pair{1e-3, true}, std::pair{1.0, true}, std::pair{1e4, true}, std::pair{1.0, false}}) {
     const glm::dvec3 place = scale * glm::dvec3(3.0, -1.0, 7.0);
     SceneBuilder builder;
     const int m = lambertian(builder, 0.5);
@@ -52,23 +54,25 @@ TEST_F(HiddenParts, AreThoseInsideOfSolidsOrOutsideOfTheRoom) {
     std::size_t cutPatches = 0, hidden = 0, found = 0;
     for (const Patch& patch : mesh.patches) {
       const auto c = mesh.corners(patch);
-      if (building && std::max({std::abs(patch.centroid.x - place.x), std::abs(patch.centroid.z - place.z)}) > 2.99 * scale) continue;  // its outside
+      if (building &&
+          std::max({std::abs(patch.centroid.x - place.x), std::abs(patch.centroid.z - place.z)}) > 2.99 * scale)
+        continue;  // its outside
       const auto centroids = partCentroids(kPatchParts);
       std::uint16_t expected = 0;
       for (std::size_t k = 0; k < centroids.size(); ++k) {
         // A hair before the surface.
-        const glm::dvec3 at = (c[0] + centroids[k].x * (c[1] - c[0]) + centroids[k].y * (c[2] - c[0]) - place) / scale + 1e-6 * patch.faceNormal;
+        const glm::dvec3 at = (c[0] + centroids[k].x * (c[1] - c[0]) + centroids[k].y * (c[2] - c[0]) - place) / scale +
+                              1e-6 * patch.faceNormal;
         bool inside = !room.holds(at);
         for (const Box& solid : solids) inside = inside || solid.holds(at);
         if (inside) expected = static_cast<std::uint16_t>(expected | 1u << k);
       }
       if (std::popcount(expected) == 16) {
-        if (building) {
-          EXPECT_EQ(patch.hidden, 0) << "it stays whole";
-        }
+        if (building) { EXPECT_EQ(patch.hidden, 0) << "it stays whole"; }
         continue;
       }
-      EXPECT_EQ(patch.hidden & (building ? ~0 : ~expected), building ? expected : 0) << scale << ": " << patch.centroid.x << " " << patch.centroid.y << " " << patch.centroid.z;
+      EXPECT_EQ(patch.hidden & (building ? ~0 : ~expected), building ? expected : 0)
+          << scale << ": " << patch.centroid.x << " " << patch.centroid.y << " " << patch.centroid.z;
       cutPatches += expected != 0;
       hidden += static_cast<std::size_t>(std::popcount(expected));
       found += static_cast<std::size_t>(std::popcount(patch.hidden));
@@ -129,11 +133,13 @@ TEST_F(HiddenParts, DoNotReceive) {
       ASSERT_LT(std::popcount(floor.hidden), 15);
       double received = 0.0, expected = 0.0, open = 0.0;
       for (std::uint32_t k = 0; k < rows.counts[i]; ++k, ++at)
-        if (std::abs(mesh.patches[rows.patches[at]].faceNormal.x + 1.0) < 1e-9) received += static_cast<double>(rows.factors[at]);
+        if (std::abs(mesh.patches[rows.patches[at]].faceNormal.x + 1.0) < 1e-9)
+          received += static_cast<double>(rows.factors[at]);
       const auto c = mesh.corners(floor);
       for (const glm::dvec2& w : partCentroids(8)) {  // as finely as near receivers are divided
         if (floor.hidden >> partAt(kPatchParts, w) & 1) continue;
-        expected += std::abs(twin::pointToPolygon(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]), floor.faceNormal, side));
+        expected +=
+            std::abs(twin::pointToPolygon(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]), floor.faceNormal, side));
         open += 1.0;
       }
       EXPECT_NEAR(received / (expected / open), 1.0, 1e-3) << nameOf(way);
@@ -142,8 +148,12 @@ TEST_F(HiddenParts, DoNotReceive) {
 }
 
 TEST_F(HiddenParts, AFloorUnderBlocksShinesAsOneThatEndsAtThem) {
-  // A sun from straight above: of the floor all that is not under a block is lit in full. A screen beside it, edge on to the sun, sees the floor (and blocks that reflect nothing) alone.
-  const Box blocks[] = {{{-1.7, 0, -1.6}, {-0.6, 0.25, -0.3}}, {{0.3, 0, -1.5}, {1.6, 0.25, -0.55}}, {{-1.5, 0, 0.45}, {-0.4, 0.25, 1.7}}, {{0.55, 0, 0.3}, {1.75, 0.25, 1.55}}};
+  // A sun from straight above: of the floor all that is not under a block is lit in full. A screen beside it, edge on
+  // to the sun, sees the floor (and blocks that reflect nothing) alone.
+  const Box blocks[] = {{{-1.7, 0, -1.6}, {-0.6, 0.25, -0.3}},
+                        {{0.3, 0, -1.5}, {1.6, 0.25, -0.55}},
+                        {{-1.5, 0, 0.45}, {-0.4, 0.25, 1.7}},
+                        {{0.55, 0, 0.3}, {1.75, 0.25, 1.55}}};
   const auto screenLight = [&](bool cutByHand, double edge) {
     SceneBuilder builder;
     const int grey = lambertian(builder, 0.6), black = lambertian(builder, 0.0);

@@ -46,10 +46,12 @@ class RadiosityKnownOnGl : public test::SharedProgramsTest {
     r.mesh = makePatches(scene, {});
     Hemicubes hemicubes(library(), capabilities(), r.mesh, settings);
     for (int first = 0; first < hemicubes.patchCount(); first += hemicubes.batchSize()) {
-      const FormFactorRows rows = hemicubes.rows(first, std::min(hemicubes.batchSize(), hemicubes.patchCount() - first));
+      const FormFactorRows rows =
+          hemicubes.rows(first, std::min(hemicubes.batchSize(), hemicubes.patchCount() - first));
       std::size_t at = 0;
       for (std::size_t k = 0; k < rows.counts.size(); at += rows.counts[k], ++k) {
-        r.matrix.appendRow(std::span(rows.patches).subspan(at, rows.counts[k]), std::span(rows.factors).subspan(at, rows.counts[k]));
+        r.matrix.appendRow(std::span(rows.patches).subspan(at, rows.counts[k]),
+                           std::span(rows.factors).subspan(at, rows.counts[k]));
         r.fronts.push_back(static_cast<double>(rows.fronts[k]));
       }
     }
@@ -62,13 +64,14 @@ class RadiosityKnownOnGl : public test::SharedProgramsTest {
   }
 };
 
-/// Two rooms, unit cubes side by side along x, the wall between them of fronts both ways and no thickness, with a door of a third of its sides in the middle.
-/// `material(room, wall)`: walls as in cubeRoom.
+/// Two rooms, unit cubes side by side along x, the wall between them of fronts both ways and no thickness, with a door
+/// of a third of its sides in the middle. `material(room, wall)`: walls as in cubeRoom.
 constexpr double kDoor = 1.0 / 3.0;
 Scene twoRooms(int n, const std::function<int(SceneBuilder&, int room, int wall)>& material) {
   SceneBuilder builder;
-  const glm::dvec3 walls[6][3] = {{{0, -0.5, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 0.5, 0}, {1, 0, 0}, {0, 0, 1}}, {{0, 0, -0.5}, {1, 0, 0}, {0, 1, 0}},
-                                  {{0, 0, 0.5}, {0, 1, 0}, {1, 0, 0}},  {{-0.5, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0.5, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
+  const glm::dvec3 walls[6][3] = {{{0, -0.5, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 0.5, 0}, {1, 0, 0}, {0, 0, 1}},
+                                  {{0, 0, -0.5}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5}, {0, 1, 0}, {1, 0, 0}},
+                                  {{-0.5, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0.5, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
   for (int room = 0; room < 2; ++room)
     for (int w = 0; w < 6; ++w)
       for (int i = 0; i < n; ++i)
@@ -76,7 +79,9 @@ Scene twoRooms(int n, const std::function<int(SceneBuilder&, int room, int wall)
           const double u = (i + 0.5) / n - 0.5, v = (j + 0.5) / n - 0.5;
           const bool shared = (room == 0 && w == 5) || (room == 1 && w == 4);
           if (shared && std::max(std::abs(u), std::abs(v)) < 0.5 * kDoor) continue;
-          builder.plate(glm::dvec3(room, 0, 0) + walls[w][0] + u * walls[w][1] + v * walls[w][2], walls[w][1] / static_cast<double>(n), walls[w][2] / static_cast<double>(n), material(builder, room, w));
+          builder.plate(glm::dvec3(room, 0, 0) + walls[w][0] + u * walls[w][1] + v * walls[w][2],
+                        walls[w][1] / static_cast<double>(n), walls[w][2] / static_cast<double>(n),
+                        material(builder, room, w));
         }
   return builder.scene();
 }
@@ -85,26 +90,33 @@ TEST_F(RadiosityKnownOnGl, ThroughADoorAsMuchGoesOneWayAsTheOther) {
   // Rooms are convex, so a patch sends its closed form factor to the door into the other room; summed over a room that
   // is the door's own area.
   int grey = -1;
-  const Scene scene = twoRooms(3, [&](SceneBuilder& b, int, int) { return grey < 0 ? grey = lambertian(b, 0.5) : grey; });
+  const Scene scene =
+      twoRooms(3, [&](SceneBuilder& b, int, int) { return grey < 0 ? grey = lambertian(b, 0.5) : grey; });
   HemicubeSettings settings;
   settings.resolution = 128;
   settings.nearDistance = 0.0f;  // from centroids, as the closed form below
   const Rows r = rowsOf(scene, settings);
   const std::size_t half = r.areas.size() / 2;
-  const std::vector<glm::dvec3> door{{0.5, -0.5 * kDoor, -0.5 * kDoor}, {0.5, -0.5 * kDoor, 0.5 * kDoor}, {0.5, 0.5 * kDoor, 0.5 * kDoor}, {0.5, 0.5 * kDoor, -0.5 * kDoor}};
+  const std::vector<glm::dvec3> door{{0.5, -0.5 * kDoor, -0.5 * kDoor},
+                                     {0.5, -0.5 * kDoor, 0.5 * kDoor},
+                                     {0.5, 0.5 * kDoor, 0.5 * kDoor},
+                                     {0.5, 0.5 * kDoor, -0.5 * kDoor}};
   double squares = 0.0, mean = 0.0;
   for (std::size_t i = 0; i < r.areas.size(); ++i) {
-    // Closed but for the door, and the wall is two sheets in one place, cut along other diagonals: the front that looks here wins.
-    // Nothing is lost; where the floor behind the wall meets it, a pixel may hold both at one distance, and counts for both.
+    // Closed but for the door, and the wall is two sheets in one place, cut along other diagonals: the front that looks
+    // here wins. Nothing is lost; where the floor behind the wall meets it, a pixel may hold both at one distance, and
+    // counts for both.
     ASSERT_GE(r.fronts[i], 1.0 - 1e-5) << i;
     ASSERT_LE(r.fronts[i], 1.0 + 2.0 * 4.0 / (std::numbers::pi * 128.0 * 128.0)) << i;
     const Patch& patch = r.mesh.patches[i];
     const double across = r.sum(i, [&](std::size_t j) { return (j < half) != (i < half); });
-    const double exact = std::abs(patch.centroid.x - 0.5) < 1e-6 ? 0.0 : twin::pointToPolygon(patch.centroid, patch.faceNormal, door);
+    const double exact =
+        std::abs(patch.centroid.x - 0.5) < 1e-6 ? 0.0 : twin::pointToPolygon(patch.centroid, patch.faceNormal, door);
     squares += (across - exact) * (across - exact);
     mean += exact;
   }
-  EXPECT_LT(std::sqrt(squares * static_cast<double>(r.areas.size())) / mean, 0.04);  // pixels decide what is seen through the door
+  EXPECT_LT(std::sqrt(squares * static_cast<double>(r.areas.size())) / mean,
+            0.04);  // pixels decide what is seen through the door
 
   // One room lit: what goes through the door less what comes back is what the other room absorbs.
   int lit = -1, dark = -1;
@@ -117,7 +129,8 @@ TEST_F(RadiosityKnownOnGl, ThroughADoorAsMuchGoesOneWayAsTheOther) {
   const Rows f = rowsOf(lamp, fine.hemicubes);
   double there = 0.0, back = 0.0, absorbed = 0.0, through[2] = {};
   for (std::size_t i = 0; i < f.areas.size(); ++i) {
-    const bool second = f.mesh.patches[i].centroid.x > 0.5 + 1e-9 || (std::abs(f.mesh.patches[i].centroid.x - 0.5) < 1e-9 && f.mesh.patches[i].faceNormal.x > 0.0);
+    const bool second = f.mesh.patches[i].centroid.x > 0.5 + 1e-9 ||
+                        (std::abs(f.mesh.patches[i].centroid.x - 0.5) < 1e-9 && f.mesh.patches[i].faceNormal.x > 0.0);
     const auto other = [&](std::size_t j) {
       const Patch& p = f.mesh.patches[j];
       return (p.centroid.x > 0.5 + 1e-9 || (std::abs(p.centroid.x - 0.5) < 1e-9 && p.faceNormal.x > 0.0)) != second;
@@ -127,7 +140,8 @@ TEST_F(RadiosityKnownOnGl, ThroughADoorAsMuchGoesOneWayAsTheOther) {
     (second ? back : there) += s.exitance[i].x * across;
     if (second) absorbed += f.areas[i] * (1.0 - 0.8) * s.irradiance[i].x;
   }
-  // What a patch sees of the door is asked at its centre: off by the square of its size, 4 % with patches as large as the door, here a quarter of that.
+  // What a patch sees of the door is asked at its centre: off by the square of its size, 4 % with patches as large as
+  // the door, here a quarter of that.
   for (const double area : through) EXPECT_NEAR(area / (kDoor * kDoor), 1.0, 0.02);
   EXPECT_NEAR(through[0] / through[1], 1.0, 0.01);
   EXPECT_GT(back, 0.05 * there);
@@ -135,8 +149,8 @@ TEST_F(RadiosityKnownOnGl, ThroughADoorAsMuchGoesOneWayAsTheOther) {
 }
 
 TEST_F(RadiosityKnownOnGl, TwoRoomsAreCorrectedRoomByRoom) {
-  // Light goes back and forth through the door. The slowest mode is the difference between the rooms; one unknown per room
-  // removes it.
+  // Light goes back and forth through the door. The slowest mode is the difference between the rooms; one unknown per
+  // room removes it.
   int lit = -1, grey = -1;
   const Scene scene = twoRooms(3, [&](SceneBuilder& b, int room, int wall) {
     if (lit < 0) lit = lambertian(b, 0.95, 1.0), grey = lambertian(b, 0.95);
@@ -157,9 +171,10 @@ TEST_F(RadiosityKnownOnGl, TwoRoomsAreCorrectedRoomByRoom) {
     EXPECT_LE(worst / (mean / area), error) << nameOf(solver);
     return s.progress.products;
   };
-  const double jacobi = products(RadiositySolver::jacobi, 1e-3), rooms = products(RadiositySolver::perRoom, 1e-3), finer = products(RadiositySolver::perRoom, 1e-6);
+  const double jacobi = products(RadiositySolver::jacobi, 1e-3), rooms = products(RadiositySolver::perRoom, 1e-3),
+               finer = products(RadiositySolver::perRoom, 1e-6);
   EXPECT_GT(jacobi, 100.0);
-  EXPECT_LT(rooms, 30.0);         // 3 splits of 4 products and the groups' images before the first step
+  EXPECT_LT(rooms, 30.0);  // 3 splits of 4 products and the groups' images before the first step
   EXPECT_LT(finer - rooms, 12.0);  // then a power of ten takes two to four
 }
 
@@ -205,7 +220,8 @@ TEST_F(RadiosityKnownOnGl, AnyClosedMeshIsAFurnace) {
     ASSERT_NEAR(s.fronts[i], 1.0f, 2e-5f) << i;
   }
   EXPECT_GT(s.entries, 10000u);
-  EXPECT_LT(s.entries, s.exitance.size() * (s.exitance.size() - 1) * 9 / 10) << "nothing hides anything: this mesh is convex";
+  EXPECT_LT(s.entries, s.exitance.size() * (s.exitance.size() - 1) * 9 / 10)
+      << "nothing hides anything: this mesh is convex";
 }
 
 TEST_F(RadiosityKnownOnGl, TheSixWallsOfACube) {
@@ -236,7 +252,9 @@ TEST_F(RadiosityKnownOnGl, TheSixWallsOfACube) {
   system.matrix = &walls;
   system.reciprocal = true;
   system.product = [&](auto x, auto y) { walls.multiply(x, y); };
-  const double table[3][4] = {{0.5, 1.09090909811, 0.181745826108, 0.181836268946}, {0.8, 1.55172415364, 0.689551070738, 0.689681193904}, {0.95, 4.03361346590, 3.19315984515, 3.19330667224}};
+  const double table[3][4] = {{0.5, 1.09090909811, 0.181745826108, 0.181836268946},
+                              {0.8, 1.55172415364, 0.689551070738, 0.689681193904},
+                              {0.95, 4.03361346590, 3.19315984515, 3.19330667224}};
   for (const auto& [rho, ceiling, floor, side] : table) {
     system.reflectance.assign(6, glm::dvec3(rho));
     const RadiositySolved solved = solveRadiosity(system, {});
@@ -289,10 +307,12 @@ TEST_F(RadiosityKnownOnGl, RepairGivesReciprocityAndEnergyThatHemicubesLack) {
     settings.hemicubes = plain;
     settings.repair = repair;
     settings.solver = RadiositySolver::anderson;
-    const RadiositySolution s = solve(cubeRoom(4, [&](SceneBuilder& b, int wall, double u, double v) {
-      if (lit < 0) lit = lambertian(b, 0.8, 1.0), grey = lambertian(b, 0.8);
-      return wall == 1 && u < 0.3 && v < 0.3 ? lit : grey;
-    }), settings);
+    const RadiositySolution s = solve(cubeRoom(4,
+                                               [&](SceneBuilder& b, int wall, double u, double v) {
+                                                 if (lit < 0) lit = lambertian(b, 0.8, 1.0), grey = lambertian(b, 0.8);
+                                                 return wall == 1 && u < 0.3 && v < 0.3 ? lit : grey;
+                                               }),
+                                      settings);
     double emitted = 0.0, absorbed = 0.0;
     for (std::size_t i = 0; i < s.exitance.size(); ++i) {
       emitted += s.mesh.patches[i].area * s.mesh.patches[i].emission.x;
@@ -311,7 +331,8 @@ TEST_F(RadiosityKnownOnGl, AGapAtATJunctionIsSeenAsBackground) {
     const int m = lambertian(builder, 0.5, 1.0);
     Scene room = cubeRoom(1, 0.5, 1.0);
     // The floor's edge towards -z is cut in two, its new corner moved inwards: a sliver along the wall's foot is open.
-    const glm::dvec3 a{-0.5, -0.5, -0.5}, b{0.5, -0.5, -0.5}, c{0.5, -0.5, 0.5}, d{-0.5, -0.5, 0.5}, t{0.0, -0.5, -0.5 + gap};
+    const glm::dvec3 a{-0.5, -0.5, -0.5}, b{0.5, -0.5, -0.5}, c{0.5, -0.5, 0.5}, d{-0.5, -0.5, 0.5},
+        t{0.0, -0.5, -0.5 + gap};
     builder.triangle(a, d, t, m);
     builder.triangle(t, d, c, m);
     builder.triangle(t, c, b, m);
@@ -323,7 +344,8 @@ TEST_F(RadiosityKnownOnGl, AGapAtATJunctionIsSeenAsBackground) {
       Mesh copy = mesh;
       copy.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
       copy.material = m;
-      for (std::uint32_t k = 0; k < mesh.indexCount; ++k) scene.indices.push_back(first + room.indices[mesh.firstIndex + k]);
+      for (std::uint32_t k = 0; k < mesh.indexCount; ++k)
+        scene.indices.push_back(first + room.indices[mesh.firstIndex + k]);
       scene.meshes.push_back(copy);
     }
     HemicubeSettings settings;
@@ -337,7 +359,7 @@ TEST_F(RadiosityKnownOnGl, AGapAtATJunctionIsSeenAsBackground) {
   EXPECT_LT(std::abs(none), 1e-5);
   EXPECT_EQ(closed, 1u);  // the corner lies on the back wall's edge: harmless to pixels, and found
   const auto [gap, apart] = open(0.02);
-  EXPECT_GT(gap, 5e-4);   // the gap is 1/600 of the walls, seen edge on by its own wall
+  EXPECT_GT(gap, 5e-4);  // the gap is 1/600 of the walls, seen edge on by its own wall
   EXPECT_LT(gap, 5e-3);
 }
 
@@ -352,7 +374,8 @@ TEST_F(RadiosityKnownOnGl, TurningTheSceneTurnsNoFactor) {
   const glm::dvec3 axis = glm::normalize(glm::dvec3(0.3, -0.5, 0.8));
   const auto turn = [&](const glm::vec3& v) {
     const glm::dvec3 p(v);
-    return glm::vec3(std::cos(0.7) * p + std::sin(0.7) * glm::cross(axis, p) + (1.0 - std::cos(0.7)) * glm::dot(axis, p) * axis);
+    return glm::vec3(std::cos(0.7) * p + std::sin(0.7) * glm::cross(axis, p) +
+                     (1.0 - std::cos(0.7)) * glm::dot(axis, p) * axis);
   };
   for (Vertex& v : turned.vertices) v.position = turn(v.position), v.normal = turn(v.normal);
   const Rows a = rowsOf(scene, {}), b = rowsOf(turned, {});
@@ -377,14 +400,13 @@ TEST_F(RadiosityKnownOnGl, LightIsLinearAndColoursDoNotMix) {
       return wall == 1 ? lit : grey;
     });
   };
-  const RadiositySolution one = solve(room(glm::vec3(1.0f)), wholeTriangles(1e-9)), scaled = solve(room(glm::vec3(1024.0f, 1.0f / 1024.0f, 0.0f)), wholeTriangles(1e-9));
+  const RadiositySolution one = solve(room(glm::vec3(1.0f)), wholeTriangles(1e-9)),
+                          scaled = solve(room(glm::vec3(1024.0f, 1.0f / 1024.0f, 0.0f)), wholeTriangles(1e-9));
   for (std::size_t i = 0; i < one.exitance.size(); ++i) {
     EXPECT_NEAR(scaled.exitance[i].x / one.exitance[i].x, 1024.0, 1e-4);
     EXPECT_NEAR(scaled.exitance[i].y / one.exitance[i].y, 1.0 / 1024.0, 1e-10);
     EXPECT_EQ(scaled.exitance[i].z, 0.0);
-    if (one.mesh.patches[i].reflectance.z == 0.0) {
-      EXPECT_EQ(one.exitance[i].z, 0.0);
-    }
+    if (one.mesh.patches[i].reflectance.z == 0.0) { EXPECT_EQ(one.exitance[i].z, 0.0); }
   }
 }
 
@@ -396,10 +418,12 @@ Scene litBall(int level) {
   return builder.scene();
 }
 
-// A small source on a hollow surface, and triangles from many pixels down to a seventh of one: what reaches places in the light, beside it and opposite.
+// A small source on a hollow surface, and triangles from many pixels down to a seventh of one: what reaches places in
+// the light, beside it and opposite.
 TEST_F(RadiosityKnownOnGl, ALitCapIsSeenWholeAtAnyTessellation) {
   for (int level = 4; level <= 6; ++level)
-    for (const HemicubeVisibility way : {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
+    for (const HemicubeVisibility way :
+         {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
       if (way != HemicubeVisibility::raster && level != 5) continue;
       const RadiosityMesh mesh = makePatches(test::dark(litBall(level)), {});
       HemicubeSettings settings;
@@ -425,41 +449,49 @@ TEST_F(RadiosityKnownOnGl, ALitCapIsSeenWholeAtAnyTessellation) {
             if (!lit[j] || static_cast<int>(j) == i) continue;
             const auto source = mesh.corners(mesh.patches[j]);
             for (const glm::dvec2& w : parts)
-              expected += twin::pointToPolygon(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]), patch.faceNormal, source) / static_cast<double>(parts.size());
+              expected +=
+                  twin::pointToPolygon(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]), patch.faceNormal, source) /
+                  static_cast<double>(parts.size());
           }
         }
         ASSERT_GT(receivers, 1) << level << ' ' << low;
-        EXPECT_NEAR(measured / expected, 1.0, 1e-3) << nameOf(way) << ", " << mesh.patches.size() << " triangles, receivers from y = " << low;
+        EXPECT_NEAR(measured / expected, 1.0, 1e-3)
+            << nameOf(way) << ", " << mesh.patches.size() << " triangles, receivers from y = " << low;
       }
     }
 }
 
-/// Mean of f over a triangle by a rule that is exact to the fifth degree [Radon1948], of four parts each where it and theirs differ: beside a neighbour's
-/// edge a form factor is bounded, but not smooth at the edge's ends.
+/// Mean of f over a triangle by a rule that is exact to the fifth degree [Radon1948], of four parts each where it and
+/// theirs differ: beside a neighbour's edge a form factor is bounded, but not smooth at the edge's ends.
 double meanOver(const std::array<glm::dvec3, 3>& c, const std::function<double(const glm::dvec3&)>& f, int depth) {
   const auto rule = [&](const std::array<glm::dvec3, 3>& t) {
     const glm::dvec3 centre = (t[0] + t[1] + t[2]) / 3.0;
     double sum = 0.225 * f(centre);
-    for (const auto& [weight, at] : {std::pair((155.0 - std::sqrt(15.0)) / 1200.0, (6.0 - std::sqrt(15.0)) / 21.0), std::pair((155.0 + std::sqrt(15.0)) / 1200.0, (6.0 + std::sqrt(15.0)) / 21.0)})
+    for (const auto& [weight, at] : {std::pair((155.0 - std::sqrt(15.0)) / 1200.0, (6.0 - std::sqrt(15.0)) / 21.0),
+                                     std::pair((155.0 + std::sqrt(15.0)) / 1200.0, (6.0 + std::sqrt(15.0)) / 21.0)})
       for (std::size_t k = 0; k < 3; ++k) sum += weight * f(at * (t[0] + t[1] + t[2]) + (1.0 - 3.0 * at) * t[k]);
     return sum;
   };
-  const std::function<double(const std::array<glm::dvec3, 3>&, double, int)> refined = [&](const std::array<glm::dvec3, 3>& t, double whole, int left) {
-    if (left == 0) return whole;
-    const glm::dvec3 ab = 0.5 * (t[0] + t[1]), bc = 0.5 * (t[1] + t[2]), ca = 0.5 * (t[2] + t[0]);
-    const std::array<std::array<glm::dvec3, 3>, 4> parts{{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
-    std::array<double, 4> means;
-    double sum = 0.0;
-    for (std::size_t k = 0; k < 4; ++k) sum += 0.25 * (means[k] = rule(parts[k]));
-    if (std::abs(sum - whole) < 1e-7 * std::pow(4.0, 12 - left)) return sum;  // of the part's own share in the whole
-    double better = 0.0;
-    for (std::size_t k = 0; k < 4; ++k) better += 0.25 * refined(parts[k], means[k], left - 1);
-    return better;
-  };
+  const std::function<double(const std::array<glm::dvec3, 3>&, double, int)> refined =
+      [&](const std::array<glm::dvec3, 3>& t, double whole, int left) {
+        if (left == 0) return whole;
+        const glm::dvec3 ab = 0.5 * (t[0] + t[1]), bc = 0.5 * (t[1] + t[2]), ca = 0.5 * (t[2] + t[0]);
+        const std::array<std::array<glm::dvec3, 3>, 4> parts{
+            {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
+        std::array<double, 4> means;
+        double sum = 0.0;
+        for (std::size_t k = 0; k < 4; ++k) sum += 0.25 * (means[k] = rule(parts[k]));
+        if (std::abs(sum - whole) < 1e-7 * std::pow(4.0, 12 - left))
+          return sum;  // of the part's own share in the whole
+        double better = 0.0;
+        for (std::size_t k = 0; k < 4; ++k) better += 0.25 * refined(parts[k], means[k], left - 1);
+        return better;
+      };
   return refined(c, rule(c), depth);
 }
 
-// The same, solved, against closed forms in double between all triangles: flat ones do not see themselves, so the light of few is not that of a sphere.
+// The same, solved, against closed forms in double between all triangles: flat ones do not see themselves, so the light
+// of few is not that of a sphere.
 TEST_F(RadiosityKnownOnGl, ABallWithALitCapIsThatOfClosedForms) {
   for (const int level : {2, 3}) {
     RadiositySolutionSettings settings = wholeTriangles();
@@ -474,21 +506,27 @@ TEST_F(RadiosityKnownOnGl, ABallWithALitCapIsThatOfClosedForms) {
       for (std::size_t j = 0; j < i; ++j) {
         const Patch& patch = s.mesh.patches[i];
         const double distance = glm::length(patch.centroid - s.mesh.patches[j].centroid);
-        const auto factorAt = [&](const glm::dvec3& p) { return twin::pointToPolygon(p, patch.faceNormal, corners[j]); };
-        flux[i * n + j] = flux[j * n + i] = patch.area * meanOver(corners[i], factorAt, distance > 6.0 * std::sqrt(patch.area) ? 0 : 12);
+        const auto factorAt = [&](const glm::dvec3& p) {
+          return twin::pointToPolygon(p, patch.faceNormal, corners[j]);
+        };
+        flux[i * n + j] = flux[j * n + i] =
+            patch.area * meanOver(corners[i], factorAt, distance > 6.0 * std::sqrt(patch.area) ? 0 : 12);
       }
     for (std::size_t i = 0; i < n; ++i) {
-      const double sum = std::accumulate(flux.begin() + static_cast<std::ptrdiff_t>(i * n), flux.begin() + static_cast<std::ptrdiff_t>((i + 1) * n), 0.0);
+      const double sum = std::accumulate(flux.begin() + static_cast<std::ptrdiff_t>(i * n),
+                                         flux.begin() + static_cast<std::ptrdiff_t>((i + 1) * n), 0.0);
       ASSERT_NEAR(sum / s.mesh.patches[i].area, 1.0, 2e-5) << i;  // what the reference itself is worth
     }
     std::vector<double> irradiance(n, 0.0);
     for (int step = 0; step < 50; ++step) {
       std::vector<double> next(n, 0.0);
       for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j) next[i] += flux[i * n + j] / s.mesh.patches[i].area * (s.mesh.patches[j].emission.x + 0.5 * irradiance[j]);
+        for (std::size_t j = 0; j < n; ++j)
+          next[i] += flux[i * n + j] / s.mesh.patches[i].area * (s.mesh.patches[j].emission.x + 0.5 * irradiance[j]);
       irradiance = std::move(next);
     }
-    for (const auto& [low, high] : {std::pair(0.95, 1.0), std::pair(0.8, 0.95), std::pair(-0.5, 0.5), std::pair(-1.0, -0.8)}) {
+    for (const auto& [low, high] :
+         {std::pair(0.95, 1.0), std::pair(0.8, 0.95), std::pair(-0.5, 0.5), std::pair(-1.0, -0.8)}) {
       double measured = 0.0, expected = 0.0;
       for (std::size_t i = 0; i < n; ++i) {
         const Patch& patch = s.mesh.patches[i];
@@ -501,7 +539,8 @@ TEST_F(RadiosityKnownOnGl, ABallWithALitCapIsThatOfClosedForms) {
   }
 }
 
-// A square cut into more and more pieces: from all of them above the size that takes the closed form to all below it. What is cut is no smaller for it.
+// A square cut into more and more pieces: from all of them above the size that takes the closed form to all below it.
+// What is cut is no smaller for it.
 TEST_F(RadiosityKnownOnGl, ASquareCutIntoPiecesLosesNothing) {
   const glm::dvec3 centre(0.0, 0.0, 0.5);
   for (const int n : {4, 8, 10, 12, 14, 16, 24}) {
@@ -509,21 +548,25 @@ TEST_F(RadiosityKnownOnGl, ASquareCutIntoPiecesLosesNothing) {
     const int grey = lambertian(builder, 0.5);
     constexpr int kReceivers = 16;  // a side; of one place nearly, each turned by an angle of its own
     for (int i = 0; i < kReceivers * kReceivers; ++i)
-      builder.plate({0.002 * (i % kReceivers - 7.5), 0.002 * (i / kReceivers - 7.5), 0.0}, {0.002, 0.0, 0.0}, {0.0, 0.002, 0.0}, grey);
+      builder.plate({0.002 * (i % kReceivers - 7.5), 0.002 * (i / kReceivers - 7.5), 0.0}, {0.002, 0.0, 0.0},
+                    {0.0, 0.002, 0.0}, grey);
     for (int i = 0; i < n * n; ++i)
-      builder.plate(centre + glm::dvec3((i % n + 0.5) / n - 0.5, (i / n + 0.5) / n - 0.5, 0.0), {0.0, 1.0 / n, 0.0}, {1.0 / n, 0.0, 0.0}, grey);
+      builder.plate(centre + glm::dvec3((i % n + 0.5) / n - 0.5, (i / n + 0.5) / n - 0.5, 0.0), {0.0, 1.0 / n, 0.0},
+                    {1.0 / n, 0.0, 0.0}, grey);
     HemicubeSettings settings;
     settings.visibility = HemicubeVisibility::raster;
     const RadiosityMesh mesh = makePatches(test::dark(builder.scene()), {});
     Hemicubes hemicubes(library(), capabilities(), mesh, settings);
-    const std::vector<glm::dvec3> square{centre + glm::dvec3(-0.5, -0.5, 0), centre + glm::dvec3(-0.5, 0.5, 0), centre + glm::dvec3(0.5, 0.5, 0), centre + glm::dvec3(0.5, -0.5, 0)};
+    const std::vector<glm::dvec3> square{centre + glm::dvec3(-0.5, -0.5, 0), centre + glm::dvec3(-0.5, 0.5, 0),
+                                         centre + glm::dvec3(0.5, 0.5, 0), centre + glm::dvec3(0.5, -0.5, 0)};
     double measured = 0.0, expected = 0.0;
     constexpr int kRows = 2 * kReceivers * kReceivers;
     for (int first = 0; first < kRows; first += hemicubes.batchSize()) {
       const FormFactorRows rows = hemicubes.rows(first, std::min(hemicubes.batchSize(), kRows - first));
       measured += std::accumulate(rows.factors.begin(), rows.factors.end(), 0.0);
     }
-    for (int i = 0; i < kRows; ++i) expected += twin::pointToPolygon(mesh.patches[static_cast<std::size_t>(i)].centroid, {0, 0, 1}, square);
+    for (int i = 0; i < kRows; ++i)
+      expected += twin::pointToPolygon(mesh.patches[static_cast<std::size_t>(i)].centroid, {0, 0, 1}, square);
     EXPECT_NEAR(measured / expected, 1.0, 5e-4) << n << " x " << n;
   }
 }

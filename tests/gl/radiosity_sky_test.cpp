@@ -36,11 +36,14 @@ Scene openTop(int n, double reflectance, double exitance, const Environment& env
   SceneBuilder builder;
   const int material = lambertian(builder, reflectance, exitance);
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  const glm::dvec3 walls[][2] = {{z, x}, {x, y}, {-x, y}, {-z, y}, {z, y}};  // u, v; the front along their cross product, inwards
+  const glm::dvec3 walls[][2] = {
+      {z, x}, {x, y}, {-x, y}, {-z, y}, {z, y}};  // u, v; the front along their cross product, inwards
   for (const auto& [u, v] : walls) {
     const glm::dvec3 normal = glm::cross(u, v);
     for (int i = 0; i < n; ++i)
-      for (int k = 0; k < n; ++k) builder.plate(-0.5 * normal + ((i + 0.5) / n - 0.5) * u + ((k + 0.5) / n - 0.5) * v, u / static_cast<double>(n), v / static_cast<double>(n), material);
+      for (int k = 0; k < n; ++k)
+        builder.plate(-0.5 * normal + ((i + 0.5) / n - 0.5) * u + ((k + 0.5) / n - 0.5) * v, u / static_cast<double>(n),
+                      v / static_cast<double>(n), material);
   }
   builder.scene().environment = environment;
   return test::dark(builder.scene());
@@ -63,13 +66,17 @@ TEST_F(RadiositySky, PicturesLightFromWhereTheyAre) {
       above.picture->at(x, y) = glm::vec3(y < 2 ? 3.0f : 0.0f);
       right.picture->at(x, y) = glm::vec3(x >= 4 ? 3.0f : 0.0f);  // +x
     }
-  const auto share = [&](const glm::dvec3& normal, const Environment& environment) { return solve(plate(normal, environment)).irradiance[0].x / (3.0 * kPi); };
+  const auto share = [&](const glm::dvec3& normal, const Environment& environment) {
+    return solve(plate(normal, environment)).irradiance[0].x / (3.0 * kPi);
+  };
   EXPECT_NEAR(share({0, 1, 0}, above), 1.0, 1e-9);
   EXPECT_NEAR(share({0, -1, 0}, above), 0.0, 1e-9);
-  for (const glm::dvec3& wall : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1)}) EXPECT_NEAR(share(wall, above), 0.5, 0.005);
+  for (const glm::dvec3& wall : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1)})
+    EXPECT_NEAR(share(wall, above), 0.5, 0.005);
   EXPECT_NEAR(share({1, 0, 0}, right), 1.0, 1e-9);
   EXPECT_NEAR(share({-1, 0, 0}, right), 0.0, 1e-9);
-  right.rotation = 0.5 * kPi;  // the shader's sense: azimuth plus rotation is the picture's, so that +x comes to lie at -z
+  right.rotation =
+      0.5 * kPi;  // the shader's sense: azimuth plus rotation is the picture's, so that +x comes to lie at -z
   EXPECT_NEAR(share({0, 0, -1}, right), 1.0, 1e-9);
   EXPECT_NEAR(share({1, 0, 0}, right), 0.5, 0.005);
 }
@@ -83,7 +90,8 @@ TEST_F(RadiositySky, ABoxWithAnOpenTopReceivesByItsFormFactors) {
   for (std::size_t wall = 0; wall < 5; ++wall) {
     double mean = 0.0;
     for (std::size_t k = 0; k < ofWall; ++k) mean += s.irradiance[wall * ofWall + k].x / static_cast<double>(ofWall);
-    EXPECT_NEAR(mean / kPi, wall == 0 ? 0.199825 : 0.200044, 0.002) << wall;  // 32 patches of 1024 rays each: measured 0.0012
+    EXPECT_NEAR(mean / kPi, wall == 0 ? 0.199825 : 0.200044, 0.002)
+        << wall;  // 32 patches of 1024 rays each: measured 0.0012
   }
 }
 
@@ -111,7 +119,8 @@ TEST_F(RadiositySky, TheViewShowsItAsDirectLightByPixelsAndByPatches) {
       settings.radiosity.solution = test::wholeTriangles();
       Renderer renderer(context(), library(), scene, settings);
       renderer.render(test::lookingAt({0.0, 0.5, 0.01}, {0, 0, 0}, 0.5));
-      const glm::vec3 seen = renderer.readRadiance().at(4, 4), expected = component == Component::indirect ? glm::vec3(0.0f) : glm::vec3(0.125f, 0.25f, 0.5f);
+      const glm::vec3 seen = renderer.readRadiance().at(4, 4),
+                      expected = component == Component::indirect ? glm::vec3(0.0f) : glm::vec3(0.125f, 0.25f, 0.5f);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 1e-6) << nameOf(direct) << " " << nameOf(component);
     }
 }

@@ -23,7 +23,8 @@ using test::wholeTriangles;
 
 class RadiositySolutions : public test::SharedProgramsTest {
  protected:
-  static RadiositySolution solve(const Scene& scene, const RadiositySolutionSettings& settings, const std::filesystem::path& checkpoint = {},
+  static RadiositySolution solve(const Scene& scene, const RadiositySolutionSettings& settings,
+                                 const std::filesystem::path& checkpoint = {},
                                  const std::function<bool(const RadiosityStage&)>& onStage = {}) {
     return solveScene(context(), library(), scene, settings, checkpoint, onStage);
   }
@@ -36,7 +37,10 @@ class RadiositySolutions : public test::SharedProgramsTest {
 
 TEST_F(RadiositySolutions, Furnaces) {
   for (const double rho : {0.0, 0.5, 0.9, 0.999})
-    for (const Scene& scene : {dark(cubeRoom(2, rho, 1.0)), sphere(1, [rho, m = -1](SceneBuilder& b, const glm::dvec3&) mutable { return m < 0 ? m = lambertian(b, rho, 1.0) : m; })}) {
+    for (const Scene& scene :
+         {dark(cubeRoom(2, rho, 1.0)), sphere(1, [rho, m = -1](SceneBuilder&b, const glm::dvec3&) mutable {
+            return m < 0 ? m = lambertian(b, rho, 1.0) : m;
+          })}) {
       const RadiositySolution s = solve(scene, wholeTriangles());
       const double exact = 1.0 / (1.0 - static_cast<double>(static_cast<float>(rho)));
       EXPECT_TRUE(s.reached);
@@ -104,7 +108,8 @@ TEST_F(RadiositySolutions, ConcentricSpheresAndABowl) {
 }
 
 TEST_F(RadiositySolutions, TheCubeWithALitCeilingAndThePublishedMap) {
-  // Exact: many patches a wall, both from closed forms; here 6 x 6 squares a wall of this scene, hemicubes of 64 pixels.
+  // Exact: many patches a wall, both from closed forms; here 6 x 6 squares a wall of this scene, hemicubes of 64
+  // pixels.
   int lit = -1, grey = -1;
   const Scene scene = dark(cubeRoom(6, [&](SceneBuilder& b, int wall, double u, double v) {
     if (lit < 0) lit = lambertian(b, 0.5, 1.0), grey = lambertian(b, 0.5);
@@ -121,7 +126,8 @@ TEST_F(RadiositySolutions, TheCubeWithALitCeilingAndThePublishedMap) {
   const RadiositySolution best = solve(scene, fine);
   const auto rms = [&](const RadiositySolution& s) {
     double squares = 0.0, mean = 0.0;
-    for (std::size_t i = 0; i < s.irradiance.size(); ++i) squares += std::pow(s.irradiance[i].x - best.irradiance[i].x, 2.0), mean += best.irradiance[i].x;
+    for (std::size_t i = 0; i < s.irradiance.size(); ++i)
+      squares += std::pow(s.irradiance[i].x - best.irradiance[i].x, 2.0), mean += best.irradiance[i].x;
     return std::sqrt(squares * static_cast<double>(s.irradiance.size())) / mean;
   };
   EXPECT_LT(rms(solve(scene, plain)), 0.03);  // 0.7 to 3 % by other hemicubes with the right map
@@ -136,7 +142,10 @@ TEST_F(RadiositySolutions, AResumedRunEqualsAnUninterruptedOne) {
   const RadiositySolution uninterrupted = solve(scene, settings);
   const auto file = folder.path() / "rows";
   int submissions = 0;
-  EXPECT_THROW(solve(scene, settings, file, [&](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors || ++submissions < 4; }), Stopped);
+  EXPECT_THROW(
+      solve(scene, settings, file,
+            [&](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors || ++submissions < 4; }),
+      Stopped);
   ASSERT_TRUE(std::filesystem::exists(file));
   // As a kill in the middle of a write leaves it.
   const auto bytes = std::filesystem::file_size(file);
@@ -153,7 +162,9 @@ TEST_F(RadiositySolutions, AResumedRunEqualsAnUninterruptedOne) {
   EXPECT_FALSE(std::filesystem::exists(file));
   for (std::size_t i = 0; i < resumed.exitance.size(); ++i) ASSERT_EQ(resumed.exitance[i], uninterrupted.exitance[i]);
   // Another scene's, another setting's, or no checkpoint at all: refused and left as it is.
-  EXPECT_THROW(solve(scene, settings, file, [&](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors; }), Stopped);
+  EXPECT_THROW(solve(scene, settings, file,
+                     [&](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors; }),
+               Stopped);
   const auto kept = std::filesystem::file_size(file);
   RadiositySolutionSettings other = settings;
   other.hemicubes.seed = 2;
@@ -194,7 +205,8 @@ TEST_F(RadiositySolutions, FilesGiveBackWhatWasSaved) {
 }
 
 TEST_F(RadiositySolutions, AChangedSceneHasAnotherSolution) {
-  // What light depends on, not the corners alone: a mask, a medium, a texture's size. (One function knows it: scene/fingerprint.)
+  // What light depends on, not the corners alone: a mask, a medium, a texture's size. (One function knows it:
+  // scene/fingerprint.)
   const test::TempFolder folder;
   const Scene scene = dark(cubeRoom(2, 0.7, 1.0));
   RadiositySolution s = solve(scene, wholeTriangles());
@@ -230,11 +242,13 @@ TEST_F(RadiositySolutions, EachDeviationDoesWhatItSays) {
     const RadiositySolution s = solve(scene, settings);
     EXPECT_TRUE(s.deviations.*member);
     double squares = 0.0, mean = 0.0;
-    for (std::size_t i = 0; i < s.irradiance.size(); ++i) squares += std::pow(s.irradiance[i].x - right.irradiance[i].x, 2.0), mean += right.irradiance[i].x;
+    for (std::size_t i = 0; i < s.irradiance.size(); ++i)
+      squares += std::pow(s.irradiance[i].x - right.irradiance[i].x, 2.0), mean += right.irradiance[i].x;
     return std::sqrt(squares * static_cast<double>(s.irradiance.size())) / mean;
   };
   EXPECT_GT(rms(&RadiosityDeviations::publishedMap), 0.08);
-  const double centroid = rms(&RadiosityDeviations::centroid), roll = rms(&RadiosityDeviations::fixedOrientation), far = rms(&RadiosityDeviations::noNearField);
+  const double centroid = rms(&RadiosityDeviations::centroid), roll = rms(&RadiosityDeviations::fixedOrientation),
+               far = rms(&RadiosityDeviations::noNearField);
   EXPECT_GT(centroid, 0.005);
   EXPECT_LT(centroid, 0.2);
   EXPECT_GT(roll, 0.0);
@@ -266,7 +280,8 @@ TEST_F(RadiositySolutions, WithoutMemoryRowsAreComputedAnewToTheSameAnswer) {
   EXPECT_FALSE(anew.keptRows);
   EXPECT_EQ(anew.solver, RadiositySolver::anderson);
   EXPECT_GT(anew.hemicubes, 2 * kept.hemicubes);
-  for (std::size_t i = 0; i < kept.exitance.size(); ++i) ASSERT_NEAR(anew.exitance[i].x / kept.exitance[i].x, 1.0, 1e-4);
+  for (std::size_t i = 0; i < kept.exitance.size(); ++i)
+    ASSERT_NEAR(anew.exitance[i].x / kept.exitance[i].x, 1.0, 1e-4);
 }
 
 TEST_F(RadiositySolutions, ReflectanceOneInAClosedRoomIsRefused) {
@@ -306,9 +321,7 @@ TEST_F(RadiositySolutions, SunSpotAndPointLights) {
     const Patch& p = point.mesh.patches[i];
     const glm::dvec3 to = glm::dvec3(0, 3, 0) - p.centroid;
     const double r = glm::length(to);
-    if (p.centroid.y > 0.5) {
-      EXPECT_NEAR(point.direct[i].x / (2.0 * to.y / (r * r * r)), 1.0, 0.02);
-    }
+    if (p.centroid.y > 0.5) { EXPECT_NEAR(point.direct[i].x / (2.0 * to.y / (r * r * r)), 1.0, 0.02); }
   }
   EXPECT_GT(point.mesh.patches.size(), 100u);
 }

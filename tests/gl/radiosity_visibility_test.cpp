@@ -1,4 +1,5 @@
-// Three ways to tell what a hemicube's pixels see: each against closed forms, their rows against one another, and the choice among them.
+// Three ways to tell what a hemicube's pixels see: each against closed forms, their rows against one another, and the
+// choice among them.
 #include "base/error.hpp"
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/solution.hpp"
@@ -20,7 +21,8 @@ using test::lambertian;
 using test::pixelsAlone;
 using test::SceneBuilder;
 
-constexpr HemicubeVisibility kWays[] = {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer};
+constexpr HemicubeVisibility kWays[] = {HemicubeVisibility::raster, HemicubeVisibility::rays,
+                                        HemicubeVisibility::itemBuffer};
 
 class HemicubeVisibilityTest : public test::SharedProgramsTest {
  protected:
@@ -36,11 +38,13 @@ class HemicubeVisibilityTest : public test::SharedProgramsTest {
     EXPECT_TRUE(hemicubes.costs().empty());
     Rows all;
     for (int first = 0; first < hemicubes.patchCount(); first += hemicubes.batchSize()) {
-      const FormFactorRows rows = hemicubes.rows(first, std::min(hemicubes.batchSize(), hemicubes.patchCount() - first));
+      const FormFactorRows rows =
+          hemicubes.rows(first, std::min(hemicubes.batchSize(), hemicubes.patchCount() - first));
       std::size_t at = 0;
       for (std::size_t k = 0; k < rows.counts.size(); ++k) {
         auto& dense = all.factors.emplace_back(mesh.patches.size(), 0.0);
-        for (const std::size_t end = at + rows.counts[k]; at < end; ++at) dense[rows.patches[at]] = static_cast<double>(rows.factors[at]);
+        for (const std::size_t end = at + rows.counts[k]; at < end; ++at)
+          dense[rows.patches[at]] = static_cast<double>(rows.factors[at]);
         all.fronts.push_back(static_cast<double>(rows.fronts[k]));
         all.backs.push_back(static_cast<double>(rows.backs[k]));
       }
@@ -57,7 +61,8 @@ class HemicubeVisibilityTest : public test::SharedProgramsTest {
 TEST_F(HemicubeVisibilityTest, EachMeetsClosedForms) {
   // A tiny triangle that looks up at a square, and at a wall. The item buffer snaps corners to 1/256 of a pixel.
   for (const HemicubeVisibility way : kWays) {
-    const auto factor = [&](const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v, const HemicubeSettings& settings) {
+    const auto factor = [&](const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v,
+                            const HemicubeSettings& settings) {
       SceneBuilder builder;
       const int m = lambertian(builder, 0.5);
       builder.triangle({-1e-4, 0, 1e-4}, {1e-4, 0, 1e-4}, {0, 0, -2e-4}, m);
@@ -68,8 +73,10 @@ TEST_F(HemicubeVisibilityTest, EachMeetsClosedForms) {
     const double closedForm = way == HemicubeVisibility::itemBuffer ? 2e-3 : 2e-5;
     EXPECT_NEAR(factor({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, {}) / 0.239456470460774, 1.0, closedForm) << nameOf(way);
     EXPECT_NEAR(factor({0, 0.5, -0.5}, {1, 0, 0}, {0, 1, 0}, {}) / 0.190135882384807, 1.0, closedForm) << nameOf(way);
-    EXPECT_NEAR(factor({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, pixelsAlone(256)) / 0.239456470460774, 1.0, 0.004) << nameOf(way);
-    EXPECT_NEAR(factor({0, 0.5, -0.5}, {1, 0, 0}, {0, 1, 0}, pixelsAlone(256)) / 0.190135882384807, 1.0, 0.006) << nameOf(way);
+    EXPECT_NEAR(factor({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, pixelsAlone(256)) / 0.239456470460774, 1.0, 0.004)
+        << nameOf(way);
+    EXPECT_NEAR(factor({0, 0.5, -0.5}, {1, 0, 0}, {0, 1, 0}, pixelsAlone(256)) / 0.190135882384807, 1.0, 0.006)
+        << nameOf(way);
   }
 }
 
@@ -85,7 +92,8 @@ TEST_F(HemicubeVisibilityTest, OfTwoSheetsInOnePlaceTheFrontIsMet) {
       builder.plate({0, 1, 0}, frontFirst ? v : u, frontFirst ? u : v, m);
       const Rows rows = rowsBy(way, builder.scene(), pixelsAlone(256));
       const double first = rows.factors[0][1] + rows.factors[0][2], second = rows.factors[0][3] + rows.factors[0][4];
-      EXPECT_NEAR((frontFirst ? first : second) / 0.239456470460774, 1.0, 0.004) << nameOf(way) << ", front first: " << frontFirst;
+      EXPECT_NEAR((frontFirst ? first : second) / 0.239456470460774, 1.0, 0.004)
+          << nameOf(way) << ", front first: " << frontFirst;
       EXPECT_EQ(frontFirst ? second : first, 0.0) << nameOf(way);
       EXPECT_EQ(rows.backs[0], 0.0) << nameOf(way);
     }
@@ -97,14 +105,16 @@ TEST_F(HemicubeVisibilityTest, NothingIsLostInAClosedRoom) {
       const Rows rows = rowsBy(way, cubeRoom(5, 0.5, 1.0), pixelsAlone(n));
       for (std::size_t i = 0; i < rows.factors.size(); ++i) {
         ASSERT_NEAR(rows.fronts[i], 1.0, 2e-6) << nameOf(way) << ' ' << i;
-        ASSERT_NEAR(std::accumulate(rows.factors[i].begin(), rows.factors[i].end(), 0.0), 1.0, 2e-6) << nameOf(way) << ' ' << i;
+        ASSERT_NEAR(std::accumulate(rows.factors[i].begin(), rows.factors[i].end(), 0.0), 1.0, 2e-6)
+            << nameOf(way) << ' ' << i;
         ASSERT_EQ(rows.backs[i], 0.0) << nameOf(way);
       }
     }
 }
 
 TEST_F(HemicubeVisibilityTest, RowsAgree) {
-  // Occluders, backs, sheets of one and of two fronts, a small source: what two rows of one patch differ by, in parts of the hemisphere.
+  // Occluders, backs, sheets of one and of two fronts, a small source: what two rows of one patch differ by, in parts
+  // of the hemisphere.
   SceneBuilder builder;
   const int m = lambertian(builder, 0.5), lamp = lambertian(builder, 0.5, 10.0);
   addSphere(builder, 2.0, 2, true, [&](const glm::dvec3&) { return m; });
@@ -124,11 +134,13 @@ TEST_F(HemicubeVisibilityTest, RowsAgree) {
       double worst = 0.0, mean = 0.0;
       for (std::size_t i = 0; i < raster.factors.size(); ++i) {
         double off = std::abs(raster.backs[i] - other.backs[i]);
-        for (std::size_t j = 0; j < raster.factors.size(); ++j) off += std::abs(raster.factors[i][j] - other.factors[i][j]);
+        for (std::size_t j = 0; j < raster.factors.size(); ++j)
+          off += std::abs(raster.factors[i][j] - other.factors[i][j]);
         worst = std::max(worst, off);
         mean += off / static_cast<double>(raster.factors.size());
       }
-      RecordProperty(std::string(nameOf(way)) + std::to_string(exactPixels), std::to_string(mean) + " " + std::to_string(worst));
+      RecordProperty(std::string(nameOf(way)) + std::to_string(exactPixels),
+                     std::to_string(mean) + " " + std::to_string(worst));
       EXPECT_LT(mean, way == HemicubeVisibility::rays ? 5e-5 : 2e-3) << nameOf(way) << ' ' << exactPixels;
       EXPECT_LT(worst, way == HemicubeVisibility::rays ? 2e-3 : 0.01) << nameOf(way) << ' ' << exactPixels;
       // A batch leaves nothing behind for the next: in batches of 5 the rows are the same bits.
@@ -150,7 +162,8 @@ TEST_F(HemicubeVisibilityTest, TheCheapestIsChosenAndTheOthersAreGone) {
   ASSERT_EQ(chosen.costs().size(), 3u);
   for (const Hemicubes::Cost& cost : chosen.costs()) {
     EXPECT_GT(cost.milliseconds, 0.0);
-    const auto own = std::find_if(chosen.costs().begin(), chosen.costs().end(), [&](const auto& c) { return c.visibility == chosen.visibility(); });
+    const auto own = std::find_if(chosen.costs().begin(), chosen.costs().end(),
+                                  [&](const auto& c) { return c.visibility == chosen.visibility(); });
     EXPECT_GE(cost.milliseconds, own->milliseconds);
     // What another way needs is not kept.
     settings.visibility = cost.visibility;
@@ -190,7 +203,10 @@ TEST_F(HemicubeVisibilityTest, SolutionsAgreeAndAStoppedOneGoesOnAsItBegan) {
   const auto file = folder.path() / "rows";
   settings.hemicubes.visibility = HemicubeVisibility::rays;
   settings.hemicubes.batchBytes = 1 << 18;
-  EXPECT_THROW(solveScene(context(), library(), scene, settings, file, [](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors || s.done < 60; }), Stopped);
+  EXPECT_THROW(
+      solveScene(context(), library(), scene, settings, file,
+                 [](const RadiosityStage& s) { return s.kind != RadiosityStage::Kind::formFactors || s.done < 60; }),
+      Stopped);
   ASSERT_TRUE(std::filesystem::exists(file));
   settings.hemicubes.visibility = HemicubeVisibility::automatic;
   const RadiositySolution resumed = solveScene(context(), library(), scene, settings, file);

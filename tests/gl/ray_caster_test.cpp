@@ -4,7 +4,6 @@
 #include "support/rays_on_gl.hpp"
 #include "support/small_scenes.hpp"
 
-
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -29,14 +28,17 @@ Twin bruteForce(const Scene& scene, const glm::dvec3& shift, const GlRay& ray) {
   Twin best;
   const glm::dvec3 o(ray.origin), d(ray.direction);
   for (std::size_t k = 0; k < scene.triangleCount(); ++k) {
-    const auto corner = [&](std::size_t i) { return glm::dvec3(scene.vertices[scene.indices[3 * k + i]].position) - shift; };
+    const auto corner = [&](std::size_t i) {
+      return glm::dvec3(scene.vertices[scene.indices[3 * k + i]].position) - shift;
+    };
     const glm::dvec3 a = corner(0), e1 = corner(1) - a, e2 = corner(2) - a, p = glm::cross(d, e2);
     const double det = glm::dot(e1, p);
     if (!(std::abs(det) > 0.0)) continue;
     const double u = glm::dot(o - a, p) / det;
     const glm::dvec3 q = glm::cross(o - a, e1);
     const double v = glm::dot(d, q) / det, t = glm::dot(e2, q) / det;
-    if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > ray.tMin && t < ray.tMax && t < best.t) best = {t, static_cast<std::uint32_t>(k)};
+    if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > ray.tMin && t < ray.tMax && t < best.t)
+      best = {t, static_cast<std::uint32_t>(k)};
   }
   return best;
 }
@@ -65,13 +67,16 @@ std::vector<GlRay> randomRays(std::size_t count, const glm::dvec3& centre, const
   return rays;
 }
 
-/// Where a ray meets the plane of a triangle, in double, and how far inside of the nearest edge it passes (below zero: outside), as seen along it.
+/// Where a ray meets the plane of a triangle, in double, and how far inside of the nearest edge it passes (below zero:
+/// outside), as seen along it.
 struct Meeting {
   double t, inside, cosine;
 };
 Meeting meet(const Scene& scene, const glm::dvec3& shift, const GlRay& ray, std::uint32_t triangle) {
   const glm::dvec3 d(ray.direction), unit = glm::normalize(d);
-  const auto corner = [&](std::size_t k) { return glm::dvec3(scene.vertices[scene.indices[3 * triangle + k]].position) - shift - glm::dvec3(ray.origin); };
+  const auto corner = [&](std::size_t k) {
+    return glm::dvec3(scene.vertices[scene.indices[3 * triangle + k]].position) - shift - glm::dvec3(ray.origin);
+  };
   const glm::dvec3 corners[] = {corner(0), corner(1), corner(2)};
   const glm::dvec3 n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double along = glm::dot(n, unit);
@@ -84,27 +89,32 @@ Meeting meet(const Scene& scene, const glm::dvec3& shift, const GlRay& ray, std:
   return m;
 }
 
-/// What another tracer says is judged in double. Where the two differ by more than rounding, the nearer one is right if its ray passes
-/// clearly through the triangle, and within rounding of an edge either is.
+/// What another tracer says is judged in double. Where the two differ by more than rounding, the nearer one is right if
+/// its ray passes clearly through the triangle, and within rounding of an edge either is.
 struct Verdict {
   std::size_t met = 0, atEdges = 0, wrong = 0, theirs = 0;
 };
 template <class Other>
-Verdict compare(const Scene& scene, const RayScene& rayScene, const std::vector<GlRay>& rays, const std::vector<GlHit>& ours, const std::vector<Other>& others) {
+Verdict compare(const Scene& scene, const RayScene& rayScene, const std::vector<GlRay>& rays,
+                const std::vector<GlHit>& ours, const std::vector<Other>& others) {
   Verdict verdict;
   double magnitude = 0.0;
   for (const Vertex& v : scene.vertices)
-    for (int k = 0; k < 3; ++k) magnitude = std::max(magnitude, std::abs(static_cast<double>(v.position[k]) - rayScene.origin()[k]));
+    for (int k = 0; k < 3; ++k)
+      magnitude = std::max(magnitude, std::abs(static_cast<double>(v.position[k]) - rayScene.origin()[k]));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool us = ours[i].triangle != kNoHit, them = others[i].triangle != kNoHit;
     verdict.met += us;
     if (!us && !them) continue;
     const double length = glm::length(glm::dvec3(rays[i].direction));
-    const double tUs = us ? static_cast<double>(ours[i].t) * length : 1e300, tThem = them ? static_cast<double>(others[i].t) * length : 1e300;
+    const double tUs = us ? static_cast<double>(ours[i].t) * length : 1e300,
+                 tThem = them ? static_cast<double>(others[i].t) * length : 1e300;
     const auto m = us ? meet(scene, rayScene.origin(), rays[i], ours[i].triangle) : Meeting{};
-    // Corners and origin are exact; what is computed from them is off by some units in the last place of the largest of them.
+    // Corners and origin are exact; what is computed from them is off by some units in the last place of the largest of
+    // them.
     const double rounding = 16.0 * 0x1p-24 * (magnitude + static_cast<double>(glm::length(rays[i].origin)));
-    if (us && (std::abs(tUs - m.t * length) > 1e-5 * tUs + rounding / std::max(m.cosine, 1e-9) || m.inside < -rounding)) {
+    if (us &&
+        (std::abs(tUs - m.t * length) > 1e-5 * tUs + rounding / std::max(m.cosine, 1e-9) || m.inside < -rounding)) {
       ++verdict.wrong;  // our distance, or what we hit, is not so
       continue;
     }
@@ -147,17 +157,23 @@ TEST_F(RayCasterOnGl, KeepsIntervalsSkipsMasksAndAnswersAny) {
   }
   const RayScene rayScene(builder.scene(), capabilities());
   // The first barycentric is 1/2 at x = 1: the mask is cut out left of that.
-  const auto ray = [&](float x, float tMin, float tMax) { return GlRay{glm::vec3(x, 0, 0) - glm::vec3(rayScene.origin()), tMin, glm::vec3(0, 0, 1), tMax}; };
-  const std::vector<GlRay> rays{ray(0, 0, 10), ray(1.5f, 0, 10), ray(0, 1.5f, 10), ray(0, 2.5f, 2.9f), ray(0, 2, 10), ray(0, 0, 10), ray(5, 0, 10)};
+  const auto ray = [&](float x, float tMin, float tMax) {
+    return GlRay{glm::vec3(x, 0, 0) - glm::vec3(rayScene.origin()), tMin, glm::vec3(0, 0, 1), tMax};
+  };
+  const std::vector<GlRay> rays{ray(0, 0, 10), ray(1.5f, 0, 10), ray(0, 1.5f, 10), ray(0, 2.5f, 2.9f),
+                                ray(0, 2, 10), ray(0, 0, 10),    ray(5, 0, 10)};
   const std::vector<std::uint32_t> skip{kNoHit, kNoHit, kNoHit, kNoHit, kNoHit, 0, kNoHit};
   const auto triangles = [&](const TraceOptions& options) {
     std::vector<std::uint32_t> result;
     for (const GlHit& hit : trace(library(), rayScene, rays, options)) result.push_back(hit.triangle);
     return result;
   };
-  EXPECT_EQ(triangles({.anyHit = false, .alphaMasks = false, .offsetOrigins = false, .skip = skip}), (std::vector<std::uint32_t>{0, 0, 1, kNoHit, 2, 1, kNoHit}));
-  EXPECT_EQ(triangles({.anyHit = false, .alphaMasks = true, .offsetOrigins = false, .skip = skip}), (std::vector<std::uint32_t>{1, 0, 1, kNoHit, 2, 1, kNoHit}));
-  EXPECT_EQ(triangles({.anyHit = true, .alphaMasks = false, .offsetOrigins = false, .skip = skip}), (std::vector<std::uint32_t>{0, 0, 0, kNoHit, 0, 0, kNoHit}));
+  EXPECT_EQ(triangles({.anyHit = false, .alphaMasks = false, .offsetOrigins = false, .skip = skip}),
+            (std::vector<std::uint32_t>{0, 0, 1, kNoHit, 2, 1, kNoHit}));
+  EXPECT_EQ(triangles({.anyHit = false, .alphaMasks = true, .offsetOrigins = false, .skip = skip}),
+            (std::vector<std::uint32_t>{1, 0, 1, kNoHit, 2, 1, kNoHit}));
+  EXPECT_EQ(triangles({.anyHit = true, .alphaMasks = false, .offsetOrigins = false, .skip = skip}),
+            (std::vector<std::uint32_t>{0, 0, 0, kNoHit, 0, 0, kNoHit}));
   const GlHit hit = trace(library(), rayScene, std::span(rays).first(1))[0];
   EXPECT_NEAR(hit.t, 1.0f, 1e-6f);
   EXPECT_NEAR(hit.barycentrics.x, 0.25f, 1e-6f);
@@ -167,7 +183,8 @@ TEST_F(RayCasterOnGl, KeepsIntervalsSkipsMasksAndAnswersAny) {
 TEST_F(RayCasterOnGl, TracesNothingOneAndTheDegenerate) {
   const std::vector<GlRay> rays = randomRays(256, glm::dvec3(0.0), glm::dvec3(1.0), 3);
   SceneBuilder empty;
-  for (const GlHit& hit : trace(library(), RayScene(empty.scene(), capabilities()), rays)) EXPECT_EQ(hit.triangle, kNoHit);
+  for (const GlHit& hit : trace(library(), RayScene(empty.scene(), capabilities()), rays))
+    EXPECT_EQ(hit.triangle, kNoHit);
   SceneBuilder builder;
   const int material = builder.material(glm::vec3(0.5f));
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -200,7 +217,8 @@ TEST_F(RayCasterOnGl, MeetsTheGiantAndTheTinyTheSliverAndTheDuplicate) {
   const RayScene rayScene(scene, capabilities());
   std::vector<GlRay> rays = randomRays(4096, glm::dvec3(0.0, 0.0, 2e-3), glm::dvec3(5e-3, 5e-3, 1e-3), 4);
   for (GlRay& ray : rays) ray.direction = glm::vec3(0.1f * ray.direction.x, 0.1f * ray.direction.y, -1.0f);
-  for (int i = 0; i < 1000; ++i) rays.push_back({glm::vec3(0.001f * static_cast<float>(i) - 0.5f, 0.25f + 2.5e-7f, 2), 0.0f, glm::vec3(0, 0, -1)});
+  for (int i = 0; i < 1000; ++i)
+    rays.push_back({glm::vec3(0.001f * static_cast<float>(i) - 0.5f, 0.25f + 2.5e-7f, 2), 0.0f, glm::vec3(0, 0, -1)});
   const std::vector<GlHit> hits = trace(library(), rayScene, rays);
   std::vector<GlHit> twins;
   for (const GlRay& ray : rays) {
@@ -220,7 +238,8 @@ TEST_F(RayCasterOnGl, MeetsTheGiantAndTheTinyTheSliverAndTheDuplicate) {
   EXPECT_GT(slivers, 300u);
 }
 
-// Slivers a 2^-16 of their length wide, at scales whose squares and cubes leave the range of floats: edge functions in float are off by 1e-3 or so there.
+// Slivers a 2^-16 of their length wide, at scales whose squares and cubes leave the range of floats: edge functions in
+// float are off by 1e-3 or so there.
 TEST_F(RayCasterOnGl, MeetsSliversWhereDoubleArithmeticDoes) {
   for (const double scale : {1.0, 1e-13, 1e13}) {
     SceneBuilder builder;
@@ -250,18 +269,23 @@ TEST_F(RayCasterOnGl, MeetsSliversWhereDoubleArithmeticDoes) {
       if (hits[i].triangle == kNoHit) continue;
       ++met;
       const glm::dvec3 o(rays[i].origin), d(rays[i].direction);
-      const auto corner = [&](std::size_t k) { return glm::dvec3(scene.vertices[scene.indices[3 * hits[i].triangle + k]].position) - rayScene.origin() - o; };
-      const glm::dvec3 a = corner(0), e1 = corner(1) - a, e2 = corner(2) - a, n = glm::cross(e1, e2), m = glm::cross(d, a);
+      const auto corner = [&](std::size_t k) {
+        return glm::dvec3(scene.vertices[scene.indices[3 * hits[i].triangle + k]].position) - rayScene.origin() - o;
+      };
+      const glm::dvec3 a = corner(0), e1 = corner(1) - a, e2 = corner(2) - a, n = glm::cross(e1, e2),
+                       m = glm::cross(d, a);
       const double facing = glm::dot(n, d);
       if (std::abs(facing) < 0.05 * glm::length(n) * glm::length(d)) continue;  // grazing: both are off
       worst = std::max(worst, std::abs(hits[i].t / (glm::dot(n, a) / facing) - 1.0));
       const glm::dvec2 weights = glm::clamp(glm::dvec2(-glm::dot(e2, m), glm::dot(e1, m)) / facing, 0.0, 1.0);
-      worstWeight = std::max({worstWeight, std::abs(hits[i].barycentrics.x - weights.x), std::abs(hits[i].barycentrics.y - weights.y)});
+      worstWeight = std::max(
+          {worstWeight, std::abs(hits[i].barycentrics.x - weights.x), std::abs(hits[i].barycentrics.y - weights.y)});
     }
     EXPECT_GT(met, 1000) << scale;
     EXPECT_LT(worst, 0x1p-22) << scale;
     EXPECT_LT(worstWeight, 0x1p-22) << scale;
-    std::cout << "scale " << scale << ": " << met << " met, distance off by " << worst << " of it, weights by " << worstWeight << '\n';
+    std::cout << "scale " << scale << ": " << met << " met, distance off by " << worst << " of it, weights by "
+              << worstWeight << '\n';
   }
 }
 
@@ -313,7 +337,8 @@ Scene bumpyBall(int levels, const glm::dvec3& centre) {
       return it->second;
     };
     for (std::size_t t = 0; t < indices.size(); t += 3) {
-      const std::uint32_t a = indices[t], b = indices[t + 1], c = indices[t + 2], ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      const std::uint32_t a = indices[t], b = indices[t + 1], c = indices[t + 2], ab = middle(a, b), bc = middle(b, c),
+                          ca = middle(c, a);
       finer.insert(finer.end(), {a, ab, ca, b, bc, ab, c, ca, bc, ab, bc, ca});
     }
     indices = finer;
@@ -341,7 +366,9 @@ TEST_F(RayCasterOnGl, LetsNothingOutOfAClosedMesh) {
     std::mt19937 random(7);
     for (std::size_t i = 0; i < 2 * kRays; ++i) {  // at corners, at the middles of edges
       const std::size_t t = random() % scene.triangleCount();
-      const auto corner = [&](std::size_t k) { return glm::vec3(glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - rayScene.origin()); };
+      const auto corner = [&](std::size_t k) {
+        return glm::vec3(glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - rayScene.origin());
+      };
       rays[i].direction = (i % 2 ? corner(0) : 0.5f * corner(0) + 0.5f * corner(1)) - rays[i].origin;
     }
     std::size_t out = 0;
@@ -369,7 +396,9 @@ TEST_F(RayCasterOnGl, OffsetsAreOfTheScenesOwnScale) {
     }
     const auto met = [&](bool offset) {
       std::size_t n = 0;
-      for (const GlHit& hit : trace(library(), rayScene, rays, {.anyHit = true, .alphaMasks = false, .offsetOrigins = offset, .skip = {}})) n += hit.triangle != kNoHit;
+      for (const GlHit& hit :
+           trace(library(), rayScene, rays, {.anyHit = true, .alphaMasks = false, .offsetOrigins = offset, .skip = {}}))
+        n += hit.triangle != kNoHit;
       return n;
     };
     EXPECT_GT(met(false), 2000u) << scale;
@@ -392,7 +421,8 @@ TEST_F(RayCasterOnGl, FollowsWhatMoves) {
     const std::vector<GlRay> rays = randomRays(8192, -built.origin(), glm::dvec3(1.5), 9);
     const std::vector<GlHit> a = trace(library(), moved, rays), b = trace(library(), built, rays);
     std::size_t differ = 0, met = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) differ += a[i].triangle != b[i].triangle || a[i].t != b[i].t, met += b[i].triangle != kNoHit;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      differ += a[i].triangle != b[i].triangle || a[i].t != b[i].t, met += b[i].triangle != kNoHit;
     EXPECT_EQ(differ, 0u);
     EXPECT_GT(met, 2000u);
   };
@@ -412,17 +442,21 @@ std::vector<GlRay> mixedRays(const Scene& scene, const glm::dvec3& shift, std::s
   for (std::size_t i = 0; i < count; ++i) {
     GlRay& ray = rays[i];
     const std::size_t t = random() % scene.triangleCount();
-    const auto corner = [&](std::size_t k) { return glm::vec3(glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - shift); };
+    const auto corner = [&](std::size_t k) {
+      return glm::vec3(glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - shift);
+    };
     const glm::vec3 a = corner(0), b = corner(1), c = corner(2);
     if (i % 5 == 1) {
       const int axis = static_cast<int>(random() % 3);
       ray.direction = glm::vec3(0.0f);
       ray.direction[axis] = random() % 2 ? 1.0f : -1.0f;
     } else if (i % 5 == 2) {  // along a triangle's plane, tilted against it by a thousandth
-      const glm::vec3 n = glm::cross(b - a, c - a), along = (b - a) * (unit(random) - 0.5f) + (c - a) * (unit(random) - 0.5f);
+      const glm::vec3 n = glm::cross(b - a, c - a),
+                      along = (b - a) * (unit(random) - 0.5f) + (c - a) * (unit(random) - 0.5f);
       if (glm::length(n) > 0.0f && glm::length(along) > 0.0f) {
         ray.direction = glm::normalize(along) - 1e-3f * glm::normalize(n);
-        ray.origin = (a + b + c) / 3.0f - ray.direction * (unit(random) * static_cast<float>(glm::length(scene.bounds.extent())) * 0.1f);
+        ray.origin = (a + b + c) / 3.0f -
+                     ray.direction * (unit(random) * static_cast<float>(glm::length(scene.bounds.extent())) * 0.1f);
       }
     } else if (i % 5 == 3) {
       ray.direction = glm::mix(a, b, unit(random)) - ray.origin;
@@ -433,7 +467,8 @@ std::vector<GlRay> mixedRays(const Scene& scene, const glm::dvec3& shift, std::s
   return rays;
 }
 
-void agreeWithEmbree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene, std::size_t count) {
+void agreeWithEmbree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
+                     std::size_t count) {
   const RayScene rayScene(scene, capabilities);
   const EmbreeRays embree(scene, rayScene.origin());
   const std::vector<GlRay> rays = mixedRays(scene, rayScene.origin(), count, 10);
@@ -443,8 +478,8 @@ void agreeWithEmbree(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   embree.trace(plain, theirs, false);
   const std::vector<GlHit> ours = trace(programs, rayScene, rays);
   const Verdict v = compare(scene, rayScene, rays, ours, theirs);
-  std::cout << scene.name << ": " << rays.size() << " rays, " << v.met << " hit; within rounding of an edge " << v.atEdges << ", Embree missed " << v.theirs << ", we "
-            << v.wrong << "\n";
+  std::cout << scene.name << ": " << rays.size() << " rays, " << v.met << " hit; within rounding of an edge "
+            << v.atEdges << ", Embree missed " << v.theirs << ", we " << v.wrong << "\n";
   EXPECT_EQ(v.wrong, 0u);
   EXPECT_GT(v.met, count / 5);
   EXPECT_LT(v.atEdges, count / 50);

@@ -1,4 +1,5 @@
-// The renderer end to end on small scenes: known radiances, the parts of a picture, what is left out, and what must not change it.
+// The renderer end to end on small scenes: known radiances, the parts of a picture, what is left out, and what must not
+// change it.
 #include "support/gl_fixture.hpp"
 #include "support/small_scenes.hpp"
 
@@ -38,23 +39,27 @@ class RendererGl : public test::GlTest {
   }
   bool builtProgram(std::string_view part) {
     const auto names = programs().names();
-    return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return name.find(part) != std::string::npos; });
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& name) { return name.find(part) != std::string::npos; });
   }
 };
 
 double largestDifference(const Image& a, const Image& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c) largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
+    for (int c = 0; c < 3; ++c)
+      largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
   return largest;
 }
 double largestValue(const Image& image) {
   double largest = 0.0;
-  for (const glm::vec3& p : image.pixels) largest = std::max({largest, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+  for (const glm::vec3& p : image.pixels)
+    largest = std::max({largest, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
   return largest;
 }
 bool allFinite(const Image& image) {
-  return std::all_of(image.pixels.begin(), image.pixels.end(), [](const glm::vec3& p) { return std::isfinite(p.x + p.y + p.z); });
+  return std::all_of(image.pixels.begin(), image.pixels.end(),
+                     [](const glm::vec3& p) { return std::isfinite(p.x + p.y + p.z); });
 }
 double luminance(const Image& image) {
   const glm::dvec3 mean = meanOf(image);
@@ -146,11 +151,13 @@ TEST_F(RendererGl, DirectAloneBuildsNoIndirectStages) {
       EXPECT_EQ(name.find("lpv"), std::string::npos) << name;
     }
     for (const auto& stage : renderer.timer().statistics())
-      for (const char* unwanted : {"rsm", "injection", "geometry volume", "propagation"}) EXPECT_NE(stage.name, unwanted);
+      for (const char* unwanted : {"rsm", "injection", "geometry volume", "propagation"})
+        EXPECT_NE(stage.name, unwanted);
     EXPECT_EQ(renderer.lpv(), nullptr);
     EXPECT_LT(renderer.gpuBytes(), bytesAll);
     const auto left = renderer.leftOut();
-    for (const char* name : {"reflective shadow map", "light propagation volume"}) EXPECT_NE(std::find(left.begin(), left.end(), name), left.end()) << name;
+    for (const char* name : {"reflective shadow map", "light propagation volume"})
+      EXPECT_NE(std::find(left.begin(), left.end(), name), left.end()) << name;
   }
   for (const char* wanted : {"shadow", "rsm", "injection", "geometry volume", "propagation", "shading", "tone mapping"})
     EXPECT_NE(std::find(stagesAll.begin(), stagesAll.end(), wanted), stagesAll.end()) << wanted;
@@ -176,14 +183,16 @@ TEST_F(RendererGl, WhatASceneLacksIsNotCompiled) {
     return all;
   };
   const std::string plain = resourcesOf(openBox());
-  for (const char* unwanted : {"diffuseTexture", "maskTexture", "materialSpecular", "materialShininess", "materialEmission", "masked"})
+  for (const char* unwanted :
+       {"diffuseTexture", "maskTexture", "materialSpecular", "materialShininess", "materialEmission", "masked"})
     EXPECT_EQ(plain.find(unwanted), std::string::npos) << unwanted << " in\n" << plain;
   EXPECT_NE(plain.find("surface opaque:materialDiffuse"), std::string::npos) << plain;
 
   SceneBuilder builder;
   const int picture = builder.texture(2, 2, std::vector<std::uint8_t>(16, 255));
   const int mask = builder.texture(2, 2, std::vector<std::uint8_t>(16, 255));
-  const int material = builder.material(glm::vec3(0.5f)), shiny = builder.material(glm::vec3(0.5f)), glows = builder.material(glm::vec3(0.5f));
+  const int material = builder.material(glm::vec3(0.5f)), shiny = builder.material(glm::vec3(0.5f)),
+            glows = builder.material(glm::vec3(0.5f));
   builder.materialAt(material).diffuseTexture = picture;
   builder.materialAt(material).alphaTexture = mask;
   builder.materialAt(material).alphaMasked = true;
@@ -191,21 +200,24 @@ TEST_F(RendererGl, WhatASceneLacksIsNotCompiled) {
   builder.materialAt(glows).emission = glm::vec3(0.2f);
   for (const int m : {material, shiny, glows}) builder.plate({0, m, 0}, {0, 0, 8}, {8, 0, 0}, m);
   const std::string rich = resourcesOf(builder.scene());
-  for (const char* wanted : {"diffuseTexture", "maskTexture", "materialSpecular", "materialShininess", "materialEmission", "masked"})
+  for (const char* wanted :
+       {"diffuseTexture", "maskTexture", "materialSpecular", "materialShininess", "materialEmission", "masked"})
     EXPECT_NE(rich.find(wanted), std::string::npos) << wanted << " in\n" << rich;
 }
 
 TEST_F(RendererGl, GpuBytesIsTheSumOfWhatIsThere) {
   const Scene scene = openBox();
-  const std::size_t pixels = 48 * 32, geometry = scene.vertices.size() * sizeof(Vertex) + scene.indices.size() * sizeof(std::uint32_t);
+  const std::size_t pixels = 48 * 32,
+                    geometry = scene.vertices.size() * sizeof(Vertex) + scene.indices.size() * sizeof(std::uint32_t);
   const std::size_t targets = pixels * (16 + 4 + 4), shadow = 512 * 512 * 4, frame = sizeof(shared::FrameConstants);
   RenderSettings s = settings(Component::direct);
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + shadow + frame);
   s.fullFloatTarget = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets - pixels * 8 + shadow + frame);
 
-  // One cascade of 16^3, the result in 16-bit floats, in a buffer and in textures; injected light, two fronts and their sum in 32, as potentials on
-  // corners and faces; of 4^3 bricks three words each after a dispatch's three and their count.
+  // One cascade of 16^3, the result in 16-bit floats, in a buffer and in textures; injected light, two fronts and their
+  // sum in 32, as potentials on corners and faces; of 4^3 bricks three words each after a dispatch's three and their
+  // count.
   s = settings(Component::indirect);
   s.lpv.storage = LightPropagationVolume::Storage::half;
   s.lpv.cascades.cascades = 1;
@@ -214,7 +226,8 @@ TEST_F(RendererGl, GpuBytesIsTheSumOfWhatIsThere) {
                     lpv = 3 * cells * (8 + 8 + 4 * 16) + bricks + corners * 4 * 16 + sizeof(shared::LpvConstants);
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv);
   s.lpv.blocking = false;
-  EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv - corners * 4 * 16);
+  EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(),
+            geometry + targets + frame + rsm + lpv - corners * 4 * 16);
   s.lpv.iterations = 0;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(),
             geometry + targets + frame + rsm + 3 * cells * 16 + sizeof(shared::LpvConstants));
@@ -239,20 +252,22 @@ TEST_F(RendererGl, WithoutLightOrAlbedoIndirectIsExactlyZero) {
 }
 
 TEST_F(RendererGl, IndirectBrightnessHardlyDependsOnCascades) {
-  // The box in the middle of a scene twice its size, seen from within, near the lit floor and wall, so that the finer cascades cover
-  // a good part of the picture. Where light varies little from cell to cell cascades agree within 1 % (LpvKnownAnswers); this box is
-  // but 8 coarse cells wide.
+  // The box in the middle of a scene twice its size, seen from within, near the lit floor and wall, so that the finer
+  // cascades cover a good part of the picture. Where light varies little from cell to cell cascades agree within 1 %
+  // (LpvKnownAnswers); this box is but 8 coarse cells wide.
   Scene scene = openBox(0.6);
   {
     SceneBuilder corners;  // black specks that make the scene's bounds 12 a side
     corners.scene() = scene;
     const int black = corners.material(glm::vec3(0.0f));
-    for (const double at : {-6.0, 6.0}) corners.triangle({at, at, at}, {at * 0.999, at, at}, {at, at * 0.999, at}, black);
+    for (const double at : {-6.0, 6.0})
+      corners.triangle({at, at, at}, {at * 0.999, at, at}, {at, at * 0.999, at}, black);
     scene = corners.scene();
   }
   const Camera camera = lookingAt({-0.3, -0.5, 1.6}, {-1.8, -3.0, -1.2}, 1.2);
-  // Looked up half a cell before the surface, as published: on the surface itself cells behind it, in the dark, have half the weight, and how far they reach is up to
-  // their size (lpv.lookup=flux there: 1.38 and 1.64 times with 2 and 3 cascades).
+  // Looked up half a cell before the surface, as published: on the surface itself cells behind it, in the dark, have
+  // half the weight, and how far they reach is up to their size (lpv.lookup=flux there: 1.38 and 1.64 times with 2 and
+  // 3 cascades).
   double one = 0.0;
   Image previous;
   for (int cascades = 1; cascades <= 4; ++cascades) {
@@ -266,10 +281,11 @@ TEST_F(RendererGl, IndirectBrightnessHardlyDependsOnCascades) {
     std::size_t changed = 0;
     for (std::size_t i = 0; i < previous.pixels.size(); ++i)
       if (glm::length(image.pixels[i] - previous.pixels[i]) > 1e-3f * static_cast<float>(one)) ++changed;
-    std::cout << "[ measured ] " << cascades << " cascades: mean indirect radiance " << mean << ", over that of one " << mean / one << ", pixels changed "
-              << changed << "\n";
+    std::cout << "[ measured ] " << cascades << " cascades: mean indirect radiance " << mean << ", over that of one "
+              << mean / one << ", pixels changed " << changed << "\n";
     EXPECT_NEAR(mean / one, 1.0, 0.05) << cascades;
-    EXPECT_TRUE(cascades == 1 || cascades == 4 || changed > image.pixels.size() / 100) << cascades;  // the test looks where the new cascade lies
+    EXPECT_TRUE(cascades == 1 || cascades == 4 || changed > image.pixels.size() / 100)
+        << cascades;  // the test looks where the new cascade lies
     previous = image;
   }
 }
@@ -282,7 +298,8 @@ TEST_F(RendererGl, IndirectBrightnessDoesNotDependOnTheReflectiveShadowMap) {
     s.rsm.size = size;
     const double mean = luminance(render(scene, openBoxCamera(), s));
     if (size == 256) reference = mean;
-    std::cout << "[ measured ] map of " << size << ": mean indirect radiance over that of 256 " << mean / reference << "\n";
+    std::cout << "[ measured ] map of " << size << ": mean indirect radiance over that of 256 " << mean / reference
+              << "\n";
     EXPECT_NEAR(mean / reference, 1.0, 0.05) << size;
   }
 }
@@ -303,7 +320,8 @@ TEST_F(RendererGl, SubCellCameraMotionLeavesTheVolumeBitIdentical) {
     return all;
   };
   // Cells of 1/4, 1/2 and 1: a motion within a quarter of a unit crosses none of their borders.
-  const auto first = volumeAt({0.03, 0.03, 0.03}), moved = volumeAt({0.22, 0.1, 0.2}), back = volumeAt({0.03, 0.03, 0.03});
+  const auto first = volumeAt({0.03, 0.03, 0.03}), moved = volumeAt({0.22, 0.1, 0.2}),
+             back = volumeAt({0.03, 0.03, 0.03});
   EXPECT_EQ(first, moved);
   EXPECT_EQ(first, back);  // and frames repeat to the bit
   const auto far = volumeAt({1.3, 0.03, 0.03});
@@ -317,10 +335,12 @@ TEST_F(RendererGl, TheScalesOfSceneAndCameraCancel) {
     EXPECT_NEAR(luminance(scaled) / luminance(reference), 1.0, 0.01) << scale;
     std::size_t off = 0;  // edges of shadows may move by a pixel
     for (std::size_t i = 0; i < scaled.pixels.size(); ++i)
-      if (glm::length(scaled.pixels[i] - reference.pixels[i]) > 0.01f * static_cast<float>(largestValue(reference))) ++off;
+      if (glm::length(scaled.pixels[i] - reference.pixels[i]) > 0.01f * static_cast<float>(largestValue(reference)))
+        ++off;
     EXPECT_LE(off, scaled.pixels.size() / 100) << scale;
-    std::cout << "[ measured ] scale " << scale << ": mean over that of scale 1 " << luminance(scaled) / luminance(reference) << ", " << off
-              << " of " << scaled.pixels.size() << " pixels off by 1 %\n";
+    std::cout << "[ measured ] scale " << scale << ": mean over that of scale 1 "
+              << luminance(scaled) / luminance(reference) << ", " << off << " of " << scaled.pixels.size()
+              << " pixels off by 1 %\n";
   }
 }
 
@@ -372,7 +392,8 @@ TEST_F(RendererGl, ADegenerateTriangleHarmsNothing) {
   Scene scene = floorScene();
   Mesh& mesh = scene.meshes[0];
   const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-  for (int i = 0; i < 3; ++i) scene.vertices.push_back({{0.5f * static_cast<float>(i), 0.5f, 0.0f}, {}, glm::vec3(0.0f)});
+  for (int i = 0; i < 3; ++i)
+    scene.vertices.push_back({{0.5f * static_cast<float>(i), 0.5f, 0.0f}, {}, glm::vec3(0.0f)});
   for (std::uint32_t i = 0; i < 3; ++i) scene.indices.push_back(first + i);
   mesh.indexCount += 3;
   const Image image = render(scene, kAboveFloor, settings());
@@ -390,7 +411,8 @@ TEST_F(RendererGl, BackgroundShowsWhereNothingIsAndLightsNothing) {
 TEST_F(RendererGl, DisplayPictureIsTheToneMappedOne) {
   // Exposure doubles before the curve; black stays black; rows are top first in both pictures.
   SceneBuilder builder;
-  builder.plate({0, 0, -2}, {0, 0, 4}, {8, 0, 0}, builder.material(glm::vec3(0.5f)));  // the upper half of the view alone
+  builder.plate({0, 0, -2}, {0, 0, 4}, {8, 0, 0},
+                builder.material(glm::vec3(0.5f)));  // the upper half of the view alone
   builder.sun({0, -1, 0}, glm::vec3(1.0f));
   Scene& scene = builder.scene();
   Renderer renderer(context(), programs(), scene, settings(Component::direct));
@@ -411,8 +433,10 @@ TEST_F(RendererGl, DisplayPictureIsTheToneMappedOne) {
 }
 
 TEST(RendererNames, ParseAndRefuse) {
-  for (const Technique technique : {Technique::direct, Technique::lpv}) EXPECT_EQ(parseName<Technique>(nameOf(technique), ""), technique);
-  for (const Component component : {Component::all, Component::direct, Component::indirect}) EXPECT_EQ(parseName<Component>(nameOf(component), ""), component);
+  for (const Technique technique : {Technique::direct, Technique::lpv})
+    EXPECT_EQ(parseName<Technique>(nameOf(technique), ""), technique);
+  for (const Component component : {Component::all, Component::direct, Component::indirect})
+    EXPECT_EQ(parseName<Component>(nameOf(component), ""), component);
   EXPECT_THROW(parseName<Technique>("LPV", ""), Error);
   EXPECT_THROW(parseName<Component>("", ""), Error);
 }

@@ -29,12 +29,14 @@ class Reuse : public test::SharedProgramsTest {
   static Scene room() {
     Scene scene = test::openBox();
     scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
-    scene.spots.push_back({{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
+    scene.spots.push_back(
+        {{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
     return scene;
   }
   /// Still, a step of less than a cell, a long way, still, a turn, and back.
   static std::vector<Camera> path() {
-    const Camera start = test::openBoxCamera(), near = lookingAt({0.05, 1.02, 11.9}, {0.0, -1.0, 0.0}), far = lookingAt({3.0, 4.0, 4.0}, {-2.0, -2.0, -1.0});
+    const Camera start = test::openBoxCamera(), near = lookingAt({0.05, 1.02, 11.9}, {0.0, -1.0, 0.0}),
+                 far = lookingAt({3.0, 4.0, 4.0}, {-2.0, -2.0, -1.0});
     return {start, start, start, near, near, far, far, lookingAt({3.0, 4.0, 4.0}, {2.0, 0.0, -5.0}), start, start};
   }
   struct Run {
@@ -47,7 +49,8 @@ class Reuse : public test::SharedProgramsTest {
       return found == stages.end() ? none : found->second;
     }
   };
-  static Run run(const Scene& scene, RenderSettings s, bool reuse, const std::vector<Camera>& cameras, bool toTheEnd = false) {
+  static Run run(const Scene& scene, RenderSettings s, bool reuse, const std::vector<Camera>& cameras,
+                 bool toTheEnd = false) {
     s.reuse = reuse;
     Renderer renderer(context(), library(), scene, s);
     Run result;
@@ -81,7 +84,8 @@ TEST_F(Reuse, PicturesAreTheSameBitByBitForEachTechnique) {
     RenderSettings settings;
     bool toTheEnd = false;
   };
-  std::vector<Case> cases{{"direct", settings(Technique::direct)}, {"rsm", settings(Technique::rsm)}, {"lpv", settings(Technique::lpv)}};
+  std::vector<Case> cases{
+      {"direct", settings(Technique::direct)}, {"rsm", settings(Technique::rsm)}, {"lpv", settings(Technique::lpv)}};
   Case sunCascades{"sun cascades", settings(Technique::direct)};
   sunCascades.settings.sunCascades.cascades = 3;
   cases.push_back(sunCascades);
@@ -102,19 +106,22 @@ TEST_F(Reuse, PicturesAreTheSameBitByBitForEachTechnique) {
   cases.push_back(original);
   for (const int bounces : {2, LightPropagationVolume::kAllBounces})
     for (const bool toTheEnd : {true, false}) {
-      Case c{fmt::format("rays, bounces {}{}", bounces, toTheEnd ? ", settled" : ""), settings(Technique::lpv), toTheEnd};
+      Case c{fmt::format("rays, bounces {}{}", bounces, toTheEnd ? ", settled" : ""), settings(Technique::lpv),
+             toTheEnd};
       c.settings.lpv.transport = LpvTransport::rays;
       c.settings.lpv.bounces = bounces;
       cases.push_back(c);
     }
   for (const Case& c : cases)
-    expectSame(run(scene, c.settings, true, cameras, c.toTheEnd), run(scene, c.settings, false, cameras, c.toTheEnd), c.name);
+    expectSame(run(scene, c.settings, true, cameras, c.toTheEnd), run(scene, c.settings, false, cameras, c.toTheEnd),
+               c.name);
 }
 
 TEST_F(Reuse, AStageRunsWhenItsInputsChangedAndOnlyThen) {
   const Scene scene = room();
   const std::vector<Camera> cameras = path();
-  const Run with = run(scene, settings(Technique::lpv), true, cameras), without = run(scene, settings(Technique::lpv), false, cameras);
+  const Run with = run(scene, settings(Technique::lpv), true, cameras),
+            without = run(scene, settings(Technique::lpv), false, cameras);
   for (const char* once : {"shadow", "spot shadows", "point shadows", "rsm"}) {
     EXPECT_EQ(with.stage(once).ran, 1u) << once;
     EXPECT_EQ(with.stage(once).frames, cameras.size()) << once;
@@ -122,14 +129,16 @@ TEST_F(Reuse, AStageRunsWhenItsInputsChangedAndOnlyThen) {
     EXPECT_EQ(without.stage(once).savedMs(), 0.0) << once;
     EXPECT_GT(with.stage(once).savedMs(), 0.0) << once;
   }
-  // The volume: at first, after the long way, after the turn and on coming back; a step of less than a cell moves no grid.
+  // The volume: at first, after the long way, after the turn and on coming back; a step of less than a cell moves no
+  // grid.
   for (const char* volume : {"injection", "geometry volume", "propagation"}) {
     EXPECT_EQ(with.stage(volume).ran, 4u) << volume;
     EXPECT_EQ(without.stage(volume).ran, cameras.size()) << volume;
   }
   for (const char* each : {"shading", "tone mapping"}) EXPECT_EQ(with.stage(each).ran, cameras.size()) << each;
 
-  // Surfels of what the camera sees change with every view, so there the volume is made each frame; the lights' maps are not.
+  // Surfels of what the camera sees change with every view, so there the volume is made each frame; the lights' maps
+  // are not.
   RenderSettings s = settings(Technique::lpv);
   s.lpv.surfels = LpvSurfels::both;
   const Run camera = run(scene, s, true, cameras);

@@ -24,8 +24,9 @@ double luminance(const glm::dvec3& c) { return (c.x + c.y + c.z) / 3.0; }
 class RsmGatherOnGl : public test::GlTest {
  protected:
   /// Irradiance at points, from a hand-made map, with the engine's shaders.
-  std::vector<glm::dvec3> probe(const RsmMap& map, const RsmGather::Settings& settings, const std::vector<glm::vec4>& pattern,
-                                const std::vector<SurfacePoint>& points, float rotation) {
+  std::vector<glm::dvec3> probe(const RsmMap& map, const RsmGather::Settings& settings,
+                                const std::vector<glm::vec4>& pattern, const std::vector<SurfacePoint>& points,
+                                float rotation) {
     std::vector<glm::vec4> position, normal, flux;
     for (const RsmMap::Texel& t : map.texels) {
       position.emplace_back(glm::vec3(t.position), t.surface ? 1.0f : 0.0f);
@@ -52,8 +53,9 @@ class RsmGatherOnGl : public test::GlTest {
     const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), GL_STATIC_DRAW);
     {
       const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
-      RsmGather::bindMap(programs().loadCompute("rsm gather probe", "rsm/gather_probe.comp", RsmGather::flags(settings, RsmGather::Light::sun)), settings,
-                         {{textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())}});
+      RsmGather::bindMap(programs().loadCompute("rsm gather probe", "rsm/gather_probe.comp",
+                                                RsmGather::flags(settings, RsmGather::Light::sun)),
+                         settings, {{textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())}});
       frameBuffer.bind(GL_UNIFORM_BUFFER, 0);
       samples.bind(GL_SHADER_STORAGE_BUFFER, 0);
       in.bind(GL_SHADER_STORAGE_BUFFER, 1);
@@ -84,12 +86,15 @@ TEST_F(RsmGatherOnGl, EqualsTheTwin) {
         settings.clampTexels = 2.0f;
         const auto pattern = RsmGather::pattern(400, weight, {0.3, 0.1});
         const auto actual = probe(map, settings, pattern, points, rotation);
-        const twin::GatherOptions options{static_cast<double>(settings.radius), onCpu, 2.0 * std::sqrt(map.texelArea())};
+        const twin::GatherOptions options{static_cast<double>(settings.radius), onCpu,
+                                          2.0 * std::sqrt(map.texelArea())};
         int compared = 0;
         double worst = 0.0;
         for (std::size_t i = 0; i < points.size(); ++i) {
-          const auto expected = twin::gather(map, pattern, points[i].position, points[i].normal, static_cast<double>(rotation), options);
-          if (expected.boundaryDistance < 2e-5) continue;  // a sample on a texel's edge: rounding decides which it takes
+          const auto expected =
+              twin::gather(map, pattern, points[i].position, points[i].normal, static_cast<double>(rotation), options);
+          if (expected.boundaryDistance < 2e-5)
+            continue;  // a sample on a texel's edge: rounding decides which it takes
           ++compared;
           const double scale = std::max(luminance(expected.irradiance), 1e-30);
           worst = std::max(worst, glm::length(actual[i] - expected.irradiance) / scale);
@@ -109,7 +114,8 @@ TEST_F(RsmGatherOnGl, TheCornerAnchor) {
   settings.radius = 2.0f;
   const auto pattern = RsmGather::pattern(65536, RsmGather::Weight::unbiased);
   const auto actual = probe(map, settings, pattern, points, 0.3f);
-  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(actual[i].x / test::cornerIrradiance(heights[i]), 1.0, 0.06) << heights[i];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_NEAR(actual[i].x / test::cornerIrradiance(heights[i]), 1.0, 0.06) << heights[i];
 }
 
 TEST_F(RsmGatherOnGl, OnASurfelBesideTheMapAndFarAwayItIsFiniteAndDark) {
@@ -121,12 +127,16 @@ TEST_F(RsmGatherOnGl, OnASurfelBesideTheMapAndFarAwayItIsFiniteAndDark) {
   for (const RsmMap::Texel& t : map.texels) onSurfels.push_back({t.position, t.normal});
   for (const double away : {1e2, 1e6, 1e20, 1e37}) outside.push_back({map.right * away, -map.right});
   const auto pattern = RsmGather::pattern(400, RsmGather::Weight::unbiased);
-  for (const auto nearField : {RsmGather::Near::none, RsmGather::Near::clamp, RsmGather::Near::disc, RsmGather::Near::quad}) {
+  for (const auto nearField :
+       {RsmGather::Near::none, RsmGather::Near::clamp, RsmGather::Near::disc, RsmGather::Near::quad}) {
     RsmGather::Settings settings;
     settings.nearField = nearField;
-    for (const glm::dvec3& e : probe(map, settings, pattern, onSurfels, 0.0f)) EXPECT_TRUE(std::isfinite(luminance(e))) << nameOf(nearField);
-    for (const glm::dvec3& e : probe(map, settings, pattern, outside, 0.0f)) EXPECT_EQ(luminance(e), 0.0) << nameOf(nearField);
-    for (const glm::dvec3& e : probe(dark, settings, pattern, onSurfels, 0.0f)) EXPECT_EQ(luminance(e), 0.0) << nameOf(nearField);
+    for (const glm::dvec3& e : probe(map, settings, pattern, onSurfels, 0.0f))
+      EXPECT_TRUE(std::isfinite(luminance(e))) << nameOf(nearField);
+    for (const glm::dvec3& e : probe(map, settings, pattern, outside, 0.0f))
+      EXPECT_EQ(luminance(e), 0.0) << nameOf(nearField);
+    for (const glm::dvec3& e : probe(dark, settings, pattern, onSurfels, 0.0f))
+      EXPECT_EQ(luminance(e), 0.0) << nameOf(nearField);
   }
 }
 
@@ -150,8 +160,8 @@ void addQuad(Scene& scene, const glm::vec3& corner, const glm::vec3& u, const gl
 
 constexpr float kAlbedo = 0.6f, kSun = 3.0f;
 
-/// A sunlit floor y = 0, 0 < x < 10, |z| < 50 beside a wall x = 0 that the sun, straight above, does not touch. Exact for the
-/// wall at height h: kAlbedo kSun cornerIrradiance(h).
+/// A sunlit floor y = 0, 0 < x < 10, |z| < 50 beside a wall x = 0 that the sun, straight above, does not touch. Exact
+/// for the wall at height h: kAlbedo kSun cornerIrradiance(h).
 Scene corner() {
   Scene scene;
   scene.materials.resize(1);
@@ -167,14 +177,17 @@ Scene corner() {
   return scene;
 }
 
-/// Three walls, a floor and two blocks in slanting light, red and green: smooth walls, edges and a background. Lengths times `scale`.
+/// Three walls, a floor and two blocks in slanting light, red and green: smooth walls, edges and a background. Lengths
+/// times `scale`.
 Scene room(float scale = 1.0f) {
   Scene scene;
   scene.materials.resize(3);
   scene.materials[0].diffuse = glm::vec3(0.7f);
   scene.materials[1].diffuse = {0.7f, 0.1f, 0.1f};
   scene.materials[2].diffuse = {0.1f, 0.6f, 0.1f};
-  const auto quad = [&](glm::vec3 corner, glm::vec3 u, glm::vec3 v, int material) { addQuad(scene, scale * corner, scale * u, scale * v, material); };
+  const auto quad = [&](glm::vec3 corner, glm::vec3 u, glm::vec3 v, int material) {
+    addQuad(scene, scale * corner, scale * u, scale * v, material);
+  };
   quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, 0);
   quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, 0);
   quad({-2, 0, 2}, {0, 0, -4}, {0, 3, 0}, 1);
@@ -233,7 +246,8 @@ TEST_F(RsmRendered, TheWallOfACornerHasTheExactIrradiance) {
     const double h = 1.5 + (y + 0.5 - 0.5 * s.size.y) * pixel;
     if (h < 0.02 || h > 3.0) continue;
     const double e = static_cast<double>(r.irradiance[static_cast<std::size_t>(y * s.size.x + s.size.x / 2)].x);
-    // The floor's texels start within half a texel of the wall: 0.02 of h at least is missed or doubled where h is of its size.
+    // The floor's texels start within half a texel of the wall: 0.02 of h at least is missed or doubled where h is of
+    // its size.
     EXPECT_NEAR(e / (static_cast<double>(kAlbedo * kSun) * test::cornerIrradiance(h)), 1.0, h < 0.15 ? 0.3 : 0.08) << h;
     ++compared;
     // Lambert: the picture's radiance is albedo / pi times it.
@@ -250,7 +264,8 @@ TEST_F(RsmRendered, InterpolationEqualsTheFullGatherWhereRefusedAndNearlyElsewhe
   s.gather.interpolate = false;
   const Result off = render(scene, s);
   s.gather.interpolate = true;
-  // Light near a contact changes within the distance to it, so the error is that of steps of 4 and 2 pixels in so small a picture.
+  // Light near a contact changes within the distance to it, so the error is that of steps of 4 and 2 pixels in so small
+  // a picture.
   double before = 0.12;
   for (const int step : {4, 2}) {
     s.gather.lowResolution = step;
@@ -274,7 +289,8 @@ TEST_F(RsmRendered, InterpolationEqualsTheFullGatherWhereRefusedAndNearlyElsewhe
       }
     }
     const double error = std::sqrt(square / count) / (sum / count);
-    std::printf("step %d, interpolated pixels %.0f, refused %llu: RMS error over mean %.4f\n", step, count, static_cast<unsigned long long>(refused), error);
+    std::printf("step %d, interpolated pixels %.0f, refused %llu: RMS error over mean %.4f\n", step, count,
+                static_cast<unsigned long long>(refused), error);
     EXPECT_GT(refused, 100u);
     EXPECT_GT(count, 8000.0);
     EXPECT_LT(error, before);
@@ -301,7 +317,8 @@ TEST_F(RsmRendered, StepOneIsNoInterpolationAndThresholdsRefuse) {
   const Result none = render(scene, s, 3);
   EXPECT_EQ(none.counts.frames, 3u);
   EXPECT_EQ(none.counts.refused, none.counts.pixels);
-  for (std::size_t i = 0; i < none.irradiance.size(); ++i) EXPECT_EQ(glm::vec3(none.irradiance[i]), glm::vec3(off.irradiance[i]));
+  for (std::size_t i = 0; i < none.irradiance.size(); ++i)
+    EXPECT_EQ(glm::vec3(none.irradiance[i]), glm::vec3(off.irradiance[i]));
 }
 
 TEST_F(RsmRendered, ASampleFitsOnlyNearThePlaneAndNotFarAway) {
@@ -334,7 +351,8 @@ TEST_F(RsmRendered, SceneScaleAndMapSizeDoNotChangeTheLight) {
   s.gather.samples = 2048;
   const double reference = luminance(meanOf(render(room(), s).image));
   EXPECT_GT(reference, 0.01);
-  for (const float scale : {0.01f, 100.0f}) EXPECT_NEAR(luminance(meanOf(render(room(scale), s).image)) / reference, 1.0, 1e-3) << scale;
+  for (const float scale : {0.01f, 100.0f})
+    EXPECT_NEAR(luminance(meanOf(render(room(scale), s).image)) / reference, 1.0, 1e-3) << scale;
   for (const int size : {64, 128, 512, 1024}) {
     s.rsm.size = size;
     EXPECT_NEAR(luminance(meanOf(render(room(), s).image)) / reference, 1.0, 0.05) << size;
@@ -356,7 +374,9 @@ TEST_F(RsmRendered, ComponentsAddUpAndNothingIsBuiltThatIsNotNeeded) {
   const Image without = direct.readRadiance();
   for (int y = 0; y < all.height; ++y)
     for (int x = 0; x < all.width; ++x)
-      EXPECT_LE(glm::length(all.at(x, y) - indirect.at(x, y) - without.at(x, y)), 1e-5f * glm::length(all.at(x, y)) + 1e-6f) << x << " " << y;
+      EXPECT_LE(glm::length(all.at(x, y) - indirect.at(x, y) - without.at(x, y)),
+                1e-5f * glm::length(all.at(x, y)) + 1e-6f)
+          << x << " " << y;
   s.component = Component::all;
   EXPECT_GT(Renderer(context(), programs(), scene, s).gpuBytes(), direct.gpuBytes());
   // Without a light there is nothing to gather.

@@ -24,7 +24,8 @@ class ReflectiveShadowMapGl : public test::SharedProgramsTest {
   struct Drawn {
     std::vector<glm::vec4> position, normal, flux;
     glm::dvec3 totalFlux{0.0};
-    glm::dvec3 injectedFlux{0.0};  ///< of a volume of one cascade that holds the scene: band 0 * sqrt(4 pi) * E_ref * s^2
+    glm::dvec3 injectedFlux{
+        0.0};  ///< of a volume of one cascade that holds the scene: band 0 * sqrt(4 pi) * E_ref * s^2
     std::size_t covered = 0;
   };
   static Drawn draw(const Scene& scene, int size) {
@@ -40,7 +41,8 @@ class ReflectiveShadowMapGl : public test::SharedProgramsTest {
     const gl::Buffer constants("frame", sizeof frame, &frame, GL_STATIC_DRAW);
     constants.bind(GL_UNIFORM_BUFFER, 0);
     const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, frustum.texelArea(size));
-    EXPECT_NEAR(outputs.texelArea, frustum.width * frustum.height / (static_cast<double>(size) * size), 1e-6 * outputs.texelArea);
+    EXPECT_NEAR(outputs.texelArea, frustum.width * frustum.height / (static_cast<double>(size) * size),
+                1e-6 * outputs.texelArea);
 
     Drawn drawn{outputs.position.readRgba(), outputs.normal.readRgba(), outputs.flux.readRgba(), {}, {}, 0};
     for (std::size_t i = 0; i < drawn.flux.size(); ++i) {
@@ -52,25 +54,31 @@ class ReflectiveShadowMapGl : public test::SharedProgramsTest {
     settings.cascades.cascades = 1;
     settings.iterations = 0;
     LightPropagationVolume lpv(library(), capabilities(), settings);
-    const LightPropagationVolume::Inputs inputs{{outputs}, placeCascades(settings.cascades, scene.bounds, scene.bounds.centre(), glm::dvec3(0.0)),
-                                                scene.sun->irradiance.x};
+    const LightPropagationVolume::Inputs inputs{
+        {outputs},
+        placeCascades(settings.cascades, scene.bounds, scene.bounds.centre(), glm::dvec3(0.0)),
+        scene.sun->irradiance.x};
     lpv.place(inputs);
     lpv.inject(inputs);
     const double s = inputs.cascades[0].cellSize;
     for (int channel = 0; channel < 3; ++channel)
       for (const glm::vec4& cell : lpv.result()[static_cast<std::size_t>(channel)].readRgba())
-        drawn.injectedFlux[channel] += std::sqrt(4.0 * std::numbers::pi) * inputs.referenceIrradiance * s * s * static_cast<double>(cell.x);
+        drawn.injectedFlux[channel] +=
+            std::sqrt(4.0 * std::numbers::pi) * inputs.referenceIrradiance * s * s * static_cast<double>(cell.x);
     return drawn;
   }
 
-  /// A plate tilted against a sun that falls straight down, turned in its plane and about the sun, so that its edges cross the
-  /// texels at all phases and coverage averages out.
+  /// A plate tilted against a sun that falls straight down, turned in its plane and about the sun, so that its edges
+  /// cross the texels at all phases and coverage averages out.
   static Scene tiltedPlate(double degrees, const glm::dvec3& sun, float normalSign = 1.0f, double turn = 0.0) {
     SceneBuilder builder;
-    const glm::dvec3 u = 2.0 * glm::dvec3(std::cos(0.5), 0.0, std::sin(0.5)), across = glm::normalize(glm::dvec3(-u.z, 0.0, u.x));
-    const glm::dvec3 v = 1.4 * (std::cos(degrees * kDegree) * across + std::sin(degrees * kDegree) * glm::dvec3(0, 1, 0));
+    const glm::dvec3 u = 2.0 * glm::dvec3(std::cos(0.5), 0.0, std::sin(0.5)),
+                     across = glm::normalize(glm::dvec3(-u.z, 0.0, u.x));
+    const glm::dvec3 v =
+        1.4 * (std::cos(degrees * kDegree) * across + std::sin(degrees * kDegree) * glm::dvec3(0, 1, 0));
     const double c = std::cos(turn), s = std::sin(turn);
-    builder.plate({0.3, -2.0, 1.0}, c * u + s * (2.0 / 1.4) * v, c * v - s * (1.4 / 2.0) * u, builder.material({0.8f, 0.4f, 0.1f}), normalSign);
+    builder.plate({0.3, -2.0, 1.0}, c * u + s * (2.0 / 1.4) * v, c * v - s * (1.4 / 2.0) * u,
+                  builder.material({0.8f, 0.4f, 0.1f}), normalSign);
     builder.sun(sun, {5.0f, 6.0f, 7.0f});
     return builder.scene();
   }
@@ -78,13 +86,14 @@ class ReflectiveShadowMapGl : public test::SharedProgramsTest {
   static glm::dvec3 expectedFlux(const Scene& scene) {
     const auto corner = [&](std::size_t i) { return glm::dvec3(scene.vertices[i].position); };
     const glm::dvec3 area = glm::cross(corner(1) - corner(0), corner(3) - corner(0));
-    return glm::dvec3(scene.sun->irradiance) * glm::dvec3(scene.materials[0].diffuse) * std::abs(glm::dot(area, scene.sun->direction));
+    return glm::dvec3(scene.sun->irradiance) * glm::dvec3(scene.materials[0].diffuse) *
+           std::abs(glm::dot(area, scene.sun->direction));
   }
-  static void expectWithin(const glm::dvec3& actual, const glm::dvec3& expected, double relative, const std::string& what) {
+  static void expectWithin(const glm::dvec3& actual, const glm::dvec3& expected, double relative,
+                           const std::string& what) {
     for (int channel = 0; channel < 3; ++channel)
       EXPECT_NEAR(actual[channel] / expected[channel], 1.0, relative) << what << ", channel " << channel;
   }
-
 };
 
 TEST_F(ReflectiveShadowMapGl, FluxIsAlbedoTimesIrradianceTimesProjectedArea) {
@@ -98,7 +107,8 @@ TEST_F(ReflectiveShadowMapGl, FluxIsAlbedoTimesIrradianceTimesProjectedArea) {
         ++cases;
         const Drawn drawn = draw(scene, size);
         const glm::dvec3 expected = expectedFlux(scene);
-        const std::string what = "tilt " + std::to_string(degrees) + ", map " + std::to_string(size) + ", sun x " + std::to_string(sun.x);
+        const std::string what =
+            "tilt " + std::to_string(degrees) + ", map " + std::to_string(size) + ", sun x " + std::to_string(sun.x);
         expectWithin(drawn.totalFlux, expected, 0.01, what);
         // A cell sums some thousand equal terms in 32 bits: 8192 roundings of 2^-24 at worst.
         expectWithin(drawn.injectedFlux, drawn.totalFlux, 5e-4, what + ", injected");
@@ -109,8 +119,8 @@ TEST_F(ReflectiveShadowMapGl, FluxIsAlbedoTimesIrradianceTimesProjectedArea) {
 }
 
 TEST_F(ReflectiveShadowMapGl, PositionsLieOnThePlateAndNormalsOnTheLightsSide) {
-  for (const float normalSign : {1.0f, -1.0f})                    // vertex normals with and against the winding
-    for (const double degrees : {20.0, 160.0, 200.0, 340.0}) {    // either side towards the light
+  for (const float normalSign : {1.0f, -1.0f})  // vertex normals with and against the winding
+    for (const double degrees : {20.0, 160.0, 200.0, 340.0}) {  // either side towards the light
       const glm::dvec3 sun = glm::normalize(glm::dvec3(0.2, -1.0, 0.1));
       const Scene scene = tiltedPlate(degrees, sun, normalSign);
       const Drawn drawn = draw(scene, 64);
@@ -149,8 +159,8 @@ TEST_F(ReflectiveShadowMapGl, NearestSurfaceAlone) {
 }
 
 TEST_F(ReflectiveShadowMapGl, AMaskedPlateReflectsWhatItCovers) {
-  // A mask with a solid stripe of two columns out of eight, and the same as the alpha of an albedo texture. The mask is filtered and
-  // cut at a half, which for a stripe lies on the border of its texels.
+  // A mask with a solid stripe of two columns out of eight, and the same as the alpha of an albedo texture. The mask is
+  // filtered and cut at a half, which for a stripe lies on the border of its texels.
   for (const bool ownFile : {true, false}) {
     SceneBuilder builder;
     std::vector<std::uint8_t> rgba;

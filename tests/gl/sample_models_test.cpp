@@ -1,4 +1,5 @@
-// The sample models that Debian ships (package assimp-testmodels; its glTF is Khronos's for the most part): each that loads shows a surface.
+// The sample models that Debian ships (package assimp-testmodels; its glTF is Khronos's for the most part): each that
+// loads shows a surface.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "render/renderer.hpp"
@@ -23,12 +24,14 @@ using SampleModels = test::SharedProgramsTest;
 
 TEST_F(SampleModels, EveryOneThatLoadsShowsSomething) {
   const fs::path folder = "/usr/share/assimp/models";
-  if (!fs::is_directory(folder / "glTF2")) GTEST_SKIP() << "the sample models are missing (Debian package assimp-testmodels)";
+  if (!fs::is_directory(folder / "glTF2"))
+    GTEST_SKIP() << "the sample models are missing (Debian package assimp-testmodels)";
   // glTF; and every other format where there is time. A file that is no model, a picture or a text, is refused.
   std::set<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const std::string extension = lowerExtension(entry.path());
-    if (entry.is_regular_file() && (extension == ".gltf" || extension == ".glb" || test::longTests())) files.insert(entry.path());
+    if (entry.is_regular_file() && (extension == ".gltf" || extension == ".glb" || test::longTests()))
+      files.insert(entry.path());
   }
   const char* pictures = std::getenv("LUCERNA_SAMPLE_PICTURES");  // a folder, for those who want to look at them
   std::size_t shown = 0, refusals = 0;
@@ -51,7 +54,8 @@ TEST_F(SampleModels, EveryOneThatLoadsShowsSomething) {
     Renderer renderer(context(), library(), *scene, settings);
     renderer.render(scene->cameras.front());
     const Image image = renderer.readRadiance();
-    const auto lit = std::count_if(image.pixels.begin(), image.pixels.end(), [&](const glm::vec3& p) { return (p.x + p.y + p.z) * scene->exposure > 1e-3f; });
+    const auto lit = std::count_if(image.pixels.begin(), image.pixels.end(),
+                                   [&](const glm::vec3& p) { return (p.x + p.y + p.z) * scene->exposure > 1e-3f; });
     EXPECT_GT(lit, 0) << file;  // of AMF's two shapes of a unit, 90 units apart, a few
     if (pictures) {
       std::string name = fs::relative(file, folder).string() + ".png";

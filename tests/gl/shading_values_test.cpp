@@ -1,4 +1,5 @@
-// Forward shading pixel by pixel against double-precision twins: highlights, the shape of shadow filters, the display curves.
+// Forward shading pixel by pixel against double-precision twins: highlights, the shape of shadow filters, the display
+// curves.
 #include "support/gl_fixture.hpp"
 #include "support/pixel_rays.hpp"
 #include "support/radiosity_scenes.hpp"
@@ -91,10 +92,11 @@ TEST_F(ShadingValues, HighlightsAreNormalisedBlinnPhongForEveryKindOfLight) {
         SceneBuilder builder = shinyFloor(shininess, frontUp);
         builder.sun({0.02, -3.0, 5.0}, {3.0f, 5.0f, 7.0f});
         const glm::dvec3 toSun = -builder.scene().sun->direction;
-        expectHighlight(render(builder.scene(), camera), camera, shininess, "sun", [&](const glm::dvec3&, glm::dvec3& to) {
-          to = toSun;
-          return glm::dvec3(3.0, 5.0, 7.0) * to.y;
-        });
+        expectHighlight(render(builder.scene(), camera), camera, shininess, "sun",
+                        [&](const glm::dvec3&, glm::dvec3& to) {
+                          to = toSun;
+                          return glm::dvec3(3.0, 5.0, 7.0) * to.y;
+                        });
       }
       const auto falling = [&](const glm::dvec3& p, glm::dvec3& to) {
         const double d = glm::length(lamp - p);
@@ -110,19 +112,21 @@ TEST_F(ShadingValues, HighlightsAreNormalisedBlinnPhongForEveryKindOfLight) {
         SceneBuilder builder = shinyFloor(shininess, frontUp);
         const glm::dvec3 axis = glm::normalize(aim - lamp);
         builder.scene().spots.push_back({lamp, axis, {30.0f, 20.0f, 10.0f}, 0.2, 1.2});
-        expectHighlight(render(builder.scene(), camera), camera, shininess, "spot", [&](const glm::dvec3& p, glm::dvec3& to) {
-          const glm::dvec3 e = falling(p, to);
-          const double t = std::clamp((glm::dot(-to, axis) - std::cos(1.2)) / (std::cos(0.2) - std::cos(1.2)), 0.0, 1.0);
-          return e * (t * t * (3.0 - 2.0 * t));
-        });
+        expectHighlight(
+            render(builder.scene(), camera), camera, shininess, "spot", [&](const glm::dvec3& p, glm::dvec3& to) {
+              const glm::dvec3 e = falling(p, to);
+              const double t =
+                  std::clamp((glm::dot(-to, axis) - std::cos(1.2)) / (std::cos(0.2) - std::cos(1.2)), 0.0, 1.0);
+              return e * (t * t * (3.0 - 2.0 * t));
+            });
       }
     }
 }
 
 // ------------------------------------------------------------------------------------------------------ shadow filters
 
-constexpr int kMap = 96;                     // texels a side: penumbrae are wide
-constexpr double kHeight = 2.0, kHalf = 0.8; // of the plate that casts the shadow
+constexpr int kMap = 96;  // texels a side: penumbrae are wide
+constexpr double kHeight = 2.0, kHalf = 0.8;  // of the plate that casts the shadow
 const glm::dvec2 kTurn{std::cos(0.3), std::sin(0.3)};
 
 bool onPlate(const glm::dvec3& p) {
@@ -193,9 +197,10 @@ TEST_F(ShadingValues, ShadowsAreFilteredByATentOfThreeTexels) {
     builder.sun({0.1, -1.0, 0.2}, glm::vec3(2.0f));
     const SunFrustum frustum = fitSunFrustum(builder.scene(), builder.scene().sun->direction);
     const double offset = 1.5 * std::max(frustum.width, frustum.height) / kMap;
-    expectFilter(render(builder.scene(), camera, s), camera, "sun",
-                 [&](const glm::dvec3&) { return 2.0 * -builder.scene().sun->direction.y; },
-                 [&](const glm::dvec3& p) { return tent(frustum.clipFromWorld, p + glm::dvec3(0, offset, 0)); });
+    expectFilter(
+        render(builder.scene(), camera, s), camera, "sun",
+        [&](const glm::dvec3&) { return 2.0 * -builder.scene().sun->direction.y; },
+        [&](const glm::dvec3& p) { return tent(frustum.clipFromWorld, p + glm::dvec3(0, offset, 0)); });
   }
   {
     SceneBuilder builder = plateOverFloor();
@@ -204,7 +209,9 @@ TEST_F(ShadingValues, ShadowsAreFilteredByATentOfThreeTexels) {
     const LightViews views = lightViews(builder.scene().spots[0], builder.scene().bounds);
     const auto falloff = [&](const glm::dvec3& p) {
       const glm::dvec3 to = lamp - p;
-      const double d = glm::length(to), t = std::clamp((glm::dot(-to / d, axis) - std::cos(0.8)) / (std::cos(0.79) - std::cos(0.8)), 0.0, 1.0);
+      const double d = glm::length(to),
+                   t = std::clamp((glm::dot(-to / d, axis) - std::cos(0.8)) / (std::cos(0.79) - std::cos(0.8)), 0.0,
+                                  1.0);
       return 50.0 * to.y / (d * d * d) * (t * t * (3.0 - 2.0 * t));
     };
     expectFilter(render(builder.scene(), camera, s), camera, "spot", falloff, [&](const glm::dvec3& p) {
@@ -213,22 +220,25 @@ TEST_F(ShadingValues, ShadowsAreFilteredByATentOfThreeTexels) {
     });
   }
   {
-    // The floor lies in one face of an omnidirectional lamp's cube. Its taps are half a texel apart where the receiver is, and so a little more where it is moved to.
+    // The floor lies in one face of an omnidirectional lamp's cube. Its taps are half a texel apart where the receiver
+    // is, and so a little more where it is moved to.
     SceneBuilder builder = plateOverFloor();
     const glm::dvec3 lamp{0.3, 5.0, 0.2};
     builder.scene().points.push_back({lamp, glm::vec3(50.0f)});
     const LightViews views = lightViews(builder.scene().points[0], builder.scene().bounds);
     constexpr int kDown = 3;  // of OpenGL's faces: -y
     const double offset = 1.5 * views.texelWidth(kMap) * lamp.y;
-    expectFilter(render(builder.scene(), camera, s), camera, "omnidirectional",
-                 [&](const glm::dvec3& p) { return 50.0 * lamp.y / std::pow(glm::length(lamp - p), 3.0); },
-                 [&](const glm::dvec3& p) {
-                   return tent(views.clipFromWorld[kDown], p + glm::dvec3(0, offset, 0), 0.5 * lamp.y / (lamp.y - offset));
-                 });
+    expectFilter(
+        render(builder.scene(), camera, s), camera, "omnidirectional",
+        [&](const glm::dvec3& p) { return 50.0 * lamp.y / std::pow(glm::length(lamp - p), 3.0); },
+        [&](const glm::dvec3& p) {
+          return tent(views.clipFromWorld[kDown], p + glm::dvec3(0, offset, 0), 0.5 * lamp.y / (lamp.y - offset));
+        });
   }
 }
 
-// -------------------------------------------------------------------------------------------------------- display curves
+// -------------------------------------------------------------------------------------------------------- display
+// curves
 
 double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; }  // IEC 61966-2-1
 
@@ -254,7 +264,8 @@ Scene stripes() {
   return builder.scene();
 }
 
-void expectDisplay(Renderer& renderer, const Camera& camera, const std::function<glm::dvec3(const glm::dvec3&)>& curve) {
+void expectDisplay(Renderer& renderer, const Camera& camera,
+                   const std::function<glm::dvec3(const glm::dvec3&)>& curve) {
   renderer.render(camera);
   const Bitmap bitmap = renderer.readDisplay();
   int differentValues = 0;
@@ -306,13 +317,17 @@ TEST_F(ShadingValues, RadiositysMappingsAreLinearLogarithmicAndFalseColours) {
       Renderer renderer(context(), library(), scene, s);
       const double exposure = 0.5;
       renderer.setExposure(static_cast<float>(exposure));
-      const auto position = [&](double v) { return std::clamp(1.0 + std::log10(std::max(v, 1e-30)) / decades, 0.0, 1.0); };
+      const auto position = [&](double v) {
+        return std::clamp(1.0 + std::log10(std::max(v, 1e-30)) / decades, 0.0, 1.0);
+      };
       expectDisplay(renderer, kBeforeStripes, [&](glm::dvec3 v) {
         v *= exposure;
-        if (mapping == Mapping::linear) return glm::dvec3(srgb(std::min(v.x, 1.0)), srgb(std::min(v.y, 1.0)), srgb(std::min(v.z, 1.0)));
+        if (mapping == Mapping::linear)
+          return glm::dvec3(srgb(std::min(v.x, 1.0)), srgb(std::min(v.y, 1.0)), srgb(std::min(v.z, 1.0)));
         if (mapping == Mapping::logarithmic) return glm::dvec3(position(v.x), position(v.y), position(v.z));
         // Black, blue, cyan, green, yellow, red, white, a sixth of the range each.
-        constexpr std::array<std::array<double, 3>, 8> kColours{{{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {1, 1, 1}, {1, 1, 1}}};
+        constexpr std::array<std::array<double, 3>, 8> kColours{
+            {{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {1, 1, 1}, {1, 1, 1}}};
         const double at = 6.0 * position(0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z);
         const auto i = static_cast<std::size_t>(at);
         glm::dvec3 colour;

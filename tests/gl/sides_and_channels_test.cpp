@@ -1,4 +1,5 @@
-// What must not matter: which side of a face is its front, and which of the three channels light is in. And form factors that a horizon cuts.
+// What must not matter: which side of a face is its front, and which of the three channels light is in. And form
+// factors that a horizon cuts.
 #include "support/form_factor_twin.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/radiosity_scenes.hpp"
@@ -52,7 +53,8 @@ Scene turnedAround(Scene scene) {
 /// A box with the lamps of every kind that rasterisers know.
 Scene litBox() {
   Scene scene = openBox();
-  scene.spots.push_back({{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
+  scene.spots.push_back(
+      {{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
   scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
   return scene;
 }
@@ -60,7 +62,8 @@ Scene litBox() {
 double largestDifference(const Image& a, const Image& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c) largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
+    for (int c = 0; c < 3; ++c)
+      largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
   return largest;
 }
 
@@ -71,7 +74,8 @@ TEST_F(SidesAndChannels, TurningEveryFaceAroundChangesNoPicture) {
     const Image back = render(turned, openBoxCamera(), settings(technique));
     EXPECT_GT(meanOf(front).y, 0.1);
     // The two windings may round differently: places and depths of texels move by a rounding.
-    EXPECT_LT(largestDifference(front, back), (technique == Technique::rsm ? 1e-2 : 2e-3) * meanOf(front).y) << nameOf(technique);
+    EXPECT_LT(largestDifference(front, back), (technique == Technique::rsm ? 1e-2 : 2e-3) * meanOf(front).y)
+        << nameOf(technique);
   }
   PathTracer::Settings path;
   path.size = {32, 24};
@@ -83,7 +87,8 @@ TEST_F(SidesAndChannels, TurningEveryFaceAroundChangesNoPicture) {
   };
   const Image front = traced(litBox()), back = traced(turnedAround(litBox()));
   int different = 0;
-  for (std::size_t i = 0; i < front.pixels.size(); ++i) different += glm::length(front.pixels[i] - back.pixels[i]) > 1e-3f * glm::length(front.pixels[i]);
+  for (std::size_t i = 0; i < front.pixels.size(); ++i)
+    different += glm::length(front.pixels[i] - back.pixels[i]) > 1e-3f * glm::length(front.pixels[i]);
   EXPECT_LT(different, 8);  // where a ray meets an edge
 }
 
@@ -92,7 +97,8 @@ TEST_F(SidesAndChannels, LightOfEachChannelIsCarriedAlike) {
     const char* name;
     RenderSettings settings;
   };
-  std::vector<Way> ways{{"direct", settings(Technique::direct)}, {"rsm", settings(Technique::rsm)}, {"lpv", settings(Technique::lpv)}};
+  std::vector<Way> ways{
+      {"direct", settings(Technique::direct)}, {"rsm", settings(Technique::rsm)}, {"lpv", settings(Technique::lpv)}};
   ways.push_back(ways.back());
   ways.back().name = "lpv, 3 bounces";
   ways.back().settings.lpv.bounces = 3;
@@ -113,11 +119,14 @@ TEST_F(SidesAndChannels, LightOfEachChannelIsCarriedAlike) {
   // The walls lie well within the second of the cascades, which so takes over light of the coarsest.
   for (Way& way : ways) way.settings.lpv.cascades.spanOfScene = 3.2;
   for (const Way& way : ways) {
-    if (way.settings.lpv.fill == LpvFill::atomic && !capabilities().shaderAtomicFloat && !capabilities().shaderAtomicFp16Vector) continue;
+    if (way.settings.lpv.fill == LpvFill::atomic && !capabilities().shaderAtomicFloat &&
+        !capabilities().shaderAtomicFp16Vector)
+      continue;
     const Image white = render(lit(glm::vec3(1.0f)), openBoxCamera(), way.settings);
     double coloured = 0.0;
     for (const glm::vec3& pixel : white.pixels)
-      coloured = std::max({coloured, static_cast<double>(std::abs(pixel.y - pixel.x)), static_cast<double>(std::abs(pixel.z - pixel.x))});
+      coloured = std::max({coloured, static_cast<double>(std::abs(pixel.y - pixel.x)),
+                           static_cast<double>(std::abs(pixel.z - pixel.x))});
     EXPECT_LT(coloured, 2e-4 * meanOf(white).y) << way.name << ": white light on grey walls";
     for (int c = 0; c < 3; ++c) {
       glm::vec3 colour(0.0f);
@@ -168,10 +177,12 @@ TEST_F(SidesAndChannels, FormFactorsOfTrianglesThatTheHorizonCuts) {
   for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(found[i], expected[i], 2e-5 + 1e-4 * expected[i]) << i;
 }
 
-// ------------------------------------------------------------------------------------------- lamps in radiosity's pictures
+// ------------------------------------------------------------------------------------------- lamps in radiosity's
+// pictures
 
 /// A black floor's reflectance 1/2 seen from above, lit by one lamp; direct light in each pixel or by patches.
-Image radiosityPicture(const gl::Context& context, gl::ProgramLibrary& library, const Scene& scene, const Camera& camera, RadiosityView::Direct direct) {
+Image radiosityPicture(const gl::Context& context, gl::ProgramLibrary& library, const Scene& scene,
+                       const Camera& camera, RadiosityView::Direct direct) {
   RenderSettings settings;
   settings.technique = Technique::radiosity;
   settings.component = Component::direct;
@@ -189,7 +200,8 @@ TEST_F(SidesAndChannels, LampsOfEveryKindLightRadiositysPicturesAndAreBlockedByW
   const Camera camera = test::lookingAt({0.0, 1.0, 0.01}, {0, 0, 0}, 0.5);
   const double height = 2.0;
   for (const char* kind : {"spot", "point", "sun"})
-    for (const double screen : {0.0, 0.02, 0.98, 1.02}) {  // place of a screen between floor and lamp, in parts of the distance; 0: none
+    for (const double screen :
+         {0.0, 0.02, 0.98, 1.02}) {  // place of a screen between floor and lamp, in parts of the distance; 0: none
       if (screen > 1.0 && std::string(kind) == "sun") continue;
       SceneBuilder builder;
       const int grey = test::lambertian(builder, 0.5), black = test::lambertian(builder, 0.0);
@@ -216,7 +228,8 @@ TEST_F(SidesAndChannels, LampsOfEveryKindLightRadiositysPicturesAndAreBlockedByW
             worst = std::max(worst, std::abs(static_cast<double>(image.at(x, y).y) - 0.5 / std::numbers::pi * e));
           }
         // Patches of a quarter: their means, interpolated.
-        EXPECT_LT(worst, direct == RadiosityView::Direct::pixels ? 1e-4 : 6e-3) << kind << ", screen at " << screen << ", " << nameOf(direct);
+        EXPECT_LT(worst, direct == RadiosityView::Direct::pixels ? 1e-4 : 6e-3)
+            << kind << ", screen at " << screen << ", " << nameOf(direct);
       }
     }
 }

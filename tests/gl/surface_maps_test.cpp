@@ -1,4 +1,5 @@
-// Pictures of normals, of metals and of emission, texel by texel: forward shading, radiosity and the path tracer against what the texels say.
+// Pictures of normals, of metals and of emission, texel by texel: forward shading, radiosity and the path tracer
+// against what the texels say.
 #include "support/path_scenes.hpp"
 
 #include "base/image.hpp"
@@ -19,7 +20,8 @@ constexpr double kPi = std::numbers::pi;
 
 class SurfaceMaps : public PathTest {
  protected:
-  static Image drawn(const Scene& scene, const Camera& camera, Technique technique = Technique::direct, Component component = Component::all) {
+  static Image drawn(const Scene& scene, const Camera& camera, Technique technique = Technique::direct,
+                     Component component = Component::all) {
     RenderSettings settings;
     settings.technique = technique;
     settings.component = component;
@@ -70,7 +72,7 @@ SceneBuilder floorOf(const Material& material) {
 TEST_F(SurfaceMaps, NormalsLieAlongTheTextureWhicheverWayItLies) {
   struct Coordinates {
     const char* name;
-    glm::dmat2 of;             ///< columns: what u and v are made of x and -z
+    glm::dmat2 of;  ///< columns: what u and v are made of x and -z
     glm::dvec3 tangent, bitangent;
   };
   const Coordinates kinds[] = {{"as they are", glm::dmat2({1, 0}, {0, 1}), {1, 0, 0}, {0, 0, -1}},
@@ -89,7 +91,9 @@ TEST_F(SurfaceMaps, NormalsLieAlongTheTextureWhicheverWayItLies) {
         for (Vertex& v : builder.scene().vertices) v.texCoord = glm::vec2(kind.of * glm::dvec2(v.texCoord));
         const auto component = [&](std::size_t c) { return 2.0 * texel[c] / 255.0 - 1.0; };
         const double s = static_cast<double>(scale);
-        const glm::dvec3 normal = side * glm::normalize(s * component(0) * kind.tangent + s * component(1) * kind.bitangent + component(2) * glm::dvec3(0, 1, 0));
+        const glm::dvec3 normal =
+            side * glm::normalize(s * component(0) * kind.tangent + s * component(1) * kind.bitangent +
+                                  component(2) * glm::dvec3(0, 1, 0));
         const Camera camera = lookingAt({0.3, 4.0 * side, 0.4}, {0.2, 0.0, 0.1}, 0.7);
         const glm::dvec3 toSun = glm::normalize(glm::dvec3(0.2, side, 0.3));
         builder.sun(-toSun, glm::vec3(2.0f));
@@ -114,14 +118,17 @@ TEST_F(SurfaceMaps, LampsAndHighlightsTakeTheMappedNormal) {
   material.shininess = 20.0f;
   SceneBuilder builder = floorOf(material);
   builder.materialAt(0).normalTexture = builder.texture(1, 1, {200, 128, 220, 255});
-  const glm::dvec3 normal = glm::normalize(glm::dvec3(2.0 * 200 / 255.0 - 1.0, 2.0 * 220 / 255.0 - 1.0, -(2.0 * 128 / 255.0 - 1.0)));
+  const glm::dvec3 normal =
+      glm::normalize(glm::dvec3(2.0 * 200 / 255.0 - 1.0, 2.0 * 220 / 255.0 - 1.0, -(2.0 * 128 / 255.0 - 1.0)));
   const Camera camera = lookingAt({0, 4, 0}, {0, 0, 0}, 0.1);
   const auto expect = [&](const char* name, const glm::dvec3& toLight, double irradianceAcross) {
     const Image image = drawn(builder.scene(), camera);
     const double cosine = std::max(glm::dot(normal, glm::normalize(toLight + glm::dvec3(0, 1, 0))), 0.0);
-    const glm::dvec3 reflection = glm::dvec3(0.5 / kPi) + glm::dvec3(0.3, 0.2, 0.1) * (28.0 / (8.0 * kPi) * std::pow(cosine, 20.0));
+    const glm::dvec3 reflection =
+        glm::dvec3(0.5 / kPi) + glm::dvec3(0.3, 0.2, 0.1) * (28.0 / (8.0 * kPi) * std::pow(cosine, 20.0));
     const glm::dvec3 expected = reflection * (irradianceAcross * glm::dot(normal, toLight));
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(8, 8)[c], expected[c], 0.02 * expected[c]) << name;  // the pixel is not the picture's middle
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(image.at(8, 8)[c], expected[c], 0.02 * expected[c]) << name;  // the pixel is not the picture's middle
   };
   const glm::dvec3 toLight = glm::normalize(glm::dvec3(2.0, 3.0, 0.5));
   builder.sun(-toLight, glm::vec3(3.0f));
@@ -149,7 +156,8 @@ TEST_F(SurfaceMaps, WithoutTextureCoordinatesNormalsStay) {
 
 // -------------------------------------------------------------------------------------------------------------- metals
 
-/// Left half: metallic 1/5 of the factor, roughness 153/255; right half: metallic, roughness 102/255. Of one colour's picture.
+/// Left half: metallic 1/5 of the factor, roughness 153/255; right half: metallic, roughness 102/255. Of one colour's
+/// picture.
 SceneBuilder halfMetal(float metallic, float roughness) {
   Material material;
   SceneBuilder builder = floorOf(material);
@@ -172,18 +180,23 @@ TEST_F(SurfaceMaps, MetalsByTexelsAreShadedByTexels) {
     for (const bool right : {false, true}) {
       const glm::dvec3 place(right ? 2.0 : -2.0, 0.0, 0.0);
       const Image image = drawn(builder.scene(), lookingAt(place + glm::dvec3(0, 4, 0), place, 0.02));
-      const double metallic = static_cast<double>(metallicFactor) * (right ? 1.0 : 0.2), roughness = static_cast<double>(roughnessFactor) * (right ? 0.4 : 0.6);
+      const double metallic = static_cast<double>(metallicFactor) * (right ? 1.0 : 0.2),
+                   roughness = static_cast<double>(roughnessFactor) * (right ? 0.4 : 0.6);
       const double exponent = std::max(2.0 / std::pow(roughness, 4.0) - 2.0, 1.0);
-      const double lobe = (exponent + 8.0) / (8.0 * kPi) * std::pow(glm::normalize(toSun + glm::dvec3(0, 1, 0)).y, exponent);
+      const double lobe =
+          (exponent + 8.0) / (8.0 * kPi) * std::pow(glm::normalize(toSun + glm::dvec3(0, 1, 0)).y, exponent);
       for (int c = 0; c < 3; ++c) {
-        const double expected = (kBase[c] * (1.0 - metallic) / kPi + (0.04 * (1.0 - metallic) + kBase[c] * metallic) * lobe) * 2.0 * toSun.y;
+        const double expected =
+            (kBase[c] * (1.0 - metallic) / kPi + (0.04 * (1.0 - metallic) + kBase[c] * metallic) * lobe) * 2.0 *
+            toSun.y;
         EXPECT_NEAR(image.at(8, 8)[c], expected, 0.01 * expected) << metallicFactor << " " << right << " " << c;
       }
     }
   }
 }
 
-// In an environment of radiance 1 everywhere a Lambert surface shows its albedo, a smooth metal Schlick's reflectance [Schlick1994].
+// In an environment of radiance 1 everywhere a Lambert surface shows its albedo, a smooth metal Schlick's reflectance
+// [Schlick1994].
 TEST_F(SurfaceMaps, ThePathTracerTakesTexelsForMetalFromAHalfOn) {
   SceneBuilder builder = halfMetal(1.0f, 0.0f);
   builder.scene().sun.reset();
@@ -221,7 +234,8 @@ TEST_F(SurfaceMaps, MetalsByTexelsThrowNoDiffuseLight) {
   for (const float metallic : {0.0f, 1.0f}) {
     SceneBuilder builder;
     const int lit = builder.material(glm::vec3(0.5f)), grey = builder.material(glm::vec3(0.5f));
-    builder.materialAt(lit).metalMap = MetalMap{glm::vec3(0.8f), metallic, 1.0f, builder.texture(1, 1, {0, 255, 255, 255})};
+    builder.materialAt(lit).metalMap =
+        MetalMap{glm::vec3(0.8f), metallic, 1.0f, builder.texture(1, 1, {0, 255, 255, 255})};
     builder.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, lit);
     builder.plate({-2, 2, 0}, {0, 4, 0}, {0, 0, 4}, grey);
     builder.sun({0.0, -1.0, 0.0}, glm::vec3(5.0f));  // along the grey plate
@@ -236,7 +250,8 @@ TEST_F(SurfaceMaps, MetalsByTexelsThrowNoDiffuseLight) {
 
 TEST_F(SurfaceMaps, PatchesReflectTheMeanOfTheirTexels) {
   const Scene scene = halfMetal(1.0f, 1.0f).scene();
-  const std::array<glm::vec2, 3> all{{{0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}}}, left{{{0.1f, 0.0f}, {0.4f, 0.0f}, {0.1f, 1.0f}}};
+  const std::array<glm::vec2, 3> all{{{0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}}},
+      left{{{0.1f, 0.0f}, {0.4f, 0.0f}, {0.1f, 1.0f}}};
   EXPECT_NEAR(meanAlbedo(scene, scene.materials[0], left).x, kBase.x * 0.8, 1e-6);
   // Of the triangle 3/4 of the area have u < 1/2.
   EXPECT_NEAR(meanAlbedo(scene, scene.materials[0], all).x, kBase.x * 0.8 * 0.75, 0.02);
@@ -254,15 +269,19 @@ TEST_F(SurfaceMaps, EmissionByTexelsShinesByTexelsInEveryTechnique) {
   builder.materialAt(0).emission = {1.7f, 0.7f, 0.5f};  // the mean, about
   builder.scene().sun.reset();
   for (const bool right : {false, true}) {
-    const glm::dvec3 expected = glm::dvec3(3, 2, 1) * (right ? glm::dvec3(linear(30), linear(200), linear(255)) : glm::dvec3(linear(255), linear(100), linear(0)));
+    const glm::dvec3 expected = glm::dvec3(3, 2, 1) * (right ? glm::dvec3(linear(30), linear(200), linear(255))
+                                                             : glm::dvec3(linear(255), linear(100), linear(0)));
     const glm::dvec3 place(right ? 2.0 : -2.0, 0.0, 0.0);
     const Camera camera = lookingAt(place + glm::dvec3(0, 4, 0), place, 0.1);
     for (const Technique technique : {Technique::direct, Technique::lpv, Technique::radiosity}) {
       const Image image = drawn(builder.scene(), camera, technique);
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(8, 8)[c], expected[c], kDecoding * expected[c] + 1e-6) << static_cast<int>(technique) << " " << right << " " << c;
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(image.at(8, 8)[c], expected[c], kDecoding * expected[c] + 1e-6)
+            << static_cast<int>(technique) << " " << right << " " << c;
     }
     const Image walked = traced(builder.scene(), camera);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(walked.at(8, 8)[c], expected[c], kDecoding * expected[c] + 1e-6) << "path " << right << " " << c;
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(walked.at(8, 8)[c], expected[c], kDecoding * expected[c] + 1e-6) << "path " << right << " " << c;
   }
 }
 

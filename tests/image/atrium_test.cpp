@@ -1,4 +1,5 @@
-// Pictures of the embedded scenes, judged by what must hold in them: no golden images, since every rule here is known beforehand.
+// Pictures of the embedded scenes, judged by what must hold in them: no golden images, since every rule here is known
+// beforehand.
 #include "render/renderer.hpp"
 #include "scene/key_frames.hpp"
 #include "support/gl_fixture.hpp"
@@ -45,7 +46,8 @@ TEST_F(Pictures, TheWalkIsFiniteLitAndWithoutLeaksBrighterThanTheSun) {
   Renderer direct(context(), programs(), atrium(), settings(Component::direct));
   Renderer indirect(context(), programs(), atrium(), settings(Component::indirect));
   const Spline path(readKeyFrames(atrium().keyFrames));
-  const float sunlit = atrium().sun->irradiance.x * 0.7f / static_cast<float>(M_PI);  // the brightest stone, facing the sun
+  const float sunlit =
+      atrium().sun->irradiance.x * 0.7f / static_cast<float>(M_PI);  // the brightest stone, facing the sun
   for (int i = 0; i <= 4; ++i) {
     const Camera view = path.view(i * (path.viewCount() - 1) / 4);
     indirect.render(view);

@@ -1,4 +1,5 @@
-// The bench judged by itself: the path tracer's error falls as samples^-1/2 and has no bias; a loss of 1 % is seen; the reference's noise is no error.
+// The bench judged by itself: the path tracer's error falls as samples^-1/2 and has no bias; a loss of 1 % is seen; the
+// reference's noise is no error.
 #include "base/statistics.hpp"
 #include "measure/front.hpp"
 #include "measure/image_errors.hpp"
@@ -25,7 +26,8 @@ class BenchProof : public test::SharedProgramsTest {
  protected:
   static constexpr int kWidth = 32, kHeight = 24;
 
-  static std::unique_ptr<PathTracer> tracer(const Scene& scene, std::uint32_t seed, Transport transport = Transport::all) {
+  static std::unique_ptr<PathTracer> tracer(const Scene& scene, std::uint32_t seed,
+                                            Transport transport = Transport::all) {
     PathTracer::Settings settings;
     settings.size = {kWidth, kHeight};
     settings.transport = transport;
@@ -56,15 +58,19 @@ class BenchProof : public test::SharedProgramsTest {
   }
   static measure::JudgedErrors judge(const PathTracer& t) {
     const measure::Reference& r = reference();
-    return measure::lessNoise(measure::errorsOf(t.mean(), r.mean), measure::noiseOf(r.mean, r.standardError, r.meanError), channelMean(t.statistics().meanError));
+    return measure::lessNoise(measure::errorsOf(t.mean(), r.mean),
+                              measure::noiseOf(r.mean, r.standardError, r.meanError),
+                              channelMean(t.statistics().meanError));
   }
 };
 
-// The Cornell box, whose light comes by paths of many random numbers. Where two numbers decide nearly all (the open box under the sun) the low-discrepancy points of the first
-// events do better than independent samples: there the slope was -0.586 +- 0.009. Time is the processor's, so that what else the machine does is not counted, from a tracer that
-// has run before: compiling and the first submissions are baking, as `bench error` has it. At the end of a run lanes wait for its longest path, a cost that does not grow with the
-// samples: over 64x64 pixels it is small from 16 samples on (over 32x32 and in passes that double, 32 cost 1.4 times what they do in a long run, and the slope by time was -0.52 to -0.56).
-// The short form has fewer rungs and none of the times, whose slope takes long runs to be seen.
+// The Cornell box, whose light comes by paths of many random numbers. Where two numbers decide nearly all (the open box
+// under the sun) the low-discrepancy points of the first events do better than independent samples: there the slope was
+// -0.586 +- 0.009. Time is the processor's, so that what else the machine does is not counted, from a tracer that has
+// run before: compiling and the first submissions are baking, as `bench error` has it. At the end of a run lanes wait
+// for its longest path, a cost that does not grow with the samples: over 64x64 pixels it is small from 16 samples on
+// (over 32x32 and in passes that double, 32 cost 1.4 times what they do in a long run, and the slope by time was -0.52
+// to -0.56). The short form has fewer rungs and none of the times, whose slope takes long runs to be seen.
 TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   const bool isLong = test::longTests();
   const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
@@ -103,17 +109,20 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
     seconds.push_back(median(times));
     errors.push_back(std::sqrt(mse));
   }
-  const measure::Slope bySamples = measure::logLogSlope(samples, errors), byTime = measure::logLogSlope(seconds, errors);
+  const measure::Slope bySamples = measure::logLogSlope(samples, errors),
+                       byTime = measure::logLogSlope(seconds, errors);
   std::string rungs;
   for (std::size_t i = 0; i < errors.size(); ++i) rungs += fmt::format(" {:.4f} in {:.4f} s,", errors[i], seconds[i]);
-  std::printf("samples^(%.3f +- %.3f), seconds^(%.3f +- %.3f): NRMSE%s\n", bySamples.slope, bySamples.error, byTime.slope, byTime.error, rungs.c_str());
+  std::printf("samples^(%.3f +- %.3f), seconds^(%.3f +- %.3f): NRMSE%s\n", bySamples.slope, bySamples.error,
+              byTime.slope, byTime.error, rungs.c_str());
   EXPECT_NEAR(bySamples.slope, -0.5, 0.05) << "+- " << bySamples.error << ", NRMSE" << rungs;
   if (!isLong) return;
   EXPECT_NEAR(byTime.slope, -0.5, 0.05) << "+- " << byTime.error << ", NRMSE" << rungs;
   EXPECT_GE(seconds.back() / seconds.front(), 100.0) << rungs;
 }
 
-// Six seeds, each within 3 standard errors: all of them fail to be with probability 6 * 0.0027 = 1.6 %; the seeds are fixed.
+// Six seeds, each within 3 standard errors: all of them fail to be with probability 6 * 0.0027 = 1.6 %; the seeds are
+// fixed.
 TEST_F(BenchProof, CorrectedRunsHaveNoBias) {
   const Scene scene = test::openBox();
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
@@ -124,7 +133,8 @@ TEST_F(BenchProof, CorrectedRunsHaveNoBias) {
   }
 }
 
-// Through glass and coffee: what was published is off by more than noise, corrected it is not. Judged as `bench error` judges, by 3 standard errors.
+// Through glass and coffee: what was published is off by more than noise, corrected it is not. Judged as `bench error`
+// judges, by 3 standard errors.
 TEST_F(BenchProof, PathTracingAsPublishedIsBiased) {
   const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/media/espresso/espresso.json");
   const auto paint = [&](bool original, std::uint32_t seed, std::uint32_t samples) {
@@ -145,8 +155,10 @@ TEST_F(BenchProof, PathTracingAsPublishedIsBiased) {
   const measure::ReferenceNoise noise = measure::noiseOf(truth.mean(), truth.standardError(), truth.meanError());
   for (const bool original : {false, true}) {
     const auto t = paint(original, 1, 128);
-    const measure::JudgedErrors e = measure::lessNoise(measure::errorsOf(t->mean(), truth.mean()), noise, channelMean(t->statistics().meanError));
-    std::printf("%s: bias %+.2f %% +- %.2f\n", original ? "as published" : "corrected", 100.0 * e.measured.relativeBias, 100.0 * e.biasError / e.measured.referenceMean);
+    const measure::JudgedErrors e =
+        measure::lessNoise(measure::errorsOf(t->mean(), truth.mean()), noise, channelMean(t->statistics().meanError));
+    std::printf("%s: bias %+.2f %% +- %.2f\n", original ? "as published" : "corrected", 100.0 * e.measured.relativeBias,
+                100.0 * e.biasError / e.measured.referenceMean);
     EXPECT_EQ(e.biasAtNoise, !original);
   }
 }
@@ -174,12 +186,14 @@ TEST_F(BenchProof, TheReferencesNoiseIsNoError) {
 
 TEST_F(BenchProof, TransportsAddUp) {
   const Scene scene = test::openBox();
-  const auto all = tracer(scene, 1), direct = tracer(scene, 2, Transport::direct), indirect = tracer(scene, 3, Transport::indirect), one = tracer(scene, 4, Transport::oneBounce),
+  const auto all = tracer(scene, 1), direct = tracer(scene, 2, Transport::direct),
+             indirect = tracer(scene, 3, Transport::indirect), one = tracer(scene, 4, Transport::oneBounce),
              unoccluded = tracer(scene, 5, Transport::oneBounceUnoccluded);
   for (const auto* t : {&all, &direct, &indirect, &one, &unoccluded}) (*t)->record(256);
   const auto mean = [](const auto& t) { return channelMean(t->statistics().mean); };
   const auto error = [](const auto& t) { return channelMean(t->statistics().meanError); };
-  EXPECT_NEAR(mean(all), mean(direct) + mean(indirect), 4.0 * std::sqrt(std::pow(error(all), 2) + std::pow(error(direct), 2) + std::pow(error(indirect), 2)));
+  EXPECT_NEAR(mean(all), mean(direct) + mean(indirect),
+              4.0 * std::sqrt(std::pow(error(all), 2) + std::pow(error(direct), 2) + std::pow(error(indirect), 2)));
   EXPECT_LT(mean(one), mean(indirect));
   EXPECT_GT(mean(one), 0.3 * mean(indirect));
   EXPECT_GT(mean(unoccluded), mean(one) - 4.0 * std::hypot(error(one), error(unoccluded)));

@@ -290,8 +290,9 @@ TEST(LpvKernel, FirstStepClamped) {
 }
 
 TEST(LpvKernel, LaterStepsClamped) {
-  // Along an axis, later steps gain nothing, to rounding. Off the axis the field of a cell can still be sharp enough for
-  // the clamp to act once or twice more: (110) ends at 1.126017 after step 2, (111) at 1.128353 after step 3, and both stay there.
+  // Along an axis, later steps gain nothing, to rounding. Off the axis the field of a cell can still be sharp enough
+  // for the clamp to act once or twice more: (110) ends at 1.126017 after step 2, (111) at 1.128353 after step 3, and
+  // both stay there.
   const auto gains = [](const glm::dvec3& axis) {
     std::vector<double> result;
     Volume volume = centralSource(21, unitLobe(axis));
@@ -372,7 +373,8 @@ TEST(LpvBorder, DecayTable) {
 TEST(LpvBorder, TinyGrids) {
   // The source sits at cell n/2 and points to +z: in 2^3 that is the corner, three of its six neighbours are missing.
   const std::array<std::vector<std::string>, 3> rows = {
-      std::vector<std::string>{"0"}, {"0.333333", "0.110472", "0.042324"},
+      std::vector<std::string>{"0"},
+      {"0.333333", "0.110472", "0.042324"},
       {"1.138208", "0.880462", "0.566864", "0.355257", "0.233236", "0.147829"}};
   for (std::size_t n = 1; n <= 3; ++n) {
     Volume volume = centralSource(static_cast<int>(n), unitLobe(kUp));
@@ -438,7 +440,7 @@ TEST(LpvTransport, MeanDisplacementAndRms) {
     int steps;
     std::string mean, rms;
   };
-  const std::vector<Row> rows = {{1, "0.4143", "1.0"},  {2, "0.5947", "1.496"},  {4, "0.6857", "2.216"},
+  const std::vector<Row> rows = {{1, "0.4143", "1.0"},   {2, "0.5947", "1.496"},  {4, "0.6857", "2.216"},
                                  {8, "0.6998", "3.222"}, {16, "0.7000", "4.619"}, {24, "0.7000", "5.683"}};
   constexpr int kCells = 51;
   const glm::ivec3 middle(kCells / 2);
@@ -661,9 +663,7 @@ TEST(LpvStability, IterationCounts) {
     const Propagated many = propagate(field, iterations, {}, &geometry);
     EXPECT_TRUE(allFinite(many.front)) << iterations;
     EXPECT_TRUE(allFinite(many.accumulated)) << iterations;
-    if (iterations > 1) {
-      EXPECT_LT(totalFlux(many.front), 1e-6 * totalFlux(field));
-    }
+    if (iterations > 1) { EXPECT_LT(totalFlux(many.front), 1e-6 * totalFlux(field)); }
   }
   const Volume dark(cube(4));
   EXPECT_EQ(propagate(dark, 100).accumulated.cells, dark.cells);  // no light: exactly nothing
@@ -703,8 +703,8 @@ TEST(LpvGrid, StoredAsAThreeDimensionalTexture) {
     }
   }
   EXPECT_EQ(grid.cellCount(), next);
-  for (const glm::ivec3& outside : {glm::ivec3(2, 0, 0), glm::ivec3(0, 3, 0), glm::ivec3(0, 0, 5),
-                                    glm::ivec3(-1, 0, 0), glm::ivec3(0, -1, 0), glm::ivec3(0, 0, -1)}) {
+  for (const glm::ivec3& outside : {glm::ivec3(2, 0, 0), glm::ivec3(0, 3, 0), glm::ivec3(0, 0, 5), glm::ivec3(-1, 0, 0),
+                                    glm::ivec3(0, -1, 0), glm::ivec3(0, 0, -1)}) {
     EXPECT_FALSE(grid.contains(outside));
   }
 }
@@ -959,8 +959,7 @@ TEST(LpvGeometry, FirstStepIsNotBlocked) {
   const Volume geometry = fullWall(grid, 3);
   const Volume above = oneSource(grid, {2, 2, 3}, unitLobe(-kUp));
   EXPECT_EQ(propagate(above, 1, {}, &geometry).front.cells, propagateStep(above).cells);
-  EXPECT_EQ(propagate(above, 2, {}, &geometry).front.cells,
-            propagateStep(propagateStep(above), {}, &geometry).cells);
+  EXPECT_EQ(propagate(above, 2, {}, &geometry).front.cells, propagateStep(propagateStep(above), {}, &geometry).cells);
   KernelOptions fromTheFirst;
   fromTheFirst.blockFirstStep = true;
   EXPECT_EQ(propagate(above, 1, fromTheFirst, &geometry).front.cells, propagateStep(above, {}, &geometry).cells);
@@ -1060,14 +1059,16 @@ TEST(LpvLookup, IrradianceOfKnownFields) {
     // From behind nothing, and nothing negative.
     EXPECT_EQ(irradiance(unitLobe(kUp), kUp, cellSize, Lookup::direct), 0.0);
     EXPECT_EQ(irradiance(unitLobe(kUp), kUp, cellSize, Lookup::cosine), 0.0);
-    // Windowed by 3/4: pi/4 (1 + cos) over pi, so head on 2 / pi, and what travels away counts nothing, not less than nothing.
+    // Windowed by 3/4: pi/4 (1 + cos) over pi, so head on 2 / pi, and what travels away counts nothing, not less than
+    // nothing.
     EXPECT_NEAR(irradiance(unitIsotropic(), kUp, cellSize, Lookup::windowed) / perArea, 4.0 * intensity, 1e-14);
     EXPECT_NEAR(irradiance(unitLobe(kUp), -kUp, cellSize, Lookup::windowed) / perArea, 2.0 / kPi, 1e-14);
     EXPECT_NEAR(irradiance(unitLobe(kUp), kUp, cellSize, Lookup::windowed) / perArea, 0.0, 1e-14);
     Sh opposed = unitLobe(kUp);
     opposed += unitLobe(-kUp);
     EXPECT_NEAR(irradiance(opposed, kUp, cellSize, Lookup::windowed) / perArea, 2.0 / kPi, 1e-14);
-    EXPECT_LT(irradiance(opposed, kUp, cellSize, Lookup::cosine), irradiance(unitLobe(-kUp), kUp, cellSize, Lookup::cosine));
+    EXPECT_LT(irradiance(opposed, kUp, cellSize, Lookup::cosine),
+              irradiance(unitLobe(-kUp), kUp, cellSize, Lookup::cosine));
   }
 }
 
@@ -1077,8 +1078,8 @@ TEST(LpvLookup, CosineLookupIsTheConvolutionWithTheReceiversCosine) {
   for (int trial = 0; trial < 20; ++trial) {
     const Sh sh = unitLobe(randomDirection(random)) + unitIsotropic();
     const glm::dvec3 n = randomDirection(random);
-    const double folded = integrateSphere(
-        [&](const glm::dvec3& w) { return evaluate(sh, w) * (0.25 + 0.5 * glm::dot(-n, w)); });
+    const double folded =
+        integrateSphere([&](const glm::dvec3& w) { return evaluate(sh, w) * (0.25 + 0.5 * glm::dot(-n, w)); });
     EXPECT_NEAR(irradiance(sh, n, 0.5, Lookup::cosine), std::max(0.0, 16.0 / kPi * folded), 1e-12);
   }
 }

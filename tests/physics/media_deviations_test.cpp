@@ -1,5 +1,5 @@
-// What each deviation of the published path tracer of participating media costs: the known wrong value with it, the right one without.
-// Statistical figures pass within 3.5 of their standard errors; seeds are fixed.
+// What each deviation of the published path tracer of participating media costs: the known wrong value with it, the
+// right one without. Statistical figures pass within 3.5 of their standard errors; seeds are fixed.
 #include "pathtracer/path_tracer.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/media_scenes.hpp"
@@ -26,19 +26,23 @@ class MediaDeviations : public SharedProgramsTest {
     return tracer.statistics();
   }
   /// Reflectance in red and transmittance in green.
-  void expectSlab(const char* what, const PathTracer::Statistics& s, double reflectance, double transmittance, double rounding = 0.0) {
-    std::printf("%-34s R %.5f +- %.5f (%.5f)  T %.5f +- %.5f (%.5f)\n", what, s.mean.x, s.meanError.x, reflectance, s.mean.y, s.meanError.y, transmittance);
+  void expectSlab(const char* what, const PathTracer::Statistics& s, double reflectance, double transmittance,
+                  double rounding = 0.0) {
+    std::printf("%-34s R %.5f +- %.5f (%.5f)  T %.5f +- %.5f (%.5f)\n", what, s.mean.x, s.meanError.x, reflectance,
+                s.mean.y, s.meanError.y, transmittance);
     EXPECT_NEAR(s.mean.x, reflectance, 3.5 * s.meanError.x + rounding) << what;
     EXPECT_NEAR(s.mean.y, transmittance, 3.5 * s.meanError.y + rounding) << what;
     EXPECT_LT(s.meanError.x, 0.0025) << what;
   }
 };
 
-Medium grey(double albedo, double depth, double g) { return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g); }
+Medium grey(double albedo, double depth, double g) {
+  return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g);
+}
 
 TEST_F(MediaDeviations, DistanceWithoutPdf) {
-  // Drawn from sigma exp(-sigma t) and weighted by exp(-sigma t) again: a medium without absorption renders as one of twice the extinction
-  // that scatters half of it. Slab of tau 1, a = 1, against tau 2, a = 0.5.
+  // Drawn from sigma exp(-sigma t) and weighted by exp(-sigma t) again: a medium without absorption renders as one of
+  // twice the extinction that scatters half of it. Slab of tau 1, a = 1, against tau 2, a = 0.5.
   const Scene scene = slab(grey(1.0, 1.0, 0.0), 1.0, 1.0);
   expectSlab("corrected", measure(scene, 256, {}), .341329, .658671);
   expectSlab("distance-without-pdf", measure(scene, 256, {.distanceWithoutPdf = true}), .112833, .189322);
@@ -48,36 +52,40 @@ TEST_F(MediaDeviations, BoostedInteraction) {
   // An albedo of 0.2 renders as one of 0.5.
   const Scene scene = slab(grey(0.2, 1.0, 0.0), 1.0, 1.0);
   const twin::SlabResult right = twin::walkSlab(0.2, 1.0, 0.0, 1.0, 1.0, 2000000, 1);
-  expectSlab("corrected", measure(scene, 256, {}), right.reflectance, right.transmittance, 3.5 * right.transmittanceError);
+  expectSlab("corrected", measure(scene, 256, {}), right.reflectance, right.transmittance,
+             3.5 * right.transmittanceError);
   expectSlab("boosted-interaction", measure(scene, 256, {.boostedInteraction = true}), .099119, .446058);
 }
 
 TEST_F(MediaDeviations, RouletteWithoutDivision) {
-  // Each scattering keeps 0.95 of a path that nothing absorbs: a half-space of albedo 1 renders as one of 0.95 [Chandrasekhar1960].
+  // Each scattering keeps 0.95 of a path that nothing absorbs: a half-space of albedo 1 renders as one of 0.95
+  // [Chandrasekhar1960].
   const Scene scene = slab(grey(1.0, 60.0, 0.0), 1.0, 1.0);
   const auto right = measure(scene, 64, {});
   EXPECT_NEAR(right.mean.x + right.mean.y, 1.0, 1e-5);
   EXPECT_GT(right.mean.x, 0.95);
-  expectSlab("roulette-without-division", measure(scene, 256, {.rouletteWithoutDivision = true}), .535540991, 0.0, 1e-6);
+  expectSlab("roulette-without-division", measure(scene, 256, {.rouletteWithoutDivision = true}), .535540991, 0.0,
+             1e-6);
 }
 
 TEST_F(MediaDeviations, RouletteAtSurfaces) {
-  // Divided, it is unbiased wherever it is played. Undivided it takes a twentieth a turn of the loop, of which a way through a medium is one, however
-  // often it scatters: that half-space of albedo 1 gives back 0.95, where roulette at each collision leaves 0.54.
+  // Divided, it is unbiased wherever it is played. Undivided it takes a twentieth a turn of the loop, of which a way
+  // through a medium is one, however often it scatters: that half-space of albedo 1 gives back 0.95, where roulette at
+  // each collision leaves 0.54.
   const Scene thin = slab(grey(.9, 2.0, .75), 1.5, 1.0);
   const auto right = measure(thin, 512, {}), atSurfaces = measure(thin, 512, {.rouletteAtSurfaces = true});
   EXPECT_NEAR(atSurfaces.mean.x, right.mean.x, 3.5 * std::hypot(right.meanError.x, atSurfaces.meanError.x));
   EXPECT_NEAR(atSurfaces.mean.y, right.mean.y, 3.5 * std::hypot(right.meanError.y, atSurfaces.meanError.y));
   const Scene deep = slab(grey(1.0, 60.0, 0.0), 1.0, 1.0);
   const auto kept = measure(deep, 64, {.rouletteWithoutDivision = true, .rouletteAtSurfaces = true});
-  std::printf("roulette-at-surfaces: thin slab %.5f, %.5f (%.5f, %.5f), half-space without division %.5f\n", atSurfaces.mean.x, atSurfaces.mean.y, right.mean.x, right.mean.y,
-              kept.mean.x + kept.mean.y);
+  std::printf("roulette-at-surfaces: thin slab %.5f, %.5f (%.5f, %.5f), half-space without division %.5f\n",
+              atSurfaces.mean.x, atSurfaces.mean.y, right.mean.x, right.mean.y, kept.mean.x + kept.mean.y);
   EXPECT_NEAR(kept.mean.x + kept.mean.y, 0.95, 3.5 * std::sqrt(0.95 * 0.05 / (16 * 16 * 64)));
 }
 
 TEST_F(MediaDeviations, UnattenuatedShadowRays) {
-  // A diffuse floor under a layer of optical depth 1 that only absorbs, a point light 3 units above: exp(-1) / 9 of the intensity arrives, of which the
-  // published test for shadow takes nothing away.
+  // A diffuse floor under a layer of optical depth 1 that only absorbs, a point light 3 units above: exp(-1) / 9 of the
+  // intensity arrives, of which the published test for shadow takes nothing away.
   Scene scene;
   scene.media = {homogeneous(glm::dvec3(0.0), glm::dvec3(1.0), 0.0)};
   addBox(scene, {-5.0, 0.0, -5.0}, {5.0, 1.0, 5.0}, addBoundary(scene, Bsdf::none, 1.0, 0));
@@ -111,8 +119,8 @@ TEST_F(MediaDeviations, FresnelAmplitudesAndSchlick) {
 }
 
 TEST_F(MediaDeviations, StraightShadowRays) {
-  // A diffuse floor one unit below the surface of water, seen from inside, a point light one unit above: exact is 0.319294, a straight line
-  // of length 2 gives 1/4, and a line that is no path of light gives nothing.
+  // A diffuse floor one unit below the surface of water, seen from inside, a point light one unit above: exact is
+  // 0.319294, a straight line of length 2 gives 1/4, and a line that is no path of light gives nothing.
   Scene scene;
   addBox(scene, {-5.0, -3.0, -5.0}, {5.0, 0.0, 5.0}, addBoundary(scene, Bsdf::dielectric, 1.33, -1));
   Material floor;
@@ -179,8 +187,9 @@ TEST_F(MediaDeviations, FixedEpsilon) {
 }
 
 TEST_F(MediaDeviations, TheOriginalIsBiasedOnTheSlabAndTheCorrectedIsNot) {
-  // All that --fidelity original turns on, on slabs of known reflectance and transmittance [vandeHulst1980, volume 2, table 35], adding-doubling: more
-  // than 3 standard errors off, and far more, while the corrected estimator is within 3.
+  // All that --fidelity original turns on, on slabs of known reflectance and transmittance [vandeHulst1980, volume 2,
+  // table 35], adding-doubling: more than 3 standard errors off, and far more, while the corrected estimator is
+  // within 3.
   const PathDeviations original{true, true, true, true, false, true, true, true, true, true};
   const struct {
     double depth, ior, reflectance, transmittance;
@@ -189,9 +198,11 @@ TEST_F(MediaDeviations, TheOriginalIsBiasedOnTheSlabAndTheCorrectedIsNot) {
     const Scene scene = slab(grey(.9, row.depth, .75), row.ior, 1.0);
     for (const bool isOriginal : {false, true}) {
       const auto s = measure(scene, isOriginal ? 512 : 1024, isOriginal ? original : PathDeviations{});
-      const double zR = (s.mean.x - row.reflectance) / s.meanError.x, zT = (s.mean.y - row.transmittance) / s.meanError.y;
-      std::printf("n %.1f %-9s R %.5f +- %.5f (%.5f, z %+.1f)  T %.5f +- %.5f (%.5f, z %+.1f)\n", row.ior, isOriginal ? "original" : "corrected", s.mean.x, s.meanError.x,
-                  row.reflectance, zR, s.mean.y, s.meanError.y, row.transmittance, zT);
+      const double zR = (s.mean.x - row.reflectance) / s.meanError.x,
+                   zT = (s.mean.y - row.transmittance) / s.meanError.y;
+      std::printf("n %.1f %-9s R %.5f +- %.5f (%.5f, z %+.1f)  T %.5f +- %.5f (%.5f, z %+.1f)\n", row.ior,
+                  isOriginal ? "original" : "corrected", s.mean.x, s.meanError.x, row.reflectance, zR, s.mean.y,
+                  s.meanError.y, row.transmittance, zT);
       if (isOriginal) {
         EXPECT_GT(std::abs(zR), 3.0);
         EXPECT_GT(std::abs(zT), 3.0);
@@ -211,18 +222,19 @@ TEST_F(MediaDeviations, AllOfThemInTheWhiteFurnace) {
   addSphere(scene, glm::dvec3(0.0), 1.0, 3, addBoundary(scene, Bsdf::dielectric, 1.33, 0));
   scene.environment = constantEnvironment(1.0);
   scene.cameras = {cameraAt({0.0, 0.0, 6.0}, glm::dvec3(0.0), 0.2)};
-  const std::pair<const char*, PathDeviations> cases[] = {{"corrected", {}},
-                                                          {"distance-without-pdf", {.distanceWithoutPdf = true}},
-                                                          {"boosted-interaction", {.boostedInteraction = true}},
-                                                          {"roulette-without-division", {.rouletteWithoutDivision = true}},
-                                                          {"fresnel-amplitudes", {.fresnelAmplitudes = true}},
-                                                          {"schlick", {.schlick = true}},
-                                                          {"straight-shadow-rays", {.straightShadowRays = true}},
-                                                          {"linear-seeds", {.linearSeeds = true}},
-                                                          {"fixed-epsilon", {.fixedEpsilon = true}},
-                                                          {"roulette-at-surfaces", {.rouletteAtSurfaces = true}},
-                                                          {"unattenuated-shadow-rays", {.unattenuatedShadowRays = true}},
-                                                          {"all of the original", {true, true, true, true, false, true, true, true, true, true}}};
+  const std::pair<const char*, PathDeviations> cases[] = {
+      {"corrected", {}},
+      {"distance-without-pdf", {.distanceWithoutPdf = true}},
+      {"boosted-interaction", {.boostedInteraction = true}},
+      {"roulette-without-division", {.rouletteWithoutDivision = true}},
+      {"fresnel-amplitudes", {.fresnelAmplitudes = true}},
+      {"schlick", {.schlick = true}},
+      {"straight-shadow-rays", {.straightShadowRays = true}},
+      {"linear-seeds", {.linearSeeds = true}},
+      {"fixed-epsilon", {.fixedEpsilon = true}},
+      {"roulette-at-surfaces", {.rouletteAtSurfaces = true}},
+      {"unattenuated-shadow-rays", {.unattenuatedShadowRays = true}},
+      {"all of the original", {true, true, true, true, false, true, true, true, true, true}}};
   for (const auto& [name, deviations] : cases) {
     const auto s = measure(scene, 64, deviations);
     std::printf("white furnace, %-28s %.5f +- %.5f\n", name, s.mean.x, s.meanError.x);

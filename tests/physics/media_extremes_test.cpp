@@ -1,8 +1,10 @@
-// Extreme media: exact values where there are any, finite and bounded where there are none. Figures pass within 3.5 of their standard errors, taken
-// from the spread of pixels, which are independent; seeds are fixed. What takes a minute is done where LUCERNA_LONG_TESTS is set.
+// Extreme media: exact values where there are any, finite and bounded where there are none. Figures pass within 3.5 of
+// their standard errors, taken from the spread of pixels, which are independent; seeds are fixed. What takes a minute
+// is done where LUCERNA_LONG_TESTS is set.
 //
-// Others of the kind: tests/physics/media_test.cpp (|g| 0.99, ratios of 1000 between channels, no extinction, n 1.0001, bounded submissions),
-// tests/gl/media_functions_test.cpp (functions at the ends of their range), tests/gl/ray_caster_test.cpp (slivers, giants, far places).
+// Others of the kind: tests/physics/media_test.cpp (|g| 0.99, ratios of 1000 between channels, no extinction, n 1.0001,
+// bounded submissions), tests/gl/media_functions_test.cpp (functions at the ends of their range),
+// tests/gl/ray_caster_test.cpp (slivers, giants, far places).
 #include "support/media_fixture.hpp"
 #include "support/media_scenes.hpp"
 
@@ -20,13 +22,16 @@ using namespace test;
 class MediaExtremes : public MediaTest {
  protected:
   static void expectExact(const char* what, double value, double error, double exact, double worst) {
-    std::printf("%-44s exact %.7g  measured %.7g +- %.2g (%.2f %%)  z %+.2f\n", what, exact, value, error, 100.0 * error / exact, (value - exact) / error);
+    std::printf("%-44s exact %.7g  measured %.7g +- %.2g (%.2f %%)  z %+.2f\n", what, exact, value, error,
+                100.0 * error / exact, (value - exact) / error);
     EXPECT_NEAR(value, exact, 3.5 * error) << what;
     EXPECT_LT(error, worst * std::abs(exact)) << what;
   }
 };
 
-Medium grey(double albedo, double depth, double g) { return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g); }
+Medium grey(double albedo, double depth, double g) {
+  return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g);
+}
 PathTracer::Settings found() {
   PathTracer::Settings settings;
   settings.nextEvent = false;
@@ -34,7 +39,8 @@ PathTracer::Settings found() {
 }
 
 TEST_F(MediaExtremes, OpticalDepthOfAMillionth) {
-  // No collision in a million paths; but light from a lamp is asked for on every flight. Scattered once: the integral along the line of sight.
+  // No collision in a million paths; but light from a lamp is asked for on every flight. Scattered once: the integral
+  // along the line of sight.
   for (const double depth : {1e-6, 1e-3}) {
     Scene scene = slab(grey(1.0, depth, 0.0), 1.0, 1.0);
     scene.environment.reset();
@@ -63,14 +69,16 @@ TEST_F(MediaExtremes, OpticalDepthOfAThousandth) {
 }
 
 TEST_F(MediaExtremes, OpticalDepthsOfAHundredAndAThousand) {
-  // 200 and 2000 collisions a path, of which one in 60 or 600 gets through: UT1 = UTU sqrt(3)/4 H(1), UTU = 4/3 / (tau + 2 * 0.7104461).
+  // 200 and 2000 collisions a path, of which one in 60 or 600 gets through: UT1 = UTU sqrt(3)/4 H(1), UTU = 4/3 / (tau
+  // + 2 * 0.7104461).
   const PixelEstimate hundred = estimate(picture(slab(grey(1.0, 100.0, 0.0), 1.0, 1.0), 100, found()));
   expectExact("T tau 100, a 1", hundred.mean.y, hundred.error.y, .016553, 0.06);
   EXPECT_NEAR(hundred.mean.x + hundred.mean.y, 1.0, 1e-5);
   if (isLong()) {
     const PixelEstimate thousand = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 2048, found()));
     expectExact("T tau 1000, a 1", thousand.mean.y, thousand.error.y, 1.67644315e-3, 0.04);
-    EXPECT_NEAR(thousand.mean.x + thousand.mean.y, 1.0, 3.5 * std::hypot(thousand.error.x, thousand.error.y));  // a path of a million events meets roulette
+    EXPECT_NEAR(thousand.mean.x + thousand.mean.y, 1.0,
+                3.5 * std::hypot(thousand.error.x, thousand.error.y));  // a path of a million events meets roulette
   } else {
     // 256 paths, of which 0.43 are expected below: more than 4 come once in ten thousand seeds.
     const PixelEstimate thousand = estimate(picture(slab(grey(1.0, 1000.0, 0.0), 1.0, 1.0), 1, found()));
@@ -87,7 +95,8 @@ TEST_F(MediaExtremes, HardlyAnyAbsorptionBehindGlass) {
 }
 
 TEST_F(MediaExtremes, ALimitOfScatteringsLeavesOutWhatItShould) {
-  // Of a half-space of albedo 1 the share H(1) / sqrt(pi n) is not back after n scatterings [Chandrasekhar1960]; for these n by a walk in double.
+  // Of a half-space of albedo 1 the share H(1) / sqrt(pi n) is not back after n scatterings [Chandrasekhar1960]; for
+  // these n by a walk in double.
   const std::pair<std::uint32_t, double> rows[] = {{64, .2005}, {256, .1029}};
   for (const auto& [bounces, share] : rows) {
     PathTracer::Settings settings = found();
@@ -102,7 +111,8 @@ TEST_F(MediaExtremes, ALimitOfScatteringsLeavesOutWhatItShould) {
 
 TEST_F(MediaExtremes, AThousandthOfAnisotropyIsNotTakenForNone) {
   // g 0.001 against g 0 by the same random numbers, as the difference of 2.4e-4 drowns in the noise of either.
-  const Image none = picture(slab(grey(.9, 1.0, 0.0), 1.0, 1.0), 2048, found()), little = picture(slab(grey(.9, 1.0, .001), 1.0, 1.0), 2048, found());
+  const Image none = picture(slab(grey(.9, 1.0, 0.0), 1.0, 1.0), 2048, found()),
+              little = picture(slab(grey(.9, 1.0, .001), 1.0, 1.0), 2048, found());
   Image difference = none;
   for (std::size_t i = 0; i < none.pixels.size(); ++i) difference.pixels[i] = none.pixels[i] - little.pixels[i];
   const PixelEstimate e = estimate(difference);

@@ -1,9 +1,11 @@
-// The path tracer in participating media to two parts in a thousand of the value: the same exact figures as in media_test.cpp and more, with so
-// many paths that the standard error is at most 0.2 % of each value. What takes minutes for that is done where LUCERNA_LONG_TESTS is set.
+// The path tracer in participating media to two parts in a thousand of the value: the same exact figures as in
+// media_test.cpp and more, with so many paths that the standard error is at most 0.2 % of each value. What takes
+// minutes for that is done where LUCERNA_LONG_TESTS is set.
 //
-// Every pixel of a picture sees the same quantity with random numbers of its own, so that the pixels are independent estimates; the error stated is
-// that of their mean, from their spread. (The film's own standard errors take a pixel's samples for independent, and are too large where they are
-// spread by low-discrepancy points.) A figure passes within 3.5 of its standard errors; seeds are fixed.
+// Every pixel of a picture sees the same quantity with random numbers of its own, so that the pixels are independent
+// estimates; the error stated is that of their mean, from their spread. (The film's own standard errors take a pixel's
+// samples for independent, and are too large where they are spread by low-discrepancy points.) A figure passes
+// within 3.5 of its standard errors; seeds are fixed.
 #include "support/media_fixture.hpp"
 #include "support/media_scenes.hpp"
 
@@ -29,7 +31,8 @@ class MediaPrecision : public MediaTest {
   /// worst: the largest standard error, as a part of the exact figure, with which the test still says what it should.
   void expectExact(const std::string& what, double value, double error, double exact, double worst) {
     const double z = (value - exact) / error;
-    std::printf("%-40s exact %.6g  measured %.6g +- %.2g (%.2f %%)  z %+.2f  %.1f s\n", what.c_str(), exact, value, error, 100.0 * error / exact, z, seconds_);
+    std::printf("%-40s exact %.6g  measured %.6g +- %.2g (%.2f %%)  z %+.2f  %.1f s\n", what.c_str(), exact, value,
+                error, 100.0 * error / exact, z, seconds_);
     EXPECT_LT(std::abs(z), 3.5) << what;
     EXPECT_LT(error, worst * exact) << what;
   }
@@ -41,32 +44,34 @@ struct SlabRow {
   double paths;  ///< in thousands, for 0.2 % of the smaller figure
   bool costly = false;
 };
-Medium grey(double albedo, double depth, double g) { return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g); }
-std::string nameOf(const SlabRow& row) { return fmt::format("a {} tau {} g {} n {} mu {}", row.albedo, row.depth, row.g, row.ior, row.cosine); }
+Medium grey(double albedo, double depth, double g) {
+  return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g);
+}
+std::string nameOf(const SlabRow& row) {
+  return fmt::format("a {} tau {} g {} n {} mu {}", row.albedo, row.depth, row.g, row.ior, row.cosine);
+}
 
-// Reflectance and transmittance; [vandeHulst1980], adding-doubling, and Beer, Lambert and Fresnel for the one that does not scatter.
+// Reflectance and transmittance; [vandeHulst1980], adding-doubling, and Beer, Lambert and Fresnel for the one that does
+// not scatter.
 const SlabRow kSlabs[] = {
-    {.9, 2, .75, 1, 1.0, .0973946, .6609577, 790},
-    {.99, 1, 0, 1, 0.5, .486518, .491628, 260},
-    {.5, 1, -.5, 1, 1.0, .164737, .404695, 262},
-    {.9, 1, .75, 1.5, 0.3, .32282, .40355, 400},
-    {.9, 1, .75, 1.5, 1.0, .115171, .681242, 790},
-    {.5, 1, .9, 1.33, 0.5, .07545, .39517, 790},
-    {0, 1, 0, 1.5, 1.0, .0449902, .339111, 600},
-    {1, 10, 0, 1, 1.0, .853005, .146995, 1750, true},
-    {.99, 10, .75, 1, 1.0, .472571, .340012, 400},
-    {.99, 10, 0, 1.33, 1.0, .642653, .100677, 1800, true},
+    {.9, 2, .75, 1, 1.0, .0973946, .6609577, 790}, {.99, 1, 0, 1, 0.5, .486518, .491628, 260},
+    {.5, 1, -.5, 1, 1.0, .164737, .404695, 262},   {.9, 1, .75, 1.5, 0.3, .32282, .40355, 400},
+    {.9, 1, .75, 1.5, 1.0, .115171, .681242, 790}, {.5, 1, .9, 1.33, 0.5, .07545, .39517, 790},
+    {0, 1, 0, 1.5, 1.0, .0449902, .339111, 600},   {1, 10, 0, 1, 1.0, .853005, .146995, 1750, true},
+    {.99, 10, .75, 1, 1.0, .472571, .340012, 400}, {.99, 10, 0, 1.33, 1.0, .642653, .100677, 1800, true},
     {1, 10, .75, 1.5, 1.0, .541999, .458001, 330},
 };
 
 TEST_F(MediaPrecision, SlabsReflectAndTransmitAsTabled) {
   double sum = 0.0;
   for (const SlabRow& row : kSlabs) {
-    // Ten seconds and more of the processor's for 0.2 % of what little gets through: in the suite to twice or thrice that.
+    // Ten seconds and more of the processor's for 0.2 % of what little gets through: in the suite to twice or thrice
+    // that.
     const bool less = row.costly && !isLong();
     PathTracer::Settings settings;
     settings.nextEvent = false;
-    const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine), static_cast<std::uint32_t>(row.paths * (less ? 0.1 : 1.0) * 1000.0 / 256.0), settings);
+    const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine),
+                           static_cast<std::uint32_t>(row.paths * (less ? 0.1 : 1.0) * 1000.0 / 256.0), settings);
     expectExact("R " + nameOf(row), s.mean.x, s.error.x, row.reflectance, 0.002);
     expectExact("T " + nameOf(row), s.mean.y, s.error.y, row.transmittance, less ? 0.007 : 0.002);
     if (row.albedo == 1.0) {
@@ -78,8 +83,11 @@ TEST_F(MediaPrecision, SlabsReflectAndTransmitAsTabled) {
 }
 
 TEST_F(MediaPrecision, NoCollisionRoundsThroughAFace) {
-  // Some 60 collisions a path between faces at +-1/2: with collisions left where they round to, one path in two million started beyond a face.
-  if (!isLong()) GTEST_SKIP() << "a minute; set LUCERNA_LONG_TESTS=1. SlabsReflectAndTransmitAsTabled counts leaks among fewer paths";
+  // Some 60 collisions a path between faces at +-1/2: with collisions left where they round to, one path in two million
+  // started beyond a face.
+  if (!isLong())
+    GTEST_SKIP()
+        << "a minute; set LUCERNA_LONG_TESTS=1. SlabsReflectAndTransmitAsTabled counts leaks among fewer paths";
   PathTracer::Settings settings;
   settings.nextEvent = false;
   const auto s = measure(slab(grey(1.0, 10.0, 0.0), 1.0, 1.0), 25000, settings);  // counts
@@ -98,7 +106,8 @@ TEST_F(MediaPrecision, HalfSpacesReflectAsTabled) {
     const bool less = row.costly && !isLong();
     PathTracer::Settings settings;
     settings.nextEvent = false;
-    const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine), static_cast<std::uint32_t>(row.paths * (less ? 0.2 : 1.0) * 1000.0 / 256.0), settings);
+    const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine),
+                           static_cast<std::uint32_t>(row.paths * (less ? 0.2 : 1.0) * 1000.0 / 256.0), settings);
     expectExact("R " + nameOf(row), s.mean.x, s.error.x, row.reflectance, less ? 0.005 : 0.002);
   }
 }
@@ -109,12 +118,11 @@ struct SourceRow {
 };
 
 TEST_F(MediaPrecision, PointSourceInAnInfiniteMedium) {
-  // Light of unit power and camera in an isotropic medium of mean free path 1, looking so many degrees off the source [CaseZweifel1967].
+  // Light of unit power and camera in an isotropic medium of mean free path 1, looking so many degrees off the source
+  // [CaseZweifel1967].
   const SourceRow rows[] = {
-      {.5, 2, 30, 9.885653e-4, 650, 0.005},
-      {.9, 2, 30, 5.425945e-3, 400, 0.005},
-      {.9, 5, 60, 2.672081e-4, 6000, 0.005, true},
-      {.99, 2, 30, 1.07102e-2, 262, 0.006, true},
+      {.5, 2, 30, 9.885653e-4, 650, 0.005},        {.9, 2, 30, 5.425945e-3, 400, 0.005},
+      {.9, 5, 60, 2.672081e-4, 6000, 0.005, true}, {.99, 2, 30, 1.07102e-2, 262, 0.006, true},
       {.9, 2, 30, 5.425945e-3, 2000, 0.002, true},
   };
   for (const SourceRow& row : rows) {
@@ -130,7 +138,8 @@ TEST_F(MediaPrecision, PointSourceInAnInfiniteMedium) {
     const glm::dvec3 at(0.0, 0.0, 0.5 * row.distance);
     scene.cameras = {cameraAt(at, at + glm::dvec3(std::sin(angle), 0.0, -std::cos(angle)))};
     const auto s = measure(scene, static_cast<std::uint32_t>(row.paths * 1000.0 / 256.0));
-    expectExact(fmt::format("a {} D {} {} degrees", row.albedo, row.distance, row.degrees), s.mean.x, s.error.x, row.radiance, row.worst);
+    expectExact(fmt::format("a {} D {} {} degrees", row.albedo, row.distance, row.degrees), s.mean.x, s.error.x,
+                row.radiance, row.worst);
   }
   // A sphere of 40 mean free paths with a boundary stands in for infinity.
   Scene scene;

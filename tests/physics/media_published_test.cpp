@@ -1,5 +1,6 @@
-// The published path tracer of participating media [VPT2024] draws what its text shows: bright milk, the order of espresso over g, and work that
-// rises along the published series. On the scenes of assets/media in the original's format, lit by a point as there.
+// The published path tracer of participating media [VPT2024] draws what its text shows: bright milk, the order of
+// espresso over g, and work that rises along the published series. On the scenes of assets/media in the original's
+// format, lit by a point as there.
 #include "base/data.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "settings/deviations.hpp"
@@ -26,7 +27,8 @@ class MediaPublished : public SharedProgramsTest {
     glm::dvec3 middle{0.0};  ///< radiance of the block's centre, over a fifth of the picture's sides
     PathTracer::Statistics statistics;
   };
-  /// A block of a medium of the original's catalogue; scattering, absorption and g times these factors, as the text's series have them.
+  /// A block of a medium of the original's catalogue; scattering, absorption and g times these factors, as the text's
+  /// series have them.
   struct Block {
     const char* medium = "milk";
     double scattering = 1.0, absorption = 1.0, anisotropy = 1.0;
@@ -59,27 +61,32 @@ class MediaPublished : public SharedProgramsTest {
 };
 
 TEST_F(MediaPublished, MilkIsAlmostWhollyWhite) {
-  // "The result is almost wholly white" (5.7). With shadow rays that media attenuate, or roulette at each collision, little of it is left. What it is on the
-  // screen, as the text shows pictures that were tone mapped: by the engine's curve at exposure 1.
+  // "The result is almost wholly white" (5.7). With shadow rays that media attenuate, or roulette at each collision,
+  // little of it is left. What it is on the screen, as the text shows pictures that were tone mapped: by the engine's
+  // curve at exposure 1.
   PathDeviations attenuated = original(), everywhere = original();
   attenuated.unattenuatedShadowRays = false;
   everywhere.rouletteAtSurfaces = false;
   const glm::dvec3 published = draw({}, original(), 24).middle;
   const glm::dvec3 withAttenuation = draw({}, attenuated, 24).middle, withRoulette = draw({}, everywhere, 24).middle;
-  std::printf("milk: published %.4f %.4f %.4f, shadow rays attenuated %.4f, roulette at collisions %.4f\n", published.x, published.y, published.z, withAttenuation.x, withRoulette.x);
+  std::printf("milk: published %.4f %.4f %.4f, shadow rays attenuated %.4f, roulette at collisions %.4f\n", published.x,
+              published.y, published.z, withAttenuation.x, withRoulette.x);
   Image patch(1, 1, glm::vec3(published));
   const double shown = toneMapped(patch, 1.0f).rgba[0] / 255.0;
   std::printf("milk's red on the screen: %.3f\n", shown);
   EXPECT_GE(shown, 0.4);
   EXPECT_GT(published.x, 0.15);
-  EXPECT_GT(std::min({published.x, published.y, published.z}), 0.6 * std::max({published.x, published.y, published.z}));  // white
+  EXPECT_GT(std::min({published.x, published.y, published.z}),
+            0.6 * std::max({published.x, published.y, published.z}));  // white
   EXPECT_LT(withAttenuation.x, 0.1 * published.x);
   EXPECT_LT(withRoulette.x, 0.9 * published.x);
 }
 
 TEST_F(MediaPublished, EspressoIsBrightestWithoutADirectionAndDarkestTurnedBack) {
-  // Figure 5.16: isotropic scattering lights the object through, backward scattering makes it a little darker than the measured coefficient.
-  const double measured = draw({"coffee"}, original(), 48).middle.x, isotropic = draw({"coffee", 1.0, 1.0, 0.0}, original(), 48).middle.x;
+  // Figure 5.16: isotropic scattering lights the object through, backward scattering makes it a little darker than the
+  // measured coefficient.
+  const double measured = draw({"coffee"}, original(), 48).middle.x,
+               isotropic = draw({"coffee", 1.0, 1.0, 0.0}, original(), 48).middle.x;
   const double backward = draw({"coffee", 1.0, 1.0, -1.0}, original(), 48).middle.x;
   std::printf("espresso: g measured %.4f, 0 %.4f, negated %.4f\n", measured, isotropic, backward);
   EXPECT_GT(isotropic, 1.5 * measured);
@@ -87,11 +94,14 @@ TEST_F(MediaPublished, EspressoIsBrightestWithoutADirectionAndDarkestTurnedBack)
 }
 
 TEST_F(MediaPublished, WorkRisesWithScattering) {
-  // Figures 5.12 and 5.13 took 15.5, 23.3, 36.5 and 38 s: rising, as more scattering is sampled. Loop turns instead of a clock: rays' nodes and
-  // triangles, steps in media. The text calls the last two very alike; here the last has more than twice the turns of the one before.
+  // Figures 5.12 and 5.13 took 15.5, 23.3, 36.5 and 38 s: rising, as more scattering is sampled. Loop turns instead of
+  // a clock: rays' nodes and triangles, steps in media. The text calls the last two very alike; here the last has more
+  // than twice the turns of the one before.
   double turns[4];
-  for (int i = 0; i < 4; ++i) turns[i] = draw({"milk", std::pow(10.0, i - 3), 1.0, 1.0, 1.1}, original(), 12).statistics.turns;
-  std::printf("turns, milk %.3g: 1 %.2f %.2f %.2f (published times 1 1.50 2.35 2.45)\n", turns[0], turns[1] / turns[0], turns[2] / turns[0], turns[3] / turns[0]);
+  for (int i = 0; i < 4; ++i)
+    turns[i] = draw({"milk", std::pow(10.0, i - 3), 1.0, 1.0, 1.1}, original(), 12).statistics.turns;
+  std::printf("turns, milk %.3g: 1 %.2f %.2f %.2f (published times 1 1.50 2.35 2.45)\n", turns[0], turns[1] / turns[0],
+              turns[2] / turns[0], turns[3] / turns[0]);
   for (int i = 1; i < 4; ++i) EXPECT_GT(turns[i], 1.1 * turns[i - 1]) << i;
 }
 

@@ -1,8 +1,9 @@
 // The path tracer in participating media against published tables and exact solutions, on OSMesa.
 //
-// The tables are those of van de Hulst, Giovanelli and Chandrasekhar and of an adding-doubling solver that agrees with them to the digits
-// shown. A figure passes within 3.5 of its own standard errors (over all cases here a false alarm in some hundred runs, and the seeds are
-// fixed), and only where that error is small enough to tell: it is stated with each.
+// The tables are those of van de Hulst, Giovanelli and Chandrasekhar and of an adding-doubling solver that agrees with
+// them to the digits shown. A figure passes within 3.5 of its own standard errors (over all cases here a false alarm in
+// some hundred runs, and the seeds are fixed), and only where that error is small enough to tell: it is stated with
+// each.
 #include "pathtracer/path_tracer.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/media_scenes.hpp"
@@ -21,7 +22,8 @@ using namespace test;
 
 class MediaPhysics : public SharedProgramsTest {
  protected:
-  PathTracer::Statistics measure(const Scene& scene, std::uint32_t samples, PathTracer::Settings settings = {}, int side = 16) {
+  PathTracer::Statistics measure(const Scene& scene, std::uint32_t samples, PathTracer::Settings settings = {},
+                                 int side = 16) {
     settings.size = {side, side};
     PathTracer tracer(context(), library(), scene, settings);
     const auto start = std::chrono::steady_clock::now();
@@ -36,7 +38,8 @@ class MediaPhysics : public SharedProgramsTest {
   /// worst: the largest standard error with which the test still says something.
   void expectExact(const std::string& what, double value, double error, double exact, double worst) {
     const double z = (value - exact) / error;
-    std::printf("%-44s exact %.6f  measured %.6f +- %.6f  z %+.2f  %.2f s\n", what.c_str(), exact, value, error, z, seconds_);
+    std::printf("%-44s exact %.6f  measured %.6f +- %.6f  z %+.2f  %.2f s\n", what.c_str(), exact, value, error, z,
+                seconds_);
     EXPECT_LT(std::abs(z), 3.5) << what;
     EXPECT_LT(error, worst) << what;
   }
@@ -49,19 +52,25 @@ struct SlabRow {
   std::uint32_t samples;
 };
 
-Medium grey(double albedo, double depth, double g) { return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g); }
+Medium grey(double albedo, double depth, double g) {
+  return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g);
+}
 
-std::string nameOf(const SlabRow& row) { return fmt::format("a {} tau {} g {} n {} mu {}", row.albedo, row.depth, row.g, row.ior, row.cosine); }
+std::string nameOf(const SlabRow& row) {
+  return fmt::format("a {} tau {} g {} n {} mu {}", row.albedo, row.depth, row.g, row.ior, row.cosine);
+}
 
 TEST_F(MediaPhysics, ASlabWhoseLightIsAsked) {
-  // The slab of table 35 [vandeHulst1980] with next-event estimation towards the environment; media_precision_test.cpp has the other slabs without.
+  // The slab of table 35 [vandeHulst1980] with next-event estimation towards the environment; media_precision_test.cpp
+  // has the other slabs without.
   const auto s = measure(slab(grey(.9, 2.0, .75), 1.0, 1.0), 1024);
   expectExact("R, lights asked", s.mean.x, s.meanError.x, .0973946, 0.0006);
   expectExact("T, lights asked", s.mean.y, s.meanError.y, .6609577, 0.0011);
 }
 
 TEST_F(MediaPhysics, ChannelsOfAnyRatioAreUnbiased) {
-  // Extinctions of 0.1 and 100, albedo 0.99; blue absorbs and does not scatter. Another scheme's uniform choice reads 0.610 +- 0.017 here.
+  // Extinctions of 0.1 and 100, albedo 0.99; blue absorbs and does not scatter. Another scheme's uniform choice reads
+  // 0.610 +- 0.017 here.
   Medium medium = homogeneous({.099, 99.0, 0.0}, {.001, 1.0, 0.7}, 0.0);
   Scene scene = slab(medium, 1.0, 1.0);
   scene.environment->picture->at(0, 0) = glm::vec3(1.0f, 1.0f, 0.0f);
@@ -81,14 +90,16 @@ TEST_F(MediaPhysics, ChannelsOfAnyRatioAreUnbiased) {
 }
 
 TEST_F(MediaPhysics, FurnacesStayAtOne) {
-  // White: nothing absorbs, so that whatever is inside of what, every pixel is 1. Thermal: emission sigma_a n^2 B with an environment of B gives
-  // B for any shape, albedo, phase function, density and colour, and n^2 B to a camera inside of a dielectric.
+  // White: nothing absorbs, so that whatever is inside of what, every pixel is 1. Thermal: emission sigma_a n^2 B with
+  // an environment of B gives B for any shape, albedo, phase function, density and colour, and n^2 B to a camera inside
+  // of a dielectric.
   const auto furnace = [&](const char* what, Scene scene, double exact) {
     scene.environment = constantEnvironment(1.0);
     const bool white = scene.media[0].absorption == glm::vec3(0.0f);
     const auto s = measure(scene, white ? 256 : 512);
-    // Paths that total reflection catches in the shell of glass meet roulette, so that energy is 1 in the mean alone; without such a shell it
-    // is in each path (SlabsReflectAndTransmitAsTabled, and the furnace in media_deviations_test.cpp).
+    // Paths that total reflection catches in the shell of glass meet roulette, so that energy is 1 in the mean alone;
+    // without such a shell it is in each path (SlabsReflectAndTransmitAsTabled, and the furnace in
+    // media_deviations_test.cpp).
     std::printf("%-44s %.6f %.6f %.6f +- %.1e  %.2f s\n", what, s.mean.x, s.mean.y, s.mean.z, s.meanError.x, seconds_);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(s.mean[c], exact, 3.5 * s.meanError[c] + 2e-5 * exact) << what << " channel " << c;
@@ -101,7 +112,8 @@ TEST_F(MediaPhysics, FurnacesStayAtOne) {
   nested.media = {white, homogeneous(glm::dvec3(5.0), glm::dvec3(0.0), -0.5)};
   addSphere(nested, glm::dvec3(0.0), 1.0, 3, addBoundary(nested, Bsdf::dielectric, 1.5, -1, 2));
   addSphere(nested, glm::dvec3(0.1, 0.0, 0.0), 0.8, 3, addBoundary(nested, Bsdf::dielectric, 1.33, 0, 3));
-  addSphere(nested, glm::dvec3(0.9, 0.1, 0.0), 0.6, 3, addBoundary(nested, Bsdf::dielectric, 2.0, 1, 1));  // overlaps, and lies below
+  addSphere(nested, glm::dvec3(0.9, 0.1, 0.0), 0.6, 3,
+            addBoundary(nested, Bsdf::dielectric, 2.0, 1, 1));  // overlaps, and lies below
   nested.cameras = {cameraAt({0.2, 0.3, 5.0}, glm::dvec3(0.2, 0.1, 0.0), 0.4)};
   furnace("white, nested and overlapping dielectrics", nested, 1.0);
 
@@ -134,14 +146,17 @@ TEST_F(MediaPhysics, FurnacesStayAtOne) {
 }
 
 TEST_F(MediaPhysics, DensityGridsOfOneOpticalDepthAreOneSlab) {
-  // Only the optical depth counts in layers, so a profile across the slab has the reflectance and transmittance of a homogeneous one.
+  // Only the optical depth counts in layers, so a profile across the slab has the reflectance and transmittance of a
+  // homogeneous one.
   for (const bool nextEvent : {false, true}) {
     Medium medium = grey(.9, 2.0, .75);
     DensityGrid grid;
     grid.size = {3, 40, 3};
     grid.min = {-31.0, -0.5, -31.0};
     grid.max = {31.0, 0.5, 31.0};
-    const auto profile = [](int y) { return 0.1 + std::abs(std::sin(0.4 * y)) * (y < 20 ? 3.0 : 0.5) + (y == 7 ? 12.0 : 0.0); };
+    const auto profile = [](int y) {
+      return 0.1 + std::abs(std::sin(0.4 * y)) * (y < 20 ? 3.0 : 0.5) + (y == 7 ? 12.0 : 0.0);
+    };
     double sum = 0.0;  // trilinear, constant beyond the last centres: the mean of the cells
     for (int y = 0; y < 40; ++y) sum += profile(y) / 40.0;
     for (int z = 0; z < 3; ++z)
@@ -157,9 +172,10 @@ TEST_F(MediaPhysics, DensityGridsOfOneOpticalDepthAreOneSlab) {
 }
 
 TEST_F(MediaPhysics, MeanPathLengthInASphere) {
-  // Rays that come in from everywhere have the mean path n^2 4 V / S inside, whatever scatters there [BlancoFournier2003; Tommasi2020].
-  // A medium that emits 1 a unit of length and does not absorb shows it: the mean over the disc is that over n^2. It fails where g, the
-  // phase function's orientation, total reflection or a boundary's weight gain or lose energy.
+  // Rays that come in from everywhere have the mean path n^2 4 V / S inside, whatever scatters there
+  // [BlancoFournier2003; Tommasi2020]. A medium that emits 1 a unit of length and does not absorb shows it: the mean
+  // over the disc is that over n^2. It fails where g, the phase function's orientation, total reflection or a
+  // boundary's weight gain or lose energy.
   for (const double ior : {1.0, 1.33}) {
     Scene scene;
     Medium medium = homogeneous(glm::dvec3(5.0, 20.0, 1.0), glm::dvec3(0.0), 0.5);
@@ -170,13 +186,14 @@ TEST_F(MediaPhysics, MeanPathLengthInASphere) {
     const auto s = measure(scene, 512);
     const double perDisc = 2.2 * 2.2 / M_PI * ior * ior;
     for (int c = 0; c < 3; ++c)
-      expectExact(fmt::format("mean path, n {} sigma_s {}", ior, medium.scattering[c]), s.mean[c] * perDisc, s.meanError[c] * perDisc, ior * ior * 4.0 / 3.0, 0.05);
+      expectExact(fmt::format("mean path, n {} sigma_s {}", ior, medium.scattering[c]), s.mean[c] * perDisc,
+                  s.meanError[c] * perDisc, ior * ior * 4.0 / 3.0, 0.05);
   }
 }
 
 TEST_F(MediaPhysics, SingleScatteringOfALamp) {
-  // A lamp of intensity 1 at a distance of 0.02 and of 1 from the line of sight, scattered once: the integral in double precision. What
-  // collisions alone would show has a few spikes and else nothing.
+  // A lamp of intensity 1 at a distance of 0.02 and of 1 from the line of sight, scattered once: the integral in double
+  // precision. What collisions alone would show has a few spikes and else nothing.
   const glm::dvec3 scattering(0.5, 0.2, 2.0), absorption(0.1, 0.0, 0.3);
   for (const double beside : {0.02, 1.0}) {
     Scene scene;
@@ -199,7 +216,8 @@ TEST_F(MediaPhysics, SingleScatteringOfALamp) {
       for (double t = 5e-5; t < 40.0; t += 1e-4) {
         const glm::dvec3 to = light.position - glm::dvec3(0.0, 0.0, -t);
         const double r = glm::length(to);
-        exact += 1e-4 * scattering[c] * std::exp(-extinction * (t + r)) / (r * r) * twin::henyeyGreensteinPdf(0.6, -to.z / r);
+        exact += 1e-4 * scattering[c] * std::exp(-extinction * (t + r)) / (r * r) *
+                 twin::henyeyGreensteinPdf(0.6, -to.z / r);
       }
       expectExact(fmt::format("lamp {} beside, channel {}", beside, c), s.mean[c], s.meanError[c], exact, 0.02 * exact);
     }
@@ -230,12 +248,15 @@ TEST_F(MediaPhysics, ScaleAndMatchedBoundariesLeaveThePictureAsItIs) {
   double mean = 0.0;
   for (const glm::vec3& p : one.pixels) mean += p.x / static_cast<double>(one.pixels.size());
   EXPECT_GT(mean, 0.01);
-  for (const double scale : {1024.0, 1.0 / 4096.0}) EXPECT_EQ(one.pixels, picture(ball(scale, Bsdf::none)).pixels) << scale;  // powers of two: bit for bit
-  EXPECT_EQ(one.pixels, picture(ball(1.0, Bsdf::dielectric)).pixels);  // of index 1; and a boundary of none has no index
+  for (const double scale : {1024.0, 1.0 / 4096.0})
+    EXPECT_EQ(one.pixels, picture(ball(scale, Bsdf::none)).pixels) << scale;  // powers of two: bit for bit
+  EXPECT_EQ(one.pixels,
+            picture(ball(1.0, Bsdf::dielectric)).pixels);  // of index 1; and a boundary of none has no index
 }
 
 TEST_F(MediaPhysics, ParallelLightAndReciprocity) {
-  // L(0.5; 1) of the slab of table 35 for light of unit irradiance across its rays; sun and camera change places: mu L(mu; mu0) = mu0 L(mu0; mu).
+  // L(0.5; 1) of the slab of table 35 for light of unit irradiance across its rays; sun and camera change places: mu
+  // L(mu; mu0) = mu0 L(mu0; mu).
   for (const bool swapped : {false, true}) {
     const double mu = swapped ? 1.0 : 0.5, mu0 = swapped ? 0.5 : 1.0;
     Scene scene = slab(grey(.9, 2.0, .75), 1.0, mu);
@@ -262,8 +283,8 @@ TEST_F(MediaPhysics, ExtremesAreFiniteUnbiasedAndBounded) {
     PathTracer::Settings settings;
     settings.nextEvent = false;
     const auto s = measure(slab(grey(row.albedo, row.depth, row.g), row.ior, row.cosine), row.samples, settings);
-    std::printf("%-36s R %.6f +- %.6f (%.6f)  T %.6f +- %.6f (%.6f)  %.2f s\n", nameOf(row).c_str(), s.mean.x, s.meanError.x, row.reflectance, s.mean.y,
-                s.meanError.y, row.transmittance, seconds_);
+    std::printf("%-36s R %.6f +- %.6f (%.6f)  T %.6f +- %.6f (%.6f)  %.2f s\n", nameOf(row).c_str(), s.mean.x,
+                s.meanError.x, row.reflectance, s.mean.y, s.meanError.y, row.transmittance, seconds_);
     // Below a few counts a standard error knows nothing of itself: a hundred-thousandth more.
     EXPECT_NEAR(s.mean.x, row.reflectance, 3.5 * s.meanError.x + 1e-5) << nameOf(row);
     EXPECT_NEAR(s.mean.y, row.transmittance, 3.5 * s.meanError.y + 1e-5) << nameOf(row);
@@ -289,7 +310,8 @@ TEST_F(MediaPhysics, ExtremesAreFiniteUnbiasedAndBounded) {
 }
 
 TEST_F(MediaPhysics, SubmissionsAreBoundedHoweverDeepTheMedium) {
-  // Ten thousand collisions a path: each submission ends in time all the same, and what is unfinished goes on with the next.
+  // Ten thousand collisions a path: each submission ends in time all the same, and what is unfinished goes on with the
+  // next.
   PathTracer::Settings settings;
   settings.size = {16, 16};
   PathTracer tracer(context(), library(), slab(grey(1.0, 10000.0, 0.9), 1.5, 1.0), settings);

@@ -1,5 +1,5 @@
-// The path tracer against exact answers. Statistical tests: seeds are fixed; a mean may be 4 standard errors from its expectation
-// (two-sided probability 6e-5 a channel).
+// The path tracer against exact answers. Statistical tests: seeds are fixed; a mean may be 4 standard errors from its
+// expectation (two-sided probability 6e-5 a channel).
 #include "scene/texture_mean.hpp"
 #include "support/path_scenes.hpp"
 
@@ -56,7 +56,8 @@ TEST_F(PathFurnaceTest, APictureOfOneRadianceIsTheSameAsAConstant) {
   EXPECT_LT(result.statistics().meanError.x, 2e-3);
 }
 
-// All walls shine alike: L = emission / (1 - albedo), with at most n scatterings emission (1 - albedo^(n + 1)) / (1 - albedo).
+// All walls shine alike: L = emission / (1 - albedo), with at most n scatterings emission (1 - albedo^(n + 1)) / (1 -
+// albedo).
 TEST_F(PathFurnaceTest, ClosedRoomThatShines) {
   SceneBuilder builder;
   builder.scene().sun.reset();
@@ -70,10 +71,12 @@ TEST_F(PathFurnaceTest, ClosedRoomThatShines) {
       settings.nextEvent = nextEvent;
       settings.bounces = bounces;
       const auto expected = [&](double albedo, double emission) {
-        return emission * (bounces == PathTracer::kUnlimited ? 1.0 : 1.0 - std::pow(albedo, bounces + 1.0)) / (1.0 - albedo);
+        return emission * (bounces == PathTracer::kUnlimited ? 1.0 : 1.0 - std::pow(albedo, bounces + 1.0)) /
+               (1.0 - albedo);
       };
       const PathTracer::Statistics result = tracer(builder.scene(), inside, settings, 32).statistics();
-      EXPECT_LT(deviations(result, glm::dvec3(expected(0.8f, 1.0), expected(0.5, 2.0), 3.0)), kSignificant) << nextEvent << " " << bounces;
+      EXPECT_LT(deviations(result, glm::dvec3(expected(0.8f, 1.0), expected(0.5, 2.0), 3.0)), kSignificant)
+          << nextEvent << " " << bounces;
       EXPECT_LT(result.meanError.x, 0.05);
     }
 }
@@ -90,7 +93,8 @@ class PathDirectTest : public PathTest {
   PathTracer::Statistics seen(const Scene& scene, std::uint32_t samples = 4, PathTracer::Settings settings = sized(1)) {
     return tracer(scene, lookingAt({3.0, 4.0, 1.0}, {0, 0, 0}, 1e-5), settings, samples).statistics();
   }
-  /// Irradiance at the origin, normal +y, from a rectangle of exitance pi * `radiance`, both sides, by midpoints in double.
+  /// Irradiance at the origin, normal +y, from a rectangle of exitance pi * `radiance`, both sides, by midpoints in
+  /// double.
   static double irradiance(const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v, double radiance) {
     constexpr int kSteps = 400;
     const glm::dvec3 normal = glm::normalize(glm::cross(u, v));
@@ -118,7 +122,8 @@ TEST_F(PathDirectTest, LampsOfOneDirectionAreExact) {
   EXPECT_NEAR(seen(point.scene()).mean.z, 0.5 / kPi * 9.0 * 2.0 / (d2 * std::sqrt(d2)), 1e-6);
 
   SceneBuilder spot = floor();
-  spot.scene().spots.push_back({{0.0, 2.0, 0.0}, glm::normalize(glm::dvec3(std::tan(0.25), -1.0, 0.0)), glm::vec3(4.0f), 0.2, 0.4});
+  spot.scene().spots.push_back(
+      {{0.0, 2.0, 0.0}, glm::normalize(glm::dvec3(std::tan(0.25), -1.0, 0.0)), glm::vec3(4.0f), 0.2, 0.4});
   const double t = (std::cos(0.25) - std::cos(0.4)) / (std::cos(0.2) - std::cos(0.4));
   EXPECT_NEAR(seen(spot.scene()).mean.x, 0.5 / kPi * 4.0 / 4.0 * t * t * (3.0 - 2.0 * t), 1e-5);
 
@@ -149,13 +154,17 @@ TEST_F(PathDirectTest, ARectangleOfLight) {
   }
 }
 
-// A lamp of 4 by 2 texels of different colours, one triangle of it far brighter than the other. Its light is read bilinearly, repeated.
+// A lamp of 4 by 2 texels of different colours, one triangle of it far brighter than the other. Its light is read
+// bilinearly, repeated.
 TEST_F(PathDirectTest, ALampThatShinesByAPicture) {
   const glm::dvec3 centre(0.4, 1.0, -0.2), u(1.2, 0.3, 0.0), v(0.0, 0.2, 0.9);
   std::vector<std::uint8_t> rgba;
-  for (int i = 0; i < 8; ++i) rgba.insert(rgba.end(), {static_cast<std::uint8_t>(i < 3 ? 255 : 20 * i), static_cast<std::uint8_t>(30 * (i % 3)), i == 5 ? std::uint8_t{200} : std::uint8_t{0}, 255});
+  for (int i = 0; i < 8; ++i)
+    rgba.insert(rgba.end(), {static_cast<std::uint8_t>(i < 3 ? 255 : 20 * i), static_cast<std::uint8_t>(30 * (i % 3)),
+                             i == 5 ? std::uint8_t{200} : std::uint8_t{0}, 255});
   const auto texel = [&](int x, int y, int c) {  // rows from the bottom, repeated
-    return static_cast<double>(linearFromSrgb(static_cast<float>(rgba[static_cast<std::size_t>(4 * ((1 - (y & 1)) * 4 + (x & 3)) + c)]) / 255.0f));
+    return static_cast<double>(linearFromSrgb(
+        static_cast<float>(rgba[static_cast<std::size_t>(4 * ((1 - (y & 1)) * 4 + (x & 3)) + c)]) / 255.0f));
   };
   const auto radiance = [&](double s, double t, int c) {
     const double px = 4.0 * s - 0.5, py = 2.0 * t - 0.5, x0 = std::floor(px), y0 = std::floor(py);
@@ -173,7 +182,8 @@ TEST_F(PathDirectTest, ALampThatShinesByAPicture) {
       const glm::dvec3 p = centre + (s - 0.5) * u + (t - 0.5) * v;
       const double d2 = glm::dot(p, p);
       for (int c = 0; c < 3; ++c)
-        expected[c] += 0.5 / kPi * scale[c] * radiance(s, t, c) * p.y * std::abs(glm::dot(normal, p)) / (d2 * d2) * glm::length(glm::cross(u, v)) / (kSteps * kSteps);
+        expected[c] += 0.5 / kPi * scale[c] * radiance(s, t, c) * p.y * std::abs(glm::dot(normal, p)) / (d2 * d2) *
+                       glm::length(glm::cross(u, v)) / (kSteps * kSteps);
     }
   PathTracer::Statistics both[2];
   for (const bool nextEvent : {true, false}) {
@@ -181,15 +191,17 @@ TEST_F(PathDirectTest, ALampThatShinesByAPicture) {
     const int lamp = builder.material(glm::vec3(0.0f)), picture = builder.texture(4, 2, rgba);
     builder.materialAt(lamp).emissionTexture = picture;
     builder.materialAt(lamp).emissionScale = scale;
-    builder.materialAt(lamp).emission = glm::vec3(scale) * glm::vec3(meanColour(builder.scene().textures[static_cast<std::size_t>(picture)].bitmap));
+    builder.materialAt(lamp).emission =
+        glm::vec3(scale) * glm::vec3(meanColour(builder.scene().textures[static_cast<std::size_t>(picture)].bitmap));
     builder.plate(centre, u, v, lamp);
     PathTracer::Settings settings = sized(16);
     settings.nextEvent = nextEvent;
     both[nextEvent] = seen(builder.scene(), nextEvent ? 256 : 512, settings);
     EXPECT_LT(deviations(both[nextEvent], expected), kSignificant) << nextEvent;
     EXPECT_LT(both[nextEvent].meanError.x, 0.01 * expected.x);
-    std::printf("a lamp by a picture, %s: %.5f %.5f %.5f +- %.5f of %.5f %.5f %.5f\n", nextEvent ? "asked" : "found", both[nextEvent].mean.x, both[nextEvent].mean.y,
-                both[nextEvent].mean.z, both[nextEvent].meanError.x, expected.x, expected.y, expected.z);
+    std::printf("a lamp by a picture, %s: %.5f %.5f %.5f +- %.5f of %.5f %.5f %.5f\n", nextEvent ? "asked" : "found",
+                both[nextEvent].mean.x, both[nextEvent].mean.y, both[nextEvent].mean.z, both[nextEvent].meanError.x,
+                expected.x, expected.y, expected.z);
   }
   EXPECT_LT(deviations(both[0], both[1]), kSignificant);
 }
@@ -206,7 +218,8 @@ TEST_F(PathDirectTest, AnEnvironmentWithABrightSpot) {
   for (int y = 0; y < 8; ++y) {  // the upper half; irradiance of a row by the integral of cos over its solid angle
     const double top = std::cos(kPi * y / 16), bottom = std::cos(kPi * (y + 1) / 16);
     for (int x = 0; x < 32; ++x)
-      for (int c = 0; c < 3; ++c) sum[c] += environment.picture->at(x, y)[c] * (2.0 * kPi / 32) * 0.5 * (top * top - bottom * bottom);
+      for (int c = 0; c < 3; ++c)
+        sum[c] += environment.picture->at(x, y)[c] * (2.0 * kPi / 32) * 0.5 * (top * top - bottom * bottom);
   }
   for (const bool nextEvent : {true, false}) {
     PathTracer::Settings settings = sized(32);
@@ -232,13 +245,16 @@ TEST_F(PathDirectTest, TheEnvironmentIsTurnedAsItSays) {
   EXPECT_NEAR(tracer(builder.scene(), side, 4, 1).statistics().mean.x, 0.0, 1e-6);
 }
 
-// Sunlight along -x falls on a wall; the floor gets none of it but what the wall reflects, E albedo times the form factor.
+// Sunlight along -x falls on a wall; the floor gets none of it but what the wall reflects, E albedo times the form
+// factor.
 TEST_F(PathDirectTest, OneBounceWithAndWithoutOcclusion) {
   const auto make = [&](bool screen) {
     SceneBuilder builder = floor(0.5f);
     builder.sun({-1.0, 0.0, 0.0}, glm::vec3(3.0f));
     builder.plate({-1.5, 1.0, 0.0}, {0, 2, 0}, {0, 0, 2}, builder.material(glm::vec3(0.6f)));
-    if (screen) builder.plate({-0.7, 0.5, 0.0}, {0, 0, 9}, {0.8, 0, 0}, builder.material(glm::vec3(0.9f)));  // along the light: gets none
+    if (screen)
+      builder.plate({-0.7, 0.5, 0.0}, {0, 0, 9}, {0.8, 0, 0},
+                    builder.material(glm::vec3(0.9f)));  // along the light: gets none
     return builder;
   };
   const double expected = 0.5 / kPi * irradiance({-1.5, 1.0, 0.0}, {0, 2, 0}, {0, 0, 2}, 3.0 * 0.6f / kPi);

@@ -1,4 +1,5 @@
-// The solvers on exact form factors: known answers, the counts that others need, stiff systems, and a stop that never under-reports.
+// The solvers on exact form factors: known answers, the counts that others need, stiff systems, and a stop that never
+// under-reports.
 #include "base/error.hpp"
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/hemicube_map.hpp"
@@ -15,8 +16,13 @@
 namespace lucerna {
 namespace {
 
-constexpr RadiositySolver kAll[] = {RadiositySolver::jacobi,   RadiositySolver::gaussSeidel, RadiositySolver::progressive,       RadiositySolver::overshoot,
-                                    RadiositySolver::anderson, RadiositySolver::perRoom,     RadiositySolver::conjugateGradients};
+constexpr RadiositySolver kAll[] = {RadiositySolver::jacobi,
+                                    RadiositySolver::gaussSeidel,
+                                    RadiositySolver::progressive,
+                                    RadiositySolver::overshoot,
+                                    RadiositySolver::anderson,
+                                    RadiositySolver::perRoom,
+                                    RadiositySolver::conjugateGradients};
 
 FormFactorMatrix matrixOf(const std::vector<std::vector<double>>& dense) {
   FormFactorMatrix matrix;
@@ -68,7 +74,8 @@ std::vector<double> solvedDirectly(const RadiositySystem& s, int channel) {
   for (std::size_t i = 0; i < n; ++i) {
     a[i][i] = 1.0;
     const auto row = s.matrix->row(i);
-    for (std::size_t k = 0; k < row.patches.size(); ++k) a[i][row.patches[k]] -= s.reflectance[i][channel] * row.scale * static_cast<double>(row.factors[k]);
+    for (std::size_t k = 0; k < row.patches.size(); ++k)
+      a[i][row.patches[k]] -= s.reflectance[i][channel] * row.scale * static_cast<double>(row.factors[k]);
     b[i] = s.emission[i][channel];
   }
   for (std::size_t k = 0; k < n; ++k)  // diagonally dominant: no pivoting
@@ -127,7 +134,8 @@ TEST_F(RadiositySolvers, TheBoundIsNeverBelowTheError) {
         settings.solver = solver;
         settings.error = error;
         const RadiositySolved solved = solveRadiosity(cube().system, settings);
-        EXPECT_LE(worstError(solved.exitance, exact), solved.progress.errorBound * (1.0 + 1e-6) + 1e-12) << nameOf(solver) << " " << rho << " " << error;
+        EXPECT_LE(worstError(solved.exitance, exact), solved.progress.errorBound * (1.0 + 1e-6) + 1e-12)
+            << nameOf(solver) << " " << rho << " " << error;
         EXPECT_LE(solved.progress.errorBound, error);
       }
   }
@@ -146,7 +154,8 @@ TEST_F(RadiositySolvers, StiffRoomsNeedFewerThanTwentyProducts) {
   }
 }
 
-// The least number of products after which the true error is below 1e-3: reference values from exact form factors at this mesh and light.
+// The least number of products after which the true error is below 1e-3: reference values from exact form factors at
+// this mesh and light.
 TEST_F(RadiositySolvers, NeedAsManyProductsAsPublishedMethodsDo) {
   struct Expected {
     RadiositySolver solver;
@@ -155,13 +164,14 @@ TEST_F(RadiositySolvers, NeedAsManyProductsAsPublishedMethodsDo) {
   };
   // Groups are found by three splits of four products, and what they see takes a product for three of up to eight.
   constexpr double kSetup = 3 * 4 + 3;
-  const Expected table[] = {{RadiositySolver::jacobi, {7, 27, 132}, 1.01},
-                            {RadiositySolver::gaussSeidel, {4, 14, 67}, 1.01},
-                            {RadiositySolver::conjugateGradients, {3, 5, 5}, 2.01},  // ours counts the final check and the right side
-                            {RadiositySolver::anderson, {4, 5, 6}, 1.01},
-                            {RadiositySolver::progressive, {3.2, 13.2, 66}, 1.01},
-                            {RadiositySolver::overshoot, {1.0, 1.7, 2.5}, 1.01},
-                            {RadiositySolver::perRoom, {2 + kSetup, 3 + kSetup, 3 + kSetup}, 1.01}};
+  const Expected table[] = {
+      {RadiositySolver::jacobi, {7, 27, 132}, 1.01},
+      {RadiositySolver::gaussSeidel, {4, 14, 67}, 1.01},
+      {RadiositySolver::conjugateGradients, {3, 5, 5}, 2.01},  // ours counts the final check and the right side
+      {RadiositySolver::anderson, {4, 5, 6}, 1.01},
+      {RadiositySolver::progressive, {3.2, 13.2, 66}, 1.01},
+      {RadiositySolver::overshoot, {1.0, 1.7, 2.5}, 1.01},
+      {RadiositySolver::perRoom, {2 + kSetup, 3 + kSetup, 3 + kSetup}, 1.01}};
   const double rhos[3] = {0.5, 0.8, 0.95};
   for (const Expected& row : table)
     for (int k = 0; k < 3; ++k) {
@@ -178,7 +188,8 @@ TEST_F(RadiositySolvers, NeedAsManyProductsAsPublishedMethodsDo) {
         settings.mostProducts = most;
         const RadiositySolved solved = solveRadiosity(cube().system, settings);
         double off = 0.0;
-        for (std::size_t i = 0; i < exact.size(); ++i) off += (solved.exitance[i].x - exact[i]) * (solved.exitance[i].x - exact[i]);
+        for (std::size_t i = 0; i < exact.size(); ++i)
+          off += (solved.exitance[i].x - exact[i]) * (solved.exitance[i].x - exact[i]);
         if (off < 1e-6 * squares) needed = most;
       }
       EXPECT_NEAR(needed, row.rho[k], row.slack + 0.03 * row.rho[k]) << nameOf(row.solver) << " " << rhos[k];
@@ -237,9 +248,12 @@ TEST_F(RadiositySolvers, ChannelsDoNotMixAndLightIsLinear) {
 TEST(RadiosityKnown, TheSixPatchCube) {
   std::vector<std::vector<double>> dense(6, std::vector<double>(6));
   for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < 6; ++j) dense[i][j] = i == j ? 0.0 : i / 2 == j / 2 ? 0.199824895698387 : 0.200043776075403;
+    for (std::size_t j = 0; j < 6; ++j)
+      dense[i][j] = i == j ? 0.0 : i / 2 == j / 2 ? 0.199824895698387 : 0.200043776075403;
   const FormFactorMatrix matrix = matrixOf(dense);
-  const double table[3][4] = {{0.5, 1.09090909811, 0.181745826108, 0.181836268946}, {0.8, 1.55172415364, 0.689551070738, 0.689681193904}, {0.95, 4.03361346590, 3.19315984515, 3.19330667224}};
+  const double table[3][4] = {{0.5, 1.09090909811, 0.181745826108, 0.181836268946},
+                              {0.8, 1.55172415364, 0.689551070738, 0.689681193904},
+                              {0.95, 4.03361346590, 3.19315984515, 3.19330667224}};
   for (const auto& [rho, ceiling, floor, walls] : table)
     for (const RadiositySolver solver : kAll) {
       RadiositySystem system;
@@ -276,13 +290,13 @@ TEST(RadiosityKnown, RepairMakesReciprocityAndSums) {
   EXPECT_GT(matrix.reciprocityError(areas), 0.3);
   EXPECT_LT(matrix.repair(areas, std::vector<double>(areas.size(), 1.0)), 1e-6);
   EXPECT_LT(matrix.reciprocityError(areas), 1e-5);
-  for (const double sum : matrix.rowSums()) {
-    EXPECT_NEAR(sum, 1.0, 1e-14);
-  }
+  for (const double sum : matrix.rowSums()) { EXPECT_NEAR(sum, 1.0, 1e-14); }
 }
 
 TEST(RadiosityKnown, DeltaFormFactors) {
-  const double sums[][2] = {{8, 1.008568800}, {16, 1.002123181}, {32, 1.000529642}, {64, 1.000132339}, {100, 1.000054200}, {128, 1.000033080}, {256, 1.000008270}, {500, 1.000002168}, {512, 1.000002067}};
+  const double sums[][2] = {{8, 1.008568800},   {16, 1.002123181},  {32, 1.000529642},
+                            {64, 1.000132339},  {100, 1.000054200}, {128, 1.000033080},
+                            {256, 1.000008270}, {500, 1.000002168}, {512, 1.000002067}};
   for (const auto& [size, sum] : sums) {
     const int n = static_cast<int>(size);
     EXPECT_NEAR(sumOverHemicube(deltaFormFactors(n, DeltaMap::centre), n), sum, 1e-8) << n;

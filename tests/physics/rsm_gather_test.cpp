@@ -1,4 +1,5 @@
-// The gather from a reflective shadow map held against exact answers, by its CPU twin and the engine's own sample pattern.
+// The gather from a reflective shadow map held against exact answers, by its CPU twin and the engine's own sample
+// pattern.
 #include "rsm/rsm_gather.hpp"
 #include "support/rsm_maps.hpp"
 
@@ -39,37 +40,40 @@ Estimate estimate(int trials, RsmGather::Weight weight, int samples, std::uint32
 }
 
 TEST(RsmGatherForm, PolygonFormFactorsAreExact) {
-  // A square parallel to the receiver, on its axis [Howell, configuration factor catalogue B-3]: four corners of a/c x a/c.
+  // A square parallel to the receiver, on its axis [Howell, configuration factor catalogue B-3]: four corners of a/c x
+  // a/c.
   const double a = 0.7, c = 1.3, x = a / c;
   const double corner = 2.0 * x / std::sqrt(1.0 + x * x) * std::atan(x / std::sqrt(1.0 + x * x)) / (2.0 * M_PI);
   const glm::dvec3 square[] = {{a, a, c}, {-a, a, c}, {-a, -a, c}, {a, -a, c}};
   EXPECT_NEAR(twin::polygonFormFactor(square, kUp), 4.0 * corner, 1e-14);
   // Cut by the horizon: a wall through it gives what the wall above it alone gives; below it there is nothing.
-  const glm::dvec3 through[] = {{c, -a, -3.0}, {c, a, -3.0}, {c, a, 2.0}, {c, -a, 2.0}}, above[] = {{c, -a, 0.0}, {c, a, 0.0}, {c, a, 2.0}, {c, -a, 2.0}};
+  const glm::dvec3 through[] = {{c, -a, -3.0}, {c, a, -3.0}, {c, a, 2.0}, {c, -a, 2.0}},
+                   above[] = {{c, -a, 0.0}, {c, a, 0.0}, {c, a, 2.0}, {c, -a, 2.0}};
   EXPECT_NEAR(twin::polygonFormFactor(through, kUp), twin::polygonFormFactor(above, kUp), 1e-14);
   EXPECT_EQ(twin::polygonFormFactor(through, glm::dvec3(-1.0, 0.0, 0.0)), 0.0);
 }
 
 TEST(RsmGatherCorner, AllTexelsGiveTheExactAnswerHoweverNear) {
-  // Square texels of 0.15625, so that h goes from a hundred-and-fiftieth of a texel to six. The surfels tile the wall: what is left
-  // is the midpoint rule's error where a surfel is taken for a point, 1/20 (t/d)^2 for this kernel, d = 2 t being the least.
+  // Square texels of 0.15625, so that h goes from a hundred-and-fiftieth of a texel to six. The surfels tile the wall:
+  // what is left is the midpoint rule's error where a surfel is taken for a point, 1/20 (t/d)^2 for this kernel, d = 2
+  // t being the least.
   const twin::RsmMap map = cornerMap({640, 64});
   std::printf("h       h/texel  exact    quad    disc    clamp   none  (over exact)\n");
   for (const double h : {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0}) {
     const auto at = [&](NearField nearField) {
-      return luminance(twin::bruteForceIrradiance(map, {h, 0.0, 0.0}, kUp, {2.0, nearField, 0.15625})) / cornerIrradiance(h);
+      return luminance(twin::bruteForceIrradiance(map, {h, 0.0, 0.0}, kUp, {2.0, nearField, 0.15625})) /
+             cornerIrradiance(h);
     };
-    std::printf("%-7g %-8.4f %.4f  %.4f  %.4f  %.4f  %.4f\n", h, h / 0.15625, cornerIrradiance(h), at(NearField::quad), at(NearField::disc),
-                at(NearField::clamp), at(NearField::none));
+    std::printf("%-7g %-8.4f %.4f  %.4f  %.4f  %.4f  %.4f\n", h, h / 0.15625, cornerIrradiance(h), at(NearField::quad),
+                at(NearField::disc), at(NearField::clamp), at(NearField::none));
     EXPECT_NEAR(at(NearField::quad), 1.0, 0.015) << h;
-    if (h < 0.02) {  // no clamp may drop this to 0: every other bound does, as the texel's centre cannot tell where its light comes from
+    if (h < 0.02) {  // no clamp may drop this to 0: every other bound does, as the texel's centre cannot tell where its
+                     // light comes from
       EXPECT_LT(at(NearField::disc), 0.5) << h;
       EXPECT_LT(at(NearField::clamp), 0.5) << h;
       EXPECT_LT(at(NearField::none), 0.5) << h;
     }
-    if (h > 0.9) {
-      EXPECT_NEAR(at(NearField::disc), 1.0, 0.01);
-    }
+    if (h > 0.9) { EXPECT_NEAR(at(NearField::disc), 1.0, 0.01); }
   }
 }
 
@@ -77,7 +81,9 @@ TEST(RsmGatherCorner, ElongatedTexelsToo) {
   // The same error, with d from sqrt(2) times the longer edge on.
   for (const glm::ivec2& size : {glm::ivec2(128, 128), glm::ivec2(1024, 64), glm::ivec2(2048, 16)})
     for (const double h : {0.001, 0.1, 1.0})
-      EXPECT_NEAR(luminance(twin::bruteForceIrradiance(cornerMap(size), {h, 0.0, 0.0}, kUp, {})) / cornerIrradiance(h), 1.0, 0.03) << size.x << " " << h;
+      EXPECT_NEAR(luminance(twin::bruteForceIrradiance(cornerMap(size), {h, 0.0, 0.0}, kUp, {})) / cornerIrradiance(h),
+                  1.0, 0.03)
+          << size.x << " " << h;
 }
 
 TEST(RsmGatherCorner, TheSampledEstimateIsTheSum) {
@@ -85,22 +91,25 @@ TEST(RsmGatherCorner, TheSampledEstimateIsTheSum) {
   const GatherOptions options{2.0, NearField::quad};
   for (const double h : {0.001, 0.03, 0.3, 1.0}) {
     const glm::dvec3 x(h, 0.0, 0.0);
-    const Estimate e = estimate(100, RsmGather::Weight::unbiased, 16384, 11,  // the radius is 1280 texels: 13 samples fall on the nearest one
-                                [&](const auto& pattern) { return luminance(twin::gather(map, pattern, x, kUp, 0.0, options).irradiance); });
+    const Estimate e = estimate(
+        100, RsmGather::Weight::unbiased, 16384, 11,  // the radius is 1280 texels: 13 samples fall on the nearest one
+        [&](const auto& pattern) { return luminance(twin::gather(map, pattern, x, kUp, 0.0, options).irradiance); });
     EXPECT_NEAR(e.mean / cornerIrradiance(h), 1.0, 3.0 * e.standardError / cornerIrradiance(h) + 0.015) << h;
     EXPECT_LT(e.standardError / e.mean, 0.05) << h;
   }
 }
 
 TEST(RsmGatherWeight, UnbiasedOnRandomScenes) {
-  // 3 standard errors: over 40 points a false alarm has a chance of 1 - 0.9973^40 = 10 %, so two may stray, and none beyond 4.5.
+  // 3 standard errors: over 40 points a false alarm has a chance of 1 - 0.9973^40 = 10 %, so two may stray, and none
+  // beyond 4.5.
   const twin::RsmMap map = test::randomMap({48, 36}, 3);
   const GatherOptions options{1.5, NearField::quad};  // all of the map
   int strays = 0;
   for (const test::SurfacePoint& p : test::randomPoints(map, 40, 4)) {
     const double exact = luminance(twin::bruteForceIrradiance(map, p.position, p.normal, options));
-    const Estimate e = estimate(60, RsmGather::Weight::unbiased, 400, 5,
-                                [&](const auto& pattern) { return luminance(twin::gather(map, pattern, p.position, p.normal, 0.7, options).irradiance); });
+    const Estimate e = estimate(60, RsmGather::Weight::unbiased, 400, 5, [&](const auto& pattern) {
+      return luminance(twin::gather(map, pattern, p.position, p.normal, 0.7, options).irradiance);
+    });
     strays += std::abs(e.mean - exact) > 3.0 * e.standardError + 1e-12 ? 1 : 0;
     EXPECT_LE(std::abs(e.mean - exact), 4.5 * e.standardError + 1e-12);
   }
@@ -108,11 +117,13 @@ TEST(RsmGatherWeight, UnbiasedOnRandomScenes) {
 }
 
 TEST(RsmGatherWeight, ThePublishedOneHasItsKnownFactors) {
-  // A constant integrand over the disc: 2/3. One peaked at the centre, exp(-(r / 0.1 R)^2): 13.3 % after a rescale by 3/2.
+  // A constant integrand over the disc: 2/3. One peaked at the centre, exp(-(r / 0.1 R)^2): 13.3 % after a rescale by
+  // 3/2.
   const auto integral = [](RsmGather::Weight weight, auto&& f) {
     double sum = 0.0;
     const auto pattern = RsmGather::pattern(1 << 16, weight);
-    for (const glm::vec4& s : pattern) sum += static_cast<double>(s.z) * f(std::hypot(static_cast<double>(s.x), static_cast<double>(s.y)));
+    for (const glm::vec4& s : pattern)
+      sum += static_cast<double>(s.z) * f(std::hypot(static_cast<double>(s.x), static_cast<double>(s.y)));
     return 2.0 * sum / static_cast<double>(pattern.size());  // over pi R^2
   };
   const auto one = [](double) { return 1.0; };
@@ -120,7 +131,8 @@ TEST(RsmGatherWeight, ThePublishedOneHasItsKnownFactors) {
   EXPECT_NEAR(integral(RsmGather::Weight::unbiased, one), 1.0, 1e-5);
   EXPECT_NEAR(integral(RsmGather::Weight::published, one), 2.0 / 3.0, 1e-5);
   EXPECT_NEAR(integral(RsmGather::Weight::unbiased, peak), 0.01, 1e-6);
-  EXPECT_NEAR(1.5 * integral(RsmGather::Weight::published, peak) / integral(RsmGather::Weight::unbiased, peak), 0.133, 5e-4);
+  EXPECT_NEAR(1.5 * integral(RsmGather::Weight::published, peak) / integral(RsmGather::Weight::unbiased, peak), 0.133,
+              5e-4);
 }
 
 TEST(RsmGatherWeight, TheMapsResolutionDoesNotChangeTheLight) {
@@ -128,7 +140,9 @@ TEST(RsmGatherWeight, TheMapsResolutionDoesNotChangeTheLight) {
     const twin::RsmMap map = cornerMap({5 * n, n});
     double sum = 0.0;
     for (int i = 0; i < 40; ++i)
-      sum += luminance(twin::gather(map, RsmGather::pattern(400, RsmGather::Weight::unbiased), {0.05 * (i + 1), 0.1 * i, 0.0}, kUp, 0.0, {}).irradiance);
+      sum += luminance(twin::gather(map, RsmGather::pattern(400, RsmGather::Weight::unbiased),
+                                    {0.05 * (i + 1), 0.1 * i, 0.0}, kUp, 0.0, {})
+                           .irradiance);
     return sum / 40.0;
   };
   const double reference = mean(256);
@@ -141,7 +155,8 @@ TEST(RsmGatherWeight, ScaleInvariant) {
     const auto pattern = RsmGather::pattern(400, RsmGather::Weight::unbiased);
     for (const test::SurfacePoint& p : test::randomPoints(one, 20, 9)) {
       const double expected = luminance(twin::gather(one, pattern, p.position, p.normal, 0.0, {}).irradiance);
-      EXPECT_NEAR(luminance(twin::gather(scaled, pattern, scale * p.position, p.normal, 0.0, {}).irradiance), expected, 1e-9 * expected);
+      EXPECT_NEAR(luminance(twin::gather(scaled, pattern, scale * p.position, p.normal, 0.0, {}).irradiance), expected,
+                  1e-9 * expected);
     }
   }
 }

@@ -31,7 +31,8 @@ double pointToPolygon(const glm::dvec3& point, const glm::dvec3& normal, std::sp
 
 double opposedSquares(double d) {
   const double x = 1.0 / d, r = std::sqrt(1.0 + x * x);
-  return 2.0 / (kPi * x * x) * (std::log(r * r / std::sqrt(1.0 + 2.0 * x * x)) + 2.0 * x * r * std::atan(x / r) - 2.0 * x * std::atan(x));
+  return 2.0 / (kPi * x * x) *
+         (std::log(r * r / std::sqrt(1.0 + 2.0 * x * x)) + 2.0 * x * r * std::atan(x / r) - 2.0 * x * std::atan(x));
 }
 
 double areaToArea(const Rectangle& from, const Rectangle& to, int order) {
@@ -62,13 +63,15 @@ double areaToArea(const Rectangle& from, const Rectangle& to, int order) {
 }
 
 std::vector<Rectangle> cubeSquares(int n) {
-  const Rectangle walls[6] = {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                              {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
+  const Rectangle walls[6] = {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+                              {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}},
+                              {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
   std::vector<Rectangle> squares;
   for (const Rectangle& w : walls)
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
-        squares.push_back({w.corner + static_cast<double>(i) / n * w.u + static_cast<double>(j) / n * w.v, w.u / static_cast<double>(n), w.v / static_cast<double>(n)});
+        squares.push_back({w.corner + static_cast<double>(i) / n * w.u + static_cast<double>(j) / n * w.v,
+                           w.u / static_cast<double>(n), w.v / static_cast<double>(n)});
   return squares;
 }
 

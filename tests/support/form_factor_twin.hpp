@@ -1,4 +1,5 @@
-// Form factors in double precision, made without the engine: closed forms for rectangles and points, and a matrix of rectangles.
+// Form factors in double precision, made without the engine: closed forms for rectangles and points, and a matrix of
+// rectangles.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,7 +9,8 @@
 
 namespace lucerna::twin {
 
-/// Share of the hemisphere about `normal` at `point` that a polygon (either sense) fills, cosine-weighted; what lies below the horizon is cut off.
+/// Share of the hemisphere about `normal` at `point` that a polygon (either sense) fills, cosine-weighted; what lies
+/// below the horizon is cut off.
 double pointToPolygon(const glm::dvec3& point, const glm::dvec3& normal, std::span<const glm::dvec3> polygon);
 
 /// Unit squares face to face at a distance: closed form.

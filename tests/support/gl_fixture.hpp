@@ -30,7 +30,8 @@ class GlTest : public ::testing::Test {
   gl::ProgramLibrary& programs() { return programs_; }
 
  private:
-  /// Ends the context before main() does: later, among the destructors of statics, those of the driver have run already.
+  /// Ends the context before main() does: later, among the destructors of statics, those of the driver have run
+  /// already.
   struct EndOfProgram : ::testing::EmptyTestEventListener {
     void OnTestProgramEnd(const ::testing::UnitTest&) override {
       context_().reset();

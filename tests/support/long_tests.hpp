@@ -1,4 +1,5 @@
-// Tests that take minutes have a short form, which always runs, and a long one where LUCERNA_LONG_TESTS is set (tests/run --all).
+// Tests that take minutes have a short form, which always runs, and a long one where LUCERNA_LONG_TESTS is set
+// (tests/run --all).
 #pragma once
 
 #include <cstdlib>

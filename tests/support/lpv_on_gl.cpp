@@ -29,7 +29,8 @@ RsmTextures::RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLe
     positions[i] = texels[i].position;
     normals[i] = texels[i].normal;
     albedos[i] = glm::vec4(texels[i].albedo, 1.0f);
-    fluxes[i] = glm::vec4(texels[i].flux, static_cast<float>(texelArea / std::max(static_cast<double>(texels[i].normal.w), 0.05)));
+    fluxes[i] = glm::vec4(texels[i].flux,
+                          static_cast<float>(texelArea / std::max(static_cast<double>(texels[i].normal.w), 0.05)));
   }
   position_ = gl::Texture("test rsm position", GL_RGBA32F, size, {}, 1, GL_TEXTURE_2D_ARRAY);
   normal_ = gl::Texture("test rsm normal", normalFormat, size, {}, 1, GL_TEXTURE_2D_ARRAY);
@@ -46,14 +47,18 @@ std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea
   for (const RsmTexel& texel : texels) {
     if (!(texel.position.w > 0.5f)) continue;
     const double area = texelArea / std::max(static_cast<double>(texel.normal.w), 0.05);
-    vpls.push_back({glm::dvec3(texel.position), glm::dvec3(texel.normal), glm::dvec3(texel.flux), area, glm::dvec3(texel.albedo)});
+    vpls.push_back(
+        {glm::dvec3(texel.position), glm::dvec3(texel.normal), glm::dvec3(texel.flux), area, glm::dvec3(texel.albedo)});
   }
   return vpls;
 }
 
-twin::GridSpec gridOf(const Cascade& cascade, int cells) { return {glm::ivec3(cells), cascade.minimum(), cascade.cellSize}; }
+twin::GridSpec gridOf(const Cascade& cascade, int cells) {
+  return {glm::ivec3(cells), cascade.minimum(), cascade.cellSize};
+}
 
-LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const LightPropagationVolume::Settings& settings,
+LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
+                                 const LightPropagationVolume::Settings& settings,
                                  const LightPropagationVolume::Inputs& inputs, bool join) {
   LightPropagationVolume lpv(programs, capabilities, settings);
   lpv.place(inputs);
@@ -64,9 +69,11 @@ LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabil
   return lpv;
 }
 
-std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume, const LightPropagationVolume::Inputs& inputs) {
+std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume,
+                                        const LightPropagationVolume::Inputs& inputs) {
   const int cells = volume[0].size().x;
-  CHECK(volume[0].size() == glm::ivec3(cells, cells, cells * static_cast<int>(inputs.cascades.size())), "{} cells", cells);
+  CHECK(volume[0].size() == glm::ivec3(cells, cells, cells * static_cast<int>(inputs.cascades.size())), "{} cells",
+        cells);
   std::vector<twin::VolumeRgb> result;
   for (const Cascade& cascade : inputs.cascades) result.push_back(twin::makeVolumeRgb(gridOf(cascade, cells)));
   for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -74,13 +81,15 @@ std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& vo
     auto texel = texels.begin();
     for (twin::VolumeRgb& cascade : result) {
       const double s = cascade[channel].grid.cellSize;
-      for (twin::Sh& cell : cascade[channel].cells) cell = shOf(*texel++, static_cast<double>(inputs.referenceIrradiance) * s * s);
+      for (twin::Sh& cell : cascade[channel].cells)
+        cell = shOf(*texel++, static_cast<double>(inputs.referenceIrradiance) * s * s);
     }
   }
   return result;
 }
 
-std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LightPropagationVolume::Inputs& inputs) {
+std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv,
+                                             const LightPropagationVolume::Inputs& inputs) {
   const std::vector<glm::vec4> texels = lpv.geometryVolume()->readRgba();
   std::vector<twin::Volume> result;
   auto texel = texels.begin();
@@ -91,7 +100,8 @@ std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv, 
   return result;
 }
 
-std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const LightPropagationVolume& lpv, std::span<const Probe> probes) {
+std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const LightPropagationVolume& lpv,
+                                       std::span<const Probe> probes) {
   std::vector<glm::vec4> packed;
   for (const Probe& probe : probes) {
     packed.emplace_back(probe.position, 0.0f);
@@ -116,8 +126,9 @@ double relativeError(const twin::Volume& expected, const twin::Volume& actual) {
   double scale = 0.0, difference = 0.0;
   for (std::size_t i = 0; i < expected.cells.size(); ++i) {
     const twin::Sh apart = expected.cells[i] - actual.cells[i];
-    for (const auto& [reference, error] : {std::pair{expected.cells[i].c0, apart.c0}, std::pair{expected.cells[i].c1.x, apart.c1.x},
-                                           std::pair{expected.cells[i].c1.y, apart.c1.y}, std::pair{expected.cells[i].c1.z, apart.c1.z}}) {
+    for (const auto& [reference, error] :
+         {std::pair{expected.cells[i].c0, apart.c0}, std::pair{expected.cells[i].c1.x, apart.c1.x},
+          std::pair{expected.cells[i].c1.y, apart.c1.y}, std::pair{expected.cells[i].c1.z, apart.c1.z}}) {
       if (!std::isfinite(error)) return std::numeric_limits<double>::infinity();
       scale = std::max(scale, std::abs(reference));
       difference = std::max(difference, std::abs(error));
@@ -128,7 +139,8 @@ double relativeError(const twin::Volume& expected, const twin::Volume& actual) {
 
 double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& actual) {
   double error = 0.0;
-  for (std::size_t channel = 0; channel < 3; ++channel) error = std::max(error, relativeError(expected[channel], actual[channel]));
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    error = std::max(error, relativeError(expected[channel], actual[channel]));
   return error;
 }
 

@@ -14,9 +14,9 @@ namespace lucerna::test {
 /// One texel of a reflective shadow map, as the three textures hold it.
 struct RsmTexel {
   glm::vec4 position{0.0f};  ///< world; w = 1 where there is a surface
-  glm::vec4 normal{0.0f};    ///< w = cosine to the light
+  glm::vec4 normal{0.0f};  ///< w = cosine to the light
   glm::vec3 flux{0.0f};
-  glm::vec3 albedo{0.0f};    ///< for bounces
+  glm::vec3 albedo{0.0f};  ///< for bounces
 };
 
 /// A reflective shadow map that no light has drawn.
@@ -39,13 +39,16 @@ std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea
 twin::GridSpec gridOf(const Cascade& cascade, int cells);
 
 /// All stages of a volume made for it; join() unless told otherwise.
-LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const LightPropagationVolume::Settings& settings,
+LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
+                                 const LightPropagationVolume::Settings& settings,
                                  const LightPropagationVolume::Inputs& inputs, bool join = true);
 
 /// One cascade of a volume that was read back, c = value * E_ref * s^2.
-std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume, const LightPropagationVolume::Inputs& inputs);
+std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume,
+                                        const LightPropagationVolume::Inputs& inputs);
 /// One cascade each of the geometry volume; nothing is scaled there.
-std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LightPropagationVolume::Inputs& inputs);
+std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv,
+                                             const LightPropagationVolume::Inputs& inputs);
 
 /// A point and the unit normal of the surface there.
 struct Probe {
@@ -53,10 +56,11 @@ struct Probe {
   glm::vec3 normal;
 };
 /// lpvIrradiance of shaders/lpv/lookup.glsl at the probes.
-std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const LightPropagationVolume& lpv, std::span<const Probe> probes);
+std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const LightPropagationVolume& lpv,
+                                       std::span<const Probe> probes);
 
-/// Largest difference of a coefficient over the largest coefficient of `expected`: the error of a sum is set by its largest
-/// terms, and a cell's small coefficients are differences of larger ones.
+/// Largest difference of a coefficient over the largest coefficient of `expected`: the error of a sum is set by its
+/// largest terms, and a cell's small coefficients are differences of larger ones.
 double relativeError(const twin::Volume& expected, const twin::Volume& actual);
 double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& actual);
 

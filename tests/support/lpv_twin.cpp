@@ -42,9 +42,9 @@ void requireSameGrid(const Volume& a, const Volume& b) {
 
 /// What one of the five faces of the destination receives from the source.
 struct FaceTerm {
-  glm::dvec3 towardsFace;   ///< w_f, from the source's centre to the face's
+  glm::dvec3 towardsFace;  ///< w_f, from the source's centre to the face's
   double solidAngle = 0.0;  ///< Omega_f, sr
-  Sh reprojected;           ///< gain/pi * lobe(n_f): what a unit flux through the face adds to the destination
+  Sh reprojected;  ///< gain/pi * lobe(n_f): what a unit flux through the face adds to the destination
 };
 struct AxisTerms {
   glm::ivec3 axis{0};
@@ -269,9 +269,12 @@ Sh potentialAtFace(const Volume& geometry, const glm::ivec3& destination, const 
 double fluxThroughFace(const Sh& intensity, const glm::dvec3& direction, bool clamped) {
   const glm::dvec3 helper = std::abs(direction.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 across = glm::normalize(glm::cross(direction, helper)), other = glm::cross(direction, across);
-  const auto towards = [&](const glm::dvec3& w) { return clamped ? std::max(0.0, evaluate(intensity, w)) : evaluate(intensity, w); };
+  const auto towards = [&](const glm::dvec3& w) {
+    return clamped ? std::max(0.0, evaluate(intensity, w)) : evaluate(intensity, w);
+  };
   double sum = frontSolidAngle() * towards(direction);
-  for (const glm::dvec3& side : {across, -across, other, -other}) sum += sideSolidAngle() * towards(glm::normalize(2.0 * direction + side));
+  for (const glm::dvec3& side : {across, -across, other, -other})
+    sum += sideSolidAngle() * towards(glm::normalize(2.0 * direction + side));
   return sum;
 }
 
@@ -332,7 +335,8 @@ PropagatedRgb propagate(const VolumeRgb& injected, int iterations, const KernelO
 // ---- bounces -------------------------------------------------------------------------------------------------------
 
 namespace {
-/// The flux that leaves a cell along the signed axis towards the five faces of the next cell, each with a weight of its direction.
+/// The flux that leaves a cell along the signed axis towards the five faces of the next cell, each with a weight of its
+/// direction.
 template <class Weight>
 double fluxTowards(const Sh& light, const glm::ivec3& axis, const Weight& weight) {
   const glm::dvec3 p(axis);
@@ -349,7 +353,9 @@ double fluxTowards(const Sh& light, const glm::ivec3& axis, const Weight& weight
   return sum;
 }
 
-std::array<glm::ivec3, 6> signedAxes() { return {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}}; }
+std::array<glm::ivec3, 6> signedAxes() {
+  return {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+}
 }  // namespace
 
 VolumeRgb injectReflectance(const GridSpec& lpvGrid, std::span<const Vpl> surfels) {
@@ -359,14 +365,16 @@ VolumeRgb injectReflectance(const GridSpec& lpvGrid, std::span<const Vpl> surfel
     const std::optional<glm::ivec3> cell = geometryCellOf(lpvGrid, surfel.position);
     if (!cell) continue;
     for (int channel = 0; channel < 3; ++channel)
-      result[static_cast<std::size_t>(channel)].at(*cell).c0 += surfel.albedo[channel] * surfel.area / (lpvGrid.cellSize * lpvGrid.cellSize);
+      result[static_cast<std::size_t>(channel)].at(*cell).c0 +=
+          surfel.albedo[channel] * surfel.area / (lpvGrid.cellSize * lpvGrid.cellSize);
   }
   return result;
 }
 
 double clampGain() {
   double gain = 0.0;
-  for (const glm::ivec3& axis : signedAxes()) gain += fluxTowards((1.0 / kPi) * lobe({0, 0, 1}), axis, [](const glm::dvec3&) { return 1.0; });
+  for (const glm::ivec3& axis : signedAxes())
+    gain += fluxTowards((1.0 / kPi) * lobe({0, 0, 1}), axis, [](const glm::dvec3&) { return 1.0; });
   return gain;
 }
 
@@ -384,15 +392,18 @@ VolumeRgb reflect(const VolumeRgb& light, const Volume& geometry, const VolumeRg
           const double directed = glm::length(potential.c1);
           const glm::dvec3 normal = directed > 1e-3 * potential.c0 ? potential.c1 / directed : -glm::dvec3(axis);
           for (std::size_t channel = 0; channel < 3; ++channel) {
-            const double held = fluxTowards(light[channel].at(cell), axis, [&](const glm::dvec3& w) { return 1.0 - transmittance(potential, w); });
-            const double albedo = potentialAtFace(reflectance[channel], cell + axis, axis).c0 * kLobeBand0 / potential.c0;
+            const double held = fluxTowards(light[channel].at(cell), axis,
+                                            [&](const glm::dvec3& w) { return 1.0 - transmittance(potential, w); });
+            const double albedo =
+                potentialAtFace(reflectance[channel], cell + axis, axis).c0 * kLobeBand0 / potential.c0;
             result[channel].at(cell) += (albedo * held / gain / kPi) * lobe(normal);
           }
         }
   return result;
 }
 
-Bounced propagateBounces(const VolumeRgb& injected, int iterations, int bounces, const Volume& geometry, const VolumeRgb& reflectance) {
+Bounced propagateBounces(const VolumeRgb& injected, int iterations, int bounces, const Volume& geometry,
+                         const VolumeRgb& reflectance) {
   Bounced result{injected, propagate(injected, iterations, {}, &geometry).accumulated};
   for (int bounce = 1; bounce < bounces; ++bounce) {
     VolumeRgb travelled = result.light;
@@ -434,7 +445,8 @@ double irradiance(const Sh& sh, const glm::dvec3& normal, double cellSize, Looku
   // I under the receiver's cosine, (1/pi) * integral of I * max(0, <-n|w>).
   // Windowed: two cosine lobes give pi/4 + window * pi/3 cos, negative behind for a window of 1, zero at 3/4.
   const double window = lookup == Lookup::windowed ? 0.75 : 1.0;
-  const double intensity = lookup == Lookup::direct ? evaluate(sh, -normal) : dot(sh, lobe(-normal, window * kLobeBand1)) / kPi;
+  const double intensity =
+      lookup == Lookup::direct ? evaluate(sh, -normal) : dot(sh, lobe(-normal, window * kLobeBand1)) / kPi;
   return std::max(0.0, 4.0 / (cellSize * cellSize) * intensity);
 }
 
@@ -458,7 +470,8 @@ double irradianceSumOfCascades(std::span<const Volume> cascades, const glm::dvec
   return sum;
 }
 
-// ---- cascades joined into one picture ---------------------------------------------------------------------------------
+// ---- cascades joined into one picture
+// ---------------------------------------------------------------------------------
 
 CascadeParts propagateParts(const VolumeRgb& injected, int iterations, int handOver, const KernelOptions& options,
                             const Volume* geometry) {
@@ -496,7 +509,8 @@ std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, cons
         for (int y = 0; y < grid.dims.y; ++y)
           for (int x = 0; x < grid.dims.x; ++x)
             for (std::size_t channel = 0; channel < 3; ++channel)
-              balances.at(glm::ivec3(x, y, z) / 2).c0 += (first[channel].at({x, y, z}).c0 + later[channel].at({x, y, z}).c0) / 8.0;
+              balances.at(glm::ivec3(x, y, z) / 2).c0 +=
+                  (first[channel].at({x, y, z}).c0 + later[channel].at({x, y, z}).c0) / 8.0;
       for (int z = 0; z < balances.grid.dims.z; ++z)
         for (int y = 0; y < balances.grid.dims.y; ++y)
           for (int x = 0; x < balances.grid.dims.x; ++x) {
@@ -506,7 +520,8 @@ std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, cons
               replaced += sampleTrilinear(joined[k + 1][channel], balances.grid.centre(block)).c0 -
                           sampleTrilinear(handedOver[channel], balances.grid.centre(block)).c0;
             double& b = balances.at(block).c0;
-            b = std::clamp((std::max(0.0, replaced) + options.dark) / (b + options.dark), 1.0 / options.largestBalance, options.largestBalance);
+            b = std::clamp((std::max(0.0, replaced) + options.dark) / (b + options.dark), 1.0 / options.largestBalance,
+                           options.largestBalance);
             if (std::isnan(b)) b = 1.0;  // no light, nothing to balance
           }
     }
@@ -518,9 +533,11 @@ std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, cons
           double balance = 1.0;
           std::array<Sh, 3> fromCoarser;
           if (k + 1 < cascades.size()) {
-            for (std::size_t channel = 0; channel < 3; ++channel) fromCoarser[channel] = sampleTrilinear(handedOver[channel], point);
+            for (std::size_t channel = 0; channel < 3; ++channel)
+              fromCoarser[channel] = sampleTrilinear(handedOver[channel], point);
             // Held at the edge: beyond the outermost centres their values go on.
-            const glm::dvec3 lowest = balances.grid.centre({0, 0, 0}), highest = balances.grid.centre(balances.grid.dims - 1);
+            const glm::dvec3 lowest = balances.grid.centre({0, 0, 0}),
+                             highest = balances.grid.centre(balances.grid.dims - 1);
             balance = sampleTrilinear(balances, glm::clamp(point, lowest, highest)).c0;
           }
           for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -539,7 +556,8 @@ std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, cons
 
 std::vector<double> blendWeights(std::span<const Volume> cascades, const CascadeBlend& blend, const glm::dvec3& point,
                                  double lookupOffset) {
-  if (blend.centres.size() != cascades.size()) throw std::invalid_argument("lpv twin: one blend centre a cascade is needed");
+  if (blend.centres.size() != cascades.size())
+    throw std::invalid_argument("lpv twin: one blend centre a cascade is needed");
   std::vector<double> weights;
   double left = 1.0;
   for (std::size_t k = 0; k + 1 < cascades.size(); ++k) {

@@ -65,9 +65,9 @@ double length(const Sh& sh);
 // ---- grids ---------------------------------------------------------------------------------------------------------
 
 struct GridSpec {
-  glm::ivec3 dims{0};       ///< cells per axis
+  glm::ivec3 dims{0};  ///< cells per axis
   glm::dvec3 minimum{0.0};  ///< the corner with the least coordinates, scene units
-  double cellSize = 1.0;    ///< scene units
+  double cellSize = 1.0;  ///< scene units
 
   std::size_t cellCount() const;
   bool contains(const glm::ivec3& cell) const;
@@ -107,8 +107,8 @@ glm::dvec3 totalFlux(const VolumeRgb& volume);
 struct Vpl {
   glm::dvec3 position{0.0};
   glm::dvec3 normal{0.0};  ///< any length but zero; normalised on use
-  glm::dvec3 flux{0.0};    ///< RGB, W; radiant intensity is flux/pi * max(0, cos)
-  double area = 0.0;       ///< true surface area, for the geometry volume
+  glm::dvec3 flux{0.0};  ///< RGB, W; radiant intensity is flux/pi * max(0, cos)
+  double area = 0.0;  ///< true surface area, for the geometry volume
   glm::dvec3 albedo{0.0};  ///< RGB, for bounces
 };
 
@@ -151,7 +151,7 @@ inline constexpr double kSlippedSideSolidAngle = 0.4234413544;
 
 /// How the directions to the side faces are made.
 enum class SideDirections {
-  exact,             ///< (2p + n) / |2p + n|, reprojected about n
+  exact,  ///< (2p + n) / |2p + n|, reprojected about n
   componentProduct,  ///< published mistake: p times (a/sqrt5, b/sqrt5, 2/sqrt5) and p times (a, b, 0) by component
 };
 
@@ -160,20 +160,20 @@ struct KernelOptions {
   double frontSolidAngle = twin::frontSolidAngle();
   double sideSolidAngle = twin::sideSolidAngle();
   SideDirections sideDirections = SideDirections::exact;
-  double lobeBand1 = kLobeBand1;   ///< of the reprojected lobe
-  double gain = 1.0;               ///< factor on the reprojected flux
-  bool frontFaceOnly = false;      ///< leave out the four side faces
-  bool clampIntensity = true;      ///< max(0, I); off for the conservation anchors only
+  double lobeBand1 = kLobeBand1;  ///< of the reprojected lobe
+  double gain = 1.0;  ///< factor on the reprojected flux
+  bool frontFaceOnly = false;  ///< leave out the four side faces
+  bool clampIntensity = true;  ///< max(0, I); off for the conservation anchors only
   bool clampTransmittance = true;  ///< clamp B to [0, 1]
-  bool twoSidedBlocking = false;   ///< block by max(B(w), B(-w))
-  bool blockAlongTravel = false;   ///< published mistake: the potential is evaluated in the direction of travel
-  bool blockFirstStep = false;     ///< off: else a VPL is blocked by its own surface
+  bool twoSidedBlocking = false;  ///< block by max(B(w), B(-w))
+  bool blockAlongTravel = false;  ///< published mistake: the potential is evaluated in the direction of travel
+  bool blockFirstStep = false;  ///< off: else a VPL is blocked by its own surface
 };
-KernelOptions slippedSideKernel();       ///< side constant 0.4234413544
+KernelOptions slippedSideKernel();  ///< side constant 0.4234413544
 KernelOptions swappedConstantsKernel();  ///< front and side solid angle swapped
 KernelOptions componentProductKernel();  ///< degenerate side directions
-KernelOptions flatLobeKernel();          ///< band-1 coefficient sqrt(pi)/3 for sqrt(pi/3)
-KernelOptions frontFaceKernel();         ///< front face only
+KernelOptions flatLobeKernel();  ///< band-1 coefficient sqrt(pi)/3 for sqrt(pi/3)
+KernelOptions frontFaceKernel();  ///< front face only
 /// Omega/(4 pi) with a lobe that is not divided by pi, times a "flux amplifier": gain amplifier/4.
 KernelOptions fourPiKernel(double amplifier = 1.0);
 
@@ -184,15 +184,16 @@ double transmittance(const Sh& potential, const glm::dvec3& direction, const Ker
 /// enters `destination`: the mean of the four geometry-volume cells at that face's corners.
 Sh potentialAtFace(const Volume& geometry, const glm::ivec3& destination, const glm::ivec3& axis);
 
-/// What the exact kernel sends through the face of a cell that looks along the unit `direction`, without blocking: to the far face of the next cell and
-/// its four sides. For directions between the axes the cell is turned along. `clamped`: a face that looks at negative intensity gets nothing.
+/// What the exact kernel sends through the face of a cell that looks along the unit `direction`, without blocking: to
+/// the far face of the next cell and its four sides. For directions between the axes the cell is turned along.
+/// `clamped`: a face that looks at negative intensity gets nothing.
 double fluxThroughFace(const Sh& intensity, const glm::dvec3& direction, bool clamped);
 
 /// One step, as a gather over 6 neighbours and 5 faces, with zero beyond the border. `geometry` may be null.
 Volume propagateStep(const Volume& source, const KernelOptions& options = {}, const Volume* geometry = nullptr);
 
 struct Propagated {
-  Volume front;        ///< G_k, the last wavefront
+  Volume front;  ///< G_k, the last wavefront
   Volume accumulated;  ///< G_0 + G_1 + ... + G_k
 };
 /// k = iterations steps; the first one is not blocked unless the options ask for it.
@@ -207,18 +208,21 @@ PropagatedRgb propagate(const VolumeRgb& injected, int iterations, const KernelO
 
 // ---- bounces -------------------------------------------------------------------------------------------------------
 
-/// Albedo times A/s^2 of all surfels of a geometry-volume cell, RGB in band 0 of a volume on the same grid as the geometry.
+/// Albedo times A/s^2 of all surfels of a geometry-volume cell, RGB in band 0 of a volume on the same grid as the
+/// geometry.
 VolumeRgb injectReflectance(const GridSpec& lpvGrid, std::span<const Vpl> surfels);
 /// What a cosine lobe along an axis gains in its first step, by the clamp of negative intensities: 1.138208.
 double clampGain();
-/// What surfaces throw back of `light`, the sum of fronts without its source: at each of a cell's six faces the flux to the five faces beyond
-/// that the potential holds back, times the mean albedo over clampGain(), back into the cell as a lobe about the potential's axis.
+/// What surfaces throw back of `light`, the sum of fronts without its source: at each of a cell's six faces the flux to
+/// the five faces beyond that the potential holds back, times the mean albedo over clampGain(), back into the cell as a
+/// lobe about the potential's axis.
 VolumeRgb reflect(const VolumeRgb& light, const Volume& geometry, const VolumeRgb& reflectance);
 struct Bounced {
   VolumeRgb source;  ///< injected light and what came back of it, `bounces` - 1 times
-  VolumeRgb light;   ///< that, propagated
+  VolumeRgb light;  ///< that, propagated
 };
-Bounced propagateBounces(const VolumeRgb& injected, int iterations, int bounces, const Volume& geometry, const VolumeRgb& reflectance);
+Bounced propagateBounces(const VolumeRgb& injected, int iterations, int bounces, const Volume& geometry,
+                         const VolumeRgb& reflectance);
 
 // ---- lookup --------------------------------------------------------------------------------------------------------
 
@@ -226,7 +230,7 @@ enum class Lookup {
   cosine,  ///< E = 4/(pi s^2) * <c | lobe(-n)>
   direct,  ///< E = 4/s^2 * I(-n)
   windowed,  ///< cosine with the receiver's band 1 times 3/4: no sum of cosine lobes gives negative light
-  flux,      ///< E = what the kernel sends through a face across the normal, / s^2; offset 0 goes with it
+  flux,  ///< E = what the kernel sends through a face across the normal, / s^2; offset 0 goes with it
 };
 struct LookupOptions {
   Lookup lookup = Lookup::windowed;
@@ -247,7 +251,8 @@ glm::dvec3 irradiance(const VolumeRgb& volume, const glm::dvec3& point, const gl
 double irradianceSumOfCascades(std::span<const Volume> cascades, const glm::dvec3& point, const glm::dvec3& normal,
                                const LookupOptions& options = {});
 
-// ---- cascades joined into one picture ---------------------------------------------------------------------------------
+// ---- cascades joined into one picture
+// ---------------------------------------------------------------------------------
 
 /// One cascade's accumulated light in two parts.
 struct CascadeParts {
@@ -260,21 +265,23 @@ CascadeParts propagateParts(const VolumeRgb& injected, int iterations, int handO
 
 struct JoinOptions {
   double largestBalance = 4.0;  ///< b and 1/b at most
-  double dark = 0.0;            ///< c/s^2 that both sides of the balance are lifted by, so that no light is balanced against none
+  double dark = 0.0;  ///< c/s^2 that both sides of the balance are lifted by, so that no light is balanced against none
 };
 /// Joins cascades, finest first. All terms are values of c/s^2, up is trilinear with zeros beyond the border:
 ///   C_k = b_k (M_k + F_k) + up(R_k+1),  R_k = b_k F_k + up(R_k+1);  the coarsest: C = M + F, R = F.
-///   b_k = upHeld((max(0, up(C_k+1 - R_k+1)) + dark) / (down(M_k + F_k) + dark)), bounded, of band 0 summed over the three channels: the
-/// finer grid gets the brightness of what it replaces. down is the mean of 2x2x2 cells, upHeld is trilinear, held beyond the border. The results C are in plain units again.
+///   b_k = upHeld((max(0, up(C_k+1 - R_k+1)) + dark) / (down(M_k + F_k) + dark)), bounded, of band 0 summed over the
+///   three channels: the
+/// finer grid gets the brightness of what it replaces. down is the mean of 2x2x2 cells, upHeld is trilinear, held
+/// beyond the border. The results C are in plain units again.
 std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, const JoinOptions& options = {});
 
 struct CascadeBlend {
   std::vector<glm::dvec3> centres;  ///< of the cascades before snapping, finest first
-  double band = 0.25;               ///< fraction of blendHalf over which a cascade fades
+  double band = 0.25;  ///< fraction of blendHalf over which a cascade fades
 };
 /// How much each cascade counts at a point, finest first; the coarsest takes what is left, so that the sum is 1. With
-/// blendHalf = (cells/2 - 2.5 - lookupOffset) * s: weight_k = left * clamp((blendHalf - max|p - centre|) / (band * blendHalf), 0, 1).
-/// A cascade of so few cells that its blendHalf is not positive counts nothing.
+/// blendHalf = (cells/2 - 2.5 - lookupOffset) * s: weight_k = left * clamp((blendHalf - max|p - centre|) / (band *
+/// blendHalf), 0, 1). A cascade of so few cells that its blendHalf is not positive counts nothing.
 std::vector<double> blendWeights(std::span<const Volume> cascades, const CascadeBlend& blend, const glm::dvec3& point,
                                  double lookupOffset);
 /// The weighted sum of the cascades' irradiances.
@@ -288,7 +295,7 @@ enum class SnapRule { floor, truncate };
 
 struct SnappedGrid {
   glm::i64vec3 corner{0};  ///< the minimum in cells from the world's origin
-  GridSpec grid;           ///< minimum = corner * cellSize
+  GridSpec grid;  ///< minimum = corner * cellSize
 };
 /// Centre = camera + direction * 0.8 * 0.5 * extent; minimum = floor((centre - extent/2) / s) * s per axis, in double.
 SnappedGrid cameraGrid(const glm::dvec3& camera, const glm::dvec3& viewDirection, const glm::ivec3& dims,
@@ -307,8 +314,8 @@ struct Plate {
 struct OrthographicRsm {
   glm::dvec3 centre{0.0};
   glm::dvec3 right{1.0, 0.0, 0.0};  ///< unit
-  glm::dvec3 up{0.0, 1.0, 0.0};     ///< unit; light travels along cross(up, right)
-  double width = 1.0;               ///< scene units
+  glm::dvec3 up{0.0, 1.0, 0.0};  ///< unit; light travels along cross(up, right)
+  double width = 1.0;  ///< scene units
   double height = 1.0;
   glm::ivec2 texels{1};
   glm::dvec3 irradiance{1.0};  ///< on a surface perpendicular to the light

@@ -1,4 +1,5 @@
-// Pictures whose pixels all estimate the same quantity: mean and standard error from their spread, since they are independent.
+// Pictures whose pixels all estimate the same quantity: mean and standard error from their spread, since they are
+// independent.
 #pragma once
 
 #include "pathtracer/path_tracer.hpp"

@@ -28,7 +28,9 @@ void addMesh(Scene& scene, const std::vector<std::array<glm::dvec3, 3>>& triangl
 }  // namespace
 
 void addBox(Scene& scene, const glm::dvec3& min, const glm::dvec3& max, int material) {
-  const auto corner = [&](int i) { return glm::dvec3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z); };
+  const auto corner = [&](int i) {
+    return glm::dvec3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z);
+  };
   const int quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   std::vector<std::array<glm::dvec3, 3>> triangles;
   for (const auto& q : quads) {
@@ -48,7 +50,8 @@ void addSphere(Scene& scene, const glm::dvec3& centre, double radius, int level,
   for (int l = 0; l < level; ++l) {
     std::vector<std::array<glm::dvec3, 3>> finer;
     for (const auto& t : triangles) {
-      const glm::dvec3 ab = glm::normalize(t[0] + t[1]), bc = glm::normalize(t[1] + t[2]), ca = glm::normalize(t[2] + t[0]);
+      const glm::dvec3 ab = glm::normalize(t[0] + t[1]), bc = glm::normalize(t[1] + t[2]),
+                       ca = glm::normalize(t[2] + t[0]);
       finer.insert(finer.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
     }
     triangles = finer;

@@ -22,7 +22,8 @@ double henyeyGreensteinPdf(double g_, double cosine) {
 double henyeyGreensteinCdf(double g_, double cosine) {
   const Real g = g_;
   if (std::abs(g) < 1e-9L) return 0.5 * (1.0 + cosine);
-  return static_cast<double>((1.0L - g * g) / (2.0L * g) * (1.0L / std::sqrt(1.0L + g * g - 2.0L * g * cosine) - 1.0L / (1.0L + g)));
+  return static_cast<double>((1.0L - g * g) / (2.0L * g) *
+                             (1.0L / std::sqrt(1.0L + g * g - 2.0L * g * cosine) - 1.0L / (1.0L + g)));
 }
 
 double rayleighPdf(double cosine) { return 3.0 / (16.0 * M_PI) * (1.0 + cosine * cosine); }
@@ -81,12 +82,14 @@ double density(const DensityGrid& grid, const glm::dvec3& point) {
     const glm::ivec3 at = glm::clamp(glm::ivec3(base) + step, glm::ivec3(0), grid.size - 1);
     double weight = 1.0;
     for (int i = 0; i < 3; ++i) weight *= step[i] ? f[i] : 1.0 - f[i];
-    sum += weight * static_cast<double>(grid.density[static_cast<std::size_t>(at.x + grid.size.x * (at.y + grid.size.y * at.z))]);
+    sum += weight * static_cast<double>(
+                        grid.density[static_cast<std::size_t>(at.x + grid.size.x * (at.y + grid.size.y * at.z))]);
   }
   return sum;
 }
 
-double densityIntegral(const DensityGrid& grid, const glm::dvec3& origin, const glm::dvec3& direction, double length, int steps) {
+double densityIntegral(const DensityGrid& grid, const glm::dvec3& origin, const glm::dvec3& direction, double length,
+                       int steps) {
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) sum += density(grid, origin + (i + 0.5) * length / steps * direction);
   return sum * length / steps;
@@ -101,7 +104,8 @@ SlabResult walkSlab(double albedo, double opticalDepth, double g, double ior, do
       ++back;
       continue;
     }
-    double z = 0.0, c = std::sqrt(1.0 - (1.0 - mu * mu) / (ior * ior));  // depth in mean free paths, cosine down the slab
+    double z = 0.0,
+           c = std::sqrt(1.0 - (1.0 - mu * mu) / (ior * ior));  // depth in mean free paths, cosine down the slab
     for (;;) {
       z -= std::log(1.0 - unit(random)) * c;
       if (z < 0.0 || z > opticalDepth) {

@@ -25,7 +25,8 @@ SceneBuilder inEnvironment(float radiance) {
   return builder;
 }
 
-PathTracer PathTest::tracer(const Scene& scene, const Camera& camera, const PathTracer::Settings& settings, std::uint32_t samples) {
+PathTracer PathTest::tracer(const Scene& scene, const Camera& camera, const PathTracer::Settings& settings,
+                            std::uint32_t samples) {
   PathTracer result(context(), library(), scene, settings);
   result.setCamera(camera);
   result.record(samples);

@@ -8,14 +8,16 @@
 namespace lucerna::test {
 
 /// A closed box of 6 plates about the origin that face outwards (inwards: `inwards`), side 2 `half`.
-void addBox(SceneBuilder& builder, double half, int material, bool inwards = false, const glm::dvec3& centre = glm::dvec3(0.0));
+void addBox(SceneBuilder& builder, double half, int material, bool inwards = false,
+            const glm::dvec3& centre = glm::dvec3(0.0));
 
 /// A scene without the builder's sun, with a constant environment.
 SceneBuilder inEnvironment(float radiance);
 
 class PathTest : public SharedProgramsTest {
  protected:
-  PathTracer tracer(const Scene& scene, const Camera& camera, const PathTracer::Settings& settings, std::uint32_t samples);
+  PathTracer tracer(const Scene& scene, const Camera& camera, const PathTracer::Settings& settings,
+                    std::uint32_t samples);
   /// With the settings' defaults but the size.
   PathTracer tracer(const Scene& scene, const Camera& camera, int size, std::uint32_t samples);
   static PathTracer::Settings sized(int size);

@@ -17,29 +17,47 @@ Scene cubeRoom(int n, const std::function<int(SceneBuilder&, int wall, double u,
   struct Wall {
     glm::dvec3 centre, u, v;  // front along cross(u, v), inwards
   };
-  const Wall walls[6] = {{{0, -0.5, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 0.5, 0}, {1, 0, 0}, {0, 0, 1}}, {{0, 0, -0.5}, {1, 0, 0}, {0, 1, 0}},
-                         {{0, 0, 0.5}, {0, 1, 0}, {1, 0, 0}},  {{-0.5, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0.5, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
+  const Wall walls[6] = {{{0, -0.5, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 0.5, 0}, {1, 0, 0}, {0, 0, 1}},
+                         {{0, 0, -0.5}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5}, {0, 1, 0}, {1, 0, 0}},
+                         {{-0.5, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0.5, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
   for (int w = 0; w < 6; ++w)
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j) {
         const double u = (i + 0.5) / n, v = (j + 0.5) / n;
         const int m = material(builder, w, u, v);
-        builder.plate(walls[w].centre + (u - 0.5) * walls[w].u + (v - 0.5) * walls[w].v, walls[w].u / static_cast<double>(n), walls[w].v / static_cast<double>(n), m);
+        builder.plate(walls[w].centre + (u - 0.5) * walls[w].u + (v - 0.5) * walls[w].v,
+                      walls[w].u / static_cast<double>(n), walls[w].v / static_cast<double>(n), m);
       }
   return builder.scene();
 }
 
 Scene cubeRoom(int n, double reflectance, double exitance) {
   int index = -1;
-  return cubeRoom(n, [&](SceneBuilder& builder, int, double, double) { return index < 0 ? index = lambertian(builder, reflectance, exitance) : index; });
+  return cubeRoom(n, [&](SceneBuilder& builder, int, double, double) {
+    return index < 0 ? index = lambertian(builder, reflectance, exitance) : index;
+  });
 }
 
-void addSphere(SceneBuilder& builder, double radius, int level, bool inside, const std::function<int(const glm::dvec3& centroid)>& material) {
+void addSphere(SceneBuilder& builder, double radius, int level, bool inside,
+               const std::function<int(const glm::dvec3& centroid)>& material) {
   const double g = 0.5 * (1.0 + std::sqrt(5.0));
-  const std::array<glm::dvec3, 12> p{{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}}};
-  const int faces[20][3] = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                            {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
-  std::function<void(glm::dvec3, glm::dvec3, glm::dvec3, int)> divide = [&](glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, int depth) {
+  const std::array<glm::dvec3, 12> p{{{-1, g, 0},
+                                      {1, g, 0},
+                                      {-1, -g, 0},
+                                      {1, -g, 0},
+                                      {0, -1, g},
+                                      {0, 1, g},
+                                      {0, -1, -g},
+                                      {0, 1, -g},
+                                      {g, 0, -1},
+                                      {g, 0, 1},
+                                      {-g, 0, -1},
+                                      {-g, 0, 1}}};
+  const int faces[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                            {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                            {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  std::function<void(glm::dvec3, glm::dvec3, glm::dvec3, int)> divide = [&](glm::dvec3 a, glm::dvec3 b, glm::dvec3 c,
+                                                                            int depth) {
     if (depth > 0) {
       const glm::dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c), ca = glm::normalize(c + a);
       divide(a, ab, ca, depth - 1);
@@ -51,7 +69,9 @@ void addSphere(SceneBuilder& builder, double radius, int level, bool inside, con
     if (inside) std::swap(b, c);
     builder.triangle(radius * a, radius * b, radius * c, material((a + b + c) / 3.0 * radius));
   };
-  for (const auto& f : faces) divide(glm::normalize(p[static_cast<std::size_t>(f[0])]), glm::normalize(p[static_cast<std::size_t>(f[1])]), glm::normalize(p[static_cast<std::size_t>(f[2])]), level);
+  for (const auto& f : faces)
+    divide(glm::normalize(p[static_cast<std::size_t>(f[0])]), glm::normalize(p[static_cast<std::size_t>(f[1])]),
+           glm::normalize(p[static_cast<std::size_t>(f[2])]), level);
 }
 
 RadiositySolutionSettings wholeTriangles(double error) {

@@ -30,14 +30,16 @@ std::size_t RayCaster::build(std::size_t begin, std::size_t end) {
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const std::size_t middle = (begin + end) / 2;
   const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(begin), at(middle), at(end), [&](std::size_t a, std::size_t b) { return corner(a, 0)[axis] < corner(b, 0)[axis]; });
+  std::nth_element(at(begin), at(middle), at(end),
+                   [&](std::size_t a, std::size_t b) { return corner(a, 0)[axis] < corner(b, 0)[axis]; });
   build(begin, middle);
   const std::size_t right = build(middle, end);
   nodes_[self].right = right;
   return self;
 }
 
-std::optional<RayHit> RayCaster::firstHit(const glm::dvec3& origin, const glm::dvec3& direction, double farthest) const {
+std::optional<RayHit> RayCaster::firstHit(const glm::dvec3& origin, const glm::dvec3& direction,
+                                          double farthest) const {
   std::optional<RayHit> hit;
   if (nodes_.empty()) return hit;
   const glm::dvec3 inverse = 1.0 / direction;
@@ -48,7 +50,8 @@ std::optional<RayHit> RayCaster::firstHit(const glm::dvec3& origin, const glm::d
     stack.pop_back();
     double enter = 0.0, leave = farthest;
     for (int k = 0; k < 3; ++k) {
-      const double t0 = (node.bounds.min[k] - origin[k]) * inverse[k], t1 = (node.bounds.max[k] - origin[k]) * inverse[k];
+      const double t0 = (node.bounds.min[k] - origin[k]) * inverse[k],
+                   t1 = (node.bounds.max[k] - origin[k]) * inverse[k];
       if (std::isnan(t0) || std::isnan(t1)) continue;  // the ray runs within a face of the box
       enter = std::max(enter, std::min(t0, t1));
       leave = std::min(leave, std::max(t0, t1));

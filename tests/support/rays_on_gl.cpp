@@ -6,9 +6,15 @@
 
 namespace lucerna::test {
 
-std::vector<GlHit> trace(gl::ProgramLibrary& programs, const RayScene& scene, std::span<const GlRay> rays, const TraceOptions& options) {
+std::vector<GlHit> trace(gl::ProgramLibrary& programs, const RayScene& scene, std::span<const GlRay> rays,
+                         const TraceOptions& options) {
   if (rays.empty()) return {};
-  const gl::Program& program = programs.loadCompute("trace rays", "rays/trace_rays.comp", {{"ALPHA_MASKS", options.alphaMasks}, {"ANY_HIT", options.anyHit}, {"COUNT_WORK", 0}, {"OFFSET_ORIGINS", options.offsetOrigins}, {"SHARED_STACK", scene.sharedStack()}});
+  const gl::Program& program = programs.loadCompute("trace rays", "rays/trace_rays.comp",
+                                                    {{"ALPHA_MASKS", options.alphaMasks},
+                                                     {"ANY_HIT", options.anyHit},
+                                                     {"COUNT_WORK", 0},
+                                                     {"OFFSET_ORIGINS", options.offsetOrigins},
+                                                     {"SHARED_STACK", scene.sharedStack()}});
   std::vector<std::uint32_t> skip(options.skip.begin(), options.skip.end());
   skip.resize(rays.size(), kNoHit);
   const gl::Buffer rayBuffer("rays", rays.size_bytes(), rays.data(), GL_STATIC_DRAW);

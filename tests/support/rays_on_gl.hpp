@@ -25,11 +25,12 @@ struct GlHit {
 inline constexpr std::uint32_t kNoHit = 0xffffffffu;
 
 struct TraceOptions {
-  bool anyHit = false;      ///< only GlHit::triangle is meant then: kNoHit or not
+  bool anyHit = false;  ///< only GlHit::triangle is meant then: kNoHit or not
   bool alphaMasks = false;  ///< masked triangles have a hole where the first barycentric is below 1/2
   bool offsetOrigins = false;  ///< origins are moved by offsetRay along the directions
   std::span<const std::uint32_t> skip;  ///< a triangle a ray; empty: none
 };
-std::vector<GlHit> trace(gl::ProgramLibrary& programs, const RayScene& scene, std::span<const GlRay> rays, const TraceOptions& options = {});
+std::vector<GlHit> trace(gl::ProgramLibrary& programs, const RayScene& scene, std::span<const GlRay> rays,
+                         const TraceOptions& options = {});
 
 }  // namespace lucerna::test

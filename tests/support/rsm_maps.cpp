@@ -16,7 +16,8 @@ twin::RsmMap cornerMap(glm::ivec2 size) {
   map.height = kCornerHeight;
   map.texels.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
   for (int y = 0; y < size.y; ++y)
-    for (int x = 0; x < size.x; ++x) map.at(x, y) = {map.rayOrigin(x, y), {1.0, 0.0, 0.0}, glm::dvec3(map.texelArea()), 1.0, true};
+    for (int x = 0; x < size.x; ++x)
+      map.at(x, y) = {map.rayOrigin(x, y), {1.0, 0.0, 0.0}, glm::dvec3(map.texelArea()), 1.0, true};
   return map;
 }
 
@@ -38,7 +39,8 @@ twin::RsmMap randomMap(glm::ivec2 size, std::uint32_t seed, double scale) {
     for (int x = 0; x < size.x; ++x) {
       glm::dvec3 normal;
       do normal = glm::dvec3(both(random), both(random), both(random));
-      while (glm::length(normal) > 1.0 || glm::length(normal) < 0.1 || std::abs(glm::dot(normal, map.direction)) < 0.02);
+      while (glm::length(normal) > 1.0 || glm::length(normal) < 0.1 ||
+             std::abs(glm::dot(normal, map.direction)) < 0.02);
       normal = glm::normalize(normal);
       if (glm::dot(normal, map.direction) > 0.0) normal = -normal;
       const glm::dvec3 position = map.rayOrigin(x, y) + map.direction * (3.0 * scale * both(random));
@@ -65,7 +67,8 @@ std::vector<SurfacePoint> randomPoints(const twin::RsmMap& map, int count, std::
   while (static_cast<int>(points.size()) < count) {
     const glm::dvec3 normal(both(random), both(random), both(random));
     if (glm::length(normal) < 0.1) continue;
-    const glm::dvec3 position = map.corner + map.right * (map.width * (0.5 + 0.4 * both(random))) + map.up * (map.height * (0.5 + 0.4 * both(random))) +
+    const glm::dvec3 position = map.corner + map.right * (map.width * (0.5 + 0.4 * both(random))) +
+                                map.up * (map.height * (0.5 + 0.4 * both(random))) +
                                 map.direction * (3.0 * scale * both(random));
     points.push_back({glm::dvec3(glm::vec3(position)), glm::dvec3(glm::vec3(glm::normalize(normal)))});
   }

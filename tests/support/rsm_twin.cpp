@@ -15,7 +15,9 @@ glm::dvec2 RsmMap::project(const glm::dvec3& point) const {
   return {glm::dot(point - corner, right) / width, glm::dot(point - corner, up) / height};
 }
 
-glm::dvec3 RsmMap::rayOrigin(int x, int y) const { return corner + right * (width * (x + 0.5) / size.x) + up * (height * (y + 0.5) / size.y); }
+glm::dvec3 RsmMap::rayOrigin(int x, int y) const {
+  return corner + right * (width * (x + 0.5) / size.x) + up * (height * (y + 0.5) / size.y);
+}
 
 glm::dmat4 RsmMap::clipFromWorld(double range) const {
   const glm::dvec3 rows[3] = {right * (2.0 / width), up * (2.0 / height), direction / range};
@@ -46,7 +48,8 @@ double polygonFormFactor(std::span<const glm::dvec3> corners, const glm::dvec3& 
   return std::abs(sum) / (2.0 * kGatherPi);
 }
 
-glm::dvec3 surfelIrradiance(const RsmMap& map, const RsmMap::Texel& texel, const glm::dvec3& x, const glm::dvec3& n, const GatherOptions& options) {
+glm::dvec3 surfelIrradiance(const RsmMap& map, const RsmMap::Texel& texel, const glm::dvec3& x, const glm::dvec3& n,
+                            const GatherOptions& options) {
   const glm::dvec3 d = x - texel.position;
   const double distance = glm::length(d);
   if (!texel.surface || distance == 0.0) return glm::dvec3(0.0);
@@ -54,16 +57,21 @@ glm::dvec3 surfelIrradiance(const RsmMap& map, const RsmMap::Texel& texel, const
   if (emitted <= 0.0) return glm::dvec3(0.0);
   const double cosine = std::max(texel.cosine, 0.05);
   const double width = map.width / map.size.x, height = map.height / map.size.y;
-  // The outline's squared edges, were it tilted along the longer one: w^2 and h^2 / cos^2; their symmetric mean, doubled twice.
+  // The outline's squared edges, were it tilted along the longer one: w^2 and h^2 / cos^2; their symmetric mean,
+  // doubled twice.
   const double nearDistance = std::sqrt((width * width + height * height) * (1.0 + 1.0 / (cosine * cosine)));
   if (options.nearField == NearField::quad && distance < nearDistance) {
-    // The other side of the surfel's own sheet: facing it, and nearer its plane than a twentieth of the edge (half of nearDistance).
+    // The other side of the surfel's own sheet: facing it, and nearer its plane than a twentieth of the edge (half of
+    // nearDistance).
     const double facing = -glm::dot(texel.normal, n);
     if (facing > 0.0 && emitted * distance < 0.05 * facing * 0.5 * nearDistance) return glm::dvec3(0.0);
     const double slope = std::max(-glm::dot(texel.normal, map.direction), 0.05);
-    const auto onSurface = [&](const glm::dvec3& edge) { return edge + map.direction * (glm::dot(texel.normal, edge) / slope); };
+    const auto onSurface = [&](const glm::dvec3& edge) {
+      return edge + map.direction * (glm::dot(texel.normal, edge) / slope);
+    };
     const glm::dvec3 u = onSurface(map.right * width), v = onSurface(map.up * height);
-    const std::array<glm::dvec3, 4> outline{-d + 0.5 * (u + v), -d + 0.5 * (u - v), -d - 0.5 * (u + v), -d + 0.5 * (v - u)};
+    const std::array<glm::dvec3, 4> outline{-d + 0.5 * (u + v), -d + 0.5 * (u - v), -d - 0.5 * (u + v),
+                                            -d + 0.5 * (v - u)};
     return texel.flux / glm::length(glm::cross(u, v)) * polygonFormFactor(outline, n);
   }
   const double received = -glm::dot(n, d) / distance;
@@ -74,21 +82,24 @@ glm::dvec3 surfelIrradiance(const RsmMap& map, const RsmMap::Texel& texel, const
   return texel.flux * (emitted * received / (kGatherPi * d2));
 }
 
-glm::dvec3 bruteForceIrradiance(const RsmMap& map, const glm::dvec3& x, const glm::dvec3& n, const GatherOptions& options) {
+glm::dvec3 bruteForceIrradiance(const RsmMap& map, const glm::dvec3& x, const glm::dvec3& n,
+                                const GatherOptions& options) {
   glm::dvec3 sum(0.0);
   for (const RsmMap::Texel& texel : map.texels) sum += surfelIrradiance(map, texel, x, n, options);
   return sum;
 }
 
-Gathered gather(const RsmMap& map, std::span<const glm::vec4> pattern, const glm::dvec3& x, const glm::dvec3& n, double rotation,
-                const GatherOptions& options) {
+Gathered gather(const RsmMap& map, std::span<const glm::vec4> pattern, const glm::dvec3& x, const glm::dvec3& n,
+                double rotation, const GatherOptions& options) {
   Gathered result;
   const glm::dvec2 size(map.size), centre = map.project(x) * size;
   for (const glm::vec4& sample : pattern) {
     const double sine = static_cast<double>(sample.x), cosine = static_cast<double>(sample.y);
-    const glm::dvec2 turned(std::cos(rotation) * sine + std::sin(rotation) * cosine, std::cos(rotation) * cosine - std::sin(rotation) * sine);
+    const glm::dvec2 turned(std::cos(rotation) * sine + std::sin(rotation) * cosine,
+                            std::cos(rotation) * cosine - std::sin(rotation) * sine);
     const glm::dvec2 at = centre + options.radius * size * turned;
-    result.boundaryDistance = std::min({result.boundaryDistance, std::abs(at.x - std::round(at.x)), std::abs(at.y - std::round(at.y))});
+    result.boundaryDistance =
+        std::min({result.boundaryDistance, std::abs(at.x - std::round(at.x)), std::abs(at.y - std::round(at.y))});
     if (at.x < 0.0 || at.y < 0.0 || at.x >= size.x || at.y >= size.y) continue;
     const RsmMap::Texel& texel = map.at(static_cast<int>(at.x), static_cast<int>(at.y));
     result.irradiance += static_cast<double>(sample.z) * surfelIrradiance(map, texel, x, n, options);

@@ -25,7 +25,8 @@ int SceneBuilder::texture(int width, int height, std::vector<std::uint8_t> rgba,
   return static_cast<int>(scene_.textures.size()) - 1;
 }
 
-void SceneBuilder::plate(const glm::dvec3& centre, const glm::dvec3& edgeU, const glm::dvec3& edgeV, int material, float normalSign) {
+void SceneBuilder::plate(const glm::dvec3& centre, const glm::dvec3& edgeU, const glm::dvec3& edgeV, int material,
+                         float normalSign) {
   Mesh& mesh = scene_.meshes.emplace_back();
   mesh.firstIndex = static_cast<std::uint32_t>(scene_.indices.size());
   mesh.indexCount = 6;
@@ -70,16 +71,19 @@ Camera lookingAt(const glm::dvec3& position, const glm::dvec3& target, double ve
 
 Scene openBox(double scale) {
   SceneBuilder builder;
-  const int grey = builder.material(glm::vec3(0.7f)), red = builder.material({0.6f, 0.1f, 0.1f}), green = builder.material({0.1f, 0.6f, 0.1f});
+  const int grey = builder.material(glm::vec3(0.7f)), red = builder.material({0.6f, 0.1f, 0.1f}),
+            green = builder.material({0.1f, 0.6f, 0.1f});
   const double s = 10.0 * scale, h = 0.5 * s;
-  builder.plate({0, -h, 0}, {0, 0, s}, {s, 0, 0}, grey);   // floor
-  builder.plate({0, 0, -h}, {s, 0, 0}, {0, s, 0}, grey);   // back
-  builder.plate({-h, 0, 0}, {0, s, 0}, {0, 0, s}, red);    // left
-  builder.plate({h, 0, 0}, {0, 0, s}, {0, s, 0}, green);   // right
+  builder.plate({0, -h, 0}, {0, 0, s}, {s, 0, 0}, grey);  // floor
+  builder.plate({0, 0, -h}, {s, 0, 0}, {0, s, 0}, grey);  // back
+  builder.plate({-h, 0, 0}, {0, s, 0}, {0, 0, s}, red);  // left
+  builder.plate({h, 0, 0}, {0, 0, s}, {0, s, 0}, green);  // right
   builder.sun({-0.35, -1.0, -0.1}, {3.0f, 2.9f, 2.7f});
   return builder.scene();
 }
 
-Camera openBoxCamera(double scale) { return lookingAt(scale * glm::dvec3(0.0, 1.0, 12.0), glm::dvec3(0.0, -scale, 0.0)); }
+Camera openBoxCamera(double scale) {
+  return lookingAt(scale * glm::dvec3(0.0, 1.0, 12.0), glm::dvec3(0.0, -scale, 0.0));
+}
 
 }  // namespace lucerna::test

@@ -1,4 +1,5 @@
-// Where tests get their OpenGL from: LUCERNA_TEST_HOST=osmesa|egl|window; by default OSMesa where it is there, else EGL.
+// Where tests get their OpenGL from: LUCERNA_TEST_HOST=osmesa|egl|window; by default OSMesa where it is there, else
+// EGL.
 #pragma once
 
 #include "host/host.hpp"

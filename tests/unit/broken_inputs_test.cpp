@@ -1,5 +1,5 @@
-// Files that were made to break something: nested without end, forged with right checksums, in circles, or cut. Each is one clear line; none
-// crashes, hangs or asks for memory out of proportion.
+// Files that were made to break something: nested without end, forged with right checksums, in circles, or cut. Each is
+// one clear line; none crashes, hangs or asks for memory out of proportion.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/hash.hpp"
@@ -48,7 +48,8 @@ TEST(BrokenInputs, DeepJsonIsRefused) {
     EXPECT_TRUE(contains(refusal(folder, "a.gltf", "{\"extras\": " + deep + "}"), "nested")) << depth;
     EXPECT_TRUE(contains(refusal(folder, "b.json", repeated("{\"a\":", depth)), "nested")) << depth;
   }
-  EXPECT_NO_THROW(checkJsonDepth("[\"" + repeated("[", 1000) + "\\\"" + repeated("{", 1000) + "\"]", "brackets in a text"));
+  EXPECT_NO_THROW(
+      checkJsonDepth("[\"" + repeated("[", 1000) + "\\\"" + repeated("{", 1000) + "\"]", "brackets in a text"));
   EXPECT_NO_THROW(checkJsonDepth(repeated("[", kMostJsonDepth) + repeated("]", kMostJsonDepth), "as deep as may be"));
 }
 
@@ -69,8 +70,10 @@ TEST(BrokenInputs, NodesThatAreNoTreesAreRefused) {
   const TempFolder folder;
   EXPECT_EQ(loadScene(folder.write("good.gltf", gltfWithNodes(nodeChain(500)))).triangleCount(), 1u);
   EXPECT_TRUE(contains(refusal(folder, "deep.gltf", gltfWithNodes(nodeChain(100000))), "more than 1000"));
-  EXPECT_TRUE(contains(refusal(folder, "self.gltf", gltfWithNodes(R"([{"children":[0],"mesh":0}])")), "its own descendant"));
-  EXPECT_TRUE(contains(refusal(folder, "ring.gltf", gltfWithNodes(R"([{"mesh":0},{"children":[2]},{"children":[1]}])")), "its own descendant"));
+  EXPECT_TRUE(
+      contains(refusal(folder, "self.gltf", gltfWithNodes(R"([{"children":[0],"mesh":0}])")), "its own descendant"));
+  EXPECT_TRUE(contains(refusal(folder, "ring.gltf", gltfWithNodes(R"([{"mesh":0},{"children":[2]},{"children":[1]}])")),
+                       "its own descendant"));
   // Each node twice below the one before: 2^30 copies.
   std::string doubled = "[";
   for (int i = 0; i < 30; ++i) doubled += fmt::format("{{\"children\":[{0},{0}]}},", i + 1);
@@ -107,14 +110,19 @@ TEST(BrokenInputs, ObjNumbersThatBeginWithADotAndIndentedLinesAreRead) {
 
 TEST(BrokenInputs, ObjIndicesAtTheEndsOfTheirTypeAreRefused) {
   const TempFolder folder;
-  for (const char* index : {"-9223372036854775808", "9223372036854775807", "-9223372036854775809", "99999999999999999999"})
-    EXPECT_TRUE(contains(refusal(folder, "a.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 ") + index + "\n"), "a.obj:4")) << index;
+  for (const char* index :
+       {"-9223372036854775808", "9223372036854775807", "-9223372036854775809", "99999999999999999999"})
+    EXPECT_TRUE(
+        contains(refusal(folder, "a.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 ") + index + "\n"), "a.obj:4"))
+        << index;
 }
 
-// Written for the other handedness: shading turns normals to the viewer by the side of the face, so that such a sheet was lit from behind.
+// Written for the other handedness: shading turns normals to the viewer by the side of the face, so that such a sheet
+// was lit from behind.
 TEST(BrokenInputs, FacesFollowTheNormalsOfTheirMesh) {
   const TempFolder folder;
-  const Scene scene = loadScene(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\nf 2//1 4//1 3//1\n"));
+  const Scene scene = loadScene(
+      folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\nf 2//1 4//1 3//1\n"));
   for (std::size_t t = 0; t < 2; ++t) {
     const auto corner = [&](std::size_t k) { return scene.vertices[scene.indices[3 * t + k]].position; };
     EXPECT_LT(glm::cross(corner(1) - corner(0), corner(2) - corner(0)).z, 0.0f);
@@ -135,11 +143,13 @@ TEST(BrokenInputs, ACameraThatSeesNothingDoesNotComeFirst) {
   EXPECT_EQ(first("[0,0,-5]"), 2u);
 }
 
-// ---------------------------------------------------------------------------------------------------- forged, with right checksums
+// ---------------------------------------------------------------------------------------------------- forged, with
+// right checksums
 
 constexpr std::uint64_t kFingerprint = 7;
 
-/// A row file of one row that sees patch 1; `forge` changes its block's words (first, rows, entries, then counts, fronts, backs, patches, factors) before its sum is made.
+/// A row file of one row that sees patch 1; `forge` changes its block's words (first, rows, entries, then counts,
+/// fronts, backs, patches, factors) before its sum is made.
 std::filesystem::path rowFile(const TempFolder& folder, const std::function<void(std::vector<std::uint32_t>&)>& forge) {
   const auto file = folder / "rows";
   std::filesystem::remove(file);
@@ -180,7 +190,8 @@ TEST(BrokenInputs, ForgedRowsAreNotTaken) {
   EXPECT_EQ(rowsTaken(rowFile(folder, [&](auto& w) { w[factor] = bits(NAN); })), 0u);
   EXPECT_EQ(rowsTaken(rowFile(folder, [&](auto& w) { w[factor] = bits(-1.0f); })), 0u);
   EXPECT_EQ(rowsTaken(rowFile(folder, [&](auto& w) { w[front] = bits(2.0f); })), 0u);
-  EXPECT_EQ(rowsTaken(rowFile(folder, [](auto& w) { w[entriesHigh] = 0x20000000; })), 0u);  // 8 times that is 0 in 64 bits
+  EXPECT_EQ(rowsTaken(rowFile(folder, [](auto& w) { w[entriesHigh] = 0x20000000; })),
+            0u);  // 8 times that is 0 in 64 bits
 }
 
 measure::Reference smallReference() {
@@ -211,11 +222,10 @@ TEST(BrokenInputs, ForgedReferencesAreNotTaken) {
   EXPECT_TRUE(forged(samples, std::uint64_t{9}));
   for (const std::int32_t side : {-1, 0, 1, 3, 16384, std::numeric_limits<std::int32_t>::max()}) {
     EXPECT_FALSE(forged(width, side)) << side;
-    if (side != 1) {
-      EXPECT_FALSE(forged(height, side)) << side;
-    }
+    if (side != 1) { EXPECT_FALSE(forged(height, side)) << side; }
   }
-  for (const std::int32_t length : {-1, 0, 1 << 20, std::numeric_limits<std::int32_t>::min()}) EXPECT_FALSE(forged(rendererLength, length)) << length;
+  for (const std::int32_t length : {-1, 0, 1 << 20, std::numeric_limits<std::int32_t>::min()})
+    EXPECT_FALSE(forged(rendererLength, length)) << length;
   EXPECT_FALSE(forged(transport, std::int32_t{77}));
   EXPECT_FALSE(forged(samples, std::uint64_t{0}));
   EXPECT_FALSE(forged(seconds, std::numeric_limits<double>::quiet_NaN()));
@@ -240,14 +250,21 @@ TEST(BrokenInputs, ForgedSolutionsAreRefused) {
     const auto file = folder.write("forged", bytes);
     return badInputMessage([&] { loadSolution(file, scene); });
   };
-  const auto put = [](std::string& bytes, std::size_t at, auto value) { std::memcpy(bytes.data() + at, &value, sizeof value); };
+  const auto put = [](std::string& bytes, std::size_t at, auto value) {
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+  };
   EXPECT_EQ(message([](std::string&) {}), "");
   EXPECT_TRUE(contains(message([&](std::string& b) { put(b, 12, std::uint32_t{99}); }), "solver"));
   EXPECT_TRUE(contains(message([&](std::string& b) { put(b, 48, std::uint64_t{1} << 60); }), "light vertices"));
-  EXPECT_TRUE(contains(message([&](std::string& b) { put(b, 80, std::numeric_limits<double>::quiet_NaN()); }), "finite"));
-  EXPECT_TRUE(contains(message([&](std::string& b) { put(b, b.size() - 8, std::numeric_limits<double>::infinity()); }), "patch"));
-  EXPECT_TRUE(contains(message([&](std::string& b) { put(b, 104, std::numeric_limits<double>::quiet_NaN()); }), "finite"));
-  EXPECT_TRUE(contains(message([&](std::string& b) { b.resize(104), put(b, 32, std::uint64_t{0}), put(b, 40, std::uint64_t{0}); }), "without patches"));
+  EXPECT_TRUE(
+      contains(message([&](std::string& b) { put(b, 80, std::numeric_limits<double>::quiet_NaN()); }), "finite"));
+  EXPECT_TRUE(contains(message([&](std::string& b) { put(b, b.size() - 8, std::numeric_limits<double>::infinity()); }),
+                       "patch"));
+  EXPECT_TRUE(
+      contains(message([&](std::string& b) { put(b, 104, std::numeric_limits<double>::quiet_NaN()); }), "finite"));
+  EXPECT_TRUE(contains(
+      message([&](std::string& b) { b.resize(104), put(b, 32, std::uint64_t{0}), put(b, 40, std::uint64_t{0}); }),
+      "without patches"));
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ struct Decoded {
   std::size_t nodes = 0;
 };
 
-// Boxes of a node in double, and everything below it. A triangle's corners must lie in every box above it where it was not split.
+// Boxes of a node in double, and everything below it. A triangle's corners must lie in every box above it where it was
+// not split.
 void walk(const Bvh& bvh, std::size_t n, int depth, std::vector<Bounds>& above, Decoded& out) {
   const shared::BvhNode& node = bvh.nodes.at(n);
   ++out.nodes;
@@ -49,7 +50,8 @@ void walk(const Bvh& bvh, std::size_t n, int depth, std::vector<Bounds>& above, 
         out.triangles.insert(triangle.id & BVH_TRIANGLE_ID_MASK);
         for (const glm::vec3& corner : {triangle.a, triangle.b, triangle.c})
           for (const Bounds& b : above)
-            for (int axis = 0; axis < 3; ++axis) out.outside += corner[axis] < b.min[axis] || corner[axis] > b.max[axis];
+            for (int axis = 0; axis < 3; ++axis)
+              out.outside += corner[axis] < b.min[axis] || corner[axis] > b.max[axis];
       }
     }
     above.pop_back();
@@ -118,7 +120,8 @@ TEST(BvhBuild, IsTheSameOnAnyNumberOfThreads) {
   ASSERT_EQ(one.nodes.size(), four.nodes.size());
   ASSERT_EQ(one.triangles.size(), four.triangles.size());
   EXPECT_EQ(std::memcmp(one.nodes.data(), four.nodes.data(), one.nodes.size() * sizeof one.nodes[0]), 0);
-  EXPECT_EQ(std::memcmp(one.triangles.data(), four.triangles.data(), one.triangles.size() * sizeof one.triangles[0]), 0);
+  EXPECT_EQ(std::memcmp(one.triangles.data(), four.triangles.data(), one.triangles.size() * sizeof one.triangles[0]),
+            0);
 }
 
 TEST(BvhBuild, DropsAndCountsWhatHasNoArea) {
@@ -163,7 +166,8 @@ TEST(BvhBuild, MovesTheOriginOnlyWhereThatIsExact) {
   const glm::vec3 corners[] = {t.a, t.b, t.c};
   for (std::size_t k = 0; k < 3; ++k)
     for (int axis = 0; axis < 3; ++axis)
-      EXPECT_EQ(static_cast<double>(corners[k][axis]) + bvh.origin[axis], static_cast<double>(far.scene().vertices[far.scene().indices[k]].position[axis]));
+      EXPECT_EQ(static_cast<double>(corners[k][axis]) + bvh.origin[axis],
+                static_cast<double>(far.scene().vertices[far.scene().indices[k]].position[axis]));
 }
 
 TEST(BvhBuild, RefitsWhereTheTrianglesAreTheSame) {

@@ -22,10 +22,12 @@ const glm::dvec3 kAhead = glm::normalize(glm::dvec3(0.5, -0.2, 0.8));
 TEST(Cascades, FinestFirstByTheRatio) {
   for (const double ratio : {1.0, 2.0, 3.0})
     for (int count = 1; count <= 4; ++count) {
-      const auto cascades = placeCascades({32, count, 4.0, ratio, 0.8}, cube(glm::dvec3(0.0), 100.0), glm::dvec3(0.0), kAhead);
+      const auto cascades =
+          placeCascades({32, count, 4.0, ratio, 0.8}, cube(glm::dvec3(0.0), 100.0), glm::dvec3(0.0), kAhead);
       ASSERT_EQ(cascades.size(), static_cast<std::size_t>(count));
       EXPECT_EQ(cascades.back().cellSize, 4.0);
-      for (std::size_t k = 0; k + 1 < cascades.size(); ++k) EXPECT_DOUBLE_EQ(cascades[k].cellSize * ratio, cascades[k + 1].cellSize);
+      for (std::size_t k = 0; k + 1 < cascades.size(); ++k)
+        EXPECT_DOUBLE_EQ(cascades[k].cellSize * ratio, cascades[k + 1].cellSize);
     }
 }
 
@@ -35,11 +37,14 @@ TEST(Cascades, TheCoarsestCoversTheSceneWithRoomForMovedLights) {
   for (const int cells : {6, 7, 8, 32, 128})  // fewer leave no room for the margin and the snapping
     for (int trial = 0; trial < 50; ++trial) {
       const Bounds scene = cube({3.0, -7.0, 11.0}, 40.0);
-      const auto cascades = placeCascades({cells, 3}, scene, glm::dvec3(uniform(random), uniform(random), uniform(random)), kAhead);
+      const auto cascades =
+          placeCascades({cells, 3}, scene, glm::dvec3(uniform(random), uniform(random), uniform(random)), kAhead);
       const Cascade& coarsest = cascades.back();
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_LE(coarsest.minimum()[axis], scene.min[axis] - 0.5 * coarsest.cellSize + 1e-9) << cells;
-        EXPECT_GE(coarsest.minimum()[axis] + cells * coarsest.cellSize, scene.max[axis] + 0.5 * coarsest.cellSize - 1e-9) << cells;
+        EXPECT_GE(coarsest.minimum()[axis] + cells * coarsest.cellSize,
+                  scene.max[axis] + 0.5 * coarsest.cellSize - 1e-9)
+            << cells;
       }
     }
 }
@@ -65,7 +70,8 @@ TEST(Cascades, TheMinimumIsAMultipleOfTheCellSizeJustBelowTheUnsnappedOne) {
         EXPECT_NEAR(c.centre[axis], expected, 1e-9);
         const double inCells = (c.centre[axis] - 8.0 * c.cellSize) / c.cellSize;
         EXPECT_LE(static_cast<double>(c.firstCell[axis]), inCells);
-        EXPECT_GT(static_cast<double>(c.firstCell[axis]) + (k + 1 < cascades.size() ? 2.0 : 1.0), inCells);  // finer ones may move in pairs
+        EXPECT_GT(static_cast<double>(c.firstCell[axis]) + (k + 1 < cascades.size() ? 2.0 : 1.0),
+                  inCells);  // finer ones may move in pairs
         EXPECT_EQ(c.minimum()[axis], static_cast<double>(c.firstCell[axis]) * c.cellSize);
       }
     }
@@ -73,8 +79,9 @@ TEST(Cascades, TheMinimumIsAMultipleOfTheCellSizeJustBelowTheUnsnappedOne) {
 }
 
 TEST(Cascades, SubCellMotionLeavesTheGridFarFromTheOriginToo) {
-  // Cells of 1/4 and 1/2, camera positions in the middle of a cell's range, all exact in double precision: 1e6, 1e9 and 1e12 away, in
-  // both directions. A whole cell of the coarsest moves its index by exactly one, that of the finer by two of its own.
+  // Cells of 1/4 and 1/2, camera positions in the middle of a cell's range, all exact in double precision: 1e6, 1e9 and
+  // 1e12 away, in both directions. A whole cell of the coarsest moves its index by exactly one, that of the finer by
+  // two of its own.
   for (const double far : {0.0, 1e6, -1e6, 1e9, -1e9, 1e12, -1e12}) {
     const glm::dvec3 camera = glm::dvec3(far) + 0.125;
     const CascadeSettings settings{8, 2, 0.5, 2.0, 0.0};
@@ -108,8 +115,8 @@ TEST(Cascades, AFarSceneIsPlacedLikeANearOne) {
 }
 
 TEST(Cascades, NeverFurtherOutOfTheSceneThanItMust) {
-  // The camera far outside: grids stay at the scene, at most four cells beyond its bounds or, where they are larger than the
-  // scene, about its middle; snapping adds up to two cells.
+  // The camera far outside: grids stay at the scene, at most four cells beyond its bounds or, where they are larger
+  // than the scene, about its middle; snapping adds up to two cells.
   const Bounds scene = cube(glm::dvec3(0.0), 64.0);
   for (const double away : {-1e4, 1e4})
     for (const Cascade& c : placeCascades({16, 3}, scene, glm::dvec3(away, 0.0, -away), kAhead)) {
@@ -122,7 +129,8 @@ TEST(Cascades, NeverFurtherOutOfTheSceneThanItMust) {
 }
 
 TEST(Cascades, TheFinestCountsAtTheScenesOuterSurfaces) {
-  // A cascade has faded out 3 cells (2.5 and the lookup's half) within its half extent: beside a wall of the bounds it must still count there.
+  // A cascade has faded out 3 cells (2.5 and the lookup's half) within its half extent: beside a wall of the bounds it
+  // must still count there.
   const Bounds scene = cube(glm::dvec3(0.0), 64.0);
   const auto cascades = placeCascades({32, 3}, scene, glm::dvec3(0.0, 30.0, 31.0), kAhead);
   const double reach = (0.5 * 32 - 3.0) * cascades[0].cellSize;
@@ -152,7 +160,8 @@ TEST(Cascades, AllButTheCoarsestMoveByTwoCells) {
   settings.heldInScene = false;
   bool oddCoarsest = false;
   for (int step = 0; step < 40; ++step) {
-    const std::vector<Cascade> cascades = placeCascades(settings, {}, glm::dvec3(0.23 * step, -0.11 * step, 0.4 * step), {0, 0, -1});
+    const std::vector<Cascade> cascades =
+        placeCascades(settings, {}, glm::dvec3(0.23 * step, -0.11 * step, 0.4 * step), {0, 0, -1});
     for (std::size_t k = 0; k < cascades.size(); ++k)
       for (int axis = 0; axis < 3; ++axis) {
         const bool odd = cascades[k].firstCell[axis] % 2 != 0;

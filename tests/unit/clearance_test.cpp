@@ -13,11 +13,11 @@ namespace {
 
 TEST(Clearance, DistancesToATriangleAreKnown) {
   const Corners triangle{glm::dvec3(0, 0, 0), glm::dvec3(4, 0, 0), glm::dvec3(0, 3, 0)};
-  EXPECT_DOUBLE_EQ(distanceTo(triangle, {1, 1, 2}), 2.0);                      // its inside
+  EXPECT_DOUBLE_EQ(distanceTo(triangle, {1, 1, 2}), 2.0);  // its inside
   EXPECT_DOUBLE_EQ(distanceTo(triangle, {1, 1, -2}), 2.0);
-  EXPECT_DOUBLE_EQ(distanceTo(triangle, {2, -3, 4}), 5.0);                     // an edge
-  EXPECT_DOUBLE_EQ(distanceTo(triangle, {7, 0, 4}), 5.0);                      // a corner
-  EXPECT_NEAR(distanceTo(triangle, {4, 3, 0}), 2.4, 1e-15);                    // the hypotenuse
+  EXPECT_DOUBLE_EQ(distanceTo(triangle, {2, -3, 4}), 5.0);  // an edge
+  EXPECT_DOUBLE_EQ(distanceTo(triangle, {7, 0, 4}), 5.0);  // a corner
+  EXPECT_NEAR(distanceTo(triangle, {4, 3, 0}), 2.4, 1e-15);  // the hypotenuse
   const Corners line{glm::dvec3(0), glm::dvec3(2, 0, 0), glm::dvec3(1, 0, 0)};
   EXPECT_DOUBLE_EQ(distanceTo(line, {1.5, 3, 0}), 3.0);
   EXPECT_DOUBLE_EQ(distanceTo({glm::dvec3(1), glm::dvec3(1), glm::dvec3(1)}, glm::dvec3(1, 1, 3)), 2.0);
@@ -55,12 +55,12 @@ TEST(Clearance, DenseIsWhatScattersManyTimes) {
     medium.scattering = scattering, medium.absorption = absorption, medium.anisotropy = glm::vec3(g);
     return isDense(medium, extent);
   };
-  EXPECT_TRUE(dense({18.2f, 20.4f, 22.4f}, {0.0015f, 0.0046f, 0.02f}, 0.7f, 20.0));   // a block of milk
+  EXPECT_TRUE(dense({18.2f, 20.4f, 22.4f}, {0.0015f, 0.0046f, 0.02f}, 0.7f, 20.0));  // a block of milk
   EXPECT_FALSE(dense({18.2f, 20.4f, 22.4f}, {0.0015f, 0.0046f, 0.02f}, 0.7f, 0.01));  // a film of it
-  EXPECT_TRUE(dense({0.0f, 0.0f, 22.4f}, {9.0f, 9.0f, 0.02f}, 0.7f, 20.0));           // one channel is enough
-  EXPECT_FALSE(dense({7.8f, 8.1f, 8.5f}, {4.8f, 6.6f, 8.8f}, 0.9f, 100.0));           // espresso absorbs first
+  EXPECT_TRUE(dense({0.0f, 0.0f, 22.4f}, {9.0f, 9.0f, 0.02f}, 0.7f, 20.0));  // one channel is enough
+  EXPECT_FALSE(dense({7.8f, 8.1f, 8.5f}, {4.8f, 6.6f, 8.8f}, 0.9f, 100.0));  // espresso absorbs first
   EXPECT_FALSE(dense({0.0f, 0.0f, 0.0f}, {0.1f, 0.2f, 0.3f}, 0.0f, 100.0));
-  EXPECT_FALSE(dense({0.05f, 0.05f, 0.05f}, {0.0f, 0.0f, 0.0f}, 0.99f, 300.0));       // straight on
+  EXPECT_FALSE(dense({0.05f, 0.05f, 0.05f}, {0.0f, 0.0f, 0.0f}, 0.99f, 300.0));  // straight on
 }
 
 }  // namespace

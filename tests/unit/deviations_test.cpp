@@ -72,7 +72,8 @@ TEST(Deviations, EachHasItsLineInTheReadmeOfItsTechnique) {
       EXPECT_EQ(std::count(cells.begin(), cells.end(), ""), 0) << line;
       // A star: in the text and the program published with it; T: in the text alone, D: in the program alone.
       const std::string mark = deviation.inOriginal ? deviation.inDemo ? "* " : "T " : deviation.inDemo ? "D " : "";
-      for (const char* any : {"* ", "T ", "D "}) EXPECT_EQ(cells.size() > 1 && cells[1].starts_with(any), mark == any) << line;
+      for (const char* any : {"* ", "T ", "D "})
+        EXPECT_EQ(cells.size() > 1 && cells[1].starts_with(any), mark == any) << line;
     }
     EXPECT_TRUE(found) << name << " has no line in the README.md of its technique, section Deviations";
   }
@@ -112,18 +113,23 @@ TEST(Deviations, ThesisAndDemoAreTwoAndOriginalIsTheThesis) {
     applyFidelity(settings, parseName<Fidelity>(fidelity, "--fidelity"));
     return activeDeviations(settings);
   };
-  const auto has = [](const std::vector<std::string>& names, const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  const auto has = [](const std::vector<std::string>& names, const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
   EXPECT_EQ(active("original"), active("thesis"));
   EXPECT_TRUE(active("corrected").empty());
   const std::vector<std::string> thesis = active("thesis"), demo = active("demo");
-  // What the text says otherwise than its program: the sum from G_0 (5.10), cascades blended (5.5), faces' directions (5.3), floor (6.1), no digit slip.
-  for (const char* name : {"lpv.fewer-steps", "lpv.sum-cascades", "lpv.side-directions", "lpv.side-solid-angle", "lpv.truncate", "lpv.flux-units", "lpv.surfel-area"}) {
+  // What the text says otherwise than its program: the sum from G_0 (5.10), cascades blended (5.5), faces' directions
+  // (5.3), floor (6.1), no digit slip.
+  for (const char* name : {"lpv.fewer-steps", "lpv.sum-cascades", "lpv.side-directions", "lpv.side-solid-angle",
+                           "lpv.truncate", "lpv.flux-units", "lpv.surfel-area"}) {
     EXPECT_FALSE(has(thesis, name)) << name;
     EXPECT_TRUE(has(demo, name)) << name;
   }
   EXPECT_TRUE(has(thesis, "lpv.unjoined"));
   EXPECT_FALSE(has(demo, "lpv.unjoined"));
-  for (const char* name : {"lpv.half-grids", "lpv.unwindowed", "lpv.blocking-direction", "rsm.flux-cosine", "path.distance-without-pdf"}) {
+  for (const char* name :
+       {"lpv.half-grids", "lpv.unwindowed", "lpv.blocking-direction", "rsm.flux-cosine", "path.distance-without-pdf"}) {
     EXPECT_TRUE(has(thesis, name)) << name;
     EXPECT_TRUE(has(demo, name)) << name;
   }
@@ -145,8 +151,9 @@ TEST(Deviations, EachIsTurnedByItsNameAlone) {
 
 TEST(Deviations, UnknownNamesAndValuesAreRefused) {
   const std::string name = allDeviations().front().name;
-  for (const std::string& wrong : {std::string(), std::string("="), std::string("=on"), name, name + "=", name + "=yes", name + "=On", name + "=on ",
-                                   " " + name + "=on", name + "x=on", std::string("lpv.side=on")}) {
+  for (const std::string& wrong :
+       {std::string(), std::string("="), std::string("=on"), name, name + "=", name + "=yes", name + "=On",
+        name + "=on ", " " + name + "=on", name + "x=on", std::string("lpv.side=on")}) {
     RenderSettings settings;
     try {
       applyDeviation(settings, wrong);
@@ -163,7 +170,8 @@ TEST(Deviations, UnknownNamesAndValuesAreRefused) {
     applyDeviation(settings, "lpv.nothing=on");
     ADD_FAILURE();
   } catch (const Error& error) {
-    for (const Deviation& deviation : allDeviations()) EXPECT_NE(std::string(error.what()).find(deviation.name), std::string::npos) << deviation.name;
+    for (const Deviation& deviation : allDeviations())
+      EXPECT_NE(std::string(error.what()).find(deviation.name), std::string::npos) << deviation.name;
   }
 }
 

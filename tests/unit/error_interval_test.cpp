@@ -37,7 +37,8 @@ Sampled sampled(const Image& truth, int samples, double sigma, std::mt19937& ran
 Image truthPicture() {
   Image truth(48, 32);
   for (int y = 0; y < truth.height; ++y)
-    for (int x = 0; x < truth.width; ++x) truth.at(x, y) = glm::vec3(0.2f + 0.02f * static_cast<float>(x), 0.5f, 0.1f + 0.01f * static_cast<float>(y));
+    for (int x = 0; x < truth.width; ++x)
+      truth.at(x, y) = glm::vec3(0.2f + 0.02f * static_cast<float>(x), 0.5f, 0.1f + 0.01f * static_cast<float>(y));
   return truth;
 }
 
@@ -63,7 +64,8 @@ TEST(ErrorInterval, WithoutNoiseItIsThePlainError) {
   EXPECT_EQ(nrmseInterval(truth, truth, none).value, 0.0);
 }
 
-// 200 sampled references for each of pictures that are off by nothing, by less than the noise and by much more, from 16 samples a pixel on.
+// 200 sampled references for each of pictures that are off by nothing, by less than the noise and by much more, from 16
+// samples a pixel on.
 TEST(ErrorInterval, HoldsTheTrueErrorInAtLeast95OfAHundred) {
   const Image truth = truthPicture();
   std::mt19937 random(7);
@@ -83,10 +85,9 @@ TEST(ErrorInterval, HoldsTheTrueErrorInAtLeast95OfAHundred) {
         EXPECT_LE(e.value, e.high);
         width += (e.high - e.low) / kTrials;
       }
-      EXPECT_GE(held, 190) << "sigma " << sigma << ", off by " << off << ", exact " << exact << ", mean width " << width;
-      if (off > 0.1f) {
-        EXPECT_LT(width, sigma * exact) << "an interval that holds everything says nothing";
-      }
+      EXPECT_GE(held, 190) << "sigma " << sigma << ", off by " << off << ", exact " << exact << ", mean width "
+                           << width;
+      if (off > 0.1f) { EXPECT_LT(width, sigma * exact) << "an interval that holds everything says nothing"; }
     }
 }
 

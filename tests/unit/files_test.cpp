@@ -26,7 +26,8 @@ TEST(Files, PermissionDeniedIsToldAsSuch) {
   fs::permissions(closed, fs::perms::none);
   const bool root = ::geteuid() == 0;
   ASSERT_EQ(root ? ::seteuid(65534) : 0, 0);
-  const std::string read = badInputMessage([&] { readFileText(closed / "a.txt"); }), written = badInputMessage([&] { writeFileAtomically(closed / "b.txt", "x"); });
+  const std::string read = badInputMessage([&] { readFileText(closed / "a.txt"); }),
+                    written = badInputMessage([&] { writeFileAtomically(closed / "b.txt", "x"); });
   ASSERT_EQ(root ? ::seteuid(0) : 0, 0);
   fs::permissions(closed, fs::perms::owner_all);
   EXPECT_TRUE(contains(read, "a.txt: cannot be opened: Permission denied")) << read;
@@ -49,9 +50,7 @@ TEST(Files, LinksInACircleAndTooFewDescriptorsAreToldAsSuch) {
   ErrorKind kind = ErrorKind::fault;
   try {
     readFileText(file);
-  } catch (const Error& error) {
-    message = error.what(), kind = error.kind();
-  }
+  } catch (const Error& error) { message = error.what(), kind = error.kind(); }
   setrlimit(RLIMIT_NOFILE, &before);
   EXPECT_EQ(kind, ErrorKind::missingCapability);
   EXPECT_TRUE(contains(message, "c: cannot be opened: Too many open files")) << message;
@@ -59,7 +58,8 @@ TEST(Files, LinksInACircleAndTooFewDescriptorsAreToldAsSuch) {
 
 TEST(Files, LargeAndEmptyFilesAreReadWhole) {
   const TempFolder folder;
-  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, (std::size_t{1} << 20) - 1, std::size_t{1} << 20, (std::size_t{1} << 20) + 1, std::size_t{5000000}}) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, (std::size_t{1} << 20) - 1, std::size_t{1} << 20,
+                                 (std::size_t{1} << 20) + 1, std::size_t{5000000}}) {
     std::string content(size, 'x');
     if (size > 0) content.back() = 'y';
     EXPECT_EQ(readFileText(folder.write("a", content)), content) << size;
@@ -101,7 +101,8 @@ TEST(Files, WhatKilledWritersLeftIsSweptAndNothingElse) {
   folder.write(".other.tmp", "x");
   writeFileAtomically(folder / "b.txt", "new");
   EXPECT_FALSE(fs::exists(folder / left)) << folder.listing();
-  for (const std::string& kept : {alive, elsewhere, std::string(".other.tmp"), std::string("b.txt")}) EXPECT_TRUE(fs::exists(folder / kept)) << kept;
+  for (const std::string& kept : {alive, elsewhere, std::string(".other.tmp"), std::string("b.txt")})
+    EXPECT_TRUE(fs::exists(folder / kept)) << kept;
 }
 
 }  // namespace

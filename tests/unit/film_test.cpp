@@ -61,7 +61,8 @@ void expectRefused(const std::vector<Film>& films, const std::string& word) {
 }
 
 TEST(Film, PartsTogetherAreOneRun) {
-  const Film whole = filmOfSamples(0, 1000), sum = merged({filmOfSamples(0, 17), filmOfSamples(17, 400), filmOfSamples(400, 401), filmOfSamples(401, 1000)});
+  const Film whole = filmOfSamples(0, 1000), sum = merged({filmOfSamples(0, 17), filmOfSamples(17, 400),
+                                                           filmOfSamples(400, 401), filmOfSamples(401, 1000)});
   EXPECT_EQ(sum.first, 0u);
   for (std::size_t i = 0; i < whole.mean.size(); ++i) {
     const FilmPixel a = whole.pixels()[i], b = sum.pixels()[i];
@@ -99,7 +100,8 @@ TEST(Film, BytesAreReadBackAndDamageIsSeen) {
   EXPECT_EQ(read.mean, film.mean);
   EXPECT_EQ(read.spread, film.spread);
   EXPECT_EQ(read.rest, film.rest);
-  for (const std::size_t at : {std::size_t{0}, std::size_t{32}, bytes.size() - 1}) {  // the kind of file, the first sample, the last word
+  for (const std::size_t at :
+       {std::size_t{0}, std::size_t{32}, bytes.size() - 1}) {  // the kind of file, the first sample, the last word
     std::vector<std::uint8_t> damaged = bytes;
     damaged[at] ^= 1;
     EXPECT_THROW(filmOf(damaged, "memory"), Error) << at;

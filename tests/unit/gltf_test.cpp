@@ -1,4 +1,5 @@
-// glTF 2: what Assimp 5.2.5 leaves out of it is read here, and what nothing shows is one warning that names the material.
+// glTF 2: what Assimp 5.2.5 leaves out of it is read here, and what nothing shows is one warning that names the
+// material.
 #include "base/image.hpp"
 #include "base/log.hpp"
 #include "scene/gltf_file.hpp"
@@ -26,29 +27,36 @@ std::string floats(std::initializer_list<float> values) {
   return bytes;
 }
 
-/// A triangle (0,0,0) (1,0,0) (0,1,0) with texture coordinates (0.25, 0.5), (1, 0), (0, 1) (v = 0 on top) and colours; `material` is the inside of its
-/// material's object, `colours` those of the three vertices.
-Scene loadTriangle(const TempFolder& folder, const std::string& material, const std::string& colours = floats({1, 1, 1, 1, 1, 1, 1, 1, 1}), const std::string& more = "") {
+/// A triangle (0,0,0) (1,0,0) (0,1,0) with texture coordinates (0.25, 0.5), (1, 0), (0, 1) (v = 0 on top) and colours;
+/// `material` is the inside of its material's object, `colours` those of the three vertices.
+Scene loadTriangle(const TempFolder& folder, const std::string& material,
+                   const std::string& colours = floats({1, 1, 1, 1, 1, 1, 1, 1, 1}), const std::string& more = "") {
   clearLoggedWarnings();
   folder.write("a.bin", floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 0.25f, 0.5f, 1, 0, 0, 1}) + colours);
   // Two texels: the left one has alpha 100, the right one 200.
   if (!std::filesystem::exists(folder / "t.tga"))
-    folder.write("t.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\x20\x28", 18) + std::string("\x10\x20\x30\x64\x10\x20\x30\xc8", 8));
-  return loadScene(folder.write("a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1,"COLOR_0":2},"material":0}]}],"materials":[{"name":"paint",)" + material + R"(}],
+    folder.write("t.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\x20\x28", 18) +
+                              std::string("\x10\x20\x30\x64\x10\x20\x30\xc8", 8));
+  return loadScene(
+      folder.write("a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1,"COLOR_0":2},"material":0}]}],"materials":[{"name":"paint",)" +
+                                 material + R"(}],
     "textures":[{"source":0}],"images":[{"uri":"t.tga"}],
     "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},{"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"},
                  {"bufferView":2,"componentType":5126,"count":3,"type":"VEC3"}],
     "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},{"buffer":0,"byteOffset":60,"byteLength":36}],
-    "buffers":[{"uri":"a.bin","byteLength":96}])" + more + "}"));
+    "buffers":[{"uri":"a.bin","byteLength":96}])" +
+                                 more + "}"));
 }
 
 /// The same with colours of four numbers, the last of them 0.5.
 Scene loadTriangleOfFour(const TempFolder& folder, const std::string& material) {
   clearLoggedWarnings();
   folder.write("a.bin", floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 1, 0.5f, 1, 1, 1, 0.5f, 1, 1, 1, 0.5f}));
-  return loadScene(folder.write("a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1},"material":0}]}],"materials":[{"name":"paint",)" + material + R"(}],
+  return loadScene(
+      folder.write("a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1},"material":0}]}],"materials":[{"name":"paint",)" +
+                                 material + R"(}],
     "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},{"bufferView":1,"componentType":5126,"count":3,"type":"VEC4"}],
     "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":48}],"buffers":[{"uri":"a.bin","byteLength":84}]})"));
 }
@@ -60,7 +68,9 @@ std::string onlyWarning() {
 
 TEST(Gltf, EmissiveStrengthMultipliesTheEmission) {
   const TempFolder folder;
-  const Scene scene = loadTriangle(folder, R"("emissiveFactor":[0.5,0.25,1],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":8}})");
+  const Scene scene = loadTriangle(
+      folder,
+      R"("emissiveFactor":[0.5,0.25,1],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":8}})");
   EXPECT_EQ(scene.materials.at(0).emission, glm::vec3(4, 2, 8));
   EXPECT_TRUE(loggedWarnings().empty());
 }
@@ -88,7 +98,9 @@ TEST(Gltf, AlphaOfVerticesIsSaidNotToBeRead) {
 TEST(Gltf, TextureTransformsGoIntoTheCoordinates) {
   const TempFolder folder;
   const auto coordinate = [&](const std::string& transform) {
-    const Scene scene = loadTriangle(folder, R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{)" + transform + "}}}}");
+    const Scene scene = loadTriangle(
+        folder, R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{)" +
+                    transform + "}}}}");
     return scene.vertices.at(scene.indices.at(0)).texCoord;  // v = 0 at the bottom
   };
   const auto expect = [&](const std::string& transform, double u, double v) {
@@ -109,7 +121,8 @@ TEST(Gltf, TextureTransformsGoIntoTheCoordinates) {
 TEST(Gltf, MasksAreCutAtTheirCutoff) {
   const TempFolder folder;
   const auto material = [](const std::string& alpha, const std::string& mode) {
-    return R"("alphaMode":")" + mode + R"(","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,)" + alpha + R"(],"baseColorTexture":{"index":0}})";
+    return R"("alphaMode":")" + mode + R"(","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,)" + alpha +
+           R"(],"baseColorTexture":{"index":0}})";
   };
   // Which of the texels of alpha 100 and 200 are left.
   const auto left = [&](const std::string& inside) -> std::string {
@@ -123,8 +136,8 @@ TEST(Gltf, MasksAreCutAtTheirCutoff) {
   EXPECT_EQ(left(material("1", "MASK") + R"(,"alphaCutoff":0.3)"), "100 200");
   EXPECT_EQ(left(material("1", "MASK") + R"(,"alphaCutoff":0.9)"), "");
   EXPECT_EQ(left(material("1", "MASK") + R"(,"alphaCutoff":0)"), "all");
-  EXPECT_EQ(left(material("0.7", "MASK")), "200");           // 0.7 * 200 / 255 = 0.55
-  EXPECT_EQ(left(material("0.6", "MASK")), "");              // 0.47
+  EXPECT_EQ(left(material("0.7", "MASK")), "200");  // 0.7 * 200 / 255 = 0.55
+  EXPECT_EQ(left(material("0.6", "MASK")), "");  // 0.47
   EXPECT_EQ(left(material("0.6", "MASK") + R"(,"alphaCutoff":0.2)"), "100 200");
   EXPECT_EQ(left(material("0.1", "OPAQUE")), "all");
   EXPECT_TRUE(loggedWarnings().empty());
@@ -138,47 +151,69 @@ TEST(Gltf, MasksAreCutAtTheirCutoff) {
 TEST(Gltf, MaterialsAreThoseOfTheirNumberWhateverTheOrderOfTheirUse) {
   const TempFolder folder;
   folder.write("a.bin", floats({0, 0, 0, 1, 0, 0, 0, 1, 0}));
-  const auto strength = [](int value) { return fmt::format(R"({{"emissiveFactor":[1,1,1],"extensions":{{"KHR_materials_emissive_strength":{{"emissiveStrength":{}}}}}}})", value); };
+  const auto strength = [](int value) {
+    return fmt::format(
+        R"({{"emissiveFactor":[1,1,1],"extensions":{{"KHR_materials_emissive_strength":{{"emissiveStrength":{}}}}}}})",
+        value);
+  };
   const auto primitive = [](const std::string& material) { return R"({"attributes":{"POSITION":0})" + material + "}"; };
-  const std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[)" + primitive(R"(,"material":2)") + "," + primitive("") + "," +
-                           primitive(R"(,"material":0)") + R"(]}],"materials":[)" + strength(3) + "," + strength(5) + "," + strength(7) +
-                           R"(],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+  const std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[)" +
+      primitive(R"(,"material":2)") + "," + primitive("") + "," + primitive(R"(,"material":0)") +
+      R"(]}],"materials":[)" + strength(3) + "," + strength(5) + "," + strength(7) +
+      R"(],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
     "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{BUFFER"byteLength":36}]})";
   const auto emissions = [](const Scene& scene) {
     std::vector<float> result;
-    for (const Mesh& mesh : scene.meshes) result.push_back(scene.materials.at(static_cast<std::size_t>(mesh.material)).emission.x);
+    for (const Mesh& mesh : scene.meshes)
+      result.push_back(scene.materials.at(static_cast<std::size_t>(mesh.material)).emission.x);
     return result;
   };
-  const auto withBuffer = [&](const std::string& uri) { return std::string(json).replace(json.find("BUFFER"), 6, uri); };
-  EXPECT_EQ(emissions(loadScene(folder.write("a.gltf", withBuffer(R"("uri":"a.bin",)")))), (std::vector<float>{7, 0, 3}));
+  const auto withBuffer = [&](const std::string& uri) {
+    return std::string(json).replace(json.find("BUFFER"), 6, uri);
+  };
+  EXPECT_EQ(emissions(loadScene(folder.write("a.gltf", withBuffer(R"("uri":"a.bin",)")))),
+            (std::vector<float>{7, 0, 3}));
   std::string chunk = withBuffer("");
   chunk.append((4 - chunk.size() % 4) % 4, ' ');
   const auto word = [](std::size_t value) {
     const auto w = static_cast<std::uint32_t>(value);
     return std::string(reinterpret_cast<const char*>(&w), 4);
   };
-  const std::string glb = "glTF" + word(2) + word(12 + 8 + chunk.size() + 8 + 36) + word(chunk.size()) + "JSON" + chunk + word(36) + std::string("BIN\0", 4) + floats({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const std::string glb = "glTF" + word(2) + word(12 + 8 + chunk.size() + 8 + 36) + word(chunk.size()) + "JSON" +
+                          chunk + word(36) + std::string("BIN\0", 4) + floats({0, 0, 0, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(emissions(loadScene(folder.write("a.glb", glb))), (std::vector<float>{7, 0, 3}));
 }
 
 TEST(Gltf, VolumesBecomeMedia) {
   const TempFolder folder;
-  const std::string transmission = R"("extensions":{"KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_ior":{"ior":1.33},)";
-  const Scene scene = loadTriangle(folder, transmission + R"("KHR_materials_volume":{"thicknessFactor":0.1,"attenuationDistance":2,"attenuationColor":[0.25,1,0.5]}})");
+  const std::string transmission =
+      R"("extensions":{"KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_ior":{"ior":1.33},)";
+  const Scene scene = loadTriangle(
+      folder,
+      transmission +
+          R"("KHR_materials_volume":{"thicknessFactor":0.1,"attenuationDistance":2,"attenuationColor":[0.25,1,0.5]}})");
   const Material& m = scene.materials.at(0);
   EXPECT_EQ(m.bsdf, Bsdf::dielectric);
   EXPECT_FLOAT_EQ(m.ior, 1.33f);
   ASSERT_EQ(m.interior, 0);
   const Medium& medium = scene.media.at(0);
-  EXPECT_NEAR(glm::length(medium.absorption - glm::vec3(std::log(2.0), 0.0, 0.5 * std::log(2.0))), 0.0f, 1e-6f);  // -ln(1/4) / 2
+  EXPECT_NEAR(glm::length(medium.absorption - glm::vec3(std::log(2.0), 0.0, 0.5 * std::log(2.0))), 0.0f,
+              1e-6f);  // -ln(1/4) / 2
   EXPECT_EQ(medium.scattering, glm::vec3(0.0f));
   EXPECT_TRUE(loggedWarnings().empty());
-  EXPECT_EQ(loadTriangle(folder, transmission + R"("KHR_materials_volume":{"attenuationDistance":2,"attenuationColor":[0.5,1,0.5]}})").materials.at(0).interior, -1);
+  EXPECT_EQ(
+      loadTriangle(folder,
+                   transmission + R"("KHR_materials_volume":{"attenuationDistance":2,"attenuationColor":[0.5,1,0.5]}})")
+          .materials.at(0)
+          .interior,
+      -1);
 }
 
 TEST(Gltf, PicturesOfNormalsMetalAndEmissionAreRead) {
   const TempFolder folder;
-  const Scene scene = loadTriangle(folder, R"("normalTexture":{"index":0,"scale":0.75},"emissiveFactor":[1,0.5,0.25],"emissiveTexture":{"index":0},
+  const Scene scene = loadTriangle(
+      folder, R"("normalTexture":{"index":0,"scale":0.75},"emissiveFactor":[1,0.5,0.25],"emissiveTexture":{"index":0},
     "pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":0.8,"roughnessFactor":0.9,"metallicRoughnessTexture":{"index":0}})");
   EXPECT_TRUE(loggedWarnings().empty());
   const Material& m = scene.materials.at(0);
@@ -195,29 +230,43 @@ TEST(Gltf, PicturesOfNormalsMetalAndEmissionAreRead) {
   const float metallic = 0.8f * 16.0f / 255.0f;
   EXPECT_NEAR(glm::length(m.diffuse - (1.0f - metallic) * m.metalMap->base), 0.0f, 1e-5f);
   // A metal's picture is the colour of its reflection, with a picture of the metallic share or without.
-  EXPECT_TRUE(loadTriangle(folder, R"("pbrMetallicRoughness":{"metallicFactor":1,"baseColorTexture":{"index":0}})").materials.at(0).metalMap);
-  EXPECT_FALSE(loadTriangle(folder, R"("pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0}})").materials.at(0).metalMap);
+  EXPECT_TRUE(loadTriangle(folder, R"("pbrMetallicRoughness":{"metallicFactor":1,"baseColorTexture":{"index":0}})")
+                  .materials.at(0)
+                  .metalMap);
+  EXPECT_FALSE(loadTriangle(folder, R"("pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0}})")
+                   .materials.at(0)
+                   .metalMap);
   EXPECT_FALSE(loadTriangle(folder, R"("pbrMetallicRoughness":{"metallicFactor":1})").materials.at(0).metalMap);
   // One set of texture coordinates serves all.
-  loadTriangle(folder, R"("normalTexture":{"index":0,"texCoord":1},"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})");
+  loadTriangle(folder,
+               R"("normalTexture":{"index":0,"texCoord":1},"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})");
   EXPECT_TRUE(contains(onlyWarning(), "material 'paint': the normal texture lies as the first one does"));
 }
 
 TEST(Gltf, WhatIsNotShownIsOneWarning) {
   const TempFolder folder;
-  loadTriangle(folder, R"("alphaMode":"BLEND","extensions":{"KHR_materials_sheen":{"sheenRoughnessFactor":1},"KHR_materials_clearcoat":{"clearcoatFactor":1}})");
+  loadTriangle(
+      folder,
+      R"("alphaMode":"BLEND","extensions":{"KHR_materials_sheen":{"sheenRoughnessFactor":1},"KHR_materials_clearcoat":{"clearcoatFactor":1}})");
   const std::string warning = onlyWarning();
-  for (const char* part : {"a.gltf", "material 'paint'", "not blended (BLEND)", "no KHR_materials_sheen", "no KHR_materials_clearcoat"}) EXPECT_TRUE(contains(warning, part)) << warning;
-  loadTriangle(folder, R"("doubleSided":true)", floats({1, 1, 1, 1, 1, 1, 1, 1, 1}),
-               R"(,"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"name":"bulb","type":"point","range":5,"color":[1,1,1],"intensity":1}]}})");
+  for (const char* part :
+       {"a.gltf", "material 'paint'", "not blended (BLEND)", "no KHR_materials_sheen", "no KHR_materials_clearcoat"})
+    EXPECT_TRUE(contains(warning, part)) << warning;
+  loadTriangle(
+      folder, R"("doubleSided":true)", floats({1, 1, 1, 1, 1, 1, 1, 1, 1}),
+      R"(,"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"name":"bulb","type":"point","range":5,"color":[1,1,1],"intensity":1}]}})");
   EXPECT_TRUE(contains(onlyWarning(), "bulb"));
 }
 
 TEST(Gltf, ValuesOfOtherTypesAreRefused) {
   const TempFolder folder;
-  const auto refusal = [&](const std::string& material) { return badInputMessage([&] { loadTriangle(folder, material); }); };
-  EXPECT_TRUE(contains(refusal(R"("extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":-1}})"), "emissiveStrength"));
-  EXPECT_TRUE(contains(refusal(R"("extensions":{"KHR_materials_volume":{"attenuationDistance":0}})"), "attenuationDistance"));
+  const auto refusal = [&](const std::string& material) {
+    return badInputMessage([&] { loadTriangle(folder, material); });
+  };
+  EXPECT_TRUE(contains(refusal(R"("extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":-1}})"),
+                       "emissiveStrength"));
+  EXPECT_TRUE(
+      contains(refusal(R"("extensions":{"KHR_materials_volume":{"attenuationDistance":0}})"), "attenuationDistance"));
   EXPECT_TRUE(contains(refusal(R"("alphaCutoff":-2)"), "alphaCutoff"));
   EXPECT_TRUE(contains(refusal(R"("alphaMode":"SOME")"), "alphaMode"));
 }

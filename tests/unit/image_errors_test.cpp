@@ -1,4 +1,5 @@
-// Image errors, the Pareto front and the slope against figures worked out by hand; heat maps and FLIP against their definitions.
+// Image errors, the Pareto front and the slope against figures worked out by hand; heat maps and FLIP against their
+// definitions.
 #include "measure/flip.hpp"
 #include "measure/front.hpp"
 #include "measure/heat_map.hpp"
@@ -162,8 +163,8 @@ TEST(Parts, HaveTheirOwnBiases) {
   EXPECT_NEAR(other.squares, 6.0 / 18.0, 1e-12);
   EXPECT_NEAR(lit.pixels, 0.25, 1e-12);
   EXPECT_NEAR(other.pixels, 0.5, 1e-12);
-  EXPECT_NEAR(lit.biasError, 0.3, 1e-7);                               // over 1
-  EXPECT_NEAR(other.biasError, 0.3 * std::sqrt(2.0) / 4.0, 1e-7);      // over 2 + 2
+  EXPECT_NEAR(lit.biasError, 0.3, 1e-7);  // over 1
+  EXPECT_NEAR(other.biasError, 0.3 * std::sqrt(2.0) / 4.0, 1e-7);  // over 2 + 2
   // A picture with a mean error of 0.1 over four pixels: 0.2 a pixel, as if all were as noisy.
   EXPECT_NEAR(partErrorsOf(image, reference, standardError, {true, false, false, false}, 0.1).biasError,
               std::hypot(0.3, 0.2), 1e-7);
@@ -172,8 +173,8 @@ TEST(Parts, HaveTheirOwnBiases) {
   EXPECT_EQ(none.squares, 0.0);
 }
 
-// The reference's noise moves a measured square by 2 d s sqrt(1 + s^2 / (2 d^2)): here the measured d^2 is d^2 + s^2, three channels of one
-// pixel go together, two pixels do not.
+// The reference's noise moves a measured square by 2 d s sqrt(1 + s^2 / (2 d^2)): here the measured d^2 is d^2 + s^2,
+// three channels of one pixel go together, two pixels do not.
 TEST(SquareErrors, FollowTheReferencesNoise) {
   const double s = 0.01, d = 0.3;
   const Image reference(2, 1, glm::vec3(1.0f)), image(2, 1, glm::vec3(1.0f + static_cast<float>(std::hypot(d, s))));
@@ -184,7 +185,8 @@ TEST(SquareErrors, FollowTheReferencesNoise) {
   EXPECT_EQ(squareErrorsOf(image, reference, Image(2, 1)).squares, 0.0);
 }
 
-// The same by drawing references: their spread is what is foretold, to a tenth of it (2000 draws: standard error 1.6 %).
+// The same by drawing references: their spread is what is foretold, to a tenth of it (2000 draws: standard error 1.6
+// %).
 TEST(SquareErrors, AreWhatDrawnReferencesShow) {
   constexpr int kPixels = 200, kDraws = 2000;
   std::mt19937 random(5);
@@ -208,8 +210,8 @@ TEST(SquareErrors, AreWhatDrawnReferencesShow) {
   EXPECT_NEAR(foretold / spread, 1.0, 0.1);
 }
 
-// Two errors that their spreads explain are equal: the cheaper one stays. What is clearly better joins, even where a row
-// between them was equal to both.
+// Two errors that their spreads explain are equal: the cheaper one stays. What is clearly better joins, even where a
+// row between them was equal to both.
 TEST(Front, RowsThatCannotBeToldApartAreEqual) {
   const std::vector<CostAndError> exact{{1, 0.5}, {2, 0.4999}, {3, 0.3}, {4, 0.31}};
   EXPECT_EQ(paretoFront(exact), (std::vector<bool>{true, true, true, false}));
@@ -272,8 +274,8 @@ TEST(LogLogSlope, SaysHowUncertainItIs) {
   EXPECT_NEAR(s.error, std::sqrt(6.0 / 9.0 / 2.0), 1e-12);
 }
 
-// What NVIDIA's program prints for its own pair of pictures: exposures from -12.5423 to 0.9427 stops are 14 [Andersson2021, README of the program]. A reference
-// of that largest and median luminance gets the same ones.
+// What NVIDIA's program prints for its own pair of pictures: exposures from -12.5423 to 0.9427 stops are 14
+// [Andersson2021, README of the program]. A reference of that largest and median luminance gets the same ones.
 TEST(Flip, ThePublishedExposuresAreFourteen) {
   // Radiance that ACES maps to 0.85: 1.7047 by hand, the larger root of 0.4445 x^2 - 0.4715 x - 0.119, over 0.6.
   const double bright = (0.4715 + std::sqrt(0.4715 * 0.4715 + 4.0 * 0.4445 * 0.119)) / (2.0 * 0.4445) / 0.6;
@@ -294,9 +296,14 @@ TEST(HeatMap, ScaleShowsMostOfTheError) {
 }
 
 TEST(HeatMap, ColoursSayHowMuchAndWhichWay) {
-  const Image reference = picture({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}), image = picture({{1, 1, 1}, {3, 3, 3}, {0, 0, 0}, {std::nanf(""), 0, 0}});
-  const Bitmap absolute = heatMap(image, reference, HeatMap::absolute, 1.0), sign = heatMap(image, reference, HeatMap::signedLuminance, 1.0);
-  const auto at = [](const Bitmap& b, int x) { return std::array<int, 3>{b.rgba[4 * static_cast<std::size_t>(x)], b.rgba[4 * static_cast<std::size_t>(x) + 1], b.rgba[4 * static_cast<std::size_t>(x) + 2]}; };
+  const Image reference = picture({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}),
+              image = picture({{1, 1, 1}, {3, 3, 3}, {0, 0, 0}, {std::nanf(""), 0, 0}});
+  const Bitmap absolute = heatMap(image, reference, HeatMap::absolute, 1.0),
+               sign = heatMap(image, reference, HeatMap::signedLuminance, 1.0);
+  const auto at = [](const Bitmap& b, int x) {
+    return std::array<int, 3>{b.rgba[4 * static_cast<std::size_t>(x)], b.rgba[4 * static_cast<std::size_t>(x) + 1],
+                              b.rgba[4 * static_cast<std::size_t>(x) + 2]};
+  };
   EXPECT_EQ(at(absolute, 0), (std::array{0, 0, 0}));
   EXPECT_EQ(at(absolute, 1), (std::array{255, 255, 255}));
   EXPECT_EQ(at(sign, 0), (std::array{247, 247, 247}));
@@ -313,8 +320,9 @@ TEST(Flip, EqualPicturesDoNotDiffer) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.3f)
 
 TEST(Flip, GreenAgainstBlueIsTheLargestOfAll) { EXPECT_NEAR(flipOfUniform({0, 1, 0}, {0, 0, 1}), 1.0, 1e-9); }
 
-// Black and white: |dL*| = 100, 100^0.7 = 25.11886. Green (L* 87.7362, a* -86.1787, b* 83.1826) and blue (32.2982, 79.1936, -107.8586), a* and b* times L*/100:
-// 55.4380 + hypot(-75.6099 - 25.5781, 72.9812 + 34.8364) = 203.3017, ^0.7 = 41.2761. Above 0.4 of it, so 0.95 + 0.05 (25.11886 - 16.51044) / (0.6 * 41.2761) = 0.96738.
+// Black and white: |dL*| = 100, 100^0.7 = 25.11886. Green (L* 87.7362, a* -86.1787, b* 83.1826) and blue
+// (32.2982, 79.1936, -107.8586), a* and b* times L*/100: 55.4380 + hypot(-75.6099 - 25.5781, 72.9812 + 34.8364) =
+// 203.3017, ^0.7 = 41.2761. Above 0.4 of it, so 0.95 + 0.05 (25.11886 - 16.51044) / (0.6 * 41.2761) = 0.96738.
 TEST(Flip, BlackAgainstWhite) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.0f), glm::vec3(1.0f)), 0.96738, 2e-5); }
 
 // Grey 0.2 and 0.25, L* = 116 cbrt(Y) - 16: 51.8372 and 57.0754; 5.2382^0.7 = 3.18734, times 0.95 / 16.51044 = 0.18340.

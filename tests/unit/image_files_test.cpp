@@ -1,5 +1,5 @@
-// Image files: what is written is read back, as far as each format can keep it; broken files are errors that name the file;
-// nothing half-written stays.
+// Image files: what is written is read back, as far as each format can keep it; broken files are errors that name the
+// file; nothing half-written stays.
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "base/log.hpp"
@@ -34,7 +34,8 @@ Image sampleImage(int width, int height) {
 
 Bitmap sampleBitmap(int width, int height) {
   Bitmap bitmap{width, height, std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height)), false};
-  for (std::size_t i = 0; i < bitmap.rgba.size(); ++i) bitmap.rgba[i] = i % 4 == 3 ? 255 : static_cast<std::uint8_t>(i * 37 + i / 64);
+  for (std::size_t i = 0; i < bitmap.rgba.size(); ++i)
+    bitmap.rgba[i] = i % 4 == 3 ? 255 : static_cast<std::uint8_t>(i * 37 + i / 64);
   return bitmap;
 }
 
@@ -91,7 +92,8 @@ TEST(ImageFiles, PfmReadsGreyAndBigEndian) {
 TEST(ImageFiles, HdrKeepsEightBitsOfTheLargestChannel) {
   const TempFolder folder;
   // Run-length coding needs 8 to 32767 pixels a row; 3 and 40000 are written flat.
-  for (const glm::ivec2& size : {glm::ivec2(64, 9), glm::ivec2(3, 5), glm::ivec2(8, 2), glm::ivec2(40000, 1), glm::ivec2(300, 2)}) {
+  for (const glm::ivec2& size :
+       {glm::ivec2(64, 9), glm::ivec2(3, 5), glm::ivec2(8, 2), glm::ivec2(40000, 1), glm::ivec2(300, 2)}) {
     const Image image = sampleImage(size.x, size.y);
     writeImage(folder / "a.hdr", image);
     const Image back = readImage(folder / "a.hdr");
@@ -100,13 +102,14 @@ TEST(ImageFiles, HdrKeepsEightBitsOfTheLargestChannel) {
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
       const glm::vec3 p = image.pixels[i], q = back.pixels[i];
       const float largest = std::max({p.x, p.y, p.z});
-      for (int c = 0; c < 3; ++c) ASSERT_LE(std::abs(p[c] - q[c]), largest / 256.0f) << i << " of " << size.x << " x " << size.y;
+      for (int c = 0; c < 3; ++c)
+        ASSERT_LE(std::abs(p[c] - q[c]), largest / 256.0f) << i << " of " << size.x << " x " << size.y;
     }
   }
 }
 
-// Cut-off mantissas (DevIL's writer) would lose 0.2 % or more of the mean here; rounding has no bias: its standard error is
-// below 0.0015/sqrt(3 * 40000) relative to the mean, and 5 of them are allowed.
+// Cut-off mantissas (DevIL's writer) would lose 0.2 % or more of the mean here; rounding has no bias: its standard
+// error is below 0.0015/sqrt(3 * 40000) relative to the mean, and 5 of them are allowed.
 TEST(ImageFiles, HdrRoundsWithoutBias) {
   const TempFolder folder;
   Image image(200, 200);
@@ -154,7 +157,8 @@ TEST(ImageFiles, HdrRefusesWhatItCannotHoldAndWarnsOfNegatives) {
 TEST(ImageFiles, HdrIsReadTopRowFirst) {
   const TempFolder folder;
   const std::string red{'\x80', '\0', '\0', '\x81'}, green{'\0', '\x80', '\0', '\x81'};  // 128 * 2^(129-136) = 1
-  const Image image = readImage(folder.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 1\n" + red + green));
+  const Image image =
+      readImage(folder.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 1\n" + red + green));
   EXPECT_EQ(image.at(0, 0), glm::vec3(1.0f, 0.0f, 0.0f));
   EXPECT_EQ(image.at(0, 1), glm::vec3(0.0f, 1.0f, 0.0f));
 }
@@ -166,12 +170,18 @@ TEST(ImageFiles, HdrVariantsAreRead) {
   const Image old = readImage(folder.write("old.hdr", "#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 3\n" + one + repeat));
   for (int x = 0; x < 3; ++x) EXPECT_EQ(old.at(x, 0), glm::vec3(1.0f, 0.5f, 0.25f));
   const std::string two{'\x80', '\x80', '\x80', '\x82'};
-  const Image turned = readImage(folder.write("turned.hdr", "#?RADIANCE\nEXPOSURE=2\nEXPOSURE=2\n\n+Y 2 -X 2\n" + one + two + two + two));
+  const Image turned = readImage(
+      folder.write("turned.hdr", "#?RADIANCE\nEXPOSURE=2\nEXPOSURE=2\n\n+Y 2 -X 2\n" + one + two + two + two));
   EXPECT_EQ(turned.at(1, 1), glm::vec3(0.25f, 0.125f, 0.0625f));
   EXPECT_EQ(turned.at(0, 1), glm::vec3(0.5f));
-  EXPECT_TRUE(contains(badInputMessage([&] { readImage(folder.write("xyz.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + one)); }), "xyze"));
-  EXPECT_TRUE(contains(badInputMessage([&] { readImage(folder.write("run.hdr", "#?RADIANCE\n\n-Y 1 +X 2\n" + one + repeat)); }), "run"));
-  EXPECT_TRUE(contains(badInputMessage([&] { readImage(folder.write("size.hdr", "#?RADIANCE\n\n-Y 0 +X 2\n" + one)); }), "2 x 0"));
+  EXPECT_TRUE(contains(badInputMessage([&] {
+                         readImage(folder.write("xyz.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + one));
+                       }),
+                       "xyze"));
+  EXPECT_TRUE(contains(
+      badInputMessage([&] { readImage(folder.write("run.hdr", "#?RADIANCE\n\n-Y 1 +X 2\n" + one + repeat)); }), "run"));
+  EXPECT_TRUE(contains(badInputMessage([&] { readImage(folder.write("size.hdr", "#?RADIANCE\n\n-Y 0 +X 2\n" + one)); }),
+                       "2 x 0"));
 }
 
 TEST(ImageFiles, PngKeepsColoursAndRowOrder) {
@@ -196,10 +206,11 @@ TEST(ImageFiles, BottomUpFormatsComeOutTopRowFirst) {
     for (int i = 0; i < bytes; ++i) s += static_cast<char>(i < 4 ? v >> (8 * i) : 0);
     return s;
   };
-  bmp += number(54 + 8, 4) + number(0, 4) + number(54, 4) + number(40, 4) + number(1, 4) + number(2, 4) + number(1, 2) + number(24, 2) +
-         number(0, 4) + number(8, 4) + number(2835, 4) + number(2835, 4) + number(0, 4) + number(0, 4);
+  bmp += number(54 + 8, 4) + number(0, 4) + number(54, 4) + number(40, 4) + number(1, 4) + number(2, 4) + number(1, 2) +
+         number(24, 2) + number(0, 4) + number(8, 4) + number(2835, 4) + number(2835, 4) + number(0, 4) + number(0, 4);
   bmp += blue + pad + red + pad;
-  const std::string tga = number(0, 2) + number(2, 1) + number(0, 9) + number(1, 2) + number(2, 2) + number(24, 1) + number(0, 1) + blue + red;
+  const std::string tga = number(0, 2) + number(2, 1) + number(0, 9) + number(1, 2) + number(2, 2) + number(24, 1) +
+                          number(0, 1) + blue + red;
   for (const auto& [name, content] : {std::pair<std::string, std::string>{"a.bmp", bmp}, {"a.tga", tga}}) {
     const Bitmap bitmap = readBitmap(folder.write(name, content));
     ASSERT_EQ(bitmap.width, 1) << name;
@@ -259,8 +270,11 @@ TEST(ImageFiles, TruncatedPicturesAreErrors) {
   for (const char* name : {"a.hdr", "a.exr", "a.pfm", "a.png"}) {
     const std::string whole = readFileText(folder / name);
     for (const double part : {0.02, 0.5, 0.95}) {
-      const auto file = folder.write(std::string("cut-") + name, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
-      EXPECT_TRUE(contains(badInputMessage([&] { readImage(file); }), std::string("cut-") + name)) << name << " " << part;
+      const auto file =
+          folder.write(std::string("cut-") + name,
+                       whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
+      EXPECT_TRUE(contains(badInputMessage([&] { readImage(file); }), std::string("cut-") + name))
+          << name << " " << part;
     }
   }
 }
@@ -329,7 +343,8 @@ TEST(ImageFiles, NothingHalfWrittenStaysWhenTheDiskIsFull) {
     messages += badInputMessage([&] { writeImage(folder / name, image); }) + "\n";
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, oldHandler);
-  for (const char* name : {"new.pfm: cannot be written: ", "old.pfm: cannot be written: ", "new.exr: cannot be written: ", "new.hdr: cannot be written: "})
+  for (const char* name : {"new.pfm: cannot be written: ", "old.pfm: cannot be written: ",
+                           "new.exr: cannot be written: ", "new.hdr: cannot be written: "})
     EXPECT_TRUE(contains(messages, name)) << messages;
   EXPECT_EQ(folder.listing(), "old.pfm");
   EXPECT_EQ(readFileText(folder / "old.pfm"), "old content");

@@ -24,7 +24,8 @@ KeyFrame keyAt(const glm::dvec3& position, const glm::dvec3& direction = {0, 0, 
 }
 
 std::vector<KeyFrame> wildKeys() {
-  return {keyAt({0, 0, 0}), keyAt({3, 1, -2}, {1, 0, 0}), keyAt({2, 5, 1}, {0, 0.5, 1}), keyAt({-4, 2, 0}, {-1, 0.2, 0.3}), keyAt({1, -1, 7})};
+  return {keyAt({0, 0, 0}), keyAt({3, 1, -2}, {1, 0, 0}), keyAt({2, 5, 1}, {0, 0.5, 1}),
+          keyAt({-4, 2, 0}, {-1, 0.2, 0.3}), keyAt({1, -1, 7})};
 }
 
 glm::dvec3 position(const Spline& spline, double t) { return spline.at(t).position; }
@@ -32,7 +33,9 @@ glm::dvec3 position(const Spline& spline, double t) { return spline.at(t).positi
 /// Second derivative from one side: three points at t, t + h, t + 2h give it exactly at t + h for a cubic, and two such
 /// values extrapolate to t exactly, as a cubic's second derivative is linear.
 glm::dvec3 secondDerivative(const Spline& spline, double t, double h) {
-  const auto centred = [&](double s) { return (position(spline, s + h) - 2.0 * position(spline, s) + position(spline, s - h)) / (h * h); };
+  const auto centred = [&](double s) {
+    return (position(spline, s + h) - 2.0 * position(spline, s) + position(spline, s - h)) / (h * h);
+  };
   return 2.0 * centred(t + h) - centred(t + 2.0 * h);
 }
 
@@ -60,14 +63,16 @@ TEST(SplineTest, FirstAndSecondDerivativesAreContinuousAtKeys) {
   for (const double key : {1.0, 2.0, 3.0}) {
     EXPECT_LT(glm::distance(secondDerivative(spline, key, 0.1), secondDerivative(spline, key, -0.1)), 1e-9) << key;
     const double h = 1e-4;
-    const glm::dvec3 before = (3.0 * position(spline, key) - 4.0 * position(spline, key - h) + position(spline, key - 2 * h)) / (2 * h);
-    const glm::dvec3 after = (-3.0 * position(spline, key) + 4.0 * position(spline, key + h) - position(spline, key + 2 * h)) / (2 * h);
+    const glm::dvec3 before =
+        (3.0 * position(spline, key) - 4.0 * position(spline, key - h) + position(spline, key - 2 * h)) / (2 * h);
+    const glm::dvec3 after =
+        (-3.0 * position(spline, key) + 4.0 * position(spline, key + h) - position(spline, key + 2 * h)) / (2 * h);
     EXPECT_LT(glm::distance(before, after), 1e-5) << key;
   }
 }
 
-// Keys 0, 1, 0 by hand: tangents 1.5, 0, -1.5, so that y(u) = 1.5 u - 0.5 u^3 on the first half and mirrored on the second.
-// The last tangent is where a public implementation has a bracket misplaced.
+// Keys 0, 1, 0 by hand: tangents 1.5, 0, -1.5, so that y(u) = 1.5 u - 0.5 u^3 on the first half and mirrored on the
+// second. The last tangent is where a public implementation has a bracket misplaced.
 TEST(SplineTest, ThreeKeysAgreeWithTheSolutionByHand) {
   const Spline spline({keyAt({0, 0, 0}), keyAt({1, 1, 0}), keyAt({2, 0, 0})});
   for (int i = 0; i <= 20; ++i) {
@@ -81,7 +86,8 @@ TEST(SplineTest, ThreeKeysAgreeWithTheSolutionByHand) {
 TEST(SplineTest, ReversedKeysGiveTheReversedPath) {
   const std::vector<KeyFrame> keys = wildKeys();
   const Spline forward(keys), backward({keys.rbegin(), keys.rend()});
-  for (int i = 0; i <= 40; ++i) EXPECT_LT(glm::distance(position(forward, i / 10.0), position(backward, 4.0 - i / 10.0)), 1e-12);
+  for (int i = 0; i <= 40; ++i)
+    EXPECT_LT(glm::distance(position(forward, i / 10.0), position(backward, 4.0 - i / 10.0)), 1e-12);
 }
 
 TEST(SplineTest, EquallySpacedKeysOnALineGiveUniformMotion) {
@@ -123,7 +129,8 @@ TEST(SplineTest, DirectionAndUpStayUnitAndPerpendicular) {
 
 // From looking ahead over the zenith to looking back: neither direction nor up may jump.
 TEST(SplineTest, LookingOverThePoleDoesNotFlip) {
-  const Spline spline({keyAt({0, 0, 0}, {0, 0, -1}, {0, 1, 0}), keyAt({0, 0, 0}, {0, 1, 0}, {0, 0, 1}), keyAt({0, 0, 0}, {0, 0, 1}, {0, -1, 0})});
+  const Spline spline({keyAt({0, 0, 0}, {0, 0, -1}, {0, 1, 0}), keyAt({0, 0, 0}, {0, 1, 0}, {0, 0, 1}),
+                       keyAt({0, 0, 0}, {0, 0, 1}, {0, -1, 0})});
   for (int i = 1; i < spline.viewCount(); ++i) {
     const Camera a = spline.view(i - 1), b = spline.view(i);
     ASSERT_GT(glm::dot(a.direction, b.direction), 0.999) << i;
@@ -138,7 +145,8 @@ TEST(SplineTest, FieldOfViewIsInterpolatedAndStaysPossible) {
   keys[1].verticalFov = 1.0;
   EXPECT_NEAR(Spline(keys).at(0.5).verticalFov, 0.75, 1e-12);
   keys = {keyAt({0, 0, 0}), keyAt({1, 0, 0}), keyAt({2, 0, 0}), keyAt({3, 0, 0})};
-  for (std::size_t i = 0; i < 4; ++i) keys[i].verticalFov = i < 2 ? 0.01 : 3.1;  // overshoots below 0 and above 180 degrees
+  for (std::size_t i = 0; i < 4; ++i)
+    keys[i].verticalFov = i < 2 ? 0.01 : 3.1;  // overshoots below 0 and above 180 degrees
   const Spline spline(keys);
   for (int i = 0; i < spline.viewCount(); ++i) {
     ASSERT_GT(spline.view(i).verticalFov, 0.0);
@@ -217,7 +225,8 @@ TEST(KeyFrameFiles, ErrorsNameFileAndLine) {
     const auto file = folder.write("short.txt", content);
     EXPECT_NE(badInputMessage([&] { readKeyFrames(file); }).find("short.txt: "), std::string::npos);
   }
-  EXPECT_NE(badInputMessage([&] { readKeyFrames(folder / "none.txt"); }).find("none.txt: no such file"), std::string::npos);
+  EXPECT_NE(badInputMessage([&] { readKeyFrames(folder / "none.txt"); }).find("none.txt: no such file"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The layers of engine/CMakeLists.txt and docs/architecture.md: which folders of engine/ include which, and that OpenGL is called in engine/gl and engine/host alone.
+// The layers of engine/CMakeLists.txt and docs/architecture.md: which folders of engine/ include which, and that OpenGL
+// is called in engine/gl and engine/host alone.
 #include "base/files.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,8 @@ std::map<std::string, std::set<std::string>> layers() {
     words >> name;
     std::set<std::string>& below = result[name];
     while (words >> lower) {
-      EXPECT_TRUE(result.contains(lower)) << "engine/" << name << " stands above engine/" << lower << ", which comes after it";
+      EXPECT_TRUE(result.contains(lower))
+          << "engine/" << name << " stands above engine/" << lower << ", which comes after it";
       below.insert(lower);
     }
   }
@@ -63,7 +65,8 @@ TEST(Layers, FoldersIncludeThoseBelowThemAlone) {
       for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end; ++match) {
         const std::string other = (*match)[1];
         if (other == name || other == "shared") continue;  // shaders/shared: structs that both languages compile
-        EXPECT_TRUE(mayInclude.at(name).contains(other)) << fs::relative(file, engine.parent_path()) << " includes " << other << "/";
+        EXPECT_TRUE(mayInclude.at(name).contains(other))
+            << fs::relative(file, engine.parent_path()) << " includes " << other << "/";
         ++seen;
       }
     }

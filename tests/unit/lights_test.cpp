@@ -25,7 +25,9 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct LightFolder : TempFolder {
   LightFolder() { write("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"); }
-  Scene load(const std::string& keys) const { return loadScene(write("room.json", "{\"model\": \"box.obj\"" + keys + "}")); }
+  Scene load(const std::string& keys) const {
+    return loadScene(write("room.json", "{\"model\": \"box.obj\"" + keys + "}"));
+  }
 };
 
 TEST(SceneLights, TheDefaultExposureGoesWithTheDefaultSun) {
@@ -59,9 +61,7 @@ TEST(LightViews, LargestSolidAngleBoundsTheTexelsSum) {
         }
       const double bound = light.largestSolidAngle(size);
       EXPECT_GE(bound * (1.0 + 1e-12), sum) << light.tangent << ", " << size;
-      if (size == 512) {
-        EXPECT_LT(bound / sum, 1.01) << light.tangent;
-      }
+      if (size == 512) { EXPECT_LT(bound / sum, 1.01) << light.tangent; }
     }
   EXPECT_NEAR(all[0].largestSolidAngle(1024) / (4.0 * std::numbers::pi), 1.0, 1e-4);
 }
@@ -99,7 +99,9 @@ TEST(SceneLights, ASceneMayHaveAnyNumberOfLamps) {
   const LightFolder folder;
   std::string spots, points;
   for (int i = 0; i < 70; ++i) {
-    spots += std::string(i > 0 ? "," : "") + R"({"position": [0,0,0], "direction": [0,-1,0], "intensity": [1,1,1], "innerAngle": 10, "outerAngle": 20})";
+    spots +=
+        std::string(i > 0 ? "," : "") +
+        R"({"position": [0,0,0], "direction": [0,-1,0], "intensity": [1,1,1], "innerAngle": 10, "outerAngle": 20})";
     points += std::string(i > 0 ? "," : "") + R"({"position": [0,0,0], "intensity": [1,1,1]})";
   }
   const Scene scene = folder.load(R"(, "spots": [)" + spots + R"(], "points": [)" + points + "]");
@@ -122,7 +124,8 @@ TEST(SceneLights, WhatIsWrongIsNamedByKey) {
       {spot + R"("innerAngle": 41, "outerAngle": 40}])", "\"spots[0].innerAngle\""},
       {spot + R"("innerAngle": -1, "outerAngle": 40}])", "\"spots[0].innerAngle\""},
       {spot + R"("innerAngle": 1, "outerAngle": 40, "target": [1,1,1]}])", "\"target\" or \"direction\""},
-      {R"(, "spots": [{"position": [0,0,0], "target": [0,0,0], "intensity": [1,1,1], "innerAngle": 1, "outerAngle": 40}])", "\"target\" is not"},
+      {R"(, "spots": [{"position": [0,0,0], "target": [0,0,0], "intensity": [1,1,1], "innerAngle": 1, "outerAngle": 40}])",
+       "\"target\" is not"},
   };
   for (const auto& [keys, expected] : cases) {
     const std::string message = badInputMessage([&, &text = keys] { folder.load(text); });
@@ -161,14 +164,17 @@ TEST(SceneLights, LampsOfModelsThatAreFarTooWeakOrStrongChooseTheExposure) {
   const TempFolder folder;
   const auto exposure = [&](double intensity) {
     clearLoggedWarnings();
-    return loadScene(folder.write("a.gltf", fmt::format(R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,1]}}],
+    return loadScene(folder.write("a.gltf",
+                                  fmt::format(R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,1]}}],
     "nodes":[{{"mesh":0,"translation":[-0.5,-0.5,0]}},{{"name":"a","translation":[0,0,4],"extensions":{{"KHR_lights_punctual":{{"light":0}}}}}}],
     "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
     "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}}],
     "bufferViews":[{{"buffer":0,"byteLength":36}}],
     "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}}],
     "extensionsUsed":["KHR_lights_punctual"],
-    "extensions":{{"KHR_lights_punctual":{{"lights":[{{"type":"point","intensity":{}}}]}}}}}})", intensity))).exposure;
+    "extensions":{{"KHR_lights_punctual":{{"lights":[{{"type":"point","intensity":{}}}]}}}}}})",
+                                              intensity)))
+        .exposure;
   };
   EXPECT_EQ(exposure(16.0), 1.0f);
   EXPECT_TRUE(loggedWarnings().empty());
@@ -280,7 +286,8 @@ TEST(SunCascades, EachHoldsItsSliceAndTheWholeScenesDepth) {
       const double t = std::tan(0.5 * camera.verticalFov);
       for (int corner = 0; corner < 8; ++corner) {
         const double d = splits[i + (corner & 1 ? 1u : 0u)];
-        const glm::dvec3 p = camera.position + d * (camera.direction + (corner & 2 ? t : -t) * camera.up + (corner & 4 ? t : -t) * aspect * right);
+        const glm::dvec3 p = camera.position + d * (camera.direction + (corner & 2 ? t : -t) * camera.up +
+                                                    (corner & 4 ? t : -t) * aspect * right);
         const glm::dvec4 clip = cascades[i].clipFromWorld * glm::dvec4(p, 1.0);
         EXPECT_LE(std::max(std::abs(clip.x), std::abs(clip.y)), 1.0) << "cascade " << i;
       }
@@ -316,7 +323,8 @@ TEST(SunCascades, TexelsStayWhileTheCameraMovesAndTurns) {
 
 // What each entry comes up with by threshold and alias is the probability that was asked for [Vose1991].
 TEST(AliasTables, DrawWhatWasAskedFor) {
-  for (const std::vector<double>& weights : {std::vector<double>{1, 2, 3, 4, 0, 7.5, 1e-6}, std::vector<double>{5}, std::vector<double>{0, 0, 3}, std::vector<double>{1e-3, 1e3, 1, 1, 1}}) {
+  for (const std::vector<double>& weights : {std::vector<double>{1, 2, 3, 4, 0, 7.5, 1e-6}, std::vector<double>{5},
+                                             std::vector<double>{0, 0, 3}, std::vector<double>{1e-3, 1e3, 1, 1, 1}}) {
     const AliasTable table = aliasTable(weights);
     const double n = static_cast<double>(weights.size());
     double sum = 0.0;
@@ -341,7 +349,8 @@ TEST(SunFrustum, HoldsTheSceneAndSaysItsSides) {
     scene.vertices.push_back({p, {}, {}});
     scene.bounds.add(glm::dvec3(p));
   }
-  for (const glm::dvec3& direction : {glm::dvec3(0, -1, 0), glm::normalize(glm::dvec3(0.3, -1, 0.2)), glm::normalize(glm::dvec3(0.1, -0.2, -1))}) {
+  for (const glm::dvec3& direction :
+       {glm::dvec3(0, -1, 0), glm::normalize(glm::dvec3(0.3, -1, 0.2)), glm::normalize(glm::dvec3(0.1, -0.2, -1))}) {
     const SunFrustum frustum = fitSunFrustum(scene, direction);
     const glm::dmat4 rows = glm::transpose(glm::dmat4(frustum.clipFromWorld));
     EXPECT_NEAR(2.0 / glm::length(glm::dvec3(rows[0])), frustum.width, 1e-5 * frustum.width);

@@ -1,4 +1,5 @@
-// Media from files: the catalogue against what was published, density grids, the VPT original's scene JSON, the keys for media in our own, drafts.
+// Media from files: the catalogue against what was published, density grids, the VPT original's scene JSON, the keys
+// for media in our own, drafts.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "scene/density_file.hpp"
@@ -24,7 +25,8 @@ using test::TempFolder;
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 void expectVector(const glm::dvec3& measured, const glm::dvec3& expected, double relative, const std::string& what) {
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(measured[c], expected[c], relative * std::abs(expected[c])) << what << ", channel " << c;
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(measured[c], expected[c], relative * std::abs(expected[c])) << what << ", channel " << c;
 }
 
 // ---------------------------------------------------------------------------------------------------- catalogue
@@ -32,7 +34,8 @@ void expectVector(const glm::dvec3& measured, const glm::dvec3& expected, double
 TEST(MediaCatalogue, TheOriginalsTwelveStandFirstAsPrinted) {
   const auto& catalogue = mediaCatalogue();
   ASSERT_EQ(catalogue.size(), 12u + 27u);
-  const char* names[] = {"milk", "espresso", "sprite", "coca cola", "apple juice", "grape juice", "chardonnay", "budweiser", "emerald", "ruby", "sapphire", "glass"};
+  const char* names[] = {"milk",       "espresso",  "sprite",  "coca cola", "apple juice", "grape juice",
+                         "chardonnay", "budweiser", "emerald", "ruby",      "sapphire",    "glass"};
   for (std::size_t i = 0; i < 12; ++i) {
     EXPECT_EQ(catalogue[i].name, names[i]);
     EXPECT_TRUE(catalogue[i].published);
@@ -69,10 +72,13 @@ TEST(MediaCatalogue, EveryMediumIsPhysicalAndNamed) {
 }
 
 TEST(MediaCatalogue, ThePublishedLiquidsAreTheMeasuredOnesUndiluted) {
-  // Seven of the original's eight liquids, to a unit of the last digit printed there (the eighth is mistyped in blue). Milk and espresso have six digits.
-  const std::pair<const char*, const char*> same[] = {{"milk", "measured regular milk"}, {"espresso", "measured espresso"},       {"sprite", "measured sprite"},
-                                                      {"coca cola", "measured coke"},    {"apple juice", "measured apple juice"}, {"grape juice", "measured grape juice"},
-                                                      {"chardonnay", "measured chardonnay"}};
+  // Seven of the original's eight liquids, to a unit of the last digit printed there (the eighth is mistyped in blue).
+  // Milk and espresso have six digits.
+  const std::pair<const char*, const char*> same[] = {
+      {"milk", "measured regular milk"},       {"espresso", "measured espresso"},
+      {"sprite", "measured sprite"},           {"coca cola", "measured coke"},
+      {"apple juice", "measured apple juice"}, {"grape juice", "measured grape juice"},
+      {"chardonnay", "measured chardonnay"}};
   for (const auto& [published, measured] : same) {
     const CatalogueMedium &a = *findCatalogueMedium(published), &b = *findCatalogueMedium(measured);
     const auto lastDigit = [](double value) { return value >= 10.0 ? 1e-4 : 1e-5; };
@@ -103,14 +109,33 @@ TEST(MediaCatalogue, MeasuredLiquidsAgreeWithAnIndependentTable) {
   const auto folder = test::sharedAssets("measured-scattering");
   if (folder.empty()) GTEST_SKIP() << "the shared table of measured media is missing";
   const auto table = readTable(folder / "narasimhan2006.csv");
-  const std::pair<const char*, const char*> names[] = {
-      {"lowfat milk", "Lowfat Milk"}, {"reduced milk", "Reduced Milk"}, {"regular milk", "Regular Milk"}, {"espresso", "Espresso"}, {"mint mocha coffee", "Mint Mocha Coffee"},
-      {"lowfat soy milk", "Lowfat Soy Milk"}, {"regular soy milk", "Regular Soy Milk"}, {"lowfat chocolate milk", "Lowfat Chocolate Milk"},
-      {"regular chocolate milk", "Regular Chocolate Milk"}, {"coke", "Coke"}, {"pepsi", "Pepsi"}, {"sprite", "Sprite"}, {"gatorade", "Gatorade"}, {"chardonnay", "Chardonnay"},
-      {"white zinfandel", "White Zinfandel"}, {"merlot", "Merlot"}, {"budweiser", "Budweiser Beer"}, {"coors light", "Coors Light Beer"}, {"clorox", "Clorox"},
-      {"apple juice", "Apple Juice"}, {"cranberry juice", "Cranberry Juice"}, {"grape juice", "Grape Juice"}, {"ruby grapefruit juice", "Ruby Grapefruit Juice"},
-      {"white grapefruit juice", "White Grapefruit Juice"}, {"shampoo", "Shampoo"}, {"strawberry shampoo", "Strawberry Shampoo"},
-      {"head & shoulders shampoo", "Head & Shoulders Shampoo"}};
+  const std::pair<const char*, const char*> names[] = {{"lowfat milk", "Lowfat Milk"},
+                                                       {"reduced milk", "Reduced Milk"},
+                                                       {"regular milk", "Regular Milk"},
+                                                       {"espresso", "Espresso"},
+                                                       {"mint mocha coffee", "Mint Mocha Coffee"},
+                                                       {"lowfat soy milk", "Lowfat Soy Milk"},
+                                                       {"regular soy milk", "Regular Soy Milk"},
+                                                       {"lowfat chocolate milk", "Lowfat Chocolate Milk"},
+                                                       {"regular chocolate milk", "Regular Chocolate Milk"},
+                                                       {"coke", "Coke"},
+                                                       {"pepsi", "Pepsi"},
+                                                       {"sprite", "Sprite"},
+                                                       {"gatorade", "Gatorade"},
+                                                       {"chardonnay", "Chardonnay"},
+                                                       {"white zinfandel", "White Zinfandel"},
+                                                       {"merlot", "Merlot"},
+                                                       {"budweiser", "Budweiser Beer"},
+                                                       {"coors light", "Coors Light Beer"},
+                                                       {"clorox", "Clorox"},
+                                                       {"apple juice", "Apple Juice"},
+                                                       {"cranberry juice", "Cranberry Juice"},
+                                                       {"grape juice", "Grape Juice"},
+                                                       {"ruby grapefruit juice", "Ruby Grapefruit Juice"},
+                                                       {"white grapefruit juice", "White Grapefruit Juice"},
+                                                       {"shampoo", "Shampoo"},
+                                                       {"strawberry shampoo", "Strawberry Shampoo"},
+                                                       {"head & shoulders shampoo", "Head & Shoulders Shampoo"}};
   ASSERT_EQ(std::size(names), 27u);
   for (const auto& [ours, theirs] : names) {
     const CatalogueMedium* m = findCatalogueMedium(std::string("measured ") + ours);
@@ -118,15 +143,24 @@ TEST(MediaCatalogue, MeasuredLiquidsAgreeWithAnIndependentTable) {
     ASSERT_TRUE(table.contains(theirs)) << theirs;
     const std::vector<double>& row = table.at(theirs);
     // Columns 10.. are reduced scattering and absorption, five digits, from another source than ours.
-    expectVector(m->scattering * (1.0 - m->anisotropy), {row[10], row[11], row[12]}, 1e-4, std::string(ours) + " reduced scattering");
+    expectVector(m->scattering * (1.0 - m->anisotropy), {row[10], row[11], row[12]}, 1e-4,
+                 std::string(ours) + " reduced scattering");
     expectVector(m->absorption, {row[13], row[14], row[15]}, 1e-4, std::string(ours) + " absorption");
     expectVector(m->anisotropy, {row[6], row[7], row[8]}, 1e-12, std::string(ours) + " g");
   }
 }
 
 TEST(MediaCatalogue, NamesThatResembleAMedium) {
-  const std::pair<const char*, const char*> cases[] = {{"Milk.001", "milk"}, {"glass_of_milk", "milk"}, {"MilkGlass", "glass"}, {"CocaCola", "coca cola"}, {"Cola_Mat", "coca cola"},
-                                                       {"GRAPE-JUICE", "grape juice"}, {"orange juice", "apple juice"}, {"Rubin", "ruby"}, {"sklo", "glass"}, {"M_Espresso", "espresso"}};
+  const std::pair<const char*, const char*> cases[] = {{"Milk.001", "milk"},
+                                                       {"glass_of_milk", "milk"},
+                                                       {"MilkGlass", "glass"},
+                                                       {"CocaCola", "coca cola"},
+                                                       {"Cola_Mat", "coca cola"},
+                                                       {"GRAPE-JUICE", "grape juice"},
+                                                       {"orange juice", "apple juice"},
+                                                       {"Rubin", "ruby"},
+                                                       {"sklo", "glass"},
+                                                       {"M_Espresso", "espresso"}};
   for (const auto& [name, medium] : cases) {
     const CatalogueMedium* found = resemblingMedium(name);
     ASSERT_TRUE(found) << name;
@@ -145,10 +179,16 @@ std::string bytesOf(std::initializer_list<float> values) {
 
 TEST(DensityFile, ReadsEveryFormat) {
   const TempFolder folder;
-  const DensityGrid bytes = readDensityGrid(folder.write("a.nrrd", std::string("NRRD0004\n# c\ntype: uint8\ndimension: 3\nsizes: 2 1 2\nencoding: raw\n\n") + std::string("\x00\xff\x33\x66", 4)));
+  const DensityGrid bytes = readDensityGrid(
+      folder.write("a.nrrd", std::string("NRRD0004\n# c\ntype: uint8\ndimension: 3\nsizes: 2 1 2\nencoding: raw\n\n") +
+                                 std::string("\x00\xff\x33\x66", 4)));
   EXPECT_EQ(bytes.size, glm::ivec3(2, 1, 2));
   EXPECT_EQ(bytes.density, (std::vector<float>{0.0f, 1.0f, 0.2f, 0.4f}));
-  const DensityGrid words = readDensityGrid(folder.write("b.nrrd", std::string("NRRD0001\r\ntype: ushort\r\ndimension: 3\r\nsizes: 1 1 2\r\nendian: little\r\nencoding: raw\r\n\r\n") + std::string("\xff\xff\x00\x80", 4)));
+  const DensityGrid words = readDensityGrid(folder.write(
+      "b.nrrd",
+      std::string(
+          "NRRD0001\r\ntype: ushort\r\ndimension: 3\r\nsizes: 1 1 2\r\nendian: little\r\nencoding: raw\r\n\r\n") +
+          std::string("\xff\xff\x00\x80", 4)));
   EXPECT_EQ(words.density, (std::vector<float>{1.0f, 32768.0f / 65535.0f}));
   const DensityGrid raw = readDensityGrid(folder.write("c.raw", bytesOf({0.0f, 2.5f, 1e-3f})), glm::ivec3(3, 1, 1));
   EXPECT_EQ(raw.density, (std::vector<float>{0.0f, 2.5f, 1e-3f}));
@@ -165,7 +205,8 @@ TEST(DensityFile, SharedGridsInBothFormatsAreTheSame) {
     EXPECT_EQ(a.density, b.density);
     double sum = 0.0;
     for (const float d : a.density) sum += d;
-    EXPECT_NEAR(sum / static_cast<double>(a.density.size()), std::string(name) == "bunny" ? 0.206 : 0.285, 0.0006);  // as its README says
+    EXPECT_NEAR(sum / static_cast<double>(a.density.size()), std::string(name) == "bunny" ? 0.206 : 0.285,
+                0.0006);  // as its README says
   }
 }
 
@@ -215,17 +256,25 @@ TEST(DensityFile, WhatIsWrongIsNamedByFile) {
   EXPECT_TRUE(contains(badInputMessage([&] { readDensityGrid(folder / "none.raw", glm::ivec3(1)); }), "no such file"));
 }
 
-// ---------------------------------------------------------------------------------------------------- the original's JSON
+// ---------------------------------------------------------------------------------------------------- the original's
+// JSON
 
-const char* kMtl = "newmtl wall\nKd 0.2 0.4 0.6\nKs 1 1 1\nKe 5 5 5\nnewmtl milk\nKd 1 1 1\nillum 7\nNi 1.9\nnewmtl unused\nKd 0 0 0\n";
+const char* kMtl =
+    "newmtl wall\nKd 0.2 0.4 0.6\nKs 1 1 1\nKe 5 5 5\nnewmtl milk\nKd 1 1 1\nillum 7\nNi 1.9\nnewmtl unused\nKd 0 0 "
+    "0\n";
 const char* kObj =
-    "mtllib cup.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl wall\nf 1 2 3\nusemtl milk\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-const char* kSceneKeys = R"("scene": {"camera": [0, 0, 5], "cameraLookAt": [0, 0, 0], "fov": 45, "lightPos": [1, 2, 3], "lightColor": [1, 0.5, 0.25], "lightIntensity": 8, "scale": 10.0})";
-const char* kMilk = R"({"sigma_s": [18.2052, 20.3826, 22.3698], "sigma_a": [0.00153, 0.0046, 0.01993], "g": [0.75, 0.714, 0.681], "ior": 1.33})";
+    "mtllib cup.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl wall\nf 1 2 3\nusemtl milk\nf 1 3 2\nf 1 2 4\nf 2 3 "
+    "4\nf 1 4 3\n";
+const char* kSceneKeys =
+    R"("scene": {"camera": [0, 0, 5], "cameraLookAt": [0, 0, 0], "fov": 45, "lightPos": [1, 2, 3], "lightColor": [1, 0.5, 0.25], "lightIntensity": 8, "scale": 10.0})";
+const char* kMilk =
+    R"({"sigma_s": [18.2052, 20.3826, 22.3698], "sigma_a": [0.00153, 0.0046, 0.01993], "g": [0.75, 0.714, 0.681], "ior": 1.33})";
 
 struct OriginalFolder : TempFolder {
   OriginalFolder() { write("cup.mtl", kMtl), write("cup.obj", kObj); }
-  Scene load(const std::string& text, const std::string& name = "cup.json") const { return loadScene(write(name, text)); }
+  Scene load(const std::string& text, const std::string& name = "cup.json") const {
+    return loadScene(write(name, text));
+  }
 };
 
 const Material& materialNamed(const Scene& scene, const std::string& name) {
@@ -265,7 +314,8 @@ TEST(OriginalSceneFile, IsAcceptedAsItIs) {
 
 TEST(OriginalSceneFile, IdsMayBeNumbersAndCommentsAreSkipped) {
   const OriginalFolder folder;
-  const Scene scene = folder.load(std::string("{") + kSceneKeys + ", \"1\": " + kMilk + ", \"2\": " + kMilk + R"(, "// wall": {"sigma_s": "later"}, "// note": 3})");
+  const Scene scene = folder.load(std::string("{") + kSceneKeys + ", \"1\": " + kMilk + ", \"2\": " + kMilk +
+                                  R"(, "// wall": {"sigma_s": "later"}, "// note": 3})");
   EXPECT_EQ(materialNamed(scene, "milk").bsdf, Bsdf::dielectric);
   EXPECT_EQ(materialNamed(scene, "wall").bsdf, Bsdf::diffuse);
   EXPECT_EQ(scene.media.size(), 2u);  // the third material is not used by a face, but it is there
@@ -275,7 +325,8 @@ TEST(OriginalSceneFile, TheOnlyObjInTheFolderWillDo) {
   const OriginalFolder folder;
   EXPECT_EQ(folder.load(std::string("{") + kSceneKeys + "}", "other.json").triangleCount(), 5u);
   folder.write("third.obj", kObj);
-  EXPECT_TRUE(contains(badInputMessage([&] { folder.load(std::string("{") + kSceneKeys + "}", "other.json"); }), "no other.obj"));
+  EXPECT_TRUE(contains(badInputMessage([&] { folder.load(std::string("{") + kSceneKeys + "}", "other.json"); }),
+                       "no other.obj"));
 }
 
 TEST(OriginalSceneFile, WhatIsWrongIsNamedByFileAndKey) {
@@ -335,23 +386,28 @@ TEST(OriginalSceneFile, ADraftIsAScene) {
   EXPECT_EQ(materialNamed(scene, "wall").bsdf, Bsdf::diffuse);
   EXPECT_GT(scene.points[0].intensity.x, 0.0f);
   EXPECT_TRUE(contains(badInputMessage([&] { draftOriginalScene(folder.write("bad.mtl", "newmtl\n")); }), "bad.mtl:1"));
-  EXPECT_TRUE(contains(badInputMessage([&] { draftOriginalScene(folder.write("bad.mtl", "newmtl a\nNi x\n")); }), "bad.mtl:2"));
-  EXPECT_TRUE(contains(badInputMessage([&] { draftOriginalScene(folder.write("bad.mtl", "v 0 0 0\n")); }), "no material"));
+  EXPECT_TRUE(
+      contains(badInputMessage([&] { draftOriginalScene(folder.write("bad.mtl", "newmtl a\nNi x\n")); }), "bad.mtl:2"));
+  EXPECT_TRUE(
+      contains(badInputMessage([&] { draftOriginalScene(folder.write("bad.mtl", "v 0 0 0\n")); }), "no material"));
   EXPECT_TRUE(contains(badInputMessage([&] { draftOriginalScene(folder / "none.mtl"); }), "no such file"));
 }
 
-// ---------------------------------------------------------------------------------------------------- media in our JSON
+// ---------------------------------------------------------------------------------------------------- media in our
+// JSON
 
 struct OurFolder : OriginalFolder {
   Scene load(const std::string& keys, const std::string& scale = R"("scale": 2, )") const {
-    return loadScene(write("ours.json", "{" + scale + "\"model\": \"cup.obj\"" + (keys.empty() ? "" : ", ") + keys + "}"));
+    return loadScene(
+        write("ours.json", "{" + scale + "\"model\": \"cup.obj\"" + (keys.empty() ? "" : ", ") + keys + "}"));
   }
 };
 
 TEST(SceneMedia, EveryKeyIsRead) {
   const OurFolder folder;
   folder.write("fog.raw", bytesOf({0.5f, 1.0f}));
-  const Scene scene = folder.load(R"("media": {"drink": {"catalogue": "milk", "concentration": 0.5, "g": 0.2}, "cola": "coca cola",
+  const Scene scene =
+      folder.load(R"("media": {"drink": {"catalogue": "milk", "concentration": 0.5, "g": 0.2}, "cola": "coca cola",
         "fog": {"sigma_s": [1, 2, 3], "sigma_a": [0, 0, 1], "phase": "rayleigh", "emission": [0, 1, 2], "ior": 1.1,
                 "grid": {"file": "fog.raw", "size": [2, 1, 1], "min": [0, 0, 0], "max": [2, 1, 1], "factor": 4}}},
       "materials": {"milk": {"interior": "drink", "priority": 3, "roughness": 0.25}, "wall": {"bsdf": "none", "interior": "fog", "diffuse": [0.1, 0.2, 0.3], "specular": [0, 0, 1], "emission": [3, 2, 1]}},
@@ -388,17 +444,21 @@ TEST(SceneMedia, EveryKeyIsRead) {
 
 TEST(SceneMedia, AnInteriorMayBeOfTheCatalogueAlone) {
   const OurFolder folder;
-  const Scene scene = folder.load(R"("materials": {"milk": {"interior": "ruby"}, "wall": {"interior": "ruby", "ior": 1.6}})");
+  const Scene scene =
+      folder.load(R"("materials": {"milk": {"interior": "ruby"}, "wall": {"interior": "ruby", "ior": 1.6}})");
   ASSERT_EQ(scene.media.size(), 1u);  // one and the same for both
   EXPECT_EQ(materialNamed(scene, "milk").ior, 1.77f);
   EXPECT_EQ(materialNamed(scene, "wall").ior, 1.6f);
-  EXPECT_EQ(materialNamed(folder.load(R"("materials": {"milk": {"interior": null, "ior": 1.4}})"), "milk").interior, -1);
+  EXPECT_EQ(materialNamed(folder.load(R"("materials": {"milk": {"interior": null, "ior": 1.4}})"), "milk").interior,
+            -1);
 }
 
 TEST(SceneMedia, WhatIsWrongIsNamedByFileAndKey) {
   const OurFolder folder;
   folder.write("fog.raw", bytesOf({0.5f, 1.0f}));
-  const auto grid = [](const std::string& keys) { return R"("media": {"fog": {"sigma_s": [1, 1, 1], "grid": {)" + keys + "}}}"; };
+  const auto grid = [](const std::string& keys) {
+    return R"("media": {"fog": {"sigma_s": [1, 1, 1], "grid": {)" + keys + "}}}";
+  };
   const std::pair<std::string, std::string> cases[] = {
       {R"("media": {"a": "tea"})", "\"media.a\""},
       {R"("media": {"a": 3})", "\"media.a\""},
@@ -415,9 +475,11 @@ TEST(SceneMedia, WhatIsWrongIsNamedByFileAndKey) {
       {R"("media": {"a": {"sigma_s": [3e38, 1, 1]}})", "fit into a float"},
       {grid(R"("file": "fog.raw")"), "\"media.fog.grid\""},
       {grid(R"("file": "gone.raw", "size": [2, 1, 1], "min": [0, 0, 0], "max": [1, 1, 1])"), "gone.raw: no such file"},
-      {grid(R"("file": "fog.raw", "size": [2, 1, 1.5], "min": [0, 0, 0], "max": [1, 1, 1])"), "\"media.fog.grid.size\""},
+      {grid(R"("file": "fog.raw", "size": [2, 1, 1.5], "min": [0, 0, 0], "max": [1, 1, 1])"),
+       "\"media.fog.grid.size\""},
       {grid(R"("file": "fog.raw", "size": [2, 1, 1], "min": [0, 0, 0], "max": [1, 0, 1])"), "\"max\""},
-      {grid(R"("file": "fog.raw", "size": [2, 1, 1], "min": [0, 0, 0], "max": [1, 1, 1], "factor": 1e308)"), "\"media.fog.grid.factor\""},
+      {grid(R"("file": "fog.raw", "size": [2, 1, 1], "min": [0, 0, 0], "max": [1, 1, 1], "factor": 1e308)"),
+       "\"media.fog.grid.factor\""},
       {R"("materials": {"tea": {}})", "it has wall, milk"},
       {R"("materials": 3)", "\"materials\""},
       {R"("materials": {"milk": {"bsdf": "glossy"}})", "\"materials.milk.bsdf\""},
@@ -439,7 +501,8 @@ TEST(SceneMedia, WhatIsWrongIsNamedByFileAndKey) {
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
   EXPECT_TRUE(contains(badInputMessage([&] { folder.load(R"("media": {"a": "milk"})", ""); }), "\"scale\""));
-  EXPECT_TRUE(contains(badInputMessage([&] { folder.load(R"("materials": {"milk": {"interior": "milk"}})", ""); }), "\"scale\""));
+  EXPECT_TRUE(contains(badInputMessage([&] { folder.load(R"("materials": {"milk": {"interior": "milk"}})", ""); }),
+                       "\"scale\""));
 }
 
 }  // namespace

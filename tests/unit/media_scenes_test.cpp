@@ -1,4 +1,5 @@
-// The media scenes of assets/: they load, and what holds a medium is closed: every edge of a solid stands once each way, and its volume is positive.
+// The media scenes of assets/: they load, and what holds a medium is closed: every edge of a solid stands once each
+// way, and its volume is positive.
 #include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -103,9 +104,7 @@ TEST(MediaScenes, TheSmokeIsAGridWithFadedBorders) {
       for (int x = 0; x < 96; ++x) {
         const float density = grid.density[static_cast<std::size_t>(x + 96 * (y + 96 * z))];
         sum += density;
-        if (x == 0 || y == 0 || z == 0 || x == 95 || y == 95 || z == 95) {
-          EXPECT_EQ(density, 0.0f);
-        }
+        if (x == 0 || y == 0 || z == 0 || x == 95 || y == 95 || z == 95) { EXPECT_EQ(density, 0.0f); }
       }
   EXPECT_GT(sum / (96.0 * 96.0 * 96.0), 0.02);
 }

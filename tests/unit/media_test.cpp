@@ -20,7 +20,8 @@ void addBox(Scene& scene, const glm::vec3& min, const glm::vec3& max, int materi
     v.position = {i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z};
     scene.vertices.push_back(v);
   }
-  const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   for (const auto& q : quads)
     for (const int k : {0, 1, 2, 0, 2, 3}) scene.indices.push_back(first + q[k]);
   mesh.indexCount = 36;
@@ -64,7 +65,8 @@ TEST(PackedMediaUnit, RefusesWhatCannotBe) {
   badDensity.grid = DensityGrid{{1, 1, 1}, {std::numeric_limits<float>::quiet_NaN()}, glm::dvec3(0.0), glm::dvec3(1.0)};
   for (const Medium& bad : {negative, infinite, forward, badGrid, badDensity}) EXPECT_THROW(packMedia({bad}), Error);
   Scene scene;
-  for (int i = 0; i < kMaxBoundaryRanks + 1; ++i) addBoundary(scene, Bsdf::dielectric, 1.1f + 0.01f * static_cast<float>(i), -1, 0);
+  for (int i = 0; i < kMaxBoundaryRanks + 1; ++i)
+    addBoundary(scene, Bsdf::dielectric, 1.1f + 0.01f * static_cast<float>(i), -1, 0);
   EXPECT_THROW(rankBoundaries(scene), Error);
   scene.materials.pop_back();
   EXPECT_NO_THROW(rankBoundaries(scene));
@@ -74,12 +76,13 @@ TEST(PackedMediaUnit, RefusesWhatCannotBe) {
 
 TEST(SurroundingsUnit, WindingNumbersCountNestedBoxes) {
   Scene scene;
-  const int glass = addBoundary(scene, Bsdf::dielectric, 1.5f, -1, 1), water = addBoundary(scene, Bsdf::dielectric, 1.33f, -1, 0);
+  const int glass = addBoundary(scene, Bsdf::dielectric, 1.5f, -1, 1),
+            water = addBoundary(scene, Bsdf::dielectric, 1.33f, -1, 0);
   addBoundary(scene, Bsdf::diffuse, 1.0f, -1, 0);
   addBox(scene, glm::vec3(-2.0f), glm::vec3(2.0f), glass);
   addBox(scene, glm::vec3(-1.0f), glm::vec3(1.0f), water);
   addBox(scene, glm::vec3(-0.5f), glm::vec3(3.0f), glass);  // overlaps both
-  addBox(scene, glm::vec3(-9.0f), glm::vec3(9.0f), 2);      // bounds nothing
+  addBox(scene, glm::vec3(-9.0f), glm::vec3(9.0f), 2);  // bounds nothing
   const PackedBoundaries packed = rankBoundaries(scene);
   ASSERT_EQ(packed.rankOfMaterial, (std::vector<int>{1, 0, -1}));
   const auto counts = [&](const glm::dvec3& p) {
@@ -98,18 +101,20 @@ TEST(SurroundingsUnit, WindingNumbersCountNestedBoxes) {
 
 TEST(SurroundingsUnit, BoundariesThatMayTouchOtherSurfacesAreTold) {
   Scene scene;
-  const int glass = addBoundary(scene, Bsdf::dielectric, 1.5f, -1, 0), water = addBoundary(scene, Bsdf::dielectric, 1.33f, -1, 0);
+  const int glass = addBoundary(scene, Bsdf::dielectric, 1.5f, -1, 0),
+            water = addBoundary(scene, Bsdf::dielectric, 1.33f, -1, 0);
   const int wall = addBoundary(scene, Bsdf::diffuse, 1.0f, -1, 0);
   const auto touching = [&](const glm::vec3& min, int material) {
     Scene with = scene;
     addBox(with, min, min + glm::vec3(1.0f), material);
     for (Mesh& mesh : with.meshes)
-      for (std::uint32_t i = 0; i < mesh.indexCount; ++i) mesh.bounds.add(glm::dvec3(with.vertices[with.indices[mesh.firstIndex + i]].position));
+      for (std::uint32_t i = 0; i < mesh.indexCount; ++i)
+        mesh.bounds.add(glm::dvec3(with.vertices[with.indices[mesh.firstIndex + i]].position));
     return boundariesMayTouch(with, rankBoundaries(with));
   };
   addBox(scene, glm::vec3(0.0f), glm::vec3(1.0f), glass);
-  EXPECT_TRUE(touching({1.0f, 0.0f, 0.0f}, water));   // a face of each
-  EXPECT_TRUE(touching({0.0f, -1.0f, 0.0f}, wall));   // stands on it
+  EXPECT_TRUE(touching({1.0f, 0.0f, 0.0f}, water));  // a face of each
+  EXPECT_TRUE(touching({0.0f, -1.0f, 0.0f}, wall));  // stands on it
   EXPECT_FALSE(touching({1.1f, 0.0f, 0.0f}, water));
   EXPECT_FALSE(touching({1.0f, 0.0f, 0.0f}, glass));  // one and the same boundary
   scene = Scene{};

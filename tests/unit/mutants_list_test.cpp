@@ -25,7 +25,8 @@ int countOf(const std::string& part, const std::string& text) {
 TEST(MutantsList, EveryTextStandsOnceInItsFile) {
   const fs::path root = LUCERNA_SOURCE_DIR;
   int faults = 0;
-  for (const auto& [list, folder] : {std::pair{"tests/mutants/shaders.txt", "shaders"}, std::pair{"tests/mutants/engine.txt", "."}}) {
+  for (const auto& [list, folder] :
+       {std::pair{"tests/mutants/shaders.txt", "shaders"}, std::pair{"tests/mutants/engine.txt", "."}}) {
     std::ifstream lines(root / list);
     ASSERT_TRUE(lines) << list;
     fs::path file;

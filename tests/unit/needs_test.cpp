@@ -43,12 +43,20 @@ TEST(SceneNeedsTest, EachFeatureRaisesItsFlagAlone) {
       {"mask", [](Scene& s) { s.materials[0].alphaMasked = true; }, &SceneNeeds::alphaMasks},
       {"specular", [](Scene& s) { s.materials[0].specular.z = 0.01f; }, &SceneNeeds::specular},
       {"normal map", [](Scene& s) { s.materials[0].normalTexture = 0; }, &SceneNeeds::normalMaps},
-      {"map of no metal", [](Scene& s) { s.materials[0].metalMap = MetalMap{glm::vec3(0.5f), 0.5f, 1.0f, 0}; }, &SceneNeeds::metalMaps},
+      {"map of no metal",
+       [](Scene& s) {
+         s.materials[0].metalMap = MetalMap{glm::vec3(0.5f), 0.5f, 1.0f, 0};
+       },
+       &SceneNeeds::metalMaps},
       {"mirror", [](Scene& s) { s.materials[0].bsdf = Bsdf::mirror; }, &SceneNeeds::mirrors},
       {"conductor", [](Scene& s) { s.materials[0].bsdf = Bsdf::conductor; }, &SceneNeeds::conductors},
       {"dielectric", [](Scene& s) { s.materials[0].bsdf = Bsdf::dielectric; }, &SceneNeeds::dielectrics},
       {"boundary", [](Scene& s) { s.materials[0].bsdf = Bsdf::none; }, &SceneNeeds::nullBoundaries},
-      {"environment", [](Scene& s) { s.environment = Environment{glm::vec3(0.0f, 1.0f, 0.0f), {}, 0.0}; }, &SceneNeeds::environment},
+      {"environment",
+       [](Scene& s) {
+         s.environment = Environment{glm::vec3(0.0f, 1.0f, 0.0f), {}, 0.0};
+       },
+       &SceneNeeds::environment},
       {"emission", [](Scene& s) { s.materials[0].emission.y = 1e-6f; }, &SceneNeeds::emission},
       {"background", [](Scene& s) { s.background.x = 0.1f; }, &SceneNeeds::background},
   };

@@ -1,4 +1,5 @@
-// Pictures before a decoder sees them: what is no whole picture of a known format is refused in one line, in no time and without memory.
+// Pictures before a decoder sees them: what is no whole picture of a known format is refused in one line, in no time
+// and without memory.
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "base/picture_header.hpp"
@@ -31,7 +32,8 @@ const char* const kJpegHex =
 
 std::string fromHex(std::string_view hex) {
   std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
   return bytes;
 }
 
@@ -41,30 +43,43 @@ std::string little(std::uint64_t value, int bytes) {
   return text;
 }
 
-std::string big(std::uint32_t value) { return {static_cast<char>(value >> 24), static_cast<char>(value >> 16), static_cast<char>(value >> 8), static_cast<char>(value)}; }
+std::string big(std::uint32_t value) {
+  return {static_cast<char>(value >> 24), static_cast<char>(value >> 16), static_cast<char>(value >> 8),
+          static_cast<char>(value)};
+}
 
 /// Header of a Targa file whose rows begin at the top.
-std::string tga(int kind, std::uint32_t width, std::uint32_t height, int bits, const std::string& data, int paletteEntries = 0) {
+std::string tga(int kind, std::uint32_t width, std::uint32_t height, int bits, const std::string& data,
+                int paletteEntries = 0) {
   std::string text = {0, static_cast<char>(paletteEntries > 0), static_cast<char>(kind)};
-  text += little(0, 2) + little(static_cast<std::uint32_t>(paletteEntries), 2) + static_cast<char>(paletteEntries > 0 ? 24 : 0);
-  return text + little(0, 4) + little(width, 2) + little(height, 2) + static_cast<char>(bits) + static_cast<char>(0x20) + data;
+  text += little(0, 2) + little(static_cast<std::uint32_t>(paletteEntries), 2) +
+          static_cast<char>(paletteEntries > 0 ? 24 : 0);
+  return text + little(0, 4) + little(width, 2) + little(height, 2) + static_cast<char>(bits) +
+         static_cast<char>(0x20) + data;
 }
 
-std::string bmp(std::uint32_t width, std::uint32_t height, int bits, const std::string& palette, const std::string& data, std::uint32_t compression = 0) {
+std::string bmp(std::uint32_t width, std::uint32_t height, int bits, const std::string& palette,
+                const std::string& data, std::uint32_t compression = 0) {
   const auto begin = static_cast<std::uint32_t>(54 + palette.size());
-  return "BM" + little(begin + static_cast<std::uint32_t>(data.size()), 4) + little(0, 4) + little(begin, 4) + little(40, 4) + little(width, 4) + little(height, 4) + little(1, 2) +
-         little(static_cast<std::uint32_t>(bits), 2) + little(compression, 4) + little(0, 12) + little(static_cast<std::uint32_t>(palette.size() / 4), 4) + little(0, 4) + palette + data;
+  return "BM" + little(begin + static_cast<std::uint32_t>(data.size()), 4) + little(0, 4) + little(begin, 4) +
+         little(40, 4) + little(width, 4) + little(height, 4) + little(1, 2) +
+         little(static_cast<std::uint32_t>(bits), 2) + little(compression, 4) + little(0, 12) +
+         little(static_cast<std::uint32_t>(palette.size() / 4), 4) + little(0, 4) + palette + data;
 }
 
-std::string pngChunk(const std::string& type, const std::string& data) { return big(static_cast<std::uint32_t>(data.size())) + type + data + "crc!"; }
+std::string pngChunk(const std::string& type, const std::string& data) {
+  return big(static_cast<std::uint32_t>(data.size())) + type + data + "crc!";
+}
 
 std::string pngHead(std::uint32_t width, std::uint32_t height) {
-  return std::string("\x89PNG\r\n\x1a\n", 8) + pngChunk("IHDR", big(width) + big(height) + std::string("\x08\x02\0\0\0", 5));
+  return std::string("\x89PNG\r\n\x1a\n", 8) +
+         pngChunk("IHDR", big(width) + big(height) + std::string("\x08\x02\0\0\0", 5));
 }
 
 std::string refusal(const TempFolder& folder, const std::string& name, const std::string& content) {
   const auto file = folder.write(name, content);
-  const std::string bitmap = badInputMessage([&] { readBitmap(file); }), image = badInputMessage([&] { readImage(file); });
+  const std::string bitmap = badInputMessage([&] { readBitmap(file); }),
+                    image = badInputMessage([&] { readImage(file); });
   EXPECT_NE(bitmap.find(name), std::string::npos) << name << ": " << bitmap;
   EXPECT_NE(image.find(name), std::string::npos) << name << ": " << image;
   return bitmap;
@@ -85,7 +100,8 @@ TEST(PictureHeader, TargaOfEveryKindIsRead) {
   EXPECT_EQ(texel(alpha, 0, 0), (Texel{3, 2, 1, 4}));
   EXPECT_TRUE(alpha.hasAlpha);
   EXPECT_EQ(texel(read(tga(3, 2, 1, 8, "\x07\x09")), 1, 0), (Texel{9, 9, 9, 255}));
-  EXPECT_EQ(texel(read(tga(10, 4, 1, 24, std::string("\x82\x01\x02\x03", 4) + std::string("\0\x04\x05\x06", 4))), 3, 0), (Texel{6, 5, 4, 255}));
+  EXPECT_EQ(texel(read(tga(10, 4, 1, 24, std::string("\x82\x01\x02\x03", 4) + std::string("\0\x04\x05\x06", 4))), 3, 0),
+            (Texel{6, 5, 4, 255}));
   EXPECT_EQ(texel(read(tga(11, 3, 1, 8, "\x82\x07")), 2, 0), (Texel{7, 7, 7, 255}));
   EXPECT_EQ(texel(read(tga(1, 2, 1, 8, bgr + std::string("\0\x01", 2), 2)), 1, 0), (Texel{6, 5, 4, 255}));
   EXPECT_EQ(texel(read(tga(9, 2, 1, 8, bgr + "\x81\x01", 2)), 1, 0), (Texel{6, 5, 4, 255}));
@@ -97,7 +113,9 @@ TEST(PictureHeader, BmpOfEveryKindIsRead) {
   const std::string rows = std::string("\x01\x02\x03\0", 4) + std::string("\x04\x05\x06\0", 4);  // bottom row first
   EXPECT_EQ(texel(read(bmp(1, 2, 24, "", rows)), 0, 0), (Texel{6, 5, 4, 255}));
   EXPECT_EQ(texel(read(bmp(1, static_cast<std::uint32_t>(-2), 24, "", rows)), 0, 0), (Texel{3, 2, 1, 255}));
-  EXPECT_EQ(texel(read(bmp(1, 1, 8, std::string("\x01\x02\x03\0\x04\x05\x06\0", 8), std::string("\x01\0\0\0", 4))), 0, 0), (Texel{6, 5, 4, 255}));
+  EXPECT_EQ(
+      texel(read(bmp(1, 1, 8, std::string("\x01\x02\x03\0\x04\x05\x06\0", 8), std::string("\x01\0\0\0", 4))), 0, 0),
+      (Texel{6, 5, 4, 255}));
 }
 
 TEST(PictureHeader, ProgressiveJpegIsRead) {
@@ -113,9 +131,14 @@ TEST(PictureHeader, ProgressiveJpegIsRead) {
 // The image library crashes on damaged XPM, DDS and ICO files and never ends on some others.
 TEST(PictureHeader, OtherFormatsAreRefusedWithThoseThatAreRead) {
   const TempFolder folder;
-  const std::string xpm = "/* XPM */\nstatic char *a[] = {\n\"2 2 2 1\",\n\"a c #000000\",\n\"b c #ffffff\",\n\"ab\",\n\"ba\"};\n";
-  for (const auto& [name, content] : {std::pair<std::string, std::string>{"a.xpm", xpm}, {"a.dds", "DDS |" + std::string(200, '\1')}, {"a.ico", std::string("\0\0\1\0\1\0", 6) + std::string(60, '\2')},
-                                      {"a.gif", "GIF89a" + std::string(60, '\1')}, {"a.pcx", "\x0a\x05\x01\x08" + std::string(200, '\1')}, {"a.tif", std::string("II*\0", 4) + std::string(60, '\1')}})
+  const std::string xpm =
+      "/* XPM */\nstatic char *a[] = {\n\"2 2 2 1\",\n\"a c #000000\",\n\"b c #ffffff\",\n\"ab\",\n\"ba\"};\n";
+  for (const auto& [name, content] : {std::pair<std::string, std::string>{"a.xpm", xpm},
+                                      {"a.dds", "DDS |" + std::string(200, '\1')},
+                                      {"a.ico", std::string("\0\0\1\0\1\0", 6) + std::string(60, '\2')},
+                                      {"a.gif", "GIF89a" + std::string(60, '\1')},
+                                      {"a.pcx", "\x0a\x05\x01\x08" + std::string(200, '\1')},
+                                      {"a.tif", std::string("II*\0", 4) + std::string(60, '\1')}})
     EXPECT_NE(refusal(folder, name, content).find("png, jpg, tga and bmp are read"), std::string::npos) << name;
 }
 
@@ -123,14 +146,19 @@ TEST(PictureHeader, OtherFormatsAreRefusedWithThoseThatAreRead) {
 TEST(PictureHeader, PicturesCutAnywhereAreRefused) {
   const TempFolder folder;
   writePng(folder / "a.png", {32, 32, std::vector<std::uint8_t>(4096, 200), false});
-  const std::pair<std::string, std::string> whole[] = {
-      {"a.png", readFileText(folder / "a.png")},       {"a.jpg", fromHex(kJpegHex)},         {"a.tga", tga(2, 8, 4, 24, std::string(96, 'x'))},
-      {"b.tga", tga(10, 100, 1, 24, "\xe3" "xyz")},    {"a.bmp", bmp(8, 4, 24, "", std::string(96, 'x'))}};
+  const std::pair<std::string, std::string> whole[] = {{"a.png", readFileText(folder / "a.png")},
+                                                       {"a.jpg", fromHex(kJpegHex)},
+                                                       {"a.tga", tga(2, 8, 4, 24, std::string(96, 'x'))},
+                                                       {"b.tga", tga(10, 100, 1, 24,
+                                                                     "\xe3"
+                                                                     "xyz")},
+                                                       {"a.bmp", bmp(8, 4, 24, "", std::string(96, 'x'))}};
   for (const auto& picture : whole) {
     const std::string &name = picture.first, &content = picture.second;
     EXPECT_EQ(badInputMessage([&] { readBitmap(folder.write(name, content)); }), "") << name;
-    for (std::size_t size = 0; size < content.size(); size += content.size() > 600 ? 7 : 1) {
-      const std::string message = badInputMessage([&] { checkPicture(std::span(reinterpret_cast<const std::uint8_t*>(content.data()), size), folder / name); });
+    for (std::size_t size = 0; size<content.size(); size += content.size()> 600 ? 7 : 1) {
+      const std::string message = badInputMessage(
+          [&] { checkPicture(std::span(reinterpret_cast<const std::uint8_t*>(content.data()), size), folder / name); });
       EXPECT_FALSE(message.empty()) << name << " of " << size << " bytes";
     }
   }
@@ -141,26 +169,48 @@ TEST(PictureHeader, SizesBeyondTheFilesBytesAreRefused) {
   refusal(folder, "a.bmp", bmp(30000, 30000, 24, "", ""));
   refusal(folder, "a.tga", tga(2, 30000, 30000, 32, ""));
   refusal(folder, "b.tga", tga(10, 30000, 30000, 32, std::string(50, '\xff')));
-  EXPECT_NE(refusal(folder, "a.png", pngHead(16000, 16000) + pngChunk("IDAT", std::string(32000, 'x')) + pngChunk("IEND", "")).find("1032 a byte"), std::string::npos);
+  EXPECT_NE(
+      refusal(folder, "a.png", pngHead(16000, 16000) + pngChunk("IDAT", std::string(32000, 'x')) + pngChunk("IEND", ""))
+          .find("1032 a byte"),
+      std::string::npos);
   refusal(folder, "b.png", pngHead(0, 4) + pngChunk("IDAT", "x") + pngChunk("IEND", ""));
   refusal(folder, "c.png", pngHead(0x7fffffff, 0x7fffffff) + pngChunk("IDAT", "x") + pngChunk("IEND", ""));
   const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n";
   EXPECT_NE(badInputMessage([&] { readImage(folder.write("a.hdr", hdr)); }).find("a byte"), std::string::npos);
-  EXPECT_NE(badInputMessage([&] { readImage(folder.write("a.pfm", "PF\n16384 16384\n-1\n")); }).find("truncated"), std::string::npos);
+  EXPECT_NE(badInputMessage([&] { readImage(folder.write("a.pfm", "PF\n16384 16384\n-1\n")); }).find("truncated"),
+            std::string::npos);
 }
 
 // An attribute of 1.2 GB in a file of 33 bytes.
 TEST(PictureHeader, ExrAttributesHoldNoMoreThanTheFile) {
   const TempFolder folder;
-  const auto file = folder.write("a.exr", std::string("\x76\x2f\x31\x01\x02\0\0\0", 8) + std::string("owner\0string\0\x58\x47\x45\x49zz", 19));
+  const auto file = folder.write(
+      "a.exr", std::string("\x76\x2f\x31\x01\x02\0\0\0", 8) + std::string("owner\0string\0\x58\x47\x45\x49zz", 19));
   EXPECT_NE(badInputMessage([&] { readImage(file); }).find("within its header"), std::string::npos);
 }
 
 TEST(PictureHeader, PacketsAndPalettesStayWithinTheirPicture) {
   const TempFolder folder;
-  EXPECT_NE(refusal(folder, "a.tga", tga(10, 2, 1, 24, "\xff" "abc")).find("runs over"), std::string::npos);
-  EXPECT_NE(refusal(folder, "b.tga", tga(1, 2, 1, 8, "abcdef" "\x01\x02", 2)).find("palette"), std::string::npos);
-  EXPECT_NE(refusal(folder, "c.tga", tga(9, 2, 1, 8, "abcdef" "\x81\x02", 2)).find("palette"), std::string::npos);
+  EXPECT_NE(refusal(folder, "a.tga",
+                    tga(10, 2, 1, 24,
+                        "\xff"
+                        "abc"))
+                .find("runs over"),
+            std::string::npos);
+  EXPECT_NE(refusal(folder, "b.tga",
+                    tga(1, 2, 1, 8,
+                        "abcdef"
+                        "\x01\x02",
+                        2))
+                .find("palette"),
+            std::string::npos);
+  EXPECT_NE(refusal(folder, "c.tga",
+                    tga(9, 2, 1, 8,
+                        "abcdef"
+                        "\x81\x02",
+                        2))
+                .find("palette"),
+            std::string::npos);
   refusal(folder, "a.bmp", bmp(4, 4, 8, "", std::string(16, 'x'), 1));  // run lengths: DevIL writes past the picture
 }
 

@@ -71,12 +71,15 @@ TEST(RadFile, AnyBytesComeBackAsTheyWere) {
 }
 
 TEST(RadFile, WrongSizesAndByteOrderAreRefused) {
-  const auto refusal = [](std::vector<std::uint8_t> bytes) { return badInputMessage([&] { decodeRadFile(bytes, "some.rad"); }); };
+  const auto refusal = [](std::vector<std::uint8_t> bytes) {
+    return badInputMessage([&] { decodeRadFile(bytes, "some.rad"); });
+  };
   std::vector<std::uint8_t> bytes = encodeRadFile(std::vector<RadTriangle>(3, someTriangle()));
   auto truncated = bytes;
   truncated.pop_back();
   std::string message = refusal(truncated);
-  for (const char* part : {"some.rad", "3 triangles", "220", "219"}) EXPECT_NE(message.find(part), std::string::npos) << message;
+  for (const char* part : {"some.rad", "3 triangles", "220", "219"})
+    EXPECT_NE(message.find(part), std::string::npos) << message;
   auto tooLong = bytes;
   tooLong.push_back(0);
   EXPECT_NE(refusal(tooLong).find("221"), std::string::npos);
@@ -89,7 +92,8 @@ TEST(RadFile, WrongSizesAndByteOrderAreRefused) {
   EXPECT_NE(refusal({}).find("0 bytes"), std::string::npos);
   EXPECT_NE(refusal({0, 0, 0, 0}).find("no triangle"), std::string::npos);
   // A count whose size does not fit 32 bits.
-  EXPECT_NE(refusal({0xff, 0xff, 0xff, 0xff, 0}).find("309237645244"), std::string::npos) << refusal({0xff, 0xff, 0xff, 0xff, 0});
+  EXPECT_NE(refusal({0xff, 0xff, 0xff, 0xff, 0}).find("309237645244"), std::string::npos)
+      << refusal({0xff, 0xff, 0xff, 0xff, 0});
 }
 
 TEST(RadFile, WrongTrianglesAreRefusedByNumber) {
@@ -100,11 +104,21 @@ TEST(RadFile, WrongTrianglesAreRefusedByNumber) {
   };
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   const std::vector<std::pair<std::string, std::string>> cases{
-      {refusal([&](RadTriangle& t) { t.p2[1] = nan; }), "not a finite number"}, {refusal([&](RadTriangle& t) { t.p3[2] = infinity; }), "not a finite number"},
-      {refusal([&](RadTriangle& t) { t.ro = 1.0001f; }), "reflectance 1.0001"}, {refusal([&](RadTriangle& t) { t.ro = nan; }), "reflectance nan"},
-      {refusal([&](RadTriangle& t) { t.ro = -0.1f; }), "reflectance -0.1"},     {refusal([&](RadTriangle& t) { t.e = 1u << 24; }), "16777216"},
-      {refusal([&](RadTriangle& t) { t.b = 0xffffffffu; }), "4294967295"},      {refusal([&](RadTriangle& t) { t.n = {0, 0, 2}; }), "length 2"},
-      {refusal([&](RadTriangle& t) { t.n = {nan, 0, 0}; }), "length nan"},
+      {refusal([&](RadTriangle& t) { t.p2[1] = nan; }), "not a finite number"},
+      {refusal([&](RadTriangle& t) { t.p3[2] = infinity; }), "not a finite number"},
+      {refusal([&](RadTriangle& t) { t.ro = 1.0001f; }), "reflectance 1.0001"},
+      {refusal([&](RadTriangle& t) { t.ro = nan; }), "reflectance nan"},
+      {refusal([&](RadTriangle& t) { t.ro = -0.1f; }), "reflectance -0.1"},
+      {refusal([&](RadTriangle& t) { t.e = 1u << 24; }), "16777216"},
+      {refusal([&](RadTriangle& t) { t.b = 0xffffffffu; }), "4294967295"},
+      {refusal([&](RadTriangle& t) {
+         t.n = {0, 0, 2};
+       }),
+       "length 2"},
+      {refusal([&](RadTriangle& t) {
+         t.n = {nan, 0, 0};
+       }),
+       "length nan"},
   };
   for (const auto& [message, part] : cases) {
     EXPECT_NE(message.find("some.rad: triangle 3"), std::string::npos) << message;
@@ -116,8 +130,8 @@ TEST(RadFile, WrongTrianglesAreRefusedByNumber) {
 TEST(RadFile, TrianglesWithoutAreaAreCounted) {
   std::vector<RadTriangle> triangles(4, someTriangle());
   triangles[1].p3 = triangles[1].p2;
-  triangles[2].p3 = {1e-9f, 0, 0};           // on the line through the other two
-  triangles[2].n = {0, 0, 0};                // and so without a normal
+  triangles[2].p3 = {1e-9f, 0, 0};  // on the line through the other two
+  triangles[2].n = {0, 0, 0};  // and so without a normal
   EXPECT_EQ(checkRadTriangles(triangles, "x"), 2u);
   EXPECT_EQ(areaOf(triangles[0]), 3.0);
   for (RadTriangle& t : triangles) t.p2 = t.p1;
@@ -126,7 +140,8 @@ TEST(RadFile, TrianglesWithoutAreaAreCounted) {
 
 // [RAD2008 table 4.1]
 TEST(RadModels, HallHasThePublishedNumbersOfTriangles) {
-  for (const auto& [threshold, published] : {std::pair{5.0, 26360.0}, std::pair{1.0, 136512.0}, std::pair{0.25, 546048.0}}) {
+  for (const auto& [threshold, published] :
+       {std::pair{5.0, 26360.0}, std::pair{1.0, 136512.0}, std::pair{0.25, 546048.0}}) {
     RadModelSettings settings;
     settings.areaThreshold = threshold;
     EXPECT_NEAR(static_cast<double>(makeRadModel(2, settings).size()) / published, 1.0, 0.05) << threshold;
@@ -149,7 +164,8 @@ TEST(RadModels, TrianglesAreSmallWellShapedAndFaceTheAir) {
       largest = std::max(largest, areaOf(t));
       sum += areaOf(t) * vec(t.n);
       total += areaOf(t);
-      EXPECT_GT(glm::dot(glm::normalize(glm::cross(b - a, c - a)), vec(t.n)), 0.999) << "model " << model << ": corners turn about the normal";
+      EXPECT_GT(glm::dot(glm::normalize(glm::cross(b - a, c - a)), vec(t.n)), 0.999)
+          << "model " << model << ": corners turn about the normal";
       EXPECT_EQ(t.ro, 0.25f);
       EXPECT_TRUE(t.e == 0 || t.e == 123456u);
       EXPECT_EQ(t.b, 0u);
@@ -176,14 +192,16 @@ TEST(RadMap, WeightsSumToOne) {
       const MultiplierMap map = makeMultiplierMap(view, published);
       ASSERT_EQ(map.top.size(), static_cast<std::size_t>(view * view));
       ASSERT_EQ(map.side.size(), static_cast<std::size_t>(view * (view / 2)));
-      const double sum = std::accumulate(map.top.begin(), map.top.end(), 0.0) + 4.0 * std::accumulate(map.side.begin(), map.side.end(), 0.0);
+      const double sum = std::accumulate(map.top.begin(), map.top.end(), 0.0) +
+                         4.0 * std::accumulate(map.side.begin(), map.side.end(), 0.0);
       EXPECT_NEAR(sum, 1.0, 1e-6) << view;
     }
 }
 
 // The known figures of both maps: weight of the middle times N^2, and the top face's share.
 TEST(RadMap, CentreWeightAndTopShareAreKnown) {
-  for (const auto& [published, centre, share] : {std::tuple{true, 0.82303, 0.52634}, std::tuple{false, 4.0 / 3.14159265358979, 0.55413}}) {
+  for (const auto& [published, centre, share] :
+       {std::tuple{true, 0.82303, 0.52634}, std::tuple{false, 4.0 / 3.14159265358979, 0.55413}}) {
     const MultiplierMap map = makeMultiplierMap(1024, published);
     EXPECT_NEAR(static_cast<double>(map.top[512 * 1024 + 512]) * 1024.0 * 1024.0, centre, 1e-5) << published;
     EXPECT_NEAR(std::accumulate(map.top.begin(), map.top.end(), 0.0), share, 1e-5) << published;
@@ -207,8 +225,11 @@ TEST(RadSwitches, AreNamedAndSet) {
   applyRadiosityDeviation(some, "radiosity.24-bit=off");
   EXPECT_FALSE(some.values24Bit);
   EXPECT_EQ(activeRadiosityDeviations(some).size(), 4u);
-  EXPECT_NE(badInputMessage([&] { applyRadiosityDeviation(some, "radiosity.bits=off"); }).find("radiosity.published-map"), std::string::npos);
-  EXPECT_NE(badInputMessage([&] { applyRadiosityDeviation(some, "radiosity.24-bit"); }).find("NAME=on"), std::string::npos);
+  EXPECT_NE(
+      badInputMessage([&] { applyRadiosityDeviation(some, "radiosity.bits=off"); }).find("radiosity.published-map"),
+      std::string::npos);
+  EXPECT_NE(badInputMessage([&] { applyRadiosityDeviation(some, "radiosity.24-bit"); }).find("NAME=on"),
+            std::string::npos);
 }
 
 TEST(RadSwitches, HaveTheirLineInTheReadme) {
@@ -228,14 +249,16 @@ TEST(RadCheckpoint, ComesBackAndDamageIsFound) {
   EXPECT_EQ(std::tie(d.before, d.after, d.settings), std::tie(c.before, c.after, c.settings));
   EXPECT_EQ(d.progress.received, c.progress.received);
   EXPECT_EQ(d.progress.next, c.progress.next);
-  EXPECT_EQ(std::tie(d.progress.done, d.progress.change, d.progress.sweeps), std::tie(c.progress.done, c.progress.change, c.progress.sweeps));
+  EXPECT_EQ(std::tie(d.progress.done, d.progress.change, d.progress.sweeps),
+            std::tie(c.progress.done, c.progress.change, c.progress.sweeps));
 
   const std::vector<std::uint8_t> bytes = readFileBytes(folder / "x.sweep");
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     auto damaged = bytes;
     damaged[i] ^= 0x10;
     writeFileAtomically(folder / "y.sweep", damaged);
-    EXPECT_NE(badInputMessage([&] { readCheckpoint(folder / "y.sweep"); }).find("y.sweep"), std::string::npos) << "byte " << i;
+    EXPECT_NE(badInputMessage([&] { readCheckpoint(folder / "y.sweep"); }).find("y.sweep"), std::string::npos)
+        << "byte " << i;
   }
   for (std::size_t length = 0; length < bytes.size(); ++length) {
     writeFileAtomically(folder / "y.sweep", std::span(bytes).first(length));

@@ -23,8 +23,8 @@ using test::SceneBuilder;
 TEST(RadiosityPatches, ACubeIsWeldedAndItsLightStopsAtEdges) {
   const RadiosityMesh mesh = makePatches(cubeRoom(2, 0.5, 3.0), {});
   ASSERT_EQ(mesh.patches.size(), 48u);
-  EXPECT_EQ(mesh.points.size(), 26u);            // 8 corners, 12 edge middles, 6 face centres
-  EXPECT_EQ(mesh.lightVertices, 6u * 9u);        // each wall its own
+  EXPECT_EQ(mesh.points.size(), 26u);  // 8 corners, 12 edge middles, 6 face centres
+  EXPECT_EQ(mesh.lightVertices, 6u * 9u);  // each wall its own
   EXPECT_NEAR(mesh.area(), 6.0, 1e-12);
   for (const Patch& p : mesh.patches) {
     EXPECT_LT(glm::dot(p.faceNormal, p.centroid), -0.4);  // inwards
@@ -37,9 +37,9 @@ TEST(RadiosityPatches, WhatCannotBeComputedIsLeftOutAndCounted) {
   SceneBuilder builder;
   const int m = lambertian(builder, 0.5);
   builder.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, m);
-  builder.triangle({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, m);                                       // the other side: a sheet of two fronts
-  builder.triangle({1, 0, 0}, {0, 1, 0}, {0, 0, 0}, m);                                       // the first again
-  builder.triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, m);                                       // a line
+  builder.triangle({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, m);  // the other side: a sheet of two fronts
+  builder.triangle({1, 0, 0}, {0, 1, 0}, {0, 0, 0}, m);  // the first again
+  builder.triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, m);  // a line
   builder.triangle({0, 0, 0}, {1, 0, 0}, {0, std::numeric_limits<double>::quiet_NaN(), 0}, m);
   const RadiosityMesh mesh = makePatches(builder.scene(), {});
   EXPECT_EQ(mesh.patches.size(), 2u);
@@ -60,9 +60,7 @@ TEST(RadiosityPatches, RefusesWhatWouldMakeLight) {
   const auto refuses = [](double reflectance, double exitance) {
     try {
       makePatches(cubeRoom(1, reflectance, exitance), {});
-    } catch (const Error& e) {
-      return e.kind() == ErrorKind::badInput;
-    }
+    } catch (const Error& e) { return e.kind() == ErrorKind::badInput; }
     return false;
   };
   EXPECT_TRUE(refuses(1.01, 0.0));
@@ -106,7 +104,8 @@ TEST(RadiosityPatches, LocalRefinementSpreadsNoFurtherThanItMust) {
   const Scene scene = cubeRoom(4, 0.5, 0.0);
   const RadiosityMesh mesh = makePatches(scene, {});
   std::vector<std::uint32_t> parent;
-  const RadiosityMesh finer = refined(scene, mesh, {}, [](std::size_t i, int) { return i == 5; }, &parent);
+  const RadiosityMesh finer = refined(
+      scene, mesh, {}, [](std::size_t i, int) { return i == 5; }, &parent);
   EXPECT_EQ(countTJunctions(mesh), 0u);
   EXPECT_EQ(countTJunctions(finer), 0u);
   EXPECT_GT(finer.patches.size(), mesh.patches.size() + 3);
@@ -118,7 +117,8 @@ TEST(RadiosityPatches, LocalRefinementSpreadsNoFurtherThanItMust) {
 TEST(RadiosityPatches, TexturesGiveEachPatchItsOwnMean) {
   SceneBuilder builder;
   const int m = lambertian(builder, 0.8);
-  builder.materialAt(m).diffuseTexture = builder.texture(2, 1, {0, 0, 0, 255, 255, 255, 255, 255});  // left black, right white
+  builder.materialAt(m).diffuseTexture =
+      builder.texture(2, 1, {0, 0, 0, 255, 255, 255, 255, 255});  // left black, right white
   builder.materialAt(m).emissionTexture = builder.materialAt(m).diffuseTexture;
   builder.materialAt(m).emission = glm::vec3(0.5f);
   builder.materialAt(m).emissionScale = glm::vec3(1.0f);
@@ -144,7 +144,8 @@ TEST(RadiosityPatches, ATJunctionIsFound) {
 }
 
 TEST(RadiosityPatches, WorkOnAllCoresIsDoneOnceEach) {
-  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{255}, std::size_t{256}, std::size_t{10007}}) {
+  for (const std::size_t count :
+       {std::size_t{0}, std::size_t{1}, std::size_t{255}, std::size_t{256}, std::size_t{10007}}) {
     std::vector<int> times(count, 0);
     onAllCores(count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) ++times[i];

@@ -23,7 +23,8 @@ constexpr double kDeviation = 0.5;
 
 float truth(int x, int y) { return 1.0f + 0.05f * static_cast<float>(x + y); }
 
-/// A technique without bias: samples of standard deviation 0.5 about the truth, times `gain`. Reproducible by path number.
+/// A technique without bias: samples of standard deviation 0.5 about the truth, times `gain`. Reproducible by path
+/// number.
 Sampler noisy(double gain = 1.0, int* calls = nullptr) {
   return [gain, calls](std::uint64_t first, std::uint32_t samples) {
     if (calls) ++*calls;
@@ -33,7 +34,8 @@ Sampler noisy(double gain = 1.0, int* calls = nullptr) {
       std::normal_distribution<double> normal(0.0, kDeviation);
       for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
-          for (int c = 0; c < 3; ++c) image.at(x, y)[c] += static_cast<float>(gain * (truth(x, y) + normal(random)) / samples);
+          for (int c = 0; c < 3; ++c)
+            image.at(x, y)[c] += static_cast<float>(gain * (truth(x, y) + normal(random)) / samples);
     }
     return image;
   };
@@ -53,7 +55,8 @@ Reference sample(const Sampler& sampler, std::uint64_t first, std::uint64_t samp
 }
 
 JudgedErrors judge(const Image& image, const Reference& reference, double own = 0.0) {
-  return lessNoise(errorsOf(image, reference.mean), noiseOf(reference.mean, reference.standardError, reference.meanError), own);
+  return lessNoise(errorsOf(image, reference.mean),
+                   noiseOf(reference.mean, reference.standardError, reference.meanError), own);
 }
 
 TEST(Reference, ItsStandardErrorIsThatOfTheSamples) {
@@ -62,7 +65,8 @@ TEST(Reference, ItsStandardErrorIsThatOfTheSamples) {
   const ReferenceNoise noise = noiseOf(r.mean, r.standardError, r.meanError);
   // 1152 values of 15 degrees of freedom each: the mean variance is known to sqrt(2 / 15 / 1152) = 1.1 %; 5 of that.
   EXPECT_NEAR(noise.variance, kDeviation * kDeviation / 256.0, 0.055 * kDeviation * kDeviation / 256.0);
-  // The mean's error comes from 16 batch means: chi with 15 degrees of freedom, within 0.45 .. 1.65 of the truth at 1e-4 a side.
+  // The mean's error comes from 16 batch means: chi with 15 degrees of freedom, within 0.45 .. 1.65 of the truth at
+  // 1e-4 a side.
   const double expected = kDeviation / std::sqrt(256.0 * 3.0 * kWidth * kHeight);
   EXPECT_GT(r.meanError, 0.45 * expected);
   EXPECT_LT(r.meanError, 1.65 * expected);
@@ -70,7 +74,8 @@ TEST(Reference, ItsStandardErrorIsThatOfTheSamples) {
 }
 
 TEST(Reference, TwoOfItsPartsMakeTheWhole) {
-  const Reference a = sample(noisy(), 0, 64), b = sample(noisy(), 64, 192), both = merged(a, b), whole = sample(noisy(), 0, 256);
+  const Reference a = sample(noisy(), 0, 64), b = sample(noisy(), 64, 192), both = merged(a, b),
+                  whole = sample(noisy(), 0, 256);
   EXPECT_EQ(both.samples, 256u);
   EXPECT_LT(errorsOf(both.mean, whole.mean).max, 1e-5);
   const double variance = noiseOf(both.mean, both.standardError, both.meanError).variance;
@@ -96,7 +101,8 @@ TEST(Reference, APlantedLossOfOnePercentIsCaught) {
 }
 
 TEST(Reference, ASampledTechniquesOwnErrorCountsToo) {
-  const Reference r = sample(noisy(), 0, 1024), few = sample(noisy(), 1u << 20, 16), lossy = sample(noisy(0.9), 1u << 20, 256);
+  const Reference r = sample(noisy(), 0, 1024), few = sample(noisy(), 1u << 20, 16),
+                  lossy = sample(noisy(0.9), 1u << 20, 256);
   EXPECT_TRUE(judge(few.mean, r, few.meanError).biasAtNoise);
   EXPECT_FALSE(judge(lossy.mean, r, lossy.meanError).biasAtNoise);
 }
@@ -112,7 +118,8 @@ TEST(Reference, StopsWhenAskedAndNeedsTwoBatches) {
   EXPECT_EQ(cut->samples, 12u);  // batches of 4
 }
 
-// What is made once, such as programs: 60 ms of 200 that say nothing of how long a batch takes, 1 ms a sample. Batches have 8 samples then, not 1.
+// What is made once, such as programs: 60 ms of 200 that say nothing of how long a batch takes, 1 ms a sample. Batches
+// have 8 samples then, not 1.
 TEST(Reference, ByTimeTheFirstCallDecidesNoBatch) {
   int calls = 0;
   const Sampler slow = [&](std::uint64_t, std::uint32_t samples) {
@@ -140,9 +147,8 @@ TEST(Reference, ByTimeItMakesBatchesEnough) {
 TEST(ReferenceKey, FollowsContentAndNothingElse) {
   const Scene scene = test::openBox();
   const Camera camera = test::openBoxCamera();
-  const auto key = [](const Scene& s, const Camera& c, glm::ivec2 size = {8, 8}, Transport t = Transport::all, const char* sampler = "v1") {
-    return keyOf(s, c, size, t, sampler).name();
-  };
+  const auto key = [](const Scene& s, const Camera& c, glm::ivec2 size = {8, 8}, Transport t = Transport::all,
+                      const char* sampler = "v1") { return keyOf(s, c, size, t, sampler).name(); };
   const std::string first = key(scene, camera);
   Scene other = scene;
   other.name = "renamed", other.exposure = 3.0f;
@@ -193,7 +199,8 @@ TEST(ReferenceCache, DamageIsSeenWhereverItIs) {
   const ReferenceKey key{7};
   cache.store(key, sample(noisy(), 0, 16));
   const std::vector<std::uint8_t> whole = readFileBytes(cache.fileOf(key));
-  for (std::size_t at : {std::size_t{0}, std::size_t{9}, std::size_t{33}, std::size_t{60}, whole.size() / 2, whole.size() - 1}) {
+  for (std::size_t at :
+       {std::size_t{0}, std::size_t{9}, std::size_t{33}, std::size_t{60}, whole.size() / 2, whole.size() - 1}) {
     std::vector<std::uint8_t> bytes = whole;
     bytes[at] ^= 1;
     writeFileAtomically(cache.fileOf(key), bytes);

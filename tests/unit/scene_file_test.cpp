@@ -21,7 +21,9 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 /// A folder with a one-triangle model in a sub-folder.
 struct SceneFolder : TempFolder {
   SceneFolder() { write("models/box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"); }
-  Scene load(const std::string& keys) const { return loadScene(write("room.json", "{\"model\": \"models/box.obj\"" + keys + "}")); }
+  Scene load(const std::string& keys) const {
+    return loadScene(write("room.json", "{\"model\": \"models/box.obj\"" + keys + "}"));
+  }
 };
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
@@ -42,7 +44,8 @@ TEST(SceneFile, AModelAloneTakesTheDefaults) {
 TEST(SceneFile, EveryKeyIsRead) {
   const SceneFolder folder;
   folder.write("walk.txt", "p 0 0 0 d 1 0 0 u 0 1 0\np 1 0 0 d 1 0 0 u 0 1 0\n");
-  const Scene scene = folder.load(R"(, "description": "a room", "scale": 10, "camera": {"position": [1, 2, 3], "target": [1, 2, 0], "up": [0, 2, 1], "fov": 40},
+  const Scene scene = folder.load(
+      R"(, "description": "a room", "scale": 10, "camera": {"position": [1, 2, 3], "target": [1, 2, 0], "up": [0, 2, 1], "fov": 40},
       "sun": {"direction": [0, -2, 0], "irradiance": [1, 2, 3]}, "background": [0.1, 0.2, 0.3], "exposure": 0.5, "keyFrames": "walk.txt")");
   EXPECT_EQ(scene.metresPerUnit, 0.01);
   ASSERT_EQ(scene.cameras.size(), 1u);
@@ -59,7 +62,8 @@ TEST(SceneFile, EveryKeyIsRead) {
 
 TEST(SceneFile, SeveralCamerasKeepOrderAndNames) {
   const SceneFolder folder;
-  const Scene scene = folder.load(R"(, "cameras": [{"name": "b", "position": [0,0,5], "direction": [0,0,-3]}, {"name": "a", "position": [0,0,5], "target": [1,0,5]}])");
+  const Scene scene = folder.load(
+      R"(, "cameras": [{"name": "b", "position": [0,0,5], "direction": [0,0,-3]}, {"name": "a", "position": [0,0,5], "target": [1,0,5]}])");
   ASSERT_EQ(scene.cameras.size(), 2u);
   EXPECT_EQ(scene.cameras[0].name, "b");
   EXPECT_EQ(scene.cameras[0].direction, glm::dvec3(0, 0, -1));
@@ -113,9 +117,11 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
       {R"(, "cameras": [])", "\"cameras\""},
       {R"(, "cameras": {"name": "a"})", "\"cameras\""},
       {R"(, "cameras": [{"position": [0,0,5], "direction": [0,0,-1]}])", "\"name\""},
-      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]},{"name":"a","position":[0,0,5],"direction":[0,0,-1]}])", "\"cameras[1].name\""},
+      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]},{"name":"a","position":[0,0,5],"direction":[0,0,-1]}])",
+       "\"cameras[1].name\""},
       {R"(, "cameras": [{"name":"a","position":[0,0,"5"],"direction":[0,0,-1]}])", "\"cameras[0].position[2]\""},
-      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]}], "camera": {"position":[0,0,5],"direction":[0,0,-1]})", "one of them"},
+      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]}], "camera": {"position":[0,0,5],"direction":[0,0,-1]})",
+       "one of them"},
       {R"(, "keyFrames": "")", "\"keyFrames\""},
       {R"(, "description": 3)", "\"description\""},
       {R"(, "scene": {})", "no \"camera\""},
@@ -128,7 +134,8 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
       {R"(, "environment": {"sky": {"clouds": 1}})", "\"environment.sky.clouds\""},
       {R"(, "environment": {"sky": {}, "rotation": 0})", "without \"picture\" and \"rotation\""},
       {R"(, "sun": null, "environment": {"sky": {}})", "a sun above the horizon"},
-      {R"(, "sun": {"direction": [0,1,0], "irradiance": [1,1,1]}, "environment": {"sky": {}})", "a sun above the horizon"},
+      {R"(, "sun": {"direction": [0,1,0], "irradiance": [1,1,1]}, "environment": {"sky": {}})",
+       "a sun above the horizon"},
   };
   for (const auto& [keys, expected] : cases) {
     const std::string message = badInputMessage([&, &text = keys] { folder.load(text); });
@@ -142,7 +149,8 @@ TEST(SceneFile, TheDefaultSunHasItsSkyUnlessAnotherWordIsSaid) {
   const Scene scene = folder.load("");
   ASSERT_TRUE(scene.environment && scene.environment->picture);
   EXPECT_EQ(scene.environment->picture->pixels, clearSkyPicture({}, *scene.sun).pixels);
-  const Scene viewed = folder.load(R"(, "camera": {"position": [0,0,5], "direction": [0,0,-1]})");  // the default sun stands elsewhere then
+  const Scene viewed = folder.load(
+      R"(, "camera": {"position": [0,0,5], "direction": [0,0,-1]})");  // the default sun stands elsewhere then
   ASSERT_NE(viewed.sun->direction, scene.sun->direction);
   EXPECT_EQ(viewed.environment->picture->pixels, clearSkyPicture({}, *viewed.sun).pixels);
   EXPECT_TRUE(loadScene(folder.path() / "models/box.obj").environment);
@@ -155,7 +163,8 @@ TEST(SceneFile, TheDefaultSunHasItsSkyUnlessAnotherWordIsSaid) {
 TEST(SceneFile, ASkyIsTheSunsByTurbidityAndGround) {
   const SceneFolder folder;
   const std::string sun = R"(, "sun": {"direction": [1,-1,0], "irradiance": [3,2,1]}, "environment": )";
-  const Scene plain = folder.load(sun + R"({"sky": {}})"), hazy = folder.load(sun + R"({"sky": {"turbidity": 6, "ground": 0.5}, "radiance": [2,2,1]})");
+  const Scene plain = folder.load(sun + R"({"sky": {}})"),
+              hazy = folder.load(sun + R"({"sky": {"turbidity": 6, "ground": 0.5}, "radiance": [2,2,1]})");
   EXPECT_EQ(plain.environment->radiance, glm::vec3(1.0f));
   EXPECT_EQ(plain.environment->picture->pixels, clearSkyPicture({}, *plain.sun).pixels);
   EXPECT_EQ(hazy.environment->radiance, glm::vec3(2.0f, 2.0f, 1.0f));
@@ -175,11 +184,15 @@ TEST(SceneFile, AnEnvironmentIsRadianceOrRefusedByItsTexel) {
   EXPECT_FALSE(analyse(load({0.0f, 0.0f, 0.0f})).environment);  // black: lights nothing, which is no error
   EXPECT_TRUE(analyse(load({0.0f, 0.0f, 3.0f})).environmentPicture);
   const float infinity = std::numeric_limits<float>::infinity();
-  for (const glm::vec3& texel : {glm::vec3(1.0f, std::nanf(""), 1.0f), glm::vec3(infinity, 1.0f, 1.0f), glm::vec3(1.0f, 1.0f, -1e-6f)}) {
+  for (const glm::vec3& texel :
+       {glm::vec3(1.0f, std::nanf(""), 1.0f), glm::vec3(infinity, 1.0f, 1.0f), glm::vec3(1.0f, 1.0f, -1e-6f)}) {
     const std::string message = badInputMessage([&] { load(texel); });
     EXPECT_TRUE(contains(message, "sky.pfm: texel 1, 0 ")) << message;
   }
-  EXPECT_TRUE(contains(badInputMessage([&] { load({1e20f, 1.0f, 1.0f}, R"(, "radiance": [1e20, 1, 1])"); }), "sky.pfm: texel 1, 0 "));  // their product is infinite
+  EXPECT_TRUE(contains(badInputMessage([&] {
+                         load({1e20f, 1.0f, 1.0f}, R"(, "radiance": [1e20, 1, 1])");
+                       }),
+                       "sky.pfm: texel 1, 0 "));  // their product is infinite
 }
 
 TEST(SceneFile, FilesThatAreMissingOrNoSceneAreErrors) {

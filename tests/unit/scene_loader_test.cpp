@@ -58,7 +58,9 @@ std::string targaWithAlpha() {
 }
 
 glm::dvec3 faceNormal(const Scene& scene, std::size_t triangle) {
-  const auto corner = [&](std::size_t k) { return glm::dvec3(scene.vertices[scene.indices[3 * triangle + k]].position); };
+  const auto corner = [&](std::size_t k) {
+    return glm::dvec3(scene.vertices[scene.indices[3 * triangle + k]].position);
+  };
   return glm::normalize(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
 }
 
@@ -88,7 +90,9 @@ void expectConsistent(const Scene& scene) {
 
 TEST(SceneLoader, PolygonsBecomeTrianglesLinesAndPointsAreDropped) {
   const TempFolder folder;
-  const Scene scene = loadObj(folder, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 0\nv 0.5 1.5 0\nl 1 5\np 5\nf 1 2 3 4\nf 1 2 3\nf 1 2 3 6 4\n");
+  const Scene scene = loadObj(
+      folder,
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 0\nv 0.5 1.5 0\nl 1 5\np 5\nf 1 2 3 4\nf 1 2 3\nf 1 2 3 6 4\n");
   EXPECT_EQ(scene.triangleCount(), 2u + 1u + 3u);
   EXPECT_EQ(scene.name, "model");
   EXPECT_EQ(scene.degenerateTriangles, 0u);
@@ -114,7 +118,8 @@ TEST(SceneLoader, ZeroAreaTrianglesAreCountedAndKept) {
 TEST(SceneLoader, SliversAreNotDegenerate) {
   const TempFolder folder;
   // 1 : 10^6, and a whole scene of 10^-15 units.
-  const Scene scene = loadObj(folder, "v 0 0 0\nv 1 0 0\nv 0 1e-6 0\nv 0 0 1e-15\nv 1e-15 0 1e-15\nv 0 1e-15 1e-15\nf 1 2 3\nf 4 5 6\n");
+  const Scene scene = loadObj(
+      folder, "v 0 0 0\nv 1 0 0\nv 0 1e-6 0\nv 0 0 1e-15\nv 1e-15 0 1e-15\nv 0 1e-15 1e-15\nf 1 2 3\nf 4 5 6\n");
   EXPECT_EQ(scene.triangleCount(), 2u);
   EXPECT_EQ(scene.degenerateTriangles, 0u);
   EXPECT_EQ(scene.vertices.size(), 6u);  // vertices that lie close are not joined
@@ -139,7 +144,8 @@ TEST(SceneLoader, MissingNormalsAreMadeWithACrease) {
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_GT(glm::dot(glm::dvec3(sharp.vertices[sharp.indices[3 * t + k]].normal), faceNormal(sharp, t)), 0.9999);
   const double angle = 20.0 * 3.14159265 / 180.0;
-  const Scene smooth = loadObj(folder, fmt::format("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 {} {}\nf 1 2 3\nf 1 4 2\n", -std::cos(angle), std::sin(angle)));
+  const Scene smooth = loadObj(folder, fmt::format("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 {} {}\nf 1 2 3\nf 1 4 2\n",
+                                                   -std::cos(angle), std::sin(angle)));
   EXPECT_EQ(smooth.vertices.size(), 4u);
 }
 
@@ -177,7 +183,8 @@ TEST(SceneLoader, MaterialsOfMtlAreRead) {
 TEST(SceneLoader, OpacityComesOutTheSameFromDAndTr) {
   const TempFolder folder;
   const std::vector<std::pair<std::string, float>> cases = {
-      {"d 1\nTr 0\n", 1.0f}, {"Tr 0\nd 1\n", 1.0f}, {"", 1.0f}, {"d 0.25\n", 0.25f}, {"Tr 0.75\n", 0.25f}, {"d 0\n", 1.0f}, {"Tr 1\n", 1.0f}};
+      {"d 1\nTr 0\n", 1.0f}, {"Tr 0\nd 1\n", 1.0f}, {"", 1.0f},      {"d 0.25\n", 0.25f},
+      {"Tr 0.75\n", 0.25f},  {"d 0\n", 1.0f},       {"Tr 1\n", 1.0f}};
   for (const auto& [lines, opacity] : cases) {
     const Scene scene = loadObj(folder, "usemtl m\n" + kTriangle, "newmtl m\nKd 1 1 1\n" + lines);
     EXPECT_EQ(scene.materials[0].opacity, opacity) << lines;
@@ -198,8 +205,9 @@ TEST(SceneLoader, TexturesAreFoundBehindBackSlashesAndShared) {
   std::filesystem::create_directory(folder / "textures");
   writePicture(folder / "textures/a.png", 10);
   writePicture(folder / "beside.png", 20);
-  const Scene scene = loadObj(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n",
-                              "newmtl a\nmap_Kd textures\\a.png\nnewmtl b\nmap_Kd textures\\a.png\nnewmtl c\nmap_Kd C:\\work\\beside.png\n");
+  const Scene scene = loadObj(
+      folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n",
+      "newmtl a\nmap_Kd textures\\a.png\nnewmtl b\nmap_Kd textures\\a.png\nnewmtl c\nmap_Kd C:\\work\\beside.png\n");
   ASSERT_EQ(scene.textures.size(), 2u);
   EXPECT_EQ(scene.materials[0].diffuseTexture, scene.materials[1].diffuseTexture);
   EXPECT_EQ(scene.textures[0].bitmap.rgba[0], 10);
@@ -210,8 +218,9 @@ TEST(SceneLoader, TexturesAreFoundBehindBackSlashesAndShared) {
 TEST(SceneLoader, AMissingOrBrokenTextureIsOneWarningAndAChecker) {
   const TempFolder folder;
   folder.write("broken.png", "no picture");
-  const Scene scene = loadObj(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n",
-                              "newmtl a\nmap_Kd none.png\nnewmtl b\nmap_Kd none.png\nnewmtl c\nmap_Kd broken.png\n");
+  const Scene scene =
+      loadObj(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n",
+              "newmtl a\nmap_Kd none.png\nnewmtl b\nmap_Kd none.png\nnewmtl c\nmap_Kd broken.png\n");
   EXPECT_EQ(warningsNaming("none.png"), 1u);
   EXPECT_EQ(warningsNaming("broken.png"), 1u);
   EXPECT_EQ(loggedWarnings().size(), 2u);
@@ -227,13 +236,15 @@ TEST(SceneLoader, EmissionMapsCountByTheirMeanAndAreWarnedOfOnce) {
   writePng(folder / "glow.png", Bitmap{1, 2, {255, 255, 255, 255, 0, 0, 0, 255}, false});
   const std::string faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
   const Scene glowing = loadObj(folder, faces, "newmtl a\nKe 4 2 0\nmap_Ke glow.png\nnewmtl b\n");
-  EXPECT_EQ(glowing.materials[0].emission, glm::vec3(2.0f, 1.0f, 0.0f));  // and the picture stays for those who read it texel by texel
+  EXPECT_EQ(glowing.materials[0].emission,
+            glm::vec3(2.0f, 1.0f, 0.0f));  // and the picture stays for those who read it texel by texel
   EXPECT_EQ(glowing.materials[0].emissionScale, glm::vec3(4.0f, 2.0f, 0.0f));
   ASSERT_EQ(glowing.materials[0].emissionTexture, 0);
   EXPECT_EQ(glowing.textures.at(0).file.filename(), "glow.png");
   EXPECT_TRUE(analyse(glowing).emissionTextures);
   EXPECT_EQ(glowing.materials[1].emissionTexture, -1);
-  const Scene scene = loadObj(folder, faces, "newmtl a\nKe 4 2 0\nmap_Ke none.png\nnewmtl b\nKe 1 1 1\nmap_Ke none.png\nmap_Kd none.png\n");
+  const Scene scene = loadObj(
+      folder, faces, "newmtl a\nKe 4 2 0\nmap_Ke none.png\nnewmtl b\nKe 1 1 1\nmap_Ke none.png\nmap_Kd none.png\n");
   EXPECT_EQ(scene.materials[0].emission, glm::vec3(4.0f, 2.0f, 0.0f));
   EXPECT_EQ(scene.materials[0].emissionTexture, -1);
   EXPECT_FALSE(analyse(scene).emissionTextures);
@@ -245,7 +256,9 @@ TEST(SceneLoader, AlphaMasksComeFromTheirFileOrTheTexture) {
   writePicture(folder / "colour.png", 200);
   writePicture(folder / "mask.png", 0);
   folder.write("leaf.tga", targaWithAlpha());
-  const auto load = [&](const std::string& lines) { return loadObj(folder, "usemtl m\n" + kTriangle, "newmtl m\nKd 1 1 1\n" + lines); };
+  const auto load = [&](const std::string& lines) {
+    return loadObj(folder, "usemtl m\n" + kTriangle, "newmtl m\nKd 1 1 1\n" + lines);
+  };
   Scene scene = load("map_Kd colour.png\nmap_d mask.png\n");
   EXPECT_TRUE(scene.materials[0].alphaMasked);
   ASSERT_EQ(scene.materials[0].alphaTexture, 1);
@@ -273,7 +286,8 @@ TEST(SceneLoader, AMissingMaterialLibraryIsOneWarning) {
   EXPECT_EQ(loggedWarnings().size(), 1u);
   folder.write("sub/m.mtl", "newmtl m\nKd 0 1 0\n");
   clearLoggedWarnings();
-  EXPECT_EQ(loadScene(folder.write("b.obj", "mtllib sub\\m.mtl\nusemtl m\n" + kTriangle)).materials[0].diffuse, glm::vec3(0.0f, 1.0f, 0.0f));
+  EXPECT_EQ(loadScene(folder.write("b.obj", "mtllib sub\\m.mtl\nusemtl m\n" + kTriangle)).materials[0].diffuse,
+            glm::vec3(0.0f, 1.0f, 0.0f));
   EXPECT_TRUE(loggedWarnings().empty());
 }
 
@@ -281,17 +295,17 @@ TEST(SceneLoader, BrokenObjFilesAreErrorsThatNameTheLine) {
   const TempFolder folder;
   const std::string head = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {head + "f 1 2 3\nf 1 2 4\n", "x.obj:5: "},                            // refers to a vertex that is not there
+      {head + "f 1 2 3\nf 1 2 4\n", "x.obj:5: "},  // refers to a vertex that is not there
       {head + "f 1 2 3\n\nf 1 2 -4\n", "x.obj:6: "},
       {head + "vt 0 0\nf 1/1 2/1 3/2\n", "x.obj:5: "},
       {head + "vn 0 0 1\nf 1//1 2//1 3//2\n", "x.obj:5: "},
       {head + "f 1 2 0\n", "x.obj:4: "},
       {head + "f 1 2 x\n", "x.obj:4: "},
       {head + "f 1/1/1/1 2 3\n", "x.obj:4: "},
-      {head + "f 1 2 3 # comment\n", "x.obj:4: "},                             // Assimp stumbles over it
-      {head + "f 1 2 3\nf 1 2", "x.obj:5: "},                                 // cut off within a face
+      {head + "f 1 2 3 # comment\n", "x.obj:4: "},  // Assimp stumbles over it
+      {head + "f 1 2 3\nf 1 2", "x.obj:5: "},  // cut off within a face
       {head + "vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 1/", "x.obj:6: "},
-      {head + "f 1 2 3\nv 0 1", "x.obj:5: "},                                 // cut off within a vertex
+      {head + "f 1 2 3\nv 0 1", "x.obj:5: "},  // cut off within a vertex
       {head + "f 1 2 3\nv 0 1 1.", "x.obj:5: "},
       {head + "f 1 2 3\nvn 0 -", "x.obj:5: "},
       {head + "f 1 2 3\nv 1 two 3\nf 1 2 4\n", "x.obj:5: "},
@@ -322,8 +336,10 @@ TEST(SceneLoader, MissingFilesFoldersAndGarbageAreErrors) {
 
 TEST(SceneLoader, TruncatedPlyIsAnError) {
   const TempFolder folder;
-  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                          "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 "
+      "2\n";
   EXPECT_EQ(loadScene(folder.write("whole.ply", ply)).triangleCount(), 2u);
   loadError(folder, "vertices.ply", ply.substr(0, ply.find("1 1 0")));
   loadError(folder, "index.ply", ply.substr(0, ply.find("3 1 3 2")) + "3 1 9 2\n");
@@ -335,7 +351,8 @@ TEST(SceneLoader, DefaultsForFilesWithoutLightOrCamera) {
   ASSERT_TRUE(scene.sun);
   EXPECT_NEAR(glm::length(scene.sun->direction), 1.0, 1e-12);
   EXPECT_LT(scene.sun->direction.y, -0.8);
-  EXPECT_GT(glm::dot(scene.sun->direction, scene.cameras.front().direction), 0.7);  // over the shoulder of a view that nobody chose
+  EXPECT_GT(glm::dot(scene.sun->direction, scene.cameras.front().direction),
+            0.7);  // over the shoulder of a view that nobody chose
   EXPECT_GT(scene.sun->irradiance.x, 0.0f);
   ASSERT_EQ(scene.cameras.size(), 1u);
   const Camera& camera = scene.cameras[0];
@@ -348,20 +365,24 @@ TEST(SceneLoader, DefaultsForFilesWithoutLightOrCamera) {
   EXPECT_TRUE(scene.keyFrames.empty());
 }
 
-// ----------------------------------------------------------------------------------------------------------------- glTF
+// -----------------------------------------------------------------------------------------------------------------
+// glTF
 
 /// One triangle in z = 0, facing +z, with normals; what stands in %nodes%, %material% and %more% is up to the test.
-Scene loadGltf(const TempFolder& folder, const std::string& nodes, const std::string& material, const std::string& more = "") {
-  const float numbers[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, /* normals */ 0, 0, 1, 0, 0, 1, 0, 0, 1, /* texture */ 0, 0, 1, 0, 0, 1};
+Scene loadGltf(const TempFolder& folder, const std::string& nodes, const std::string& material,
+               const std::string& more = "") {
+  const float numbers[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, /* normals */ 0, 0, 1, 0, 0, 1, 0, 0, 1, /* texture */ 0,
+                           0, 1, 0, 0, 1};
   std::string bytes(reinterpret_cast<const char*>(numbers), sizeof numbers);
   folder.write("data.bin", bytes);
-  return loadScene(folder.write("model.gltf", fmt::format(R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{}],
+  return loadScene(folder.write(
+      "model.gltf", fmt::format(R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{}],
     "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}},"material":0}}]}}],"materials":[{}]{},
     "buffers":[{{"uri":"data.bin","byteLength":96}}],
     "bufferViews":[{{"buffer":0,"byteLength":36}},{{"buffer":0,"byteOffset":36,"byteLength":36}},{{"buffer":0,"byteOffset":72,"byteLength":24}}],
     "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},
       {{"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"}},{{"bufferView":2,"componentType":5126,"count":3,"type":"VEC2"}}]}})",
-                                                          nodes, material, more)));
+                                nodes, material, more)));
 }
 
 TEST(SceneLoader, NodeTransformsAreAppliedAndMirroringKeepsTheFront) {
@@ -384,23 +405,33 @@ TEST(SceneLoader, NodeTransformsAreAppliedAndMirroringKeepsTheFront) {
 TEST(SceneLoader, MetallicRoughnessBecomesDiffuseAndSpecular) {
   const TempFolder folder;
   const std::string node = R"({"mesh":0})";
-  const Material plastic = loadGltf(folder, node, R"({"pbrMetallicRoughness":{"baseColorFactor":[0.2,0.4,0.6,1],"metallicFactor":0,"roughnessFactor":0.5}})").materials[0];
+  const Material plastic =
+      loadGltf(
+          folder, node,
+          R"({"pbrMetallicRoughness":{"baseColorFactor":[0.2,0.4,0.6,1],"metallicFactor":0,"roughnessFactor":0.5}})")
+          .materials[0];
   EXPECT_LT(glm::distance(plastic.diffuse, glm::vec3(0.2f, 0.4f, 0.6f)), 1e-6f);
   EXPECT_LT(glm::distance(plastic.specular, glm::vec3(0.04f)), 1e-6f);
   EXPECT_NEAR(plastic.shininess, 2.0f / std::pow(0.5f, 4.0f) - 2.0f, 1e-3f);
-  const Material metal = loadGltf(folder, node, R"({"pbrMetallicRoughness":{"baseColorFactor":[0.2,0.4,0.6,1],"metallicFactor":1}})").materials[0];
+  const Material metal =
+      loadGltf(folder, node, R"({"pbrMetallicRoughness":{"baseColorFactor":[0.2,0.4,0.6,1],"metallicFactor":1}})")
+          .materials[0];
   EXPECT_EQ(metal.diffuse, glm::vec3(0.0f));
   EXPECT_LT(glm::distance(metal.specular, glm::vec3(0.2f, 0.4f, 0.6f)), 1e-6f);
-  const Material glowing = loadGltf(folder, node, R"({"emissiveFactor":[0.5,1,0],"pbrMetallicRoughness":{"metallicFactor":0}})").materials[0];
+  const Material glowing =
+      loadGltf(folder, node, R"({"emissiveFactor":[0.5,1,0],"pbrMetallicRoughness":{"metallicFactor":0}})")
+          .materials[0];
   EXPECT_EQ(glowing.emission, glm::vec3(0.5f, 1.0f, 0.0f));
 }
 
 TEST(SceneLoader, GltfTexturesCountByTheirMeanWhereTheyAreNotKept) {
   const TempFolder folder;
-  writePng(folder / "mr.png", Bitmap{1, 2, {0, 255, 0, 255, 0, 255, 51, 255}, false});  // roughness 1; metallic 0 and 0.2
-  const Material m = loadGltf(folder, R"({"mesh":0})", R"({"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}}})",
-                              R"(,"textures":[{"source":0}],"images":[{"uri":"mr.png"}])")
-                         .materials[0];
+  writePng(folder / "mr.png",
+           Bitmap{1, 2, {0, 255, 0, 255, 0, 255, 51, 255}, false});  // roughness 1; metallic 0 and 0.2
+  const Material m =
+      loadGltf(folder, R"({"mesh":0})", R"({"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}}})",
+               R"(,"textures":[{"source":0}],"images":[{"uri":"mr.png"}])")
+          .materials[0];
   EXPECT_NEAR(m.diffuse.x, 0.9f, 1e-5f);
   EXPECT_NEAR(m.shininess, 1.0f, 1e-5f);
 }
@@ -410,7 +441,8 @@ TEST(SceneLoader, GltfAlphaModesDecideOverMasks) {
   folder.write("leaf.tga", targaWithAlpha());
   const std::string images = R"(,"textures":[{"source":0}],"images":[{"uri":"leaf.tga"}])";
   const std::string base = R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0})";
-  EXPECT_TRUE(loadGltf(folder, R"({"mesh":0})", "{\"alphaMode\":\"MASK\"," + base + "}", images).materials[0].alphaMasked);
+  EXPECT_TRUE(
+      loadGltf(folder, R"({"mesh":0})", "{\"alphaMode\":\"MASK\"," + base + "}", images).materials[0].alphaMasked);
   EXPECT_FALSE(loadGltf(folder, R"({"mesh":0})", "{" + base + "}", images).materials[0].alphaMasked);
 }
 
@@ -425,9 +457,11 @@ TEST(SceneLoader, GltfTextureCoordinatesCountFromTheBottom) {
 TEST(SceneLoader, EmbeddedTexturesAreRead) {
   const TempFolder folder;
   const std::string uri =  // a red 1 x 1 PNG
-      "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC";
+      "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/"
+      "pLvAAAAAElFTkSuQmCC";
   clearLoggedWarnings();
-  const Scene scene = loadGltf(folder, R"({"mesh":0})", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0}})",
+  const Scene scene = loadGltf(folder, R"({"mesh":0})",
+                               R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0}})",
                                R"(,"textures":[{"source":0}],"images":[{"uri":")" + uri + "\"}]");
   EXPECT_TRUE(loggedWarnings().empty());
   ASSERT_EQ(scene.materials[0].diffuseTexture, 0);
@@ -436,11 +470,12 @@ TEST(SceneLoader, EmbeddedTexturesAreRead) {
 
 TEST(SceneLoader, GltfCamerasAndSunAreRead) {
   const TempFolder folder;
-  const Scene scene = loadGltf(folder,
-                               R"({"children":[1,2,3]},{"mesh":0},{"name":"eye","camera":0,"translation":[1,2,3]},
+  const Scene scene =
+      loadGltf(folder,
+               R"({"children":[1,2,3]},{"mesh":0},{"name":"eye","camera":0,"translation":[1,2,3]},
                                   {"name":"sun","rotation":[-0.70710678,0,0,0.70710678],"extensions":{"KHR_lights_punctual":{"light":0}}})",
-                               "{}",
-                               R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.7,"aspectRatio":1.5,"znear":0.1}}],
+               "{}",
+               R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.7,"aspectRatio":1.5,"znear":0.1}}],
                                   "extensionsUsed":["KHR_lights_punctual"],
                                   "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","color":[1,0.5,0.25],"intensity":4}]}})");
   ASSERT_EQ(scene.cameras.size(), 1u);

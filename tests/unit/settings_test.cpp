@@ -1,4 +1,5 @@
-// The table of settings: every entry is parsed, printed, documented and kept in a place of its own; what is wrong is refused with what would be right.
+// The table of settings: every entry is parsed, printed, documented and kept in a place of its own; what is wrong is
+// refused with what would be right.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "settings/settings.hpp"
@@ -18,7 +19,9 @@ namespace {
 
 using test::badInputMessage;
 
-bool isNumber(const Setting& setting) { return setting.value.type == SettingType::integer || setting.value.type == SettingType::real; }
+bool isNumber(const Setting& setting) {
+  return setting.value.type == SettingType::integer || setting.value.type == SettingType::real;
+}
 
 /// Every value of a choice or switch; of a number its bounds, something between them and the word.
 std::vector<std::string> someValues(const Setting& setting) {
@@ -59,7 +62,8 @@ TEST(Settings, KeysAreDistinctAndEveryEntryIsWhole) {
     EXPECT_NE(setting.readers.transports & 7u, 0u) << key << " is read by no transport";
     EXPECT_TRUE(!isNumber(setting) || setting.value.least < setting.value.most) << key;
     EXPECT_TRUE(setting.value.type != SettingType::choice || setting.value.choices.size() > 1) << key;
-    EXPECT_FALSE(setting.value.type == SettingType::file ? setting.usually.empty() : defaultValue(setting).empty()) << key;
+    EXPECT_FALSE(setting.value.type == SettingType::file ? setting.usually.empty() : defaultValue(setting).empty())
+        << key;
   }
   EXPECT_GT(keys.size(), 50u);
 }
@@ -109,13 +113,20 @@ TEST(Settings, WhatIsWrongIsRefusedWithWhatWouldBeRight) {
     RenderSettings settings;
     const bool nanMeansUnset = !setting.value.word.empty() && std::isnan(setting.value.wordNumber);
     if (!nanMeansUnset) {
-      EXPECT_NE(badInputMessage([&] { setSettingNumber(setting, settings, std::numeric_limits<double>::quiet_NaN()); }).find(key), std::string::npos);
+      EXPECT_NE(badInputMessage([&] {
+                  setSettingNumber(setting, settings, std::numeric_limits<double>::quiet_NaN());
+                }).find(key),
+                std::string::npos);
     }
-    EXPECT_NE(badInputMessage([&] { setSettingNumber(setting, settings, std::numeric_limits<double>::infinity()); }).find(key), std::string::npos);
+    EXPECT_NE(badInputMessage([&] {
+                setSettingNumber(setting, settings, std::numeric_limits<double>::infinity());
+              }).find(key),
+              std::string::npos);
     const double below = setting.value.least - 1.0, beyond = 2.0 * setting.value.most + 1.0;
     for (const double number : {below, beyond}) {
       if (!setting.value.word.empty() && number == setting.value.wordNumber) continue;  // it stands for the word
-      EXPECT_NE(badInputMessage([&] { setSettingNumber(setting, settings, number); }).find(key), std::string::npos) << number;
+      EXPECT_NE(badInputMessage([&] { setSettingNumber(setting, settings, number); }).find(key), std::string::npos)
+          << number;
     }
     EXPECT_EQ(printed(settings), printed({})) << key;
   }
@@ -125,11 +136,13 @@ TEST(Settings, UnknownKeysAreRefusedWithThoseThatThereAre) {
   const std::string message = badInputMessage([] { parseAssignment("lpv.cels=3", "--set "); });
   EXPECT_TRUE(message.starts_with("--set lpv.cels=3: unknown key")) << message;
   for (const Setting& setting : allSettings()) EXPECT_NE(message.find(setting.key), std::string::npos) << setting.key;
-  for (const char* wrong : {"", "=", "=3", "lpv.cells"}) EXPECT_NE(badInputMessage([&] { parseAssignment(wrong); }).find("key=value"), std::string::npos) << wrong;
+  for (const char* wrong : {"", "=", "=3", "lpv.cells"})
+    EXPECT_NE(badInputMessage([&] { parseAssignment(wrong); }).find("key=value"), std::string::npos) << wrong;
   // Of a radiosity solution's alone.
   const SettingCost only = SettingCost::solution;
   EXPECT_EQ(parseAssignment("radiosity.edge=0.5", "", &only).value, "0.5");
-  EXPECT_EQ(badInputMessage([&] { parseAssignment("radiosity.mesh=on", "", &only); }).find("lpv.cells"), std::string::npos);
+  EXPECT_EQ(badInputMessage([&] { parseAssignment("radiosity.mesh=on", "", &only); }).find("lpv.cells"),
+            std::string::npos);
 }
 
 TEST(Settings, FormerSpellingsAreUnderstood) {
@@ -172,7 +185,8 @@ TEST(Settings, SourcesAreInTheListOfReferences) {
     if (setting.source.empty()) continue;
     std::smatch match;
     const std::string source(setting.source);
-    ASSERT_TRUE(std::regex_match(source, match, std::regex("\\[([A-Za-z]+[0-9]*)(, [^\\]]*)?\\]"))) << setting.key << " " << source;
+    ASSERT_TRUE(std::regex_match(source, match, std::regex("\\[([A-Za-z]+[0-9]*)(, [^\\]]*)?\\]")))
+        << setting.key << " " << source;
     EXPECT_NE(references.find("- [" + match[1].str() + "]"), std::string::npos) << setting.key << " " << source;
   }
 }
@@ -186,7 +200,8 @@ TEST(Settings, DocumentsNameNoUnknownKey) {
       for (std::sregex_iterator match(line.begin(), line.end(), assignment), end; match != end; ++match) {
         const std::string key = (*match)[1];
         const std::string text = readFileText(LUCERNA_SOURCE_DIR "/docs/settings.md");
-        EXPECT_NE(text.find("`" + key + "`"), std::string::npos) << folder << "/README.md: " << key << " is neither a setting nor a deviation";
+        EXPECT_NE(text.find("`" + key + "`"), std::string::npos)
+            << folder << "/README.md: " << key << " is neither a setting nor a deviation";
       }
   }
 }

@@ -16,7 +16,9 @@ using ::testing::AssertionResult;
 using ::testing::AssertionSuccess;
 
 struct ShaderFolder : TempFolder {
-  ExpandedSource expand(const std::string& file, const ShaderFlags& flags = {}) const { return expandShader(path(), file, flags); }
+  ExpandedSource expand(const std::string& file, const ShaderFlags& flags = {}) const {
+    return expandShader(path(), file, flags);
+  }
   std::string error(const std::string& file, const ShaderFlags& flags = {}) const {
     return badInputMessage([&] { expand(file, flags); });
   }
@@ -46,7 +48,9 @@ TEST(ShaderSource, EachFileIsIncludedOnce) {
   folder.write("lib/base.glsl", "float base;\n");
   folder.write("lib/x.glsl", "#include \"lib/base.glsl\"\nfloat x;\n");
   folder.write("lib/y.glsl", "#include \"lib/base.glsl\"\nfloat y;\n");
-  folder.write("a.frag", "#include \"lib/x.glsl\"\n  #  include \"lib/y.glsl\"  // again\n#include \"lib/x.glsl\"\nvoid main() {}\n");
+  folder.write(
+      "a.frag",
+      "#include \"lib/x.glsl\"\n  #  include \"lib/y.glsl\"  // again\n#include \"lib/x.glsl\"\nvoid main() {}\n");
   const ExpandedSource source = folder.expand("a.frag");
   EXPECT_EQ(source.text, "#version 430 core\nfloat base;\nfloat x;\nfloat y;\nvoid main() {}\n");
   ASSERT_EQ(source.files.size(), 4u);
@@ -58,7 +62,8 @@ TEST(ShaderSource, EachFileIsIncludedOnce) {
 TEST(ShaderSource, LineMapNamesEveryLinesOrigin) {
   const ShaderFolder folder;
   folder.write("lib/x.glsl", "// head\nfloat x;\n");
-  folder.write("a.frag", "// one\n#include \"lib/x.glsl\"\nfloat three;\r\nfloat four;");  // CR LF, and no end of line at the end
+  folder.write("a.frag",
+               "// one\n#include \"lib/x.glsl\"\nfloat three;\r\nfloat four;");  // CR LF, and no end of line at the end
   const ExpandedSource source = folder.expand("a.frag", {{"FLAG", 1}});
   const auto lines = linesOf(source.text);
   ASSERT_EQ(lines.size(), source.lines.size());
@@ -66,7 +71,9 @@ TEST(ShaderSource, LineMapNamesEveryLinesOrigin) {
     for (std::size_t i = 0; i < lines.size(); ++i)
       if (lines[i] == line) {
         const ExpandedSource::Line& origin = source.lines[i];
-        return origin.file < 0 ? "ours" : source.files[static_cast<std::size_t>(origin.file)].string() + ":" + std::to_string(origin.line);
+        return origin.file < 0
+                   ? "ours"
+                   : source.files[static_cast<std::size_t>(origin.file)].string() + ":" + std::to_string(origin.line);
       }
     return std::string("missing");
   };
@@ -105,7 +112,8 @@ TEST(ShaderSource, AnUndeclaredFlagIsAnErrorWithFileAndLine) {
   EXPECT_TRUE(has(message, "shaders/lib/x.glsl:2: flag TEXTURE is not declared by the program"));
   EXPECT_TRUE(has(message, "TEXTURES"));
   EXPECT_EQ(folder.error("a.frag", {{"TEXTURE", 0}}), "");
-  for (const char* condition : {"#ifdef WRONG", "#ifndef WRONG", "#if defined(WRONG)", "  #  if RIGHT && WRONG", "#if RIGHT\n#elif WRONG"}) {
+  for (const char* condition :
+       {"#ifdef WRONG", "#ifndef WRONG", "#if defined(WRONG)", "  #  if RIGHT && WRONG", "#if RIGHT\n#elif WRONG"}) {
     folder.write("b.frag", std::string(condition) + "\n#endif\n");
     EXPECT_TRUE(has(folder.error("b.frag", {{"RIGHT", 1}}), "flag WRONG is not declared")) << condition;
   }
@@ -114,7 +122,8 @@ TEST(ShaderSource, AnUndeclaredFlagIsAnErrorWithFileAndLine) {
 TEST(ShaderSource, OwnMacrosExtensionsAndCommentsAreNoFlags) {
   const ShaderFolder folder;
   folder.write("a.frag",
-               "#define OWN 1\n#if OWN  // WRONG in a comment\n#endif\n#ifdef GL_NV_shader_atomic_float\n#endif\n#if __VERSION__ >= 430\n#endif\n"
+               "#define OWN 1\n#if OWN  // WRONG in a comment\n#endif\n#ifdef GL_NV_shader_atomic_float\n#endif\n#if "
+               "__VERSION__ >= 430\n#endif\n"
                "#if defined(OWN) && RIGHT > 2\n#endif\n");
   EXPECT_EQ(folder.error("a.frag", {{"RIGHT", 3}}), "");
 }
@@ -131,9 +140,12 @@ TEST(ShaderSource, LogsOfThreeDriversAreRewritten) {
   folder.write("a.frag", "// one\n#include \"lib/x.glsl\"\nvoid main() {}\n");
   const ExpandedSource source = folder.expand("a.frag", {{"F", 1}});
   // Lines: 1 #version, 2 #define, 3 // one, 4 float a, 5 float b = c, 6 void main.
-  EXPECT_EQ(rewriteShaderLog("0:5(11): error: `c' undeclared\n", source), "shaders/lib/x.glsl:2: error: `c' undeclared\n");
-  EXPECT_EQ(rewriteShaderLog("0(5) : error C1503: undefined variable \"c\"\n", source), "shaders/lib/x.glsl:2: error C1503: undefined variable \"c\"\n");
-  EXPECT_EQ(rewriteShaderLog("ERROR: 0:6: 'main' : function\n", source), "shaders/a.frag:3: ERROR: 'main' : function\n");
+  EXPECT_EQ(rewriteShaderLog("0:5(11): error: `c' undeclared\n", source),
+            "shaders/lib/x.glsl:2: error: `c' undeclared\n");
+  EXPECT_EQ(rewriteShaderLog("0(5) : error C1503: undefined variable \"c\"\n", source),
+            "shaders/lib/x.glsl:2: error C1503: undefined variable \"c\"\n");
+  EXPECT_EQ(rewriteShaderLog("ERROR: 0:6: 'main' : function\n", source),
+            "shaders/a.frag:3: ERROR: 'main' : function\n");
   EXPECT_EQ(rewriteShaderLog("WARNING: 0:3: something\n", source), "shaders/a.frag:1: WARNING: something\n");
   // Lines of ours, beyond the end, and what names no line stay as they are.
   EXPECT_EQ(rewriteShaderLog("0:1(1): error: version\n", source), "0:1(1): error: version\n");

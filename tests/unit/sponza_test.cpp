@@ -99,8 +99,8 @@ TEST(SponzaTest, TheWalkIsFoundAndGivesTheFirstCamera) {
   EXPECT_EQ(scene.cameras[0].position, readKeyFrames(scene.keyFrames)[0].position);
 }
 
-// No view of the walk comes nearer than 30 cm to anything, none lies within stone (where the first hit shows its back), and
-// between two views nothing is crossed.
+// No view of the walk comes nearer than 30 cm to anything, none lies within stone (where the first hit shows its back),
+// and between two views nothing is crossed.
 TEST(SponzaTest, TheWalkKeepsClearOfWallsAndColumns) {
   SKIP_WITHOUT_SPONZA();
   const Spline spline(readKeyFrames(sponza()->keyFrames));
@@ -113,9 +113,7 @@ TEST(SponzaTest, TheWalkKeepsClearOfWallsAndColumns) {
     ASSERT_TRUE(floor) << "view " << i;
     ASSERT_GT(floor->normal.y, 0.0) << "view " << i << " looks at a floor's back";
     ASSERT_GT(floor->distance, 120.0) << "view " << i;
-    if (i > 0) {
-      ASSERT_FALSE(caster().firstHit(last.position, view.position - last.position, 1.0)) << "view " << i;
-    }
+    if (i > 0) { ASSERT_FALSE(caster().firstHit(last.position, view.position - last.position, 1.0)) << "view " << i; }
     // At 60 views a second: below 8 m/s and 90 degrees a second.
     ASSERT_LT(glm::distance(view.position, last.position), 800.0 / 60.0) << "view " << i;
     ASSERT_GT(glm::dot(view.direction, last.direction), std::cos(1.5 * 3.14159265 / 180.0)) << "view " << i;

@@ -25,7 +25,9 @@ TEST(SurfaceVoxels, APlateSetsOneLayerWithoutHoles) {
     for (int x = 0; x < across; ++x)
       for (int z = 0; z < across; ++z) {
         // The plate lies on a border of voxels: either side of it may be set.
-        const auto isSet = [&](double y) { return voxels.isSet(glm::ivec3(glm::floor(first + glm::dvec3(x + 0.5, y, z + 0.5)))); };
+        const auto isSet = [&](double y) {
+          return voxels.isSet(glm::ivec3(glm::floor(first + glm::dvec3(x + 0.5, y, z + 0.5))));
+        };
         EXPECT_TRUE(isSet(-1e-4) || isSet(1e-4)) << across << ": " << x << " " << z;
       }
     // Its far edges lie on the border of the next voxels.
@@ -45,7 +47,8 @@ TEST(SurfaceVoxels, ASlantedTriangleIsWhereItsPointsAre) {
       const glm::dvec3 p = (a + u * (b - a) + v * (c - a) - voxels.minimum) / voxels.size;
       // A corner of a voxel may be cut between two of the points looked at.
       bool near = false;
-      for (int k = 0; k < 27; ++k) near |= voxels.isSet(glm::ivec3(glm::floor(p)) + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
+      for (int k = 0; k < 27; ++k)
+        near |= voxels.isSet(glm::ivec3(glm::floor(p)) + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
       EXPECT_TRUE(near) << u << " " << v;
     }
   EXPECT_FALSE(voxels.isSet(glm::ivec3(glm::floor((glm::dvec3(-0.9, 0.9, 0.8) - voxels.minimum) / voxels.size))));

@@ -28,7 +28,8 @@ using Rows = std::array<glm::dvec3, 3>;
 Rows rowsOf(Point p) { return {glm::dvec3(p[2]), glm::dvec3(p[3]), glm::dvec3(p[4])}; }
 glm::dvec3 swept(Point p, const glm::dvec3& radiosity) {
   const Rows rows = rowsOf(p);
-  return glm::dvec3(p[0]) + glm::dvec3(p[1]) * glm::dvec3(glm::dot(rows[0], radiosity), glm::dot(rows[1], radiosity), glm::dot(rows[2], radiosity));
+  return glm::dvec3(p[0]) + glm::dvec3(p[1]) * glm::dvec3(glm::dot(rows[0], radiosity), glm::dot(rows[1], radiosity),
+                                                          glm::dot(rows[2], radiosity));
 }
 glm::dvec3 solved(Point p) {
   glm::dvec3 radiosity(0.0);
@@ -47,68 +48,175 @@ glm::dvec3 directionOf(int face, double x, double y) {
 }
 
 void check(Checks& c) {
-  const double side = c.yours("square side", 0.6, 1.6), height = c.yours("square height", 0.7, 1.5), away = c.yours("square away", 0.0, 1.0);
-  const double x = c.yours("pixel x", 0.1, 0.95), y = c.yours("pixel y", 0.1, 0.95), reflectance = c.yours("reflectance", 0.6, 0.95), change = c.yours("change", 0.001, 0.01, 4);
+  const double side = c.yours("square side", 0.6, 1.6), height = c.yours("square height", 0.7, 1.5),
+               away = c.yours("square away", 0.0, 1.0);
+  const double x = c.yours("pixel x", 0.1, 0.95), y = c.yours("pixel y", 0.1, 0.95),
+               reflectance = c.yours("reflectance", 0.6, 0.95), change = c.yours("change", 0.001, 0.01, 4);
   const double factor = squareLampIrradiance(side, height, {away, 0.0, 0.0}) / kPi;
   c.answer("form factor", factor, 0.02, {});
-  c.answer("published", 1.0 + x * x + y * y, 0.005, {{{"upside-down", "the published map weighs this pixel too much, not too little"}, 1.0 / (1.0 + x * x + y * y)}});
-  c.answer("bound", change * reflectance / (1.0 - reflectance), 0.005, {{{"change-is-no-error", "the last change is not the error: the changes to come add up"}, change}});
+  c.answer(
+      "published", 1.0 + x * x + y * y, 0.005,
+      {{{"upside-down", "the published map weighs this pixel too much, not too little"}, 1.0 / (1.0 + x * x + y * y)}});
+  c.answer("bound", change * reflectance / (1.0 - reflectance), 0.005,
+           {{{"change-is-no-error", "the last change is not the error: the changes to come add up"}, change}});
 
   if (c.task(1)) {
-    const auto of = [](double (*value)(double square)) { return [=](Point p) { return glm::dvec4(p[0].z * value(double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0)); }; };
-    c.twin("top at points", {.probe = 1, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(0.01, 4.0)); }, .truth = of([](double q) { return 1.0 / (kPi * q * q); }),
-            .mistakes = {{{"published-map", "that is the published map, 1 / r^2: two cosines over r^2 make 1 / r^4"}, of([](double q) { return 1.0 / q; })}, {{"published-map", "that is the published map, 1 / r^2: two cosines over r^2 make 1 / r^4"}, of([](double q) { return 1.0 / (kPi * q); })},
-                         {{"lost-pi", "1 / pi is lost: the factors of all pixels sum to 1"}, of([](double q) { return 1.0 / (q * q); })}, {{"one-cosine", "that is the solid angle over pi: the cosine at the patch is lost"}, of([](double q) { return 1.0 / (kPi * q * std::sqrt(q)); })},
-                         {{"area-lost", "the area is lost"}, [](Point p) { const double q = double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0; return glm::dvec4(1.0 / (kPi * q * q)); }}}});
+    const auto of = [](double (*value)(double square)) {
+      return
+          [=](Point p) { return glm::dvec4(p[0].z * value(double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0)); };
+    };
+    c.twin(
+        "top at points",
+        {.probe = 1,
+         .draw = [](Random& r,
+                    std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(0.01, 4.0)); },
+         .truth = of([](double q) { return 1.0 / (kPi * q * q); }),
+         .mistakes = {{{"published-map", "that is the published map, 1 / r^2: two cosines over r^2 make 1 / r^4"},
+                       of([](double q) { return 1.0 / q; })},
+                      {{"published-map", "that is the published map, 1 / r^2: two cosines over r^2 make 1 / r^4"},
+                       of([](double q) { return 1.0 / (kPi * q); })},
+                      {{"lost-pi", "1 / pi is lost: the factors of all pixels sum to 1"},
+                       of([](double q) { return 1.0 / (q * q); })},
+                      {{"one-cosine", "that is the solid angle over pi: the cosine at the patch is lost"},
+                       of([](double q) { return 1.0 / (kPi * q * std::sqrt(q)); })},
+                      {{"area-lost", "the area is lost"}, [](Point p) {
+                         const double q = double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0;
+                         return glm::dvec4(1.0 / (kPi * q * q));
+                       }}}});
   }
   if (c.task(2)) {
-    const auto of = [](double (*value)(double z, double square)) { return [=](Point p) { return glm::dvec4(p[0].z * value(p[0].y, double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0)); }; };
-    c.twin("side at points", {.probe = 2, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(0, 1), r.uniform(0.01, 4.0)); }, .truth = of([](double z, double q) { return z / (kPi * q * q); }),
-            .mistakes = {{{"published-map", "that is the published map, z / r^2: the cosine at the side's pixel is lost, and one r^2"}, of([](double z, double q) { return z / q; })}, {{"published-map", "that is the published map, z / r^2: the cosine at the side's pixel is lost, and one r^2"}, of([](double z, double q) { return z / (kPi * q); })},
-                         {{"lost-cosine", "the cosine at the patch, z / r, is lost"}, of([](double, double q) { return 1.0 / (kPi * q * q); })}, {{"lost-pi", "1 / pi is lost: the factors of all pixels sum to 1"}, of([](double z, double q) { return z / (q * q); })},
-                         {{"wrong-height", "z is the height above the patch, y runs along the side"}, [](Point p) { const double q = double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0; return glm::dvec4(p[0].z * p[0].x / (kPi * q * q)); }}}});
+    const auto of = [](double (*value)(double z, double square)) {
+      return [=](Point p) {
+        return glm::dvec4(p[0].z * value(p[0].y, double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0));
+      };
+    };
+    c.twin(
+        "side at points",
+        {.probe = 2,
+         .draw = [](Random& r,
+                    std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(0, 1), r.uniform(0.01, 4.0)); },
+         .truth = of([](double z, double q) { return z / (kPi * q * q); }),
+         .mistakes = {{{"published-map",
+                        "that is the published map, z / r^2: the cosine at the side's pixel is lost, and one r^2"},
+                       of([](double z, double q) { return z / q; })},
+                      {{"published-map",
+                        "that is the published map, z / r^2: the cosine at the side's pixel is lost, and one r^2"},
+                       of([](double z, double q) { return z / (kPi * q); })},
+                      {{"lost-cosine", "the cosine at the patch, z / r, is lost"},
+                       of([](double, double q) { return 1.0 / (kPi * q * q); })},
+                      {{"lost-pi", "1 / pi is lost: the factors of all pixels sum to 1"},
+                       of([](double z, double q) { return z / (q * q); })},
+                      {{"wrong-height", "z is the height above the patch, y runs along the side"}, [](Point p) {
+                         const double q = double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0;
+                         return glm::dvec4(p[0].z * p[0].x / (kPi * q * q));
+                       }}}});
   }
   if (c.task(3)) {
     const auto of = [](double shift, bool halfHeight, bool unit) {
       return [=](Point p) {
-        const double n = p[0].w, u = 2.0 * (p[0].y + shift) / n, v = (p[0].x > 0.5f && halfHeight ? 1.0 : 2.0) * (p[0].z + shift) / n;
+        const double n = p[0].w, u = 2.0 * (p[0].y + shift) / n,
+                     v = (p[0].x > 0.5f && halfHeight ? 1.0 : 2.0) * (p[0].z + shift) / n;
         const glm::dvec3 d = directionOf(static_cast<int>(p[0].x), u, v);
-        return glm::dvec4(unit ? d : d / std::max({std::abs(d.x), std::abs(d.y), p[0].x > 0.5f ? 0.0 : std::abs(d.z)}), 0.0);
+        return glm::dvec4(unit ? d : d / std::max({std::abs(d.x), std::abs(d.y), p[0].x > 0.5f ? 0.0 : std::abs(d.z)}),
+                          0.0);
       };
     };
-    c.twin("directions of pixels", {.probe = 4,
-            .draw = [](Random& r, std::span<glm::vec4> p) { const double n = 4.0 * std::floor(r.uniform(2, 40)), face = std::floor(r.uniform(0, 5)); p[0] = four(face, std::floor(r.uniform(0, n)), std::floor(r.uniform(0, face > 0.5 ? n / 2.0 : n)), n); },
+    c.twin("directions of pixels",
+           {.probe = 4,
+            .draw =
+                [](Random& r, std::span<glm::vec4> p) {
+                  const double n = 4.0 * std::floor(r.uniform(2, 40)), face = std::floor(r.uniform(0, 5));
+                  p[0] = four(face, std::floor(r.uniform(0, n)), std::floor(r.uniform(0, face > 0.5 ? n / 2.0 : n)), n);
+                },
             .truth = of(0.5, false, true),
-            .mistakes = {{{"pixel-centre-missed", "that is a pixel's corner: its centre is half a pixel further"}, of(0.0, false, true)}, {{"not-unit", "the direction is not of length 1"}, of(0.5, false, false)},
-                         {{"side-height", "a side has n by n / 2 pixels of the same size as the top's"}, of(0.5, true, true)},
-                         {{"faces-exchanged", "faces are exchanged: 1 is +x, 2 is -x, 3 is +y, 4 is -y"}, [](Point p) { const double n = p[0].w; const int f = static_cast<int>(p[0].x); return glm::dvec4(directionOf(f == 1 ? 2 : f == 2 ? 1 : f, 2.0 * (p[0].y + 0.5) / n, 2.0 * (p[0].z + 0.5) / n), 0.0); }}}});
+            .mistakes = {
+                {{"pixel-centre-missed", "that is a pixel's corner: its centre is half a pixel further"},
+                 of(0.0, false, true)},
+                {{"not-unit", "the direction is not of length 1"}, of(0.5, false, false)},
+                {{"side-height", "a side has n by n / 2 pixels of the same size as the top's"}, of(0.5, true, true)},
+                {{"faces-exchanged", "faces are exchanged: 1 is +x, 2 is -x, 3 is +y, 4 is -y"}, [](Point p) {
+                   const double n = p[0].w;
+                   const int f = static_cast<int>(p[0].x);
+                   return glm::dvec4(directionOf(f == 1   ? 2
+                                                 : f == 2 ? 1
+                                                          : f,
+                                                 2.0 * (p[0].y + 0.5) / n, 2.0 * (p[0].z + 0.5) / n),
+                                     0.0);
+                 }}}});
   }
   // Together: the form factors of tasks 1 and 2 on the whole hemicube.
   if (c.task(6)) {
-    c.mean("all pixels sum to 1", {.probe = 3, .expected = 1.0}) && c.mean("form factor of a square", {.probe = 5, .inputs = {four(side, height, away)}, .expected = factor}) &&
-        c.picture("square", {.probe = 10, .inputs = {four(side, height)}, .reference = [&](glm::ivec2 p) { return glm::dvec3(squareLampIrradiance(side, height, {(p.x + 0.5) / 16.0 - 3.0, 0.0, (p.y + 0.5) / 16.0 - 2.0}) / kPi); },
-                   .caption = "Form factor from each point of the floor to a square above it: 256 random points of the hemicube a pixel; the reference is exact"});
+    c.mean("all pixels sum to 1", {.probe = 3, .expected = 1.0}) &&
+        c.mean("form factor of a square", {.probe = 5, .inputs = {four(side, height, away)}, .expected = factor}) &&
+        c.picture("square", {.probe = 10,
+                             .inputs = {four(side, height)},
+                             .reference =
+                                 [&](glm::ivec2 p) {
+                                   return glm::dvec3(
+                                       squareLampIrradiance(side, height,
+                                                            {(p.x + 0.5) / 16.0 - 3.0, 0.0, (p.y + 0.5) / 16.0 - 2.0}) /
+                                       kPi);
+                                 },
+                             .caption = "Form factor from each point of the floor to a square above it: 256 random "
+                                        "points of the hemicube a pixel; the reference is exact"});
   }
   if (c.task(4)) {
-    const auto of = [](const std::function<glm::dvec3(Point, glm::dvec3)>& value) { return [=](Point p) { return glm::dvec4(value(p, glm::dvec3(p[5])), 0.0); }; };
+    const auto of = [](const std::function<glm::dvec3(Point, glm::dvec3)>& value) {
+      return [=](Point p) { return glm::dvec4(value(p, glm::dvec3(p[5])), 0.0); };
+    };
     const auto draw = [](Random& r, std::span<glm::vec4> p) {
       enclosure([&] { return r.uniform(); }, r.uniform(0.3, 0.9), p);
       p[5] = four(r.uniform(0, 3), r.uniform(0, 3), r.uniform(0, 3));
     };
-    c.twin("one sweep", {.probe = 6, .stride = 6, .draw = draw, .truth = of(swept),
-            .mistakes = {{{"transposed", "rows and columns are exchanged: gathering takes F from i to j, F[3 i + j]"}, of([](Point p, glm::dvec3 b) { const Rows f = rowsOf(p); return glm::dvec3(p[0]) + glm::dvec3(p[1]) * (f[0] * b.x + f[1] * b.y + f[2] * b.z); })},
-                         {{"lost-emission", "the emission is lost"}, of([](Point p, glm::dvec3 b) { return swept(p, b) - glm::dvec3(p[0]); })},
-                         {{"lost-reflectance", "the reflectance is lost: all light would be reflected"}, of([](Point p, glm::dvec3 b) { return glm::dvec3(p[0]) + (swept(p, b) - glm::dvec3(p[0])) / glm::dvec3(p[1]); })},
-                         {{"wrong-reflectance", "the reflectance is that of the patch that gathers, i, not of the one that is seen"}, of([](Point p, glm::dvec3 b) { const Rows f = rowsOf(p); const glm::dvec3 rb = glm::dvec3(p[1]) * b; return glm::dvec3(p[0]) + glm::dvec3(glm::dot(f[0], rb), glm::dot(f[1], rb), glm::dot(f[2], rb)); })},
-                         {{"gauss-seidel", "that is Gauss and Seidel's sweep, which uses new values at once; Jacobi's uses the old alone"}, of([](Point p, glm::dvec3 b) { for (int i = 0; i < 3; ++i) b[i] = swept(p, b)[i]; return b; })},
-                         {{"adds-up", "the new radiosity replaces the old, it is not added"}, of([](Point p, glm::dvec3 b) { return b + swept(p, b) - glm::dvec3(p[0]); })}}}) &&
-        c.twin("two hundred sweeps: the solution", {.probe = 7, .stride = 6, .draw = draw, .truth = [](Point p) { return glm::dvec4(solved(p), 0.0); }, .points = 256});
+    c.twin(
+        "one sweep",
+        {.probe = 6,
+         .stride = 6,
+         .draw = draw,
+         .truth = of(swept),
+         .mistakes = {{{"transposed", "rows and columns are exchanged: gathering takes F from i to j, F[3 i + j]"},
+                       of([](Point p, glm::dvec3 b) {
+                         const Rows f = rowsOf(p);
+                         return glm::dvec3(p[0]) + glm::dvec3(p[1]) * (f[0] * b.x + f[1] * b.y + f[2] * b.z);
+                       })},
+                      {{"lost-emission", "the emission is lost"},
+                       of([](Point p, glm::dvec3 b) { return swept(p, b) - glm::dvec3(p[0]); })},
+                      {{"lost-reflectance", "the reflectance is lost: all light would be reflected"},
+                       of([](Point p, glm::dvec3 b) {
+                         return glm::dvec3(p[0]) + (swept(p, b) - glm::dvec3(p[0])) / glm::dvec3(p[1]);
+                       })},
+                      {{"wrong-reflectance",
+                        "the reflectance is that of the patch that gathers, i, not of the one that is seen"},
+                       of([](Point p, glm::dvec3 b) {
+                         const Rows f = rowsOf(p);
+                         const glm::dvec3 rb = glm::dvec3(p[1]) * b;
+                         return glm::dvec3(p[0]) +
+                                glm::dvec3(glm::dot(f[0], rb), glm::dot(f[1], rb), glm::dot(f[2], rb));
+                       })},
+                      {{"gauss-seidel",
+                        "that is Gauss and Seidel's sweep, which uses new values at once; Jacobi's uses the old alone"},
+                       of([](Point p, glm::dvec3 b) {
+                         for (int i = 0; i < 3; ++i) b[i] = swept(p, b)[i];
+                         return b;
+                       })},
+                      {{"adds-up", "the new radiosity replaces the old, it is not added"},
+                       of([](Point p, glm::dvec3 b) { return b + swept(p, b) - glm::dvec3(p[0]); })}}}) &&
+        c.twin("two hundred sweeps: the solution", {.probe = 7,
+                                                    .stride = 6,
+                                                    .draw = draw,
+                                                    .truth = [](Point p) { return glm::dvec4(solved(p), 0.0); },
+                                                    .points = 256});
     // One enclosure of the seed's: error against sweeps.
     std::vector<glm::vec4> box(7);
     int drawn = 0;
-    enclosure([&] { return c.parameter("enclosure " + std::to_string(++drawn), 0.0, 1.0); }, reflectance, std::span(box).first(5));
+    enclosure([&] { return c.parameter("enclosure " + std::to_string(++drawn), 0.0, 1.0); }, reflectance,
+              std::span(box).first(5));
     const glm::dvec3 truth = solved(box);
-    Curve curve{"Error against sweeps", "sweep", "largest error of a patch; dashed: reflectance to the power of the sweep", {}, {}};
+    Curve curve{"Error against sweeps",
+                "sweep",
+                "largest error of a patch; dashed: reflectance to the power of the sweep",
+                {},
+                {}};
     for (int sweeps = 1; sweeps <= 64; sweeps *= 2) {
       box[6] = four(sweeps);
       const glm::dvec3 off = glm::abs(glm::dvec3(c.run(11, box, 0, 1)[0]) - truth);
@@ -118,16 +226,32 @@ void check(Checks& c) {
     c.curve(curve);
   }
   if (c.task(5)) {
-    const auto of = [](double (*value)(double change, double r)) { return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); }; };
-    c.twin("bound at points", {.probe = 8, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.0, 0.1), r.uniform(0.1, 0.97)); }, .truth = of([](double d, double r) { return d * r / (1.0 - r); }),
-            .mistakes = {{{"change-is-no-error", "the last change is not the error: the changes to come add up"}, of([](double d, double) { return d; })}, {{"one-sweep-late", "that bounds the error before the sweep; the sweep itself is done: times the reflectance"}, of([](double d, double r) { return d / (1.0 - r); })},
-                         {{"next-change-alone", "that is the next change alone: all that follow count"}, of([](double d, double r) { return d * r; })}, {{"inverted", "the bound grows with the reflectance"}, of([](double d, double r) { return d * (1.0 - r) / r; })}}}) &&
-        c.twin("the truth lies within your bound", {.probe = 9, .stride = 6,
-                .draw = [](Random& r, std::span<glm::vec4> p) {
-                  enclosure([&] { return r.uniform(); }, r.uniform(0.3, 0.95), p);
-                  p[5] = four(solved(p));
-                },
-                .truth = [](Point) { return glm::dvec4(1.0); }, .points = 256});
+    const auto of = [](double (*value)(double change, double r)) {
+      return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
+    };
+    c.twin("bound at points",
+           {.probe = 8,
+            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.0, 0.1), r.uniform(0.1, 0.97)); },
+            .truth = of([](double d, double r) { return d * r / (1.0 - r); }),
+            .mistakes = {{{"change-is-no-error", "the last change is not the error: the changes to come add up"},
+                          of([](double d, double) { return d; })},
+                         {{"one-sweep-late",
+                           "that bounds the error before the sweep; the sweep itself is done: times the reflectance"},
+                          of([](double d, double r) { return d / (1.0 - r); })},
+                         {{"next-change-alone", "that is the next change alone: all that follow count"},
+                          of([](double d, double r) { return d * r; })},
+                         {{"inverted", "the bound grows with the reflectance"},
+                          of([](double d, double r) { return d * (1.0 - r) / r; })}}}) &&
+        c.twin("the truth lies within your bound", {.probe = 9,
+                                                    .stride = 6,
+                                                    .draw =
+                                                        [](Random& r, std::span<glm::vec4> p) {
+                                                          enclosure([&] { return r.uniform(); }, r.uniform(0.3, 0.95),
+                                                                    p);
+                                                          p[5] = four(solved(p));
+                                                        },
+                                                    .truth = [](Point) { return glm::dvec4(1.0); },
+                                                    .points = 256});
   }
   c.figure("form factor", factor);
   c.figure("published", 1.0 + x * x + y * y);
@@ -137,7 +261,16 @@ void check(Checks& c) {
 }  // namespace
 
 extern const Lab kHemicubesLab;
-const Lab kHemicubesLab{6, "hemicubes", "Hemicubes: delta form factors, sweeps and an honest stop",
-                        {{1, "deltaTop", 15, {}}, {2, "deltaSide", 15, {}}, {3, "pixelDirection", 15, {}}, {4, "sweep", 15, {}}, {5, "errorBound", 15, {4}}, {6, "together: form factors of a square", 10, {1, 2}}}, 15, check};
+const Lab kHemicubesLab{6,
+                        "hemicubes",
+                        "Hemicubes: delta form factors, sweeps and an honest stop",
+                        {{1, "deltaTop", 15, {}},
+                         {2, "deltaSide", 15, {}},
+                         {3, "pixelDirection", 15, {}},
+                         {4, "sweep", 15, {}},
+                         {5, "errorBound", 15, {4}},
+                         {6, "together: form factors of a square", 10, {1, 2}}},
+                        15,
+                        check};
 
 }  // namespace lucerna::demo::labs

@@ -13,7 +13,9 @@ constexpr double kPi = std::numbers::pi;
 
 glm::vec4 four(double x, double y = 0.0, double z = 0.0, double w = 0.0) { return glm::vec4(glm::dvec4(x, y, z, w)); }
 
-double phase(double cosine, double g) { return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5)); }
+double phase(double cosine, double g) {
+  return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
+}
 /// Share of cosines below `cosine`.
 double phaseBelow(double cosine, double g) {
   if (std::abs(g) < 1e-9) return 0.5 * (1.0 + cosine);
@@ -32,56 +34,116 @@ std::vector<double> phaseShares(double g, double (*below)(double, double)) {
 }
 
 void check(Checks& c) {
-  const double g = c.yours("g", 0.3, 0.85), scattering = c.yours("scattering", 0.5, 2.0), absorption = c.yours("absorption", 0.1, 0.5), depth = c.yours("depth", 0.5, 2.0);
+  const double g = c.yours("g", 0.3, 0.85), scattering = c.yours("scattering", 0.5, 2.0),
+               absorption = c.yours("absorption", 0.1, 0.5), depth = c.yours("depth", 0.5, 2.0);
   const double table = c.yours("table", 0.5, 9.0), millilitres = c.yours("millilitres", 15.0, 600.0, 0);
   const double extinction = scattering + absorption;
-  c.answer("transmittance", std::exp(-extinction * depth), 0.005,
-           {{{"absorption-alone", "scattering takes light away too: extinction is both"}, std::exp(-absorption * depth)}, {{"scattering-alone", "absorption takes light away too: extinction is both"}, std::exp(-scattering * depth)}});
+  c.answer(
+      "transmittance", std::exp(-extinction * depth), 0.005,
+      {{{"absorption-alone", "scattering takes light away too: extinction is both"}, std::exp(-absorption * depth)},
+       {{"scattering-alone", "absorption takes light away too: extinction is both"}, std::exp(-scattering * depth)}});
   c.answer("free path", 1.0 / extinction, 0.005, {});
-  c.answer("coefficient", table * 0.01 * 23000.0 / millilitres, 0.005, {{{"diluted", "that is the diluted liquid in the tank"}, table * 0.01}});
-  c.answer("way", 2.0 * depth, 0.005, {{{"straight", "that is the way straight through; light enters at all angles"}, depth}});
+  c.answer("coefficient", table * 0.01 * 23000.0 / millilitres, 0.005,
+           {{{"diluted", "that is the diluted liquid in the tank"}, table * 0.01}});
+  c.answer("way", 2.0 * depth, 0.005,
+           {{{"straight", "that is the way straight through; light enters at all angles"}, depth}});
 
   if (c.task(1)) {
-    const auto of = [](double (*value)(double cosine, double g)) { return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); }; };
-    c.twin("phase function at points", {.probe = 1, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(-0.9, 0.9)); }, .truth = of(phase),
-            .mistakes = {{{"g-negated", "g has the wrong sign: positive g scatters forward"}, of([](double x, double h) { return phase(x, -h); })},
-                         {{"two-pi", "2 pi for 4 pi: the phase function integrates to 1 over the whole sphere"}, of([](double x, double h) { return 2.0 * phase(x, h); })},
-                         {{"lost-four-pi", "1 / (4 pi) is lost"}, of([](double x, double h) { return 4.0 * kPi * phase(x, h); })},
-                         {{"power", "the denominator has the power 3/2"}, of([](double x, double h) { return (1.0 - h * h) / (4.0 * kPi * (1.0 + h * h - 2.0 * h * x)); })},
-                         {{"power", "the denominator has the power 3/2"}, of([](double x, double h) { return (1.0 - h * h) / (4.0 * kPi * std::sqrt(1.0 + h * h - 2.0 * h * x)); })},
+    const auto of = [](double (*value)(double cosine, double g)) {
+      return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
+    };
+    c.twin("phase function at points",
+           {.probe = 1,
+            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(-0.9, 0.9)); },
+            .truth = of(phase),
+            .mistakes = {{{"g-negated", "g has the wrong sign: positive g scatters forward"},
+                          of([](double x, double h) { return phase(x, -h); })},
+                         {{"two-pi", "2 pi for 4 pi: the phase function integrates to 1 over the whole sphere"},
+                          of([](double x, double h) { return 2.0 * phase(x, h); })},
+                         {{"lost-four-pi", "1 / (4 pi) is lost"},
+                          of([](double x, double h) { return 4.0 * kPi * phase(x, h); })},
+                         {{"power", "the denominator has the power 3/2"}, of([](double x, double h) {
+                            return (1.0 - h * h) / (4.0 * kPi * (1.0 + h * h - 2.0 * h * x));
+                          })},
+                         {{"power", "the denominator has the power 3/2"}, of([](double x, double h) {
+                            return (1.0 - h * h) / (4.0 * kPi * std::sqrt(1.0 + h * h - 2.0 * h * x));
+                          })},
                          {{"isotropic", "g is ignored"}, of([](double, double) { return 0.25 / kPi; })}}}) &&
         c.mean("its integral over the sphere is 1", {.probe = 2, .inputs = {four(g)}, .expected = 1.0});
   }
   if (c.task(2)) {
     const double other = c.fresh(-0.8, -0.2);
-    const auto bin = [](double h) { return [h](const glm::vec4& v) { return v.x < -1.0f - 1e-5f || v.x > 1.0f + 1e-5f ? -1 : std::clamp(static_cast<int>(kBins * phaseBelow(std::clamp(double(v.x), -1.0, 1.0), h)), 0, kBins - 1); }; };
+    const auto bin = [](double h) {
+      return [h](const glm::vec4& v) {
+        return v.x < -1.0f - 1e-5f || v.x > 1.0f + 1e-5f
+                   ? -1
+                   : std::clamp(static_cast<int>(kBins * phaseBelow(std::clamp(double(v.x), -1.0, 1.0), h)), 0,
+                                kBins - 1);
+      };
+    };
     const auto wrongs = [&](double h) {
-      return std::vector<ChiSquare::Wrong>{{{"g-negated", "g has the wrong sign: positive g scatters forward"}, phaseShares(h, [](double x, double k) { return phaseBelow(x, -k); })},
-                                           {{"isotropic", "the directions do not depend on g"}, phaseShares(h, [](double x, double) { return 0.5 * (1.0 + x); })},
-                                           {{"half-g", "g counts wrong: the mean cosine must be g"}, phaseShares(h, [](double x, double k) { return phaseBelow(x, 0.5 * k); })},
-                                           {{"half-g", "g counts wrong: the mean cosine must be g"}, phaseShares(h, [](double x, double k) { return phaseBelow(x, k * k); })}};
+      return std::vector<ChiSquare::Wrong>{{{"g-negated", "g has the wrong sign: positive g scatters forward"},
+                                            phaseShares(h, [](double x, double k) { return phaseBelow(x, -k); })},
+                                           {{"isotropic", "the directions do not depend on g"},
+                                            phaseShares(h, [](double x, double) { return 0.5 * (1.0 + x); })},
+                                           {{"half-g", "g counts wrong: the mean cosine must be g"},
+                                            phaseShares(h, [](double x, double k) { return phaseBelow(x, 0.5 * k); })},
+                                           {{"half-g", "g counts wrong: the mean cosine must be g"},
+                                            phaseShares(h, [](double x, double k) { return phaseBelow(x, k * k); })}};
     };
     const std::vector<double> even(kBins, 1.0 / kBins);
-    c.mean("the mean cosine is g", {.probe = 4, .inputs = {four(g)}, .expected = static_cast<float>(g),
-            .mistakes = {{{"g-negated", "g has the wrong sign: positive g scatters forward"}, -g}, {{"isotropic", "the directions do not depend on g"}, 0.0}, {{"half-g", "g counts wrong: the mean cosine must be g"}, g * g}}}) &&
-        c.chiSquare("cosines, 32 bins", {.probe = 3, .inputs = {four(g)}, .bin = bin(g), .shares = even, .mistakes = wrongs(g)}) &&
-        c.chiSquare("backward scattering, 32 bins", {.probe = 3, .inputs = {four(other)}, .bin = bin(other), .shares = even, .mistakes = wrongs(other)}) &&
-        c.chiSquare("isotropic scattering, 32 bins", {.probe = 3, .inputs = {four(0.0)}, .bin = bin(0.0), .shares = even});
+    c.mean("the mean cosine is g",
+           {.probe = 4,
+            .inputs = {four(g)},
+            .expected = static_cast<float>(g),
+            .mistakes = {{{"g-negated", "g has the wrong sign: positive g scatters forward"}, -g},
+                         {{"isotropic", "the directions do not depend on g"}, 0.0},
+                         {{"half-g", "g counts wrong: the mean cosine must be g"}, g * g}}}) &&
+        c.chiSquare("cosines, 32 bins",
+                    {.probe = 3, .inputs = {four(g)}, .bin = bin(g), .shares = even, .mistakes = wrongs(g)}) &&
+        c.chiSquare(
+            "backward scattering, 32 bins",
+            {.probe = 3, .inputs = {four(other)}, .bin = bin(other), .shares = even, .mistakes = wrongs(other)}) &&
+        c.chiSquare("isotropic scattering, 32 bins",
+                    {.probe = 3, .inputs = {four(0.0)}, .bin = bin(0.0), .shares = even});
   }
   if (c.task(3)) {
-    const auto of = [](double (*value)(double u, double s, double a)) { return [=](Point p) { return glm::dvec4(value(p[0].z, p[0].x, p[0].y)); }; };
-    const auto bin = [&](const glm::vec4& v) { return v.x < 0.0f ? -1 : std::min(kBins - 1, static_cast<int>(kBins * -std::expm1(-extinction * v.x))); };
-    const auto shares = [&](double sigma) {  // bins end where the transmittance of the right extinction is 1 - k / kBins
-      std::vector<double> s;
-      for (int k = 0; k < kBins; ++k) s.push_back(std::pow(1.0 - double(k) / kBins, sigma / extinction) - (k + 1 < kBins ? std::pow(1.0 - (k + 1.0) / kBins, sigma / extinction) : 0.0));
-      return s;
+    const auto of = [](double (*value)(double u, double s, double a)) {
+      return [=](Point p) { return glm::dvec4(value(p[0].z, p[0].x, p[0].y)); };
     };
-    c.chiSquare("distances, 32 bins", {.probe = 5, .inputs = {four(scattering, absorption)}, .bin = bin, .shares = shares(extinction),
-                 .mistakes = {{{"absorption-alone", "light collides by scattering and by absorption: extinction is both"}, shares(absorption)}, {{"scattering-alone", "light collides by scattering and by absorption: extinction is both"}, shares(scattering)},
-                              {{"extinction-inverted", "the mean distance is 1 / extinction"}, shares(1.0 / extinction)}, {{"extinction-lost", "the distance does not depend on the medium"}, shares(1.0)}}}) &&
-        c.twin("distance falls with extinction", {.probe = 6, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.1, 3), r.uniform(0.1, 3), r.uniform(0.05, 0.95)); },
+    const auto bin = [&](const glm::vec4& v) {
+      return v.x < 0.0f ? -1 : std::min(kBins - 1, static_cast<int>(kBins * -std::expm1(-extinction * v.x)));
+    };
+    const auto shares =
+        [&](double sigma) {  // bins end where the transmittance of the right extinction is 1 - k / kBins
+          std::vector<double> s;
+          for (int k = 0; k < kBins; ++k)
+            s.push_back(std::pow(1.0 - double(k) / kBins, sigma / extinction) -
+                        (k + 1 < kBins ? std::pow(1.0 - (k + 1.0) / kBins, sigma / extinction) : 0.0));
+          return s;
+        };
+    c.chiSquare(
+        "distances, 32 bins",
+        {.probe = 5,
+         .inputs = {four(scattering, absorption)},
+         .bin = bin,
+         .shares = shares(extinction),
+         .mistakes = {{{"absorption-alone", "light collides by scattering and by absorption: extinction is both"},
+                       shares(absorption)},
+                      {{"scattering-alone", "light collides by scattering and by absorption: extinction is both"},
+                       shares(scattering)},
+                      {{"extinction-inverted", "the mean distance is 1 / extinction"}, shares(1.0 / extinction)},
+                      {{"extinction-lost", "the distance does not depend on the medium"}, shares(1.0)}}}) &&
+        c.twin("distance falls with extinction",
+               {.probe = 6,
+                .draw =
+                    [](Random& r, std::span<glm::vec4> p) {
+                      p[0] = four(r.uniform(0.1, 3), r.uniform(0.1, 3), r.uniform(0.05, 0.95));
+                    },
                 .truth = of([](double u, double s, double a) { return -std::log1p(-u) / (s + a); }),
-                .mistakes = {{{"other-inversion", "log(u) has the right distribution but runs out of [0,1) at u = 0: -log(1 - u)"}, of([](double u, double s, double a) { return -std::log(u) / (s + a); })}}});
+                .mistakes = {{{"other-inversion",
+                               "log(u) has the right distribution but runs out of [0,1) at u = 0: -log(1 - u)"},
+                              of([](double u, double s, double a) { return -std::log(u) / (s + a); })}}});
   }
   if (c.task(4)) {
     const double base = c.fresh(0.3, 0.8), slope = c.fresh(0.5, 1.5), majorant = base + 2.0 * slope + 0.2;
@@ -93,31 +155,59 @@ void check(Checks& c) {
       s.push_back(transmittance(2.0));
       return s;
     };
-    c.chiSquare("collisions in a medium that thickens, 17 bins", {.probe = 7, .inputs = {four(base, slope, majorant, 2.0)},
-                 .bin = [](const glm::vec4& v) { return v.x < 0.0f || v.x > 2.0f ? -1 : v.x >= 2.0f ? 16 : static_cast<int>(8.0f * v.x); }, .shares = shares([&](double t) { return std::exp(-depthAt(t)); }),
-                 .mistakes = {{{"null-collisions-count", "every candidate counts: accept one with probability extinction / majorant alone"}, shares([&](double t) { return std::exp(-majorant * t); })},
-                              {{"slope-lost", "the extinction of the beginning is used all the way"}, shares([&](double t) { return std::exp(-base * t); })},
-                              {{"restarts", "after a null collision the flight goes on from there, it does not begin anew"}, shares([&](double t) { return 1.0 - t / 2.0; })},
-                              {{"accepts-complement", "accepted and null collisions are exchanged"}, shares([&](double t) { return std::exp(-(majorant * t - depthAt(t))); })}}}) &&
-        c.picture("wedge", {.probe = 11, .inputs = {four(scattering * 0.3)},
-                   .reference = [&](glm::ivec2 p) {
-                     const double length = 2.0 * (p.x + 0.5) / 96.0, thickens = 2.0 * (p.y + 0.5) / 64.0;
-                     return glm::dvec3(std::exp(-(static_cast<float>(scattering * 0.3) * length + 0.5 * thickens * length * length)));
-                   },
-                   .caption = "Light that gets through a wedge of fog: to the right it is longer, to the bottom it thickens faster; 64 flights a pixel, the reference is exact"});
+    c.chiSquare(
+        "collisions in a medium that thickens, 17 bins",
+        {.probe = 7,
+         .inputs = {four(base, slope, majorant, 2.0)},
+         .bin =
+             [](const glm::vec4& v) {
+               return v.x < 0.0f || v.x > 2.0f ? -1 : v.x >= 2.0f ? 16 : static_cast<int>(8.0f * v.x);
+             },
+         .shares = shares([&](double t) { return std::exp(-depthAt(t)); }),
+         .mistakes = {{{"null-collisions-count",
+                        "every candidate counts: accept one with probability extinction / majorant alone"},
+                       shares([&](double t) { return std::exp(-majorant * t); })},
+                      {{"slope-lost", "the extinction of the beginning is used all the way"},
+                       shares([&](double t) { return std::exp(-base * t); })},
+                      {{"restarts", "after a null collision the flight goes on from there, it does not begin anew"},
+                       shares([&](double t) { return 1.0 - t / 2.0; })},
+                      {{"accepts-complement", "accepted and null collisions are exchanged"},
+                       shares([&](double t) { return std::exp(-(majorant * t - depthAt(t))); })}}}) &&
+        c.picture("wedge", {.probe = 11,
+                            .inputs = {four(scattering * 0.3)},
+                            .reference =
+                                [&](glm::ivec2 p) {
+                                  const double length = 2.0 * (p.x + 0.5) / 96.0, thickens = 2.0 * (p.y + 0.5) / 64.0;
+                                  return glm::dvec3(std::exp(-(static_cast<float>(scattering * 0.3) * length +
+                                                               0.5 * thickens * length * length)));
+                                },
+                            .caption = "Light that gets through a wedge of fog: to the right it is longer, to the "
+                                       "bottom it thickens faster; 64 flights a pixel, the reference is exact"});
   }
   if (c.task(5)) {
-    const auto of = [](double (*value)(double t, double ml)) { return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); }; };
-    c.twin("coefficient at points", {.probe = 8, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.01, 10), r.uniform(5, 2000)); }, .truth = of([](double t, double ml) { return t * 230.0 / ml; }),
-            .mistakes = {{{"unit", "the tables are in 1e-2 / mm"}, of([](double t, double ml) { return t * 23000.0 / ml; })}, {{"diluted", "that is the diluted liquid: divide by the share of it in the tank"}, of([](double t, double) { return t * 0.01; })},
-                         {{"inverted", "the natural liquid is denser than the diluted one, not thinner"}, of([](double t, double ml) { return t * 0.01 * ml / 23000.0; })},
-                         {{"tank", "the share is liquid / tank: 23 litres of water take the liquid in, all is 23 litres"}, of([](double t, double ml) { return t * 0.01 * (23000.0 + ml) / ml; })}}});
+    const auto of = [](double (*value)(double t, double ml)) {
+      return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
+    };
+    c.twin("coefficient at points",
+           {.probe = 8,
+            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.01, 10), r.uniform(5, 2000)); },
+            .truth = of([](double t, double ml) { return t * 230.0 / ml; }),
+            .mistakes = {
+                {{"unit", "the tables are in 1e-2 / mm"}, of([](double t, double ml) { return t * 23000.0 / ml; })},
+                {{"diluted", "that is the diluted liquid: divide by the share of it in the tank"},
+                 of([](double t, double) { return t * 0.01; })},
+                {{"inverted", "the natural liquid is denser than the diluted one, not thinner"},
+                 of([](double t, double ml) { return t * 0.01 * ml / 23000.0; })},
+                {{"tank", "the share is liquid / tank: 23 litres of water take the liquid in, all is 23 litres"},
+                 of([](double t, double ml) { return t * 0.01 * (23000.0 + ml) / ml; })}}});
   }
   if (c.task(6)) {
     // [vanDeHulst1980, table 35]: optical depth 2, albedo 0.9, g = 0.75, normal incidence.
     const std::vector<glm::vec4> slab{four(2.0, 0.9, 0.1, 0.75), four(0.0)}, through{slab[0], four(1.0)};
-    c.mean("slab: reflectance by van de Hulst's table", {.probe = 9, .inputs = slab, .expected = 0.0973946}) && c.mean("slab: transmittance by van de Hulst's table", {.probe = 9, .inputs = through, .expected = 0.6609577}) &&
-        c.mean("mean way through your slab without absorption", {.probe = 10, .inputs = {four(depth, scattering, 0.0, g)}, .expected = 2.0 * static_cast<float>(depth)});
+    c.mean("slab: reflectance by van de Hulst's table", {.probe = 9, .inputs = slab, .expected = 0.0973946}) &&
+        c.mean("slab: transmittance by van de Hulst's table", {.probe = 9, .inputs = through, .expected = 0.6609577}) &&
+        c.mean("mean way through your slab without absorption",
+               {.probe = 10, .inputs = {four(depth, scattering, 0.0, g)}, .expected = 2.0 * static_cast<float>(depth)});
   }
   c.figure("transmittance", std::exp(-extinction * depth));
   c.figure("free path", 1.0 / extinction);
@@ -128,7 +218,16 @@ void check(Checks& c) {
 }  // namespace
 
 extern const Lab kMediaLab;
-const Lab kMediaLab{8, "media", "Participating media: phase functions, free flights, real liquids",
-                    {{1, "henyeyGreenstein", 15, {}}, {2, "sampleHenyeyGreenstein", 20, {}}, {3, "freeFlight", 15, {}}, {4, "deltaTracking", 15, {}}, {5, "naturalCoefficient", 5, {}}, {6, "together: photons in a slab", 15, {2, 3}}}, 15, check};
+const Lab kMediaLab{8,
+                    "media",
+                    "Participating media: phase functions, free flights, real liquids",
+                    {{1, "henyeyGreenstein", 15, {}},
+                     {2, "sampleHenyeyGreenstein", 20, {}},
+                     {3, "freeFlight", 15, {}},
+                     {4, "deltaTracking", 15, {}},
+                     {5, "naturalCoefficient", 5, {}},
+                     {6, "together: photons in a slab", 15, {2, 3}}},
+                    15,
+                    check};
 
 }  // namespace lucerna::demo::labs

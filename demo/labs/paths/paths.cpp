@@ -14,45 +14,85 @@ glm::vec4 four(double x, double y = 0.0, double z = 0.0, double w = 0.0) { retur
 glm::vec4 four(const glm::dvec3& v, double w = 0.0) { return four(v.x, v.y, v.z, w); }
 
 void check(Checks& c) {
-  const double albedo = c.yours("albedo", 0.4, 0.8), emission = c.yours("emission", 0.5, 2.0), survival = c.yours("survival", 0.82, 0.9);
-  const double side = c.yours("lamp side", 0.8, 1.4), height = c.yours("lamp height", 0.3, 0.6), away = c.yours("lamp away", 0.2, 0.9);
+  const double albedo = c.yours("albedo", 0.4, 0.8), emission = c.yours("emission", 0.5, 2.0),
+               survival = c.yours("survival", 0.82, 0.9);
+  const double side = c.yours("lamp side", 0.8, 1.4), height = c.yours("lamp height", 0.3, 0.6),
+               away = c.yours("lamp away", 0.2, 0.9);
   const double error = c.yours("error at 64", 0.01, 0.05), wanted = c.yours("error wanted", 0.001, 0.004, 4);
   const double light = albedo / kPi * squareLampIrradiance(side, height, {away, 0.0, 0.0});
-  c.answer("samples", 64.0 * std::pow(error / wanted, 2.0), 0.02, {{{"linear", "the error falls with the square root of the samples"}, 64.0 * error / wanted}});
-  c.answer("bounces", survival / (1.0 - survival), 0.005, {{{"one-off", "the mean of a geometric distribution that begins at 0, not at 1"}, 1.0 / (1.0 - survival)}});
-  c.answer("furnace", emission / (1.0 - albedo), 0.005, {{{"survival-counts", "survival changes the noise, not the mean"}, emission / (1.0 - albedo * survival)}});
+  c.answer("samples", 64.0 * std::pow(error / wanted, 2.0), 0.02,
+           {{{"linear", "the error falls with the square root of the samples"}, 64.0 * error / wanted}});
+  c.answer("bounces", survival / (1.0 - survival), 0.005,
+           {{{"one-off", "the mean of a geometric distribution that begins at 0, not at 1"}, 1.0 / (1.0 - survival)}});
+  c.answer("furnace", emission / (1.0 - albedo), 0.005,
+           {{{"survival-counts", "survival changes the noise, not the mean"}, emission / (1.0 - albedo * survival)}});
 
   if (c.task(1)) {
-    const auto of = [](double (*value)(double a, double b)) { return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); }; };
-    const Mistake swapped{"swapped", "the weights are exchanged: a strategy counts where its own density is the greater"};
-    c.twin("weight at points", {.probe = 1, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.0, 3.0), r.uniform(0.0, 3.0)); if (r.uniform() < 0.05) p[0] = four(0.0, 0.0); },
+    const auto of = [](double (*value)(double a, double b)) {
+      return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
+    };
+    const Mistake swapped{"swapped",
+                          "the weights are exchanged: a strategy counts where its own density is the greater"};
+    c.twin("weight at points",
+           {.probe = 1,
+            .draw =
+                [](Random& r, std::span<glm::vec4> p) {
+                  p[0] = four(r.uniform(0.0, 3.0), r.uniform(0.0, 3.0));
+                  if (r.uniform() < 0.05) p[0] = four(0.0, 0.0);
+                },
             .truth = of([](double a, double b) { return a > 0.0 ? a / (a + b) : 0.0; }),
-            .mistakes = {{{"double-counting", "both strategies count whole: light is counted twice"}, of([](double, double) { return 1.0; })}, {{"double-counting", "both strategies count whole: light is counted twice"}, of([](double a, double) { return a > 0.0 ? 1.0 : 0.0; })},
-                         {swapped, of([](double a, double b) { return b > 0.0 ? b / (a + b) : 0.0; })}, {{"half", "half each is unbiased, but keeps the noise of the worse strategy: weigh by the densities"}, of([](double, double) { return 0.5; })},
-                         {{"power-heuristic", "that is the power heuristic; the balance heuristic is asked for"}, of([](double a, double b) { return a > 0.0 ? a * a / (a * a + b * b) : 0.0; })},
-                         {{"maximum", "that is the maximum heuristic; the balance heuristic is asked for"}, of([](double a, double b) { return a > b ? 1.0 : 0.0; })}}}) &&
+            .mistakes = {{{"double-counting", "both strategies count whole: light is counted twice"},
+                          of([](double, double) { return 1.0; })},
+                         {{"double-counting", "both strategies count whole: light is counted twice"},
+                          of([](double a, double) { return a > 0.0 ? 1.0 : 0.0; })},
+                         {swapped, of([](double a, double b) { return b > 0.0 ? b / (a + b) : 0.0; })},
+                         {{"half",
+                           "half each is unbiased, but keeps the noise of the worse strategy: weigh by the densities"},
+                          of([](double, double) { return 0.5; })},
+                         {{"power-heuristic", "that is the power heuristic; the balance heuristic is asked for"},
+                          of([](double a, double b) { return a > 0.0 ? a * a / (a * a + b * b) : 0.0; })},
+                         {{"maximum", "that is the maximum heuristic; the balance heuristic is asked for"},
+                          of([](double a, double b) { return a > b ? 1.0 : 0.0; })}}}) &&
         c.mean("the two weights make one", {.probe = 2, .expected = 1.0});
   }
   if (c.task(2)) {
     const auto of = [](double (*value)(double l, double a, double cosX, double cosY, double d, double pdf)) {
       return [=](Point p) {
         const glm::dvec3 way = glm::dvec3(p[1]) - glm::dvec3(p[0]), w = glm::normalize(way);
-        return glm::dvec4(value(p[3].x, p[3].y, std::max(0.0, w.z), -glm::dot(glm::dvec3(p[2]), w), glm::length(way), p[3].z));
+        return glm::dvec4(
+            value(p[3].x, p[3].y, std::max(0.0, w.z), -glm::dot(glm::dvec3(p[2]), w), glm::length(way), p[3].z));
       };
     };
 #define LIGHT [](double l, double a, double cx, double cy, double d, double pdf)
-    c.twin("lamp's part at points", {.probe = 3, .stride = 4,
-            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.direction() * 0.5), p[1] = four(r.direction() * r.uniform(1.0, 4.0)), p[2] = four(r.direction()), p[3] = four(r.uniform(0.1, 5.0), r.uniform(0.05, 1.0), r.uniform(0.1, 3.0)); },
+    c.twin("lamp's part at points",
+           {.probe = 3,
+            .stride = 4,
+            .draw =
+                [](Random& r, std::span<glm::vec4> p) {
+                  p[0] = four(r.direction() * 0.5), p[1] = four(r.direction() * r.uniform(1.0, 4.0)),
+                  p[2] = four(r.direction()),
+                  p[3] = four(r.uniform(0.1, 5.0), r.uniform(0.05, 1.0), r.uniform(0.1, 3.0));
+                },
             .truth = of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) / pdf; }),
-            .mistakes = {{{"lost-pi", "1 / pi of Lambert's BRDF is lost"}, of(LIGHT { return l * a * cx * std::max(0.0, cy) / (d * d) / pdf; })},
-                         {{"no-area-to-solid-angle", "the lamp's cosine and 1 / d^2 are lost: an area is not a solid angle"}, of(LIGHT { return l * a / kPi * cx / pdf + 0.0 * (cy + d); })},
-                         {{"lost-lamp-cosine", "the cosine at the lamp is lost"}, of(LIGHT { return l * a / kPi * cx / (d * d) / pdf + 0.0 * cy; })},
-                         {{"lost-cosine", "the cosine at x is lost"}, of(LIGHT { return l * a / kPi * std::max(0.0, cy) / (d * d) / pdf + 0.0 * cx; })},
-                         {{"distance-not-squared", "the distance must be squared"}, of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / d / pdf; })},
-                         {{"lost-density", "the density is lost: value / density"}, of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) + 0.0 * pdf; })},
-                         {{"wrong-side", "the lamp's back shines: its cosine has the wrong sign"}, of(LIGHT { return l * a / kPi * cx * std::max(0.0, -cy) / (d * d) / pdf; })},
-                         {{"no-clamp", "the lamp's back gives negative light"}, of(LIGHT { return l * a / kPi * cx * cy / (d * d) / pdf; })}}}) &&
-        c.mean("light of a square lamp", {.probe = 4, .inputs = {four(side, height, albedo), four(away)}, .expected = light});
+            .mistakes = {{{"lost-pi", "1 / pi of Lambert's BRDF is lost"},
+                          of(LIGHT { return l * a * cx * std::max(0.0, cy) / (d * d) / pdf; })},
+                         {{"no-area-to-solid-angle",
+                           "the lamp's cosine and 1 / d^2 are lost: an area is not a solid angle"},
+                          of(LIGHT { return l * a / kPi * cx / pdf + 0.0 * (cy + d); })},
+                         {{"lost-lamp-cosine", "the cosine at the lamp is lost"},
+                          of(LIGHT { return l * a / kPi * cx / (d * d) / pdf + 0.0 * cy; })},
+                         {{"lost-cosine", "the cosine at x is lost"},
+                          of(LIGHT { return l * a / kPi * std::max(0.0, cy) / (d * d) / pdf + 0.0 * cx; })},
+                         {{"distance-not-squared", "the distance must be squared"},
+                          of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / d / pdf; })},
+                         {{"lost-density", "the density is lost: value / density"},
+                          of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) + 0.0 * pdf; })},
+                         {{"wrong-side", "the lamp's back shines: its cosine has the wrong sign"},
+                          of(LIGHT { return l * a / kPi * cx * std::max(0.0, -cy) / (d * d) / pdf; })},
+                         {{"no-clamp", "the lamp's back gives negative light"},
+                          of(LIGHT { return l * a / kPi * cx * cy / (d * d) / pdf; })}}}) &&
+        c.mean("light of a square lamp",
+               {.probe = 4, .inputs = {four(side, height, albedo), four(away)}, .expected = light});
 #undef LIGHT
   }
   if (c.task(3)) {
@@ -63,34 +103,62 @@ void check(Checks& c) {
         return glm::dvec4(cosine > 0.0 ? value(cosine, glm::length(way), p[2].w) : 0.0);
       };
     };
-    c.twin("density at points", {.probe = 5, .stride = 3,
+    c.twin("density at points",
+           {.probe = 5,
+            .stride = 3,
             // The lamp is never seen quite edge-on: the density is infinite there.
-            .draw = [](Random& r, std::span<glm::vec4> p) {
-              double cosine = 0.0;
-              while (std::abs(cosine) < 0.05) {
-                p[0] = four(r.direction() * 2.0), p[1] = four(r.direction() * r.uniform(0.0, 1.0)), p[2] = four(r.direction(), r.uniform(0.1, 3.0));
-                cosine = glm::dot(glm::dvec3(p[2]), glm::normalize(glm::dvec3(p[0]) - glm::dvec3(p[1])));
-              }
-            },
+            .draw =
+                [](Random& r, std::span<glm::vec4> p) {
+                  double cosine = 0.0;
+                  while (std::abs(cosine) < 0.05) {
+                    p[0] = four(r.direction() * 2.0), p[1] = four(r.direction() * r.uniform(0.0, 1.0)),
+                    p[2] = four(r.direction(), r.uniform(0.1, 3.0));
+                    cosine = glm::dot(glm::dvec3(p[2]), glm::normalize(glm::dvec3(p[0]) - glm::dvec3(p[1])));
+                  }
+                },
             .truth = of([](double x, double d, double pdf) { return pdf * d * d / x; }),
-            .mistakes = {{{"inverted", "the factor is upside down: d omega = dA cos / d^2, so a density is divided by it"}, of([](double x, double d, double pdf) { return pdf * x / (d * d); })},
-                         {{"lost-lamp-cosine", "the cosine at the lamp is lost"}, of([](double, double d, double pdf) { return pdf * d * d; })}, {{"distance-not-squared", "the distance must be squared"}, of([](double x, double d, double pdf) { return pdf * d / x; })},
-                         {{"no-area-to-solid-angle", "that is still the density over area"}, of([](double, double, double pdf) { return pdf; })},
-                         {{"no-clamp", "where x sees the lamp's back the density is zero"}, [](Point p) { const glm::dvec3 way = glm::dvec3(p[0]) - glm::dvec3(p[1]); return glm::dvec4(p[2].w * glm::dot(way, way) / glm::dot(glm::dvec3(p[2]), glm::normalize(way))); }}}});
+            .mistakes = {
+                {{"inverted", "the factor is upside down: d omega = dA cos / d^2, so a density is divided by it"},
+                 of([](double x, double d, double pdf) { return pdf * x / (d * d); })},
+                {{"lost-lamp-cosine", "the cosine at the lamp is lost"},
+                 of([](double, double d, double pdf) { return pdf * d * d; })},
+                {{"distance-not-squared", "the distance must be squared"},
+                 of([](double x, double d, double pdf) { return pdf * d / x; })},
+                {{"no-area-to-solid-angle", "that is still the density over area"},
+                 of([](double, double, double pdf) { return pdf; })},
+                {{"no-clamp", "where x sees the lamp's back the density is zero"}, [](Point p) {
+                   const glm::dvec3 way = glm::dvec3(p[0]) - glm::dvec3(p[1]);
+                   return glm::dvec4(p[2].w * glm::dot(way, way) / glm::dot(glm::dvec3(p[2]), glm::normalize(way)));
+                 }}}});
   }
   if (c.task(4)) {
     const auto of = [](bool exchanged, double (*after)(double t, double s)) {
-      return [=](Point p) { return (p[0].z < p[0].y) != exchanged ? glm::dvec4(1.0, after(p[0].x, p[0].y), 0.0, 0.0) : glm::dvec4(0.0); };
+      return [=](Point p) {
+        return (p[0].z < p[0].y) != exchanged ? glm::dvec4(1.0, after(p[0].x, p[0].y), 0.0, 0.0) : glm::dvec4(0.0);
+      };
     };
-    c.twin("roulette at points", {.probe = 6,
-            .draw = [](Random& r, std::span<glm::vec4> p) { do p[0] = four(r.uniform(0.1, 2.0), r.uniform(0.05, 0.95), r.uniform()); while (std::abs(p[0].y - p[0].z) < 1e-3f); },
+    c.twin("roulette at points",
+           {.probe = 6,
+            .draw =
+                [](Random& r, std::span<glm::vec4> p) {
+                  do p[0] = four(r.uniform(0.1, 2.0), r.uniform(0.05, 0.95), r.uniform());
+                  while (std::abs(p[0].y - p[0].z) < 1e-3f);
+                },
             .truth = of(false, [](double t, double s) { return t / s; }),
-            .mistakes = {{{"roulette-undivided", "survivors are not divided by the probability of survival: the picture darkens"}, of(false, [](double t, double) { return t; })},
-                         {{"roulette-multiplied", "survivors are multiplied by the probability; they must be divided by it"}, of(false, [](double t, double s) { return t * s; })},
-                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival goes on"}, of(true, [](double t, double s) { return t / s; })},
-                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival goes on"}, of(true, [](double t, double s) { return t / (1.0 - s); })},
-                         {{"roulette-wrong-probability", "divide by the probability of going on, not of ending"}, of(false, [](double t, double s) { return t / (1.0 - s); })},
-                         {{"never-ends", "the path goes on always"}, [](Point p) { return glm::dvec4(1.0, p[0].x / p[0].y, 0.0, 0.0); }}}}) &&
+            .mistakes = {{{"roulette-undivided",
+                           "survivors are not divided by the probability of survival: the picture darkens"},
+                          of(false, [](double t, double) { return t; })},
+                         {{"roulette-multiplied",
+                           "survivors are multiplied by the probability; they must be divided by it"},
+                          of(false, [](double t, double s) { return t * s; })},
+                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival goes on"},
+                          of(true, [](double t, double s) { return t / s; })},
+                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival goes on"},
+                          of(true, [](double t, double s) { return t / (1.0 - s); })},
+                         {{"roulette-wrong-probability", "divide by the probability of going on, not of ending"},
+                          of(false, [](double t, double s) { return t / (1.0 - s); })},
+                         {{"never-ends", "the path goes on always"},
+                          [](Point p) { return glm::dvec4(1.0, p[0].x / p[0].y, 0.0, 0.0); }}}}) &&
         c.mean("throughput is kept on average", {.probe = 7, .inputs = {four(1.5, survival)}, .expected = 1.5});
   }
   if (c.task(5)) {
@@ -98,42 +166,91 @@ void check(Checks& c) {
     const std::vector<glm::vec4> box{four(emission, albedo, survival)};
     const double truth = emission / (1.0 - albedo);
     std::vector<double> shares, endingExchanged;
-    for (int k = 0; k < 16; ++k) shares.push_back(std::pow(survival, k) * (k < 15 ? 1.0 - survival : 1.0)), endingExchanged.push_back(std::pow(1.0 - survival, k) * (k < 15 ? survival : 1.0));
+    for (int k = 0; k < 16; ++k)
+      shares.push_back(std::pow(survival, k) * (k < 15 ? 1.0 - survival : 1.0)),
+          endingExchanged.push_back(std::pow(1.0 - survival, k) * (k < 15 ? survival : 1.0));
     std::vector<double> oneMore(16, 0.0);
-    for (int k = 1; k < 16; ++k) oneMore[static_cast<std::size_t>(k)] = std::pow(survival, k - 1) * (k < 15 ? 1.0 - survival : 1.0);
-    c.mean("radiance in a closed box", {.probe = 9, .inputs = box, .expected = truth,
-            .mistakes = {{{"lost-emission", "the walls' own emission, seen without a reflection, is missing"}, truth - emission},
-                         {{"roulette-undivided", "the throughput that roulette returns is not used: survivors count too little"}, emission / (1.0 - albedo * survival)},
-                         {{"one-bounce", "one reflection is not all: the path goes on until roulette ends it"}, emission * (1.0 + albedo)}, {{"emission-once", "every wall that the path meets emits: add it at each"}, emission}}}) &&
-        c.mean("radiance in another closed box", {.probe = 9, .inputs = {four(otherEmission, otherAlbedo, 0.85)}, .expected = otherEmission / (1.0 - static_cast<float>(otherAlbedo))}) &&
-        c.chiSquare("how often paths are reflected", {.probe = 8, .inputs = box, .bin = [](const glm::vec4& v) { return v.y < -0.5f ? -1 : std::min(15, static_cast<int>(std::lround(v.y))); }, .shares = shares,
-                     .mistakes = {{{"bounces-exchanged", "paths end with the probability of survival"}, endingExchanged}, {{"bounces-one-more", "a path that roulette ends at once was not reflected: count after roulette"}, oneMore},
-                                  {{"no-path", "no path is followed: the result is a formula, not an estimate"}, [] { std::vector<double> s(16, 0.0); s[0] = 1.0; return s; }()}}}) &&
+    for (int k = 1; k < 16; ++k)
+      oneMore[static_cast<std::size_t>(k)] = std::pow(survival, k - 1) * (k < 15 ? 1.0 - survival : 1.0);
+    c.mean("radiance in a closed box",
+           {.probe = 9,
+            .inputs = box,
+            .expected = truth,
+            .mistakes = {{{"lost-emission", "the walls' own emission, seen without a reflection, is missing"},
+                          truth - emission},
+                         {{"roulette-undivided",
+                           "the throughput that roulette returns is not used: survivors count too little"},
+                          emission / (1.0 - albedo * survival)},
+                         {{"one-bounce", "one reflection is not all: the path goes on until roulette ends it"},
+                          emission * (1.0 + albedo)},
+                         {{"emission-once", "every wall that the path meets emits: add it at each"}, emission}}}) &&
+        c.mean("radiance in another closed box",
+               {.probe = 9,
+                .inputs = {four(otherEmission, otherAlbedo, 0.85)},
+                .expected = otherEmission / (1.0 - static_cast<float>(otherAlbedo))}) &&
+        c.chiSquare(
+            "how often paths are reflected",
+            {.probe = 8,
+             .inputs = box,
+             .bin =
+                 [](const glm::vec4& v) { return v.y < -0.5f ? -1 : std::min(15, static_cast<int>(std::lround(v.y))); },
+             .shares = shares,
+             .mistakes = {{{"bounces-exchanged", "paths end with the probability of survival"}, endingExchanged},
+                          {{"bounces-one-more",
+                            "a path that roulette ends at once was not reflected: count after roulette"},
+                           oneMore},
+                          {{"no-path", "no path is followed: the result is a formula, not an estimate"},
+                           [] {
+                             std::vector<double> s(16, 0.0);
+                             s[0] = 1.0;
+                             return s;
+                           }()}}}) &&
         c.mean("each path's radiance by its reflections", {.probe = 10, .inputs = box, .expected = 1.0});
   }
   if (c.task(6)) {
-    const auto of = [](double (*value)(double mean, double meanSquare, double n)) { return [=](Point p) { return glm::dvec4(value(double(p[0].x) / p[0].z, double(p[0].y) / p[0].z, p[0].z)); }; };
-    c.twin("standard error at points", {.probe = 11,
-            .draw = [](Random& r, std::span<glm::vec4> p) {
-              const double n = std::floor(r.uniform(2.0, 100.0)), mean = r.uniform(0.1, 2.0), deviation = r.uniform(0.5, 2.0) * mean;
-              p[0] = four(n * mean, n * (mean * mean + deviation * deviation), n);
-            },
+    const auto of = [](double (*value)(double mean, double meanSquare, double n)) {
+      return [=](Point p) { return glm::dvec4(value(double(p[0].x) / p[0].z, double(p[0].y) / p[0].z, p[0].z)); };
+    };
+    c.twin("standard error at points",
+           {.probe = 11,
+            .draw =
+                [](Random& r, std::span<glm::vec4> p) {
+                  const double n = std::floor(r.uniform(2.0, 100.0)), mean = r.uniform(0.1, 2.0),
+                               deviation = r.uniform(0.5, 2.0) * mean;
+                  p[0] = four(n * mean, n * (mean * mean + deviation * deviation), n);
+                },
             .truth = of([](double m, double q, double n) { return std::sqrt((q - m * m) / (n - 1.0)); }),
-            .mistakes = {{{"deviation-of-a-sample", "that is the deviation of one sample; the mean of n has 1 / sqrt(n) of it"}, of([](double m, double q, double n) { return std::sqrt((q - m * m) * n / (n - 1.0)); })},
-                         {{"deviation-of-a-sample", "that is the deviation of one sample; the mean of n has 1 / sqrt(n) of it"}, of([](double m, double q, double) { return std::sqrt(q - m * m); })},
-                         {{"variance", "that is the variance of the mean: take its root"}, of([](double m, double q, double n) { return (q - m * m) / (n - 1.0); })},
-                         {{"n-for-n-less-one", "n samples lose one to their own mean: n - 1"}, of([](double m, double q, double n) { return std::sqrt((q - m * m) / n); })},
-                         {{"mean-not-subtracted", "the square of the mean is not subtracted"}, of([](double, double q, double n) { return std::sqrt(q / (n - 1.0)); })}}});
+            .mistakes = {
+                {{"deviation-of-a-sample", "that is the deviation of one sample; the mean of n has 1 / sqrt(n) of it"},
+                 of([](double m, double q, double n) { return std::sqrt((q - m * m) * n / (n - 1.0)); })},
+                {{"deviation-of-a-sample", "that is the deviation of one sample; the mean of n has 1 / sqrt(n) of it"},
+                 of([](double m, double q, double) { return std::sqrt(q - m * m); })},
+                {{"variance", "that is the variance of the mean: take its root"},
+                 of([](double m, double q, double n) { return (q - m * m) / (n - 1.0); })},
+                {{"n-for-n-less-one", "n samples lose one to their own mean: n - 1"},
+                 of([](double m, double q, double n) { return std::sqrt((q - m * m) / n); })},
+                {{"mean-not-subtracted", "the square of the mean is not subtracted"},
+                 of([](double, double q, double n) { return std::sqrt(q / (n - 1.0)); })}}});
   }
   if (c.task(7)) {
     const std::vector<glm::vec4> lamp{four(side, height, albedo), four(away)};
     c.mean("both strategies together", {.probe = 12, .inputs = lamp, .expected = light}) &&
-        c.picture("floor", {.probe = 13, .inputs = lamp, .reference = [&](glm::ivec2 p) { return glm::dvec3(albedo / kPi * squareLampIrradiance(side, height, {(p.x + 0.5) / 32.0 - 1.5, 0.0, (p.y + 0.5) / 32.0 - 1.0})); },
-                   .caption = "The floor close below a square lamp, from above: 64 samples of the lamp and 64 by the cosine a pixel; the reference is exact"});
+        c.picture("floor", {.probe = 13,
+                            .inputs = lamp,
+                            .reference =
+                                [&](glm::ivec2 p) {
+                                  return glm::dvec3(
+                                      albedo / kPi *
+                                      squareLampIrradiance(side, height,
+                                                           {(p.x + 0.5) / 32.0 - 1.5, 0.0, (p.y + 0.5) / 32.0 - 1.0}));
+                                },
+                            .caption = "The floor close below a square lamp, from above: 64 samples of the lamp and 64 "
+                                       "by the cosine a pixel; the reference is exact"});
     Curve curve{"Error against samples, both strategies", "samples a pixel", "standard deviation", {}, {}};
     for (int samples = 1; samples <= 256; samples *= 4) {
       double square = 0.0;
-      for (const glm::vec4& v : c.run(14, std::vector<glm::vec4>{lamp[0], lamp[1], four(samples)}, 0, 512)) square += std::pow(v.x - light, 2.0) / 512.0;
+      for (const glm::vec4& v : c.run(14, std::vector<glm::vec4>{lamp[0], lamp[1], four(samples)}, 0, 512))
+        square += std::pow(v.x - light, 2.0) / 512.0;
       curve.mine.emplace_back(samples, std::sqrt(square));
       curve.reference.emplace_back(samples, curve.mine.front().y / std::sqrt(samples));
     }
@@ -147,7 +264,17 @@ void check(Checks& c) {
 }  // namespace
 
 extern const Lab kPathsLab;
-const Lab kPathsLab{7, "paths", "Path tracing: estimators, multiple importance sampling, roulette, error",
-                    {{1, "misWeight", 10, {}}, {2, "lampSample", 15, {}}, {3, "densityOverSolidAngle", 10, {}}, {4, "roulette", 15, {}}, {5, "furnacePath", 15, {4}}, {6, "standardError", 10, {}}, {7, "together: the floor close below a lamp", 10, {1, 2, 3, 6}}}, 15, check};
+const Lab kPathsLab{7,
+                    "paths",
+                    "Path tracing: estimators, multiple importance sampling, roulette, error",
+                    {{1, "misWeight", 10, {}},
+                     {2, "lampSample", 15, {}},
+                     {3, "densityOverSolidAngle", 10, {}},
+                     {4, "roulette", 15, {}},
+                     {5, "furnacePath", 15, {4}},
+                     {6, "standardError", 10, {}},
+                     {7, "together: the floor close below a lamp", 10, {1, 2, 3, 6}}},
+                    15,
+                    check};
 
 }  // namespace lucerna::demo::labs

@@ -10,8 +10,10 @@ namespace lucerna::demo::labs {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-const double kY0 = 0.5 / std::sqrt(kPi), kY1 = 0.5 * std::sqrt(3.0 / kPi), kLobe0 = 0.5 * std::sqrt(kPi), kLobe1 = std::sqrt(kPi / 3.0);
-const double kFront = 4.0 * std::atan(std::sqrt(11.0) / 33.0), kSide = 2.0 * std::atan(3.0 * std::sqrt(11.0) / 11.0) - kPi / 3.0;
+const double kY0 = 0.5 / std::sqrt(kPi), kY1 = 0.5 * std::sqrt(3.0 / kPi), kLobe0 = 0.5 * std::sqrt(kPi),
+             kLobe1 = std::sqrt(kPi / 3.0);
+const double kFront = 4.0 * std::atan(std::sqrt(11.0) / 33.0),
+             kSide = 2.0 * std::atan(3.0 * std::sqrt(11.0) / 11.0) - kPi / 3.0;
 
 glm::vec4 four(const glm::dvec3& v, double w = 0.0) { return glm::vec4(glm::dvec4(v, w)); }
 glm::dvec4 joined(double a, const glm::dvec3& b) { return {a, b.x, b.y, b.z}; }
@@ -37,7 +39,8 @@ struct Kernel {
     return sum;
   }
   double irradiance(const glm::dvec4& c, const glm::dvec3& n, double cell) const {
-    const glm::dvec3 u = glm::normalize(glm::cross(n, std::abs(n.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0))), v = glm::cross(n, u);
+    const glm::dvec3 u = glm::normalize(glm::cross(n, std::abs(n.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0))),
+                     v = glm::cross(n, u);
     double sum = flux(c, -n, front);
     if (sides)
       for (const glm::dvec3& s : {u, -u, v, -v}) sum += flux(c, glm::normalize(-forward * n + s), side);
@@ -57,47 +60,76 @@ std::vector<glm::dvec4> stepped(const std::vector<glm::dvec4>& grid) {
         for (std::size_t k = 0; k < 6; ++k) {
           const glm::ivec3 from = glm::ivec3(x, y, z) - glm::ivec3(kAxes[k]);
           if (glm::all(glm::greaterThanEqual(from, glm::ivec3(0))) && glm::all(glm::lessThan(from, kGrid)))
-            next[indexOf({x, y, z})] += Kernel{}.step(grid[indexOf(from)], kAxes[k], kAxes[(k + 2) % 6], kAxes[(k + 4) % 6]);
+            next[indexOf({x, y, z})] +=
+                Kernel{}.step(grid[indexOf(from)], kAxes[k], kAxes[(k + 2) % 6], kAxes[(k + 4) % 6]);
         }
   return next;
 }
 
 void check(Checks& c) {
-  const double flux = c.yours("flux", 0.5, 4.0), cell = c.yours("cell", 0.3, 1.2), steps = c.yours("steps", 3.0, 9.0, 0);
+  const double flux = c.yours("flux", 0.5, 4.0), cell = c.yours("cell", 0.3, 1.2),
+               steps = c.yours("steps", 3.0, 9.0, 0);
   constexpr double gain = 0.36864318;  // of band 1 in a step, where no clamp acts
-  c.answer("injected", flux / (2.0 * std::sqrt(kPi)), 0.005, {{{"lost-pi", "1 / pi is lost: a surface of Lambert's has the intensity flux / pi * cos"}, flux * kLobe0}});
+  c.answer("injected", flux / (2.0 * std::sqrt(kPi)), 0.005,
+           {{{"lost-pi", "1 / pi is lost: a surface of Lambert's has the intensity flux / pi * cos"}, flux * kLobe0}});
   c.answer("band 1", std::pow(gain, steps), 0.02, {{{"one-step", "that is one step"}, gain}});
   c.answer("reach", steps * cell, 0.005, {});
 
   if (c.task(1)) {
     const auto of = [](double shift, double (*whole)(double)) {
       return [=](Point p) {
-        const glm::dvec3 q = (glm::dvec3(p[0]) + shift * double(p[2].w) * glm::dvec3(p[1]) - glm::dvec3(p[2])) / double(p[2].w);
+        const glm::dvec3 q =
+            (glm::dvec3(p[0]) + shift * double(p[2].w) * glm::dvec3(p[1]) - glm::dvec3(p[2])) / double(p[2].w);
         return glm::dvec4(whole(q.x), whole(q.y), whole(q.z), 0.0);
       };
     };
     const auto down = [](double x) { return std::floor(x); };
-    c.twin("cells of lights", {.probe = 1, .stride = 3,
-            // Inside the cell by a fiftieth at least: rounding decides nothing.
-            .draw = [](Random& r, std::span<glm::vec4> p) {
-              const double s = r.uniform(0.2, 2.0);
-              const glm::dvec3 n = r.direction(), least(r.uniform(-5, 5), r.uniform(-5, 5), r.uniform(-5, 5));
-              glm::dvec3 q;
-              for (int k = 0; k < 3; ++k) q[k] = std::floor(r.uniform(-4, 12)) + r.uniform(0.02, 0.98);
-              p[1] = four(n), p[2] = four(least, s), p[0] = four(glm::dvec3(p[2]) + (q - 0.5 * n) * double(p[2].w));
-            },
-            .truth = of(0.5, down),
-            .mistakes = {{{"no-half-cell", "the light is not moved half a cell along its normal: it would light its own surface"}, of(0.0, down)}, {{"wrong-way", "the light is moved into its surface, not out of it"}, of(-0.5, down)},
-                         {{"truncation", "int() cuts towards zero: what lies before the grid falls into cell 0; take floor"}, of(0.5, [](double x) { return std::trunc(x); })},
-                         {{"whole-cell", "half a cell, not a whole one"}, of(1.0, down)}, {{"rounded", "a cell begins at its corner: floor, do not round"}, of(0.5, [](double x) { return std::floor(x + 0.5); })},
-                         {{"length-for-cell", "half a cell is cell / 2, not 1 / 2"}, [](Point p) { const glm::dvec3 q = (glm::dvec3(p[0]) + 0.5 * glm::dvec3(p[1]) - glm::dvec3(p[2])) / double(p[2].w); return glm::dvec4(glm::floor(q), 0.0); }}}});
+    c.twin(
+        "cells of lights",
+        {.probe = 1,
+         .stride = 3,
+         // Inside the cell by a fiftieth at least: rounding decides nothing.
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               const double s = r.uniform(0.2, 2.0);
+               const glm::dvec3 n = r.direction(), least(r.uniform(-5, 5), r.uniform(-5, 5), r.uniform(-5, 5));
+               glm::dvec3 q;
+               for (int k = 0; k < 3; ++k) q[k] = std::floor(r.uniform(-4, 12)) + r.uniform(0.02, 0.98);
+               p[1] = four(n), p[2] = four(least, s), p[0] = four(glm::dvec3(p[2]) + (q - 0.5 * n) * double(p[2].w));
+             },
+         .truth = of(0.5, down),
+         .mistakes = {
+             {{"no-half-cell", "the light is not moved half a cell along its normal: it would light its own surface"},
+              of(0.0, down)},
+             {{"wrong-way", "the light is moved into its surface, not out of it"}, of(-0.5, down)},
+             {{"truncation", "int() cuts towards zero: what lies before the grid falls into cell 0; take floor"},
+              of(0.5, [](double x) { return std::trunc(x); })},
+             {{"whole-cell", "half a cell, not a whole one"}, of(1.0, down)},
+             {{"rounded", "a cell begins at its corner: floor, do not round"},
+              of(0.5, [](double x) { return std::floor(x + 0.5); })},
+             {{"length-for-cell", "half a cell is cell / 2, not 1 / 2"}, [](Point p) {
+                const glm::dvec3 q = (glm::dvec3(p[0]) + 0.5 * glm::dvec3(p[1]) - glm::dvec3(p[2])) / double(p[2].w);
+                return glm::dvec4(glm::floor(q), 0.0);
+              }}}});
   }
   if (c.task(2)) {
-    const auto of = [](double l0, double l1) { return [=](Point p) { return double(p[0].w) * joined(l0, l1 * glm::dvec3(p[0])); }; };
-    c.twin("injected light", {.probe = 2, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.direction(), r.uniform(0.1, 5)); }, .truth = of(kLobe0 / kPi, kLobe1 / kPi),
-            .mistakes = {{{"lost-pi", "1 / pi is lost: the intensity is flux / pi * cos, so that it integrates to the flux"}, of(kLobe0, kLobe1)}, {{"four-pi", "flux / (4 pi) is a point in free space; a surface of Lambert's has flux / pi * cos"}, of(0.25 * kLobe0 / kPi, 0.25 * kLobe1 / kPi)},
-                         {{"delta", "light leaves a surface in a cosine lobe, not in one direction"}, of(kY0, kY1)}, {{"wrong-side", "the light leaves on the wrong side"}, of(kLobe0 / kPi, -kLobe1 / kPi)},
-                         {{"isotropic", "the normal is ignored"}, of(kLobe0 / kPi, 0.0)}, {{"lost-flux", "the flux is lost"}, [](Point p) { return joined(kLobe0, kLobe1 * glm::dvec3(p[0])) / kPi; }}}});
+    const auto of = [](double l0, double l1) {
+      return [=](Point p) { return double(p[0].w) * joined(l0, l1 * glm::dvec3(p[0])); };
+    };
+    c.twin("injected light",
+           {.probe = 2,
+            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.direction(), r.uniform(0.1, 5)); },
+            .truth = of(kLobe0 / kPi, kLobe1 / kPi),
+            .mistakes = {
+                {{"lost-pi", "1 / pi is lost: the intensity is flux / pi * cos, so that it integrates to the flux"},
+                 of(kLobe0, kLobe1)},
+                {{"four-pi", "flux / (4 pi) is a point in free space; a surface of Lambert's has flux / pi * cos"},
+                 of(0.25 * kLobe0 / kPi, 0.25 * kLobe1 / kPi)},
+                {{"delta", "light leaves a surface in a cosine lobe, not in one direction"}, of(kY0, kY1)},
+                {{"wrong-side", "the light leaves on the wrong side"}, of(kLobe0 / kPi, -kLobe1 / kPi)},
+                {{"isotropic", "the normal is ignored"}, of(kLobe0 / kPi, 0.0)},
+                {{"lost-flux", "the flux is lost"},
+                 [](Point p) { return joined(kLobe0, kLobe1 * glm::dvec3(p[0])) / kPi; }}}});
   }
   if (c.task(3)) {
     const auto of = [](double sign, bool clamped, bool solid) {
@@ -106,38 +138,104 @@ void check(Checks& c) {
         return glm::dvec4((clamped ? std::max(0.0, value) : value) * (solid ? double(p[1].w) : 1.0));
       };
     };
-    c.twin("flux at points", {.probe = 3, .stride = 2, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = glm::vec4(some(r)), p[1] = four(r.direction(), r.uniform(0.1, 1.0)); }, .truth = of(1.0, true, true),
-            .mistakes = {{{"no-clamp", "an intensity within two bands may be negative; a flux may not"}, of(1.0, false, true)}, {{"lost-solid-angle", "the solid angle is lost"}, of(1.0, true, false)}, {{"wrong-side", "the direction has the wrong sign"}, of(-1.0, true, true)},
-                         {{"absolute", "a negative intensity counts as zero, not as positive"}, [](Point p) { return glm::dvec4(std::abs(glm::dot(glm::dvec4(p[0]), joined(kY0, kY1 * glm::dvec3(p[1])))) * p[1].w); }},
-                         {{"lobe-for-direction", "an intensity is evaluated in a direction: shBasis, not cosineLobe"}, [](Point p) { return glm::dvec4(std::max(0.0, glm::dot(glm::dvec4(p[0]), joined(kLobe0, kLobe1 * glm::dvec3(p[1])))) * p[1].w); }}}});
+    c.twin(
+        "flux at points",
+        {.probe = 3,
+         .stride = 2,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = glm::vec4(some(r)), p[1] = four(r.direction(), r.uniform(0.1, 1.0));
+             },
+         .truth = of(1.0, true, true),
+         .mistakes = {
+             {{"no-clamp", "an intensity within two bands may be negative; a flux may not"}, of(1.0, false, true)},
+             {{"lost-solid-angle", "the solid angle is lost"}, of(1.0, true, false)},
+             {{"wrong-side", "the direction has the wrong sign"}, of(-1.0, true, true)},
+             {{"absolute", "a negative intensity counts as zero, not as positive"},
+              [](Point p) {
+                return glm::dvec4(std::abs(glm::dot(glm::dvec4(p[0]), joined(kY0, kY1 * glm::dvec3(p[1])))) * p[1].w);
+              }},
+             {{"lobe-for-direction", "an intensity is evaluated in a direction: shBasis, not cosineLobe"}, [](Point p) {
+                return glm::dvec4(std::max(0.0, glm::dot(glm::dvec4(p[0]), joined(kLobe0, kLobe1 * glm::dvec3(p[1])))) *
+                                  p[1].w);
+              }}}});
   }
   if (c.task(4)) {
-    const auto of = [](Kernel kernel) { return [=](Point p) { return kernel.step(glm::dvec4(p[0]), glm::dvec3(p[1]), glm::dvec3(p[2]), glm::dvec3(p[3])); }; };
-    c.twin("one neighbour", {.probe = 4, .stride = 4,
-            .draw = [](Random& r, std::span<glm::vec4> p) {
-              const auto k = static_cast<std::size_t>(r.uniform(0, 6));
-              p[0] = glm::vec4(some(r)), p[1] = four(kAxes[k]), p[2] = four(kAxes[(k + 2) % 6]), p[3] = four(kAxes[(k + 4) % 6]);
-            },
-            .truth = of({}),
-            .mistakes = {{{"side-solid-angle", "0.42344 for 0.42343 sr: the wrong constant that several programs copied from each other"}, of({.side = 0.4234413544})}, {{"solid-angles-exchanged", "the solid angles of front and sides are exchanged"}, of({.front = kSide, .side = kFront})},
-                         {{"side-directions", "the middle of a side face lies towards 2 travel + side, as seen from the middle of the cell behind"}, of({.forward = 1.0})}, {{"side-directions", "the middle of a side face lies towards 2 travel + side, as seen from the middle of the cell behind"}, of({.forward = 0.0})},
-                         {{"no-clamp", "negative intensities must not send flux"}, of({.clamped = false})}, {{"front-alone", "the four side faces are missing"}, of({.sides = false})},
-                         {{"towards-face", "the new light leaves along the face's normal, not along the way to the face"}, of({.towardsFace = true})}, {{"four-pi", "4 pi for pi: three quarters of the light are lost in each step"}, of({.overPi = 0.25 / kPi})}},
-            .tolerance = 5e-6}) &&
-        c.twin("six neighbours: band 0 is kept, band 1 times 0.36864318", {.probe = 5, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = glm::vec4(joined(r.uniform(0.8, 1.0), 0.25 * r.direction())); },
-                .truth = [](Point p) { return glm::dvec4(p[0].x, 0.36864318 * p[0].y, 0.36864318 * p[0].z, 0.36864318 * p[0].w); }, .tolerance = 1e-5});
+    const auto of = [](Kernel kernel) {
+      return
+          [=](Point p) { return kernel.step(glm::dvec4(p[0]), glm::dvec3(p[1]), glm::dvec3(p[2]), glm::dvec3(p[3])); };
+    };
+    c.twin(
+        "one neighbour",
+        {.probe = 4,
+         .stride = 4,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               const auto k = static_cast<std::size_t>(r.uniform(0, 6));
+               p[0] = glm::vec4(some(r)), p[1] = four(kAxes[k]), p[2] = four(kAxes[(k + 2) % 6]),
+               p[3] = four(kAxes[(k + 4) % 6]);
+             },
+         .truth = of({}),
+         .mistakes =
+             {{{"side-solid-angle",
+                "0.42344 for 0.42343 sr: the wrong constant that several programs copied from each other"},
+               of({.side = 0.4234413544})},
+              {{"solid-angles-exchanged", "the solid angles of front and sides are exchanged"},
+               of({.front = kSide, .side = kFront})},
+              {{"side-directions",
+                "the middle of a side face lies towards 2 travel + side, as seen from the middle of the cell behind"},
+               of({.forward = 1.0})},
+              {{"side-directions",
+                "the middle of a side face lies towards 2 travel + side, as seen from the middle of the cell behind"},
+               of({.forward = 0.0})},
+              {{"no-clamp", "negative intensities must not send flux"}, of({.clamped = false})},
+              {{"front-alone", "the four side faces are missing"}, of({.sides = false})},
+              {{"towards-face", "the new light leaves along the face's normal, not along the way to the face"},
+               of({.towardsFace = true})},
+              {{"four-pi", "4 pi for pi: three quarters of the light are lost in each step"},
+               of({.overPi = 0.25 / kPi})}},
+         .tolerance = 5e-6}) &&
+        c.twin("six neighbours: band 0 is kept, band 1 times 0.36864318",
+               {.probe = 5,
+                .draw =
+                    [](Random& r, std::span<glm::vec4> p) {
+                      p[0] = glm::vec4(joined(r.uniform(0.8, 1.0), 0.25 * r.direction()));
+                    },
+                .truth =
+                    [](Point p) {
+                      return glm::dvec4(p[0].x, 0.36864318 * p[0].y, 0.36864318 * p[0].z, 0.36864318 * p[0].w);
+                    },
+                .tolerance = 1e-5});
   }
   if (c.task(5)) {
-    const auto of = [](Kernel kernel, double sign, bool area) { return [=](Point p) { return glm::dvec4(kernel.irradiance(glm::dvec4(p[0]), sign * glm::dvec3(p[1]), area ? double(p[1].w) : 1.0)); }; };
+    const auto of = [](Kernel kernel, double sign, bool area) {
+      return [=](Point p) {
+        return glm::dvec4(kernel.irradiance(glm::dvec4(p[0]), sign * glm::dvec3(p[1]), area ? double(p[1].w) : 1.0));
+      };
+    };
     // Nearly even light: no clamp acts, so that the turn of the frame about the normal does not count.
-    c.twin("irradiance at points", {.probe = 6, .stride = 2, .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = glm::vec4(joined(r.uniform(0.8, 1.5), 0.3 * r.direction())), p[1] = four(r.direction(), r.uniform(0.3, 2.0)); }, .truth = of({}, 1.0, true),
-            .mistakes = {{{"wrong-side", "light that arrives travels against the normal: -n"}, of({}, -1.0, true)}, {{"area-lost", "flux over area: divide by cell * cell"}, of({}, 1.0, false)}, {{"front-alone", "the four sides are missing"}, of({.sides = false}, 1.0, true)},
-                         {{"cell-once", "a face has the area cell * cell"}, [](Point p) { return glm::dvec4(Kernel{}.irradiance(glm::dvec4(p[0]), glm::dvec3(p[1]), std::sqrt(double(p[1].w)))); }}}});
+    c.twin("irradiance at points",
+           {.probe = 6,
+            .stride = 2,
+            .draw =
+                [](Random& r, std::span<glm::vec4> p) {
+                  p[0] = glm::vec4(joined(r.uniform(0.8, 1.5), 0.3 * r.direction())),
+                  p[1] = four(r.direction(), r.uniform(0.3, 2.0));
+                },
+            .truth = of({}, 1.0, true),
+            .mistakes = {{{"wrong-side", "light that arrives travels against the normal: -n"}, of({}, -1.0, true)},
+                         {{"area-lost", "flux over area: divide by cell * cell"}, of({}, 1.0, false)},
+                         {{"front-alone", "the four sides are missing"}, of({.sides = false}, 1.0, true)},
+                         {{"cell-once", "a face has the area cell * cell"}, [](Point p) {
+                            return glm::dvec4(
+                                Kernel{}.irradiance(glm::dvec4(p[0]), glm::dvec3(p[1]), std::sqrt(double(p[1].w))));
+                          }}}});
   }
   if (c.task(6)) {
     // Two lights on the floor of a grid, eight steps summed: a slice through them.
     std::vector<glm::dvec4> grid(static_cast<std::size_t>(kGrid.x * kGrid.y * kGrid.z), glm::dvec4(0.0));
-    const glm::ivec3 first(static_cast<int>(c.parameter("x1", 1.0, 4.0, 0)), 0, 4), second(static_cast<int>(c.parameter("x2", 6.0, 10.0, 0)), 0, 4);
+    const glm::ivec3 first(static_cast<int>(c.parameter("x1", 1.0, 4.0, 0)), 0, 4),
+        second(static_cast<int>(c.parameter("x2", 6.0, 10.0, 0)), 0, 4);
     grid[indexOf(first)] = flux / kPi * joined(kLobe0, kLobe1 * glm::dvec3(0, 1, 0));
     grid[indexOf(second)] = 0.6 * flux / kPi * joined(kLobe0, kLobe1 * glm::normalize(glm::dvec3(-1, 1, 0)));
     std::vector<glm::vec4> mine(grid.begin(), grid.end());
@@ -148,11 +246,18 @@ void check(Checks& c) {
       mine = c.run(7, mine, 0, static_cast<int>(mine.size()));
       for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += grid[i], mineSum[i] += glm::dvec4(mine[i]);
     }
-    const auto value = [&](const std::vector<glm::dvec4>& from, glm::ivec2 p) { return from[indexOf({p.x / 8, 7 - p.y / 8, 4})].x; };
+    const auto value = [&](const std::vector<glm::dvec4>& from, glm::ivec2 p) {
+      return from[indexOf({p.x / 8, 7 - p.y / 8, 4})].x;
+    };
     std::vector<glm::vec4> pixels;
     for (int y = 0; y < 64; ++y)
-      for (int x = 0; x < 96; ++x) pixels.push_back(glm::vec4(glm::vec3(static_cast<float>(value(mineSum, {x, y}))), 0.0f));
-    c.picture("slice", {.reference = [&](glm::ivec2 p) { return glm::dvec3(value(sum, p)); }, .caption = "A slice through a grid of 12 by 8 by 8 cells: two lights on the floor after eight steps, band 0; the reference is the twin in double precision"}, pixels);
+      for (int x = 0; x < 96; ++x)
+        pixels.push_back(glm::vec4(glm::vec3(static_cast<float>(value(mineSum, {x, y}))), 0.0f));
+    c.picture("slice",
+              {.reference = [&](glm::ivec2 p) { return glm::dvec3(value(sum, p)); },
+               .caption = "A slice through a grid of 12 by 8 by 8 cells: two lights on the floor after eight steps, "
+                          "band 0; the reference is the twin in double precision"},
+              pixels);
   }
   c.figure("injected", flux / (2.0 * std::sqrt(kPi)));
   c.figure("band 1", std::pow(gain, steps));
@@ -162,7 +267,16 @@ void check(Checks& c) {
 }  // namespace
 
 extern const Lab kPropagationLab;
-const Lab kPropagationLab{4, "propagation", "Light propagation volumes: injection, propagation, energy",
-                          {{1, "injectionCell", 15, {}}, {2, "injectedLight", 15, {}}, {3, "fluxInto", 10, {}}, {4, "propagated", 20, {2, 3}}, {5, "irradianceAt", 15, {3}}, {6, "together: two lights in a grid", 10, {4}}}, 15, check};
+const Lab kPropagationLab{4,
+                          "propagation",
+                          "Light propagation volumes: injection, propagation, energy",
+                          {{1, "injectionCell", 15, {}},
+                           {2, "injectedLight", 15, {}},
+                           {3, "fluxInto", 10, {}},
+                           {4, "propagated", 20, {2, 3}},
+                           {5, "irradianceAt", 15, {3}},
+                           {6, "together: two lights in a grid", 10, {4}}},
+                          15,
+                          check};
 
 }  // namespace lucerna::demo::labs

@@ -1,8 +1,8 @@
 // Checkpoint of a stopped run of the radiosity original: a file beside its OUT, named OUT.sweep (no GL).
 //
 // OUT has the published format: complete sweeps only, in whole numbers. The checkpoint adds the current sweep and,
-// if values are floats, their fractions. It belongs to OUT as it was, or as it was about to be written: both digests are stored,
-// so that a run killed between the two writes resumes too. It is removed at the end of the run.
+// if values are floats, their fractions. It belongs to OUT as it was, or as it was about to be written: both digests
+// are stored, so that a run killed between the two writes resumes too. It is removed at the end of the run.
 #pragma once
 
 #include "radiosity/original/solver.hpp"
@@ -19,7 +19,7 @@ std::uint64_t digestOf(std::span<const std::uint8_t> bytes);
 
 struct OriginalCheckpoint {
   std::uint64_t before = 0, after = 0;  ///< digests of OUT
-  std::uint64_t settings = 0;           ///< of everything that decides the result: other settings or renderers cannot resume it
+  std::uint64_t settings = 0;  ///< of everything that decides the result: other settings or renderers cannot resume it
   OriginalProgress progress;
 };
 

@@ -20,9 +20,16 @@ glm::vec3 grey(double value) { return glm::vec3(static_cast<float>(std::clamp(va
 
 double encodedFilmic(double x) { return static_cast<double>(srgbFromLinear(static_cast<float>(filmic(x)))); }
 
-/// Black, blue, cyan, green, yellow, red, white at equal steps: ordered by lightness at its ends, told apart in between.
+/// Black, blue, cyan, green, yellow, red, white at equal steps: ordered by lightness at its ends, told apart in
+/// between.
 glm::vec3 falseColour(double value) {
-  constexpr std::array<std::array<float, 3>, 7> stops{{{0, 0, 0}, {0.10f, 0.15f, 0.65f}, {0.05f, 0.60f, 0.75f}, {0.20f, 0.70f, 0.25f}, {0.95f, 0.85f, 0.15f}, {0.85f, 0.20f, 0.10f}, {1, 1, 1}}};
+  constexpr std::array<std::array<float, 3>, 7> stops{{{0, 0, 0},
+                                                       {0.10f, 0.15f, 0.65f},
+                                                       {0.05f, 0.60f, 0.75f},
+                                                       {0.20f, 0.70f, 0.25f},
+                                                       {0.95f, 0.85f, 0.15f},
+                                                       {0.85f, 0.20f, 0.10f},
+                                                       {1, 1, 1}}};
   const double at = std::clamp(value, 0.0, 1.0) * (stops.size() - 1);
   const std::size_t low = std::min(static_cast<std::size_t>(at), stops.size() - 2);
   const auto part = static_cast<float>(at - static_cast<double>(low));
@@ -32,8 +39,11 @@ glm::vec3 falseColour(double value) {
 }
 
 glm::vec3 bytesOf(const RadTriangle& t) {
-  const std::uint32_t number = static_cast<std::uint32_t>(static_cast<float>(t.e) + static_cast<float>(t.b) * t.ro) & kRadMost;
-  return glm::vec3(static_cast<float>(number >> 16), static_cast<float>(number >> 8 & 255u), static_cast<float>(number & 255u)) / 255.0f;
+  const std::uint32_t number =
+      static_cast<std::uint32_t>(static_cast<float>(t.e) + static_cast<float>(t.b) * t.ro) & kRadMost;
+  return glm::vec3(static_cast<float>(number >> 16), static_cast<float>(number >> 8 & 255u),
+                   static_cast<float>(number & 255u)) /
+         255.0f;
 }
 
 }  // namespace
@@ -98,12 +108,14 @@ Camera overviewOf(std::span<const RadTriangle> triangles) {
   camera.verticalFov = glm::radians(40.0);
   camera.direction = -glm::normalize(glm::dvec3(-0.45, 0.75, 0.9));
   camera.up = {0.0, 1.0, 0.0};
-  const glm::dvec3 middle = 0.5 * (low + high), right = glm::normalize(glm::cross(camera.direction, camera.up)), up = glm::cross(right, camera.direction);
+  const glm::dvec3 middle = 0.5 * (low + high), right = glm::normalize(glm::cross(camera.direction, camera.up)),
+                   up = glm::cross(right, camera.direction);
   // As near as leaves every corner of the bounds 4 % inside a picture of 4 by 3.
   const double tall = 0.92 * std::tan(0.5 * camera.verticalFov), wide = tall * 4.0 / 3.0;
   double distance = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p = glm::dvec3(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z) - middle;
+    const glm::dvec3 p =
+        glm::dvec3(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z) - middle;
     const double across = std::max(std::abs(glm::dot(p, right)) / wide, std::abs(glm::dot(p, up)) / tall);
     distance = std::max(distance, across - glm::dot(p, camera.direction));
   }
@@ -111,7 +123,8 @@ Camera overviewOf(std::span<const RadTriangle> triangles) {
   return camera;
 }
 
-RadView::RadView(gl::ProgramLibrary& programs, glm::ivec2 size) : program_(&programs.loadRaster("radiosity show", "radiosity/show.vert", "radiosity/show.frag")) {
+RadView::RadView(gl::ProgramLibrary& programs, glm::ivec2 size)
+    : program_(&programs.loadRaster("radiosity show", "radiosity/show.vert", "radiosity/show.frag")) {
   color_ = gl::Texture("radiosity show", GL_RGBA8, size);
   depth_ = gl::Texture("radiosity show depth", GL_DEPTH_COMPONENT32F, size);
   const std::array<const gl::Texture*, 1> colors{&color_};
@@ -139,7 +152,8 @@ void RadView::record(const Camera& camera) const {
   CHECK(count_ > 0, "{} corners", count_);
   const glm::dvec2 size(framebuffer_.size());
   const glm::dmat4 clipFromView = glm::perspective(camera.verticalFov, size.x / size.y, 1e-3 * extent_, 10.0 * extent_);
-  const glm::mat4 clipFromWorld(clipFromView * glm::lookAt(camera.position, camera.position + camera.direction, camera.up));
+  const glm::mat4 clipFromWorld(clipFromView *
+                                glm::lookAt(camera.position, camera.position + camera.direction, camera.up));
   const auto draw = [&](const glm::vec4& edge) {
     program_->use();
     program_->set("clipFromWorld", clipFromWorld);
@@ -180,7 +194,8 @@ Bitmap RadView::read() const {
   gl::readBytes(framebuffer_, {0, 0}, size, bottomUp.data());
   const std::size_t row = 4 * static_cast<std::size_t>(size.x);
   for (std::size_t y = static_cast<std::size_t>(size.y); y-- > 0;)
-    bitmap.rgba.insert(bitmap.rgba.end(), bottomUp.begin() + static_cast<std::ptrdiff_t>(y * row), bottomUp.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
+    bitmap.rgba.insert(bitmap.rgba.end(), bottomUp.begin() + static_cast<std::ptrdiff_t>(y * row),
+                       bottomUp.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
   return bitmap;
 }
 

@@ -1,7 +1,8 @@
 // The original's third program: a triangle file drawn, each triangle in one colour [RAD2008 section 3.8].
 //
-// Shows e + b [RAD2008 eq 3-1], mapped to 0..255 by a logarithm as published, by a constant factor (for comparison), by the
-// engine's filmic curve, as false colours, or as the 24-bit colours of the computation. Colours are chosen on the CPU, one per triangle.
+// Shows e + b [RAD2008 eq 3-1], mapped to 0..255 by a logarithm as published, by a constant factor (for comparison), by
+// the engine's filmic curve, as false colours, or as the 24-bit colours of the computation. Colours are chosen on the
+// CPU, one per triangle.
 #pragma once
 
 #include "base/image.hpp"
@@ -24,12 +25,13 @@ constexpr std::array<std::string_view, 5> namesOf(RadMapping) { return {"log", "
 
 struct RadDisplay {
   RadMapping mapping = RadMapping::logarithmic;
-  double constant = 0.0;      ///< linear and filmic: factor on values, 1 is white; 0: exposureOf()
-  bool backCorners = false;   ///< show back-facing triangles by their corners; else not at all
-  bool mesh = false;          ///< edges over the faces
+  double constant = 0.0;  ///< linear and filmic: factor on values, 1 is white; 0: exposureOf()
+  bool backCorners = false;  ///< show back-facing triangles by their corners; else not at all
+  bool mesh = false;  ///< edges over the faces
 };
 
-/// The factor that maps the 99th percentile (by area) of received radiosity to white: sources are orders of magnitude above it. 1 if nothing is received.
+/// The factor that maps the 99th percentile (by area) of received radiosity to white: sources are orders of magnitude
+/// above it. 1 if nothing is received.
 double exposureOf(std::span<const RadTriangle> triangles);
 
 /// Colours as displayed (sRGB), 0..1, one per triangle. Pure. The logarithm is log(1 + v) / log(1 + the greatest v).

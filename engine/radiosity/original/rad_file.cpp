@@ -14,7 +14,8 @@
 
 namespace lucerna {
 
-static_assert(std::endian::native == std::endian::little, "the file is little endian; a big-endian machine needs its words turned here");
+static_assert(std::endian::native == std::endian::little,
+              "the file is little endian; a big-endian machine needs its words turned here");
 
 namespace {
 
@@ -24,14 +25,16 @@ std::uint64_t sizeFor(std::uint64_t count) { return kHead + count * sizeof(RadTr
 
 glm::dvec3 vec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
-bool isFinite(const std::array<float, 3>& a) { return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]); }
+bool isFinite(const std::array<float, 3>& a) {
+  return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
+}
 
 /// Detects changes of a file.
 std::array<std::int64_t, 4> stampOf(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return {};
-  return {static_cast<std::int64_t>(status.st_ino), static_cast<std::int64_t>(status.st_size), static_cast<std::int64_t>(status.st_mtim.tv_sec),
-          static_cast<std::int64_t>(status.st_mtim.tv_nsec)};
+  return {static_cast<std::int64_t>(status.st_ino), static_cast<std::int64_t>(status.st_size),
+          static_cast<std::int64_t>(status.st_mtim.tv_sec), static_cast<std::int64_t>(status.st_mtim.tv_nsec)};
 }
 
 }  // namespace
@@ -48,29 +51,38 @@ std::size_t checkRadTriangles(std::span<const RadTriangle> triangles, const std:
   std::size_t zeroArea = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const RadTriangle& t = triangles[i];
-    if (!isFinite(t.p1) || !isFinite(t.p2) || !isFinite(t.p3)) throwBadInput("{}: triangle {}: a corner is not a finite number", file, i);
-    if (!(t.ro >= 0.0f && t.ro <= 1.0f)) throwBadInput("{}: triangle {}: reflectance {}, expected 0 to 1", file, i, t.ro);
-    if (t.e > kRadMost) throwBadInput("{}: triangle {}: own emission e is {}, expected at most {} (24 bits)", file, i, t.e, kRadMost);
-    if (t.b > kRadMost) throwBadInput("{}: triangle {}: received radiosity b is {}, expected at most {} (24 bits)", file, i, t.b, kRadMost);
+    if (!isFinite(t.p1) || !isFinite(t.p2) || !isFinite(t.p3))
+      throwBadInput("{}: triangle {}: a corner is not a finite number", file, i);
+    if (!(t.ro >= 0.0f && t.ro <= 1.0f))
+      throwBadInput("{}: triangle {}: reflectance {}, expected 0 to 1", file, i, t.ro);
+    if (t.e > kRadMost)
+      throwBadInput("{}: triangle {}: own emission e is {}, expected at most {} (24 bits)", file, i, t.e, kRadMost);
+    if (t.b > kRadMost)
+      throwBadInput("{}: triangle {}: received radiosity b is {}, expected at most {} (24 bits)", file, i, t.b,
+                    kRadMost);
     if (areaOf(t) == 0.0) {
       ++zeroArea;
       continue;
     }
     const double length = isFinite(t.n) ? glm::length(vec(t.n)) : NAN;
-    if (!(std::abs(length - 1.0) <= 0.01)) throwBadInput("{}: triangle {}: its normal has length {:.6g}, expected 1", file, i, length);
+    if (!(std::abs(length - 1.0) <= 0.01))
+      throwBadInput("{}: triangle {}: its normal has length {:.6g}, expected 1", file, i, length);
   }
   if (zeroArea == triangles.size()) throwBadInput("{}: none of its {} triangles has an area", file, triangles.size());
   return zeroArea;
 }
 
 std::vector<RadTriangle> decodeRadFile(std::span<const std::uint8_t> bytes, const std::string& file) {
-  if (bytes.size() < kHead) throwBadInput("{}: has {} bytes; a triangle file begins with the count of triangles, {} bytes", file, bytes.size(), kHead);
+  if (bytes.size() < kHead)
+    throwBadInput("{}: has {} bytes; a triangle file begins with the count of triangles, {} bytes", file, bytes.size(),
+                  kHead);
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data(), kHead);
   if (sizeFor(count) != bytes.size()) {
     if (const std::uint32_t turned = __builtin_bswap32(count); sizeFor(turned) == bytes.size())
       throwBadInput("{}: is in the other byte order ({} triangles, big endian); expected little endian", file, turned);
-    throwBadInput("{}: its count is {} triangles, {} bytes, but the file has {}", file, count, sizeFor(count), bytes.size());
+    throwBadInput("{}: its count is {} triangles, {} bytes, but the file has {}", file, count, sizeFor(count),
+                  bytes.size());
   }
   if (count == 0) throwBadInput("{}: has no triangles", file);
   std::vector<RadTriangle> triangles(count);
@@ -91,13 +103,17 @@ std::vector<RadTriangle> readRadFile(const std::filesystem::path& file) {
   const std::string extension = lowerExtension(file);
   for (const char* scene : {".obj", ".json", ".gltf", ".glb", ".ply", ".stl", ".fbx", ".dae", ".3ds", ".off"})
     if (extension == scene)
-      throwBadInput("{}: a scene ({}), not a file of triangles; lucerna radiosity generate FILE {} makes one of it", file.string(), extension.substr(1), file.string());
+      throwBadInput("{}: a scene ({}), not a file of triangles; lucerna radiosity generate FILE {} makes one of it",
+                    file.string(), extension.substr(1), file.string());
   const auto before = stampOf(file);
   const std::vector<std::uint8_t> bytes = readFileBytes(file);
-  if (stampOf(file) != before) throwBadInput("{}: changed while it was read; try again when nothing writes to it", file.string());
+  if (stampOf(file) != before)
+    throwBadInput("{}: changed while it was read; try again when nothing writes to it", file.string());
   return decodeRadFile(bytes, file.string());
 }
 
-void writeRadFile(const std::filesystem::path& file, std::span<const RadTriangle> triangles) { writeFileDurably(file, encodeRadFile(triangles)); }
+void writeRadFile(const std::filesystem::path& file, std::span<const RadTriangle> triangles) {
+  writeFileDurably(file, encodeRadFile(triangles));
+}
 
 }  // namespace lucerna

@@ -12,7 +12,9 @@ namespace {
 
 double meanOfChannels(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
-std::array<float, 3> toFloats(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+std::array<float, 3> toFloats(const glm::dvec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 
 glm::dvec3 hueOf(const glm::dvec3& v) {
   const double largest = std::max({v.x, v.y, v.z});
@@ -26,11 +28,14 @@ RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings) {
   RadScene result;
   const glm::dvec3 extent = scene.bounds.extent();
   PatchSettings patches;
-  patches.longestEdge = result.longestEdge = settings.longestEdge > 0.0 ? settings.longestEdge : std::max({extent.x, extent.y, extent.z}) / 12.0;
+  patches.longestEdge = result.longestEdge =
+      settings.longestEdge > 0.0 ? settings.longestEdge : std::max({extent.x, extent.y, extent.z}) / 12.0;
   const RadiosityMesh mesh = makePatches(scene, patches);
   double brightest = 0.0;
   for (const Patch& patch : mesh.patches) brightest = std::max(brightest, meanOfChannels(patch.emission));
-  if (!(brightest > 0.0)) throwBadInput("{}: no surface emits; the original's files have no other lights than triangles with e above 0", scene.file.string());
+  if (!(brightest > 0.0))
+    throwBadInput("{}: no surface emits; the original's files have no other lights than triangles with e above 0",
+                  scene.file.string());
   result.exitanceOfStep = brightest / settings.lightPower;
   result.triangles.reserve(mesh.patches.size());
   for (const Patch& patch : mesh.patches) {

@@ -27,23 +27,24 @@ double rollOf(std::uint32_t triangle, std::uint32_t seed) {
 
 }  // namespace
 
-OriginalRadiosity::OriginalRadiosity(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, const Settings& settings)
-    : settings_(settings), triangles_(triangles), map_(makeMultiplierMap(settings.view, settings.deviations.publishedMap)) {
+OriginalRadiosity::OriginalRadiosity(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles,
+                                     const Settings& settings)
+    : settings_(settings),
+      triangles_(triangles),
+      map_(makeMultiplierMap(settings.view, settings.deviations.publishedMap)) {
   CHECK(settings.view >= 2 && settings.view <= 4096, "view {}", settings.view);
   CHECK(!triangles.empty(), "{} triangles", triangles.size());
   const bool bits24 = settings.deviations.values24Bit;
-  program_ = &programs.loadRaster(bits24 ? "hemicube view, 24 bits" : "hemicube view, floats", "radiosity/original.vert", "radiosity/original.frag",
-                                  {{"BITS_24", bits24 ? 1 : 0}});
+  program_ = &programs.loadRaster(bits24 ? "hemicube view, 24 bits" : "hemicube view, floats",
+                                  "radiosity/original.vert", "radiosity/original.frag", {{"BITS_24", bits24 ? 1 : 0}});
   const glm::ivec2 size(settings.view);
   color_ = gl::Texture("hemicube view", bits24 ? GL_RGBA8 : GL_R32F, size);
   depth_ = gl::Texture("hemicube view depth", GL_DEPTH_COMPONENT24, size);
   const std::array<const gl::Texture*, 1> colors{&color_};
   framebuffer_ = gl::Framebuffer("hemicube view", colors, &depth_);
   const auto pixels = static_cast<std::size_t>(settings.view) * static_cast<std::size_t>(settings.view);
-  if (bits24)
-    bytes_.resize(4 * pixels);
-  else
-    floats_.resize(pixels);
+  if (bits24) bytes_.resize(4 * pixels);
+  else floats_.resize(pixels);
 
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
   corners_.reserve(3 * triangles.size());
@@ -96,7 +97,8 @@ double OriginalRadiosity::readAndSum(const std::vector<float>& map, int firstRow
   if (settings_.deviations.values24Bit) {
     gl::readBytes(framebuffer_, {0, firstRow}, {settings_.view, rows}, bytes_.data());
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t number = static_cast<std::uint32_t>(bytes_[4 * i]) << 16 | static_cast<std::uint32_t>(bytes_[4 * i + 1]) << 8 | bytes_[4 * i + 2];
+      const std::uint32_t number = static_cast<std::uint32_t>(bytes_[4 * i]) << 16 |
+                                   static_cast<std::uint32_t>(bytes_[4 * i + 1]) << 8 | bytes_[4 * i + 2];
       sum += static_cast<double>(number) * static_cast<double>(map[i]);
     }
   } else {
@@ -121,7 +123,8 @@ double OriginalRadiosity::gatherAt(const glm::dvec3& point, const glm::dvec3& no
       pass.clearColor(0, glm::vec4(0.0f));
       pass.clearDepth();
       program_->use();
-      program_->set("clipFromWorld", glm::mat4(clipFromView * glm::lookAt(point, point + towards[face], face == 0 ? up : normal)));
+      program_->set("clipFromWorld",
+                    glm::mat4(clipFromView * glm::lookAt(point, point + towards[face], face == 0 ? up : normal)));
       vertexArray_.bind();
       gl::drawTriangles(static_cast<int>(corners_.size()));
     }
@@ -150,13 +153,14 @@ float OriginalRadiosity::gather(std::size_t triangle) {
     for (const glm::dvec3& corner : corners) sum += gatherAt(corner, normal, up) / 3.0;
   }
   if (!settings_.deviations.values24Bit) return static_cast<float>(sum);
-  return static_cast<float>(std::min(static_cast<std::uint32_t>(sum), kRadMost));  // the map's floats sum to 1 within their rounding only
+  return static_cast<float>(
+      std::min(static_cast<std::uint32_t>(sum), kRadMost));  // the map's floats sum to 1 within their rounding only
 }
 
 bool OriginalRadiosity::sweep(OriginalProgress& progress, const std::function<bool(const OriginalProgress&)>& goOn) {
   const std::size_t count = triangles_.size();
-  CHECK(progress.received.size() == count && progress.next.size() == count && progress.done <= count, "{} of {} values, {} done", progress.received.size(), count,
-        progress.done);
+  CHECK(progress.received.size() == count && progress.next.size() == count && progress.done <= count,
+        "{} of {} values, {} done", progress.received.size(), count, progress.done);
   setReceived(progress.received);
   if (progress.done == 0) progress.change = 0.0;
   while (progress.done < count) {
@@ -186,7 +190,8 @@ std::vector<RadTriangle> OriginalRadiosity::withReceived(std::span<const float> 
   CHECK(received.size() == triangles_.size(), "{} values for {} triangles", received.size(), triangles_.size());
   std::vector<RadTriangle> result(triangles_.begin(), triangles_.end());
   for (std::size_t i = 0; i < result.size(); ++i)
-    result[i].b = static_cast<std::uint32_t>(std::clamp(static_cast<double>(received[i]), 0.0, static_cast<double>(kRadMost)));
+    result[i].b =
+        static_cast<std::uint32_t>(std::clamp(static_cast<double>(received[i]), 0.0, static_cast<double>(kRadMost)));
   return result;
 }
 

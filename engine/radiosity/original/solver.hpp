@@ -1,9 +1,11 @@
-// The radiosity original: a picture of the scene from every triangle, five views, read back and summed on the CPU [RAD2008 chapter 3].
+// The radiosity original: a picture of the scene from every triangle, five views, read back and summed on the CPU
+// [RAD2008 chapter 3].
 //
-// From a triangle's centroid five views of 90 degrees are drawn, each triangle in the colour whose red, green and blue bytes are the number
-// e + b ro of its exitance [RAD2008 eq 3-2]; glReadPixels brings them to the CPU, which multiplies each pixel with a map (map.hpp) and
-// sums: that is the triangle's received radiosity b. A sweep over all triangles is one iteration; done when nothing changed in one.
-// Units: the file's (rad_file.hpp). Nothing is accelerated here; see the corrected solver.
+// From a triangle's centroid five views of 90 degrees are drawn, each triangle in the colour whose red, green and blue
+// bytes are the number e + b ro of its exitance [RAD2008 eq 3-2]; glReadPixels brings them to the CPU, which multiplies
+// each pixel with a map (map.hpp) and sums: that is the triangle's received radiosity b. A sweep over all triangles is
+// one iteration; done when nothing changed in one. Units: the file's (rad_file.hpp). Nothing is accelerated here; see
+// the corrected solver.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -22,21 +24,22 @@ namespace lucerna {
 
 /// Everything that a stopped run needs to resume.
 struct OriginalProgress {
-  std::vector<float> received;  ///< b of every triangle: at the sweep's start (Jacobi), now (Gauss-Seidel); 24-bit numbers are exact floats
-  std::vector<float> next;      ///< b of the first `done` triangles after this sweep (Jacobi)
-  std::size_t done = 0;         ///< triangles of the current sweep
-  double change = 0.0;          ///< sum of |change of b| over them; after a whole sweep: the sweep's
-  std::uint32_t sweeps = 0;     ///< complete ones
+  std::vector<float> received;  ///< b of every triangle: at the sweep's start (Jacobi), now (Gauss-Seidel); 24-bit
+                                ///< numbers are exact floats
+  std::vector<float> next;  ///< b of the first `done` triangles after this sweep (Jacobi)
+  std::size_t done = 0;  ///< triangles of the current sweep
+  double change = 0.0;  ///< sum of |change of b| over them; after a whole sweep: the sweep's
+  std::uint32_t sweeps = 0;  ///< complete ones
 };
 
 class OriginalRadiosity {
  public:
   struct Settings {
-    int view = 500;                                        ///< pixels per side, 2 to 4096
-    bool gaussSeidel = false;                              ///< new values used at once, else from the next sweep on
+    int view = 500;  ///< pixels per side, 2 to 4096
+    bool gaussSeidel = false;  ///< new values used at once, else from the next sweep on
     RadiosityDeviations deviations = publishedRadiosity();
-    double nearPlane = 0.0;                                ///< scene units; 0: 1e-4 of the scene's diagonal
-    unsigned seed = 1;                                     ///< of the roll where radiosity.fixed-orientation is off
+    double nearPlane = 0.0;  ///< scene units; 0: 1e-4 of the scene's diagonal
+    unsigned seed = 1;  ///< of the roll where radiosity.fixed-orientation is off
   };
 
   /// `triangles` are checked ones (checkRadTriangles) and must outlive this.
@@ -45,7 +48,8 @@ class OriginalRadiosity {
   /// The state of the file: its b, no sweep begun.
   OriginalProgress start() const;
 
-  /// Continues the sweep in `progress` to its end (true), or until `goOn`, called after every triangle, returns false (false).
+  /// Continues the sweep in `progress` to its end (true), or until `goOn`, called after every triangle, returns false
+  /// (false).
   bool sweep(OriginalProgress& progress, const std::function<bool(const OriginalProgress&)>& goOn);
 
   /// A triangle's exitance when it receives `received`: the value of its pixels.
@@ -64,9 +68,9 @@ class OriginalRadiosity {
 
   const Settings& settings() const { return settings_; }
   double nearPlane() const { return near_; }
-  std::size_t hemicubes() const { return hemicubes_; }          ///< drawn so far
+  std::size_t hemicubes() const { return hemicubes_; }  ///< drawn so far
   std::size_t drawnTriangles() const { return drawnTriangles_; }  ///< in all views so far
-  std::size_t overflows() const { return overflows_; }          ///< exitances above 24 bits, whose upper bits were lost
+  std::size_t overflows() const { return overflows_; }  ///< exitances above 24 bits, whose upper bits were lost
   std::size_t gpuBytes() const { return vertices_.bytes() + color_.bytes() + depth_.bytes(); }
 
  private:

@@ -8,6 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr const char* kNames[] = {"fuzz.nrrd", "fuzz.ktx2", "fuzz.raw"};
   const unsigned kind = data[0] % 3u;
   return lucerna::fuzz::parse([&] {
-    lucerna::readDensityGrid(lucerna::fuzz::write(kNames[kind], lucerna::fuzz::textOf(data + 1, size - 1)), kind == 2 ? std::optional(glm::ivec3(2)) : std::nullopt);
+    lucerna::readDensityGrid(lucerna::fuzz::write(kNames[kind], lucerna::fuzz::textOf(data + 1, size - 1)),
+                             kind == 2 ? std::optional(glm::ivec3(2)) : std::nullopt);
   });
 }

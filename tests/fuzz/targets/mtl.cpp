@@ -7,7 +7,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return lucerna::fuzz::parse([&] {
-    const std::string text = lucerna::draftOriginalScene(lucerna::fuzz::write("draft.mtl", lucerna::fuzz::textOf(data, size))).first;
+    const std::string text =
+        lucerna::draftOriginalScene(lucerna::fuzz::write("draft.mtl", lucerna::fuzz::textOf(data, size))).first;
     if (!nlohmann::json::parse(text).contains("scene")) std::abort();
   });
 }

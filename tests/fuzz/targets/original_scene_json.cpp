@@ -10,5 +10,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return true;
   }();
   static_cast<void>(prepared);
-  return lucerna::fuzz::parse([&] { lucerna::loadSceneFile(lucerna::fuzz::write("m.json", lucerna::fuzz::textOf(data, size))); });
+  return lucerna::fuzz::parse(
+      [&] { lucerna::loadSceneFile(lucerna::fuzz::write("m.json", lucerna::fuzz::textOf(data, size))); });
 }

@@ -1,4 +1,5 @@
-// 8-bit pictures: the check of headers and chunks, then DevIL. The name's extension is that of Targa, which has no magic number.
+// 8-bit pictures: the check of headers and chunks, then DevIL. The name's extension is that of Targa, which has no
+// magic number.
 #include "fuzz.hpp"
 
 #include "base/image.hpp"

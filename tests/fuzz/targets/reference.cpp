@@ -1,4 +1,5 @@
-// The cache of references. The checksum is put right, so that the fuzzer comes past it; what is not as it was written is not taken.
+// The cache of references. The checksum is put right, so that the fuzzer comes past it; what is not as it was written
+// is not taken.
 #include "fuzz.hpp"
 
 #include "base/hash.hpp"
@@ -17,6 +18,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   lucerna::fuzz::write(kKey.name() + ".lucref", bytes);
   return lucerna::fuzz::parse([&] {
-    if (const auto reference = cache.load(kKey); reference && reference->mean.pixels.size() != reference->standardError.pixels.size()) std::abort();
+    if (const auto reference = cache.load(kKey);
+        reference && reference->mean.pixels.size() != reference->standardError.pixels.size())
+      std::abort();
   });
 }

@@ -7,11 +7,13 @@
 #include <cstring>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::size_t kHeader = 24, kBlock = 24, kSum = 16;  // of the file, of a block, where its sum stands: engine/radiosity/row_file.cpp
+  constexpr std::size_t kHeader = 24, kBlock = 24,
+                        kSum = 16;  // of the file, of a block, where its sum stands: engine/radiosity/row_file.cpp
   constexpr std::uint64_t kFingerprint = 7;
   constexpr std::uint32_t kPatches = 16;
   std::string bytes(lucerna::fuzz::textOf(data, size));
-  if (bytes.size() >= kHeader) std::memcpy(bytes.data() + 16, &kFingerprint, 8), std::memcpy(bytes.data() + 12, &kPatches, 4);
+  if (bytes.size() >= kHeader)
+    std::memcpy(bytes.data() + 16, &kFingerprint, 8), std::memcpy(bytes.data() + 12, &kPatches, 4);
   for (std::size_t at = kHeader; bytes.size() >= at + kBlock;) {
     std::uint32_t rows = 0;
     std::uint64_t entries = 0;
@@ -28,10 +30,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     at += kBlock + block;
   }
   return lucerna::fuzz::parse([&] {
-    lucerna::RowFile file(lucerna::fuzz::write("fuzz.rows", bytes), kFingerprint, kPatches, [](const lucerna::FormFactorRows& rows) {
-      for (const std::uint32_t patch : rows.patches)
-        if (patch >= kPatches) std::abort();
-    });
+    lucerna::RowFile file(lucerna::fuzz::write("fuzz.rows", bytes), kFingerprint, kPatches,
+                          [](const lucerna::FormFactorRows& rows) {
+                            for (const std::uint32_t patch : rows.patches)
+                              if (patch >= kPatches) std::abort();
+                          });
     file.forEach([](const lucerna::FormFactorRows&) {});
   });
 }

@@ -26,12 +26,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (bytes.size() >= kHeader) {
     lucerna::Hash print;
     lucerna::addScene(print, scene);
-    const std::uint64_t sceneValue = print.value(), sum = lucerna::Hash::of(bytes.data() + kHeader, bytes.size() - kHeader);
+    const std::uint64_t sceneValue = print.value(),
+                        sum = lucerna::Hash::of(bytes.data() + kHeader, bytes.size() - kHeader);
     std::memcpy(bytes.data() + kScene, &sceneValue, 8);
     std::memcpy(bytes.data() + kChecksum, &sum, 8);
   }
   return lucerna::fuzz::parse([&] {
-    const lucerna::RadiositySolution solution = lucerna::loadSolution(lucerna::fuzz::write("fuzz.solution", bytes), scene);
+    const lucerna::RadiositySolution solution =
+        lucerna::loadSolution(lucerna::fuzz::write("fuzz.solution", bytes), scene);
     lucerna::checkSettings("fuzz.solution", solution, {});
   });
 }
