@@ -41,7 +41,11 @@ _lucerna() {
   local words=() word i
   for ((i = 1; i <= COMP_CWORD; ++i)); do
     word=${COMP_WORDS[i]}
-    if ((${#words[@]})) && { [[ $word == '=' ]] || [[ ${words[-1]} == *= && -n $word ]]; }; then words[-1]+=$word; else words+=("$word"); fi
+    if ((${#words[@]})) && { [[ $word == '=' ]] || [[ ${words[-1]} == *= && -n $word ]]; }; then
+      words[-1]+=$word
+    else
+      words+=("$word")
+    fi
   done
   local current=${words[-1]} option='' prefix='' path='' position=0
   unset 'words[-1]'
@@ -49,7 +53,8 @@ _lucerna() {
   # The command, and which of its positional arguments is being typed.
   for word in "${words[@]}"; do
     if [[ -n $option ]]; then option=
-    elif [[ -n $(_lucerna_commands "$path") && " $(_lucerna_commands "$path") " == *" $word "* ]]; then path+="${path:+ }$word"
+    elif [[ -n $(_lucerna_commands "$path") && " $(_lucerna_commands "$path") " == *" $word "* ]]; then
+      path+="${path:+ }$word"
     elif [[ $word == -*=* ]]; then :
     elif [[ $word == -* ]]; then [[ -n $(_lucerna_values "$path" "$word") ]] && option=$word
     else ((++position))

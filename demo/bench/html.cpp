@@ -10,17 +10,21 @@ namespace lucerna::demo::bench {
 namespace {
 
 constexpr std::string_view kStyle = R"(
-body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1e; background: #fff; max-width: 1900px; margin: 2em auto; padding: 0 1.5em; }
-h1 { font-size: 1.7em; margin-bottom: .2em; } h2 { margin-top: 2.2em; border-bottom: 2px solid #ddd; padding-bottom: .2em; } h3 { margin-top: 1.6em; }
+body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1e; background: #fff; max-width: 1900px; margin: 2em auto;
+  padding: 0 1.5em; }
+h1 { font-size: 1.7em; margin-bottom: .2em; } h2 { margin-top: 2.2em; border-bottom: 2px solid #ddd;
+  padding-bottom: .2em; } h3 { margin-top: 1.6em; }
 nav { background: #f5f5f7; padding: .6em 1.2em; border-radius: 6px; } nav a { margin-right: 1.4em; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 11.5px; font-variant-numeric: tabular-nums; margin: .8em 0; }
 th, td { padding: .22em .4em; border-bottom: 1px solid #e4e4e8; text-align: right; white-space: nowrap; }
 th { background: #f5f5f7; position: sticky; top: 0; } th:first-child, td:first-child { text-align: left; }
 td.text, th.text { text-align: left; } tr.marked { background: #fff6d6; font-weight: 600; }
-figure { display: inline-block; margin: .4em .8em .8em 0; vertical-align: top; } figcaption { font-size: 12px; color: #555; max-width: 340px; }
+figure { display: inline-block; margin: .4em .8em .8em 0; vertical-align: top; } figcaption { font-size: 12px;
+  color: #555; max-width: 340px; }
 figure img { width: 340px; image-rendering: pixelated; border: 1px solid #ccc; }
-pre { background: #f5f5f7; padding: .8em; overflow-x: auto; font-size: 12px; } .plot svg { max-width: 100%; height: auto; }
+pre { background: #f5f5f7; padding: .8em; overflow-x: auto; font-size: 12px; } .plot svg { max-width: 100%;
+  height: auto; }
 )";
 
 bool isNumber(const std::string& text) {

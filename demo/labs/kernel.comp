@@ -1,4 +1,5 @@
-// One probe of a lab: the student's functions at points, as samples or as pixels. tasks.glsl comes first, so that it sees neither points nor results.
+// One probe of a lab: the student's functions at points, as samples or as pixels. tasks.glsl comes first, so that it
+// sees neither points nor results.
 layout(local_size_x = 64) in;
 #include "lab/common.glsl"
 #include "lab/tasks.glsl"

@@ -59,8 +59,11 @@ std::string png(const Image& image, float exposure) {
 
 constexpr std::string_view kStyle = R"(
 body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1e; max-width: 1000px; margin: 2em auto; padding: 0 1.5em; }
-section { border-top: 2px solid #ddd; padding: .6em 0 1em; overflow: hidden; } h2 { margin: .3em 0; font-size: 1.15em; } dt { color: #6b6b70; font-size: 13px; } dd { margin: 0 0 .45em; }
-code { background: #f5f5f7; padding: .1em .3em; } .pair { float: right; margin-left: 1.5em; font-size: 12px; color: #555; } .pair img { width: 144px; image-rendering: pixelated; display: block; } .pair figure { display: inline-block; margin: 0 .3em; }
+section { border-top: 2px solid #ddd; padding: .6em 0 1em; overflow: hidden; } h2 { margin: .3em 0;
+  font-size: 1.15em; } dt { color: #6b6b70; font-size: 13px; } dd { margin: 0 0 .45em; }
+code { background: #f5f5f7; padding: .1em .3em; } .pair { float: right; margin-left: 1.5em; font-size: 12px;
+  color: #555; } .pair img { width: 144px; image-rendering: pixelated; display: block; }
+  .pair figure { display: inline-block; margin: 0 .3em; }
 nav { columns: 3; font-size: 13px; } nav a { display: block; }
 )";
 

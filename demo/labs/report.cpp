@@ -16,11 +16,15 @@ using bench::escapeHtml;
 
 constexpr std::string_view kStyle = R"(
 body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1e; max-width: 1000px; margin: 2em auto; padding: 0 1.5em; }
-h2 { margin-top: 2em; border-bottom: 2px solid #ddd; } table { border-collapse: collapse; } th, td { padding: .25em .8em .25em 0; text-align: left; border-bottom: 1px solid #e4e4e8; vertical-align: top; }
-td.n { text-align: right; font-variant-numeric: tabular-nums; } .passed { color: #14732b; } .wrong { color: #b3261e; } .notdone, .waiting { color: #6b6b70; }
+h2 { margin-top: 2em; border-bottom: 2px solid #ddd; } table { border-collapse: collapse; }
+  th, td { padding: .25em .8em .25em 0; text-align: left; border-bottom: 1px solid #e4e4e8; vertical-align: top; }
+td.n { text-align: right; font-variant-numeric: tabular-nums; } .passed { color: #14732b; } .wrong { color: #b3261e; }
+  .notdone, .waiting { color: #6b6b70; }
 pre { background: #f5f5f7; padding: .8em; overflow-x: auto; font-size: 12.5px; }
-.wipe { position: relative; width: 576px; image-rendering: pixelated; } .wipe img { width: 576px; display: block; } .wipe .top { position: absolute; top: 0; left: 0; clip-path: inset(0 50% 0 0); }
-.wipe + input { width: 576px; } figure { margin: 1em 0; } figcaption { color: #555; } svg text { font: 12px system-ui, sans-serif; }
+.wipe { position: relative; width: 576px; image-rendering: pixelated; } .wipe img { width: 576px; display: block; }
+  .wipe .top { position: absolute; top: 0; left: 0; clip-path: inset(0 50% 0 0); }
+.wipe + input { width: 576px; } figure { margin: 1em 0; } figcaption { color: #555; }
+  svg text { font: 12px system-ui, sans-serif; }
 )";
 
 std::string base64Png(const Image& image) {

@@ -1,5 +1,6 @@
 #include "forward/gpu_scene.hpp"
 
+#include "shared/bindings.h"
 #include "base/error.hpp"
 #include "gl/draw.hpp"
 
@@ -12,8 +13,6 @@
 namespace lucerna {
 
 namespace {
-
-constexpr GLuint kDiffuseUnit = 0, kMaskUnit = 1, kNormalUnit = 12, kMetalUnit = 13, kEmissionUnit = 14;
 
 int mipLevels(int width, int height) { return 1 + static_cast<int>(std::floor(std::log2(std::max(width, height)))); }
 
@@ -149,18 +148,18 @@ void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) c
   const auto bind = [&](int texture, GLuint unit) {
     (texture >= 0 ? textures_[static_cast<std::size_t>(texture)] : *white_).bind(unit);
   };
-  if (needs_.diffuseTextures) bind(surface.diffuseTexture, kDiffuseUnit);
-  if (needs_.emissionTextures) bind(surface.emissionTexture, kEmissionUnit);
+  if (needs_.diffuseTextures) bind(surface.diffuseTexture, UNIT_DIFFUSE);
+  if (needs_.emissionTextures) bind(surface.emissionTexture, UNIT_EMISSION_MAP);
   if (needs_.normalMaps) {
     program.set("materialNormalScale", surface.normalScale);
-    bind(surface.normalTexture, kNormalUnit);
+    bind(surface.normalTexture, UNIT_NORMAL_MAP);
   }
   if (needs_.metalMaps) {
     program.set("materialMetallic", surface.metallic);
     program.set("materialRoughness", surface.roughness);
-    bind(surface.metalTexture, kMetalUnit);
+    bind(surface.metalTexture, UNIT_METAL_MAP);
   }
-  if (surface.masked) textures_[static_cast<std::size_t>(surface.maskTexture)].bind(kMaskUnit);
+  if (surface.masked) textures_[static_cast<std::size_t>(surface.maskTexture)].bind(UNIT_MASK);
 }
 
 void GpuScene::drawRange(const Draw& draw) const { gl::drawIndexedTriangles(draw.firstIndex, draw.indexCount); }
@@ -201,7 +200,7 @@ void GpuScene::drawDepth(const SurfacePrograms& programs) const {
   if (masked_.empty()) return;
   programs.masked->use();
   for (const Draw& draw : masked_) {
-    textures_[static_cast<std::size_t>(surfaces_[static_cast<std::size_t>(draw.surface)].maskTexture)].bind(kMaskUnit);
+    textures_[static_cast<std::size_t>(surfaces_[static_cast<std::size_t>(draw.surface)].maskTexture)].bind(UNIT_MASK);
     drawRange(draw);
   }
 }

@@ -1,18 +1,17 @@
 #include "forward/local_lights.hpp"
 
+#include "shared/bindings.h"
 #include "base/error.hpp"
 #include "shared/lights.h"
 
 namespace lucerna {
 
 namespace {
-constexpr GLuint kLightBinding = 3;
-constexpr GLuint kSpotUnit = 10, kPointUnit = 11;
 }  // namespace
 
 LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
                          const std::vector<LightViews>& spots, const std::vector<LightViews>& points) {
-  CHECK(spots.size() <= kMaxSpotLights && points.size() <= kMaxPointLights, "{} spots, {} points", spots.size(),
+  CHECK(spots.size() <= kMostSpots && points.size() <= kMostPoints, "{} spots, {} points", spots.size(),
         points.size());
   shared::LightConstants constants{};
   for (std::size_t i = 0; i < spots.size(); ++i) {
@@ -47,9 +46,9 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
 }
 
 void LocalLights::bindForShading() const {
-  constants_.bind(GL_UNIFORM_BUFFER, kLightBinding);
-  if (spotShadows_) spotShadows_->depth().bind(kSpotUnit);
-  if (pointShadows_) pointShadows_->depth().bind(kPointUnit);
+  constants_.bind(GL_UNIFORM_BUFFER, BLOCK_LIGHTS);
+  if (spotShadows_) spotShadows_->depth().bind(UNIT_SPOT_SHADOWS);
+  if (pointShadows_) pointShadows_->depth().bind(UNIT_POINT_SHADOWS);
 }
 
 std::size_t LocalLights::gpuBytes() const {

@@ -4,6 +4,7 @@
 
 #include "forward/layered_depth.hpp"
 #include "forward/light_views.hpp"
+#include "shared/lights.h"
 
 #include <optional>
 #include <vector>
@@ -12,6 +13,9 @@ namespace lucerna {
 
 class LocalLights {
  public:
+  /// Lamps of a kind, the size of the shaders' arrays. A scene may have more: the frame keeps those that surfaces
+  /// reflect most of (rsm/lamp_choice.hpp) and names the others.
+  static constexpr std::size_t kMostSpots = LIGHTS_MAX_SPOTS, kMostPoints = LIGHTS_MAX_POINTS;
   struct Settings {
     int spotSize = 1024;  ///< texels per side of a spot's shadow map
     int pointSize = 512;  ///< texels per side of each of the six faces of an omnidirectional light's

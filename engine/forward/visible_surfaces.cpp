@@ -1,5 +1,6 @@
 #include "forward/visible_surfaces.hpp"
 
+#include "shared/bindings.h"
 #include "gl/pass.hpp"
 
 #include <array>
@@ -7,7 +8,6 @@
 namespace lucerna {
 
 namespace {
-constexpr GLuint kDepthUnit = 3, kNormalUnit = 4;
 }
 
 VisibleSurfaces::VisibleSurfaces(gl::ProgramLibrary& programs, const GpuScene& scene, const gl::Texture& depth) {
@@ -35,8 +35,8 @@ void VisibleSurfaces::record(const GpuScene& scene, const GpuScene::View& view) 
 }
 
 void VisibleSurfaces::bind(const gl::Program& program, const glm::mat4& worldFromClip) const {
-  depth_->bind(kDepthUnit);
-  normal_.bind(kNormalUnit);
+  depth_->bind(UNIT_VISIBLE_DEPTH);
+  normal_.bind(UNIT_VISIBLE_NORMAL);
   program.set("worldFromClip", worldFromClip);
 }
 

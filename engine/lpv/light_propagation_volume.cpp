@@ -1,5 +1,6 @@
 #include "lpv/light_propagation_volume.hpp"
 
+#include "shared/bindings.h"
 #include "base/error.hpp"
 #include "gl/draw.hpp"
 
@@ -11,7 +12,6 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kConstantsBinding = 1;
 constexpr std::size_t kCellBytes = 16;  // of four coefficients in a buffer
 // Bindings of storage buffers: of the steps (lpv/propagate.comp) and of what makes the result from the sums
 // (lpv/join.comp).
@@ -326,7 +326,7 @@ shared::LpvConstants lpvConstants(const LightPropagationVolume::Settings& settin
 void LightPropagationVolume::place(const Inputs& inputs) {
   const shared::LpvConstants constants = lpvConstants(settings_, inputs.cascades, inputs.referenceIrradiance);
   constants_.upload(0, sizeof constants, &constants);
-  constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
+  constants_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);
 }
 
 float LightPropagationVolume::fluxScale(const ReflectiveShadowMap::Outputs& rsm) const {
@@ -626,8 +626,8 @@ void LightPropagationVolume::propagateLayered(const Volume& source) {
 }
 
 void LightPropagationVolume::bindForLookup() const {
-  constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
-  for (GLuint channel = 0; channel < 3; ++channel) result()[channel].bind(4 + channel);
+  constants_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);
+  for (GLuint channel = 0; channel < 3; ++channel) result()[channel].bind(UNIT_LPV_RED + channel);
 }
 
 std::size_t LightPropagationVolume::gpuBytes() const {

@@ -1,5 +1,6 @@
 #include "lpv/receivers.hpp"
 
+#include "shared/bindings.h"
 #include "base/error.hpp"
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
@@ -15,10 +16,9 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kLpvBinding = 1, kPathBinding = 5, kConstantsBinding = 6;  // GL_UNIFORM_BUFFER
 constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3,
                  kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kIrradianceUnit = 5, kSeenUnit = 6, kVoxelsUnit = 6, kTreeUnit = 7;
+constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kSeenUnit = 6, kVoxelsUnit = 6, kTreeUnit = 7;
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that finds no receivers to end at; it misses albedo^64
 constexpr float kFullPaths = 256.0f;  // from which a receiver has full weight, without its neighbours
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
@@ -207,9 +207,9 @@ void LpvReceivers::place(const Inputs& inputs) {
 }
 
 void LpvReceivers::bindReceivers() const {
-  lpvConstants_.bind(GL_UNIFORM_BUFFER, kLpvBinding);
-  constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
-  pathConstants_.bind(GL_UNIFORM_BUFFER, kPathBinding);
+  lpvConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);
+  constants_.bind(GL_UNIFORM_BUFFER, BLOCK_RECEIVERS);
+  pathConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_RECEIVER_PATHS);
   receivers_[0].bind(GL_SHADER_STORAGE_BUFFER, kReceiversBuffer);
   work_[0].bind(GL_SHADER_STORAGE_BUFFER, kWorkBuffer);
 }
@@ -260,8 +260,8 @@ void LpvReceivers::list(int target, bool countsFading) {
   const std::array<GLuint, 5> none{0, 1, 1, 0, frame_};
   work_[0].upload(4 * sizeof(GLuint), sizeof none, none.data());
   bindReceivers();
-  lpvConstantsBefore_.bind(GL_UNIFORM_BUFFER, kLpvBinding);  // new receivers look up what was seen in their place
-  irradiance_.bind(kIrradianceUnit);
+  lpvConstantsBefore_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);  // new receivers look up what was seen in their place
+  irradiance_.bind(UNIT_RECEIVED);
   scene_.bind();
   lit_.bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
   const gl::ComputePass pass("lpv list receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
@@ -271,14 +271,14 @@ void LpvReceivers::list(int target, bool countsFading) {
   list_->set("countsFading", countsFading ? 1 : 0);
   seen_.bind(kSeenUnit);
   pass.dispatchIndirect(work_[0]);
-  lpvConstants_.bind(GL_UNIFORM_BUFFER, kLpvBinding);
+  lpvConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);
 }
 
 void LpvReceivers::light(int target) {
   list(target);
   const gl::ComputePass pass("lpv paths", GL_SHADER_STORAGE_BARRIER_BIT);
   paths_->use();
-  irradiance_.bind(kIrradianceUnit);
+  irradiance_.bind(UNIT_RECEIVED);
   pass.dispatchIndirect(work_[0], 4 * sizeof(GLuint));
 }
 
@@ -359,9 +359,9 @@ void LpvReceivers::update(const Inputs& inputs, int rounds) {
 }
 
 void LpvReceivers::bindForLookup() const {
-  lpvConstants_.bind(GL_UNIFORM_BUFFER, kLpvBinding);
-  constants_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
-  irradiance_.bind(kIrradianceUnit);
+  lpvConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);
+  constants_.bind(GL_UNIFORM_BUFFER, BLOCK_RECEIVERS);
+  irradiance_.bind(UNIT_RECEIVED);
 }
 
 void LpvReceivers::collect(bool wait) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr GLuint kTrianglesBinding = 2, kMaterialsBinding = 3, kLightsBinding = 4;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kAtlasUnit = 0, kEnvironmentUnit = 1, kEnvironmentTableUnit = 2, kEnvironmentRowsUnit = 4,
-                 kValuesUnit = 62;
+                 kValuesUnit = UNIT_VALUE_ATLAS;
 constexpr float kSmoothest = 1e-3f;  // GGX alpha below which a surface is smooth: a mirror to within half a degree
 
 std::uint32_t kindOf(const Material& material) {

@@ -4,6 +4,7 @@
 // lights.
 #pragma once
 
+#include "shared/bindings.h"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "rays/bvh.hpp"
@@ -23,7 +24,7 @@ class RayScene {
  public:
   using Settings = RaySceneSettings;
   /// Texture units that bind() occupies.
-  static constexpr GLuint kNodesUnit = 60, kTrianglesUnit = 61;
+  static constexpr GLuint kNodesUnit = UNIT_BVH_NODES, kTrianglesUnit = UNIT_BVH_TRIANGLES;
 
   /// Throws Error(missingCapability) if the scene exceeds the driver's limit of buffer textures.
   RayScene(const Scene& scene, const gl::Capabilities& capabilities, const Settings& settings = {});

@@ -1,5 +1,6 @@
 #include "render/renderer.hpp"
 
+#include "shared/bindings.h"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "rsm/lamp_choice.hpp"
@@ -17,9 +18,6 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kFrameBinding = 0;
-constexpr GLuint kSunCascadeBinding = 4;
-constexpr GLuint kShadowUnit = 2;
 constexpr float kShadowNormalOffset = 1.5f;  // texels of the sun's shadow map
 
 double nearPlane(const Bounds& bounds) { return 5e-4 * std::max(glm::length(bounds.extent()), 1e-6); }
@@ -68,8 +66,8 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   const bool reflectsLamps = LpvFrame::isNeeded(settings, needs_) || RsmFrame::isNeeded(settings, needs_) ||
                              ReceiversFrame::takesMaps(settings, needs_);
   if ((showsDirect() || reflectsLamps) && LocalLights::isNeeded(needs_)) {
-    keepMostImportant(programs, *gpuScene_, spots_, kMaxSpotLights);
-    keepMostImportant(programs, *gpuScene_, points_, kMaxPointLights);
+    keepMostImportant(programs, *gpuScene_, spots_, LocalLights::kMostSpots);
+    keepMostImportant(programs, *gpuScene_, points_, LocalLights::kMostPoints);
   }
   if (showsDirect()) makeShadowMaps(programs);
 
@@ -197,7 +195,7 @@ void Renderer::recordShadows(const Camera& camera) {
       views.push_back({glm::mat4(cascade.clipFromWorld), glm::vec3(0.0f)});
     }
     sunCascadeConstants_.upload(0, sizeof constants, &constants);
-    sunCascadeConstants_.bind(GL_UNIFORM_BUFFER, kSunCascadeBinding);
+    sunCascadeConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_SUN_CASCADES);
     sunCascades_->record(*gpuScene_, views);
   }
   if (localLights_ && localLights_->hasSpots() && !areMade) {
@@ -242,7 +240,7 @@ void Renderer::bindFrameConstants(const FrameView& view) {
 
 void Renderer::bindFrameConstants(const shared::FrameConstants& constants) {
   frameConstants_.upload(0, sizeof constants, &constants);
-  frameConstants_.bind(GL_UNIFORM_BUFFER, kFrameBinding);
+  frameConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_FRAME);
 }
 
 void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
@@ -260,8 +258,8 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
       if (&sides == &all.front()) pass.clearDepth();
       gpuScene_->draw(depthPrograms_, view.drawn());
     }
-  if (shadowMap_) shadowMap_->depth().bind(kShadowUnit);
-  if (sunCascades_) sunCascades_->depth().bind(kShadowUnit);
+  if (shadowMap_) shadowMap_->depth().bind(UNIT_SUN_SHADOW);
+  if (sunCascades_) sunCascades_->depth().bind(UNIT_SUN_SHADOW);
   if (localLights_) localLights_->bindForShading();
   if (lpv_) lpv_->bindForShading();
   if (receivers_) receivers_->bindForShading();

@@ -4,10 +4,6 @@
 
 namespace lucerna {
 
-namespace {
-constexpr GLuint kGatheredUnit = 7;
-}
-
 RsmFrame::RsmFrame(const FrameParts& parts, const gl::Texture& depth)
     : parts_(parts),
       maps_(parts, {true, true}, false),
@@ -43,6 +39,6 @@ void RsmFrame::record(gl::TimeQuery& timer, const FrameView& view) {
   gather_.gatherFull(inputs);
 }
 
-void RsmFrame::bindForShading() const { gather_.irradiance().bind(kGatheredUnit); }
+void RsmFrame::bindForShading() const { gather_.irradiance().bind(UNIT_GATHERED); }
 
 }  // namespace lucerna

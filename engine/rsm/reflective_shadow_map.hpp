@@ -2,6 +2,7 @@
 // per light: of the sun, of a spot light, or of an omnidirectional light with its six faces drawn in one pass.
 #pragma once
 
+#include "shared/bindings.h"
 #include "forward/gpu_scene.hpp"
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
@@ -33,8 +34,8 @@ class ReflectiveShadowMap {
     int texelCount() const { return position.size().x * position.size().y * position.size().z; }
     /// Binds to units 0, 1, 2 and, if there is an albedo, 3, where all readers of a map expect it.
     void bind() const {
-      position.bind(0), normal.bind(1), flux.bind(2);
-      if (albedo) albedo->bind(3);
+      position.bind(UNIT_RSM_POSITION), normal.bind(UNIT_RSM_NORMAL), flux.bind(UNIT_RSM_FLUX);
+      if (albedo) albedo->bind(UNIT_RSM_ALBEDO);
     }
   };
   /// Needed by techniques that light the scene indirectly: something must reflect a light.

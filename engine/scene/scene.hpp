@@ -6,7 +6,6 @@
 
 #include "base/image.hpp"
 #include "scene/medium.hpp"
-#include "shared/lights.h"
 
 #include <glm/glm.hpp>
 
@@ -127,10 +126,6 @@ struct PointLight {
 
 /// A spot light has one perspective shadow map, so its cone must be well below a half space: 80 degrees.
 inline constexpr double kLargestSpotAngle = 80.0 * 3.14159265358979323846 / 180.0;
-/// Lamps of a kind drawn with shadow maps, the size of the shaders' arrays. A scene may have more
-/// (rsm/lamp_choice.hpp).
-inline constexpr std::size_t kMaxSpotLights = LIGHTS_MAX_SPOTS;
-inline constexpr std::size_t kMaxPointLights = LIGHTS_MAX_POINTS;
 
 /// A view of the scene. Positions in double, for precision far from the origin.
 struct Camera {

@@ -1,5 +1,6 @@
-// What a propagation step must at least do: read one set of grids and write the next, and add to the sum. As lpv/propagate.comp does it: texels of a
-// buffer in 32 bits read, a storage block written, the fastest ways there are on llvmpipe. A yardstick of `lucerna bench tables`; no technique uses it.
+// What a propagation step must at least do: read one set of grids and write the next, and add to the sum. As
+// lpv/propagate.comp does it: texels of a buffer in 32 bits read, a storage block written, the fastest ways there are
+// on llvmpipe. A yardstick of `lucerna bench tables`; no technique uses it.
 layout(local_size_x = 64) in;
 layout(binding = 0) uniform samplerBuffer source;
 layout(std430, binding = 0) writeonly buffer Next { vec4 next[]; };

@@ -1,7 +1,8 @@
 // Cut-out meshes cast the shadow of their mask; opaque ones need no fragment work.
+#include "shared/bindings.h"
 #if ALPHA_MASK
 in vec2 vTexCoord;
-layout(binding = 1) uniform sampler2D maskTexture;
+layout(binding = UNIT_MASK) uniform sampler2D maskTexture;
 #endif
 
 void main() {

@@ -1,4 +1,5 @@
-// The environment where no surface is: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl), bilinear.
+// The environment where no surface is: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl),
+// bilinear.
 uniform vec3 environmentRadiance;  // or a factor on the picture
 layout(location = 0) out vec4 radiance;
 
@@ -16,8 +17,10 @@ vec3 pictureRadiance(vec3 direction) {
   int first = (int(left) + size.x) % size.x, second = (first + 1) % size.x;
   float y = clamp(uv.y * float(size.y) - 0.5, 0.0, float(size.y - 1));
   int top = int(y), bottom = min(top + 1, size.y - 1);
-  vec3 upper = mix(texelFetch(environmentTexture, ivec2(first, top), 0).rgb, texelFetch(environmentTexture, ivec2(second, top), 0).rgb, x - left);
-  vec3 lower = mix(texelFetch(environmentTexture, ivec2(first, bottom), 0).rgb, texelFetch(environmentTexture, ivec2(second, bottom), 0).rgb, x - left);
+  vec3 upper = mix(texelFetch(environmentTexture, ivec2(first, top), 0).rgb,
+                   texelFetch(environmentTexture, ivec2(second, top), 0).rgb, x - left);
+  vec3 lower = mix(texelFetch(environmentTexture, ivec2(first, bottom), 0).rgb,
+                   texelFetch(environmentTexture, ivec2(second, bottom), 0).rgb, x - left);
   return mix(upper, lower, y - float(top));
 }
 #endif

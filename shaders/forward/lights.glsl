@@ -1,9 +1,10 @@
 // Light that arrives from spot and omnidirectional lights: E = I(omega) cos / d^2, shadowed. The flags SPOTS and POINTS
 // are their numbers.
+#include "shared/bindings.h"
 #include "lib/shadow.glsl"
 #include "lib/spot.glsl"
 #include "shared/lights.h"
-layout(std140, binding = 3) uniform LightBlock { LightConstants lights; };
+layout(std140, binding = BLOCK_LIGHTS) uniform LightBlock { LightConstants lights; };
 
 struct Arriving {
   vec3 irradiance;
@@ -12,10 +13,11 @@ struct Arriving {
 };
 
 const float kNormalOffset = 1.5;  // texels of the shadow map at the receiver's depth
-const float kTouching = 1e-30;      // distance squared: a surface point in the lamp itself has no direction to it and gets no light, not NaN
+// distance squared: a surface point in the lamp itself has no direction to it and gets no light, not NaN
+const float kTouching = 1e-30;
 
 #if SPOTS
-layout(binding = 10) uniform sampler2DArrayShadow spotShadows;
+layout(binding = UNIT_SPOT_SHADOWS) uniform sampler2DArrayShadow spotShadows;
 
 // normal: for shading; meshNormal: along which the shadow map is asked beside the surface.
 Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
@@ -23,10 +25,12 @@ Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   float distance2 = dot(away, away);
   Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
   result.cosine = dot(normal, result.toLight);
-  float falloff = spotFalloff(-dot(result.toLight, lights.spots[i].direction), lights.spots[i].cosInner, lights.spots[i].cosOuter);
+  float falloff =
+      spotFalloff(-dot(result.toLight, lights.spots[i].direction), lights.spots[i].cosInner, lights.spots[i].cosOuter);
   if (result.cosine <= 0.0 || falloff <= 0.0) return result;
   float depth = -dot(away, lights.spots[i].direction);
-  vec4 clip = lights.spots[i].clipFromPlace * vec4(meshNormal * (kNormalOffset * lights.spots[i].shadowTexel * depth) - away, 1.0);
+  vec4 clip = lights.spots[i].clipFromPlace *
+              vec4(meshNormal * (kNormalOffset * lights.spots[i].shadowTexel * depth) - away, 1.0);
   float visible = clip.w > 0.0 ? shadowTent(spotShadows, float(i), 0.5 * clip.xyz / clip.w + 0.5) : 1.0;
   result.irradiance = lights.spots[i].intensity * (falloff * result.cosine / distance2 * visible);
   return result;
@@ -34,7 +38,7 @@ Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
 #endif
 
 #if POINTS
-layout(binding = 11) uniform samplerCubeArrayShadow pointShadows;
+layout(binding = UNIT_POINT_SHADOWS) uniform samplerCubeArrayShadow pointShadows;
 
 float pointShadowTap(int i, vec3 fromLight) {
   vec3 size = abs(fromLight);
@@ -52,7 +56,8 @@ Arriving pointLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   vec3 size = abs(away);
   float texel = lights.points[i].shadowTexel * max(size.x, max(size.y, size.z));
   vec3 fromLight = meshNormal * (kNormalOffset * texel) - away;
-  // Half a texel along the two axes of the face; a tap beyond its edge is looked up in its neighbour, at that one's depth.
+  // Half a texel along the two axes of the face; a tap beyond its edge is looked up in its neighbour, at that one's
+  // depth.
   vec3 u = size.x >= size.y && size.x >= size.z ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 v = size.z > size.x && size.z > size.y ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
   u *= 0.5 * texel;

@@ -1,16 +1,20 @@
-// Fraction of the sun that is seen: one shadow map for the whole scene, or cascades (flag SUN_CASCADES: how many, 0 for one map).
+// Fraction of the sun that is seen: one shadow map for the whole scene, or cascades (flag SUN_CASCADES: how many, 0 for
+// one map).
+#include "shared/bindings.h"
 #include "lib/frame.glsl"
 #include "lib/shadow.glsl"
 
 #if SUN_CASCADES
 #include "shared/sun_cascades.h"
-layout(std140, binding = 4) uniform SunCascadeBlock { SunCascadeConstants sun; };
-layout(binding = 2) uniform sampler2DArrayShadow shadowMap;
+layout(std140, binding = BLOCK_SUN_CASCADES) uniform SunCascadeBlock { SunCascadeConstants sun; };
+layout(binding = UNIT_SUN_SHADOW) uniform sampler2DArrayShadow shadowMap;
 
-// From the finest cascade that holds the point to coarser ones, each blended into the next over the outer tenth of its map.
+// From the finest cascade that holds the point to coarser ones, each blended into the next over the outer tenth of its
+// map.
 float sunVisibility(vec3 position, vec3 normal) {
   const float kBlend = 0.1;
-  float visibility = 0.0, left = 1.0;  // a point near a map's border may lie outside the next: hence the division at the end
+  // a point near a map's border may lie outside the next: hence the division at the end
+  float visibility = 0.0, left = 1.0;
   for (int k = 0; k < SUN_CASCADES && left > 0.0; ++k) {
     vec4 clip = sun.clipFromWorld[k] * vec4(position + normal * sun.normalOffset[k], 1.0);
     float inside = 1.0 - max(abs(clip.x), abs(clip.y));
@@ -22,7 +26,7 @@ float sunVisibility(vec3 position, vec3 normal) {
   return left < 1.0 ? visibility / (1.0 - left) : 1.0;
 }
 #else
-layout(binding = 2) uniform sampler2DShadow shadowMap;
+layout(binding = UNIT_SUN_SHADOW) uniform sampler2DShadow shadowMap;
 
 // Outside the map is lit.
 float sunVisibility(vec3 position, vec3 normal) {

@@ -1,7 +1,7 @@
-// Forward shading: direct light of the sun, of spot and of omnidirectional lights with filtered shadow maps, indirect light from the
-// light propagation volume or gathered beforehand, emission.
-// Output: radiance, linear, scene units. Lambert: L = albedo / pi * E. Specular: Blinn-Phong, normalised so that its energy
-// does not depend on the exponent, (n + 8) / (8 pi) [AkenineMoller2018, section 9.8].
+// Forward shading: direct light of the sun, of spot and of omnidirectional lights with filtered shadow maps, indirect
+// light from the light propagation volume or gathered beforehand, emission.
+// Output: radiance, linear, scene units. Lambert: L = albedo / pi * E. Specular: Blinn-Phong, normalised so that its
+// energy does not depend on the exponent, (n + 8) / (8 pi) [AkenineMoller2018, section 9.8].
 #include "lib/frame.glsl"
 #include "lib/sh.glsl"
 #include "lib/material.glsl"
@@ -33,7 +33,8 @@ vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
   vec3 reflected = albedo / kPi;
 #if SPECULAR
   vec3 halfway = normalize(toCamera + toLight);
-  reflected += highlight.specular * ((highlight.shininess + 8.0) / (8.0 * kPi) * pow(max(dot(normal, halfway), 0.0), highlight.shininess));
+  reflected += highlight.specular *
+               ((highlight.shininess + 8.0) / (8.0 * kPi) * pow(max(dot(normal, halfway), 0.0), highlight.shininess));
 #endif
   return reflected;
 }

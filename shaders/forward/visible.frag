@@ -1,4 +1,5 @@
-// What the camera sees, for techniques that start from its pixels: normals, turned to the viewer as forward shading turns them. Depth gives the position.
+// What the camera sees, for techniques that start from its pixels: normals, turned to the viewer as forward shading
+// turns them. Depth gives the position.
 #include "lib/material.glsl"
 in vec3 vNormal;
 in vec2 vTexCoord;

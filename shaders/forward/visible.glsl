@@ -1,6 +1,7 @@
 // The visible surface of a pixel, from the geometry pass: depth and normal.
-layout(binding = 3) uniform sampler2D visibleDepth;
-layout(binding = 4) uniform sampler2D visibleNormal;
+#include "shared/bindings.h"
+layout(binding = UNIT_VISIBLE_DEPTH) uniform sampler2D visibleDepth;
+layout(binding = UNIT_VISIBLE_NORMAL) uniform sampler2D visibleNormal;
 uniform mat4 worldFromClip;
 
 bool isVisibleSurface(ivec2 pixel) { return texelFetch(visibleDepth, pixel, 0).r < 1.0; }

@@ -1,7 +1,8 @@
 // Radiance that a mesh's material sends out. Sampled before `discard`, as albedo is (lib/material.glsl).
+#include "shared/bindings.h"
 uniform vec3 materialEmission;
 #if EMISSION_TEXTURES
-layout(binding = 14) uniform sampler2D emissionTexture;  // white where a material has none
+layout(binding = UNIT_EMISSION_MAP) uniform sampler2D emissionTexture;  // white where a material has none
 #endif
 
 vec3 materialEmitted(vec2 texCoord) {

@@ -1,5 +1,6 @@
-// Numbers as unevaluated sums of two floats, 48 bits in all: where a float's 24 do not do and a GPU's double is slow or emulated. Three numbers at once.
-// Error-free sums after [Knuth1997, 4.2.2], products after [Dekker1971]. `precise` keeps compilers from contracting and reordering. fma() is not
+// Numbers as unevaluated sums of two floats, 48 bits in all: where a float's 24 do not do and a GPU's double is slow or
+// emulated. Three numbers at once. Error-free sums after [Knuth1997, 4.2.2], products after [Dekker1971]. `precise`
+// keeps compilers from contracting and reordering. fma() is not
 // used: a driver may compute it as two operations. Range: no product may overflow, and errors below 1e-38 are lost.
 
 struct Pairs {
@@ -48,7 +49,8 @@ Pairs pairsDifference(Pairs a, Pairs b) {
 }
 
 Pairs pairsCross(Pairs a, Pairs b) {
-  return pairsDifference(pairsProduct(Pairs(a.hi.yzx, a.lo.yzx), Pairs(b.hi.zxy, b.lo.zxy)), pairsProduct(Pairs(a.hi.zxy, a.lo.zxy), Pairs(b.hi.yzx, b.lo.yzx)));
+  return pairsDifference(pairsProduct(Pairs(a.hi.yzx, a.lo.yzx), Pairs(b.hi.zxy, b.lo.zxy)),
+                         pairsProduct(Pairs(a.hi.zxy, a.lo.zxy), Pairs(b.hi.yzx, b.lo.yzx)));
 }
 
 // One number: x + y.
@@ -58,7 +60,8 @@ vec2 pairsDot(Pairs a, Pairs b) {
   precise float backXy = xy - p.hi.x;
   precise float sum = xy + p.hi.z;
   precise float back = sum - xy;
-  precise float rest = ((p.hi.x - (xy - backXy)) + (p.hi.y - backXy)) + ((xy - (sum - back)) + (p.hi.z - back)) + (p.lo.x + p.lo.y + p.lo.z);
+  precise float rest = ((p.hi.x - (xy - backXy)) + (p.hi.y - backXy)) + ((xy - (sum - back)) + (p.hi.z - back)) +
+                       (p.lo.x + p.lo.y + p.lo.z);
   precise float hi = sum + rest;
   precise float lo = rest - (hi - sum);
   return vec2(hi, lo);
@@ -76,4 +79,6 @@ vec3 pairsOver(Pairs a, vec2 b) {
 float largestOf(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
 // The power of two that brings v > 0 to [1, 2).
-float inversePowerOfTwo(float v) { return uintBitsToFloat(0x7f000000u - clamp(floatBitsToUint(v) & 0x7f800000u, 0x00800000u, 0x7e800000u)); }
+float inversePowerOfTwo(float v) {
+  return uintBitsToFloat(0x7f000000u - clamp(floatBitsToUint(v) & 0x7f800000u, 0x00800000u, 0x7e800000u));
+}

@@ -1,2 +1,3 @@
+#include "shared/bindings.h"
 #include "shared/frame.h"
-layout(std140, binding = 0) uniform FrameBlock { FrameConstants frame; };
+layout(std140, binding = BLOCK_FRAME) uniform FrameBlock { FrameConstants frame; };

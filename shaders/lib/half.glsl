@@ -1,5 +1,6 @@
-// Rounding to 16-bit floats before they are stored. OpenGL leaves open how imageStore and packHalf2x16 round; a driver that cuts off
-// (llvmpipe) loses half a unit in the last place a store, always downwards. What is rounded here is stored as it is by every driver.
+// Rounding to 16-bit floats before they are stored. OpenGL leaves open how imageStore and packHalf2x16 round; a driver
+// that cuts off (llvmpipe) loses half a unit in the last place a store, always downwards. What is rounded here is
+// stored as it is by every driver.
 
 // To the nearest half, ties to even; below 2^-14, where halves are 2^-24 apart, to that raster.
 vec4 roundToHalf(vec4 value) {

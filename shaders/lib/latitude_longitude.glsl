@@ -5,4 +5,6 @@ const float kTwoPi = 6.28318530717958648;
 vec3 turnAboutY(vec3 d, vec2 turn) { return vec3(d.x * turn.x + d.z * turn.y, d.y, d.z * turn.x - d.x * turn.y); }
 
 // u, v of a direction of any length, 0..1, v = 0 at the top.
-vec2 latitudeLongitude(vec3 d) { return vec2(0.5 + atan(d.x, -d.z) / kTwoPi, 0.5 - atan(d.y, length(d.xz)) / (0.5 * kTwoPi)); }
+vec2 latitudeLongitude(vec3 d) {
+  return vec2(0.5 + atan(d.x, -d.z) / kTwoPi, 0.5 - atan(d.y, length(d.xz)) / (0.5 * kTwoPi));
+}

@@ -1,12 +1,14 @@
 // A mesh's material. Flags leave out what no mesh of the scene has.
-// Sampled first in a fragment shader, before `discard` and outside of any branch: which mip level is read comes of differences between
-// neighbouring invocations, and those are undefined after non-uniform control flow, of which discarding is one [GLSL 4.30, 8.13.1, 8.9].
+// Sampled first in a fragment shader, before `discard` and outside of any branch: which mip level is read comes of
+// differences between neighbouring invocations, and those are undefined after non-uniform control flow, of which
+// discarding is one [GLSL 4.30, 8.13.1, 8.9].
+#include "shared/bindings.h"
 uniform vec3 materialDiffuse;
 #if DIFFUSE_TEXTURES
-layout(binding = 0) uniform sampler2D diffuseTexture;  // white where a material has none
+layout(binding = UNIT_DIFFUSE) uniform sampler2D diffuseTexture;  // white where a material has none
 #endif
 #if ALPHA_MASK
-layout(binding = 1) uniform sampler2D maskTexture;
+layout(binding = UNIT_MASK) uniform sampler2D maskTexture;
 #endif
 
 vec3 materialColour(vec2 texCoord) {
@@ -18,7 +20,8 @@ vec3 materialColour(vec2 texCoord) {
 }
 
 #if METAL_MAPS
-layout(binding = 13) uniform sampler2D metalTexture;  // roughness in green, metallic in blue; white where a material has none
+// roughness in green, metallic in blue; white where a material has none
+layout(binding = UNIT_METAL_MAP) uniform sampler2D metalTexture;
 uniform float materialMetallic;                       // 0 where a material has no MetalMap (scene/scene.hpp)
 uniform float materialRoughness;                      // negative where it has none
 #endif
@@ -33,7 +36,7 @@ vec3 materialAlbedo(vec2 texCoord) {
 
 #if NORMAL_MAPS
 #include "lib/normal_map.glsl"
-layout(binding = 12) uniform sampler2D normalTexture;
+layout(binding = UNIT_NORMAL_MAP) uniform sampler2D normalTexture;
 uniform float materialNormalScale;  // 0 where a material has none
 #endif
 

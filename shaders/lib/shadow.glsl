@@ -1,5 +1,6 @@
-// Fraction of a light that is seen: four bilinear depth comparisons, which make a 3x3 tent. A receiver is moved along its normal
-// first by a length that grows with the shadow map's texels; in the maps themselves depth is offset by slope.
+// Fraction of a light that is seen: four bilinear depth comparisons, which make a 3x3 tent. A receiver is moved along
+// its normal first by a length that grows with the shadow map's texels; in the maps themselves depth is offset by
+// slope.
 
 float shadowTent(sampler2DShadow map, vec3 uvz, float texelUv) {
   float d = 0.5 * texelUv;
@@ -10,7 +11,8 @@ float shadowTent(sampler2DShadow map, vec3 uvz, float texelUv) {
 
 float shadowTent(sampler2DArrayShadow map, float layer, vec3 uvz) {
   float d = 0.5 / float(textureSize(map, 0).x);
-  float sum = texture(map, vec4(uvz.xy + vec2(-d, -d), layer, uvz.z)) + texture(map, vec4(uvz.xy + vec2(d, -d), layer, uvz.z)) +
-              texture(map, vec4(uvz.xy + vec2(-d, d), layer, uvz.z)) + texture(map, vec4(uvz.xy + vec2(d, d), layer, uvz.z));
+  float sum =
+      texture(map, vec4(uvz.xy + vec2(-d, -d), layer, uvz.z)) + texture(map, vec4(uvz.xy + vec2(d, -d), layer, uvz.z)) +
+      texture(map, vec4(uvz.xy + vec2(-d, d), layer, uvz.z)) + texture(map, vec4(uvz.xy + vec2(d, d), layer, uvz.z));
   return 0.25 * sum;
 }

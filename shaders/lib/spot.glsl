@@ -1,4 +1,5 @@
-// A spot light's fraction of its intensity on the axis, for the cosine of the angle to it: see SpotLight in scene/scene.hpp.
+// A spot light's fraction of its intensity on the axis, for the cosine of the angle to it: see SpotLight in
+// scene/scene.hpp.
 float spotFalloff(float cosine, float cosInner, float cosOuter) {
   float t = clamp((cosine - cosOuter) / max(cosInner - cosOuter, 1e-6), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);

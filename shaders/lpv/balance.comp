@@ -1,9 +1,11 @@
-// The balance of a cascade with the next coarser one, already joined: one value for 2x2x2 cells, b = (M' + dark) / (own + dark).
+// The balance of a cascade with the next coarser one, already joined: one value for 2x2x2 cells, b = (M' + dark) / (own
+// + dark).
 //
-// own is the mean over the eight cells of the cascade's own light, M + F; M' is the coarser cascade's M at their centre, which the eight
-// replace. Both are band 0, red, green and blue together, stored as c / (E_ref s^2), so that they are comparable. The quotient is taken here,
-// a cell at a time, and lpv/join.comp interpolates it: interpolating the two brightnesses instead lets dark cells behind walls into
-// the quotient beside them, which then no longer keeps a cell's mean (engine/lpv/README.md has the figures).
+// own is the mean over the eight cells of the cascade's own light, M + F; M' is the coarser cascade's M at their
+// centre, which the eight replace. Both are band 0, red, green and blue together, stored as c / (E_ref s^2), so that
+// they are comparable. The quotient is taken here, a cell at a time, and lpv/join.comp interpolates it: interpolating
+// the two brightnesses instead lets dark cells behind walls into the quotient beside them, which then no longer keeps a
+// cell's mean (engine/lpv/README.md has the figures).
 #include "lpv/common.glsl"
 #include "lpv/stacked.glsl"
 #include "lpv/sums.glsl"
@@ -22,7 +24,8 @@ void main() {
   float own = 0.0;
   for (int i = 0; i < 8; ++i) {
     ivec3 cell = 2 * at + ivec3(i & 1, i >> 1 & 1, i >> 2);
-    if (any(greaterThanEqual(cell, ivec3(cells)))) continue;  // with an odd number of cells the last pair reaches beyond the cascade
+    // with an odd number of cells the last pair reaches beyond the cascade
+    if (any(greaterThanEqual(cell, ivec3(cells)))) continue;
     cell.z += cascade * cells;
     own += SUM_AT(nearSums, cell, 0).x + SUM_AT(nearSums, cell, 1).x + SUM_AT(nearSums, cell, 2).x +
            SUM_AT(farSums, cell, 0).x + SUM_AT(farSums, cell, 1).x + SUM_AT(farSums, cell, 2).x;

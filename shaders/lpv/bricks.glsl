@@ -1,11 +1,14 @@
-// The bricks of 4^3 cells that light has reached: a propagation step is dispatched for these alone, all others stay zero.
+// The bricks of 4^3 cells that light has reached: a propagation step is dispatched for these alone, all others stay
+// zero.
 //
-// The lit cells of a front mark the neighbouring bricks that they touch; between two steps lpv/list_bricks.comp adds what is newly marked to the list.
-// A brick that is on the list stays there: so a brick that is not has never been written since the buffers were cleared. Needs lpv/common.glsl.
+// The lit cells of a front mark the neighbouring bricks that they touch; between two steps lpv/list_bricks.comp adds
+// what is newly marked to the list. A brick that is on the list stays there: so a brick that is not has never been
+// written since the buffers were cleared. Needs lpv/common.glsl.
 const int kBrick = 4;
 
 layout(std430, binding = 4) buffer Bricks {
-  uint groups[3];  // of the next step's dispatch, one a brick, in rows of kGroupsInRow: a dispatch has 65535 along an axis
+  // of the next step's dispatch, one a brick, in rows of kGroupsInRow: a dispatch has 65535 along an axis
+  uint groups[3];
   uint count;
   uint bricks[];   // the list; then one flag a brick: reached; then: listed
 };

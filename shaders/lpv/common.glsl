@@ -1,7 +1,9 @@
-// The light propagation volume's block and storage format. All cascades lie in one 3D texture, stacked along z: cascade k has
-// the layers k * cells .. (k + 1) * cells - 1; the geometry volume's cells lie on the corners, so it has cells + 1 a side.
+// The light propagation volume's block and storage format. All cascades lie in one 3D texture, stacked along z: cascade
+// k has the layers k * cells .. (k + 1) * cells - 1; the geometry volume's cells lie on the corners, so it has cells +
+// 1 a side.
+#include "shared/bindings.h"
 #include "shared/lpv.h"
-layout(std140, binding = 1) uniform LpvBlock { LpvConstants lpv; };
+layout(std140, binding = BLOCK_LPV) uniform LpvBlock { LpvConstants lpv; };
 
 #if LPV_FULL_FLOAT
 #define LPV_FORMAT rgba32f

@@ -1,6 +1,7 @@
-// The geometry volume by atomics, as lpv/inject_atomic.comp does for light: one invocation a tile of the reflective shadow map, the blocking potential
-// of lpv/geometry_volume.geom. FILL_FIXED: `fixedScale` is derived from the area of all texels together; for the sun's map alone, whose texels
-// have a largest area.
+// The geometry volume by atomics, as lpv/inject_atomic.comp does for light: one invocation a tile of the reflective
+// shadow map, the blocking potential of lpv/geometry_volume.geom. FILL_FIXED: `fixedScale` is derived from the area of
+// all texels together; for the sun's map alone, whose texels have a largest area.
+#include "shared/bindings.h"
 #if FILL_FLOAT
 #extension GL_NV_shader_atomic_float : require
 #endif
@@ -10,9 +11,9 @@
 #include "lpv/surfel.glsl"
 #include "lpv/tile.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(binding = 0) uniform sampler2DArray rsmPosition;
-layout(binding = 1) uniform sampler2DArray rsmNormal;
-layout(binding = 2) uniform sampler2DArray rsmFlux;  // w: area
+layout(binding = UNIT_RSM_POSITION) uniform sampler2DArray rsmPosition;
+layout(binding = UNIT_RSM_NORMAL) uniform sampler2DArray rsmNormal;
+layout(binding = UNIT_RSM_FLUX) uniform sampler2DArray rsmFlux;  // w: area
 layout(std430, binding = 0) buffer Counts { WORD_TYPE words[]; };
 uniform float fixedScale;
 

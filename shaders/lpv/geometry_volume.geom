@@ -1,6 +1,6 @@
-// Blocking potential [Kaplanyan2010, section 4.2]: a surfel of area A and normal n adds A / s^2 * lobe(n) to the cell of the
-// geometry volume that it lies in. That volume is shifted half a cell, so that its centres lie on the grid's corners.
-// A is the surface's true area, which the reflective shadow map holds beside the flux.
+// Blocking potential [Kaplanyan2010, section 4.2]: a surfel of area A and normal n adds A / s^2 * lobe(n) to the cell
+// of the geometry volume that it lies in. That volume is shifted half a cell, so that its centres lie on the grid's
+// corners. A is the surface's true area, which the reflective shadow map holds beside the flux.
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
 #include "lpv/surfel.glsl"

@@ -1,8 +1,11 @@
-// Injection by atomics: one invocation a tile of the reflective shadow map. Coefficient i of a cell is counted in word 4 cell + i of the first front,
-// all of red before green before blue, in place: FILL_FIXED in 32-bit integers, core OpenGL 4.3, which lpv/resolve.comp turns into floats; `fixedScale`
-// is derived from the largest flux that there can be, so that nothing overflows; each light is rounded by itself and integer sums do not depend on
-// their order, so every run gives the same bits, and so does every order of the texels. FILL_FLOAT: NV_shader_atomic_float.
-// FILL_HALF: NV_shader_atomic_fp16_vector, four half floats at once in images, as the published text has it, only where there are no atomics on 32 bits.
+// Injection by atomics: one invocation a tile of the reflective shadow map. Coefficient i of a cell is counted in word
+// 4 cell + i of the first front, all of red before green before blue, in place: FILL_FIXED in 32-bit integers, core
+// OpenGL 4.3, which lpv/resolve.comp turns into floats; `fixedScale` is derived from the largest flux that there can
+// be, so that nothing overflows; each light is rounded by itself and integer sums do not depend on their order, so
+// every run gives the same bits, and so does every order of the texels. FILL_FLOAT: NV_shader_atomic_float.
+// FILL_HALF: NV_shader_atomic_fp16_vector, four half floats at once in images, as the published text has it, only where
+// there are no atomics on 32 bits.
+#include "shared/bindings.h"
 #if FILL_FLOAT
 #extension GL_NV_shader_atomic_float : require
 #endif
@@ -16,9 +19,9 @@
 #include "lpv/tile.glsl"
 #include "lpv/vpl.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(binding = 0) uniform sampler2DArray rsmPosition;
-layout(binding = 1) uniform sampler2DArray rsmNormal;
-layout(binding = 2) uniform sampler2DArray rsmFlux;
+layout(binding = UNIT_RSM_POSITION) uniform sampler2DArray rsmPosition;
+layout(binding = UNIT_RSM_NORMAL) uniform sampler2DArray rsmNormal;
+layout(binding = UNIT_RSM_FLUX) uniform sampler2DArray rsmFlux;
 #if FILL_HALF
 layout(binding = 0, rgba16f) coherent uniform image3D countRed;
 layout(binding = 1, rgba16f) coherent uniform image3D countGreen;

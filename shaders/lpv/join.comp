@@ -1,11 +1,13 @@
-// Joins the cascades, from the coarsest to the finest, one a dispatch: C_k = b_k (M_k + F_k) + up(R_k+1), R_k = b_k F_k + up(R_k+1).
+// Joins the cascades, from the coarsest to the finest, one a dispatch: C_k = b_k (M_k + F_k) + up(R_k+1), R_k = b_k F_k
+// + up(R_k+1).
 //
-// In a fixed number of steps light travels a fixed number of cells, so a finer grid brings it less far: blended as they are,
-// grids would darken the picture with each cascade more; summed, as in the published text, they would brighten it. So each
-// grid's sum is kept in two parts: M, the light of the first steps, which the next finer grid carries by itself and better, and F, that
-// of the later ones, which is too far-travelled for it. A finer grid takes the coarser grids' F over: every step of the light is
-// counted once, nothing is ever subtracted. The balance b_k (lpv/balance.comp) makes the finer grid as bright, on the average over a coarser cell,
-// as the M that it replaces, so that it adds detail and leaves the brightness alone.
+// In a fixed number of steps light travels a fixed number of cells, so a finer grid brings it less far: blended as they
+// are, grids would darken the picture with each cascade more; summed, as in the published text, they would brighten it.
+// So each grid's sum is kept in two parts: M, the light of the first steps, which the next finer grid carries by itself
+// and better, and F, that of the later ones, which is too far-travelled for it. A finer grid takes the coarser grids' F
+// over: every step of the light is counted once, nothing is ever subtracted. The balance b_k (lpv/balance.comp) makes
+// the finer grid as bright, on the average over a coarser cell, as the M that it replaces, so that it adds detail and
+// leaves the brightness alone.
 #include "lpv/common.glsl"
 #include "lpv/stacked.glsl"
 #include "lpv/sums.glsl"
@@ -14,7 +16,8 @@ layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 6) uniform samplerBuffer coarserReceived;  // R of the next coarser cascade
 layout(binding = 7) uniform samplerBuffer balances;         // of this cascade, one for 2x2x2 cells
 layout(std430, binding = 0) writeonly buffer Received { vec4 received[]; };  // R of this one
-layout(std430, binding = 2) writeonly buffer Balanced { float balanced[]; };  // band 0 of b M, the channels together, for lpv/balance.comp
+// band 0 of b M, the channels together, for lpv/balance.comp
+layout(std430, binding = 2) writeonly buffer Balanced { float balanced[]; };
 uniform int cascade;
 
 // Between the balances of 2x2x2 cells each, at the border the nearest.
@@ -44,7 +47,8 @@ void main() {
 #if HAS_COARSER
   StackedTexels around = stackedTexels(lpvCoarserTexel(vec3(cell) + 0.5, cascade), cascade + 1);
   for (int i = 0; i < 8; ++i)
-    for (int c = 0; c < 3; ++c) coarser[c] += around.weight[i] * texelFetch(coarserReceived, around.at[i] + c * channel);
+    for (int c = 0; c < 3; ++c)
+      coarser[c] += around.weight[i] * texelFetch(coarserReceived, around.at[i] + c * channel);
   balance = balanceAt(cell);
 #endif
   float brightness = 0.0;

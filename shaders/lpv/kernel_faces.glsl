@@ -1,5 +1,6 @@
-// The propagation kernel face by face, as published: one term for each of the five faces of the destination. Slower than kernel.glsl,
-// which is the same in closed form, but every deviation of public implementations can be put into it, each by its own flag.
+// The propagation kernel face by face, as published: one term for each of the five faces of the destination. Slower
+// than kernel.glsl, which is the same in closed form, but every deviation of public implementations can be put into it,
+// each by its own flag.
 #include "lib/sh.glsl"
 
 const float kFaceFront = 0.40066968464623916;  // sr, see kernel.glsl
@@ -16,7 +17,8 @@ uniform float amplifier;                       // deviation lpv.four-pi-kernel: 
 void sideFace(int i, vec3 travel, out vec3 towards, out vec3 normal) {
   float sign_ = (i & 1) == 0 ? 1.0 : -1.0;
 #if SIDE_DIRECTIONS
-  // Deviation lpv.side-directions: the travel direction is multiplied by component with a vector that fits travel along z.
+  // Deviation lpv.side-directions: the travel direction is multiplied by component with a vector that fits travel along
+  // z.
   vec2 across = i < 2 ? vec2(sign_, 0.0) : vec2(0.0, sign_);
   towards = travel * vec3(across, 2.0) / sqrt(5.0);
   normal = travel * vec3(across, 0.0);

@@ -1,21 +1,25 @@
-// Irradiance at a surface from the light propagation volume: trilinear coefficients times a receiver's lobe. Stored coefficients are c / (E_ref s^2), so s cancels.
+// Irradiance at a surface from the light propagation volume: trilinear coefficients times a receiver's lobe. Stored
+// coefficients are c / (E_ref s^2), so s cancels.
 //
-// FLUX_LOOKUP (lpv.lookup=flux): what the propagation kernel sends through a face of a cell there, over the face's area. Towards one face it sends
-// Omega_f I(front) + Omega_s sum of I(the four sides) (lpv/kernel.glsl), which without the bounds at 0 is a0 c0 + a1 <c1, -n> with
-// a0 = Y00 (Omega_f + 4 Omega_s) = Y00 2 pi / 3 and a1 = Y1 (Omega_f + 8 Omega_s / sqrt 5): E = max(0, a0 c0 + a1 <c1, -n>) / s^2. In a field of the
-// same intensity I everywhere that is 2 pi / 3 I, as the kernel has it.
-// Else as published [LPV2015, 5.4]: E = 4 / (pi s^2) <c, lobe(-n)>, the light of a source in the cell's centre, half a cell away, E = I / (s/2)^2 [Kaplanyan2010];
-// for light in transit that is 1.91 times too much.
+// FLUX_LOOKUP (lpv.lookup=flux): what the propagation kernel sends through a face of a cell there, over the face's
+// area. Towards one face it sends Omega_f I(front) + Omega_s sum of I(the four sides) (lpv/kernel.glsl), which without
+// the bounds at 0 is a0 c0 + a1 <c1, -n> with a0 = Y00 (Omega_f + 4 Omega_s) = Y00 2 pi / 3 and a1 = Y1 (Omega_f + 8
+// Omega_s / sqrt 5): E = max(0, a0 c0 + a1 <c1, -n>) / s^2. In a field of the same intensity I everywhere that is 2 pi
+// / 3 I, as the kernel has it.
+// Else as published [LPV2015, 5.4]: E = 4 / (pi s^2) <c, lobe(-n)>, the light of a source in the cell's centre, half a
+// cell away, E = I / (s/2)^2 [Kaplanyan2010]; for light in transit that is 1.91 times too much.
 //
-// There band 1 of the receiver's lobe is windowed by 3/4 (against ringing [Sloan2008]): two two-band cosine lobes give pi/4 + pi/3 cos, so
-// light that travels away from a surface would count negative and blacken what others light. 3/4 is the largest window with which no
-// sum of cosine lobes is negative anywhere. Deviation lpv.unwindowed: without it, as published.
+// There band 1 of the receiver's lobe is windowed by 3/4 (against ringing [Sloan2008]): two two-band cosine lobes give
+// pi/4 + pi/3 cos, so light that travels away from a surface would count negative and blacken what others light. 3/4 is
+// the largest window with which no sum of cosine lobes is negative anywhere. Deviation lpv.unwindowed: without it, as
+// published.
+#include "shared/bindings.h"
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
 #include "lpv/cascade_weight.glsl"
-layout(binding = 4) uniform sampler3D lpvRed;
-layout(binding = 5) uniform sampler3D lpvGreen;
-layout(binding = 6) uniform sampler3D lpvBlue;
+layout(binding = UNIT_LPV_RED) uniform sampler3D lpvRed;
+layout(binding = UNIT_LPV_GREEN) uniform sampler3D lpvGreen;
+layout(binding = UNIT_LPV_BLUE) uniform sampler3D lpvBlue;
 
 vec3 lpvCascadeIrradiance(int k, vec3 position, vec3 normal) {
   float cells = float(lpv.shape.x);
@@ -25,7 +29,8 @@ vec3 lpvCascadeIrradiance(int k, vec3 position, vec3 normal) {
   texel.z = clamp(texel.z, 0.5, cells - 0.5) + float(k) * cells;
   vec3 uvw = texel / vec3(cells, cells, cells * float(lpv.shape.y));
 #if FLUX_LOOKUP
-  const float kFront = 0.40066968464623916, kSide = 0.42343135443673924, kRoot5 = 2.2360679774997897;  // sr, as in lpv/kernel.glsl
+  // sr, as in lpv/kernel.glsl
+  const float kFront = 0.40066968464623916, kSide = 0.42343135443673924, kRoot5 = 2.2360679774997897;
   vec4 lobe = vec4(kY00 * (kFront + 4.0 * kSide), -kY1 * (kFront + 8.0 * kSide / kRoot5) * normal) * (kPi / 4.0);
 #elif FLUX_UNITS
   // Deviation lpv.flux-units: intensity towards the surface times 1.7, a factor set by eye.

@@ -10,7 +10,8 @@ void main() {
   int cells = lpv.shape.x, layers = cells * lpv.shape.y;
   if (any(greaterThanEqual(cell, ivec3(cells, cells, layers)))) return;
   int at = (cell.z * cells + cell.y) * cells + cell.x, channel = cells * cells * layers;
-  bool dark = texelFetch(front, at) == vec4(0.0) && texelFetch(front, at + channel) == vec4(0.0) && texelFetch(front, at + 2 * channel) == vec4(0.0);
+  bool dark = texelFetch(front, at) == vec4(0.0) && texelFetch(front, at + channel) == vec4(0.0) &&
+              texelFetch(front, at + 2 * channel) == vec4(0.0);
   if (dark && !everywhere) return;
   ivec3 local = ivec3(cell.xy, cell.z % cells);
   int ofAxis = bricksOfAxis();

@@ -1,8 +1,9 @@
-// One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels. One work group a brick that
-// light has reached (lpv/bricks.glsl).
+// One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels.
+// One work group a brick that light has reached (lpv/bricks.glsl).
 //
-// A front lies in a buffer, cell by cell, x fastest, all of red before green before blue; the sum of fronts in another. They are read as texels: on
-// llvmpipe a gather from a storage block takes three times as long. No branches where a sum begins: a software rasteriser runs both sides of each.
+// A front lies in a buffer, cell by cell, x fastest, all of red before green before blue; the sum of fronts in another.
+// They are read as texels: on llvmpipe a gather from a storage block takes three times as long. No branches where a sum
+// begins: a software rasteriser runs both sides of each.
 #include "lpv/common.glsl"
 #include "lpv/stored_units.glsl"
 #include "lpv/bricks.glsl"
@@ -44,8 +45,8 @@ void gatherFaces(vec4 light[3], vec3 travel, vec4 potential, inout vec4 sum[3]) 
   }
 }
 #else
-// From the neighbour behind along one axis; `way` is +1 or -1, `stride` that axis' step in the buffer. toFrame and fromFrame rotate
-// (c0, x, y, z) into (c0, travel, u, v) and back. `face` is the crossed face's index.
+// From the neighbour behind along one axis; `way` is +1 or -1, `stride` that axis' step in the buffer. toFrame and
+// fromFrame rotate (c0, x, y, z) into (c0, travel, u, v) and back. `face` is the crossed face's index.
 #define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                    \
   if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
     const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                        \
@@ -60,12 +61,15 @@ void gatherFaces(vec4 light[3], vec3 travel, vec4 potential, inout vec4 sum[3]) 
 void main() {
   uint group = gl_WorkGroupID.y * kGroupsInRow + gl_WorkGroupID.x;
   if (group >= count) return;
-  int brick = int(bricks[group]), ofAxis = bricksOfAxis(), row = brick / ofAxis, slice = row / ofAxis, cascade = slice / ofAxis;
+  int brick = int(bricks[group]), ofAxis = bricksOfAxis(), row = brick / ofAxis, slice = row / ofAxis,
+      cascade = slice / ofAxis;
   int inBrick = int(gl_LocalInvocationID.x);
-  ivec3 local = kBrick * ivec3(brick - row * ofAxis, row - slice * ofAxis, slice - cascade * ofAxis) + ivec3(inBrick & 3, inBrick >> 2 & 3, inBrick >> 4);
+  ivec3 local = kBrick * ivec3(brick - row * ofAxis, row - slice * ofAxis, slice - cascade * ofAxis) +
+                ivec3(inBrick & 3, inBrick >> 2 & 3, inBrick >> 4);
   int cells = lpv.shape.x, layers = cells * lpv.shape.y;
   if (any(greaterThanEqual(local, ivec3(cells)))) return;
-  int layer = cells * cells, at = (cascade * cells + local.z) * layer + local.y * cells + local.x, channel = layer * layers;
+  int layer = cells * cells, at = (cascade * cells + local.z) * layer + local.y * cells + local.x,
+      channel = layer * layers;
   // The faces before this cell, at its lower corner in the geometry volume.
   int corners = cells + 1, corner = ((cascade * corners + local.z) * corners + local.y) * corners + local.x;
   int facesOfAxis = corners * corners * corners * lpv.shape.y;

@@ -1,5 +1,6 @@
-// One propagation step of one cascade as published [LPV2015, 5.3]: drawn slice by slice, six neighbours, five faces each, the
-// blocking potential read at the crossed face's centre for each. Three targets take the new front, three add to the sum.
+// One propagation step of one cascade as published [LPV2015, 5.3]: drawn slice by slice, six neighbours, five faces
+// each, the blocking potential read at the crossed face's centre for each. Three targets take the new front, three add
+// to the sum.
 #include "lpv/common.glsl"
 #include "lpv/kernel_faces.glsl"
 flat in int fSlice;
@@ -23,7 +24,8 @@ float passes(ivec3 cell, vec3 travel, vec3 towards) {
   float corners = float(lpv.shape.x + 1);
   vec3 texel = vec3(cell) + 0.5 - 0.5 * travel + 0.5;
   texel.z += float(cascade) * corners;
-  return facePasses(textureLod(geometryVolume, texel / vec3(corners, corners, corners * float(lpv.shape.y)), 0.0), towards);
+  return facePasses(textureLod(geometryVolume, texel / vec3(corners, corners, corners * float(lpv.shape.y)), 0.0),
+                    towards);
 #else
   return 1.0;
 #endif
@@ -40,7 +42,8 @@ void main() {
     ivec3 neighbour = cell - ivec3(travel);
     if (any(lessThan(neighbour, ivec3(0))) || any(greaterThanEqual(neighbour, ivec3(cells)))) continue;
     ivec3 at = neighbour + ivec3(0, 0, layers);
-    vec4 source[3] = vec4[3](texelFetch(sourceRed, at, 0), texelFetch(sourceGreen, at, 0), texelFetch(sourceBlue, at, 0));
+    vec4 source[3] =
+        vec4[3](texelFetch(sourceRed, at, 0), texelFetch(sourceGreen, at, 0), texelFetch(sourceBlue, at, 0));
     addFace(source, shBasis(travel), kFaceFront, passes(cell, travel, travel), reprojected(travel), sum);
     for (int i = 0; i < 4; ++i) {
       vec3 towards, normal;
@@ -54,7 +57,8 @@ void main() {
 #if BEGINS_WITH_INJECTED
   // The first step adds the injected grid as well: the sum begins with G_0.
   ivec3 here = cell + ivec3(0, 0, layers);
-  sum = vec4[3](sum[0] + texelFetch(sourceRed, here, 0), sum[1] + texelFetch(sourceGreen, here, 0), sum[2] + texelFetch(sourceBlue, here, 0));
+  sum = vec4[3](sum[0] + texelFetch(sourceRed, here, 0), sum[1] + texelFetch(sourceGreen, here, 0),
+                sum[2] + texelFetch(sourceBlue, here, 0));
 #endif
   sumRed = sum[0];
   sumGreen = sum[1];

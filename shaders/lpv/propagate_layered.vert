@@ -1,4 +1,5 @@
-// POINTS: one point a cell, as the published program has it. Else one triangle a slice of the cascade; the slice is the instance.
+// POINTS: one point a cell, as the published program has it. Else one triangle a slice of the cascade; the slice is the
+// instance.
 uniform int cells;
 flat out ivec3 gCell;
 

@@ -1,10 +1,13 @@
-// One more bounce: what is injected and what surfaces throw back of the light that has travelled, the source of the next propagation.
+// One more bounce: what is injected and what surfaces throw back of the light that has travelled, the source of the
+// next propagation.
 //
-// Light that crosses one of a cell's six faces is held back there by the surfels' blocking potential B (lpv/kernel.glsl). What is held back comes
-// back into the cell it came from, times the albedo, as a cosine lobe about the surfels' mean normal. Every face sees the sum of all
-// fronts, T - S: as max(0, sum) <= sum of max(0, .), no more is held back than the steps did.
-// Bounded: the clamp of negative intensities lets a cosine lobe gain a factor 1.138208 in its first step, never more (engine/lpv/README.md),
-// which is divided out. So a source of flux S comes back as rho S at most, and the sum of all bounces stays below S / (1 - rho).
+// Light that crosses one of a cell's six faces is held back there by the surfels' blocking potential B
+// (lpv/kernel.glsl). What is held back comes back into the cell it came from, times the albedo, as a cosine lobe about
+// the surfels' mean normal. Every face sees the sum of all fronts, T - S: as max(0, sum) <= sum of max(0, .), no more
+// is held back than the steps did.
+// Bounded: the clamp of negative intensities lets a cosine lobe gain a factor 1.138208 in its first step, never more
+// (engine/lpv/README.md), which is divided out. So a source of flux S comes back as rho S at most, and the sum of all
+// bounces stays below S / (1 - rho).
 #include "lpv/common.glsl"
 #include "lpv/kernel.glsl"
 #include "lpv/sums.glsl"
@@ -30,26 +33,27 @@ float heldBack(vec4 light, FaceValues passes) {
          kSideSolidAngle * dot(max(intensity.sides, 0.0), 1.0 - passes.sides);
 }
 
-// The face that light leaves the cell by, with `way` along an axis; `corner` is the first of its four corners, u and v lead to the others. toFrame
-// rotates (c0, x, y, z) into (c0, travel, u, v).
-#define FACE(way, axis, corner, u, v, toFrame)                                                                              \
-  {                                                                                                                        \
-    ivec3 a = corner, b = corner + u, c = corner + v, d = corner + u + v;                                                  \
-    vec4 potential = 0.25 * (texelFetch(geometryVolume, a, 0) + texelFetch(geometryVolume, b, 0) +                         \
-                             texelFetch(geometryVolume, c, 0) + texelFetch(geometryVolume, d, 0));                         \
-    vec3 tint = 0.25 * (texelFetch(reflectance, a, 0).rgb + texelFetch(reflectance, b, 0).rgb +                            \
-                        texelFetch(reflectance, c, 0).rgb + texelFetch(reflectance, d, 0).rgb);                            \
-    if (potential.x > 0.0) {                                                                                               \
-      const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                          \
-      FaceValues passes = transmittanceTowardsFaces((kFaceUnits * potential).toFrame * turn);                              \
-      float directed = length(potential.yzw);                                                                              \
-      /* Surfels back to back have no mean normal: then back to where the light comes from. */                             \
-      vec3 normal = directed > 1e-3 * potential.x ? potential.yzw / directed : (-(way)) * vec3(axis);                        \
-      vec3 albedo = tint * (kLobe0 / potential.x);                                                                         \
-      vec3 flux = albedo / kClampGain * vec3(heldBack(light[0].toFrame * turn, passes), heldBack(light[1].toFrame * turn, passes), \
-                                             heldBack(light[2].toFrame * turn, passes));                                   \
-      for (int i = 0; i < 3; ++i) reflected[i] += flux[i] / kPi * shCosineLobe(normal);                                    \
-    }                                                                                                                      \
+// The face that light leaves the cell by, with `way` along an axis; `corner` is the first of its four corners, u and v
+// lead to the others. toFrame rotates (c0, x, y, z) into (c0, travel, u, v).
+#define FACE(way, axis, corner, u, v, toFrame)                                                                      \
+  {                                                                                                                 \
+    ivec3 a = corner, b = corner + u, c = corner + v, d = corner + u + v;                                           \
+    vec4 potential = 0.25 * (texelFetch(geometryVolume, a, 0) + texelFetch(geometryVolume, b, 0) +                  \
+                             texelFetch(geometryVolume, c, 0) + texelFetch(geometryVolume, d, 0));                  \
+    vec3 tint = 0.25 * (texelFetch(reflectance, a, 0).rgb + texelFetch(reflectance, b, 0).rgb +                     \
+                        texelFetch(reflectance, c, 0).rgb + texelFetch(reflectance, d, 0).rgb);                     \
+    if (potential.x > 0.0) {                                                                                        \
+      const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                   \
+      FaceValues passes = transmittanceTowardsFaces((kFaceUnits * potential).toFrame * turn);                       \
+      float directed = length(potential.yzw);                                                                       \
+      /* Surfels back to back have no mean normal: then back to where the light comes from. */                      \
+      vec3 normal = directed > 1e-3 * potential.x ? potential.yzw / directed : (-(way)) * vec3(axis);               \
+      vec3 albedo = tint * (kLobe0 / potential.x);                                                                  \
+      vec3 held = vec3(heldBack(light[0].toFrame * turn, passes), heldBack(light[1].toFrame * turn, passes),        \
+                       heldBack(light[2].toFrame * turn, passes));                                                  \
+      vec3 flux = albedo / kClampGain * held;                                                                       \
+      for (int i = 0; i < 3; ++i) reflected[i] += flux[i] / kPi * shCosineLobe(normal);                             \
+    }                                                                                                               \
   }
 
 void main() {
@@ -57,7 +61,8 @@ void main() {
   int cells = lpv.shape.x;
   if (any(greaterThanEqual(cell, ivec3(cells, cells, cells * lpv.shape.y)))) return;
   ivec3 corner = ivec3(cell.xy, cell.z / cells * (cells + 1) + cell.z % cells);
-  vec4 injected[3] = vec4[3](texelFetch(injectedRed, cell, 0), texelFetch(injectedGreen, cell, 0), texelFetch(injectedBlue, cell, 0));
+  vec4 injected[3] =
+      vec4[3](texelFetch(injectedRed, cell, 0), texelFetch(injectedGreen, cell, 0), texelFetch(injectedBlue, cell, 0));
   vec4 source[3] = injected;
   if (!first) source = vec4[3](imageLoad(sourceRed, cell), imageLoad(sourceGreen, cell), imageLoad(sourceBlue, cell));
   vec4 light[3] = vec4[3](SUM_AT(nearSums, cell, 0), SUM_AT(nearSums, cell, 1), SUM_AT(nearSums, cell, 2));  // T

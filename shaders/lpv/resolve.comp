@@ -1,5 +1,5 @@
-// Turns what atomics counted into coefficients: FILL_FIXED in place, integers into floats, of lights or of surfels; FILL_HALF from images into the
-// first front. FILL_FLOAT needs no such pass.
+// Turns what atomics counted into coefficients: FILL_FIXED in place, integers into floats, of lights or of surfels;
+// FILL_HALF from images into the first front. FILL_FLOAT needs no such pass.
 #include "lpv/common.glsl"
 #include "lpv/fixed.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;

@@ -1,5 +1,6 @@
-// Where the result is written: a buffer, from which the engine copies it to the textures that the lookup filters, all of red before green before blue.
-// llvmpipe takes forty times as long to store a texel to an image as to store it to a buffer and copy it.
+// Where the result is written: a buffer, from which the engine copies it to the textures that the lookup filters, all
+// of red before green before blue. llvmpipe takes forty times as long to store a texel to an image as to store it to a
+// buffer and copy it.
 #include "lpv/storage.glsl"
 #if LPV_FULL_FLOAT
 layout(std430, binding = 1) writeonly buffer Result { vec4 texels[]; };

@@ -1,4 +1,5 @@
-// Trilinear reading of one cascade of a stack that lies in a buffer, x fastest; outside is dark, as where the lookup filters textures.
+// Trilinear reading of one cascade of a stack that lies in a buffer, x fastest; outside is dark, as where the lookup
+// filters textures.
 struct StackedTexels {
   int at[8];
   float weight[8];

@@ -1,10 +1,10 @@
-// A surfel of a reflective shadow map as the geometry volume takes it, shared by the ways to fill it. Needs lib/sh.glsl, lpv/common.glsl.
-// LOWEST_CELL is 0; 1 with the deviation lpv.first-cell.
+// A surfel of a reflective shadow map as the geometry volume takes it, shared by the ways to fill it. Needs
+// lib/sh.glsl, lpv/common.glsl. LOWEST_CELL is 0; 1 with the deviation lpv.first-cell.
 #include "lib/finite.glsl"
 
 bool isUsableSurfel(vec4 position, vec3 normal, float area) {
-  return position.w > 0.5 && allFinite(position.xyz) && allFinite(normal) && allFinite(vec3(area)) && dot(normal, normal) > 0.25 &&
-         dot(normal, normal) < 4.0;
+  return position.w > 0.5 && allFinite(position.xyz) && allFinite(normal) && allFinite(vec3(area)) &&
+         dot(normal, normal) > 0.25 && dot(normal, normal) < 4.0;
 }
 
 // The geometry volume's cell that it lies in, in cascade k.

@@ -1,5 +1,6 @@
-// The texels of a reflective shadow map that one invocation adds up: a tile of TILE x TILE (4; 1: an atomic a light, as published), to and fro, so that those that follow each other are neighbours and
-// mostly fall into the same cell. What they bring is summed as long as they do, and only then added to the cell by atomics.
+// The texels of a reflective shadow map that one invocation adds up: a tile of TILE x TILE (4; 1: an atomic a light, as
+// published), to and fro, so that those that follow each other are neighbours and mostly fall into the same cell. What
+// they bring is summed as long as they do, and only then added to the cell by atomics.
 const int kTile = TILE;
 ivec3 texelOfTile(ivec3 tile, int i) {
   int y = i / kTile, x = i % kTile;

@@ -5,19 +5,20 @@
 // Background, black, zero and non-finite texels carry no light.
 bool isUsableVpl(vec4 position, vec3 normal, vec3 flux) {
   float length2 = dot(normal, normal);
-  return position.w > 0.5 && allFinite(position.xyz) && allFinite(normal) && allFinite(flux) && length2 > 0.25 && length2 < 4.0 &&
-         flux.r + flux.g + flux.b > 0.0;
+  return position.w > 0.5 && allFinite(position.xyz) && allFinite(normal) && allFinite(flux) && length2 > 0.25 &&
+         length2 < 4.0 && flux.r + flux.g + flux.b > 0.0;
 }
 
-// Its cell in cascade k: it is moved half a cell along its normal first, so that it does not light its own surface [GPUPro2, p. 190].
+// Its cell in cascade k: it is moved half a cell along its normal first, so that it does not light its own surface
+// [GPUPro2, p. 190].
 bool vplCell(int k, vec3 position, vec3 normal, out ivec3 cell) {
   float s = lpv.cascades[k].cellSize;
   cell = ivec3(floor((position + 0.5 * s * normal - lpv.cascades[k].minimum) / s));
   return all(greaterThanEqual(cell, ivec3(LOWEST_CELL))) && all(lessThan(cell, ivec3(lpv.shape.x)));
 }
 
-// Intensity Phi / pi * max(0, cos) of unit flux, as stored: c / (E_ref s^2) is near 1 whatever the units, so that 16-bit floats neither
-// overflow nor fall into subnormals.
+// Intensity Phi / pi * max(0, cos) of unit flux, as stored: c / (E_ref s^2) is near 1 whatever the units, so that
+// 16-bit floats neither overflow nor fall into subnormals.
 vec4 vplLobe(int k, vec3 normal, float fluxScale) {
 #if FLUX_UNITS
   // Deviation lpv.flux-units: neither the texel's area nor the cell's counts; brightness follows their number and size.

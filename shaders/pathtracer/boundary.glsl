@@ -1,9 +1,10 @@
-// Which closed boundaries a path is inside of, and what that makes of the place: its medium and its index of refraction.
+// Which closed boundaries a path is inside of, and what that makes of the place: its medium and its index of
+// refraction.
 //
-// Where closed dielectrics overlap the one of the highest priority is there [SchmidtBudge2002]. Materials that bound something are ranked
-// by priority; a path counts its entries by rank, 4 bits each. Counts need no order, hold any nesting and never overflow: a boundary
-// crossed below a higher one changes nothing but its count. A boundary of Bsdf::none holds a medium, but no index of its own: the
-// dielectric around it keeps its own.
+// Where closed dielectrics overlap the one of the highest priority is there [SchmidtBudge2002]. Materials that bound
+// something are ranked by priority; a path counts its entries by rank, 4 bits each. Counts need no order, hold any
+// nesting and never overflow: a boundary crossed below a higher one changes nothing but its count. A boundary of
+// Bsdf::none holds a medium, but no index of its own: the dielectric around it keeps its own.
 #include "shared/media.h"
 
 layout(std430, binding = 7) restrict readonly buffer InteriorBlock { InteriorRecord interiors[]; };  // by rank
@@ -31,8 +32,8 @@ float iorInside(uvec4 inside) {
 
 bool isInsideOf(uvec4 inside, int rank) { return ((inside[rank >> 3] >> (4 * (rank & 7))) & 15u) != 0u; }
 
-// After crossing the boundary of a rank. False where it is left without having been entered (an open or turned mesh), or entered for the
-// sixteenth time: the counts stay as they are then.
+// After crossing the boundary of a rank. False where it is left without having been entered (an open or turned mesh),
+// or entered for the sixteenth time: the counts stay as they are then.
 bool crossBoundary(inout uvec4 inside, int rank, bool entering) {
   int word = rank >> 3, shift = 4 * (rank & 7);
   uint count = (inside[word] >> shift) & 15u;

@@ -1,7 +1,8 @@
-// Heterogeneous media: a density on a grid that multiplies a medium's coefficients, interpolated trilinearly between cell centres, 0 outside
-// its box. Blocks of cells know a bound of the density in them; between their faces collisions are drawn at the bound's rate and told
-// real from null by chance [Woodcock1965; Novak2018]. A block's bound holds for the interpolated density, neighbouring cells counted.
-// The channel that decides is chosen as in media.glsl, so that here too no weight exceeds the number of channels.
+// Heterogeneous media: a density on a grid that multiplies a medium's coefficients, interpolated trilinearly between
+// cell centres, 0 outside its box. Blocks of cells know a bound of the density in them; between their faces collisions
+// are drawn at the bound's rate and told real from null by chance [Woodcock1965; Novak2018]. A block's bound holds for
+// the interpolated density, neighbouring cells counted. The channel that decides is chosen as in media.glsl, so that
+// here too no weight exceeds the number of channels.
 #include "pathtracer/media.glsl"
 
 layout(std430, binding = 0) restrict readonly buffer DensityRecords { DensityRecord densityRecords[]; };
@@ -28,11 +29,13 @@ float densityAt(DensityRecord g, vec3 p) {
   return densityInside(g, p);
 }
 
-// The density's integral from `near` to `far` along origin + t direction, in cells and inside of the box, over t. Exact but for rounding: between two of the
-// planes through cells' centres it is a cubic in t, for which Simpson's rule is exact. So many turns as planes are crossed, one more, and no more.
+// The density's integral from `near` to `far` along origin + t direction, in cells and inside of the box, over t. Exact
+// but for rounding: between two of the planes through cells' centres it is a cubic in t, for which Simpson's rule is
+// exact. So many turns as planes are crossed, one more, and no more.
 float densityIntegral(DensityRecord g, vec3 origin, vec3 direction, float near, float far) {
   vec3 start = origin + near * direction, towards = mix(vec3(-1.0), vec3(1.0), greaterThanEqual(direction, vec3(0.0)));
-  vec3 plane = mix(ceil(start - 0.5), floor(start - 0.5), greaterThanEqual(direction, vec3(0.0))) + 0.5;  // the last one passed
+  // the last one passed
+  vec3 plane = mix(ceil(start - 0.5), floor(start - 0.5), greaterThanEqual(direction, vec3(0.0))) + 0.5;
   float from = near, sum = 0.0, atFrom = densityInside(g, start);
   int most = g.size.x + g.size.y + g.size.z + 3;
   for (int i = 0; i < most && from < far; ++i) {
@@ -84,13 +87,16 @@ bool densityMarchStart(DensityRecord g, vec3 origin, vec3 direction, float tMax,
   march.near = near;
   march.far = near;
   march.last = far;
-  march.block = clamp(ivec3(floor((march.origin + near * march.direction) / float(g.size.w))), ivec3(0), g.blocks.xyz - 1);
+  march.block =
+      clamp(ivec3(floor((march.origin + near * march.direction) / float(g.size.w))), ivec3(0), g.blocks.xyz - 1);
   return near < far;
 }
 
 // The next part: [near, far] and its bound. False behind the last.
 bool densityMarchNext(DensityRecord g, inout DensityMarch march, out float bound) {
-  if (march.far >= march.last || any(lessThan(march.block, ivec3(0))) || any(greaterThanEqual(march.block, g.blocks.xyz))) return false;
+  if (march.far >= march.last || any(lessThan(march.block, ivec3(0))) ||
+      any(greaterThanEqual(march.block, g.blocks.xyz)))
+    return false;
   bound = densities[g.firstBound + march.block.x + g.blocks.x * (march.block.y + g.blocks.y * march.block.z)];
   march.near = march.far;
   float edge = float(g.size.w), far = march.last;

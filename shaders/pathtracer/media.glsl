@@ -1,11 +1,11 @@
 // Homogeneous participating media: free flights and scattering, unbiased for any ratio of the channels' coefficients.
 //
-// A channel j is chosen with probability q_j proportional to the path's throughput, a distance t drawn from its exponential density, and
-// all channels are weighted by the balance heuristic [Miller2019; Chiang2016]:
+// A channel j is chosen with probability q_j proportional to the path's throughput, a distance t drawn from its
+// exponential density, and all channels are weighted by the balance heuristic [Miller2019; Chiang2016]:
 //   collision at t:      throughput_c *= sigma_s,c T_c(t) / sum_j q_j sigma_t,j T_j(t)
 //   boundary at d <= t:  throughput_c *= T_c(d) / sum_j q_j T_j(d)
-// Without absorption both leave the sum of the channels as it is, so no weight exceeds their number. exp(-sigma_min t) is taken out of
-// numerators and denominators, which would underflow from an optical depth of 87 on.
+// Without absorption both leave the sum of the channels as it is, so no weight exceeds their number. exp(-sigma_min t)
+// is taken out of numerators and denominators, which would underflow from an optical depth of 87 on.
 #include "shared/media.h"
 #include "pathtracer/numeric.glsl"
 #include "pathtracer/phase.glsl"
@@ -39,7 +39,8 @@ float flightDistance(MediumRecord medium, int channel, uint k) {
   return extinction > 0.0 ? min(exponentialSample(k) / extinction, kFar) : kFar;
 }
 
-// T_c / sum_j q_j sigma_t,j T_j: what a quantity per unit of length found at a collision counts. 0 in channels that never collide.
+// T_c / sum_j q_j sigma_t,j T_j: what a quantity per unit of length found at a collision counts. 0 in channels that
+// never collide.
 vec3 collisionWeight(MediumRecord medium, vec3 q, float t) {
   bvec3 live = bvec3(vec3(greaterThan(q, vec3(0.0))) * vec3(greaterThan(medium.extinction, vec3(0.0))));
   vec3 e = relativeTransmittance(medium.extinction, live, t);
@@ -62,7 +63,8 @@ vec3 phaseValue(MediumRecord medium, vec3 w, vec3 to) {
   return medium.phase == 1 ? vec3(rayleighPdf(w, to)) : henyeyGreensteinPdf(w, to, medium.oneMinusG, medium.onePlusG);
 }
 
-// A direction from the phase function of a channel that q chooses; `weight` by the balance heuristic where the channels' g differ.
+// A direction from the phase function of a channel that q chooses; `weight` by the balance heuristic where the
+// channels' g differ.
 // pdf: the density of the direction, all channels considered.
 vec3 phaseSample(MediumRecord medium, vec3 w, vec3 q, float u, vec2 xi, out vec3 weight, out float pdf) {
   weight = vec3(1.0);

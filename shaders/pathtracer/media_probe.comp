@@ -47,7 +47,8 @@ void main() {
     DensityRecord g = densityRecords[p.k.x];
     r.a.x = densityAt(g, (p.a.xyz - g.min) * g.cellsPerUnit);
   } else if (what == 7) {
-    // Along a ray: the length in the box, the least of bound minus density, and the optical depth of density by the midpoint rule.
+    // Along a ray: the length in the box, the least of bound minus density, and the optical depth of density by the
+    // midpoint rule.
     DensityRecord g = densityRecords[p.k.x];
     DensityMarch march;
     float slack = 1e30, inBox = 0.0, parts = 0.0, depth = 0.0, bound;
@@ -66,7 +67,8 @@ void main() {
   } else if (what == 9) {
     DensityRecord g = densityRecords[p.k.x];
     DensityMarch march;
-    if (densityMarchStart(g, p.a.xyz, p.b.xyz, p.a.w, march)) r.a = vec4(densityIntegral(g, march.origin, march.direction, march.near, march.last), float(loopTurns), 0.0, 0.0);
+    if (densityMarchStart(g, p.a.xyz, p.b.xyz, p.a.w, march))
+      r.a = vec4(densityIntegral(g, march.origin, march.direction, march.near, march.last), float(loopTurns), 0.0, 0.0);
   } else if (what == 8) {
     // k.x: entries, least rank first, 8 bits each; k.y: how many of them; k.z: left again, likewise; k.w: how many.
     uvec4 inside = uvec4(0u);

@@ -1,12 +1,14 @@
-// Path tracing: one invocation a pixel follows its paths one after the other, segment by segment, and starts the next as soon as one has
-// ended, until the pixel has its samples or this submission's turns of loops are used up; the unfinished path then waits in the state buffer.
-// So every submission is bounded however long paths get, and no path is dropped: dropping the long ones would bias the picture.
+// Path tracing: one invocation a pixel follows its paths one after the other, segment by segment, and starts the next
+// as soon as one has ended, until the pixel has its samples or this submission's turns of loops are used up; the
+// unfinished path then waits in the state buffer. So every submission is bounded however long paths get, and no path is
+// dropped: dropping the long ones would bias the picture.
 //
-// A path: camera ray, then at each surface next-event estimation towards one light and a new direction drawn from the surface, weighted
-// against each other [Veach1997], and Russian roulette. `throughput` is without the squares of refractive indices, as L / n^2 is what a
-// boundary conserves; what a light adds is multiplied by (n_camera / n_here)^2 instead.
-// Film: three images of 32-bit words that hold floats' bits: mean and number of samples; sum of squared deviations [Welford1962]; the
-// mean's rest below a float's last place, so that it does not stall however many samples there are.
+// A path: camera ray, then at each surface next-event estimation towards one light and a new direction drawn from the
+// surface, weighted against each other [Veach1997], and Russian roulette. `throughput` is without the squares of
+// refractive indices, as L / n^2 is what a boundary conserves; what a light adds is multiplied by (n_camera / n_here)^2
+// instead.
+// Film: three images of 32-bit words that hold floats' bits: mean and number of samples; sum of squared deviations
+// [Welford1962]; the mean's rest below a float's last place, so that it does not stall however many samples there are.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/path_tracer.h"
 layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
@@ -27,7 +29,8 @@ layout(std430, binding = 5) restrict buffer StateBlock {
   uint leakedPaths;     // ended, since they were found outside of the scene, yet inside of a closed boundary
   uint wrongCrossings;  // of boundaries left without having been entered: open or turned meshes
   uint longest;         // turns of loops that a lane took
-  uint allTurns;        // and that all lanes took; below 2^32, as a submission has no more than 2^28 but for the last segments
+  // and that all lanes took; below 2^32, as a submission has no more than 2^28 but for the last segments
+  uint allTurns;
   uint collisions;      // in media, of all lanes
   uvec4 state[];        // STATE_WORDS a lane, lane by lane within each
 };
@@ -36,7 +39,8 @@ struct Path {
   vec3 origin;
   uint skip;            // triangle that the ray starts on
   vec3 direction;       // unit
-  float pdf;            // density with which it was sampled, 1/sr; 0 where nothing else could have: camera and smooth surfaces
+  // density with which it was sampled, 1/sr; 0 where nothing else could have: camera and smooth surfaces
+  float pdf;
   vec3 throughput;
   float travelled;      // since the last scattering, along boundaries that change nothing
   vec3 radiance;
@@ -46,13 +50,15 @@ struct Path {
   uint chain;           // smooth scatterings in a row up to here
 #if INTERIORS
   uvec4 inside;         // of which closed boundaries (boundary.glsl)
-  float head;           // length of the ray before its origin, which lies a little beside a surface; negative: what the origin is too early
+  // length of the ray before its origin, which lies a little beside a surface; negative: what the origin is too early
+  float head;
   uint face;            // that surface, where head is not 0
 #endif
 };
 
-// Throughput below which roulette begins. In media many weak scatterings make up what is seen, and dying at each of them costs more in noise
-// than it saves in time: a slab of albedo 0.5 needs a third of the time for the same error with 1/4 as with 1.
+// Throughput below which roulette begins. In media many weak scatterings make up what is seen, and dying at each of
+// them costs more in noise than it saves in time: a slab of albedo 0.5 needs a third of the time for the same error
+// with 1/4 as with 1.
 #if MEDIA
 const float kRouletteBelow = 0.25;
 #else
@@ -122,8 +128,8 @@ void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint 
 }
 
 #if MEDIA
-// In media a ray starts nearer to its surface than elsewhere, 8 units in the last place of the triangle's largest coordinate, as what lies
-// between may be a good part of a mean free path; and the flight through it is counted.
+// In media a ray starts nearer to its surface than elsewhere, 8 units in the last place of the triangle's largest
+// coordinate, as what lies between may be a good part of a mean free path; and the flight through it is counted.
 const float kBeside = 4.76837158203125e-7;  // 2^-21
 #endif
 
@@ -183,7 +189,8 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   return path;
 }
 
-// What a surface does to light where a path has met it. Lambert: `albedo` is its reflectance; mirrors, conductors: reflectance at normal incidence.
+// What a surface does to light where a path has met it. Lambert: `albedo` is its reflectance; mirrors, conductors:
+// reflectance at normal incidence.
 struct Facet {
   uint kind;
   vec3 albedo;
@@ -200,18 +207,21 @@ bool isSmooth(Facet facet) {
 #endif
 }
 
-// BSDF times the cosine of `i`, and the density with which scatter() draws it; not for smooth surfaces. `o` and `i` point away from the surface.
+// BSDF times the cosine of `i`, and the density with which scatter() draws it; not for smooth surfaces. `o` and `i`
+// point away from the surface.
 vec3 evaluate(Facet facet, vec3 o, vec3 i, out float pdf) {
 #if GLOSSY
   if (facet.kind != PATH_DIFFUSE) {
     vec3 t, b;
     tangentFrame(facet.normal, t, b);
     vec3 lo = vec3(dot(o, t), dot(o, b), dot(o, facet.normal)), li = vec3(dot(i, t), dot(i, b), dot(i, facet.normal));
-    if (facet.kind == PATH_CONDUCTOR) return ggxReflect(lo, li, facet.roughness, pdf) * schlick(facet.albedo, max(dot(lo, normalize(lo + li)), 0.0));
+    if (facet.kind == PATH_CONDUCTOR)
+      return ggxReflect(lo, li, facet.roughness, pdf) * schlick(facet.albedo, max(dot(lo, normalize(lo + li)), 0.0));
 #if ROUGH_DIELECTRICS
     float cosT, share;
     vec3 h = normalize(lo + li);
-    float value = li.z > 0.0 ? ggxReflect(lo, li, facet.roughness, pdf) : ggxRefract(lo, li, facet.roughness, facet.eta, h, pdf);
+    float value =
+        li.z > 0.0 ? ggxReflect(lo, li, facet.roughness, pdf) : ggxRefract(lo, li, facet.roughness, facet.eta, h, pdf);
     float reflectance = fresnelDielectric(clamp(dot(lo, h), 0.0, 1.0), facet.eta, cosT);
     share = li.z > 0.0 ? reflectance : 1.0 - reflectance;
     pdf *= share;
@@ -224,7 +234,8 @@ vec3 evaluate(Facet facet, vec3 o, vec3 i, out float pdf) {
   return facet.albedo * pdf;
 }
 
-// Draws a direction: multiplies the throughput by what that leaves and sets direction and density, 0 for smooth surfaces. False: absorbed.
+// Draws a direction: multiplies the throughput by what that leaves and sets direction and density, 0 for smooth
+// surfaces. False: absorbed.
 bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float choice) {
   if (facet.kind == PATH_DIFFUSE) {
     path.direction = cosineSample(facet.normal, xi);
@@ -268,7 +279,8 @@ bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float 
   if (rough) {
     vec3 li = vec3(dot(path.direction, t), dot(path.direction, b), dot(path.direction, facet.normal)), ignored;
     if (reflects ? li.z <= 0.0 : li.z >= 0.0) return false;
-    float value = reflects ? ggxReflect(lo, li, facet.roughness, path.pdf) : ggxRefract(lo, li, facet.roughness, facet.eta, ignored, path.pdf);
+    float value = reflects ? ggxReflect(lo, li, facet.roughness, path.pdf)
+                           : ggxRefract(lo, li, facet.roughness, facet.eta, ignored, path.pdf);
     if (!(path.pdf > 0.0)) return false;
     path.throughput *= value / path.pdf;
     path.pdf *= share;
@@ -283,9 +295,12 @@ bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float 
 
 #if NEXT_EVENT
 // iorBeyond, beyond: refractive index behind the surface, and the boundaries around that side.
-void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float iorBeyond, uvec4 beyond, PathNumbers numbers) {
+void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float iorBeyond, uvec4 beyond,
+                  PathNumbers numbers) {
   LightSample light;
-  if (!sampleLight(surface.position, randomPair(numbers, path.event, kPurposeLight), randomWords(numbers, path.event, kPurposePick), light)) return;
+  if (!sampleLight(surface.position, randomPair(numbers, path.event, kPurposeLight),
+                   randomWords(numbers, path.event, kPurposePick), light))
+    return;
   float side = dot(light.direction, surface.geometricNormal), pdf;
   if (!(side * dot(light.direction, facet.normal) > 0.0)) return;
 #if ROUGH_DIELECTRICS
@@ -305,7 +320,8 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
   if (path.ior != 1.0) return;  // a lamp beyond a boundary that refracts lies on no straight line
 #endif
   if (all(equal(contribution, vec3(0.0)))) return;
-  askLight(path, contribution, beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal), light, triangle, numbers);
+  askLight(path, contribution, beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal), light,
+           triangle, numbers);
 }
 #endif
 
@@ -351,14 +367,17 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   ++path.event;
 #if MEDIA && ROULETTE_AT_SURFACES
   // A turn of [VPT2024, algorithm 3] that went into a medium ends here, at the medium's end.
-  if (mediumInside(path.inside) >= 0 && !survivesTurn(path, unitFloat(randomWordPair(numbers, path.event, kPurposeMediumChoice).x))) return false;
+  if (mediumInside(path.inside) >= 0 &&
+      !survivesTurn(path, unitFloat(randomWordPair(numbers, path.event, kPurposeMediumChoice).x)))
+    return false;
 #endif
 #if EMISSION
   if (any(greaterThan(material.emission, vec3(0.0))) && counts(path.scatterings)) {
     vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
 #if NEXT_EVENT
     if (path.pdf > 0.0) {
-      float pdf = pickDensity(hit.triangle) * path.travelled * path.travelled / -dot(surface.geometricNormal, path.direction);
+      float pdf =
+          pickDensity(hit.triangle) * path.travelled * path.travelled / -dot(surface.geometricNormal, path.direction);
       emission *= powerHeuristic(path.pdf, pdf);
     }
 #endif
@@ -379,14 +398,16 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   if (path.scatterings >= tracer.maxScatterings) return false;
   Facet facet = Facet(material.kind, material.specular, material.roughness, 1.0, surface.normal);
   // Mirrors and glass are not there for a path that sees the shading normal's back.
-  if (facet.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0)) facet.normal = surface.geometricNormal;
+  if (facet.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0))
+    facet.normal = surface.geometricNormal;
   if (facet.kind == PATH_DIFFUSE) facet.albedo = albedoAt(surface);
 #if DIELECTRICS
   if (facet.kind == PATH_DIELECTRIC) facet.eta = path.ior / iorBeyond;
 #endif
   ++path.scatterings;
 #if NEXT_EVENT
-  if (!isSmooth(facet) && counts(path.scatterings)) addNextEvent(path, surface, hit.triangle, facet, iorBeyond, beyond, numbers);
+  if (!isSmooth(facet) && counts(path.scatterings))
+    addNextEvent(path, surface, hit.triangle, facet, iorBeyond, beyond, numbers);
 #endif
 #if UNOCCLUDED
   if (path.scatterings == 2u && facet.kind == PATH_DIFFUSE) {  // nothing is in the way: on to the surfaces behind
@@ -405,15 +426,18 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #else
   uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);  // for roulette alone
 #endif
-  if (!scatter(path, facet, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter), unitFloat(choice.x))) return false;
+  if (!scatter(path, facet, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter),
+               unitFloat(choice.x)))
+    return false;
 #if DIELECTRICS
   if (dot(path.direction, surface.geometricNormal) < 0.0) {
     path.ior = iorBeyond;
     path.inside = beyond;
   }
 #endif
-  // Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path ends. Total reflection
-  // may catch paths in glass for ever, which hold next to no light: after many smooth scatterings in a row more of them die.
+  // Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path
+  // ends. Total reflection may catch paths in glass for ever, which hold next to no light: after many smooth
+  // scatterings in a row more of them die.
   path.chain = path.pdf == 0.0 ? min(path.chain + 1u, 255u) : 0u;
   float most = path.chain > 32u ? 0.99 : path.event < 1024u ? 1.0 : 0.999;
   float largest = max(path.throughput.x, max(path.throughput.y, path.throughput.z));
@@ -472,24 +496,28 @@ void main() {
   vec3 spread = uintBitsToFloat(imageLoad(filmSpread, pixel).xyz);
 
   // picture.w: number of the film's first sample.
-  PathNumbers numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(tracer.picture.w) + samples, tracer.seed);
+  PathNumbers numbers =
+      PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(tracer.picture.w) + samples, tracer.seed);
   uint slot = uint(lane.y * tracer.tile.z + lane.x), lanes = uint(tracer.picture.z);
   uvec4 saved = state[slot + 4u * lanes];
   Path path;
   if ((saved.x & kInFlight) != 0u) {
     uvec4 w0 = state[slot], w1 = state[slot + lanes], w2 = state[slot + 2u * lanes], w3 = state[slot + 3u * lanes];
-    path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz), uintBitsToFloat(w2.w),
-                uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, saved.x & ~kInFlight, uintBitsToFloat(saved.y), w3.w >> 24u
+    path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz),
+                uintBitsToFloat(w2.w), uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, saved.x & ~kInFlight,
+                uintBitsToFloat(saved.y), w3.w >> 24u
 #if INTERIORS
-                , state[slot + 5u * lanes], uintBitsToFloat(saved.z), saved.w
+                ,
+                state[slot + 5u * lanes], uintBitsToFloat(saved.z), saved.w
 #endif
-                );
+    );
   } else {
     path = startPath(pixel, numbers);
   }
 
-  // One traversal serves all rays, since drivers inline every function: each further call site costs registers and minutes of compiling. What is to be
-  // traced next is the lane's job; what is to be done with a hit its stages, each of which follows from those above it.
+  // One traversal serves all rays, since drivers inline every function: each further call site costs registers and
+  // minutes of compiling. What is to be traced next is the lane's job; what is to be done with a hit its stages, each
+  // of which follows from those above it.
   bool inFlight = true;
   uint job = kPathRay;
   int after = kGoesOn;  // the stage to go on with once a shadow ray has been followed to its end
@@ -565,7 +593,8 @@ void main() {
       if (shadow.waits) {
         shadow.inside = besides.beyond;
         if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
-        shadow.tMin += dot(ahead, ahead) / max(dot(ahead, shadow.direction), 0.01 * besidesGap * length(shadow.direction));
+        shadow.tMin +=
+            dot(ahead, ahead) / max(dot(ahead, shadow.direction), 0.01 * besidesGap * length(shadow.direction));
         job = kShadowRay;
         if (!shadowGoesOn()) stage = kLit;
       } else {
@@ -612,7 +641,8 @@ void main() {
       stage = medium < 0 ? kArrives : kFlown;
 #if NEXT_EVENT && (POINTS || SPOTS) && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
       if (medium >= 0 && media[medium].grid < 0 && lampsReach(path)) {
-        addPointLight(path, media[medium], channelProbabilities(path.throughput), flownDistance(path, arrival, flight), numbers);
+        addPointLight(path, media[medium], channelProbabilities(path.throughput), flownDistance(path, arrival, flight),
+                      numbers);
         if (shadow.waits) {
           job = kShadowRay;
           after = kFlown;
@@ -653,7 +683,8 @@ void main() {
       stage = meet(path, arrival, numbers) ? kGoesOn : kEnds;
 #endif
 #if SHADOW_AT_ONCE
-      if (shadow.waits && !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip)) path.radiance += shadow.light;
+      if (shadow.waits && !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip))
+        path.radiance += shadow.light;
       shadow.waits = false;
 #else
       if (shadow.waits) {
@@ -695,7 +726,8 @@ void main() {
   state[slot] = uvec4(floatBitsToUint(path.origin), path.skip);
   state[slot + lanes] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
   state[slot + 2u * lanes] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
-  state[slot + 3u * lanes] = uvec4(floatBitsToUint(path.radiance), min(path.scatterings, 0xffffffu) | path.chain << 24u);
+  state[slot + 3u * lanes] =
+      uvec4(floatBitsToUint(path.radiance), min(path.scatterings, 0xffffffu) | path.chain << 24u);
 #if INTERIORS
   state[slot + 5u * lanes] = path.inside;
 #endif

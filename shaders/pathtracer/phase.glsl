@@ -1,5 +1,5 @@
-// Phase functions: how a medium scatters light that travels along `w` into the direction `to`, both unit; a density over solid angle
-// in 1/sr. cos = dot(w, to): 1 is straight on.
+// Phase functions: how a medium scatters light that travels along `w` into the direction `to`, both unit; a density
+// over solid angle in 1/sr. cos = dot(w, to): 1 is straight on.
 
 const float kOver4Pi = 0.079577471545947668;
 
@@ -18,9 +18,9 @@ vec3 phaseDirection(vec3 w, float sine, float cosine, float turn) {
   return normalize(sine * (cos(angle) * t + sin(angle) * b) + cosine * w);
 }
 
-// Henyey-Greenstein [HenyeyGreenstein1941] of mean cosine g, given as om = 1 - g and op = 1 + g (both rounded from double precision).
-// With v = 1 - xi and d = om v + op xi the textbook's inversion becomes 1 - cos = 2 (om/d)^2 v (v + op xi) and
-// 1 + cos = 2 (op/d)^2 xi (xi + om v): sums of positive terms, so neither g -> 0 nor |g| -> 1 loses digits.
+// Henyey-Greenstein [HenyeyGreenstein1941] of mean cosine g, given as om = 1 - g and op = 1 + g (both rounded from
+// double precision). With v = 1 - xi and d = om v + op xi the textbook's inversion becomes 1 - cos = 2 (om/d)^2 v (v +
+// op xi) and 1 + cos = 2 (op/d)^2 xi (xi + om v): sums of positive terms, so neither g -> 0 nor |g| -> 1 loses digits.
 vec3 henyeyGreensteinSample(vec3 w, float om, float op, vec2 xi) {
   float v = 1.0 - xi.x, d = om * v + op * xi.x;
   float a = om / d, b = op / d;

@@ -1,8 +1,10 @@
-// A path through participating media: how far it flies, what it adds and where it goes on from a collision; and how much light a straight
-// line lets through. Hooks of path.comp, which declares Path, shadow, addLight, askLight, counts and the lights before this file is included.
+// A path through participating media: how far it flies, what it adds and where it goes on from a collision; and how
+// much light a straight line lets through. Hooks of path.comp, which declares Path, shadow, addLight, askLight, counts
+// and the lights before this file is included.
 //
-// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION, LAMPS_OUTSIDE (no lamp is within
-// a dielectric), WALKS (dense media have clearance grids); deviations DISTANCE_WITHOUT_PDF, BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, ROULETTE_AT_SURFACES, STRAIGHT_SHADOW_RAYS,
+// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION,
+// LAMPS_OUTSIDE (no lamp is within a dielectric), WALKS (dense media have clearance grids); deviations
+// DISTANCE_WITHOUT_PDF, BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, ROULETTE_AT_SURFACES, STRAIGHT_SHADOW_RAYS,
 // UNATTENUATED_SHADOW_RAYS.
 #include "pathtracer/boundary.glsl"
 #if MEDIA
@@ -34,9 +36,10 @@ vec3 normalOf(uint triangle) {
 bool facesAgainst(uint triangle, vec3 direction) { return dot(normalOf(triangle), direction) < 0.0; }
 
 #if TOUCHING
-// Crosses what lies within a gap of a surface, where rounding matters: `beyond` is what rays start in that go on behind the surface, `before`
-// in front of it. Faces that coincide with the surface may be met in any order, up to half a gap before it too, so that the counts decide: a
-// boundary can be entered where the path is outside of it and left where it is inside. A short ray looks for them, hit after hit.
+// Crosses what lies within a gap of a surface, where rounding matters: `beyond` is what rays start in that go on behind
+// the surface, `before` in front of it. Faces that coincide with the surface may be met in any order, up to half a gap
+// before it too, so that the counts decide: a boundary can be entered where the path is outside of it and left where it
+// is inside. A short ray looks for them, hit after hit.
 struct Besides {
   uvec4 beyond, before;
   float tMin;
@@ -48,7 +51,8 @@ const uint kMostBesides = 8u;
 // ahead: a gap long, to behind the surface.
 Ray besidesRay(Besides b, vec3 position, vec3 ahead) { return Ray(position - ahead, b.tMin, 2.0 * ahead, 1.0); }
 
-// What the short ray has hit. False: there is nothing more, but perhaps the first surface there that bounds nothing, then in `hit`, else kNoHit.
+// What the short ray has hit. False: there is nothing more, but perhaps the first surface there that bounds nothing,
+// then in `hit`, else kNoHit.
 bool crossBesides(inout Besides b, inout Hit hit, vec3 ahead) {
   if (hit.triangle == kNoHit) return false;
   int rank = rankOf(hit.triangle);
@@ -73,9 +77,10 @@ const uint kMostTries = 256u;  // tentative collisions of a straight line throug
 vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float distance, inout uvec4 words) {
 #if HETEROGENEOUS
   if (medium.grid >= 0) {
-    // Ratio tracking [Novak2014]: at each tentative collision what is null of it. Roulette from a tenth on. Where a bound lies far above the density there is
-    // no end of null collisions: after some the rest of the way is integrated, cell by cell. That leaves the mean as it is, as what is found up to a
-    // collision, times the transmittance from there on, has the whole way's for its mean at every collision.
+    // Ratio tracking [Novak2014]: at each tentative collision what is null of it. Roulette from a tenth on. Where a
+    // bound lies far above the density there is no end of null collisions: after some the rest of the way is
+    // integrated, cell by cell. That leaves the mean as it is, as what is found up to a collision, times the
+    // transmittance from there on, has the whole way's for its mean at every collision.
     DensityRecord g = densityRecords[medium.grid];
     DensityMarch march;
     vec3 through = vec3(1.0);
@@ -89,7 +94,8 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
       float t = march.near;
       for (;;) {
         ++loopTurns;
-        if (++tries > kMostTries) return through * exp(-medium.extinction * densityIntegral(g, march.origin, march.direction, t, march.last));
+        if (++tries > kMostTries)
+          return through * exp(-medium.extinction * densityIntegral(g, march.origin, march.direction, t, march.last));
         words = pcg4d(words);
         t += exponentialSample(words.x) / rate;
         if (t >= march.far) break;
@@ -109,8 +115,8 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
 }
 #endif
 
-// What a shadow ray has hit. Index-matched boundaries are crossed; one that refracts stops the light, since the straight line is no path of light
-// then. True: it goes on behind. Else what is left of shadow.light arrives.
+// What a shadow ray has hit. Index-matched boundaries are crossed; one that refracts stops the light, since the
+// straight line is no path of light then. True: it goes on behind. Else what is left of shadow.light arrives.
 bool crossShadow(Hit hit) {
   int rank = -1;
   bool front = false;
@@ -125,8 +131,10 @@ bool crossShadow(Hit hit) {
 #if MEDIA && !UNATTENUATED_SHADOW_RAYS  // [VPT2024, 4.1] decides only whether a point is in shadow
   int medium = mediumInside(shadow.inside);
   if (medium >= 0) {
-    float unit = shadow.infinite ? 1.0 : length(shadow.direction), far = hit.triangle == kNoHit ? (shadow.infinite ? kFar : 1.0) : hit.t;
-    shadow.light *= mediumTransmittance(media[medium], shadow.origin + shadow.from * shadow.direction, shadow.direction / unit, (far - shadow.from) * unit, shadow.words);
+    float unit = shadow.infinite ? 1.0 : length(shadow.direction),
+          far = hit.triangle == kNoHit ? (shadow.infinite ? kFar : 1.0) : hit.t;
+    shadow.light *= mediumTransmittance(media[medium], shadow.origin + shadow.from * shadow.direction,
+                                        shadow.direction / unit, (far - shadow.from) * unit, shadow.words);
   }
 #endif
   if (hit.triangle == kNoHit || all(equal(shadow.light, vec3(0.0)))) return false;
@@ -148,14 +156,16 @@ bool shadowGoesOn() {
 // The largest coordinate of any triangle: in the header of the ray caster's triangles.
 float sceneMagnitude() { return uintBitsToFloat(texelFetch(bvhTriangles, 0).x); }
 
-// A path that left a closed boundary through a crack would be in its medium for ever: outside of all coordinates it has.
+// A path that left a closed boundary through a crack would be in its medium for ever: outside of all coordinates it
+// has.
 bool leaked(Path path) {
   vec3 a = abs(path.origin);
   return any(greaterThan(path.inside, uvec4(0u))) && max(a.x, max(a.y, a.z)) > sceneMagnitude() * 1.001;
 }
 
 #if ROULETTE_AT_SURFACES
-// Roulette once a turn of the published loop [VPT2024, algorithm 3]; which turn is the first (rrStart) the text does not say: all are. False: the path ends.
+// Roulette once a turn of the published loop [VPT2024, algorithm 3]; which turn is the first (rrStart) the text does
+// not say: all are. False: the path ends.
 bool survivesTurn(inout Path path, float u) {
   float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
 #if ROULETTE_WITHOUT_DIVISION
@@ -180,8 +190,9 @@ bool survives(inout Path path, float u) {
 #else
   float survival = min(largest / kRouletteBelow, 1.0);
 #endif
-  // In an endless medium without absorption nothing else ends a path. Rare enough that a path across a slab of optical depth 1000 (slowest mode: 3.3e-6 per collision) is
-  // seldom lost: if weights grew faster than half of that, late arrivals would have infinite variance.
+  // In an endless medium without absorption nothing else ends a path. Rare enough that a path across a slab of optical
+  // depth 1000 (slowest mode: 3.3e-6 per collision) is seldom lost: if weights grew faster than half of that, late
+  // arrivals would have infinite variance.
   if (path.event > (1u << 20)) survival = min(survival, 1.0 - exp2(-20.0));
   if (!(u < survival)) return false;
   path.throughput /= survival;
@@ -190,15 +201,17 @@ bool survives(inout Path path, float u) {
 }
 
 #if NEXT_EVENT
-// Whether the lamp that `words` pick has a place, but no size: one whose 1/r^2 collisions alone would sample with infinite variance.
+// Whether the lamp that `words` pick has a place, but no size: one whose 1/r^2 collisions alone would sample with
+// infinite variance.
 bool isPointLike(uvec4 words) {
   uint i = scaledWord(words.x, uint(lights.length()));
   if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
   return lights[i].kind == PATH_LIGHT_POINT || lights[i].kind == PATH_LIGHT_SPOT;
 }
 
-// Light from such a lamp, scattered once on a flight of length `s` from the path's origin. The place is drawn in proportion to 1 / r^2
-// [KullaFajardo2012], on the flight rather than on the whole ray: that it comes so far is the transmittance, but for the channels' differences.
+// Light from such a lamp, scattered once on a flight of length `s` from the path's origin. The place is drawn in
+// proportion to 1 / r^2 [KullaFajardo2012], on the flight rather than on the whole ray: that it comes so far is the
+// transmittance, but for the channels' differences.
 void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNumbers numbers) {
   uvec4 words = randomWords(numbers, path.event, kPurposePick);
   if (!counts(path.scatterings + 1u) || all(equal(medium.albedo, vec3(0.0))) || !isPointLike(words)) return;
@@ -221,23 +234,26 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
   float density = h / (angle * (h * h + (x + a) * (x + a)));
   vec3 place = path.origin + x * path.direction;
   if (!sampleLight(place, xi, words, light)) return;
-  vec3 contribution = medium.albedo * medium.extinction * passageWeight(medium, q, x) * phaseValue(medium, path.direction, light.direction) * light.value / density;
+  vec3 contribution = medium.albedo * medium.extinction * passageWeight(medium, q, x) *
+                      phaseValue(medium, path.direction, light.direction) * light.value / density;
   if (any(greaterThan(contribution, vec3(0.0))))
     askLight(path, contribution, place, light, kNoHit, numbers);
 }
 #endif
 
 #if NEXT_EVENT
-// A new direction, drawn from the phase function, and now and then instead towards the lamp that the next flight asks. A flight that passes
-// the lamp at a distance h finds light in proportion to 1/h; by directions of the phase function alone that has an infinite variance. Angles
-// to the lamp drawn uniformly have a density in proportion to 1/h themselves. The farther the lamp the more seldom, as the flight would hardly
-// get there, and since each such choice makes the path's weight a little more uneven.
+// A new direction, drawn from the phase function, and now and then instead towards the lamp that the next flight asks.
+// A flight that passes the lamp at a distance h finds light in proportion to 1/h; by directions of the phase function
+// alone that has an infinite variance. Angles to the lamp drawn uniformly have a density in proportion to 1/h
+// themselves. The farther the lamp the more seldom, as the flight would hardly get there, and since each such choice
+// makes the path's weight a little more uneven.
 void seekLamp(inout Path path, MediumRecord medium, vec3 before, vec3 q, PathNumbers numbers, inout vec3 weight) {
   uvec4 words = randomWords(numbers, path.event, kPurposePick), choice = randomWords(numbers, path.event, kPurposeSeek);
   uint i = scaledWord(words.x, uint(lights.length()));
   if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
   vec3 to = lights[i].a - path.origin;
-  float r = length(to), share = 0.25 * exp(-r * min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b)));
+  float r = length(to),
+        share = 0.25 * exp(-r * min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b)));
   if (!(r > 0.0)) return;
   to /= r;
   if (unitFloat(choice.x) < share) {
@@ -250,7 +266,8 @@ void seekLamp(inout Path path, MediumRecord medium, vec3 before, vec3 q, PathNum
 }
 #endif
 
-// Whether a straight line from where the path is may reach a lamp at all: with all lamps outside, not from within anything that refracts.
+// Whether a straight line from where the path is may reach a lamp at all: with all lamps outside, not from within
+// anything that refracts.
 bool lampsReach(Path path) {
 #if LAMPS_OUTSIDE
   return path.ior == 1.0;
@@ -278,10 +295,12 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
   const bool asked = false;
 #else
-  bool asked = asks && medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));  // it has been, on the way here
+  // it has been, on the way here
+  bool asked = asks && medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));
 #endif
   if (counts(path.scatterings) && asks && !asked &&
-      sampleLight(path.origin, randomPair(numbers, path.event, kPurposeLight), randomWords(numbers, path.event, kPurposePick), light)) {
+      sampleLight(path.origin, randomPair(numbers, path.event, kPurposeLight),
+                  randomWords(numbers, path.event, kPurposePick), light)) {
     vec3 phase = phaseValue(medium, path.direction, light.direction);
     vec3 contribution = phase * light.value;
 #if MIS
@@ -296,19 +315,21 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
 #endif
   uvec2 choice = randomWordPair(numbers, path.event, kPurposeMediumChoice);
   vec3 weight, before = path.direction, q = channelProbabilities(path.throughput);
-  path.direction = phaseSample(medium, before, q, unitFloat(choice.x), randomPair(numbers, path.event, kPurposePhase), weight, path.pdf);
+  path.direction = phaseSample(medium, before, q, unitFloat(choice.x), randomPair(numbers, path.event, kPurposePhase),
+                               weight, path.pdf);
 #if NEXT_EVENT && (POINTS || SPOTS)
   if (asked) seekLamp(path, medium, before, q, numbers, weight);
 #endif
-  // Roulette by what the path is worth, not by the weight of a direction that seeks a lamp: that is small where the flight finds much.
+  // Roulette by what the path is worth, not by the weight of a direction that seeks a lamp: that is small where the
+  // flight finds much.
   if (!survives(path, unitFloat(choice.y))) return kEnded;
   path.throughput *= weight;
   return kScattered;
 }
 
 #if HETEROGENEOUS
-// Delta tracking over the part of the ray that is free. After some tentative collisions the flight is broken off where it is and goes on
-// with the next ray: exponential flights have no memory, and no submission is held up.
+// Delta tracking over the part of the ray that is free. After some tentative collisions the flight is broken off where
+// it is and goes on with the next ray: exponential flights have no memory, and no submission is held up.
 int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbers numbers, out bool collided) {
   collided = false;
   DensityRecord g = densityRecords[medium.grid];
@@ -331,7 +352,8 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
       vec3 q = channelProbabilities(path.throughput);
       float real = dot(q, share);
 #if VOLUME_EMISSION
-      if (counts(path.scatterings)) addLight(path, medium.emission * (densityAt(g, march.origin + t * march.direction) / rate));
+      if (counts(path.scatterings))
+        addLight(path, medium.emission * (densityAt(g, march.origin + t * march.direction) / rate));
 #endif
       bool collides = unitFloat(words.y) < real;
       if (medium.greyExtinction != 0)
@@ -356,7 +378,8 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
 #endif
 
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
-// Probability of an interaction [VPT2024, algorithm 4]: the largest albedo, of which the published text makes a half at least.
+// Probability of an interaction [VPT2024, algorithm 4]: the largest albedo, of which the published text makes a half at
+// least.
 float interactionProbability(MediumRecord medium) {
   float w = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
 #if BOOSTED_INTERACTION
@@ -366,7 +389,8 @@ float interactionProbability(MediumRecord medium) {
 }
 #endif
 
-// How far the ray may go before it collides, negative where that is before its origin; with a density grid that is told once it is known where the ray ends.
+// How far the ray may go before it collides, negative where that is before its origin; with a density grid that is told
+// once it is known where the ray ends.
 float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   if (medium.grid >= 0) return kFar;
   uvec2 words = randomWordPair(numbers, path.event, kPurposeFlight);
@@ -376,11 +400,13 @@ float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   if (unitFloat(words.y) >= interactionProbability(medium) || !(least > 0.0)) return kFar;
   return max(min(exponentialSample(words.x) / least, kFar) - path.head, 0.0);
 #endif
-  return flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x) - path.head;
+  return flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x) -
+         path.head;
 }
 
-// How far beyond a collision to look for a surface. Where one is so near, the next ray might miss it by the rounding of its distance, which
-// is that of the triangles' coordinates: collisions keep a distance from it, and a ray may meet it at a grazing angle.
+// How far beyond a collision to look for a surface. Where one is so near, the next ray might miss it by the rounding of
+// its distance, which is that of the triangles' coordinates: collisions keep a distance from it, and a ray may meet it
+// at a grazing angle.
 float flightMargin() { return sceneMagnitude() * kBeside * 64.0; }
 
 // What a flight of that length adds, and leaves of the throughput.
@@ -404,11 +430,13 @@ void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, b
 }
 
 #if WALKS
-layout(binding = 3) uniform samplerBuffer clearances;  // distances from cells' centres to the nearest triangle of the scene
+// distances from cells' centres to the nearest triangle of the scene
+layout(binding = 3) uniform samplerBuffer clearances;
 const uint kWalkSteps = 64u;
 
-// From collision to collision as long as `flight`, the one drawn last, ends before it could meet any triangle: no ray is traced for such. Every
-// number drawn and every sum is that of a path that traces them all. Where a lamp might be asked there is no walk. False: the path ends.
+// From collision to collision as long as `flight`, the one drawn last, ends before it could meet any triangle: no ray
+// is traced for such. Every number drawn and every sum is that of a path that traces them all. Where a lamp might be
+// asked there is no walk. False: the path ends.
 bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers numbers) {
   int rank = topRank(path.inside);
   if (rank < 0 || (NEXT_EVENT != 0 && lampsReach(path))) return true;
@@ -419,8 +447,10 @@ bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers 
   if (flight < 0.0) return true;
   for (uint step = 0u; step < kWalkSteps; ++step) {
     ivec3 cell = clamp(ivec3((path.origin - interior.min) / interior.cell), ivec3(0), last);
-    float radius = texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
-    if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell))) return true;
+    float radius =
+        texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
+    if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell)))
+      return true;
     ++loopTurns;
     weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);
     path.origin += flight * path.direction;
@@ -450,10 +480,12 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
 #endif
   {
     bool arrives = arrivesAt(hit, flight);
-    weighFlight(path, medium, channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives, numbers);
+    weighFlight(path, medium, channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives,
+                numbers);
     if (arrives) return kFlightArrives;
-    // Nearer to a face than a gap the path goes on from a gap beside it, and the flight that it does not make or makes twice, along the face's
-    // normal, is made good in the next: as if it had begun where it should have. Where a gap is no small part of a mean free path that is much.
+    // Nearer to a face than a gap the path goes on from a gap beside it, and the flight that it does not make or makes
+    // twice, along the face's normal, is made good in the next: as if it had begun where it should have. Where a gap is
+    // no small part of a mean free path that is much.
     if (flight < 0.0) {
       vec3 normal = normalOf(path.face);
       inward = -flight * abs(dot(normal, path.direction)) * (dot(normal, path.direction) < 0.0 ? -normal : normal);

@@ -1,6 +1,7 @@
-// Direct irradiance at a point by shadow rays; see engine/radiosity/direct_rays.hpp. Storage block 1, texture units 60 and 61.
-// What an emissive triangle sends to the point were nothing between is its closed form (radiosity/polygon.glsl); the part of it that is free is the
-// mean over points of the triangle, evenly spread by area and weighted by what each of them sends: without a blocker there is no noise.
+// Direct irradiance at a point by shadow rays; see engine/radiosity/direct_rays.hpp. Storage block 1, texture units 60
+// and 61. What an emissive triangle sends to the point were nothing between is its closed form
+// (radiosity/polygon.glsl); the part of it that is free is the mean over points of the triangle, evenly spread by area
+// and weighted by what each of them sends: without a blocker there is no noise.
 #include "lib/spot.glsl"
 #include "rays/bvh.glsl"
 #include "radiosity/polygon.glsl"
@@ -26,12 +27,14 @@ vec2 directShift(uvec2 v) {
   return vec2(v >> 8) * 5.9604645e-8;
 }
 
-// position: of the pixel; normal: of shading; face: of the geometry; both unit, to the front. plane, magnitude: the distance of the face's plane from the origin
-// along `face`, the largest coordinate of the triangle that rays know it by. Interpolated over a large face, a position is off it by more
-// than its own rounding: it is brought back to the plane, and a ray then starts beyond the rounding of that triangle, as a path's does.
+// position: of the pixel; normal: of shading; face: of the geometry; both unit, to the front. plane, magnitude: the
+// distance of the face's plane from the origin along `face`, the largest coordinate of the triangle that rays know it
+// by. Interpolated over a large face, a position is off it by more than its own rounding: it is brought back to the
+// plane, and a ray then starts beyond the rounding of that triangle, as a path's does.
 vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float magnitude) {
   vec3 p = position - directOrigin.xyz - face * (dot(position, face) - plane), start = offsetRay(p, face, magnitude);
-  vec3 u = normalize(abs(normal.x) > 0.5 ? vec3(normal.y, -normal.x, 0.0) : vec3(0.0, normal.z, -normal.y)), v = cross(normal, u);
+  vec3 u = normalize(abs(normal.x) > 0.5 ? vec3(normal.y, -normal.x, 0.0) : vec3(0.0, normal.z, -normal.y)),
+       v = cross(normal, u);
   vec2 shift = directShift(uvec2(gl_FragCoord.xy));
   vec3 sum = vec3(0.0);
   for (int i = 0; i < directHead.x; ++i) {
@@ -42,7 +45,9 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
     if (kind == 0) {
       vec3 a = light.a.xyz - p, b = a + light.b.xyz, c = a + light.c.xyz;
       if (dot(a, facing) < 0.0)
-        unblocked = light.d.xyz * pointToTriangle(vec3(dot(a, u), dot(a, v), dot(a, normal)), vec3(dot(b, u), dot(b, v), dot(b, normal)), vec3(dot(c, u), dot(c, v), dot(c, normal)));
+        unblocked = light.d.xyz * pointToTriangle(vec3(dot(a, u), dot(a, v), dot(a, normal)),
+                                                  vec3(dot(b, u), dot(b, v), dot(b, normal)),
+                                                  vec3(dot(c, u), dot(c, v), dot(c, normal)));
     } else {
       vec3 to = kind == 1 ? light.a.xyz : light.a.xyz - p;
       float distance2 = dot(to, to);

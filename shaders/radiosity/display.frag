@@ -1,5 +1,6 @@
-// Display mappings of radiosity besides the engine's tone mapping. MAPPING 1: linear, a constant factor (the exposure), cut at 1.
-// 2: logarithmic, as the original shows its values [RAD2008 section 3.6]: range decades below 1 / exposure. 3: false colours of the same decades, by luminance.
+// Display mappings of radiosity besides the engine's tone mapping. MAPPING 1: linear, a constant factor (the exposure),
+// cut at 1. 2: logarithmic, as the original shows its values [RAD2008 section 3.6]: range decades below 1 / exposure.
+// 3: false colours of the same decades, by luminance.
 #include "lib/frame.glsl"
 #include "lib/tonemap.glsl"
 layout(binding = 0) uniform sampler2D hdr;
@@ -18,6 +19,9 @@ void main() {
 #else
   // Black, blue, cyan, green, yellow, red, white: a sixth of the range each.
   float t = 6.0 * logarithmic(vec3(dot(value, vec3(0.2126, 0.7152, 0.0722)))).x;
-  color = vec4(clamp(vec3(t < 5.0 ? t - 3.0 : 1.0, t < 4.0 ? t - 1.0 : t < 5.0 ? 5.0 - t : t - 5.0, t < 2.0 ? t : t < 3.0 ? 3.0 - t : t - 5.0), 0.0, 1.0), 1.0);
+  float red = t < 5.0 ? t - 3.0 : 1.0;
+  float green = t < 4.0 ? t - 1.0 : t < 5.0 ? 5.0 - t : t - 5.0;
+  float blue = t < 2.0 ? t : t < 3.0 ? 3.0 - t : t - 5.0;
+  color = vec4(clamp(vec3(red, green, blue), 0.0, 1.0), 1.0);
 #endif
 }

@@ -1,11 +1,13 @@
-// Hemicubes [CohenGreenberg1985] without a projection matrix: a pixel's direction d = (x, y, 1) in a face's frame meets a triangle of corners
-// a, b, c (seen from the hemicube's centre) where d . (a x b), d . (b x c) and d . (c x a) have the sign of det = a . (b x c), at the inverse
-// distance (their sum) / det along d [Olano1997]. So nothing is clipped, there is no near plane, and what touches the centre still blocks.
+// Hemicubes [CohenGreenberg1985] without a projection matrix: a pixel's direction d = (x, y, 1) in a face's frame meets
+// a triangle of corners a, b, c (seen from the hemicube's centre) where d . (a x b), d . (b x c) and d . (c x a) have
+// the sign of det = a . (b x c), at the inverse distance (their sum) / det along d [Olano1997]. So nothing is clipped,
+// there is no near plane, and what touches the centre still blocks.
 //
-// Three ways tell which patch each pixel sees: raster (hemicube_depth.comp), rays (hemicube_rays.comp) and an item buffer (hemicube_item.*).
-// hemicube_sum.comp adds up what each patch has of the delta form factors; a sum's order never changes.
-// Layout of a hemicube's pixels: the full face N x N, then four half faces N x N/2, rows upwards from the horizon.
-// Corners come from a buffer texture, which llvmpipe gathers from three times as fast as from a storage block.
+// Three ways tell which patch each pixel sees: raster (hemicube_depth.comp), rays (hemicube_rays.comp) and an item
+// buffer (hemicube_item.*). hemicube_sum.comp adds up what each patch has of the delta form factors; a sum's order
+// never changes. Layout of a hemicube's pixels: the full face N x N, then four half faces N x N/2, rows upwards from
+// the horizon. Corners come from a buffer texture, which llvmpipe gathers from three times as fast as from a storage
+// block.
 layout(binding = 59) uniform samplerBuffer corners;  // three texels a patch
 uniform int patchCount;
 
@@ -32,12 +34,18 @@ vec3 toFrame(Frame f, vec3 p) {
   return vec3(dot(d, f.u.xyz), dot(d, f.v.xyz), dot(d, f.n.xyz));
 }
 
-Triangle toFrame(Frame f, Triangle world) { return Triangle(toFrame(f, world.a), toFrame(f, world.b), toFrame(f, world.c)); }
-Triangle worldTriangle(int index) { return Triangle(patchCorner(index, 0), patchCorner(index, 1), patchCorner(index, 2)); }
+Triangle toFrame(Frame f, Triangle world) {
+  return Triangle(toFrame(f, world.a), toFrame(f, world.b), toFrame(f, world.c));
+}
+Triangle worldTriangle(int index) {
+  return Triangle(patchCorner(index, 0), patchCorner(index, 1), patchCorner(index, 2));
+}
 Triangle triangleOf(Frame f, int index) { return toFrame(f, worldTriangle(index)); }
 
 // Not the patch itself, nor what lies in its plane or below.
-bool isAbove(Frame f, Triangle t, int index, int self) { return index != self && max(t.a.z, max(t.b.z, t.c.z)) * f.origin.w >= 1.0; }
+bool isAbove(Frame f, Triangle t, int index, int self) {
+  return index != self && max(t.a.z, max(t.b.z, t.c.z)) * f.origin.w >= 1.0;
+}
 
 // Face 0 looks along n; 1..4 along u, v, -u, -v with n upwards.
 vec3 toFace(int face, vec3 p) {
@@ -48,8 +56,8 @@ vec3 toFace(int face, vec3 p) {
 
 bool anyLess(vec3 a, vec3 b) { return any(lessThan(a, b)); }
 
-// A bit for each face that may see the triangle. Software renderers run both sides of a branch: so a lane goes on with the faces that it has,
-// instead of asking five times.
+// A bit for each face that may see the triangle. Software renderers run both sides of a branch: so a lane goes on with
+// the faces that it has, instead of asking five times.
 uint facesOf(Triangle t) {
   vec3 x = vec3(t.a.x, t.b.x, t.c.x), y = vec3(t.a.y, t.b.y, t.c.y), z = vec3(t.a.z, t.b.z, t.c.z), none = vec3(0.0);
   bool xBelowZ = anyLess(x, z), yBelowZ = anyLess(y, z), minusXBelowZ = anyLess(-x, z), minusYBelowZ = anyLess(-y, z);

@@ -1,6 +1,7 @@
-// Hemicubes, pass 3: where the closed form tells more than pixels can, it replaces their sum, and pixels tell visibility alone: for what covers
-// many pixels (exact but for its border), what is near (averaged over the receiving patch too [BaumRushmeierWinget1989]), and small sources.
-// Each invocation takes entries of pass 2's list, a stride of the whole dispatch apart.
+// Hemicubes, pass 3: where the closed form tells more than pixels can, it replaces their sum, and pixels tell
+// visibility alone: for what covers many pixels (exact but for its border), what is near (averaged over the receiving
+// patch too [BaumRushmeierWinget1989]), and small sources. Each invocation takes entries of pass 2's list, a stride of
+// the whole dispatch apart.
 #include "radiosity/hemicube.glsl"
 #include "radiosity/polygon.glsl"
 #include "radiosity/triangle_parts.glsl"
@@ -13,28 +14,35 @@ uniform vec3 raysOrigin;  // of the hierarchy's space
 #if ITEMS
 #include "radiosity/hemicube_keep.glsl"
 #endif
-layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };  // the share's place takes the form factor
+// the share's place takes the form factor
+layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };
 uniform float nearDistance;  // a receiver is divided so that (distance / size of a part) reaches this; 0: never
 uniform int mostParts;       // a side, at most
 
-// The mean over a triangle of what a small, far one sends to its points, over what it sends to its centroid, to second order: with the kernel N.v / |v|^4 (v from a
-// point to the other's centroid, N its normal; the receiver's own cosine cancels) and the second moments M of the triangle, the sum of c c^T / 12 over its
-// corners c from its centroid, it is 1 + tr(M f'') / (2 f). At a distance of ten sizes the centroid alone is off by 0.3 %.
+// The mean over a triangle of what a small, far one sends to its points, over what it sends to its centroid, to second
+// order: with the kernel N.v / |v|^4 (v from a point to the other's centroid, N its normal; the receiver's own cosine
+// cancels) and the second moments M of the triangle, the sum of c c^T / 12 over its corners c from its centroid, it is
+// 1 + tr(M f'') / (2 f). At a distance of ten sizes the centroid alone is off by 0.3 %.
 float spread(vec3 v, vec3 n, mat3 c) {
-  n /= max(max(abs(n.x), max(abs(n.y), abs(n.z))), 1e-30);  // its length drops out; in a scene of 1e6 units its square would overflow
+  // its length drops out; in a scene of 1e6 units its square would overflow
+  n /= max(max(abs(n.x), max(abs(n.y), abs(n.z))), 1e-30);
   vec3 alongV = v * c, alongN = n * c;
-  float squares = dot(c[0], c[0]) + dot(c[1], c[1]) + dot(c[2], c[2]), r2 = dot(v, v), nv = dot(n, v), least = 1e-2 * sqrt(dot(n, n) * r2);
+  float squares = dot(c[0], c[0]) + dot(c[1], c[1]) + dot(c[2], c[2]), r2 = dot(v, v), nv = dot(n, v),
+        least = 1e-2 * sqrt(dot(n, n) * r2);
   nv = abs(nv) < least ? (nv < 0.0 ? -least : least) : nv;
-  return 1.0 + (12.0 * dot(alongV, alongV) / (r2 * r2) - 2.0 * squares / r2 - 4.0 * dot(alongN, alongV) / (nv * r2)) / 12.0;
+  return 1.0 +
+         (12.0 * dot(alongV, alongV) / (r2 * r2) - 2.0 * squares / r2 - 4.0 * dot(alongN, alongV) / (nv * r2)) / 12.0;
 }
 
-// Mean over what is not hidden of the receiver, of the closed form, from the centroids of parts x parts equal triangles.
+// Mean over what is not hidden of the receiver, of the closed form, from the centroids of parts x parts equal
+// triangles.
 float meanOfParts(vec3 r0, vec3 r1, vec3 r2, int parts, uint hidden, Triangle t) {
   float sum = 0.0, open = 0.0;
   float side = 1.0 / float(parts);
   int i = 0, j = 0;  // strip and place in it: 2 (parts - i) - 1 parts, every second upside down
   for (int k = 0; k < parts * parts || open == 0.0; ++k) {
-    bool own = parts == 1 && hidden != 0u || k == parts * parts;  // where the hemicube stands; also where each centroid lies in what is hidden
+    // where the hemicube stands; also where each centroid lies in what is hidden
+    bool own = parts == 1 && hidden != 0u || k == parts * parts;
     float third = (j & 1) == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
     float u = (float(i) + third) * side, v = (float(j / 2) + third) * side;
     vec3 at = own ? vec3(0.0) : r0 + u * (r1 - r0) + v * (r2 - r0);
@@ -48,31 +56,38 @@ float meanOfParts(vec3 r0, vec3 r1, vec3 r2, int parts, uint hidden, Triangle t)
 }
 
 float receivedFrom(Frame frame, int self, Triangle t) {
-  vec3 r0 = toFrame(frame, patchCorner(self, 0)), r1 = toFrame(frame, patchCorner(self, 1)), r2 = toFrame(frame, patchCorner(self, 2));
+  vec3 r0 = toFrame(frame, patchCorner(self, 0)), r1 = toFrame(frame, patchCorner(self, 1)),
+       r2 = toFrame(frame, patchCorner(self, 2));
   float size = sqrt(0.5 * length(cross(r1 - r0, r2 - r0)));
-  float away = max(length((t.a + t.b + t.c) / 3.0) - 0.5 * max(length(t.b - t.a), max(length(t.c - t.b), length(t.a - t.c))), 0.0);
+  float away = max(
+      length((t.a + t.b + t.c) / 3.0) - 0.5 * max(length(t.b - t.a), max(length(t.c - t.b), length(t.a - t.c))), 0.0);
   float wanted = nearDistance * size / max(away, 1e-3 * size);
   int parts = clamp(int(ceil(wanted)), 1, mostParts);
   if (nearDistance <= 0.0) return pointToTriangle(t.a, t.b, t.c);
   uint hidden = uint(frame.u.w);
   if (parts == 1 && hidden == 0u) {
     vec3 middle = (r0 + r1 + r2) / 3.0;
-    return pointToTriangle(t.a, t.b, t.c) * clamp(spread((t.a + t.b + t.c) / 3.0, cross(t.b - t.a, t.c - t.a), mat3(r0 - middle, r1 - middle, r2 - middle)), 0.8, 1.2);
+    return pointToTriangle(t.a, t.b, t.c) * clamp(spread((t.a + t.b + t.c) / 3.0, cross(t.b - t.a, t.c - t.a),
+                                                         mat3(r0 - middle, r1 - middle, r2 - middle)),
+                                                  0.8, 1.2);
   }
   if (parts < mostParts) parts += parts & 1;
   float fine = meanOfParts(r0, r1, r2, parts, hidden, t);
   if (hidden != 0u || (parts & 1) != 0) return fine;
-  // The error of the centroids falls with the square of the parts: what halving them shows of it is taken off [Richardson1911].
+  // The error of the centroids falls with the square of the parts: what halving them shows of it is taken off
+  // [Richardson1911].
   return max(fine + (fine - meanOfParts(r0, r1, r2, parts / 2, hidden, t)) / 3.0, 0.0);
 }
 
 #if SOURCES
-// Whether nothing stands between the hemicube's centre and the centroid of a source that no pixel's centre met. Pixels beside it cannot tell: on a hollow
-// surface its plane runs behind theirs, on a bulging one theirs before it. What lies in the patch's own plane is not met, nor what lies on the source.
+// Whether nothing stands between the hemicube's centre and the centroid of a source that no pixel's centre met. Pixels
+// beside it cannot tell: on a hollow surface its plane runs behind theirs, on a bulging one theirs before it. What lies
+// in the patch's own plane is not met, nor what lies on the source.
 bool isSeen(Frame frame, int self, Triangle t) {
   vec3 m = (t.a + t.b + t.c) / 3.0;
   if (m.z * frame.origin.w < 1.0) return false;
-  Ray ray = Ray(frame.origin.xyz - raysOrigin, 1.0 / (frame.origin.w * m.z), m.x * frame.u.xyz + m.y * frame.v.xyz + m.z * frame.n.xyz, 0.9999);
+  Ray ray = Ray(frame.origin.xyz - raysOrigin, 1.0 / (frame.origin.w * m.z),
+                m.x * frame.u.xyz + m.y * frame.v.xyz + m.z * frame.n.xyz, 0.9999);
   return !anyHit(ray, uint(self));
 }
 #endif

@@ -1,5 +1,7 @@
-// Hemicubes by rays: one through each pixel's centre, through the hierarchy of the path tracer. x, z: pixels, y: hemicubes of the batch.
-// Written: the pixel's patch + 1, 0 where there is none; each patch's share of the hemisphere is summed (hemicube_keep.glsl).
+// Hemicubes by rays: one through each pixel's centre, through the hierarchy of the path tracer. x, z: pixels, y:
+// hemicubes of the batch.
+// Written: the pixel's patch + 1, 0 where there is none; each patch's share of the hemisphere is summed
+// (hemicube_keep.glsl).
 layout(local_size_x = 64) in;
 #include "radiosity/hemicube.glsl"
 #include "radiosity/hemicube_keep.glsl"
@@ -10,13 +12,15 @@ layout(std430, binding = 2) writeonly buffer Items { uint items[]; };
 uniform vec3 raysOrigin;  // of the hierarchy's space
 
 void main() {
-  int pixel = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x * 64u), hemicube = int(gl_WorkGroupID.y);
+  int pixel = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x * 64u),
+      hemicube = int(gl_WorkGroupID.y);
   if (pixel >= pixelsPerHemicube()) return;
   ivec3 place = placeOf(pixel);
   Frame f = frames[hemicube];
   vec3 d = pixelDirection(place.x, place.yz);
   // What lies in the patch's own plane is not met.
-  Ray ray = Ray(f.origin.xyz - raysOrigin, 1.0 / (f.origin.w * d.z), d.x * f.u.xyz + d.y * f.v.xyz + d.z * f.n.xyz, 3e38);
+  Ray ray =
+      Ray(f.origin.xyz - raysOrigin, 1.0 / (f.origin.w * d.z), d.x * f.u.xyz + d.y * f.v.xyz + d.z * f.n.xyz, 3e38);
   uint patchIndex = patchMet(ray, uint(firstPatch + hemicube)).patchIndex;
   bool met = patchIndex != kNoHit;
   items[hemicube * pixelsPerHemicube() + pixel] = met ? patchIndex + 1u : 0u;

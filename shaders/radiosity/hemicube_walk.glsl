@@ -1,19 +1,23 @@
-// A hemicube's triangles drawn by compute: which pixels of a face a triangle covers, and at which inverse distance. An invocation takes one
-// triangle and some hemicubes. What spans more than kMostPixels of a face is listed for a pass of its own, a work group a triangle, a lane a row:
-// lanes stay busy, and no loop comes near the 65,535 turns after which Mesa's software renderer leaves any shader's loops.
+// A hemicube's triangles drawn by compute: which pixels of a face a triangle covers, and at which inverse distance. An
+// invocation takes one triangle and some hemicubes. What spans more than kMostPixels of a face is listed for a pass of
+// its own, a work group a triangle, a lane a row: lanes stay busy, and no loop comes near the 65,535 turns after which
+// Mesa's software renderer leaves any shader's loops.
 #include "radiosity/hemicube.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 3) buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };  // places of form factors (hemicube_sum.comp); begins with an indirect dispatch
+// places of form factors (hemicube_sum.comp); begins with an indirect dispatch
+layout(std430, binding = 3) buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };
 uniform int hemicubes;      // in this batch
 uniform int hemicubesEach;  // an invocation's share of them: a triangle's corners are read once for them
 const int kMostPixels = 1024;
 const uint kMostGroups = 65535u;
 
-// The nearest surface has the largest key: inverse distance, a front a hair nearer than a back at the same place (sheets of two fronts), its
-// last bits taken for the front and for the patch, so that a tie is settled alike in every run.
+// The nearest surface has the largest key: inverse distance, a front a hair nearer than a back at the same place
+// (sheets of two fronts), its last bits taken for the front and for the patch, so that a tie is settled alike in every
+// run.
 uint keyOf(float inverseDistance, bool front, uint patchIndex) {
-  return (floatBitsToUint(front ? inverseDistance * 1.000004 : inverseDistance) & ~15u) | (front ? 8u : 0u) | (patchIndex & 7u);
+  return (floatBitsToUint(front ? inverseDistance * 1.000004 : inverseDistance) & ~15u) | (front ? 8u : 0u) |
+         (patchIndex & 7u);
 }
 
 // A triangle as one face sees it: what a pixel needs.
@@ -24,7 +28,8 @@ struct FaceTriangle {
   bool front;
 };
 
-// Neighbours take an edge in opposite senses; without contraction the products are the same, so no pixel falls between them.
+// Neighbours take an edge in opposite senses; without contraction the products are the same, so no pixel falls between
+// them.
 vec3 edge(vec3 a, vec3 b) {
   precise vec3 across = vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
   return across;
@@ -59,9 +64,10 @@ FaceTriangle onFace(int face, Triangle t) {
   return r;
 }
 
-// A walk over the pixels that a triangle may cover, row by row. One loop for rows and columns: where lanes run in step, the longest row of one
-// does not wait for the longest of another. To be looped with do .. while (row <= high.y), which never covers a pixel of another row: before a
-// software renderer leaves a loop whose condition stands at its beginning, it runs the whole body once more for no lane at all.
+// A walk over the pixels that a triangle may cover, row by row. One loop for rows and columns: where lanes run in step,
+// the longest row of one does not wait for the longest of another. To be looped with do .. while (row <= high.y), which
+// never covers a pixel of another row: before a software renderer leaves a loop whose condition stands at its
+// beginning, it runs the whole body once more for no lane at all.
 struct Walk {
   int column, row, lastColumn;
   int rowStart;    // of the row's pixels
@@ -76,7 +82,8 @@ float highest(vec3 v) { return max(v.x, max(v.y, v.z)); }
 void beginRow(inout Walk w, FaceTriangle t) {
   float y = (float(w.row) + 0.5) * pixelSize + w.bottom;
   w.rowValue = vec4(t.e0.y, t.e1.y, t.e2.y, t.inverse.y) * y + vec4(t.e0.z, t.e1.z, t.e2.z, t.inverse.z);
-  // An edge is positive from x = -rowValue / slope on, or up to there: counted from the left end, from the right end; a hair wider, as quotients are rounded.
+  // An edge is positive from x = -rowValue / slope on, or up to there: counted from the left end, from the right end; a
+  // hair wider, as quotients are rounded.
   vec3 first = (w.slope.xyz - w.rowValue.xyz) * w.low, last = (w.slope.xyz + w.rowValue.xyz) * w.high;
   vec2 from = clamp(vec2(highest(first), highest(last)), 0.0, 2.1) * halfSize + 0.49;  // ceil(v - 0.51)
   w.column = max(t.low.x, int(from.x));
@@ -107,7 +114,9 @@ void advance(inout Walk w, FaceTriangle t) {
 }
 
 vec4 valueAt(Walk w) { return w.rowValue + w.slope * ((float(w.column) + 0.5) * pixelSize - 1.0); }
-bool covers(Walk w, vec4 value) { return w.column <= w.lastColumn && min(value.x, min(value.y, value.z)) >= 0.0 && value.w > 0.0; }
+bool covers(Walk w, vec4 value) {
+  return w.column <= w.lastColumn && min(value.x, min(value.y, value.z)) >= 0.0 && value.w > 0.0;
+}
 
 bool isLarge(FaceTriangle t) {
   ivec2 size = t.high - t.low + 1;

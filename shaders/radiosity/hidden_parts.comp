@@ -7,17 +7,21 @@ struct Receiver {
   vec4 normal;   // w: the largest of the coordinates
 };
 layout(std430, binding = 1) readonly buffer Receivers { Receiver receivers[]; };
-layout(std430, binding = 2) writeonly buffer Seen { uint seen[]; };  // part + 1 of a front, 0 where nothing is met, ~0 for a back
+// part + 1 of a front, 0 where nothing is met, ~0 for a back
+layout(std430, binding = 2) writeonly buffer Seen { uint seen[]; };
 uniform int receiverCount, raysEach;
 
 void main() {
-  int index = int(gl_GlobalInvocationID.x), part = index / raysEach % kPatchParts, patchPlace = index / (raysEach * kPatchParts);
+  int index = int(gl_GlobalInvocationID.x), part = index / raysEach % kPatchParts,
+      patchPlace = index / (raysEach * kPatchParts);
   if (patchPlace >= receiverCount) return;
   Receiver r = receivers[patchPlace];
   vec2 weights = partCentroid(part);
   vec3 at = r.a.xyz + weights.x * (r.b.xyz - r.a.xyz) + weights.y * (r.c.xyz - r.a.xyz), n = r.normal.xyz;
-  // A sunflower's places in the unit disk [Vogel1979], turned from part to part by the golden section of a turn, and lifted to the hemisphere: as the cosine.
-  float k = float(index % raysEach), radius = sqrt((k + 0.5) / float(raysEach)), angle = 2.39996323 * k + 3.88322208 * float(part) + 1.0;
+  // A sunflower's places in the unit disk [Vogel1979], turned from part to part by the golden section of a turn, and
+  // lifted to the hemisphere: as the cosine.
+  float k = float(index % raysEach), radius = sqrt((k + 0.5) / float(raysEach)),
+        angle = 2.39996323 * k + 3.88322208 * float(part) + 1.0;
   vec3 u = normalize(r.b.xyz - r.a.xyz), v = cross(n, u);
   vec3 direction = radius * (cos(angle) * u + sin(angle) * v) + sqrt(1.0 - radius * radius) * n;
   Ray ray = Ray(offsetRay(at, n, r.normal.w), 0.0, direction, 3e38);
@@ -25,7 +29,8 @@ void main() {
   uint result = 0u;
   if (met.patchIndex != kNoHit) {
     // Barycentrics of the place in the plane.
-    vec3 a = bvhCorner(met.texel, 0), toB = bvhCorner(met.texel, 1) - a, toC = bvhCorner(met.texel, 2) - a, normal = cross(toB, toC);
+    vec3 a = bvhCorner(met.texel, 0), toB = bvhCorner(met.texel, 1) - a, toC = bvhCorner(met.texel, 2) - a,
+         normal = cross(toB, toC);
     vec3 place = ray.origin - a + direction * (dot(normal, a - ray.origin) / dot(normal, direction));
     vec2 barycentrics = vec2(dot(cross(place, toC), normal), dot(cross(toB, place), normal)) / dot(normal, normal);
     result = met.front ? 1u + met.patchIndex * uint(kPatchParts) + uint(partAt(barycentrics)) : 0xffffffffu;

@@ -1,4 +1,5 @@
-// Which patch a ray meets, through the hierarchy of the path tracer. Of sheets in one place the one that shows its front is met.
+// Which patch a ray meets, through the hierarchy of the path tracer. Of sheets in one place the one that shows its
+// front is met.
 #include "rays/bvh.glsl"
 
 struct PatchMet {
@@ -20,7 +21,8 @@ PatchMet firstMet(Ray ray, uint skip) {
   while (!isDone(s));
   if (s.hit.triangle == kNoHit) return PatchMet(kNoHit, false, 0);
   int texel = int(s.hit.triangle);
-  return PatchMet(texelFetch(bvhTriangles, texel).w & BVH_TRIANGLE_ID_MASK, dot(bvhNormal(texel), ray.direction) < 0.0, texel);
+  return PatchMet(texelFetch(bvhTriangles, texel).w & BVH_TRIANGLE_ID_MASK, dot(bvhNormal(texel), ray.direction) < 0.0,
+                  texel);
 }
 
 // self: the patch that the ray starts from, which it does not meet.

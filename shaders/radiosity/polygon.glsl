@@ -1,8 +1,9 @@
-// Form factor of a point, whose surface has the normal +z, to a triangle: the contour integral [Lambert1760], [BaumRushmeierWinget1989 eq 6],
-// after cutting off what lies below the horizon. The triangle faces the point (clockwise as it sees it is positive here; the absolute value
-// is returned).
+// Form factor of a point, whose surface has the normal +z, to a triangle: the contour integral [Lambert1760],
+// [BaumRushmeierWinget1989 eq 6], after cutting off what lies below the horizon. The triangle faces the point
+// (clockwise as it sees it is positive here; the absolute value is returned).
 
-// One edge's part of the contour integral, z alone: the angle between a and b times the z of the unit vector across them.
+// One edge's part of the contour integral, z alone: the angle between a and b times the z of the unit vector across
+// them.
 float contour(vec3 a, vec3 b) {
   vec3 across = cross(a, b);
   float s = length(across);
@@ -16,7 +17,8 @@ float pointToTriangle(vec3 a, vec3 b, vec3 c) {
   // Far and small: the contour's parts would cancel.
   vec3 across = cross(b - a, c - a), m = (a + b + c) / 3.0;
   float distance2 = dot(m, m), doubledArea = length(across);
-  if (all(above) && distance2 > 2000.0 * doubledArea) return max(m.z, 0.0) * abs(dot(m, across)) / (kTwoPi * distance2 * distance2);
+  if (all(above) && distance2 > 2000.0 * doubledArea)
+    return max(m.z, 0.0) * abs(dot(m, across)) / (kTwoPi * distance2 * distance2);
   if (all(above)) return abs(contour(a, b) + contour(b, c) + contour(c, a)) / kTwoPi;
   // Turn so that a is alone on its side.
   if (above.y != above.x && above.y != above.z) {

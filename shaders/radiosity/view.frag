@@ -1,5 +1,5 @@
-// A radiosity solution: the albedo, its texture modulated by the light, and what the surface emits. Output: radiance, linear, scene units.
-// A patch's back sends nothing.
+// A radiosity solution: the albedo, its texture modulated by the light, and what the surface emits. Output: radiance,
+// linear, scene units. A patch's back sends nothing.
 #include "lib/frame.glsl"
 #include "lib/material.glsl"
 const float kPi = 3.14159265358979;

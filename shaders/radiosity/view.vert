@@ -1,11 +1,13 @@
-// A patch's corner seen by the camera, with the irradiance found there. litScene() lists three vertices a patch, so gl_VertexID is 3 * patch + corner.
+// A patch's corner seen by the camera, with the irradiance found there. litScene() lists three vertices a patch, so
+// gl_VertexID is 3 * patch + corner.
 #include "lib/frame.glsl"
 invariant gl_Position;
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
 #if DIRECT_RAYS
 layout(location = 2) in vec3 normal;
-layout(std430, binding = 2) readonly buffer Faces { float faces[]; };  // five floats a patch: normal, distance of its plane, largest coordinate
+// five floats a patch: normal, distance of its plane, largest coordinate
+layout(std430, binding = 2) readonly buffer Faces { float faces[]; };
 out vec3 vNormal;
 flat out vec3 vFace;
 flat out vec2 vFacePlace;

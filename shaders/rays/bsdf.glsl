@@ -1,5 +1,5 @@
-// How surfaces scatter light: pure functions. Directions are unit and point away from the surface; `normal` is on the side of `out`
-// (towards the camera); a density is over solid angle, 1/sr.
+// How surfaces scatter light: pure functions. Directions are unit and point away from the surface; `normal` is on the
+// side of `out` (towards the camera); a density is over solid angle, 1/sr.
 
 const float kPi = 3.14159265358979324;
 
@@ -25,7 +25,8 @@ vec2 triangleSample(vec2 xi) {
   return vec2(r * (1.0 - xi.y), r * xi.y);
 }
 
-// The share that one of two ways of sampling has in what both could have found: power heuristic, exponent 2 [Veach1997].
+// The share that one of two ways of sampling has in what both could have found: power heuristic, exponent 2
+// [Veach1997].
 // a: density of the way taken, above 0; b: that of the other.
 float powerHeuristic(float a, float b) {
   float r = b / a;
@@ -33,10 +34,11 @@ float powerHeuristic(float a, float b) {
 }
 
 #if GLOSSY
-// Microfacets after Trowbridge-Reitz (GGX) with height-correlated shadowing [Walter2007], [Heitz2014]. Directions in the surface's frame,
-// z along the normal.
+// Microfacets after Trowbridge-Reitz (GGX) with height-correlated shadowing [Walter2007], [Heitz2014]. Directions in
+// the surface's frame, z along the normal.
 
-// Density of facets' normals a unit of projected area and solid angle; by components, as 1 - z^2 would cancel for small alpha.
+// Density of facets' normals a unit of projected area and solid angle; by components, as 1 - z^2 would cancel for small
+// alpha.
 float ggxDensity(vec3 h, float alpha) {
   float a2 = alpha * alpha, t = dot(h.xy, h.xy) / a2 + h.z * h.z;
   return 1.0 / (kPi * a2 * t * t);
@@ -48,7 +50,8 @@ float ggxLambda(vec3 w, float alpha) { return 0.5 * (sqrt(1.0 + alpha * alpha * 
 // A facet's normal as seen from `o` (o.z > 0), density G1(o) D(h) max(0, o.h) / o.z [DupuyBenyoub2023].
 vec3 ggxSample(vec3 o, float alpha, vec2 xi) {
   vec3 stretched = normalize(vec3(alpha * o.xy, o.z));
-  float z = (1.0 - xi.y) * (1.0 + stretched.z) - stretched.z, r = sqrt(max(0.0, (1.0 - z) * (1.0 + z))), angle = 2.0 * kPi * xi.x;
+  float z = (1.0 - xi.y) * (1.0 + stretched.z) - stretched.z, r = sqrt(max(0.0, (1.0 - z) * (1.0 + z))),
+        angle = 2.0 * kPi * xi.x;
   vec3 h = vec3(r * cos(angle), r * sin(angle), z) + stretched;
   return normalize(vec3(alpha * h.xy, max(h.z, 1e-7)));
 }
@@ -58,7 +61,8 @@ vec3 schlick(vec3 f0, float cosine) {
   return f0 + (1.0 - f0) * (m2 * m2 * m);
 }
 
-// Reflected by facets of reflectance 1: BSDF times the cosine of i, and the density of sampling i from o. 0 unless both are above.
+// Reflected by facets of reflectance 1: BSDF times the cosine of i, and the density of sampling i from o. 0 unless both
+// are above.
 float ggxReflect(vec3 o, vec3 i, float alpha, out float pdf) {
   pdf = 0.0;
   if (!(o.z > 0.0 && i.z > 0.0)) return 0.0;
@@ -68,7 +72,8 @@ float ggxReflect(vec3 o, vec3 i, float alpha, out float pdf) {
   return common_ / (1.0 + lambda + ggxLambda(i, alpha));
 }
 
-// Refracted by facets that let everything through, i below: the same, for radiance over n^2 (which is what a boundary conserves).
+// Refracted by facets that let everything through, i below: the same, for radiance over n^2 (which is what a boundary
+// conserves).
 // eta: index on o's side over that below, not 1 [Walter2007 eq 17, 21]. h: the facet, on o's side.
 float ggxRefract(vec3 o, vec3 i, float alpha, float eta, out vec3 h, out float pdf) {
   pdf = 0.0;

@@ -1,16 +1,21 @@
 // Rays against the triangles of a RayScene (engine/rays/ray_scene.hpp): the first hit, or any.
 //
-// Space: RayScene's (the world moved by -RayScene::origin()). Flag ALPHA_MASKS: the including file declares, before the include,
-// `bool isCutOut(uint triangle, vec2 barycentrics)`, asked for triangles whose material is masked. Takes texture units 60 and 61.
-// Method: eight quantised boxes a node and their order after [Ylitie2017], a watertight triangle test after [Woop2013], boxes widened by the
-// rounding of their distances after [Ize2013]. Buffer textures, since llvmpipe gathers from those three times as fast as from storage blocks.
+// Space: RayScene's (the world moved by -RayScene::origin()). Flag ALPHA_MASKS: the including file declares, before the
+// include, `bool isCutOut(uint triangle, vec2 barycentrics)`, asked for triangles whose material is masked. Takes
+// texture units 60 and 61.
+// Method: eight quantised boxes a node and their order after [Ylitie2017], a watertight triangle test after [Woop2013],
+// boxes widened by the rounding of their distances after [Ize2013]. Buffer textures, since llvmpipe gathers from those
+// three times as fast as from storage blocks.
+#include "shared/bindings.h"
 #include "shared/bvh.h"
 #include "lib/float_pairs.glsl"
 
-layout(binding = 60) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS a BvhNode
-layout(binding = 61) uniform usamplerBuffer bvhTriangles;  // one with the magnitude, then BVH_TRIANGLE_TEXELS a BvhTriangle
+layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS a BvhNode
+// one with the magnitude, then BVH_TRIANGLE_TEXELS a BvhTriangle
+layout(binding = UNIT_BVH_TRIANGLES) uniform usamplerBuffer bvhTriangles;
 
-const uint kNoHit = 0xffffffffu;  // no triangle: Hit::triangle of a ray that hit nothing, and skipTriangle where nothing is to be skipped
+// no triangle: Hit::triangle of a ray that hit nothing, and skipTriangle where nothing is to be skipped
+const uint kNoHit = 0xffffffffu;
 
 struct Ray {
   vec3 origin;
@@ -25,9 +30,9 @@ struct Hit {
   vec2 barycentrics;  // weights of the second and third corner
 };
 
-// What a traversal keeps of its ray. For boxes: one over the direction, components near zero taken for 2^-60 of the longest, so that nothing
-// is infinite, and which octant it goes to. For triangles: the ray's own space, in which it runs along z from the origin [Woop2013]: axes
-// turned so that z is the longest, then sheared.
+// What a traversal keeps of its ray. For boxes: one over the direction, components near zero taken for 2^-60 of the
+// longest, so that nothing is infinite, and which octant it goes to. For triangles: the ray's own space, in which it
+// runs along z from the origin [Woop2013]: axes turned so that z is the longest, then sheared.
 struct BvhRay {
   vec3 origin;
   vec3 inverse;
@@ -53,8 +58,9 @@ BvhRay bvhPrepare(Ray ray) {
   return r;
 }
 
-// Twice the area of (0, a, b) in the plane. Each product is rounded, but that cannot change which of the two is larger: the sign is right or
-// the area is zero. Neighbours see a shared edge with the same numbers, and zero counts as inside for both, so nothing passes between them.
+// Twice the area of (0, a, b) in the plane. Each product is rounded, but that cannot change which of the two is larger:
+// the sign is right or the area is zero. Neighbours see a shared edge with the same numbers, and zero counts as inside
+// for both, so nothing passes between them.
 float bvhEdge(precise vec2 a, precise vec2 b) {
   precise float ab = a.x * b.y;
   precise float ba = a.y * b.x;
@@ -87,11 +93,14 @@ bool bvhMissesMask(uint id, vec2 barycentrics) {
 // The place of the highest bit of a number from 1 to 2^24 - 1.
 int bvhHighest(uint bits) { return (floatBitsToInt(float(int(bits))) >> 23) - 127; }
 
-ivec3 bvhChoose(ivec3 a, ivec3 b, bvec3 second) { return ivec3(second.x ? b.x : a.x, second.y ? b.y : a.y, second.z ? b.z : a.z); }
+ivec3 bvhChoose(ivec3 a, ivec3 b, bvec3 second) {
+  return ivec3(second.x ? b.x : a.x, second.y ? b.y : a.y, second.z ? b.z : a.z);
+}
 
-// Bits of the four children in one word of a node's words, where the ray enters their boxes before it leaves them. near, far: grid steps,
-// four bytes an axis; scale, nearBase, farBase: from steps to distances.
-uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, float tMin, float tMax, uint meta, uint octant) {
+// Bits of the four children in one word of a node's words, where the ray enters their boxes before it leaves them.
+// near, far: grid steps, four bytes an axis; scale, nearBase, farBase: from steps to distances.
+uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, float tMin, float tMax, uint meta,
+                uint octant) {
   uint nodes = (meta & (meta << 1)) & 0x10101010u;                   // meta >= 24: a node
   uint turned = meta ^ ((octant * 0x01010101u) & (((nodes >> 4) * 0xffu)));  // its place against the octant
   uint hits = 0u;
@@ -105,20 +114,23 @@ uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, 
   return hits;
 }
 
-// A ray on its way. For kernels whose lanes take up new rays while others still trace: beginRay, then advanceRay until it is done, then finishRay. An invocation
-// has one at a time, since they share one stack.
+// A ray on its way. For kernels whose lanes take up new rays while others still trace: beginRay, then advanceRay until
+// it is done, then finishRay. An invocation has one at a time, since they share one stack.
 struct BvhTraversal {
   BvhRay ray;
   float tMin;
   uint skipTriangle;
   Hit hit;         // the nearest so far; its triangle is a texel of bvhTriangles
-  uvec2 siblings;  // yet to be visited: x the first child of their parent; y bits 24..31 which are left, against the octant, bits 0..7 which are nodes
+  // yet to be visited: x the first child of their parent; y bits 24..31 which are left, against the octant, bits 0..7
+  // which are nodes
+  uvec2 siblings;
   int top;         // of the stack; below zero: the ray is done
   int tested;      // triangles, for statistics
 };
 
-// Flag SHARED_STACK: entries of a stack in shared memory, as many as the hierarchy is deep (compute programs alone, after their local_size). On GPUs a local
-// array takes 64 registers a lane or lies in memory; 0: a local array, which software renderers are faster with.
+// Flag SHARED_STACK: entries of a stack in shared memory, as many as the hierarchy is deep (compute programs alone,
+// after their local_size). On GPUs a local array takes 64 registers a lane or lies in memory; 0: a local array, which
+// software renderers are faster with.
 #if SHARED_STACK
 const uint kBvhLanes = gl_WorkGroupSize.x * gl_WorkGroupSize.y;
 shared uint bvhStackX[SHARED_STACK * kBvhLanes], bvhStackY[SHARED_STACK * kBvhLanes];
@@ -128,12 +140,14 @@ uint bvhStackX[BVH_MAX_DEPTH], bvhStackY[BVH_MAX_DEPTH];
 int bvhStackPlace(int entry) { return entry; }
 #endif
 
-// Of this invocation, so far: for kernels that must stop before a driver leaves all loops (llvmpipe does after 65,535 turns of a vector of lanes).
+// Of this invocation, so far: for kernels that must stop before a driver leaves all loops (llvmpipe does after 65,535
+// turns of a vector of lanes).
 uint loopTurns = 0u;
 
 BvhTraversal beginRay(Ray ray, uint skipTriangle) {
   // The root is the only child of nothing, in the place that is visited first.
-  return BvhTraversal(bvhPrepare(ray), ray.tMin, skipTriangle, Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u), 0, 0);
+  return BvhTraversal(bvhPrepare(ray), ray.tMin, skipTriangle, Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u),
+                      0, 0);
 }
 
 bool isDone(BvhTraversal s) { return s.top < 0; }
@@ -143,22 +157,25 @@ void advanceRay(inout BvhTraversal s, bool any) {
   ++loopTurns;
   int place = bvhHighest(s.siblings.y >> 24);
   s.siblings.y &= ~(0x01000000u << place);
-  int node = BVH_NODE_TEXELS * int(s.siblings.x + uint(bitCount(s.siblings.y & ~(0xffffffffu << (uint(place) ^ s.ray.octant)) & 255u)));
+  int node = BVH_NODE_TEXELS *
+             int(s.siblings.x + uint(bitCount(s.siblings.y & ~(0xffffffffu << (uint(place) ^ s.ray.octant)) & 255u)));
   if (s.siblings.y > 0x00ffffffu) {
     bvhStackX[bvhStackPlace(s.top)] = s.siblings.x;
     bvhStackY[bvhStackPlace(s.top)] = s.siblings.y;
     ++s.top;
   }
-  uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2), n3 = texelFetch(bvhNodes, node + 3),
-        n4 = texelFetch(bvhNodes, node + 4);
+  uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2),
+        n3 = texelFetch(bvhNodes, node + 3), n4 = texelFetch(bvhNodes, node + 4);
   vec3 scale = uintBitsToFloat(uvec3(n0.w << 23, n0.w << 15, n0.w << 7) & 0x7f800000u) * s.ray.inverse;
   vec3 base = (uintBitsToFloat(n0.xyz) - s.ray.origin) * s.ray.inverse;
-  vec3 error = (abs(base) + abs(scale) * 256.0) * 4.76837158e-7;  // 2^-21: of this, of what follows and of the triangle test
-  ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z), high47 = ivec3(n3.w, n4.y, n4.w);
-  uint hits = bvhHitFour(bvhChoose(low03, high03, s.ray.negative), bvhChoose(high03, low03, s.ray.negative), scale, base - error, base + error, s.tMin,
-                         s.hit.t, n1.z, s.ray.octant) |
-              bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale, base - error, base + error, s.tMin,
-                         s.hit.t, n1.w, s.ray.octant);
+  // 2^-21: of this, of what follows and of the triangle test
+  vec3 error = (abs(base) + abs(scale) * 256.0) * 4.76837158e-7;
+  ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z),
+        high47 = ivec3(n3.w, n4.y, n4.w);
+  uint hits = bvhHitFour(bvhChoose(low03, high03, s.ray.negative), bvhChoose(high03, low03, s.ray.negative), scale,
+                         base - error, base + error, s.tMin, s.hit.t, n1.z, s.ray.octant) |
+              bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale,
+                         base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
   s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
   uint leaves = hits & 0x00ffffffu;  // triangles to be tested, counted from the node's first
   while (leaves != 0u) {
@@ -168,11 +185,13 @@ void advanceRay(inout BvhTraversal s, bool any) {
     ++loopTurns;
     int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(n1.y) + k);
     uvec4 a = texelFetch(bvhTriangles, triangle);
-    vec3 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz), c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
+    vec3 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz),
+         c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
     float t;
     vec2 barycentrics;
     uint id = a.w & BVH_TRIANGLE_ID_MASK;
-    if (bvhHitTriangle(s.ray, uintBitsToFloat(a.xyz), b, c, s.tMin, s.hit.t, t, barycentrics) && id != s.skipTriangle && !bvhMissesMask(a.w, barycentrics)) {
+    if (bvhHitTriangle(s.ray, uintBitsToFloat(a.xyz), b, c, s.tMin, s.hit.t, t, barycentrics) && id != s.skipTriangle &&
+        !bvhMissesMask(a.w, barycentrics)) {
       s.hit = Hit(t, uint(triangle), barycentrics);
       if (any) leaves = 0u;
     }
@@ -184,18 +203,22 @@ void advanceRay(inout BvhTraversal s, bool any) {
   }
 }
 
-// What a ray that is done has hit. Edge functions in float tell exactly whether, but in a sliver their ratios hardly tell where: distance and barycentrics
-// are computed once more from the plane and the areas in it, in pairs of floats (not double, which many GPUs lack and emulate). With the edges e1 and e2
-// from the corner a (seen from the origin), n = e1 x e2 and m = d x a: t = n.a / n.d, the second corner's weight -e2.m / n.d, the third's e1.m / n.d.
+// What a ray that is done has hit. Edge functions in float tell exactly whether, but in a sliver their ratios hardly
+// tell where: distance and barycentrics are computed once more from the plane and the areas in it, in pairs of floats
+// (not double, which many GPUs lack and emulate). With the edges e1 and e2 from the corner a (seen from the origin), n
+// = e1 x e2 and m = d x a: t = n.a / n.d, the second corner's weight -e2.m / n.d, the third's e1.m / n.d.
 Hit finishRay(BvhTraversal s, vec3 direction) {
   bool met = s.hit.triangle != kNoHit;
   int triangle = met ? int(s.hit.triangle) : 0;
   uvec4 first = texelFetch(bvhTriangles, triangle);
-  vec3 a = uintBitsToFloat(first.xyz), b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz), c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
+  vec3 a = uintBitsToFloat(first.xyz), b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz),
+       c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
   // Edges and direction are scaled by powers of two to a length near 1, so that no product leaves the range of floats.
-  float scale = inversePowerOfTwo(max(largestOf(b - a), largestOf(c - a))), directionScale = inversePowerOfTwo(largestOf(direction));
+  float scale = inversePowerOfTwo(max(largestOf(b - a), largestOf(c - a))),
+        directionScale = inversePowerOfTwo(largestOf(direction));
   a *= scale, b *= scale, c *= scale;
-  Pairs e1 = pairsDifference(b, a), e2 = pairsDifference(c, a), corner = pairsDifference(a, s.ray.origin * scale), d = Pairs(direction * directionScale, vec3(0.0));
+  Pairs e1 = pairsDifference(b, a), e2 = pairsDifference(c, a), corner = pairsDifference(a, s.ray.origin * scale),
+        d = Pairs(direction * directionScale, vec3(0.0));
   Pairs n = pairsCross(e1, e2), m = pairsCross(d, corner);
   vec2 along = pairsDot(n, d), distance = pairsDot(n, corner), v = pairsDot(e2, m), w = pairsDot(e1, m);
   Hit hit = s.hit;
@@ -224,14 +247,18 @@ bool anyHit(Ray ray, uint skipTriangle) {
   return s.hit.triangle != kNoHit;
 }
 
-// A point just off a surface, on the side that the GEOMETRIC normal (unit) points to, beyond the rounding of a point computed from a
-// triangle's barycentrics and of the test of its neighbours. As in [WaechterBinder2019] a number of units in the last place, so that no scale
-// is assumed; theirs are each component's own, with a floor near zero, these are of the triangle's largest coordinate, which is what the
-// rounding depends on: `magnitude` = the largest absolute coordinate of its corners.
-vec3 offsetRay(vec3 p, vec3 geometricNormal, float magnitude) { return p + geometricNormal * (magnitude * 3.814697265625e-6); }  // 2^-18
+// A point just off a surface, on the side that the GEOMETRIC normal (unit) points to, beyond the rounding of a point
+// computed from a triangle's barycentrics and of the test of its neighbours. As in [WaechterBinder2019] a number of
+// units in the last place, so that no scale is assumed; theirs are each component's own, with a floor near zero, these
+// are of the triangle's largest coordinate, which is what the rounding depends on: `magnitude` = the largest absolute
+// coordinate of its corners.
+vec3 offsetRay(vec3 p, vec3 geometricNormal, float magnitude) {
+  return p + geometricNormal * (magnitude * 3.814697265625e-6);
+}  // 2^-18
 
 // The same for a point whose triangle is not at hand.
 vec3 offsetRay(vec3 p, vec3 geometricNormal) {
   vec3 a = abs(p);
-  return offsetRay(p, geometricNormal, max(max(a.x, a.y), max(a.z, uintBitsToFloat(texelFetch(bvhTriangles, 0).x) * 9.765625e-4)));
+  return offsetRay(p, geometricNormal,
+                   max(max(a.x, a.y), max(a.z, uintBitsToFloat(texelFetch(bvhTriangles, 0).x) * 9.765625e-4)));
 }

@@ -1,9 +1,11 @@
-// Light from infinitely far all around: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl) turned about +y.
-// The picture's texels are picked in proportion to what they send, a row first, by alias tables [Vose1991]; uniformly over each texel's solid angle.
+// Light from infinitely far all around: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl) turned
+// about +y. The picture's texels are picked in proportion to what they send, a row first, by alias tables [Vose1991];
+// uniformly over each texel's solid angle.
 #if ENVIRONMENT_PICTURE
 #include "lib/latitude_longitude.glsl"
 layout(binding = 1) uniform sampler2D environmentPicture;  // radiance without the factor
-layout(binding = 2) uniform usampler2D environmentTable;   // of each row: threshold of 2^32, alias (a column); bits of the density over solid angle, 1/sr
+// of each row: threshold of 2^32, alias (a column); bits of the density over solid angle, 1/sr
+layout(binding = 2) uniform usampler2D environmentTable;
 layout(binding = 4) uniform usampler2D environmentRows;    // threshold of 2^32, alias (a row)
 
 // Texel coordinates of a direction, 0..size.
@@ -38,7 +40,8 @@ vec3 environmentSample(vec2 xi, uvec2 words, out vec3 radiance, out float pdf) {
   pdf = uintBitsToFloat(texelFetch(environmentTable, texel, 0).z);
   radiance = tracer.environment * texelFetch(environmentPicture, texel, 0).rgb;
   float azimuth = kTwoPi * ((float(texel.x) + xi.x) / float(size.x) - 0.5);
-  float top = cos(0.5 * kTwoPi * float(texel.y) / float(size.y)), bottom = cos(0.5 * kTwoPi * float(texel.y + 1) / float(size.y));
+  float top = cos(0.5 * kTwoPi * float(texel.y) / float(size.y)),
+        bottom = cos(0.5 * kTwoPi * float(texel.y + 1) / float(size.y));
   float y = mix(top, bottom, xi.y), r = sqrt(max(0.0, (1.0 - y) * (1.0 + y)));
   return turnAboutY(vec3(r * sin(azimuth), y, -r * cos(azimuth)), tracer.environmentTurn.xy);
 }

@@ -1,5 +1,6 @@
-// One light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: SUN, SPOTS, POINTS, EMISSION,
-// ENVIRONMENT_PICTURE; a constant environment is found by scattered rays alone, which sample it as well as anything could.
+// One light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: SUN, SPOTS, POINTS,
+// EMISSION, ENVIRONMENT_PICTURE; a constant environment is found by scattered rays alone, which sample it as well as
+// anything could.
 #include "lib/spot.glsl"
 
 layout(std430, binding = 4) readonly restrict buffer LightBlock { PathLight lights[]; };
@@ -7,7 +8,8 @@ layout(std430, binding = 4) readonly restrict buffer LightBlock { PathLight ligh
 struct LightSample {
   vec3 direction;  // unit, towards it
   float pdf;       // density with which this direction is sampled, 1/sr; 0: the light has one direction alone
-  vec3 value;      // radiance over pdf; of a light of one direction the irradiance across the rays over the probability of picking it
+  // radiance over pdf; of a light of one direction the irradiance across the rays over the probability of picking it
+  vec3 value;
   vec3 end;        // where it is, moved off its surface; unused at infinity
   bool infinite;
 };

@@ -1,18 +1,20 @@
-// What a ray has hit: place, normals and material. Storage blocks 2 (triangles) and 3 (materials). Textures lie in one atlas; they are
-// read bilinearly from the finest level, since many paths a pixel filter them.
+// What a ray has hit: place, normals and material. Storage blocks 2 (triangles) and 3 (materials). Textures lie in one
+// atlas; they are read bilinearly from the finest level, since many paths a pixel filter them.
+#include "shared/bindings.h"
 #if TEXTURES || ALPHA_MASKS
 layout(binding = 0) uniform sampler2DArray textureAtlas;
 #endif
 #if NORMAL_MAPS || METAL_MAPS
-layout(binding = 62) uniform sampler2DArray valueAtlas;  // of pictures that are not sRGB-encoded
+layout(binding = UNIT_VALUE_ATLAS) uniform sampler2DArray valueAtlas;  // of pictures that are not sRGB-encoded
 #endif
 #if NORMAL_MAPS
 #include "lib/normal_map.glsl"
 #endif
 
 // TRIANGLE_WORDS uvec4 a triangle, floats as their bits:
-// 0: first corner, material; 1: second corner, geometric normal x; 2: third corner, geometric normal y; 3: geometric normal z, the third
-// corner's texture coordinates, pickDensity; after it with TEXTURES || ALPHA_MASKS the first's and second's; with SMOOTH_NORMALS the corners' normals.
+// 0: first corner, material; 1: second corner, geometric normal x; 2: third corner, geometric normal y; 3: geometric
+// normal z, the third corner's texture coordinates, pickDensity; after it with TEXTURES || ALPHA_MASKS the first's and
+// second's; with SMOOTH_NORMALS the corners' normals.
 layout(std430, binding = 2) readonly restrict buffer TriangleBlock { uvec4 triangleData[]; };
 layout(std430, binding = 3) readonly restrict buffer MaterialBlock { PathMaterial materials[]; };
 
@@ -77,11 +79,13 @@ Surface surfaceAt(uint triangle, vec2 barycentrics, vec3 direction) {
   surface.geometricNormal = surface.front ? normal : -normal;
 #if SMOOTH_NORMALS
   uint n = first + TRIANGLE_WORDS - 3u;
-  vec3 smoothed = wa * uintBitsToFloat(triangleData[n].xyz) + barycentrics.x * uintBitsToFloat(triangleData[n + 1u].xyz) +
+  vec3 smoothed = wa * uintBitsToFloat(triangleData[n].xyz) +
+                  barycentrics.x * uintBitsToFloat(triangleData[n + 1u].xyz) +
                   barycentrics.y * uintBitsToFloat(triangleData[n + 2u].xyz);
   float length2 = dot(smoothed, smoothed);
   // Turned by the face's side alone, as in forward/surface.frag; opposite normals at the corners may cancel.
-  surface.normal = length2 > 1e-12 ? (surface.front ? smoothed : -smoothed) * inversesqrt(length2) : surface.geometricNormal;
+  surface.normal =
+      length2 > 1e-12 ? (surface.front ? smoothed : -smoothed) * inversesqrt(length2) : surface.geometricNormal;
 #else
   surface.normal = surface.geometricNormal;
 #endif
@@ -141,7 +145,9 @@ void applyNormalMap(inout Surface surface, uint triangle) {
   vec2 c = uintBitsToFloat(triangleData[first + 3u].yz);
   vec3 mapped = decodedNormal(readAtlas(valueAtlas, t, surface.texCoord).xyz, materials[surface.material].normalScale);
   float side = surface.front ? 1.0 : -1.0;
-  surface.normal = side * normalFromMap(side * surface.normal, uintBitsToFloat(triangleData[first + 1u].xyz) - a, uintBitsToFloat(triangleData[first + 2u].xyz) - a, ab.zw - ab.xy, c - ab.xy, mapped);
+  surface.normal =
+      side * normalFromMap(side * surface.normal, uintBitsToFloat(triangleData[first + 1u].xyz) - a,
+                           uintBitsToFloat(triangleData[first + 2u].xyz) - a, ab.zw - ab.xy, c - ab.xy, mapped);
 }
 #endif
 

@@ -1,8 +1,8 @@
-// Random numbers by their place alone: (pixel, sample, event on the path, purpose). Nothing is carried along, so any path can be
-// followed again by itself, and the order in which paths are followed does not matter.
+// Random numbers by their place alone: (pixel, sample, event on the path, purpose). Nothing is carried along, so any
+// path can be followed again by itself, and the order in which paths are followed does not matter.
 //
-// Numbers in general are hashes, pcg4d [JarzynskiOlano2020]. The first events' pairs of numbers come from Sobol's (0,2)-sequence, its order
-// shuffled and its points scrambled after Owen a pixel and purpose by hashes [Burley2020].
+// Numbers in general are hashes, pcg4d [JarzynskiOlano2020]. The first events' pairs of numbers come from Sobol's
+// (0,2)-sequence, its order shuffled and its points scrambled after Owen a pixel and purpose by hashes [Burley2020].
 
 const uint kLowDiscrepancyEvents = 4u;
 
@@ -51,8 +51,8 @@ uint pcgOutput(uint state) {
   return (word >> 22u) ^ word;
 }
 
-// [VPT2024, 5.4]: PCG rxs_m_xs_32, seeded with the number of the pixel; a pixel's draws follow each other on the one cycle of 2^32 that all
-// pixels share, 16 words an event here.
+// [VPT2024, 5.4]: PCG rxs_m_xs_32, seeded with the number of the pixel; a pixel's draws follow each other on the one
+// cycle of 2^32 that all pixels share, 16 words an event here.
 uvec4 linearWords(PathNumbers numbers, uint event, uint purpose) {
   uint steps = ((numbers.sampleIndex * 64u + event) * 16u + purpose) * 4u + 1u;
   uint factor = 747796405u, addend = 1u, state = numbers.pixel + numbers.seed;
@@ -77,7 +77,8 @@ uvec4 randomWords(PathNumbers numbers, uint event, uint purpose) {
   return pcg4d(uvec4(numbers.pixel, numbers.sampleIndex, event, purpose ^ numbers.seed));
 }
 
-// Owen's scrambling of a number whose bits are reversed: each bit is turned over by a hash of those below it [Burley2020].
+// Owen's scrambling of a number whose bits are reversed: each bit is turned over by a hash of those below it
+// [Burley2020].
 uint owenReversed(uint x, uint seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -87,8 +88,8 @@ uint owenReversed(uint x, uint seed) {
   return x;
 }
 
-// The second dimension of Sobol's sequence before its bits are reversed. Bit k is the sum over j of bit j times binomial(j, k), which is
-// odd where k's bits are among j's: a sum over supersets, one step a bit of the index.
+// The second dimension of Sobol's sequence before its bits are reversed. Bit k is the sum over j of bit j times
+// binomial(j, k), which is odd where k's bits are among j's: a sum over supersets, one step a bit of the index.
 uint sobolReversed(uint i) {
   i ^= (i >> 1u) & 0x55555555u;
   i ^= (i >> 2u) & 0x33333333u;
@@ -110,4 +111,6 @@ uvec2 randomWordPair(PathNumbers numbers, uint event, uint purpose) {
 }
 
 // Two numbers in [0, 1).
-vec2 randomPair(PathNumbers numbers, uint event, uint purpose) { return unitFloat(randomWordPair(numbers, event, purpose)); }
+vec2 randomPair(PathNumbers numbers, uint event, uint purpose) {
+  return unitFloat(randomWordPair(numbers, event, purpose));
+}

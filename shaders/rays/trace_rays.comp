@@ -1,7 +1,8 @@
-// Rays from a buffer, hits into another: for tests and benchmarks. COUNT_WORK: in place of t and barycentrics how many nodes were visited
-// and how many triangles tested.
+// Rays from a buffer, hits into another: for tests and benchmarks. COUNT_WORK: in place of t and barycentrics how many
+// nodes were visited and how many triangles tested.
 #if ALPHA_MASKS
-bool isCutOut(uint triangle, vec2 barycentrics) { return barycentrics.x < 0.5; }  // tests alone: half of every masked triangle
+// tests alone: half of every masked triangle
+bool isCutOut(uint triangle, vec2 barycentrics) { return barycentrics.x < 0.5; }
 #endif
 layout(local_size_x = 64) in;
 #include "rays/bvh.glsl"

@@ -1,19 +1,22 @@
 // Irradiance at a point from the reflective shadow map: samples of it around the point's projection (s,t) at
 // (s + r xi1 sin 2 pi xi2, t + r xi1 cos 2 pi xi2) [Dachsbacher2005 sec 4.1].
-// The density of these per texel is 1 / (2 pi R^2 xi1), R = r in texels, so the sum over all texels within R is estimated
-// without bias by sum_i E_i xi1_i 2 pi R^2 / N. The published weight is xi1^2 in xi1's place. Lights follow each other, a dispatch each: `adds` is 1 from the second on.
+// The density of these per texel is 1 / (2 pi R^2 xi1), R = r in texels, so the sum over all texels within R is
+// estimated without bias by sum_i E_i xi1_i 2 pi R^2 / N. The published weight is xi1^2 in xi1's place. Lights follow
+// each other, a dispatch each: `adds` is 1 from the second on.
 #include "rsm/transfer.glsl"
 layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // xi1 sin, xi1 cos, weight, unused
 uniform int adds;
 uniform float gatherRadius;  // r, fraction of the map's side
 
 #if MAP_LIGHT == MAP_POINT
-// The map is a whole sphere about the lamp: samples lie at the angle pi r xi1 from the point's direction, turned by 2 pi xi2. Their density per texel is
-// dOmega / (2 pi^2 r sin(pi r xi1)), so xi1 of the plane becomes sin / dOmega.
+// The map is a whole sphere about the lamp: samples lie at the angle pi r xi1 from the point's direction, turned by 2
+// pi xi2. Their density per texel is dOmega / (2 pi^2 r sin(pi r xi1)), so xi1 of the plane becomes sin / dOmega.
 vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
   vec3 away = position - lightPlace;
   if (!(dot(away, away) > 0.0)) return vec3(0.0);
-  vec3 axis = normalize(away), right = normalize(cross(axis, abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0))), up = cross(right, axis);
+  vec3 axis = normalize(away),
+       right = normalize(cross(axis, abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0))),
+       up = cross(right, axis);
   float most = kPi * min(gatherRadius, 1.0), c = cos(rotation), s = sin(rotation);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < pattern.length(); ++i) {

@@ -1,5 +1,5 @@
-// The full gather of the pixels in the list that interpolation left. Dispatched indirectly; where the list is longer than the
-// groups that a dispatch may have, each takes several.
+// The full gather of the pixels in the list that interpolation left. Dispatched indirectly; where the list is longer
+// than the groups that a dispatch may have, each takes several.
 #include "rsm/gather.glsl"
 #include "forward/visible.glsl"
 #include "rsm/work.glsl"

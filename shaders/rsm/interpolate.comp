@@ -1,6 +1,6 @@
-// Irradiance of a pixel from the 4 nearest low-resolution samples, where at least 3 of them fit it: a similar normal, near its
-// tangent plane, not far away [Dachsbacher2005]. Bilinear weights of those that fit. Every other pixel goes into the list that
-// the full gather works through.
+// Irradiance of a pixel from the 4 nearest low-resolution samples, where at least 3 of them fit it: a similar normal,
+// near its tangent plane, not far away [Dachsbacher2005]. Bilinear weights of those that fit. Every other pixel goes
+// into the list that the full gather works through.
 #include "lib/frame.glsl"
 #include "forward/visible.glsl"
 #include "rsm/low.glsl"
@@ -11,7 +11,8 @@ layout(r32ui, binding = 1) writeonly uniform uimage2D refusedPixels;  // x | y <
 layout(binding = 5) uniform sampler2D lowIrradiance;
 uniform float pixelWidth;   // of a pixel, scene units across the view per unit of distance
 uniform float fitNormal;    // least cosine between the normals
-uniform float fitPlane;     // most distance from the tangent plane, in steps between low-resolution samples at the pixel
+// most distance from the tangent plane, in steps between low-resolution samples at the pixel
+uniform float fitPlane;
 uniform float fitDistance;  // most distance, in the same
 shared uint groupSurfaces;
 
@@ -47,7 +48,8 @@ void main() {
       } else {
         uint index = atomicAdd(work.refused, 1u);
         int width = imageSize(refusedPixels).x;
-        imageStore(refusedPixels, ivec2(int(index) % width, int(index) / width), uvec4(uint(pixel.x) | uint(pixel.y) << 16));
+        imageStore(refusedPixels, ivec2(int(index) % width, int(index) / width),
+                   uvec4(uint(pixel.x) | uint(pixel.y) << 16));
         if (index % WORK_GROUP == 0u && index / WORK_GROUP < 65535u) atomicAdd(work.groupsX, 1u);
       }
     } else {

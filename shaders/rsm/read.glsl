@@ -1,12 +1,14 @@
-// A light's reflective shadow map as the gathering passes read it: everything that depends on how it is stored is in here.
+// A light's reflective shadow map as the gathering passes read it: everything that depends on how it is stored is in
+// here.
 // MAP_LIGHT says whose map it is: its texels' edges and solid angles, and how directions fall into it.
+#include "shared/bindings.h"
 #include "lib/frame.glsl"
 #define MAP_SUN 0
 #define MAP_SPOT 1
 #define MAP_POINT 2
-layout(binding = 0) uniform sampler2DArray rsmPosition;
-layout(binding = 1) uniform sampler2DArray rsmNormal;
-layout(binding = 2) uniform sampler2DArray rsmFlux;
+layout(binding = UNIT_RSM_POSITION) uniform sampler2DArray rsmPosition;
+layout(binding = UNIT_RSM_NORMAL) uniform sampler2DArray rsmNormal;
+layout(binding = UNIT_RSM_FLUX) uniform sampler2DArray rsmFlux;
 #if MAP_LIGHT != MAP_SUN
 uniform vec3 lightPlace;
 uniform mat4 clipFromPlace[MAP_LIGHT == MAP_POINT ? 6 : 1];  // of positions relative to lightPlace
@@ -37,10 +39,12 @@ void rsmTexelEdges(out vec3 u, out vec3 v) {
 }
 vec3 rsmRay(vec3 position) { return frame.sunDirection; }
 #else
-// Edges of a texel where a view's pyramid has reached a point: parallel to the view's axes, as wide as it is deep there.
+// Edges of a texel where a view's pyramid has reached a point: parallel to the view's axes, as wide as it is deep
+// there.
 void rsmTexelEdges(int layer, vec3 position, out vec3 u, out vec3 v) {
   mat4 clip = clipFromPlace[layer];
-  vec3 right = vec3(clip[0][0], clip[1][0], clip[2][0]), up = vec3(clip[0][1], clip[1][1], clip[2][1]), forward = vec3(clip[0][3], clip[1][3], clip[2][3]);
+  vec3 right = vec3(clip[0][0], clip[1][0], clip[2][0]), up = vec3(clip[0][1], clip[1][1], clip[2][1]),
+       forward = vec3(clip[0][3], clip[1][3], clip[2][3]);
   float width = texelWidth * max(dot(position - lightPlace, normalize(forward)), 0.0);
   u = normalize(right) * width;
   v = normalize(up) * width;
@@ -48,8 +52,9 @@ void rsmTexelEdges(int layer, vec3 position, out vec3 u, out vec3 v) {
 vec3 rsmRay(vec3 position) { return normalize(position - lightPlace); }
 #endif
 
-// The surfel's outline: the texel's, projected along the light onto the surfel's plane, so that the surfels of neighbouring texels
-// tile a flat surface without gap or overlap. `u` and `v` are its edges; the sun's: a parallelogram of the area texelArea / cosine.
+// The surfel's outline: the texel's, projected along the light onto the surfel's plane, so that the surfels of
+// neighbouring texels tile a flat surface without gap or overlap. `u` and `v` are its edges; the sun's: a parallelogram
+// of the area texelArea / cosine.
 void rsmSurfelEdges(RsmSurfel surfel, out vec3 u, out vec3 v) {
 #if MAP_LIGHT == MAP_SUN
   rsmTexelEdges(u, v);

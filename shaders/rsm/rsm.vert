@@ -1,4 +1,5 @@
-// A mesh vertex seen by the light. Flag LAYERS: views of the target that the geometry shader projects it to; at 1 there is none.
+// A mesh vertex seen by the light. Flag LAYERS: views of the target that the geometry shader projects it to; at 1 there
+// is none.
 #include "lib/frame.glsl"
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;

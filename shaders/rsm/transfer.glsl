@@ -1,13 +1,15 @@
 // Irradiance that one surfel of the reflective shadow map sends to a point: [Dachsbacher2005 eq 1] in watts,
 //   E = Phi / pi * <n_p|x - x_p>+ <n|x_p - x>+ / |x - x_p|^4,
-// Phi the texel's flux, Phi / pi its radiant intensity along its normal. Beside the surfel that grows without bound, though a
-// surface of exitance Phi / A never gives more than Phi / A. NEAR says what stands there instead (README.md, "Near a surfel").
+// Phi the texel's flux, Phi / pi its radiant intensity along its normal. Beside the surfel that grows without bound,
+// though a surface of exitance Phi / A never gives more than Phi / A. NEAR says what stands there instead (README.md,
+// "Near a surfel").
 #include "rsm/read.glsl"
 const float kPi = 3.14159265358979;
 #define NEAR_NONE 0
 #define NEAR_CLAMP 1  // the distance is kept above minimumDistance2
 #define NEAR_DISC 2   // d^2 + A/pi for one d^2: exact on the axis of a disc of area A
-#define NEAR_QUAD 3   // the exact form factor of the surfel's outline within near2 (d^2 < 4 A where the light falls straight), else the point
+// the exact form factor of the surfel's outline within near2 (d^2 < 4 A where the light falls straight), else the point
+#define NEAR_QUAD 3
 #if NEAR == NEAR_CLAMP
 uniform float minimumDistance2;  // over surfel.across: scene units squared
 #endif
@@ -20,11 +22,13 @@ float edgeIntegral(vec3 a, vec3 b, vec3 n) {
   return sine > 0.0 ? atan(sine, dot(a, b)) * dot(across, n) / sine : 0.0;
 }
 
-// Form factor from a point with normal n to the parallelogram centre +- u/2 +- v/2 (seen from the point), cut at the point's
-// horizon: F = 1/(2 pi) |sum over edges| [Lambert 1760; BaumRushmeierWinget1989 eq 10]. A convex outline crosses the horizon twice at most; the
-// piece of the horizon between the crossings closes it.
+// Form factor from a point with normal n to the parallelogram centre +- u/2 +- v/2 (seen from the point), cut at the
+// point's
+// horizon: F = 1/(2 pi) |sum over edges| [Lambert 1760; BaumRushmeierWinget1989 eq 10]. A convex outline crosses the
+// horizon twice at most; the piece of the horizon between the crossings closes it.
 float quadFormFactor(vec3 centre, vec3 u, vec3 v, vec3 n) {
-  vec3 corners[4] = vec3[4](centre + 0.5 * (u + v), centre + 0.5 * (v - u), centre - 0.5 * (u + v), centre + 0.5 * (u - v));
+  vec3 corners[4] =
+      vec3[4](centre + 0.5 * (u + v), centre + 0.5 * (v - u), centre - 0.5 * (u + v), centre + 0.5 * (u - v));
   vec3 leaves = vec3(0.0), enters = vec3(0.0);
   float sum = 0.0;
   for (int i = 0; i < 4; ++i) {
@@ -49,8 +53,8 @@ vec3 surfelIrradiance(RsmSurfel surfel, vec3 position, vec3 normal) {
   if (!(emitted > 0.0)) return vec3(0.0);
 #if NEAR == NEAR_QUAD
   if (d2 < surfel.near2) {  // its centre may lie below the horizon, a part of it above
-    // The other side of a thin lit surface lies in the surfel's own plane, and rounding may put it just in front, where it would
-    // receive all that the surfel gives. What faces a surfel must be clear of it by a twentieth of its edge.
+    // The other side of a thin lit surface lies in the surfel's own plane, and rounding may put it just in front, where
+    // it would receive all that the surfel gives. What faces a surfel must be clear of it by a twentieth of its edge.
     float clear = 0.025 * sqrt(surfel.near2) * -dot(surfel.normal, normal);
     if (dot(surfel.normal, away) < clear) return vec3(0.0);
     vec3 u, v;

@@ -1,4 +1,5 @@
-// What a frame's gather counts, and the pixels that interpolation leaves to the full gather. GatherCounts of rsm_gather.cpp.
+// What a frame's gather counts, and the pixels that interpolation leaves to the full gather. GatherCounts of
+// rsm_gather.cpp.
 #define WORK_GROUP 64
 layout(std430, binding = 1) buffer Work {
   uint groupsX, groupsY, groupsZ;  // of the full gather, as an indirect dispatch reads them

@@ -15,10 +15,13 @@ SHARED_BEGIN
 // Eight boxes on a grid of 256 steps an axis, in 80 bytes [Ylitie2017]. Byte k of a pair of words belongs to child k.
 struct BvhNode {
   vec3 origin;          // of the grid
-  uint exponents;       // bytes 0..2: the biased exponents of the grid's steps along x, y, z; byte 3: bit k is set where child k is a node
+  // bytes 0..2: the biased exponents of the grid's steps along x, y, z; byte 3: bit k is set where child k is a node
+  uint exponents;
   uint firstChild;      // child nodes lie behind one another, in the order of k
   uint firstTriangle;   // so do the triangles of the children that are leaves
-  uint meta[2];         // a byte a child. Node: 1 << 5 | 24 + k. Leaf: one bit a triangle << 5 | its first triangle, counted from firstTriangle. None: 0
+  // a byte a child. Node: 1 << 5 | 24 + k. Leaf: one bit a triangle << 5 | its first triangle, counted from
+  // firstTriangle. None: 0
+  uint meta[2];
   uint low[6];          // in grid steps: x 0..3, x 4..7, y ..., z ...
   uint high[6];
 };

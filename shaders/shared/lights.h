@@ -1,4 +1,5 @@
-// Spot and omnidirectional lights as the forward shader reads them: uniform block 3, there only where the scene has one of them.
+// Spot and omnidirectional lights as the forward shader reads them: uniform block 3, there only where the scene has one
+// of them.
 #pragma once
 #include "shared/types.h"
 

@@ -1,4 +1,5 @@
-// Receivers of the light propagation volume (engine/lpv/receivers.hpp): points of surfaces at which irradiance is kept. Uniform block 6.
+// Receivers of the light propagation volume (engine/lpv/receivers.hpp): points of surfaces at which irradiance is kept.
+// Uniform block 6.
 #pragma once
 #include "shared/lpv.h"
 #include "shared/types.h"
@@ -27,7 +28,8 @@ struct LpvReceiver {
   vec3 normal;          // for shading, unit, on the side that is seen
   uint pixel;           // that found it
   vec3 shown;           // irradiance that is looked up: follows `irradiance`, and its neighbours', at a bounded rate
-  float presence;       // how much of it is faded in, 0 to LPV_PRESENT; LPV_PRESENT alone says that `shown` has arrived too
+  // how much of it is faded in, 0 to LPV_PRESENT; LPV_PRESENT alone says that `shown` has arrived too
+  float presence;
 };
 
 struct LpvReceiverConstants {

@@ -1,4 +1,5 @@
-// Participating media and the closed boundaries that hold them, as the path tracer reads them: storage buffers (std430).
+// Participating media and the closed boundaries that hold them, as the path tracer reads them: storage buffers
+// (std430).
 #pragma once
 #include "shared/types.h"
 
@@ -7,7 +8,8 @@ SHARED_BEGIN
 // Lengths in scene units.
 struct MediumRecord {
   vec3 extinction;   // 1/unit
-  float majorant;    // with a density grid: times the density's bound, the rate of tentative collisions; > 0 where anything happens
+  // with a density grid: times the density's bound, the rate of tentative collisions; > 0 where anything happens
+  float majorant;
   vec3 albedo;       // scattering over extinction, 0 where there is no extinction
   int phase;         // 0 Henyey-Greenstein, 1 Rayleigh
   vec3 emission;     // radiance per unit
@@ -18,7 +20,8 @@ struct MediumRecord {
   int greyPhase;       // likewise: the direction's weight is 1
 };
 
-// A density grid: cell centres in `densities` from firstDensity on, x fastest; bounds of blocks of cells in `bounds` from firstBound on.
+// A density grid: cell centres in `densities` from firstDensity on, x fastest; bounds of blocks of cells in `bounds`
+// from firstBound on.
 struct DensityRecord {
   vec3 min;          // of the box
   int firstDensity;

@@ -1,4 +1,5 @@
-// What the path tracer's kernel reads: uniform block 0 and the storage blocks of triangles, materials and lights (std430).
+// What the path tracer's kernel reads: uniform block 0 and the storage blocks of triangles, materials and lights
+// (std430).
 // Space: that of the ray caster, the world moved by -origin (engine/rays/ray_scene.hpp).
 #pragma once
 #include "shared/types.h"

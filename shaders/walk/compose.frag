@@ -1,5 +1,5 @@
-// The window's picture: one or two pictures of a view, whole, divided by a wipe or side by side, under one exposure, tone map and zoom; each shown as
-// it is or as its difference from a reference. A magnifier about the cursor.
+// The window's picture: one or two pictures of a view, whole, divided by a wipe or side by side, under one exposure,
+// tone map and zoom; each shown as it is or as its difference from a reference. A magnifier about the cursor.
 // Curve and encoding: shaders/forward/tonemap.frag.
 #include "lib/tonemap.glsl"
 layout(binding = 0) uniform sampler2D leftPicture;    // linear radiance
@@ -24,7 +24,9 @@ const int SHOW_PICTURE = 0, SHOW_SIGNED = 1, SHOW_RELATIVE = 2, SHOW_Z = 3, SHOW
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }  // IEC 61966-2-1
 
 // Blue (-1) over white (0) to red (+1).
-vec3 diverging(float t) { return t < 0.0 ? vec3(1.0 + max(t, -1.0), 1.0 + max(t, -1.0), 1.0) : vec3(1.0, 1.0 - min(t, 1.0), 1.0 - min(t, 1.0)); }
+vec3 diverging(float t) {
+  return t < 0.0 ? vec3(1.0 + max(t, -1.0), 1.0 + max(t, -1.0), 1.0) : vec3(1.0, 1.0 - min(t, 1.0), 1.0 - min(t, 1.0));
+}
 // Black (0) over red and yellow to white (1).
 vec3 heat(float t) { return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0); }
 
@@ -45,7 +47,8 @@ vec3 shown(bool right, ivec2 texel) {
     vec3 d = abs(radiance - truth);
     return heat(max(d.x, max(d.y, d.z)) / max(max(truth.x, max(truth.y, truth.z)), 1e-30));
   }
-  // In standard errors of the reference; grey where the noise explains it. Channels of a pixel are taken to rise and fall together.
+  // In standard errors of the reference; grey where the noise explains it. Channels of a pixel are taken to rise and
+  // fall together.
   float z = difference / max(luminance(noise), 1e-30);
   return abs(z) < 3.0 ? vec3(0.35) : diverging(sign(z) * clamp(abs(z) / 20.0, 0.15, 1.0));
 }
@@ -81,6 +84,7 @@ void main() {
   int taps = clamp(int(ceil(side - 0.01)), 1, 4);
   vec3 sum = vec3(0.0);
   for (int y = 0; y < taps; ++y)
-    for (int x = 0; x < taps; ++x) sum += shown(right, ivec2(floor(place + side * ((vec2(x, y) + 0.5) / float(taps) - 0.5))));
+    for (int x = 0; x < taps; ++x)
+      sum += shown(right, ivec2(floor(place + side * ((vec2(x, y) + 0.5) / float(taps) - 0.5))));
   displayColor = vec4(sum / float(taps * taps), 1.0);
 }

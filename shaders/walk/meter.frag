@@ -1,4 +1,5 @@
-// Logarithm of luminance over the picture, for automatic exposure: each texel of the small target takes 16 texels of its part.
+// Logarithm of luminance over the picture, for automatic exposure: each texel of the small target takes 16 texels of
+// its part.
 layout(binding = 0) uniform sampler2D radianceTexture;
 uniform vec2 pixels;  // of the target
 layout(location = 0) out vec4 result;  // sum of log2, count

@@ -1,4 +1,5 @@
-// A stage's own picture as colours: light by a factor; normals and positions as they lie within -1..1 and the scene's bounds; depth from white (near) to black.
+// A stage's own picture as colours: light by a factor; normals and positions as they lie within -1..1 and the scene's
+// bounds; depth from white (near) to black.
 // SHAPE: 0 2D, 1 an array's layer, 2 a slice of a volume, 3 a slice of three volumes, of red, green and blue.
 #include "lib/sh.glsl"
 in vec2 uv;
@@ -14,7 +15,8 @@ layout(binding = 1) uniform sampler3D green;
 layout(binding = 2) uniform sampler3D blue;
 #endif
 uniform int layer;
-uniform int kind;      // StagePicture::Kind: 0 position, 1 normal, 2 flux, 3 depth, 4 irradiance of receivers, 5 coefficients
+// StagePicture::Kind: 0 position, 1 normal, 2 flux, 3 depth, 4 irradiance of receivers, 5 coefficients
+uniform int kind;
 uniform float factor;  // of light
 uniform vec3 minimum;  // of the scene
 uniform vec3 extent;
@@ -29,7 +31,9 @@ void main() {
 #endif
 #if SHAPE == 3
   // Mean intensity over the sphere: band 0 alone.
-  value = vec4(kY00 * vec3(value.x, texelFetch(green, ivec3(place, layer), 0).x, texelFetch(blue, ivec3(place, layer), 0).x), 1.0);
+  value = vec4(
+      kY00 * vec3(value.x, texelFetch(green, ivec3(place, layer), 0).x, texelFetch(blue, ivec3(place, layer), 0).x),
+      1.0);
 #endif
   vec3 shown = factor * value.rgb;
   if (kind == 0) shown = value.w > 0.0 ? (value.xyz - minimum) / extent : vec3(0.0);

@@ -22,7 +22,8 @@ using lucerna::test::TempFolder;
 
 // Two walls and a floor, a lamp, two views.
 const char* kScene = R"({"model": "room.obj", "sun": {"direction": [-0.5, -1, -0.3], "irradiance": [3, 3, 3]},
-  "cameras": [{"name": "first", "position": [1.5, 1.2, 1.8], "target": [0, 0.6, 0], "fov": 55}, {"name": "second", "position": [-1, 1, 1.8], "target": [0, 0.5, 0], "fov": 50}]})";
+  "cameras": [{"name": "first", "position": [1.5, 1.2, 1.8], "target": [0, 0.6, 0], "fov": 55}, {"name": "second",
+  "position": [-1, 1, 1.8], "target": [0, 0.5, 0], "fov": 50}]})";
 const char* kRoom =
     "mtllib room.mtl\n"
     "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\nv -2 3 2\n"

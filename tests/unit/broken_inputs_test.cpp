@@ -56,8 +56,10 @@ TEST(BrokenInputs, DeepJsonIsRefused) {
 /// A triangle of glTF whose nodes are given.
 std::string gltfWithNodes(const std::string& nodes) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
-         R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
-         "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+         R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,
+         "componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+         "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,
+         "uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
 }
 
 std::string nodeChain(int count) {

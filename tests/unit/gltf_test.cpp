@@ -39,12 +39,15 @@ Scene loadTriangle(const TempFolder& folder, const std::string& material,
                               std::string("\x10\x20\x30\x64\x10\x20\x30\xc8", 8));
   return loadScene(
       folder.write("a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1,"COLOR_0":2},"material":0}]}],"materials":[{"name":"paint",)" +
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1,"COLOR_0":2},"material":0}]}],
+    "materials":[{"name":"paint",)" +
                                  material + R"(}],
     "textures":[{"source":0}],"images":[{"uri":"t.tga"}],
-    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},{"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"},
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+    {"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"},
                  {"bufferView":2,"componentType":5126,"count":3,"type":"VEC3"}],
-    "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},{"buffer":0,"byteOffset":60,"byteLength":36}],
+    "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},{"buffer":0,
+    "byteOffset":60,"byteLength":36}],
     "buffers":[{"uri":"a.bin","byteLength":96}])" +
                                  more + "}"));
 }
@@ -57,8 +60,10 @@ Scene loadTriangleOfFour(const TempFolder& folder, const std::string& material) 
       folder.write("a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1},"material":0}]}],"materials":[{"name":"paint",)" +
                                  material + R"(}],
-    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},{"bufferView":1,"componentType":5126,"count":3,"type":"VEC4"}],
-    "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":48}],"buffers":[{"uri":"a.bin","byteLength":84}]})"));
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+    {"bufferView":1,"componentType":5126,"count":3,"type":"VEC4"}],
+    "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":48}],
+    "buffers":[{"uri":"a.bin","byteLength":84}]})"));
 }
 
 std::string onlyWarning() {
@@ -158,7 +163,8 @@ TEST(Gltf, MaterialsAreThoseOfTheirNumberWhateverTheOrderOfTheirUse) {
   };
   const auto primitive = [](const std::string& material) { return R"({"attributes":{"POSITION":0})" + material + "}"; };
   const std::string json =
-      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[)" +
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+      "meshes":[{"primitives":[)" +
       primitive(R"(,"material":2)") + "," + primitive("") + "," + primitive(R"(,"material":0)") +
       R"(]}],"materials":[)" + strength(3) + "," + strength(5) + "," + strength(7) +
       R"(],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
@@ -214,7 +220,8 @@ TEST(Gltf, PicturesOfNormalsMetalAndEmissionAreRead) {
   const TempFolder folder;
   const Scene scene = loadTriangle(
       folder, R"("normalTexture":{"index":0,"scale":0.75},"emissiveFactor":[1,0.5,0.25],"emissiveTexture":{"index":0},
-    "pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":0.8,"roughnessFactor":0.9,"metallicRoughnessTexture":{"index":0}})");
+    "pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":0.8,"roughnessFactor":0.9,
+    "metallicRoughnessTexture":{"index":0}})");
   EXPECT_TRUE(loggedWarnings().empty());
   const Material& m = scene.materials.at(0);
   ASSERT_EQ(m.normalTexture, 0);  // one picture, whatever it is used for
@@ -247,14 +254,16 @@ TEST(Gltf, WhatIsNotShownIsOneWarning) {
   const TempFolder folder;
   loadTriangle(
       folder,
-      R"("alphaMode":"BLEND","extensions":{"KHR_materials_sheen":{"sheenRoughnessFactor":1},"KHR_materials_clearcoat":{"clearcoatFactor":1}})");
+      R"("alphaMode":"BLEND","extensions":{"KHR_materials_sheen":{"sheenRoughnessFactor":1},
+      "KHR_materials_clearcoat":{"clearcoatFactor":1}})");
   const std::string warning = onlyWarning();
   for (const char* part :
        {"a.gltf", "material 'paint'", "not blended (BLEND)", "no KHR_materials_sheen", "no KHR_materials_clearcoat"})
     EXPECT_TRUE(contains(warning, part)) << warning;
   loadTriangle(
       folder, R"("doubleSided":true)", floats({1, 1, 1, 1, 1, 1, 1, 1, 1}),
-      R"(,"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"name":"bulb","type":"point","range":5,"color":[1,1,1],"intensity":1}]}})");
+      R"(,"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"name":"bulb",
+      "type":"point","range":5,"color":[1,1,1],"intensity":1}]}})");
   EXPECT_TRUE(contains(onlyWarning(), "bulb"));
 }
 

@@ -68,8 +68,10 @@ TEST(LightViews, LargestSolidAngleBoundsTheTexelsSum) {
 
 TEST(SceneLights, EveryKeyIsRead) {
   const Scene scene = LightFolder().load(
-      R"(, "spots": [{"position": [1,2,3], "direction": [0,-2,0], "intensity": [4,5,6], "innerAngle": 10, "outerAngle": 80},
-                     {"position": [1,2,3], "target": [1,2,0], "intensity": [1,1,1], "innerAngle": 30, "outerAngle": 30}],
+      R"(, "spots": [{"position": [1,2,3], "direction": [0,-2,0], "intensity": [4,5,6], "innerAngle": 10,
+      "outerAngle": 80},
+                     {"position": [1,2,3], "target": [1,2,0], "intensity": [1,1,1], "innerAngle": 30,
+                     "outerAngle": 30}],
           "points": [{"position": [7,8,9], "intensity": [1,0.5,0]}])");
   ASSERT_EQ(scene.spots.size(), 2u);
   EXPECT_EQ(scene.spots[0].position, glm::dvec3(1, 2, 3));
@@ -124,7 +126,8 @@ TEST(SceneLights, WhatIsWrongIsNamedByKey) {
       {spot + R"("innerAngle": 41, "outerAngle": 40}])", "\"spots[0].innerAngle\""},
       {spot + R"("innerAngle": -1, "outerAngle": 40}])", "\"spots[0].innerAngle\""},
       {spot + R"("innerAngle": 1, "outerAngle": 40, "target": [1,1,1]}])", "\"target\" or \"direction\""},
-      {R"(, "spots": [{"position": [0,0,0], "target": [0,0,0], "intensity": [1,1,1], "innerAngle": 1, "outerAngle": 40}])",
+      {R"(, "spots": [{"position": [0,0,0], "target": [0,0,0], "intensity": [1,1,1], "innerAngle": 1,
+      "outerAngle": 40}])",
        "\"target\" is not"},
   };
   for (const auto& [keys, expected] : cases) {
@@ -138,11 +141,13 @@ TEST(SceneLights, GltfLampsAreRead) {
   const TempFolder folder;
   const auto file = folder.write("lamps.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2]}],
     "nodes":[{"mesh":0},{"name":"a","translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":0}}},
-             {"name":"b","translation":[4,5,6],"rotation":[-0.70710678,0,0,0.70710678],"extensions":{"KHR_lights_punctual":{"light":1}}}],
+             {"name":"b","translation":[4,5,6],"rotation":[-0.70710678,0,0,0.70710678],
+             "extensions":{"KHR_lights_punctual":{"light":1}}}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
     "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
     "bufferViews":[{"buffer":0,"byteLength":36}],
-    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+    "buffers":[{"byteLength":36,
+    "uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
     "extensionsUsed":["KHR_lights_punctual"],
     "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0.5,0.25],"intensity":4},
       {"type":"spot","color":[1,1,1],"intensity":2,"spot":{"innerConeAngle":0.2,"outerConeAngle":0.5}}]}}})");
@@ -166,11 +171,13 @@ TEST(SceneLights, LampsOfModelsThatAreFarTooWeakOrStrongChooseTheExposure) {
     clearLoggedWarnings();
     return loadScene(folder.write("a.gltf",
                                   fmt::format(R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,1]}}],
-    "nodes":[{{"mesh":0,"translation":[-0.5,-0.5,0]}},{{"name":"a","translation":[0,0,4],"extensions":{{"KHR_lights_punctual":{{"light":0}}}}}}],
+    "nodes":[{{"mesh":0,"translation":[-0.5,-0.5,0]}},{{"name":"a","translation":[0,0,4],
+    "extensions":{{"KHR_lights_punctual":{{"light":0}}}}}}],
     "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
     "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}}],
     "bufferViews":[{{"buffer":0,"byteLength":36}}],
-    "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}}],
+    "buffers":[{{"byteLength":36,
+    "uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}}],
     "extensionsUsed":["KHR_lights_punctual"],
     "extensions":{{"KHR_lights_punctual":{{"lights":[{{"type":"point","intensity":{}}}]}}}}}})",
                                               intensity)))

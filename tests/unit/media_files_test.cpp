@@ -266,9 +266,11 @@ const char* kObj =
     "mtllib cup.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl wall\nf 1 2 3\nusemtl milk\nf 1 3 2\nf 1 2 4\nf 2 3 "
     "4\nf 1 4 3\n";
 const char* kSceneKeys =
-    R"("scene": {"camera": [0, 0, 5], "cameraLookAt": [0, 0, 0], "fov": 45, "lightPos": [1, 2, 3], "lightColor": [1, 0.5, 0.25], "lightIntensity": 8, "scale": 10.0})";
+    R"("scene": {"camera": [0, 0, 5], "cameraLookAt": [0, 0, 0], "fov": 45, "lightPos": [1, 2, 3],
+    "lightColor": [1, 0.5, 0.25], "lightIntensity": 8, "scale": 10.0})";
 const char* kMilk =
-    R"({"sigma_s": [18.2052, 20.3826, 22.3698], "sigma_a": [0.00153, 0.0046, 0.01993], "g": [0.75, 0.714, 0.681], "ior": 1.33})";
+    R"({"sigma_s": [18.2052, 20.3826, 22.3698], "sigma_a": [0.00153, 0.0046, 0.01993], "g": [0.75, 0.714, 0.681],
+    "ior": 1.33})";
 
 struct OriginalFolder : TempFolder {
   OriginalFolder() { write("cup.mtl", kMtl), write("cup.obj", kObj); }
@@ -410,7 +412,8 @@ TEST(SceneMedia, EveryKeyIsRead) {
       folder.load(R"("media": {"drink": {"catalogue": "milk", "concentration": 0.5, "g": 0.2}, "cola": "coca cola",
         "fog": {"sigma_s": [1, 2, 3], "sigma_a": [0, 0, 1], "phase": "rayleigh", "emission": [0, 1, 2], "ior": 1.1,
                 "grid": {"file": "fog.raw", "size": [2, 1, 1], "min": [0, 0, 0], "max": [2, 1, 1], "factor": 4}}},
-      "materials": {"milk": {"interior": "drink", "priority": 3, "roughness": 0.25}, "wall": {"bsdf": "none", "interior": "fog", "diffuse": [0.1, 0.2, 0.3], "specular": [0, 0, 1], "emission": [3, 2, 1]}},
+      "materials": {"milk": {"interior": "drink", "priority": 3, "roughness": 0.25}, "wall": {"bsdf": "none",
+      "interior": "fog", "diffuse": [0.1, 0.2, 0.3], "specular": [0, 0, 1], "emission": [3, 2, 1]}},
       "cameraMedium": "fog", "environment": {"radiance": [1, 2, 3], "rotation": 180})");
   ASSERT_EQ(scene.media.size(), 3u);  // in the order of the names
   const Medium &drink = scene.media[1], &fog = scene.media[2];

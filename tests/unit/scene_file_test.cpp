@@ -45,8 +45,10 @@ TEST(SceneFile, EveryKeyIsRead) {
   const SceneFolder folder;
   folder.write("walk.txt", "p 0 0 0 d 1 0 0 u 0 1 0\np 1 0 0 d 1 0 0 u 0 1 0\n");
   const Scene scene = folder.load(
-      R"(, "description": "a room", "scale": 10, "camera": {"position": [1, 2, 3], "target": [1, 2, 0], "up": [0, 2, 1], "fov": 40},
-      "sun": {"direction": [0, -2, 0], "irradiance": [1, 2, 3]}, "background": [0.1, 0.2, 0.3], "exposure": 0.5, "keyFrames": "walk.txt")");
+      R"(, "description": "a room", "scale": 10, "camera": {"position": [1, 2, 3], "target": [1, 2, 0],
+      "up": [0, 2, 1], "fov": 40},
+      "sun": {"direction": [0, -2, 0], "irradiance": [1, 2, 3]}, "background": [0.1, 0.2, 0.3], "exposure": 0.5,
+      "keyFrames": "walk.txt")");
   EXPECT_EQ(scene.metresPerUnit, 0.01);
   ASSERT_EQ(scene.cameras.size(), 1u);
   EXPECT_EQ(scene.cameras[0].position, glm::dvec3(1, 2, 3));
@@ -63,7 +65,8 @@ TEST(SceneFile, EveryKeyIsRead) {
 TEST(SceneFile, SeveralCamerasKeepOrderAndNames) {
   const SceneFolder folder;
   const Scene scene = folder.load(
-      R"(, "cameras": [{"name": "b", "position": [0,0,5], "direction": [0,0,-3]}, {"name": "a", "position": [0,0,5], "target": [1,0,5]}])");
+      R"(, "cameras": [{"name": "b", "position": [0,0,5], "direction": [0,0,-3]}, {"name": "a", "position": [0,0,5],
+      "target": [1,0,5]}])");
   ASSERT_EQ(scene.cameras.size(), 2u);
   EXPECT_EQ(scene.cameras[0].name, "b");
   EXPECT_EQ(scene.cameras[0].direction, glm::dvec3(0, 0, -1));
@@ -117,10 +120,12 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
       {R"(, "cameras": [])", "\"cameras\""},
       {R"(, "cameras": {"name": "a"})", "\"cameras\""},
       {R"(, "cameras": [{"position": [0,0,5], "direction": [0,0,-1]}])", "\"name\""},
-      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]},{"name":"a","position":[0,0,5],"direction":[0,0,-1]}])",
+      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]},{"name":"a","position":[0,0,5],
+      "direction":[0,0,-1]}])",
        "\"cameras[1].name\""},
       {R"(, "cameras": [{"name":"a","position":[0,0,"5"],"direction":[0,0,-1]}])", "\"cameras[0].position[2]\""},
-      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]}], "camera": {"position":[0,0,5],"direction":[0,0,-1]})",
+      {R"(, "cameras": [{"name":"a","position":[0,0,5],"direction":[0,0,-1]}], "camera": {"position":[0,0,5],
+      "direction":[0,0,-1]})",
        "one of them"},
       {R"(, "keyFrames": "")", "\"keyFrames\""},
       {R"(, "description": 3)", "\"description\""},

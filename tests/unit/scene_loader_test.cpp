@@ -377,11 +377,14 @@ Scene loadGltf(const TempFolder& folder, const std::string& nodes, const std::st
   folder.write("data.bin", bytes);
   return loadScene(folder.write(
       "model.gltf", fmt::format(R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{}],
-    "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}},"material":0}}]}}],"materials":[{}]{},
+    "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}},"material":0}}]}}],
+    "materials":[{}]{},
     "buffers":[{{"uri":"data.bin","byteLength":96}}],
-    "bufferViews":[{{"buffer":0,"byteLength":36}},{{"buffer":0,"byteOffset":36,"byteLength":36}},{{"buffer":0,"byteOffset":72,"byteLength":24}}],
+    "bufferViews":[{{"buffer":0,"byteLength":36}},{{"buffer":0,"byteOffset":36,"byteLength":36}},{{"buffer":0,
+    "byteOffset":72,"byteLength":24}}],
     "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},
-      {{"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"}},{{"bufferView":2,"componentType":5126,"count":3,"type":"VEC2"}}]}})",
+      {{"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"}},{{"bufferView":2,"componentType":5126,"count":3,
+      "type":"VEC2"}}]}})",
                                 nodes, material, more)));
 }
 
@@ -473,11 +476,13 @@ TEST(SceneLoader, GltfCamerasAndSunAreRead) {
   const Scene scene =
       loadGltf(folder,
                R"({"children":[1,2,3]},{"mesh":0},{"name":"eye","camera":0,"translation":[1,2,3]},
-                                  {"name":"sun","rotation":[-0.70710678,0,0,0.70710678],"extensions":{"KHR_lights_punctual":{"light":0}}})",
+                                  {"name":"sun","rotation":[-0.70710678,0,0,0.70710678],
+                                  "extensions":{"KHR_lights_punctual":{"light":0}}})",
                "{}",
                R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.7,"aspectRatio":1.5,"znear":0.1}}],
                                   "extensionsUsed":["KHR_lights_punctual"],
-                                  "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","color":[1,0.5,0.25],"intensity":4}]}})");
+                                  "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional",
+                                  "color":[1,0.5,0.25],"intensity":4}]}})");
   ASSERT_EQ(scene.cameras.size(), 1u);
   EXPECT_EQ(scene.cameras[0].position, glm::dvec3(1, 2, 3));
   EXPECT_LT(glm::distance(scene.cameras[0].direction, glm::dvec3(0, 0, -1)), 1e-6);

@@ -1,11 +1,13 @@
-// One level of the hierarchy over a reflective shadow map (tree.glsl), from the level below. FROM_TEXELS: the first, from the map itself.
+// One level of the hierarchy over a reflective shadow map (tree.glsl), from the level below. FROM_TEXELS: the first,
+// from the map itself.
 layout(local_size_x = 8, local_size_y = 8) in;
+#include "shared/bindings.h"
 #include "lpv/gather/tree.glsl"
 #include "lib/finite.glsl"
 #if FROM_TEXELS
-layout(binding = 0) uniform sampler2DArray rsmPosition;
-layout(binding = 1) uniform sampler2DArray rsmNormal;
-layout(binding = 2) uniform sampler2DArray rsmFlux;
+layout(binding = UNIT_RSM_POSITION) uniform sampler2DArray rsmPosition;
+layout(binding = UNIT_RSM_NORMAL) uniform sampler2DArray rsmNormal;
+layout(binding = UNIT_RSM_FLUX) uniform sampler2DArray rsmFlux;
 layout(std430, binding = 0) writeonly restrict buffer Nodes { uvec4 nodes[]; };
 #else
 layout(std430, binding = 0) restrict buffer Nodes { uvec4 nodes[]; };
@@ -16,12 +18,14 @@ LightNode child(int layer, ivec2 place) {
 #if FROM_TEXELS
   vec4 position = texelFetch(rsmPosition, ivec3(place, layer), 0), flux = texelFetch(rsmFlux, ivec3(place, layer), 0);
   vec3 normal = texelFetch(rsmNormal, ivec3(place, layer), 0).xyz;
-  bool lit = position.w > 0.5 && flux.r + flux.g + flux.b > 0.0 && allFinite(position.xyz) && allFinite(normal) && allFinite(flux.rgb);
+  bool lit = position.w > 0.5 && flux.r + flux.g + flux.b > 0.0 && allFinite(position.xyz) && allFinite(normal) &&
+             allFinite(flux.rgb);
   return LightNode(position.xyz, lit ? 0.0 : -1.0, normal, flux.w, flux.rgb, uint(place.x) | uint(place.y) << 16u);
 #else
   int at = treeNode(level - 1, layer, place);
   uvec4 a = nodes[at], b = nodes[at + 1], c = nodes[at + 2];
-  return LightNode(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz), uintBitsToFloat(b.w), uintBitsToFloat(c.xyz), c.w);
+  return LightNode(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz), uintBitsToFloat(b.w),
+                   uintBitsToFloat(c.xyz), c.w);
 #endif
 }
 

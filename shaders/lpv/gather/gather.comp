@@ -1,14 +1,17 @@
-// Irradiance at receivers from a reflective shadow map, by a hierarchy over its texels (tree.glsl): a group of lanes gathers at one receiver.
+// Irradiance at receivers from a reflective shadow map, by a hierarchy over its texels (tree.glsl): a group of lanes
+// gathers at one receiver.
 //
 // From a receiver at x with normal n a node of flux Phi, area A and mean normal n_p at p gives
 //   E = Phi c1 c2 / (pi (r^2 + A c2 / pi)),  c1 = <n, p - x>+ / r,  c2 = <n_p, x - p>+ / r:
-// a point [Dachsbacher2005] far away, a disc near by. What is near is opened; what lies behind is passed over. Texels that are near take the outline that they
-// have in the sun's map (rsm/transfer.glsl).
-// Visibility: each lane keeps up to four of its nodes, drawn in proportion to what they give (reservoirs [Chao1982]); lanes that gave more send more rays, so that some 64 to 100
-// rays through voxels stand for all nodes. SKY: no map; each lane looks for the sky in one direction drawn by the cosine.
+// a point [Dachsbacher2005] far away, a disc near by. What is near is opened; what lies behind is passed over. Texels
+// that are near take the outline that they have in the sun's map (rsm/transfer.glsl).
+// Visibility: each lane keeps up to four of its nodes, drawn in proportion to what they give (reservoirs [Chao1982]);
+// lanes that gave more send more rays, so that some 64 to 100 rays through voxels stand for all nodes. SKY: no map;
+// each lane looks for the sky in one direction drawn by the cosine.
 layout(local_size_x = 64) in;  // LPV_LANES
+#include "shared/bindings.h"
 #include "shared/path_tracer.h"
-layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
+layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants tracer; };
 #include "rays/random.glsl"
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
@@ -112,7 +115,8 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
           ivec2 below = ivec2(treeWidth(level - 1));
           for (int i = 0; i < 4; ++i) {
             ivec2 childPlace = 2 * place + ivec2(i & 1, i >> 1);
-            if (all(lessThan(childPlace, below)) && depth < kStack) stack[depth++] = ivec2(childPlace.x | childPlace.y << 16, level - 1 | layer << 8);
+            if (all(lessThan(childPlace, below)) && depth < kStack)
+              stack[depth++] = ivec2(childPlace.x | childPlace.y << 16, level - 1 | layer << 8);
           }
           continue;
         }

@@ -4,8 +4,10 @@ uniform vec3 voxelMinimum;   // of voxel 0
 uniform float voxelSize;     // scene units
 uniform ivec3 voxelBrickCount;
 
-// Whether a surface lies between two points, both a little off their surfaces: voxels that are set with free ones before and behind them. A run of set voxels at either end is
-// of the end's own surface, or of one that meets it there: in a corner the nearest voxels are always set. toBorder: the ray goes on beyond the second point, and what it meets blocks it.
+// Whether a surface lies between two points, both a little off their surfaces: voxels that are set with free ones
+// before and behind them. A run of set voxels at either end is of the end's own surface, or of one that meets it there:
+// in a corner the nearest voxels are always set. toBorder: the ray goes on beyond the second point, and what it meets
+// blocks it.
 bool isBlocked(vec3 from, vec3 to, bool toBorder) {
   vec3 start = (from - voxelMinimum) / voxelSize, direction = (to - from) / voxelSize;
   vec3 inverse = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));

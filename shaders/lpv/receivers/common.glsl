@@ -1,8 +1,10 @@
-// Receivers: each cell of each cascade has six slots, one a direction of axis and sign; a slot holds one real point of a surface that faces that way.
-// Slots are addressed by the cell's number from the origin, modulo the cascade's cells, so that a receiver keeps its slot while the grid moves.
+// Receivers: each cell of each cascade has six slots, one a direction of axis and sign; a slot holds one real point of
+// a surface that faces that way. Slots are addressed by the cell's number from the origin, modulo the cascade's cells,
+// so that a receiver keeps its slot while the grid moves.
+#include "shared/bindings.h"
 #include "lpv/common.glsl"
 #include "shared/lpv_receivers.h"
-layout(std140, binding = 6) uniform LpvReceiverBlock { LpvReceiverConstants receiving; };
+layout(std140, binding = BLOCK_RECEIVERS) uniform LpvReceiverBlock { LpvReceiverConstants receiving; };
 
 int faceOf(int axis, float component) { return 2 * axis + (component < 0.0 ? 1 : 0); }
 

@@ -13,7 +13,8 @@ void main() {
   LpvReceiver r = before[i];
   int cascade = r.cell.w / LPV_FACES;
   ivec3 place = r.cell.xyz - receiving.firstCell[cascade].xyz;
-  if (r.triangle == LPV_NOWHERE || any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(lpv.shape.x)))) return;
+  if (r.triangle == LPV_NOWHERE || any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(lpv.shape.x))))
+    return;
   uint index = atomicAdd(work.wanted, 1u);
   atomicMax(work.allGroupsX, index / uint(LPV_LANES) + 1u);
   receivers[index] = r;

@@ -1,8 +1,10 @@
-// Every receiver once a frame: a new one is placed where its pixel's ray meets the scene, in the ray caster's own numbers, so that no path starts inside of a surface;
-// and those that are needed and do not have all their paths yet are listed. What a new one shows at first is what was looked up at its place in the frame before.
+// Every receiver once a frame: a new one is placed where its pixel's ray meets the scene, in the ray caster's own
+// numbers, so that no path starts inside of a surface; and those that are needed and do not have all their paths yet
+// are listed. What a new one shows at first is what was looked up at its place in the frame before.
 layout(local_size_x = 64) in;
+#include "shared/bindings.h"
 #include "shared/path_tracer.h"
-layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
+layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants tracer; };
 #include "rays/random.glsl"
 #include "rays/bsdf.glsl"
 #include "rays/materials.glsl"
@@ -23,7 +25,8 @@ void main() {
   if (triangle == LPV_UNPLACED) {
     int pixel = int(receivers[index].pixel), width = tracer.picture.x;
     vec2 place = vec2(pixel % width, pixel / width) + 0.5;
-    Ray ray = Ray(tracer.cameraPosition, 0.0, normalize(tracer.firstPixel + place.x * tracer.pixelRight + place.y * tracer.pixelUp), 3e38);
+    Ray ray = Ray(tracer.cameraPosition, 0.0,
+                  normalize(tracer.firstPixel + place.x * tracer.pixelRight + place.y * tracer.pixelUp), 3e38);
     Hit hit = closestHit(ray, kNoHit);
     triangle = hit.triangle == kNoHit ? LPV_NOWHERE : hit.triangle;
     receivers[index].triangle = triangle;
@@ -40,8 +43,10 @@ void main() {
     }
   }
   if (triangle == LPV_NOWHERE) return;
-  bool fades = countsFading && receivers[index].presence < LPV_PRESENT;  // also where it is not needed itself, but looked up beside those that are
-  bool lacksPaths = receivers[index].paths < pathTarget && (receivers[index].born == receiving.frame || texelFetch(lpvSeen, int(index)).x == receiving.frame);
+  // also where it is not needed itself, but looked up beside those that are
+  bool fades = countsFading && receivers[index].presence < LPV_PRESENT;
+  bool lacksPaths = receivers[index].paths < pathTarget &&
+                    (receivers[index].born == receiving.frame || texelFetch(lpvSeen, int(index)).x == receiving.frame);
   if (!fades && !lacksPaths) return;
   uint place = atomicAdd(work.waiting, 1u);
   if (place >= mostLit) return;

@@ -1,8 +1,10 @@
-// Irradiance at a surface from the receivers around it: for each axis the receivers whose surface leans the way of the normal, trilinear among those that
-// there are, weighted by the square of the normal's component. Alpha is how much a receiver counts, 0 in empty cells.
+// Irradiance at a surface from the receivers around it: for each axis the receivers whose surface leans the way of the
+// normal, trilinear among those that there are, weighted by the square of the normal's component. Alpha is how much a
+// receiver counts, 0 in empty cells.
+#include "shared/bindings.h"
 #include "lpv/receivers/common.glsl"
 #include "lpv/cascade_weight.glsl"
-layout(binding = 5) uniform sampler3D lpvReceived;  // faces of cascades stacked along z
+layout(binding = UNIT_RECEIVED) uniform sampler3D lpvReceived;  // faces of cascades stacked along z
 
 // xyz: irradiance over E_ref, times w; w: how much there is to interpolate from.
 vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
@@ -18,8 +20,9 @@ vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
   return sum;
 }
 
-// From the finest cascade to the coarsest, each blended into the next near its border, and where it has little to interpolate from: what a point's own
-// receiver weighs at least when it is new, 1/8 of 1/4, or more is enough. Less than kLeast is no more than the filter's rounding: its colour would be noise.
+// From the finest cascade to the coarsest, each blended into the next near its border, and where it has little to
+// interpolate from: what a point's own receiver weighs at least when it is new, 1/8 of 1/4, or more is enough. Less
+// than kLeast is no more than the filter's rounding: its colour would be noise.
 // found: false where none has anything.
 vec3 receivedIrradiance(vec3 position, vec3 normal, out bool found) {
   const float kEnough = 1.0 / 32.0, kLeast = 1e-5;

@@ -1,6 +1,7 @@
-// Which slots the camera needs: each pixel names those of its cell, in every cascade that counts there, for each axis that its normal leans to. Slots that hold
-// a receiver keep it. For an empty one the pixel nearest to its cell's centre and most along its axis wins: a real point, never a mean of several, which
-// would lie buried in edges and corners. First pass: the best key of each empty slot; second pass, CLAIM: the winner makes the receiver.
+// Which slots the camera needs: each pixel names those of its cell, in every cascade that counts there, for each axis
+// that its normal leans to. Slots that hold a receiver keep it. For an empty one the pixel nearest to its cell's centre
+// and most along its axis wins: a real point, never a mean of several, which would lie buried in edges and corners.
+// First pass: the best key of each empty slot; second pass, CLAIM: the winner makes the receiver.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
@@ -47,7 +48,8 @@ void main() {
       uint index = atomicAdd(work.wanted, 1u);
       if (index >= receiving.capacity) continue;
       atomicMax(work.allGroupsX, index / uint(LPV_LANES) + 1u);
-      receivers[index] = LpvReceiver(ivec4(cell, k * LPV_FACES + face), LPV_UNPLACED, 0u, 0.0, 0.0, vec3(0.0), 0u, position, receiving.frame, normal, number, vec3(0.0), 0.0);
+      receivers[index] = LpvReceiver(ivec4(cell, k * LPV_FACES + face), LPV_UNPLACED, 0u, 0.0, 0.0, vec3(0.0), 0u,
+                                     position, receiving.frame, normal, number, vec3(0.0), 0.0);
       slots[slot] = index + 1u;
 #else
       if (holds != 0u)

@@ -1,13 +1,16 @@
-// Irradiance at receivers by paths: PATHS lanes follow one each from a receiver, and their mean is added to what the receiver has.
+// Irradiance at receivers by paths: PATHS lanes follow one each from a receiver, and their mean is added to what the
+// receiver has.
 //
-// A path leaves the receiver by the cosine and asks one light at each surface, weighted against each other [Veach1997], as the path tracer's do
-// (pathtracer/path.comp), whose triangles, materials, lights and random numbers these are. Every surface is Lambert's, as forward shading takes it. Sun, spots
-// and omnidirectional lamps do not light the receiver itself: forward shading does that in each pixel.
-// CACHED: where a path's hit lies among receivers, their irradiance of the frame before stands for all that would follow, so that one bounce a frame adds up to all of them;
-// elsewhere the path goes on.
+// A path leaves the receiver by the cosine and asks one light at each surface, weighted against each other [Veach1997],
+// as the path tracer's do (pathtracer/path.comp), whose triangles, materials, lights and random numbers these are.
+// Every surface is Lambert's, as forward shading takes it. Sun, spots and omnidirectional lamps do not light the
+// receiver itself: forward shading does that in each pixel.
+// CACHED: where a path's hit lies among receivers, their irradiance of the frame before stands for all that would
+// follow, so that one bounce a frame adds up to all of them; elsewhere the path goes on.
 layout(local_size_x = 64) in;  // LPV_LANES; GLSL 4.30 takes literals alone
+#include "shared/bindings.h"
 #include "shared/path_tracer.h"
-layout(std140, binding = 5) uniform PathBlock { PathConstants tracer; };
+layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants tracer; };
 #include "rays/random.glsl"
 #include "rays/bsdf.glsl"
 #include "rays/materials.glsl"
@@ -28,7 +31,8 @@ shared vec3 found[LPV_LANES];
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
-// Light that the receiver itself is given by emissive surfaces and the sky is part of what is kept, and so of what is looked up.
+// Light that the receiver itself is given by emissive surfaces and the sky is part of what is kept, and so of what is
+// looked up.
 bool keepsDirectLight() { return tracer.minScatterings <= 1u; }
 
 struct Shadow {
@@ -42,7 +46,9 @@ struct Shadow {
 Shadow askLight(Surface surface, vec3 throughput, uint scatterings, bool lampsAlone, PathNumbers numbers) {
   Shadow shadow = Shadow(false, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0));
   LightSample light;
-  if (!sampleLight(surface.position, randomPair(numbers, scatterings, kPurposeLight), randomWords(numbers, scatterings, kPurposePick), light)) return shadow;
+  if (!sampleLight(surface.position, randomPair(numbers, scatterings, kPurposeLight),
+                   randomWords(numbers, scatterings, kPurposePick), light))
+    return shadow;
   bool isLamp = light.pdf == 0.0;
   if (isLamp ? scatterings == 1u : lampsAlone) return shadow;
   float cosine = dot(light.direction, surface.normal);
@@ -77,20 +83,23 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
         radiance += throughput * kept / kPi;
         ends = cached;
 #if EMISSION || ENVIRONMENT
-        // What is kept without the direct light of shining surfaces and the sky lacks it at this surface, too: the other half of what asking a light finds is one more ray.
+        // What is kept without the direct light of shining surfaces and the sky lacks it at this surface, too: the
+        // other half of what asking a light finds is one more ray.
         last = cached && !keepsDirectLight();
         ends = cached && !last;
 #endif
       }
 #endif
 #if NEXT_EVENT
-      if (counts(scatterings)) shadow = askLight(surface, throughput, scatterings, cached && keepsDirectLight(), numbers);
+      if (counts(scatterings))
+        shadow = askLight(surface, throughput, scatterings, cached && keepsDirectLight(), numbers);
 #endif
       if (!ends) {
         vec3 direction = cosineSample(surface.normal, randomPair(numbers, scatterings, kPurposeScatter));
         pdf = dot(direction, surface.normal) / kPi;
         ray = Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
-        ends = !(dot(direction, surface.geometricNormal) > 0.0) || scatterings >= receiving.mostSegments + 1u || loopTurns >= tracer.turns;
+        ends = !(dot(direction, surface.geometricNormal) > 0.0) || scatterings >= receiving.mostSegments + 1u ||
+               loopTurns >= tracer.turns;
       }
       if (ends && !shadow.waits) break;
     }
@@ -125,14 +134,16 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
     if (counts(scatterings)) {
       vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
 #if NEXT_EVENT
-      emission *= powerHeuristic(pdf, pickDensity(hit.triangle) * hit.t * hit.t / -dot(surface.geometricNormal, ray.direction));
+      emission *=
+          powerHeuristic(pdf, pickDensity(hit.triangle) * hit.t * hit.t / -dot(surface.geometricNormal, ray.direction));
 #endif
       radiance += throughput * emission;
     }
 #endif
     if (last || scatterings >= tracer.maxScatterings) break;
     throughput *= albedoAt(surface);
-    float survival = scatterings < 3u ? 1.0 : min(max(throughput.x, max(throughput.y, throughput.z)), 1.0);  // roulette [Arvo1990]
+    // roulette [Arvo1990]
+    float survival = scatterings < 3u ? 1.0 : min(max(throughput.x, max(throughput.y, throughput.z)), 1.0);
     if (!(unitFloat(randomWords(numbers, scatterings, kPurposeChoice).x) < survival)) break;
     throughput /= survival;
     arrives = true;
@@ -148,10 +159,14 @@ void main() {
   found[lane] = vec3(0.0);
   if (there) {
     uint first = receiver.triangle * TRIANGLE_WORDS;
-    vec3 normal = uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
-    Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third), (receiver.state & LPV_FRONT) != 0u ? -normal : normal);
+    vec3 normal =
+        uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
+    Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third),
+                                (receiver.state & LPV_FRONT) != 0u ? -normal : normal);
     // The place decides the numbers, not the order in which receivers were found.
-    found[lane] = followPath(surface, receiver.triangle, PathNumbers(pcg4d(uvec4(receiver.cell)).x, receiver.paths + lane % uint(PATHS), tracer.seed));
+    found[lane] =
+        followPath(surface, receiver.triangle,
+                   PathNumbers(pcg4d(uvec4(receiver.cell)).x, receiver.paths + lane % uint(PATHS), tracer.seed));
   }
   barrier();
   if (!there || lane % uint(PATHS) != 0u) return;

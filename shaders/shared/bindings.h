@@ -1,0 +1,40 @@
+// Where programs of more than one folder find what they share: uniform blocks and texture units. Storage blocks and
+// units of one program alone stand beside that program. OpenGL 4.3 guarantees 36 uniform blocks and 80 units for all
+// stages together, and 16 units a stage.
+#pragma once
+
+// Uniform blocks
+#define BLOCK_FRAME 0
+#define BLOCK_LPV 1
+#define BLOCK_LIGHTS 3
+#define BLOCK_SUN_CASCADES 4
+#define BLOCK_RECEIVER_PATHS 5
+#define BLOCK_RECEIVERS 6
+
+// Texture units of shading
+#define UNIT_DIFFUSE 0
+#define UNIT_MASK 1
+#define UNIT_SUN_SHADOW 2
+#define UNIT_LPV_RED 4
+#define UNIT_LPV_GREEN 5
+#define UNIT_LPV_BLUE 6
+#define UNIT_RECEIVED 5
+#define UNIT_GATHERED 7
+#define UNIT_SPOT_SHADOWS 10
+#define UNIT_POINT_SHADOWS 11
+#define UNIT_NORMAL_MAP 12
+#define UNIT_METAL_MAP 13
+#define UNIT_EMISSION_MAP 14
+
+// Of programs that read a reflective shadow map, or what the camera sees
+#define UNIT_RSM_POSITION 0
+#define UNIT_RSM_NORMAL 1
+#define UNIT_RSM_FLUX 2
+#define UNIT_RSM_ALBEDO 3
+#define UNIT_VISIBLE_DEPTH 3
+#define UNIT_VISIBLE_NORMAL 4
+
+// Of programs that trace rays
+#define UNIT_BVH_NODES 60
+#define UNIT_BVH_TRIANGLES 61
+#define UNIT_VALUE_ATLAS 62
