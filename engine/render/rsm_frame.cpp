@@ -1,5 +1,7 @@
 #include "render/rsm_frame.hpp"
 
+#include "shared/bindings.h"
+
 #include <cmath>
 
 namespace lucerna {

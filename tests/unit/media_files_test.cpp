@@ -269,8 +269,8 @@ const char* kSceneKeys =
     R"("scene": {"camera": [0, 0, 5], "cameraLookAt": [0, 0, 0], "fov": 45, "lightPos": [1, 2, 3],
     "lightColor": [1, 0.5, 0.25], "lightIntensity": 8, "scale": 10.0})";
 const char* kMilk =
-    R"({"sigma_s": [18.2052, 20.3826, 22.3698], "sigma_a": [0.00153, 0.0046, 0.01993], "g": [0.75, 0.714, 0.681],
-    "ior": 1.33})";
+    R"({"sigma_s": [18.2052, 20.3826, 22.3698], "sigma_a": [0.00153, 0.0046, 0.01993],
+    "g": [0.75, 0.714, 0.681], "ior": 1.33})";
 
 struct OriginalFolder : TempFolder {
   OriginalFolder() { write("cup.mtl", kMtl), write("cup.obj", kObj); }
