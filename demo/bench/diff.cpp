@@ -153,7 +153,7 @@ int run(const DiffOptions& options) {
     return std::find(options.what.begin(), options.what.end(), what) != options.what.end();
   };
   for (const std::string& what : options.what)
-    if (what != "error" && what != "time") throwBadInput("--only {}: unknown; there are error, time", what);
+    if (what != "error" && what != "time") throwBadInput("--only {}: unknown; expected error or time", what);
   if (!(options.significance > 0.0 && options.significance < 1.0))
     throwBadInput("--significance {}: expected a number between 0 and 1", options.significance);
   const nlohmann::ordered_json reportA = readReport(options.a), reportB = readReport(options.b);

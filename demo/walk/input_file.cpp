@@ -109,22 +109,24 @@ void InputPlayer::chooseNext(Ui& ui) {
   touchStep_ = waited_ = 0;
   touching_.clear();
   for (const std::string& label : ui.labels())
-    if (isItem(label) && ui.isThere(label) && (touching_.empty() || !touched_.contains(label))) touching_ = label;
+    if (isItem(label) && ui.isThere(label) && (touching_.empty() || touched_.contains(touching_))) touching_ = label;
   if (!touching_.empty()) return;
   const auto isSection = [](const std::string& label) { return label.find('/') == std::string::npos; };
   for (const bool sections : {false, true})
     for (const std::string& label : ui.labels())
       if (isSection(label) == sections && !touched_.contains(label) && ui.isThere(label)) {
         touching_ = label;
+        idle_ = 0;
         return;
       }
+  if (++idle_ < kSettles) return;  // what the last one changed may show others
+  idle_ = 0;
   for (const std::string& label : ui.labels()) {
-    if (touched_.contains(label)) continue;
+    if (touched_.contains(label) || gone_.contains(label)) continue;
     std::string parent = parentOf(label);
     if (!ui.isThere(parent)) parent = parentOf(parent);  // a menu's section
     if (++attempts_[label] > 4 || !ui.isThere(parent)) {
       gone_.insert(label);
-      touched_.insert(label);
       continue;
     }
     touching_ = parent;
@@ -142,7 +144,6 @@ void InputPlayer::touch(Ui* ui) {
     if (++waited_ <= kPatience) return;
     if (every_) {  // it went away with what it belonged to
       gone_.insert(touching_);
-      touched_.insert(touching_);
       touching_.clear();
       return;
     }
@@ -156,6 +157,7 @@ void InputPlayer::touch(Ui* ui) {
   if (touchStep_ == 2) state_.button(MouseButton::left, false);
   if (++touchStep_ < 4) return;
   touched_.insert(touching_);
+  gone_.erase(touching_);  // it has come back
   touching_.clear();
   touchStep_ = 0;
 }

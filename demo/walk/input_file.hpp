@@ -43,11 +43,11 @@ class InputPlayer {
   /// Nothing is left to be done.
   bool done() const { return events_.empty() && touching_.empty() && !every_; }
   const std::set<std::string>& touched() const { return touched_; }
-  /// Controls that went away before they could be touched.
+  /// Controls that went away before they could be touched, and did not come back.
   const std::set<std::string>& gone() const { return gone_; }
 
  private:
-  static constexpr int kPatience = 60;
+  static constexpr int kPatience = 60, kSettles = 4;  // frames
   struct Event {
     int line = 0;
     int frame = 0;
@@ -66,7 +66,7 @@ class InputPlayer {
   int frame_ = 0;
   // A control being touched: found, cursor over it, button down, button up.
   std::string touching_;
-  int touchingLine_ = 0, touchStep_ = 0, waited_ = 0;
+  int touchingLine_ = 0, touchStep_ = 0, waited_ = 0, idle_ = 0;
   bool every_ = false;
   std::set<std::string> touched_, gone_;
   std::map<std::string, int> attempts_;  ///< to bring a control in sight

@@ -186,9 +186,9 @@ void showLight(Ui& ui, WalkState& s) {
 
 void showSide(Ui& ui, WalkState& s, int index) {
   SideState& side = s.sides[static_cast<std::size_t>(index)];
-  static constexpr std::array<std::string_view, 4> kTechniques{"direct", "rsm", "lpv", "radiosity"};
-  static constexpr std::array<std::string_view, 3> kComponents{"all", "direct", "indirect"};
-  static constexpr std::array<std::string_view, 2> kFidelities{"corrected", "original"};
+  static constexpr auto kTechniques = namesOf(Technique{});
+  static constexpr auto kComponents = namesOf(Component{});
+  static constexpr auto kFidelities = namesOf(Fidelity{});
   int shows = static_cast<int>(side.shows);
   if (menu(ui, "shows", shows, kShowsNames)) {
     side.shows = static_cast<Shows>(shows);
@@ -200,8 +200,8 @@ void showSide(Ui& ui, WalkState& s, int index) {
         "hdr, exr or pfm in linear radiance, png or jpg taken as sRGB. Enter loads it; a picture dropped on the window "
         "comes here as B.");
   }
-  if (menu(ui, "technique", side.options.technique, kTechniques))
-    side.options.settings.clear(), side.options.deviations.clear();
+  if (std::string technique = side.options.technique; menu(ui, "technique", technique, kTechniques))
+    chooseTechnique(side.options, technique);
   menu(ui, "light", side.options.component, kComponents);
   menu(ui, "fidelity", side.options.fidelity, kFidelities);
   if (side.renderer)

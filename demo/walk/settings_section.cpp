@@ -129,7 +129,7 @@ void showSettings(Ui& ui, WalkState& s) {
   const std::vector<std::string> active = activeDeviations(settings);
   for (const Deviation& deviation : allDeviations()) {
     const std::string name(deviation.name);
-    const std::string technique = side.built.technique == "radiosity" ? "rad" : side.built.technique;
+    const std::string& technique = side.built.technique;
     const bool belongs = name.starts_with(technique + ".") || (technique == "lpv" && name.starts_with("rsm."));
     if (!belongs || !matches(name)) continue;
     bool on = std::find(active.begin(), active.end(), name) != active.end();

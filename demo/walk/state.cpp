@@ -27,6 +27,13 @@ std::string textOf(const PictureOptions& o) {
                      fmt::join(o.settings, " "));
 }
 
+void chooseTechnique(PictureOptions& options, const std::string& technique) {
+  if (technique == options.technique) return;
+  options.technique = technique;
+  options.settings.clear();
+  options.deviations.clear();
+}
+
 std::string commandLine(const std::string& command, const std::string& scene, const PictureOptions& o) {
   const PictureOptions usual;
   std::string line = "lucerna " + command + " " + quoted(scene);

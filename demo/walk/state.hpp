@@ -123,6 +123,8 @@ struct WalkState {
 
 /// The options as text: equal texts make equal pictures.
 std::string textOf(const PictureOptions& options);
+/// Another technique begins with its defaults: settings and deviations of the one before are not its own.
+void chooseTechnique(PictureOptions& options, const std::string& technique);
 /// `lucerna render ...` or `walk` with these options.
 std::string commandLine(const std::string& command, const std::string& scene, const PictureOptions& options);
 /// Sets KEY=VALUE, in place of what was said of the key before; an empty value takes it out.

@@ -112,7 +112,7 @@ void WalkWindow::act(Action action) {
   WalkState& s = state_;
   const auto technique = [&](const char* name) {
     s.side().shows = Shows::technique;
-    s.side().options.technique = name;
+    chooseTechnique(s.side().options, name);
   };
   switch (action) {
     case Action::help: s.help = !s.help; break;

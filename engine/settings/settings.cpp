@@ -346,7 +346,7 @@ bool isWithin(const SettingValue& value, double number) {
   const std::string begin = fmt::format("{}{}: '{}' is ", where, setting.key, value);
   switch (setting.value.type) {
     case SettingType::boolean: throwBadInput("{}neither on nor off", begin);
-    case SettingType::choice: throwBadInput("{}unknown; there are {}", begin, joined(setting.value.choices));
+    case SettingType::choice: throwBadInput("{}unknown; expected one of {}", begin, joined(setting.value.choices));
     case SettingType::integer: throwBadInput("{}not a whole number from {}", begin, allowedValues(setting));
     case SettingType::real: throwBadInput("{}not a number from {}", begin, allowedValues(setting));
     case SettingType::file: throwBadInput("{}no name of a file", begin);
@@ -387,7 +387,7 @@ SettingAssignment parseAssignment(std::string_view assignment, std::string_view 
   std::vector<std::string_view> keys;
   for (const Setting& s : table())
     if (!only || s.cost == *only) keys.push_back(s.key);
-  throwBadInput("{}{}: unknown key; there are {}", where, assignment, joined(keys));
+  throwBadInput("{}{}: unknown key; expected one of {}", where, assignment, joined(keys));
 }
 
 std::string printSetting(const Setting& setting, const RenderSettings& settings) {

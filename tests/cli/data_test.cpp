@@ -84,7 +84,7 @@ TEST_F(DataFolder, LucernaDataComesFirstAndIsRefusedWithoutTheThreeFolders) {
 TEST_F(DataFolder, NoneIsALackWithThePlacesNamed) {
   const RunResult result = render("prefix/bin/lucerna");
   EXPECT_EQ(result.exitCode, 3);
-  EXPECT_NE(result.err.find("prefix/share/lucerna, /nowhere/lucerna holds"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("prefix/share/lucerna, /nowhere/lucerna has"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("LUCERNA_DATA"), std::string::npos) << result.err;
   EXPECT_FALSE(fs::exists(folder_ / "out.pfm"));
 }

@@ -144,7 +144,7 @@ TEST_F(RadiosityCorrected, WrongInputIsOneClearLine) {
                 {"o.lit", "other deviations"});
   fs::resize_file(path("o.lit"), fs::file_size(path("o.lit")) - 100);
   const auto cut = bytes("o.lit");
-  expectRefused(render("--set radiosity.file='" + path("o.lit") + "'"), {"o.lit", "cut short"});
+  expectRefused(render("--set radiosity.file='" + path("o.lit") + "'"), {"o.lit", "truncated"});
   EXPECT_EQ(bytes("o.lit"), cut);
 }
 
