@@ -9,46 +9,12 @@
 #include <fmt/core.h>
 
 #include <charconv>
-#include <chrono>
 #include <cmath>
-#include <csignal>
-#include <ctime>
 #include <sstream>
-#include <unistd.h>
 
 namespace lucerna::demo {
 
 // ---------------------------------------------------------------------------------------------------- options
-
-void CommonOptions::declare(CLI::App& app) {
-  offer(
-      app.add_option("--host", host,
-                     "what creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
-      {"window", "egl", "osmesa"});
-  app.add_option("--json", json, "write machine-readable results to this file");
-  app.add_flag("--quiet", quiet, "no warnings, no progress");
-}
-
-std::string CommonOptions::askedHost() const {
-  const char* environment = std::getenv("LUCERNA_HOST");
-  return !host.empty() ? host : environment ? environment : "";
-}
-
-void CommonOptions::apply() const {
-  if (const std::string asked = askedHost(); !asked.empty()) parseHostKind(asked);
-  if (!json.empty()) checkWritable(json);
-  if (quiet) setLogLevel(LogLevel::quiet);
-  if (const char* verbose = std::getenv("LUCERNA_VERBOSE"); verbose && *verbose) setLogLevel(LogLevel::verbose);
-}
-
-std::unique_ptr<Host> CommonOptions::makeHost(bool wantsWindow, const HostOptions& options) const {
-  const std::string asked = askedHost();
-  return asked.empty() ? Host::createDefault(wantsWindow, options) : Host::create(parseHostKind(asked), options);
-}
-
-void CommonOptions::writeJson(const nlohmann::ordered_json& value) const {
-  if (!json.empty()) writeFileAtomically(json, value.dump(2) + "\n");
-}
 
 namespace {
 
@@ -252,56 +218,6 @@ Camera chooseCamera(const Scene& scene, const std::string& text) {
   camera.verticalFov = glm::radians(numbers[6]);
   return camera;
 }
-
-// ---------------------------------------------------------------------------------------------------- progress,
-// interruption
-
-Progress::Progress(std::string what, int total, bool quiet)
-    : what_(std::move(what)),
-      total_(total),
-      enabled_(!quiet && isatty(STDERR_FILENO)),
-      start_(std::chrono::steady_clock::now()) {}
-
-Progress::~Progress() {
-  if (drawn_) fmt::print(stderr, "\r\x1b[K");
-}
-
-void Progress::update(int done) {
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  if (!enabled_ || (seconds < 1.0 && !drawn_)) return;
-  constexpr int kWidth = 30;
-  const int filled = total_ > 0 ? kWidth * done / total_ : 0;
-  const double rest = done > 0 ? seconds / done * (total_ - done) : 0.0;
-  fmt::print(stderr, "\r{} [{:#<{}}{:-<{}}] {}/{}, {:.0f} s left \x1b[K", what_, "", filled, "", kWidth - filled, done,
-             total_, rest);
-  std::fflush(stderr);
-  drawn_ = true;
-}
-
-namespace {
-volatile std::sig_atomic_t g_interrupted = 0;  // the signal
-volatile std::time_t g_interruptedAt = 0;
-
-void onInterrupt(int signal) {
-  // A second Ctrl-C does not wait for the work to end; one that comes with the first (timeout signals a whole group) is
-  // the same.
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  if (g_interrupted && now.tv_sec > g_interruptedAt + 1) std::_Exit(128 + signal);
-  if (g_interrupted) return;
-  g_interruptedAt = now.tv_sec;
-  g_interrupted = signal;
-}
-}  // namespace
-
-void watchForInterrupt() {
-  std::signal(SIGINT, onInterrupt);
-  std::signal(SIGTERM, onInterrupt);
-}
-
-bool interrupted() { return g_interrupted != 0; }
-
-int exitCode() { return g_interrupted ? 128 + g_interrupted : 0; }
 
 // ---------------------------------------------------------------------------------------------------- stage times
 

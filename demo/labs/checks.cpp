@@ -133,7 +133,7 @@ std::string trimmed(const std::string& text) {
 std::map<std::string, std::string> parseAnswers(const std::string& text) {
   std::map<std::string, std::string> answers;
   std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) {
+  for (std::string line; std::getline(stream, line) && !line.starts_with("---");) {
     if (const auto comment = line.find('#'); comment != std::string::npos) line.resize(comment);
     if (const auto equals = line.find('='); equals != std::string::npos)
       answers[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
@@ -165,41 +165,37 @@ std::string forbiddenLine(const std::string& text, const std::string& name) {
 
 // ------------------------------------------------------------------------------------------------------------ the GPU
 
-/// Programs from a folder of its own that shows the installed shaders and, as lab/, the files of this check.
-struct Checks::Gpu {
-  Gpu(const Lab& lab, const HandIn& handIn) {
-    static int count = 0;
-    root = fs::temp_directory_path() / fmt::format("lucerna-lab-{}-{}", getpid(), ++count);
-    fs::create_directories(root / "lab");
-    for (const auto& entry : fs::directory_iterator(dataFolder() / "shaders"))
-      fs::create_symlink(entry.path(), root / entry.path().filename());
-    for (const char* file : {"kernel.comp", "common.glsl"})
-      fs::create_symlink(labsFolder() / file, root / "lab" / file);
-    fs::create_symlink(labsFolder() / lab.folder / "probe.glsl", root / "lab/probe.glsl");
-    writeFileAtomically(root / "lab/tasks.glsl", handIn.tasks);
-    programs = std::make_unique<gl::ProgramLibrary>(root);
-  }
-  ~Gpu() {
-    std::error_code error;
-    fs::remove_all(root, error);
-  }
-  fs::path root;
-  std::unique_ptr<gl::ProgramLibrary> programs;
-};
+Probes::Probes(const Lab& lab, const HandIn& handIn) {
+  static int count = 0;
+  root_ = fs::temp_directory_path() / fmt::format("lucerna-lab-{}-{}", getpid(), ++count);
+  fs::create_directories(root_ / "lab");
+  for (const auto& entry : fs::directory_iterator(dataFolder() / "shaders"))
+    fs::create_symlink(entry.path(), root_ / entry.path().filename());
+  for (const char* file : {"kernel.comp", "common.glsl"}) fs::create_symlink(labsFolder() / file, root_ / "lab" / file);
+  fs::create_symlink(labsFolder() / lab.folder / "probe.glsl", root_ / "lab/probe.glsl");
+  writeFileAtomically(root_ / "lab/tasks.glsl", handIn.tasks);
+  programs_ = std::make_unique<gl::ProgramLibrary>(root_);
+}
+Probes::~Probes() {
+  std::error_code error;
+  fs::remove_all(root_, error);
+}
+const gl::Program& Probes::load(const Lab& lab, int probe) {
+  return programs_->loadCompute(fmt::format("lab {} probe {}", lab.number, probe), "lab/kernel.comp",
+                                {{"PROBE", probe}});
+}
 
-Checks::Checks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Report& report)
+Checks::Checks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Report& report, Probes& probes)
     : lab_(lab),
       handIn_(handIn),
       report_(report),
       random_(nonce),
       notDone_(tasksNotDone(handIn.tasks)),
       noise_(static_cast<std::uint32_t>(Random(nonce).word())),
-      gpu_(std::make_unique<Gpu>(lab, handIn)) {}
-Checks::~Checks() = default;
+      probes_(probes) {}
 
 std::vector<glm::vec4> Checks::run(int probe, std::span<const glm::vec4> inputs, int stride, int count, int width) {
-  const gl::Program& program = gpu_->programs->loadCompute(fmt::format("lab {} probe {}", lab_.number, probe),
-                                                           "lab/kernel.comp", {{"PROBE", probe}});
+  const gl::Program& program = probes_.load(lab_, probe);
   const gl::Buffer points("lab inputs", std::max<std::size_t>(inputs.size_bytes(), 16),
                           inputs.empty() ? nullptr : inputs.data(), GL_STATIC_DRAW);
   const gl::Buffer results("lab outputs", static_cast<std::size_t>(count) * sizeof(glm::vec4), nullptr,
@@ -270,12 +266,15 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
     truth[i] = twin.truth(pointOf(i));
     square += glm::dot(truth[i], truth[i]);
   }
-  const double scale = 0.01 * std::sqrt(square / static_cast<double>(count));
+  const double rms = std::sqrt(square / static_cast<double>(count)), scale = 0.01 * rms;
+  // Where terms cancel, what is left carries the rounding of the terms: eight units in the last place of a float of the
+  // usual size.
+  const double rounding = 0x1p-21 * rms;
   const std::vector<glm::vec4> measured = run(twin.probe, points, twin.stride, twin.points);
 
   // Distance in units of the tolerance; the worst point, and how many points a wrong formula would explain.
   const auto distance = [&](std::size_t i, const glm::dvec4& value) {
-    return glm::length(glm::dvec4(measured[i]) - value) / (twin.tolerance * (glm::length(value) + scale));
+    return glm::length(glm::dvec4(measured[i]) - value) / (twin.tolerance * (glm::length(value) + scale) + rounding);
   };
   std::size_t worst = 0, agreeing = 0;
   bool finite = true;
@@ -349,8 +348,12 @@ bool Checks::mean(const std::string& name, const Mean& test) {
                      .measured = finite ? fmt::format("{:.6g} +- {:.2g}", mean, error) : "not a number"};
   if (finite) {
     result.pValue = tail(test.expected);
-    result.sigma = error > 0.0 ? fmt::format("{:.1f} sigma", std::abs(mean - test.expected) / error)
-                               : fmt::format("no noise, off by {:.2g}", std::abs(mean - test.expected));
+    // An estimate without noise is off by many times its own deviation, and by rounding alone.
+    const double off = std::abs(mean - test.expected),
+                 rounding = kFirmness * (std::abs(test.expected) + std::abs(mean));
+    result.sigma = off <= rounding ? "off by a float's rounding at most"
+                   : error > 0.0   ? fmt::format("{:.1f} sigma", off / error)
+                                   : fmt::format("no noise, off by {:.2g}", off);
     if (result.pValue >= kFalseAlarm / kMostTests) {
       result.verdict = Verdict::passed;
       return add(result);
@@ -420,7 +423,7 @@ bool Checks::picture(const std::string& name, const Picture& test, const std::ve
   constexpr int kTile = 8;
   PictureResult shown{name, test.caption, Image(test.size.x, test.size.y), Image(test.size.x, test.size.y)};
   bool finite = true, noisy = false;
-  double squareOff = 0.0, square = 0.0;
+  double squareOff = 0.0, square = 0.0, brightest = 0.0;
   for (int y = 0; y < test.size.y; ++y)
     for (int x = 0; x < test.size.x; ++x) {
       const glm::vec4& p = pixels[static_cast<std::size_t>(y * test.size.x + x)];
@@ -429,10 +432,12 @@ bool Checks::picture(const std::string& name, const Picture& test, const std::ve
       noisy = noisy || p.w > 0.0f;
       shown.mine.at(x, y) = glm::vec3(p);
       shown.reference.at(x, y) = glm::vec3(reference);
+      brightest = std::max({brightest, reference.x, reference.y, reference.z});
       const glm::dvec3 off = glm::dvec3(p) - reference;
       squareOff += glm::dot(off, off);
       square += glm::dot(reference, reference);
     }
+  if (brightest > 0.0) shown.exposure = static_cast<float>(1.0 / brightest);
   const double rms = std::sqrt(square / (3.0 * test.size.x * test.size.y));
   CheckResult result{.name = name,
                      .expected = fmt::format("relative L2 {}", noisy ? "of the noise alone" : "below 0.1 %"),
@@ -548,6 +553,11 @@ bool Report::allPassed() const {
 }
 
 Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce) {
+  Probes probes(lab, handIn);
+  return runChecks(lab, handIn, nonce, probes);
+}
+
+Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Probes& probes) {
   const auto start = std::chrono::steady_clock::now();
   Report report;
   report.seed = handIn.seed;
@@ -555,7 +565,7 @@ Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce) {
   report.compileError = forbiddenLine(handIn.tasks, handIn.tasksName);
   if (report.compileError.empty()) {
     try {
-      Checks checks(lab, handIn, nonce, report);
+      Checks checks(lab, handIn, nonce, report, probes);
       lab.check(checks);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::badInput) throw;
@@ -566,6 +576,8 @@ Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce) {
           message.replace(at, from.size(), to);
       };
       replaceAll("shaders/lab/tasks.glsl", handIn.tasksName);
+      if (const auto end = message.find('\n'); message.starts_with("program lab ") && end != std::string::npos)
+        message.replace(0, end, handIn.tasksName + " does not compile:");
       if (message.find("shaders/lab/probe.glsl") != std::string::npos)
         message += "\nA function of " + handIn.tasksName + " is missing or has another signature than README.md says.";
       report.compileError = message;

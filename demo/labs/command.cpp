@@ -5,10 +5,8 @@
 #include "commands.hpp"
 #include "labs/command.hpp"
 #include "labs/hand_in.hpp"
-#include "labs/museum.hpp"
 #include "labs/prove.hpp"
 #include "gl/objects.hpp"
-#include "measure/heat_map.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -29,7 +27,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   CommonOptions common;
-  std::string lab, folder = ".", seed, junit, gradescope, html, name;
+  std::string lab, folder = ".", seed, junit, gradescope, html, name, pictures;
   std::uint64_t nonce = 0;
   int runs = 0;
   bool watch = false;
@@ -153,9 +151,9 @@ void writePictures(const fs::path& folder, const Report& report) {
     Image off(picture.mine.width, picture.mine.height);
     for (std::size_t i = 0; i < off.pixels.size(); ++i)
       off.pixels[i] = 10.0f * glm::abs(picture.mine.pixels[i] - picture.reference.pixels[i]);
-    writePng(folder / (picture.name + ".mine.png"), toneMapped(picture.mine, 1.0f));
-    writePng(folder / (picture.name + ".reference.png"), toneMapped(picture.reference, 1.0f));
-    writePng(folder / (picture.name + ".difference10.png"), toneMapped(off, 1.0f));
+    writePng(folder / (picture.name + ".mine.png"), toneMapped(picture.mine, picture.exposure));
+    writePng(folder / (picture.name + ".reference.png"), toneMapped(picture.reference, picture.exposure));
+    writePng(folder / (picture.name + ".difference10.png"), toneMapped(off, picture.exposure));
     fmt::print("{}/{}.mine.png, .reference.png, .difference10.png: {}\n", folder.string(), picture.name,
                picture.caption);
   }
@@ -172,7 +170,7 @@ Shown sideBySide(const Report& report) {
   std::vector<std::pair<Bitmap, Bitmap>> pairs;
   Shown shown;
   for (const PictureResult& p : report.pictures) {
-    pairs.emplace_back(toneMapped(p.mine, 1.0f), toneMapped(p.reference, 1.0f));
+    pairs.emplace_back(toneMapped(p.mine, p.exposure), toneMapped(p.reference, p.exposure));
     shown.size = {std::max(shown.size.x, 2 * kScale * p.mine.width), shown.size.y + kScale * p.mine.height};
   }
   shown.rgba.assign(static_cast<std::size_t>(shown.size.x) * static_cast<std::size_t>(shown.size.y) * 4, 0);
@@ -214,6 +212,7 @@ int watch(const Options& options, const Lab& lab) {
       std::fflush(stdout);
       if (report.compileError.empty() && !report.pictures.empty()) {
         writePictures(fs::path(options.folder) / "pictures", report);
+        std::fflush(stdout);
         const Shown shown = sideBySide(report);
         size = shown.size;
         texture = gl::Texture("lab pictures", GL_RGBA8, size);
@@ -280,70 +279,15 @@ int figures(const Options& options) {
   const Lab& lab = findLab(options.lab);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
-  fmt::print("{}", figuresTable(lab, options.seed.empty() ? "example" : options.seed));
-  return 0;
-}
-
-int museum(const Options& options) {
-  options.common.apply();
-  const auto host = options.common.makeHost(false);
-  const gl::Context context;
-  gl::ProgramLibrary programs;
-  Progress progress("Rooms", static_cast<int>(museumRooms().size()), options.common.quiet);
-  const fs::path file = options.html.empty() ? fs::path("museum.html") : fs::path(options.html);
-  writeFileAtomically(file, museumHtml(context, programs, [&](int done, int) { progress.update(done); }));
-  fmt::print("{}: {} rooms\n", file.string(), museumRooms().size());
-  return 0;
-}
-
-/// The hidden deviation's readings beside sound ones; with --answer it is graded instead, without a GPU.
-int mystery(const Options& options) {
-  options.common.apply();
-  const Mystery mystery = mysteryOf(options.seed);
-  if (!options.name.empty()) {
-    if (std::find(mystery.candidates.begin(), mystery.candidates.end(), options.name) == mystery.candidates.end())
-      throwBadInput("--answer {}: not one of {}", options.name, fmt::join(mystery.candidates, ", "));
-    const bool right = options.name == mystery.hidden;
-    fmt::print("seed {}: {} is {}\n", options.seed, options.name, right ? "right" : "not it");
-    options.common.writeJson(
-        {{"seed", options.seed}, {"answer", options.name}, {"right", right}, {"score", right ? 100 : 0}});
-    return right ? 0 : kWrong;
-  }
-  const auto host = options.common.makeHost(false);
-  const gl::Context context;
-  gl::ProgramLibrary programs;
-  const Readings readings = readInstruments(context, programs, mystery.technique, mystery.hidden);
-  fmt::print(
-      "Mystery of seed {}: a Cornell box by technique {}, one deviation is on. Mean indirect "
-      "radiance:\n{:<20}{:>12}{:>12}{:>10}\n",
-      options.seed, mystery.technique, "instrument", "sound", "mystery", "ratio");
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const Reading& r : readings.readings) {
-    fmt::print("{:<20}{:>12.5g}{:>12.5g}{:>10.4f}\n", r.instrument, r.sound, r.hidden, r.hidden / r.sound);
-    rows.push_back({{"instrument", r.instrument}, {"sound", r.sound}, {"mystery", r.hidden}});
-  }
-  std::error_code error;
-  fs::create_directories(options.folder, error);
-  if (error) throwBadInput("{}: {}", options.folder, error.message());
-  const double scale = measure::heatMapScale(readings.hidden, readings.sound);
-  writePng(fs::path(options.folder) / "sound.png", toneMapped(readings.sound, 4.0f));
-  writePng(fs::path(options.folder) / "mystery.png", toneMapped(readings.hidden, 4.0f));
-  writePng(fs::path(options.folder) / "heat_map.png",
-           measure::heatMap(readings.hidden, readings.sound, measure::HeatMap::signedLuminance, scale));
-  fmt::print(
-      "{0}/sound.png, mystery.png, heat_map.png (signed, {1:.3g} is full red)\nWhich is it? {2}\nlucerna lab mystery "
-      "--seed {3} --answer NAME; lucerna lab museum describes them all.\n",
-      options.folder, scale, fmt::join(mystery.candidates, ", "), options.seed);
-  options.common.writeJson({{"seed", options.seed},
-                            {"technique", mystery.technique},
-                            {"candidates", mystery.candidates},
-                            {"readings", rows}});
+  const std::string seed = options.seed.empty() ? "example" : options.seed;
+  fmt::print("{}", figuresTable(lab, seed));
+  if (!options.pictures.empty()) expectedPictures(lab, seed, options.pictures);
   return 0;
 }
 
 }  // namespace
 
-std::function<int()> addLab(CLI::App& app) {
+std::function<int()> addLabs(CLI::App& app) {
   app.require_subcommand(1);
   auto options = std::make_shared<Options>();
   std::vector<std::pair<CLI::App*, int (*)(const Options&)>> commands;
@@ -397,15 +341,7 @@ std::function<int()> addLab(CLI::App& app) {
   CLI::App* figuresApp = add("figures", "For authors: the figures that a lab's README quotes", figures);
   figuresApp->add_option("LAB", options->lab, "number of the lab")->required();
   addSeed(figuresApp, "default: example");
-  CLI::App* mysteryApp =
-      add("mystery", "A picture with one hidden deviation: find it by instruments, and say which", mystery);
-  addSeed(mysteryApp, "which deviation is hidden follows from it");
-  mysteryApp->get_option("--seed")->required();
-  mysteryApp->add_option("--answer", options->name, "name of the deviation: graded");
-  mysteryApp->add_option("-o,--output", options->folder, "folder of the pictures")->capture_default_str();
-  CLI::App* museumApp = add(
-      "museum", "One HTML page of every deviation: symptom, cause, formula, picture, the test that catches it", museum);
-  museumApp->add_option("-o,--output", options->html, "FILE.html (default: museum.html)");
+  figuresApp->add_option("--pictures", options->pictures, "DIR: write the pictures that README.md shows, too");
   return [options, commands] {
     for (const auto& [command, work] : commands)
       if (command->parsed()) return work(*options);

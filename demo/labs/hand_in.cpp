@@ -104,6 +104,9 @@ void startLab(const Lab& lab, const fs::path& path, const std::string& seed) {
   writeFileAtomically(path / "README.md", readFileText(source / "README.md"));
   writeFileAtomically(path / "tasks.glsl", stubText(lab));
   writeFileAtomically(path / "answers.txt", readFileText(source / "answers.txt"));
+  for (const auto& entry : fs::directory_iterator(source))  // that README.md shows
+    if (entry.path().extension() == ".png")
+      fs::copy_file(entry.path(), path / entry.path().filename(), fs::copy_options::overwrite_existing);
   Folder{path,
          {{"lab", lab.number},
           {"seed", seed},

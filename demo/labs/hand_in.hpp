@@ -18,8 +18,8 @@ struct Folder {
   HandIn handIn() const;
 };
 
-/// Copies README.md, tasks.glsl and an empty answers.txt. Throws Error(badInput) where the folder holds any of them
-/// already.
+/// Copies README.md with its pictures, tasks.glsl and an empty answers.txt. Throws Error(badInput) where the folder
+/// holds any of them already.
 void startLab(const Lab& lab, const std::filesystem::path& path, const std::string& seed);
 /// Puts the sample solution in the place of tasks.glsl, which stays as tasks.mine.glsl; lab.json notes it.
 void putSolution(const Lab& lab, const std::filesystem::path& path);

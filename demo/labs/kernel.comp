@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer LabInputs { vec4 labInputs[]; };
 layout(std430, binding = 1) writeonly buffer LabOutputs { vec4 labOutputs[]; };
 uniform uint labCount, labStride, labWidth, labNoise;
-uint labIndex;
+uint labIndex = 0u;
 // Vector k of this invocation's point; a stride of zero: all invocations share the inputs.
 vec4 point(uint k) { return labInputs[labIndex * labStride + k]; }
 // This invocation's pixel, row 0 at the top.

@@ -131,6 +131,7 @@ struct CheckResult {
 struct PictureResult {
   std::string name, caption;
   Image mine, reference;
+  float exposure = 1.0f;  ///< to show both with: the reference's brightest channel is 1
 };
 
 struct Curve {
@@ -188,10 +189,27 @@ struct Report {
   bool allPassed() const;
 };
 
+/// The programs of a hand-in's probes: from a folder of its own that shows the installed shaders and, as lab/, the
+/// files of this check. Needs a GL context. Programs are built when a check first asks for them, and kept: many checks
+/// of one hand-in compile once.
+class Probes {
+ public:
+  Probes(const Lab& lab, const HandIn& handIn);
+  ~Probes();
+  /// Throws Error(badInput) with the student's file and line where it does not compile.
+  const gl::Program& load(const Lab& lab, int probe);
+
+ private:
+  std::filesystem::path root_;
+  std::unique_ptr<gl::ProgramLibrary> programs_;
+};
+
 /// Runs a lab's checks on a hand-in; needs a GL context. The same nonce gives the same probe points and noise.
 Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce);
+/// The same, with the programs of an earlier check of the same hand-in.
+Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Probes& probes);
 
-/// answers.txt: "name = value" a line, # begins a comment.
+/// answers.txt: "name = value" a line, # begins a comment; what stands below a line of --- is in words and not read.
 std::map<std::string, std::string> parseAnswers(const std::string& text);
 /// NOT_DONE(n) that stand in the text outside comments.
 std::vector<int> tasksNotDone(const std::string& text);
@@ -202,8 +220,7 @@ std::string forbiddenLine(const std::string& text, const std::string& name);
 /// What a lab's check function talks to.
 class Checks {
  public:
-  Checks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Report& report);
-  ~Checks();
+  Checks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Report& report, Probes& probes);
 
   /// A parameter of the student's, uniform between the two, rounded to `digits` after the point so that it can be
   /// typed. The same for a seed and a name.
@@ -233,7 +250,6 @@ class Checks {
 
  private:
   bool add(CheckResult result);
-  struct Gpu;
   const Lab& lab_;
   const HandIn& handIn_;
   Report& report_;
@@ -241,7 +257,7 @@ class Checks {
   std::vector<int> notDone_;
   int task_ = 0, tests_ = 0;
   std::uint32_t noise_;
-  std::unique_ptr<Gpu> gpu_;
+  Probes& probes_;
 };
 
 /// Irradiance at x, normal n, from a polygon of radiance 1 wholly in front of x's surface, by Lambert's formula: half

@@ -25,20 +25,21 @@ struct Room {
 };
 std::span<const Room> museumRooms();
 
-/// One self-contained page; pictures of the Cornell box with and without each deviation that the real-time renderer has
-/// and that shows there.
+/// One self-contained page. Each room has three pictures: right, with the deviation, and their difference: of the
+/// Cornell box, or, for the path tracer, of a scene in demo/labs/museum.
 std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
                        const std::function<void(int done, int all)>& progress);
 
 /// The mystery: a deviation that follows from the seed alone.
 struct Mystery {
-  std::string technique;  ///< "rsm", "lpv" or "radiosity"
+  std::string technique;  ///< "rsm", "lpv" or "path"
   std::vector<std::string> candidates;  ///< of that technique
   std::string hidden;
 };
 Mystery mysteryOf(const std::string& seed);
 
-/// What the instruments read with the hidden deviation and without any: mean indirect radiance under several settings.
+/// What the instruments read with the hidden deviation and without any: mean indirect radiance under several settings;
+/// for the path tracer the white furnace, and the two halves of a picture with a lamp and without.
 struct Reading {
   std::string instrument;
   double sound = 0.0, hidden = 0.0;

@@ -84,7 +84,7 @@ constexpr std::array kRooms{
          "A slab of albedo 0.2", "tests/physics/media_deviations_test.cpp: BoostedInteraction"},
     Room{"path.roulette-without-division", "The deeper the light, the darker: an albedo of 1 looks like 0.95.",
          "Survivors of Russian roulette do not count for those that ended.", "throughput", "throughput / q",
-         "The furnace: 0.706 for 1 (lab 7, task 4)",
+         "The furnace: 0.706 for 1 (lab 7, task 3)",
          "tests/physics/media_deviations_test.cpp: RouletteWithoutDivision"},
     Room{"path.roulette-at-surfaces",
          "Deep light in media takes for ever; with undivided survivors it is brighter than it would be.",

@@ -16,7 +16,10 @@ std::string lineOf(const CheckResult& check) {
   if (check.verdict == Verdict::notDone || check.verdict == Verdict::waiting)
     return fmt::format("    {:<8}  {}\n", nameOf(check.verdict), check.mistake.text);
   std::string line = fmt::format("    {:<8}  {}", nameOf(check.verdict), check.name);
-  if (check.verdict == Verdict::passed) return line + fmt::format(" ({})\n", check.sigma);
+  if (check.verdict == Verdict::passed)
+    return check.expected.empty() ? line + fmt::format(" ({})\n", check.sigma)
+                                  : line + fmt::format("\n              expected {}, measured {} ({})\n",
+                                                       check.expected, check.measured, check.sigma);
   if (!check.expected.empty())
     line += fmt::format("\n              expected {}\n              measured {}", check.expected, check.measured);
   line += fmt::format("\n              {}\n", check.sigma);

@@ -1,5 +1,7 @@
 #include "labs/prove.hpp"
 
+#include "base/error.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -76,14 +78,24 @@ Proof proveLab(const Lab& lab, std::uint64_t nonce, int runs) {
   for (auto& [name, value] : words.answers) value = "nan";
   if (!words.answers.empty()) proof.mutants.push_back(judged(lab, words, nonce, "figures-nan", "nan"));
 
+  // Each run is another student's, with other noise.
+  Probes probes(lab, handIn);
   for (int run = 0; run < runs; ++run) {
-    const Report again = runChecks(lab, handIn, Random(nonce + static_cast<std::uint64_t>(run) + 1000).word());
+    const std::uint64_t again = Random(nonce + static_cast<std::uint64_t>(run) + 1000).word();
+    HandIn student = handIn;
+    student.seed = fmt::format("student {:x}", again);
+    student.answers = rightAnswers(lab, student.seed);
+    const Report report = runChecks(lab, student, again, probes);
     ++proof.runs;
-    proof.refusals += again.allPassed() ? 0 : 1;
-    for (const CheckResult& check : again.checks)
+    proof.refusals += report.allPassed() ? 0 : 1;
+    for (const CheckResult& check : report.checks) {
       if (check.pValue >= 0.0)
         ++proof.tests, proof.below1Percent += check.pValue < 0.01 ? 1 : 0,
             proof.leastP = std::min(proof.leastP, check.pValue);
+      if (check.verdict == Verdict::wrong)
+        proof.refused.push_back(fmt::format("--seed '{}' --nonce {}: {}: expected {}, measured {}, {}", student.seed,
+                                            again, check.name, check.expected, check.measured, check.sigma));
+    }
   }
   return proof;
 }
@@ -102,6 +114,7 @@ std::string proofText(const Lab& lab, const Proof& proof) {
     text += fmt::format(
         "  {} further runs of the solution: {} refused; {} statistical tests, {:.2f} % with p < 1 %, least p {:.2g}\n",
         proof.runs, proof.refusals, proof.tests, 100.0 * proof.below1Percent / std::max(1, proof.tests), proof.leastP);
+  for (const std::string& refused : proof.refused) text += "    refused: " + refused + "\n";
   return text;
 }
 
@@ -118,7 +131,7 @@ nlohmann::ordered_json proofJson(const Lab& lab, const Proof& proof) {
         {{"name", row.name}, {"rejected", row.rejected}, {"hint", row.hint}, {"wanted", row.wantedHint}});
   if (proof.runs > 0)
     json["runs"] = proof.runs, json["refusals"] = proof.refusals, json["tests"] = proof.tests,
-    json["below_1_percent"] = proof.below1Percent, json["least_p"] = proof.leastP;
+    json["below_1_percent"] = proof.below1Percent, json["least_p"] = proof.leastP, json["refused"] = proof.refused;
   return json;
 }
 
@@ -129,6 +142,22 @@ std::string figuresTable(const Lab& lab, const std::string& seed) {
   std::string text;
   for (const auto& [name, value] : runChecks(lab, handIn, 1).figures) text += fmt::format("| {} | {} |\n", name, value);
   return text;
+}
+
+void expectedPictures(const Lab& lab, const std::string& seed, const std::filesystem::path& folder) {
+  constexpr int kScale = 4;
+  HandIn handIn;
+  handIn.tasks = solutionText(lab);
+  handIn.seed = seed;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throwBadInput("{}: {}", folder.string(), error.message());
+  for (const PictureResult& picture : runChecks(lab, handIn, 1).pictures) {
+    Image large(kScale * picture.reference.width, kScale * picture.reference.height);
+    for (int y = 0; y < large.height; ++y)
+      for (int x = 0; x < large.width; ++x) large.at(x, y) = picture.reference.at(x / kScale, y / kScale);
+    writePng(folder / (picture.name + ".png"), toneMapped(large, picture.exposure));
+  }
 }
 
 }  // namespace lucerna::demo::labs

@@ -17,8 +17,10 @@ struct Proof {
   std::vector<Row> mutants;
   double solutionSeconds = 0.0;
   int runs = 0, refusals = 0, tests = 0,
-      below1Percent = 0;  ///< of further runs: statistical tests, and how many had p < 0.01
+      below1Percent =
+          0;  ///< of further runs, each with a seed of its own: statistical tests, and how many had p < 0.01
   double leastP = 1.0;
+  std::vector<std::string> refused;  ///< which check of which run, so that it can be repeated
 
   int rightHints() const;
   /// All but `runs`: at least ten mutants, all refused, nine in ten with the right hint.
@@ -31,5 +33,7 @@ nlohmann::ordered_json proofJson(const Lab& lab, const Proof& proof);
 
 /// Lines "| name | value |" for README.md.
 std::string figuresTable(const Lab& lab, const std::string& seed);
+/// Writes NAME.png for README.md into a folder: the references of the lab's pictures, four pixels a pixel.
+void expectedPictures(const Lab& lab, const std::string& seed, const std::filesystem::path& folder);
 
 }  // namespace lucerna::demo::labs

@@ -20,18 +20,19 @@ h2 { margin-top: 2em; border-bottom: 2px solid #ddd; } table { border-collapse: 
   th, td { padding: .25em .8em .25em 0; text-align: left; border-bottom: 1px solid #e4e4e8; vertical-align: top; }
 td.n { text-align: right; font-variant-numeric: tabular-nums; } .passed { color: #14732b; } .wrong { color: #b3261e; }
   .notdone, .waiting { color: #6b6b70; }
-pre { background: #f5f5f7; padding: .8em; overflow-x: auto; font-size: 12.5px; }
+pre { background: #f5f5f7; padding: .8em; white-space: pre-wrap; overflow-wrap: anywhere;
+  font-size: 12.5px; }
 .wipe { position: relative; width: 576px; image-rendering: pixelated; } .wipe img { width: 576px; display: block; }
   .wipe .top { position: absolute; top: 0; left: 0; clip-path: inset(0 50% 0 0); }
 .wipe + input { width: 576px; } figure { margin: 1em 0; } figcaption { color: #555; }
   svg text { font: 12px system-ui, sans-serif; }
 )";
 
-std::string base64Png(const Image& image) {
+std::string base64Png(const Image& image, float exposure) {
   // Through a file: DevIL writes files alone.
   const auto file = std::filesystem::temp_directory_path() /
                     fmt::format("lucerna-lab-{:x}.png", reinterpret_cast<std::uintptr_t>(&image));
-  writePng(file, toneMapped(image, 1.0f));
+  writePng(file, toneMapped(image, exposure));
   const std::string text = bench::base64(readFileBytes(file));
   std::filesystem::remove(file);
   return text;
@@ -151,7 +152,7 @@ std::string reportHtml(const Lab& lab, const Folder& folder, const Report& repor
         "<input type=\"range\" aria-label=\"yours or the reference\" min=\"0\" max=\"100\" value=\"50\" "
         "oninput=\"this.previousElementSibling.lastElementChild.style.clipPath='inset(0 '+(100-this.value)+'% 0 0)'\">"
         "<figcaption>{}</figcaption></figure>\n",
-        base64Png(p.reference), base64Png(p.mine), escapeHtml(p.caption));
+        base64Png(p.reference, p.exposure), base64Png(p.mine, p.exposure), escapeHtml(p.caption));
 
   if (!report.curves.empty()) body += "<h2>Plots</h2>\n";
   for (const Curve& curve : report.curves)

@@ -32,6 +32,9 @@ void check(Checks& c) {
                far = c.yours("far", 50.0, 200.0, 0), lambda = c.yours("lambda", 0.3, 0.9);
   const double split =
       lambda * near * std::pow(far / near, 1.0 / count) + (1.0 - lambda) * (near + (far - near) / count);
+  // The largest of three distances has the density 3 m^2: 1 up to 1 - band, then (1 - m) / band.
+  const double full = 1.0 - band, meanWeight = std::pow(full, 3.0) +
+                                               (1.0 - std::pow(full, 3.0) - 0.75 * (1.0 - std::pow(full, 4.0))) / band;
   const double cascades = c.yours("cascades", 3.0, 7.0, 0);
   c.answer("snapped", std::floor(place / cell + 0.5) * cell, 0.0005,
            {{{"truncation", "int() cuts towards zero; below zero that is the wrong cell"},
@@ -67,7 +70,10 @@ void check(Checks& c) {
                           of([](double x, double s) { return std::floor(x / s) * s; })},
                          {{"not-snapped", "nothing is snapped"}, of([](double x, double) { return x; })},
                          {{"in-cells", "the result is a place, not a number of cells: times the cell"},
-                          of([](double x, double s) { return std::floor(x / s + 0.5); })}}});
+                          of([](double x, double s) { return std::floor(x / s + 0.5); })}}}) &&
+        // A uniform error between -1/2 and 1/2 of a cell has the mean square 1/12.
+        c.mean("the mean square of what snapping moves is cell^2 / 12",
+               {.probe = 8, .inputs = {four(cell)}, .expected = std::pow(static_cast<float>(cell), 2.0) / 12.0});
   }
   if (c.task(2)) {
     const auto of = [](double (*norm)(const glm::dvec3&), double ratio, int outside) {
@@ -126,23 +132,27 @@ void check(Checks& c) {
                   p[0] = four(glm::dvec3(p[1]) + inCube(r) * 1.2 * e, e);
                 },
             .truth = of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - most(o)) / b, 0.0, 1.0); }),
-            .mistakes = {
-                {{"round-cascades", "a cascade is a cube: the largest of the three distances counts"},
-                 of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - glm::length(o)) / b, 0.0, 1.0); })},
-                {{"hard-edge", "no band: the cascade ends at once, and the seam shows"},
-                 of([](const glm::dvec3& o, double) { return most(o) <= 1.0 ? 1.0 : 0.0; })},
-                {{"inverted", "1 is inside, 0 at the border"},
-                 of([](const glm::dvec3& o, double b) { return 1.0 - std::clamp((1.0 - most(o)) / b, 0.0, 1.0); })},
-                {{"no-clamp", "a weight lies between 0 and 1"},
-                 of([](const glm::dvec3& o, double b) { return (1.0 - most(o)) / b; })},
-                {{"band-outside", "the band lies within the cascade: beyond its border there is no data"},
-                 of([](const glm::dvec3& o, double b) { return std::clamp(1.0 - (most(o) - 1.0) / b, 0.0, 1.0); })},
-                {{"sum-of-axes", "the axes are not multiplied: their largest distance counts"},
-                 of([](const glm::dvec3& o, double b) {
-                   double w = 1.0;
-                   for (int k = 0; k < 3; ++k) w *= std::clamp((1.0 - std::abs(o[k])) / b, 0.0, 1.0);
-                   return w;
-                 })}}});
+            .mistakes =
+                {{{"round-cascades", "a cascade is a cube: the largest of the three distances counts"},
+                  of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - glm::length(o)) / b, 0.0, 1.0); })},
+                 {{"hard-edge", "no band: the cascade ends at once, and the seam shows"},
+                  of([](const glm::dvec3& o, double) { return most(o) <= 1.0 ? 1.0 : 0.0; })},
+                 {{"inverted", "1 is inside, 0 at the border"},
+                  of([](const glm::dvec3& o, double b) { return 1.0 - std::clamp((1.0 - most(o)) / b, 0.0, 1.0); })},
+                 {{"no-clamp", "a weight lies between 0 and 1"},
+                  of([](const glm::dvec3& o, double b) { return (1.0 - most(o)) / b; })},
+                 {{"band-outside", "the band lies within the cascade: beyond its border there is no data"},
+                  of([](const glm::dvec3& o, double b) { return std::clamp(1.0 - (most(o) - 1.0) / b, 0.0, 1.0); })},
+                 {{"sum-of-axes", "the axes are not multiplied: their largest distance counts"},
+                  of([](const glm::dvec3& o, double b) {
+                    double w = 1.0;
+                    for (int k = 0; k < 3; ++k) w *= std::clamp((1.0 - std::abs(o[k])) / b, 0.0, 1.0);
+                    return w;
+                  })}},
+            // A float's rounding of the place, over the band.
+            .tolerance = 1e-3}) &&
+        c.mean("mean weight over the cascade",
+               {.probe = 9, .inputs = {four(halfExtent, band)}, .expected = meanWeight});
   }
   if (c.task(4)) {
     const auto of = [](double (*value)(double f, double fc, double g, double gc, double w)) {
@@ -209,6 +219,18 @@ void check(Checks& c) {
                          return l * n * std::pow(f / n, t) + (1 - l) * f * t;
                        })}},
          .tolerance = 3e-4});
+    Curve curve{"Far ends of your slices", "slice", "distance", {}, {}};
+    std::vector<glm::vec4> slices;
+    for (int k = 0; k < static_cast<int>(count); ++k)
+      slices.push_back(four(k, count, near, far)), slices.push_back(four(lambda));
+    const std::vector<glm::vec4> ends = c.run(5, slices, 2, static_cast<int>(count));
+    for (int k = 0; k < static_cast<int>(count); ++k) {
+      curve.mine.emplace_back(k + 1, ends[static_cast<std::size_t>(k)].x);
+      const double share = (k + 1) / count;
+      curve.reference.emplace_back(
+          k + 1, lambda * near * std::pow(far / near, share) + (1.0 - lambda) * (near + (far - near) * share));
+    }
+    c.curve(curve);
   }
   if (c.task(6)) {
     c.twin("both sides of a border agree", {.probe = 6,
@@ -240,6 +262,7 @@ void check(Checks& c) {
   }
   c.figure("snapped", std::floor(place / cell + 0.5) * cell);
   c.figure("split", split);
+  c.figure("mean weight", meanWeight);
   c.figure("saving", std::pow(8.0, cascades - 1.0) / cascades);
 }
 

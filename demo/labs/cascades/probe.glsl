@@ -1,6 +1,7 @@
 // Probes of lab 5. Points as demo/labs/cascades/cascades.cpp writes them.
 
-// Three cascades about the origin, each with a light of its own, so that seams show: cascade k has the irradiance 1 + 0.3 k + 0.1 sin(x + k).
+// Three cascades about the origin, each with a light of its own, so that seams show: cascade k has the irradiance 1 +
+// 0.3 k + 0.1 sin(x + k).
 float lightOf(int k, vec3 p) { return 1.0 + 0.3 * float(k) + 0.1 * sin(p.x + float(k)); }
 float shown(vec3 p, float halfExtent, float band, float cell) {
   int k = cascadeOf(p, vec3(0.0), halfExtent, 3);
@@ -28,5 +29,17 @@ vec4 probe() {
 #elif PROBE == 7
   vec3 p = vec3((vec2(pixel()) + 0.5 - vec2(48.0, 32.0)) / 10.0, 0.3);
   return vec4(vec3(shown(p, point(0).x, point(0).y, point(0).z)), 0.0);
+#elif PROBE == 8
+  // Places all over 64 cells about the origin.
+  float sum = 0.0;
+  for (int k = 0; k < 64; ++k) {
+    vec3 place = (vec3(random(), random(), random()) - 0.5) * 64.0 * point(0).x, moved = snapped(place, point(0).x) - place;
+    sum += dot(moved, moved) / 3.0;
+  }
+  return vec4(sum / 64.0);
+#elif PROBE == 9
+  float sum = 0.0;
+  for (int k = 0; k < 64; ++k) sum += blendWeight((vec3(random(), random(), random()) * 2.0 - 1.0) * point(0).x, vec3(0.0), point(0).x, point(0).y);
+  return vec4(sum / 64.0);
 #endif
 }

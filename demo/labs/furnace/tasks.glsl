@@ -1,7 +1,9 @@
-// Lab 1: the rendering equation and the furnace. README.md tells what is asked; PI, frame() and random() are there (the theory section names them).
+// Lab 1: the rendering equation and the furnace. README.md tells what is asked; PI, frame() and random() are there
+// (the theory section names them).
 // Take NOT_DONE(n) out when a task is done.
 
-// TASK 1. What a surface of Lambert's reflects of the radiance that arrives from direction wi: the integrand of the rendering equation.
+// TASK 1. What a surface of Lambert's reflects of the radiance that arrives from direction wi: the integrand of the
+// rendering equation.
 vec3 reflected(vec3 albedo, vec3 n, vec3 wi, vec3 incoming) {
   NOT_DONE(1)
   return vec3(0.0);
@@ -25,7 +27,8 @@ float solidAngleOfArea(vec3 x, vec3 y, vec3 ny) {
   return 0.0;
 }
 
-// TASK 5. Radiance in a closed box whose walls all emit `emission` and reflect `albedo`, of light that was reflected `bounces` times at most.
+// TASK 5. Radiance in a closed box whose walls all emit `emission` and reflect `albedo`, of light that was reflected
+// `bounces` times at most.
 float furnace(float emission, float albedo, int bounces) {
   NOT_DONE(5)
   return 0.0;

@@ -13,7 +13,8 @@ vec4 cosineLobe(vec3 n) {
   return vec4(0.0);
 }
 
-// TASK 3. What one sample adds to the estimate of an environment's coefficients: radiance from w, w drawn with density pdf.
+// TASK 3. What one sample adds to the estimate of an environment's coefficients: radiance from w, w drawn with
+// density pdf.
 vec4 projectSample(vec3 w, float radiance, float pdf) {
   NOT_DONE(3)
   return vec4(0.0);

@@ -6,7 +6,8 @@ vec3 swept(vec3 radiosity) {
   return sweep(radiosity, point(0).xyz, point(1).xyz, F);
 }
 
-// One random point of the hemicube, 12 units of area in all: its weight if the ray from x hits the square (side, height), and 0 if not.
+// One random point of the hemicube, 12 units of area in all: its weight if the ray from x hits the square (side,
+// height), and 0 if not.
 float hemicubeSample(vec3 x, float side, float height) {
   vec3 d;
   float weight, which = 12.0 * random();

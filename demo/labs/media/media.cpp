@@ -144,6 +144,14 @@ void check(Checks& c) {
                 .mistakes = {{{"other-inversion",
                                "log(u) has the right distribution but runs out of [0,1) at u = 0: -log(1 - u)"},
                               of([](double u, double s, double a) { return -std::log(u) / (s + a); })}}});
+    Curve curve{"Share of light that flies further", "distance", "transmittance", {}, {}};
+    const std::vector<glm::vec4> flights = c.run(5, std::vector<glm::vec4>{four(scattering, absorption)}, 0, 4096);
+    for (double d = 0.125 / extinction; d < 5.0 / extinction; d *= 1.25) {
+      const auto further = std::count_if(flights.begin(), flights.end(), [&](const glm::vec4& v) { return v.x > d; });
+      curve.mine.emplace_back(d, static_cast<double>(further) / 4096.0);
+      curve.reference.emplace_back(d, std::exp(-extinction * d));
+    }
+    c.curve(curve);
   }
   if (c.task(4)) {
     const double base = c.fresh(0.3, 0.8), slope = c.fresh(0.5, 1.5), majorant = base + 2.0 * slope + 0.2;

@@ -1,6 +1,7 @@
 // Probes of lab 8. Points as demo/labs/media/media.cpp writes them.
 
-// One photon in a slab of thickness `depth` (optical units when the coefficients are), from the top with that cosine: (1, 0, length) came back, (0, 1,
+// One photon in a slab of thickness `depth` (optical units when the coefficients are), from the top with that cosine:
+// (1, 0, length) came back, (0, 1,
 // length) went through, (0, 0, length) was absorbed.
 vec3 slabWalk(float cosine, float depth, float scattering, float absorption, float g) {
   float z = 0.0, way = 0.0;

@@ -19,13 +19,15 @@ float freeFlight(float u, float scattering, float absorption) {
   return 0.0;
 }
 
-// TASK 4. The same where the extinction is base + slope * distance, by delta tracking; `length` where the medium ends without a collision.
+// TASK 4. The same where the extinction is base + slope * distance, by delta tracking; `length` where the medium ends
+// without a collision.
 float deltaTracking(float base, float slope, float majorant, float length) {
   NOT_DONE(4)
   return 0.0;
 }
 
-// TASK 5. A liquid's coefficient in 1/mm from the tables of [Narasimhan2006]: measured in 1e-2 / mm, `millilitres` of it in 23 litres of water.
+// TASK 5. A liquid's coefficient in 1/mm from the tables of [Narasimhan2006]: measured in 1e-2 / mm, `millilitres` of
+// it in 23 litres of water.
 float naturalCoefficient(float table, float millilitres) {
   NOT_DONE(5)
   return 0.0;

@@ -1,7 +1,8 @@
 // Probes of lab 7. Points as demo/labs/paths/paths.cpp writes them.
 const vec3 kDown = vec3(0.0, -1.0, 0.0), kUp = vec3(0.0, 1.0, 0.0);
 
-// Light of a square lamp of radiance 1 (point(0) = side, height, albedo) at a point of the floor: one sample of the lamp, one by the cosine.
+// Light of a square lamp of radiance 1 (point(0) = side, height, albedo) at a point of the floor: one sample of the
+// lamp, one by the cosine.
 float bothStrategies(vec3 x) {
   float side = point(0).x, height = point(0).y, albedo = point(0).z, pdfArea = 1.0 / (side * side);
   vec2 u = random2() - 0.5;
@@ -29,8 +30,6 @@ vec4 probe() {
     sum += lampSample(1.0, point(0).z, vec3(point(1).x, 0.0, 0.0), kUp, vec3(side * u.x, point(0).y, side * u.y), kDown, 1.0 / (side * side));
   }
   return vec4(sum / 64.0);
-#elif PROBE == 5
-  return vec4(densityOverSolidAngle(point(2).w, point(0).xyz, point(1).xyz, point(2).xyz));
 #elif PROBE == 6
   float throughput = point(0).x;
   bool alive = roulette(throughput, point(0).y, point(0).z);

@@ -28,5 +28,13 @@ vec4 probe() {
     if (all(greaterThanEqual(from, ivec3(0))) && all(lessThan(from, kGrid))) sum += along(labInputs[from.x + kGrid.x * (from.y + kGrid.y * from.z)], k);
   }
   return sum;
+#elif PROBE == 8
+  // All that an intensity sends, by directions uniform over the sphere.
+  float sum = 0.0;
+  for (int k = 0; k < 64; ++k) {
+    float z = 2.0 * random() - 1.0, angle = 2.0 * PI * random();
+    sum += fluxInto(point(0), vec3(sqrt(1.0 - z * z) * vec2(cos(angle), sin(angle)), z), 4.0 * PI);
+  }
+  return vec4(sum / 64.0);
 #endif
 }

@@ -138,27 +138,35 @@ void check(Checks& c) {
         return glm::dvec4((clamped ? std::max(0.0, value) : value) * (solid ? double(p[1].w) : 1.0));
       };
     };
-    c.twin(
-        "flux at points",
-        {.probe = 3,
-         .stride = 2,
-         .draw =
-             [](Random& r, std::span<glm::vec4> p) {
-               p[0] = glm::vec4(some(r)), p[1] = four(r.direction(), r.uniform(0.1, 1.0));
-             },
-         .truth = of(1.0, true, true),
-         .mistakes = {
-             {{"no-clamp", "an intensity within two bands may be negative; a flux may not"}, of(1.0, false, true)},
-             {{"lost-solid-angle", "the solid angle is lost"}, of(1.0, true, false)},
-             {{"wrong-side", "the direction has the wrong sign"}, of(-1.0, true, true)},
-             {{"absolute", "a negative intensity counts as zero, not as positive"},
-              [](Point p) {
-                return glm::dvec4(std::abs(glm::dot(glm::dvec4(p[0]), joined(kY0, kY1 * glm::dvec3(p[1])))) * p[1].w);
-              }},
-             {{"lobe-for-direction", "an intensity is evaluated in a direction: shBasis, not cosineLobe"}, [](Point p) {
-                return glm::dvec4(std::max(0.0, glm::dot(glm::dvec4(p[0]), joined(kLobe0, kLobe1 * glm::dvec3(p[1])))) *
-                                  p[1].w);
-              }}}});
+    c.twin("flux at points",
+           {.probe = 3,
+            .stride = 2,
+            .draw =
+                [](Random& r, std::span<glm::vec4> p) {
+                  p[0] = glm::vec4(some(r)), p[1] = four(r.direction(), r.uniform(0.1, 1.0));
+                },
+            .truth = of(1.0, true, true),
+            .mistakes = {{{"no-clamp", "an intensity within two bands may be negative; a flux may not"},
+                          of(1.0, false, true)},
+                         {{"lost-solid-angle", "the solid angle is lost"}, of(1.0, true, false)},
+                         {{"wrong-side", "the direction has the wrong sign"}, of(-1.0, true, true)},
+                         {{"absolute", "a negative intensity counts as zero, not as positive"},
+                          [](Point p) {
+                            return glm::dvec4(
+                                std::abs(glm::dot(glm::dvec4(p[0]), joined(kY0, kY1 * glm::dvec3(p[1])))) * p[1].w);
+                          }},
+                         {{"lobe-for-direction", "an intensity is evaluated in a direction: shBasis, not cosineLobe"},
+                          [](Point p) {
+                            return glm::dvec4(
+                                std::max(0.0, glm::dot(glm::dvec4(p[0]), joined(kLobe0, kLobe1 * glm::dvec3(p[1])))) *
+                                p[1].w);
+                          }}}}) &&
+        // 2 pi times the integral of 1/4 + m/2 over the cosines m above -1/2, over pi: 9/8.
+        c.mean("the flux that a clamped lobe sends into the whole sphere is 9/8 of the light's",
+               {.probe = 8,
+                .inputs = {glm::vec4(flux / kPi * joined(kLobe0, kLobe1 * glm::dvec3(0, 1, 0)))},
+                .expected = 1.125 * flux,
+                .mistakes = {{{"no-clamp", "negative intensities are not cut off"}, flux}}});
   }
   if (c.task(4)) {
     const auto of = [](Kernel kernel) {
@@ -206,6 +214,15 @@ void check(Checks& c) {
                       return glm::dvec4(p[0].x, 0.36864318 * p[0].y, 0.36864318 * p[0].z, 0.36864318 * p[0].w);
                     },
                 .tolerance = 1e-5});
+    // The grid forgets direction: band 1 of even light, step by step.
+    Curve curve{"What is left of band 1 after steps", "steps", "share", {}, {}};
+    std::vector<glm::vec4> light{glm::vec4(1.0f, 0.25f, 0.0f, 0.0f)};
+    for (int k = 1; k <= 9; ++k) {
+      light = c.run(5, light, 1, 1);
+      curve.mine.emplace_back(k, std::abs(light[0].y) / 0.25);
+      curve.reference.emplace_back(k, std::pow(gain, k));
+    }
+    c.curve(curve);
   }
   if (c.task(5)) {
     const auto of = [](Kernel kernel, double sign, bool area) {
@@ -262,6 +279,7 @@ void check(Checks& c) {
   c.figure("injected", flux / (2.0 * std::sqrt(kPi)));
   c.figure("band 1", std::pow(gain, steps));
   c.figure("reach", steps * cell);
+  c.figure("flux of the clamped lobe", 1.125 * flux);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Probes of lab 2. Points as demo/labs/shadows/shadows.cpp writes them.
 
-// The wall z = 0, lit by a square of the floor that lies `gap` before it: point(0) = side, gap, albedo, cosine of the sun; its irradiance is 1.
+// The wall z = 0, lit by a square of the floor that lies `gap` before it: point(0) = side, gap, albedo, cosine of the
+// sun; its irradiance is 1.
 float wallSample(vec3 x) {
   float side = point(0).x, cosine = point(0).w;
   vec2 u = random2();
@@ -27,6 +28,13 @@ vec4 probe() {
     sum += s.z * (1.0 + s.x * s.x);
   }
   return vec4(sum / 64.0);
+#elif PROBE == 9
+  float sum = 0.0;
+  for (int k = 0; k < int(point(0).y); ++k) {
+    vec3 s = discSample(random2(), point(0).x);
+    sum += s.z * (1.0 + s.x * s.x);
+  }
+  return vec4(sum / point(0).y);
 #elif PROBE == 7
   float sum = 0.0;
   for (int k = 0; k < 64; ++k) sum += wallSample(vec3(point(1).x, point(1).y, 0.0));

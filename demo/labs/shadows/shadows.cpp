@@ -213,6 +213,19 @@ void check(Checks& c) {
         c.mean("an integral over the disc", {.probe = 6,
                                              .inputs = {four(radius)},
                                              .expected = kPi * radius * radius + 0.25 * kPi * std::pow(radius, 4.0)});
+    // The same integral, of 1 + x^2 over the disc of radius 1: pi + pi / 4.
+    Curve curve{"Error of the integral over the disc against samples", "samples", "standard deviation", {}, {}};
+    for (int samples = 1; samples <= 256; samples *= 4) {
+      double square = 0.0;
+      for (const glm::vec4& v : c.run(9, std::vector<glm::vec4>{four(1.0, samples)}, 0, 512))
+        square += std::pow(v.x - 1.25 * kPi, 2.0) / 512.0;
+      curve.mine.emplace_back(samples, std::sqrt(square));
+      // Of weight (1 + x^2) with x = u cos: 4 pi^2 (mean of u^2 (1 + u^2 cos^2)^2) less the square of the mean.
+      curve.reference.emplace_back(
+          samples,
+          std::sqrt((4.0 * kPi * kPi * (1.0 / 3.0 + 1.0 / 5.0 + 3.0 / 56.0) - std::pow(1.25 * kPi, 2.0)) / samples));
+    }
+    c.curve(curve);
   }
   if (c.task(6)) {
     const std::vector<glm::vec4> scene{four(side, gap, albedo, cosine), four(0.0, high)};

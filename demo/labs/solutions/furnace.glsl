@@ -1,6 +1,7 @@
 // Lab 1: the rendering equation and the furnace. Sample solution.
 
-// TASK 1. What a surface of Lambert's reflects of the radiance that arrives from direction wi: the integrand of the rendering equation.
+// TASK 1. What a surface of Lambert's reflects of the radiance that arrives from direction wi: the integrand of the
+// rendering equation.
 vec3 reflected(vec3 albedo, vec3 n, vec3 wi, vec3 incoming) {
   return albedo / PI * incoming * max(0.0, dot(n, wi));
 }
@@ -25,7 +26,8 @@ float solidAngleOfArea(vec3 x, vec3 y, vec3 ny) {
   return max(0.0, dot(ny, way * inversesqrt(square))) / square;
 }
 
-// TASK 5. Radiance in a closed box whose walls all emit `emission` and reflect `albedo`, light that was reflected `bounces` times at most.
+// TASK 5. Radiance in a closed box whose walls all emit `emission` and reflect `albedo`, light that was reflected
+// `bounces` times at most.
 float furnace(float emission, float albedo, int bounces) {
   float sum = 0.0, part = emission;
   for (int k = 0; k <= bounces; ++k) {

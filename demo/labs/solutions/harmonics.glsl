@@ -10,7 +10,8 @@ vec4 cosineLobe(vec3 n) {
   return vec4(0.5 * sqrt(PI), sqrt(PI / 3.0) * n);
 }
 
-// TASK 3. What one sample adds to the estimate of an environment's coefficients: radiance from w, w drawn with density pdf.
+// TASK 3. What one sample adds to the estimate of an environment's coefficients: radiance from w, w drawn with
+// density pdf.
 vec4 projectSample(vec3 w, float radiance, float pdf) {
   return shBasis(w) * (radiance / pdf);
 }

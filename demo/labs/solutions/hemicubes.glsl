@@ -1,6 +1,7 @@
 // Lab 6: hemicubes. Sample solution.
 
-// TASK 1. Form factor of a small area on the hemicube's top (the square from -1 to 1 at height 1 above the patch), at p.
+// TASK 1. Form factor of a small area on the hemicube's top (the square from -1 to 1 at height 1 above the patch), at
+// p.
 float deltaTop(vec2 p, float area) {
   float square = dot(p, p) + 1.0;
   return area / (PI * square * square);
@@ -12,21 +13,24 @@ float deltaSide(float y, float z, float area) {
   return z * area / (PI * square * square);
 }
 
-// TASK 3. The unit direction through the centre of a pixel. n pixels to a side of the cube; face 0 top, 1 +x, 2 -x, 3 +y, 4 -y; z is the normal.
+// TASK 3. The unit direction through the centre of a pixel. n pixels to a side of the cube; face 0 top, 1 +x, 2 -x, 3
+// +y, 4 -y; z is the normal.
 vec3 pixelDirection(int face, ivec2 pixel, int n) {
   vec2 p = 2.0 * (vec2(pixel) + 0.5) / float(n);
   vec3 d = face == 0 ? vec3(p - 1.0, 1.0) : face == 1 ? vec3(1.0, p.x - 1.0, p.y) : face == 2 ? vec3(-1.0, p.x - 1.0, p.y) : face == 3 ? vec3(p.x - 1.0, 1.0, p.y) : vec3(p.x - 1.0, -1.0, p.y);
   return normalize(d);
 }
 
-// TASK 4. One sweep of Jacobi's over three patches: the radiosity of each from that of all; F[3 * i + j] is the form factor from i to j.
+// TASK 4. One sweep of Jacobi's over three patches: the radiosity of each from that of all; F[3 * i + j] is the form
+// factor from i to j.
 vec3 sweep(vec3 radiosity, vec3 emission, vec3 reflectance, float F[9]) {
   vec3 result;
   for (int i = 0; i < 3; ++i) result[i] = emission[i] + reflectance[i] * (F[3 * i] * radiosity[0] + F[3 * i + 1] * radiosity[1] + F[3 * i + 2] * radiosity[2]);
   return result;
 }
 
-// TASK 5. How far from the solution the radiosity may be after a sweep whose largest change was `change`; `reflectance` is the largest of all patches.
+// TASK 5. How far from the solution the radiosity may be after a sweep whose largest change was `change`;
+// `reflectance` is the largest of all patches.
 float errorBound(float change, float reflectance) {
   return change * reflectance / (1.0 - reflectance);
 }

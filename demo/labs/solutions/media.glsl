@@ -18,7 +18,8 @@ float freeFlight(float u, float scattering, float absorption) {
   return -log(1.0 - u) / (scattering + absorption);
 }
 
-// TASK 4. The same where the extinction is base + slope * distance, by delta tracking; `length` where the medium ends without a collision.
+// TASK 4. The same where the extinction is base + slope * distance, by delta tracking; `length` where the medium ends
+// without a collision.
 float deltaTracking(float base, float slope, float majorant, float length) {
   float t = 0.0;
   for (int k = 0; k < 10000; ++k) {
@@ -29,7 +30,8 @@ float deltaTracking(float base, float slope, float majorant, float length) {
   return length;
 }
 
-// TASK 5. A liquid's coefficient in 1/mm from the tables of [Narasimhan2006]: measured in 1e-2 / mm, `millilitres` of it in 23 litres of water.
+// TASK 5. A liquid's coefficient in 1/mm from the tables of [Narasimhan2006]: measured in 1e-2 / mm, `millilitres` of
+// it in 23 litres of water.
 float naturalCoefficient(float table, float millilitres) {
   return table * 0.01 * 23000.0 / millilitres;
 }

@@ -1,0 +1,100 @@
+// lucerna lab museum and lucerna lab mystery: what of the labs needs the renderer.
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "commands.hpp"
+#include "labs/command.hpp"
+#include "labs/museum.hpp"
+#include "measure/heat_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lucerna::demo {
+
+namespace {
+
+using namespace labs;
+namespace fs = std::filesystem;
+
+struct Options {
+  CommonOptions common;
+  std::string seed, answer, folder = ".", html = "museum.html";
+};
+
+int museum(const Options& options) {
+  options.common.apply();
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  Progress progress("Rooms", static_cast<int>(museumRooms().size()), options.common.quiet);
+  writeFileAtomically(options.html, museumHtml(context, programs, [&](int done, int) { progress.update(done); }));
+  fmt::print("{}: {} rooms\n", options.html, museumRooms().size());
+  return 0;
+}
+
+/// The hidden deviation's readings beside sound ones; with --answer it is graded instead, without a GPU.
+int mystery(const Options& options) {
+  options.common.apply();
+  const Mystery mystery = mysteryOf(options.seed);
+  if (!options.answer.empty()) {
+    if (std::find(mystery.candidates.begin(), mystery.candidates.end(), options.answer) == mystery.candidates.end())
+      throwBadInput("--answer {}: not one of {}", options.answer, fmt::join(mystery.candidates, ", "));
+    const bool right = options.answer == mystery.hidden;
+    fmt::print("seed {}: {} is {}\n", options.seed, options.answer, right ? "right" : "not it");
+    options.common.writeJson(
+        {{"seed", options.seed}, {"answer", options.answer}, {"right", right}, {"score", right ? 100 : 0}});
+    return right ? 0 : static_cast<int>(ErrorKind::badInput);
+  }
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  const bool traced = mystery.technique == "path";
+  const Readings readings = readInstruments(context, programs, mystery.technique, mystery.hidden);
+  fmt::print(
+      "Mystery of seed {}: {} by technique {}, one deviation is on. Mean {}radiance:\n{:<20}{:>12}{:>12}{:>10}\n",
+      options.seed, traced ? "a ball of fog and one of water" : "a Cornell box", mystery.technique,
+      traced ? "" : "indirect ", "instrument", "sound", "mystery", "ratio");
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const Reading& r : readings.readings) {
+    fmt::print("{:<20}{:>12.5g}{:>12.5g}{:>10.4f}\n", r.instrument, r.sound, r.hidden, r.hidden / r.sound);
+    rows.push_back({{"instrument", r.instrument}, {"sound", r.sound}, {"mystery", r.hidden}});
+  }
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error) throwBadInput("{}: {}", options.folder, error.message());
+  const double scale = measure::heatMapScale(readings.hidden, readings.sound);
+  writePng(fs::path(options.folder) / "sound.png", toneMapped(readings.sound, traced ? 1.0f : 4.0f));
+  writePng(fs::path(options.folder) / "mystery.png", toneMapped(readings.hidden, traced ? 1.0f : 4.0f));
+  writePng(fs::path(options.folder) / "heat_map.png",
+           measure::heatMap(readings.hidden, readings.sound, measure::HeatMap::signedLuminance, scale));
+  fmt::print(
+      "{0}/sound.png, mystery.png, heat_map.png (signed, {1:.3g} is full red)\nWhich is it? {2}\nlucerna lab mystery "
+      "--seed {3} --answer NAME; lucerna lab museum describes them all.\n",
+      options.folder, scale, fmt::join(mystery.candidates, ", "), options.seed);
+  options.common.writeJson({{"seed", options.seed},
+                            {"technique", mystery.technique},
+                            {"candidates", mystery.candidates},
+                            {"readings", rows}});
+  return 0;
+}
+
+}  // namespace
+
+std::function<int()> addLab(CLI::App& app) {
+  const std::function<int()> labs = addLabs(app);
+  auto options = std::make_shared<Options>();
+  CLI::App* mysteryApp =
+      app.add_subcommand("mystery", "A picture with one hidden deviation: find it by instruments, and say which");
+  options->common.declare(*mysteryApp);
+  mysteryApp->add_option("--seed", options->seed, "which deviation is hidden follows from it")->required();
+  mysteryApp->add_option("--answer", options->answer, "name of the deviation: graded");
+  mysteryApp->add_option("-o,--output", options->folder, "folder of the pictures")->capture_default_str();
+  CLI::App* museumApp = app.add_subcommand(
+      "museum", "One HTML page of every deviation: symptom, cause, formula, picture, the test that catches it");
+  options->common.declare(*museumApp);
+  museumApp->add_option("-o,--output", options->html, "FILE.html")->capture_default_str();
+  return [=] { return mysteryApp->parsed() ? mystery(*options) : museumApp->parsed() ? museum(*options) : labs(); };
+}
+
+}  // namespace lucerna::demo
