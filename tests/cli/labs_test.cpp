@@ -1,6 +1,7 @@
 // lucerna lab: each lab's stub, solution and typical wrong answers; a student's way from start to report; figures of
 // the READMEs.
 #include "base/files.hpp"
+#include "base/image.hpp"
 #include "settings/deviations.hpp"
 #include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <regex>
@@ -57,13 +59,27 @@ TEST(LabProof6, Hemicubes) { prove(6); }
 TEST(LabProof7, Paths) { prove(7); }
 TEST(LabProof8, Media) { prove(8); }
 
-TEST(LabList, EightLabsOfThreeToSevenTasks) {
+std::filesystem::path folderOf(const json& lab) {
+  return std::filesystem::path(LUCERNA_SOURCE_DIR) / "demo/labs" / lab.at("folder").get<std::string>();
+}
+
+TEST(LabList, EightLabsOfThreeToFiveFunctions) {
   const std::vector<json> all = labs();
   ASSERT_EQ(all.size(), 8u);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(all[i].at("lab"), i + 1) << "LabProof" << i + 1 << " proves it";
-    EXPECT_GE(all[i].at("tasks").size(), 3u);
-    EXPECT_LE(all[i].at("tasks").size(), 7u);
+    const std::string tasks = readFileText(folderOf(all[i]) / "tasks.glsl");
+    int functions = 0;
+    while (tasks.find(fmt::format("NOT_DONE({})", functions + 1)) != std::string::npos) ++functions;
+    EXPECT_GE(functions, 3) << all[i].at("folder");
+    EXPECT_LE(functions, 5) << all[i].at("folder");
+    EXPECT_EQ(all[i].at("tasks").size(), static_cast<std::size_t>(functions) + 1)
+        << "the functions, and what they do together";
+    const std::string hints = readFileText(folderOf(all[i]) / "hints.txt");
+    for (const json& task : all[i].at("tasks"))
+      for (int level = 1; level <= 3; ++level)
+        EXPECT_NE(("\n" + hints).find(fmt::format("\n{}.{} ", task.at("number").dump(), level)), std::string::npos)
+            << all[i].at("folder") << ' ' << task << ' ' << level;
   }
 }
 
@@ -80,6 +96,7 @@ TEST(LabFalseAlarms, FewerThanOneIn10000) {
     const json proof = readJson(folder / "proof.json").at("labs").at(0);
     EXPECT_EQ(proof.at("runs"), runs);
     EXPECT_LE(proof.at("refusals"), 1) << proved.out;
+    EXPECT_GE(proof.at("tests"), runs) << "every lab has a statistical test";
     const double share = proof.at("below_1_percent").get<double>() / proof.at("tests").get<double>();
     EXPECT_LT(share, 0.02) << proved.out;
   }
@@ -102,6 +119,66 @@ TEST(LabReadme, FiguresAreThoseOfTheCheck) {
   }
 }
 
+// What README.md says to expect beside the table: every decimal is one of the check's figures.
+TEST(LabReadme, ProseOfWhatToExpectQuotesTheCheck) {
+  static const std::regex kDecimal(R"(-?\d+\.\d+)");
+  int decimals = 0;
+  for (const json& lab : labs()) {
+    const std::string readme = readFileText(folderOf(lab) / "README.md"),
+                      figures = RUN_LUCERNA(fmt::format("lab figures {}", lab.at("lab").dump())).out;
+    const auto first = readme.find("## What to expect"), last = readme.find("## Sources");
+    ASSERT_LT(first, last) << lab.at("folder");
+    const std::string section = readme.substr(first, last - first);
+    for (auto it = std::sregex_iterator(section.begin(), section.end(), kDecimal); it != std::sregex_iterator();
+         ++it, ++decimals)
+      EXPECT_NE(figures.find("| " + it->str()), std::string::npos) << lab.at("folder") << ": " << it->str();
+  }
+  EXPECT_GT(decimals, 30);
+}
+
+// The pictures that a README shows are the references of the check.
+TEST(LabReadme, PicturesAreThoseOfTheCheck) {
+  static const std::regex kPicture(R"(!\[[^\]]+\]\((\w+\.png)\))");
+  for (const json& lab : labs()) {
+    TempFolder folder;
+    const RunResult made =
+        RUN_LUCERNA(fmt::format("lab figures {} --pictures {}", lab.at("lab").dump(), folder.path().string()));
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    const std::string readme = readFileText(folderOf(lab) / "README.md");
+    int shown = 0;
+    for (auto it = std::sregex_iterator(readme.begin(), readme.end(), kPicture); it != std::sregex_iterator();
+         ++it, ++shown) {
+      const std::string name = (*it)[1].str();
+      const Bitmap inReadme = readBitmap(folderOf(lab) / name), ofCheck = readBitmap(folder / name);
+      ASSERT_EQ(inReadme.rgba.size(), ofCheck.rgba.size()) << name;
+      int worst = 0;
+      for (std::size_t i = 0; i < ofCheck.rgba.size(); ++i)
+        worst = std::max(worst, std::abs(int(inReadme.rgba[i]) - int(ofCheck.rgba[i])));
+      EXPECT_LE(worst, 1) << lab.at("folder") << '/' << name;  // another libm rounds elsewhere
+    }
+    EXPECT_GE(shown, 1) << lab.at("folder");
+  }
+}
+
+// What students look for follows from their seed, in every lab.
+TEST(LabSeeds, ParametersAndAnswersFollowFromTheSeed) {
+  for (const json& lab : labs()) {
+    const auto figures = [&](const std::string& seed) {
+      std::vector<std::string> lines;
+      std::istringstream stream(RUN_LUCERNA(fmt::format("lab figures {} --seed {}", lab.at("lab").dump(), seed)).out);
+      for (std::string line; std::getline(stream, line);) lines.push_back(line);
+      return lines;
+    };
+    const std::vector<std::string> ada = figures("ada"), bob = figures("bob");
+    ASSERT_EQ(ada.size(), bob.size());
+    int different = 0;
+    for (std::size_t i = 0; i < ada.size(); ++i) different += ada[i] != bob[i] ? 1 : 0;
+    EXPECT_GE(4 * different, 3 * static_cast<int>(ada.size()))
+        << lab.at("folder");  // whole numbers may agree by chance
+    EXPECT_EQ(ada, figures("ada"));
+  }
+}
+
 // The template of docs/teaching.md is a lab like any other.
 TEST(LabProof0, Template) { prove(0); }
 
@@ -120,6 +197,16 @@ TEST(LabMuseum, EveryDeviationHasARoomAndATest) {
     EXPECT_NE(text.find(fmt::format(", {}) {{", (*it)[2].str())), std::string::npos) << it->str();
   }
   EXPECT_EQ(rooms, static_cast<int>(allDeviations().size()));
+  // Each room has a picture right, one with the mistake, and where the two differ.
+  for (const Deviation& deviation : allDeviations()) {
+    const auto at = html.find(fmt::format("<section id=\"{}\">", deviation.name)), end = html.find("<h2>", at);
+    ASSERT_LT(at, end);
+    const std::string room = html.substr(at, end - at);
+    int pictures = 0;
+    for (std::size_t image = 0; (image = room.find("<img alt=", image)) != std::string::npos; ++image) ++pictures;
+    EXPECT_GE(pictures, 2) << deviation.name;
+    EXPECT_EQ(pictures == 2, room.find("no difference") != std::string::npos) << deviation.name;
+  }
   EXPECT_EQ(html.find("://"), std::string::npos) << "the page stands by itself";  // no text of base64 has that
 }
 
@@ -141,6 +228,47 @@ TEST(LabMystery, OneCandidateIsRightAndLeavesAMark) {
   }
   EXPECT_EQ(right, 1);
   EXPECT_EQ(RUN_LUCERNA("lab mystery --seed ada --answer lpv.nothing").exitCode, 2);
+}
+
+// A mystery of the path tracer has a white furnace among its instruments: sound, it reads 1.
+TEST(LabMystery, PathTracerReadsAFurnace) {
+  // Whose seed hides a deviation of the path tracer is told by the candidates, for which nothing is rendered: a wrong
+  // name lists them.
+  std::string seed;
+  for (int k = 0; k < 100 && seed.empty(); ++k)
+    if (RUN_LUCERNA(fmt::format("lab mystery --seed s{} --answer none", k)).err.find("path.") != std::string::npos)
+      seed = fmt::format("s{}", k);
+  ASSERT_FALSE(seed.empty());
+  TempFolder folder;
+  const RunResult shown = RUN_LUCERNA(fmt::format("lab mystery --seed {} -o {} --json {}", seed,
+                                                  (folder / "m").string(), (folder / "m.json").string()));
+  ASSERT_EQ(shown.exitCode, 0) << shown.err;
+  const json mystery = readJson(folder / "m.json");
+  EXPECT_EQ(mystery.at("technique"), "path");
+  EXPECT_EQ(mystery.at("readings").at(0).at("instrument"), "white furnace");
+  EXPECT_NEAR(mystery.at("readings").at(0).at("sound").get<double>(), 1.0, 1e-5);
+  double largest = 0.0;
+  for (const json& r : mystery.at("readings"))
+    largest = std::max(largest, std::abs(r.at("mystery").get<double>() / r.at("sound").get<double>() - 1.0));
+  EXPECT_GT(largest, 0.01) << mystery.dump(1);
+}
+
+// The program of the labs alone (demo/lab) lists, starts and checks as the whole one does; what renders is not in it.
+TEST(LabsAlone, AreThoseOfTheWholeProgram) {
+  const auto alone = [](const std::string& arguments) { return run("'" LUCERNA_LABS_BINARY "' lab " + arguments); };
+  EXPECT_EQ(alone("list").out, RUN_LUCERNA("lab list").out);
+  TempFolder folder;
+  const std::string dir = (folder / "mine").string();
+  ASSERT_EQ(alone(fmt::format("start 5 {} --seed ada", dir)).exitCode, 0);
+  ASSERT_EQ(alone(fmt::format("solution 5 {}", dir)).exitCode, 0);
+  const auto score = [&](const RunResult& checked) {
+    EXPECT_EQ(checked.exitCode, 2) << "answers.txt is empty: " << checked.out << checked.err;
+    return checked.out.substr(checked.out.find("task 1"));
+  };
+  const std::string whole = score(RUN_LUCERNA(fmt::format("lab check 5 {} --nonce 3", dir)));
+  EXPECT_EQ(score(alone(fmt::format("check 5 {} --nonce 3", dir))), whole);
+  EXPECT_NE(whole.find("85.0 of 100"), std::string::npos) << whole;
+  EXPECT_EQ(alone("museum").exitCode, 2);
 }
 
 class LabWay : public ::testing::Test {
@@ -171,8 +299,13 @@ TEST_F(LabWay, CompileErrorsNameFileAndLine) {
   edit("  NOT_DONE(1)\n  return vec3(0.0);", "  return vec3(unknown);");
   const RunResult checked = lab(fmt::format("check 1 {}", dir.string()));
   EXPECT_EQ(checked.exitCode, 2);
-  EXPECT_NE(checked.out.find(fmt::format("{}:6", (dir / "tasks.glsl").string())), std::string::npos) << checked.out;
+  const std::string text = readFileText(dir / "tasks.glsl");
+  const auto line =
+      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("unknown")), '\n') + 1;
+  EXPECT_NE(checked.out.find(fmt::format("{}:{}: error", (dir / "tasks.glsl").string(), line)), std::string::npos)
+      << checked.out;
   EXPECT_NE(checked.out.find("unknown"), std::string::npos) << checked.out;
+  EXPECT_EQ(checked.out.find("kernel.comp"), std::string::npos) << "a file that is not the student's: " << checked.out;
 }
 
 TEST_F(LabWay, ProbesAreOutOfReach) {
@@ -231,6 +364,66 @@ TEST_F(LabWay, FromHintToReport) {
 
   ASSERT_EQ(lab(fmt::format("show 1 {}", dir.string())).exitCode, 0);
   EXPECT_TRUE(std::filesystem::exists(dir / "pictures/lamp.mine.png"));
+}
+
+// Words below the line of answers.txt are for the report: no figure is read there.
+TEST_F(LabWay, WordsAreForTheReportAlone) {
+  start();
+  std::ofstream(dir / "answers.txt", std::ios::app) << "Because value over density is constant:\nfurnace = 1\n";
+  const RunResult checked = lab(fmt::format("check 1 {}", dir.string()));
+  EXPECT_NE(checked.out.find("furnace has no figure yet"), std::string::npos) << checked.out;
+  lab(fmt::format("report 1 {}", dir.string()));
+  EXPECT_NE(readFileText(dir / "report.html").find("Because value over density is constant:"), std::string::npos);
+}
+
+TEST_F(LabWay, ChecksPrintWhatWasExpectedAndMeasured) {
+  start();
+  ASSERT_EQ(lab(fmt::format("solution 1 {}", dir.string())).exitCode, 0);
+  const std::regex passed(
+      R"(passed    furnace: radiance 1 all around gives the albedo\n +expected 0\.\d+, measured 0\.\d+ \+- [0-9.e-]+ \([0-9.]+ sigma\))");
+  const RunResult right = lab(fmt::format("check 1 {}", dir.string()));
+  EXPECT_TRUE(std::regex_search(right.out, passed)) << right.out;
+  edit("albedo / PI", "albedo");
+  const RunResult wrong = lab(fmt::format("check 1 {}", dir.string()));
+  const std::regex refused(
+      R"(wrong     reflected light at points\n +expected .+\n +measured .+\n +\d+ of \d+ points agree.+\n +likeliest: 1 / pi is lost)");
+  EXPECT_TRUE(std::regex_search(wrong.out, refused)) << wrong.out;
+}
+
+// lab show --watch: what does not compile is told, and the last good pictures stay; the next save that does replaces
+// them.
+TEST_F(LabWay, WatchKeepsTheLastGoodPictures) {
+  start();
+  ASSERT_EQ(lab(fmt::format("solution 1 {}", dir.string())).exitCode, 0);
+  const std::string script = fmt::format(
+      "cd {0} && {{ '{1}' lab show 1 . --watch >log 2>&1 & }}; pid=$!\n"
+      "until_there() {{ for i in $(seq 600); do [ \"$(grep -c \"$1\" log)\" -ge $2 ] && return; sleep 0.1; done; echo "
+      "\"no $1 within a minute\"; cat log; kill $pid; exit 1; }}\n"
+      "until_there 'of 100' 1; until_there difference10 1; cp pictures/lamp.mine.png good.png\n"
+      "cp tasks.glsl right.glsl; echo 'float broken( {{' >>tasks.glsl; until_there 'Nothing can be judged' 1\n"
+      "cmp pictures/lamp.mine.png good.png || {{ kill $pid; exit 2; }}\n"
+      "sed 's/albedo . PI/albedo/' right.glsl >tasks.glsl; until_there 'likeliest: 1 . pi' 1\n"
+      "kill -TERM $pid; wait $pid\n",
+      dir.string(), LUCERNA_BINARY);
+  const RunResult watched = run(script);
+  EXPECT_EQ(watched.exitCode, 0) << watched.out << watched.err;
+  EXPECT_NE(readFileText(dir / "log").find("tasks.glsl:"), std::string::npos);
+}
+
+// Every lab's hand-in has a picture with a slider and a plot.
+TEST(LabReport, EveryLabHasPicturesAndPlots) {
+  for (const json& lab : labs()) {
+    TempFolder folder;
+    const std::string number = lab.at("lab").dump(), dir = (folder / "mine").string();
+    ASSERT_EQ(RUN_LUCERNA(fmt::format("lab start {} {}", number, dir)).exitCode, 0);
+    ASSERT_EQ(RUN_LUCERNA(fmt::format("lab solution {} {}", number, dir)).exitCode, 0);
+    ASSERT_EQ(RUN_LUCERNA(fmt::format("lab report {} {}", number, dir)).exitCode, 0);
+    const std::string html = readFileText(folder / "mine/report.html");
+    for (const char* part : {"<h2>Answers</h2>", "<h2>Checks</h2>", "data:image/png;base64,", "type=\"range\"", "<svg"})
+      EXPECT_NE(html.find(part), std::string::npos) << lab.at("folder") << ": " << part;
+    static const std::regex kLine(R"(<polyline[^>]*points="[0-9., ]{20,}"/>)");
+    EXPECT_TRUE(std::regex_search(html, kLine)) << lab.at("folder") << ": a plot without numbers";
+  }
 }
 
 // The same nonce gives the same result, another seed other parameters.
