@@ -35,7 +35,7 @@ struct Options {
   std::uint32_t tasks = 40;
   int jobs = 1;
   std::optional<int> task;
-  double deadAfter = 120.0;
+  double deadAfter = 120.0, saveEvery = 60.0;
 };
 
 std::string thisProgram() { return fs::read_symlink("/proc/self/exe").string(); }
@@ -48,52 +48,86 @@ std::string quoted(const std::string& word) {
 
 // ---------------------------------------------------------------------------------------------------- plan
 
-/// The words after `render`, and what is taken out of them: samples and picture.
+/// Commands that are cut by --part, and what into.
+struct Cut {
+  std::vector<std::string> command;
+  const char* units;
+};
+const std::vector<Cut>& cuts() {
+  static const std::vector<Cut> all{{{"render"}, "samples"},
+                                    {{"walk"}, "frames"},
+                                    {{"bench", "references"}, "batches"},
+                                    {{"bench", "error"}, "rows"},
+                                    {{"bench", "stability"}, "rows"},
+                                    {{"bench", "tables"}, "rows"},
+                                    {{"radiosity", "solve"}, "rows of hemicubes"}};
+  return all;
+}
+
+std::string listOfCuts() {
+  std::string list;
+  for (const Cut& cut : cuts())
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", fmt::join(cut.command, " "), cut.units);
+  return list;
+}
+
 struct Planned {
-  std::vector<std::string> render;
-  std::uint32_t samples = 0;
-  std::string output;
+  ClusterCommand command;
+  std::string units;
 };
 
-Planned readCommand(const std::vector<std::string>& words) {
+Planned readCommand(std::vector<std::string> words, std::uint32_t tasks) {
+  if (!words.empty() && (words[0] == "lucerna" || words[0].ends_with("/lucerna"))) words.erase(words.begin());
   Planned planned;
-  std::size_t i = 0;
-  if (i < words.size() && (words[i] == "lucerna" || words[i].ends_with("/lucerna"))) ++i;
-  if (i >= words.size() || words[i] != "render")
-    throwBadInput("cluster plan: what follows -- must be a command `render SCENE --technique path --spp N ... -o OUT`");
+  for (const Cut& cut : cuts())
+    if (words.size() >= cut.command.size() && std::equal(cut.command.begin(), cut.command.end(), words.begin()))
+      planned.units = cut.units;
+  if (planned.units.empty())
+    throwBadInput("cluster plan: what follows -- must be one of the commands that are cut into parts: {}",
+                  listOfCuts());
+  const bool isPicture = words[0] == "render";
   bool isPath = false;
-  for (++i; i < words.size(); ++i) {
+  std::uint32_t samples = 0;
+  for (std::size_t i = 0; i < words.size(); ++i) {
     // "--key value" and "--key=value" alike.
     std::string key = words[i], value;
     if (const auto equals = key.find('='); key.starts_with("--") && equals != std::string::npos)
       value = key.substr(equals + 1), key = key.substr(0, equals);
-    const auto take = [&]() -> const std::string& {
-      if (value.empty()) {
-        if (++i >= words.size()) throwBadInput("cluster plan: {} has no value", key);
-        value = words[i];
-      }
-      return value;
+    const auto next = [&]() -> const std::string& {
+      if (value.empty() && i + 1 >= words.size()) throwBadInput("cluster plan: {} has no value", key);
+      return value.empty() ? words[i + 1] : value;
     };
-    if (key == "--spp") {
-      const std::string& text = take();
+    const auto skip = [&] { i += value.empty(); };
+    if (key == "--part" || key == "--checkpoint" ||
+        (isPicture && (key == "--samples" || key == "--seconds" || key == "--error" || key == "--save-every")))
+      throwBadInput("cluster plan: {}: a task's own{}", key, isPicture ? "; give --spp and -o" : "");
+    if (key == "--quiet") continue;
+    if (key == "--json") {
+      planned.command.json = next();
+      skip();
+      continue;
+    }
+    if (isPicture && (key == "-o" || key == "--output")) {
+      planned.command.output = next();
+      skip();
+      continue;
+    }
+    if (key == "--technique") isPath = next() == "path";
+    if (isPicture && key == "--spp") {
+      const std::string& text = next();
       if (text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos)
         throwBadInput("cluster plan: --spp {}: expected a whole number up to 999999999", text);
-      planned.samples = static_cast<std::uint32_t>(std::stoul(text));
-    } else if (key == "-o" || key == "--output") {
-      planned.output = take();
-    } else if (key == "--samples" || key == "--checkpoint" || key == "--seconds" || key == "--error" ||
-               key == "--json") {
-      throwBadInput("cluster plan: {}: a task's own; give --spp and -o", key);
-    } else {
-      if (key == "--technique")
-        isPath = (value.empty() ? (i + 1 < words.size() ? words[i + 1] : value) : value) == "path";
-      planned.render.push_back(words[i]);
+      samples = static_cast<std::uint32_t>(std::stoul(text));
     }
+    planned.command.words.push_back(words[i]);
   }
-  if (!isPath) throwBadInput("cluster plan: only --technique path is cut into parts of its samples");
-  if (planned.samples == 0) throwBadInput("cluster plan: --spp N is missing: how many samples the tasks share");
-  if (!isWritableImageName(planned.output))
-    throwBadInput("cluster plan: -o {}: the extension must be png, hdr, exr or pfm", planned.output);
+  if (!isPicture) return planned;
+  if (!isPath)
+    throwBadInput("cluster plan: of pictures only those with --technique path are cut into parts, of their samples");
+  if (samples == 0) throwBadInput("cluster plan: --spp N is missing: how many samples the tasks share");
+  if (tasks > samples) throwBadInput("--tasks {}: expected 1 to {}, the samples of a pixel", tasks, samples);
+  if (!isWritableImageName(planned.command.output))
+    throwBadInput("cluster plan: -o {}: the extension must be png, hdr, exr or pfm", planned.command.output);
   return planned;
 }
 
@@ -110,14 +144,15 @@ void writeSlurm(const fs::path& folder, const Options& options) {
   const std::string environment =
       "# Of a node's devices the one that Slurm gave to this task.\n"
       "if [ -n \"${CUDA_VISIBLE_DEVICES:-}\" ]; then export LUCERNA_EGL_DEVICE=\"${CUDA_VISIBLE_DEVICES%%,*}\"; fi\n";
-  const std::string array = head +
-                            fmt::format(
-                                "#SBATCH --job-name=lucerna\n#SBATCH --array=0-{}\n#SBATCH --ntasks=1\n#SBATCH "
-                                "--signal=B:TERM@60\n#SBATCH --output={}/logs/slurm-%a.log\n",
-                                options.tasks - 1, whole.string()) +
-                            environment +
-                            fmt::format("exec {} cluster run {} --task \"$SLURM_ARRAY_TASK_ID\" --dead-after {:g}\n",
-                                        program, job, options.deadAfter);
+  const std::string array =
+      head +
+      fmt::format(
+          "#SBATCH --job-name=lucerna\n#SBATCH --array=0-{}\n#SBATCH --ntasks=1\n#SBATCH --signal=B:TERM@60\n#SBATCH "
+          "--output={}/logs/slurm-%a.log\n",
+          options.tasks - 1, whole.string()) +
+      environment +
+      fmt::format("exec {} cluster run {} --task \"$SLURM_ARRAY_TASK_ID\" --dead-after {:g} --save-every {:g}\n",
+                  program, job, options.deadAfter, options.saveEvery);
   const std::string join =
       head +
       fmt::format("#SBATCH --job-name=lucerna-join\n#SBATCH --ntasks=1\n#SBATCH --output={}/logs/slurm-join.log\n",
@@ -141,27 +176,28 @@ void writeSlurm(const fs::path& folder, const Options& options) {
 
 int plan(const Options& options) {
   options.common.apply();
-  const Planned planned = readCommand(options.command);
-  ClusterJob::plan(options.output, planned.render, planned.samples, options.tasks, planned.output);
+  const Planned planned = readCommand(options.command, options.tasks);
+  ClusterJob::plan(options.output, planned.command, options.tasks);
   writeSlurm(options.output, options);
   if (!options.common.quiet)
     fmt::print(
-        "{0}: {1} tasks of {2} samples. On this machine: lucerna cluster run {0} --jobs N, then lucerna cluster join "
-        "{0}. With Slurm: {0}/submit\n",
-        options.output, options.tasks, planned.samples);
-  options.common.writeJson({{"job", options.output}, {"tasks", options.tasks}, {"samples", planned.samples}});
+        "{0}: {1} tasks, parts of the {2}. On this machine: lucerna cluster run {0} --jobs N, then lucerna cluster "
+        "join {0}. With Slurm: {0}/submit\n",
+        options.output, options.tasks, planned.units);
+  options.common.writeJson({{"job", options.output}, {"tasks", options.tasks}, {"units", planned.units}});
   return 0;
 }
 
 // ---------------------------------------------------------------------------------------------------- run
 
 /// Runs a task as a process of its own until it ends, is to stop, or was taken for dead. Returns whether it is done.
-bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& claim, bool quiet) {
-  std::vector<std::string> words{thisProgram(), "render"};
-  words.insert(words.end(), job.render().begin(), job.render().end());
+bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& claim, double saveEvery, bool quiet) {
+  std::vector<std::string> words{thisProgram()};
+  words.insert(words.end(), job.command().words.begin(), job.command().words.end());
   // The result is written last: it says that the part is whole.
-  words.insert(words.end(), {"--samples", fmt::format("{}:{}", task.first, task.last), "--checkpoint",
+  words.insert(words.end(), {"--part", fmt::format("{}/{}", task.number, job.tasks().size()), "--checkpoint",
                              job.part(task).string(), "--json", job.result(task).string(), "--quiet"});
+  if (job.command().isPicture()) words.insert(words.end(), {"--save-every", fmt::format("{:g}", saveEvery)});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -193,7 +229,7 @@ bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& cla
   const bool done = WIFEXITED(status) && WEXITSTATUS(status) == 0 && fs::exists(job.result(task));
   if (!done && !lost) job.giveBack(claim);
   if (!quiet)
-    fmt::print("{}: samples {} to {}{}\n", task.name, task.first, task.last - 1,
+    fmt::print("{}{}\n", task.name,
                done                  ? ""
                : WIFSIGNALED(status) ? fmt::format(", ended by signal {}", WTERMSIG(status))
                                      : fmt::format(", exit code {}: see {}", WEXITSTATUS(status), log));
@@ -231,7 +267,7 @@ int run(const Options& options) {
             continue;
           }
           did = true;
-          if (runTask(job, task, *claim, options.common.quiet)) ++finished;
+          if (runTask(job, task, *claim, options.saveEvery, options.common.quiet)) ++finished;
           else if (!interrupted()) {
             const std::scoped_lock lock(mutex);
             ++failures[task.name];
@@ -283,23 +319,56 @@ int status(const Options& options) {
   return 0;
 }
 
+/// A lucerna of its own, in the folder where the job was planned; its exit code.
+int runHere(const std::vector<std::string>& command, const std::string& directory) {
+  std::vector<std::string> words = command;
+  words.insert(words.begin(), thisProgram());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  std::fflush(stdout);
+  const pid_t child = ::fork();
+  if (child < 0) throwMissingCapability("cluster join: no process can be made");
+  if (child == 0) {
+    if (::chdir(directory.c_str()) != 0) ::_exit(126);
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  bool asked = false;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (interrupted() && !asked) asked = ::kill(child, SIGTERM) == 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 int join(const Options& options) {
   options.common.apply();
   const ClusterJob job(options.folder);
-  std::vector<std::string> words{thisProgram(), "merge"};
   for (const ClusterTask& task : job.tasks()) {
     if (!fs::exists(job.result(task)))
       throwBadInput("{}: task {} is not done (lucerna cluster status {}, then cluster run)", options.folder, task.name,
                     options.folder);
   }
-  words.insert(words.end(), {"--parts", (job.folder() / "parts").string(), "-o", job.output()});
-  if (!options.common.json.empty()) words.insert(words.end(), {"--json", options.common.json});
-  if (options.common.quiet) words.emplace_back("--quiet");
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  ::execv(arguments[0], arguments.data());
-  throwMissingCapability("{}: cannot be run", words[0]);
+  watchForInterrupt();
+  const ClusterCommand& command = job.command();
+  const std::string parts = (job.folder() / "parts").string(),
+                    json = options.common.json.empty() ? command.json : fs::absolute(options.common.json).string();
+  std::vector<std::string> last;
+  if (!json.empty()) last.insert(last.end(), {"--json", json});
+  if (options.common.quiet) last.emplace_back("--quiet");
+  // All parts as one checkpoint, then the command with it, which finds everything made.
+  const std::string whole = (job.folder() / (command.isPicture() ? "whole.film" : "whole")).string();
+  if (!fs::exists(whole))
+    if (const int code = runHere({"merge", "--parts", parts, "--checkpoint", whole, "--quiet"}, job.directory());
+        code != 0)
+      return code;
+  std::vector<std::string> words = command.words;
+  words.insert(words.end(), {"--checkpoint", whole});
+  if (command.isPicture()) words.insert(words.end(), {"-o", command.output});
+  words.insert(words.end(), last.begin(), last.end());
+  return runHere(words, job.directory());
 }
 
 }  // namespace
@@ -308,10 +377,8 @@ std::function<int()> addCluster(CLI::App& app) {
   app.require_subcommand(1);
   auto options = std::make_shared<Options>();
   CLI::App* planned = app.add_subcommand(
-      "plan",
-      "Cut a path traced picture's samples into tasks, in a folder that all machines see; with scripts for Slurm");
-  planned->add_option("COMMAND", options->command, "after --: render SCENE --technique path --spp N ... -o OUT")
-      ->required();
+      "plan", "Cut a command's work into tasks, in a folder that all machines see; with scripts for Slurm");
+  planned->add_option("COMMAND", options->command, "after --: " + listOfCuts())->required();
   planned->add_option("-o,--output", options->output, "the job's folder")->required();
   planned->add_option("--tasks", options->tasks, "into how many")
       ->capture_default_str()
@@ -333,16 +400,25 @@ std::function<int()> addCluster(CLI::App& app) {
         ->check(CLI::Range(6.0, 1e6));
   };
   deadAfter(planned);
+  const auto saveEvery = [&](CLI::App* command) {
+    command
+        ->add_option("--save-every", options->saveEvery,
+                     "of a path traced picture: seconds between a task's checkpoints; other work is kept unit by unit")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1e6));
+  };
+  saveEvery(planned);
   CLI::App* running =
       app.add_subcommand("run", "Work on a job's tasks until none is left; any number of machines at once");
   running->add_option("JOB", options->folder, "the job's folder")->required();
   running->add_option("--jobs", options->jobs, "tasks at once")->capture_default_str()->check(CLI::Range(1, 256));
   running->add_option("--task", options->task, "that one alone, such as of a Slurm array");
   deadAfter(running);
+  saveEvery(running);
   CLI::App* asked = app.add_subcommand("status", "How many tasks are done, running, abandoned, waiting");
   asked->add_option("JOB", options->folder, "the job's folder")->required();
   deadAfter(asked);
-  CLI::App* joined = app.add_subcommand("join", "Make the picture of all parts");
+  CLI::App* joined = app.add_subcommand("join", "Make the result of all parts");
   joined->add_option("JOB", options->folder, "the job's folder")->required();
   for (CLI::App* command : {planned, running, asked, joined}) options->common.declare(*command);
   return [=] {

@@ -46,10 +46,7 @@ fs::path claimFile(const fs::path& folder, const std::string& task, int number) 
 
 }  // namespace
 
-void ClusterJob::plan(const fs::path& folder, const std::vector<std::string>& render, std::uint32_t samples,
-                      std::uint32_t tasks, const std::string& output) {
-  if (tasks == 0 || tasks > samples)
-    throwBadInput("--tasks {}: expected 1 to {}, the samples of a pixel", tasks, samples);
+void ClusterJob::plan(const fs::path& folder, const ClusterCommand& command, std::uint32_t tasks) {
   if (fs::exists(folder / "job.json"))
     throwBadInput("-o {}: holds a job; choose another folder, or go on with lucerna cluster run {}", folder.string(),
                   folder.string());
@@ -59,16 +56,13 @@ void ClusterJob::plan(const fs::path& folder, const std::vector<std::string>& re
     if (error) throwBadInput("-o {}: the folder cannot be made ({})", folder.string(), error.message());
   }
   nlohmann::ordered_json job;
-  job["lucerna_cluster_job"] = 1;
-  job["render"] = render;
-  job["samples"] = samples;
-  job["output"] = fs::absolute(output).string();
+  job["lucerna_cluster_job"] = 2;
+  job["command"] = command.words;
+  // Results lie where they would without a job, wherever it is joined.
+  job["output"] = command.isPicture() ? fs::absolute(command.output).string() : "";
+  job["json"] = command.json.empty() ? "" : fs::absolute(command.json).string();
   job["directory"] = fs::current_path().string();
-  const int digits = static_cast<int>(std::to_string(tasks - 1).size());
-  for (std::uint32_t i = 0; i < tasks; ++i) {
-    const auto at = [&](std::uint64_t k) { return static_cast<std::uint32_t>(k * samples / tasks); };
-    job["tasks"].push_back({{"name", fmt::format("{:0{}}", i, digits)}, {"first", at(i)}, {"last", at(i + 1)}});
-  }
+  job["tasks"] = tasks;
   writeFileAtomically(folder / "job.json", job.dump(1) + "\n");
 }
 
@@ -77,11 +71,13 @@ ClusterJob::ClusterJob(fs::path folder) : folder_(fs::absolute(folder)) {
   if (!fs::exists(file)) throwBadInput("{}: holds no job (lucerna cluster plan makes one)", folder.string());
   const auto job = parseJson<nlohmann::ordered_json>(readFileText(file), file.string());
   try {
-    if (job.at("lucerna_cluster_job") != 1) throwBadInput("{}: a job of another version", file.string());
-    render_ = job.at("render").get<std::vector<std::string>>();
-    output_ = job.at("output").get<std::string>();
+    if (job.at("lucerna_cluster_job") != 2) throwBadInput("{}: a job of another version", file.string());
+    command_ = {job.at("command").get<std::vector<std::string>>(), job.at("output").get<std::string>(),
+                job.at("json").get<std::string>()};
     directory_ = job.at("directory").get<std::string>();
-    for (const auto& task : job.at("tasks")) tasks_.push_back({task.at("name"), task.at("first"), task.at("last")});
+    const auto tasks = job.at("tasks").get<std::uint32_t>();
+    const std::size_t digits = std::to_string(std::max(tasks, 1u) - 1).size();
+    for (std::uint32_t i = 0; i < tasks; ++i) tasks_.push_back({fmt::format("{:0{}}", i, digits), i});
   } catch (const nlohmann::json::exception& error) {
     throwBadInput("{}: no job of lucerna cluster plan ({})", file.string(), error.what());
   }

@@ -2,14 +2,15 @@
 // a file that must not exist yet is atomic and a rename is seen whole (a local disk; NFS from version 3 on; Lustre,
 // GPFS).
 //
-//   job.json             what is made: the command, its samples, the tasks; never changed
-//   claims/TASK.N        who works on a task: creating the file is the claim, its time of change is the sign of life.
-//   N: how often it was taken up.
+//   job.json             what is made: the command, how many tasks; never changed. Task K of N is the command with
+//   --part K/N claims/TASK.N        who works on a task: creating the file is the claim, its time of change is the sign
+//   of life. N: how often it was taken up.
 //                        A claim without a sign of life for `deadAfter` seconds is nobody's: whoever creates TASK.(N+1)
 //                        first takes the task up
-//   parts/TASK.film      the task's checkpoint, written every minute and at the end: who takes a task up goes on from
-//   it done/TASK.json       its result, written last, at once logs/TASK.log        what the program said array.sbatch,
-//   join.sbatch, submit     the same for Slurm
+//   parts/TASK           the task's checkpoint, a folder (parts.hpp) or, of samples, a film TASK.film: who takes a task
+//   up goes on from it whole, whole.film    all parts as one checkpoint, made by the join done/TASK.json       its
+//   result, written last, at once logs/TASK.log        what the program said array.sbatch, join.sbatch, submit     the
+//   same for Slurm
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,7 +25,17 @@ namespace lucerna::demo {
 
 struct ClusterTask {
   std::string name;
-  std::uint32_t first = 0, last = 0;  ///< samples, `last` not counted
+  std::uint32_t number = 0;
+};
+
+/// What is cut into tasks.
+struct ClusterCommand {
+  std::vector<std::string>
+      words;  ///< after `lucerna`, without --part, --checkpoint, --json, --quiet, and of a picture -o
+  std::string output;  ///< of a path traced picture; empty: a command that writes its result itself, from all parts
+  std::string json;  ///< --json of the whole; empty: none
+
+  bool isPicture() const { return !output.empty(); }
 };
 
 class ClusterJob {
@@ -33,20 +44,19 @@ class ClusterJob {
 
   /// Throws Error(badInput) where the folder holds no job.
   explicit ClusterJob(std::filesystem::path folder);
-  /// render: the words after `lucerna render`, without --samples, --spp, --checkpoint and -o. Throws Error(badInput)
-  /// where the folder holds a job, or more tasks than samples are asked for.
-  static void plan(const std::filesystem::path& folder, const std::vector<std::string>& render, std::uint32_t samples,
-                   std::uint32_t tasks, const std::string& output);
+  /// Throws Error(badInput) where the folder holds a job.
+  static void plan(const std::filesystem::path& folder, const ClusterCommand& command, std::uint32_t tasks);
 
   const std::filesystem::path& folder() const { return folder_; }
   const std::vector<ClusterTask>& tasks() const { return tasks_; }
-  const std::vector<std::string>& render() const { return render_; }
-  const std::string& output() const { return output_; }
+  const ClusterCommand& command() const { return command_; }
   const std::string& directory() const {
     return directory_;
   }  ///< where the command was planned: its relative paths are from there
 
-  std::filesystem::path part(const ClusterTask& task) const { return folder_ / "parts" / (task.name + ".film"); }
+  std::filesystem::path part(const ClusterTask& task) const {
+    return folder_ / "parts" / (task.name + (command_.isPicture() ? ".film" : ""));
+  }
   std::filesystem::path result(const ClusterTask& task) const { return folder_ / "done" / (task.name + ".json"); }
   std::filesystem::path log(const ClusterTask& task) const { return folder_ / "logs" / (task.name + ".log"); }
   State state(const ClusterTask& task, double deadAfter) const;
@@ -66,8 +76,8 @@ class ClusterJob {
 
   std::filesystem::path folder_;
   std::vector<ClusterTask> tasks_;
-  std::vector<std::string> render_;
-  std::string output_, directory_;
+  ClusterCommand command_;
+  std::string directory_;
 };
 
 }  // namespace lucerna::demo

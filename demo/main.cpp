@@ -20,8 +20,8 @@ int main(int argc, char** argv) {
   add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times",
       lucerna::demo::addWalk);
   add("render", "Render one picture of a scene", lucerna::demo::addRender);
-  add("merge", "Parts of a path traced picture's samples (render --samples) as one picture", lucerna::demo::addMerge);
-  add("cluster", "A path traced picture by many machines: a folder that they share, Slurm, or this machine alone",
+  add("merge", "Parts made by --part (samples, frames, batches, rows) as one", lucerna::demo::addMerge);
+  add("cluster", "Work on many machines: a folder that they share, Slurm, or this machine alone",
       lucerna::demo::addCluster);
   add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
   add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "commands.hpp"
+#include "parts.hpp"
 #include "pathtracer/film.hpp"
 
 #include <fmt/core.h>
@@ -22,15 +23,37 @@ struct Options {
   double exposure = 1.0;
 };
 
+/// Frames, batches or rows: folders as one folder.
+int mergeFolders(const Options& options) {
+  for (const std::string& part : options.parts)
+    if (!isPartFolder(part)) throwBadInput("{}: is no folder of a --part, as those before it are", part);
+  if (options.checkpoint.empty() || !options.output.empty())
+    throwBadInput(
+        "merge: parts of frames, batches or rows become one with --checkpoint FOLDER, from which their command goes "
+        "on; -o is for parts of samples");
+  const nlohmann::ordered_json all = mergeParts({options.parts.begin(), options.parts.end()}, options.checkpoint);
+  const auto command = all.at("command").get<std::string>();
+  if (!options.common.quiet)
+    fmt::print(
+        "{}: {} units of {} parts; the same lucerna {} with --checkpoint {} instead of --part makes the result\n",
+        options.checkpoint, all.at("units").dump(), options.parts.size(), command, options.checkpoint);
+  options.common.writeJson({{"parts", options.parts}, {"command", command}, {"units", all.at("units")}});
+  return 0;
+}
+
 int run(Options options) {
   options.common.apply();
   if (!options.folder.empty()) {
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(options.folder, error))
-      if (entry.path().extension() == ".film") options.parts.push_back(entry.path().string());
+      if (entry.path().extension() == ".film" || isPartFolder(entry.path()))
+        options.parts.push_back(entry.path().string());
     if (error) throwBadInput("--parts {}: {}", options.folder, error.message());
   }
   if (options.parts.empty()) throwBadInput("merge: no parts were given");
+  if (std::filesystem::is_directory(options.parts.front())) return mergeFolders(options);
+  if (options.output.empty() && options.checkpoint.empty())
+    throwBadInput("--output or --checkpoint is missing: where the picture or the film of all parts goes");
   for (const std::string* file : {&options.output, &options.errorOutput})
     if (!file->empty() && !isWritableImageName(*file))
       throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", *file);
@@ -45,15 +68,16 @@ int run(Options options) {
   const Image image = film.picture();
   if (lowerExtension(options.output) == ".png")
     writePng(options.output, toneMapped(image, static_cast<float>(options.exposure)));
-  else writeImage(options.output, image);
+  else if (!options.output.empty()) writeImage(options.output, image);
   if (!options.errorOutput.empty()) writeImage(options.errorOutput, film.standardError());
   if (!options.checkpoint.empty()) writeFileAtomically(options.checkpoint, bytesOf(film));
   if (!options.common.quiet)
     fmt::print(
         "{}: {}x{}, {} parts, samples {} to {}, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} "
         "({:.3g} of the mean)\n",
-        options.output, image.width, image.height, merge.films(), film.first, film.first + film.mean.front().w - 1,
-        statistics.mean.x, statistics.mean.y, statistics.mean.z, statistics.standardError, statistics.relativeError);
+        options.output.empty() ? options.checkpoint : options.output, image.width, image.height, merge.films(),
+        film.first, film.first + film.mean.front().w - 1, statistics.mean.x, statistics.mean.y, statistics.mean.z,
+        statistics.standardError, statistics.relativeError);
   const auto finiteOrNull = [](double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
   };
@@ -75,15 +99,17 @@ int run(Options options) {
 
 Work addMerge(CLI::App& app) {
   auto options = std::make_shared<Options>();
+  app.add_option("PART", options->parts,
+                 "what a command made with --part K/N --checkpoint PART (render: --samples FIRST:LAST too), of one "
+                 "scene and with one setting, in any order");
+  app.add_option("--parts", options->folder, "a folder: all parts in it");
   app.add_option(
-      "PART", options->parts,
-      "films that render --samples FIRST:LAST --checkpoint PART made, of one scene and with one setting, in any order");
-  app.add_option("--parts", options->folder, "a folder: all its files that end in .film");
-  app.add_option("-o,--output", options->output, "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear")
-      ->required();
+      "-o,--output", options->output,
+      "of a path traced picture's samples: OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear");
   app.add_option("--error", options->errorOutput, "OUT.{hdr,exr,pfm}: the standard error of each pixel");
   app.add_option("--checkpoint", options->checkpoint,
-                 "the film of all parts, from which render --checkpoint goes on where they begin with sample 0");
+                 "all parts as one, from which the same command goes on with --checkpoint: of samples a film, if they "
+                 "begin with sample 0; of frames, batches and rows a folder");
   app.add_option("--exposure", options->exposure, "of a png")->capture_default_str();
   options->common.declare(app);
   return [options] { return run(*options); };

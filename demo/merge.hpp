@@ -1,4 +1,5 @@
-// lucerna merge PART... -o OUT: parts of a path traced picture's samples as one picture.
+// lucerna merge PART...: parts of a path traced picture's samples as one picture, parts of frames, batches and rows as
+// one folder (parts.hpp).
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -145,6 +145,10 @@ int solve(const RadiositySolve& options) {
       if (option == "--visibility")
         throwBadInput("--visibility {}: only with --fidelity corrected; the published program draws colours",
                       assignment.substr(assignment.find('=') + 1));
+  if (options.fidelity == "original" && (options.part.isPart() || !options.part.checkpoint.empty()))
+    throwBadInput(
+        "--part, --checkpoint: the published program makes its hemicubes one after another; they are for --fidelity "
+        "corrected");
   if (options.fidelity == "original") return solveOriginal(options);
   if (options.fidelity != "corrected")
     throwBadInput("--fidelity {}: unknown; expected one of corrected, original", options.fidelity);
@@ -201,6 +205,7 @@ Work addSolve(CLI::App& app) {
   app.add_option("--save-every", options->saveEvery, "seconds between checkpoints within a sweep")
       ->capture_default_str();
   app.add_flag("--restart", options->restart, "start over instead of resuming a stopped run");
+  options->part.declare(app, "rows of hemicubes");
   const auto addShort = [&](const char* option, const char* key, const char* meaning) {
     return shortFor(key, app.add_option_function<std::string>(
                              option, [](const std::string&) {}, std::string("corrected: ") + meaning));

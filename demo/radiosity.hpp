@@ -2,6 +2,7 @@
 #pragma once
 
 #include "commands.hpp"
+#include "parts.hpp"
 #include "radiosity/settings.hpp"
 
 #include <optional>
@@ -13,6 +14,7 @@ namespace lucerna::demo {
 /// `lucerna radiosity solve`: everything on its command line, checked as far as both solvers agree.
 struct RadiositySolve {
   CommonOptions common;
+  PartOptions part;  ///< corrected: of rows of hemicubes
   std::string in, out, fidelity = "corrected", solver;
   std::vector<std::string> deviations;
   std::vector<std::string> set;  ///< corrected: radiosity.KEY=VALUE as `lucerna render` takes them

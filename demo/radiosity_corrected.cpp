@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "radiosity/original/rad_file.hpp"
+#include "radiosity/row_file.hpp"
 #include "radiosity/solution.hpp"
 
 #include <fmt/core.h>
@@ -67,6 +68,45 @@ std::array<std::int64_t, 4> stampOf(const std::string& file) {
           static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
 }
 
+/// A part's rows alone.
+int makePart(const RadiositySolve& options, const gl::Context& context, gl::ProgramLibrary& programs,
+             const Scene& scene, const RadiositySolutionSettings& settings) {
+  FormFactorParts rows(context, programs, scene, settings);
+  const PartFolder part(options.part, "radiosity solve",
+                        fmt::format("{}, rows {:016x}, {}", scene.name, rows.fingerprint(), textOf(settings)),
+                        rows.patches());
+  const std::size_t count = part.last() - part.first();
+  Progress progress("hemicubes", static_cast<int>(count), options.common.quiet);
+  std::size_t made = 0;
+  if (count > 0)
+    made = rows.make(part.first(), part.last(), part.file(part.first(), ".rows"), [&](std::size_t done) {
+      progress.update(static_cast<int>(done));
+      return !interrupted();
+    });
+  if (interrupted()) throw Stopped(fmt::format("stopped; the same command goes on from {}", options.part.checkpoint));
+  part.finish();
+  if (!options.common.quiet)
+    fmt::print("{}: rows {} to {} of {}, {} made now\n", options.part.checkpoint, part.first(), part.last(),
+               part.units(), made);
+  options.common.writeJson({{"rows", {part.first(), part.last()}}, {"of", part.units()}, {"made", made}});
+  return 0;
+}
+
+/// The rows of all parts as the checkpoint from which solving goes on.
+void takeParts(const RadiositySolve& options, const std::filesystem::path& checkpoint) {
+  if (!isPartFolder(options.part.checkpoint))
+    throwBadInput("--checkpoint {}: is no folder of lucerna merge; a solution's own checkpoint is OUT.rows",
+                  options.part.checkpoint);
+  if (std::filesystem::exists(checkpoint)) return;  // was begun
+  std::vector<std::pair<std::uint32_t, std::filesystem::path>> files;
+  for (const auto& entry : std::filesystem::directory_iterator(options.part.checkpoint))
+    if (entry.path().extension() == ".rows")
+      files.emplace_back(static_cast<std::uint32_t>(std::stoul(entry.path().stem().string())), entry.path());
+  if (files.empty()) throwBadInput("--checkpoint {}: holds no rows of hemicubes", options.part.checkpoint);
+  std::sort(files.begin(), files.end());
+  joinRowFiles(files, checkpoint);
+}
+
 }  // namespace
 
 int solveCorrected(const RadiositySolve& options) {
@@ -96,7 +136,12 @@ int solveCorrected(const RadiositySolve& options) {
   gl::Context context;
   gl::ProgramLibrary programs;
   const std::filesystem::path checkpoint = options.out + ".rows";
+  if (options.part.isPart()) {
+    watchForInterrupt();
+    return makePart(options, context, programs, scene, settings);
+  }
   if (options.restart) removeCheckpoints(checkpoint);
+  if (!options.part.checkpoint.empty()) takeParts(options, checkpoint);
   const auto before = stampOf(options.out);
   watchForInterrupt();
   Progress progress("hemicubes", 1000, options.common.quiet);

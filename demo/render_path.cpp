@@ -4,6 +4,8 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "first_sample.hpp"
+#include "parts.hpp"
 #include "pathtracer/film.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "settings/deviations.hpp"
@@ -34,8 +36,18 @@ bool isOriginalScene(const std::string& file) {
 struct SampleRange {
   std::uint32_t first = 0, last = 0;
 };
-/// "FIRST:LAST"; empty where it was not given.
+/// Of --samples "FIRST:LAST" or --part "K/N"; empty where neither was given.
 std::optional<SampleRange> sampleRange(const PathOptions& path) {
+  if (!path.part.empty()) {
+    if (!path.samples.empty() || path.seconds || path.error)
+      throwBadInput("--part {}: is a part of the samples of --spp; --samples, --seconds and --error do not go with it",
+                    path.part);
+    if (!path.spp) throwBadInput("--part {}: needs --spp, the samples that all parts have together", path.part);
+    const PartOptions::Range range = PartOptions{path.part, path.checkpoint}.rangeOf(*path.spp);
+    if (range.first == range.last)
+      throwBadInput("--part {}: has no sample of --spp {}; choose fewer parts", path.part, *path.spp);
+    return SampleRange{static_cast<std::uint32_t>(range.first), static_cast<std::uint32_t>(range.last)};
+  }
   if (path.samples.empty()) return std::nullopt;
   constexpr std::uint64_t kMost = 1u << 31;
   const auto colon = path.samples.find(':');
@@ -74,13 +86,17 @@ void PathOptions::declare(CLI::App& app) {
   app.add_option("--samples", samples,
                  "path: FIRST:LAST, a part of the samples of a pixel, FIRST up to but without LAST, kept by "
                  "--checkpoint; lucerna merge makes one picture of all parts");
+  app.add_option("--part", part, "path: K/N, part K of N, from 0, of the samples of --spp, as --samples");
+  app.add_option("--save-every", saveEvery, "path: seconds between checkpoints")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e6));
   app.add_option("--seed", seed, "path: of the random numbers (0)");
 }
 
 void PathOptions::refuseIfGiven(const std::string& technique) const {
-  if (spp || seconds || error || bounces || seed || !checkpoint.empty() || !samples.empty())
+  if (spp || seconds || error || bounces || seed || !checkpoint.empty() || !samples.empty() || !part.empty())
     throwBadInput(
-        "--technique {}: --spp, --samples, --seconds, --error, --bounces, --seed and --checkpoint belong to "
+        "--technique {}: --spp, --samples, --part, --seconds, --error, --bounces, --seed and --checkpoint belong to "
         "--technique path",
         technique);
 }
@@ -124,10 +140,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
       throwBadInput("{}: its samples begin with number {}, not {}{}", checkpoint, first, part ? part->first : 0,
                     part ? "" : " (a part of --samples; lucerna merge makes a whole)");
   } else if (part) {
-    // A part begins with an empty film whose first sample has another number.
-    Film film = filmOf(tracer.checkpoint(), checkpoint);
-    film.first = part->first;
-    tracer.resume(bytesOf(film), checkpoint);
+    setFirstSample(tracer, part->first);
   }
   const auto save = [&] { writeFileAtomically(checkpoint, tracer.checkpoint()); };
   watchForInterrupt();
@@ -138,21 +151,27 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Progress progress("samples", static_cast<int>(std::min(target, 1000000000u)), common.quiet || !(path.spp || part));
-  // Samples in steps: between them the error is looked at, and all pixels have the same number.
   std::uint32_t done = tracer.statistics().fewestSamples;
+  const std::uint32_t resumed = done;
   double saved = 0.0;
   bool stopped = false;
+  // Within a step too, since steps grow to hours.
+  const auto saveNowAndThen = [&] {
+    if (path.checkpoint.empty() || elapsed() <= saved + path.saveEvery) return;
+    try {
+      save();
+    } catch (const Error& error) { logWarning("--checkpoint {}; rendering continues without it", error.what()); }
+    saved = elapsed();
+  };
+  // Samples in steps: between them the error is looked at, and all pixels have the same number.
   while (done < target && !stopped) {
     const std::uint32_t next = std::min(target, done + std::max(1u, done / 4));
-    while (!stopped && tracer.advance(next))
+    while (!stopped && tracer.advance(next)) {
       stopped = interrupted() || (done > 0 && path.seconds && elapsed() >= *path.seconds);
-    if (!stopped) done = next;
-    if (!path.checkpoint.empty() && elapsed() > saved + 60.0) {
-      try {
-        save();
-      } catch (const Error& error) { logWarning("--checkpoint {}; rendering continues without it", error.what()); }
-      saved = elapsed();
+      saveNowAndThen();
     }
+    if (!stopped) done = next;
+    saveNowAndThen();
     progress.update(static_cast<int>(std::min(done, 1000000000u)));
     stopped = stopped || interrupted() || (path.seconds && elapsed() >= *path.seconds) ||
               (path.error && done >= 4 && tracer.statistics().relativeError <= *path.error);
@@ -202,6 +221,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
                                  finiteOrNull(statistics.meanError.z)};
   json["spp"] = statistics.samples;
   if (part) json["samples"] = {part->first, part->last};
+  json["resumed_samples"] = resumed;
   json["standard_error"] = finiteOrNull(statistics.standardError);
   json["relative_error"] = finiteOrNull(statistics.relativeError);
   json["bounces"] = settings.bounces != PathTracer::kUnlimited ? nlohmann::ordered_json(settings.bounces)

@@ -13,8 +13,10 @@ struct PathOptions {
   std::optional<std::uint32_t> bounces;
   std::string
       samples;  ///< "FIRST:LAST": those samples alone, FIRST up to but without LAST, into the checkpoint; empty: all
+  std::string part;  ///< "K/N": part K of N of the samples of --spp, into the checkpoint; empty: all
   std::optional<std::uint32_t> seed;
   std::string checkpoint;  ///< empty: none
+  double saveEvery = 60.0;  ///< seconds between checkpoints
   bool sizeGiven = true;  ///< --size was; without it the original's files and fidelity have the original's size
 
   void declare(CLI::App& app);

@@ -595,7 +595,7 @@ class Figure {
     for (const v of tics(y0, y1)) out += `<path d="M${left} ${Y(v)}H${W - right}" stroke="#e2e2e6"/><text x="${left - 8}" y="${Y(v) + 4}" text-anchor="end">${unit(v)}</text>`;
     out += `<path d="M${left} ${top}V${H - bottom}H${W - right}" fill="none" stroke="#333"/><text x="${(left + W - right) / 2}" y="${H - 10}" text-anchor="middle">${escapeText(COSTS[cost].name)}</text><text transform="translate(16 ${(top + H - bottom) / 2}) rotate(-90)" text-anchor="middle">${escapeText(METRICS[metric].name)}</text>`;
     out += `<clipPath id="plot-area"><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}"/></clipPath>`;
-    levels.filter(v => v.value >= y0 && v.value <= y1).forEach((level, k) => { out += `<path class="level" data-value="${level.value}" d="M${left} ${Y(level.value)}H${W - right}" stroke="#444" stroke-dasharray="${['8 4', '2 4', '10 3 2 3'][k % 3]}"/><text x="${W - right - 4}" y="${Y(level.value) - 4}" text-anchor="end" font-size="11" fill="#444">${escapeText(level.name)}</text>`; });
+    levels.filter(v => v.value >= y0 && v.value <= y1).forEach((level, k) => { out += `<path class="level" data-value="${level.value}" d="M${left} ${Y(level.value)}H${W - right}" stroke="#444" stroke-dasharray="${['8 4', '2 4', '10 3 2 3'][k % 3]}"/>`; });
     // The front, from its cheapest to its best.
     const front = frontOf(this.rows, cost, metric), line = front.map(i => ({x: X(COSTS[cost].of(this.rows[i])), y: Y(ranked(this.rows[i], metric))})).sort((a, b) => a.x - b.x);
     if (line.length > 1) out += `<path class="front" d="M${line.map(p => `${p.x} ${p.y}`).join('L')}" fill="none" stroke="#f0dc82" stroke-width="9" stroke-linejoin="round" stroke-linecap="round"/>`;
@@ -624,6 +624,9 @@ class Figure {
           (p.noise ? `<path d="M${x} ${y + 7}v9m-3 -4l3 4l3 -4" fill="none" stroke="${style.colour}"/>` : '') + '</g>';
       }
     }
+    // Names of the levels last, on a halo: lines and bands of the series lie below them.
+    for (const level of levels.filter(v => v.value >= y0 && v.value <= y1))
+      out += `<text x="${W - right - 4}" y="${Y(level.value) - 4}" text-anchor="end" font-size="11" fill="#444" stroke="#fff" stroke-width="3" paint-order="stroke" pointer-events="none">${escapeText(level.name)}</text>`;
     out += '</svg>';
     this.legend = '<div class="lf-legend">' + series.map(s => { const style = this.style(s.name); return `<span><svg width="16" height="14">${mark(style.mark, 8, 7, 4, style.colour)}</svg> ${escapeText(s.name)}</span>`; }).join('') +
       '<span>yellow: the front by a test (two standard errors); hollow with an arrow: below the reference\u2019s noise; bands: least to largest of the seeds; bars: 95 %</span></div>';
@@ -685,12 +688,12 @@ class Figure {
   }
 
   // ---------------------------------------------------------------- crops
-  /// Where the methods of the front disagree most: windows of a sixth of the width with the largest sum of their luminances' relative variance, which do not overlap.
+  /// Where the methods of the front disagree most, or a single one with the reference: windows of a sixth of the width with the largest sum of their luminances' relative variance, which do not overlap.
   chooseCrops() {
     const methods = this.items.map((it, i) => i).filter(i => i > 0 && this.rows[this.items[i].row].pareto).slice(0, 8), w = Math.max(4, Math.round(this.width / 6)), h = Math.max(4, Math.min(this.height, Math.round(w * 0.75)));
     const use = methods.length > 1 ? methods : this.items.map((it, i) => i).slice(1, 5);
     if (!use.length || this.width < w || this.height < h) return;
-    const n = this.width * this.height, sums = new Float64Array((this.width + 1) * (this.height + 1)), ps = use.map(i => this.pixels(i)), t = this.truth(0), epsilon = this.facts.relmse_epsilon * this.meanLuminance(0) ** 2;
+    const n = this.width * this.height, sums = new Float64Array((this.width + 1) * (this.height + 1)), t = this.truth(0), ps = [...use.map(i => this.pixels(i)), ...(use.length === 1 ? [t] : [])], epsilon = this.facts.relmse_epsilon * this.meanLuminance(0) ** 2;
     for (let y = 0; y < this.height; ++y)
       for (let x = 0; x < this.width; ++x) {
         const k = y * this.width + x;

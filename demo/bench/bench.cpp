@@ -31,6 +31,7 @@ Work addBench(CLI::App& app) {
   add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);
   add("rays", "Rays per second of the compute-shader hierarchy, beside Embree on the same rays", addBenchRays);
   add("error", "Error against run time: every technique over a ladder of settings", addBenchError);
+  add("references", "The references of bench error alone, in parts where they are to be", addBenchReferences);
   add("diff", "Two reports of bench error row by row: better, worse or undecided, by a test that knows both spreads",
       addBenchDiff);
   add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);

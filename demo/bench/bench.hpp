@@ -2,6 +2,7 @@
 #pragma once
 
 #include "commands.hpp"
+#include "parts.hpp"
 #include "settings/deviations.hpp"
 
 #include <string>
@@ -13,6 +14,7 @@ Work addBenchTables(CLI::App& app);
 Work addBenchPictures(CLI::App& app);
 Work addBenchRays(CLI::App& app);
 Work addBenchError(CLI::App& app);
+Work addBenchReferences(CLI::App& app);
 Work addBenchStability(CLI::App& app);
 Work addBenchNeeds(CLI::App& app);
 Work addBenchAll(CLI::App& app);
@@ -50,13 +52,15 @@ struct TablesInput {
   const Scene& scene;
   double scale;  ///< 0..1
   bool quiet;
+  PartOptions part = {};  ///< of the rows
+  std::optional<LpvFill> fill = {};  ///< measured beside the published one; none: the fastest here, tried first
 };
 
 struct Tables {
   std::vector<std::string> notes;  ///< how it was measured, and how that differs from what was published
   std::vector<Row> rows;
   std::string summary;  ///< printed after the tables
-  nlohmann::ordered_json json;  ///< the same, and the settings
+  nlohmann::ordered_json json;  ///< the same, and the settings; of a part how many rows it made, and nothing else
 };
 
 struct VptTablesInput {
@@ -65,6 +69,7 @@ struct VptTablesInput {
   double scale;  ///< 0..1
   bool quiet;
   Fidelity fidelity = Fidelity::corrected;
+  PartOptions part = {};  ///< of the rows
 };
 
 /// The times under the pictures of the VPT original, on scenes of ours; with the published estimator also those of the

@@ -1,11 +1,12 @@
 // lucerna bench error SCENE: every technique over a ladder of settings, its time and its error against a path-traced
-// reference.
+// reference. lucerna bench references SCENE: those references alone, which may be made in batches on many machines.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/hash.hpp"
 #include "base/image.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
+#include "bench/provenance.hpp"
 #include "offers.hpp"
 
 #include <fmt/core.h>
@@ -86,62 +87,114 @@ std::string pictureCommand(const ErrorBenchOptions& options) {
 
 }  // namespace
 
-void ErrorBenchOptions::declare(CLI::App& app) {
+void ErrorBenchOptions::declareView(CLI::App& app) {
   app.add_option("--camera", camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.add_option("--size", size, "WIDTHxHEIGHT of the pictures")->capture_default_str();
-  app.add_option("--budget", budget, "seconds for references and path tracing; known references are used again")
-      ->capture_default_str()
-      ->check(CLI::Range(0.01, 1e6));
-  app.add_option("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")
-      ->check(CLI::Range(2, 1 << 30));
   app.add_option("--references", references,
                  "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
   offer(
       app.add_option("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all")->delimiter(','),
       {"direct", "rsm", "lpv", "radiosity", "path"});
-  app.add_option("--frames", frames, "pictures a rung at least")->capture_default_str()->check(CLI::Range(1, 10000));
   app.add_flag("--small", small, "without the most expensive rungs");
+}
+
+void ErrorBenchOptions::declare(CLI::App& app) {
+  declareView(app);
+  app.add_option("--budget", budget, "seconds for references and path tracing; known references are used again")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 1e6));
+  app.add_option("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")
+      ->check(CLI::Range(2, 1 << 30));
+  app.add_option("--frames", frames, "pictures a rung at least")->capture_default_str()->check(CLI::Range(1, 10000));
   app.add_option("--out", out, "folder of the report; an interrupted bench goes on where it was");
+}
+
+ErrorBenchPlan::ErrorBenchPlan(const Scene& original, const ErrorBenchOptions& options)
+    : scene(withoutHighlights(original)),
+      camera(chooseCamera(scene, options.camera)),
+      size(parseSize(options.size)),
+      techniques(chosenTechniques(options)),
+      leftOut(leftOutOf(options, scene)) {
+  if (!leftOut.empty()) std::erase(techniques, "radiosity");
+  rungs = rungsOf(options, techniques, scene.bounds);
+  title =
+      fmt::format("{}, camera {}, {}x{}", scene.name, camera.name.empty() ? "default" : camera.name, size.x, size.y);
+  withPath = std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
+  for (const Rung& rung : rungs)
+    if (const TechniqueModel model = modelOf(rung, measure::kindsOf(scene));
+        std::find(models.begin(), models.end(), model) == models.end())
+      models.push_back(model);
+}
+
+ReferenceRequest ErrorBenchPlan::references(const gl::Context& context, gl::ProgramLibrary& programs,
+                                            const ErrorBenchOptions& options, const std::filesystem::path& own) const {
+  return {context,
+          programs,
+          scene,
+          camera,
+          size,
+          (withPath ? 0.7 : 1.0) * options.budget,
+          models,
+          options.referenceSamples,
+          options.references,
+          options.quiet,
+          withPath,
+          own};
 }
 
 std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs,
                                                 const Scene& original, const ErrorBenchOptions& options,
                                                 const std::string& hostName) {
-  const Scene scene = withoutHighlights(original);
-  const Camera camera = chooseCamera(scene, options.camera);
-  const glm::ivec2 size = parseSize(options.size);
-  std::vector<std::string> techniques = chosenTechniques(options);
-  const std::vector<std::string> leftOut = leftOutOf(options, scene);
-  if (!leftOut.empty()) std::erase(techniques, "radiosity");
-  const std::vector<Rung> rungs = rungsOf(options, techniques, scene.bounds);
-  const std::string title =
-      fmt::format("{}, camera {}, {}x{}", scene.name, camera.name.empty() ? "default" : camera.name, size.x, size.y);
-  const std::filesystem::path folder = options.out;
+  const ErrorBenchPlan plan(original, options);
+  const Scene& scene = plan.scene;
+  const std::vector<Rung>& rungs = plan.rungs;
+  // Rows of other processors or renderers are of other times.
+  const auto kept = [&](const PartOptions& part) {
+    if (options.referenceSamples == 0)
+      throwBadInput(
+          "--part, --checkpoint: need --reference-spp, since references by time are different ones on each machine");
+    return PartFolder(part, "bench error",
+                      fmt::format("{}, {}, {} rungs of {}, references of {} samples, scene {}, {} on {}", plan.title,
+                                  options.deviations ? "deviations" : "ladders", rungs.size(),
+                                  fmt::join(plan.techniques, ", "), options.referenceSamples,
+                                  measure::keyOf(scene, plan.camera, plan.size, Transport::all, "rows 2").name(),
+                                  context.capabilities().renderer, cpuName()),
+                      rungs.size() + plan.withPath);
+  };
+  const bool isPart = options.part.isPart();
+  if (isPart && options.referenceSamples > 0 && !hasReferences(plan.references(context, programs, options)))
+    throwBadInput(
+        "--part {}: the references are not there: lucerna bench references with the same scene, --size, --camera, "
+        "--techniques and --reference-spp makes them, in parts too",
+        options.part.part);
+  std::optional<PartFolder> part;
+  if (!options.part.checkpoint.empty()) {
+    if (!isPart && !isPartFolder(options.part.checkpoint))
+      throwBadInput("--checkpoint {}: is no folder of lucerna merge; a bench's own goes on by --out",
+                    options.part.checkpoint);
+    part.emplace(kept(options.part));
+  } else if (isPart) {
+    options.part.rangeOf(1);  // says what is missing
+  }
+  const std::filesystem::path folder = isPart ? *part->folder() : std::filesystem::path(options.out);
   makeFolder(folder);
+  if (part && !isPart) copyUnits(*part->folder(), folder);
 
   auto result = std::make_unique<ErrorBenchResult>();
-  const bool withPath = std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
-  std::vector<TechniqueModel> models;
-  for (const Rung& rung : rungs)
-    if (const TechniqueModel model = modelOf(rung, measure::kindsOf(scene));
-        std::find(models.begin(), models.end(), model) == models.end())
-      models.push_back(model);
-  auto references =
-      obtainReferences({context, programs, scene, camera, size, (withPath ? 0.7 : 1.0) * options.budget, models,
-                        options.referenceSamples, options.references, options.quiet, withPath, folder / "references"});
+  auto references = obtainReferences(plan.references(context, programs, options, folder / "references"));
   if (!references) return result;
   result->references = std::move(*references);
   // Rows are judged by the reference that there was: a better one is another bench.
-  claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", title,
+  claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", plan.title,
                                   options.deviations ? "deviations" : "ladders", context.capabilities().renderer,
-                                  measure::keyOf(scene, camera, size, Transport::all, "rows 2").name(),
+                                  measure::keyOf(scene, plan.camera, plan.size, Transport::all, "rows 2").name(),
                                   result->references.all().samples));
 
   const ErrorBench bench{context,
                          programs,
                          scene,
-                         camera,
-                         size,
+                         plan.camera,
+                         plan.size,
                          result->references,
                          folder,
                          0.3 * options.budget,
@@ -150,9 +203,10 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                          pictureCommand(options)};
   writePng(folder / "pictures/reference.png", toneMapped(result->references.all().mean, scene.exposure));
   std::vector<ErrorRow> rows;
-  Progress progress(options.deviations ? "deviations" : "ladders", static_cast<int>(rungs.size()) + (withPath ? 1 : 0),
-                    options.quiet);
-  for (const Rung& rung : rungs) {
+  const std::size_t first = isPart ? part->first() : 0, last = isPart ? part->last() : rungs.size() + plan.withPath;
+  Progress progress(options.deviations ? "deviations" : "ladders", static_cast<int>(last - first), options.quiet);
+  for (std::size_t i = first; i < std::min(last, rungs.size()); ++i) {
+    const Rung& rung = rungs[i];
     if (interrupted()) return result;
     if (auto known = finishedRow(folder, rung)) {
       (*known)["series"] = rung.series;
@@ -162,13 +216,19 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
     }
     progress.update(static_cast<int>(rows.size()));
   }
-  if (withPath)
+  if (last > rungs.size())
     for (ErrorRow& row : measurePath(bench, options.deviations)) rows.push_back(std::move(row));
   if (interrupted()) return result;
+  if (isPart) {
+    part->finish();
+    result->partRows = last - first;
+    result->complete = true;
+    return result;
+  }
   markFront(rows);
 
   ErrorReport& report = result->report;
-  report.title = title;
+  report.title = plan.title;
   report.renderer = context.capabilities().renderer;
   report.host = hostName;
   report.cpu = cpuName();
@@ -183,11 +243,11 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   report.command =
       bench.command +
       (options.techniques.empty() ? "" : fmt::format(" --techniques {}", fmt::join(options.techniques, ",")));
-  report.leftOut = leftOut;
+  report.leftOut = plan.leftOut;
   writeFileAtomically(folder / "error.csv", csvOf(report));
   writeFileAtomically(folder / "error.json", errorBenchJson(*result, options).dump(2) + "\n");
   plotRows(folder, report);
-  HtmlPage page("Lucerna: " + title);
+  HtmlPage page("Lucerna: " + plan.title);
   addToPage(page, folder, report, kPageBytes);
   writeFileAtomically(folder / "report.html", page.text());
   result->complete = true;
@@ -205,7 +265,9 @@ std::unique_ptr<ErrorBenchResult> benchScene(const CommonOptions& common, ErrorB
   watchForInterrupt();
   auto result = runErrorBench(context, programs, scene, options, std::string(nameOf(host->kind())));
   if (result->complete) return result;
-  fmt::print(stderr, "lucerna: interrupted; the same command with --out {} goes on\n", options.out);
+  const bool isPart = options.part.isPart();
+  fmt::print(stderr, "lucerna: interrupted; the same command with {} {} goes on\n", isPart ? "--checkpoint" : "--out",
+             isPart ? options.part.checkpoint : options.out);
   return nullptr;
 }
 
@@ -245,13 +307,68 @@ int run(Options options) {
   if (options.bench.out.empty()) options.bench.out = options.bench.deviations ? "bench-deviations" : "bench-error";
   const auto result = bench::benchScene(options.common, options.bench);
   if (!result) return exitCode();
+  if (options.bench.part.isPart()) {
+    if (!options.common.quiet) fmt::print("{}: {} rows\n", options.bench.part.checkpoint, result->partRows);
+    options.common.writeJson({{"part", options.bench.part.part}, {"rows", result->partRows}});
+    return 0;
+  }
   if (!options.common.quiet)
     fmt::print("{}\n{}/report.html\n", bench::terminalTable(result->report), options.bench.out);
   options.common.writeJson(bench::errorBenchJson(*result, options.bench));
   return 0;
 }
 
+struct ReferencesOptions {
+  CommonOptions common;
+  bench::ErrorBenchOptions bench;
+};
+
+int runReferences(ReferencesOptions options) {
+  options.common.apply();
+  bench::ErrorBenchOptions& bench = options.bench;
+  bench.quiet = options.common.quiet;
+  bench.scene = bench::sceneOrAtrium(bench.scene);
+  const Scene scene = loadScene(bench.scene);
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  watchForInterrupt();
+  const bench::ErrorBenchPlan plan(scene, bench);
+  const bench::ReferenceBatches result =
+      bench::sampleReferences(plan.references(context, programs, bench), bench.part, plan.title);
+  if (!result.complete) {
+    fmt::print(stderr, "lucerna: interrupted{}\n",
+               bench.part.checkpoint.empty() ? "; nothing is kept without --checkpoint" : "; the same command goes on");
+    return exitCode();
+  }
+  nlohmann::ordered_json json{{"renderer", context.capabilities().renderer},
+                              {"bench", plan.title},
+                              {"samples", bench.referenceSamples},
+                              {"batches", result.batches},
+                              {"made", result.made}};
+  json["files"] = nlohmann::ordered_json::array();
+  for (const auto& file : result.stored) json["files"].push_back(file.string());
+  if (!bench.quiet)
+    fmt::print("{}: {} batches, {} of them made now{}\n", plan.title, result.batches, result.made,
+               bench.part.isPart() ? "" : fmt::format("; {} references", result.stored.size()));
+  options.common.writeJson(json);
+  return 0;
+}
+
 }  // namespace
+
+Work addBenchReferences(CLI::App& app) {
+  auto options = std::make_shared<ReferencesOptions>();
+  app.add_option("SCENE", options->bench.scene, "a scene file (default: the atrium)");
+  options->bench.declareView(app);
+  app.add_option("--reference-spp", options->bench.referenceSamples, "paths a pixel of every reference")
+      ->required()
+      ->check(CLI::Range(2, 1 << 30));
+  app.add_flag("--deviations", options->bench.deviations, "those of bench error --deviations");
+  options->bench.part.declare(app, "batches");
+  options->common.declare(app);
+  return [options] { return runReferences(*options); };
+}
 
 Work addBenchError(CLI::App& app) {
   auto options = std::make_shared<Options>();
@@ -259,6 +376,7 @@ Work addBenchError(CLI::App& app) {
   options->bench.declare(app);
   app.add_flag("--deviations", options->bench.deviations,
                "each deviation of the originals alone, instead of ladders of settings");
+  options->bench.part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bench/error_report.hpp"
+#include "parts.hpp"
 
 namespace lucerna::demo::bench {
 
@@ -12,14 +13,33 @@ struct ErrorBenchOptions {
   std::uint64_t referenceSamples = 0;  ///< 0: by time
   int frames = 5;
   bool deviations = false, small = false, quiet = false;
+  PartOptions part;  ///< of rows; the command's alone
 
   void declare(CLI::App& app);
+  void declareView(CLI::App& app);  ///< of them what decides the references
 };
 
 struct ErrorBenchResult {
   ErrorReport report;
   References references;  ///< report.references points here once placed
   bool complete = false;  ///< false: interrupted; what was finished lies in the folder
+  std::size_t partRows = 0;  ///< of a part: its rows, which lie in its folder; there is no report
+};
+
+/// What is measured, before anything is.
+struct ErrorBenchPlan {
+  Scene scene;  ///< without highlights
+  Camera camera;
+  glm::ivec2 size;
+  std::vector<std::string> techniques, leftOut;
+  std::vector<Rung> rungs;
+  std::vector<TechniqueModel> models;
+  std::string title;
+  bool withPath = false;
+
+  ErrorBenchPlan(const Scene& original, const ErrorBenchOptions& options);
+  ReferenceRequest references(const gl::Context& context, gl::ProgramLibrary& programs,
+                              const ErrorBenchOptions& options, const std::filesystem::path& own = {}) const;
 };
 
 /// Measures what the folder does not hold yet; writes rows, CSV, plots and page into it. Throws Error(badInput) for

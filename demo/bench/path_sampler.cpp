@@ -2,10 +2,13 @@
 
 #include "base/error.hpp"
 #include "base/hash.hpp"
+#include "first_sample.hpp"
 #include "measure/light_kinds.hpp"
 #include "pathtracer/path_tracer.hpp"
 
 #include <fmt/format.h>
+
+#include <limits>
 
 namespace lucerna::demo::bench {
 
@@ -32,43 +35,32 @@ measure::Sampler PathSampler::asSampler() {
   return [this](std::uint64_t first, std::uint32_t samples) { return sample(first, samples); };
 }
 
-void PathSampler::begin(std::uint64_t first) {
-  PathTracer::Settings settings;
-  settings.size = size_;
-  settings.transport = transport_;
-  settings.diffuseOnly = !allMaterials_;
-  settings.pixelCentres = true;
-  if (bounces_ > 0)
-    settings.bounces = 1u + static_cast<std::uint32_t>(bounces_);  // the first scattering is of direct light
-  // Another seed for another part of the same reference, for each transport and each choice of lights: their noise must
-  // be independent.
-  const measure::LightKinds lights = measure::kindsOf(scene_);
-  Hash hash;
-  hash.add(first);
-  for (const int what : {static_cast<int>(transport_), bounces_, int{allMaterials_}, int{lights.sun}, int{lights.lamps},
-                         int{lights.surfaces}, int{lights.environment}})
-    hash.add(what);
-  settings.seed = static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32);
-  tracer_.reset();
-  tracer_ = std::make_unique<PathTracer>(context_, programs_, scene_, settings);
-  tracer_->setCamera(camera_);
-  begin_ = next_ = first;
-  sum_ = Image(size_.x, size_.y);
-}
-
-// The film goes on; a batch is what its mean has gained since.
+// A batch has a film of its own, so that it does not matter which were made before it, or where.
 Image PathSampler::sample(std::uint64_t first, std::uint32_t samples) {
-  if (!tracer_ || first != next_) begin(first);
-  const double before = static_cast<double>(next_ - begin_), after = before + samples;
-  tracer_->record(static_cast<std::uint32_t>(after));
-  next_ += samples;
-  const Image mean = tracer_->mean();
-  Image batch(size_.x, size_.y);
-  for (std::size_t i = 0; i < batch.pixels.size(); ++i)
-    batch.pixels[i] = glm::vec3((after * glm::dvec3(mean.pixels[i]) - before * glm::dvec3(sum_.pixels[i])) /
-                                static_cast<double>(samples));
-  sum_ = mean;
-  return batch;
+  if (first + samples > std::numeric_limits<std::int32_t>::max())
+    throwMissingCapability("a reference ends at {} paths a pixel", std::numeric_limits<std::int32_t>::max());
+  if (!tracer_) {
+    PathTracer::Settings settings;
+    settings.size = size_;
+    settings.transport = transport_;
+    settings.diffuseOnly = !allMaterials_;
+    settings.pixelCentres = true;
+    if (bounces_ > 0)
+      settings.bounces = 1u + static_cast<std::uint32_t>(bounces_);  // the first scattering is of direct light
+    // Another seed for each transport and each choice of lights: their noise must be independent.
+    const measure::LightKinds lights = measure::kindsOf(scene_);
+    Hash hash;
+    hash.add(std::uint64_t{0});
+    for (const int what : {static_cast<int>(transport_), bounces_, int{allMaterials_}, int{lights.sun},
+                           int{lights.lamps}, int{lights.surfaces}, int{lights.environment}})
+      hash.add(what);
+    settings.seed = static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32);
+    tracer_ = std::make_unique<PathTracer>(context_, programs_, scene_, settings);
+  }
+  tracer_->setCamera(camera_);
+  if (first > 0) setFirstSample(*tracer_, static_cast<std::uint32_t>(first));
+  tracer_->record(samples);
+  return tracer_->mean();
 }
 
 Image seenLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,

@@ -33,7 +33,6 @@ class PathSampler {
 
  private:
   Image sample(std::uint64_t first, std::uint32_t samples);
-  void begin(std::uint64_t first);
 
   const gl::Context& context_;
   gl::ProgramLibrary& programs_;
@@ -44,8 +43,6 @@ class PathSampler {
   bool allMaterials_;
   int bounces_;
   std::unique_ptr<PathTracer> tracer_;
-  std::uint64_t begin_ = 0, next_ = 0;  ///< paths of the running session
-  Image sum_;  ///< mean of those so far
 };
 
 /// What is seen of lights alone, nothing scattered: emissive surfaces, environment, background.

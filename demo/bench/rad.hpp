@@ -10,10 +10,10 @@
 namespace lucerna::demo::bench {
 
 /// Tables 4.1 and 4.2, the number of sweeps, and what each deviation costs: notes and rows. scale: 0..1. prints: each
-/// line as soon as it is known.
+/// line as soon as it is known. part: of it alone, "rows_here" then says how many units it made.
 nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramLibrary& programs, double scale,
-                                        bool quiet, bool prints);
-int runRadTables(const CommonOptions& common, double scale);
+                                        bool quiet, bool prints, const PartOptions& part = {});
+int runRadTables(const CommonOptions& common, double scale, const PartOptions& part);
 
 /// Maps 3.5 to 3.8, pictures 3.10 to 3.18 and 4.1 to 4.6, as far as the three models show them, on one sheet; empty
 /// where it was interrupted. scale: 0..1, of the triangles and pixels.

@@ -2,10 +2,12 @@
 
 #include "base/error.hpp"
 #include "bench/path_sampler.hpp"
+#include "measure/batches.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <set>
 
@@ -57,7 +59,127 @@ double weightOf(const LightPaths& paths, LightKinds scene) {
   return paths.lights != scene && paths.lights == (scene & kDeltaLights) ? 0.2 : 1.0;
 }
 
+/// Half of the time for what judges every row, the rest by weight.
+struct Share {
+  LightPaths paths;
+  bool allMaterials;
+  double time;
+};
+
+bool hasOwnMaterials(const ReferenceRequest& request) {
+  return request.path && std::any_of(request.scene.materials.begin(), request.scene.materials.end(),
+                                     [](const Material& m) { return m.bsdf != Bsdf::diffuse && m.bsdf != Bsdf::none; });
+}
+
+std::vector<Share> sharesOf(const ReferenceRequest& request) {
+  const LightKinds lights = measure::kindsOf(request.scene);
+  const LightPaths all{Transport::all, lights};
+  const bool own = hasOwnMaterials(request);
+  std::vector<Share> shares{{all, false, own ? 0.25 : 0.5}};
+  if (own) shares.push_back({all, true, 0.4});
+  std::set<LightPaths> others = wantedOf(request.models, lights);
+  others.erase(all);
+  others.erase({Transport::indirect, lights});  // is the difference of two
+  double weights = 0.0;
+  for (const LightPaths& paths : others) weights += weightOf(paths, lights);
+  for (const LightPaths& paths : others)
+    shares.push_back({paths, false, (own ? 0.35 : 0.5) * weightOf(paths, lights) / weights});
+  return shares;
+}
+
+/// What samples one of them, and its key.
+struct ShareSampler {
+  std::optional<Scene> lessLight;
+  const Scene& scene;
+  PathSampler sampler;
+  measure::ReferenceKey key;
+
+  ShareSampler(const ReferenceRequest& request, const Share& share)
+      : lessLight(share.paths.lights == measure::kindsOf(request.scene)
+                      ? std::nullopt
+                      : std::optional(measure::litBy(request.scene, share.paths.lights))),
+        scene(lessLight ? *lessLight : request.scene),
+        sampler(request.context, request.programs, scene, request.camera, request.size, share.paths.transport,
+                share.allMaterials, share.paths.bounces),
+        key(measure::keyOf(scene, request.camera, request.size, share.paths.transport, sampler.version())) {}
+  ShareSampler(const ShareSampler&) = delete;
+  ShareSampler& operator=(const ShareSampler&) = delete;
+};
+
+measure::ReferenceCache cacheOf(const ReferenceRequest& request) {
+  return measure::ReferenceCache(request.folder.empty() ? measure::ReferenceCache::defaultFolder() : request.folder);
+}
+
 }  // namespace
+
+ReferenceBatches sampleReferences(const ReferenceRequest& request, const PartOptions& options,
+                                  const std::string& identity) {
+  constexpr std::size_t kBatches = measure::SamplingGoal::kBatches;
+  CHECK(request.samples > 0, "references in batches by a number of samples");
+  const std::vector<Share> shares = sharesOf(request);
+  const std::uint32_t size = measure::batchSize(request.samples);
+  std::string keys;
+  for (const Share& share : shares) keys += " " + ShareSampler(request, share).key.name();
+  const PartFolder part(options, "bench references",
+                        fmt::format("{}, {} batches of {} samples, references{}", identity, kBatches, size, keys),
+                        shares.size() * kBatches);
+  ReferenceBatches result;
+  result.batches = part.last() - part.first();
+  Progress progress("batches", static_cast<int>(result.batches), request.quiet);
+  for (std::size_t s = 0; s < shares.size(); ++s) {
+    if ((s + 1) * kBatches <= part.first() || s * kBatches >= part.last()) continue;
+    ShareSampler share(request, shares[s]);
+    measure::BatchMean mean;
+    double seconds = 0.0;
+    for (std::size_t b = 0; b < kBatches; ++b) {
+      const std::size_t unit = s * kBatches + b;
+      if (unit < part.first() || unit >= part.last()) continue;
+      if (interrupted()) return result;
+      // The picture first: the JSON says that it is whole, and what it took.
+      Image batch;
+      if (const auto kept = part.load(unit)) {
+        batch = readImage(part.file(unit, ".pfm"));
+        seconds += kept->at("seconds").get<double>();
+      } else {
+        const auto start = std::chrono::steady_clock::now();
+        batch = share.sampler.asSampler()(b * size, size);
+        const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (part.folder()) writeImage(part.file(unit, ".pfm"), batch);
+        part.store(unit, {{"seconds", took}});
+        seconds += took;
+        ++result.made;
+      }
+      if (!part.isPart()) mean.add(batch);
+      progress.update(static_cast<int>(unit + 1 - part.first()));
+    }
+    if (part.isPart()) continue;
+    const measure::ReferenceCache cache = cacheOf(request);
+    Reference reference;
+    reference.transport = shares[s].paths.transport;
+    reference.mean = mean.mean();
+    reference.standardError = mean.standardError();
+    reference.meanError = mean.meanError();
+    reference.samples = kBatches * size;
+    reference.seconds = seconds;
+    reference.renderer = request.context.capabilities().renderer;
+    // One with more samples stays.
+    const std::optional<Reference> known = cache.load(share.key);
+    if (!known || known->samples < reference.samples) cache.store(share.key, reference);
+    result.stored.push_back(cache.fileOf(share.key));
+  }
+  part.finish();
+  result.complete = true;
+  return result;
+}
+
+bool hasReferences(const ReferenceRequest& request) {
+  const measure::ReferenceCache cache = cacheOf(request);
+  for (const Share& share : sharesOf(request)) {
+    const std::optional<Reference> known = cache.load(ShareSampler(request, share).key);
+    if (!known || known->samples < request.samples) return false;
+  }
+  return true;
+}
 
 Reference References::inside(const LightPaths& paths) const {
   Reference reference = of.at(paths);
@@ -109,64 +231,40 @@ JudgedPicture References::judge(const Image& original, const Reference& referenc
 }
 
 std::optional<References> obtainReferences(const ReferenceRequest& request) {
-  const measure::ReferenceCache cache(request.folder.empty() ? measure::ReferenceCache::defaultFolder()
-                                                             : request.folder);
-  const bool own =
-      request.path && std::any_of(request.scene.materials.begin(), request.scene.materials.end(),
-                                  [](const Material& m) { return m.bsdf != Bsdf::diffuse && m.bsdf != Bsdf::none; });
+  const measure::ReferenceCache cache = cacheOf(request);
   References result;
   result.lights = measure::kindsOf(request.scene);
   result.models = request.models;
-  const LightPaths all{Transport::all, result.lights}, delta{Transport::direct, result.lights & kDeltaLights};
-
-  // Half of the time for what judges every row, the rest by weight.
-  struct Share {
-    LightPaths paths;
-    bool allMaterials;
-    double time;
-  };
-  std::vector<Share> shares{{all, false, own ? 0.25 : 0.5}};
-  if (own) shares.push_back({all, true, 0.4});
-  std::set<LightPaths> others = wantedOf(request.models, result.lights);
-  others.erase(all);
-  const LightPaths indirect{Transport::indirect, result.lights};
-  const bool wantsIndirect = others.erase(indirect) > 0;  // is the difference below
-  double weights = 0.0;
-  for (const LightPaths& paths : others) weights += weightOf(paths, result.lights);
-  for (const LightPaths& paths : others)
-    shares.push_back({paths, false, (own ? 0.35 : 0.5) * weightOf(paths, result.lights) / weights});
+  const LightPaths indirect{Transport::indirect, result.lights}, delta{Transport::direct, result.lights & kDeltaLights};
+  const std::vector<Share> shares = sharesOf(request);
 
   Progress progress("references", static_cast<int>(shares.size()), request.quiet);
   int done = 0;
-  for (const auto& [paths, allMaterials, share] : shares) {
-    std::optional<Scene> lessLight;
-    if (paths.lights != result.lights) lessLight = measure::litBy(request.scene, paths.lights);
-    const Scene& scene = lessLight ? *lessLight : request.scene;
-    PathSampler sampler(request.context, request.programs, scene, request.camera, request.size, paths.transport,
-                        allMaterials, paths.bounces);
-    const measure::ReferenceKey key =
-        measure::keyOf(scene, request.camera, request.size, paths.transport, sampler.version());
+  for (const Share& share : shares) {
+    const auto& [paths, allMaterials, time] = share;
+    ShareSampler sampler(request, share);
+    const measure::ReferenceKey& key = sampler.key;
     measure::SamplingGoal goal;
-    goal.seconds = share * request.seconds;
+    goal.seconds = time * request.seconds;
     goal.samples = request.samples;
     std::optional<Reference> reference;
     if (!request.own.empty()) reference = measure::ReferenceCache(request.own).load(key);
     const bool isOwn = reference.has_value();
     if (!isOwn)
-      reference = measure::obtainReference(cache, key, sampler.asSampler(), paths.transport, goal,
+      reference = measure::obtainReference(cache, key, sampler.sampler.asSampler(), paths.transport, goal,
                                            request.context.capabilities().renderer, interrupted);
     if (!reference || interrupted()) return std::nullopt;
     if (!isOwn && !request.own.empty()) measure::ReferenceCache(request.own).store(key, *reference);
     if (!result.seen.contains(paths.lights))
       result.seen.emplace(paths.lights,
-                          seenLights(request.context, request.programs, scene, request.camera, request.size));
+                          seenLights(request.context, request.programs, sampler.scene, request.camera, request.size));
     if (allMaterials) result.own = std::move(*reference);
     else result.of.emplace(paths, std::move(*reference));
     progress.update(++done);
   }
   result.indirect_ = difference(result.all(), result.of.at({Transport::direct, result.lights}));
   result.indirect_.transport = Transport::indirect;
-  if (wantsIndirect) result.of.emplace(indirect, result.indirect_);
+  if (wantedOf(request.models, result.lights).contains(indirect)) result.of.emplace(indirect, result.indirect_);
 
   // Surfaces, and which of them sun and lamps light. Without such lights none is lit.
   result.albedo = albedoPicture(request.context, request.programs, request.scene, request.camera, request.size);

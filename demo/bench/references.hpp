@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "measure/image_errors.hpp"
 #include "measure/reference.hpp"
+#include "parts.hpp"
 
 #include <map>
 #include <optional>
@@ -80,6 +81,19 @@ struct References {
 
 /// Empty where it was interrupted. Throws Error(missingCapability) where nothing can sample them.
 std::optional<References> obtainReferences(const ReferenceRequest& request);
+
+/// The references that obtainReferences() asks the cache for, by a number of samples, cut into batches: those of a part
+/// are kept in its folder; all together are stored in the cache, the same bits as of one run. `command` and `identity`:
+/// the folder's (parts.hpp).
+struct ReferenceBatches {
+  std::size_t batches = 0, made = 0;  ///< of the part; made now
+  std::vector<std::filesystem::path> stored;  ///< in the cache; none of a part
+  bool complete = false;  ///< false: interrupted
+};
+ReferenceBatches sampleReferences(const ReferenceRequest& request, const PartOptions& part,
+                                  const std::string& identity);
+/// Whether the cache holds all of them with the samples that are asked for.
+bool hasReferences(const ReferenceRequest& request);
 
 /// What the models leave out, whatever the settings: a line for visibility, for bounces, and for the kinds of light
 /// that a technique has not. Errors over the fuller of both.

@@ -1,7 +1,10 @@
 // lucerna bench stability [--technique T]: a row a case: technique, parameter, expected, measured, verdict.
 #include "bench/stability.hpp"
 
+#include "bench/stability_part.hpp"
+
 #include "base/error.hpp"
+#include "base/hash.hpp"
 #include "bench/bench.hpp"
 
 #include <fmt/core.h>
@@ -52,9 +55,30 @@ StabilityRow runCase(const StabilityCase& c, const StabilityContext& context) {
   return row;
 }
 
+// A row as it is kept: what was measured; the rest is the case's.
+PartFolder::Json keptOf(const StabilityRow& row) {
+  const Measurement& m = row.measurement;
+  return {{"expected", m.expected},           {"measured", m.measured}, {"tolerance", m.tolerance},
+          {"rule", static_cast<int>(m.rule)}, {"seconds", row.seconds}, {"note", row.note}};
+}
+
+StabilityRow keptRow(const StabilityCase& c, const PartFolder::Json& kept) {
+  const auto number = [&](const char* key) { return kept.at(key).is_number() ? kept.at(key).get<double>() : NAN; };
+  StabilityRow row{c.technique, c.name, c.parameter, kept.at("note").get<std::string>(), {}, number("seconds"), false};
+  row.measurement = {number("expected"), number("measured"), number("tolerance"),
+                     static_cast<Rule>(kept.at("rule").get<int>())};
+  row.passed = row.measurement.passes();
+  return row;
+}
+
 }  // namespace
 
 std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet) {
+  return runStability(context, technique, quiet, PartOptions{});
+}
+
+std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet,
+                                       const PartOptions& options) {
   std::vector<StabilityCase> cases;
   addLpvCases(cases);
   addReceiverCases(cases);
@@ -68,13 +92,25 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
     if (known.find(c.technique) == std::string::npos) known += (known.empty() ? "" : ", ") + c.technique;
   if (!technique.empty()) std::erase_if(cases, [&](const StabilityCase& c) { return c.technique != technique; });
   if (cases.empty()) throwBadInput("--technique {}: unknown; expected one of {}", technique, known);
+  Hash names;
+  for (const StabilityCase& c : cases)
+    for (const std::string* text : {&c.technique, &c.name, &c.parameter}) names.add(std::string_view(*text));
+  const PartFolder part(
+      options, "bench stability",
+      fmt::format("technique {}, cases {:016x}", technique.empty() ? "all" : technique, names.value()), cases.size());
   std::vector<StabilityRow> rows;
-  Progress progress("stability", static_cast<int>(cases.size()), quiet);
-  for (const StabilityCase& c : cases) {
-    if (interrupted()) break;
-    rows.push_back(runCase(c, context));
+  Progress progress("stability", static_cast<int>(part.last() - part.first()), quiet);
+  for (std::size_t i = part.first(); i < part.last(); ++i) {
+    if (interrupted()) return rows;
+    if (const auto kept = part.load(i)) {
+      rows.push_back(keptRow(cases[i], *kept));
+    } else {
+      rows.push_back(runCase(cases[i], context));
+      part.store(i, keptOf(rows.back()));
+    }
     progress.update(static_cast<int>(rows.size()));
   }
+  part.finish();
   return rows;
 }
 
@@ -104,11 +140,14 @@ namespace {
 
 struct Options {
   CommonOptions common;
+  PartOptions part;
   std::string technique, compare;
 };
 
 int run(const Options& options) {
   options.common.apply();
+  if (options.part.isPart() && !options.compare.empty())
+    throwBadInput("--compare {}: needs all rows; --part makes some", options.compare);
   const nlohmann::ordered_json kept =
       options.compare.empty() ? nlohmann::ordered_json() : bench::readKept(options.compare);
   const auto host = options.common.makeHost(false);
@@ -116,7 +155,7 @@ int run(const Options& options) {
   gl::ProgramLibrary programs;
   watchForInterrupt();
   const std::vector<bench::StabilityRow> rows =
-      bench::runStability({context, programs}, options.technique, options.common.quiet);
+      bench::runStability({context, programs}, options.technique, options.common.quiet, options.part);
   int failed = 0;
   double seconds = 0.0;
   if (!options.common.quiet)
@@ -145,6 +184,7 @@ int run(const Options& options) {
                             {"worse", worse},
                             {"seconds", seconds}});
   if (interrupted()) return exitCode();
+  if (options.part.isPart()) return 0;  // the verdict is of all rows
   // Beside a table that was kept, a defect that it knows of is no news.
   return (options.compare.empty() ? failed > 0 : !worse.empty()) ? 1 : 0;
 }
@@ -157,6 +197,7 @@ Work addBenchStability(CLI::App& app) {
   app.add_option("--compare", options->compare,
                  "a table kept by --json: rows that are gone, fail now, expect another answer or allow more are named, "
                  "exit code 1");
+  options->part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

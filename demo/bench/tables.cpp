@@ -34,7 +34,8 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string original, scene, fidelity;
+  PartOptions part;
+  std::string original, scene, fidelity, fill;
   std::optional<double> scale;
 };
 
@@ -122,8 +123,17 @@ int run(Options options) {
   if (options.original == "rad") {
     if (!options.scene.empty())
       throwBadInput("{}: --original rad makes its own models; expected no SCENE", options.scene);
-    return bench::runRadTables(options.common, scale);
+    return bench::runRadTables(options.common, scale, options.part);
   }
+  std::optional<LpvFill> fill;
+  for (const LpvFill one : {LpvFill::layered, LpvFill::fixed, LpvFill::atomic})
+    if (options.fill == nameOf(one)) fill = one;
+  if (!options.fill.empty() && options.original != "lpv")
+    throwBadInput("--fill {}: only the tables of lpv are filled", options.fill);
+  if (!options.fill.empty() && !fill)
+    throwBadInput("--fill {}: unknown; there are layered, fixed, atomic", options.fill);
+  if (options.original == "lpv" && !fill && (options.part.isPart() || !options.part.checkpoint.empty()))
+    throwBadInput("--part, --checkpoint: need --fill, since which is the fastest is another one on each machine");
   Scene scene;
   if (!vpt) {
     options.scene = bench::sceneOrAtrium(options.scene);
@@ -136,8 +146,14 @@ int run(Options options) {
   watchForInterrupt();
   const bench::Tables tables =
       vpt ? bench::measureVptTables({context, programs, scale, options.common.quiet,
-                                     options.fidelity == "original" ? Fidelity::original : Fidelity::corrected})
-          : bench::measureLpvTables({context, programs, scene, scale, options.common.quiet});
+                                     options.fidelity == "original" ? Fidelity::original : Fidelity::corrected,
+                                     options.part})
+          : bench::measureLpvTables({context, programs, scene, scale, options.common.quiet, options.part, fill});
+  if (options.part.isPart()) {
+    if (!options.common.quiet) fmt::print("{}: {} rows\n", options.part.checkpoint, tables.json.at("rows_here").dump());
+    options.common.writeJson({{"part", options.part.part}, {"rows", tables.json.at("rows_here")}});
+    return exitCode();
+  }
   const std::string& renderer = context.capabilities().renderer;
   fmt::print("Renderer {}\n", renderer);
   if (!vpt) fmt::print("Scene    {}, {} triangles\n", scene.file.string(), scene.triangleCount());
@@ -176,6 +192,11 @@ Work addBenchTables(CLI::App& app) {
                        "vpt: original: the published estimator on scenes lit as published, the corrected beside it; or "
                        "corrected (default)"),
         {"corrected", "original"});
+  offer(app.add_option("--fill", options->fill,
+                       "lpv: the way to fill the grids that is measured beside the published one: layered, fixed, "
+                       "atomic (the fastest here, tried first)"),
+        {"layered", "fixed", "atomic"});
+  options->part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

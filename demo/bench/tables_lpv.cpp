@@ -2,6 +2,8 @@
 //
 // Every configuration keeps its own volume; a round runs each of them once, published and best path of a setting next
 // to each other (A B A B), so that what else the machine does meets both. The first round is a warm-up and is dropped.
+#include "bench/provenance.hpp"
+#include "measure/reference.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
@@ -16,6 +18,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -248,9 +251,12 @@ class Bench {
     timer_.collect();
   }
 
+  /// What was kept, else what was measured.
   const std::vector<double>& samples(const std::string& stage) const {
+    if (const auto found = kept_.find(stage); found != kept_.end()) return found->second;
     return capabilities_.softwareRenderer ? timer_.wallSamples(stage) : timer_.querySamples(stage);
   }
+  void keep(const std::string& stage, std::vector<double> samples) { kept_.try_emplace(stage, std::move(samples)); }
   const std::vector<double>& injection(const Config& config) const { return samples(config.key() + " injection"); }
   const std::vector<double>& propagation(const Config& config) const { return samples(config.key() + " propagation"); }
   /// Injection and propagation of each frame together.
@@ -273,6 +279,7 @@ class Bench {
   std::map<int, ReflectiveShadowMap> maps_;
   std::map<Config, LightPropagationVolume> volumes_;
   std::vector<Config> order_;
+  std::map<std::string, std::vector<double>> kept_;
 };
 
 /// Reading and writing grids of that size once a step, lit or not: the least that propagation in all cells must do.
@@ -363,16 +370,23 @@ Tables measureLpvTables(const TablesInput& input) {
     result.fill = fill;
     return result;
   };
-  for (LpvFill fill : fills) bench.add(trialOf(fill));
-  for (int round = 0; round <= std::min(frames, 5) && !interrupted(); ++round) bench.runRound();
-  bench.timer().drain();
+  if (input.fill && std::find(fills.begin(), fills.end(), *input.fill) == fills.end())
+    throwMissingCapability("--fill {}: this driver has no atomic additions of floats", nameOf(*input.fill));
+  if (!input.fill) {
+    for (LpvFill fill : fills) bench.add(trialOf(fill));
+    for (int round = 0; round <= std::min(frames, 5) && !interrupted(); ++round) bench.runRound();
+    bench.timer().drain();
+  }
   // The least time, not the median: what else the machine does only ever adds.
   const auto fastest = [&](LpvFill fill) { return percentile(bench.injection(trialOf(fill)), 0.0); };
   const LpvFill bestFill =
-      *std::min_element(fills.begin(), fills.end(), [&](LpvFill a, LpvFill b) { return fastest(a) < fastest(b); });
+      input.fill ? *input.fill : *std::min_element(fills.begin(), fills.end(), [&](LpvFill a, LpvFill b) {
+        return fastest(a) < fastest(b);
+      });
   std::string trialText;
   for (LpvFill fill : fills)
-    trialText += fmt::format("{}{} {:.2f}", trialText.empty() ? "" : ", ", nameOf(fill), fastest(fill));
+    if (!input.fill)
+      trialText += fmt::format("{}{} {:.2f}", trialText.empty() ? "" : ", ", nameOf(fill), fastest(fill));
   bench.removeVolumes();
   bench.timer().reset();
 
@@ -384,11 +398,15 @@ Tables measureLpvTables(const TablesInput& input) {
     bool there;
   };
   std::vector<Planned> plan;
+  std::vector<Config> wanted;  // each once
+  const auto want = [&](const Config& one) {
+    if (std::find(wanted.begin(), wanted.end(), one) == wanted.end()) wanted.push_back(one);
+  };
   for (const PublishedRow& row : kPublished) {
     const auto add = [&](LpvFill fill, LpvPropagate propagate, bool first, bool published = false) {
       const bool there = fill != LpvFill::atomic || haveAtomic;
       plan.push_back({&row, config(row, fill, propagate, published), first, there});
-      if (there) bench.add(plan.back().config);
+      if (there) want(plan.back().config);
     };
     if (row.way != Way::atomics) add(LpvFill::layered, LpvPropagate::layered, true, true);
     if (row.way == Way::anyPath && (row.iterations > 0 || bestFill != LpvFill::layered))
@@ -405,30 +423,69 @@ Tables measureLpvTables(const TablesInput& input) {
                best = config(usual, bestFill, LpvPropagate::compute);
   const Config slices =
       config(usual, LpvFill::layered, LpvPropagate::slices);  // what the published pass could have been
-  bench.add(published);
-  bench.add(slices);
-  const Copy copy(input.programs, usual.cells / shrink, usual.grids, usual.iterations);
+  want(published);
+  want(slices);
 
+  // A unit a configuration, with the map that it is filled from; copying and clearing are the last.
+  const PartFolder part(
+      input.part, "bench tables",
+      fmt::format(
+          "lpv, scene {}, scale {}, fill {}, {} on {}{}",
+          measure::keyOf(input.scene, input.scene.cameras.front(), glm::ivec2(0), Transport::all, "tables").name(),
+          input.scale, nameOf(bestFill), capabilities.renderer, cpuName(),
+          capabilities.clearTexture ? "" : ", no clearing of textures"),
+      wanted.size() + 1);
+  const auto stagesOf = [&](std::size_t unit) -> std::vector<std::string> {
+    if (unit == wanted.size()) return {"copy", "copy and sum", "glClearTexImage", "glTexSubImage3D"};
+    return {rsmStage(wanted[unit].rsmSize), wanted[unit].key() + " injection", wanted[unit].key() + " propagation"};
+  };
+  std::vector<std::size_t> measured;
+  for (std::size_t unit = part.first(); unit < part.last(); ++unit) {
+    if (const auto kept = part.load(unit)) {
+      for (const std::string& stage : stagesOf(unit)) bench.keep(stage, kept->at(stage).get<std::vector<double>>());
+      continue;
+    }
+    measured.push_back(unit);
+    if (unit < wanted.size()) bench.add(wanted[unit]);
+  }
+  const bool copies = !measured.empty() && measured.back() == wanted.size();
+  std::optional<Copy> copy;
+  if (copies) copy.emplace(input.programs, usual.cells / shrink, usual.grids, usual.iterations);
   Progress progress("bench tables", frames + 1, input.quiet);
-  for (int round = 0; round <= frames && !interrupted(); ++round) {
+  for (int round = 0; round <= frames && !interrupted() && !measured.empty(); ++round) {
     bench.runRound();
-    copy.run(bench.timer());
+    if (copies) copy->run(bench.timer());
     if (round == 0) bench.timer().reset();  // the warm-up
     progress.update(round + 1);
   }
   bench.timer().drain();
   const int clears = std::max(10, static_cast<int>(std::lround(100.0 * input.scale)));
-  measureClearing(bench.timer(), capabilities.clearTexture, clears);
-
+  if (copies) measureClearing(bench.timer(), capabilities.clearTexture, clears);
   Tables tables;
+  if (!interrupted()) {
+    for (const std::size_t unit : measured) {
+      PartFolder::Json samples;
+      for (const std::string& stage : stagesOf(unit)) samples[stage] = bench.samples(stage);
+      part.store(unit, samples);
+    }
+    part.finish();
+  }
+  if (part.isPart()) {
+    tables.json["rows_here"] = part.last() - part.first();
+    return tables;
+  }
+
   tables.notes = {
       fmt::format("Scale    {}: {} frame{} a figure after one of warm-up{}", input.scale, frames, frames > 1 ? "s" : "",
                   shrink > 1 ? "; grids of 16^3 where 32^3 was published, 32^3 for 64^3" : ""),
       fmt::format("Clock    {}", capabilities.softwareRenderer ? "wall clock between glFinish (software renderer)"
                                                                : "GL_TIME_ELAPSED"),
       fmt::format("Paths    fill/propagate; layered/layered as published (the text's steps, formats and cell sizes, "
-                  "nothing joined), {}/compute the fastest here (filling 3 grids, least of {}: {} ms)",
-                  nameOf(bestFill), std::min(frames, 5), trialText),
+                  "nothing joined), {}/compute {}",
+                  nameOf(bestFill),
+                  input.fill ? "as asked for by --fill"
+                             : fmt::format("the fastest here (filling 3 grids, least of {}: {} ms)",
+                                           std::min(frames, 5), trialText)),
       "Stages   injection has the geometry volume's in it where there is blocking, propagation the joining of several "
       "grids (ours; the text joins none)",
       "Atomics  atomic (floats, an extension) and fixed (integers, core): one a light and channel as published, "

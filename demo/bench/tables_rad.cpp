@@ -4,6 +4,7 @@
 // while, and a run of 7 sweeps, as many as published, is computed from their rate: every hemicube costs the same, since
 // every view draws the whole scene.
 #include "bench/rad.hpp"
+#include "bench/provenance.hpp"
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
@@ -19,6 +20,8 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <functional>
+#include <optional>
 
 namespace lucerna::demo::bench {
 
@@ -167,6 +170,28 @@ Scene closedBox(int n) {
   return scene;
 }
 
+/// The units of these tables, in their order: each is taken from where it is kept, or made and kept.
+class Units {
+ public:
+  Units(const PartOptions& options, const std::string& identity, std::size_t count)
+      : part_(options, "bench tables", identity, count) {}
+  /// Nothing where the next one is another part's, or the work was interrupted.
+  std::optional<PartFolder::Json> next(const std::function<PartFolder::Json()>& make) {
+    const std::size_t unit = next_++;
+    if (unit < part_.first() || unit >= part_.last() || interrupted()) return std::nullopt;
+    if (auto kept = part_.load(unit)) return kept;
+    PartFolder::Json made = make();
+    if (interrupted()) return std::nullopt;
+    part_.store(unit, made);
+    return made;
+  }
+  const PartFolder& part() const { return part_; }
+
+ private:
+  PartFolder part_;
+  std::size_t next_ = 0;
+};
+
 /// Squares a side of each wall: boxes of 2,028 and 25,392 triangles.
 constexpr std::array kBoxes{13, 46};
 
@@ -179,66 +204,74 @@ void say(bool prints, fmt::format_string<Values...> format, Values&&... values) 
 
 /// Hemicubes a second of the corrected solver: the whole stage, rows made, sorted out and kept. Median, least and most
 /// of five runs.
+PartFolder::Json closedBox(const gl::Context& context, gl::ProgramLibrary& programs, double scale, int squares,
+                           HemicubeVisibility way) {
+  PatchSettings whole;
+  whole.longestEdge = 0.0;
+  const RadiosityMesh mesh = makePatches(closedBox(squares), whole);
+  HemicubeSettings settings;
+  settings.visibility = way;
+  Hemicubes hemicubes(programs, context.capabilities(), mesh, settings);
+  const int count = std::min(hemicubes.patchCount(), std::max(64, static_cast<int>(2000.0 * scale)));
+  hemicubes.rows(0, std::min(count, hemicubes.batchSize()));
+  std::vector<double> rates;
+  const std::clock_t processor = std::clock();
+  for (int run = 0; run < 5; ++run) {
+    FormFactorMatrix matrix;
+    const int first = static_cast<int>(static_cast<std::int64_t>(hemicubes.patchCount() - count) * run / 4);
+    const auto start = Clock::now();
+    hemicubes.stream(first, first + count, [&](const FormFactorRows& rows) {
+      std::size_t at = 0;
+      for (const std::uint32_t entries : rows.counts) {
+        matrix.appendRow(std::span(rows.patches).subspan(at, entries), std::span(rows.factors).subspan(at, entries));
+        at += entries;
+      }
+    });
+    rates.push_back(count / secondsSince(start));
+  }
+  const double milliseconds = 1000.0 * static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / (5.0 * count);
+  std::sort(rates.begin(), rates.end());
+  return {{"triangles", hemicubes.patchCount()},
+          {"view", settings.resolution},
+          {"visibility", nameOf(way)},
+          {"hemicubes", count},
+          {"hemicubes_per_s", rates[2]},
+          {"least", rates[0]},
+          {"most", rates[4]},
+          {"processor_ms", milliseconds},
+          {"renderer", context.capabilities().renderer}};
+}
+
+constexpr std::array kWays{HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer};
+
 void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, double scale, nlohmann::ordered_json& json,
-                 bool prints) {
+                 bool prints, Units& units) {
   say(prints,
       "\nCorrected: hemicubes/s in a closed box, 64x64, near pairs and closed forms included; 5 "
       "runs\n{:<24}{:<14}{:>10}{:>10}{:>10}{:>12}\n",
       "", "", "median", "least", "most", "CPU ms each");
-  for (const int squares : kBoxes) {
-    PatchSettings whole;
-    whole.longestEdge = 0.0;
-    const RadiosityMesh mesh = makePatches(closedBox(squares), whole);
-    for (const HemicubeVisibility way :
-         {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
-      if (interrupted()) return;
-      HemicubeSettings settings;
-      settings.visibility = way;
-      Hemicubes hemicubes(programs, context.capabilities(), mesh, settings);
-      const int count = std::min(hemicubes.patchCount(), std::max(64, static_cast<int>(2000.0 * scale)));
-      hemicubes.rows(0, std::min(count, hemicubes.batchSize()));
-      std::vector<double> rates;
-      const std::clock_t processor = std::clock();
-      for (int run = 0; run < 5; ++run) {
-        FormFactorMatrix matrix;
-        const int first = static_cast<int>(static_cast<std::int64_t>(hemicubes.patchCount() - count) * run / 4);
-        const auto start = Clock::now();
-        hemicubes.stream(first, first + count, [&](const FormFactorRows& rows) {
-          std::size_t at = 0;
-          for (const std::uint32_t entries : rows.counts) {
-            matrix.appendRow(std::span(rows.patches).subspan(at, entries),
-                             std::span(rows.factors).subspan(at, entries));
-            at += entries;
-          }
-        });
-        rates.push_back(count / secondsSince(start));
-      }
-      const double milliseconds =
-          1000.0 * static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / (5.0 * count);
-      std::sort(rates.begin(), rates.end());
+  for (const int squares : kBoxes)
+    for (const HemicubeVisibility way : kWays) {
+      const auto box = units.next([&] { return closedBox(context, programs, scale, squares, way); });
+      if (!box) continue;
       say(prints, "{:<24}{:<14}{:>10.0f}{:>10.0f}{:>10.0f}{:>12.3f}\n",
-          fmt::format("{} triangles", hemicubes.patchCount()), nameOf(way), rates[2], rates[0], rates[4], milliseconds);
-      json["closed_box"].push_back({{"triangles", hemicubes.patchCount()},
-                                    {"view", settings.resolution},
-                                    {"visibility", nameOf(way)},
-                                    {"hemicubes", count},
-                                    {"hemicubes_per_s", rates[2]},
-                                    {"least", rates[0]},
-                                    {"most", rates[4]},
-                                    {"processor_ms", milliseconds},
-                                    {"renderer", context.capabilities().renderer}});
+          fmt::format("{} triangles", box->at("triangles").get<int>()), box->at("visibility").get<std::string>(),
+          box->at("hemicubes_per_s").get<double>(), box->at("least").get<double>(), box->at("most").get<double>(),
+          box->at("processor_ms").get<double>());
+      json["closed_box"].push_back(*box);
     }
-  }
 }
 
 }  // namespace
 
 nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramLibrary& programs, double scale,
-                                        bool quiet, bool prints) {
+                                        bool quiet, bool prints, const PartOptions& part) {
   const std::string& renderer = context.capabilities().renderer;
   const auto most = static_cast<std::size_t>(std::max(8.0, std::round(400.0 * scale)));
   const double mostSeconds = std::max(1.0, 40.0 * scale);
 
+  Units units(part, fmt::format("rad, scale {}, {} on {}", scale, renderer, cpuName()),
+              kPublished.size() * kViews.size() + 2 + kBoxes.size() * kWays.size());
   nlohmann::ordered_json json;
   const std::vector<std::string> notes{
       fmt::format("Scale    {}: at most {} hemicubes or {:.0f} s a figure, of triangles spread evenly over the scene",
@@ -258,11 +291,22 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
     if (interrupted()) break;
     RadModelSettings model;
     model.areaThreshold = published.threshold;
-    const std::vector<RadTriangle> triangles = makeRadModel(2, model);
+    std::vector<RadTriangle> triangles;  // made where they are measured
     for (std::size_t v = 0; v < kViews.size() && !interrupted(); ++v) {
-      const Rate rate = measure(programs, triangles, kViews[v], most, mostSeconds);
+      const auto kept = units.next([&] {
+        if (triangles.empty()) triangles = makeRadModel(2, model);
+        const Rate rate = measure(programs, triangles, kViews[v], most, mostSeconds);
+        return PartFolder::Json{{"model_triangles", triangles.size()},
+                                {"hemicubes", rate.hemicubes},
+                                {"triangles", rate.triangles},
+                                {"seconds", rate.seconds}};
+      });
+      if (!kept) continue;
+      const Rate rate{kept->at("hemicubes").get<std::size_t>(), kept->at("triangles").get<std::size_t>(),
+                      kept->at("seconds").get<double>()};
+      const auto modelTriangles = kept->at("model_triangles").get<std::size_t>();
       const double secondsATriangle = kSweeps / rate.hemicubesASecond(),
-                   minutes = secondsATriangle * static_cast<double>(triangles.size()) / 60.0;
+                   minutes = secondsATriangle * static_cast<double>(modelTriangles) / 60.0;
       const std::string name = fmt::format("{}x{}, {} triangles", kViews[v], kViews[v], published.triangles);
       say(prints, "{:<28}{:>14.2f}{:>14.2f}{:>9.3g}{:>14.3f}{:>14.4f}{:>13.1f}{:>14.2f}\n", name, published.minutes[v],
           minutes, minutes / published.minutes[v], published.secondsATriangle[v], secondsATriangle,
@@ -277,7 +321,7 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
         row["unit"] = whole ? "min" : "s";
         row["renderer"] = renderer;
         row["published_on"] = kPublishedOn;
-        row["triangles"] = triangles.size();
+        row["triangles"] = modelTriangles;
         row["view"] = kViews[v];
         row["sweeps"] = kSweeps;
         row["extrapolated"] = true;
@@ -293,43 +337,54 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
   const bool hall = scale >= 0.5;
   RadModelSettings model;
   model.areaThreshold = hall ? 100.0 : 30.0;
-  const std::vector<RadTriangle> coarse = makeRadModel(hall ? 2 : 3, model);
-  if (const auto sweeps = interrupted() ? std::nullopt : sweepsToRest(programs, coarse, 32, quiet)) {
+  const auto rest = units.next([&] {
+    const std::vector<RadTriangle> coarse = makeRadModel(hall ? 2 : 3, model);
+    const auto sweeps = sweepsToRest(programs, coarse, 32, quiet);
+    return PartFolder::Json{{"triangles", coarse.size()}, {"sweeps", sweeps.value_or(0)}};
+  });
+  if (rest) {
+    const auto sweeps = rest->at("sweeps").get<std::uint32_t>();
+    const auto count = rest->at("triangles").get<std::size_t>();
     say(prints,
         "\nSweeps   {} until nothing changes (model {}, {} triangles, 32x32, reflectance 0.15, power 100000); "
         "published {} (model 2)\n",
-        *sweeps, hall ? 2 : 3, coarse.size(), kSweeps);
+        sweeps, hall ? 2 : 3, count, kSweeps);
     json["rows"].push_back({{"table", "4.1"},
-                            {"row", fmt::format("sweeps, model {}, {} triangles", hall ? 2 : 3, coarse.size())},
+                            {"row", fmt::format("sweeps, model {}, {} triangles", hall ? 2 : 3, count)},
                             {"published", kSweeps},
-                            {"measured", *sweeps},
-                            {"ratio", *sweeps / static_cast<double>(kSweeps)},
+                            {"measured", sweeps},
+                            {"ratio", sweeps / static_cast<double>(kSweeps)},
                             {"unit", "sweeps"},
                             {"renderer", renderer}});
   }
 
   const int view = scale >= 0.5 ? 100 : scale >= 0.1 ? 64 : 32;
-  const std::vector<Cost> costs = interrupted() ? std::vector<Cost>{} : deviationCosts(programs, view, quiet);
-  if (!interrupted()) {
+  const auto costs = units.next([&] {
+    PartFolder::Json list = PartFolder::Json::array();
+    for (const Cost& cost : deviationCosts(programs, view, quiet))
+      list.push_back({{"name", cost.name}, {"nrmse", cost.nrmse}, {"worst", cost.most}, {"bias", cost.bias}});
+    return list;
+  });
+  if (costs) {
     say(prints,
         "\nDeviations: model 1, threshold 20, reflectance 0.5, {}x{}; against floats, exact map, random roll at {}x{} "
         "and the same points\n{:<32}{:>10}{:>10}{:>10}\n",
         view, view, 4 * view, 4 * view, "", "NRMSE %", "worst %", "bias %");
-    json["deviations"] = nlohmann::ordered_json::array();
-    for (const Cost& cost : costs) {
-      say(prints, "{:<32}{:>10.2f}{:>10.2f}{:>+10.2f}\n", cost.name, 100.0 * cost.nrmse, 100.0 * cost.most,
-          100.0 * cost.bias);
-      json["deviations"].push_back(
-          {{"name", cost.name}, {"nrmse", cost.nrmse}, {"worst", cost.most}, {"bias", cost.bias}});
-    }
+    for (const auto& cost : *costs)
+      say(prints, "{:<32}{:>10.2f}{:>10.2f}{:>+10.2f}\n", cost.at("name").get<std::string>(),
+          100.0 * cost.at("nrmse").get<double>(), 100.0 * cost.at("worst").get<double>(),
+          100.0 * cost.at("bias").get<double>());
+    json["deviations"] = *costs;
     say(prints,
         "radiosity.centroid=off samples three corners; those on another wall see it edge on and lose its light\n");
   }
-  if (!interrupted()) closedBoxes(context, programs, scale, json, prints);
+  if (!interrupted()) closedBoxes(context, programs, scale, json, prints, units);
+  if (!interrupted()) units.part().finish();
+  if (units.part().isPart()) json["rows_here"] = units.part().last() - units.part().first();
   return json;
 }
 
-int runRadTables(const CommonOptions& common, double scale) {
+int runRadTables(const CommonOptions& common, double scale, const PartOptions& part) {
   const auto host = common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
@@ -339,7 +394,13 @@ int runRadTables(const CommonOptions& common, double scale) {
   json["host"] = nameOf(host->kind());
   json["original"] = "rad";
   json["scale"] = scale;
-  json.update(measureRadTables(context, programs, scale, common.quiet, true));
+  const nlohmann::ordered_json tables = measureRadTables(context, programs, scale, common.quiet, !part.isPart(), part);
+  if (part.isPart()) {
+    if (!common.quiet) fmt::print("{}: {} rows\n", part.checkpoint, tables.at("rows_here").dump());
+    common.writeJson({{"part", part.part}, {"rows", tables.at("rows_here")}});
+    return exitCode();
+  }
+  json.update(tables);
   common.writeJson(json);
   return exitCode();
 }

@@ -3,6 +3,7 @@
 // With --scale below 1 the pictures are smaller and have fewer samples; what was measured is then multiplied up to the
 // published number of pixels times samples, as a path tracer's work is proportional to both. A picture that would take
 // too long ends early and is multiplied up likewise.
+#include "bench/provenance.hpp"
 #include "bench/vpt_series.hpp"
 
 #include "measure/image_errors.hpp"
@@ -50,14 +51,16 @@ std::vector<Estimator> estimatorsOf(Fidelity fidelity) {
   return estimators;
 }
 
-/// The estimators against the first, corrected or published: time, and how far the picture is off.
-void measureEstimators(const VptTablesInput& input, glm::ivec2 size, double mostSeconds, Tables& tables) {
+/// The estimators against the first, corrected or published: time, and how far the picture is off. "summary" and
+/// "estimators"; not complete where it was interrupted.
+PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size, double mostSeconds) {
   const VptPicture& picture = vptPictures()[kEstimatorPicture];
   const Scene scene = loadVptScene(picture, input.fidelity);
   const std::uint32_t samples = vptSamples(picture, input.scale);
   const std::vector<Estimator> estimators = estimatorsOf(input.fidelity);
-  tables.json["estimators"] = nlohmann::ordered_json::array();
-  if (interrupted()) return;
+  PartFolder::Json made{{"summary", ""}, {"estimators", PartFolder::Json::array()}};
+  std::string summary;
+  if (interrupted()) return made;
   // With the published random numbers all pixels and seeds share one sequence: the reference has others.
   PathDeviations independent = estimators[0].deviations;
   independent.linearSeeds = false;
@@ -65,14 +68,14 @@ void measureEstimators(const VptTablesInput& input, glm::ivec2 size, double most
       renderVpt(input.context, input.programs, picture, scene, size, 4 * samples, 4.0 * mostSeconds, independent, 1);
   const auto channelMean = [](const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; };
   const double right = channelMean(reference.statistics.mean);
-  tables.summary += fmt::format(
+  summary += fmt::format(
       "\nThe estimator on {} ({}), beside the {} one with other random numbers and {:.4g} samples a pixel. Bias: of "
       "the picture's mean.\n{:<38}{:>12}{:>14}{:>22}{:>12}{:>14}\n",
       picture.label, picture.figure, estimators[0].name, reference.statistics.samples, "", "ms a sample", "NRMSE",
       "bias", "time", "loop turns");
   double firstMs = 0.0, firstTurns = 0.0;
   for (const Estimator& estimator : estimators) {
-    if (interrupted()) return;
+    if (interrupted()) break;
     const VptResult result =
         renderVpt(input.context, input.programs, picture, scene, size, samples, mostSeconds, estimator.deviations);
     const double ms = result.ms / result.statistics.samples,
@@ -82,25 +85,27 @@ void measureEstimators(const VptTablesInput& input, glm::ivec2 size, double most
     const double error =
         std::hypot(channelMean(result.statistics.meanError), channelMean(reference.statistics.meanError)) / right;
     const double nrmse = measure::errorsOf(result.image, reference.image).nrmse;
-    tables.summary += fmt::format("{:<38}{:>12.4g}{:>14.4g}{:>22}{:>11.3g}x{:>13.3g}x\n", estimator.name, ms, nrmse,
-                                  fmt::format("{:+.4f} +- {:.4f}", bias, error), ms / firstMs, turns / firstTurns);
-    tables.json["estimators"].push_back({{"estimator", estimator.name},
-                                         {"figure", picture.figure},
-                                         {"ms_a_sample", ms},
-                                         {"spp", result.statistics.samples},
-                                         {"nrmse", nrmse},
-                                         {"bias", bias},
-                                         {"bias_error", error},
-                                         {"time_ratio", ms / firstMs},
-                                         {"turns_ratio", turns / firstTurns}});
+    summary += fmt::format("{:<38}{:>12.4g}{:>14.4g}{:>22}{:>11.3g}x{:>13.3g}x\n", estimator.name, ms, nrmse,
+                           fmt::format("{:+.4f} +- {:.4f}", bias, error), ms / firstMs, turns / firstTurns);
+    made["estimators"].push_back({{"estimator", estimator.name},
+                                  {"figure", picture.figure},
+                                  {"ms_a_sample", ms},
+                                  {"spp", result.statistics.samples},
+                                  {"nrmse", nrmse},
+                                  {"bias", bias},
+                                  {"bias_error", error},
+                                  {"time_ratio", ms / firstMs},
+                                  {"turns_ratio", turns / firstTurns}});
   }
+  made["summary"] = summary;
+  return made;
 }
 
 /// How each series grows: time, and the turns of loops that it takes, a sample and over the series' first picture.
-std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<VptResult>& results) {
+std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<VptResult>& results, glm::ivec2 size) {
   std::string text = fmt::format("\n{:<44}{:>12}{:>12}{:>12}{:>16}\n", "Growth a sample over a series", "published",
                                  "time here", "loop turns", "collisions a path");
-  const double pixels = results.empty() ? 1.0 : static_cast<double>(results[0].image.width) * results[0].image.height;
+  const double pixels = static_cast<double>(size.x) * size.y;
   for (std::size_t i = 0, first = 0; i < results.size(); ++i) {
     if (std::string_view(pictures[i].table) != pictures[first].table) first = i;
     const auto over = [&](auto figure) { return figure(i) / figure(first); };
@@ -113,6 +118,30 @@ std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<
                         results[i].statistics.collisions / (results[i].statistics.samples * pixels));
   }
   return text;
+}
+
+/// A picture's measurement as it is kept: all but its pixels, with the time that loading took.
+PartFolder::Json keptOf(const VptResult& result, double loadMs) {
+  const PathTracer::Statistics& s = result.statistics;
+  return {{"ms", result.ms},
+          {"preparation_ms", loadMs + result.preparationMs},
+          {"samples", s.samples},
+          {"turns", s.turns},
+          {"collisions", s.collisions},
+          {"mean", {s.mean.x, s.mean.y, s.mean.z}},
+          {"relative_error", s.relativeError}};
+}
+VptResult resultOf(const PartFolder::Json& kept) {
+  const auto number = [](const PartFolder::Json& value) { return value.is_number() ? value.get<double>() : NAN; };
+  VptResult result;
+  result.ms = number(kept.at("ms"));
+  result.preparationMs = number(kept.at("preparation_ms"));  // loading is in it
+  result.statistics.samples = number(kept.at("samples"));
+  result.statistics.turns = number(kept.at("turns"));
+  result.statistics.collisions = number(kept.at("collisions"));
+  for (int c = 0; c < 3; ++c) result.statistics.mean[c] = number(kept.at("mean").at(static_cast<std::size_t>(c)));
+  result.statistics.relativeError = number(kept.at("relative_error"));
+  return result;
 }
 
 }  // namespace
@@ -140,8 +169,14 @@ Tables measureVptTables(const VptTablesInput& input) {
   const auto& pictures = vptPictures();
   std::vector<Fidelity> fidelities{input.fidelity};
   if (published) fidelities.push_back(Fidelity::corrected);
-  Progress progress("bench tables", static_cast<int>(pictures.size() * fidelities.size()), input.quiet);
-  int drawn = 0;
+  // A unit a picture; the estimators are the last.
+  const std::size_t units = pictures.size() * fidelities.size() + 1;
+  const PartFolder part(input.part, "bench tables",
+                        fmt::format("vpt, scale {}, {}, {} on {}", input.scale, published ? "original" : "corrected",
+                                    input.context.capabilities().renderer, cpuName()),
+                        units);
+  Progress progress("bench tables", static_cast<int>(part.last() - part.first()), input.quiet);
+  std::size_t unit = 0;
   for (const Fidelity fidelity : fidelities) {
     const char* name = published && fidelity == Fidelity::corrected ? " (corrected)" : "";
     std::vector<VptResult> results;
@@ -153,13 +188,22 @@ Tables measureVptTables(const VptTablesInput& input) {
       row.setting = fmt::format("{}: {}{}", picture.figure, picture.label, name);
       row.stage = "the picture";
       row.published = {{kVptGpu, picture.publishedMs}};
-      if (!interrupted()) {
-        const auto start = std::chrono::steady_clock::now();
-        const Scene scene = loadVptScene(picture, fidelity);
-        const double loadMs =
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-        results.push_back(renderVpt(input.context, input.programs, picture, scene, size,
-                                    vptSamples(picture, input.scale), mostSeconds, vptDeviations(picture, fidelity)));
+      const std::size_t own = unit++;
+      if (!interrupted() && own >= part.first() && own < part.last()) {
+        if (const auto kept = part.load(own)) {
+          results.push_back(resultOf(*kept));
+        } else {
+          const auto start = std::chrono::steady_clock::now();
+          const Scene scene = loadVptScene(picture, fidelity);
+          const double loadMs =
+              std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+          const PartFolder::Json made =
+              keptOf(renderVpt(input.context, input.programs, picture, scene, size, vptSamples(picture, input.scale),
+                               mostSeconds, vptDeviations(picture, fidelity)),
+                     loadMs);
+          if (!interrupted()) part.store(own, made);  // else it ended early
+          results.push_back(resultOf(made));
+        }
         const VptResult& result = results.back();
         const double done = result.statistics.samples * size.x * size.y;
         const double wanted = static_cast<double>(picture.samples) * kVptSize.x * kVptSize.y;
@@ -175,14 +219,14 @@ Tables measureVptTables(const VptTablesInput& input) {
           preparation.setting = file;
           preparation.stage = "reading, hierarchy, upload";
           preparation.published = {{"its CPU, about", 500.0}};
-          preparation.samples = {loadMs + result.preparationMs};
+          preparation.samples = {result.preparationMs};
         }
         tables.json["pictures"].push_back(
             {{"figure", picture.figure},
              {"scene", fidelity == Fidelity::corrected ? picture.scene : picture.original},
              {"fidelity", fidelity == Fidelity::corrected ? "corrected" : "original"},
              {"ms", result.ms},
-             {"preparation_ms", loadMs + result.preparationMs},
+             {"preparation_ms", result.preparationMs},
              {"spp", result.statistics.samples},
              {"loop_turns", result.statistics.turns},
              {"collisions", result.statistics.collisions},
@@ -192,14 +236,25 @@ Tables measureVptTables(const VptTablesInput& input) {
              {"relative_error", result.statistics.relativeError}});
       }
       tables.rows.push_back(std::move(row));
-      progress.update(++drawn);
+      if (own >= part.first() && own < part.last()) progress.update(static_cast<int>(own + 1 - part.first()));
     }
+    if (part.isPart()) continue;  // sums and growth are of all
     tables.rows.insert(tables.rows.end(), preparations.begin(), preparations.end());
     tables.summary += fmt::format("All pictures together{}: {:.4g} s here, {:.4g} s published ({:.4g} times).\n", name,
                                   measured / 1000.0, publishedMs / 1000.0, measured / publishedMs);
-    tables.summary += growthOf(pictures, results);
+    tables.summary += growthOf(pictures, results, size);
   }
-  measureEstimators(input, size, 0.5 * mostSeconds, tables);
+  if (!interrupted() && part.last() == units) {
+    auto estimators = part.load(units - 1);
+    if (!estimators) {
+      estimators = measureEstimators(input, size, 0.5 * mostSeconds);
+      if (!interrupted()) part.store(units - 1, *estimators);
+    }
+    tables.summary += estimators->at("summary").get<std::string>();
+    tables.json["estimators"] = estimators->at("estimators");
+  }
+  if (!interrupted()) part.finish();
+  if (part.isPart()) tables.json["rows_here"] = part.last() - part.first();
   return tables;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "commands.hpp"
+#include "parts.hpp"
 
 #include <string>
 
@@ -10,8 +11,11 @@ namespace lucerna::demo {
 struct WalkOptions {
   CommonOptions common;
   PictureOptions picture;
+  PartOptions part;  ///< of recorded frames
   std::string scene, keys, record, views, playInput, shots = ".", panel = "auto";
   bool flicker = false;
+  /// Off-screen into files, instead of a window.
+  bool records() const { return !record.empty() || part.isPart() || !part.checkpoint.empty(); }
   int frames = 0;  ///< 0: 12 when recording, the whole path in a window
 };
 

@@ -5,9 +5,11 @@
 #include "base/data.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/hash.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
 #include "gl/draw.hpp"
+#include "measure/reference.hpp"
 #include "offers.hpp"
 #include "scene/key_frames.hpp"
 #include "settings/deviations.hpp"
@@ -89,49 +91,89 @@ nlohmann::ordered_json resultJson(const Options& options, const Host& host, cons
   return json;
 }
 
-int record(const Options& options, const Host& host, const gl::Context& context, Renderer& renderer,
+/// Frames of a walk as units. All that decides a frame: scene, settings, and where the camera is in each.
+PartFolder framesOf(const Options& options, const Scene& scene, const Renderer& renderer,
+                    const std::vector<Camera>& cameras) {
+  if (options.part.checkpoint.empty()) return PartFolder(options.part, "walk", "", cameras.size());
+  if (options.flicker)
+    throwBadInput(
+        "--flicker: compares a frame with the one before it, which may be another part's: not with --part and "
+        "--checkpoint");
+  if (renderer.receivers())
+    throwBadInput(
+        "--set lpv.transport=rays: a frame goes on from the one before it, which may be another part's: not with "
+        "--part and --checkpoint");
+  Hash views;
+  for (const Camera& camera : cameras) {
+    views.add(camera.position), views.add(camera.direction), views.add(camera.up);
+    views.add(camera.verticalFov);
+  }
+  const std::string settings = options.picture.toJson().dump();
+  return PartFolder(
+      options.part, "walk",
+      fmt::format("{}, scene {}, views {:016x}, {}", scene.name,
+                  measure::keyOf(scene, cameras.front(), renderer.size(), Transport::all, settings).name(),
+                  views.value(), settings),
+      cameras.size());
+}
+
+int record(const Options& options, const Host& host, const gl::Context& context, const Scene& scene, Renderer& renderer,
            const Spline& path) {
   const fs::path folder = options.record.empty() ? fs::path("walk") : fs::path(options.record);
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
+  if (!options.part.isPart()) fs::create_directories(folder, error);
+  if (error || (!options.part.isPart() && !fs::is_directory(folder)))
     throwBadInput("--record {}: cannot create folder ({})", folder.string(), error.message());
   const auto [first, last] = parseViews(options.views, path.viewCount());
   const int frames = options.frames > 0 ? options.frames : 12;
+  std::vector<int> views;
+  std::vector<Camera> cameras;
+  for (int i = 0; i < frames; ++i) {
+    views.push_back(frames > 1
+                        ? first + static_cast<int>(std::lround(static_cast<double>(last - first) * i / (frames - 1)))
+                        : first);
+    cameras.push_back(path.view(views.back()));
+  }
+  const PartFolder part = framesOf(options, scene, renderer, cameras);
 
   watchForInterrupt();
   renderer.render(path.view(first));  // warm-up: shaders are finished on first use; its times are dropped
-  Progress progress("walk", frames, options.common.quiet);
+  Progress progress("walk", static_cast<int>(part.last() - part.first()), options.common.quiet);
   std::vector<double> frameSeconds;
   std::optional<int> before;
   Change largest;
   int done = 0;
-  for (; done < frames && !interrupted(); ++done) {
-    const int view =
-        frames > 1 ? first + static_cast<int>(std::lround(static_cast<double>(last - first) * done / (frames - 1)))
-                   : first;
-    const auto start = Clock::now();
-    if (renderer.path()) renderer.renderToTheEnd(path.view(view));  // all samples: one alone is noise
-    else renderer.render(path.view(view));
-    gl::finish();
-    frameSeconds.push_back(secondsSince(start));
-    writePng(folder / fmt::format("frame_{:04}.png", done), renderer.readDisplay());
+  for (std::size_t i = part.first(); i < part.last() && !interrupted(); ++i, ++done) {
+    const fs::path file = folder / fmt::format("frame_{:04}.png", i);
+    if (const auto kept = part.load(i)) {
+      frameSeconds.push_back(kept->at("seconds").get<double>());
+    } else {
+      const auto start = Clock::now();
+      if (renderer.path()) renderer.renderToTheEnd(cameras[i]);  // all samples: one alone is noise
+      else renderer.render(cameras[i]);
+      gl::finish();
+      frameSeconds.push_back(secondsSince(start));
+      writePng(part.folder() ? part.file(i, ".png") : file, renderer.readDisplay());
+      part.store(i, {{"seconds", frameSeconds.back()}});  // last: it says that the picture is whole
+    }
+    if (part.folder() && !part.isPart()) writeFileAtomically(file, readFileBytes(part.file(i, ".png")));
     if (options.flicker && before) {
       // The same view, once with its own volume and once with that of the view before: motion drops out, flicker stays.
       const Image now = renderer.readRadiance();
-      renderer.render(path.view(view), path.view(*before));
+      renderer.render(cameras[i], path.view(*before));
       const Change change = changeBetween(renderer.readRadiance(), now);
       largest = {std::max(largest.mean, change.mean), std::max(largest.block, change.block)};
     }
-    before = view;
+    before = views[i];
     progress.update(done + 1);
   }
+  if (!interrupted()) part.finish();
   renderer.drain();
   double seconds = 0.0;
   for (double s : frameSeconds) seconds += s;
   if (!options.common.quiet) {
     fmt::print("{} pictures {}x{} in {}, {:.2f} frames per second\n", done, renderer.size().x, renderer.size().y,
-               folder.string(), done / seconds);
+               part.isPart() ? part.folder()->string() : folder.string(), done / seconds);
     fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
     if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
     if (options.flicker)
@@ -199,13 +241,13 @@ int run(Options options) {
   hostOptions.windowSize = settings.size;
   hostOptions.windowTitle = "Lucerna - " + scene.name;
   hostOptions.swapAtRefresh = options.common.json.empty();  // with --json frames are measured
-  const auto host = options.common.makeHost(options.record.empty(), hostOptions);
+  const auto host = options.common.makeHost(!options.records(), hostOptions);
   const gl::Context context;
   gl::ProgramLibrary programs;
-  if ((host->kind() == HostKind::window || !options.playInput.empty()) && options.record.empty())
+  if ((host->kind() == HostKind::window || !options.playInput.empty()) && !options.records())
     return play(options, *host, context, programs, std::move(scene), std::move(path));
   Renderer renderer(context, programs, scene, settings);
-  return record(options, *host, context, renderer, path);
+  return record(options, *host, context, scene, renderer, path);
 }
 
 }  // namespace
@@ -217,6 +259,7 @@ Work addWalk(CLI::App& app) {
                  "key frames of the camera path (default: the scene's, else one round around it)");
   app.add_option("--record", options->record,
                  "draw off-screen and write pictures into this folder (without a window: walk)");
+  options->part.declare(app, "frames of --record");
   app.add_option("--frames", options->frames, "number of pictures (12), or frames in a window (the whole path)")
       ->check(CLI::Range(1, 1000000));
   app.add_option("--views", options->views, "FIRST:LAST: only these views of the path; 200 between two key frames");

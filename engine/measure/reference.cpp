@@ -1,5 +1,7 @@
 #include "measure/reference.hpp"
 
+#include "measure/batches.hpp"
+
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
@@ -77,6 +79,11 @@ Reference merged(const Reference& a, const Reference& b) {
   return result;
 }
 
+std::uint32_t batchSize(std::uint64_t samples) {
+  return static_cast<std::uint32_t>(
+      std::max<std::uint64_t>(1, (samples + SamplingGoal::kBatches - 1) / SamplingGoal::kBatches));
+}
+
 std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first,
                                          const SamplingGoal& goal, const std::function<bool()>& stop) {
   using Clock = std::chrono::steady_clock;
@@ -85,9 +92,7 @@ std::optional<Reference> sampleReference(const Sampler& sampler, Transport trans
   const bool byCount = goal.samples > 0;
   // By time: the batch doubles until a sixteenth of the time is spent on one; then all begin again at that size, so
   // that they are equal.
-  std::uint32_t size = byCount ? static_cast<std::uint32_t>(std::max<std::uint64_t>(
-                                     1, (goal.samples + SamplingGoal::kBatches - 1) / SamplingGoal::kBatches))
-                               : 1;
+  std::uint32_t size = byCount ? batchSize(goal.samples) : 1;
   std::uint64_t next = first;
   if (!byCount) sampler(next, 1);  // one-time work, such as compiling, does not belong to a batch's time
   if (!byCount)

@@ -58,8 +58,8 @@ bool readAll(int descriptor, void* data, std::size_t bytes) {
 }  // namespace
 
 RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches,
-                 const std::function<void(const FormFactorRows&)>& take)
-    : file_(file), patches_(patches) {
+                 const std::function<void(const FormFactorRows&)>& take, std::uint32_t first)
+    : file_(file), patches_(patches), first_(first) {
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) throwBadInput("{}: cannot be opened for writing: {}", file.string(), std::strerror(errno));
   const auto refuse = [&](const char* why) {
@@ -87,7 +87,7 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
   }
   end_ = header.version ? sizeof(Header) : 0;
   if (end_ > 0) {
-    std::uint32_t expected = 0;
+    std::uint32_t expected = first_;
     while (const auto rows = readBlock(expected, end_)) {
       take(*rows);
       expected += static_cast<std::uint32_t>(rows->counts.size());
@@ -145,7 +145,7 @@ std::optional<FormFactorRows> RowFile::readBlock(std::uint32_t expected, std::ui
 
 void RowFile::forEach(const std::function<void(const FormFactorRows&)>& take) {
   ::lseek(descriptor_, sizeof(Header), SEEK_SET);
-  std::uint32_t expected = 0;
+  std::uint32_t expected = first_;
   for (std::uint64_t at = sizeof(Header); at < end_;) {
     const auto rows = readBlock(expected, at);
     if (!rows)
@@ -162,6 +162,41 @@ std::optional<std::uint64_t> RowFile::fingerprintOf(const std::filesystem::path&
       std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion)
     return std::nullopt;
   return header.fingerprint;
+}
+
+void joinRowFiles(const std::vector<std::pair<std::uint32_t, std::filesystem::path>>& parts,
+                  const std::filesystem::path& whole) {
+  CHECK(!parts.empty(), "no parts of rows");
+  Header header{};
+  std::ifstream stream(parts.front().second, std::ios::binary);
+  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) ||
+      std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion)
+    throwBadInput("{}: is no checkpoint of radiosity", parts.front().second.string());
+  std::filesystem::path draft = whole;
+  draft += ".joining";
+  std::error_code ignored;
+  std::filesystem::remove(draft, ignored);
+  try {
+    RowFile all(draft, header.fingerprint, header.patches, [](const FormFactorRows&) {});
+    std::uint32_t next = 0;
+    for (const auto& [first, file] : parts) {
+      if (first != next)
+        throwBadInput("{}: begins with row {}, and the rows before it end with {}", file.string(), first, next);
+      RowFile(
+          file, header.fingerprint, header.patches,
+          [&](const FormFactorRows& rows) {
+            all.append(rows);
+            next += static_cast<std::uint32_t>(rows.counts.size());
+          },
+          first);
+    }
+    if (next != header.patches)
+      throwBadInput("{}: the rows end with {} of {}", parts.back().second.string(), next, header.patches);
+  } catch (...) {
+    std::filesystem::remove(draft, ignored);
+    throw;
+  }
+  std::filesystem::rename(draft, whole);
 }
 
 RowFile::~RowFile() {

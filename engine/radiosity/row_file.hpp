@@ -17,8 +17,9 @@ class RowFile {
  public:
   /// Opens or creates the file; calls `take` for each complete block, in order. Throws Error(badInput) if the file is
   /// not a row file, of another version, or of another scene or settings (`fingerprint`); it is then left unchanged.
+  /// `first`: the file's first row; others than 0 are parts, which joinRowFiles() puts together.
   RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches,
-          const std::function<void(const FormFactorRows&)>& take);
+          const std::function<void(const FormFactorRows&)>& take, std::uint32_t first = 0);
   ~RowFile();
   /// Of the existing file; empty if it is not a row file or of another version.
   static std::optional<std::uint64_t> fingerprintOf(const std::filesystem::path& file);
@@ -37,8 +38,14 @@ class RowFile {
 
   std::filesystem::path file_;
   int descriptor_ = -1;
-  std::uint32_t patches_ = 0;
+  std::uint32_t patches_ = 0, first_ = 0;
   std::uint64_t end_ = 0;  ///< of the last complete block
 };
+
+/// Files of parts, with their first rows, in the order of rows, as one file `whole`; the same bytes of rows as of one
+/// run. Throws Error(badInput) where one is of another scene or settings, or rows are missing between them or at the
+/// end, or held twice; nothing is then written.
+void joinRowFiles(const std::vector<std::pair<std::uint32_t, std::filesystem::path>>& parts,
+                  const std::filesystem::path& whole);
 
 }  // namespace lucerna

@@ -272,12 +272,69 @@ RadiositySolutionSettings withDeviations(RadiositySolutionSettings settings) {
   return settings;
 }
 
+double largestExtent(const Scene& scene) {
+  const glm::dvec3 extent = scene.bounds.extent();
+  return std::max({extent.x, extent.y, extent.z});
+}
+
+PatchSettings patchesOf(const Scene& scene, const RadiositySolutionSettings& settings) {
+  PatchSettings patches = settings.patches;
+  if (patches.longestEdge <= 0.0) patches.longestEdge = largestExtent(scene) / kEdges;
+  if (settings.wholeTriangles) patches.longestEdge = 0.0;
+  return patches;
+}
+
 std::filesystem::path checkpointOf(std::filesystem::path checkpoint, int refinement) {
   if (!checkpoint.empty() && refinement > 0) checkpoint += fmt::format(".{}", refinement);
   return checkpoint;
 }
 
 }  // namespace
+
+struct FormFactorParts::Work {
+  std::optional<Scene> moved;  // as in solveScene()
+  RadiosityMesh mesh;
+  std::optional<RayScene> rays;
+  std::optional<Hemicubes> hemicubes;
+  std::uint64_t fingerprint = 0;
+};
+
+FormFactorParts::FormFactorParts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& asked,
+                                 const RadiositySolutionSettings& askedSettings)
+    : work_(std::make_unique<Work>()) {
+  const RadiositySolutionSettings settings = withDeviations(askedSettings);
+  if (settings.hemicubes.visibility == HemicubeVisibility::automatic)
+    throwBadInput("radiosity.visibility=auto: parts must all be made in one way: raster, rays or item-buffer");
+  if (const glm::dvec3 origin = exactOrigin(asked.bounds); origin != glm::dvec3(0.0))
+    work_->moved = movedTo(asked, origin);
+  const Scene& scene = work_->moved ? *work_->moved : asked;
+  work_->mesh = makePatches(scene, patchesOf(scene, settings));
+  work_->rays.emplace(sceneOf(work_->mesh), context.capabilities());
+  if (!settings.deviations.centroid) cutHiddenParts(programs, *work_->rays, work_->mesh);
+  work_->hemicubes.emplace(programs, context.capabilities(), work_->mesh, settings.hemicubes, &*work_->rays);
+  work_->fingerprint = rowsFingerprint(work_->mesh, settings.hemicubes);
+}
+
+FormFactorParts::~FormFactorParts() = default;
+
+std::size_t FormFactorParts::patches() const { return work_->mesh.patches.size(); }
+std::uint64_t FormFactorParts::fingerprint() const { return work_->fingerprint; }
+
+std::size_t FormFactorParts::make(std::size_t first, std::size_t last, const std::filesystem::path& file,
+                                  const std::function<bool(std::size_t done)>& goOn) {
+  std::size_t next = first;
+  const auto count = [&](const FormFactorRows& rows) { next += rows.counts.size(); };
+  RowFile rowFile(file, work_->fingerprint, static_cast<std::uint32_t>(patches()), count,
+                  static_cast<std::uint32_t>(first));
+  const std::size_t known = next - first;
+  const auto keep = [&](const FormFactorRows& rows) {
+    rowFile.append(rows);
+    count(rows);
+  };
+  work_->hemicubes->stream(static_cast<int>(next), static_cast<int>(last), keep,
+                           [&](int done) { return goOn(static_cast<std::size_t>(done) - first); });
+  return next - first - known;
+}
 
 void removeCheckpoints(const std::filesystem::path& checkpoint) {
   std::error_code ignored;
@@ -296,11 +353,8 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
     return solution;
   }
   const RadiositySolutionSettings settings = withDeviations(asked);
-  PatchSettings patches = settings.patches;
-  const glm::dvec3 extent = scene.bounds.extent();
-  const double largest = std::max({extent.x, extent.y, extent.z});
-  if (patches.longestEdge <= 0.0) patches.longestEdge = largest / kEdges;
-  if (settings.wholeTriangles) patches.longestEdge = 0.0;
+  const PatchSettings patches = patchesOf(scene, settings);
+  const double largest = largestExtent(scene);
   RadiositySolution solution;
   solution.deviations = settings.deviations;
   solution.settings = textOf(asked);

@@ -14,6 +14,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -73,6 +74,27 @@ struct RadiositySolution {
 RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                              const RadiositySolutionSettings& settings, const std::filesystem::path& checkpoint = {},
                              const std::function<bool(const RadiosityStage&)>& onStage = {});
+
+/// The form factors of a scene's first mesh alone (refinements have others), so that parts of their rows can be made
+/// apart; joinRowFiles() (row_file.hpp) makes of them the checkpoint that solveScene() would have made, to the same
+/// bits.
+class FormFactorParts {
+ public:
+  /// Throws Error(badInput) where the visibility is automatic: parts must all be made in one way.
+  FormFactorParts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                  const RadiositySolutionSettings& settings);
+  ~FormFactorParts();
+  std::size_t patches() const;  ///< rows there are
+  std::uint64_t fingerprint() const;  ///< of what decides them
+  /// Rows `first` to `last` - 1 into `file`, submission by submission, or goes on with it. `goOn` is called with the
+  /// rows made so far; false stops. Returns how many were made now.
+  std::size_t make(std::size_t first, std::size_t last, const std::filesystem::path& file,
+                   const std::function<bool(std::size_t done)>& goOn);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
 
 /// Call it after the solution has been saved.
 void removeCheckpoints(const std::filesystem::path& checkpoint);

@@ -1,4 +1,5 @@
-// render --samples, merge, cluster: parts of a path traced picture made apart are the picture of one run.
+// --part, merge, cluster: what parts made apart become is what one run makes: samples, frames, batches of references,
+// rows, rows of hemicubes.
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "support/subprocess.hpp"
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -121,7 +123,7 @@ TEST_F(Parts, AClusterOfOneMachineMakesTheSamePicture) {
   expectRefused("cluster plan -o '" + path("more") + "' --tasks 9 -- render " + picture() + "--spp 8 -o x.pfm",
                 "--tasks 9");
   expectRefused("cluster plan -o '" + path("more") + "' -- render x.json --technique lpv --spp 8 -o x.pfm",
-                "only --technique path");
+                "only those with --technique path");
   expectRefused("cluster status '" + path("more") + "'", "no job");
   // One task alone, as of an array; a second claim finds it done.
   ASSERT_EQ(RUN_LUCERNA("cluster run " + job + " --task 2 --quiet").exitCode, 0);
@@ -143,6 +145,29 @@ TEST_F(Parts, AClusterOfOneMachineMakesTheSamePicture) {
   expectSame(readImage(path("one.pfm")), readImage(path("joined.pfm")), 1e-6);
 }
 
+// A worker and its task end at once, as where a node falls out: what its checkpoint holds is not made again.
+TEST_F(Parts, AKilledTaskGoesOnFromItsCheckpoint) {
+  const std::string job = path("job");
+  ASSERT_EQ(RUN_LUCERNA("cluster plan -o '" + job + "' --tasks 2 --save-every 0 --quiet -- render " + picture() +
+                        "--spp 60000 -o '" + path("joined.pfm") + "'")
+                .exitCode,
+            0);
+  // Killed as a group as soon as the checkpoint is there: 30000 samples of 24x14 pixels take seconds.
+  const RunResult killed =
+      test::run("setsid '" LUCERNA_BINARY "' cluster run '" + job +
+                "' --task 1 --save-every 0 --quiet & worker=$!; for i in $(seq 600); do [ -s '" + job +
+                "/parts/1.film' ] && break; sleep 0.1; done; sleep 0.3; kill -9 -$worker; wait $worker; ls '" + job +
+                "/parts/1.film'");
+  ASSERT_EQ(killed.exitCode, 0) << killed.err;
+  ASSERT_FALSE(fs::exists(job + "/done/1.json")) << "the task ended before it was killed";
+  fs::last_write_time(job + "/claims/1.0", fs::file_time_type::clock::now() - std::chrono::hours(1));
+  ASSERT_EQ(RUN_LUCERNA("cluster run '" + job + "' --task 1 --quiet").exitCode, 0);
+  EXPECT_TRUE(fs::exists(job + "/claims/1.1"));
+  const auto result = json("job/done/1.json");
+  EXPECT_EQ(result.at("samples"), nlohmann::json({30000, 60000}));
+  EXPECT_GT(result.at("resumed_samples"), 0);
+}
+
 // Two workers at once, in processes of their own: each task is claimed by one of them.
 TEST_F(Parts, NoTaskIsDoneTwice) {
   const std::string job = path("job");
@@ -159,6 +184,225 @@ TEST_F(Parts, NoTaskIsDoneTwice) {
   for (const auto& entry : fs::directory_iterator(job + "/claims"))
     claims += entry.path().filename().string()[0] != '.';
   EXPECT_EQ(claims, 8);
+}
+
+/// Parts of commands that keep units in folders: K of N into parts/K, all merged into `whole`; then what does not
+/// belong together.
+class FolderParts : public Parts {
+ protected:
+  void make(const std::string& command, int parts) {
+    for (int k = 0; k < parts; ++k) {
+      const RunResult made = RUN_LUCERNA(command + partOf(k, parts, "parts/" + std::to_string(k)) + " --quiet");
+      ASSERT_EQ(made.exitCode, 0) << made.err;
+    }
+    const RunResult merged =
+        RUN_LUCERNA("merge --parts '" + path("parts") + "' --quiet --checkpoint '" + path("whole") + "'");
+    ASSERT_EQ(merged.exitCode, 0) << merged.err;
+  }
+  std::string partOf(int k, int parts, const std::string& folder) const {
+    return fmt::format(" --part {}/{} --checkpoint '{}'", k, parts, path(folder));
+  }
+  std::string whole() const { return " --checkpoint '" + path("whole") + "'"; }
+  /// `command` made parts/0 and parts/1 of two; `another` is the same with another setting.
+  void expectWrongJoinsRefused(const std::string& command, const std::string& another) {
+    const std::string merge = "merge --checkpoint '" + path("no") + "' '" + path("parts/0") + "' ";
+    expectRefused(merge, "are in no part");
+    expectRefused(merge + "'" + path("parts/0") + "' '" + path("parts/1") + "'", "the same units");
+    expectRefused("merge --checkpoint '" + path("no") + "' '" + path("parts/1") + "'", "are in no part");
+    const RunResult other = RUN_LUCERNA(another + partOf(1, 2, "other") + " --quiet");
+    ASSERT_EQ(other.exitCode, 0) << other.err;
+    expectRefused(merge + "'" + path("other") + "'", "other settings");
+    // One that was not finished.
+    fs::copy(path("parts/1"), path("half"));
+    nlohmann::json description = json("half/part.json");
+    description["done"] = false;
+    std::ofstream(path("half/part.json")) << description;
+    expectRefused(merge + "'" + path("half") + "'", "not finished");
+    EXPECT_FALSE(fs::exists(path("no")));
+    // A folder of another part, a part that cannot be, and no folder.
+    expectRefused(command + partOf(1, 2, "parts/0"), "another scene, setting or part");
+    for (const char* part : {"2/2", "-1/2", "1", "a/b", "0/0"})
+      expectRefused(command + " --part " + part + " --checkpoint '" + path("no") + "'", "--part");
+    expectRefused(command + " --part 0/2", "--checkpoint");
+  }
+};
+
+TEST_F(FolderParts, RowsOfStability) {
+  const std::string command = "bench stability --technique direct";
+  make(command, 2);
+  ASSERT_EQ(RUN_LUCERNA(command + " --quiet --json '" + path("one.json") + "'").exitCode, 0);
+  ASSERT_EQ(RUN_LUCERNA(command + whole() + " --quiet --json '" + path("all.json") + "'").exitCode, 0);
+  nlohmann::json one = json("one.json"), all = json("all.json");
+  for (nlohmann::json* report : {&one, &all}) {
+    report->erase("seconds");
+    for (auto& row : report->at("rows")) row.erase("seconds");
+  }
+  EXPECT_GT(one.at("rows").size(), 3u);
+  EXPECT_EQ(one, all);
+  expectWrongJoinsRefused(command, "bench stability --technique rsm");
+  expectRefused(command + partOf(0, 2, "no") + " --compare x.json", "--compare");
+}
+
+TEST_F(FolderParts, FramesOfAWalk) {
+  for (const char* technique : {"path --set path.samples=3", "rsm"}) {
+    for (const char* name : {"parts", "whole", "one", "all", "other", "half"}) fs::remove_all(path(name));
+    const std::string command = "walk '" LUCERNA_SOURCE_DIR
+                                "/assets/cornell/cornell.json' --size 32x18 --frames 5 --technique " +
+                                std::string(technique);
+    make(command, 2);
+    ASSERT_EQ(RUN_LUCERNA(command + " --quiet --record '" + path("one") + "'").exitCode, 0);
+    const RunResult all =
+        RUN_LUCERNA(command + whole() + " --quiet --record '" + path("all") + "' --json '" + path("all.json") + "'");
+    ASSERT_EQ(all.exitCode, 0) << all.err;
+    EXPECT_EQ(json("all.json").at("frames"), 5);
+    for (int i = 0; i < 5; ++i) {
+      const std::string frame = fmt::format("/frame_{:04}.png", i);
+      EXPECT_EQ(readFileBytes(path("one") + frame), readFileBytes(path("all") + frame)) << technique << " " << i;
+      if (i == 0) continue;
+      EXPECT_NE(readFileBytes(path("one") + frame), readFileBytes(path("one") + "/frame_0000.png"))
+          << i;  // not all of one view
+    }
+    expectWrongJoinsRefused(command, command + " --views 0:30");
+  }
+  const std::string box = "walk '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --size 32x18 --frames 4 ";
+  expectRefused(box + "--technique lpv --set lpv.transport=rays" + partOf(0, 2, "no"), "lpv.transport=rays");
+  expectRefused(box + "--flicker" + partOf(0, 2, "no"), "--flicker");
+}
+
+TEST_F(FolderParts, BatchesOfReferencesAndRowsOfErrors) {
+  const std::string scene =
+      "'" LUCERNA_SOURCE_DIR
+      "/assets/cornell/cornell.json' --size 32x18 --techniques direct,rsm,path --small --reference-spp 32 ";
+  const std::string references = "bench references " + scene;
+  ASSERT_NO_FATAL_FAILURE(make(references, 2));
+  ASSERT_EQ(RUN_LUCERNA(references + "--quiet --references '" + path("one") + "'").exitCode, 0);
+  ASSERT_EQ(RUN_LUCERNA(references + "--quiet --references '" + path("all") + "'" + whole()).exitCode, 0);
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(path("one"))) {
+    auto one = readFileBytes(entry.path()), all = readFileBytes(path("all") / entry.path().filename());
+    ASSERT_EQ(one.size(), all.size());
+    // But for the seconds that it took, and the checksum at the end.
+    for (auto* bytes : {&one, &all})
+      std::fill_n(bytes->begin() + 24, 8, std::uint8_t{0}), bytes->resize(bytes->size() - 8);
+    EXPECT_EQ(one, all) << entry.path();
+    ++files;
+  }
+  EXPECT_GE(files, 5);
+  expectWrongJoinsRefused(references, "bench references " + scene + "--camera 0,1,3,0,1,0,60");
+
+  // Rows, judged by those: a bench of one machine with the same references is the same but for times.
+  for (const char* name : {"parts", "whole", "other", "half"}) fs::remove_all(path(name));
+  const std::string bench = "bench error " + scene + "--budget 1 --frames 1 ",
+                    with = bench + "--references '" + path("one") + "' ";
+  expectRefused(bench + "--references '" + path("none") + "'" + partOf(0, 2, "no"), "references are not there");
+  ASSERT_NO_FATAL_FAILURE(make(with, 2));
+  const RunResult one = RUN_LUCERNA(with + "--quiet --out '" + path("report1") + "'"),
+                  all = RUN_LUCERNA(with + "--quiet --out '" + path("report2") + "'" + whole());
+  ASSERT_EQ(one.exitCode, 0) << one.err;
+  ASSERT_EQ(all.exitCode, 0) << all.err;
+  const nlohmann::json a = json("report1/error.json"), b = json("report2/error.json");
+  int same = 0;
+  for (const auto& row : a.at("rows")) {
+    // A ladder of the path tracer goes as far as there is time.
+    const auto found = std::find_if(b.at("rows").begin(), b.at("rows").end(),
+                                    [&](const auto& other) { return other.at("label") == row.at("label"); });
+    if (found == b.at("rows").end()) {
+      EXPECT_EQ(row.at("technique"), "path") << row.at("label");
+      continue;
+    }
+    ++same;
+    for (const char* key : {"bias", "flip", "l2", "nrmse", "relmse", "p99", "lit", "other", "settings", "command"})
+      EXPECT_EQ(row.at(key), found->at(key)) << row.at("label") << " " << key;
+    EXPECT_EQ(row.value("inside_model", nlohmann::json()), found->value("inside_model", nlohmann::json()))
+        << row.at("label");
+    EXPECT_EQ(fs::exists(path("report2") + "/" + row.at("picture").get<std::string>() + ".pfm"), true);
+  }
+  EXPECT_GE(same, 8);
+  EXPECT_TRUE(fs::exists(path("report2/report.html")));
+  // The rows were not measured again: theirs are the parts' dates and times.
+  for (const auto& entry : fs::directory_iterator(path("whole/rows")))
+    EXPECT_EQ(readFileBytes(entry.path()), readFileBytes(path("report2/rows") / entry.path().filename()));
+  expectWrongJoinsRefused(
+      with, "bench error " + scene + "--budget 1 --frames 1 --deviations --references '" + path("one") + "' ");
+  expectRefused("bench error '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --size 32x18" + partOf(0, 2, "no"),
+                "--reference-spp");
+}
+
+TEST_F(FolderParts, RowsOfHemicubes) {
+  const std::string command = "radiosity solve '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' ",
+                    settings = " 32 --visibility raster --edge 0.3";
+  ASSERT_NO_FATAL_FAILURE(make(command + "'" + path("not_written") + "'" + settings, 3));
+  EXPECT_FALSE(fs::exists(path("not_written")));
+  ASSERT_EQ(RUN_LUCERNA(command + "'" + path("one.rad") + "'" + settings + " --quiet --json '" + path("one.json") + "'")
+                .exitCode,
+            0);
+  ASSERT_EQ(RUN_LUCERNA(command + "'" + path("all.rad") + "'" + settings + whole() + " --quiet --json '" +
+                        path("all.json") + "'")
+                .exitCode,
+            0);
+  EXPECT_EQ(json("all.json").at("hemicubes"), 0);  // all were the parts'
+  EXPECT_GT(json("one.json").at("hemicubes"), 100);
+  EXPECT_EQ(readFileBytes(path("one.rad")), readFileBytes(path("all.rad")));
+  fs::remove_all(path("parts"));
+  fs::remove_all(path("whole"));
+  const std::string any = command + "'" + path("not_written") + "'";
+  ASSERT_NO_FATAL_FAILURE(make(any + settings, 2));
+  expectWrongJoinsRefused(any + settings, any + " 64 --visibility raster --edge 0.3");
+  expectRefused(any + " 32" + partOf(0, 2, "no"), "visibility=auto");
+  expectRefused(any + " --fidelity original" + partOf(0, 2, "no"), "--fidelity corrected");
+}
+
+// Each original's tables: the rows of parts are those of one run, but for what the clock says.
+TEST_F(FolderParts, RowsOfTables) {
+  struct Of {
+    const char *original, *another;
+  };
+  for (const Of& of : {Of{"vpt --scale 0.001", "vpt --scale 0.0012"},
+                       Of{"lpv --scale 0.05 --fill fixed", "lpv --scale 0.05 --fill layered"},
+                       Of{"rad --scale 0.0005", "rad --scale 0.0006"}}) {
+    for (const char* name : {"parts", "whole", "other", "half"}) fs::remove_all(path(name));
+    const std::string command = std::string("bench tables --original ") + of.original;
+    ASSERT_NO_FATAL_FAILURE(make(command, 2));
+    ASSERT_EQ(RUN_LUCERNA(command + " --quiet --json '" + path("one.json") + "'").exitCode, 0);
+    const RunResult joined = RUN_LUCERNA(command + whole() + " --quiet --json '" + path("all.json") + "'");
+    ASSERT_EQ(joined.exitCode, 0) << joined.err;
+    const nlohmann::json one = json("one.json"), all = json("all.json");
+    ASSERT_EQ(one.at("rows").size(), all.at("rows").size()) << of.original;
+    for (std::size_t i = 0; i < one.at("rows").size(); ++i) {
+      for (const char* key : {"table", "row", "published", "unit"})
+        EXPECT_EQ(one.at("rows").at(i).at(key), all.at("rows").at(i).at(key)) << of.original << " " << i;
+      EXPECT_EQ(one.at("rows").at(i).at("measured").is_number(), all.at("rows").at(i).at("measured").is_number())
+          << of.original << " " << i;
+    }
+    // What is no time is the same to the last bit.
+    for (const char* key : {"deviations", "notes"})
+      EXPECT_EQ(one.value(key, nlohmann::json()), all.value(key, nlohmann::json())) << of.original << " " << key;
+    const nlohmann::json none = nlohmann::json::array(), pictures = one.value("pictures", none),
+                         joinedPictures = all.value("pictures", none);
+    ASSERT_EQ(pictures.size(), joinedPictures.size()) << of.original;
+    for (std::size_t i = 0; i < pictures.size(); ++i)
+      EXPECT_EQ(pictures.at(i).at("mean"), joinedPictures.at(i).at("mean")) << i;
+    expectWrongJoinsRefused(command, std::string("bench tables --original ") + of.another);
+  }
+  expectRefused("bench tables --original lpv" + partOf(0, 2, "no"), "--fill");
+}
+
+// Any of these commands as a job, its result where the command writes it.
+TEST_F(FolderParts, AClusterCutsAnyOfThem) {
+  const std::string job = path("job"), command = "bench stability --technique direct";
+  ASSERT_EQ(RUN_LUCERNA("cluster plan -o '" + job + "' --tasks 5 --quiet -- " + command + " --json '" +
+                        path("all.json") + "'")
+                .exitCode,
+            0);
+  const RunResult ran = RUN_LUCERNA("cluster run '" + job + "' --jobs 2 --quiet");
+  ASSERT_EQ(ran.exitCode, 0) << ran.err << ran.out;
+  EXPECT_FALSE(fs::exists(path("all.json")));
+  ASSERT_EQ(RUN_LUCERNA("cluster join '" + job + "' --quiet").exitCode, 0);
+  ASSERT_EQ(RUN_LUCERNA(command + " --quiet --json '" + path("one.json") + "'").exitCode, 0);
+  EXPECT_EQ(json("all.json").at("rows").size(), json("one.json").at("rows").size());
+  EXPECT_EQ(json("all.json").at("failed"), 0);
+  expectRefused("cluster plan -o '" + path("no") + "' -- info", "one of the commands that are cut");
+  expectRefused("cluster plan -o '" + path("no") + "' -- bench stability --part 0/2", "a task's own");
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 // Drives a report's page in headless Chromium through its debugging pipe and checks it against the report's JSON.
 // Usage: node report_page.js CHROMIUM PAGE.html REPORT.json [SCREENSHOT-PREFIX]
+// The JSON is that of `bench error`, of `bench all` (whose first figure is driven) or of `compare` (whose page has one row).
 // Prints a line a fault and ends with 1 where there is one; "N checks" and 0 otherwise.
 'use strict';
 const {spawn} = require('child_process');
 const fs = require('fs'), os = require('os'), path = require('path');
 const [chromium, page, jsonFile, prefix] = process.argv.slice(2);
-const json = JSON.parse(fs.readFileSync(jsonFile, 'utf8').replace(/\bNaN\b/g, 'null'));
+const written = JSON.parse(fs.readFileSync(jsonFile, 'utf8').replace(/\bNaN\b/g, 'null'));
+const json = Array.isArray(written.error) ? written.error[0] : written;
 
 const profile = fs.mkdtempSync(path.join(os.tmpdir(), 'lucerna-page-'));
 const browser = spawn(chromium, ['--headless', '--no-sandbox', '--disable-gpu', '--hide-scrollbars', `--user-data-dir=${profile}`, '--remote-debugging-pipe', '--window-size=1280,1000', 'about:blank'],
@@ -29,6 +31,28 @@ const sleep = ms => new Promise(resolve => setTimeout(resolve, ms));
 let checks = 0, faults = 0;
 function check(condition, text) { ++checks; if (!condition) { ++faults; console.log('FAULT ' + text); } }
 const near = (a, b, e) => Math.abs(a - b) <= e * Math.max(Math.abs(a), Math.abs(b), 1e-30);
+
+// A pair of pictures: one row, without times.
+async function compareChecks(evaluate, press, state) {
+  const rows = await evaluate('return f.rows');
+  check(rows.length === 1, `${rows.length} rows`);
+  for (const key of ['l2', 'nrmse', 'relmse', 'flip', 'bias', 'relative_bias']) check(near(rows[0][key], written[key], 1e-12), `${key} ${rows[0][key]} instead of ${written[key]}`);
+  const shown = await evaluate(`f.select(0); return f.factsBox.textContent`);
+  for (const [name, value, digits] of [['relative L2', 100 * written.l2, 6e-3], ['NRMSE', 100 * written.nrmse, 6e-3], ['FLIP', written.flip, 6e-3]]) {
+    const found = shown.match(new RegExp(name + '\\s*(?:< )?(-?[0-9.e+-]+)'));
+    check(found && near(Number(found[1]), value, digits), `${name} is shown as ${found && found[1]} instead of ${value}`);
+  }
+  const p = await evaluate('const d = f.difference(1), t = f.truth(0); let s = 0, m = 0; for (let k = 0; k < d.length; ++k) { s += d[k] * d[k]; m += t[k]; } return {rmse: Math.sqrt(s / d.length), mean: m / d.length}');
+  check(near(p.rmse, written.rmse, 2e-3) && near(p.mean, written.reference_mean, 1e-3), `pixels: RMSE ${p.rmse} instead of ${written.rmse}, mean ${p.mean} instead of ${written.reference_mean}`);
+  // The first crop is where they differ most, not in the black beside the scene.
+  const crop = await evaluate('const c = f.state.crops[0]; if (!c) return null; const d = f.difference(1); let inside = 0; for (let y = c.y; y < c.y + c.height; ++y) for (let x = c.x; x < c.x + c.width; ++x) inside += d[3 * (y * f.width + x)] !== 0; return inside / (c.width * c.height)');
+  check(crop !== null && crop > 0.5, `the first crop shows ${crop} of differing pixels`);
+  await evaluate('f.root.focus(); f.show(1)');
+  for (const [key, holds] of [['0', s => s.current === 0], ['1', s => s.current === 1], ['w', s => s.mode === 'wipe'], ['s', s => s.mode === 'side'], ['m', s => s.map === 'signed'], ['v', s => s.mode === 'single']]) {
+    await press(key);
+    check(holds(await state()), `key ${key}: ${JSON.stringify(await state())}`);
+  }
+}
 
 async function main() {
   const {targetInfos} = await send('Target.getTargets');
@@ -59,6 +83,29 @@ async function main() {
   console.log(`ready after ${ready.toFixed(0)} ms, ${fs.statSync(page).size} bytes`);
   const fetched = events.filter(e => e.method === 'Network.requestWillBeSent' && !/^(file|data|blob):/.test(e.params.request.url));
   check(fetched.length === 0, `fetched ${fetched.map(e => e.params.request.url)}`);
+
+  const screenshots = async views => {
+    for (const width of prefix ? [1280, 2560] : []) {
+      await call('Emulation.setDeviceMetricsOverride', {width, height: 1500, deviceScaleFactor: 1, mobile: false});
+      for (const [name, script] of views) {
+        await evaluate(script);
+        fs.writeFileSync(`${prefix}-${name}-${width}.png`, Buffer.from((await call('Page.captureScreenshot')).data, 'base64'));
+      }
+    }
+    if (prefix) await call('Emulation.clearDeviceMetricsOverride');
+  };
+  if (Array.isArray(written.error)) {
+    const figures = await evaluate('return report.figures.map(g => g.rows.length)'), reports = [...written.error, ...(written.deviations || [])];
+    check(JSON.stringify(figures) === JSON.stringify(reports.map(r => r.rows.length)), `figures of ${figures} rows`);
+  }
+  if (written.a) {
+    await compareChecks(evaluate, press, state);
+    await screenshots([['side', 'f.state.mode = "side"; f.state.map = "picture"; f.draw(); f.root.scrollIntoView()'], ['signed', 'f.state.map = "signed"; f.draw()']]);
+    const errors = events.filter(e => e.method === 'Runtime.exceptionThrown').map(e => e.params.exceptionDetails.exception.description);
+    check(errors.length === 0, `errors of the page: ${errors}`);
+    console.log(`${checks} checks, ${faults} faults`);
+    return;
+  }
 
   // Every row is the JSON's.
   const rows = await evaluate('return f.rows');
@@ -149,16 +196,8 @@ async function main() {
   await press('1');
   await expectKey('a', 'out of the set', (a, b) => a.chosen.includes(1) && !b.chosen.includes(1));
   await expectKey('a', 'into the set', (a, b) => b.chosen.includes(1));
-  if (prefix) for (const width of [1280, 2560]) {
-    await call('Emulation.setDeviceMetricsOverride', {width, height: 1500, deviceScaleFactor: 1, mobile: false});
-    await evaluate('f.state.map = "z"; f.draw(); f.root.scrollIntoView(); ');
-    fs.writeFileSync(`${prefix}-side-${width}.png`, Buffer.from((await call('Page.captureScreenshot')).data, 'base64'));
-    await evaluate('f.state.mode = "wipe"; f.state.map = "signed"; f.draw()');
-    fs.writeFileSync(`${prefix}-wipe-${width}.png`, Buffer.from((await call('Page.captureScreenshot')).data, 'base64'));
-    await evaluate('f.state.mode = "side"; f.state.map = "picture"; f.draw(); f.plotBox.scrollIntoView()');
-    fs.writeFileSync(`${prefix}-plot-${width}.png`, Buffer.from((await call('Page.captureScreenshot')).data, 'base64'));
-  }
-  if (prefix) await call('Emulation.clearDeviceMetricsOverride');
+  await screenshots([['side', 'f.state.map = "z"; f.draw(); f.root.scrollIntoView()'], ['wipe', 'f.state.mode = "wipe"; f.state.map = "signed"; f.draw()'],
+                     ['plot', 'f.state.mode = "side"; f.state.map = "picture"; f.draw(); f.plotBox.scrollIntoView()']]);
   await expectKey('v', 'one', (a, b) => b.mode === 'single');
   for (const map of ['signed', 'relative', 'flip', 'z', 'picture']) await expectKey('m', 'map', (a, b) => b.map === map);
   await expectKey('M', 'map before', (a, b) => b.map === 'z');

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -17,22 +18,67 @@ namespace {
 namespace fs = std::filesystem;
 using namespace lucerna;
 
-TEST(ReportPage, ShowsTheNumbersOfItsJsonAndObeysItsKeys) {
-  if (test::run("command -v node && command -v chromium").exitCode != 0)
-    GTEST_SKIP() << "node or chromium is missing (Debian packages nodejs, chromium)";
-  const test::TempFolder folder;
-  const std::string out = (folder.path() / "out").string(), references = (folder.path() / "references").string();
-  const std::string source = LUCERNA_SOURCE_DIR;
-  const auto bench = RUN_LUCERNA("bench error '" + source +
-                                 "/assets/cornell/cornell.json' --size 32x18 --reference-spp 64 --budget 2 --frames 2 "
-                                 "--small --techniques direct,rsm,path --out '" +
-                                 out + "' --references '" + references + "' --quiet");
-  ASSERT_EQ(bench.exitCode, 0) << bench.err;
-  const auto driven =
-      test::run("timeout 300 node '" + source + "/tests/cli/report_page.js' \"$(command -v chromium)\" '" + out +
-                "/report.html' '" + out + "/error.json'");
-  EXPECT_EQ(driven.exitCode, 0) << driven.out << driven.err;
-  EXPECT_NE(driven.out.find(" 0 faults"), std::string::npos) << driven.out;
+class ReportPage : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (test::run("command -v node && command -v chromium").exitCode != 0)
+      GTEST_SKIP() << "node or chromium is missing (Debian packages nodejs, chromium)";
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  /// `page` in headless Chromium, against the JSON of the command that made it; a line a fault, and the number of
+  /// checks.
+  void expectNoFault(const std::string& page, const std::string& json, int checks) {
+    const auto driven =
+        test::run("timeout 300 node '" LUCERNA_SOURCE_DIR "/tests/cli/report_page.js' \"$(command -v chromium)\" '" +
+                  path(page) + "' '" + path(json) + "'");
+    EXPECT_EQ(driven.exitCode, 0) << driven.out << driven.err;
+    const auto found = driven.out.find(" checks, 0 faults");
+    ASSERT_NE(found, std::string::npos) << driven.out;
+    EXPECT_GE(std::atoi(driven.out.c_str() + driven.out.rfind('\n', found) + 1), checks) << driven.out;
+  }
+  void bench(const std::string& command) {
+    const auto result = RUN_LUCERNA("bench " + command + " --references '" + path("references") + "' --quiet");
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+  }
+
+ private:
+  test::TempFolder folder_;
+};
+
+TEST_F(ReportPage, ShowsTheNumbersOfItsJsonAndObeysItsKeys) {
+  ASSERT_NO_FATAL_FAILURE(bench("error '" LUCERNA_SOURCE_DIR
+                                "/assets/cornell/cornell.json' --size 32x18 --reference-spp 64 --budget 2 --frames 2 "
+                                "--small --techniques direct,rsm,path --out '" +
+                                path("out") + "'"));
+  expectNoFault("out/report.html", "out/error.json", 300);
+}
+
+// Glass and coloured media: the path tracer is judged by one more reference, with all materials as they are.
+TEST_F(ReportPage, OpensAReportOfMedia) {
+  ASSERT_NO_FATAL_FAILURE(bench("error '" LUCERNA_SOURCE_DIR
+                                "/assets/media/gems/gems.json' --size 32x18 --reference-spp 32 --budget 1 --frames 1 "
+                                "--small --techniques direct,path --out '" +
+                                path("out") + "'"));
+  expectNoFault("out/report.html", "out/error.json", 200);
+}
+
+TEST_F(ReportPage, OfAPairOfPictures) {
+  const std::string render = "render '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --size 32x18 --quiet ";
+  ASSERT_EQ(RUN_LUCERNA(render + "--technique direct -o '" + path("a.pfm") + "'").exitCode, 0);
+  ASSERT_EQ(RUN_LUCERNA(render + "--technique path --spp 16 -o '" + path("b.pfm") + "'").exitCode, 0);
+  const auto compared = RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("b.pfm") + "' --page '" +
+                                    path("pair.html") + "' --json '" + path("pair.json") + "' --quiet");
+  ASSERT_EQ(compared.exitCode, 0) << compared.err;
+  expectNoFault("pair.html", "pair.json", 15);
+}
+
+TEST_F(ReportPage, OfTheWholeReport) {
+  const auto all =
+      test::run("LUCERNA_REFERENCES='" + path("references") +
+                "' '" LUCERNA_BINARY "' bench all '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --out '" +
+                path("out") + "' --scale 0.02 --parts error,needs --json '" + path("all.json") + "' --quiet");
+  ASSERT_EQ(all.exitCode, 0) << all.err;
+  expectNoFault("out/index.html", "all.json", 300);
 }
 
 // A report as `bench error` writes it, but for what is drawn: three rows of known spreads.

@@ -328,6 +328,27 @@ TEST(Flip, BlackAgainstWhite) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.0f), glm::
 // Grey 0.2 and 0.25, L* = 116 cbrt(Y) - 16: 51.8372 and 57.0754; 5.2382^0.7 = 3.18734, times 0.95 / 16.51044 = 0.18340.
 TEST(Flip, TwoGreys) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.25f), glm::vec3(0.2f)), 0.18340, 2e-5); }
 
+// A lattice of colours with an edge and a spot against one with the edge elsewhere, a tint and no spot. The means are
+// those of tests/support/flip.py, which has whole two-dimensional kernels where this one's are separated, and luminance
+// and colours of its own.
+TEST(Flip, IsWhatWholeKernelsGive) {
+  constexpr int kWidth = 16, kHeight = 12;
+  Image reference(kWidth, kHeight), image = reference;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const double red = 0.1 + 0.8 * (x % 5) / 4.0, step = 0.7 * (y % 4) / 3.0;
+      reference.at(x, y) =
+          glm::vec3(glm::dvec3(red, 0.9 - step, 0.2 + 0.5 * (x >= 9) + (x == 4 && y == 5 ? 0.3 : 0.0)));
+      image.at(x, y) = glm::vec3(glm::dvec3(red, 0.85 - step, 0.25 + 0.5 * (x >= 11)));
+    }
+  const Flip ldr = flipLdr(image, reference);
+  EXPECT_NEAR(ldr.mean, 0.2560647, 1e-6);
+  EXPECT_NEAR(ldr.map[5 * kWidth + 4], 0.2660021, 2e-6);
+  for (Image* picture : {&image, &reference})
+    for (glm::vec3& p : picture->pixels) p = 40.0f * p * p;
+  EXPECT_NEAR(flipHdr(image, reference).mean, 0.3624176, 2e-6);
+}
+
 // An edge that is only in one picture counts more than its colour alone: the exponent falls below 1.
 TEST(Flip, FeaturesRaiseTheDifference) {
   Image flat(40, 40, glm::vec3(0.5f)), line = flat;
