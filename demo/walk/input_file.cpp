@@ -151,6 +151,12 @@ void InputPlayer::touch(Ui* ui) {
     for (const std::string& label : ui->labels()) known += (known.empty() ? "" : ", ") + label;
     fail(touchingLine_, fmt::format("{}: the panel shows no such control; there are {}", touching_, known));
   }
+  // The panel scrolls to it for some frames: it is touched where it has come to rest.
+  if (touchStep_ == 0) {
+    rests_ = place->centre == restsAt_ ? rests_ + 1 : 0;
+    restsAt_ = place->centre;
+    if (rests_ < kSettles) return;
+  }
   // A frame each: cursor over it, pressed, let go.
   if (touchStep_ == 0 && place) state_.cursor(glm::dvec2(place->centre));
   if (touchStep_ == 1) state_.button(MouseButton::left, true);

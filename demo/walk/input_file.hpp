@@ -67,6 +67,8 @@ class InputPlayer {
   // A control being touched: found, cursor over it, button down, button up.
   std::string touching_;
   int touchingLine_ = 0, touchStep_ = 0, waited_ = 0, idle_ = 0;
+  glm::vec2 restsAt_{-1.0f};  ///< where the control was in the frame before
+  int rests_ = 0;  ///< frames
   bool every_ = false;
   std::set<std::string> touched_, gone_;
   std::map<std::string, int> attempts_;  ///< to bring a control in sight

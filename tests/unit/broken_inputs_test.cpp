@@ -80,7 +80,8 @@ TEST(BrokenInputs, NodesThatAreNoTreesAreRefused) {
   std::string doubled = "[";
   for (int i = 0; i < 30; ++i) doubled += fmt::format("{{\"children\":[{0},{0}]}},", i + 1);
   EXPECT_TRUE(contains(refusal(folder, "doubled.gltf", gltfWithNodes(doubled + "{\"mesh\":0}]")), "must be trees"));
-  EXPECT_TRUE(contains(refusal(folder, "none.gltf", gltfWithNodes(R"([{"children":[7],"mesh":0}])")), "no such node: 7"));
+  EXPECT_TRUE(
+      contains(refusal(folder, "none.gltf", gltfWithNodes(R"([{"children":[7],"mesh":0}])")), "no such node: 7"));
 }
 
 TEST(BrokenInputs, AccessorsHoldNoMoreThanTheirBytes) {
