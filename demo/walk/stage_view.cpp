@@ -1,10 +1,14 @@
 #include "walk/stage_view.hpp"
 
+#include "base/statistics.hpp"
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace lucerna::demo {
 
@@ -33,22 +37,35 @@ const gl::Texture& StageView::record(const StagePicture& picture, int layer, flo
     texture = &copy_;
   }
   if (!result_.id() || result_.size2d() != texture->size2d()) {
-    result_ = gl::Texture("stage view", GL_RGBA16F, texture->size2d());
+    result_ = gl::Texture("stage view", GL_RGBA32F, texture->size2d());
     const std::array<const gl::Texture*, 1> colors{&result_};
     target_ = gl::Framebuffer("stage view", colors);
   }
-  const gl::Program& program =
-      programs_.loadRaster("stage view", "lib/fullscreen.vert", "walk/stage.frag", {{"SHAPE", shapeOf(picture)}});
-  const gl::RasterPass pass("stage view", target_, {});
-  program.use();
-  texture->bind(0);
-  if (picture.green) picture.green->bind(1), picture.blue->bind(2);
-  program.set("layer", std::clamp(layer, 0, texture->size().z - 1));
-  program.set("kind", static_cast<int>(picture.kind));
-  program.set("factor", factor);
-  program.set("minimum", glm::vec3(bounds.min));
-  program.set("extent", glm::max(glm::vec3(bounds.extent()), glm::vec3(1e-30f)));
-  gl::drawFullScreen(noAttributes_);
+  const auto draw = [&](float by) {
+    const gl::Program& program =
+        programs_.loadRaster("stage view", "lib/fullscreen.vert", "walk/stage.frag", {{"SHAPE", shapeOf(picture)}});
+    const gl::RasterPass pass("stage view", target_, {});
+    program.use();
+    texture->bind(0);
+    if (picture.green) picture.green->bind(1), picture.blue->bind(2);
+    program.set("layer", std::clamp(layer, 0, texture->size().z - 1));
+    program.set("kind", static_cast<int>(picture.kind));
+    program.set("factor", by);
+    program.set("minimum", glm::vec3(bounds.min));
+    program.set("extent", glm::max(glm::vec3(bounds.extent()), glm::vec3(1e-30f)));
+    gl::drawFullScreen(noAttributes_);
+  };
+  // Light is of any size: of what is lit, one texel in ten is brighter than white.
+  const std::string measured = fmt::format("{} {}", picture.name, layer);
+  if (picture.isLight() && measured != measured_) {
+    draw(1.0f);
+    std::vector<double> lit;
+    for (const glm::vec4& texel : result_.readRgba())
+      if (const float most = std::max({texel.x, texel.y, texel.z}); most > 0.0f) lit.push_back(most);
+    usualFactor_ = lit.empty() ? 1.0f : static_cast<float>(1.0 / percentile(lit, 0.9));
+    measured_ = measured;
+  }
+  draw(picture.isLight() ? factor * usualFactor_ : 1.0f);
   return result_;
 }
 

@@ -12,8 +12,7 @@ class StageView {
  public:
   explicit StageView(gl::ProgramLibrary& programs) : programs_(programs), noAttributes_("stage view") {}
 
-  /// Draws it; the picture is valid until the next call. factor: of flux, 1 shows the mean of what is lit as middle
-  /// grey.
+  /// Draws it; the picture is valid until the next call. factor: of light, over a brightness that suits the picture.
   const gl::Texture& record(const StagePicture& picture, int layer, float factor, const Bounds& bounds);
   static int layersOf(const StagePicture& picture) { return picture.texture->size().z; }
 
@@ -22,6 +21,8 @@ class StageView {
   gl::VertexArray noAttributes_;
   gl::Texture copy_, result_;
   gl::Framebuffer target_;
+  std::string measured_;  ///< picture and layer that usualFactor_ is of
+  float usualFactor_ = 1.0f;
 };
 
 }  // namespace lucerna::demo

@@ -106,6 +106,31 @@ TEST_F(Window, EveryControlOnce) {
         << label << " was never touched";
 }
 
+// The picture of a stage: as bright as it needs to be, and another than the frame's.
+TEST_F(Window, DebugViewsShowWhatStagesMade) {
+  write("input.txt",
+        "1 key R\n6 save frame.png\n7 touch Debug view\n8 touch Debug view/picture of\n9 touch Debug view/picture of: "
+        "rsm 1 flux\n10 save flux.png\n11 touch Debug view/picture of\n12 touch Debug view/picture of: normals\n"
+        "13 save normals.png\n");
+  const RunResult result = play(path("input.txt"), "--technique rsm --set rsm.samples=16", "", "800x700");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  const auto brightest = [&](const char* name) {
+    const lucerna::Bitmap picture = lucerna::readBitmap(path(name));
+    int most = 0;
+    for (int y = 100; y < 500; ++y)  // beside the panel and the hint
+      for (int x = 50; x < 400; ++x)
+        most = std::max<int>(most,
+                             picture.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                                               static_cast<std::size_t>(x))]);
+    return most;
+  };
+  EXPECT_GT(brightest("flux.png"), 200);
+  EXPECT_GT(brightest("normals.png"), 120);
+  EXPECT_NE(read("flux.png"), read("frame.png"));
+  EXPECT_NE(read("normals.png"), read("flux.png"));
+}
+
 TEST_F(Window, SizesOfAllKinds) {
   const RunResult result = play(kept("resizes.txt"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
