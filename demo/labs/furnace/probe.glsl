@@ -20,7 +20,8 @@ vec4 probe() {
 #elif PROBE == 2
   // Furnace: radiance 1 from all sides, directions uniform over the sphere.
   float sum = 0.0;
-  for (int k = 0; k < 64; ++k) sum += 4.0 * PI * reflected(vec3(point(0).w), point(0).xyz, uniformDirection(), vec3(1.0)).x;
+  for (int k = 0; k < 64; ++k)
+    sum += 4.0 * PI * reflected(vec3(point(0).w), point(0).xyz, uniformDirection(), vec3(1.0)).x;
   return vec4(sum / 64.0);
 #elif PROBE == 3
   vec3 n = point(0).xyz, w = sampleCosine(random2(), n), t, b;
@@ -58,7 +59,8 @@ vec4 probe() {
 #elif PROBE == 11
   // Furnace with point(1).x samples an invocation, uniform directions.
   float sum = 0.0;
-  for (int k = 0; k < int(point(1).x); ++k) sum += 4.0 * PI * reflected(vec3(point(0).w), point(0).xyz, uniformDirection(), vec3(1.0)).x;
+  for (int k = 0; k < int(point(1).x); ++k)
+    sum += 4.0 * PI * reflected(vec3(point(0).w), point(0).xyz, uniformDirection(), vec3(1.0)).x;
   return vec4(sum / point(1).x);
 #endif
 }

@@ -32,7 +32,8 @@ vec4 probe() {
   float sum = 0.0;
   for (int k = 0; k < 64; ++k) {
     vec3 w = uniformDirection();
-    sum += 4.0 * PI * max(0.0, dot(w, point(0).xyz)) * dot(shBasis(w), point(1)) - dot(cosineLobe(point(0).xyz), point(1));
+    sum +=
+        4.0 * PI * max(0.0, dot(w, point(0).xyz)) * dot(shBasis(w), point(1)) - dot(cosineLobe(point(0).xyz), point(1));
   }
   return vec4(sum / 64.0);
 #elif PROBE == 5

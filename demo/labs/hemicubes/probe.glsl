@@ -2,7 +2,8 @@
 
 // Three patches: point(0) emission, point(1) reflectance, point(2..4) rows of form factors.
 vec3 swept(vec3 radiosity) {
-  float F[9] = float[9](point(2).x, point(2).y, point(2).z, point(3).x, point(3).y, point(3).z, point(4).x, point(4).y, point(4).z);
+  float F[9] = float[9](point(2).x, point(2).y, point(2).z, point(3).x, point(3).y, point(3).z, point(4).x, point(4).y,
+                        point(4).z);
   return sweep(radiosity, point(0).xyz, point(1).xyz, F);
 }
 
@@ -18,7 +19,10 @@ float hemicubeSample(vec3 x, float side, float height) {
     weight = deltaTop(p, 12.0);
   } else {
     float y = 2.0 * u.x - 1.0;
-    d = which < 6.0 ? vec3(1.0, y, u.y) : which < 8.0 ? vec3(-1.0, y, u.y) : which < 10.0 ? vec3(y, 1.0, u.y) : vec3(y, -1.0, u.y);
+    d = which < 6.0    ? vec3(1.0, y, u.y)
+        : which < 8.0  ? vec3(-1.0, y, u.y)
+        : which < 10.0 ? vec3(y, 1.0, u.y)
+                       : vec3(y, -1.0, u.y);
     weight = deltaSide(y, u.y, 12.0);
   }
   if (height == 0.0) return weight;

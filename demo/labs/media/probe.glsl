@@ -59,7 +59,10 @@ vec4 probe() {
   // Transmittance of a wedge: to the right it is longer, to the bottom denser.
   vec2 p = (vec2(pixel()) + 0.5) / vec2(96.0, 64.0);
   float hits = 0.0;
-  for (int k = 0; k < 64; ++k) hits += deltaTracking(point(0).x, 2.0 * p.y, point(0).x + 2.0 * p.y * 2.0 * p.x + 0.1, 2.0 * p.x) >= 2.0 * p.x ? 1.0 : 0.0;
+  for (int k = 0; k < 64; ++k)
+    hits += deltaTracking(point(0).x, 2.0 * p.y, point(0).x + 2.0 * p.y * 2.0 * p.x + 0.1, 2.0 * p.x) >= 2.0 * p.x
+                ? 1.0
+                : 0.0;
   float mean = hits / 64.0;
   // Laplace's rule for the variance: pixels that saw one kind of event alone are not certain.
   float guess = (hits + 1.0) / 66.0;

@@ -7,11 +7,13 @@ float bothStrategies(vec3 x) {
   float side = point(0).x, height = point(0).y, albedo = point(0).z, pdfArea = 1.0 / (side * side);
   vec2 u = random2() - 0.5;
   vec3 y = vec3(side * u.x, height, side * u.y);
-  float value = lampSample(1.0, albedo, x, kUp, y, kDown, pdfArea) * misWeight(densityOverSolidAngle(pdfArea, x, y, kDown), normalize(y - x).y / PI);
+  float value = lampSample(1.0, albedo, x, kUp, y, kDown, pdfArea) *
+                misWeight(densityOverSolidAngle(pdfArea, x, y, kDown), normalize(y - x).y / PI);
   float radius = sqrt(random()), angle = 2.0 * PI * random();
   vec3 w = vec3(radius * cos(angle), sqrt(max(1e-12, 1.0 - radius * radius)), radius * sin(angle));
   vec3 hit = x + w * (height / w.y);
-  if (all(lessThan(abs(hit.xz), vec2(0.5 * side)))) value += albedo * misWeight(w.y / PI, densityOverSolidAngle(pdfArea, x, hit, kDown));
+  if (all(lessThan(abs(hit.xz), vec2(0.5 * side))))
+    value += albedo * misWeight(w.y / PI, densityOverSolidAngle(pdfArea, x, hit, kDown));
   return value;
 }
 
@@ -22,12 +24,14 @@ vec4 probe() {
   float a = random() + 1e-3, b = 5.0 * random() + 1e-3;
   return vec4(misWeight(a, b) + misWeight(b, a));
 #elif PROBE == 3
-  return vec4(lampSample(point(3).x, point(3).y, point(0).xyz, vec3(0.0, 0.0, 1.0), point(1).xyz, point(2).xyz, point(3).z));
+  return vec4(
+      lampSample(point(3).x, point(3).y, point(0).xyz, vec3(0.0, 0.0, 1.0), point(1).xyz, point(2).xyz, point(3).z));
 #elif PROBE == 4
   float side = point(0).x, sum = 0.0;
   for (int k = 0; k < 64; ++k) {
     vec2 u = random2() - 0.5;
-    sum += lampSample(1.0, point(0).z, vec3(point(1).x, 0.0, 0.0), kUp, vec3(side * u.x, point(0).y, side * u.y), kDown, 1.0 / (side * side));
+    sum += lampSample(1.0, point(0).z, vec3(point(1).x, 0.0, 0.0), kUp, vec3(side * u.x, point(0).y, side * u.y), kDown,
+                      1.0 / (side * side));
   }
   return vec4(sum / 64.0);
 #elif PROBE == 6

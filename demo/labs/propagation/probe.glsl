@@ -1,5 +1,6 @@
 // Probes of lab 4. Points as demo/labs/propagation/propagation.cpp writes them.
-const vec3 kAxes[6] = vec3[6](vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1));
+const vec3 kAxes[6] =
+    vec3[6](vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1));
 vec4 along(vec4 c, int k) { return propagated(c, kAxes[k], kAxes[(k + 2) % 6], kAxes[(k + 4) % 6]); }
 const ivec3 kGrid = ivec3(12, 8, 8);
 
@@ -25,7 +26,8 @@ vec4 probe() {
   vec4 sum = vec4(0.0);
   for (int k = 0; k < 6; ++k) {
     ivec3 from = cell - ivec3(kAxes[k]);
-    if (all(greaterThanEqual(from, ivec3(0))) && all(lessThan(from, kGrid))) sum += along(labInputs[from.x + kGrid.x * (from.y + kGrid.y * from.z)], k);
+    if (all(greaterThanEqual(from, ivec3(0))) && all(lessThan(from, kGrid)))
+      sum += along(labInputs[from.x + kGrid.x * (from.y + kGrid.y * from.z)], k);
   }
   return sum;
 #elif PROBE == 8

@@ -6,7 +6,8 @@ float wallSample(vec3 x) {
   float side = point(0).x, cosine = point(0).w;
   vec2 u = random2();
   vec3 p = vec3(side * (u.x - 0.5), 0.0, point(0).y + side * u.y);
-  return texelLight(x, vec3(0.0, 0.0, 1.0), p, vec3(0.0, 1.0, 0.0), texelFlux(point(0).z, 1.0, side * side * cosine, cosine));
+  return texelLight(x, vec3(0.0, 0.0, 1.0), p, vec3(0.0, 1.0, 0.0),
+                    texelFlux(point(0).z, 1.0, side * side * cosine, cosine));
 }
 
 vec4 probe() {

@@ -17,7 +17,9 @@ float deltaSide(float y, float z, float area) {
 // +y, 4 -y; z is the normal.
 vec3 pixelDirection(int face, ivec2 pixel, int n) {
   vec2 p = 2.0 * (vec2(pixel) + 0.5) / float(n);
-  vec3 d = face == 0 ? vec3(p - 1.0, 1.0) : face == 1 ? vec3(1.0, p.x - 1.0, p.y) : face == 2 ? vec3(-1.0, p.x - 1.0, p.y) : face == 3 ? vec3(p.x - 1.0, 1.0, p.y) : vec3(p.x - 1.0, -1.0, p.y);
+  vec3 d = face == 0 ? vec3(p - 1.0, 1.0) :
+           face == 1 ? vec3(1.0, p.x - 1.0, p.y) : face == 2 ? vec3(-1.0, p.x - 1.0, p.y) :
+           face == 3 ? vec3(p.x - 1.0, 1.0, p.y) : vec3(p.x - 1.0, -1.0, p.y);
   return normalize(d);
 }
 
@@ -25,7 +27,9 @@ vec3 pixelDirection(int face, ivec2 pixel, int n) {
 // factor from i to j.
 vec3 sweep(vec3 radiosity, vec3 emission, vec3 reflectance, float F[9]) {
   vec3 result;
-  for (int i = 0; i < 3; ++i) result[i] = emission[i] + reflectance[i] * (F[3 * i] * radiosity[0] + F[3 * i + 1] * radiosity[1] + F[3 * i + 2] * radiosity[2]);
+  for (int i = 0; i < 3; ++i)
+    result[i] = emission[i] + reflectance[i] *
+        (F[3 * i] * radiosity[0] + F[3 * i + 1] * radiosity[1] + F[3 * i + 2] * radiosity[2]);
   return result;
 }
 

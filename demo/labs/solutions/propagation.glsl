@@ -29,7 +29,8 @@ float fluxInto(vec4 c, vec3 towards, float solidAngle) {
 vec4 propagated(vec4 source, vec3 travel, vec3 u, vec3 v) {
   vec4 sum = injectedLight(travel, fluxInto(source, travel, kFrontSolidAngle));
   vec3 sides[4] = vec3[4](u, -u, v, -v);
-  for (int k = 0; k < 4; ++k) sum += injectedLight(sides[k], fluxInto(source, (2.0 * travel + sides[k]) / sqrt(5.0), kSideSolidAngle));
+  for (int k = 0; k < 4; ++k)
+    sum += injectedLight(sides[k], fluxInto(source, (2.0 * travel + sides[k]) / sqrt(5.0), kSideSolidAngle));
   return sum;
 }
 

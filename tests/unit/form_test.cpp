@@ -1,0 +1,38 @@
+// The form of the sources: no line over 120 columns, as .editorconfig and .clang-format have it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Characters, not bytes of UTF-8.
+std::size_t columnsOf(const std::string& line) {
+  std::size_t columns = 0;
+  for (const char c : line) columns += (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
+  return columns;
+}
+
+TEST(Form, NoLineOfSourcesIsWiderThan120Columns) {
+  const std::set<std::string> kinds{".cpp", ".hpp", ".h", ".glsl", ".comp", ".vert", ".geom", ".frag"};
+  const fs::path root = LUCERNA_SOURCE_DIR;
+  std::size_t files = 0;
+  for (const char* folder : {"engine", "demo", "shaders", "tests"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (!entry.is_regular_file() || !kinds.contains(entry.path().extension().string())) continue;
+      ++files;
+      std::ifstream lines(entry.path());
+      int number = 0;
+      for (std::string line; std::getline(lines, line);) {
+        ++number;
+        EXPECT_LE(columnsOf(line), 120u) << fs::relative(entry.path(), root).string() << ":" << number;
+      }
+    }
+  EXPECT_GT(files, 500u);
+}
+
+}  // namespace
