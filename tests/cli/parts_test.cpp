@@ -2,6 +2,7 @@
 // rows, rows of hemicubes.
 #include "base/files.hpp"
 #include "base/image.hpp"
+#include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -354,6 +355,7 @@ TEST_F(FolderParts, RowsOfHemicubes) {
 
 // Each original's tables: the rows of parts are those of one run, but for what the clock says.
 TEST_F(FolderParts, RowsOfTables) {
+  if (!test::longTests()) GTEST_SKIP() << "minutes: LUCERNA_LONG_TESTS";
   struct Of {
     const char *original, *another;
   };

@@ -250,6 +250,10 @@ async function main() {
   console.log(`${checks} checks, ${faults} faults`);
 }
 main().catch(error => { console.log('FAULT ' + error.stack); faults = 1; }).finally(() => {
-  browser.on('exit', () => { fs.rmSync(profile, {recursive: true, force: true}); process.exit(faults ? 1 : 0); });
+  browser.on('exit', () => {
+    // Its other processes may still write there.
+    fs.rmSync(profile, {recursive: true, force: true, maxRetries: 20, retryDelay: 100});
+    process.exit(faults ? 1 : 0);
+  });
   browser.kill('SIGKILL');
 });

@@ -1,6 +1,7 @@
 // bench diff; and the page of a report, driven in headless Chromium: every number shown is the JSON's, every key does
 // what its help says.
 #include "base/files.hpp"
+#include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -73,6 +74,7 @@ TEST_F(ReportPage, OfAPairOfPictures) {
 }
 
 TEST_F(ReportPage, OfTheWholeReport) {
+  if (!test::longTests()) GTEST_SKIP() << "minutes: LUCERNA_LONG_TESTS";
   const auto all =
       test::run("LUCERNA_REFERENCES='" + path("references") +
                 "' '" LUCERNA_BINARY "' bench all '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --out '" +

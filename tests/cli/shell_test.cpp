@@ -49,7 +49,7 @@ Words bashOffers(const Words& words, const std::string& folder = ".") {
 TEST(Completions, BashOffersCommandsAndTheirOptions) {
   EXPECT_EQ(bashOffers({"ben"}), Words{"bench"});
   EXPECT_EQ(bashOffers({"bench", "s"}), Words{"stability"});
-  EXPECT_EQ(bashOffers({"bench", "error", "--refer"}), (Words{"--reference-spp", "--references"}));
+  EXPECT_EQ(bashOffers({"bench", "error", "--refer"}), (Words{"--references", "--reference-spp"}));
   EXPECT_EQ(bashOffers({"radiosity", "solve", "--vis"}), Words{"--visibility"});
   EXPECT_EQ(bashOffers({"render", "--vis"}), Words{}) << "an option of another command";
 }
