@@ -379,16 +379,14 @@ TEST_F(LabWay, WordsAreForTheReportAlone) {
 TEST_F(LabWay, ChecksPrintWhatWasExpectedAndMeasured) {
   start();
   ASSERT_EQ(lab(fmt::format("solution 1 {}", dir.string())).exitCode, 0);
-  const std::regex passed(
-      R"(passed    furnace: radiance 1 all around gives the albedo\n +)"
-      R"(expected 0\.\d+, measured 0\.\d+ \+- [0-9.e-]+ \([0-9.]+ sigma\))");
+  const std::regex passed(R"(passed    furnace: radiance 1 all around gives the albedo\n +)"
+                          R"(expected 0\.\d+, measured 0\.\d+ \+- [0-9.e-]+ \([0-9.]+ sigma\))");
   const RunResult right = lab(fmt::format("check 1 {}", dir.string()));
   EXPECT_TRUE(std::regex_search(right.out, passed)) << right.out;
   edit("albedo / PI", "albedo");
   const RunResult wrong = lab(fmt::format("check 1 {}", dir.string()));
-  const std::regex refused(
-      R"(wrong     reflected light at points\n +expected .+\n +measured .+\n +)"
-      R"(\d+ of \d+ points agree.+\n +likeliest: 1 / pi is lost)");
+  const std::regex refused(R"(wrong     reflected light at points\n +expected .+\n +measured .+\n +)"
+                           R"(\d+ of \d+ points agree.+\n +likeliest: 1 / pi is lost)");
   EXPECT_TRUE(std::regex_search(wrong.out, refused)) << wrong.out;
 }
 

@@ -69,9 +69,8 @@ TEST_F(MediaCommand, DraftBecomesASceneThatLoads) {
 TEST_F(MediaCommand, TheOriginalsFilesHaveItsSize) {
   write("a.mtl", "newmtl wall\nKd 0.5 0.5 0.5\n");
   write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wall\nf 1 2 3\n");
-  write(
-      "a.json",
-      R"({"scene": {"camera": [0, 0, 900], "cameraLookAt": [0, 0, 0], "fov": 30, "lightPos": [1, 1, 3],
+  write("a.json",
+        R"({"scene": {"camera": [0, 0, 900], "cameraLookAt": [0, 0, 0], "fov": 30, "lightPos": [1, 1, 3],
       "lightColor": [1, 1, 1], "lightIntensity": 9, "scale": 1}})");
   const std::string options =
       " --technique path --spp 1 --bounces 0 --quiet --json " + path("r.json") + " -o " + path("r.hdr");
