@@ -2,15 +2,16 @@
 // a file that must not exist yet is atomic and a rename is seen whole (a local disk; NFS from version 3 on; Lustre,
 // GPFS).
 //
-//   job.json             what is made: the command, how many tasks; never changed. Task K of N is the command with
-//   --part K/N claims/TASK.N        who works on a task: creating the file is the claim, its time of change is the sign
-//   of life. N: how often it was taken up.
-//                        A claim without a sign of life for `deadAfter` seconds is nobody's: whoever creates TASK.(N+1)
-//                        first takes the task up
-//   parts/TASK           the task's checkpoint, a folder (parts.hpp) or, of samples, a film TASK.film: who takes a task
-//   up goes on from it whole, whole.film    all parts as one checkpoint, made by the join done/TASK.json       its
-//   result, written last, at once logs/TASK.log        what the program said array.sbatch, join.sbatch, submit     the
-//   same for Slurm
+//   job.json        what is made: the command, how many tasks; never changed. Task K of N is it with --part K/N
+//   claims/TASK.N   who works on a task: creating the file is the claim, its time of change is the sign of life.
+//                   N: how often it was taken up. A claim without a sign of life for `deadAfter` seconds is nobody's:
+//                   whoever creates TASK.(N+1) first takes the task up
+//   parts/TASK      the task's checkpoint, a folder (parts.hpp) or, of samples, a film TASK.film: who takes a task up
+//                   goes on from it
+//   whole           all parts as one checkpoint, made by the join; of samples whole.film
+//   done/TASK.json  its result, written last, at once
+//   logs/TASK.log   what the program said
+//   array.sbatch, join.sbatch, submit: the same for Slurm
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -30,8 +31,8 @@ struct ClusterTask {
 
 /// What is cut into tasks.
 struct ClusterCommand {
-  std::vector<std::string>
-      words;  ///< after `lucerna`, without --part, --checkpoint, --json, --quiet, and of a picture -o
+  /// After `lucerna`, without --part, --checkpoint, --json, --quiet, and of a picture -o.
+  std::vector<std::string> words;
   std::string output;  ///< of a path traced picture; empty: a command that writes its result itself, from all parts
   std::string json;  ///< --json of the whole; empty: none
 
@@ -50,9 +51,8 @@ class ClusterJob {
   const std::filesystem::path& folder() const { return folder_; }
   const std::vector<ClusterTask>& tasks() const { return tasks_; }
   const ClusterCommand& command() const { return command_; }
-  const std::string& directory() const {
-    return directory_;
-  }  ///< where the command was planned: its relative paths are from there
+  /// Where the command was planned: its relative paths are from there.
+  const std::string& directory() const { return directory_; }
 
   std::filesystem::path part(const ClusterTask& task) const {
     return folder_ / "parts" / (task.name + (command_.isPicture() ? ".film" : ""));

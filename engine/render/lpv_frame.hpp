@@ -1,7 +1,7 @@
 // Technique lpv with transport propagate in the frame: light injected from the lights' maps, propagated through nested
 // grids, looked up in shading.
 //
-// Stages, with their inputs:  rsm (lights, geometry) -> camera surfels (camera; where lpv.blocking asks for them) ->
+// Stages, with their inputs: rsm (lights, geometry) -> camera surfels (camera; where lpv.blocking asks for them) ->
 // injection, geometry volume, propagation (maps, placement of the cascades). They run again where a grid has moved, or
 // surfels come from what the camera sees.
 #pragma once

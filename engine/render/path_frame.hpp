@@ -1,7 +1,7 @@
 // Technique path in the frame: a path traced picture that gets better while the view stands still, shown with the
 // frame's tone mapping.
 //
-// Stages, with their inputs:  path tracing (scene, camera) -> film (the means so far). It draws nothing else: no shadow
+// Stages, with their inputs: path tracing (scene, camera) -> film (the means so far). It draws nothing else: no shadow
 // maps, no depth.
 #pragma once
 

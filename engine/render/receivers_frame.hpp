@@ -1,7 +1,7 @@
 // Technique lpv with transport gather or rays in the frame: irradiance kept at points of surfaces, which camera and
 // grids choose.
 //
-// Stages, with their inputs:  rsm (lights, geometry; gather alone) -> geometry (camera) -> receivers (maps, visible
+// Stages, with their inputs: rsm (lights, geometry; gather alone) -> geometry (camera) -> receivers (maps, visible
 // surfaces, placement of the cascades). Nothing is done for a view whose receivers have all their paths.
 #pragma once
 

@@ -1,6 +1,6 @@
 // Technique rsm in the frame: every light's reflective shadow map gathered at visible pixels.
 //
-// Stages, with their inputs:  rsm (lights, geometry) -> geometry (camera) -> gather low, interpolation (both) -> gather
+// Stages, with their inputs: rsm (lights, geometry) -> geometry (camera) -> gather low, interpolation (both) -> gather
 // full.
 #pragma once
 

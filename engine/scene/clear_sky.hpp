@@ -4,8 +4,9 @@
 // thickness of air with haze over that of air alone; 2 is very clear, 3 clear, 6 warm and moist, 10 hazy. Amount of
 // light, sun and sky in proportion, with m the air mass [Preetham1999, A.1] and a = 0.1 / (1 + 0.0045 m) the extinction
 // of clean air:
-//   sun, across its rays     E_n = 127.5 klx exp(-a m T) [Navvab1984] sky, on the ground       E_h = 127.5 klx / m 0.79
-//   (0.5 (1 - e^-am) + 0.84 (1 - e^-am(T-1))) / (1 - m + m^1.02)     [Bird1981]
+//   sun, across its rays:  E_n = 127.5 klx exp(-a m T)                                        [Navvab1984]
+//   sky, on the ground:    E_h = 127.5 klx / m 0.79 (0.5 (1 - e^-am) + 0.84 (1 - e^-am(T-1)))
+//                                / (1 - m + m^1.02)                                           [Bird1981]
 // The second is what air and haze remove from sunlight and scatter downwards, half and 84 % of it, written for light
 // (as if nothing were absorbed) and with 1/m for the cosine of the sun's zenith angle, equal except for the Earth's
 // curvature. The zenith luminance of [Preetham1999] is not used: with it and the sun in the zenith, T = 3, sun and sky

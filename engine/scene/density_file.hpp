@@ -1,10 +1,9 @@
 // Density grids from files (no GL), for heterogeneous media. x runs fastest, then y, then z in every format:
-//   .nrrd  NRRD, header and data in one file: "dimension: 3", "sizes", "type" uint8, uint16 or float, "encoding: raw",
-//   "endian: little". Other
-//          header fields are ignored: the scene places the box in the world.
+//   .nrrd  NRRD, header and data in one file: "dimension: 3", "sizes", "type" uint8, uint16 or float,
+//          "encoding: raw", "endian: little". Other header fields are ignored: the scene places the box in the world.
 //   .ktx2  Khronos texture, one level, layer and face, not supercompressed: VK_FORMAT_R8_UNORM, R16_UNORM or
-//   R32_SFLOAT. .raw   only the values; the scene gives the size; 1, 2 or 4 bytes per value follow from the file's
-//   size.
+//          R32_SFLOAT.
+//   .raw   only the values; the scene gives the size; 1, 2 or 4 bytes per value follow from the file's size.
 // Integers become 0..1, floats are unchanged: finite, 0 or more.
 #pragma once
 

@@ -2,20 +2,22 @@
 //   "description": text for people
 //   "model":       path of the model, relative to the JSON
 //   "scale":       millimetres a scene unit
-//   "camera":      {"position": [x,y,z], "target": [x,y,z] or "direction": [x,y,z], "up": [x,y,z], "fov": vertical,
-//   degrees} "cameras":     an array of such, each with a "name"; instead of "camera" "sun":         {"direction":
-//   [x,y,z] along which the light travels, "irradiance": [r,g,b]}, or null for none "spots":       [{"position":
-//   [x,y,z], "direction": [x,y,z] or "target": [x,y,z], "intensity": [r,g,b] on the axis, W/sr,
+//   "camera":      {"position": [x,y,z], "target": [x,y,z] or "direction": [x,y,z], "up": [x,y,z],
+//                  "fov": vertical, degrees}
+//   "cameras":     an array of such, each with a "name"; instead of "camera"
+//   "sun":         {"direction": [x,y,z] along which the light travels, "irradiance": [r,g,b]}, or null for none
+//   "spots":       [{"position": [x,y,z], "direction": [x,y,z] or "target": [x,y,z],
+//                   "intensity": [r,g,b] on the axis, W/sr,
 //                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula}]
 //   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr}]
 //                  Where one of these is given and "sun" is not, there is no default sun.
 //   "background":  [r,g,b], radiance seen where there is no environment
 //   "exposure":    factor before tone mapping
 //   "keyFrames":   path of the camera path, relative to the JSON
-//   "environment": {"radiance": [r,g,b], constant or a factor (1) on "picture": path of a latitude-longitude hdr, exr
-//   or pfm; "rotation": degrees about +y},
-//                  or {"sky": {"turbidity": 1.7 to 10 (3), "ground": albedo below the horizon (0.2)}, "radiance": a
-//                  factor (1)}: a clear sky as the sun asks for, which must stand above the horizon
+//   "environment": {"radiance": [r,g,b], constant or a factor (1) on
+//                   "picture": path of a latitude-longitude hdr, exr or pfm; "rotation": degrees about +y},
+//                  or {"sky": {"turbidity": 1.7 to 10 (3), "ground": albedo below the horizon (0.2)},
+//                      "radiance": a factor (1)}: a clear sky as the sun asks for, which must stand above the horizon
 //                  (scene/clear_sky.hpp); or null for none. Not given, the default sun has its clear sky.
 //   "media", "materials", "cameraMedium": see scene_media.hpp
 // A top-level key "scene" marks the JSON of the VPT original instead: see original_scene_file.cpp.
