@@ -38,6 +38,7 @@ std::vector<Mutant> mutantsOf(const Lab& lab) {
     else if (line.starts_with("+ ") && !mutants.empty()) mutants.back().to = line.substr(2);
     else {
       Mutant mutant;
+      if (!mutants.empty()) mutant.from = mutants.back().from;
       std::istringstream(line) >> mutant.name >> mutant.task >> mutant.hint;
       mutants.push_back(mutant);
     }

@@ -35,7 +35,8 @@ struct Mutant {
   std::string name, hint, from, to;
   int task = 0;
 };
-/// mutants.txt: blocks of "name task hint", "- text of the solution", "+ what stands there instead".
+/// mutants.txt: blocks of "name task hint", "- text of the solution", "+ what stands there instead". Without its "-"
+/// line a mutant replaces the text that the one before it does.
 std::vector<Mutant> mutantsOf(const Lab& lab);
 /// The solution with the mutant's text in place. Throws Error(badInput) where `from` does not stand there exactly once.
 std::string applied(const Mutant& mutant, const std::string& solution);

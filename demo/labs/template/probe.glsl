@@ -1,4 +1,3 @@
-// Probes of the template.
 vec4 probe() {
 #if PROBE == 1
   return vec4(discArea(point(0).x));

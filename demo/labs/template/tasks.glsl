@@ -1,5 +1,4 @@
-// Template of a lab. README.md tells what is asked; PI, frame() and random() are there.
-// Take NOT_DONE(n) out when a task is done.
+// README.md tells what is asked; PI, frame() and random() are there. Take NOT_DONE(n) out when a task is done.
 
 // TASK 1. The area of a disc.
 float discArea(float radius) {
