@@ -504,11 +504,12 @@ void Checks::answer(const std::string& name, double expected, double tolerance,
   char* end = nullptr;
   const double value = std::strtod(found->second.c_str(), &end);
   result.measured = found->second;
-  result.sigma = fmt::format("within {:.2g} %", 100.0 * tolerance);
+  const std::string near = tolerance > 0.0 ? fmt::format("within {:.2g} %", 100.0 * tolerance) : "exactly";
+  result.sigma = fmt::format("yours is {}; a figure counts {}", found->second, near);
   const auto isNear = [&](double wanted) { return std::abs(value - wanted) <= tolerance * std::abs(wanted) + 1e-12; };
   if (!end || *end != '\0' || end == found->second.c_str() || !std::isfinite(value))
     result.mistake = {"nan", fmt::format("answers.txt: {} is not a number", name)};
-  else if (isNear(expected)) result.verdict = Verdict::passed;
+  else if (isNear(expected)) result.verdict = Verdict::passed, result.sigma = near;
   else {
     // The right figure is not told: it would be the answer.
     result.mistake = {"other", "not the figure of this seed; README.md tells what it follows from"};

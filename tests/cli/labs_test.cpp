@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <regex>
 #include <sstream>
 
@@ -136,6 +137,112 @@ TEST(LabReadme, ProseOfWhatToExpectQuotesTheCheck) {
   EXPECT_GT(decimals, 30);
 }
 
+// Numbers of the text before the tasks, but for formulas (indented) and citations: decimals, percentages and whole
+// numbers from 10 on are figures of the check, or follow from a definition that stands here.
+TEST(LabReadme, NumbersOfTheTheoryAreFiguresOrDefinitions) {
+  struct Defined {
+    const char *lab, *number;
+    double value;
+  };
+  const Defined definitions[] = {
+      {"harmonics", "120", std::acos(-0.5) * 180.0 / std::numbers::pi},  // where 1/4 + cos/2 is zero
+      {"propagation", "120", std::acos(-0.5) * 180.0 / std::numbers::pi},
+      {"hemicubes", "0.001", 0.001},  // an example
+      {"hemicubes", "0.95", 0.95},
+      {"hemicubes", "19", 0.95 / (1.0 - 0.95)},
+      {"media", "23", 23.0},  // litres of the tank [Narasimhan2006]
+      {"media", "0.9", 0.9},  // albedo and g of the table [vanDeHulst1980]
+      {"media", "0.75", 0.75},
+  };
+  // Arguments of functions are formulas too.
+  static const std::regex kFormulasAndCitations(R"(\n    [^\n]*|\[\w+\d{4}[^\]]*\]|\b\w+\((?:[^()]|\([^()]*\))*\))"),
+      kNumber(R"(\d+\.\d+|\d+(?= %)|\b\d{2,}\b)");
+  int figuresQuoted = 0, definitionsUsed = 0;
+  for (const json& lab : labs()) {
+    const std::string folder = lab.at("folder"), readme = readFileText(folderOf(lab) / "README.md"),
+                      figures = RUN_LUCERNA(fmt::format("lab figures {}", lab.at("lab").dump())).out;
+    const auto tasks = readme.find("## Tasks");
+    ASSERT_NE(tasks, std::string::npos) << folder;
+    const std::string theory = std::regex_replace(readme.substr(0, tasks), kFormulasAndCitations, " ");
+    for (auto it = std::sregex_iterator(theory.begin(), theory.end(), kNumber); it != std::sregex_iterator(); ++it) {
+      const auto defined = std::find_if(std::begin(definitions), std::end(definitions),
+                                        [&](const Defined& d) { return folder == d.lab && it->str() == d.number; });
+      if (defined != std::end(definitions)) {
+        ++definitionsUsed;
+        EXPECT_NEAR(std::stod(it->str()), defined->value, 1e-9) << folder;
+      } else {
+        ++figuresQuoted;
+        EXPECT_NE(figures.find("| " + it->str()), std::string::npos) << folder << ": " << it->str();
+      }
+    }
+  }
+  EXPECT_GE(figuresQuoted, 8);
+  EXPECT_GE(definitionsUsed, static_cast<int>(std::size(definitions)));
+}
+
+// Points of tasks and questions, how near a figure must be, and the hours: as the program and the instructors' page
+// have them.
+TEST(LabReadme, PointsTolerancesAndHours) {
+  static const std::regex kPoints(R"((\d+)\s+points)"), kWithin(R"(counts (exactly|within ([0-9.]+) %)$)"),
+      kTo(R"(\bto\s+([0-9.]+) %)");
+  const std::string course = readFileText(std::filesystem::path(LUCERNA_SOURCE_DIR) / "docs/teaching.md");
+  for (const json& lab : labs()) {
+    const std::string folder = lab.at("folder"), readme = readFileText(folderOf(lab) / "README.md");
+    const auto between = [&](const std::string& from, const std::string& to) {
+      const auto first = readme.find(from), last = readme.find(to, first + from.size());
+      return first == std::string::npos ? "" : readme.substr(first, last - first);
+    };
+    std::smatch match;
+    int sum = 0;
+    for (const json& task : lab.at("tasks")) {
+      const int number = task.at("number");
+      const std::string text = between(fmt::format("\n{}. ", number), number < static_cast<int>(lab.at("tasks").size())
+                                                                          ? fmt::format("\n{}. ", number + 1)
+                                                                          : std::string("## Questions"));
+      ASSERT_TRUE(std::regex_search(text, match, kPoints)) << folder << ' ' << number;
+      EXPECT_EQ(match[1].str(), task.at("points").dump()) << folder << ' ' << number;
+      sum += task.at("points").get<int>();
+    }
+    const std::string questions = between("## Questions", "## What to expect");
+    ASSERT_TRUE(std::regex_search(questions, match, kPoints)) << folder;
+    EXPECT_EQ(std::stoi(match[1]), 100 - sum) << folder;
+
+    // Whatever is answered, the check says how near it must be.
+    TempFolder mine;
+    const std::string dir = (mine / "mine").string();
+    ASSERT_EQ(RUN_LUCERNA(fmt::format("lab start {} {}", lab.at("lab").dump(), dir)).exitCode, 0);
+    std::string answers = readFileText(mine / "mine/answers.txt");
+    answers = std::regex_replace(answers, std::regex(R"(=[ \t]*\n)"), "= 1\n");
+    writeFileAtomically(mine / "mine/answers.txt", answers);
+    RUN_LUCERNA(fmt::format("lab check {} {} --json {}", lab.at("lab").dump(), dir, (mine / "check.json").string()));
+    int answered = 0;
+    const json checked = readJson(mine / "check.json");
+    for (const json& check : checked.at("checks")) {
+      if (check.at("task") != 0) continue;
+      ++answered;
+      const std::string name = check.at("name").get<std::string>().substr(std::string("question ").size()),
+                        sigma = check.at("sigma");
+      const auto at = questions.find(fmt::format("\n- `{}`:", name));
+      ASSERT_NE(at, std::string::npos) << folder << ": README.md does not ask for " << name;
+      const std::string text = questions.substr(at, questions.find("\n- ", at + 1) - at);
+      std::smatch within, to;
+      ASSERT_TRUE(std::regex_search(sigma, within, kWithin)) << folder << ' ' << name << ": " << sigma;
+      if (text.find("whole number") != std::string::npos) EXPECT_EQ(within[1], "exactly") << folder << ' ' << name;
+      else if (std::regex_search(text, to, kTo)) EXPECT_EQ(within[2], to[1]) << folder << ' ' << name;
+      else EXPECT_EQ(within[2], "0.5") << folder << ' ' << name << ", as README.md says of all others";
+    }
+    EXPECT_GE(answered, 3) << folder;
+
+    const std::string hours = readme.substr(readme.find('\n') + 1, readme.find(" hours") - readme.find('\n') - 1);
+    const std::string inWords = hours == "Two"            ? "2"
+                                : hours == "Three"        ? "3"
+                                : hours == "Two to three" ? "2 to 3"
+                                                          : "?";
+    const std::regex inCourse(fmt::format(R"(\| {} [^|]*\|[^|]*\| {} \|)", lab.at("lab").dump(), inWords));
+    EXPECT_TRUE(std::regex_search(course, inCourse)) << folder << ": " << hours;
+  }
+}
+
 // The pictures that a README shows are the references of the check.
 TEST(LabReadme, PicturesAreThoseOfTheCheck) {
   static const std::regex kPicture(R"(!\[[^\]]+\]\((\w+\.png)\))");
@@ -160,8 +267,17 @@ TEST(LabReadme, PicturesAreThoseOfTheCheck) {
   }
 }
 
-// What students look for follows from their seed, in every lab.
+// What students look for follows from their seed, in every lab; a few figures are the same for all.
 TEST(LabSeeds, ParametersAndAnswersFollowFromTheSeed) {
+  static const std::string kSameForAll[] = {"deviation of one sample, over the albedo",
+                                            "standard error of the check, % of the albedo",
+                                            "share",
+                                            "the same over the light's own flux",
+                                            "solid angle of the front face, sr",
+                                            "solid angle of a side face, sr",
+                                            "share of band 1 that a step keeps",
+                                            "slab of the table: reflected",
+                                            "slab of the table: let through"};
   for (const json& lab : labs()) {
     const auto figures = [&](const std::string& seed) {
       std::vector<std::string> lines;
@@ -171,16 +287,34 @@ TEST(LabSeeds, ParametersAndAnswersFollowFromTheSeed) {
     };
     const std::vector<std::string> ada = figures("ada"), bob = figures("bob");
     ASSERT_EQ(ada.size(), bob.size());
-    int different = 0;
-    for (std::size_t i = 0; i < ada.size(); ++i) different += ada[i] != bob[i] ? 1 : 0;
-    EXPECT_GE(4 * different, 3 * static_cast<int>(ada.size()))
-        << lab.at("folder");  // whole numbers may agree by chance
+    int own = 0, different = 0;
+    for (std::size_t i = 0; i < ada.size(); ++i) {
+      const std::string name = ada[i].substr(2, ada[i].find(" |") - 2);
+      if (std::find(std::begin(kSameForAll), std::end(kSameForAll), name) != std::end(kSameForAll)) {
+        EXPECT_EQ(ada[i], bob[i]) << lab.at("folder");
+      } else {
+        ++own;
+        different += ada[i] != bob[i] ? 1 : 0;
+      }
+    }
+    EXPECT_GE(own, 5) << lab.at("folder");
+    EXPECT_GE(4 * different, 3 * own) << lab.at("folder");  // whole numbers may agree by chance
     EXPECT_EQ(ada, figures("ada"));
   }
 }
 
-// The template of docs/teaching.md is a lab like any other.
+// The template of docs/teaching.md is a lab like any other, of a hundred lines.
 TEST(LabProof0, Template) { prove(0); }
+TEST(LabTemplate, HasAHundredLines) {
+  std::ptrdiff_t lines = 0;
+  for (const auto& file :
+       std::filesystem::directory_iterator(std::filesystem::path(LUCERNA_SOURCE_DIR) / "demo/labs/template")) {
+    const std::string text = readFileText(file.path());
+    lines += std::count(text.begin(), text.end(), '\n');
+  }
+  EXPECT_LE(lines, 100);
+  EXPECT_GE(lines, 50) << "the files are not there";
+}
 
 // Every deviation has its room, and every room names a test that is there.
 TEST(LabMuseum, EveryDeviationHasARoomAndATest) {

@@ -27,7 +27,9 @@ void check(Checks& c) {
   c.answer("reconstructed", lobe, 0.005,
            {{{"other", "that is the cosine itself: bands 0 and 1 hold an approximation of it"},
              std::cos(angle * kPi / 180.0)}});
-  c.answer("share", 0.875, 0.005);
+  // Of the integral of max(0, cos)^2, 2 pi / 3: the sum of the coefficients' squares.
+  const double share = (kLobe0 * kLobe0 + kLobe1 * kLobe1) / (2.0 * kPi / 3.0);
+  c.answer("share", share, 0.005);
 
   const glm::dvec3 axis = glm::normalize(glm::dvec3(c.parameter("ax", -1, 1), c.parameter("ay", -1, 1), 0.8));
   const glm::dvec3 normal = glm::normalize(glm::dvec3(c.parameter("nx", -1, 1), c.parameter("ny", -1, 1), 0.5));
@@ -183,7 +185,9 @@ void check(Checks& c) {
          .caption = "A white ball in an environment of bands 0 and 1, 64 samples a pixel; the reference is exact"});
   c.figure("irradiance", exact);
   c.figure("reconstructed", lobe);
-  c.figure("share", 0.875);
+  c.figure("share", share);
+  // White reflects irradiance / pi: band 1 of the environment, slope, times 2/3.
+  c.figure("brightest less darkest normal", 2.0 * (2.0 / 3.0) * slope);
 }
 
 }  // namespace

@@ -37,6 +37,24 @@ glm::dvec3 solved(Point p) {
   return radiosity;
 }
 
+/// The form factor of the square overhead by the published map: each direction's true share times the ratio of both
+/// maps' weights, which is r^2 of the hemicube's pixel but for a constant.
+double publishedFactor(double side, double height, double away) {
+  constexpr int kSteps = 512;
+  const auto midpoint = [](int k) { return (k + 0.5) / kSteps; };
+  double all = 0.0, square = 0.0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      // All pixels: a quarter of the top, half of a side.
+      const double x = midpoint(i), y = midpoint(j), r2 = x * x + y * y + 1.0;
+      all += (4.0 + 8.0 * y) / r2 / (kSteps * kSteps);
+      const double dx = away + side * (x - 0.5), dy = side * (y - 0.5), d2 = dx * dx + dy * dy + height * height,
+                   axis = std::max({std::abs(dx), std::abs(dy), height});
+      square += height * height / (d2 * d2) * d2 / (axis * axis) * side * side / (kSteps * kSteps);
+    }
+  return square / all;
+}
+
 glm::dvec3 directionOf(int face, double x, double y) {
   switch (face) {
     case 0: return glm::normalize(glm::dvec3(x - 1.0, y - 1.0, 1.0));
@@ -254,6 +272,7 @@ void check(Checks& c) {
                                                     .points = 256});
   }
   c.figure("form factor", factor);
+  c.figure("the same by the published map", publishedFactor(side, height, away), 4);
   c.figure("published", 1.0 + x * x + y * y);
   c.figure("bound", change * reflectance / (1.0 - reflectance));
 }

@@ -33,6 +33,9 @@ std::vector<double> phaseShares(double g, double (*below)(double, double)) {
   return shares;
 }
 
+// [vanDeHulst1980, table 35]: optical depth 2, albedo 0.9, g = 0.75, normal incidence.
+constexpr double reflected = 0.0973946, passed = 0.6609577;
+
 void check(Checks& c) {
   const double g = c.yours("g", 0.3, 0.85), scattering = c.yours("scattering", 0.5, 2.0),
                absorption = c.yours("absorption", 0.1, 0.5), depth = c.yours("depth", 0.5, 2.0);
@@ -210,10 +213,9 @@ void check(Checks& c) {
                  of([](double t, double ml) { return t * 0.01 * (23000.0 + ml) / ml; })}}});
   }
   if (c.task(6)) {
-    // [vanDeHulst1980, table 35]: optical depth 2, albedo 0.9, g = 0.75, normal incidence.
     const std::vector<glm::vec4> slab{four(2.0, 0.9, 0.1, 0.75), four(0.0)}, through{slab[0], four(1.0)};
-    c.mean("slab: reflectance by van de Hulst's table", {.probe = 9, .inputs = slab, .expected = 0.0973946}) &&
-        c.mean("slab: transmittance by van de Hulst's table", {.probe = 9, .inputs = through, .expected = 0.6609577}) &&
+    c.mean("slab: reflectance by van de Hulst's table", {.probe = 9, .inputs = slab, .expected = reflected}) &&
+        c.mean("slab: transmittance by van de Hulst's table", {.probe = 9, .inputs = through, .expected = passed}) &&
         c.mean("mean way through your slab without absorption",
                {.probe = 10, .inputs = {four(depth, scattering, 0.0, g)}, .expected = 2.0 * static_cast<float>(depth)});
   }
@@ -221,6 +223,8 @@ void check(Checks& c) {
   c.figure("free path", 1.0 / extinction);
   c.figure("coefficient", table * 0.01 * 23000.0 / millilitres);
   c.figure("way", 2.0 * depth);
+  c.figure("slab of the table: reflected", reflected, 5);
+  c.figure("slab of the table: let through", passed, 5);
 }
 
 }  // namespace

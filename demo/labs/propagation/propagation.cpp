@@ -1,6 +1,8 @@
 // Lab 4: light propagation volumes.
 #include "labs/lab.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -49,6 +51,15 @@ struct Kernel {
 };
 
 const std::array<glm::dvec3, 6> kAxes{glm::dvec3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+/// The share of band 1 that a step keeps where no clamp acts: what six neighbours send of it.
+double bandOneKept() {
+  const Kernel kernel{.clamped = false};
+  glm::dvec4 sum(0.0);
+  for (std::size_t k = 0; k < 6; ++k)
+    sum += kernel.step(joined(0.0, {0, 0, 1}), kAxes[k], kAxes[(k + 2) % 6], kAxes[(k + 4) % 6]);
+  return sum.w;
+}
+
 constexpr glm::ivec3 kGrid{12, 8, 8};
 std::size_t indexOf(const glm::ivec3& c) { return static_cast<std::size_t>(c.x + kGrid.x * (c.y + kGrid.y * c.z)); }
 
@@ -69,10 +80,10 @@ std::vector<glm::dvec4> stepped(const std::vector<glm::dvec4>& grid) {
 void check(Checks& c) {
   const double flux = c.yours("flux", 0.5, 4.0), cell = c.yours("cell", 0.3, 1.2),
                steps = c.yours("steps", 3.0, 9.0, 0);
-  constexpr double gain = 0.36864318;  // of band 1 in a step, where no clamp acts
+  const double kept = bandOneKept();
   c.answer("injected", flux / (2.0 * std::sqrt(kPi)), 0.005,
            {{{"lost-pi", "1 / pi is lost: a surface of Lambert's has the intensity flux / pi * cos"}, flux * kLobe0}});
-  c.answer("band 1", std::pow(gain, steps), 0.02, {{{"one-step", "that is one step"}, gain}});
+  c.answer("band 1", std::pow(kept, steps), 0.02, {{{"one-step", "that is one step"}, kept}});
   c.answer("reach", steps * cell, 0.005, {});
 
   if (c.task(1)) {
@@ -203,16 +214,13 @@ void check(Checks& c) {
               {{"four-pi", "4 pi for pi: three quarters of the light are lost in each step"},
                of({.overPi = 0.25 / kPi})}},
          .tolerance = 5e-6}) &&
-        c.twin("six neighbours: band 0 is kept, band 1 times 0.36864318",
+        c.twin(fmt::format("six neighbours: band 0 is kept, band 1 times {:.8g}", kept),
                {.probe = 5,
                 .draw =
                     [](Random& r, std::span<glm::vec4> p) {
                       p[0] = glm::vec4(joined(r.uniform(0.8, 1.0), 0.25 * r.direction()));
                     },
-                .truth =
-                    [](Point p) {
-                      return glm::dvec4(p[0].x, 0.36864318 * p[0].y, 0.36864318 * p[0].z, 0.36864318 * p[0].w);
-                    },
+                .truth = [kept](Point p) { return glm::dvec4(1.0, kept, kept, kept) * glm::dvec4(p[0]); },
                 .tolerance = 1e-5});
     // The grid forgets direction: band 1 of even light, step by step.
     Curve curve{"What is left of band 1 after steps", "steps", "share", {}, {}};
@@ -220,7 +228,7 @@ void check(Checks& c) {
     for (int k = 1; k <= 9; ++k) {
       light = c.run(5, light, 1, 1);
       curve.mine.emplace_back(k, std::abs(light[0].y) / 0.25);
-      curve.reference.emplace_back(k, std::pow(gain, k));
+      curve.reference.emplace_back(k, std::pow(kept, k));
     }
     c.curve(curve);
   }
@@ -277,9 +285,15 @@ void check(Checks& c) {
               pixels);
   }
   c.figure("injected", flux / (2.0 * std::sqrt(kPi)));
-  c.figure("band 1", std::pow(gain, steps));
+  c.figure("band 1", std::pow(kept, steps));
   c.figure("reach", steps * cell);
-  c.figure("flux of the clamped lobe", 1.125 * flux);
+  // A fresh light, flux / pi (1/4 + cos/2), over the directions where it is not negative (cos > -1/2).
+  const double clamped = 2.0 * (0.25 * 1.5 + 0.25 * (1.0 - 0.25));
+  c.figure("flux of the clamped lobe", clamped * flux);
+  c.figure("the same over the light's own flux", clamped);
+  c.figure("solid angle of the front face, sr", kFront, 5);
+  c.figure("solid angle of a side face, sr", kSide, 5);
+  c.figure("share of band 1 that a step keeps", kept, 8);
 }
 
 }  // namespace
