@@ -289,7 +289,8 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
     result.sigma = fmt::format("{} points, worst {:.2g} of the tolerance", count, distance(worst, truth[worst]));
     return add(result);
   }
-  result.sigma = fmt::format("{} of {} points agree; at {}", agreeing, count, pointText(pointOf(worst)));
+  result.sigma =
+      fmt::format("{} of {} points agree; the worst has inputs {}", agreeing, count, pointText(pointOf(worst)));
   const auto diagnose = [&]() -> Mistake {
     if (!finite) return kNan;
     const Twin::Wrong* best = nullptr;
@@ -508,7 +509,8 @@ void Checks::answer(const std::string& name, double expected, double tolerance,
   result.sigma = fmt::format("yours is {}; a figure counts {}", found->second, near);
   const auto isNear = [&](double wanted) { return std::abs(value - wanted) <= tolerance * std::abs(wanted) + 1e-12; };
   if (!end || *end != '\0' || end == found->second.c_str() || !std::isfinite(value))
-    result.mistake = {"nan", fmt::format("answers.txt: {} is not a number", name)};
+    result.mistake = {
+        "nan", fmt::format("answers.txt: {} is not a number; write it with a decimal point, such as 0.25", name)};
   else if (isNear(expected)) result.verdict = Verdict::passed, result.sigma = near;
   else {
     // The right figure is not told: it would be the answer.

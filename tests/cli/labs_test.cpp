@@ -510,6 +510,26 @@ TEST_F(LabWay, WordsAreForTheReportAlone) {
   EXPECT_NE(readFileText(dir / "report.html").find("Because value over density is constant:"), std::string::npos);
 }
 
+// A task's time runs from the task that was right before it, whatever their numbers.
+TEST_F(LabWay, ReportTellsTheTimePerTask) {
+  start();
+  ASSERT_EQ(lab(fmt::format("solution 1 {}", dir.string())).exitCode, 0);
+  json state = readJson(dir / "lab.json");
+  state["started"] = 1000;
+  state["checks"] = {{{"time", 1060}, {"seconds", 1.0}, {"score", 20.0}, {"passed", {2}}},
+                     {{"time", 1240}, {"seconds", 1.0}, {"score", 35.0}, {"passed", {1, 2}}}};
+  writeFileAtomically(dir / "lab.json", state.dump());
+  ASSERT_EQ(lab(fmt::format("report 1 {}", dir.string())).exitCode, 0);
+  const std::string html = readFileText(dir / "report.html");
+  const auto row = [&](const std::string& task) {
+    const auto at = html.find("<tr><td>" + task);
+    return at == std::string::npos ? "" : html.substr(at, html.find("</tr>", at) - at);
+  };
+  EXPECT_NE(row("1. reflected").find("4 min</td><td class=\"n\">3 min"), std::string::npos) << row("1. reflected");
+  EXPECT_NE(row("2. sampleCosine").find("60 s</td><td class=\"n\">60 s"), std::string::npos) << row("2. sampleCosine");
+  EXPECT_NE(row("questions").find("0 of 15"), std::string::npos) << row("questions");
+}
+
 TEST_F(LabWay, ChecksPrintWhatWasExpectedAndMeasured) {
   start();
   ASSERT_EQ(lab(fmt::format("solution 1 {}", dir.string())).exitCode, 0);

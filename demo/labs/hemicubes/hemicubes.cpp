@@ -217,6 +217,13 @@ void check(Checks& c) {
                          for (int i = 0; i < 3; ++i) b[i] = swept(p, b)[i];
                          return b;
                        })},
+                      {{"radiosity-lost", "the radiosity that is given is not used"},
+                       of([](Point p, glm::dvec3) { return swept(p, glm::dvec3(p[0])); })},
+                      {{"radiosity-lost", "the radiosity that is given is not used"}, of([](Point p, glm::dvec3) {
+                         glm::dvec3 b(p[0]);
+                         for (int i = 0; i < 3; ++i) b[i] = swept(p, b)[i];
+                         return b;
+                       })},
                       {{"adds-up", "the new radiosity replaces the old, it is not added"},
                        of([](Point p, glm::dvec3 b) { return b + swept(p, b) - glm::dvec3(p[0]); })}}}) &&
         c.twin("two hundred sweeps: the solution", {.probe = 7,
@@ -230,11 +237,13 @@ void check(Checks& c) {
     enclosure([&] { return c.parameter("enclosure " + std::to_string(++drawn), 0.0, 1.0); }, reflectance,
               std::span(box).first(5));
     const glm::dvec3 truth = solved(box);
-    Curve curve{"Error against sweeps",
-                "sweep",
-                "largest error of a patch; dashed: reflectance to the power of the sweep",
-                {},
-                {}};
+    Curve curve{
+        "Error against sweeps; dashed: the largest radiosity times reflectance to the power of the sweep; at "
+        "1e-7 single precision ends",
+        "sweep",
+        "largest error of a patch",
+        {},
+        {}};
     for (int sweeps = 1; sweeps <= 64; sweeps *= 2) {
       box[6] = four(sweeps);
       const glm::dvec3 off = glm::abs(glm::dvec3(c.run(11, box, 0, 1)[0]) - truth);
