@@ -239,8 +239,8 @@ int show(const Options& options) {
     return kWrong;
   }
   if (judged.report.pictures.empty())
-    fmt::print("No picture yet: its tasks are not done (lucerna lab check {} {} says which).\n", lab.number,
-               options.folder);
+    fmt::print("No picture yet: a task that it needs is not done or not right (lucerna lab check {} {} says which).\n",
+               lab.number, options.folder);
   writePictures(fs::path(options.folder) / "pictures", judged.report);
   return 0;
 }
