@@ -2,13 +2,13 @@
 // Devices are enumerated (a vendor's driver gives no surfaceless platform) and tried in the order of eglPreference, or
 // the one that LUCERNA_EGL_DEVICE names alone; Mesa's surfaceless platform comes before software.
 #include "base/error.hpp"
+#include "host/egl_device.hpp"
 #include "host/host_backends.hpp"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <fstream>
 #include <numeric>
@@ -89,17 +89,6 @@ std::string hexDigits(const std::filesystem::path& file) {
   return line.starts_with("0x") ? line.substr(2) : line;
 }
 
-/// One line for messages: "0 discrete amdgpu 1002:73bf /dev/dri/renderD128; 1 ...".
-std::string listed(const std::vector<EglDevice>& devices) {
-  std::string text;
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    text += fmt::format("{}{} {}", i ? "; " : "", i, nameOf(devices[i].kind));
-    for (const std::string& part : {devices[i].driver, devices[i].pci, devices[i].node})
-      if (!part.empty()) text += " " + part;
-  }
-  return text.empty() ? "none" : text;
-}
-
 /// The displays to try, one after the other. Throws Error(badInput) for an unknown LUCERNA_EGL_DEVICE.
 std::vector<EGLDisplay> candidateDisplays() {
   const DeviceFunctions egl;
@@ -107,13 +96,7 @@ std::vector<EGLDisplay> candidateDisplays() {
   std::vector<EglDevice> devices;
   for (EGLDeviceEXT device : handles) devices.push_back(egl.describe(device));
 
-  if (const auto chosen = chosenEglDevice()) {
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(chosen->data(), chosen->data() + chosen->size(), index);
-    if (error != std::errc() || end != chosen->data() + chosen->size() || index >= handles.size())
-      throwBadInput("LUCERNA_EGL_DEVICE={}: no such device; EGL lists: {}", *chosen, listed(devices));
-    return {egl.display(handles[index])};
-  }
+  if (const auto chosen = chosenEglDevice()) return {egl.display(handles[eglDeviceNamed(*chosen, devices)])};
 
   // Mesa's surfaceless platform comes after the devices and before software: it may know hardware that is not
   // enumerated.

@@ -1,4 +1,5 @@
 // The three hosts. One process holds one context at a time, so EGL and the window run in the built program.
+#include "host/egl_device.hpp"
 #include "host/host.hpp"
 
 #include "base/error.hpp"
@@ -225,6 +226,54 @@ TEST_F(RenderNodes, AreToldApartByVendorBusAndMemory) {
   EXPECT_EQ(eglPreference({software, iris, nothing, small, large, apu, arc}),
             (std::vector<std::size_t>{4, 3, 6, 2, 5, 1, 0}));
   EXPECT_TRUE(eglPreference({}).empty());
+}
+
+// What Slurm writes into CUDA_VISIBLE_DEVICES and ROCR_VISIBLE_DEVICES: numbers in the order of slots, whatever EGL's
+// is, and UUIDs, which are no numbers.
+TEST_F(RenderNodes, AreNamedByNumberAsSchedulersCountAndByUuid) {
+  const EglDevice iris = describe("renderD128", {"0000:00:02.0", "0x8086", "0x9a49", "i915", ""});
+  const EglDevice second = describe("renderD129", {"0000:c1:00.0", "0x10de", "0x2204", "nvidia", ""});
+  const EglDevice first = describe("renderD130", {"0000:41:00.0", "0x10de", "0x2204", "nvidia", ""});
+  const EglDevice amd = describe("renderD131", {"0000:06:00.0", "0x1002", "0x73bf", "amdgpu", "17163091968"});
+  EglDevice software;
+  software.kind = EglDevice::Kind::software;
+  const std::vector<EglDevice> devices{software, iris, second, amd, first};
+  for (const auto& [slot, uuid] : {std::pair{"0000:41:00.0", "GPU-1a2b3c4d-0000-1111-2222-333344445555"},
+                                   {"0000:c1:00.0", "GPU-1a9f3c4d-0000-1111-2222-333344445555"}}) {
+    std::filesystem::create_directories(folder_ / "driver/nvidia/gpus" / slot);
+    std::ofstream(folder_ / "driver/nvidia/gpus" / slot / "information")
+        << "Model: \t\t NVIDIA A100\nIRQ:   \t\t 123\nGPU UUID: \t " << uuid << "\nBus Location: \t " << slot << "\n";
+  }
+  const auto named = [&](const std::string& name, const std::vector<EglDevice>& all) {
+    return eglDeviceNamed(name, all, folder_.path(), folder_.path());
+  };
+  EXPECT_EQ(named("3", devices), 3u);
+  EXPECT_EQ(named("cuda:0", devices), 4u);
+  EXPECT_EQ(named("cuda:1", devices), 2u);
+  EXPECT_EQ(named("rocm:0", devices), 3u);
+  EXPECT_EQ(named("cuda:GPU-1a9f3c4d-0000-1111-2222-333344445555", devices), 2u);
+  EXPECT_EQ(named("cuda:GPU-1a2", devices), 4u);
+  const auto refusal = [&](const std::string& name, const std::vector<EglDevice>& all) -> std::string {
+    try {
+      return "is " + std::to_string(named(name, all));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::badInput);
+      return error.what();
+    }
+  };
+  for (const char* name : {"5", "-1", "1x", "", "cuda:2", "cuda:", "rocm:1", "rocm:GPU-1a2", "cuda:GPU-ffff", "gpu:0",
+                           "GPU-1a2b3c4d-0000-1111-2222-333344445555"})
+    EXPECT_NE(refusal(name, devices).find("no such device"), std::string::npos) << refusal(name, devices);
+  EXPECT_NE(refusal("cuda:GPU-1a", devices).find("more than one"), std::string::npos);
+  EXPECT_NE(refusal("cuda:MIG-8b1c", devices).find("a part of a GPU"), std::string::npos);
+  EXPECT_NE(refusal("cuda:0", {software}).find("0 software"), std::string::npos) << refusal("cuda:0", {software});
+  // Where the kernel shows no render nodes, as in containers: EGL's order, and a UUID where there is but one.
+  EglDevice bare;
+  bare.kind = EglDevice::Kind::discrete;
+  bare.driver = "nvidia";
+  EXPECT_EQ(named("cuda:1", {software, bare, bare}), 2u);
+  EXPECT_EQ(named("cuda:GPU-1a2", {software, bare}), 1u);
+  EXPECT_NE(refusal("cuda:GPU-1a2", {bare, bare}).find("no such device"), std::string::npos);
 }
 
 }  // namespace
