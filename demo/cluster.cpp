@@ -19,6 +19,7 @@
 #include <csignal>
 #include <map>
 #include <mutex>
+#include <string_view>
 #include <thread>
 
 namespace lucerna::demo {
@@ -31,7 +32,7 @@ using State = ClusterJob::State;
 struct Options {
   CommonOptions common;
   std::string folder, output, time = "1-00:00:00", account, gpus;
-  std::vector<std::string> command;
+  std::vector<std::string> command, devices;
   std::uint32_t tasks = 40;
   int jobs = 1;
   std::optional<int> task;
@@ -141,9 +142,12 @@ void writeSlurm(const fs::path& folder, const Options& options) {
       fmt::format("#!/bin/bash\n#SBATCH --time={}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n", options.time);
   if (!options.account.empty()) head += fmt::format("#SBATCH --account={}\n", options.account);
   if (!options.gpus.empty()) head += fmt::format("#SBATCH --gpus-per-task={}\n", options.gpus);
+  // Slurm's numbers and UUIDs are no EGL devices: the host finds the one that is meant (host/egl_device.hpp).
   const std::string environment =
-      "# Of a node's devices the one that Slurm gave to this task.\n"
-      "if [ -n \"${CUDA_VISIBLE_DEVICES:-}\" ]; then export LUCERNA_EGL_DEVICE=\"${CUDA_VISIBLE_DEVICES%%,*}\"; fi\n";
+      "# Of a node's devices the first that Slurm gave to this task; NoDevFiles: it gave none.\n"
+      "given=\"${CUDA_VISIBLE_DEVICES:+cuda:$CUDA_VISIBLE_DEVICES}\"\n"
+      "given=\"${given:-${ROCR_VISIBLE_DEVICES:+rocm:$ROCR_VISIBLE_DEVICES}}\"\n"
+      "case \"$given\" in ''|*:NoDevFiles) ;; *) export LUCERNA_EGL_DEVICE=\"${given%%,*}\" ;; esac\n";
   const std::string array =
       head +
       fmt::format(
@@ -190,8 +194,20 @@ int plan(const Options& options) {
 
 // ---------------------------------------------------------------------------------------------------- run
 
+/// This process's environment with another LUCERNA_EGL_DEVICE; empty: as it is.
+std::vector<std::string> environmentFor(const std::string& device) {
+  constexpr std::string_view kName = "LUCERNA_EGL_DEVICE=";
+  std::vector<std::string> all;
+  for (char** variable = environ; *variable; ++variable)
+    if (device.empty() || !std::string_view(*variable).starts_with(kName)) all.emplace_back(*variable);
+  if (!device.empty()) all.push_back(std::string(kName) + device);
+  return all;
+}
+
 /// Runs a task as a process of its own until it ends, is to stop, or was taken for dead. Returns whether it is done.
-bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& claim, double saveEvery, bool quiet) {
+/// `device`: LUCERNA_EGL_DEVICE of that process; empty: this one's.
+bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& claim, const std::string& device,
+             double saveEvery, bool quiet) {
   std::vector<std::string> words{thisProgram()};
   words.insert(words.end(), job.command().words.begin(), job.command().words.end());
   // The result is written last: it says that the part is whole.
@@ -201,6 +217,10 @@ bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& cla
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  std::vector<std::string> variables = environmentFor(device);
+  std::vector<char*> environment;
+  for (std::string& variable : variables) environment.push_back(variable.data());
+  environment.push_back(nullptr);
   const std::string log = job.log(task).string(), directory = job.directory();
 
   const pid_t parent = ::getpid(), child = ::fork();
@@ -212,7 +232,7 @@ bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& cla
     const int out = ::open(log.c_str(), O_CREAT | O_APPEND | O_WRONLY, 0644);
     if (out >= 0) ::dup2(out, 1), ::dup2(out, 2);
     if (::chdir(directory.c_str()) != 0) ::_exit(126);
-    ::execv(arguments[0], arguments.data());
+    ::execve(arguments[0], arguments.data(), environment.data());
     ::_exit(127);
   }
   int status = 0;
@@ -250,6 +270,9 @@ int run(const Options& options) {
   std::atomic<int> finished = 0;
   std::string fault;
   const auto work = [&](int worker) {
+    const std::string device = options.devices.empty()
+                                   ? std::string()
+                                   : options.devices[static_cast<std::size_t>(worker) % options.devices.size()];
     try {
       while (!interrupted()) {
         bool isBusy = false, did = false;
@@ -267,7 +290,7 @@ int run(const Options& options) {
             continue;
           }
           did = true;
-          if (runTask(job, task, *claim, options.saveEvery, options.common.quiet)) ++finished;
+          if (runTask(job, task, *claim, device, options.saveEvery, options.common.quiet)) ++finished;
           else if (!interrupted()) {
             const std::scoped_lock lock(mutex);
             ++failures[task.name];
@@ -412,6 +435,11 @@ std::function<int()> addCluster(CLI::App& app) {
       app.add_subcommand("run", "Work on a job's tasks until none is left; any number of machines at once");
   running->add_option("JOB", options->folder, "the job's folder")->required();
   running->add_option("--jobs", options->jobs, "tasks at once")->capture_default_str()->check(CLI::Range(1, 256));
+  running
+      ->add_option(
+          "--devices", options->devices,
+          "EGL devices for the workers of --jobs in turn, such as 0,1: each is its worker's LUCERNA_EGL_DEVICE")
+      ->delimiter(',');
   running->add_option("--task", options->task, "that one alone, such as of a Slurm array");
   deadAfter(running);
   saveEvery(running);

@@ -86,9 +86,12 @@ int makePart(const RadiositySolve& options, const gl::Context& context, gl::Prog
   if (interrupted()) throw Stopped(fmt::format("stopped; the same command goes on from {}", options.part.checkpoint));
   part.finish();
   if (!options.common.quiet)
-    fmt::print("{}: rows {} to {} of {}, {} made now\n", options.part.checkpoint, part.first(), part.last(),
-               part.units(), made);
-  options.common.writeJson({{"rows", {part.first(), part.last()}}, {"of", part.units()}, {"made", made}});
+    fmt::print("{}: rows {} to {} of {} by {}, {} made now\n", options.part.checkpoint, part.first(), part.last(),
+               part.units(), nameOf(rows.visibility()), made);
+  options.common.writeJson({{"rows", {part.first(), part.last()}},
+                            {"of", part.units()},
+                            {"visibility", nameOf(rows.visibility())},
+                            {"made", made}});
   return 0;
 }
 

@@ -47,12 +47,25 @@ gl::Buffer storage(const char* name, std::size_t bytes) {
 }  // namespace
 
 namespace {
-/// Work of a hemicube, about: gl/pieces.hpp. By rays at least, which is more than by raster but for very many patches.
-double turnsOfHemicube(const RadiosityMesh& mesh, int resolution) {
+/// Work of a hemicube, about: gl/pieces.hpp.
+struct Turns {
+  double rays, raster;
+};
+Turns turnsOfHemicube(const RadiosityMesh& mesh, int resolution) {
   const double pixels = 3.0 * resolution * resolution, patches = static_cast<double>(mesh.patches.size());
-  return std::max(gl::kTurnsOfRay * pixels, kTurnsOfPatch * patches + kTurnsOfPixel * pixels);
+  return {gl::kTurnsOfRay * pixels, kTurnsOfPatch * patches + kTurnsOfPixel * pixels};
+}
+
+double mostTurnsOfHemicube(const RadiosityMesh& mesh, int resolution) {
+  const Turns turns = turnsOfHemicube(mesh, resolution);
+  return std::max(turns.rays, turns.raster);
 }
 }  // namespace
+
+HemicubeVisibility visibilityByCount(const RadiosityMesh& mesh, int resolution) {
+  const Turns turns = turnsOfHemicube(mesh, resolution);
+  return turns.raster <= turns.rays ? HemicubeVisibility::raster : HemicubeVisibility::rays;
+}
 
 Hemicubes::~Hemicubes() = default;
 
@@ -62,7 +75,8 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
       settings_(settings),
       patchCount_(static_cast<int>(mesh.patches.size())),
       rays_(rays),
-      pieces_(kSecondsOfPiece, turnsOfHemicube(mesh, settings.resolution), kMostHemicubes, settings.unmeasuredTurns) {
+      pieces_(kSecondsOfPiece, mostTurnsOfHemicube(mesh, settings.resolution), kMostHemicubes,
+              settings.unmeasuredTurns) {
   CHECK(settings.resolution >= 2 && settings.resolution % 2 == 0, "hemicubes of {} pixels", settings.resolution);
   if (settings_.visibility == HemicubeVisibility::automatic) choose(programs, capabilities);
   const auto patches = static_cast<std::size_t>(patchCount_);

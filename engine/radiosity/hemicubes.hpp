@@ -75,6 +75,10 @@ struct DrawnHemicubes {
 /// Without GL: another thread can do it while the next batch is drawn.
 FormFactorRows rowsOf(DrawnHemicubes drawn);
 
+/// Raster or rays, whichever has less to do as counted from patches and pixels: the same answer on every machine,
+/// unlike automatic's clock.
+HemicubeVisibility visibilityByCount(const RadiosityMesh& mesh, int resolution);
+
 class Hemicubes {
  public:
   /// Throws Error(missingCapability) if the driver's storage blocks cannot hold the corners or one hemicube. `rays`: of

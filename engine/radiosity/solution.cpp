@@ -106,8 +106,10 @@ void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const S
       matrix = {};
     }
   };
-  // Rows by different ways differ in their last bits: a checkpoint is gone on with as it was begun.
+  // Rows by different ways differ in their last bits: a checkpoint is gone on with as it was begun, and a refinement is
+  // made as the mesh before it was.
   HemicubeSettings asked = settings.hemicubes;
+  if (refinement > 0) asked.visibility = solution.visibility;
   if (const auto begun = asked.visibility == HemicubeVisibility::automatic && !checkpoint.empty()
                              ? RowFile::fingerprintOf(checkpoint)
                              : std::nullopt)
@@ -302,15 +304,15 @@ struct FormFactorParts::Work {
 FormFactorParts::FormFactorParts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& asked,
                                  const RadiositySolutionSettings& askedSettings)
     : work_(std::make_unique<Work>()) {
-  const RadiositySolutionSettings settings = withDeviations(askedSettings);
-  if (settings.hemicubes.visibility == HemicubeVisibility::automatic)
-    throwBadInput("radiosity.visibility=auto: parts must all be made in one way: raster, rays or item-buffer");
+  RadiositySolutionSettings settings = withDeviations(askedSettings);
   if (const glm::dvec3 origin = exactOrigin(asked.bounds); origin != glm::dvec3(0.0))
     work_->moved = movedTo(asked, origin);
   const Scene& scene = work_->moved ? *work_->moved : asked;
   work_->mesh = makePatches(scene, patchesOf(scene, settings));
   work_->rays.emplace(sceneOf(work_->mesh), context.capabilities());
   if (!settings.deviations.centroid) cutHiddenParts(programs, *work_->rays, work_->mesh);
+  if (settings.hemicubes.visibility == HemicubeVisibility::automatic)
+    settings.hemicubes.visibility = visibilityByCount(work_->mesh, settings.hemicubes.resolution);
   work_->hemicubes.emplace(programs, context.capabilities(), work_->mesh, settings.hemicubes, &*work_->rays);
   work_->fingerprint = rowsFingerprint(work_->mesh, settings.hemicubes);
 }
@@ -318,6 +320,7 @@ FormFactorParts::FormFactorParts(const gl::Context& context, gl::ProgramLibrary&
 FormFactorParts::~FormFactorParts() = default;
 
 std::size_t FormFactorParts::patches() const { return work_->mesh.patches.size(); }
+HemicubeVisibility FormFactorParts::visibility() const { return work_->hemicubes->visibility(); }
 std::uint64_t FormFactorParts::fingerprint() const { return work_->fingerprint; }
 
 std::size_t FormFactorParts::make(std::size_t first, std::size_t last, const std::filesystem::path& file,

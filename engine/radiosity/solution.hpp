@@ -77,14 +77,15 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
 
 /// The form factors of a scene's first mesh alone (refinements have others), so that parts of their rows can be made
 /// apart; joinRowFiles() (row_file.hpp) makes of them the checkpoint that solveScene() would have made, to the same
-/// bits.
+/// bits. Parts must all be made in one way: automatic visibility is visibilityByCount() here, and solveScene() goes on
+/// with it as with any checkpoint.
 class FormFactorParts {
  public:
-  /// Throws Error(badInput) where the visibility is automatic: parts must all be made in one way.
   FormFactorParts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                   const RadiositySolutionSettings& settings);
   ~FormFactorParts();
   std::size_t patches() const;  ///< rows there are
+  HemicubeVisibility visibility() const;
   std::uint64_t fingerprint() const;  ///< of what decides them
   /// Rows `first` to `last` - 1 into `file`, submission by submission, or goes on with it. `goOn` is called with the
   /// rows made so far; false stops. Returns how many were made now.

@@ -349,8 +349,34 @@ TEST_F(FolderParts, RowsOfHemicubes) {
   const std::string any = command + "'" + path("not_written") + "'";
   ASSERT_NO_FATAL_FAILURE(make(any + settings, 2));
   expectWrongJoinsRefused(any + settings, any + " 64 --visibility raster --edge 0.3");
-  expectRefused(any + " 32" + partOf(0, 2, "no"), "visibility=auto");
   expectRefused(any + " --fidelity original" + partOf(0, 2, "no"), "--fidelity corrected");
+}
+
+// Without a word about visibility all parts take the same one, by a count of patches and pixels: raster for few patches
+// and many pixels, rays for many patches and few pixels. The whole goes on with it, refinements too, whatever it would
+// have measured.
+TEST_F(FolderParts, RowsOfHemicubesAgreeOnAVisibility) {
+  const std::string command = "radiosity solve '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' ";
+  for (const auto& [visibility, pixels] : {std::pair{"raster", " 32"}, {"rays", " 2"}}) {
+    for (const char* name : {"parts", "whole"}) fs::remove_all(path(name));
+    const std::string settings = pixels + std::string(" --edge 0.3 --refinements 1");
+    ASSERT_NO_FATAL_FAILURE(
+        make(command + "'" + path("not_written") + "'" + settings + " --json '" + path("part.json") + "'", 2));
+    EXPECT_EQ(json("part.json").at("visibility"), visibility);
+    ASSERT_EQ(RUN_LUCERNA(command + "'" + path("one.rad") + "'" + settings + " --visibility " + visibility +
+                          " --quiet --json '" + path("one.json") + "'")
+                  .exitCode,
+              0);
+    ASSERT_EQ(RUN_LUCERNA(command + "'" + path("all.rad") + "'" + settings + whole() + " --quiet --json '" +
+                          path("all.json") + "'")
+                  .exitCode,
+              0);
+    // Those of the first mesh were the parts'.
+    EXPECT_EQ(json("all.json").at("hemicubes").get<int>() + json("part.json").at("of").get<int>(),
+              json("one.json").at("hemicubes"));
+    EXPECT_EQ(json("all.json").at("visibility"), visibility);
+    EXPECT_EQ(readFileBytes(path("one.rad")), readFileBytes(path("all.rad")));
+  }
 }
 
 // Each original's tables: the rows of parts are those of one run, but for what the clock says.
@@ -405,6 +431,57 @@ TEST_F(FolderParts, AClusterCutsAnyOfThem) {
   EXPECT_EQ(json("all.json").at("failed"), 0);
   expectRefused("cluster plan -o '" + path("no") + "' -- info", "one of the commands that are cut");
   expectRefused("cluster plan -o '" + path("no") + "' -- bench stability --part 0/2", "a task's own");
+}
+
+// The scripts for Slurm, up to where the program begins: what they make of what Slurm says about GPUs.
+TEST_F(Parts, AJobsScriptHandsOnTheDeviceThatSlurmGave) {
+  const std::string job = path("job");
+  ASSERT_EQ(RUN_LUCERNA("cluster plan -o '" + job + "' --tasks 2 --gpus 1 --quiet -- render " + picture() +
+                        "--spp 4 -o '" + path("joined.pfm") + "'")
+                .exitCode,
+            0);
+  for (const char* script : {"array.sbatch", "join.sbatch"}) {
+    const std::string text = readFileText(job + "/" + script);
+    EXPECT_NE(text.find("--gpus-per-task=1"), std::string::npos);
+    const std::size_t program = text.find("\n", text.find("esac"));
+    ASSERT_NE(program, std::string::npos) << text;
+    std::ofstream(path("head.sh")) << text.substr(0, program) << "\necho \"${LUCERNA_EGL_DEVICE-none}\"\n";
+    struct Case {
+      const char *given, *device;
+    };
+    for (const Case& c : {Case{"", "none"},
+                          {"CUDA_VISIBLE_DEVICES=", "none"},
+                          {"CUDA_VISIBLE_DEVICES=NoDevFiles", "none"},
+                          {"CUDA_VISIBLE_DEVICES=1", "cuda:1"},
+                          {"CUDA_VISIBLE_DEVICES=2,3", "cuda:2"},
+                          {"CUDA_VISIBLE_DEVICES=GPU-1a2b3c4d-0000-1111-2222-333344445555",
+                           "cuda:GPU-1a2b3c4d-0000-1111-2222-333344445555"},
+                          {"CUDA_VISIBLE_DEVICES=MIG-8b1c,MIG-9d2e", "cuda:MIG-8b1c"},
+                          {"ROCR_VISIBLE_DEVICES=1,0", "rocm:1"},
+                          {"LUCERNA_EGL_DEVICE=5", "5"}}) {
+      const RunResult ran = test::run("env -u LUCERNA_EGL_DEVICE -u CUDA_VISIBLE_DEVICES -u ROCR_VISIBLE_DEVICES " +
+                                      std::string(c.given) + " bash -eu '" + path("head.sh") + "'");
+      EXPECT_EQ(ran.exitCode, 0) << ran.err;
+      EXPECT_EQ(ran.out, std::string(c.device) + "\n") << script << ": " << c.given;
+    }
+  }
+}
+
+// Each of several workers draws with the device that it was given: these are none, and each task's log names them.
+TEST_F(Parts, WorkersHaveDevicesOfTheirOwn) {
+  const std::string job = path("job");
+  ASSERT_EQ(RUN_LUCERNA("cluster plan -o '" + job + "' --tasks 8 --quiet -- render " + picture() +
+                        "--host egl --spp 8 -o '" + path("joined.pfm") + "'")
+                .exitCode,
+            0);
+  EXPECT_EQ(RUN_LUCERNA("cluster run '" + job + "' --jobs 2 --devices 97,98 --quiet").exitCode, 1);
+  std::string logs;
+  for (const auto& entry : fs::directory_iterator(job + "/logs")) logs += readFileText(entry.path());
+  for (const char* device : {"LUCERNA_EGL_DEVICE=97: no such device", "LUCERNA_EGL_DEVICE=98: no such device"})
+    EXPECT_NE(logs.find(device), std::string::npos) << logs;
+  if (test::run("LUCERNA_EGL_DEVICE=0 '" LUCERNA_BINARY "' info --quiet --host egl").exitCode != 0)
+    GTEST_SKIP() << "no EGL device here";
+  EXPECT_EQ(RUN_LUCERNA("cluster run '" + job + "' --jobs 2 --devices 0,0 --quiet").exitCode, 0);
 }
 
 }  // namespace
