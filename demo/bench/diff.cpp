@@ -8,6 +8,8 @@
 // the rows say by how much: the median of all rows is the machine's part and is reported apart; what rows scatter about
 // it (median absolute deviation) adds to a row's own spread. So many rows are so many chances to err: the level is
 // Sidak's for all tests together [Sidak1967].
+//
+// A row of A that B lacks is a loss, but not where a ladder of path tracing had less time.
 #include "bench/diff.hpp"
 
 #include "base/error.hpp"
@@ -147,6 +149,15 @@ std::map<std::string, ErrorRow> byLabel(const nlohmann::ordered_json& report, st
   return rows;
 }
 
+/// Whether a ladder of path tracing, which goes as far as there is time, ends before this row in the other report.
+bool isBeyondLadder(const ErrorRow& row, const std::map<std::string, ErrorRow>& others) {
+  double longest = -INFINITY;
+  for (const auto& [label, other] : others)
+    if (row.contains("series") && other.contains("series") && row.at("series") == other.at("series"))
+      longest = std::max(longest, number(other, "spp"));
+  return number(row, "spp") > longest && std::isfinite(longest);
+}
+
 int run(const DiffOptions& options) {
   options.common.apply();
   const auto wants = [&](const char* what) {
@@ -162,8 +173,9 @@ int run(const DiffOptions& options) {
                   reportA.at("bench").get<std::string>(), options.b, reportB.at("bench").get<std::string>());
   std::vector<std::string> orderA, orderB;
   const auto a = byLabel(reportA, orderA), b = byLabel(reportB, orderB);
-  std::vector<std::string> both, onlyA, onlyB;
-  for (const std::string& label : orderA) (b.contains(label) ? both : onlyA).push_back(label);
+  std::vector<std::string> both, onlyA, onlyB, unreached;
+  for (const std::string& label : orderA)
+    (b.contains(label) ? both : isBeyondLadder(a.at(label), b) ? unreached : onlyA).push_back(label);
   for (const std::string& label : orderB)
     if (!a.contains(label)) onlyB.push_back(label);
   if (both.empty()) throwBadInput("{} and {} have no row in common", options.a, options.b);
@@ -230,6 +242,7 @@ int run(const DiffOptions& options) {
       fmt::print("{}\n", line);
     }
     for (const std::string& label : onlyA) fmt::print("gone       {}\n", label);
+    for (const std::string& label : unreached) fmt::print("no time    {}\n", label);
     for (const std::string& label : onlyB) fmt::print("new        {}\n", label);
     fmt::print("In brackets: standard errors of the difference; decided beyond {:.2f} (level {:g} for all {} rows).\n",
                z, options.significance, both.size());
@@ -250,6 +263,7 @@ int run(const DiffOptions& options) {
   json["better"] = better;
   json["worse"] = worse;
   json["gone"] = onlyA;
+  json["not_reached"] = unreached;
   json["new"] = onlyB;
   json["rows"] = nlohmann::ordered_json::array();
   for (const RowDiff& diff : diffs) {
