@@ -12,7 +12,7 @@ function bytesOf(base64) {
 }
 /// IEEE 754 halves to numbers, by a table of all of them.
 let halfTable = null;
-function halves(base64, scale) {
+function halves(bytes, scale) {
   if (!halfTable) {
     halfTable = new Float32Array(65536);
     for (let h = 0; h < 65536; ++h) {
@@ -20,7 +20,7 @@ function halves(base64, scale) {
       halfTable[h] = sign * (exponent === 31 ? (fraction ? NaN : Infinity) : exponent ? 2 ** (exponent - 15) * (1 + fraction / 1024) : 2 ** -24 * fraction);
     }
   }
-  const words = new Uint16Array(bytesOf(base64).buffer), result = new Float32Array(words.length);
+  const words = new Uint16Array(bytes.buffer), result = new Float32Array(words.length);
   for (let i = 0; i < words.length; ++i) result[i] = halfTable[words[i]] / scale;
   return result;
 }
@@ -33,8 +33,19 @@ function short(value, digits = 3) {
   if (!Number.isFinite(value)) return value > 0 ? 'inf' : '-inf';
   return String(Number(value.toPrecision(digits)));
 }
-const percent = (value, digits = 3) => (Number.isFinite(value) ? short(100 * value, digits) + ' %' : '');
+const percent = (value, digits = 3) => (Number.isFinite(value) ? short(100 * value, digits) + '\u00a0%' : '');
 const escapeText = text => String(text).replace(/[&<>"]/g, c => ({'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;'})[c]);
+/// A text in lines of about so many characters; what does not fit into the last ends in dots.
+function linesOf(text, length, most) {
+  const lines = [''];
+  for (const word of text.split(' ')) {
+    const last = lines.length - 1, longer = lines[last] ? `${lines[last]} ${word}` : word;
+    if (longer.length <= length || !lines[last]) lines[last] = longer;
+    else if (lines.length < most) lines.push(word);
+    else { lines[last] += '\u2026'; break; }
+  }
+  return lines;
+}
 /// 1, 2 or 5 times a power of ten, at least the value.
 function roundUp(value) {
   if (!(value > 0)) return 1;
@@ -53,8 +64,12 @@ function colourAt(stops, t) {
   const position = Math.min(Math.max(t, 0), 1) * (stops.length - 1), lower = Math.min(Math.floor(position), stops.length - 2), f = position - lower;
   return [0, 1, 2].map(c => Math.round(stops[lower][c] * (1 - f) + stops[lower + 1][c] * f));
 }
-const OKABE = ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#7A4FBF', '#8C6D31', '#333333', '#B22222', '#3CB371', '#999900'];  // [Okabe2008] and four more
+// [Okabe2008] without its yellow, which white swallows, and two dark ones. Any two differ by CIEDE2000 10 at least, also
+// without one of the three kinds of cones [Machado2009]; nothing is told by colour alone.
+const PALETTE = ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#333333', '#480060'];
 const MARKS = ['circle', 'square', 'up', 'down', 'diamond', 'plus', 'cross', 'star'];
+const DASHES = ['', '7 3', '2 3'];
+const cropColour = k => PALETTE[(k + 1) % PALETTE.length];
 function mark(kind, x, y, r, colour, hollow) {
   const fill = hollow ? '#fff' : colour, path = d => `<path d="${d}" fill="${fill}" stroke="${colour}" stroke-width="1.6"/>`;
   const line = d => `<path d="${d}" fill="none" stroke="${colour}" stroke-width="2.2"/>`;
@@ -85,7 +100,8 @@ const MAPS = {
   flip: {name: 'FLIP', unit: '', stops: SEQUENTIAL},
   z: {name: 'z-score', unit: 'standard errors; grey: noise explains it (below 3)', stops: SIGNED},
 };
-const LIMIT_OF_NOISE = 3, ROUNDING = 1e-5;
+// Rounding: of halves, in which pictures of the raster techniques are drawn.
+const LIMIT_OF_NOISE = 3, ROUNDING = 2 ** -11;
 
 // ------------------------------------------------------------------------------------------------ costs and errors of rows
 
@@ -177,9 +193,9 @@ class Figure {
     [this.width, this.height] = this.facts.picture_size;
     this.planes = {};
     for (const element of root.querySelectorAll('script[data-plane]')) this.planes[element.dataset.plane] = element;
-    // 0: the reference; then pictures: the front from its fastest on, then the others in the order of the ladders.
+    // 0: the reference; then pictures: the front from its fastest on, then the best of each ladder, then the others, in the order of the ladders.
     const front = this.facts.pictures.map((p, i) => i).filter(i => this.rows[this.facts.pictures[i].row].pareto).sort((a, b) => this.rows[this.facts.pictures[a].row].front - this.rows[this.facts.pictures[b].row].front);
-    const rest = this.facts.pictures.map((p, i) => i).filter(i => !front.includes(i));
+    const others = this.facts.pictures.map((p, i) => i).filter(i => !front.includes(i)), rest = [true, false].flatMap(first => others.filter(i => this.facts.pictures[i].first_choice === first));
     this.items = [null, ...front.concat(rest).map(i => ({picture: i, row: this.facts.pictures[i].row, truth: this.facts.pictures[i].truth}))];
     this.seriesNames = [...new Set(this.rows.map(r => r.series))];
     this.state = {current: Math.min(1, this.items.length - 1), before: 0, mode: 'single', flipped: false, chosen: [], map: 'picture', stops: 0, tone: 'filmic', zoom: 0, x: this.width / 2, y: this.height / 2,
@@ -198,45 +214,89 @@ class Figure {
   label(i) { return i === 0 ? this.facts.truths[0].name : this.rows[this.items[i].row].label; }
   style(series) {
     const i = this.seriesNames.indexOf(series);
-    return {colour: OKABE[i % OKABE.length], mark: MARKS[(i + Math.floor(i / OKABE.length) * 3) % MARKS.length]};
+    const round = Math.floor(i / PALETTE.length);
+    return {colour: PALETTE[i % PALETTE.length], mark: MARKS[(i + 3 * round) % MARKS.length], dash: DASHES[round % DASHES.length]};
   }
 
   // ---------------------------------------------------------------- pixels
   once(key, make) { return key in this.decoded ? this.decoded[key] : (this.decoded[key] = make()); }
-  text(name) { const element = this.planes[name]; return element ? element.textContent : null; }
-  truth(t) { return this.once('truth' + t, () => new Float32Array(bytesOf(this.text('r' + t)).buffer)); }
-  truthError(t) { const scale = this.facts.truths[t].error_scale; return scale === null ? null : this.once('error' + t, () => halves(this.text(`r${t}e`), scale)); }
-  difference(i) {
-    const p = this.facts.pictures[this.items[i].picture];
-    return this.once('difference' + i, () => halves(this.text('p' + this.items[i].picture), p.scale));
+  text(name) { return this.once('text ' + name, () => this.planes[name].textContent); }
+  bytes(name) { return bytesOf(this.planes[name].textContent); }
+  /// Some of them, without the others: a base64 digit has six bits.
+  bytesAt(name, first, count) { return bytesOf(this.text(name).slice(4 * Math.floor(first / 3), 4 * Math.ceil((first + count) / 3))).slice(first % 3, first % 3 + count); }
+  truth(t) { return this.once('truth' + t, () => new Float32Array(this.bytes('r' + t).buffer)); }
+  truthError(t) { const scale = this.facts.truths[t].error_scale; return scale === null ? null : this.once('error' + t, () => halves(this.bytes(`r${t}e`), scale)); }
+  /// Pictures that found no room are means over blocks of pixels: their values, for each pixel.
+  spread(values, block, channels) {
+    if (block === 1) return values;
+    const across = Math.ceil(this.width / block), result = new Float32Array(channels * this.width * this.height);
+    for (let y = 0, at = 0; y < this.height; ++y)
+      for (let x = 0; x < this.width; ++x)
+        for (let c = 0; c < channels; ++c) result[at++] = values[channels * (Math.floor(y / block) * across + Math.floor(x / block)) + c];
+    return result;
   }
-  ownError(i) { const p = this.facts.pictures[this.items[i].picture]; return p.error_scale === null ? null : this.once('own' + i, () => halves(this.text(`p${this.items[i].picture}e`), p.error_scale)); }
-  flipMap(i) { return this.facts.pictures[this.items[i].picture].flip ? this.once('flip' + i, () => bytesOf(this.text(`p${this.items[i].picture}f`))) : null; }
+  /// Means over such blocks; or, with squares, standard errors of those means.
+  blocks(values, block, squares) {
+    const across = Math.ceil(this.width / block), down = Math.ceil(this.height / block), sums = new Float64Array(3 * across * down), counts = new Float64Array(across * down);
+    for (let y = 0, at = 0; y < this.height; ++y)
+      for (let x = 0; x < this.width; ++x) {
+        const k = Math.floor(y / block) * across + Math.floor(x / block);
+        ++counts[k];
+        for (let c = 0; c < 3; ++c, ++at) sums[3 * k + c] += squares ? values[at] ** 2 : values[at];
+      }
+    return this.spread(Float32Array.from(sums, (sum, j) => (squares ? Math.sqrt(sum) : sum) / counts[Math.floor(j / 3)]), block, 3);
+  }
+  picture(i) { return this.facts.pictures[this.items[i].picture]; }
+  difference(i) { const p = this.picture(i); return this.once('difference' + i, () => this.spread(halves(this.bytes('p' + this.items[i].picture), p.scale), p.block, 3)); }
+  ownError(i) { const p = this.picture(i); return p.error_scale === null ? null : this.once('own' + i, () => this.spread(halves(this.bytes(`p${this.items[i].picture}e`), p.error_scale), p.block, 3)); }
+  flipMap(i) { const p = this.picture(i); return p.flip ? this.once('flip' + i, () => this.spread(this.bytes(`p${this.items[i].picture}f`), p.block, 1)) : null; }
+  /// The reference of a method, and its standard error, in the method's blocks.
+  truthOf(i) {
+    const t = this.items[i].truth, block = this.picture(i).block;
+    return block === 1 ? this.truth(t) : this.once(`truth ${t} by ${block}`, () => this.blocks(this.truth(t), block, false));
+  }
+  truthErrorOf(i) {
+    const t = this.items[i].truth, block = this.picture(i).block, e = this.truthError(t);
+    return block === 1 || !e ? e : this.once(`error ${t} by ${block}`, () => this.blocks(e, block, true));
+  }
   pixels(i) {
     if (i === 0) return this.truth(0);
     return this.once('pixels' + i, () => {
-      const d = this.difference(i), t = this.truth(this.items[i].truth), result = new Float32Array(d.length);
-      // A difference has 11 bits: a sum of fewer than its last is 0.
-      for (let k = 0; k < d.length; ++k) { const v = t[k] + d[k]; result[k] = Math.abs(v) < Math.abs(d[k]) / 1024 ? 0 : v; }
+      const d = this.difference(i), t = this.truthOf(i), result = new Float32Array(d.length);
+      for (let k = 0; k < d.length; ++k) result[k] = this.sum(t[k], d[k]);
       return result;
     });
   }
-  /// A value of a map at a pixel; NaN where there is none. Standard errors of channels, which share their paths, add up as if wholly dependent.
-  mapValue(i, map, k) {
-    const t = this.truth(this.items[i].truth), d = this.difference(i), dy = luminance(d, k);
+  /// A difference has 11 bits: a sum of fewer than its last is 0.
+  sum(t, d) { return Math.abs(t + d) < Math.abs(d) / 1024 ? 0 : t + d; }
+  /// A value of a map; NaN where there is none. Luminances: of the difference, the reference, its standard error (null: unknown), the method's own.
+  /// Standard errors of channels, which share their paths, add up as if wholly dependent.
+  mapOf(i, map, d, t, e, own, flip) {
     switch (map) {
-      case 'signed': return dy;
-      case 'relative': return dy / Math.sqrt(luminance(t, k) ** 2 + this.facts.relmse_epsilon * this.meanLuminance(this.items[i].truth) ** 2);
-      case 'flip': { const f = this.flipMap(i); return f ? f[k] / 255 : NaN; }
+      case 'signed': return d;
+      case 'relative': return d / Math.sqrt(t ** 2 + this.facts.relmse_epsilon * this.meanLuminance(this.items[i].truth) ** 2);
+      case 'flip': return flip;
       case 'z': {
-        const e = this.truthError(this.items[i].truth), own = this.ownError(i);
-        if (!e) return NaN;
+        if (e === null) return NaN;
         // Where nothing is sampled, as in a plain sky, what is left is rounding.
-        const s = Math.hypot(luminance(e, k), own ? luminance(own, k) : 0, ROUNDING * luminance(t, k));
-        return s > 0 ? dy / s : dy === 0 ? 0 : dy > 0 ? Infinity : -Infinity;
+        const s = Math.hypot(e, own, ROUNDING * t);
+        return s > 0 ? d / s : d === 0 ? 0 : d > 0 ? Infinity : -Infinity;
       }
     }
     return NaN;
+  }
+  mapValue(i, map, k) {
+    const e = this.truthErrorOf(i), own = this.ownError(i), f = this.flipMap(i);
+    return this.mapOf(i, map, luminance(this.difference(i), k), luminance(this.truthOf(i), k), e && luminance(e, k), own ? luminance(own, k) : 0, f ? f[k] / 255 : NaN);
+  }
+  /// A pixel of a method that may not be decoded yet: its values, and those of all maps.
+  pixel(i, k) {
+    const p = this.picture(i), name = 'p' + this.items[i].picture, x = k % this.width, y = Math.floor(k / this.width), at = Math.floor(y / p.block) * Math.ceil(this.width / p.block) + Math.floor(x / p.block);
+    const three = (plane, scale) => halves(this.bytesAt(plane, 6 * at, 6), scale), d = three(name, p.scale), t = this.truthOf(i), e = this.truthErrorOf(i);
+    const own = p.error_scale === null ? 0 : luminance(three(name + 'e', p.error_scale), 0), flip = p.flip ? this.bytesAt(name + 'f', at, 1)[0] / 255 : NaN;
+    const result = {values: Array.from(d, (v, c) => this.sum(t[3 * k + c], v))};
+    for (const map of ['signed', 'relative', 'z', 'flip']) result[map] = this.mapOf(i, map, luminance(d, 0), luminance(t, k), e && luminance(e, k), own, flip);
+    return result;
   }
   meanLuminance(t) {
     return this.once('mean' + t, () => { const p = this.truth(t); let sum = 0; for (let k = 0; k < this.width * this.height; ++k) sum += luminance(p, k); return sum / (this.width * this.height); });
@@ -328,28 +388,42 @@ class Figure {
     button(range, '[', '\u2212', 'narrower'); button(range, ']', '+', 'wider'); button(range, 'l', 'lock over methods', 'lock');
     const zoom = group('Zoom');
     button(zoom, '-', '\u2212', 'out'); button(zoom, '+', '+', 'in'); button(zoom, 'r', 'fit', 'fit');
+    const crop = group('Crops');
+    button(crop, 'c', 'at the cursor', 'crop'); button(crop, 'C', 'one less', 'cropAway'); button(crop, 'A', 'automatic', 'cropsAuto');
     const save = group('Save');
     button(save, 'x', 'figure SVG', 'svg'); button(save, 'X', 'plot SVG', 'plotSvg'); button(save, 'd', 'data CSV', 'csv'); button(save, 'L', 'LaTeX', 'latex'); button(save, 'P', 'print, PDF', 'print');
     button(group(''), '?', 'keys', 'help');
 
     const main = add(root, 'div', 'lf-main');
-    this.list = add(main, 'div', 'lf-list');
+    const left = add(main, 'div');
+    this.list = add(left, 'div', 'lf-list');
     this.list.setAttribute('role', 'listbox');
     this.list.setAttribute('aria-label', 'Methods');
+    this.list.tabIndex = 0;
+    this.list.addEventListener('keydown', event => {
+      const step = {ArrowUp: -1, ArrowDown: 1}[event.key];
+      if (!step || event.shiftKey) return;
+      event.preventDefault();
+      this.show(this.state.current + step);
+    });
     this.items.forEach((item, i) => {
       const line = add(this.list, 'div'), key = i <= 9 ? `<kbd>${i}</kbd>` : '<span></span>';
       line.setAttribute('role', 'option');
+      line.id = `figure-${figures.length}-${i}`;
       line.dataset.item = i;
       if (item) {
         const row = this.rows[item.row], style = this.style(row.series);
-        line.innerHTML = `${key}<svg width="14" height="14">${mark(style.mark, 7, 7, 4, style.colour)}</svg><span>${escapeText(row.label)}${row.pareto ? ' \u2605' : ''}</span><span class="set"></span>`;
+        line.innerHTML = `${key}<svg width="14" height="14">${mark(style.mark, 7, 7, 4, style.colour)}</svg><span>${escapeText(row.label)}${row.pareto ? ' \u2605' : ''}</span><span class="set" title="in side by side and crops, or not: key a"></span>`;
       } else {
-        line.innerHTML = `${key}<span></span><span>${escapeText(this.label(0))}</span><span class="set"></span>`;
+        line.innerHTML = `${key}<span></span><span>${escapeText(this.label(0))}</span><span class="set" title="in side by side and crops, or not: key a"></span>`;
       }
-      line.addEventListener('click', () => this.show(i));
+      line.addEventListener('click', event => {
+        this.show(i);
+        if (event.target.className === 'set') this.press('a');
+      });
     });
     if (this.items.length - 1 < this.rows.length)
-      add(this.list, 'div', 'none', `<span></span><span></span><span>${this.rows.length - this.items.length + 1} rows without pictures here: no room on the page, or measured before pictures were kept</span>`);
+      add(left, 'div', 'none', `${this.rows.length - this.items.length + 1} rows without pictures: measured before pictures were kept`);
     const right = add(main, 'div');
     const viewBox = add(right, 'div', 'lf-view');
     this.canvas = add(viewBox, 'canvas');
@@ -405,7 +479,8 @@ class Figure {
   layout() {
     const box = this.canvas.parentElement.clientWidth || 800, panes = this.panes(), n = panes.length;
     const columns = n <= 1 ? 1 : n === 2 || n === 4 ? 2 : 3, lines = Math.ceil(n / columns);
-    const paneWidth = box / columns, paneHeight = Math.min(paneWidth * this.height / this.width, n === 1 ? 620 : 420);
+    // All of it on the screen, beside the bars above and the values below.
+    const most = Math.max(300, 0.7 * window.innerHeight / lines), paneWidth = box / columns, paneHeight = Math.min(paneWidth * this.height / this.width, most);
     return {columns, lines, paneWidth, paneHeight, width: box, height: lines * paneHeight, scale: this.state.zoom || Math.min(paneWidth / this.width, paneHeight / this.height)};
   }
   draw() {
@@ -451,16 +526,24 @@ class Figure {
         caption(describe(i), left, top, 'left');
       }
       // The cursor's pixel, and crops.
-      const box = (x, y, w, h, colour, width) => {
+      const box = (x, y, w, h, colour, width, text) => {
         g.strokeStyle = '#000'; g.lineWidth = width + 2;
         const a = left + l.paneWidth / 2 + (x - s.x) * l.scale, b = top + l.paneHeight / 2 + (y - s.y) * l.scale;
         g.save(); g.beginPath(); g.rect(left, top, l.paneWidth, l.paneHeight); g.clip();
         g.strokeRect(a, b, w * l.scale, h * l.scale);
         g.strokeStyle = colour; g.lineWidth = width;
         g.strokeRect(a, b, w * l.scale, h * l.scale);
+        if (text) {
+          g.font = 'bold 12px system-ui, sans-serif';
+          g.textAlign = 'left';
+          g.fillStyle = '#000';
+          g.fillRect(a - 1, b + h * l.scale - 16, 15, 17);
+          g.fillStyle = '#fff';
+          g.fillText(text, a + 3, b + h * l.scale - 3);
+        }
         g.restore();
       };
-      s.crops.forEach((c, k) => box(c.x, c.y, c.width, c.height, OKABE[(k + 1) % OKABE.length], 1.5));
+      s.crops.forEach((c, k) => box(c.x, c.y, c.width, c.height, cropColour(k), 2, String(k + 1)));
       box(s.cursor.x, s.cursor.y, 1, 1, '#fff', 1);
     });
     for (const write of captions) write();
@@ -473,14 +556,23 @@ class Figure {
     for (const line of this.list.querySelectorAll('[data-item]')) {
       const i = Number(line.dataset.item);
       line.setAttribute('aria-selected', String(i === this.shown()));
-      line.querySelector('.set').textContent = s.chosen.includes(i) ? '\u25a3' : '';
+      line.querySelector('.set').textContent = s.chosen.includes(i) ? '\u25a3' : '\u25a1';
+      if (i !== this.shown()) continue;
+      this.list.setAttribute('aria-activedescendant', line.id);
+      // In sight in the list, without a jump of the page.
+      const low = line.offsetTop - this.list.offsetTop, high = low + line.offsetHeight - this.list.clientHeight;
+      this.list.scrollTop = Math.max(high, Math.min(low, this.list.scrollTop));
     }
     const text = this.panes().map(describe).join('; ');
     canvas.setAttribute('aria-label', text);
-    this.status.textContent = (s.mode === 'wipe' ? `left: ${describe(s.before)}; right: ${describe(s.current)}` : text) + `. Zoom ${short(l.scale)}` + (this.facts.block > 1 ? `. Pixels are means over ${this.facts.block} x ${this.facts.block}; figures in tables are of the whole picture.` : '.');
+    this.status.textContent = (s.mode === 'wipe' ? `left: ${describe(s.before)}; right: ${describe(s.current)}` : text) + `. Zoom ${short(l.scale)}` + this.blockNote();
     this.drawScale();
     this.drawValues();
     this.drawCrops();
+  }
+  blockNote() {
+    const most = Math.max(...this.panes().map(i => this.facts.block * (i > 0 ? this.picture(i).block : 1)));
+    return most > 1 ? `. Pixels are means over up to ${most} x ${most}, for want of room; figures in tables are of the whole picture.` : '.';
   }
   drawScale() {
     const s = this.state, i = s.mode === 'side' ? s.chosen.find(k => k > 0) || 0 : this.shown() || s.before;
@@ -509,8 +601,8 @@ class Figure {
     });
     this.items.forEach((item, i) => {
       if (i === 0) return;
-      const p = this.pixels(i), shown = i === this.shown() ? ' class="marked"' : '';
-      html += `<tr${shown}><td>${escapeText(this.label(i))}</td>${three(p)}<td>${short(luminance(p, k), 5)}</td><td>${short(this.mapValue(i, 'signed', k))}</td><td>${percent(this.mapValue(i, 'relative', k))}</td><td>${short(this.mapValue(i, 'z', k))}</td><td>${short(this.mapValue(i, 'flip', k))}</td></tr>`;
+      const p = this.pixel(i, k), shown = i === this.shown() ? ' class="marked"' : '';
+      html += `<tr${shown}><td>${escapeText(this.label(i))}</td>${three(p.values, 0)}<td>${short(luminance(p.values, 0), 5)}</td><td>${short(p.signed)}</td><td>${percent(p.relative)}</td><td>${short(p.z)}</td><td>${short(p.flip)}</td></tr>`;
     });
     this.valuesBox.innerHTML = html + '</table>';
   }
@@ -532,13 +624,14 @@ class Figure {
     this.canvas.addEventListener('pointerdown', event => {
       this.root.focus({preventScroll: true});
       const p = this.pixelAt(event);
-      drag = {x: event.clientX, y: event.clientY, wipe: this.state.mode === 'wipe' && Math.abs(p.paneX - this.state.wipe) < 0.03};
+      drag = {x: event.clientX, y: event.clientY, wipe: this.state.mode === 'wipe' && Math.abs(p.paneX - this.state.wipe) < 0.03, crop: event.shiftKey ? {from: p, index: this.state.crops.length} : null};
       this.canvas.setPointerCapture(event.pointerId);
     });
     this.canvas.addEventListener('pointerup', () => { drag = null; });
     this.canvas.addEventListener('pointermove', event => {
       const p = this.pixelAt(event), s = this.state;
-      if (drag && drag.wipe) s.wipe = Math.min(Math.max(p.paneX, 0), 1);
+      if (drag && drag.crop) s.crops[drag.crop.index] = this.cropBetween(drag.crop.from, p);
+      else if (drag && drag.wipe) s.wipe = Math.min(Math.max(p.paneX, 0), 1);
       else if (drag) {
         const scale = this.layout().scale;
         s.x -= (event.clientX - drag.x) / scale, s.y -= (event.clientY - drag.y) / scale;
@@ -555,7 +648,7 @@ class Figure {
     this.state.selected = index;
     const item = this.items.findIndex(it => it && it.row === index);
     const line = (name, value) => (value === undefined || value === null || value === '' ? '' : `<div><dt>${escapeText(name)}</dt><dd>${value}</dd></div>`);
-    const command = (name, text, note) => (text ? line(name, `<code>${escapeText(text)}</code> <button type="button" data-copy="${escapeText(text)}">copy</button>${note ? `<br><span class="note">${escapeText(note)}</span>` : ''}`) : '');
+    const command = (name, text, note) => (text ? line(name, `<code>${text.split(' ').map(word => `<span>${escapeText(word)}</span>`).join(' ')}</code> <button type="button" data-copy="${escapeText(text)}">copy</button>${note ? `<br><span class="note">${escapeText(note)}</span>` : ''}`) : '');
     const error = metric => escapeText(errorText(row, metric)) + (spreadOf(row, metric) > 0 ? ` \u00b1 ${percent(spreadOf(row, metric), 2)}` : '');
     this.factsBox.innerHTML = `<strong>${escapeText(row.label)}</strong>${item < 0 ? '<p class="note">No picture of this row is on the page.</p>' : ''}<dl>` +
       line('picture', isNumber(row.ms) ? `${short(row.ms, 4)} ms` + (Array.isArray(row.wall_ms_spread) ? ` (${short(row.wall_ms_spread[0])} .. ${short(row.wall_ms_spread[1])})` : '') : '') + line('set-up', isNumber(row.setup_ms) ? `${short(row.setup_ms, 4)} ms` : '') +
@@ -588,7 +681,16 @@ class Figure {
     const pad = (a, b) => { const d = Math.max(Math.log(b / a) * 0.05, 0.1); return [a * Math.exp(-d), b * Math.exp(d)]; };
     const [x0, x1] = pad(Math.min(...xs), Math.max(...xs)), [y0, y1] = pad(Math.max(Math.min(...ys), Math.min(...all.map(p => p.error)) / 10), Math.max(...ys));
     const X = v => left + (W - left - right) * Math.log(v / x0) / Math.log(x1 / x0), Y = v => H - bottom - (H - top - bottom) * Math.log(v / y0) / Math.log(y1 / y0);
-    const tics = (a, b) => { const list = []; const decades = Math.log10(b / a); for (let d = Math.floor(Math.log10(a)); d <= Math.ceil(Math.log10(b)); ++d) for (const m of decades > 4 ? [1] : [1, 2, 5]) { const v = m * 10 ** d; if (v >= a && v <= b) list.push(v); } return list; };
+    const tics = (a, b) => {
+      // Whole decades over many, finer steps over few.
+      for (const steps of Math.log10(b / a) > 4 ? [[1]] : [[1, 2, 5], [1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9]]) {
+        const list = [];
+        for (let d = Math.floor(Math.log10(a)); d <= Math.ceil(Math.log10(b)); ++d) for (const m of steps) list.push(Number(`${m}e${d}`));
+        const inside = list.filter(v => v >= a && v <= b);
+        if (inside.length >= 4 || steps.length !== 3) return inside;
+      }
+      return [];
+    };
     const unit = METRICS[metric].isSquare || metric === 'flip' ? v => short(v) : v => short(100 * v) + ' %';
     let out = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${W} ${H}" width="${W}" height="${H}" font-family="system-ui, sans-serif" font-size="13"><title>${escapeText(this.facts.title)}: ${escapeText(METRICS[metric].name)} against ${escapeText(COSTS[cost].name)}</title><rect width="${W}" height="${H}" fill="#fff"/>`;
     for (const v of tics(x0, x1)) out += `<path d="M${X(v)} ${top}V${H - bottom}" stroke="#e2e2e6"/><text x="${X(v)}" y="${H - bottom + 18}" text-anchor="middle">${short(v)}</text>`;
@@ -599,9 +701,14 @@ class Figure {
     // The front, from its cheapest to its best.
     const front = frontOf(this.rows, cost, metric), line = front.map(i => ({x: X(COSTS[cost].of(this.rows[i])), y: Y(ranked(this.rows[i], metric))})).sort((a, b) => a.x - b.x);
     if (line.length > 1) out += `<path class="front" d="M${line.map(p => `${p.x} ${p.y}`).join('L')}" fill="none" stroke="#f0dc82" stroke-width="9" stroke-linejoin="round" stroke-linecap="round"/>`;
+    const numbers = front.length > 1 ? front.map((i, k) => `<text class="number" x="${X(COSTS[cost].of(this.rows[i]))}" y="${Y(ranked(this.rows[i], metric)) - 13}" text-anchor="middle" font-size="11" font-weight="bold" fill="#5f4b00" stroke="#fff" stroke-width="3" paint-order="stroke" pointer-events="none">${k + 1}</text>`).join('') : '';
     // Slope -1/2 (-1 for squares) through the path tracer's first point: what independent samples give.
     const path = series.find(s => s.name === 'path'), slope = METRICS[metric].isSquare ? -1 : -0.5;
-    if (path && metric !== 'bias') { const a = path.points[0]; out += `<path class="guide" clip-path="url(#plot-area)" d="M${X(x0)} ${Y(a.error * (x0 / a.cost) ** slope)}L${X(x1)} ${Y(a.error * (x1 / a.cost) ** slope)}" stroke="#555" stroke-dasharray="2 5"/><text x="${X(Math.sqrt(a.cost * x1))}" y="${Y(a.error * (Math.sqrt(a.cost * x1) / a.cost) ** slope) - 6}" font-size="11" fill="#555">slope ${slope}</text>`; }
+    if (path && metric !== 'bias') {
+      const a = path.points[0], guide = v => Y(a.error * (v / a.cost) ** slope), atTop = X(a.cost * (a.error / y1) ** (-1 / slope)), room = atTop > left + 70;
+      out += `<path class="guide" clip-path="url(#plot-area)" d="M${X(x0)} ${guide(x0)}L${X(x1)} ${guide(x1)}" stroke="#555" stroke-dasharray="2 5"/>` +
+        `<text x="${room ? atTop - 6 : left + 8}" y="${room ? top + 14 : guide(x0) - 8}" text-anchor="${room ? 'end' : 'start'}" font-size="11" fill="#555" stroke="#fff" stroke-width="3" paint-order="stroke">slope ${slope}</text>`;
+    }
     const seeds = METRICS[metric].seeds;
     for (const s of series) {
       const style = this.style(s.name), real = s.points.filter(p => !p.noise);
@@ -611,7 +718,7 @@ class Figure {
         const ends = f => banded.map(p => `${X(p.cost)} ${Y(Math.max(f(...this.rows[p.index].seeds[seeds].filter(isNumber)), y0))}`);
         out += `<path class="band" clip-path="url(#plot-area)" d="M${ends(Math.min).join('L')}L${ends(Math.max).reverse().join('L')}z" fill="${style.colour}" fill-opacity=".22"/>`;
       }
-      if (real.length > 1) out += `<path d="M${real.map(p => `${X(p.cost)} ${Y(p.error)}`).join('L')}" fill="none" stroke="${style.colour}" stroke-width="1.5"/>`;
+      if (real.length > 1) out += `<path d="M${real.map(p => `${X(p.cost)} ${Y(p.error)}`).join('L')}" fill="none" stroke="${style.colour}" stroke-width="1.5" stroke-dasharray="${style.dash}"/>`;
     }
     for (const s of series) {
       const style = this.style(s.name);
@@ -624,12 +731,16 @@ class Figure {
           (p.noise ? `<path d="M${x} ${y + 7}v9m-3 -4l3 4l3 -4" fill="none" stroke="${style.colour}"/>` : '') + '</g>';
       }
     }
+    out += numbers;
     // Names of the levels last, on a halo: lines and bands of the series lie below them.
-    for (const level of levels.filter(v => v.value >= y0 && v.value <= y1))
-      out += `<text x="${W - right - 4}" y="${Y(level.value) - 4}" text-anchor="end" font-size="11" fill="#444" stroke="#fff" stroke-width="3" paint-order="stroke" pointer-events="none">${escapeText(level.name)}</text>`;
+    for (const level of levels.filter(v => v.value >= y0 && v.value <= y1)) {
+      // At the end where fewer points are in the way.
+      const near = at => all.filter(p => Math.abs(Y(p.error) - Y(level.value)) < 18 && Math.abs(X(p.cost) - at) < 180).length, atLeft = near(left) < near(W - right);
+      out += `<text x="${atLeft ? left + 4 : W - right - 4}" y="${Y(level.value) - 4}" text-anchor="${atLeft ? 'start' : 'end'}" font-size="11" fill="#444" stroke="#fff" stroke-width="3" paint-order="stroke" pointer-events="none">${escapeText(level.name)}</text>`;
+    }
     out += '</svg>';
-    this.legend = '<div class="lf-legend">' + series.map(s => { const style = this.style(s.name); return `<span><svg width="16" height="14">${mark(style.mark, 8, 7, 4, style.colour)}</svg> ${escapeText(s.name)}</span>`; }).join('') +
-      '<span>yellow: the front by a test (two standard errors); hollow with an arrow: below the reference\u2019s noise; bands: least to largest of the seeds; bars: 95 %</span></div>';
+    this.legend = '<div class="lf-legend">' + series.map(s => { const style = this.style(s.name); return `<span><svg width="34" height="14"><path d="M0 7H34" stroke="${style.colour}" stroke-width="1.5" stroke-dasharray="${style.dash}"/>${mark(style.mark, 17, 7, 4, style.colour)}</svg> ${escapeText(s.name)}</span>`; }).join('') +
+      '<span>wide pale line with numbers: the front by a test (two standard errors); hollow with an arrow: below the reference\u2019s noise; bands: least to largest of the seeds; bars: 95 %</span></div>';
     return out + this.legend;
   }
   bindPlot() {
@@ -647,14 +758,20 @@ class Figure {
     for (const cost of ['ms', 'setup']) {
       this.state.cost = cost;
       const series = this.seriesNames.map(name => ({name, points: this.seriesPoints(name).filter(p => !p.noise)})).filter(s => s.points.length);
-      const all = series.flatMap(s => s.points), steps = (values, count) => {
-        // 1, 2 and 5 of every decade between them; at most `count`, evenly.
-        const low = Math.min(...values), high = Math.max(...values), list = [];
-        for (let v = roundUp(low); v <= high * (1 + 1e-9); v = roundUp(v * 1.5)) list.push(v);
+      const all = series.flatMap(s => s.points), steps = (values, count, has) => {
+        // 1, 2 and 5 of every decade between them, or finer ones where those are few, at which there is something to tell; at most `count`, evenly.
+        const low = Math.min(...values), high = Math.max(...values);
+        let list = [];
+        for (const of of [[1, 2, 5], [1, 1.5, 2, 3, 5, 7]]) {
+          list = [];
+          for (let d = Math.floor(Math.log10(low)); d <= Math.log10(high); ++d) for (const m of of) list.push(Number(`${m}e${d}`));
+          list = list.filter(v => v >= low * (1 - 1e-9) && v <= high * (1 + 1e-9) && has(v));
+          if (list.length >= 4) break;
+        }
         return list.length <= count ? list : [...new Set(Array.from({length: count}, (_, k) => list[Math.round(k * (list.length - 1) / (count - 1))]))];
       };
       if (!all.length) { result[cost] = {times: [], errors: [], equalTime: [], equalError: [], unit: []}; continue; }
-      const times = steps(all.map(p => p.cost), 7), errors = steps(all.map(p => p.error), 7).reverse(), path = series.find(s => s.name === 'path');
+      const times = steps(all.map(p => p.cost), 7, v => series.some(s => errorAt(s.points, v))), errors = steps(all.map(p => p.error), 7, v => series.some(s => { const at = costAt(s.points, v); return at && !at.atMost; })).reverse(), path = series.find(s => s.name === 'path');
       result[cost] = {times, errors,
         equalTime: series.map(s => ({series: s.name, entries: times.map(t => errorAt(s.points, t))})),
         equalError: series.map(s => ({series: s.name, entries: errors.map(e => { const at = costAt(s.points, e), of = path && costAt(path.points, e); return at && {...at, speedUp: of && !of.atMost && !at.atMost ? of.value / at.value : null}; })})),
@@ -673,15 +790,17 @@ class Figure {
   }
   drawTables() {
     const data = this.tableData(), metric = this.state.metric, value = METRICS[metric].isSquare || metric === 'flip' ? v => short(v) : v => percent(v);
-    const range = (e, f) => (e.spread > 0 ? ` <span class="note">(${f(Math.max(0, e.value - 1.96 * e.spread))} .. ${f(e.value + 1.96 * e.spread)})</span>` : '');
+    const range = (e, f) => (e.spread > 0 ? ` <span class="note">(${f(Math.max(0, e.value - 1.96 * e.spread)).replace('\u00a0%', '')} .. ${f(e.value + 1.96 * e.spread)})</span>` : '');
+    const some = rows => rows.filter(s => s.entries.some(e => e)), others = rows => rows.filter(s => !s.entries.some(e => e)).map(s => s.series);
+    const without = rows => (others(rows).length ? `<p class="note">Nothing to tell of ${escapeText(others(rows).join(', '))}.</p>` : '');
     let html = '';
     for (const cost of ['ms', 'setup']) {
       const t = data[cost];
       if (!t.times.length) continue;
-      html += `<h3>Equal time: ${escapeText(METRICS[metric].name)} by ${escapeText(COSTS[cost].name)}</h3><div class="scroll"><table class="equal-time" data-cost="${cost}"><tr><th>series</th>${t.times.map(v => `<th>${short(v)} ms</th>`).join('')}</tr>` +
-        t.equalTime.map(s => `<tr><td>${escapeText(s.series)}</td>${s.entries.map(e => (e ? `<td data-value="${e.value}">${e.interpolated ? '~' : ''}${value(e.value)}${range(e, value)}</td>` : '<td>\u2013</td>')).join('')}</tr>`).join('') + '</table></div>';
-      html += `<h3>Equal error: ${escapeText(COSTS[cost].name)} for ${escapeText(METRICS[metric].name)}</h3><div class="scroll"><table class="equal-error" data-cost="${cost}"><tr><th>series</th>${t.errors.map(v => `<th>${value(v)}</th>`).join('')}</tr>` +
-        t.equalError.map(s => `<tr><td>${escapeText(s.series)}</td>${s.entries.map(e => (e ? `<td data-value="${e.value}">${e.atMost ? '\u2264 ' : e.interpolated ? '~' : ''}${short(e.value)}${range(e, short)}${e.speedUp ? ` <b>\u00d7${short(e.speedUp)}</b>` : ''}</td>` : '<td>\u2013</td>')).join('')}</tr>`).join('') + '</table></div>';
+      html += `<div class="lf-pair"><section><h3>Equal time: ${escapeText(METRICS[metric].name)} by ${escapeText(COSTS[cost].name)}</h3><div class="scroll" tabindex="0"><table class="equal-time" data-cost="${cost}"><tr><th>series</th>${t.times.map(v => `<th>${short(v)} ms</th>`).join('')}</tr>` +
+        some(t.equalTime).map(s => `<tr><td>${escapeText(s.series)}</td>${s.entries.map(e => (e ? `<td data-value="${e.value}">${e.interpolated ? '~' : ''}${value(e.value)}${range(e, value)}</td>` : '<td>\u2013</td>')).join('')}</tr>`).join('') + `</table></div>${without(t.equalTime)}</section>`;
+      html += `<section><h3>Equal error: ${escapeText(COSTS[cost].name)} for ${escapeText(METRICS[metric].name)}</h3><div class="scroll" tabindex="0"><table class="equal-error" data-cost="${cost}"><tr><th>series</th>${t.errors.map(v => `<th>${value(v)}</th>`).join('')}</tr>` +
+        some(t.equalError).map(s => `<tr><td>${escapeText(s.series)}</td>${s.entries.map(e => (e ? `<td data-value="${e.value}">${e.atMost ? '\u2264 ' : e.interpolated ? '~' : ''}${short(e.value)}${range(e, short)}${e.speedUp ? ` <b>\u00d7${short(e.speedUp)}</b>` : ''}</td>` : '<td>\u2013</td>')).join('')}</tr>`).join('') + `</table></div>${without(t.equalError)}</section></div>`;
       for (const u of t.unit) if (u.value !== null) html += `<p>Time to unit variance, ${escapeText(u.series)}, ${escapeText(COSTS[cost].name)}: <b data-unit="${cost}">${short(u.value)}</b>${u.spread > 0 ? ` \u00b1 ${short(u.spread, 2)}` : ''} (time \u00d7 NRMSE\u00b2${cost === 'setup' ? ' and set-up' : ''}, mean of ${u.rungs} rungs).</p>`;
     }
     this.tableBox.innerHTML = html + '<p class="note">~: log-log between two rungs of the series. \u2264: its first rung is better already. \u2013: the ladder does not get there, or ends at the reference\u2019s noise. In brackets: 95 %, from the reference\u2019s noise, seeds and times. \u00d7: how many times faster than path tracing at that error.</p>';
@@ -713,9 +832,16 @@ class Figure {
       if (best) this.state.crops.push(best);
     }
   }
+  /// The pixels of a rectangle between two points of the picture.
+  cropBetween(a, b) {
+    const within = (v, size) => Math.min(Math.max(Math.floor(v), 0), size - 1);
+    const x = within(Math.min(a.x, b.x), this.width), y = within(Math.min(a.y, b.y), this.height);
+    return {x, y, width: within(Math.max(a.x, b.x), this.width) - x + 1, height: within(Math.max(a.y, b.y), this.height) - y + 1};
+  }
   cropCanvas(i, c) {
     const canvas = document.createElement('canvas');
-    canvas.width = c.width * 5, canvas.height = c.height * 5;
+    const scale = Math.max(1, Math.round(300 / c.width));
+    canvas.width = c.width * scale, canvas.height = c.height * scale;
     const g = canvas.getContext('2d');
     g.imageSmoothingEnabled = false;
     g.drawImage(this.canvasOf(i), c.x, c.y, c.width, c.height, 0, 0, canvas.width, canvas.height);
@@ -723,21 +849,26 @@ class Figure {
   }
   /// Relative L2 of a crop, of the pictures as they are.
   cropError(i, c) {
-    const d = this.difference(i), t = this.truth(this.items[i].truth);
+    const d = this.difference(i), t = this.truthOf(i);
     let a = 0, b = 0;
     for (let y = c.y; y < c.y + c.height; ++y) for (let x = c.x; x < c.x + c.width; ++x) for (let k = 0; k < 3; ++k) { const at = 3 * (y * this.width + x) + k; a += d[at] ** 2; b += t[at] ** 2; }
     return Math.sqrt(a / b);
   }
   drawCrops() {
     this.cropBox.innerHTML = '';
-    const set = this.state.chosen.slice(0, 6);
+    const set = this.state.chosen.slice(0, 6), box = this.cropBox.clientWidth || 1100;
+    // As many crops beside each other as leave their pictures 150 pixels.
+    const widthOf = beside => (box - 26 * (beside - 1)) / beside / Math.max(set.length, 1) - 8;
+    let beside = Math.max(this.state.crops.length, 1);
+    while (beside > 1 && widthOf(beside) < 150) --beside;
+    this.cropBox.style.setProperty('--crop', `${Math.max(100, Math.min(260, Math.floor(widthOf(beside))))}px`);
     for (const [k, c] of this.state.crops.entries()) {
       const line = document.createElement('div');
       line.className = 'lf-crop-line';
       this.cropBox.append(line);
       for (const i of set) {
         const figure = document.createElement('figure'), canvas = this.cropCanvas(i, c), caption = document.createElement('figcaption');
-        canvas.style.borderColor = OKABE[(k + 1) % OKABE.length];
+        canvas.style.borderColor = cropColour(k);
         caption.textContent = `${k + 1}: ${this.label(i)}${i > 0 ? `, L2 ${percent(this.cropError(i, c))}` : ''}`;
         canvas.setAttribute('role', 'img');
         canvas.setAttribute('aria-label', caption.textContent);
@@ -755,16 +886,16 @@ class Figure {
     set.forEach((i, k) => {
       const x = gap + k * (cw + gap);
       out += `<image x="${x}" y="${y}" width="${cw}" height="${ph}" image-rendering="pixelated" href="${this.canvasOf(i).toDataURL()}"/>`;
-      this.state.crops.forEach((c, n) => { out += `<rect x="${x + c.x * scale}" y="${y + c.y * scale}" width="${c.width * scale}" height="${c.height * scale}" fill="none" stroke="${OKABE[(n + 1) % OKABE.length]}"/>`; });
-      const row = i > 0 ? this.rows[this.items[i].row] : null, lines = [this.label(i).slice(0, 30), row ? `${short(row.ms)} ms, L2 ${errorText(row, 'l2')}` : ''];
+      this.state.crops.forEach((c, n) => { out += `<rect x="${x + c.x * scale}" y="${y + c.y * scale}" width="${c.width * scale}" height="${c.height * scale}" fill="none" stroke="${cropColour(n)}"/>`; });
+      const row = i > 0 ? this.rows[this.items[i].row] : null, lines = [...linesOf(this.label(i), 32, 2), row ? `${isNumber(row.ms) ? short(row.ms) + ' ms, ' : ''}L2 ${errorText(row, 'l2')}` : ''];
       lines.forEach((text, n) => { out += `<text x="${x}" y="${y + ph + 13 + 12 * n}" font-size="9">${escapeText(text)}</text>`; });
     });
-    y += ph + 34;
+    y += ph + 46;
     this.state.crops.forEach((c, n) => {
       const h = cw * c.height / c.width;
       set.forEach((i, k) => {
         const x = gap + k * (cw + gap);
-        out += `<image x="${x}" y="${y}" width="${cw}" height="${h}" image-rendering="pixelated" href="${this.cropCanvas(i, c).toDataURL()}"/><rect x="${x}" y="${y}" width="${cw}" height="${h}" fill="none" stroke="${OKABE[(n + 1) % OKABE.length]}" stroke-width="2"/>`;
+        out += `<image x="${x}" y="${y}" width="${cw}" height="${h}" image-rendering="pixelated" href="${this.cropCanvas(i, c).toDataURL()}"/><rect x="${x}" y="${y}" width="${cw}" height="${h}" fill="none" stroke="${cropColour(n)}" stroke-width="2"/>`;
       });
       y += h + gap;
     });
@@ -784,7 +915,21 @@ class Figure {
     for (const name of this.seriesNames) { const points = this.seriesPoints(name).filter(p => !p.noise); if (points.length) out += `\\addplot coordinates {${points.map(p => `(${p.cost},${p.error})`).join(' ')}};\\addlegendentry{${tex(name)}}\n`; }
     return out + '\\end{loglogaxis}\n\\end{tikzpicture}\n';
   }
-  plotFile() { const svg = this.plotBox.querySelector('svg'); return svg ? new XMLSerializer().serializeToString(svg) : ''; }
+  /// The plot with its legend below it, as a file of its own.
+  plotFile() {
+    const svg = this.plotBox.querySelector('svg');
+    if (!svg) return '';
+    const shown = this.seriesNames.filter(name => this.seriesPoints(name).length), [, , width, height] = svg.getAttribute('viewBox').split(' ').map(Number), columns = 5, line = 19;
+    const legend = shown.map((name, k) => {
+      const style = this.style(name), x = 20 + k % columns * (width - 20) / columns, y = height + 12 + Math.floor(k / columns) * line;
+      return `<path d="M${x} ${y}h34" stroke="${style.colour}" stroke-width="1.5" stroke-dasharray="${style.dash}"/>${mark(style.mark, x + 17, y, 4, style.colour)}<text x="${x + 41}" y="${y + 4}" font-size="12">${escapeText(name)}</text>`;
+    }).join('');
+    const copy = svg.cloneNode(true), all = height + 12 + Math.ceil(shown.length / columns) * line;
+    copy.setAttribute('viewBox', `0 0 ${width} ${all}`);
+    copy.setAttribute('height', all);
+    copy.querySelector('rect').setAttribute('height', all);
+    return new XMLSerializer().serializeToString(copy).replace('</svg>', legend + '</svg>');
+  }
   save(name, type, text) {
     lastSaved = {name, text};
     const link = document.createElement('a');
@@ -829,7 +974,7 @@ const KEYS = [
   {keys: arrows(''), help: 'pan, all pictures in step', run: redraw((f, k) => { const [x, y] = DIRECTIONS[k], step = 40 / f.layout().scale; f.state.x += x * step; f.state.y += y * step; })},
   {keys: arrows('Shift+'), help: 'move the cursor by a pixel', run: redraw((f, k) => { const [x, y] = DIRECTIONS[k.slice(6)]; f.moveCursor(f.state.cursor.x + x, f.state.cursor.y + y); })},
   {keys: ['r'], help: 'the whole picture again', run: redraw(f => { f.state.zoom = 0; f.state.x = f.width / 2; f.state.y = f.height / 2; })},
-  {keys: ['c'], help: 'a crop around the cursor', run: redraw(f => { const s = f.state, w = Math.max(4, Math.round(f.width / 6)), h = Math.max(4, Math.min(f.height, Math.round(w * 0.75))); s.crops.push({x: Math.min(Math.max(s.cursor.x - (w >> 1), 0), f.width - w), y: Math.min(Math.max(s.cursor.y - (h >> 1), 0), f.height - h), width: w, height: h}); })},
+  {keys: ['c'], help: 'a crop around the cursor; or drag over the picture with Shift', run: redraw(f => { const s = f.state, w = Math.max(4, Math.round(f.width / 6)), h = Math.max(4, Math.min(f.height, Math.round(w * 0.75))); s.crops.push({x: Math.min(Math.max(s.cursor.x - (w >> 1), 0), f.width - w), y: Math.min(Math.max(s.cursor.y - (h >> 1), 0), f.height - h), width: w, height: h}); })},
   {keys: ['C'], help: 'take the last crop away', run: redraw(f => { f.state.crops.pop(); })},
   {keys: ['A'], help: 'crops where methods disagree most', run: redraw(f => { f.state.crops = []; f.chooseCrops(); })},
   {keys: ['k'], help: 'next cost of the plot: picture, with set-up, processor', run: f => { f.state.cost = cycle(Object.keys(COSTS), f.state.cost); f.costSelect.value = f.state.cost; f.drawPlot(); f.drawTables(); }},
@@ -868,6 +1013,7 @@ function activate(figure) {
 document.addEventListener('keydown', event => {
   if (!active || event.ctrlKey || event.altKey || event.metaKey || event.defaultPrevented) return;
   if (/^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName)) return;
+  if (event.key.startsWith('Arrow') && event.target.closest('.scroll, pre')) return;  // they scroll there
   const key = event.key.startsWith('Arrow') && event.shiftKey ? 'Shift+' + event.key : event.key;
   if (active.press(key)) event.preventDefault();
 });
@@ -875,6 +1021,6 @@ for (const root of document.querySelectorAll('[data-figure]')) figures.push(new 
 if (figures.length) activate(figures[0]);
 window.addEventListener('resize', () => figures.forEach(f => f.draw()));
 // For tests: what the page holds, and when it was ready, ms after it began to load.
-window.lucernaReport = {figures, KEYS, METRICS, COSTS, frontOf, errorAt, costAt, ready: performance.now(), get lastCopied() { return lastCopied; }, get lastSaved() { return lastSaved; }};
+window.lucernaReport = {figures, KEYS, METRICS, COSTS, colours: {PALETTE, SIGNED, SEQUENTIAL, NOISE, colourAt}, frontOf, errorAt, costAt, ready: performance.now(), get lastCopied() { return lastCopied; }, get lastSaved() { return lastSaved; }};
 
 })();

@@ -174,14 +174,17 @@ std::string notes(const ErrorReport& report) {
   std::string line = fmt::format("Renderer {}\nHost     {}, {}\nBench    {}\n", report.renderer, report.host,
                                  report.cpu, report.title);
   for (const std::string& left : report.leftOut) line += left + "\n";
+  std::size_t longest = 0;
+  for (const auto& [paths, r] : report.references->of) longest = std::max(longest, nameOf(paths).size());
   for (const auto& [paths, r] : report.references->of) {
     const measure::ReferenceNoise noise = report.references->noise(r);
     const glm::dvec3 mean = meanOf(r.mean);
     const double m = (mean.x + mean.y + mean.z) / 3.0;
     line += fmt::format(
-        "Reference {:<44} {} samples per pixel, {:.1f} s; mean {:.6g} +- {:.2g}; noise of a pixel {:.3g} % of the "
+        "Reference {:<{}} {:>6} samples per pixel, {:.1f} s; mean {:.6g} +- {:.2g}; noise of a pixel {:.3g} % of the "
         "mean\n",
-        nameOf(paths), r.samples, r.seconds, m, r.meanError, m > 0.0 ? 100.0 * std::sqrt(noise.variance) / m : 0.0);
+        nameOf(paths), longest, r.samples, r.seconds, m, r.meanError,
+        m > 0.0 ? 100.0 * std::sqrt(noise.variance) / m : 0.0);
   }
   return line;
 }
@@ -348,6 +351,13 @@ bool draw(const fs::path& folder, const std::string& stem, const LogLogPlot& plo
   }
 }
 
+/// Every series has one style in all plots and in the figure: its place among those of the report.
+std::map<std::string, std::size_t> stylesOf(const ErrorReport& report) {
+  std::map<std::string, std::size_t> styles;
+  for (const ErrorRow& row : report.rows) styles.try_emplace(text(row, "series"), styles.size());
+  return styles;
+}
+
 /// Points of one series in the order of time.
 void sortByTime(LogLogPlot& plot) {
   for (Series& series : plot.series)
@@ -359,12 +369,13 @@ bool plotAllLight(const fs::path& folder, const ErrorReport& report) {
   plot.title = report.title + ": all light";
   plot.xLabel = "time of a picture, ms";
   plot.yLabel = "relative L2 error against path tracing, % (black = 100 %)";
-  Series front{"Pareto front", {}, true, true};
+  Series front{"Pareto front", {}, true, true, 0};
+  const std::map<std::string, std::size_t> styles = stylesOf(report);
   std::map<std::string, std::size_t> index;
   for (const ErrorRow& row : report.rows) {
     const std::string name = text(row, "series");
     const auto [found, isNew] = index.try_emplace(name, plot.series.size());
-    if (isNew) plot.series.push_back({name, {}, true, false});
+    if (isNew) plot.series.push_back({name, {}, true, false, styles.at(name)});
     if (!flag(row, "at_noise"))
       plot.series[found->second].points.push_back({number(row, "ms"), 100.0 * number(row, "l2"), ""});
     if (flag(row, "pareto") && !flag(row, "at_noise"))
@@ -388,13 +399,14 @@ bool plotInside(const fs::path& folder, const ErrorReport& report) {
   plot.xLabel = "time of a picture (of all light), ms";
   plot.yLabel = "relative L2 error inside the model, % (black = 100 %)";
   std::map<std::string, std::size_t> index;
+  const std::map<std::string, std::size_t> styles = stylesOf(report);
   std::map<std::string, std::string> models;  // a short name of each that is drawn
   for (const ErrorRow& row : report.rows) {
     const ErrorRow& inside = part(row, "inside_model");
     if (inside.empty() || text(inside, "transport") == "direct" || text(inside, "transport") == "all") continue;
     models[text(inside, "model")];
     const auto [found, isNew] = index.try_emplace(text(row, "series"), plot.series.size());
-    if (isNew) plot.series.push_back({text(row, "series"), {}, true, false});
+    if (isNew) plot.series.push_back({text(row, "series"), {}, true, false, styles.at(text(row, "series"))});
     if (!flag(inside, "at_noise"))
       plot.series[found->second].points.push_back({number(row, "ms"), 100.0 * number(inside, "l2"), ""});
   }
@@ -462,7 +474,7 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
   std::vector<Image> store;
   const Figure figure = figureOf(folder, report, store);
   page.figure(figureHtml(figure, bytes));
-  if (fs::exists(folder / "error.svg")) page.svg(folder / "error.svg");
+  if (fs::exists(folder / "error.svg")) page.svgWithoutScripts(folder / "error.svg");
   page.table(allLightTable(report));
   page.paragraph(
       "Marked: nothing measured here is better in both time and relative L2; their numbers (front) are those of the "

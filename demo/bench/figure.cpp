@@ -98,28 +98,28 @@ std::size_t cost(glm::ivec2 size, std::size_t bytesOfPixel) {
 std::string figureHtml(const Figure& figure, std::size_t bytes) {
   CHECK(!figure.references.empty(), "no reference");
   const Image& first = *figure.references.front().mean;
-  // What fits: all pictures, else those of first choice, else smaller ones.
-  const auto total = [&](bool all, int block) {
-    const glm::ivec2 size = shrunkSize(first, block);
-    std::size_t sum = figure.references.size() * cost(size, 12 + 6);
+  // What fits: all pictures, else those of first choice beside smaller others, else smaller ones of all.
+  const auto total = [&](int block, int ofOthers) {
+    std::size_t sum = figure.references.size() * cost(shrunkSize(first, block), 12 + 6);
     for (const FigurePicture& p : figure.pictures)
-      if (all || p.isFirstChoice) sum += cost(size, 6 + (p.flip.rgba.empty() ? 0u : 1u) + (p.standardError ? 6u : 0u));
+      sum += cost(shrunkSize(first, p.isFirstChoice ? block : block * ofOthers),
+                  6 + (p.flip.rgba.empty() ? 0u : 1u) + (p.standardError ? 6u : 0u));
     return sum;
   };
-  bool all = total(true, 1) <= bytes;
-  int block = 1;
-  while (total(all, block) > bytes && block < std::max(first.width, first.height)) ++block;
+  constexpr int kMostOfOthers = 4;
+  int block = 1, ofOthers = 1;
+  while (total(block, ofOthers) > bytes && block < std::max(first.width, first.height))
+    if (++ofOthers > kMostOfOthers) ++block, ofOthers = 1;
 
   nlohmann::ordered_json facts = figure.facts;
   const glm::ivec2 size = shrunkSize(first, block);
   facts["picture_size"] = {size.x, size.y};
   facts["block"] = block;
   std::string planes;
-  std::vector<std::vector<glm::dvec3>> truths;
+  facts["truths"] = nlohmann::ordered_json::array();
   for (const FigureReference& reference : figure.references) {
-    const std::string key = fmt::format("r{}", truths.size());
-    truths.push_back(means(*reference.mean, block));
-    planes += plane(key, floats(truths.back()));
+    const std::string key = fmt::format("r{}", facts["truths"].size());
+    planes += plane(key, floats(means(*reference.mean, block)));
     nlohmann::ordered_json json{{"name", reference.name}, {"error_scale", nullptr}};
     if (reference.standardError) {
       const std::vector<glm::dvec3> errors = standardErrors(*reference.standardError, block);
@@ -130,21 +130,23 @@ std::string figureHtml(const Figure& figure, std::size_t bytes) {
   }
   facts["pictures"] = nlohmann::ordered_json::array();
   for (const FigurePicture& p : figure.pictures) {
-    if (!all && !p.isFirstChoice) continue;
     const std::string key = fmt::format("p{}", facts["pictures"].size());
-    const std::vector<glm::dvec3>& truth = truths.at(p.reference);
-    std::vector<glm::dvec3> difference = means(*p.picture, block);
+    const int within = p.isFirstChoice ? 1 : ofOthers, all = block * within;
+    const std::vector<glm::dvec3> truth = means(*figure.references.at(p.reference).mean, all);
+    std::vector<glm::dvec3> difference = means(*p.picture, all);
     CHECK(difference.size() == truth.size(), "{} and {} pixels", difference.size(), truth.size());
     for (std::size_t i = 0; i < truth.size(); ++i) difference[i] -= truth[i];
     nlohmann::ordered_json json{{"row", p.row},
                                 {"truth", p.reference},
+                                {"block", within},
+                                {"first_choice", p.isFirstChoice},
                                 {"scale", halfScale(difference)},
                                 {"flip", !p.flip.rgba.empty()},
                                 {"error_scale", nullptr}};
     planes += plane(key, halves(difference, json["scale"].get<double>()));
-    if (!p.flip.rgba.empty()) planes += plane(key + "f", bytesOf(p.flip, block));
+    if (!p.flip.rgba.empty()) planes += plane(key + "f", bytesOf(p.flip, all));
     if (p.standardError) {
-      const std::vector<glm::dvec3> errors = standardErrors(*p.standardError, block);
+      const std::vector<glm::dvec3> errors = standardErrors(*p.standardError, all);
       json["error_scale"] = halfScale(errors);
       planes += plane(key + "e", halves(errors, json["error_scale"].get<double>()));
     }

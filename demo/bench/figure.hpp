@@ -29,7 +29,7 @@ struct FigurePicture {
   const Image* picture = nullptr;
   const Image* standardError = nullptr;  ///< its own, where it is sampled; else null
   Bitmap flip;  ///< red 0..255 for 0..1; empty: none
-  bool isFirstChoice = true;  ///< stays where there is no room for all
+  bool isFirstChoice = true;  ///< the last to be shrunk where there is no room for all
 };
 
 struct Figure {
@@ -39,8 +39,8 @@ struct Figure {
   std::vector<FigurePicture> pictures;
 };
 
-/// At most about `bytes` long: first the pictures that are no first choice go, then all are shrunk to means over blocks
-/// of 2, 3, ... pixels, and the figure says so.
+/// At most about `bytes` long: first the pictures that are no first choice are shrunk to means over blocks of 2 to 4
+/// pixels, then all are, and the figure says so.
 std::string figureHtml(const Figure& figure, std::size_t bytes);
 
 }  // namespace lucerna::demo::bench

@@ -66,7 +66,9 @@ void HtmlPage::section(const std::string& title) {
 
 void HtmlPage::heading(const std::string& title) { body_ += fmt::format("<h3>{}</h3>\n", escapeHtml(title)); }
 void HtmlPage::paragraph(const std::string& text) { body_ += fmt::format("<p>{}</p>\n", escapeHtml(text)); }
-void HtmlPage::preformatted(const std::string& text) { body_ += fmt::format("<pre>{}</pre>\n", escapeHtml(text)); }
+void HtmlPage::preformatted(const std::string& text) {
+  body_ += fmt::format("<pre tabindex=\"0\">{}</pre>\n", escapeHtml(text));
+}
 
 void HtmlPage::table(const Table& table) {
   // A column of numbers stands to the right; one that has words in it to the left, whatever its cells begin with.
@@ -78,7 +80,8 @@ void HtmlPage::table(const Table& table) {
     body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, column < words.size() && words[column] ? " class=\"text\"" : "",
                          escapeHtml(text));
   };
-  body_ += "<div class=\"scroll\"><table><tr>";
+  // Whoever has keys alone scrolls what has the focus.
+  body_ += "<div class=\"scroll\" tabindex=\"0\"><table><tr>";
   for (std::size_t c = 0; c < table.columns.size(); ++c) cell("th", c, table.columns[c]);
   body_ += "</tr>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -103,6 +106,12 @@ void HtmlPage::svg(const std::filesystem::path& file) {
   if (const auto start = text.find("<svg"); start != std::string::npos)
     text.erase(0, start);  // no XML head inside HTML
   body_ += "<div class=\"plot\">\n" + text + "</div>\n";
+}
+
+void HtmlPage::svgWithoutScripts(const std::filesystem::path& file) {
+  body_ += "<noscript>\n";
+  svg(file);
+  body_ += "</noscript>\n";
 }
 
 void HtmlPage::figure(const std::string& html) {

@@ -37,6 +37,8 @@ class HtmlPage {
   };
   void pictures(const std::vector<Picture>& pictures);
   void svg(const std::filesystem::path& file);
+  /// One that a figure shows better, for browsers that run no scripts.
+  void svgWithoutScripts(const std::filesystem::path& file);
   /// An interactive figure (figure.hpp): its script and style come with the page, once.
   void figure(const std::string& html);
   void preformatted(const std::string& text);

@@ -13,10 +13,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Colours that stay apart for colour-blind eyes [Okabe2008], and marks that stay apart in grey.
-constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
-                                    "#7A4FBF", "#8C6D31", "#333333", "#B22222", "#3CB371", "#999900"};
-constexpr int kMarks[] = {7, 5, 9, 13, 11, 4, 6, 8, 2, 10, 12, 1};
+// As in the figure of a report (assets/report/figure.js): colours that stay apart for colour-blind eyes [Okabe2008],
+// marks and dashes that stay apart in grey; a colour that comes again has another mark and other dashes.
+constexpr std::size_t kRound = 8, kDashes = 3;
+constexpr const char* kColours[kRound] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                          "#E69F00", "#56B4E9", "#333333", "#480060"};
+// circle, square, triangles up and down, diamond, plus, cross, star
+constexpr int kMarks[kRound] = {7, 5, 9, 11, 13, 1, 2, 3};
 
 /// A string for gnuplot between double quotes; plain text, so the enhanced mode's signs are switched off by the script.
 std::string quoted(const std::string& text) {
@@ -57,7 +60,7 @@ struct Range {
 std::string script(const std::string& stem, const LogLogPlot& plot, int& leftOut) {
   std::string data, draw;
   Range x, y;
-  int block = 0, colour = 0;
+  int block = 0;
   const auto line = [&](const std::string& what) { draw += (draw.empty() ? "plot " : ", \\\n     ") + what; };
   for (const Series& series : plot.series) {
     std::string points;
@@ -80,11 +83,11 @@ std::string script(const std::string& stem, const LogLogPlot& plot, int& leftOut
         line(fmt::format("{} using 1:2:3 with labels offset 0,1 font ',11' tc rgb '#6b5500' notitle", name));
       continue;
     }
-    const char* rgb = kColours[colour % 12];
-    const int mark = kMarks[(colour + 5 * (colour / 12)) % 12];  // a colour that comes again has another mark
-    ++colour;
-    line(fmt::format("{} using 1:2 with {} lw 1.5 pt {} ps 0.9 lc rgb '{}' title {}", name,
-                     series.joined ? "linespoints" : "points", mark, rgb, quoted(series.name)));
+    const std::size_t round = series.style / kRound;
+    line(fmt::format("{} using 1:2 with {} lw 1.5 dt {} pt {} ps 0.9 lc rgb '{}' title {}", name,
+                     series.joined ? "linespoints" : "points", 1 + round % kDashes,
+                     kMarks[(series.style + 3 * round) % kRound], kColours[series.style % kRound],
+                     quoted(series.name)));
   }
   if (block == 0) return "";
   constexpr const char* kGreys[] = {"#000000", "#777777", "#aaaaaa"};

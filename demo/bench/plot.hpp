@@ -1,6 +1,7 @@
 // Log-log plots by gnuplot, run where a report is made (Debian package gnuplot-nox).
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ struct Series {
   std::vector<Point> points;
   bool joined = true;
   bool isFront = false;  ///< drawn thick, behind the others
+  std::size_t style = 0;  ///< number of its colour, mark and dashes
 };
 
 struct LogLogPlot {

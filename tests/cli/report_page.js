@@ -32,6 +32,153 @@ let checks = 0, faults = 0;
 function check(condition, text) { ++checks; if (!condition) { ++faults; console.log('FAULT ' + text); } }
 const near = (a, b, e) => Math.abs(a - b) <= e * Math.max(Math.abs(a), Math.abs(b), 1e-30);
 
+// How far apart two sRGB colours are, 0..255 each, for eyes that lack one kind of cones [Machado2009, severity 1] or none:
+// CIEDE2000 [Sharma2005].
+const EYES = {
+  normal: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  protanopia: [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+  deuteranopia: [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+  tritanopia: [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+};
+function labOf(rgb, eyes) {
+  const linear = rgb.map(v => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+  const [r, g, b] = EYES[eyes].map(row => Math.min(1, Math.max(0, row[0] * linear[0] + row[1] * linear[1] + row[2] * linear[2])));
+  const f = t => (t > 216 / 24389 ? Math.cbrt(t) : (24389 / 27 * t + 16) / 116);
+  const x = f((0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / 0.95047), y = f(0.2126729 * r + 0.7151522 * g + 0.0721750 * b), z = f((0.0193339 * r + 0.1191920 * g + 0.9503041 * b) / 1.08883);
+  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+}
+function ciede2000([l1, a1, b1], [l2, a2, b2]) {
+  const rad = Math.PI / 180, mean = (Math.hypot(a1, b1) + Math.hypot(a2, b2)) / 2, g = 1.5 - 0.5 * Math.sqrt(mean ** 7 / (mean ** 7 + 25 ** 7));
+  const c1 = Math.hypot(g * a1, b1), c2 = Math.hypot(g * a2, b2), hue = (a, b) => (a === 0 && b === 0 ? 0 : (Math.atan2(b, a) / rad + 360) % 360), h1 = hue(g * a1, b1), h2 = hue(g * a2, b2), grey = c1 * c2 === 0;
+  const turn = grey ? 0 : (h2 - h1 + 540) % 360 - 180, dh = 2 * Math.sqrt(c1 * c2) * Math.sin(turn * rad / 2), dl = l2 - l1, dc = c2 - c1, l = (l1 + l2) / 2, c = (c1 + c2) / 2;
+  const h = grey ? h1 + h2 : Math.abs(h1 - h2) <= 180 ? (h1 + h2) / 2 : (h1 + h2 + (h1 + h2 < 360 ? 360 : -360)) / 2;
+  const t = 1 - 0.17 * Math.cos((h - 30) * rad) + 0.24 * Math.cos(2 * h * rad) + 0.32 * Math.cos((3 * h + 6) * rad) - 0.2 * Math.cos((4 * h - 63) * rad);
+  const sl = 1 + 0.015 * (l - 50) ** 2 / Math.sqrt(20 + (l - 50) ** 2), sc = 1 + 0.045 * c, sh = 1 + 0.015 * c * t, rt = -2 * Math.sqrt(c ** 7 / (c ** 7 + 25 ** 7)) * Math.sin(60 * rad * Math.exp(-(((h - 275) / 25) ** 2)));
+  return Math.sqrt((dl / sl) ** 2 + (dc / sc) ** 2 + (dh / sh) ** 2 + rt * dc / sc * dh / sh);
+}
+
+// Colours of methods and of maps stay apart for every kind of eyes, and no method is told by its colour alone.
+async function colourChecks(evaluate) {
+  // The formula itself, by three of Sharma's pairs.
+  for (const [a, b, expected] of [[[50, 2.6772, -79.7751], [50, 0, -82.7485], 2.0425], [[50, 2.5, 0], [73, 25, -18], 27.1492], [[60.2574, -34.0099, 36.2677], [60.4626, -34.1751, 39.4387], 1.2644]])
+    check(Math.abs(ciede2000(a, b) - expected) < 1e-4, `CIEDE2000 ${ciede2000(a, b)} instead of ${expected}`);
+  const {palette, signed, noise, styles} = await evaluate(`const {PALETTE, SIGNED, NOISE, colourAt} = report.colours; f.seriesNames.push(...Array.from({length: 24 - f.seriesNames.length}, (_, i) => 'another ' + i));
+    const styles = f.seriesNames.map(name => f.style(name)); f.seriesNames = f.seriesNames.filter(name => !name.startsWith('another ')); const rgb = c => [1, 3, 5].map(i => parseInt(c.slice(i, i + 2), 16));
+    return {palette: PALETTE.map(rgb), signed: [0, 0.25, 0.35, 0.65, 0.75, 1].map(t => colourAt(SIGNED, t)), noise: NOISE, styles}`);
+  check(palette.length >= 8, `a palette of ${palette.length}`);
+  for (const eyes of Object.keys(EYES)) {
+    const apart = (a, b) => ciede2000(labOf(a, eyes), labOf(b, eyes));
+    palette.forEach((a, i) => {
+      palette.forEach((b, j) => check(j >= i || apart(a, b) > 10, `${eyes}: colours ${j} and ${i} are ${apart(a, b).toFixed(1)} apart`));
+      check(apart(a, [255, 255, 255]) > 20, `${eyes}: colour ${i} on white is ${apart(a, [255, 255, 255]).toFixed(1)}`);
+    });
+    // Above and below the reference, and either from what noise explains, from 3 of 10 standard errors on.
+    for (let k = 0; k < 3; ++k) check(apart(signed[k], signed[5 - k]) > 20, `${eyes}: signs are ${apart(signed[k], signed[5 - k]).toFixed(1)} apart at ${k}`);
+    signed.forEach((c, k) => check(apart(c, noise) > 10, `${eyes}: noise and ${c} are ${apart(c, noise).toFixed(1)} apart`));
+  }
+  // 24 series, more than any report has: each pair differs by its mark or by the dashes of its line.
+  const plain = styles.map(s => `${s.mark} ${s.dash}`);
+  check(styles.length === 24 && new Set(plain).size === 24, `marks and dashes ${plain}`);
+}
+
+// On a sheet of A4 nothing is cut off or distorted, nothing is dark but the pictures, and what cannot be used there is gone.
+async function printChecks(call, evaluate) {
+  const sheet = 703;  // 186 mm between margins of 12 mm
+  await evaluate('f.state.mode = "side"; f.draw()');
+  await call('Emulation.setEmulatedMedia', {media: 'print'});
+  await call('Emulation.setDeviceMetricsOverride', {width: sheet, height: 1000, deviceScaleFactor: 1, mobile: false});
+  const found = await evaluate(`const off = [], dark = [];
+    for (const e of document.querySelectorAll('body *')) {
+      const r = e.getBoundingClientRect();
+      if (!r.width || !r.height || e.closest('svg') !== null && e.tagName !== 'svg') continue;
+      if (r.right > ${sheet} + 1 || r.left < -1) off.push(e.tagName + '.' + e.className + ' ' + Math.round(r.left) + '..' + Math.round(r.right));
+      const [red, green, blue, alpha] = (getComputedStyle(e).backgroundColor.match(/[\\d.]+/g) || []).map(Number);
+      if (alpha !== 0 && red + green + blue < 600) dark.push(e.tagName + '.' + e.className);
+    }
+    const shape = f.canvas.getBoundingClientRect();
+    return {off, dark, used: [...document.querySelectorAll('button, select, nav, .lf-list')].filter(e => e.getClientRects().length).length, stretch: shape.width / shape.height / (f.canvas.width / f.canvas.height), crops: document.querySelectorAll('.lf-crops canvas').length}`);
+  check(found.off.length === 0, `cut off in print: ${found.off.slice(0, 5)}`);
+  check(found.dark.length === 0, `dark in print: ${found.dark.slice(0, 5)}`);
+  check(found.used === 0, `${found.used} controls are printed`);
+  check(near(found.stretch, 1, 0.02), `pictures are stretched by ${found.stretch} in print`);
+  check(found.crops > 0, 'no crops in print');
+  await call('Emulation.clearDeviceMetricsOverride');
+  await call('Emulation.setEmulatedMedia', {media: ''});
+  const pdf = Buffer.from((await call('Page.printToPDF', {printBackground: true, preferCSSPageSize: true})).data, 'base64');
+  check(pdf.subarray(0, 5).toString() === '%PDF-' && /\/Type\s*\/Page\b/.test(pdf.toString('latin1')), 'a PDF with pages');
+  await evaluate('f.state.mode = "single"; f.draw()');
+}
+
+// Tab alone comes to every control, which then shows that it has the focus; keys operate it.
+async function tabChecks(call, evaluate, press, state) {
+  const count = await evaluate(`window.controls = [...document.querySelectorAll('button, select, summary, a[href], [tabindex="0"]')].filter(e => e.getClientRects().length); document.activeElement.blur(); window.scrollTo(0, 0); return controls.length`);
+  await evaluate('document.body.tabIndex = -1; document.body.focus()');
+  const reached = new Set();
+  let bare = '';
+  for (let k = 0; k < count + 5; ++k) {
+    await press('Tab');
+    const at = await evaluate(`const e = document.activeElement, s = getComputedStyle(e), ring = e.querySelector && e.classList.contains('point') && getComputedStyle(e.querySelector('.ring')).strokeWidth === '3px'; return {index: controls.indexOf(e), tag: e.tagName + '.' + e.getAttribute('class'), shown: s.outlineStyle !== 'none' || s.boxShadow !== 'none' || ring}`);
+    if (at.index < 0) continue;
+    reached.add(at.index);
+    if (!at.shown) bare = at.tag;
+  }
+  await evaluate('document.body.removeAttribute("tabindex")');
+  const missed = await evaluate(`return controls.map((e, i) => [i, e.tagName + '.' + e.getAttribute('class') + ' ' + e.textContent.slice(0, 20)]).filter(([i]) => !${JSON.stringify([...reached])}.includes(i)).map(([, name]) => name)`);
+  check(count > 20 && missed.length === 0, `of ${count} controls Tab does not come to ${missed.slice(0, 5)}`);
+  check(bare === '', `${bare} does not show that it has the focus`);
+  await evaluate('f.buttons.wipe.focus()');
+  await press(' ');
+  check((await state()).mode === 'wipe', 'the space bar presses a button');
+  await evaluate('f.buttons.single.focus()');
+  await press('Enter');
+  check((await state()).mode === 'single', 'Enter presses a button');
+  await evaluate('f.state.map = "picture"; f.draw(); f.mapSelect.focus()');
+  await press('ArrowDown');
+  check((await state()).map === 'signed', `an arrow chooses the next map: ${(await state()).map}`);
+  await press('ArrowUp');
+  await evaluate('f.show(1); f.list.focus()');
+  await press('ArrowUp');
+  check((await state()).current === 0, 'an arrow chooses the method above');
+  await press('ArrowDown');
+  check((await state()).current === 1, 'an arrow chooses the method below');
+  await evaluate('f.root.focus()');
+}
+
+// What a mouse does: the wheel zooms about the pointer, a drag pans, with Shift it cuts a crop, on the wipe's edge it moves that.
+async function mouseChecks(call, evaluate, state) {
+  await evaluate('f.state.mode = "single"; f.state.zoom = 0; f.state.x = f.width / 2; f.state.y = f.height / 2; f.draw(); f.root.scrollIntoView()');
+  const box = await evaluate('const r = f.canvas.getBoundingClientRect(); return {x: r.x, y: r.y, width: r.width, height: r.height}');
+  const mouse = (type, u, v, more = {}) => call('Input.dispatchMouseEvent', {type, x: box.x + u * box.width, y: box.y + v * box.height, button: type === 'mouseMoved' || type === 'mouseWheel' ? 'none' : 'left', clickCount: 1, ...more});
+  const settled = () => evaluate('return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))');
+  await mouse('mouseMoved', 0.5, 0.5);
+  await settled();
+  const cursor = (await state()).cursor, middle = await evaluate('return {x: f.width / 2, y: f.height / 2}');
+  check(Math.abs(cursor.x - middle.x) <= 1 && Math.abs(cursor.y - middle.y) <= 1, `the pointer's pixel is ${JSON.stringify(cursor)}`);
+  const scale = await evaluate('return f.layout().scale');
+  await mouse('mouseWheel', 0.5, 0.5, {deltaX: 0, deltaY: -100});
+  await settled();
+  check(near(await evaluate('return f.layout().scale'), 1.25 * scale, 1e-9), 'the wheel zooms in');
+  const drag = async (from, to, modifiers = 0) => {
+    await mouse('mousePressed', ...from, {modifiers, buttons: 1});
+    await mouse('mouseMoved', ...to, {modifiers, buttons: 1, button: 'left'});
+    await mouse('mouseReleased', ...to, {modifiers});
+    await settled();
+  };
+  let before = await state();
+  await drag([0.5, 0.5], [0.6, 0.5]);
+  let after = await state();
+  check(after.x < before.x && near(after.y, before.y, 1e-3), `a drag pans: ${before.x} to ${after.x}`);
+  before = after;
+  await drag([0.45, 0.45], [0.55, 0.6], 8);
+  after = await state();
+  const crop = after.crops[after.crops.length - 1];
+  check(after.crops.length === before.crops.length + 1 && after.x === before.x && crop.width >= 1 && crop.height > crop.width / 4, `a drag with Shift cuts a crop: ${JSON.stringify(crop)}`);
+  await evaluate('f.state.crops.pop(); f.state.mode = "wipe"; f.state.wipe = 0.5; f.draw()');
+  await drag([0.5, 0.5], [0.7, 0.5]);
+  check(near((await state()).wipe, 0.7, 0.02), `a drag moves the wipe: ${(await state()).wipe}`);
+  await evaluate('f.state.mode = "single"; f.state.wipe = 0.5; f.state.zoom = 0; f.state.x = f.width / 2; f.state.y = f.height / 2; f.draw()');
+}
+
 // A pair of pictures: one row, without times.
 async function compareChecks(evaluate, press, state) {
   const rows = await evaluate('return f.rows');
@@ -69,10 +216,10 @@ async function main() {
   };
   for (let i = 0; i < 100 && !(await evaluate('return !!report && document.readyState === "complete"')); ++i) await sleep(100);
   const state = () => evaluate('return JSON.parse(JSON.stringify({...f.state, shown: f.shown()}))');
-  const codes = {'+': 'Equal', '-': 'Minus', '?': 'Slash'};
+  const codes = {'+': 'Equal', '-': 'Minus', '?': 'Slash', ' ': 'Space'}, keys = {Tab: 9, Enter: 13, ' ': 32, ArrowUp: 38, ArrowDown: 40};
   const press = async key => {
     const shift = key.startsWith('Shift+'), name = shift ? key.slice(6) : key;
-    const event = {key: name, code: codes[name] || name, modifiers: shift ? 8 : 0, text: name.length === 1 ? name : undefined};
+    const event = {key: name, code: codes[name] || name, modifiers: shift ? 8 : 0, text: name.length === 1 ? name : name === 'Enter' ? '\r' : undefined, windowsVirtualKeyCode: keys[name]};
     await call('Input.dispatchKeyEvent', {type: 'keyDown', ...event});
     await call('Input.dispatchKeyEvent', {type: 'keyUp', ...event});
   };
@@ -100,6 +247,7 @@ async function main() {
   }
   if (written.a) {
     await compareChecks(evaluate, press, state);
+    await printChecks(call, evaluate);
     await screenshots([['side', 'f.state.mode = "side"; f.state.map = "picture"; f.draw(); f.root.scrollIntoView()'], ['signed', 'f.state.map = "signed"; f.draw()']]);
     const errors = events.filter(e => e.method === 'Runtime.exceptionThrown').map(e => e.params.exceptionDetails.exception.description);
     check(errors.length === 0, `errors of the page: ${errors}`);
@@ -158,7 +306,7 @@ async function main() {
   for (let i = 1; i < items; ++i) {
     const p = await evaluate(`const d = f.difference(${i}), t = f.truth(f.items[${i}].truth); let s = 0, m = 0, b = 0; for (let k = 0; k < d.length; ++k) { s += d[k] * d[k]; m += t[k]; b += d[k]; } const v = f.flipMap(${i}); return {row: f.items[${i}].row, rmse: Math.sqrt(s / d.length), mean: m / d.length, bias: b / d.length, flip: v ? v.reduce((a, c) => a + c, 0) / v.length / 255 : null}`);
     const row = json.rows[p.row];
-    if (await evaluate('return f.facts.block') > 1) continue;
+    if (await evaluate(`return f.facts.block * f.picture(${i}).block`) > 1) continue;
     if (!row.seeds || row.seeds.seed.length === 1) check(near(p.rmse / p.mean, row.measured_nrmse, 1e-3), `${row.label}: NRMSE of the pixels ${p.rmse / p.mean} against ${row.measured_nrmse}`);
     check(Math.abs(p.bias - row.bias) <= 1e-3 * p.rmse + 1e-12, `${row.label}: bias of the pixels ${p.bias} against ${row.bias}`);
     if (p.flip !== null) check(Math.abs(p.flip - row.flip) < 2e-3, `${row.label}: FLIP of the pixels ${p.flip} against ${row.flip}`);
@@ -172,6 +320,9 @@ async function main() {
   under.p.forEach((v, c) => check(near(Number(line[c + 1]), v, 1e-4), `under the cursor ${line[c + 1]} instead of ${v}`));
   check(near(Number(cells[1][1]), under.t, 1e-4) && near(Number(cells[2][1]), under.e, 1e-4), `reference ${cells[1][1]} +- ${cells[2][1]} instead of ${under.t} +- ${under.e}`);
   check(!Number.isFinite(under.z) || near(Number(line[7]), under.z, 6e-3), `z-score ${line[7]} instead of ${under.z}`);
+  // What is read of one pixel alone, of pictures that are not decoded, is what the whole pictures hold.
+  const apart = await evaluate('const k = 5 * f.width + 7, wrong = []; for (let i = 1; i < f.items.length; ++i) { const one = f.pixel(i, k), p = f.pixels(i); const same = (a, b) => Object.is(a, b) || Math.abs(a - b) <= 1e-6 * Math.abs(a); if (![0, 1, 2].every(c => same(one.values[c], p[3*k+c])) || !["signed", "relative", "z", "flip"].every(m => same(one[m], f.mapValue(i, m, k)))) wrong.push(f.label(i)); } return wrong');
+  check(apart.length === 0, `a pixel alone is not the picture's: ${apart}`);
   // z: grey where below 3, coloured where not.
   const z = await evaluate('const c = f.canvasOf(1, "z"), d = c.getContext("2d").getImageData(0, 0, c.width, c.height).data, v = f.values(1, "z"); let wrong = 0; for (let k = 0; k < v.length; ++k) wrong += (d[4*k] === 150 && d[4*k+1] === 150 && d[4*k+2] === 150) !== Math.abs(v[k]) < 3; return wrong');
   check(z === 0, `${z} pixels of the z-score have the wrong colour`);
@@ -226,6 +377,8 @@ async function main() {
   const figure = await saved('x'), plot = await saved('X'), csv = await saved('d'), tex = await saved('L');
   check(figure.name === 'figure.svg' && /<image [^>]*data:image\/png/.test(figure.text), 'figure as SVG');
   check(plot.name === 'plot.svg' && (plot.text.match(/class="point"/g) || []).length > 3, 'plot as SVG');
+  const legend = await evaluate('return f.seriesNames.filter(name => f.seriesPoints(name).length)');
+  check(legend.every(name => plot.text.includes(`>${name}</text>`)) && plot.text.endsWith('</svg>'), 'the plot as SVG names its series');
   const csvLines = csv.text.trim().split('\n');
   check(csvLines.length === json.rows.length + 1, `CSV of ${csvLines.length} lines`);
   check(/\\begin{tabular}/.test(tex.text) && /\\addplot/.test(tex.text), 'LaTeX');
@@ -244,6 +397,14 @@ async function main() {
   const another = await evaluate('f.state.cost = "ms"; f.state.metric = "l2"; f.drawPlot(); const row = f.items[1].row; f.plotBox.querySelector(`.point[data-row="${row}"]`).focus(); return row');
   await press('Enter');
   check((await state()).current === 1 && (await state()).selected === another, 'Enter on a point loads its picture');
+
+  await colourChecks(evaluate);
+  await tabChecks(call, evaluate, press, state);
+  await mouseChecks(call, evaluate, state);
+  await printChecks(call, evaluate);
+  // Every point has its picture, unless there was none to be had.
+  const clicked = await evaluate('return [...f.plotBox.querySelectorAll(".point")].filter(p => { p.dispatchEvent(new MouseEvent("click", {bubbles: true})); const item = f.items[f.state.current]; return !item || item.row !== Number(p.dataset.row); }).length');
+  check(clicked === 0, `${clicked} points load no picture`);
 
   const errors = events.filter(e => e.method === 'Runtime.exceptionThrown').map(e => e.params.exceptionDetails.exception.description);
   check(errors.length === 0, `errors of the page: ${errors}`);

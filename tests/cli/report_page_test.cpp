@@ -54,6 +54,19 @@ TEST_F(ReportPage, ShowsTheNumbersOfItsJsonAndObeysItsKeys) {
   expectNoFault("out/report.html", "out/error.json", 300);
 }
 
+// More pictures than there is room for: some are means over blocks, and every point has one still.
+TEST_F(ReportPage, WithoutRoomForAllPicturesSomeAreCoarser) {
+  if (!test::longTests()) GTEST_SKIP() << "a minute: LUCERNA_LONG_TESTS";
+  ASSERT_NO_FATAL_FAILURE(bench("error '" LUCERNA_SOURCE_DIR
+                                "/assets/cornell/cornell.json' --size 480x270 --reference-spp 4 --budget 2 --frames 1 "
+                                "--small --techniques direct,rsm --out '" +
+                                path("out") + "'"));
+  const std::string page = readFileText(path("out/report.html"));
+  EXPECT_NE(page.find("\"block\":2,\"scale\""), std::string::npos);
+  EXPECT_NE(page.find("\"block\":1,\"scale\""), std::string::npos);
+  expectNoFault("out/report.html", "out/error.json", 300);
+}
+
 // Glass and coloured media: the path tracer is judged by one more reference, with all materials as they are.
 TEST_F(ReportPage, OpensAReportOfMedia) {
   ASSERT_NO_FATAL_FAILURE(bench("error '" LUCERNA_SOURCE_DIR
@@ -198,6 +211,32 @@ TEST_F(BenchDiff, WhatIsAtTheNoiseIsABound) {
   EXPECT_EQ(verdict(1), "undecided");
   EXPECT_EQ(verdict(2), "worse");
   EXPECT_EQ(verdicts_.at("gone").size(), 1u);
+}
+
+// A ladder of path tracing goes as far as there is time: a slower second run has fewer rungs, and nothing is lost.
+TEST_F(BenchDiff, ALadderThatHadLessTimeIsNoLoss) {
+  const auto report = [](std::initializer_list<int> samples) {
+    nlohmann::json r = reportOf(0.01);
+    for (int spp : samples) {
+      nlohmann::json row = r["rows"][0];
+      row["label"] = "path spp=" + std::to_string(spp);
+      row["series"] = "path";
+      row["spp"] = spp;
+      r["rows"].push_back(row);
+    }
+    return r;
+  };
+  write("a.json", report({1, 2, 4, 8, 16}));
+  write("b.json", report({1, 2, 4}));
+  EXPECT_EQ(diff(), 0) << err_;
+  EXPECT_EQ(verdicts_.at("not_reached"), nlohmann::json({"path spp=8", "path spp=16"}));
+  EXPECT_TRUE(verdicts_.at("gone").empty());
+  write("b.json", report({1, 2, 8}));  // a rung in the middle is missed
+  EXPECT_EQ(diff(), 1) << err_;
+  EXPECT_EQ(verdicts_.at("gone"), nlohmann::json({"path spp=4"}));
+  write("b.json", report({}));  // as is a whole ladder
+  EXPECT_EQ(diff(), 1) << err_;
+  EXPECT_EQ(verdicts_.at("gone").size(), 5u);
 }
 
 TEST_F(BenchDiff, WhatIsNoPairOfReportsIsRefused) {
