@@ -203,11 +203,13 @@ int watch(const Options& options, const Lab& lab) {
     std::error_code error;
     if (const auto time = fs::last_write_time(fs::path(options.folder) / "tasks.glsl", error); !error && time != seen) {
       seen = time;
-      const HandIn handIn = Folder::open(lab, options.folder, options.seed).handIn();
+      Judged judged{Folder::open(lab, options.folder, options.seed), {}};
       watchTime();
-      Report report = runChecks(lab, handIn, nonceOf(options));
+      judged.report = runChecks(lab, judged.folder.handIn(), nonceOf(options));
       alarm(0);
-      report.renderer = context.capabilities().renderer;
+      judged.report.renderer = context.capabilities().renderer;
+      note(judged, lab);
+      const Report& report = judged.report;
       fmt::print("{}", reportText(lab, report));
       std::fflush(stdout);
       if (report.compileError.empty() && !report.pictures.empty()) {

@@ -562,6 +562,7 @@ TEST_F(LabWay, WatchKeepsTheLastGoodPictures) {
   const RunResult watched = run(script);
   EXPECT_EQ(watched.exitCode, 0) << watched.out << watched.err;
   EXPECT_NE(readFileText(dir / "log").find("tasks.glsl:"), std::string::npos);
+  EXPECT_EQ(readJson(dir / "lab.json").at("checks").size(), 3u) << "for the time per task in the report";
 }
 
 // Every lab's hand-in has a picture with a slider and a plot.
