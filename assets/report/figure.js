@@ -758,20 +758,27 @@ class Figure {
     for (const cost of ['ms', 'setup']) {
       this.state.cost = cost;
       const series = this.seriesNames.map(name => ({name, points: this.seriesPoints(name).filter(p => !p.noise)})).filter(s => s.points.length);
-      const all = series.flatMap(s => s.points), steps = (values, count, has) => {
-        // 1, 2 and 5 of every decade between them, or finer ones where those are few, at which there is something to tell; at most `count`, evenly.
+      const all = series.flatMap(s => s.points), steps = (values, count, told) => {
+        // 1, 2 and 5 of every decade between them, or finer ones where those are few, at which there is something to tell.
         const low = Math.min(...values), high = Math.max(...values);
         let list = [];
         for (const of of [[1, 2, 5], [1, 1.5, 2, 3, 5, 7]]) {
           list = [];
           for (let d = Math.floor(Math.log10(low)); d <= Math.log10(high); ++d) for (const m of of) list.push(Number(`${m}e${d}`));
-          list = list.filter(v => v >= low * (1 - 1e-9) && v <= high * (1 + 1e-9) && has(v));
+          list = list.filter(v => v >= low * (1 - 1e-9) && v <= high * (1 + 1e-9) && told(v).length);
           if (list.length >= 4) break;
         }
-        return list.length <= count ? list : [...new Set(Array.from({length: count}, (_, k) => list[Math.round(k * (list.length - 1) / (count - 1))]))];
+        // At most `count`: those that tell of most series that the others do not, then of most.
+        const kept = [], known = new Set();
+        while (kept.length < count && list.length) {
+          const worth = v => told(v).length + 100 * told(v).filter(name => !known.has(name)).length, best = list.reduce((x, y) => (worth(y) > worth(x) ? y : x));
+          kept.push(best), told(best).forEach(name => known.add(name));
+          list.splice(list.indexOf(best), 1);
+        }
+        return kept.sort((x, y) => x - y);
       };
       if (!all.length) { result[cost] = {times: [], errors: [], equalTime: [], equalError: [], unit: []}; continue; }
-      const times = steps(all.map(p => p.cost), 7, v => series.some(s => errorAt(s.points, v))), errors = steps(all.map(p => p.error), 7, v => series.some(s => { const at = costAt(s.points, v); return at && !at.atMost; })).reverse(), path = series.find(s => s.name === 'path');
+      const times = steps(all.map(p => p.cost), 6, v => series.filter(s => errorAt(s.points, v)).map(s => s.name)), errors = steps(all.map(p => p.error), 6, v => series.filter(s => { const at = costAt(s.points, v); return at && !at.atMost; }).map(s => s.name)).reverse(), path = series.find(s => s.name === 'path');
       result[cost] = {times, errors,
         equalTime: series.map(s => ({series: s.name, entries: times.map(t => errorAt(s.points, t))})),
         equalError: series.map(s => ({series: s.name, entries: errors.map(e => { const at = costAt(s.points, e), of = path && costAt(path.points, e); return at && {...at, speedUp: of && !of.atMost && !at.atMost ? of.value / at.value : null}; })})),
@@ -792,7 +799,7 @@ class Figure {
     const data = this.tableData(), metric = this.state.metric, value = METRICS[metric].isSquare || metric === 'flip' ? v => short(v) : v => percent(v);
     const range = (e, f) => (e.spread > 0 ? ` <span class="note">(${f(Math.max(0, e.value - 1.96 * e.spread)).replace('\u00a0%', '')} .. ${f(e.value + 1.96 * e.spread)})</span>` : '');
     const some = rows => rows.filter(s => s.entries.some(e => e)), others = rows => rows.filter(s => !s.entries.some(e => e)).map(s => s.series);
-    const without = rows => (others(rows).length ? `<p class="note">Nothing to tell of ${escapeText(others(rows).join(', '))}.</p>` : '');
+    const without = rows => (others(rows).length ? `<p class="note">No entry: ${escapeText(others(rows).join(', '))}.</p>` : '');
     let html = '';
     for (const cost of ['ms', 'setup']) {
       const t = data[cost];

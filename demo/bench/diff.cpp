@@ -9,6 +9,9 @@
 // it (median absolute deviation) adds to a row's own spread. So many rows are so many chances to err: the level is
 // Sidak's for all tests together [Sidak1967].
 //
+// Where the processor draws, what else runs there makes a picture's time longer, for some rows more than for others:
+// then its processor time, which knows nothing of that, must say the same.
+//
 // A row of A that B lacks is a loss, but not where a ladder of path tracing had less time.
 #include "bench/diff.hpp"
 
@@ -16,6 +19,7 @@
 #include "base/files.hpp"
 #include "base/statistics.hpp"
 #include "bench/error_rows.hpp"
+#include "host/host.hpp"
 #include "offers.hpp"
 
 #include <fmt/core.h>
@@ -25,6 +29,9 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace lucerna::demo {
 
@@ -120,14 +127,48 @@ Finding judge(const std::string& what, const Estimate& a, const Estimate& b, dou
   return finding;
 }
 
-/// A median time as a logarithm: its standard error from the samples.
-Estimate logTimeOf(const ErrorRow& row) {
+/// A median time as a logarithm, "ms" or "cpu_ms": the standard error of the former from its samples.
+Estimate logTimeOf(const ErrorRow& row, const char* key) {
   std::vector<double> samples;
-  if (const auto found = row.find("wall_ms_samples"); found != row.end() && found->is_array())
+  if (const auto found = row.find("wall_ms_samples");
+      found != row.end() && found->is_array() && key == std::string_view("ms"))
     for (const auto& value : *found) samples.push_back(value.get<double>());
   const double error = medianError(samples) / median(samples);
-  return {std::log(number(row, "ms")), std::isfinite(error) ? error : 0.0,
+  return {std::log(number(row, key)), std::isfinite(error) ? error : 0.0,
           std::isfinite(error) ? static_cast<double>(samples.size()) - 1.0 : INFINITY, false};
+}
+
+/// Times of many rows, B over A as logarithms: what the machine does to all of them, and how far they scatter about it.
+struct TimeRatios {
+  double shift = 0.0, scatter = INFINITY;  ///< infinite: too few rows to tell
+  std::size_t count = 0;
+};
+TimeRatios timeRatios(const std::vector<std::pair<ErrorRow, ErrorRow>>& rows, const char* key) {
+  std::vector<double> ratios, deviations;
+  for (const auto& [a, b] : rows)
+    if (const double ratio = logTimeOf(b, key).value - logTimeOf(a, key).value; std::isfinite(ratio))
+      ratios.push_back(ratio);
+  TimeRatios result;
+  result.count = ratios.size();
+  if (!ratios.empty()) result.shift = median(ratios);
+  for (const double ratio : ratios) deviations.push_back(std::abs(ratio - result.shift));
+  if (deviations.size() >= 4) result.scatter = 1.4826 * median(deviations);
+  return result;
+}
+
+/// floor: changes below that fraction are undecided.
+Finding judgeTime(const ErrorRow& a, const ErrorRow& b, const char* key, const TimeRatios& all, double z,
+                  double floor) {
+  Finding finding{key, number(a, key), number(b, key), NAN, Verdict::undecided};
+  const Estimate timeA = logTimeOf(a, key), timeB = logTimeOf(b, key);
+  const double change = timeB.value - timeA.value - all.shift,
+               error = std::hypot(std::hypot(timeA.error, timeB.error), all.scatter);
+  if (!std::isfinite(change) || !std::isfinite(error)) return finding;
+  finding.apart = error > 0.0 ? change / error : change == 0.0 ? 0.0 : std::copysign(INFINITY, change);
+  if (std::abs(finding.apart) > studentLimit(z, static_cast<double>(all.count) - 1.0) &&
+      std::abs(change) > std::log1p(floor))
+    finding.verdict = change > 0.0 ? Verdict::worse : Verdict::better;
+  return finding;
 }
 
 nlohmann::ordered_json readReport(const std::string& path) {
@@ -183,15 +224,11 @@ int run(const DiffOptions& options) {
   // Sidak: four tests a row.
   const double tests = 4.0 * static_cast<double>(both.size()),
                z = normalLimit(1.0 - std::pow(1.0 - options.significance, 1.0 / tests));
-  // What the machine does to all rows, and how far rows scatter about that.
-  std::vector<double> ratios;
-  for (const std::string& label : both)
-    if (const double ratio = logTimeOf(b.at(label)).value - logTimeOf(a.at(label)).value; std::isfinite(ratio))
-      ratios.push_back(ratio);
-  const double shift = ratios.empty() ? 0.0 : median(ratios);
-  std::vector<double> deviations;
-  for (const double ratio : ratios) deviations.push_back(std::abs(ratio - shift));
-  const double scatter = deviations.size() >= 4 ? 1.4826 * median(deviations) : INFINITY;  // too few rows to tell
+  std::vector<std::pair<ErrorRow, ErrorRow>> pairs;
+  for (const std::string& label : both) pairs.emplace_back(a.at(label), b.at(label));
+  const TimeRatios times = timeRatios(pairs, "ms"), processorTimes = timeRatios(pairs, "cpu_ms");
+  const bool byProcessor = Host::isSoftwareRenderer(reportA.value("renderer", "")) &&
+                           Host::isSoftwareRenderer(reportB.value("renderer", ""));
 
   std::vector<RowDiff> diffs;
   int worse = 0, better = 0;
@@ -207,16 +244,10 @@ int run(const DiffOptions& options) {
       diff.findings.push_back(judge("bias", biasOf(rowA, INFINITY), biasOf(rowB, INFINITY), z));
     }
     if (wants("time")) {
-      Estimate timeA = logTimeOf(rowA), timeB = logTimeOf(rowB);
-      Finding time{"ms", number(rowA, "ms"), number(rowB, "ms"), NAN, Verdict::undecided};
-      const double change = timeB.value - timeA.value - shift,
-                   error = std::hypot(std::hypot(timeA.error, timeB.error), scatter);
-      if (std::isfinite(change) && std::isfinite(error)) {
-        time.apart = error > 0.0 ? change / error : change == 0.0 ? 0.0 : std::copysign(INFINITY, change);
-        if (std::abs(time.apart) > studentLimit(z, static_cast<double>(ratios.size()) - 1.0) &&
-            std::abs(change) > std::log1p(options.timeFloor))
-          time.verdict = change > 0.0 ? Verdict::worse : Verdict::better;
-      }
+      Finding time = judgeTime(rowA, rowB, "ms", times, z, options.timeFloor);
+      if (byProcessor && std::isfinite(number(rowA, "cpu_ms")) && std::isfinite(number(rowB, "cpu_ms")) &&
+          judgeTime(rowA, rowB, "cpu_ms", processorTimes, z, options.timeFloor).verdict != time.verdict)
+        time.verdict = Verdict::undecided;
       diff.findings.push_back(time);
     }
     for (const Finding& f : diff.findings) {
@@ -250,7 +281,7 @@ int run(const DiffOptions& options) {
       fmt::print(
           "All rows together: B takes {:.3f} times A's time (median), machine or program; rows scatter by {:.1f} % "
           "about that.\n",
-          std::exp(shift), std::isfinite(scatter) ? 100.0 * scatter : NAN);
+          std::exp(times.shift), std::isfinite(times.scatter) ? 100.0 * times.scatter : NAN);
     fmt::print("{} better, {} worse, {} undecided\n", better, worse, static_cast<int>(diffs.size()) - better - worse);
   }
   nlohmann::ordered_json json;
@@ -258,8 +289,8 @@ int run(const DiffOptions& options) {
   json["b"] = options.b;
   json["significance"] = options.significance;
   json["limit"] = z;
-  json["time_ratio"] = std::exp(shift);
-  json["time_scatter"] = scatter;
+  json["time_ratio"] = std::exp(times.shift);
+  json["time_scatter"] = times.scatter;
   json["better"] = better;
   json["worse"] = worse;
   json["gone"] = onlyA;

@@ -311,17 +311,24 @@ async function main() {
     check(Math.abs(p.bias - row.bias) <= 1e-3 * p.rmse + 1e-12, `${row.label}: bias of the pixels ${p.bias} against ${row.bias}`);
     if (p.flip !== null) check(Math.abs(p.flip - row.flip) < 2e-3, `${row.label}: FLIP of the pixels ${p.flip} against ${row.flip}`);
   }
+  // So is the reference's standard error.
+  if (await evaluate('return f.facts.block') === 1) {
+    const truth = await evaluate('const rms = p => Math.sqrt(p.reduce((a, v) => a + v * v, 0) / p.length), t = f.truth(0); return {mean: t.reduce((a, v) => a + v, 0) / t.length, error: rms(f.truthError(0))}');
+    const all = json.references.filter(r => r.transport === 'all' && near(r.mean.reduce((a, v) => a + v, 0) / 3, truth.mean, 1e-5));
+    check(all.length === 1 && near(all[0].pixel_error, truth.error, 1e-3), `standard error of the reference ${truth.error}: ${JSON.stringify(all)}`);
+  }
   // Values under the cursor are the arrays'.
-  await evaluate('f.moveCursor(7, 5); f.draw()');
+  const place = await evaluate('const x = (f.width >> 1) + 1, y = (f.height >> 1) + 2; f.moveCursor(x, y); f.draw(); return {x, y, k: y * f.width + x}');
   const cells = await evaluate('return [...f.valuesBox.querySelectorAll("tr")].map(r => [...r.children].map(c => c.textContent))');
-  check(cells[0][0] === 'pixel 7, 5', `cursor ${cells[0][0]}`);
-  const under = await evaluate('const k = 5 * f.width + 7, p = f.pixels(1); return {p: [p[3*k], p[3*k+1], p[3*k+2]], t: f.truth(0)[3*k], e: f.truthError(0)[3*k], z: f.mapValue(1, "z", k), label: f.label(1)}');
+  check(cells[0][0] === `pixel ${place.x}, ${place.y}`, `cursor ${cells[0][0]}`);
+  const under = await evaluate(`const k = ${place.k}, p = f.pixels(1); return {p: [p[3*k], p[3*k+1], p[3*k+2]], t: f.truth(0)[3*k], e: f.truthError(0)[3*k], z: f.mapValue(1, "z", k), label: f.label(1)}`);
   const line = cells.find(c => c[0] === under.label);
   under.p.forEach((v, c) => check(near(Number(line[c + 1]), v, 1e-4), `under the cursor ${line[c + 1]} instead of ${v}`));
   check(near(Number(cells[1][1]), under.t, 1e-4) && near(Number(cells[2][1]), under.e, 1e-4), `reference ${cells[1][1]} +- ${cells[2][1]} instead of ${under.t} +- ${under.e}`);
   check(!Number.isFinite(under.z) || near(Number(line[7]), under.z, 6e-3), `z-score ${line[7]} instead of ${under.z}`);
   // What is read of one pixel alone, of pictures that are not decoded, is what the whole pictures hold.
-  const apart = await evaluate('const k = 5 * f.width + 7, wrong = []; for (let i = 1; i < f.items.length; ++i) { const one = f.pixel(i, k), p = f.pixels(i); const same = (a, b) => Object.is(a, b) || Math.abs(a - b) <= 1e-6 * Math.abs(a); if (![0, 1, 2].every(c => same(one.values[c], p[3*k+c])) || !["signed", "relative", "z", "flip"].every(m => same(one[m], f.mapValue(i, m, k)))) wrong.push(f.label(i)); } return wrong');
+  const apart = await evaluate(`const k = ${place.k}, wrong = []; for (let i = 1; i < f.items.length; ++i) { const one = f.pixel(i, k), p = f.pixels(i); const same = (a, b) => Object.is(a, b) || Math.abs(a - b) <= 1e-6 * Math.abs(a); if (![0, 1, 2].every(c => same(one.values[c], p[3*k+c])) || !["signed", "relative", "z", "flip"].every(m => same(one[m], f.mapValue(i, m, k)))) wrong.push(f.label(i)); } return wrong`);
+  check(under.p.some(v => v > 0) && under.e > 0, 'the pixel under the cursor is lit');
   check(apart.length === 0, `a pixel alone is not the picture's: ${apart}`);
   // z: grey where below 3, coloured where not.
   const z = await evaluate('const c = f.canvasOf(1, "z"), d = c.getContext("2d").getImageData(0, 0, c.width, c.height).data, v = f.values(1, "z"); let wrong = 0; for (let k = 0; k < v.length; ++k) wrong += (d[4*k] === 150 && d[4*k+1] === 150 && d[4*k+2] === 150) !== Math.abs(v[k]) < 3; return wrong');

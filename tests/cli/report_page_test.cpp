@@ -195,6 +195,31 @@ TEST_F(BenchDiff, TimesAreJudgedAgainstTheOtherRows) {
   EXPECT_EQ(diff("--only error"), 0) << err_;
 }
 
+// Another program's load made one row's pictures slow for as long as they were measured: its processor time did not
+// change. A row that became slow itself has both. What a GPU draws takes no processor time.
+TEST_F(BenchDiff, TheLoadOfOthersIsNoLossWhereTheProcessorDraws) {
+  const auto written = [&](const char* renderer, double wall, double processor) {
+    nlohmann::json a = reportOf(0.01), b = reportOf(0.01);
+    for (nlohmann::json* report : {&a, &b}) {
+      (*report)["renderer"] = renderer;
+      for (auto& row : (*report)["rows"]) row["cpu_ms"] = 1.5 * row["ms"].get<double>();
+    }
+    b["rows"][3]["ms"] = wall * b["rows"][3]["ms"].get<double>();
+    b["rows"][3]["cpu_ms"] = processor * b["rows"][3]["cpu_ms"].get<double>();
+    write("a.json", a);
+    write("b.json", b);
+  };
+  written("llvmpipe (LLVM 15.0.6, 256 bits)", 3.5, 1.0);
+  EXPECT_EQ(diff(), 0) << err_;
+  EXPECT_EQ(verdict(3), "undecided");
+  written("llvmpipe (LLVM 15.0.6, 256 bits)", 3.5, 3.4);
+  EXPECT_EQ(diff(), 1) << err_;
+  EXPECT_EQ(verdict(3), "worse");
+  written("NVIDIA A100", 3.5, 1.0);
+  EXPECT_EQ(diff(), 1) << err_;
+  EXPECT_EQ(verdict(3), "worse");
+}
+
 TEST_F(BenchDiff, WhatIsAtTheNoiseIsABound) {
   nlohmann::json a = reportOf(0.001), b = a;
   a["rows"][0]["at_noise"] = true;  // below 3 %
