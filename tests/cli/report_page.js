@@ -318,7 +318,8 @@ async function main() {
     check(all.length === 1 && near(all[0].pixel_error, truth.error, 1e-3), `standard error of the reference ${truth.error}: ${JSON.stringify(all)}`);
   }
   // Values under the cursor are the arrays'.
-  const place = await evaluate('const x = (f.width >> 1) + 1, y = (f.height >> 1) + 2; f.moveCursor(x, y); f.draw(); return {x, y, k: y * f.width + x}');
+  // Where both are lit: the product of the picture and of the reference's standard error is largest.
+  const place = await evaluate('const p = f.pixels(1), e = f.truthError(0); let k = 0; for (let i = 0; i < f.width * f.height; ++i) if (p[3*i] * e[3*i] > p[3*k] * e[3*k]) k = i; const x = k % f.width, y = Math.floor(k / f.width); f.moveCursor(x, y); f.draw(); return {x, y, k}');
   const cells = await evaluate('return [...f.valuesBox.querySelectorAll("tr")].map(r => [...r.children].map(c => c.textContent))');
   check(cells[0][0] === `pixel ${place.x}, ${place.y}`, `cursor ${cells[0][0]}`);
   const under = await evaluate(`const k = ${place.k}, p = f.pixels(1); return {p: [p[3*k], p[3*k+1], p[3*k+2]], t: f.truth(0)[3*k], e: f.truthError(0)[3*k], z: f.mapValue(1, "z", k), label: f.label(1)}`);
