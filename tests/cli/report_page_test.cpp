@@ -56,14 +56,14 @@ TEST_F(ReportPage, ShowsTheNumbersOfItsJsonAndObeysItsKeys) {
 
 // More pictures than there is room for: some are means over blocks, and every point has one still.
 TEST_F(ReportPage, WithoutRoomForAllPicturesSomeAreCoarser) {
-  if (!test::longTests()) GTEST_SKIP() << "a minute: LUCERNA_LONG_TESTS";
+  if (!test::longTests()) GTEST_SKIP() << "minutes: LUCERNA_LONG_TESTS";
   ASSERT_NO_FATAL_FAILURE(bench("error '" LUCERNA_SOURCE_DIR
-                                "/assets/cornell/cornell.json' --size 480x270 --reference-spp 4 --budget 2 --frames 1 "
+                                "/assets/cornell/cornell.json' --size 424x238 --reference-spp 16 --budget 2 --frames 1 "
                                 "--small --techniques direct,rsm --out '" +
                                 path("out") + "'"));
   const std::string page = readFileText(path("out/report.html"));
-  EXPECT_NE(page.find("\"block\":2,\"scale\""), std::string::npos);
-  EXPECT_NE(page.find("\"block\":1,\"scale\""), std::string::npos);
+  EXPECT_NE(page.find("\"block\":2,\"first_choice\":false"), std::string::npos);
+  EXPECT_NE(page.find("\"block\":1,\"first_choice\":true"), std::string::npos);
   expectNoFault("out/report.html", "out/error.json", 300);
 }
 
