@@ -198,7 +198,7 @@ class Figure {
     const others = this.facts.pictures.map((p, i) => i).filter(i => !front.includes(i)), rest = [true, false].flatMap(first => others.filter(i => this.facts.pictures[i].first_choice === first));
     this.items = [null, ...front.concat(rest).map(i => ({picture: i, row: this.facts.pictures[i].row, truth: this.facts.pictures[i].truth}))];
     this.seriesNames = [...new Set(this.rows.map(r => r.series))];
-    this.state = {current: Math.min(1, this.items.length - 1), before: 0, mode: 'single', flipped: false, chosen: [], map: 'picture', stops: 0, tone: 'filmic', zoom: 0, x: this.width / 2, y: this.height / 2,
+    this.state = {reference: 0, current: Math.min(1, this.items.length - 1), before: 0, mode: 'single', flipped: false, chosen: [], map: 'picture', stops: 0, tone: 'filmic', zoom: 0, x: this.width / 2, y: this.height / 2,
                   cursor: {x: this.width >> 1, y: this.height >> 1}, wipe: 0.5, ranges: {}, lock: true, cost: 'ms', metric: 'l2', crops: [], selected: this.items.length > 1 ? this.items[1].row : 0};
     this.state.chosen = this.items.map((item, i) => i).slice(0, 4);
     this.cache = new Map();
@@ -211,7 +211,7 @@ class Figure {
     this.draw();
   }
 
-  label(i) { return i === 0 ? this.facts.truths[0].name : this.rows[this.items[i].row].label; }
+  label(i) { return i === 0 ? this.facts.truths[this.state.reference].name : this.rows[this.items[i].row].label; }
   style(series) {
     const i = this.seriesNames.indexOf(series);
     const round = Math.floor(i / PALETTE.length);
@@ -260,7 +260,7 @@ class Figure {
     return block === 1 || !e ? e : this.once(`error ${t} by ${block}`, () => this.blocks(e, block, true));
   }
   pixels(i) {
-    if (i === 0) return this.truth(0);
+    if (i === 0) return this.truth(this.state.reference);
     return this.once('pixels' + i, () => {
       const d = this.difference(i), t = this.truthOf(i), result = new Float32Array(d.length);
       for (let k = 0; k < d.length; ++k) result[k] = this.sum(t[k], d[k]);
@@ -326,7 +326,7 @@ class Figure {
   /// A method as a small canvas of the pictures' size.
   canvasOf(i, map = this.state.map) {
     const s = this.state, real = i === 0 ? 'picture' : map, range = real === 'picture' ? 0 : this.range(i, real);
-    const key = `${i} ${real} ${real === 'picture' ? s.stops + s.tone : range}`;
+    const key = `${i} ${i === 0 ? s.reference : ''} ${real} ${real === 'picture' ? s.stops + s.tone : range}`;
     if (this.cache.has(key)) return this.cache.get(key);
     if (this.cache.size > 40) this.cache.delete(this.cache.keys().next().value);
     const canvas = document.createElement('canvas'), context = canvas.getContext('2d');
@@ -418,7 +418,8 @@ class Figure {
         line.innerHTML = `${key}<span></span><span>${escapeText(this.label(0))}</span><span class="set" title="in side by side and crops, or not: key a"></span>`;
       }
       line.addEventListener('click', event => {
-        this.show(i);
+        if (i === 0) this.press('0');
+        else this.show(i);
         if (event.target.className === 'set') this.press('a');
       });
     });
@@ -557,6 +558,7 @@ class Figure {
       const i = Number(line.dataset.item);
       line.setAttribute('aria-selected', String(i === this.shown()));
       line.querySelector('.set').textContent = s.chosen.includes(i) ? '\u25a3' : '\u25a1';
+      if (i === 0) line.children[2].textContent = this.label(0);
       if (i !== this.shown()) continue;
       this.list.setAttribute('aria-activedescendant', line.id);
       // In sight in the list, without a jump of the page.
@@ -963,7 +965,7 @@ const redraw = run => (f, key) => { run(f, key); f.draw(); };
 const DIRECTIONS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 const arrows = prefix => Object.keys(DIRECTIONS).map(k => ({key: prefix + k, label: (prefix ? 'Shift ' : '') + {ArrowLeft: '\u2190', ArrowRight: '\u2192', ArrowUp: '\u2191', ArrowDown: '\u2193'}[k]}));
 const KEYS = [
-  {keys: ['0'], help: 'the reference', run: f => f.show(0)},
+  {keys: ['0'], help: 'the reference; again: the next one, where methods are judged by several', run: f => { const s = f.state; if (s.current === 0) s.reference = (s.reference + 1) % f.facts.truths.length; f.show(0); }},
   {keys: ['1', '2', '3', '4', '5', '6', '7', '8', '9'], help: 'method 1 to 9 of the list', run: (f, k) => f.show(Number(k))},
   {keys: ['n', 'b'], help: 'next method, the one before', run: (f, k) => f.show((f.state.current + (k === 'n' ? 1 : f.items.length - 1)) % f.items.length)},
   {keys: ['v'], help: 'one picture', run: redraw(f => { f.state.mode = 'single'; })},

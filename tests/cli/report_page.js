@@ -345,6 +345,12 @@ async function main() {
   const tested = new Set();
   const expectKey = async (key, label, holds) => { tested.add(key); const before = await state(); await press(key); const after = await state(); check(holds(before, after), `key ${key}: ${label}; ${JSON.stringify([before, after])}`); };
   await expectKey('0', 'reference', (a, b) => b.current === 0);
+  const truths = await evaluate('return f.facts.truths.map(t => t.name)');
+  for (let k = 1; k <= truths.length; ++k) {
+    await press('0');
+    const shown = await evaluate('const p = f.pixels(0), t = f.truth(f.state.reference); return {label: f.label(0), list: f.list.querySelector("[data-item]").children[2].textContent, same: p === t}');
+    check(shown.label === truths[k % truths.length] && shown.list === shown.label && shown.same, `key 0 again: ${JSON.stringify(shown)}`);
+  }
   for (let k = 1; k <= 9; ++k) await expectKey(String(k), 'method', (a, b) => b.current === (k < items ? k : a.current));
   await expectKey('n', 'next', (a, b) => b.current === (a.current + 1) % items);
   await expectKey('b', 'before', (a, b) => b.current === (a.current + items - 1) % items);
