@@ -24,274 +24,15 @@ layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
 layout(rgba32ui, binding = 0) uniform uimage2D filmMean;    // xyz and, as an integer, the number of samples
 layout(rgba32ui, binding = 1) uniform uimage2D filmSpread;  // sum of squared deviations; w unused
 layout(rgba32ui, binding = 2) uniform uimage2D filmRest;
-layout(std430, binding = 5) restrict buffer StateBlock {
-  uint unfinished;      // pixels of the tile that do not have their samples yet
-  uint leakedPaths;     // ended, since they were found outside of the scene, yet inside of a closed boundary
-  uint wrongCrossings;  // of boundaries left without having been entered: open or turned meshes
-  uint longest;         // turns of loops that a lane took
-  // and that all lanes took; below 2^32, as a submission has no more than 2^28 but for the last segments
-  uint allTurns;
-  uint collisions;      // in media, of all lanes
-  uvec4 state[];        // STATE_WORDS a lane, lane by lane within each
-};
-
-struct Path {
-  vec3 origin;
-  uint skip;            // triangle that the ray starts on
-  vec3 direction;       // unit
-  // density with which it was sampled, 1/sr; 0 where nothing else could have: camera and smooth surfaces
-  float pdf;
-  vec3 throughput;
-  float travelled;      // since the last scattering, along boundaries that change nothing
-  vec3 radiance;
-  uint scatterings;     // up to here
-  uint event;           // place in the sequence of random numbers: one a surface or medium met
-  float ior;            // of where the ray is
-  uint chain;           // smooth scatterings in a row up to here
-#if INTERIORS
-  uvec4 inside;         // of which closed boundaries (boundary.glsl)
-  // length of the ray before its origin, which lies a little beside a surface; negative: what the origin is too early
-  float head;
-  uint face;            // that surface, where head is not 0
-#endif
-};
-
-// Throughput below which roulette begins. In media many weak scatterings make up what is seen, and dying at each of
-// them costs more in noise than it saves in time: a slab of albedo 0.5 needs a third of the time for the same error
-// with 1/4 as with 1.
-#if MEDIA
-const float kRouletteBelow = 0.25;
-#else
-const float kRouletteBelow = 1.0;
-#endif
-
-const uint kInFlight = 0x80000000u;  // in the saved event: there is a path to be gone on with
-
-bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
-
-#if INTERIORS
-uniform uvec4 cameraInside;  // of which closed boundaries the camera is
-uniform float cameraIor;     // and the index of refraction there
-#endif
-
-// What a light adds where the path now is.
-vec3 lightOf(Path path, vec3 light) {
-#if DIELECTRICS
-  light *= cameraIor * cameraIor / (path.ior * path.ior);
-#endif
-  return path.throughput * light;
-}
-void addLight(inout Path path, vec3 light) { path.radiance += lightOf(path, light); }
-
-// A lamp that was asked: its ray waits to be traced.
-struct Shadow {
-  bool waits;
-  bool infinite;
-  uint skip;
-  vec3 light;      // what it adds to the path's radiance where nothing is in the way
-  vec3 origin;
-  vec3 direction;  // to the lamp, its length the distance; unit to one at infinity
-#if INTERIORS
-  float tMin;
-  float from;      // where the present medium begins
-  float ior;
-  uint crossed;    // boundaries
-  uvec4 inside;    // of which closed boundaries
-  uvec4 words;     // random
-#endif
-};
-Shadow shadow;
+#include "pathtracer/path.glsl"
 #if MEDIA
 uint collisionCount = 0u;  // of this lane, in this submission
 #endif
-
-#if INTERIORS
-#include "pathtracer/boundary.glsl"
-const uint kPurposeTransmittance = kFreePurpose + 3u;
-#endif
-
-// start: where the ray begins, on the triangle `skip`.
-void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint skip, PathNumbers numbers) {
-  shadow.waits = true;
-  shadow.infinite = light.infinite;
-  shadow.skip = skip;
-  shadow.light = lightOf(path, contribution);
-  shadow.origin = start;
-  shadow.direction = light.infinite ? light.direction : light.end - start;
-#if INTERIORS
-  shadow.tMin = shadow.from = 0.0;
-  shadow.ior = iorInside(path.inside);
-  shadow.crossed = 0u;
-  shadow.inside = path.inside;
-  shadow.words = randomWords(numbers, path.event, kPurposeTransmittance);
-#endif
-}
-
-#if MEDIA
-// In media a ray starts nearer to its surface than elsewhere, 8 units in the last place of the triangle's largest
-// coordinate, as what lies between may be a good part of a mean free path; and the flight through it is counted.
-const float kBeside = 4.76837158203125e-7;  // 2^-21
-#endif
-
-// How far beside a surface rays start that leave it.
-float gapAt(Surface surface) {
-#if FIXED_EPSILON
-  return 1e-3;  // scene units, whatever the scene's size [VPT2024]
-#elif MEDIA
-  return surface.magnitude * kBeside;
-#else
-  return surface.magnitude * 3.814697265625e-6;  // as offsetRay
-#endif
-}
-
-// Where a ray starts that leaves a surface towards the side of `normal`.
-vec3 beside(Surface surface, vec3 normal) { return surface.position + normal * gapAt(surface); }
-
-// Starts the path's next ray on a surface.
-void startAt(inout Path path, Surface surface, uint triangle) {
-  float cosine = dot(path.direction, surface.geometricNormal);
-  path.origin = beside(surface, cosine > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
-  path.skip = triangle;
-#if MEDIA
-  path.head = surface.magnitude * kBeside / max(abs(cosine), 0.01);
-  path.face = triangle;
-#endif
-}
-
+#include "pathtracer/shadow_ray.glsl"
 #if INTERIORS
 #include "pathtracer/volume.glsl"
 #endif
-
-Path startPath(ivec2 pixel, PathNumbers numbers) {
-#if PIXEL_CENTRES
-  vec2 place = vec2(pixel) + 0.5;
-#else
-  vec2 place = vec2(pixel) + randomPair(numbers, 0u, kPurposeFilm);
-#endif
-  Path path;
-  path.origin = tracer.cameraPosition;
-  path.skip = kNoHit;
-  path.direction = normalize(tracer.firstPixel + place.x * tracer.pixelRight + place.y * tracer.pixelUp);
-  path.pdf = 0.0;
-  path.throughput = vec3(1.0);
-  path.travelled = 0.0;
-  path.radiance = vec3(0.0);
-  path.scatterings = 0u;
-  path.event = 0u;
-  path.ior = 1.0;
-  path.chain = 0u;
-#if INTERIORS
-  path.inside = cameraInside;
-  path.head = 0.0;
-  path.face = 0u;
-  path.ior = cameraIor;
-#endif
-  return path;
-}
-
-// What a surface does to light where a path has met it. Lambert: `albedo` is its reflectance; mirrors, conductors:
-// reflectance at normal incidence.
-struct Facet {
-  uint kind;
-  vec3 albedo;
-  float roughness;
-  float eta;       // dielectrics: index on the path's side over the other's
-  vec3 normal;     // for shading, on the path's side
-};
-
-bool isSmooth(Facet facet) {
-#if GLOSSY
-  return facet.kind == PATH_MIRROR || (facet.kind != PATH_DIFFUSE && facet.roughness == 0.0);
-#else
-  return facet.kind != PATH_DIFFUSE;
-#endif
-}
-
-// BSDF times the cosine of `i`, and the density with which scatter() draws it; not for smooth surfaces. `o` and `i`
-// point away from the surface.
-vec3 evaluate(Facet facet, vec3 o, vec3 i, out float pdf) {
-#if GLOSSY
-  if (facet.kind != PATH_DIFFUSE) {
-    vec3 t, b;
-    tangentFrame(facet.normal, t, b);
-    vec3 lo = vec3(dot(o, t), dot(o, b), dot(o, facet.normal)), li = vec3(dot(i, t), dot(i, b), dot(i, facet.normal));
-    if (facet.kind == PATH_CONDUCTOR)
-      return ggxReflect(lo, li, facet.roughness, pdf) * schlick(facet.albedo, max(dot(lo, normalize(lo + li)), 0.0));
-#if ROUGH_DIELECTRICS
-    float cosT, share;
-    vec3 h = normalize(lo + li);
-    float value =
-        li.z > 0.0 ? ggxReflect(lo, li, facet.roughness, pdf) : ggxRefract(lo, li, facet.roughness, facet.eta, h, pdf);
-    float reflectance = fresnelDielectric(clamp(dot(lo, h), 0.0, 1.0), facet.eta, cosT);
-    share = li.z > 0.0 ? reflectance : 1.0 - reflectance;
-    pdf *= share;
-    return vec3(value * share);
-#endif
-  }
-#endif
-  float cosine = max(dot(i, facet.normal), 0.0);
-  pdf = cosine / kPi;
-  return facet.albedo * pdf;
-}
-
-// Draws a direction: multiplies the throughput by what that leaves and sets direction and density, 0 for smooth
-// surfaces. False: absorbed.
-bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float choice) {
-  if (facet.kind == PATH_DIFFUSE) {
-    path.direction = cosineSample(facet.normal, xi);
-    path.pdf = dot(path.direction, facet.normal) / kPi;
-    path.throughput *= facet.albedo;
-    return dot(path.direction, geometricNormal) > 0.0;
-  }
-  vec3 o = -path.direction;
-  vec3 h = facet.normal;
-  path.pdf = 0.0;
-#if GLOSSY
-  bool rough = facet.roughness > 0.0 && facet.kind != PATH_MIRROR;
-  vec3 t, b, lo;
-  if (rough) {
-    tangentFrame(facet.normal, t, b);
-    lo = vec3(dot(o, t), dot(o, b), dot(o, facet.normal));
-    vec3 lh = ggxSample(lo, facet.roughness, xi);
-    h = normalize(lh.x * t + lh.y * b + lh.z * facet.normal);
-  }
-#endif
-  float cosI = clamp(dot(o, h), 0.0, 1.0), cosT = 0.0;
-  bool reflects = true;
-  float share = 1.0;  // of the two ways
-#if DIELECTRICS
-  if (facet.kind == PATH_DIELECTRIC) {
-    float reflectance = fresnelDielectric(cosI, facet.eta, cosT);
-    reflects = choice < reflectance;
-    share = reflects ? reflectance : 1.0 - reflectance;
-  }
-#endif
-  vec3 scattered = reflects ? 2.0 * cosI * h - o : (facet.eta * cosI - cosT) * h - facet.eta * o;
-  float side = dot(scattered, geometricNormal);
-  if (reflects ? side <= 0.0 : side >= 0.0) {  // the shading normal sends it to the wrong side of the face
-#if GLOSSY
-    if (rough) return false;
-#endif
-    scattered = reflects ? 2.0 * dot(o, geometricNormal) * geometricNormal - o : -o;
-  }
-  path.direction = normalize(scattered);
-#if GLOSSY
-  if (rough) {
-    vec3 li = vec3(dot(path.direction, t), dot(path.direction, b), dot(path.direction, facet.normal)), ignored;
-    if (reflects ? li.z <= 0.0 : li.z >= 0.0) return false;
-    float value = reflects ? ggxReflect(lo, li, facet.roughness, path.pdf)
-                           : ggxRefract(lo, li, facet.roughness, facet.eta, ignored, path.pdf);
-    if (!(path.pdf > 0.0)) return false;
-    path.throughput *= value / path.pdf;
-    path.pdf *= share;
-  }
-  if (facet.kind == PATH_CONDUCTOR) path.throughput *= schlick(facet.albedo, cosI);
-#endif
-#if MIRRORS
-  if (facet.kind == PATH_MIRROR) path.throughput *= facet.albedo;
-#endif
-  return true;
-}
+#include "pathtracer/facet.glsl"
 
 #if NEXT_EVENT
 // iorBeyond, beyond: refractive index behind the surface, and the boundaries around that side.
@@ -325,6 +66,67 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
 }
 #endif
 
+// Light from beyond all surfaces.
+void addFromAfar(inout Path path) {
+#if ENVIRONMENT
+  if (counts(path.scatterings)) {
+    vec3 radiance = environmentRadiance(path.direction);
+#if ENVIRONMENT_PICTURE && NEXT_EVENT
+    if (path.pdf > 0.0) radiance *= powerHeuristic(path.pdf, tracer.environmentPick * environmentPdf(path.direction));
+#endif
+    addLight(path, radiance);
+  }
+#elif BACKGROUND
+  if (path.scatterings == 0u && counts(0u)) addLight(path, tracer.background);  // is seen, but lights nothing
+#endif
+}
+
+#if EMISSION
+void addEmission(inout Path path, Hit hit, Surface surface) {
+  vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
+#if NEXT_EVENT
+  if (path.pdf > 0.0) {
+    float pdf =
+        pickDensity(hit.triangle) * path.travelled * path.travelled / -dot(surface.geometricNormal, path.direction);
+    emission *= powerHeuristic(path.pdf, pdf);
+  }
+#endif
+  addLight(path, emission);
+}
+#endif
+
+// iorBeyond: refractive index behind the surface.
+Facet facetOf(Path path, Surface surface, PathMaterial material, float iorBeyond) {
+  Facet facet = Facet(material.kind, material.specular, material.roughness, 1.0, surface.normal);
+  // Mirrors and glass are not there for a path that sees the shading normal's back.
+  if (facet.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0))
+    facet.normal = surface.geometricNormal;
+  if (facet.kind == PATH_DIFFUSE) facet.albedo = albedoAt(surface);
+#if DIELECTRICS
+  if (facet.kind == PATH_DIELECTRIC) facet.eta = path.ior / iorBeyond;
+#endif
+  return facet;
+}
+
+// Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path
+// ends. Total reflection may catch paths in glass for ever, which hold next to no light: after many smooth
+// scatterings in a row more of them die. False: the path ends.
+bool survivesSurface(inout Path path, float random) {
+  float most = path.chain > 32u ? 0.99 : path.event < 1024u ? 1.0 : 0.999;
+  float largest = max(path.throughput.x, max(path.throughput.y, path.throughput.z));
+#if MEDIA && ROULETTE_AT_SURFACES
+  return mediumInside(path.inside) >= 0 || survivesTurn(path, random);
+#elif ROULETTE_WITHOUT_DIVISION
+  return random < min(largest, min(most, 0.95));  // [VPT2024, algorithm 3]
+#else
+  float survival = min(largest / kRouletteBelow, most);
+  if (path.scatterings < 2u) survival = survival > 0.0 ? 1.0 : 0.0;
+  if (!(random < survival)) return false;
+  path.throughput /= survival;
+  return true;
+#endif
+}
+
 // What the path's ray has met, and on from there; false where the path has ended.
 #if TOUCHING
 bool meet(inout Path path, Hit hit, uvec4 beyond, uvec4 before, PathNumbers numbers) {
@@ -332,17 +134,7 @@ bool meet(inout Path path, Hit hit, uvec4 beyond, uvec4 before, PathNumbers numb
 bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #endif
   if (hit.triangle == kNoHit) {
-#if ENVIRONMENT
-    if (counts(path.scatterings)) {
-      vec3 radiance = environmentRadiance(path.direction);
-#if ENVIRONMENT_PICTURE && NEXT_EVENT
-      if (path.pdf > 0.0) radiance *= powerHeuristic(path.pdf, tracer.environmentPick * environmentPdf(path.direction));
-#endif
-      addLight(path, radiance);
-    }
-#elif BACKGROUND
-    if (path.scatterings == 0u && counts(0u)) addLight(path, tracer.background);  // is seen, but lights nothing
-#endif
+    addFromAfar(path);
     return false;
   }
   Surface surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
@@ -372,17 +164,7 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
     return false;
 #endif
 #if EMISSION
-  if (any(greaterThan(material.emission, vec3(0.0))) && counts(path.scatterings)) {
-    vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
-#if NEXT_EVENT
-    if (path.pdf > 0.0) {
-      float pdf =
-          pickDensity(hit.triangle) * path.travelled * path.travelled / -dot(surface.geometricNormal, path.direction);
-      emission *= powerHeuristic(path.pdf, pdf);
-    }
-#endif
-    addLight(path, emission);
-  }
+  if (any(greaterThan(material.emission, vec3(0.0))) && counts(path.scatterings)) addEmission(path, hit, surface);
 #endif
   float iorBeyond = path.ior;
 #if INTERIORS
@@ -396,14 +178,7 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   }
 #endif
   if (path.scatterings >= tracer.maxScatterings) return false;
-  Facet facet = Facet(material.kind, material.specular, material.roughness, 1.0, surface.normal);
-  // Mirrors and glass are not there for a path that sees the shading normal's back.
-  if (facet.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0))
-    facet.normal = surface.geometricNormal;
-  if (facet.kind == PATH_DIFFUSE) facet.albedo = albedoAt(surface);
-#if DIELECTRICS
-  if (facet.kind == PATH_DIELECTRIC) facet.eta = path.ior / iorBeyond;
-#endif
+  Facet facet = facetOf(path, surface, material, iorBeyond);
   ++path.scatterings;
 #if NEXT_EVENT
   if (!isSmooth(facet) && counts(path.scatterings))
@@ -435,22 +210,8 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
     path.inside = beyond;
   }
 #endif
-  // Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path
-  // ends. Total reflection may catch paths in glass for ever, which hold next to no light: after many smooth
-  // scatterings in a row more of them die.
   path.chain = path.pdf == 0.0 ? min(path.chain + 1u, 255u) : 0u;
-  float most = path.chain > 32u ? 0.99 : path.event < 1024u ? 1.0 : 0.999;
-  float largest = max(path.throughput.x, max(path.throughput.y, path.throughput.z));
-#if MEDIA && ROULETTE_AT_SURFACES
-  if (mediumInside(path.inside) < 0 && !survivesTurn(path, unitFloat(choice.y))) return false;
-#elif ROULETTE_WITHOUT_DIVISION
-  if (!(unitFloat(choice.y) < min(largest, min(most, 0.95)))) return false;  // [VPT2024, algorithm 3]
-#else
-  float survival = min(largest / kRouletteBelow, most);
-  if (path.scatterings < 2u) survival = survival > 0.0 ? 1.0 : 0.0;
-  if (!(unitFloat(choice.y) < survival)) return false;
-  path.throughput /= survival;
-#endif
+  if (!survivesSurface(path, unitFloat(choice.y))) return false;
   startAt(path, surface, hit.triangle);
 #if TOUCHING
   if (dot(path.direction, surface.geometricNormal) > 0.0) {
@@ -498,22 +259,9 @@ void main() {
   // picture.w: number of the film's first sample.
   PathNumbers numbers =
       PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(tracer.picture.w) + samples, tracer.seed);
-  uint slot = uint(lane.y * tracer.tile.z + lane.x), lanes = uint(tracer.picture.z);
-  uvec4 saved = state[slot + 4u * lanes];
+  Lane here = Lane(uint(lane.y * tracer.tile.z + lane.x), uint(tracer.picture.z));
   Path path;
-  if ((saved.x & kInFlight) != 0u) {
-    uvec4 w0 = state[slot], w1 = state[slot + lanes], w2 = state[slot + 2u * lanes], w3 = state[slot + 3u * lanes];
-    path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz),
-                uintBitsToFloat(w2.w), uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, saved.x & ~kInFlight,
-                uintBitsToFloat(saved.y), w3.w >> 24u
-#if INTERIORS
-                ,
-                state[slot + 5u * lanes], uintBitsToFloat(saved.z), saved.w
-#endif
-    );
-  } else {
-    path = startPath(pixel, numbers);
-  }
+  if (!restorePath(here, path)) path = startPath(pixel, numbers);
 
   // One traversal serves all rays, since drivers inline every function: each further call site costs registers and
   // minutes of compiling. What is to be traced next is the lane's job; what is to be done with a hit its stages, each
@@ -716,20 +464,5 @@ void main() {
   imageStore(filmMean, pixel, uvec4(floatBitsToUint(mean), samples));
   imageStore(filmSpread, pixel, uvec4(floatBitsToUint(spread), 0u));
   imageStore(filmRest, pixel, uvec4(floatBitsToUint(rest), 0u));
-  state[slot + 4u * lanes] = uvec4(inFlight ? path.event | kInFlight : 0u, floatBitsToUint(path.ior),
-#if INTERIORS
-                                   floatBitsToUint(path.head), path.face);
-#else
-                                   0u, 0u);
-#endif
-  if (!inFlight) return;
-  state[slot] = uvec4(floatBitsToUint(path.origin), path.skip);
-  state[slot + lanes] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
-  state[slot + 2u * lanes] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
-  state[slot + 3u * lanes] =
-      uvec4(floatBitsToUint(path.radiance), min(path.scatterings, 0xffffffu) | path.chain << 24u);
-#if INTERIORS
-  state[slot + 5u * lanes] = path.inside;
-#endif
-  atomicAdd(unfinished, 1u);
+  savePath(here, path, inFlight);
 }

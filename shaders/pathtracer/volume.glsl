@@ -1,6 +1,5 @@
 // A path through participating media: how far it flies, what it adds and where it goes on from a collision; and how
-// much light a straight line lets through. Hooks of path.comp, which declares Path, shadow, addLight, askLight, counts
-// and the lights before this file is included.
+// much light a straight line lets through. The lights, path.glsl and shadow_ray.glsl stand before this file.
 //
 // Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION,
 // LAMPS_OUTSIDE (no lamp is within a dielectric), WALKS (dense media have clearance grids); deviations

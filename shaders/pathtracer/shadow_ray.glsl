@@ -1,0 +1,42 @@
+// The ray to a lamp that next-event estimation has chosen: it waits until the lane's one traversal is free.
+
+// A lamp that was asked: its ray waits to be traced.
+struct Shadow {
+  bool waits;
+  bool infinite;
+  uint skip;
+  vec3 light;      // what it adds to the path's radiance where nothing is in the way
+  vec3 origin;
+  vec3 direction;  // to the lamp, its length the distance; unit to one at infinity
+#if INTERIORS
+  float tMin;
+  float from;      // where the present medium begins
+  float ior;
+  uint crossed;    // boundaries
+  uvec4 inside;    // of which closed boundaries
+  uvec4 words;     // random
+#endif
+};
+Shadow shadow;
+
+#if INTERIORS
+#include "pathtracer/boundary.glsl"
+const uint kPurposeTransmittance = kFreePurpose + 3u;
+#endif
+
+// start: where the ray begins, on the triangle `skip`.
+void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint skip, PathNumbers numbers) {
+  shadow.waits = true;
+  shadow.infinite = light.infinite;
+  shadow.skip = skip;
+  shadow.light = lightOf(path, contribution);
+  shadow.origin = start;
+  shadow.direction = light.infinite ? light.direction : light.end - start;
+#if INTERIORS
+  shadow.tMin = shadow.from = 0.0;
+  shadow.ior = iorInside(path.inside);
+  shadow.crossed = 0u;
+  shadow.inside = path.inside;
+  shadow.words = randomWords(numbers, path.event, kPurposeTransmittance);
+#endif
+}
