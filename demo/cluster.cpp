@@ -1,5 +1,6 @@
 #include "cluster.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "cluster_job.hpp"
@@ -15,8 +16,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <string_view>
@@ -204,48 +207,75 @@ std::vector<std::string> environmentFor(const std::string& device) {
   return all;
 }
 
-/// Runs a task as a process of its own until it ends, is to stop, or was taken for dead. Returns whether it is done.
-/// `device`: LUCERNA_EGL_DEVICE of that process; empty: this one's.
-bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& claim, const std::string& device,
-             double saveEvery, bool quiet) {
-  std::vector<std::string> words{thisProgram()};
-  words.insert(words.end(), job.command().words.begin(), job.command().words.end());
-  // The result is written last: it says that the part is whole.
-  words.insert(words.end(), {"--part", fmt::format("{}/{}", task.number, job.tasks().size()), "--checkpoint",
-                             job.part(task).string(), "--json", job.result(task).string(), "--quiet"});
-  if (job.command().isPicture()) words.insert(words.end(), {"--save-every", fmt::format("{:g}", saveEvery)});
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  std::vector<std::string> variables = environmentFor(device);
-  std::vector<char*> environment;
-  for (std::string& variable : variables) environment.push_back(variable.data());
-  environment.push_back(nullptr);
-  const std::string log = job.log(task).string(), directory = job.directory();
-
-  const pid_t parent = ::getpid(), child = ::fork();
-  if (child < 0) throwMissingCapability("cluster run: no process can be made");
-  if (child == 0) {
-    // Between fork and exec: calls that are safe there alone. A worker that is killed takes its task along.
-    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (::getppid() != parent) ::_exit(143);
-    const int out = ::open(log.c_str(), O_CREAT | O_APPEND | O_WRONLY, 0644);
-    if (out >= 0) ::dup2(out, 1), ::dup2(out, 2);
+/// This program with other words, as a process of its own. Ctrl-C and SIGTERM are handed on to it.
+class Child {
+ public:
+  /// Starts in `directory`; what it prints is appended to `log`, unless empty. One with a log ends with the thread that
+  /// started it: a worker that is killed takes its task along. `device`: its LUCERNA_EGL_DEVICE; empty: this one's.
+  Child(const std::vector<std::string>& words, const std::string& directory, const std::string& log = "",
+        const std::string& device = "") {
+    const std::string program = thisProgram();
+    std::vector<char*> arguments{const_cast<char*>(program.c_str())};
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    const std::vector<std::string> variables = environmentFor(device);
+    std::vector<char*> environment;
+    for (const std::string& variable : variables) environment.push_back(const_cast<char*>(variable.c_str()));
+    environment.push_back(nullptr);
+    std::fflush(stdout);
+    const pid_t parent = ::getpid();
+    process_ = ::fork();
+    if (process_ < 0) throwMissingCapability("cluster: cannot create process ({})", std::strerror(errno));
+    if (process_ > 0) return;
+    // Between fork and exec: calls that are safe there alone.
+    if (!log.empty()) {
+      ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+      if (::getppid() != parent) ::_exit(143);
+      const int out = ::open(log.c_str(), O_CREAT | O_APPEND | O_WRONLY, 0644);
+      if (out >= 0) ::dup2(out, 1), ::dup2(out, 2);
+    }
     if (::chdir(directory.c_str()) != 0) ::_exit(126);
     ::execve(arguments[0], arguments.data(), environment.data());
     ::_exit(127);
   }
-  int status = 0;
-  auto alive = std::chrono::steady_clock::now();
-  bool asked = false, lost = false;
-  while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (interrupted() && !asked) asked = ::kill(child, SIGTERM) == 0;
-    if (std::chrono::steady_clock::now() - alive > std::chrono::seconds(5)) {
-      alive = std::chrono::steady_clock::now();
-      if (!job.keep(claim) && !lost) lost = ::kill(child, SIGTERM) == 0;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  void stop() {
+    if (!asked_) asked_ = ::kill(process_, SIGTERM) == 0;
   }
+  /// Its status once it has ended, as waitpid() has it. `meanwhile` is called now and then.
+  template <class Meanwhile>
+  int wait(const Meanwhile& meanwhile) {
+    int status = 0;
+    while (::waitpid(process_, &status, WNOHANG) == 0) {
+      if (interrupted()) stop();
+      meanwhile();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return status;
+  }
+
+ private:
+  pid_t process_ = -1;
+  bool asked_ = false;
+};
+
+/// Runs a task until it ends, is to stop, or was taken for dead. Returns whether it is done.
+bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& claim, const std::string& device,
+             double saveEvery, bool quiet) {
+  std::vector<std::string> words = job.command().words;
+  // The result is written last: it says that the part is whole.
+  words.insert(words.end(), {"--part", fmt::format("{}/{}", task.number, job.tasks().size()), "--checkpoint",
+                             job.part(task).string(), "--json", job.result(task).string(), "--quiet"});
+  if (job.command().isPicture()) words.insert(words.end(), {"--save-every", fmt::format("{:g}", saveEvery)});
+  const std::string log = job.log(task).string();
+  Child child(words, job.directory(), log, device);
+  auto alive = Clock::now();
+  bool lost = false;
+  const int status = child.wait([&] {
+    if (secondsSince(alive) <= 5.0) return;
+    alive = Clock::now();
+    lost = lost || !job.keep(claim);
+    if (lost) child.stop();
+  });
   const bool done = WIFEXITED(status) && WEXITSTATUS(status) == 0 && fs::exists(job.result(task));
   if (!done && !lost) job.giveBack(claim);
   if (!quiet)
@@ -343,26 +373,8 @@ int status(const Options& options) {
 }
 
 /// A lucerna of its own, in the folder where the job was planned; its exit code.
-int runHere(const std::vector<std::string>& command, const std::string& directory) {
-  std::vector<std::string> words = command;
-  words.insert(words.begin(), thisProgram());
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  std::fflush(stdout);
-  const pid_t child = ::fork();
-  if (child < 0) throwMissingCapability("cluster join: no process can be made");
-  if (child == 0) {
-    if (::chdir(directory.c_str()) != 0) ::_exit(126);
-    ::execv(arguments[0], arguments.data());
-    ::_exit(127);
-  }
-  int status = 0;
-  bool asked = false;
-  while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (interrupted() && !asked) asked = ::kill(child, SIGTERM) == 0;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+int runHere(const std::vector<std::string>& words, const std::string& directory) {
+  const int status = Child(words, directory).wait([] {});
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
@@ -396,11 +408,12 @@ int join(const Options& options) {
 
 }  // namespace
 
-std::function<int()> addCluster(CLI::App& app) {
-  app.require_subcommand(1);
+Work addCluster(CLI::App& app) {
+  Subcommands commands(app);
   auto options = std::make_shared<Options>();
-  CLI::App* planned = app.add_subcommand(
-      "plan", "Cut a command's work into tasks, in a folder that all machines see; with scripts for Slurm");
+  CLI::App* planned =
+      commands.add("plan", "Cut a command's work into tasks, in a folder that all machines see; with scripts for Slurm",
+                   [options] { return plan(*options); });
   planned->add_option("COMMAND", options->command, "after --: " + listOfCuts())->required();
   planned->add_option("-o,--output", options->output, "the job's folder")->required();
   planned->add_option("--tasks", options->tasks, "into how many")
@@ -431,8 +444,8 @@ std::function<int()> addCluster(CLI::App& app) {
         ->check(CLI::Range(0.0, 1e6));
   };
   saveEvery(planned);
-  CLI::App* running =
-      app.add_subcommand("run", "Work on a job's tasks until none is left; any number of machines at once");
+  CLI::App* running = commands.add("run", "Work on a job's tasks until none is left; any number of machines at once",
+                                   [options] { return run(*options); });
   running->add_option("JOB", options->folder, "the job's folder")->required();
   running->add_option("--jobs", options->jobs, "tasks at once")->capture_default_str()->check(CLI::Range(1, 256));
   running
@@ -443,18 +456,14 @@ std::function<int()> addCluster(CLI::App& app) {
   running->add_option("--task", options->task, "that one alone, such as of a Slurm array");
   deadAfter(running);
   saveEvery(running);
-  CLI::App* asked = app.add_subcommand("status", "How many tasks are done, running, abandoned, waiting");
+  CLI::App* asked = commands.add("status", "How many tasks are done, running, abandoned, waiting",
+                                 [options] { return status(*options); });
   asked->add_option("JOB", options->folder, "the job's folder")->required();
   deadAfter(asked);
-  CLI::App* joined = app.add_subcommand("join", "Make the result of all parts");
+  CLI::App* joined = commands.add("join", "Make the result of all parts", [options] { return join(*options); });
   joined->add_option("JOB", options->folder, "the job's folder")->required();
   for (CLI::App* command : {planned, running, asked, joined}) options->common.declare(*command);
-  return [=] {
-    return planned->parsed()   ? plan(*options)
-           : running->parsed() ? run(*options)
-           : asked->parsed()   ? status(*options)
-                               : join(*options);
-  };
+  return commands.work();
 }
 
 }  // namespace lucerna::demo

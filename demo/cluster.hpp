@@ -1,12 +1,12 @@
 // lucerna cluster plan|run|status|join: work that is cut by --part, made by many machines that share a folder.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "subcommands.hpp"
 
-#include <functional>
+#include <CLI/CLI.hpp>
 
 namespace lucerna::demo {
 
-std::function<int()> addCluster(CLI::App& app);
+Work addCluster(CLI::App& app);
 
 }  // namespace lucerna::demo

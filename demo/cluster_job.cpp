@@ -32,7 +32,7 @@ bool createNew(const fs::path& file, const std::string& text) {
   const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
   if (descriptor < 0) {
     if (errno == EEXIST) return false;
-    throwBadInput("{}: cannot be made ({})", file.string(), std::strerror(errno));
+    throwBadInput("{}: cannot create file ({})", file.string(), std::strerror(errno));
   }
   const auto written = ::write(descriptor, text.data(), text.size());  // for people: the file's existence is the claim
   static_cast<void>(written);
@@ -53,7 +53,7 @@ void ClusterJob::plan(const fs::path& folder, const ClusterCommand& command, std
   std::error_code error;
   for (const char* part : {"claims", "parts", "done", "logs"}) {
     fs::create_directories(folder / part, error);
-    if (error) throwBadInput("-o {}: the folder cannot be made ({})", folder.string(), error.message());
+    if (error) throwBadInput("-o {}: cannot create folder ({})", folder.string(), error.message());
   }
   nlohmann::ordered_json job;
   job["lucerna_cluster_job"] = 2;

@@ -2,9 +2,10 @@
 // of.
 #pragma once
 
+#include "subcommands.hpp"
+
 #include <CLI/CLI.hpp>
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ struct CommandEntry {
 std::vector<CommandEntry> commandTree(CLI::App& program);
 
 /// The subcommands that print it, as commands.hpp has the others.
-std::function<int()> addCompletion(CLI::App& app);
-std::function<int()> addManual(CLI::App& app);
+Work addCompletion(CLI::App& app);
+Work addManual(CLI::App& app);
 
 }  // namespace lucerna::demo

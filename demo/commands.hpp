@@ -6,6 +6,7 @@
 #include "host/host.hpp"
 #include "render/renderer.hpp"
 #include "settings/settings.hpp"
+#include "subcommands.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -18,9 +19,7 @@
 
 namespace lucerna::demo {
 
-/// A subcommand: its options are declared on `app`, its work is returned and run after parsing. It returns the exit
-/// code.
-using Work = std::function<int()>;
+/// A subcommand: its options are declared on `app`, its work is returned and run after parsing.
 Work addWalk(CLI::App& app);
 Work addRender(CLI::App& app);
 Work addInfo(CLI::App& app);

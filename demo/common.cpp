@@ -128,7 +128,7 @@ void chooseTransport(RenderSettings& settings, const PictureOptions& options,
   if (!isSet("lpv.transport")) {
     settings.lpv.transport = LpvTransport::rays;
     if (options.fidelity != "corrected" || settings.rsm.fluxCosine ||
-        settings.lpv.deviations != LightPropagationVolume::Deviations{})
+        settings.lpv.deviations != LpvSettings::Deviations{})
       settings.lpv.transport = LpvTransport::propagate;
     for (const Setting* setting : given)
       if (const auto transport = onlyTransport(*setting)) {
@@ -139,7 +139,7 @@ void chooseTransport(RenderSettings& settings, const PictureOptions& options,
       }
   }
   if (!isSet("lpv.bounces") && settings.lpv.transport == LpvTransport::rays)
-    settings.lpv.bounces = LightPropagationVolume::kAllBounces;
+    settings.lpv.bounces = LpvSettings::kAllBounces;
 }
 
 /// The transports of the light propagation volume that read a setting: "propagate", "propagate and rays".

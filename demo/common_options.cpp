@@ -1,4 +1,5 @@
 // What every command has, the labs alone too (demo/labs_main.cpp): --host, --json and --quiet, progress, interruption.
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
@@ -7,7 +8,6 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
 #include <csignal>
 #include <ctime>
 #include <unistd.h>
@@ -45,17 +45,14 @@ void CommonOptions::writeJson(const nlohmann::ordered_json& value) const {
 }
 
 Progress::Progress(std::string what, int total, bool quiet)
-    : what_(std::move(what)),
-      total_(total),
-      enabled_(!quiet && isatty(STDERR_FILENO)),
-      start_(std::chrono::steady_clock::now()) {}
+    : what_(std::move(what)), total_(total), enabled_(!quiet && isatty(STDERR_FILENO)), start_(Clock::now()) {}
 
 Progress::~Progress() {
   if (drawn_) fmt::print(stderr, "\r\x1b[K");
 }
 
 void Progress::update(int done) {
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double seconds = secondsSince(start_);
   if (!enabled_ || (seconds < 1.0 && !drawn_)) return;
   constexpr int kWidth = 30;
   const int filled = total_ > 0 ? kWidth * done / total_ : 0;

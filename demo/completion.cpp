@@ -234,7 +234,7 @@ std::string fish(const std::vector<CommandEntry>& commands) {
 
 }  // namespace
 
-std::function<int()> addCompletion(CLI::App& app) {
+Work addCompletion(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   offer(app.add_option("SHELL", *shell, "bash, zsh or fish")->required(), {"bash", "zsh", "fish"});
   app.footer("For this shell alone: source <(lucerna completion bash)");

@@ -6,7 +6,11 @@
 int main(int argc, char** argv) {
   CLI::App app{"Lucerna's teaching labs.\nStart with: lucerna-labs lab list", "lucerna-labs"};
   app.set_version_flag("--version", LUCERNA_VERSION);
-  app.require_subcommand(1);
-  CLI::App* lab = app.add_subcommand("lab", "Teaching labs that check and grade themselves");
-  return lucerna::demo::runCommands(app, {{lab, lucerna::demo::addLabs(*lab)}}, argc, argv);
+  lucerna::demo::Subcommands commands(app);
+  commands.add("lab", "Teaching labs that check and grade themselves", [](CLI::App& lab) {
+    lucerna::demo::Subcommands labs(lab);
+    lucerna::demo::addLabs(labs);
+    return labs.work();
+  });
+  return lucerna::demo::runCommands(app, commands.work(), argc, argv);
 }

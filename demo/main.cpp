@@ -6,33 +6,28 @@
 #include "merge.hpp"
 #include "run_commands.hpp"
 
-#include <vector>
-
 int main(int argc, char** argv) {
   CLI::App app{"Lucerna: real-time global illumination, measured.\nStart with: lucerna walk", "lucerna"};
   app.set_version_flag("--version", LUCERNA_VERSION);
-  app.require_subcommand(1);
-  std::vector<lucerna::demo::Command> commands;
-  const auto add = [&](const char* name, const char* description, lucerna::demo::Work (*declare)(CLI::App&)) {
-    CLI::App* command = app.add_subcommand(name, description);
-    commands.emplace_back(command, declare(*command));
-  };
-  add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times",
-      lucerna::demo::addWalk);
-  add("render", "Render one picture of a scene", lucerna::demo::addRender);
-  add("merge", "Parts made by --part (samples, frames, batches, rows) as one", lucerna::demo::addMerge);
-  add("cluster", "Work on many machines: a folder that they share, Slurm, or this machine alone",
-      lucerna::demo::addCluster);
-  add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
-  add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
-  add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL", lucerna::demo::addMedia);
-  add("bench", "Measure: error over time, stability, what is left out; published tables and pictures made again",
-      lucerna::demo::addBench);
-  add("compare", "Errors between two HDR pictures, with heat maps", lucerna::demo::addCompare);
-  add("tune", "Measure a scene, and choose the technique and settings that meet a frame time or an error",
-      lucerna::demo::addTune);
-  add("lab", "Teaching labs that check and grade themselves", lucerna::demo::addLab);
-  add("completion", "Print a completion script for a shell", lucerna::demo::addCompletion);
-  add("manual", "Print the manual page, in roff", lucerna::demo::addManual);
-  return lucerna::demo::runCommands(app, commands, argc, argv);
+  lucerna::demo::Subcommands commands(app);
+  commands.add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times",
+               lucerna::demo::addWalk);
+  commands.add("render", "Render one picture of a scene", lucerna::demo::addRender);
+  commands.add("merge", "Parts made by --part (samples, frames, batches, rows) as one", lucerna::demo::addMerge);
+  commands.add("cluster", "Work on many machines: a folder that they share, Slurm, or this machine alone",
+               lucerna::demo::addCluster);
+  commands.add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
+  commands.add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
+  commands.add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL",
+               lucerna::demo::addMedia);
+  commands.add("bench",
+               "Measure: error over time, stability, what is left out; published tables and pictures made again",
+               lucerna::demo::addBench);
+  commands.add("compare", "Errors between two HDR pictures, with heat maps", lucerna::demo::addCompare);
+  commands.add("tune", "Measure a scene, and choose the technique and settings that meet a frame time or an error",
+               lucerna::demo::addTune);
+  commands.add("lab", "Teaching labs that check and grade themselves", lucerna::demo::addLab);
+  commands.add("completion", "Print a completion script for a shell", lucerna::demo::addCompletion);
+  commands.add("manual", "Print the manual page, in roff", lucerna::demo::addManual);
+  return lucerna::demo::runCommands(app, commands.work(), argc, argv);
 }

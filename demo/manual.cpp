@@ -157,7 +157,7 @@ std::string manual(CLI::App& program) {
 
 }  // namespace
 
-std::function<int()> addManual(CLI::App& app) {
+Work addManual(CLI::App& app) {
   return [&app] {
     fmt::print("{}", manual(*app.get_parent()));
     return 0;

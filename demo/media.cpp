@@ -68,16 +68,18 @@ int draft(const Options& options) {
 }  // namespace
 
 Work addMedia(CLI::App& app) {
-  app.require_subcommand(1);
+  Subcommands commands(app);
   auto options = std::make_shared<Options>();
-  CLI::App* listApp = app.add_subcommand("list", "The catalogue: the original's twelve media and 27 measured liquids");
-  options->common.declare(*listApp);
-  CLI::App* draftApp = app.add_subcommand("draft", "Draft the original's scene JSON from an MTL, to be edited");
-  draftApp->add_option("MTL", options->mtl, "the material library; an OBJ of the same stem gives camera and light")
+  CLI::App* listed = commands.add("list", "The catalogue: the original's twelve media and 27 measured liquids",
+                                  [options] { return list(*options); });
+  options->common.declare(*listed);
+  CLI::App* drafted = commands.add("draft", "Draft the original's scene JSON from an MTL, to be edited",
+                                   [options] { return draft(*options); });
+  drafted->add_option("MTL", options->mtl, "the material library; an OBJ of the same stem gives camera and light")
       ->required();
-  draftApp->add_option("-o,--output", options->output, "FILE.json (default: standard output)");
-  options->common.declare(*draftApp);
-  return [options, listApp] { return listApp->parsed() ? list(*options) : draft(*options); };
+  drafted->add_option("-o,--output", options->output, "FILE.json (default: standard output)");
+  options->common.declare(*drafted);
+  return commands.work();
 }
 
 }  // namespace lucerna::demo

@@ -2,12 +2,12 @@
 // one folder (parts.hpp).
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "subcommands.hpp"
 
-#include <functional>
+#include <CLI/CLI.hpp>
 
 namespace lucerna::demo {
 
-std::function<int()> addMerge(CLI::App& app);
+Work addMerge(CLI::App& app);
 
 }  // namespace lucerna::demo

@@ -75,7 +75,7 @@ PartFolder::PartFolder(const PartOptions& options, const std::string& command, c
   folder_ = options.checkpoint;
   std::error_code error;
   fs::create_directories(*folder_, error);
-  if (error) throwBadInput("--checkpoint {}: the folder cannot be made ({})", folder_->string(), error.message());
+  if (error) throwBadInput("--checkpoint {}: cannot create folder ({})", folder_->string(), error.message());
   if (!fs::exists(*folder_ / kDescription)) {
     if (fs::directory_iterator(*folder_) != fs::directory_iterator())
       throwBadInput("--checkpoint {}: holds something else; choose another folder", folder_->string());
@@ -164,7 +164,7 @@ Json mergeParts(std::vector<fs::path> parts, const fs::path& whole) {
   const fs::path draft = fmt::format("{}.draft.{}", whole.string(), ::getpid());
   std::error_code error;
   fs::create_directories(draft, error);
-  if (error) throwBadInput("--checkpoint {}: the folder cannot be made ({})", whole.string(), error.message());
+  if (error) throwBadInput("--checkpoint {}: cannot create folder ({})", whole.string(), error.message());
   try {
     for (const auto& [json, part] : found) copyUnits(part, draft);
   } catch (...) {

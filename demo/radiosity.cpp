@@ -181,8 +181,8 @@ Work addSolve(CLI::App& app) {
   offer(shortFor("radiosity.solver",
                  app.add_option("--solver", options->solver,
                                 "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, "
-                                "progressive, overshoot, anderson, per-room, cg")),
-        {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "per-room", "cg"});
+                                "progressive, overshoot, anderson, cg")),
+        {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "cg"});
   std::vector<std::string> switches;
   for (const RadiosityDeviation& deviation : allRadiosityDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
@@ -245,20 +245,11 @@ Work addSolve(CLI::App& app) {
 }  // namespace
 
 Work addRadiosity(CLI::App& app) {
-  app.require_subcommand(1);
-  auto commands = std::make_shared<std::vector<std::pair<CLI::App*, Work>>>();
-  const auto add = [&](const char* name, const char* description, Work (*declare)(CLI::App&)) {
-    CLI::App* command = app.add_subcommand(name, description);
-    commands->emplace_back(command, declare(*command));
-  };
-  add("generate", "Make one of the original's three models, or triangles of any scene", addGenerate);
-  add("solve", "Compute the radiosity of a scene", addSolve);
-  add("show", "Show a triangle file in a window, or render a picture of it", addRadiosityShow);
-  return [commands] {
-    for (const auto& [command, work] : *commands)
-      if (command->parsed()) return work();
-    return 0;
-  };
+  Subcommands commands(app);
+  commands.add("generate", "Make one of the original's three models, or triangles of any scene", addGenerate);
+  commands.add("solve", "Compute the radiosity of a scene", addSolve);
+  commands.add("show", "Show a triangle file in a window, or render a picture of it", addRadiosityShow);
+  return commands.work();
 }
 
 }  // namespace lucerna::demo

@@ -1,4 +1,5 @@
 // lucerna radiosity show FILE [s|c]: a triangle file in a window, or as one picture with -o.
+#include "base/clock.hpp"
 #include "radiosity.hpp"
 
 #include "base/error.hpp"
@@ -12,14 +13,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace lucerna::demo {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct Options {
   CommonOptions common;
@@ -69,7 +67,7 @@ void walkAround(Host& host, gl::ProgramLibrary& programs, std::span<const RadTri
       if (key == '-') display.constant = constant / 1.25;
     }
     if (changed) view->show(triangles, display);
-    const double dt = std::chrono::duration<double>(Clock::now() - frameStart).count();
+    const double dt = secondsSince(frameStart);
     frameStart = Clock::now();
     freeCamera.move(input, std::min(dt, 0.1));
     view->record(freeCamera.camera());

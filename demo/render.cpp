@@ -1,16 +1,16 @@
 // lucerna render SCENE ... -o OUT: one picture. PNG is tone mapped; hdr, exr and pfm keep linear radiance.
+#include "base/clock.hpp"
 #include "base/error.hpp"
-#include "gl/draw.hpp"
 #include "base/files.hpp"
 #include "commands.hpp"
+#include "gl/draw.hpp"
 #include "offers.hpp"
-#include "settings/deviations.hpp"
 #include "render_path.hpp"
+#include "settings/deviations.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace lucerna::demo {
@@ -50,11 +50,10 @@ int run(Options options) {
                            context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
   Renderer renderer(context, programs, scene, settings);
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   for (int i = 0; i < options.repeat; ++i) renderer.renderToTheEnd(camera);
   gl::finish();
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / options.repeat;
+  const double seconds = secondsSince(start) / options.repeat;
   renderer.drain();
 
   const Image image = renderer.readRadiance();

@@ -1,10 +1,10 @@
 #include "render_path.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
-#include "first_sample.hpp"
 #include "parts.hpp"
 #include "pathtracer/film.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -12,7 +12,6 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
 #include <cmath>
 
 namespace lucerna::demo {
@@ -140,7 +139,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
       throwBadInput("{}: its samples begin with number {}, not {}{}", checkpoint, first, part ? part->first : 0,
                     part ? "" : " (a part of --samples; lucerna merge makes a whole)");
   } else if (part) {
-    setFirstSample(tracer, part->first);
+    tracer.setFirstSample(part->first);
   }
   const auto save = [&] { writeFileAtomically(checkpoint, tracer.checkpoint()); };
   watchForInterrupt();
@@ -148,8 +147,8 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const std::uint32_t target =
       part ? part->last - part->first
            : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : shared.path.samples);
-  const auto start = std::chrono::steady_clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const auto start = Clock::now();
+  const auto elapsed = [&] { return secondsSince(start); };
   Progress progress("samples", static_cast<int>(std::min(target, 1000000000u)), common.quiet || !(path.spp || part));
   std::uint32_t done = tracer.statistics().fewestSamples;
   const std::uint32_t resumed = done;

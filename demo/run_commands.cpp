@@ -2,6 +2,7 @@
 #include "run_commands.hpp"
 
 #include "base/error.hpp"
+#include "commands.hpp"
 #include "gl/context.hpp"
 
 #include <fmt/core.h>
@@ -50,7 +51,7 @@ void checkNumbers(const CLI::App& app) {
 
 }  // namespace
 
-int lucerna::demo::runCommands(CLI::App& app, const std::vector<Command>& commands, int argc, char** argv) {
+int lucerna::demo::runCommands(CLI::App& app, const Work& work, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -71,14 +72,11 @@ int lucerna::demo::runCommands(CLI::App& app, const std::vector<Command>& comman
   }
   try {
     checkNumbers(app);
-    for (const auto& [command, work] : commands)
-      if (command->parsed()) {
-        const int code = flushed(work());
-        const std::string errors = lucerna::gl::takePendingErrors();
-        if (errors.empty()) return code;
-        printError(fmt::format("internal error: OpenGL reports {} at the end of the command", errors));
-        return static_cast<int>(lucerna::ErrorKind::fault);
-      }
+    const int code = flushed(work());
+    const std::string errors = lucerna::gl::takePendingErrors();
+    if (errors.empty()) return code;
+    printError(fmt::format("internal error: OpenGL reports {} at the end of the command", errors));
+    return static_cast<int>(lucerna::ErrorKind::fault);
   } catch (const lucerna::Error& error) {
     printError(error.what());
     return error.exitCode();

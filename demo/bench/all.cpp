@@ -1,5 +1,6 @@
 // lucerna bench all --out DIR: the whole report on one page, with an index: error, deviations, stability, needs, rays,
 // and the three originals' tables and pictures.
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/bench.hpp"
@@ -10,12 +11,12 @@
 #include "bench/rays_bench.hpp"
 #include "bench/stability.hpp"
 #include "offers.hpp"
+#include "parts.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace lucerna::demo {
@@ -79,7 +80,7 @@ class Report {
 
   void stability() {
     gl::ProgramLibrary programs;
-    const std::vector<StabilityRow> rows = runStability({context_, programs}, "", options_.common.quiet);
+    const std::vector<StabilityRow> rows = runStability({context_, programs}, "", options_.common.quiet, {});
     page_.section("Stability");
     HtmlPage::Table table{{"technique", "case", "parameter", "expected", "measured", "verdict"}, {}, {}};
     int failed = 0;
@@ -259,7 +260,7 @@ int run(AllOptions options) {
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   watchForInterrupt();
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   Report report(options, context, std::string(nameOf(host->kind())));
   const auto part = [&](const char* name, auto make) {
     if (interrupted() ||
@@ -280,7 +281,7 @@ int run(AllOptions options) {
   part("rays", [&] { report.rays(options.scenes); });
   part("tables", [&] { report.tables(originals); });
   part("pictures", [&] { report.pictures(originals); });
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = secondsSince(start);
   if (interrupted()) {
     fmt::print(stderr, "lucerna: interrupted; the same command with --out {} goes on\n", options.out);
     return exitCode();

@@ -21,27 +21,19 @@ std::string sceneOrAtrium(const std::string& scene) { return scene.empty() ? ass
 }  // namespace bench
 
 Work addBench(CLI::App& app) {
-  app.require_subcommand(1);
-  auto commands = std::make_shared<std::vector<std::pair<CLI::App*, Work>>>();
-  const auto add = [&](const char* name, const char* description, Work (*declare)(CLI::App&)) {
-    CLI::App* command = app.add_subcommand(name, description);
-    commands->emplace_back(command, declare(*command));
-  };
-  add("tables", "Measure an original's published tables again: published, measured, ratio", addBenchTables);
-  add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);
-  add("rays", "Rays per second of the compute-shader hierarchy, beside Embree on the same rays", addBenchRays);
-  add("error", "Error against run time: every technique over a ladder of settings", addBenchError);
-  add("references", "The references of bench error alone, in parts where they are to be", addBenchReferences);
-  add("diff", "Two reports of bench error row by row: better, worse or undecided, by a test that knows both spreads",
-      addBenchDiff);
-  add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);
-  add("needs", "What a scene leaves out, and what that saves", addBenchNeeds);
-  add("all", "The whole report on one page: tables, error, stability, needs, rays", addBenchAll);
-  return [commands] {
-    for (const auto& [command, work] : *commands)
-      if (command->parsed()) return work();
-    return 0;
-  };
+  Subcommands commands(app);
+  commands.add("tables", "Measure an original's published tables again: published, measured, ratio", addBenchTables);
+  commands.add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);
+  commands.add("rays", "Rays per second of the compute-shader hierarchy, beside Embree on the same rays", addBenchRays);
+  commands.add("error", "Error against run time: every technique over a ladder of settings", addBenchError);
+  commands.add("references", "The references of bench error alone, in parts where they are to be", addBenchReferences);
+  commands.add("diff",
+               "Two reports of bench error row by row: better, worse or undecided, by a test that knows both spreads",
+               addBenchDiff);
+  commands.add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);
+  commands.add("needs", "What a scene leaves out, and what that saves", addBenchNeeds);
+  commands.add("all", "The whole report on one page: tables, error, stability, needs, rays", addBenchAll);
+  return commands.work();
 }
 
 }  // namespace lucerna::demo

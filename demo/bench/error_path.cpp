@@ -1,17 +1,17 @@
 // The path tracer's ladders, corrected and as published, and its deviations one by one: pictures that go on being
 // sampled, observed at 1, 2, 4, ... samples a pixel.
+#include "base/clock.hpp"
 #include "base/error.hpp"
-#include "gl/draw.hpp"
 #include "base/files.hpp"
 #include "base/statistics.hpp"
 #include "bench/error_rows.hpp"
+#include "gl/draw.hpp"
 #include "measure/flip.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "settings/deviations.hpp"
 
 #include <fmt/core.h>
 
-#include <chrono>
 #include <cmath>
 #include <ctime>
 
@@ -19,7 +19,6 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr std::uint32_t kWarmUp = 8;  // samples a pixel
 
 /// Corrected, as published, or corrected with one deviation.

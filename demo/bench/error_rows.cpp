@@ -1,5 +1,6 @@
 #include "bench/error_rows.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/hash.hpp"
@@ -14,7 +15,6 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <map>
@@ -25,9 +25,7 @@ namespace lucerna::demo::bench {
 namespace fs = std::filesystem;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double msSince(Clock::time_point start) { return 1e3 * std::chrono::duration<double>(Clock::now() - start).count(); }
+double msSince(Clock::time_point start) { return 1e3 * secondsSince(start); }
 
 std::string fileStem(const std::string& name) {
   Hash hash;

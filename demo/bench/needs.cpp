@@ -1,16 +1,16 @@
 // lucerna bench needs [SCENE]...: what a scene leaves out, and what leaving it out saves: the same picture with every
 // feature forced on beside it.
+#include "base/clock.hpp"
 #include "base/error.hpp"
-#include "gl/draw.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
 #include "bench/needs_bench.hpp"
+#include "gl/draw.hpp"
 #include "measure/neutral.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace lucerna::demo {
@@ -19,14 +19,12 @@ namespace bench {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Frames of the two renderers in turn, so that what else the machine does meets both.
 void measureFrames(Renderer& renderer, const Camera& camera, std::vector<double>& ms) {
   const auto start = Clock::now();
   renderer.render(camera);
   gl::finish();
-  ms.push_back(1e3 * std::chrono::duration<double>(Clock::now() - start).count());
+  ms.push_back(1e3 * secondsSince(start));
 }
 
 double largestDifference(const Image& a, const Image& b) {

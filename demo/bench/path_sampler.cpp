@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 #include "base/hash.hpp"
-#include "first_sample.hpp"
 #include "measure/light_kinds.hpp"
 #include "pathtracer/path_tracer.hpp"
 
@@ -58,7 +57,7 @@ Image PathSampler::sample(std::uint64_t first, std::uint32_t samples) {
     tracer_ = std::make_unique<PathTracer>(context_, programs_, scene_, settings);
   }
   tracer_->setCamera(camera_);
-  if (first > 0) setFirstSample(*tracer_, static_cast<std::uint32_t>(first));
+  if (first > 0) tracer_->setFirstSample(static_cast<std::uint32_t>(first));
   tracer_->record(samples);
   return tracer_->mean();
 }

@@ -1,5 +1,6 @@
 // lucerna bench rays: rays per second of the hierarchy in a compute shader, beside Embree's single rays on the same
 // rays in the same run.
+#include "base/clock.hpp"
 #include "bench/bench.hpp"
 
 #include "base/error.hpp"
@@ -13,7 +14,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -27,9 +27,9 @@ RaysOptions::RaysOptions() : splitBudget(BvhSettings{}.splitBudget) {}
 namespace {
 
 double secondsOf(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return secondsSince(start);
 }
 
 class Tracer {
@@ -37,10 +37,10 @@ class Tracer {
   Tracer(gl::ProgramLibrary& programs, const RayScene& scene, std::size_t most)
       : programs_(programs),
         scene_(scene),
-        rays_("rays", most * sizeof(PlainRay), nullptr, GL_DYNAMIC_DRAW),
-        hits_("hits", most * sizeof(PlainHit), nullptr, GL_DYNAMIC_READ) {
+        rays_("rays", most * sizeof(PlainRay), nullptr, gl::Usage::dynamicDraw),
+        hits_("hits", most * sizeof(PlainHit), nullptr, gl::Usage::dynamicRead) {
     const std::vector<std::uint32_t> none(most, PlainHit::kNone);
-    skipped_ = gl::Buffer("skipped", most * sizeof none[0], none.data(), GL_STATIC_DRAW);
+    skipped_ = gl::Buffer("skipped", most * sizeof none[0], none.data(), gl::Usage::staticDraw);
   }
 
   const gl::Program& program(bool anyHit, bool countWork) {
@@ -56,12 +56,12 @@ class Tracer {
   void trace(const gl::Program& program, std::size_t count) {
     program.use();
     scene_.bind();
-    rays_.bind(GL_SHADER_STORAGE_BUFFER, 2);
-    hits_.bind(GL_SHADER_STORAGE_BUFFER, 3);
-    skipped_.bind(GL_SHADER_STORAGE_BUFFER, 4);
+    rays_.bindStorage(2);
+    hits_.bindStorage(3);
+    skipped_.bindStorage(4);
     program.set("rayCount", static_cast<int>(count));
     for (std::size_t first = 0; first < count; first += kBatch) {
-      const gl::ComputePass pass("trace rays", GL_BUFFER_UPDATE_BARRIER_BIT);
+      const gl::ComputePass pass("trace rays", gl::Barrier::bufferUpdate);
       program.set("firstRay", static_cast<int>(first));
       pass.dispatch(glm::ivec3(static_cast<int>(std::min(kBatch, count - first)), 1, 1), glm::ivec3(64, 1, 1));
     }

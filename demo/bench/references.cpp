@@ -1,5 +1,6 @@
 #include "bench/references.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "bench/path_sampler.hpp"
 #include "measure/batches.hpp"
@@ -7,7 +8,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 
@@ -141,9 +141,9 @@ ReferenceBatches sampleReferences(const ReferenceRequest& request, const PartOpt
         batch = readImage(part.file(unit, ".pfm"));
         seconds += kept->at("seconds").get<double>();
       } else {
-        const auto start = std::chrono::steady_clock::now();
+        const auto start = Clock::now();
         batch = share.sampler.asSampler()(b * size, size);
-        const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const double took = secondsSince(start);
         if (part.folder()) writeImage(part.file(unit, ".pfm"), batch);
         part.store(unit, {{"seconds", took}});
         seconds += took;

@@ -1,16 +1,15 @@
 // lucerna bench stability [--technique T]: a row a case: technique, parameter, expected, measured, verdict.
 #include "bench/stability.hpp"
 
-#include "bench/stability_part.hpp"
-
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/hash.hpp"
 #include "bench/bench.hpp"
+#include "parts.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace lucerna::demo {
@@ -41,7 +40,6 @@ std::string expectedText(const Measurement& m) {
 namespace {
 
 StabilityRow runCase(const StabilityCase& c, const StabilityContext& context) {
-  using Clock = std::chrono::steady_clock;
   StabilityRow row{c.technique, c.name, c.parameter, "", {}, 0.0, false};
   const auto start = Clock::now();
   try {
@@ -51,7 +49,7 @@ StabilityRow runCase(const StabilityCase& c, const StabilityContext& context) {
     row.measurement.measured = NAN;
     row.note = error.what();
   }
-  row.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  row.seconds = secondsSince(start);
   return row;
 }
 
@@ -72,10 +70,6 @@ StabilityRow keptRow(const StabilityCase& c, const PartFolder::Json& kept) {
 }
 
 }  // namespace
-
-std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet) {
-  return runStability(context, technique, quiet, PartOptions{});
-}
 
 std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet,
                                        const PartOptions& options) {

@@ -10,6 +10,10 @@
 #include <string>
 #include <vector>
 
+namespace lucerna::demo {
+struct PartOptions;
+}
+
 namespace lucerna::demo::bench {
 
 /// How `measured` is held against `expected`. What is not finite passes none of them.
@@ -54,8 +58,10 @@ struct StabilityRow {
   double seconds = 0.0;
   bool passed = false;
 };
-/// Those of `technique`, or all; stops when interrupted.
-std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet);
+/// Of the rows of `technique`, or of all, those of a part; kept ones are taken from where they lie. Stops when
+/// interrupted.
+std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet,
+                                       const PartOptions& part);
 nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows);
 std::string expectedText(const Measurement& m);
 /// The rows of a table that `--json` kept. Throws Error(badInput).

@@ -36,7 +36,7 @@ class Volume {
       : map_(vpls), lpv_(context.programs, context.context.capabilities(), settingsOf(setup)) {
     Cascade cascade;
     cascade.centre = glm::dvec3(0.5 * setup.cells);
-    const LightPropagationVolume::Inputs inputs{{map_.outputs()}, {cascade}, setup.referenceIrradiance};
+    const LpvInputs inputs{{map_.outputs()}, {cascade}, setup.referenceIrradiance};
     lpv_.place(inputs);
     lpv_.inject(inputs);
     lpv_.fillGeometryVolume(inputs);
@@ -73,8 +73,8 @@ class Volume {
         if (std::isfinite(vpls[i].flux)) largestFlux_ += std::max(0.0f, vpls[i].flux);
       }
       const auto make = [&](const char* name, const std::vector<glm::vec4>& texels) {
-        gl::Texture texture(name, GL_RGBA32F, glm::ivec3(kWidth, height, 1), {}, 1, GL_TEXTURE_2D_ARRAY);
-        texture.upload(GL_RGBA, GL_FLOAT, texels.data());
+        gl::Texture texture(name, gl::Format::rgba32f, glm::ivec3(kWidth, height, 1), {}, 1, gl::TextureKind::array);
+        texture.upload(gl::Texels::rgbaFloat, texels.data());
         return texture;
       };
       position_ = make("stability position", position);
@@ -88,14 +88,14 @@ class Volume {
     double largestFlux_ = 0.0;
   };
 
-  static LightPropagationVolume::Settings settingsOf(const Setup& setup) {
-    LightPropagationVolume::Settings s;
+  static LpvSettings settingsOf(const Setup& setup) {
+    LpvSettings s;
     s.cascades.cells = setup.cells;
     s.cascades.cascades = 1;
     s.iterations = setup.iterations;
     s.blocking = setup.blocking;
     s.fill = setup.fill;
-    if (setup.full) s.storage = LightPropagationVolume::Storage::full;
+    if (setup.full) s.storage = LpvSettings::Storage::full;
     if (setup.amplifier > 0.0f) {
       s.deviations.fourPiKernel = true;
       s.amplifier = setup.amplifier;

@@ -119,7 +119,7 @@ void addStiff(std::vector<StabilityCase>& cases) {
   }
   for (const RadiositySolver solver :
        {RadiositySolver::jacobi, RadiositySolver::gaussSeidel, RadiositySolver::progressive, RadiositySolver::overshoot,
-        RadiositySolver::anderson, RadiositySolver::perRoom, RadiositySolver::conjugateGradients})
+        RadiositySolver::anderson, RadiositySolver::conjugateGradients})
     add(cases, "true error over the guaranteed one, albedo 0.99", std::string(nameOf(solver)),
         [solver](const StabilityContext& c) {
           RadiositySolutionSettings settings = settingsFor(kSide / 3.0, 1e-2);

@@ -87,12 +87,11 @@ void addAlbedo(std::vector<StabilityCase>& cases) {
           return Measurement{1.0, mean(picture(c, shining(), settingsOf(bounces, 64))) / (bounces + 2.0), 0.02};
         });
   add(cases, "the same, all bounces: no more than there is", "lpv.bounces=all", [](const StabilityContext& c) {
-    return Measurement{1.0 / (1.0 - kAlbedo),
-                       mean(picture(c, shining(), settingsOf(LightPropagationVolume::kAllBounces, 128))), 0.0,
-                       Rule::atMost};
+    return Measurement{1.0 / (1.0 - kAlbedo), mean(picture(c, shining(), settingsOf(LpvSettings::kAllBounces, 128))),
+                       0.0, Rule::atMost};
   });
   add(cases, "the same: more than 64 bounces have", "lpv.bounces=all", [](const StabilityContext& c) {
-    return Measurement{66.0, mean(picture(c, shining(), settingsOf(LightPropagationVolume::kAllBounces, 128))), 0.0,
+    return Measurement{66.0, mean(picture(c, shining(), settingsOf(LpvSettings::kAllBounces, 128))), 0.0,
                        Rule::atLeast};
   });
 }
@@ -117,8 +116,7 @@ void addThinSheet(std::vector<StabilityCase>& cases) {
           camera.up = {0.0, 0.0, -1.0};
           parts.scene().cameras.push_back(camera);
           double largest = 0.0;
-          for (const glm::vec3& p :
-               picture(c, parts.scene(), settingsOf(LightPropagationVolume::kAllBounces, 64)).pixels)
+          for (const glm::vec3& p : picture(c, parts.scene(), settingsOf(LpvSettings::kAllBounces, 64)).pixels)
             largest = std::max({largest, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
           return Measurement{0.0, largest, 0.0};
         });
@@ -149,8 +147,7 @@ void addCornerLamp(std::vector<StabilityCase>& cases) {
       add(cases, fmt::format("{} in a corner: pixels not finite or negative", emissive ? "a shining plate" : "a lamp"),
           fmt::format("{:g} sides away", distance), [room, emissive](const StabilityContext& c) {
             double count = 0.0;
-            for (const glm::vec3& p :
-                 picture(c, room(emissive), settingsOf(LightPropagationVolume::kAllBounces, 64)).pixels)
+            for (const glm::vec3& p : picture(c, room(emissive), settingsOf(LpvSettings::kAllBounces, 64)).pixels)
               count += !(std::isfinite(p.x + p.y + p.z) && std::min({p.x, p.y, p.z}) >= 0.0f);
             return Measurement{0.0, count, 0.0};
           });

@@ -2,18 +2,18 @@
 //
 // Every configuration keeps its own volume; a round runs each of them once, published and best path of a setting next
 // to each other (A B A B), so that what else the machine does meets both. The first round is a warm-up and is dropped.
-#include "bench/provenance.hpp"
-#include "measure/reference.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
+#include "bench/provenance.hpp"
 #include "forward/gpu_scene.hpp"
 #include "forward/sun_frustum.hpp"
 #include "gl/pass.hpp"
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
-#include "settings/deviations.hpp"
+#include "measure/reference.hpp"
 #include "rsm/reflective_shadow_map.hpp"
+#include "settings/deviations.hpp"
 #include "shared/frame.h"
 
 #include <fmt/core.h>
@@ -164,10 +164,10 @@ struct Config {
   }
 };
 
-LightPropagationVolume::Settings settingsOf(const Config& config) {
+LpvSettings settingsOf(const Config& config) {
   RenderSettings settings;
   if (config.published) applyFidelity(settings, Fidelity::thesis);
-  LightPropagationVolume::Settings& lpv = settings.lpv;
+  LpvSettings& lpv = settings.lpv;
   lpv.transport = LpvTransport::propagate;
   if (config.published && config.fill != LpvFill::layered) {
     lpv.tile = 1;
@@ -200,8 +200,8 @@ class Bench {
     frame.sunClipFromWorld = glm::mat4(sunFrustum_.clipFromWorld);
     frame.sunDirection = glm::vec3(input.scene.sun->direction);
     frame.sunIrradiance = input.scene.sun->irradiance;
-    frameConstants_ = gl::Buffer("frame constants", sizeof frame, &frame, GL_STATIC_DRAW);
-    frameConstants_.bind(GL_UNIFORM_BUFFER, 0);
+    frameConstants_ = gl::Buffer("frame constants", sizeof frame, &frame, gl::Usage::staticDraw);
+    frameConstants_.bindUniform(0);
   }
 
   gl::TimeQuery& timer() { return timer_; }
@@ -233,7 +233,7 @@ class Bench {
     for (const Config& config : order_) {
       if (interrupted()) return;
       LightPropagationVolume& volume = volumes_.at(config);
-      const LightPropagationVolume::Inputs inputs{
+      const LpvInputs inputs{
           {outputs.at(config.rsmSize)},
           placeCascades(volume.settings().cascades, input_.scene.bounds, camera.position, camera.direction),
           std::max({sun.x, sun.y, sun.z})};
@@ -291,8 +291,8 @@ class Copy {
       copy_[static_cast<std::size_t>(withSum)] = &programs.loadCompute(
           withSum ? "bench copy and sum" : "bench copy", "bench/copy_grids.comp", {{"WITH_SUM", withSum}});
     for (gl::BufferTexture& grid : grids_) {
-      grid = gl::BufferTexture("bench grids", GL_RGBA32F, 3 * 16 * static_cast<std::size_t>(cells_), nullptr,
-                               GL_DYNAMIC_COPY);
+      grid = gl::BufferTexture("bench grids", gl::Format::rgba32f, 3 * 16 * static_cast<std::size_t>(cells_), nullptr,
+                               gl::Usage::dynamicCopy);
       grid.clear();
     }
   }
@@ -301,13 +301,13 @@ class Copy {
     for (std::size_t withSum = 0; withSum < 2; ++withSum) {
       const gl::TimeQuery::Scope stage(timer, withSum ? "copy and sum" : "copy");
       for (int step = 0; step < iterations_; ++step) {
-        const gl::ComputePass pass("bench copy", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+        const gl::ComputePass pass("bench copy", gl::Barrier::textureFetch | gl::Barrier::storage);
         copy_[withSum]->use();
         copy_[withSum]->set("count", cells_);
         grids_[step % 2 ? 1 : 0].bind(0);
-        grids_[step % 2 ? 0 : 1].buffer().bind(GL_SHADER_STORAGE_BUFFER, 0);
+        grids_[step % 2 ? 0 : 1].buffer().bindStorage(0);
         grids_[2].bind(1);
-        grids_[2].buffer().bind(GL_SHADER_STORAGE_BUFFER, 1);
+        grids_[2].buffer().bindStorage(1);
         pass.dispatch(glm::ivec3(cells_, 1, 1), glm::ivec3(64, 1, 1));
       }
     }
@@ -321,7 +321,7 @@ class Copy {
 
 /// One channel of a 32^3 grid set to zero, both ways in turn.
 void measureClearing(gl::TimeQuery& timer, bool haveClearTexture, int count) {
-  gl::Texture grid("bench cleared", GL_RGBA16F, glm::ivec3(32));
+  gl::Texture grid("bench cleared", gl::Format::rgba16f, glm::ivec3(32));
   const std::vector<std::uint8_t> zeros(grid.bytes(), 0);
   for (int i = 0; i <= count && !interrupted(); ++i) {
     if (haveClearTexture) {
@@ -331,7 +331,7 @@ void measureClearing(gl::TimeQuery& timer, bool haveClearTexture, int count) {
     }
     {
       const gl::TimeQuery::Scope stage(timer, "glTexSubImage3D");
-      grid.upload(GL_RGBA, GL_HALF_FLOAT, zeros.data());
+      grid.upload(gl::Texels::rgbaHalf, zeros.data());
     }
     timer.collect();
   }

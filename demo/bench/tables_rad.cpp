@@ -3,8 +3,8 @@
 // A whole published run takes minutes to days. Here hemicubes of triangles spread evenly over the scene are drawn for a
 // while, and a run of 7 sweeps, as many as published, is computed from their rate: every hemicube costs the same, since
 // every view draws the whole scene.
-#include "bench/rad.hpp"
 #include "bench/provenance.hpp"
+#include "bench/rad.hpp"
 
 #include "base/clock.hpp"
 #include "base/error.hpp"

@@ -1,11 +1,11 @@
 #include "bench/vpt_series.hpp"
 
+#include "base/clock.hpp"
 #include "base/data.hpp"
-#include "gl/objects.hpp"
 #include "gl/draw.hpp"
+#include "gl/objects.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
@@ -131,10 +131,10 @@ VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, co
   settings.seed = seed;
   settings.size = size;
   const auto makeSeconds = [&] {
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = Clock::now();
     const PathTracer second(context, programs, scene, settings);
     gl::finish();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return secondsSince(begin);
   };
   PathTracer tracer(context, programs, scene, settings);
   const double preparation = makeSeconds();  // the programs are there by now
@@ -142,8 +142,8 @@ VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, co
   tracer.setCamera(camera);
   tracer.advance(1);  // a driver may compile at the first dispatch
   tracer.setCamera(camera);
-  const auto start = std::chrono::steady_clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const auto start = Clock::now();
+  const auto seconds = [&] { return secondsSince(start); };
   while (tracer.advance(samples) && !interrupted() && (mostSeconds <= 0.0 || seconds() < mostSeconds)) {}
   VptResult result;
   result.ms = 1000.0 * seconds();

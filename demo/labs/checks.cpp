@@ -1,4 +1,5 @@
 // The checks of a lab: probes run on the GPU, statistics and the likeliest mistake.
+#include "base/clock.hpp"
 #include "labs/lab.hpp"
 
 #include "base/data.hpp"
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <regex>
@@ -197,17 +197,17 @@ Checks::Checks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Report
 std::vector<glm::vec4> Checks::run(int probe, std::span<const glm::vec4> inputs, int stride, int count, int width) {
   const gl::Program& program = probes_.load(lab_, probe);
   const gl::Buffer points("lab inputs", std::max<std::size_t>(inputs.size_bytes(), 16),
-                          inputs.empty() ? nullptr : inputs.data(), GL_STATIC_DRAW);
+                          inputs.empty() ? nullptr : inputs.data(), gl::Usage::staticDraw);
   const gl::Buffer results("lab outputs", static_cast<std::size_t>(count) * sizeof(glm::vec4), nullptr,
-                           GL_DYNAMIC_COPY);
-  points.bind(GL_SHADER_STORAGE_BUFFER, 0);
-  results.bind(GL_SHADER_STORAGE_BUFFER, 1);
+                           gl::Usage::dynamicCopy);
+  points.bindStorage(0);
+  results.bindStorage(1);
   program.use();
   program.set("labCount", static_cast<unsigned>(count));
   program.set("labStride", static_cast<unsigned>(stride));
   program.set("labWidth", static_cast<unsigned>(width));
   program.set("labNoise", noise_ = static_cast<std::uint32_t>(Random(noise_ + 1u).word()));
-  gl::ComputePass("lab probe", GL_BUFFER_UPDATE_BARRIER_BIT).dispatch({count, 1, 1}, {64, 1, 1});
+  gl::ComputePass("lab probe", gl::Barrier::bufferUpdate).dispatch({count, 1, 1}, {64, 1, 1});
   return results.read<glm::vec4>();
 }
 
@@ -561,7 +561,7 @@ Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce) {
 }
 
 Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Probes& probes) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   Report report;
   report.seed = handIn.seed;
   report.nonce = nonce;
@@ -586,7 +586,7 @@ Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Prob
       report.compileError = message;
     }
   }
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = secondsSince(start);
   return report;
 }
 

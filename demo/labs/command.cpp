@@ -3,10 +3,10 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
+#include "gl/objects.hpp"
 #include "labs/command.hpp"
 #include "labs/hand_in.hpp"
 #include "labs/prove.hpp"
-#include "gl/objects.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -217,8 +217,8 @@ int watch(const Options& options, const Lab& lab) {
         std::fflush(stdout);
         const Shown shown = sideBySide(report);
         size = shown.size;
-        texture = gl::Texture("lab pictures", GL_RGBA8, size);
-        texture.upload(GL_RGBA, GL_UNSIGNED_BYTE, shown.rgba.data());
+        texture = gl::Texture("lab pictures", gl::Format::rgba8, size);
+        texture.upload(gl::Texels::rgbaByte, shown.rgba.data());
         const gl::Texture* colors[] = {&texture};
         framebuffer = gl::Framebuffer("lab pictures", colors);
       }
@@ -289,14 +289,11 @@ int figures(const Options& options) {
 
 }  // namespace
 
-std::function<int()> addLabs(CLI::App& app) {
-  app.require_subcommand(1);
+void addLabs(Subcommands& commands) {
   auto options = std::make_shared<Options>();
-  std::vector<std::pair<CLI::App*, int (*)(const Options&)>> commands;
   const auto add = [&](const char* name, const char* description, int (*work)(const Options&)) {
-    CLI::App* command = app.add_subcommand(name, description);
+    CLI::App* command = commands.add(name, description, [options, work] { return work(*options); });
     options->common.declare(*command);
-    commands.emplace_back(command, work);
     return command;
   };
   const auto addLabAndFolder = [&](CLI::App* command) {
@@ -344,11 +341,6 @@ std::function<int()> addLabs(CLI::App& app) {
   figuresApp->add_option("LAB", options->lab, "number of the lab")->required();
   addSeed(figuresApp, "default: example");
   figuresApp->add_option("--pictures", options->pictures, "DIR: write the pictures that README.md shows, too");
-  return [options, commands] {
-    for (const auto& [command, work] : commands)
-      if (command->parsed()) return work(*options);
-    return 0;
-  };
 }
 
 }  // namespace lucerna::demo

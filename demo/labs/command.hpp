@@ -1,15 +1,15 @@
 // The subcommand `lucerna lab`.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "subcommands.hpp"
 
-#include <functional>
+#include <CLI/CLI.hpp>
 
 namespace lucerna::demo {
 
 /// As commands.hpp has the others.
-std::function<int()> addLab(CLI::App& app);
-/// The same without museum and mystery, which render: what it needs of the engine ends with engine/gl.
-std::function<int()> addLabs(CLI::App& app);
+Work addLab(CLI::App& app);
+/// All but museum and mystery, which render: what these need of the engine ends with engine/gl.
+void addLabs(Subcommands& commands);
 
 }  // namespace lucerna::demo

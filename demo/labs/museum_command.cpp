@@ -81,20 +81,23 @@ int mystery(const Options& options) {
 
 }  // namespace
 
-std::function<int()> addLab(CLI::App& app) {
-  const std::function<int()> labs = addLabs(app);
+Work addLab(CLI::App& app) {
+  Subcommands commands(app);
+  addLabs(commands);
   auto options = std::make_shared<Options>();
   CLI::App* mysteryApp =
-      app.add_subcommand("mystery", "A picture with one hidden deviation: find it by instruments, and say which");
+      commands.add("mystery", "A picture with one hidden deviation: find it by instruments, and say which",
+                   [options] { return mystery(*options); });
   options->common.declare(*mysteryApp);
   mysteryApp->add_option("--seed", options->seed, "which deviation is hidden follows from it")->required();
   mysteryApp->add_option("--answer", options->answer, "name of the deviation: graded");
   mysteryApp->add_option("-o,--output", options->folder, "folder of the pictures")->capture_default_str();
-  CLI::App* museumApp = app.add_subcommand(
-      "museum", "One HTML page of every deviation: symptom, cause, formula, picture, the test that catches it");
+  CLI::App* museumApp = commands.add(
+      "museum", "One HTML page of every deviation: symptom, cause, formula, picture, the test that catches it",
+      [options] { return museum(*options); });
   options->common.declare(*museumApp);
   museumApp->add_option("-o,--output", options->html, "FILE.html")->capture_default_str();
-  return [=] { return mysteryApp->parsed() ? mystery(*options) : museumApp->parsed() ? museum(*options) : labs(); };
+  return commands.work();
 }
 
 }  // namespace lucerna::demo

@@ -18,10 +18,10 @@ Compare::Compare(gl::ProgramLibrary& programs)
     : compose_(&programs.loadRaster("compose", "lib/fullscreen.vert", "walk/compose.frag")),
       meter_(&programs.loadRaster("exposure meter", "lib/fullscreen.vert", "walk/meter.frag")),
       noAttributes_("window picture"),
-      black_("black", GL_RGBA32F, glm::ivec2(1)),
-      meterPicture_("exposure meter", GL_RGBA32F, kMeter) {
+      black_("black", gl::Format::rgba32f, glm::ivec2(1)),
+      meterPicture_("exposure meter", gl::Format::rgba32f, kMeter) {
   const glm::vec4 zero(0.0f);
-  black_.upload(GL_RGBA, GL_FLOAT, &zero);
+  black_.upload(gl::Texels::rgbaFloat, &zero);
   const std::array<const gl::Texture*, 1> colors{&meterPicture_};
   meterTarget_ = gl::Framebuffer("exposure meter", colors);
 }

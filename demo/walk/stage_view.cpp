@@ -18,9 +18,9 @@ enum Shape { flat, layered, volume, threeVolumes };  // SHAPE of shaders/walk/st
 
 Shape shapeOf(const StagePicture& picture) {
   if (picture.green) return threeVolumes;
-  switch (picture.texture->target()) {
-    case GL_TEXTURE_3D: return volume;
-    case GL_TEXTURE_2D_ARRAY: return layered;
+  switch (picture.texture->kind()) {
+    case gl::TextureKind::volume: return volume;
+    case gl::TextureKind::array: return layered;
     default: return flat;
   }
 }
@@ -37,7 +37,7 @@ const gl::Texture& StageView::record(const StagePicture& picture, int layer, flo
     texture = &copy_;
   }
   if (!result_.id() || result_.size2d() != texture->size2d()) {
-    result_ = gl::Texture("stage view", GL_RGBA32F, texture->size2d());
+    result_ = gl::Texture("stage view", gl::Format::rgba32f, texture->size2d());
     const std::array<const gl::Texture*, 1> colors{&result_};
     target_ = gl::Framebuffer("stage view", colors);
   }

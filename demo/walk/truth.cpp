@@ -1,5 +1,6 @@
 #include "walk/truth.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/hash.hpp"
 #include "base/log.hpp"
@@ -18,13 +19,13 @@ void upload(gl::Texture& texture, const Image& image) {
   texels.reserve(image.pixels.size());
   for (int y = image.height - 1; y >= 0; --y)
     for (int x = 0; x < image.width; ++x) texels.emplace_back(image.at(x, y), 1.0f);
-  texture.upload(GL_RGBA, GL_FLOAT, texels.data());
+  texture.upload(gl::Texels::rgbaFloat, texels.data());
 }
 
 }  // namespace
 
 gl::Texture textureOf(const std::string& name, const Image& image) {
-  gl::Texture texture(name, GL_RGBA32F, glm::ivec2(image.width, image.height));
+  gl::Texture texture(name, gl::Format::rgba32f, glm::ivec2(image.width, image.height));
   upload(texture, image);
   return texture;
 }
@@ -49,8 +50,8 @@ Truth::Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Sce
   seed.add(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count()));
   settings.seed = static_cast<std::uint32_t>(seed.value() ^ seed.value() >> 32);
   tracer_ = std::make_unique<PathTracer>(context, programs, scene, settings);
-  meanTexture_ = gl::Texture("reference", GL_RGBA32F, size);
-  errorTexture_ = gl::Texture("standard error of the reference", GL_RGBA32F, size);
+  meanTexture_ = gl::Texture("reference", gl::Format::rgba32f, size);
+  errorTexture_ = gl::Texture("standard error of the reference", gl::Format::rgba32f, size);
 }
 
 Truth::~Truth() = default;
@@ -72,9 +73,9 @@ void Truth::advance(double seconds) {
   if (!key_) return;
   credit_ = std::min(credit_ + seconds, std::max(4.0 * submission_, seconds));
   while (credit_ >= submission_) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const bool more = tracer_->advance(target_);
-    submission_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    submission_ = secondsSince(start);
     credit_ -= submission_;
     seconds_ += submission_;
     if (more) continue;

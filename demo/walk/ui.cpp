@@ -59,9 +59,9 @@ Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), sca
   int width = 0, height = 0;
   io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
   gl::Sampling sampling;
-  sampling.minFilter = sampling.magFilter = GL_LINEAR;
-  font_ = gl::Texture("font", GL_RGBA8, glm::ivec2(width, height), sampling);
-  font_.upload(GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+  sampling.minFilter = sampling.magFilter = gl::Filter::linear;
+  font_ = gl::Texture("font", gl::Format::rgba8, glm::ivec2(width, height), sampling);
+  font_.upload(gl::Texels::rgbaByte, pixels);
   io.Fonts->SetTexID(&font_);
   io.Fonts->ClearTexData();
 }

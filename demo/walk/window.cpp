@@ -522,7 +522,7 @@ void WalkWindow::takeShot() {
 void WalkWindow::resizeTo(glm::ivec2 window) {
   if (window != window_) {
     window_ = window;
-    picture_ = gl::Texture("window", GL_RGBA8, window_);
+    picture_ = gl::Texture("window", gl::Format::rgba8, window_);
     const std::array<const gl::Texture*, 1> colors{&picture_};
     pictureTarget_ = gl::Framebuffer("window", colors);
     const gl::RasterPass pass("window", pictureTarget_, {});

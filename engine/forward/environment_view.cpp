@@ -19,9 +19,8 @@ EnvironmentView::EnvironmentView(gl::ProgramLibrary& programs, const Scene& scen
     std::vector<glm::vec4> texels;
     texels.reserve(picture.pixels.size());
     for (const glm::vec3& p : picture.pixels) texels.emplace_back(p, 0.0f);
-    picture_.emplace("environment behind surfaces", static_cast<GLenum>(GL_RGBA32F),
-                     glm::ivec2(picture.width, picture.height));
-    picture_->upload(GL_RGBA, GL_FLOAT, texels.data());
+    picture_.emplace("environment behind surfaces", gl::Format::rgba32f, glm::ivec2(picture.width, picture.height));
+    picture_->upload(gl::Texels::rgbaFloat, texels.data());
   }
   program_ = &programs.loadRaster("environment", "forward/environment.vert", "forward/environment.frag",
                                   {{"ENVIRONMENT_PICTURE", picture_.has_value()}});

@@ -1,8 +1,8 @@
 #include "forward/gpu_scene.hpp"
 
-#include "shared/bindings.h"
 #include "base/error.hpp"
 #include "gl/draw.hpp"
+#include "shared/bindings.h"
 
 #include <algorithm>
 #include <array>
@@ -43,16 +43,17 @@ bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, con
 GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities,
                    const GpuSceneSettings& settings)
     : scene_(&scene), needs_(needs) {
-  gl::Sampling sampling{GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_REPEAT};
+  gl::Sampling sampling{gl::Filter::linearMipmaps, gl::Filter::linear, gl::Wrap::repeat};
   sampling.anisotropy =
       capabilities.anisotropicFilter ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
 
   struct Use {
     const char* name;
-    GLenum format;
+    gl::Format format;
   };
-  constexpr Use kColour{"albedo", GL_SRGB8_ALPHA8}, kMask{"mask", GL_R8}, kLinear{"values", GL_RGBA8};
-  std::map<std::pair<int, GLenum>, int> known;  // a picture may be a colour here, a mask there
+  constexpr Use kColour{"albedo", gl::Format::srgb8Alpha8}, kMask{"mask", gl::Format::r8},
+      kLinear{"values", gl::Format::rgba8};
+  std::map<std::pair<int, gl::Format>, int> known;  // a picture may be a colour here, a mask there
   const auto upload = [&](int index, const Use& use) {
     const auto [place, isNew] = known.try_emplace({index, use.format}, static_cast<int>(textures_.size()));
     if (!isNew) return place->second;
@@ -63,12 +64,12 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
     std::vector<std::uint8_t> texels = flippedRows(bitmap);
     gl::Texture& target =
         textures_.emplace_back(name, use.format, glm::ivec2(bitmap.width, bitmap.height), sampling, levels);
-    if (use.format == GL_R8) {
+    if (use.format == gl::Format::r8) {
       const std::size_t channel = bitmap.hasAlpha ? 3 : 0;
       for (std::size_t i = 0; i < texels.size() / 4; ++i) texels[i] = texels[4 * i + channel];
-      target.upload(GL_RED, GL_UNSIGNED_BYTE, texels.data());
+      target.upload(gl::Texels::redByte, texels.data());
     } else {
-      target.upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+      target.upload(gl::Texels::rgbaByte, texels.data());
     }
     target.generateMipmaps();
     return place->second;
@@ -98,9 +99,9 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
     surfaces_.push_back(surface);
   }
   if (needs.diffuseTextures || needs.emissionTextures || needs.normalMaps || needs.metalMaps) {
-    white_.emplace("white", static_cast<GLenum>(GL_RGBA8), glm::ivec2(1));
+    white_.emplace("white", gl::Format::rgba8, glm::ivec2(1));
     const std::array<std::uint8_t, 4> texel{255, 255, 255, 255};
-    white_->upload(GL_RGBA, GL_UNSIGNED_BYTE, texel.data());
+    white_->upload(gl::Texels::rgbaByte, texel.data());
   }
 
   // Opaque meshes first, so that a depth pass draws them in one call; of one material together.
@@ -122,9 +123,9 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
   }
   CHECK(masked_.empty() || needs.alphaMasks, "{} masked meshes", masked_.size());
 
-  vertices_ =
-      gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(), GL_STATIC_DRAW);
-  indices_ = gl::Buffer("scene indices", indices.size() * sizeof(std::uint32_t), indices.data(), GL_STATIC_DRAW);
+  vertices_ = gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(),
+                         gl::Usage::staticDraw);
+  indices_ = gl::Buffer("scene indices", indices.size() * sizeof(std::uint32_t), indices.data(), gl::Usage::staticDraw);
   const std::array<gl::VertexArray::Attribute, 3> attributes{
       {{0, 3, offsetof(Vertex, position)}, {1, 2, offsetof(Vertex, texCoord)}, {2, 3, offsetof(Vertex, normal)}}};
   vertexArray_ = gl::VertexArray("scene", vertices_, sizeof(Vertex), attributes, &indices_);

@@ -19,11 +19,11 @@ LayeredDepth::LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, 
   };
   programs_.opaque = load(false);
   if (scene.needs().alphaMasks) programs_.masked = load(true);
-  gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, glm::vec4(1.0f)};
-  if (shape.target == GL_TEXTURE_CUBE_MAP_ARRAY) sampling.wrap = GL_CLAMP_TO_EDGE;  // seamless: there is no edge
+  gl::Sampling sampling{gl::Filter::linear, gl::Filter::linear, gl::Wrap::border, glm::vec4(1.0f)};
+  if (shape.kind == gl::TextureKind::cubeArray) sampling.wrap = gl::Wrap::edge;  // seamless: there is no edge
   sampling.depthCompare = true;
-  depth_ = gl::Texture(name, GL_DEPTH_COMPONENT32F, glm::ivec3(shape.size, shape.size, shape.layers), sampling, 1,
-                       shape.target);
+  depth_ = gl::Texture(name, gl::Format::depth32f, glm::ivec3(shape.size, shape.size, shape.layers), sampling, 1,
+                       shape.kind);
   framebuffer_ = gl::Framebuffer(name, {}, &depth_);
 }
 

@@ -13,7 +13,7 @@ namespace lucerna {
 class LayeredDepth {
  public:
   struct Shape {
-    GLenum target;  ///< GL_TEXTURE_2D_ARRAY or GL_TEXTURE_CUBE_MAP_ARRAY
+    gl::TextureKind kind;  ///< array or cubeArray
     int size;  ///< texels per side
     int layers;  ///< of cube maps: 6 each
     int layersPerDraw;  ///< that one draw of the scene fills; divides `layers`

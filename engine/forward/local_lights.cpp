@@ -1,18 +1,16 @@
 #include "forward/local_lights.hpp"
 
-#include "shared/bindings.h"
 #include "base/error.hpp"
+#include "shared/bindings.h"
 #include "shared/lights.h"
 
 namespace lucerna {
 
-namespace {
-}  // namespace
+namespace {}  // namespace
 
 LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
                          const std::vector<LightViews>& spots, const std::vector<LightViews>& points) {
-  CHECK(spots.size() <= kMostSpots && points.size() <= kMostPoints, "{} spots, {} points", spots.size(),
-        points.size());
+  CHECK(spots.size() <= kMostSpots && points.size() <= kMostPoints, "{} spots, {} points", spots.size(), points.size());
   shared::LightConstants constants{};
   for (std::size_t i = 0; i < spots.size(); ++i) {
     const LightViews& light = spots[i];
@@ -35,18 +33,18 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
                            light.intensity, static_cast<float>(light.far * light.near / span),
                            glm::vec3(0.0f), static_cast<float>(light.far / span)};
   }
-  constants_ = gl::Buffer("lights", sizeof constants, &constants, GL_STATIC_DRAW);
+  constants_ = gl::Buffer("lights", sizeof constants, &constants, gl::Usage::staticDraw);
   const int spotLayers = static_cast<int>(spotViews_.size()), pointLayers = static_cast<int>(pointViews_.size());
   if (spotLayers > 0)
     spotShadows_.emplace(programs, scene, "spot shadows",
-                         LayeredDepth::Shape{GL_TEXTURE_2D_ARRAY, settings.spotSize, spotLayers, spotLayers});
+                         LayeredDepth::Shape{gl::TextureKind::array, settings.spotSize, spotLayers, spotLayers});
   if (pointLayers > 0)
     pointShadows_.emplace(programs, scene, "point shadows",
-                          LayeredDepth::Shape{GL_TEXTURE_CUBE_MAP_ARRAY, settings.pointSize, pointLayers, 6});
+                          LayeredDepth::Shape{gl::TextureKind::cubeArray, settings.pointSize, pointLayers, 6});
 }
 
 void LocalLights::bindForShading() const {
-  constants_.bind(GL_UNIFORM_BUFFER, BLOCK_LIGHTS);
+  constants_.bindUniform(BLOCK_LIGHTS);
   if (spotShadows_) spotShadows_->depth().bind(UNIT_SPOT_SHADOWS);
   if (pointShadows_) pointShadows_->depth().bind(UNIT_POINT_SHADOWS);
 }

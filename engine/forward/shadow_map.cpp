@@ -8,9 +8,10 @@ ShadowMap::ShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const 
   if (scene.needs().alphaMasks)
     programs_.masked = &programs.loadRaster("shadow masked", "forward/depth.vert", "forward/depth.frag",
                                             {{"ALPHA_MASK", 1}, {"FROM_SUN", 1}});
-  gl::Sampling sampling{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, glm::vec4(1.0f)};  // lit beyond the map
+  gl::Sampling sampling{gl::Filter::linear, gl::Filter::linear, gl::Wrap::border,
+                        glm::vec4(1.0f)};  // lit beyond the map
   sampling.depthCompare = true;
-  depth_ = gl::Texture("shadow map", GL_DEPTH_COMPONENT32F, glm::ivec2(settings.size), sampling);
+  depth_ = gl::Texture("shadow map", gl::Format::depth32f, glm::ivec2(settings.size), sampling);
   framebuffer_ = gl::Framebuffer("shadow map", {}, &depth_);
 }
 

@@ -1,14 +1,13 @@
 #include "forward/visible_surfaces.hpp"
 
-#include "shared/bindings.h"
 #include "gl/pass.hpp"
+#include "shared/bindings.h"
 
 #include <array>
 
 namespace lucerna {
 
-namespace {
-}
+namespace {}
 
 VisibleSurfaces::VisibleSurfaces(gl::ProgramLibrary& programs, const GpuScene& scene, const gl::Texture& depth) {
   const auto load = [&](const char* name, bool masked) {
@@ -21,7 +20,7 @@ VisibleSurfaces::VisibleSurfaces(gl::ProgramLibrary& programs, const GpuScene& s
 
 void VisibleSurfaces::resize(const gl::Texture& depth) {
   depth_ = &depth;
-  normal_ = gl::Texture("visible normals", GL_RGBA16F, depth.size2d());
+  normal_ = gl::Texture("visible normals", gl::Format::rgba16f, depth.size2d());
   const std::array<const gl::Texture*, 1> colors{&normal_};
   target_ = gl::Framebuffer("visible surfaces", colors, &depth);
 }

@@ -7,7 +7,7 @@
 // for shader writes issues the barrier before an upload, clear, copy or read.
 #pragma once
 
-#include "host/api.hpp"
+#include "gl/types.hpp"
 
 #include <glm/glm.hpp>
 
@@ -54,8 +54,8 @@ class Handle {
 class Buffer {
  public:
   Buffer() = default;
-  /// `bytes` of storage; `data` may be null. usage: GL_STATIC_DRAW, GL_DYNAMIC_DRAW, ...
-  Buffer(const std::string& name, std::size_t bytes, const void* data, GLenum usage);
+  /// `bytes` of storage; `data` may be null.
+  Buffer(const std::string& name, std::size_t bytes, const void* data, Usage usage);
   Buffer(Buffer&&) noexcept = default;
   Buffer& operator=(Buffer&&) noexcept = default;
 
@@ -63,13 +63,12 @@ class Buffer {
   std::size_t bytes() const { return id() ? bytes_ : 0; }
   void upload(std::size_t offset, std::size_t bytes, const void* data);
   void clear(GLuint value = 0);
-  /// Binds to an indexed target: GL_UNIFORM_BUFFER, GL_SHADER_STORAGE_BUFFER.
-  void bind(GLenum target, GLuint index) const;
+  void bindUniform(GLuint index) const;
+  void bindStorage(GLuint index) const;
   /// Copies this buffer's first bytes into the beginning of `target`.
   void copyTo(Buffer& target, std::size_t bytes) const;
-  /// Issues a barrier if shaders may have written this buffer: GL_BUFFER_UPDATE_BARRIER_BIT before the API changes or
-  /// reads it.
-  void settle(GLbitfield barrier) const;
+  /// Issues a barrier if shaders may have written this buffer: bufferUpdate before the API changes or reads it.
+  void settle(Barrier barrier) const;
   template <class T>
   std::vector<T> read() const {
     std::vector<T> values(bytes_ / sizeof(T));
@@ -100,9 +99,9 @@ class Buffer {
 
 /// How a texture is read. Defaults: nearest, clamped to the edge.
 struct Sampling {
-  GLenum minFilter = GL_NEAREST;
-  GLenum magFilter = GL_NEAREST;
-  GLenum wrap = GL_CLAMP_TO_EDGE;  ///< GL_CLAMP_TO_BORDER has a border of zeros unless `border` says otherwise
+  Filter minFilter = Filter::nearest;
+  Filter magFilter = Filter::nearest;
+  Wrap wrap = Wrap::edge;
   glm::vec4 border{0.0f};
   float anisotropy = 1.0f;
   bool depthCompare = false;  ///< sampler2DShadow, less or equal
@@ -112,41 +111,42 @@ struct Sampling {
 class Texture {
  public:
   Texture() = default;
-  Texture(const std::string& name, GLenum internalFormat, glm::ivec2 size, const Sampling& sampling = {},
-          int levels = 1);
-  Texture(const std::string& name, GLenum internalFormat, glm::ivec3 size, const Sampling& sampling = {},
-          int levels = 1, GLenum target = GL_TEXTURE_3D);
+  Texture(const std::string& name, Format format, glm::ivec2 size, const Sampling& sampling = {}, int levels = 1);
+  Texture(const std::string& name, Format format, glm::ivec3 size, const Sampling& sampling = {}, int levels = 1,
+          TextureKind kind = TextureKind::volume);
   Texture(Texture&&) noexcept = default;
   Texture& operator=(Texture&&) noexcept = default;
 
   GLuint id() const { return handle_.id(); }
-  GLenum target() const { return target_; }
-  GLenum format() const { return format_; }
+  TextureKind kind() const { return kind_; }
+  Format format() const { return format_; }
   glm::ivec3 size() const { return size_; }
   glm::ivec2 size2d() const { return {size_.x, size_.y}; }
   int levels() const { return levels_; }
   std::size_t bytes() const;  ///< of all levels; zero when moved from
 
-  void upload(GLenum format, GLenum type, const void* data, int level = 0);
+  void upload(Texels texels, const void* data, int level = 0);
   /// Level 0 from a buffer with texels in the texture's own format, starting at `offset`.
   void copyFrom(const Buffer& buffer, std::size_t offset);
   void generateMipmaps();
   void bind(GLuint unit) const;
-  void bindImage(GLuint unit, GLenum access, int level = 0) const;
-  /// Issues a barrier if shaders may have stored into this texture: GL_TEXTURE_UPDATE_BARRIER_BIT before the API
-  /// changes or reads it.
-  void settle(GLbitfield barrier) const;
+  void bindImage(GLuint unit, Access access, int level = 0) const;
+  /// Issues a barrier if shaders may have stored into this texture: textureUpdate before the API changes or reads it.
+  void settle(Barrier barrier) const;
   /// All texels of a level as float RGBA (depth textures: one float per texel).
   std::vector<glm::vec4> readRgba(int level = 0) const;
   std::vector<float> readDepth() const;
   std::vector<glm::uvec4> readWords() const;  ///< of an RGBA32UI texture
 
  private:
+  friend void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture);
   void create(const std::string& name, const Sampling& sampling);
+  void upload(GLenum format, GLenum type, const void* data, int level);
+  GLenum target() const { return raw(kind_); }
   glm::ivec3 levelSize(int level) const;
   Handle<detail::deleteTexture> handle_;
-  GLenum target_ = GL_TEXTURE_2D;
-  GLenum format_ = GL_RGBA8;
+  TextureKind kind_ = TextureKind::plane;
+  Format format_ = Format::rgba8;
   glm::ivec3 size_{0};
   int levels_ = 1;
   mutable bool shadersMayWrite_ = false;  ///< was bound as a writable image
@@ -157,9 +157,9 @@ class Texture {
 class BufferTexture {
  public:
   BufferTexture() = default;
-  /// format: GL_RGBA32F, GL_RGBA32UI, ...; `bytes` above 0.
-  BufferTexture(const std::string& name, GLenum format, std::size_t bytes, const void* data,
-                GLenum usage = GL_STATIC_DRAW);
+  /// `bytes` above 0.
+  BufferTexture(const std::string& name, Format format, std::size_t bytes, const void* data,
+                Usage usage = Usage::staticDraw);
   BufferTexture(BufferTexture&&) noexcept = default;
   BufferTexture& operator=(BufferTexture&&) noexcept = default;
 
@@ -167,7 +167,7 @@ class BufferTexture {
   void upload(std::size_t offset, std::size_t bytes, const void* data) { buffer_.upload(offset, bytes, data); }
   void clear() { buffer_.clear(); }
   void bind(GLuint unit) const;
-  /// The same storage as a writable storage block; GL_TEXTURE_FETCH_BARRIER_BIT before texel fetches.
+  /// The same storage as a writable storage block; Barrier::textureFetch before texel fetches.
   Buffer& buffer() { return buffer_; }
   const Buffer& buffer() const { return buffer_; }
 
@@ -176,7 +176,7 @@ class BufferTexture {
   Handle<detail::deleteTexture> texture_;
 };
 
-/// Copies texels of level 0 between 2D textures of the same format. Shader writes need GL_TEXTURE_UPDATE_BARRIER_BIT
+/// Copies texels of level 0 between 2D textures of the same format. Shader writes need Barrier::textureUpdate
 /// first.
 void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, glm::ivec2 toCorner, glm::ivec2 size);
 
@@ -223,6 +223,6 @@ class VertexArray {
 };
 
 /// Bytes per texel, for the formats the engine uses.
-std::size_t bytesPerTexel(GLenum internalFormat);
+std::size_t bytesPerTexel(Format format);
 
 }  // namespace lucerna::gl

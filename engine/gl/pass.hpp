@@ -50,17 +50,17 @@ class RasterPass {
 /// Dispatches compute work; at its end the named barrier makes the results visible.
 class ComputePass {
  public:
-  ComputePass(const std::string& name, GLbitfield barrierAtEnd) : group_(name), barrier_(barrierAtEnd) {}
-  ~ComputePass() { glMemoryBarrier(barrier_); }
+  ComputePass(const std::string& name, Barrier barrierAtEnd) : group_(name), barrier_(barrierAtEnd) {}
+  ~ComputePass() { glMemoryBarrier(raw(barrier_)); }
   /// Enough groups of `groupSize` to cover `size`.
   void dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const;
   /// Group counts from three words of the buffer at `offset` (bytes), written by an earlier pass with
-  /// GL_COMMAND_BARRIER_BIT at its end.
+  /// Barrier::command at its end.
   void dispatchIndirect(const Buffer& groups, std::size_t offset = 0) const;
 
  private:
   DebugGroup group_;
-  GLbitfield barrier_;
+  Barrier barrier_;
 };
 
 /// Three vertices that cover the picture; `emptyVertexArray` has no attributes.

@@ -1,5 +1,6 @@
 #include "gl/pieces.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "host/api.hpp"
 
@@ -37,12 +38,12 @@ void PieceSize::setTurnsOfUnit(double turnsOfUnit) { turnsOfUnit_ = turnsOfUnit;
 
 PieceClock::PieceClock() {
   glFinish();
-  start_ = std::chrono::steady_clock::now();
+  start_ = Clock::now();
 }
 
 double PieceClock::seconds() const {
   glFinish();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  return secondsSince(start_);
 }
 
 }  // namespace lucerna::gl

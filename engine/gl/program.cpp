@@ -1,5 +1,6 @@
 #include "gl/program.hpp"
 
+#include "base/clock.hpp"
 #include "gl/build_watch.hpp"
 
 #include "base/data.hpp"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -226,7 +226,7 @@ const Program& ProgramLibrary::loadCompute(const std::string& name, const std::s
 }
 
 void ProgramLibrary::build(Program& program) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const ProgramDescription& description = program.description_;
   std::map<fs::path, fs::file_time_type> dependencies;
   const GLuint id = glCreateProgram();
@@ -280,7 +280,7 @@ void ProgramLibrary::build(Program& program) {
   program.id_ = id;
   program.locations_.clear();
   program.dependencies_ = std::move(dependencies);
-  statistics_.compileSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  statistics_.compileSeconds += secondsSince(start);
 }
 
 ProgramLibrary::Reload ProgramLibrary::reloadChanged() {

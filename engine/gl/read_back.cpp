@@ -3,7 +3,7 @@
 namespace lucerna::gl {
 
 ReadBackRing::ReadBackRing(const std::string& name, std::size_t bytes) : bytes_(bytes) {
-  for (Buffer& buffer : buffers_) buffer = Buffer(name, bytes, nullptr, GL_STREAM_READ);
+  for (Buffer& buffer : buffers_) buffer = Buffer(name, bytes, nullptr, Usage::streamRead);
 }
 
 ReadBackRing::~ReadBackRing() {
@@ -33,7 +33,7 @@ std::vector<GLuint> ReadBackRing::fetch(bool wait) {
 }
 
 void Staging::copy(const Buffer& source, std::size_t bytes) {
-  if (buffer_.bytes() < bytes) buffer_ = Buffer(name_, bytes, nullptr, GL_STREAM_READ);
+  if (buffer_.bytes() < bytes) buffer_ = Buffer(name_, bytes, nullptr, Usage::streamRead);
   source.copyTo(buffer_, bytes);
 }
 

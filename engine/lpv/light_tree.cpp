@@ -26,7 +26,7 @@ LightTree::LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capab
         "light tree of a map of {} texels per side: {} texels; this driver's texture buffers have at most {} "
         "(GL_MAX_TEXTURE_BUFFER_SIZE)",
         size, texels, capabilities.maxTextureBufferSize);
-  nodes_ = gl::BufferTexture("light tree", GL_RGBA32UI, nodes * kNodeBytes, nullptr, GL_DYNAMIC_COPY);
+  nodes_ = gl::BufferTexture("light tree", gl::Format::rgba32ui, nodes * kNodeBytes, nullptr, gl::Usage::dynamicCopy);
   fromTexels_ = &programs.loadCompute("light tree of texels", "lpv/gather/build.comp", {{"FROM_TEXELS", 1}});
   fromNodes_ = &programs.loadCompute("light tree of nodes", "lpv/gather/build.comp", {{"FROM_TEXELS", 0}});
 }
@@ -39,13 +39,13 @@ void LightTree::setShape(const gl::Program& program) const {
 
 void LightTree::build(const ReflectiveShadowMap::Outputs& map) {
   for (int level = 1; level <= levels_; ++level) {
-    const gl::ComputePass pass("light tree", GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    const gl::ComputePass pass("light tree", gl::Barrier::storage | gl::Barrier::textureFetch);
     const gl::Program& program = level == 1 ? *fromTexels_ : *fromNodes_;
     program.use();
     setShape(program);
     program.set("level", level);
     if (level == 1) map.bind();
-    nodes_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kNodesBuffer);
+    nodes_.buffer().bindStorage(kNodesBuffer);
     const int width = (size_ + (1 << level) - 1) >> level;
     pass.dispatch(glm::ivec3(width, width, layers_), glm::ivec3(8, 8, 1));
   }

@@ -1,12 +1,12 @@
 #include "lpv/receivers.hpp"
 
-#include "shared/bindings.h"
 #include "base/error.hpp"
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
 #include "lpv/surface_voxels.hpp"
 #include "rays/light_table.hpp"
 #include "rsm/rsm_gather.hpp"
+#include "shared/bindings.h"
 #include "shared/lpv_receivers.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ bool LpvReceivers::isNeeded(const SceneNeeds& needs, LpvTransport transport, Lig
 }
 
 LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
-                           const glm::dvec3& origin, const LightPropagationVolume::Settings& settings, Light light)
+                           const glm::dvec3& origin, const LpvSettings& settings, Light light)
     : settings_(settings),
       programs_(&programs),
       capabilities_(&capabilities),
@@ -64,7 +64,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
       rayOrigin_(scene_.origin() - origin),
       referenceIrradiance_(typicalOf(scene)),
       clearTexture_(capabilities.clearTexture),
-      cached_(settings.bounces == LightPropagationVolume::kAllBounces && light != Light::direct) {
+      cached_(settings.bounces == LpvSettings::kAllBounces && light != Light::direct) {
   CHECK(settings.rays >= 1 && settings.rays <= LPV_LANES && LPV_LANES % settings.rays == 0, "rays = {}", settings.rays);
   const auto cells = static_cast<std::size_t>(settings.cascades.cells),
              cascades = static_cast<std::size_t>(settings.cascades.cascades);
@@ -83,31 +83,33 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
       throwMissingCapability(
           "{}: {} texels; this driver's texture buffers have at most {} (GL_MAX_TEXTURE_BUFFER_SIZE)", name, count,
           capabilities.maxTextureBufferSize);
-    return gl::BufferTexture(name, GL_R32UI, count * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
+    return gl::BufferTexture(name, gl::Format::r32ui, count * sizeof(GLuint), nullptr, gl::Usage::dynamicCopy);
   };
   slotTable_ = words("lpv slots", slots_);
   keys_ = words("lpv keys", slots_);
   seen_ = words("lpv seen", capacity_);
   for (gl::Buffer& buffer : receivers_)
-    buffer = gl::Buffer("lpv receivers", capacity_ * sizeof(shared::LpvReceiver), nullptr, GL_DYNAMIC_COPY);
-  for (gl::Buffer& buffer : work_) buffer = gl::Buffer("lpv receivers' work", sizeof kNoWork, nullptr, GL_DYNAMIC_COPY);
+    buffer = gl::Buffer("lpv receivers", capacity_ * sizeof(shared::LpvReceiver), nullptr, gl::Usage::dynamicCopy);
+  for (gl::Buffer& buffer : work_)
+    buffer = gl::Buffer("lpv receivers' work", sizeof kNoWork, nullptr, gl::Usage::dynamicCopy);
   lit_ = gl::Buffer("lpv lit receivers",
                     std::min(capacity_, kMostPaths / static_cast<std::size_t>(lanes)) * sizeof(GLuint), nullptr,
-                    GL_DYNAMIC_COPY);
+                    gl::Usage::dynamicCopy);
   for (gl::Buffer* buffer : {&lpvConstants_, &lpvConstantsBefore_})
-    *buffer = gl::Buffer("lpv constants", sizeof(shared::LpvConstants), nullptr, GL_DYNAMIC_DRAW);
-  constants_ = gl::Buffer("lpv receiver constants", sizeof(shared::LpvReceiverConstants), nullptr, GL_DYNAMIC_DRAW);
-  pathConstants_ = gl::Buffer("lpv path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW);
-  const gl::Sampling linear{GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER};
+    *buffer = gl::Buffer("lpv constants", sizeof(shared::LpvConstants), nullptr, gl::Usage::dynamicDraw);
+  constants_ =
+      gl::Buffer("lpv receiver constants", sizeof(shared::LpvReceiverConstants), nullptr, gl::Usage::dynamicDraw);
+  pathConstants_ = gl::Buffer("lpv path constants", sizeof(shared::PathConstants), nullptr, gl::Usage::dynamicDraw);
+  const gl::Sampling linear{gl::Filter::linear, gl::Filter::linear, gl::Wrap::border};
   irradiance_ = gl::Texture("lpv received irradiance",
-                            settings.storage == LightPropagationVolume::Storage::full ? GL_RGBA32F : GL_RGBA16F,
+                            settings.storage == LpvSettings::Storage::full ? gl::Format::rgba32f : gl::Format::rgba16f,
                             glm::ivec3(settings.cascades.cells, settings.cascades.cells, layers), linear);
   ring_ = std::make_unique<gl::ReadBackRing>("lpv receiver counts", sizeof kNoWork);
 
   scene_.fill(path_);
   path_.minScatterings = light == Light::indirect ? 2 : 1;
   path_.maxScatterings = light == Light::direct ? 1
-                         : settings.bounces == LightPropagationVolume::kAllBounces
+                         : settings.bounces == LpvSettings::kAllBounces
                              ? 0xffffu
                              : static_cast<std::uint32_t>(settings.bounces) + 1;
   path_.turns = capabilities.softwareRenderer ? kSoftwareTurns : kMostTurns;
@@ -130,7 +132,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   if (settings.transport == LpvTransport::gather) {
     if (settings.bounces != 1)
       throwBadInput("lpv.bounces={}: lpv.transport=gather has one bounce; rays has more",
-                    settings.bounces == LightPropagationVolume::kAllBounces ? "all" : std::to_string(settings.bounces));
+                    settings.bounces == LpvSettings::kAllBounces ? "all" : std::to_string(settings.bounces));
     const SceneNeeds needs = analyse(scene);
     const bool voxels = settings.visibility == LpvVisibility::voxels;
     const auto load = [&](const char* name, bool sky, bool perspective) {
@@ -154,15 +156,15 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
       voxelMinimum_ = glm::vec3(surfaces.minimum - origin);
       voxelSize_ = static_cast<float>(surfaces.size);
       voxelBricks_ = surfaces.bricks;
-      voxels_ =
-          gl::BufferTexture("lpv voxels", GL_RG32UI, surfaces.bits.size() * sizeof(glm::uvec2), surfaces.bits.data());
+      voxels_ = gl::BufferTexture("lpv voxels", gl::Format::rg32ui, surfaces.bits.size() * sizeof(glm::uvec2),
+                                  surfaces.bits.data());
     }
   }
   forget();
 }
 
-gl::ShaderFlags LpvReceivers::lookupFlags(const LightPropagationVolume::Settings& settings) {
-  return {{"LPV_FULL_FLOAT", settings.storage == LightPropagationVolume::Storage::full}};
+gl::ShaderFlags LpvReceivers::lookupFlags(const LpvSettings& settings) {
+  return {{"LPV_FULL_FLOAT", settings.storage == LpvSettings::Storage::full}};
 }
 
 void LpvReceivers::forget() {
@@ -186,9 +188,8 @@ void LpvReceivers::place(const Inputs& inputs) {
   constants.rayOrigin = glm::vec3(rayOrigin_);
   constants.frame = ++frame_;
   constants.capacity = static_cast<std::uint32_t>(capacity_);
-  constants.mostSegments =
-      std::min(path_.maxScatterings,
-               settings_.bounces == LightPropagationVolume::kAllBounces ? kSegmentsOfAll : path_.maxScatterings);
+  constants.mostSegments = std::min(
+      path_.maxScatterings, settings_.bounces == LpvSettings::kAllBounces ? kSegmentsOfAll : path_.maxScatterings);
   const glm::ivec2 size = inputs.visible.size();
   const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   constants.markEvery = static_cast<std::uint32_t>((pixels + kKeyPixels - 1) / kKeyPixels);
@@ -207,11 +208,11 @@ void LpvReceivers::place(const Inputs& inputs) {
 }
 
 void LpvReceivers::bindReceivers() const {
-  lpvConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);
-  constants_.bind(GL_UNIFORM_BUFFER, BLOCK_RECEIVERS);
-  pathConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_RECEIVER_PATHS);
-  receivers_[0].bind(GL_SHADER_STORAGE_BUFFER, kReceiversBuffer);
-  work_[0].bind(GL_SHADER_STORAGE_BUFFER, kWorkBuffer);
+  lpvConstants_.bindUniform(BLOCK_LPV);
+  constants_.bindUniform(BLOCK_RECEIVERS);
+  pathConstants_.bindUniform(BLOCK_RECEIVER_PATHS);
+  receivers_[0].bindStorage(kReceiversBuffer);
+  work_[0].bindStorage(kWorkBuffer);
 }
 
 // The grids have moved: receivers still inside are copied to a new list and entered in the slots.
@@ -221,13 +222,13 @@ void LpvReceivers::keep() {
   work_[0].upload(0, sizeof kNoWork, kNoWork.data());
   slotTable_.clear();
   const gl::ComputePass pass("lpv keep receivers",
-                             GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+                             gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::command);
   keep_->use();
   bindReceivers();
-  receivers_[1].bind(GL_SHADER_STORAGE_BUFFER, kReceiversBuffer);
-  receivers_[0].bind(GL_SHADER_STORAGE_BUFFER, kKeptBuffer);
-  slotTable_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
-  work_[1].bind(GL_SHADER_STORAGE_BUFFER, kWorkBeforeBuffer);
+  receivers_[1].bindStorage(kReceiversBuffer);
+  receivers_[0].bindStorage(kKeptBuffer);
+  slotTable_.buffer().bindStorage(kSlotsBuffer);
+  work_[1].bindStorage(kWorkBeforeBuffer);
   pass.dispatchIndirect(work_[1]);
 }
 
@@ -235,23 +236,23 @@ void LpvReceivers::mark(const Inputs& inputs) {
   keys_.buffer().clear(0xffffffffu);
   const glm::ivec3 size(inputs.visible.size(), 1), group(8, 8, 1);
   {
-    const gl::ComputePass pass("lpv mark receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    const gl::ComputePass pass("lpv mark receivers", gl::Barrier::storage | gl::Barrier::textureFetch);
     mark_->use();
     bindReceivers();
     inputs.visible.bind(*mark_, inputs.worldFromClip);
     slotTable_.bind(kSlotsUnit);
-    seen_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kReceiversBuffer);
-    keys_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
+    seen_.buffer().bindStorage(kReceiversBuffer);
+    keys_.buffer().bindStorage(kSlotsBuffer);
     pass.dispatch(size, group);
   }
   const gl::ComputePass pass("lpv claim receivers",
-                             GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+                             gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::command);
   claim_->use();
   bindReceivers();
   inputs.visible.bind(*claim_, inputs.worldFromClip);
   slotTable_.bind(kSlotsUnit);
   keys_.bind(kKeysUnit);
-  slotTable_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
+  slotTable_.buffer().bindStorage(kSlotsBuffer);
   pass.dispatch(size, group);
 }
 
@@ -260,23 +261,23 @@ void LpvReceivers::list(int target, bool countsFading) {
   const std::array<GLuint, 5> none{0, 1, 1, 0, frame_};
   work_[0].upload(4 * sizeof(GLuint), sizeof none, none.data());
   bindReceivers();
-  lpvConstantsBefore_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);  // new receivers look up what was seen in their place
+  lpvConstantsBefore_.bindUniform(BLOCK_LPV);  // new receivers look up what was seen in their place
   irradiance_.bind(UNIT_RECEIVED);
   scene_.bind();
-  lit_.bind(GL_SHADER_STORAGE_BUFFER, kSlotsBuffer);
-  const gl::ComputePass pass("lpv list receivers", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  lit_.bindStorage(kSlotsBuffer);
+  const gl::ComputePass pass("lpv list receivers", gl::Barrier::storage | gl::Barrier::command);
   list_->use();
   list_->set("mostLit", static_cast<unsigned>(lit_.bytes() / sizeof(GLuint)));
   list_->set("pathTarget", static_cast<unsigned>(target));
   list_->set("countsFading", countsFading ? 1 : 0);
   seen_.bind(kSeenUnit);
   pass.dispatchIndirect(work_[0]);
-  lpvConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);
+  lpvConstants_.bindUniform(BLOCK_LPV);
 }
 
 void LpvReceivers::light(int target) {
   list(target);
-  const gl::ComputePass pass("lpv paths", GL_SHADER_STORAGE_BARRIER_BIT);
+  const gl::ComputePass pass("lpv paths", gl::Barrier::storage);
   paths_->use();
   irradiance_.bind(UNIT_RECEIVED);
   pass.dispatchIndirect(work_[0], 4 * sizeof(GLuint));
@@ -299,7 +300,7 @@ void LpvReceivers::gather(const Inputs& inputs) {
       todo.push_back(map.light == ReflectiveShadowMap::Light::sun ? gatherSun_ : gatherLamp_);
   if (gatherSky_) todo.push_back(gatherSky_);
   for (std::size_t i = 0; i < todo.size(); ++i) {
-    const gl::ComputePass pass("lpv gather", GL_SHADER_STORAGE_BARRIER_BIT);
+    const gl::ComputePass pass("lpv gather", gl::Barrier::storage);
     const gl::Program& program = *todo[i];
     program.use();
     program.set("last", i + 1 == todo.size() ? 1u : 0u);
@@ -318,14 +319,14 @@ void LpvReceivers::gather(const Inputs& inputs) {
 void LpvReceivers::store(float mostChange) {
   const std::array<const gl::Texture*, 1> textures{&irradiance_};
   gl::clearToZero(textures, clearTexture_);
-  const gl::ComputePass pass("lpv store receivers", GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  const gl::ComputePass pass("lpv store receivers", gl::Barrier::textureFetch | gl::Barrier::textureUpdate);
   store_->use();
   store_->set("fullPaths", kFullPaths);
   store_->set("enoughPaths", static_cast<unsigned>(std::min(settings_.samples, settings_.leastRays)));
   store_->set("mostChange", mostChange);
   bindReceivers();
   slotTable_.bind(kSlotsUnit);
-  irradiance_.bindImage(0, GL_WRITE_ONLY);
+  irradiance_.bindImage(0, gl::Access::write);
   pass.dispatchIndirect(work_[0]);
 }
 
@@ -359,8 +360,8 @@ void LpvReceivers::update(const Inputs& inputs, int rounds) {
 }
 
 void LpvReceivers::bindForLookup() const {
-  lpvConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_LPV);
-  constants_.bind(GL_UNIFORM_BUFFER, BLOCK_RECEIVERS);
+  lpvConstants_.bindUniform(BLOCK_LPV);
+  constants_.bindUniform(BLOCK_RECEIVERS);
   irradiance_.bind(UNIT_RECEIVED);
 }
 

@@ -54,7 +54,7 @@ class LpvReceivers {
 
   /// `scene`: as loaded. `origin`: of the frame's positions, in the scene's coordinates.
   LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
-               const glm::dvec3& origin, const LightPropagationVolume::Settings& settings, Light light);
+               const glm::dvec3& origin, const LpvSettings& settings, Light light);
 
   static bool isNeeded(const SceneNeeds& needs, LpvTransport transport, Light light);
 
@@ -66,11 +66,11 @@ class LpvReceivers {
 
   /// Binds blocks 1 and 6 and unit 5 for shaders/lpv/receivers/lookup.glsl.
   void bindForLookup() const;
-  static gl::ShaderFlags lookupFlags(const LightPropagationVolume::Settings& settings);
+  static gl::ShaderFlags lookupFlags(const LpvSettings& settings);
 
   void collect(bool wait = false);
   const Counts& counts() const { return counts_; }
-  const LightPropagationVolume::Settings& settings() const { return settings_; }
+  const LpvSettings& settings() const { return settings_; }
   std::uint32_t frame() const { return frame_; }  ///< the last update's number
   const gl::Texture& irradiance() const { return irradiance_; }
   std::size_t gpuBytes() const;
@@ -85,7 +85,7 @@ class LpvReceivers {
   void store(float mostChange);
   void bindReceivers() const;
 
-  LightPropagationVolume::Settings settings_;
+  LpvSettings settings_;
   gl::ProgramLibrary* programs_;
   const gl::Capabilities* capabilities_;
   PathScene scene_;

@@ -1,5 +1,6 @@
 #include "measure/reference.hpp"
 
+#include "base/clock.hpp"
 #include "measure/batches.hpp"
 
 #include "base/error.hpp"
@@ -8,7 +9,6 @@
 #include "scene/fingerprint.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -86,9 +86,8 @@ std::uint32_t batchSize(std::uint64_t samples) {
 
 std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first,
                                          const SamplingGoal& goal, const std::function<bool()>& stop) {
-  using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const auto elapsed = [&] { return secondsSince(start); };
   const bool byCount = goal.samples > 0;
   // By time: the batch doubles until a sixteenth of the time is spent on one; then all begin again at that size, so
   // that they are equal.

@@ -1,5 +1,6 @@
 #include "pathtracer/path_tracer.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "gl/pass.hpp"
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -30,7 +30,7 @@ constexpr int kClearanceCells = 64;
 constexpr std::uint32_t kSoftwareTurns = 3500, kMostTurns = 1u << 16;
 constexpr double kLanesOfTile =
     512.0 * 512.0;  // on a GPU; a smaller tile, a software renderer's too, begins with as many turns a lane
-/// What path.comp's StateBlock begins with; std430 aligns the lanes' vectors behind it to 16 bytes.
+/// What StateBlock (path.glsl) begins with; std430 aligns the lanes' vectors behind it to 16 bytes.
 struct StateHeader {
   std::uint32_t unfinished = 0, leakedPaths = 0, wrongCrossings = 0, longest = 0, allTurns = 0, collisions = 0,
                 padding[2]{};
@@ -80,7 +80,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
                        const Settings& settings)
     : settings_(settings),
       needs_(analyse(scene)),
-      constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, GL_DYNAMIC_DRAW),
+      constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, gl::Usage::dynamicDraw),
       tileSide_(tileSideOn(context.capabilities())),
       mostTurns_(context.capabilities().softwareRenderer ? kSoftwareTurns : kMostTurns),
       clearTexture_(context.capabilities().clearTexture),
@@ -139,11 +139,12 @@ void PathTracer::allocateFilm() {
   const glm::ivec2 tile = glm::min(settings_.size, glm::ivec2(tileSide_));
   const std::size_t lanes = static_cast<std::size_t>(tile.x) * static_cast<std::size_t>(tile.y);
   constants_.picture = glm::ivec4(settings_.size, static_cast<int>(lanes), 0);
-  state_ = gl::Buffer("path state", kStateHeaderBytes + lanes * kStateWords * kVec4Bytes, nullptr, GL_DYNAMIC_COPY);
-  filmMean_ = gl::Texture("film mean", GL_RGBA32UI, settings_.size);
-  filmSpread_ = gl::Texture("film spread", GL_RGBA32UI, settings_.size);
-  filmRest_ = gl::Texture("film rest", GL_RGBA32UI, settings_.size);
-  for (gl::Texture& texture : kept_) texture = gl::Texture("film kept", GL_RGBA32UI, tile);
+  state_ =
+      gl::Buffer("path state", kStateHeaderBytes + lanes * kStateWords * kVec4Bytes, nullptr, gl::Usage::dynamicCopy);
+  filmMean_ = gl::Texture("film mean", gl::Format::rgba32ui, settings_.size);
+  filmSpread_ = gl::Texture("film spread", gl::Format::rgba32ui, settings_.size);
+  filmRest_ = gl::Texture("film rest", gl::Format::rgba32ui, settings_.size);
+  for (gl::Texture& texture : kept_) texture = gl::Texture("film kept", gl::Format::rgba32ui, tile);
 }
 
 void PathTracer::resize(glm::ivec2 size) {
@@ -215,7 +216,7 @@ void PathTracer::addClearances(const Scene& scene) {
   }
   needs_.denseMedia = !radii.empty();
   if (needs_.denseMedia)
-    clearances_ = gl::BufferTexture("path clearances", GL_R32F, radii.size() * sizeof(float), radii.data());
+    clearances_ = gl::BufferTexture("path clearances", gl::Format::r32f, radii.size() * sizeof(float), radii.data());
 }
 
 void PathTracer::setCamera(const Camera& camera) {
@@ -245,6 +246,11 @@ void PathTracer::setCamera(const Camera& camera) {
   done_ = passTarget_ = 0;
   tile_ = 0;
   tileBegun_ = false;
+}
+
+void PathTracer::setFirstSample(std::uint32_t first) {
+  CHECK(done_ == 0 && tile_ == 0 && !tileBegun_, "{} samples are there", done_);
+  constants_.picture.w = static_cast<int>(first);
 }
 
 std::uint64_t PathTracer::identity() const {
@@ -287,9 +293,9 @@ void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::strin
     throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, film.size.x, film.size.y,
                   settings_.size.x, settings_.size.y);
   if (film.identity != identity()) throwBadInput("{}: a checkpoint of another scene, view or setting", name);
-  filmMean_.upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, film.mean.data());
-  filmSpread_.upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, film.spread.data());
-  filmRest_.upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, film.rest.data());
+  filmMean_.upload(gl::Texels::rgbaWord, film.mean.data());
+  filmSpread_.upload(gl::Texels::rgbaWord, film.spread.data());
+  filmRest_.upload(gl::Texels::rgbaWord, film.rest.data());
   constants_.picture.w = static_cast<int>(film.first);
   done_ = kUnlimited;
   for (const glm::uvec4& word : film.mean) done_ = std::min(done_, word.w);
@@ -337,7 +343,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   const StateHeader zeros{};
   state_.upload(0, sizeof zeros, &zeros);
 
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   dispatch(corner, size, passTarget_);
   const auto header = counters_.readFirst<StateHeader>(state_);
   const std::uint32_t unfinished = header.unfinished;
@@ -350,7 +356,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   const auto taken = static_cast<std::uint64_t>(lanes) * header.longest;
   largest_ = std::max(largest_, taken);
   if (begins) largestBegun_ = std::max(largestBegun_, taken);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = secondsSince(start);
   turns_.setTurnsOfUnit(std::max(unfinished, 1u));  // the others have nothing left to do
   turns_.took(turns_.units(), seconds);
   tileBegun_ = unfinished > 0;
@@ -367,28 +373,28 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
   constants_.sampleTarget = target;
   constants_.turns = turns_.units();
   constantsBuffer_.upload(0, sizeof constants_, &constants_);
-  const gl::ComputePass pass("path tracing", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
-                                                 GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  const gl::ComputePass pass("path tracing", gl::Barrier::storage | gl::Barrier::bufferUpdate | gl::Barrier::image |
+                                                 gl::Barrier::textureUpdate);
   program_->use();
   scene_->bind();
-  constantsBuffer_.bind(GL_UNIFORM_BUFFER, kConstantsBinding);
-  state_.bind(GL_SHADER_STORAGE_BUFFER, kStateBinding);
+  constantsBuffer_.bindUniform(kConstantsBinding);
+  state_.bindStorage(kStateBinding);
   if (hasInteriors()) {
-    interiors_.bind(GL_SHADER_STORAGE_BUFFER, kInteriorsBinding);
+    interiors_.bindStorage(kInteriorsBinding);
     program_->set("outerMedium", outerMedium_);
     program_->set("dielectricRanks", boundaries_.dielectricRanks);
     program_->set("cameraInside", cameraInside_);
     program_->set("cameraIor", cameraIor_);
   }
   if (needs_.denseMedia) clearances_.bind(kClearancesUnit);
-  if (needs_.media) media_.bind(GL_SHADER_STORAGE_BUFFER, kMediaBinding);
+  if (needs_.media) media_.bindStorage(kMediaBinding);
   if (needs_.heterogeneousMedia) {
-    grids_.bind(GL_SHADER_STORAGE_BUFFER, kGridsBinding);
-    densities_.bind(GL_SHADER_STORAGE_BUFFER, kDensitiesBinding);
+    grids_.bindStorage(kGridsBinding);
+    densities_.bindStorage(kDensitiesBinding);
   }
-  filmMean_.bindImage(0, GL_READ_WRITE);
-  filmSpread_.bindImage(1, GL_READ_WRITE);
-  filmRest_.bindImage(2, GL_READ_WRITE);
+  filmMean_.bindImage(0, gl::Access::readWrite);
+  filmSpread_.bindImage(1, gl::Access::readWrite);
+  filmRest_.bindImage(2, gl::Access::readWrite);
   pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
 }
 

@@ -69,6 +69,8 @@ class PathTracer {
 
   /// Sets the view and empties the film.
   void setCamera(const Camera& camera);
+  /// The number of the film's first sample: of parts of a picture's samples. The film must be empty.
+  void setFirstSample(std::uint32_t first);
   /// A film of another size; setCamera() must follow.
   void resize(glm::ivec2 size);
   /// One submission towards `samples` samples in every pixel, waited for. False once all have them.

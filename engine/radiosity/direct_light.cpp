@@ -66,15 +66,15 @@ class ShadowRays {
   /// Not 0 if occluded.
   std::vector<GLuint> blocked(const std::vector<Ray>& batch) const {
     if (batch.empty()) return {};
-    const gl::Buffer rayBuffer("direct light rays", batch.size() * sizeof(Ray), batch.data(), GL_STREAM_DRAW);
-    const gl::Buffer flags("direct light blocked", batch.size() * sizeof(GLuint), nullptr, GL_DYNAMIC_READ);
+    const gl::Buffer rayBuffer("direct light rays", batch.size() * sizeof(Ray), batch.data(), gl::Usage::streamDraw);
+    const gl::Buffer flags("direct light blocked", batch.size() * sizeof(GLuint), nullptr, gl::Usage::dynamicRead);
     {
-      const gl::ComputePass pass("direct light", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+      const gl::ComputePass pass("direct light", gl::Barrier::storage | gl::Barrier::bufferUpdate);
       program_.use();
       program_.set("rayCount", static_cast<int>(batch.size()));
       rays_.bind();
-      rayBuffer.bind(GL_SHADER_STORAGE_BUFFER, 1);
-      flags.bind(GL_SHADER_STORAGE_BUFFER, 2);
+      rayBuffer.bindStorage(1);
+      flags.bindStorage(2);
       pass.dispatch({static_cast<int>(batch.size()), 1, 1}, {64, 1, 1});
     }
     return flags.read<GLuint>();

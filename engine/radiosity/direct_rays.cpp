@@ -73,12 +73,12 @@ DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities,
   put(&start, sizeof start);
   if (lights.empty()) lights.emplace_back();
   put(lights.data(), lights.size() * sizeof(Light));
-  lights_ = gl::Buffer("direct lights", bytes.size(), bytes.data(), GL_STATIC_DRAW);
+  lights_ = gl::Buffer("direct lights", bytes.size(), bytes.data(), gl::Usage::staticDraw);
 }
 
 void DirectRays::bind() const {
   rays_.bind();
-  lights_.bind(GL_SHADER_STORAGE_BUFFER, kLightsBinding);
+  lights_.bindStorage(kLightsBinding);
 }
 
 }  // namespace lucerna

@@ -1,5 +1,6 @@
 #include "radiosity/hemicubes.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "gl/draw.hpp"
@@ -41,7 +42,7 @@ double hashed(std::uint32_t seed, std::uint32_t patch) {
 }
 
 gl::Buffer storage(const char* name, std::size_t bytes) {
-  return gl::Buffer(name, std::max<std::size_t>(bytes, 16), nullptr, GL_DYNAMIC_COPY);
+  return gl::Buffer(name, std::max<std::size_t>(bytes, 16), nullptr, gl::Usage::dynamicCopy);
 }
 
 }  // namespace
@@ -125,12 +126,14 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
     for (const glm::dvec3& corner : mesh.corners(patch)) corners.emplace_back(glm::vec3(corner), 0.0f);
   std::vector<float> deltas;
   for (const double d : deltaFormFactors(settings.resolution, settings.map)) deltas.push_back(static_cast<float>(d));
-  corners_ = gl::BufferTexture("radiosity corners", GL_RGBA32F, corners.size() * sizeof(glm::vec4), corners.data());
-  sources_ = gl::Buffer("radiosity sources", sources.size() * sizeof(GLuint), sources.data(), GL_STATIC_DRAW);
-  deltaFactors_ = gl::BufferTexture("delta form factors", GL_R32F, deltas.size() * sizeof(float), deltas.data());
+  corners_ =
+      gl::BufferTexture("radiosity corners", gl::Format::rgba32f, corners.size() * sizeof(glm::vec4), corners.data());
+  sources_ = gl::Buffer("radiosity sources", sources.size() * sizeof(GLuint), sources.data(), gl::Usage::staticDraw);
+  deltaFactors_ =
+      gl::BufferTexture("delta form factors", gl::Format::r32f, deltas.size() * sizeof(float), deltas.data());
   const auto batch = static_cast<std::size_t>(batch_);
-  frames_ = gl::Buffer("hemicube frames", kMostHemicubes * sizeof(Frame), nullptr, GL_DYNAMIC_DRAW);
-  keys_ = gl::BufferTexture("hemicube pixels", GL_R32UI, batch * keyBytes, nullptr);
+  frames_ = gl::Buffer("hemicube frames", kMostHemicubes * sizeof(Frame), nullptr, gl::Usage::dynamicDraw);
+  keys_ = gl::BufferTexture("hemicube pixels", gl::Format::r32ui, batch * keyBytes, nullptr);
   factors_ = storage("form factors", batch * factorBytes);
   factors_.clear();
   if (items) keptList_ = storage("kept patches", 16 + batch * listed * sizeof(glm::uvec2));
@@ -151,8 +154,8 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   } else {
     const glm::ivec3 layers(settings.resolution, settings.resolution, 5 * batch_);
     ItemBuffer& buffer = itemBuffer_.emplace();
-    buffer.items = gl::Texture("hemicube items", GL_R32UI, layers, {}, 1, GL_TEXTURE_2D_ARRAY);
-    buffer.depth = gl::Texture("hemicube depth", GL_DEPTH_COMPONENT32F, layers, {}, 1, GL_TEXTURE_2D_ARRAY);
+    buffer.items = gl::Texture("hemicube items", gl::Format::r32ui, layers, {}, 1, gl::TextureKind::array);
+    buffer.depth = gl::Texture("hemicube depth", gl::Format::depth32f, layers, {}, 1, gl::TextureKind::array);
     const std::array<const gl::Texture*, 1> colors{&buffer.items};
     buffer.target = gl::Framebuffer("hemicube items", colors, &buffer.depth);
     buffer.noAttributes = gl::VertexArray("hemicube items");
@@ -185,10 +188,9 @@ void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& cap
     Cost cost{one, 0.0};
     for (int k = 0; k < 3; ++k) {  // the first warms up; then the better of two places
       const int first = static_cast<int>(static_cast<std::int64_t>(patchCount_ - count) * k / 2);
-      const auto start = std::chrono::steady_clock::now();
+      const auto start = Clock::now();
       hemicubes.draw(first, count);
-      const double took =
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / count;
+      const double took = std::chrono::duration<double, std::milli>(Clock::now() - start).count() / count;
       if (k == 1 || (k == 2 && took < cost.milliseconds)) cost.milliseconds = took;
     }
     costs_.push_back(cost);
@@ -220,25 +222,25 @@ Hemicubes::Frame Hemicubes::frameOf(int index) const {
 DrawnHemicubes Hemicubes::draw(int first, int count) {
   CHECK(first >= 0 && count > 0 && count <= batch_ && first + count <= patchCount_, "rows {} + {} of {}, at most {}",
         first, count, patchCount_, batch_);
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   std::vector<Frame> frames;
   for (int i = 0; i < count; ++i) frames.push_back(frameOf(first + i));
   frames_.upload(0, frames.size() * sizeof(Frame), frames.data());
   corners_.bind(kCornersUnit);
-  frames_.bind(GL_UNIFORM_BUFFER, kFrames);
-  keys_.buffer().bind(GL_SHADER_STORAGE_BUFFER, kKeys);
+  frames_.bindUniform(kFrames);
+  keys_.buffer().bindStorage(kKeys);
   keys_.bind(kKeysUnit);
   deltaFactors_.bind(kDeltasUnit);
-  factors_.bind(GL_SHADER_STORAGE_BUFFER, kFactors);
-  sources_.bind(GL_SHADER_STORAGE_BUFFER, kSources);
-  exactList_.bind(GL_SHADER_STORAGE_BUFFER, kExactList);
+  factors_.bindStorage(kFactors);
+  sources_.bindStorage(kSources);
+  exactList_.bindStorage(kExactList);
   constexpr GLuint kNone[2] = {0, 0};
   exactList_.upload(0, sizeof kNone, kNone);
-  largeList_.bind(GL_SHADER_STORAGE_BUFFER, kLargeList);
+  largeList_.bindStorage(kLargeList);
   constexpr GLuint kNoGroups[4] = {0, 1, 1, 0};
   largeList_.upload(0, sizeof kNoGroups, kNoGroups);
-  constexpr GLbitfield kBarrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
-                                  GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
+  constexpr gl::Barrier kBarrier =
+      gl::Barrier::storage | gl::Barrier::bufferUpdate | gl::Barrier::command | gl::Barrier::textureFetch;
   const glm::ivec3 triangles((count + kHemicubesEach - 1) / kHemicubesEach, patchCount_, 1),
       trianglesGroup(1, kGroup, 1);
   // Pixels in rows along z: an axis has 65,535 groups.
@@ -257,7 +259,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
     const auto sources = static_cast<GLuint>(count * sourceCount_);
     const GLuint begun[4] = {(sources + kGroup - 1) / kGroup, 1, 1, sources};
     keptList_.upload(0, sizeof begun, begun);
-    keptList_.bind(GL_SHADER_STORAGE_BUFFER, kKeptList);
+    keptList_.bindStorage(kKeptList);
     if (itemBuffer_) {
       gl::RasterState state;
       state.depth = gl::Depth::lessWrite;
@@ -308,8 +310,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   drawn.exact.erase(drawn.exact.begin());
   gl::throwIfReset();
   gl::throwIfError("hemicubes");
-  pieces_.took(static_cast<std::uint32_t>(count),
-               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  pieces_.took(static_cast<std::uint32_t>(count), secondsSince(start));
   return drawn;
 }
 

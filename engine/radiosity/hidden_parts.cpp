@@ -45,16 +45,16 @@ std::vector<GLuint> seenFrom(const gl::Program& program, const RayScene& rays, c
     }
     const std::size_t rayCount = receivers.size() * kParts * raysEach;
     const gl::Buffer in("hidden parts receivers", receivers.size() * sizeof(Receiver), receivers.data(),
-                        GL_STREAM_DRAW);
-    const gl::Buffer out("hidden parts seen", rayCount * sizeof(GLuint), nullptr, GL_DYNAMIC_READ);
+                        gl::Usage::streamDraw);
+    const gl::Buffer out("hidden parts seen", rayCount * sizeof(GLuint), nullptr, gl::Usage::dynamicRead);
     {
-      const gl::ComputePass pass("hidden parts", GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+      const gl::ComputePass pass("hidden parts", gl::Barrier::storage | gl::Barrier::bufferUpdate);
       program.use();
       program.set("receiverCount", static_cast<int>(receivers.size()));
       program.set("raysEach", static_cast<int>(raysEach));
       rays.bind();
-      in.bind(GL_SHADER_STORAGE_BUFFER, 1);
-      out.bind(GL_SHADER_STORAGE_BUFFER, 2);
+      in.bindStorage(1);
+      out.bindStorage(2);
       pass.dispatch({static_cast<int>(rayCount), 1, 1}, {64, 1, 1});
     }
     const std::vector<GLuint> read = out.read<GLuint>();

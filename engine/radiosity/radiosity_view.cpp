@@ -59,7 +59,7 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
       const glm::vec3 value = settings.flat ? glm::vec3(patchLight[i]) : atVertices[vertex];
       for (int c = 0; c < 3; ++c) corners.push_back(value[c]);
     }
-  light_ = gl::Buffer("radiosity light", corners.size() * sizeof(float), corners.data(), GL_STATIC_DRAW);
+  light_ = gl::Buffer("radiosity light", corners.size() * sizeof(float), corners.data(), gl::Usage::staticDraw);
   if (settings.direct != Direct::pixels) return;
   // A face's plane, and the largest coordinate of the triangle that it is part of: that is what rounds where rays meet
   // it.
@@ -75,7 +75,7 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
                   static_cast<float>(glm::dot(glm::dvec3(normal), solution_.mesh.corners(patch)[0] - origin)),
                   static_cast<float>(std::max({largest.x, largest.y, largest.z}))});
   }
-  faces_ = gl::Buffer("radiosity faces", faces.size() * sizeof(float), faces.data(), GL_STATIC_DRAW);
+  faces_ = gl::Buffer("radiosity faces", faces.size() * sizeof(float), faces.data(), gl::Usage::staticDraw);
 }
 
 SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene) const {
@@ -104,8 +104,8 @@ const gl::Program* RadiosityView::loadMapping(gl::ProgramLibrary& programs) cons
 }
 
 void RadiosityView::bind() const {
-  light_.bind(GL_SHADER_STORAGE_BUFFER, kLightBinding);
-  if (faces_.bytes() > 0) faces_.bind(GL_SHADER_STORAGE_BUFFER, kFacesBinding);
+  light_.bindStorage(kLightBinding);
+  if (faces_.bytes() > 0) faces_.bindStorage(kFacesBinding);
 }
 
 }  // namespace lucerna

@@ -7,10 +7,10 @@
 #pragma once
 
 #include "base/named_values.hpp"
+#include "forward/gpu_scene.hpp"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
-#include "forward/gpu_scene.hpp"
 #include "radiosity/solution.hpp"
 
 #include <filesystem>

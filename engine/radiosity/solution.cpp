@@ -26,8 +26,8 @@ namespace lucerna {
 namespace {
 
 constexpr double kEdges = 12.0;  // default: longest edges that span the scene
-constexpr std::size_t kBytesPerEntry =
-    32;  // of a form factor, its mirrored copy and their mean, while they are repaired
+// Of a form factor, its mirrored copy and their mean, while they are repaired.
+constexpr std::size_t kBytesPerEntry = 32;
 
 std::size_t freeMemory() {
   return static_cast<std::size_t>(std::max(sysconf(_SC_AVPHYS_PAGES), 1L)) *
@@ -61,171 +61,237 @@ void append(FormFactorMatrix& matrix, const FormFactorRows& rows) {
   }
 }
 
-/// One mesh solved: direct light, form factors, system.
-void solveMesh(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-               const RadiositySolutionSettings& settings, int refinement, const std::filesystem::path& checkpoint,
-               const std::function<bool(const RadiosityStage&)>& onStage, RadiositySolution& solution) {
-  const RadiosityMesh& mesh = solution.mesh;
-  const std::size_t n = mesh.patches.size();
-  const auto stage = [&](RadiosityStage::Kind kind, std::size_t done, const RadiosityProgress& progress = {}) {
-    return !onStage || onStage({kind, refinement, done, n, progress});
-  };
-  stage(RadiosityStage::Kind::direct, 0);
-  const RayScene rays(sceneOf(mesh), context.capabilities());
-  if (!settings.deviations.centroid) cutHiddenParts(programs, rays, solution.mesh);
-  solution.direct = directLight(programs, rays, scene, mesh);
-  solution.fromSky =
-      analyse(scene).environment ? skyLight(programs, rays, scene, mesh) : std::vector<glm::dvec3>(n, glm::dvec3(0.0));
+/// One mesh solved: direct light, form factors, system. What comes out stands in the solution.
+class MeshSolver {
+ public:
+  MeshSolver(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+             const RadiositySolutionSettings& settings, int refinement, std::filesystem::path checkpoint,
+             const std::function<bool(const RadiosityStage&)>& onStage, RadiositySolution& solution)
+      : context_(context),
+        programs_(programs),
+        scene_(scene),
+        settings_(settings),
+        refinement_(refinement),
+        checkpoint_(std::move(checkpoint)),
+        onStage_(onStage),
+        solution_(solution),
+        count_(solution.mesh.patches.size()) {}
 
-  FormFactorMatrix matrix;
-  solution.fronts.clear();
-  solution.backs.clear();
-  std::vector<double> rowSums;  // as hemicubes have them
-  const std::size_t memory = settings.memoryBytes ? settings.memoryBytes : freeMemory() / 2;
-  bool kept = true, stopped = false;
-  const auto stop = [&] {
+  void solve() {
+    stage(RadiosityStage::Kind::direct, 0);
+    const RayScene& rays = rays_.emplace(sceneOf(solution_.mesh), context_.capabilities());
+    if (!settings_.deviations.centroid) cutHiddenParts(programs_, rays, solution_.mesh);
+    solution_.direct = directLight(programs_, rays, scene_, solution_.mesh);
+    solution_.fromSky = analyse(scene_).environment ? skyLight(programs_, rays, scene_, solution_.mesh)
+                                                    : std::vector<glm::dvec3>(count_, glm::dvec3(0.0));
+    HemicubeSettings way = settings_.hemicubes;
+    way.visibility = visibility();
+    hemicubes_.emplace(programs_, context_.capabilities(), solution_.mesh, way, &rays);
+    makeRows();
+
+    const Clock::time_point start = Clock::now();
+    RadiositySystem system = balances();
+    if (kept_) keptProduct(system);
+    else streamedProduct(system);
+    shareOfEmitters(system);
+    solveSystem(system);
+    solution_.solveSeconds += secondsSince(start);
+  }
+
+ private:
+  /// Tells what is done; false: the caller wants it to stop.
+  bool stage(RadiosityStage::Kind kind, std::size_t done, const RadiosityProgress& progress = {}) const {
+    return !onStage_ || onStage_({kind, refinement_, done, count_, progress});
+  }
+  [[noreturn]] void stop() const {
     throw Stopped(fmt::format(
-        "stopped after {} of {} hemicubes{}", solution.fronts.size(), n,
-        checkpoint.empty() ? std::string() : fmt::format("; the same command resumes from {}", checkpoint.string())));
-  };
-  const auto take = [&](const FormFactorRows& rows) {
-    if (kept) append(matrix, rows);
-    auto factor = rows.factors.begin();
-    for (const std::uint32_t count : rows.counts)
-      rowSums.push_back(std::accumulate(factor, factor + count, 0.0)), factor += count;
-    solution.fronts.insert(solution.fronts.end(), rows.fronts.begin(), rows.fronts.end());
-    solution.backs.insert(solution.backs.end(), rows.backs.begin(), rows.backs.end());
-    const double perPatch = static_cast<double>(matrix.entryCount()) / static_cast<double>(solution.fronts.size()),
-                 bytes = perPatch * static_cast<double>(n) * static_cast<double>(kBytesPerEntry);
-    if (kept && bytes > static_cast<double>(memory)) {
-      logWarning(
-          "radiosity: the form factors of {} patches need about {} MiB, {} are available: they are {} for each product",
-          n, static_cast<std::size_t>(bytes) >> 20, memory >> 20,
-          checkpoint.empty() ? "recomputed" : "read from " + checkpoint.string());
-      kept = false;
-      matrix = {};
-    }
-  };
-  // Rows by different ways differ in their last bits: a checkpoint is gone on with as it was begun, and a refinement is
-  // made as the mesh before it was.
-  HemicubeSettings asked = settings.hemicubes;
-  if (refinement > 0) asked.visibility = solution.visibility;
-  if (const auto begun = asked.visibility == HemicubeVisibility::automatic && !checkpoint.empty()
-                             ? RowFile::fingerprintOf(checkpoint)
-                             : std::nullopt)
+        "stopped after {} of {} hemicubes{}", solution_.fronts.size(), count_,
+        checkpoint_.empty() ? std::string() : fmt::format("; the same command resumes from {}", checkpoint_.string())));
+  }
+
+  // ---------------------------------------------------------------------------------------------- form factors
+
+  /// How patches learn what they see. Rows by different ways differ in their last bits: a checkpoint is gone on with as
+  /// it was begun, and a refinement is made as the mesh before it was.
+  HemicubeVisibility visibility() const {
+    if (refinement_ > 0) return solution_.visibility;
+    HemicubeSettings way = settings_.hemicubes;
+    if (way.visibility != HemicubeVisibility::automatic || checkpoint_.empty()) return way.visibility;
+    const std::optional<std::uint64_t> begun = RowFile::fingerprintOf(checkpoint_);
     for (const HemicubeVisibility one :
          {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
-      HemicubeSettings as = asked;
-      as.visibility = one;
-      if (rowsFingerprint(mesh, as) == *begun) asked.visibility = one;
+      way.visibility = one;
+      if (begun && rowsFingerprint(solution_.mesh, way) == *begun) return one;
     }
-  Hemicubes hemicubes(programs, context.capabilities(), mesh, asked, &rays);
-  asked.visibility = hemicubes.visibility();
-  std::unique_ptr<RowFile> file;
-  if (!checkpoint.empty())
-    file = std::make_unique<RowFile>(checkpoint, rowsFingerprint(mesh, asked), static_cast<std::uint32_t>(n), take);
-  std::size_t computed = 0;
-  Clock::time_point start = Clock::now();
-  const std::size_t from = solution.fronts.size();
-  const auto keep = [&](const FormFactorRows& rows) {
-    take(rows);
-    if (file) file->append(rows);
-  };
-  hemicubes.stream(static_cast<int>(from), static_cast<int>(n), keep, [&](int done) {
-    solution.hemicubes += static_cast<std::size_t>(done) - from - computed;
-    computed = static_cast<std::size_t>(done) - from;
-    stopped = !stage(RadiosityStage::Kind::formFactors, static_cast<std::size_t>(done));
-    return !stopped;
-  });
-  solution.hemicubeSeconds += secondsSince(start);
-  solution.keptRows = kept;
-  solution.visibility = hemicubes.visibility();
-  if (stopped) stop();
-
-  start = Clock::now();
-  RadiositySystem system;
-  std::vector<double> sums;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Patch& patch = mesh.patches[i];
-    system.areas.push_back(patch.area);
-    system.reflectance.push_back(patch.reflectance);
-    system.emission.push_back(patch.emission + patch.reflectance * (solution.direct[i] + solution.fromSky[i]));
-    // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed. An open row sums to what its
-    // factors say: closed forms know of lights that no pixel meets.
-    sums.push_back(static_cast<double>(solution.fronts[i]) > 1.0 - 1e-5 ? 1.0 : std::min(1.0, rowSums[i]));
+    return HemicubeVisibility::automatic;
   }
-  if (kept) {
+
+  /// Rows of form factors: those of the checkpoint, then the rest, which are appended to it.
+  void makeRows() {
+    solution_.fronts.clear();
+    solution_.backs.clear();
+    if (!checkpoint_.empty()) {
+      HemicubeSettings way = settings_.hemicubes;
+      way.visibility = hemicubes_->visibility();
+      file_ = std::make_unique<RowFile>(checkpoint_, rowsFingerprint(solution_.mesh, way),
+                                        static_cast<std::uint32_t>(count_),
+                                        [&](const FormFactorRows& rows) { take(rows); });
+    }
+    const Clock::time_point start = Clock::now();
+    const std::size_t from = solution_.fronts.size();
+    std::size_t computed = 0;
+    bool stopped = false;
+    const auto keep = [&](const FormFactorRows& rows) {
+      take(rows);
+      if (file_) file_->append(rows);
+    };
+    hemicubes_->stream(static_cast<int>(from), static_cast<int>(count_), keep, [&](int done) {
+      solution_.hemicubes += static_cast<std::size_t>(done) - from - computed;
+      computed = static_cast<std::size_t>(done) - from;
+      stopped = !stage(RadiosityStage::Kind::formFactors, static_cast<std::size_t>(done));
+      return !stopped;
+    });
+    solution_.hemicubeSeconds += secondsSince(start);
+    solution_.keptRows = kept_;
+    solution_.visibility = hemicubes_->visibility();
+    if (stopped) stop();
+  }
+
+  /// The next rows: into the matrix, as long as all of it will have room.
+  void take(const FormFactorRows& rows) {
+    if (kept_) append(matrix_, rows);
+    auto factor = rows.factors.begin();
+    for (const std::uint32_t count : rows.counts)
+      rowSums_.push_back(std::accumulate(factor, factor + count, 0.0)), factor += count;
+    solution_.fronts.insert(solution_.fronts.end(), rows.fronts.begin(), rows.fronts.end());
+    solution_.backs.insert(solution_.backs.end(), rows.backs.begin(), rows.backs.end());
+    const double perPatch = static_cast<double>(matrix_.entryCount()) / static_cast<double>(solution_.fronts.size()),
+                 bytes = perPatch * static_cast<double>(count_) * static_cast<double>(kBytesPerEntry);
+    if (!kept_ || bytes <= static_cast<double>(memory_)) return;
+    logWarning(
+        "radiosity: the form factors of {} patches need about {} MiB, {} are available: they are {} for each product",
+        count_, static_cast<std::size_t>(bytes) >> 20, memory_ >> 20,
+        checkpoint_.empty() ? "recomputed" : "read from " + checkpoint_.string());
+    kept_ = false;
+    matrix_ = {};
+  }
+
+  // ---------------------------------------------------------------------------------------------- system
+
+  /// Areas, reflectance and emission of all patches, and what each row of form factors must sum to.
+  RadiositySystem balances() {
+    RadiositySystem system;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Patch& patch = solution_.mesh.patches[i];
+      system.areas.push_back(patch.area);
+      system.reflectance.push_back(patch.reflectance);
+      system.emission.push_back(patch.emission + patch.reflectance * (solution_.direct[i] + solution_.fromSky[i]));
+      // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed. An open row sums to what
+      // its factors say: closed forms know of lights that no pixel meets.
+      sums_.push_back(static_cast<double>(solution_.fronts[i]) > 1.0 - 1e-5 ? 1.0 : std::min(1.0, rowSums_[i]));
+    }
+    return system;
+  }
+
+  /// Of the matrix in memory, made reciprocal and given its sums.
+  void keptProduct(RadiositySystem& system) {
     double off = 0.0;
-    for (std::size_t i = 0; i < n; ++i) off += std::abs(rowSums[i] - sums[i]);
-    solution.repaired = off / static_cast<double>(n);
-    if (settings.repair) {
-      const double pixel = 4.0 / (std::numbers::pi * settings.hemicubes.resolution *
-                                  settings.hemicubes.resolution);  // the largest delta form factor
-      matrix.repair(system.areas, sums, hemicubes.smallSources(), settings.hemicubes.exactPixels * pixel);
+    for (std::size_t i = 0; i < count_; ++i) off += std::abs(rowSums_[i] - sums_[i]);
+    solution_.repaired = off / static_cast<double>(count_);
+    if (settings_.repair) {
+      const double resolution = settings_.hemicubes.resolution,
+                   pixel = 4.0 / (std::numbers::pi * resolution * resolution);  // the largest delta form factor
+      matrix_.repair(system.areas, sums_, hemicubes_->smallSources(), settings_.hemicubes.exactPixels * pixel);
       system.reciprocal = true;
     }
-    system.matrix = &matrix;
-    system.rowSums = matrix.rowSums();
-    solution.entries = matrix.entryCount();
-    system.product = [&](auto x, auto y) { matrix.multiply(x, y); };
-  } else {
-    // Each product reads all rows from the checkpoint, or draws all hemicubes again where there is none. Of the repair
-    // rows get their sums; reciprocity stays as hemicubes have it.
-    system.rowSums = settings.repair ? sums : rowSums;
-    system.product = [&](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
+    system.matrix = &matrix_;
+    system.rowSums = matrix_.rowSums();
+    solution_.entries = matrix_.entryCount();
+    system.product = [this](auto x, auto y) { matrix_.multiply(x, y); };
+  }
+
+  /// Each product reads all rows from the checkpoint, or draws all hemicubes again where there is none. Of the repair
+  /// rows get their sums; reciprocity stays as hemicubes have it.
+  void streamedProduct(RadiositySystem& system) {
+    system.rowSums = settings_.repair ? sums_ : rowSums_;
+    system.product = [this](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
       const auto multiply = [&](const FormFactorRows& rows) {
         std::size_t at = 0, row = static_cast<std::size_t>(rows.first);
         for (const std::uint32_t count : rows.counts) {
           glm::dvec3 sum(0.0);
           for (const std::size_t end = at + count; at < end; ++at)
             sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
-          y[row] = settings.repair && rowSums[row] > 0.0 ? sum * (sums[row] / rowSums[row]) : sum;
+          y[row] = settings_.repair && rowSums_[row] > 0.0 ? sum * (sums_[row] / rowSums_[row]) : sum;
           ++row;
         }
       };
-      if (file) return file->forEach(multiply);
-      for (std::size_t first = 0; first < n;) {
-        const FormFactorRows rows =
-            hemicubes.rows(static_cast<int>(first),
-                           static_cast<int>(std::min(n - first, static_cast<std::size_t>(hemicubes.batchSize()))));
+      if (file_) return file_->forEach(multiply);
+      for (std::size_t first = 0; first < count_;) {
+        const std::size_t batch = std::min(count_ - first, static_cast<std::size_t>(hemicubes_->batchSize()));
+        const FormFactorRows rows = hemicubes_->rows(static_cast<int>(first), static_cast<int>(batch));
         multiply(rows);
         first += rows.counts.size();
-        solution.hemicubes += rows.counts.size();
+        solution_.hemicubes += rows.counts.size();
         if (!stage(RadiosityStage::Kind::formFactors, first)) stop();
       }
     };
   }
-  // What comes from emitters straight, so that a view may put sharper shadows in its place.
-  solution.fromEmitters.assign(n, glm::dvec3(0.0));
-  std::vector<glm::dvec3> emission(n);
-  for (std::size_t i = 0; i < n; ++i) emission[i] = mesh.patches[i].emission;
-  if (std::any_of(emission.begin(), emission.end(), [](const glm::dvec3& e) { return e != glm::dvec3(0.0); })) {
-    system.product(emission, solution.fromEmitters);
+
+  /// What comes from emitters straight, so that a view may put sharper shadows in its place.
+  void shareOfEmitters(RadiositySystem& system) {
+    solution_.fromEmitters.assign(count_, glm::dvec3(0.0));
+    std::vector<glm::dvec3> emission;
+    for (const Patch& patch : solution_.mesh.patches) emission.push_back(patch.emission);
+    if (std::ranges::all_of(emission, [](const glm::dvec3& e) { return e == glm::dvec3(0.0); })) return;
+    system.product(emission, solution_.fromEmitters);
     // Solvers begin with this very product where there are no lamps besides: not a second time, which is dear where
     // rows are computed anew.
-    system.product = [&, product = std::move(system.product)](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
-      if (std::ranges::equal(x, emission)) std::ranges::copy(solution.fromEmitters, y.begin());
+    system.product = [this, emission = std::move(emission), product = std::move(system.product)](
+                         std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
+      if (std::ranges::equal(x, emission)) std::ranges::copy(solution_.fromEmitters, y.begin());
       else product(x, y);
     };
   }
-  SolverSettings solver;
-  solver.solver = settings.solver;
-  solver.error = settings.error;
-  solver.mostProducts = settings.mostProducts;
-  solver.onStep = [&](const RadiosityProgress& p) {
-    stopped = !stage(RadiosityStage::Kind::solving, n, p);
-    return !stopped;
-  };
-  RadiositySolved solved = solveRadiosity(system, solver);
-  if (stopped) stop();
-  solution.exitance = std::move(solved.exitance);
-  solution.irradiance = std::move(solved.irradiance);
-  for (std::size_t i = 0; i < n; ++i) solution.irradiance[i] += solution.direct[i] + solution.fromSky[i];
-  solution.progress = solved.progress;
-  solution.solver = solved.solver;
-  solution.reached = solved.reached;
-  solution.solveSeconds += secondsSince(start);
-}
+
+  void solveSystem(const RadiositySystem& system) {
+    bool stopped = false;
+    SolverSettings solver;
+    solver.solver = settings_.solver;
+    solver.error = settings_.error;
+    solver.mostProducts = settings_.mostProducts;
+    solver.onStep = [&](const RadiosityProgress& p) {
+      stopped = !stage(RadiosityStage::Kind::solving, count_, p);
+      return !stopped;
+    };
+    RadiositySolved solved = solveRadiosity(system, solver);
+    if (stopped) stop();
+    solution_.exitance = std::move(solved.exitance);
+    solution_.irradiance = std::move(solved.irradiance);
+    for (std::size_t i = 0; i < count_; ++i) solution_.irradiance[i] += solution_.direct[i] + solution_.fromSky[i];
+    solution_.progress = solved.progress;
+    solution_.solver = solved.solver;
+    solution_.reached = solved.reached;
+  }
+
+  const gl::Context& context_;
+  gl::ProgramLibrary& programs_;
+  const Scene& scene_;
+  const RadiositySolutionSettings& settings_;
+  const int refinement_;
+  const std::filesystem::path checkpoint_;
+  const std::function<bool(const RadiosityStage&)>& onStage_;
+  RadiositySolution& solution_;
+  const std::size_t count_;  ///< patches
+
+  std::optional<RayScene> rays_;  ///< of the patches
+  std::optional<Hemicubes> hemicubes_;
+  std::unique_ptr<RowFile> file_;  ///< of the checkpoint
+  const std::size_t memory_ = settings_.memoryBytes ? settings_.memoryBytes : freeMemory() / 2;
+  bool kept_ = true;  ///< in memory
+  FormFactorMatrix matrix_;
+  std::vector<double> rowSums_;  ///< as hemicubes have them
+  std::vector<double> sums_;  ///< as they must be
+};
 
 double mean3(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
@@ -365,7 +431,8 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
   const double shortest =
       (patches.longestEdge > 0.0 ? patches.longestEdge : largest / kEdges) / std::pow(2.0, settings.refinements + 1);
   for (int refinement = 0;; ++refinement) {
-    solveMesh(context, programs, scene, settings, refinement, checkpointOf(checkpoint, refinement), onStage, solution);
+    MeshSolver(context, programs, scene, settings, refinement, checkpointOf(checkpoint, refinement), onStage, solution)
+        .solve();
     if (refinement >= settings.refinements) return solution;
     RadiosityMesh finer = refineSteep(scene, solution, patches, settings.steep, shortest);
     if (finer.patches.size() == solution.mesh.patches.size()) return solution;

@@ -302,68 +302,6 @@ void anderson(Solve& solve) {
   }
 }
 
-/// Jacobi with a Galerkin correction on groups of patches: the slow modes are constant in a room, so each room adds one
-/// unknown. Groups are found from the matrix itself: the sign of the slowest mode left splits every group in two
-/// [Fiedler1973].
-void perRoom(Solve& solve) {
-  const RadiositySystem& s = solve.system();
-  const std::size_t n = solve.size();
-  constexpr int kSplits = 3, kSmoothing = 4;
-  std::vector<std::uint32_t> group(n, 0);
-  std::uint32_t groups = 1;
-  for (int split = 0; split < kSplits; ++split) {
-    // Smoothing a rough start leaves the slow modes; without each group's mean, their sign tells two rooms apart.
-    Vector mode(n), image(n);
-    for (std::size_t i = 0; i < n; ++i)
-      mode[i] = glm::dvec3(static_cast<double>((i * 2654435761u) >> 7 & 1023u) / 1023.0 - 0.5, 0.0, 0.0);
-    for (int k = 0; k < kSmoothing; ++k) {
-      std::vector<double> sum(groups, 0.0), area(groups, 0.0);
-      for (std::size_t i = 0; i < n; ++i) sum[group[i]] += s.areas[i] * mode[i].x, area[group[i]] += s.areas[i];
-      for (std::size_t i = 0; i < n; ++i) mode[i].x -= sum[group[i]] / area[group[i]];
-      solve.product(mode, image);
-      mode.swap(image);
-    }
-    for (std::size_t i = 0; i < n; ++i) group[i] = 2 * group[i] + (mode[i].x > 0.0);
-    // Empty groups are closed up.
-    std::vector<std::uint32_t> name(2 * groups, ~0u);
-    std::uint32_t count = 0;
-    for (std::uint32_t& g : group) {
-      if (name[g] == ~0u) name[g] = count++;
-      g = name[g];
-    }
-    groups = count;
-  }
-  // F P, three groups per product.
-  std::vector<std::vector<double>> seen(groups, std::vector<double>(n));
-  for (std::uint32_t first = 0; first < groups; first += 3) {
-    Vector indicator(n, glm::dvec3(0.0)), image(n);
-    for (std::size_t i = 0; i < n; ++i)
-      if (group[i] >= first && group[i] < first + 3) indicator[i][static_cast<int>(group[i] - first)] = 1.0;
-    solve.product(indicator, image);
-    for (std::uint32_t g = first; g < std::min(groups, first + 3); ++g)
-      for (std::size_t i = 0; i < n; ++i) seen[g][i] = image[i][static_cast<int>(g - first)];
-  }
-  Vector exitance = s.emission, irradiance(n);
-  for (;;) {
-    solve.product(exitance, irradiance);
-    Vector next = jacobiStep(s, irradiance);
-    if (!solve.report(irradiance, largestDifference(next, exitance))) return;
-    for (int c = 0; c < 3; ++c) {
-      std::vector<std::vector<double>> coarse(groups, std::vector<double>(groups, 0.0));
-      std::vector<double> right(groups, 0.0);
-      for (std::size_t i = 0; i < n; ++i) {
-        right[group[i]] += s.areas[i] * (next[i][c] - exitance[i][c]);
-        coarse[group[i]][group[i]] += s.areas[i];
-        for (std::uint32_t g = 0; g < groups; ++g) coarse[group[i]][g] -= s.areas[i] * s.reflectance[i][c] * seen[g][i];
-      }
-      const std::vector<double> correction = solveDense(coarse, right);
-      for (std::uint32_t g = 0; g < groups; ++g)
-        for (std::size_t i = 0; i < n; ++i) next[i][c] += s.reflectance[i][c] * seen[g][i] * correction[g];
-    }
-    exitance = std::move(next);
-  }
-}
-
 /// Conjugate gradients on H - F rho H = F E, which is self-adjoint with vectors weighted by A rho
 /// [HestenesStiefel1952].
 void conjugateGradients(Solve& solve) {
@@ -438,7 +376,6 @@ RadiositySolved solveRadiosity(const RadiositySystem& system, const SolverSettin
     case RadiositySolver::progressive: progressive(solve, false); break;
     case RadiositySolver::overshoot: progressive(solve, true); break;
     case RadiositySolver::anderson: anderson(solve); break;
-    case RadiositySolver::perRoom: perRoom(solve); break;
     default: conjugateGradients(solve); break;
   }
   return solve.take(solver);

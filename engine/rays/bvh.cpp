@@ -1,5 +1,6 @@
 #include "rays/bvh.hpp"
 
+#include "base/clock.hpp"
 #include "scene/place.hpp"
 
 #include "base/error.hpp"
@@ -8,7 +9,6 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <future>
 #include <limits>
@@ -525,7 +525,7 @@ class Collapse {
 }  // namespace
 
 Bvh buildBvh(const Scene& scene, const BvhSettings& settings) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const Triangles triangles = collect(scene);
   Bvh bvh;
   bvh.origin = triangles.origin;
@@ -537,7 +537,7 @@ Bvh buildBvh(const Scene& scene, const BvhSettings& settings) {
   s.degenerate = scene.triangleCount() - s.triangles;
   s.references = bvh.triangles.size();
   s.nodes = bvh.nodes.size();
-  s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  s.seconds = secondsSince(start);
   return bvh;
 }
 

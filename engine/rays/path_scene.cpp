@@ -83,14 +83,14 @@ void PathScene::uploadEnvironment(const Environment& environment) {
   std::vector<glm::vec4> texels;
   texels.reserve(picture.pixels.size());
   for (const glm::vec3& p : picture.pixels) texels.emplace_back(p, 0.0f);
-  environmentPicture_.emplace("environment", static_cast<GLenum>(GL_RGBA32F), size);
-  environmentPicture_->upload(GL_RGBA, GL_FLOAT, texels.data());
+  environmentPicture_.emplace("environment", gl::Format::rgba32f, size);
+  environmentPicture_->upload(gl::Texels::rgbaFloat, texels.data());
   texels = {};
   const EnvironmentTable table = environmentTable(picture);
-  environmentTable_.emplace("environment table", static_cast<GLenum>(GL_RGBA32UI), size);
-  environmentTable_->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.texels.data());
-  environmentRows_.emplace("environment rows", static_cast<GLenum>(GL_RGBA32UI), glm::ivec2(1, picture.height));
-  environmentRows_->upload(GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.rows.data());
+  environmentTable_.emplace("environment table", gl::Format::rgba32ui, size);
+  environmentTable_->upload(gl::Texels::rgbaWord, table.texels.data());
+  environmentRows_.emplace("environment rows", gl::Format::rgba32ui, glm::ivec2(1, picture.height));
+  environmentRows_->upload(gl::Texels::rgbaWord, table.rows.data());
 }
 
 namespace {
@@ -116,7 +116,7 @@ struct AtlasContent {
 
 /// Nothing where there is nothing to put into it.
 std::optional<gl::Texture> makeAtlas(const Scene& scene, const gl::Capabilities& capabilities, const char* name,
-                                     GLenum format, const AtlasContent& content) {
+                                     gl::Format format, const AtlasContent& content) {
   if (content.entries.empty()) return std::nullopt;
   std::vector<glm::ivec2> sizes;
   for (const AtlasEntry& entry : content.entries) {
@@ -149,8 +149,8 @@ std::optional<gl::Texture> makeAtlas(const Scene& scene, const gl::Capabilities&
     }
   }
   std::optional<gl::Texture> atlas;
-  atlas.emplace(name, format, layout.size, gl::Sampling{}, 1, static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
-  atlas->upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  atlas.emplace(name, format, layout.size, gl::Sampling{}, 1, gl::TextureKind::array);
+  atlas->upload(gl::Texels::rgbaByte, texels.data());
   for (const auto& [entry, use] : content.uses)
     *use = {layout.places[entry].layer,
             layout.places[entry].corner.x,
@@ -182,8 +182,8 @@ void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capab
     if (needs_.metalMaps && material.metalMap && material.metalMap->texture >= 0)
       values.add(material.metalMap->texture, false, materials[i].metalTexture);
   }
-  atlas_ = makeAtlas(scene, capabilities, "texture atlas", GL_SRGB8_ALPHA8, colours);
-  values_ = makeAtlas(scene, capabilities, "value atlas", GL_RGBA8, values);
+  atlas_ = makeAtlas(scene, capabilities, "texture atlas", gl::Format::srgb8Alpha8, colours);
+  values_ = makeAtlas(scene, capabilities, "value atlas", gl::Format::rgba8, values);
 }
 
 void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured,
@@ -223,9 +223,9 @@ void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capa
 
 void PathScene::bind() const {
   rays_.bind();
-  triangles_.bind(GL_SHADER_STORAGE_BUFFER, kTrianglesBinding);
-  materials_.bind(GL_SHADER_STORAGE_BUFFER, kMaterialsBinding);
-  if (hasLights()) lights_.bind(GL_SHADER_STORAGE_BUFFER, kLightsBinding);
+  triangles_.bindStorage(kTrianglesBinding);
+  materials_.bindStorage(kMaterialsBinding);
+  if (hasLights()) lights_.bindStorage(kLightsBinding);
   if (atlas_) atlas_->bind(kAtlasUnit);
   if (values_) values_->bind(kValuesUnit);
   if (environmentPicture_) environmentPicture_->bind(kEnvironmentUnit);

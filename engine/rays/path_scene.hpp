@@ -30,7 +30,7 @@ gl::Buffer storageOf(const std::string& name, const std::vector<T>& values, cons
     throwMissingCapability(
         "{}: {} bytes; this driver's storage blocks have at most {} (GL_MAX_SHADER_STORAGE_BLOCK_SIZE)", name, bytes,
         capabilities.maxShaderStorageBlockSize);
-  gl::Buffer buffer(name, bytes, nullptr, GL_STATIC_DRAW);
+  gl::Buffer buffer(name, bytes, nullptr, gl::Usage::staticDraw);
   if (!values.empty()) buffer.upload(0, values.size() * sizeof(T), values.data());
   return buffer;
 }

@@ -42,7 +42,7 @@ void RayScene::upload(const Scene& scene, const Bvh& bvh) {
         scene.name, scene.triangleCount(), std::max(nodeBytes, triangleBytes), limit_);
   const auto put = [](gl::BufferTexture& texture, const char* name, std::size_t bytes, const void* data) {
     if (texture.bytes() == bytes) texture.upload(0, bytes, data);
-    else texture = gl::BufferTexture(name, GL_RGBA32UI, bytes, data);
+    else texture = gl::BufferTexture(name, gl::Format::rgba32ui, bytes, data);
   };
   put(nodes_, "bvh nodes", nodeBytes, bvh.nodes.data());
   put(triangles_, "bvh triangles", triangleBytes, words.data());

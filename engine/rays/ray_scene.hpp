@@ -4,10 +4,10 @@
 // lights.
 #pragma once
 
-#include "shared/bindings.h"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "rays/bvh.hpp"
+#include "shared/bindings.h"
 
 #include <optional>
 

@@ -8,12 +8,12 @@ namespace lucerna {
 namespace {
 
 /// Whether the geometry volume has surfels of what the camera sees.
-bool takesCameraSurfels(const LightPropagationVolume::Settings& volume) {
+bool takesCameraSurfels(const LpvSettings& volume) {
   return volume.blocking && volume.iterations > 1 && volume.surfels != LpvSurfels::rsm;
 }
 
-LightPropagationVolume::Settings volumeSettings(const RenderSettings& settings, std::size_t lightMaps) {
-  LightPropagationVolume::Settings volume = settings.lpv;
+LpvSettings volumeSettings(const RenderSettings& settings, std::size_t lightMaps) {
+  LpvSettings volume = settings.lpv;
   const std::size_t views =
       (volume.surfels == LpvSurfels::camera ? 0 : lightMaps) + (takesCameraSurfels(volume) ? 1 : 0);
   volume.mergeViews = volume.blocking && views > 1;
@@ -53,11 +53,10 @@ std::vector<ReflectiveShadowMap::Outputs> LpvFrame::recordCameraMap(gl::TimeQuer
 void LpvFrame::record(gl::TimeQuery& timer, const FrameView& view) {
   const Scene& scene = parts_.drawn.scene();
   const glm::dvec4 lightPosition = glm::inverse(parts_.sun.clipFromWorld) * glm::dvec4(0.0, 0.0, -1.0, 1.0);
-  const LightPropagationVolume::Inputs inputs{maps_.record(timer),
-                                              placeCascades(parts_.settings.lpv.cascades, scene.bounds,
-                                                            view.volumeCamera.position, view.volumeCamera.direction),
-                                              typicalIrradiance(scene), glm::vec3(lightPosition),
-                                              recordCameraMap(timer, view.volumeCamera)};
+  const LpvInputs inputs{maps_.record(timer),
+                         placeCascades(parts_.settings.lpv.cascades, scene.bounds, view.volumeCamera.position,
+                                       view.volumeCamera.direction),
+                         typicalIrradiance(scene), glm::vec3(lightPosition), recordCameraMap(timer, view.volumeCamera)};
   // The volume's light is kept while its grids lie where they did, unless surfels come from what the camera sees.
   const shared::LpvConstants constants = lpvConstants(parts_.settings.lpv, inputs.cascades, inputs.referenceIrradiance);
   const auto liesWhere = [](const shared::LpvCascade& a, const shared::LpvCascade& b) {
@@ -96,7 +95,7 @@ gl::ShaderFlags LpvFrame::shadingFlags() const {
 
 void LpvFrame::addStagePictures(std::vector<StagePicture>& pictures) const {
   maps_.addStagePictures(pictures);
-  const auto add = [&](const char* name, const LightPropagationVolume::Volume& volume) {
+  const auto add = [&](const char* name, const LpvVolume& volume) {
     pictures.push_back({StagePicture::Kind::coefficients, name, &volume[0], &volume[1], &volume[2]});
   };
   add("lpv injected light", volume_.injected());

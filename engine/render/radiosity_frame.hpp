@@ -6,8 +6,8 @@
 #pragma once
 
 #include "gl/pieces.hpp"
-#include "radiosity/radiosity_view.hpp"
 #include "radiosity/direct_rays.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "render/frame_parts.hpp"
 
 #include <optional>

@@ -60,7 +60,7 @@ bool ReceiversFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEf
     visible_.record(parts_.drawn, view.drawn());
   }
   const gl::TimeQuery::Scope stage(timer, "receivers");
-  const LightPropagationVolume::Settings& lpv = parts_.settings.lpv;
+  const LpvSettings& lpv = parts_.settings.lpv;
   const int rounds = effort.wholePicture ? (lpv.samples + lpv.rays - 1) / lpv.rays : 1;
   receivers_.update({placeCascades(lpv.cascades, parts_.drawn.scene().bounds, volume.position, volume.direction),
                      view.camera, glm::mat4(glm::inverse(view.clip)), visible_, maps, mapsAreNew, effort.fadesIn},

@@ -1,10 +1,10 @@
 #include "render/renderer.hpp"
 
-#include "shared/bindings.h"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "rsm/lamp_choice.hpp"
 #include "scene/place.hpp"
+#include "shared/bindings.h"
 #include "shared/sun_cascades.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -46,7 +46,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       sceneExposure_(scene.exposure),
       exposure_(settings.exposure.value_or(scene.exposure)),
       timer_(context.capabilities().softwareRenderer),
-      frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, GL_DYNAMIC_DRAW),
+      frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, gl::Usage::dynamicDraw),
       noAttributes_("full screen") {
   allocateTargets();
   const Technique technique = settings.technique;
@@ -100,8 +100,9 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   const int cascades = settings_.sunCascades.cascades;
   if (showsSunLight && cascades > 1) {
     sunCascades_.emplace(programs, *gpuScene_, "sun cascades",
-                         LayeredDepth::Shape{GL_TEXTURE_2D_ARRAY, settings_.shadow.size, cascades, cascades});
-    sunCascadeConstants_ = gl::Buffer("sun cascades", sizeof(shared::SunCascadeConstants), nullptr, GL_DYNAMIC_DRAW);
+                         LayeredDepth::Shape{gl::TextureKind::array, settings_.shadow.size, cascades, cascades});
+    sunCascadeConstants_ =
+        gl::Buffer("sun cascades", sizeof(shared::SunCascadeConstants), nullptr, gl::Usage::dynamicDraw);
   } else if (showsSunLight) {
     shadowMap_.emplace(programs, *gpuScene_, settings_.shadow);
   }
@@ -145,9 +146,10 @@ void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
 }
 
 void Renderer::allocateTargets() {
-  radiance_ = gl::Texture("radiance", settings_.fullFloatTarget ? GL_RGBA32F : GL_RGBA16F, settings_.size);
-  depth_ = gl::Texture("depth", GL_DEPTH_COMPONENT32F, settings_.size);
-  display_ = gl::Texture("display", GL_RGBA8, settings_.size);
+  radiance_ =
+      gl::Texture("radiance", settings_.fullFloatTarget ? gl::Format::rgba32f : gl::Format::rgba16f, settings_.size);
+  depth_ = gl::Texture("depth", gl::Format::depth32f, settings_.size);
+  display_ = gl::Texture("display", gl::Format::rgba8, settings_.size);
   const std::array<const gl::Texture*, 1> radiance{&radiance_}, display{&display_};
   radianceTarget_ = gl::Framebuffer("radiance", radiance, &depth_);
   depthTarget_ = gl::Framebuffer("depth", {}, &depth_);
@@ -195,7 +197,7 @@ void Renderer::recordShadows(const Camera& camera) {
       views.push_back({glm::mat4(cascade.clipFromWorld), glm::vec3(0.0f)});
     }
     sunCascadeConstants_.upload(0, sizeof constants, &constants);
-    sunCascadeConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_SUN_CASCADES);
+    sunCascadeConstants_.bindUniform(BLOCK_SUN_CASCADES);
     sunCascades_->record(*gpuScene_, views);
   }
   if (localLights_ && localLights_->hasSpots() && !areMade) {
@@ -240,7 +242,7 @@ void Renderer::bindFrameConstants(const FrameView& view) {
 
 void Renderer::bindFrameConstants(const shared::FrameConstants& constants) {
   frameConstants_.upload(0, sizeof constants, &constants);
-  frameConstants_.bind(GL_UNIFORM_BUFFER, BLOCK_FRAME);
+  frameConstants_.bindUniform(BLOCK_FRAME);
 }
 
 void Renderer::shade(const FrameView& view, bool depthIsDrawn) {

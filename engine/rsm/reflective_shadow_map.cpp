@@ -33,16 +33,16 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
   if (scene.needs().alphaMasks) programs_.masked = load(true);
   // Positions and flux in 32 bits: world coordinates do not fit 16, nor does a flux of any unit. Read texel by texel.
   const glm::ivec3 size(settings.size, settings.size, layers);
-  const auto texture = [&](const char* what, GLenum format) {
-    return gl::Texture(fmt::format("{} {}", name, what), format, size, {}, 1, GL_TEXTURE_2D_ARRAY);
+  const auto texture = [&](const char* what, gl::Format format) {
+    return gl::Texture(fmt::format("{} {}", name, what), format, size, {}, 1, gl::TextureKind::array);
   };
-  position_ = texture("position", GL_RGBA32F);
-  normal_ = texture("normal", GL_RGBA16F);
-  flux_ = texture("flux", GL_RGBA32F);
-  depth_ = texture("depth", GL_DEPTH_COMPONENT32F);
+  position_ = texture("position", gl::Format::rgba32f);
+  normal_ = texture("normal", gl::Format::rgba16f);
+  flux_ = texture("flux", gl::Format::rgba32f);
+  depth_ = texture("depth", gl::Format::depth32f);
   std::vector<const gl::Texture*> colors{&position_, &normal_, &flux_};
   if (settings.albedo) {
-    albedo_ = texture("albedo", GL_RGBA16F);
+    albedo_ = texture("albedo", gl::Format::rgba16f);
     colors.push_back(&albedo_);
   }
   framebuffer_ = gl::Framebuffer(name, colors, &depth_);

@@ -2,10 +2,10 @@
 // per light: of the sun, of a spot light, or of an omnidirectional light with its six faces drawn in one pass.
 #pragma once
 
-#include "shared/bindings.h"
 #include "forward/gpu_scene.hpp"
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
+#include "shared/bindings.h"
 
 namespace lucerna {
 

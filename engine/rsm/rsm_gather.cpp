@@ -68,19 +68,21 @@ RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, cons
   }
   if (settings.interpolates()) interpolate_ = &programs.loadCompute("rsm interpolate", "rsm/interpolate.comp");
   const std::vector<glm::vec4> samples = pattern(settings.samples, settings.weight);
-  pattern_ = gl::Buffer("rsm gather pattern", samples.size() * sizeof(glm::vec4), samples.data(), GL_STATIC_DRAW);
-  work_ = gl::Buffer("rsm gather work", sizeof(GatherCounts), nullptr, GL_DYNAMIC_COPY);
+  pattern_ =
+      gl::Buffer("rsm gather pattern", samples.size() * sizeof(glm::vec4), samples.data(), gl::Usage::staticDraw);
+  work_ = gl::Buffer("rsm gather work", sizeof(GatherCounts), nullptr, gl::Usage::dynamicCopy);
   ring_ = std::make_unique<gl::ReadBackRing>("rsm gather counts", sizeof(GatherCounts));
   resize();
 }
 
 void RsmGather::resize() {
   const glm::ivec2 size = visible_->size();
-  irradiance_ = gl::Texture("gathered irradiance", GL_RGBA32F, size);
+  irradiance_ = gl::Texture("gathered irradiance", gl::Format::rgba32f, size);
   if (settings_.interpolates()) {
-    lowIrradiance_ = gl::Texture("gathered irradiance low", GL_RGBA32F, lowSize(size, settings_.lowResolution));
+    lowIrradiance_ =
+        gl::Texture("gathered irradiance low", gl::Format::rgba32f, lowSize(size, settings_.lowResolution));
     // A list, yet no buffer: storage blocks may end at 16 MiB, a picture's pixels do not.
-    refused_ = gl::Texture("refused pixels", GL_R32UI, size);
+    refused_ = gl::Texture("refused pixels", gl::Format::r32ui, size);
   }
 }
 
@@ -103,35 +105,34 @@ void RsmGather::bindVisible(const gl::Program& program, const Inputs& inputs) co
   program.use();
   visible_->bind(program, inputs.worldFromClip);
   if (settings_.interpolates()) program.set("lowStep", settings_.lowResolution);
-  pattern_.bind(GL_SHADER_STORAGE_BUFFER, kPatternBinding);
-  work_.bind(GL_SHADER_STORAGE_BUFFER, kWorkBinding);
+  pattern_.bindStorage(kPatternBinding);
+  work_.bindStorage(kWorkBinding);
 }
 
 void RsmGather::gatherLow(const Inputs& inputs) {
   const GatherCounts start;
   work_.upload(0, sizeof start, &start);
   for (const Map& map : inputs.maps) {
-    const gl::ComputePass pass("gather low", GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                                                 GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    const gl::ComputePass pass("gather low", gl::Barrier::textureFetch | gl::Barrier::storage | gl::Barrier::image);
     const gl::Program& program = *low_[static_cast<std::size_t>(map.rsm.light)];
     bindMap(program, settings_, map, &map != &inputs.maps.front());
     bindVisible(program, inputs);
-    lowIrradiance_.bindImage(0, GL_READ_WRITE);
+    lowIrradiance_.bindImage(0, gl::Access::readWrite);
     pass.dispatch(lowIrradiance_.size(), glm::ivec3(8, 8, 1));
   }
 }
 
 void RsmGather::interpolate(const Inputs& inputs) {
-  const gl::ComputePass pass("interpolation", GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
-                                                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  const gl::ComputePass pass(
+      "interpolation", gl::Barrier::storage | gl::Barrier::command | gl::Barrier::image | gl::Barrier::textureFetch);
   bindVisible(*interpolate_, inputs);
   lowIrradiance_.bind(kLowUnit);
   interpolate_->set("pixelWidth", inputs.pixelWidth);
   interpolate_->set("fitNormal", settings_.fitNormal);
   interpolate_->set("fitPlane", settings_.fitPlane);
   interpolate_->set("fitDistance", settings_.fitDistance);
-  irradiance_.bindImage(0, GL_WRITE_ONLY);
-  refused_.bindImage(kRefusedImage, GL_WRITE_ONLY);
+  irradiance_.bindImage(0, gl::Access::write);
+  refused_.bindImage(kRefusedImage, gl::Access::write);
   pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));
 }
 
@@ -141,12 +142,12 @@ void RsmGather::gatherFull(const Inputs& inputs) {
     work_.upload(0, sizeof start, &start);
   }
   for (const Map& map : inputs.maps) {
-    const gl::ComputePass pass("gather full", GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
-                                                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    const gl::ComputePass pass("gather full",
+                               gl::Barrier::textureFetch | gl::Barrier::bufferUpdate | gl::Barrier::image);
     const gl::Program& program = *full_[static_cast<std::size_t>(map.rsm.light)];
     bindMap(program, settings_, map, &map != &inputs.maps.front());
     bindVisible(program, inputs);
-    irradiance_.bindImage(0, GL_READ_WRITE);
+    irradiance_.bindImage(0, gl::Access::readWrite);
     if (settings_.interpolates()) refused_.bind(kRefusedUnit);
     if (settings_.interpolates()) pass.dispatchIndirect(work_);
     else pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));

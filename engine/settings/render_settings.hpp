@@ -54,7 +54,7 @@ struct RenderSettings {
   ReflectiveShadowMap::Settings rsm;  ///< the size serves the sun and spots; each face of an omnidirectional light has
                                       ///< half of it. `light` is not read
   RsmGather::Settings gather;
-  LightPropagationVolume::Settings lpv;
+  LpvSettings lpv;
   PathSettings path;
   RadiosityView::Settings radiosity;  ///< `light` is not read: the component says it
   double unmeasuredTurns =

@@ -166,7 +166,7 @@ const std::vector<Setting>& table() {
        "offset of the grids ahead of the camera", "[LPV2015, 6.4]", rebuild, kLpv, ""},
       {"lpv.blend", number(FIELD(lpv.blendBand), 0.001, 1.0), "half extents",
        "width of the band over which a cascade fades into the next", "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
-      {"lpv.bounces", number(FIELD(lpv.bounces), 1, 64, "all", LightPropagationVolume::kAllBounces), "",
+      {"lpv.bounces", number(FIELD(lpv.bounces), 1, 64, "all", LpvSettings::kAllBounces), "",
        "reflections before light reaches a surface; all: only with transport rays", "[Kaplanyan2010]", rebuild,
        kBounces, "all with transport rays, else 1"},
       {"lpv.iterations", number(FIELD(lpv.iterations), 0, 100000), "steps", "propagation steps",

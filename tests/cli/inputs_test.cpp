@@ -1,6 +1,7 @@
 // What people hand to the program and what the machine refuses it: settings, settings files, numbers, standard output,
 // descriptors, leftovers. For each wrong input one clear line and the right exit code. Runs the built executable on
 // OSMesa.
+#include "base/clock.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -8,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 
@@ -201,13 +201,13 @@ TEST_F(Inputs, WhatCannotBeWrittenIsToldAtOnce) {
         "render " + path("m.obj") + " --technique path --seconds 50 -o " + path("none/x.pfm"),
         "render " + path("m.obj") + " --technique path --seconds 50 -o " + path("x.pfm") + " --json " + path("folder"),
         "tune " + path("m.obj") + " --frame-time 16 -o " + path("folder")}) {
-    const auto begun = std::chrono::steady_clock::now();
+    const auto begun = lucerna::Clock::now();
     const RunResult result = run("timeout 60 '" LUCERNA_BINARY "' " + command);
     EXPECT_EQ(result.exitCode, 2) << command << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
     EXPECT_NE(result.err.find("cannot be written"), std::string::npos) << result.err;
     EXPECT_EQ(result.out.find("hemicube"), std::string::npos) << "it had begun: " << result.out;
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count(), 40.0) << command;
+    EXPECT_LT(lucerna::secondsSince(begun), 40.0) << command;
     EXPECT_FALSE(fs::exists(folder().path() / "x.pfm"));
     EXPECT_FALSE(fs::exists(folder().path() / "folder.rows"));
   }

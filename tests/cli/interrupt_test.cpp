@@ -1,5 +1,6 @@
 // One rule for every command that is stopped by Ctrl-C or SIGTERM: state is kept, no final file is written, the exit
 // code is 130 or 143, and the same command ends with the file that an undisturbed run writes, bit by bit.
+#include "base/clock.hpp"
 #include "base/files.hpp"
 #include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
@@ -52,7 +53,7 @@ f 9 10 11 12
   void expectGoesOn(const std::string& command, const std::string& out, const char* signal, int code, bool cleanStart) {
     const auto begun = std::chrono::steady_clock::now();
     const RunResult whole = run(command);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    const double seconds = secondsSince(begun);
     ASSERT_EQ(whole.exitCode, 0) << whole.err;
     const auto expected = readFileBytes(out);
     int stops = 0;

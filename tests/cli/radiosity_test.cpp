@@ -1,5 +1,6 @@
 // lucerna radiosity generate|solve|show as a user runs them, and what happens to the files when a run is stopped,
 // killed, or cannot write.
+#include "base/clock.hpp"
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "radiosity/original/rad_file.hpp"
@@ -10,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 
@@ -198,9 +198,9 @@ void runInPieces(const std::string& command, const std::string& out, const std::
 
 TEST_F(Radiosity, KilledAndInterruptedRunsGoOnWithoutLoss) {
   generate("m.rad", "20 0.5 1000000");
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = lucerna::Clock::now();
   ASSERT_EQ(run(solve(path("m.rad"), path("whole.rad"))).exitCode, 0);
-  const double piece = 0.4 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double piece = 0.4 * lucerna::secondsSince(start);
   runInPieces(solve(path("m.rad"), path("killed.rad"), "--save-every 0.02"), path("killed.rad"), "KILL", piece);
   EXPECT_EQ(bytes("killed.rad"), bytes("whole.rad"));
   runInPieces(solve(path("m.rad"), path("stopped.rad"), "--save-every 1000"), path("stopped.rad"), "INT", piece);

@@ -35,7 +35,7 @@ class Absorption {
   Absorption(gl::ProgramLibrary& programs, glm::ivec2 size, const Settings& settings)
       : settings_(settings),
         program_(&programs.loadRaster("absorption", "fullscreen.vert", "example_technique.frag")),
-        radiance_("absorption radiance", GL_RGBA32F, size) {
+        radiance_("absorption radiance", gl::Format::rgba32f, size) {
     const gl::Texture* targets[] = {&radiance_};
     target_ = gl::Framebuffer("absorption", targets);
   }
@@ -74,9 +74,10 @@ TEST_F(ExampleTechnique, DimsByTheDistanceToTheSurface) {
   const std::vector<float> depths(kSize * kSize, static_cast<float>(0.5 + 0.5 * wall.z / wall.w));
   const std::vector<glm::vec4> light(kSize * kSize, glm::vec4(3.0f, 2.0f, 1.0f, 1.0f));
 
-  gl::Texture radiance("radiance", GL_RGBA32F, glm::ivec2(kSize)), depth("depth", GL_R32F, glm::ivec2(kSize));
-  radiance.upload(GL_RGBA, GL_FLOAT, light.data());
-  depth.upload(GL_RED, GL_FLOAT, depths.data());
+  gl::Texture radiance("radiance", gl::Format::rgba32f, glm::ivec2(kSize)),
+      depth("depth", gl::Format::r32f, glm::ivec2(kSize));
+  radiance.upload(gl::Texels::rgbaFloat, light.data());
+  depth.upload(gl::Texels::redFloat, depths.data());
 
   gl::ProgramLibrary examples(std::string(LUCERNA_SOURCE_DIR) + "/tests/gl/example_technique");
   gl::TimeQuery timer(false);

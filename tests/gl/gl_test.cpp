@@ -41,7 +41,7 @@ using test::TempFolder;
 
 class GlObjects : public test::GlTest {
  protected:
-  static Texture small(const std::string& name = "small") { return Texture(name, GL_RGBA8, glm::ivec2(2)); }
+  static Texture small(const std::string& name = "small") { return Texture(name, Format::rgba8, glm::ivec2(2)); }
   static std::string labelOf(GLenum identifier, GLuint id) {
     std::array<char, 256> text{};
     GLsizei length = 0;
@@ -87,7 +87,7 @@ class GlObjects : public test::GlTest {
 };
 
 TEST_F(GlObjects, AreMoveOnlyAndDeletedOnce) {
-  expectMoveOnly<Buffer>([] { return Buffer("b", 16, nullptr, GL_STATIC_DRAW); },
+  expectMoveOnly<Buffer>([] { return Buffer("b", 16, nullptr, Usage::staticDraw); },
                          [](GLuint id) { return glIsBuffer(id) == GL_TRUE; });
   expectMoveOnly<Texture>([] { return small(); }, [](GLuint id) { return glIsTexture(id) == GL_TRUE; });
   const Texture target = small();
@@ -99,7 +99,7 @@ TEST_F(GlObjects, AreMoveOnlyAndDeletedOnce) {
 }
 
 TEST_F(GlObjects, AMovedFromObjectHoldsNoBytes) {
-  Buffer a("a", 64, nullptr, GL_STATIC_DRAW);
+  Buffer a("a", 64, nullptr, Usage::staticDraw);
   const Buffer b(std::move(a));
   EXPECT_EQ(a.bytes(), 0u);  // NOLINT
   EXPECT_EQ(b.bytes(), 64u);
@@ -110,7 +110,7 @@ TEST_F(GlObjects, AMovedFromObjectHoldsNoBytes) {
 }
 
 TEST_F(GlObjects, CarryTheirNames) {
-  const Buffer buffer("my buffer", 4, nullptr, GL_STATIC_DRAW);
+  const Buffer buffer("my buffer", 4, nullptr, Usage::staticDraw);
   const Texture texture = small("my texture");
   const std::array<const Texture*, 1> targets{&texture};
   const Framebuffer framebuffer("my framebuffer", targets);
@@ -129,7 +129,7 @@ TEST_F(GlObjects, NamesAreCutAtTheDriversLength) {
   glGetIntegerv(GL_MAX_LABEL_LENGTH, &most);
   ASSERT_GE(most, 256);  // [OpenGL 4.3, table 23.61]
   const std::string name(static_cast<std::size_t>(most) + 1000, 'n');
-  const Buffer buffer(name, 16, nullptr, GL_STATIC_DRAW);
+  const Buffer buffer(name, 16, nullptr, Usage::staticDraw);
   const Texture texture = small(name);
   GLsizei length = 0;
   glGetObjectLabel(GL_BUFFER, buffer.id(), 0, &length, nullptr);
@@ -147,7 +147,7 @@ struct BarrierSpy {
     seen() = 0, __glewMemoryBarrier = [](GLbitfield bits) { seen() |= bits; };
   }
   ~BarrierSpy() { __glewMemoryBarrier = real_; }
-  static GLbitfield take() { return std::exchange(seen(), 0); }
+  static Barrier take() { return static_cast<Barrier>(std::exchange(seen(), 0)); }
 
  private:
   static GLbitfield& seen() {
@@ -159,12 +159,12 @@ struct BarrierSpy {
 
 TEST_F(GlObjects, BuffersThatShadersMayWriteAreSettledBeforeTheApiTouchesThem) {
   const std::array<GLuint, 4> words{1, 2, 3, 4};
-  Buffer buffer("words", sizeof words, words.data(), GL_DYNAMIC_COPY),
-      other("other", sizeof words, nullptr, GL_STREAM_READ);
-  BufferTexture texels("texels", GL_R32UI, sizeof words, words.data());
-  Texture copy("copy", GL_R32UI, glm::ivec2(2));
+  Buffer buffer("words", sizeof words, words.data(), Usage::dynamicCopy),
+      other("other", sizeof words, nullptr, Usage::streamRead);
+  BufferTexture texels("texels", Format::r32ui, sizeof words, words.data());
+  Texture copy("copy", Format::r32ui, glm::ivec2(2));
   const BarrierSpy spy;
-  const auto touchAll = [&](GLbitfield expected, GLbitfield expectedOfPixels) {
+  const auto touchAll = [&](Barrier expected, Barrier expectedOfPixels) {
     buffer.upload(0, sizeof words, words.data());
     EXPECT_EQ(spy.take(), expected);
     buffer.copyTo(other, sizeof words);
@@ -178,23 +178,23 @@ TEST_F(GlObjects, BuffersThatShadersMayWriteAreSettledBeforeTheApiTouchesThem) {
     texels.clear();
     EXPECT_EQ(spy.take(), expected);
   };
-  buffer.bind(GL_UNIFORM_BUFFER, 0);  // which shaders only read
+  buffer.bindUniform(0);  // which shaders only read
   texels.bind(0);
-  touchAll(0, 0);
-  buffer.bind(GL_SHADER_STORAGE_BUFFER, 0);
-  texels.buffer().bind(GL_SHADER_STORAGE_BUFFER, 0);
-  touchAll(GL_BUFFER_UPDATE_BARRIER_BIT, GL_PIXEL_BUFFER_BARRIER_BIT);
+  touchAll(Barrier::none, Barrier::none);
+  buffer.bindStorage(0);
+  texels.buffer().bindStorage(0);
+  touchAll(Barrier::bufferUpdate, Barrier::pixelBuffer);
   const Buffer moved = std::move(buffer);  // takes along that it may have been written
   EXPECT_EQ(moved.read<GLuint>().size(), 4u);
-  EXPECT_EQ(spy.take(), static_cast<GLbitfield>(GL_BUFFER_UPDATE_BARRIER_BIT));
+  EXPECT_EQ(spy.take(), Barrier::bufferUpdate);
 }
 
 TEST_F(GlObjects, TexturesThatShadersMayWriteAreSettledBeforeTheApiTouchesThem) {
   const std::array<GLfloat, 16> texels{};
-  Texture texture("image", GL_RGBA32F, glm::ivec2(2));
+  Texture texture("image", Format::rgba32f, glm::ivec2(2));
   const BarrierSpy spy;
-  const auto touchAll = [&](GLbitfield expected) {
-    texture.upload(GL_RGBA, GL_FLOAT, texels.data());
+  const auto touchAll = [&](Barrier expected) {
+    texture.upload(Texels::rgbaFloat, texels.data());
     EXPECT_EQ(spy.take(), expected);
     texture.readRgba();
     EXPECT_EQ(spy.take(), expected);
@@ -207,16 +207,16 @@ TEST_F(GlObjects, TexturesThatShadersMayWriteAreSettledBeforeTheApiTouchesThem) 
       EXPECT_EQ(spy.take(), expected);
     }
   };
-  texture.bindImage(0, GL_READ_ONLY);
-  touchAll(0);
-  texture.bindImage(0, GL_READ_WRITE);
-  touchAll(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  texture.bindImage(0, Access::read);
+  touchAll(Barrier::none);
+  texture.bindImage(0, Access::readWrite);
+  touchAll(Barrier::textureUpdate);
 }
 
 TEST_F(GlObjects, WhatIsReadBackEachFrameIsReadFromABufferThatNoShaderSees) {
   const std::array<GLuint, 4> words{1, 2, 3, 4};
-  const Buffer counters("counters", sizeof words, words.data(), GL_DYNAMIC_COPY);
-  counters.bind(GL_SHADER_STORAGE_BUFFER, 0);
+  const Buffer counters("counters", sizeof words, words.data(), Usage::dynamicCopy);
+  counters.bindStorage(0);
   static GLuint readFrom;
   const auto real = __glewGetBufferSubData;
   __glewGetBufferSubData = [](GLenum target, GLintptr, GLsizeiptr, void*) {
@@ -271,7 +271,7 @@ TEST_F(GlDebugOutput, IsOffUnlessTheRunIsVerbose) {
 
 TEST_F(GlObjects, BuffersKeepWhatIsUploaded) {
   const std::array<std::uint32_t, 4> initial{1, 2, 3, 4};
-  Buffer buffer("b", sizeof initial, initial.data(), GL_DYNAMIC_DRAW);
+  Buffer buffer("b", sizeof initial, initial.data(), Usage::dynamicDraw);
   EXPECT_EQ(buffer.read<std::uint32_t>(), (std::vector<std::uint32_t>{1, 2, 3, 4}));
   const std::array<std::uint32_t, 2> part{7, 8};
   buffer.upload(4, sizeof part, part.data());
@@ -286,56 +286,56 @@ TEST_F(GlObjects, BuffersKeepWhatIsUploaded) {
 class GlObjectsDeathTest : public GlObjects {};
 TEST_F(GlObjectsDeathTest, AnUploadBeyondTheEndAborts) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  Buffer buffer("b", 16, nullptr, GL_STATIC_DRAW);
+  Buffer buffer("b", 16, nullptr, Usage::staticDraw);
   const std::uint32_t word = 0;
   EXPECT_DEATH(buffer.upload(13, sizeof word, &word), "offset 13 \\+ 4 bytes > 16");
-  EXPECT_DEATH(bytesPerTexel(GL_RGB9_E5), "not in the engine's table");
+  EXPECT_DEATH(bytesPerTexel(static_cast<Format>(GL_RGB9_E5)), "not in the engine's table");
 }
 
 TEST_F(GlObjects, TexturesKeepWhatIsUploaded) {
   std::vector<glm::vec4> values;
   for (int i = 0; i < 12; ++i) values.emplace_back(0.25 * i, -1.5, 0.125 * i * i, 1.0);  // exact in 16-bit floats
-  for (const GLenum format : std::initializer_list<GLenum>{GL_RGBA32F, GL_RGBA16F}) {
+  for (const gl::Format format : std::initializer_list<Format>{Format::rgba32f, Format::rgba16f}) {
     Texture flat("2d", format, glm::ivec2(4, 3));
-    flat.upload(GL_RGBA, GL_FLOAT, values.data());
+    flat.upload(Texels::rgbaFloat, values.data());
     EXPECT_EQ(flat.readRgba(), values);
     Texture deep("3d", format, glm::ivec3(2, 3, 2));
-    deep.upload(GL_RGBA, GL_FLOAT, values.data());
+    deep.upload(Texels::rgbaFloat, values.data());
     EXPECT_EQ(deep.readRgba(), values);
-    Texture layered("array", format, glm::ivec3(2, 2, 3), {}, 2, GL_TEXTURE_2D_ARRAY);
-    layered.upload(GL_RGBA, GL_FLOAT, values.data());
-    layered.upload(GL_RGBA, GL_FLOAT, values.data(), 1);
+    Texture layered("array", format, glm::ivec3(2, 2, 3), {}, 2, TextureKind::array);
+    layered.upload(Texels::rgbaFloat, values.data());
+    layered.upload(Texels::rgbaFloat, values.data(), 1);
     EXPECT_EQ(layered.readRgba(), values);
     EXPECT_EQ(layered.readRgba(1),
               std::vector<glm::vec4>(values.begin(), values.begin() + 3));  // layers stay, texels halve
   }
   // 32-bit floats to the last bit, huge and tiny, and what 16-bit ones make of them.
   const std::vector<glm::vec4> extremes{{3.0e38f, 1e-38f, 1.0f / 3.0f, 70000.0f}};
-  Texture full("full", GL_RGBA32F, glm::ivec2(1)), half("half", GL_RGBA16F, glm::ivec2(1));
-  full.upload(GL_RGBA, GL_FLOAT, extremes.data());
-  half.upload(GL_RGBA, GL_FLOAT, extremes.data());
+  Texture full("full", Format::rgba32f, glm::ivec2(1)), half("half", Format::rgba16f, glm::ivec2(1));
+  full.upload(Texels::rgbaFloat, extremes.data());
+  half.upload(Texels::rgbaFloat, extremes.data());
   EXPECT_EQ(full.readRgba(), extremes);
   EXPECT_NEAR(half.readRgba()[0].z, 1.0 / 3.0, 1e-3 / 3.0);
   EXPECT_EQ(half.readRgba()[0].y, 0.0f);
 
   const std::array<float, 6> floats{0.0f, 0.25f, 0.5f, 0.75f, 1.0f, 0.125f};
-  Texture red("red", GL_R32F, glm::ivec2(3, 2)), depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(3, 2));
-  red.upload(GL_RED, GL_FLOAT, floats.data());
-  depth.upload(GL_DEPTH_COMPONENT, GL_FLOAT, floats.data());
+  Texture red("red", Format::r32f, glm::ivec2(3, 2)), depth("depth", Format::depth32f, glm::ivec2(3, 2));
+  red.upload(Texels::redFloat, floats.data());
+  depth.upload(Texels::depthFloat, floats.data());
   const auto read = red.readRgba();
   for (std::size_t i = 0; i < floats.size(); ++i) EXPECT_EQ(read[i], glm::vec4(floats[i], 0.0f, 0.0f, 1.0f));
   EXPECT_EQ(depth.readDepth(), std::vector<float>(floats.begin(), floats.end()));
 
   // 8 bits, rows of 3 bytes: no row is padded.
   const std::array<std::uint8_t, 6> bytes{0, 51, 102, 153, 204, 255};
-  Texture mask("mask", GL_R8, glm::ivec2(3, 2));
-  mask.upload(GL_RED, GL_UNSIGNED_BYTE, bytes.data());
+  Texture mask("mask", Format::r8, glm::ivec2(3, 2));
+  mask.upload(Texels::redByte, bytes.data());
   const auto readMask = mask.readRgba();
   for (std::size_t i = 0; i < bytes.size(); ++i) EXPECT_FLOAT_EQ(readMask[i].x, static_cast<float>(bytes[i]) / 255.0f);
   const std::array<std::uint8_t, 8> colours{255, 0, 51, 255, 1, 2, 3, 4};
-  for (const GLenum format : std::initializer_list<GLenum>{GL_RGBA8, GL_SRGB8_ALPHA8}) {
+  for (const gl::Format format : std::initializer_list<Format>{Format::rgba8, Format::srgb8Alpha8}) {
     Texture colour("colour", format, glm::ivec2(2, 1));
-    colour.upload(GL_RGBA, GL_UNSIGNED_BYTE, colours.data());
+    colour.upload(Texels::rgbaByte, colours.data());
     std::array<std::uint8_t, 8> back{};
     glActiveTexture(GL_TEXTURE0);
     colour.bind(0);
@@ -343,8 +343,8 @@ TEST_F(GlObjects, TexturesKeepWhatIsUploaded) {
     EXPECT_EQ(back, colours);
   }
   const std::array<std::int32_t, 2> integers{-2147483647, 2147483647};
-  Texture integer("integer", GL_R32I, glm::ivec2(2, 1));
-  integer.upload(GL_RED_INTEGER, GL_INT, integers.data());
+  Texture integer("integer", Format::r32i, glm::ivec2(2, 1));
+  integer.upload(Texels::redInt, integers.data());
   std::array<std::int32_t, 2> back{};
   integer.bind(0);
   glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_INT, back.data());
@@ -358,12 +358,12 @@ TEST_F(GlObjects, ClearToZeroWithAndWithoutTheExtension) {
       continue;
     }
     const std::vector<glm::vec4> ones(4 * 4 * 2, glm::vec4(1.0f));
-    Texture deep("3d", GL_RGBA16F, glm::ivec3(4, 4, 2)), flat("2d", GL_RGBA32F, glm::ivec2(4, 4), {}, 3),
-        red("red", GL_R8, glm::ivec2(3, 3)), depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(2, 2));
-    deep.upload(GL_RGBA, GL_FLOAT, ones.data());
-    for (int level = 0; level < 3; ++level) flat.upload(GL_RGBA, GL_FLOAT, ones.data(), level);
-    red.upload(GL_RED, GL_FLOAT, ones.data());
-    depth.upload(GL_DEPTH_COMPONENT, GL_FLOAT, ones.data());
+    Texture deep("3d", Format::rgba16f, glm::ivec3(4, 4, 2)), flat("2d", Format::rgba32f, glm::ivec2(4, 4), {}, 3),
+        red("red", Format::r8, glm::ivec2(3, 3)), depth("depth", Format::depth32f, glm::ivec2(2, 2));
+    deep.upload(Texels::rgbaFloat, ones.data());
+    for (int level = 0; level < 3; ++level) flat.upload(Texels::rgbaFloat, ones.data(), level);
+    red.upload(Texels::redFloat, ones.data());
+    depth.upload(Texels::depthFloat, ones.data());
     const std::array<const Texture*, 4> all{&deep, &flat, &red, &depth};
     clearToZero(all, haveClearTexture);
     EXPECT_EQ(deep.readRgba(), std::vector<glm::vec4>(32, glm::vec4(0.0f)));
@@ -376,18 +376,18 @@ TEST_F(GlObjects, ClearToZeroWithAndWithoutTheExtension) {
 }
 
 TEST_F(GlObjects, BytesAreThoseOfAllLevels) {
-  EXPECT_EQ(Texture("t", GL_RGBA8, glm::ivec2(8, 4)).bytes(), 8u * 4 * 4);
-  EXPECT_EQ(Texture("t", GL_RGBA8, glm::ivec2(8, 4), {}, 4).bytes(), 4u * (32 + 8 + 2 + 1));
-  EXPECT_EQ(Texture("t", GL_RGBA16F, glm::ivec3(3, 5, 7)).bytes(), 8u * 105);
-  EXPECT_EQ(Texture("t", GL_RGBA32F, glm::ivec3(4, 4, 4), {}, 3).bytes(), 16u * (64 + 8 + 1));
-  EXPECT_EQ(Texture("t", GL_R8, glm::ivec3(4, 4, 5), {}, 3, GL_TEXTURE_2D_ARRAY).bytes(), 5u * (16 + 4 + 1));
+  EXPECT_EQ(Texture("t", Format::rgba8, glm::ivec2(8, 4)).bytes(), 8u * 4 * 4);
+  EXPECT_EQ(Texture("t", Format::rgba8, glm::ivec2(8, 4), {}, 4).bytes(), 4u * (32 + 8 + 2 + 1));
+  EXPECT_EQ(Texture("t", Format::rgba16f, glm::ivec3(3, 5, 7)).bytes(), 8u * 105);
+  EXPECT_EQ(Texture("t", Format::rgba32f, glm::ivec3(4, 4, 4), {}, 3).bytes(), 16u * (64 + 8 + 1));
+  EXPECT_EQ(Texture("t", Format::r8, glm::ivec3(4, 4, 5), {}, 3, TextureKind::array).bytes(), 5u * (16 + 4 + 1));
 }
 
 TEST_F(GlObjects, EditingLeavesTheUnitsOfOthersAlone) {
   Texture mine = small(), other = small();
   mine.bind(3);
   const std::vector<std::uint8_t> data(16, 9);
-  other.upload(GL_RGBA, GL_UNSIGNED_BYTE, data.data());
+  other.upload(Texels::rgbaByte, data.data());
   other.readRgba();
   other.generateMipmaps();
   GLint bound = 0;
@@ -429,7 +429,7 @@ class GlPrograms : public test::GlTest {
   }
   /// What the program fills a pixel with.
   static float filled(const Program& program) {
-    const Texture target("target", GL_RGBA32F, glm::ivec2(1));
+    const Texture target("target", Format::rgba32f, glm::ivec2(1));
     const std::array<const Texture*, 1> targets{&target};
     const Framebuffer framebuffer("target", targets);
     const VertexArray empty("empty");
@@ -630,8 +630,8 @@ TEST_F(GlPasses, SetTheirStateWhateverWasBefore) {
     drawFullScreen(empty);
   };
   const auto picture = [&](bool poisoned) {
-    const Texture color("colour", GL_RGBA32F, glm::ivec2(5, 3)),
-        depth("depth", GL_DEPTH_COMPONENT32F, glm::ivec2(5, 3));
+    const Texture color("colour", Format::rgba32f, glm::ivec2(5, 3)),
+        depth("depth", Format::depth32f, glm::ivec2(5, 3));
     const std::array<const Texture*, 1> targets{&color};
     const Framebuffer framebuffer("target", targets, &depth);
     if (poisoned) poison();
@@ -675,12 +675,12 @@ TEST_F(GlPasses, ComputeCoversWhatIsAskedForAndMakesItVisible) {
         "layout(local_size_x = 4, local_size_y = 2, local_size_z = 1) in;\nlayout(binding = 0, rgba32f) writeonly "
         "uniform image3D target;\n"
         "void main() { imageStore(target, ivec3(gl_GlobalInvocationID), vec4(gl_GlobalInvocationID + 1u, 1.0)); }\n");
-  Texture target("t", GL_RGBA32F, glm::ivec3(5, 3, 2));
+  Texture target("t", Format::rgba32f, glm::ivec3(5, 3, 2));
   poison();
   {
-    const ComputePass pass("count", GL_TEXTURE_UPDATE_BARRIER_BIT);
+    const ComputePass pass("count", Barrier::textureUpdate);
     library().loadCompute("count", "count.comp").use();
-    target.bindImage(0, GL_WRITE_ONLY);
+    target.bindImage(0, Access::write);
     pass.dispatch(target.size(), {4, 2, 1});
   }
   const auto texels = target.readRgba();
@@ -705,19 +705,19 @@ TEST_F(GlPasses, AUniformThatBranchesDependOnIsThatOfItsDispatch) {
         "void main() { if (number > 0) last = number; }\n");
   std::array<GLint, 32> words{};
   words[31] = 40;
-  const Buffer seen("seen", sizeof words, words.data(), GL_DYNAMIC_COPY);
+  const Buffer seen("seen", sizeof words, words.data(), Usage::dynamicCopy);
   const Program &choose = library().loadCompute("choose", "choose.comp"),
                 &other = library().loadCompute("other", "other.comp");
   const std::array<bool, 8> firsts{true, false, false, true, false, true, true, false};
-  seen.bind(GL_SHADER_STORAGE_BUFFER, 0);
+  seen.bindStorage(0);
   for (int k = 0; k < 8; ++k) {
     {
-      const ComputePass pass("other", GL_SHADER_STORAGE_BARRIER_BIT);
+      const ComputePass pass("other", Barrier::storage);
       other.use();
       other.set("number", k);
       pass.dispatch({1, 1, 1}, {1, 1, 1});
     }
-    const ComputePass pass("choose", GL_SHADER_STORAGE_BARRIER_BIT);
+    const ComputePass pass("choose", Barrier::storage);
     choose.use();
     choose.set("first", firsts[static_cast<std::size_t>(k)] ? 1 : 0);
     choose.set("share", 1.0f);

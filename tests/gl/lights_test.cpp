@@ -276,8 +276,8 @@ TEST_F(LightsGl, TheSunsFluxCountsProjectedAreaAndItsSurfelsTrueArea) {
   frame.sunClipFromWorld = glm::mat4(frustum.clipFromWorld);
   frame.sunDirection = glm::vec3(scene.sun->direction);
   frame.sunIrradiance = scene.sun->irradiance;
-  const gl::Buffer block("frame constants", sizeof frame, &frame, GL_STATIC_DRAW);
-  block.bind(GL_UNIFORM_BUFFER, 0);
+  const gl::Buffer block("frame constants", sizeof frame, &frame, gl::Usage::staticDraw);
+  block.bindUniform(0);
   ReflectiveShadowMap rsm(programs(), gpuScene, {256, ReflectiveShadowMap::Light::sun});
   const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, frustum.texelArea(256));
   const Totals sum = totals(outputs);
@@ -301,17 +301,16 @@ TEST_F(LightsGl, TheVolumeAddsLightsUp) {
   ReflectiveShadowMap pointMap(programs(), gpuScene, {32, ReflectiveShadowMap::Light::point});
   const auto a = spotMap.record(gpuScene, lightViews(spot, scene.bounds));
   const auto b = pointMap.record(gpuScene, lightViews(point, scene.bounds));
-  LightPropagationVolume::Settings s;
+  LpvSettings s;
   s.cascades.cells = 8;
   s.cascades.cascades = 2;
   s.cascades.cellSize = 0.4;  // five cells across the room: the rounding of a cell's sum grows with the texels in it
   s.iterations = 2;
-  s.storage = LightPropagationVolume::Storage::full;
+  s.storage = LpvSettings::Storage::full;
   const auto grids = [&](std::vector<ReflectiveShadowMap::Outputs> rsms) {
     LightPropagationVolume lpv(programs(), capabilities(), s);
-    const LightPropagationVolume::Inputs inputs{std::move(rsms),
-                                                placeCascades(s.cascades, scene.bounds, glm::dvec3(0.0), {0, 0, -1}),
-                                                typicalIrradiance(scene)};
+    const LpvInputs inputs{std::move(rsms), placeCascades(s.cascades, scene.bounds, glm::dvec3(0.0), {0, 0, -1}),
+                           typicalIrradiance(scene)};
     lpv.place(inputs);
     lpv.inject(inputs);
     lpv.fillGeometryVolume(inputs);
@@ -556,7 +555,7 @@ TEST_F(LightsGl, FixedPointSumsOfAllLightsDoNotOverflow) {
     scene.points.push_back({at, glm::vec3(30.0f, 20.0f, 10.0f)});
   scene.spots = {SpotLight{glm::dvec3(2.0), {0, -1, 0}, glm::vec3(70.0f, 1.0f, 1.0f), 0.3, 1.3}};
   const GpuScene gpuScene(scene, analyse(scene), capabilities());
-  LightPropagationVolume::Settings s;
+  LpvSettings s;
   s.cascades.cells = 1;
   s.cascades.cascades = 1;
   s.cascades.cellSize = 4.0;
@@ -576,8 +575,8 @@ TEST_F(LightsGl, FixedPointSumsOfAllLightsDoNotOverflow) {
     }
     s.fill = LpvFill::fixed;
     LightPropagationVolume lpv(programs(), capabilities(), s);
-    const LightPropagationVolume::Inputs inputs{
-        outputs, placeCascades(s.cascades, scene.bounds, glm::dvec3(2.0), glm::dvec3(0.0)), typicalIrradiance(scene)};
+    const LpvInputs inputs{outputs, placeCascades(s.cascades, scene.bounds, glm::dvec3(2.0), glm::dvec3(0.0)),
+                           typicalIrradiance(scene)};
     lpv.place(inputs);
     lpv.inject(inputs);
     const double stored = static_cast<double>(lpv.injected()[0].readRgba()[0].x) * std::sqrt(4.0 * kPi);

@@ -37,22 +37,23 @@ class LimitsTest : public SharedProgramsTest {
 };
 
 TEST_F(LimitsTest, WhatIsGuaranteedIsMadeAndNoMore) {
-  gl::BufferTexture("most texels", GL_R32F, 4u << 16, nullptr);
-  expectRefused([] { gl::BufferTexture("texels", GL_R32F, (4u << 16) + 4, nullptr); }, "texels",
+  gl::BufferTexture("most texels", gl::Format::r32f, 4u << 16, nullptr);
+  expectRefused([] { gl::BufferTexture("texels", gl::Format::r32f, (4u << 16) + 4, nullptr); }, "texels",
                 "GL_MAX_TEXTURE_BUFFER_SIZE is 65536");
-  gl::Buffer("most bytes", 1u << 24, nullptr, GL_STATIC_DRAW).bind(GL_SHADER_STORAGE_BUFFER, 0);
-  const gl::Buffer bytes("bytes", (1u << 24) + 4, nullptr, GL_STATIC_DRAW);
-  expectRefused([&] { bytes.bind(GL_SHADER_STORAGE_BUFFER, 0); }, "bytes",
-                "GL_MAX_SHADER_STORAGE_BLOCK_SIZE is 16777216");
-  gl::Buffer("most constants", 1u << 14, nullptr, GL_STATIC_DRAW).bind(GL_UNIFORM_BUFFER, 0);
-  const gl::Buffer constants("constants", (1u << 14) + 16, nullptr, GL_STATIC_DRAW);
-  expectRefused([&] { constants.bind(GL_UNIFORM_BUFFER, 0); }, "constants", "GL_MAX_UNIFORM_BLOCK_SIZE is 16384");
-  gl::Texture("widest", GL_R8, glm::ivec2(16384, 1));
-  expectRefused([] { gl::Texture("wide", GL_R8, glm::ivec2(16385, 1)); }, "wide", "GL_MAX_TEXTURE_SIZE is 16384");
-  gl::Texture("deepest", GL_R8, glm::ivec3(1, 1, 2048));
-  expectRefused([] { gl::Texture("deep", GL_R8, glm::ivec3(1, 1, 2049)); }, "deep", "GL_MAX_3D_TEXTURE_SIZE is 2048");
-  expectRefused([] { gl::Texture("layers", GL_R8, glm::ivec3(1, 1, 2049), {}, 1, GL_TEXTURE_2D_ARRAY); }, "layers",
-                "GL_MAX_ARRAY_TEXTURE_LAYERS is 2048");
+  gl::Buffer("most bytes", 1u << 24, nullptr, gl::Usage::staticDraw).bindStorage(0);
+  const gl::Buffer bytes("bytes", (1u << 24) + 4, nullptr, gl::Usage::staticDraw);
+  expectRefused([&] { bytes.bindStorage(0); }, "bytes", "GL_MAX_SHADER_STORAGE_BLOCK_SIZE is 16777216");
+  gl::Buffer("most constants", 1u << 14, nullptr, gl::Usage::staticDraw).bindUniform(0);
+  const gl::Buffer constants("constants", (1u << 14) + 16, nullptr, gl::Usage::staticDraw);
+  expectRefused([&] { constants.bindUniform(0); }, "constants", "GL_MAX_UNIFORM_BLOCK_SIZE is 16384");
+  gl::Texture("widest", gl::Format::r8, glm::ivec2(16384, 1));
+  expectRefused([] { gl::Texture("wide", gl::Format::r8, glm::ivec2(16385, 1)); }, "wide",
+                "GL_MAX_TEXTURE_SIZE is 16384");
+  gl::Texture("deepest", gl::Format::r8, glm::ivec3(1, 1, 2048));
+  expectRefused([] { gl::Texture("deep", gl::Format::r8, glm::ivec3(1, 1, 2049)); }, "deep",
+                "GL_MAX_3D_TEXTURE_SIZE is 2048");
+  expectRefused([] { gl::Texture("layers", gl::Format::r8, glm::ivec3(1, 1, 2049), {}, 1, gl::TextureKind::array); },
+                "layers", "GL_MAX_ARRAY_TEXTURE_LAYERS is 2048");
   EXPECT_EQ(gl::mostWorkGroups(), glm::uvec3(65535u));
   expectRefused([] { gl::requireWithin(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, 1, "vertices"); }, "vertices",
                 "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS is 0");

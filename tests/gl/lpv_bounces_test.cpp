@@ -19,12 +19,12 @@ namespace {
 using test::RsmTexel;
 using test::RsmTextures;
 using twin::VolumeRgb;
-using Storage = LightPropagationVolume::Storage;
+using Storage = LpvSettings::Storage;
 
 class LpvMoreLight : public test::SharedProgramsTest {
  protected:
-  static LightPropagationVolume::Settings settings(int cells, int iterations, int bounces, int cascades = 1) {
-    LightPropagationVolume::Settings s;
+  static LpvSettings settings(int cells, int iterations, int bounces, int cascades = 1) {
+    LpvSettings s;
     s.cascades.cells = cells;
     s.cascades.cascades = cascades;
     s.cascades.cellSize = 1.0;
@@ -34,11 +34,10 @@ class LpvMoreLight : public test::SharedProgramsTest {
     s.handOver = iterations;  // each cascade for itself
     return s;
   }
-  static std::vector<Cascade> place(const LightPropagationVolume::Settings& s) {
+  static std::vector<Cascade> place(const LpvSettings& s) {
     return placeCascades(s.cascades, Bounds{}, glm::dvec3(0.0), glm::dvec3(0.0));
   }
-  static LightPropagationVolume run(const LightPropagationVolume::Settings& s,
-                                    const LightPropagationVolume::Inputs& inputs) {
+  static LightPropagationVolume run(const LpvSettings& s, const LpvInputs& inputs) {
     return test::runVolume(library(), capabilities(), s, inputs);
   }
   /// Coloured surfels, off the borders of cells (multiples of 1/4) for axis-aligned normals, so that 32 bits choose the
@@ -96,8 +95,8 @@ TEST_F(LpvBounces, AgainstTheTwin) {
   const RsmTextures textures(texels, kTexelArea);
   for (const int cascades : {1, 2})
     for (const int bounces : {2, 4}) {
-      LightPropagationVolume::Settings s = settings(10, 4, bounces, cascades);
-      const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), 3.5f};
+      LpvSettings s = settings(10, 4, bounces, cascades);
+      const LpvInputs inputs{{textures.outputs()}, place(s), 3.5f};
       const std::vector<twin::Vpl> vpls = test::vplsOf(texels, kTexelArea);
       std::vector<VolumeRgb> expected, once;
       for (const Cascade& cascade : inputs.cascades) {
@@ -134,9 +133,9 @@ TEST_F(LpvBounces, JoinedCascadesBounceAllTheirLight) {
   // that no finer grid takes over is the same as without; so the coarsest is held against the twin.
   const std::vector<RsmTexel> texels = randomTexels(2, 800);
   const RsmTextures textures(texels, 0.05);
-  LightPropagationVolume::Settings s = settings(8, 5, 3, 2);
+  LpvSettings s = settings(8, 5, 3, 2);
   s.handOver = 2;
-  const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), 1.0f};
+  const LpvInputs inputs{{textures.outputs()}, place(s), 1.0f};
   const std::vector<twin::Vpl> vpls = test::vplsOf(texels, 0.05);
   const twin::GridSpec grid = test::gridOf(inputs.cascades[1], 8);
   VolumeRgb injected = twin::makeVolumeRgb(grid);
@@ -160,8 +159,8 @@ TEST_F(LpvBounces, TheSumOfAllBouncesIsBounded) {
     int done = 0;
     for (const int bounces : {1, 2, 3, 8, 64}) {
       for (; done < bounces; ++done) series += std::pow(static_cast<double>(rho), done);
-      const LightPropagationVolume::Settings s = settings(10, kSteps, bounces);
-      const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), 1.0f};
+      const LpvSettings s = settings(10, kSteps, bounces);
+      const LpvInputs inputs{{textures.outputs()}, place(s), 1.0f};
       const VolumeRgb light = test::readVolume(run(s, inputs).result(), inputs)[0];
       const glm::dvec3 flux = twin::totalFlux(light);
       if (bounces == 1) once = flux;
@@ -211,7 +210,7 @@ TEST_F(LpvBounces, TheTwinsSourcesFollowTheGeometricSeries) {
 
 TEST_F(LpvBounces, OneBounceCostsNothingAndMoreNeedSurfels) {
   gl::ProgramLibrary programs;
-  LightPropagationVolume::Settings s = settings(6, 4, 1, 2);
+  LpvSettings s = settings(6, 4, 1, 2);
   const std::size_t bytes = LightPropagationVolume(programs, capabilities(), s).gpuBytes();
   for (const std::string& name : programs.names()) EXPECT_EQ(name.find("reflect"), std::string::npos) << name;
   s.bounces = 2;
@@ -231,8 +230,7 @@ TEST_F(LpvBounces, OneBounceCostsNothingAndMoreNeedSurfels) {
 
 class LpvViews : public LpvMoreLight {
  protected:
-  static std::vector<twin::Volume> geometryOf(const LightPropagationVolume::Settings& s,
-                                              const LightPropagationVolume::Inputs& inputs) {
+  static std::vector<twin::Volume> geometryOf(const LpvSettings& s, const LpvInputs& inputs) {
     LightPropagationVolume lpv(library(), capabilities(), s);
     lpv.place(inputs);
     lpv.fillGeometryVolume(inputs);
@@ -245,11 +243,10 @@ TEST_F(LpvViews, OfASurfaceSeenTwiceTheLongerVectorCounts) {
   const RsmTextures lightMap(lit, 0.05), cameraMap(seen, 0.08);
   for (const bool twice : {false, true})
     for (const LpvSurfels surfels : {LpvSurfels::rsm, LpvSurfels::camera, LpvSurfels::both}) {
-      LightPropagationVolume::Settings s = settings(8, 4, 2, 2);
+      LpvSettings s = settings(8, 4, 2, 2);
       s.surfels = surfels;
       s.mergeViews = surfels == LpvSurfels::both || twice;
-      LightPropagationVolume::Inputs inputs{
-          {lightMap.outputs()}, place(s), 1.0f, glm::vec3(0.0f), {cameraMap.outputs()}};
+      LpvInputs inputs{{lightMap.outputs()}, place(s), 1.0f, glm::vec3(0.0f), {cameraMap.outputs()}};
       if (twice) {  // every view once more must not change anything
         inputs.rsms.push_back(lightMap.outputs());
         inputs.views.push_back(cameraMap.outputs());
@@ -278,11 +275,11 @@ TEST_F(LpvViews, TheAlbedoOfTheLongerVectorCounts) {
     return texels;
   };
   const RsmTextures lightMap(wall(0.5f, {1.0f, 0.0f, 0.0f}), 1.0), cameraMap(wall(1.0f, {0.0f, 0.0f, 1.0f}), 1.0);
-  LightPropagationVolume::Settings s = settings(8, 4, 1);
+  LpvSettings s = settings(8, 4, 1);
   s.surfels = LpvSurfels::both;
   s.mergeViews = true;
   const auto gained = [&] {
-    LightPropagationVolume::Inputs inputs{{lightMap.outputs()}, place(s), 1.0f, glm::vec3(0.0f), {cameraMap.outputs()}};
+    LpvInputs inputs{{lightMap.outputs()}, place(s), 1.0f, glm::vec3(0.0f), {cameraMap.outputs()}};
     s.bounces = 1;
     const glm::dvec3 once = twin::totalFlux(test::readVolume(run(s, inputs).result(), inputs)[0]);
     s.bounces = 2;

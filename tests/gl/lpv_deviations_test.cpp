@@ -24,7 +24,6 @@ using test::RsmTexel;
 using test::RsmTextures;
 using twin::kPi;
 using twin::VolumeRgb;
-using LpvSettings = LightPropagationVolume::Settings;
 
 constexpr double kFullTolerance = 1e-5;
 const double kFront = twin::frontSolidAngle(), kSide = twin::sideSolidAngle();
@@ -67,7 +66,7 @@ class LpvDeviations : public test::SharedProgramsTest {
     s.cascades.cascades = cascades;
     s.iterations = iterations;
     s.blocking = blocking;
-    s.storage = LightPropagationVolume::Storage::full;
+    s.storage = LpvSettings::Storage::full;
     return s;
   }
   /// The settings with one deviation turned on, by name; and propagated as asked for.
@@ -89,14 +88,14 @@ class LpvDeviations : public test::SharedProgramsTest {
     std::vector<RsmTexel> texels;
     double texelArea;
     RsmTextures textures;
-    LightPropagationVolume::Inputs inputs;
+    LpvInputs inputs;
     Lights(std::vector<RsmTexel> lights, std::vector<Cascade> cascades, double area = 1.0, float irradiance = 1.0f)
         : texels(std::move(lights)),
           texelArea(area),
           textures(texels, area),
           inputs{{textures.outputs()}, std::move(cascades), irradiance} {}
   };
-  static LightPropagationVolume run(const LpvSettings& s, const LightPropagationVolume::Inputs& inputs) {
+  static LightPropagationVolume run(const LpvSettings& s, const LpvInputs& inputs) {
     return test::runVolume(library(), capabilities(), s, inputs);
   }
   static VolumeRgb resultOf(const LpvSettings& s, const Lights& lights) {
@@ -556,8 +555,7 @@ TEST_F(LpvDeviations, Unjoined) {
   const RsmTextures textures(field.texels, 0.0);
   const auto mean = [&](LpvSettings of, int cascades) {
     of.cascades.cascades = cascades;
-    const LightPropagationVolume::Inputs inputs{
-        {textures.outputs()}, {field.all.end() - cascades, field.all.end()}, 1.0f};
+    const LpvInputs inputs{{textures.outputs()}, {field.all.end() - cascades, field.all.end()}, 1.0f};
     double sum = 0.0;
     for (const glm::vec3& value : test::probeIrradiance(library(), run(of, inputs), field.probes))
       sum += static_cast<double>(value.x);
@@ -576,7 +574,7 @@ TEST_F(LpvDeviations, Unjoined) {
     EXPECT_NEAR(summed, sum, 1e-5);
   }
   // Against the twin: propagated each by itself, then blended or summed.
-  const LightPropagationVolume::Inputs inputs{{textures.outputs()}, field.all, 1.0f};
+  const LpvInputs inputs{{textures.outputs()}, field.all, 1.0f};
   const std::vector<twin::Vpl> vpls = test::vplsOf(field.texels, 0.0);
   std::vector<twin::Volume> cascades;
   twin::CascadeBlend blend{{}, static_cast<double>(s.blendBand)};
@@ -654,8 +652,8 @@ TEST_F(LpvDeviations, RsmFluxCosine) {
       frame.sunClipFromWorld = glm::mat4(frustum.clipFromWorld);
       frame.sunDirection = glm::vec3(scene.sun->direction);
       frame.sunIrradiance = scene.sun->irradiance;
-      const gl::Buffer constants("frame", sizeof frame, &frame, GL_STATIC_DRAW);
-      constants.bind(GL_UNIFORM_BUFFER, 0);
+      const gl::Buffer constants("frame", sizeof frame, &frame, gl::Usage::staticDraw);
+      constants.bindUniform(0);
       double sum = 0.0;
       for (const glm::vec4& texel : rsm.record(gpuScene, frustum.texelArea(s.size)).flux.readRgba())
         sum += static_cast<double>(texel.x);
@@ -680,27 +678,28 @@ class RsmGatherDeviations : public LpvDeviations {
     }
     gl::Texture textures[3];
     for (int i = 0; i < 3; ++i) {
-      textures[i] = gl::Texture("test rsm", GL_RGBA32F, glm::ivec3(map.size, 1), {}, 1, GL_TEXTURE_2D_ARRAY);
-      textures[i].upload(GL_RGBA, GL_FLOAT, data[i].data());
+      textures[i] =
+          gl::Texture("test rsm", gl::Format::rgba32f, glm::ivec3(map.size, 1), {}, 1, gl::TextureKind::array);
+      textures[i].upload(gl::Texels::rgbaFloat, data[i].data());
     }
     shared::FrameConstants frame{};
     frame.sunClipFromWorld = glm::mat4(map.clipFromWorld(10.0 * map.width));
     frame.sunDirection = glm::vec3(map.direction);
-    const gl::Buffer constants("frame", sizeof frame, &frame, GL_STATIC_DRAW);
+    const gl::Buffer constants("frame", sizeof frame, &frame, gl::Usage::staticDraw);
     const std::array probes{glm::vec4(glm::vec3(position), 0.0f), glm::vec4(glm::vec3(normal), 0.0f)};
     const std::vector<glm::vec4> pattern = RsmGather::pattern(s.samples, s.weight);
-    const gl::Buffer in("probes", sizeof probes, probes.data(), GL_STATIC_DRAW),
-        out("irradiances", sizeof(glm::vec4), nullptr, GL_STREAM_READ);
-    const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), GL_STATIC_DRAW);
+    const gl::Buffer in("probes", sizeof probes, probes.data(), gl::Usage::staticDraw),
+        out("irradiances", sizeof(glm::vec4), nullptr, gl::Usage::streamRead);
+    const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), gl::Usage::staticDraw);
     {
-      const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
+      const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
       RsmGather::bindMap(library().loadCompute("rsm gather probe", "rsm/gather_probe.comp",
                                                RsmGather::flags(s, RsmGather::Light::sun)),
                          s, {{textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())}});
-      constants.bind(GL_UNIFORM_BUFFER, 0);
-      samples.bind(GL_SHADER_STORAGE_BUFFER, 0);
-      in.bind(GL_SHADER_STORAGE_BUFFER, 1);
-      out.bind(GL_SHADER_STORAGE_BUFFER, 2);
+      constants.bindUniform(0);
+      samples.bindStorage(0);
+      in.bindStorage(1);
+      out.bindStorage(2);
       pass.dispatch(glm::ivec3(1), glm::ivec3(64, 1, 1));
     }
     return static_cast<double>(out.read<glm::vec4>()[0].x);

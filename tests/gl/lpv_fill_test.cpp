@@ -18,8 +18,7 @@ namespace {
 using test::RsmTexel;
 using test::RsmTextures;
 using twin::VolumeRgb;
-using Storage = LightPropagationVolume::Storage;
-using LpvSettings = LightPropagationVolume::Settings;
+using Storage = LpvSettings::Storage;
 
 class LpvWays : public test::SharedProgramsTest {
  protected:
@@ -35,7 +34,7 @@ class LpvWays : public test::SharedProgramsTest {
   static std::vector<Cascade> place(const LpvSettings& s) {
     return placeCascades(s.cascades, Bounds{}, glm::dvec3(0.3, -0.2, 0.1), glm::dvec3(0.0));
   }
-  static LightPropagationVolume run(const LpvSettings& s, const LightPropagationVolume::Inputs& inputs) {
+  static LightPropagationVolume run(const LpvSettings& s, const LpvInputs& inputs) {
     return test::runVolume(library(), capabilities(), s, inputs);
   }
 
@@ -56,7 +55,7 @@ class LpvWays : public test::SharedProgramsTest {
     }
     return texels;
   }
-  static VolumeRgb firstInjected(const LpvSettings& s, const LightPropagationVolume::Inputs& inputs) {
+  static VolumeRgb firstInjected(const LpvSettings& s, const LpvInputs& inputs) {
     return test::readVolume(run(s, inputs).injected(), inputs)[0];
   }
 };
@@ -75,7 +74,7 @@ TEST_F(LpvWays, LayeredPropagationIsTheComputeOne) {
           LpvSettings s = settings(12, cascades, iterations);
           s.blocking = blocking;
           s.storage = storage;
-          const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
+          const LpvInputs inputs{{textures.outputs()}, place(s), kIrradiance};
           const std::vector<VolumeRgb> compute = test::readVolume(run(s, inputs).result(), inputs);
           for (const LpvPropagate propagate : {LpvPropagate::layered, LpvPropagate::slices}) {
             s.propagate = propagate;
@@ -123,7 +122,7 @@ TEST_F(LpvWays, LeavingOutDarkBricksGivesTheSameBits) {
         scenes.push_back(randomTexels(6, 200));
         for (std::size_t scene = 0; scene < scenes.size(); scene += cells == 12 || scene == 0 ? 1 : 5) {
           const RsmTextures textures(scenes[scene], kTexelArea);
-          const LightPropagationVolume::Inputs inputs{{textures.outputs()}, placed, kIrradiance};
+          const LpvInputs inputs{{textures.outputs()}, placed, kIrradiance};
           s.everyBrick = false;
           const LightPropagationVolume few = run(s, inputs);
           s.everyBrick = true;
@@ -153,7 +152,7 @@ TEST_F(LpvWays, LightThatMovesLeavesNothingBehindInDarkBricks) {
       const RsmTextures textures(std::vector<RsmTexel>{{{x, x, -x, 1.0f}, {0, 1, 0, 1}, glm::vec3(2.0f)}}, kTexelArea);
       for (const int shift : {0, 1, -3}) {  // the grid snaps on
         for (Cascade& cascade : placed) cascade.firstCell += glm::i64vec3(shift, 0, 0);
-        const LightPropagationVolume::Inputs inputs{{textures.outputs()}, placed, kIrradiance};
+        const LpvInputs inputs{{textures.outputs()}, placed, kIrradiance};
         kept.place(inputs);
         kept.inject(inputs);
         kept.fillGeometryVolume(inputs);
@@ -174,7 +173,7 @@ TEST_F(LpvWays, PropagatedAgainGivesTheSame) {
   const RsmTextures textures(texels, kTexelArea);
   LpvSettings s = settings(8, 2, 4);
   s.fill = LpvFill::fixed;
-  const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
+  const LpvInputs inputs{{textures.outputs()}, place(s), kIrradiance};
   LightPropagationVolume lpv = run(s, inputs);
   const std::vector<glm::vec4> first = lpv.result()[1].readRgba();
   lpv.propagate();
@@ -190,7 +189,7 @@ TEST_F(LpvWays, FixedPointGivesTheLayeredGridWithinItsQuantum) {
   const RsmTextures textures(texels, kTexelArea);
   for (const int cascades : {1, 3}) {
     LpvSettings s = settings(12, cascades, 0);
-    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
+    const LpvInputs inputs{{textures.outputs()}, place(s), kIrradiance};
     const std::vector<VolumeRgb> layered = test::readVolume(run(s, inputs).injected(), inputs);
     s.fill = LpvFill::fixed;
     const std::vector<VolumeRgb> fixed = test::readVolume(run(s, inputs).injected(), inputs);
@@ -227,7 +226,7 @@ TEST_F(LpvWays, AtomicGivesTheLayeredGrid) {
   const std::vector<RsmTexel> texels = randomTexels(3, 5000);
   const RsmTextures textures(texels, kTexelArea);
   LpvSettings s = settings(12, 3, 0);
-  const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
+  const LpvInputs inputs{{textures.outputs()}, place(s), kIrradiance};
   const std::vector<VolumeRgb> layered = test::readVolume(run(s, inputs).injected(), inputs);
   s.fill = LpvFill::atomic;
   const std::vector<VolumeRgb> atomic = test::readVolume(run(s, inputs).injected(), inputs);
@@ -243,7 +242,7 @@ TEST_F(LpvWays, CountedSurfelsAreTheDrawnOnes) {
     LpvSettings s = settings(12, cascades, 4);
     const std::vector<Cascade> placed = place(s);
     const RsmTextures textures(texels, kTexelArea);
-    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, placed, kIrradiance};
+    const LpvInputs inputs{{textures.outputs()}, placed, kIrradiance};
     const LightPropagationVolume drawn = run(s, inputs);
     for (const LpvFill fill : {LpvFill::fixed, LpvFill::atomic}) {
       if (fill == LpvFill::atomic && !capabilities().shaderAtomicFloat) continue;
@@ -288,7 +287,7 @@ TEST_F(LpvWays, CountedSurfelsNeverOverflow) {
         cascades[k].firstCell = glm::i64vec3(-2);
         cascades[k].cellSize = k == 0 ? 0.5 : 1.0;
       }
-      const LightPropagationVolume::Inputs inputs{{textures.outputs()}, cascades, kIrradiance};
+      const LpvInputs inputs{{textures.outputs()}, cascades, kIrradiance};
       const std::vector<twin::Volume> volumes = test::readGeometryVolume(run(s, inputs), inputs);
       for (std::size_t k = 0; k < volumes.size(); ++k) {
         double band0 = 0.0, band1 = 0.0;
@@ -307,7 +306,7 @@ TEST_F(LpvWays, FixedPointGivesTheSameBitsInAnyOrder) {
     const RsmTextures textures(texels, kTexelArea);
     LpvSettings s = settings(8, 2, 0);
     s.fill = LpvFill::fixed;
-    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
+    const LpvInputs inputs{{textures.outputs()}, place(s), kIrradiance};
     const LightPropagationVolume lpv = run(s, inputs);
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const std::vector<glm::vec4> now = lpv.injected()[channel].readRgba();
@@ -325,7 +324,7 @@ TEST_F(LpvWays, AnAtomicALightGivesTheSameBitsAsTiles) {
     LpvSettings s = settings(12, 2, 2);
     s.fill = LpvFill::fixed;
     s.blocking = blocking;
-    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), kIrradiance};
+    const LpvInputs inputs{{textures.outputs()}, place(s), kIrradiance};
     const std::vector<glm::vec4> tiles = run(s, inputs).injected()[1].readRgba();
     double sum = 0.0;
     for (const glm::vec4& texel : tiles) sum += static_cast<double>(texel.x);
@@ -358,7 +357,7 @@ TEST_F(LpvWays, FixedPointNeverOverflows) {
             cascades[k].firstCell = glm::i64vec3(-2);
             cascades[k].cellSize = (k == 0 ? 0.5 : 1.0) * static_cast<double>(scale);
           }
-          const LightPropagationVolume::Inputs inputs{{textures.outputs()}, cascades, kIrradiance};
+          const LpvInputs inputs{{textures.outputs()}, cascades, kIrradiance};
           const std::vector<VolumeRgb> injected = test::readVolume(run(s, inputs).injected(), inputs);
           for (std::size_t k = 0; k < injected.size(); ++k) {
             // Without units each counts E albedo in place of E albedo A / s^2.
@@ -404,7 +403,7 @@ TEST_F(LpvWays, AtomicWithoutTheExtensionIsRefusedAndCompilesNothing) {
 class LpvHalfStall : public LpvWays {
  protected:
   /// What additive blending of `count` times `value` leaves in one texel.
-  static double blended(gl::ProgramLibrary& programs, GLenum format, float value, int count) {
+  static double blended(gl::ProgramLibrary& programs, gl::Format format, float value, int count) {
     const gl::Texture target("blend", format, glm::ivec2(1));
     const std::array<const gl::Texture*, 1> targets{&target};
     gl::clearToZero(targets, false);
@@ -432,7 +431,7 @@ TEST_F(LpvHalfStall, SixteenBitSumsStopGrowingAndThirtyTwoBitSumsDoNot) {
   gl::ProgramLibrary programs(folder.path());
   // OpenGL leaves open how a blended half is rounded. To the nearest, a sum stops where the value is less than half a
   // unit in the last place; cut off, where it is less than a whole one.
-  const bool nearest = blended(programs, GL_RGBA16F, 1.0f + 0.75f / 1024.0f, 1) > 1.0;
+  const bool nearest = blended(programs, gl::Format::rgba16f, 1.0f + 0.75f / 1024.0f, 1) > 1.0;
   std::cout << "[ measured ] blended 16-bit sums " << (nearest ? "round to the nearest" : "cut off") << "\n";
   struct Row {
     float value;
@@ -440,14 +439,15 @@ TEST_F(LpvHalfStall, SixteenBitSumsStopGrowingAndThirtyTwoBitSumsDoNot) {
   };
   for (const Row& row : {Row{1.0f, 2048.0, 2048.0}, Row{0.1f, 256.0, 128.0}, Row{1e-3f, 4.0, 2.0}}) {
     const double stall = nearest ? row.nearest : row.cut;
-    const double half = blended(programs, GL_RGBA16F, row.value, 10000),
-                 later = blended(programs, GL_RGBA16F, row.value, 20000);
+    const double half = blended(programs, gl::Format::rgba16f, row.value, 10000),
+                 later = blended(programs, gl::Format::rgba16f, row.value, 20000);
     std::cout << "[ measured ] " << row.value << " added 10000 times: " << half << " in 16 bits, "
-              << blended(programs, GL_RGBA32F, row.value, 10000) << " in 32\n";
+              << blended(programs, gl::Format::rgba32f, row.value, 10000) << " in 32\n";
     EXPECT_NEAR(half, stall, 0.002 * stall) << row.value;
     EXPECT_EQ(half, later) << row.value;
     EXPECT_LT(half, 0.45 * 10000.0 * static_cast<double>(row.value));
-    EXPECT_NEAR(blended(programs, GL_RGBA32F, row.value, 10000) / (10000.0 * static_cast<double>(row.value)), 1.0, 1e-4)
+    EXPECT_NEAR(blended(programs, gl::Format::rgba32f, row.value, 10000) / (10000.0 * static_cast<double>(row.value)),
+                1.0, 1e-4)
         << row.value;
   }
 }
@@ -462,7 +462,7 @@ TEST_F(LpvHalfStall, TenThousandEqualLightsInACellAddUp) {
         s.storage = storage;
         const RsmTexel light{{0.2f, 0.2f, 0.2f, 1.0f}, {0, 0, 1, 1}, glm::vec3(flux)};
         const RsmTextures textures(std::vector<RsmTexel>(10000, light), static_cast<double>(flux));
-        const LightPropagationVolume::Inputs inputs{{textures.outputs()}, place(s), 1.0f};
+        const LpvInputs inputs{{textures.outputs()}, place(s), 1.0f};
         const double total = twin::totalFlux(test::readVolume(run(s, inputs).injected(), inputs)[0]).x;
         // Equal terms drift in a 32-bit sum by up to 2^-25 each, 3e-4 here; measured 1.3e-4 at the least flux.
         EXPECT_NEAR(total / (10000.0 * static_cast<double>(flux)), 1.0,

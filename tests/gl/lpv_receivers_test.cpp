@@ -29,7 +29,7 @@ using test::SceneBuilder;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kSignificant = 4.0;
-constexpr int kAll = LightPropagationVolume::kAllBounces;
+constexpr int kAll = LpvSettings::kAllBounces;
 
 class LpvReceiversGl : public test::SharedProgramsTest {
  protected:
@@ -44,7 +44,7 @@ class LpvReceiversGl : public test::SharedProgramsTest {
     s.lpv.cascades.cascades = 2;
     s.lpv.bounces = bounces;
     s.lpv.samples = samples;
-    s.lpv.storage = LightPropagationVolume::Storage::full;
+    s.lpv.storage = LpvSettings::Storage::full;
     return s;
   }
   struct Picture {
@@ -546,7 +546,7 @@ TEST_F(LpvReceiversGl, UnitsOfLengthDoNotMatter) {
 
 TEST_F(LpvReceiversGl, UnitsOfLightDoNotMatter) {
   RenderSettings s = settings(2, 64);
-  s.lpv.storage = LightPropagationVolume::Storage::half;
+  s.lpv.storage = LpvSettings::Storage::half;
   const Image reference = picture(richRoom(), test::openBoxCamera(), s).image;
   for (const float factor : {1e-3f, 1e5f}) {
     Scene scene = richRoom();

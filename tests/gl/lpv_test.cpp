@@ -26,7 +26,7 @@ using test::Probe;
 using test::RsmTexel;
 using test::RsmTextures;
 using twin::VolumeRgb;
-using Storage = LightPropagationVolume::Storage;
+using Storage = LpvSettings::Storage;
 
 constexpr double kFullTolerance = 1e-5;
 constexpr double kHalfTolerance = 1e-3;
@@ -39,9 +39,9 @@ const std::array<glm::vec3, 6> kAxes = {glm::vec3(1, 0, 0),  glm::vec3(-1, 0, 0)
 
 class LpvGlTest : public test::SharedProgramsTest {
  protected:
-  static LightPropagationVolume::Settings settings(int cells, int cascades, int iterations, bool blocking = false,
-                                                   Storage storage = Storage::full) {
-    LightPropagationVolume::Settings s;
+  static LpvSettings settings(int cells, int cascades, int iterations, bool blocking = false,
+                              Storage storage = Storage::full) {
+    LpvSettings s;
     s.cascades.cells = cells;
     s.cascades.cascades = cascades;
     s.iterations = iterations;
@@ -52,8 +52,7 @@ class LpvGlTest : public test::SharedProgramsTest {
   }
 
   /// Runs all stages, join() where asked for.
-  static LightPropagationVolume run(const LightPropagationVolume::Settings& s,
-                                    const LightPropagationVolume::Inputs& inputs, bool join = false) {
+  static LightPropagationVolume run(const LpvSettings& s, const LpvInputs& inputs, bool join = false) {
     return test::runVolume(library(), capabilities(), s, inputs, join);
   }
 };
@@ -163,7 +162,7 @@ struct CaseInputs {
   std::vector<RsmTexel> texels;
   double texelArea = 0.07;
   RsmTextures textures;
-  LightPropagationVolume::Inputs inputs;
+  LpvInputs inputs;
 
   explicit CaseInputs(const Case& c, unsigned seed)
       : cascades(place(c)),
@@ -264,7 +263,7 @@ TEST_F(LpvAgainstTwin, PropagationAndLookup) {
     for (const bool blocking : {false, true})
       for (const int iterations : {1, 2, 8}) {
         const TwinRun expected = runTwin(inputs, c.cells, iterations, blocking);
-        LightPropagationVolume::Settings s = settings(c.cells, c.cascades, iterations, blocking);
+        LpvSettings s = settings(c.cells, c.cascades, iterations, blocking);
         const LightPropagationVolume lpv = run(s, inputs.inputs);
         const std::vector<VolumeRgb> actual = test::readVolume(lpv.result(), inputs.inputs);
         for (std::size_t k = 0; k < actual.size(); ++k) {
@@ -317,7 +316,7 @@ TEST_F(LpvAgainstTwin, HalfStorage) {
         const CaseInputs inputs(c, 4);
         for (const bool blocking : {false, true}) {
           const TwinRun expected = runTwin(inputs, c.cells, iterations, blocking);
-          LightPropagationVolume::Settings s = settings(c.cells, c.cascades, iterations, blocking, Storage::half);
+          LpvSettings s = settings(c.cells, c.cascades, iterations, blocking, Storage::half);
           s.propagate = propagate;
           const std::vector<VolumeRgb> actual = test::readVolume(run(s, inputs.inputs).result(), inputs.inputs);
           for (std::size_t k = 0; k < actual.size(); ++k)
@@ -346,7 +345,7 @@ TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
     double worst = 0.0, worstLookup = 0.0;
     for (const Case& c : kCases) {
       const CaseInputs inputs(c, 6);
-      LightPropagationVolume::Settings s = settings(c.cells, c.cascades, kIterations, true, storage);
+      LpvSettings s = settings(c.cells, c.cascades, kIterations, true, storage);
       s.handOver = kHandOver;
       s.blendBand = 0.4f;
       s.lookupOffset = 0.25f;
@@ -405,12 +404,12 @@ TEST_F(LpvAgainstTwin, JoinAndBlendedLookup) {
 TEST_F(LpvAgainstTwin, HandOverStepFollowsTheSpreadOfLight) {
   // Root mean square distances after 1, 2, 4, 8, 16, 24 steps (tests/physics, LpvTransport.MeanDisplacementAndRms): the
   // step whose distance times the ratio is nearest.
-  EXPECT_EQ(LightPropagationVolume::handOverStep(8, 2.0), 2);  // 3.222 / 2 = 1.611 beside 1.496
-  EXPECT_EQ(LightPropagationVolume::handOverStep(16, 2.0), 4);  // 4.619 / 2 = 2.310 beside 2.216
-  EXPECT_EQ(LightPropagationVolume::handOverStep(8, 1.0), 8);
-  EXPECT_EQ(LightPropagationVolume::handOverStep(1, 2.0), 1);
-  EXPECT_EQ(LightPropagationVolume::handOverStep(0, 2.0), 1);
-  EXPECT_EQ(LightPropagationVolume::handOverStep(8, 16.0), 1);
+  EXPECT_EQ(lpvHandOverStep(8, 2.0), 2);  // 3.222 / 2 = 1.611 beside 1.496
+  EXPECT_EQ(lpvHandOverStep(16, 2.0), 4);  // 4.619 / 2 = 2.310 beside 2.216
+  EXPECT_EQ(lpvHandOverStep(8, 1.0), 8);
+  EXPECT_EQ(lpvHandOverStep(1, 2.0), 1);
+  EXPECT_EQ(lpvHandOverStep(0, 2.0), 1);
+  EXPECT_EQ(lpvHandOverStep(8, 16.0), 1);
 }
 
 // ---- known answers
@@ -422,7 +421,7 @@ class LpvKnownAnswers : public LpvGlTest {
   struct Field {
     std::vector<RsmTexel> texels;
     RsmTextures textures;
-    LightPropagationVolume::Inputs inputs;
+    LpvInputs inputs;
     Field(std::vector<RsmTexel> lights, int cells, double texelArea = 1.0)
         : texels(std::move(lights)),
           textures(texels, texelArea),
@@ -498,7 +497,7 @@ TEST_F(LpvKnownAnswers, LightFromAheadIsSeenAndFromBehindIsNot) {
   const Field field(one(5, axis, glm::vec3(1.0f)), 5);
   const std::vector<Probe> probes{{glm::vec3(2.5f), -axis}, {glm::vec3(2.5f), axis}, {glm::vec3(2.5f), across}};
   for (const bool unwindowed : {false, true}) {
-    LightPropagationVolume::Settings s = settings(5, 1, 0);
+    LpvSettings s = settings(5, 1, 0);
     s.lookup = LpvLookup::published;
     s.lookupOffset = 0.0f;
     s.deviations.unwindowed = unwindowed;
@@ -519,7 +518,7 @@ TEST_F(LpvKnownAnswers, AnIsotropicFillGivesTwoThirdsOfPiTimesItsIntensity) {
   for (const glm::vec3& axis : kAxes) probes.push_back({{2.4f, 2.6f, 2.3f}, axis});
   probes.push_back({glm::vec3(2.5f), glm::normalize(glm::vec3(1, -2, 3))});
   constexpr double kIntensity = 2.0 / (4.0 * twin::kPi);
-  LightPropagationVolume::Settings s = settings(5, 1, 0);
+  LpvSettings s = settings(5, 1, 0);
   for (const glm::vec3& seen : test::probeIrradiance(library(), run(s, field.inputs), probes))
     EXPECT_NEAR(seen.x, 2.0 * twin::kPi / 3.0 * kIntensity, 2e-6);
   s.lookup = LpvLookup::published;
@@ -745,7 +744,7 @@ TEST_F(LpvKnownAnswers, StoredValuesDoNotDependOnTheLightsUnit) {
                         {0, 0, 1, 1},
                         glm::vec3(0.5f * irradiance * texelArea)});
     const RsmTextures textures(texels, texelArea);
-    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, unitCascade(7), irradiance};
+    const LpvInputs inputs{{textures.outputs()}, unitCascade(7), irradiance};
     const LightPropagationVolume lpv = run(settings(7, 1, 8, true, Storage::half), inputs);
     stored.push_back(lpv.result()[0].readRgba());
   }
@@ -797,7 +796,7 @@ TEST_F(LpvKnownAnswers, TheMeanOfASmoothFieldDoesNotDependOnTheNumberOfCascades)
   // show the same. Lights stand in the middle of the cells of the finest cascade that holds the place, so that no grid
   // sees a gap.
   constexpr int kCells = 12;
-  LightPropagationVolume::Settings s = settings(kCells, 4, 8);
+  LpvSettings s = settings(kCells, 4, 8);
   s.cascades.cellSize = 2.0;
   Bounds bounds;
   bounds.add(glm::dvec3(-12.0));
@@ -823,7 +822,7 @@ TEST_F(LpvKnownAnswers, TheMeanOfASmoothFieldDoesNotDependOnTheNumberOfCascades)
   for (int cascades = 1; cascades <= 4; ++cascades) {
     s.cascades.cascades = cascades;
     s.handOver = 0;  // as it is by default
-    const LightPropagationVolume::Inputs inputs{{textures.outputs()}, {all.end() - cascades, all.end()}, 1.0f};
+    const LpvInputs inputs{{textures.outputs()}, {all.end() - cascades, all.end()}, 1.0f};
     const LightPropagationVolume lpv = run(s, inputs, true);
     double mean = 0.0;
     for (const glm::vec3& seen : test::probeIrradiance(library(), lpv, probes))

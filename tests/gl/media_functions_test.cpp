@@ -36,8 +36,8 @@ class MediaFunctions : public test::SharedProgramsTest {
   static gl::Buffer bufferOf(const std::vector<T>& data, GLuint binding) {
     const T nothing{};
     gl::Buffer buffer("test", std::max<std::size_t>(data.size(), 1) * sizeof(T), data.empty() ? &nothing : data.data(),
-                      GL_STATIC_DRAW);
-    buffer.bind(GL_SHADER_STORAGE_BUFFER, binding);
+                      gl::Usage::staticDraw);
+    buffer.bindStorage(binding);
     return buffer;
   }
 
@@ -50,7 +50,7 @@ class MediaFunctions : public test::SharedProgramsTest {
                      records = bufferOf(packed.media, 2), grids = bufferOf(packed.grids, 0),
                      densities = bufferOf(packed.densities, 1), interiors = bufferOf(boundaries.interiors, 7);
     {
-      const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
+      const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
       program.use();
       program.set("what", static_cast<int>(what));
       program.set("outerMedium", outerMedium);

@@ -114,12 +114,12 @@ class PathFunctionsTest : public SharedProgramsTest {
     const gl::Program& program = library().loadCompute(
         "path probe", "pathtracer/path_probe.comp",
         {{"PROBE", which}, {"GLOSSY", 1}, {"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LINEAR_SEEDS", 0}});
-    const gl::Buffer in("inputs", inputs.size() * sizeof(Pair), inputs.data(), GL_STATIC_DRAW);
-    const gl::Buffer out("outputs", inputs.size() * sizeof(Pair), nullptr, GL_DYNAMIC_READ);
-    in.bind(GL_SHADER_STORAGE_BUFFER, 0);
-    out.bind(GL_SHADER_STORAGE_BUFFER, 1);
+    const gl::Buffer in("inputs", inputs.size() * sizeof(Pair), inputs.data(), gl::Usage::staticDraw);
+    const gl::Buffer out("outputs", inputs.size() * sizeof(Pair), nullptr, gl::Usage::dynamicRead);
+    in.bindStorage(0);
+    out.bindStorage(1);
     {
-      const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
+      const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
       program.use();
       pass.dispatch({static_cast<int>(inputs.size()), 1, 1}, {64, 1, 1});
     }

@@ -29,7 +29,7 @@ class RendererGl : public test::GlTest {
     s.fullFloatTarget = true;
     s.shadow.size = 512;
     s.lpv.cascades.cells = 16;
-    s.lpv.storage = LightPropagationVolume::Storage::full;
+    s.lpv.storage = LpvSettings::Storage::full;
     return s;
   }
   Image render(const Scene& scene, const Camera& camera, const RenderSettings& s) {
@@ -219,7 +219,7 @@ TEST_F(RendererGl, GpuBytesIsTheSumOfWhatIsThere) {
   // sum in 32, as potentials on corners and faces; of 4^3 bricks three words each after a dispatch's three and their
   // count.
   s = settings(Component::indirect);
-  s.lpv.storage = LightPropagationVolume::Storage::half;
+  s.lpv.storage = LpvSettings::Storage::half;
   s.lpv.cascades.cascades = 1;
   const std::size_t cells = 16 * 16 * 16, corners = 17 * 17 * 17;
   const std::size_t rsm = 256 * 256 * (16 + 8 + 16 + 4), bricks = 16 + 3 * 4 * 4 * 4 * 4,

@@ -1,6 +1,6 @@
 // What is made once: stages whose inputs have not changed are not run again, and no bit of any picture changes by that.
-#include "settings/deviations.hpp"
 #include "render/renderer.hpp"
+#include "settings/deviations.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/small_scenes.hpp"
 
@@ -104,7 +104,7 @@ TEST_F(Reuse, PicturesAreTheSameBitByBitForEachTechnique) {
   Case original{"original", settings(Technique::lpv)};
   applyFidelity(original.settings, Fidelity::original);
   cases.push_back(original);
-  for (const int bounces : {2, LightPropagationVolume::kAllBounces})
+  for (const int bounces : {2, LpvSettings::kAllBounces})
     for (const bool toTheEnd : {true, false}) {
       Case c{fmt::format("rays, bounces {}{}", bounces, toTheEnd ? ", settled" : ""), settings(Technique::lpv),
              toTheEnd};

@@ -36,30 +36,31 @@ class RsmGatherOnGl : public test::GlTest {
     gl::Texture textures[3];
     const std::vector<glm::vec4>* data[] = {&position, &normal, &flux};
     for (int i = 0; i < 3; ++i) {
-      textures[i] = gl::Texture("test rsm", GL_RGBA32F, glm::ivec3(map.size, 1), {}, 1, GL_TEXTURE_2D_ARRAY);
-      textures[i].upload(GL_RGBA, GL_FLOAT, data[i]->data());
+      textures[i] =
+          gl::Texture("test rsm", gl::Format::rgba32f, glm::ivec3(map.size, 1), {}, 1, gl::TextureKind::array);
+      textures[i].upload(gl::Texels::rgbaFloat, data[i]->data());
     }
     shared::FrameConstants frame{};
     frame.sunClipFromWorld = glm::mat4(map.clipFromWorld(10.0 * map.width));
     frame.sunDirection = glm::vec3(map.direction);
-    const gl::Buffer frameBuffer("test frame", sizeof frame, &frame, GL_STATIC_DRAW);
+    const gl::Buffer frameBuffer("test frame", sizeof frame, &frame, gl::Usage::staticDraw);
     std::vector<glm::vec4> probes;
     for (const SurfacePoint& p : points) {
       probes.emplace_back(glm::vec3(p.position), rotation);
       probes.emplace_back(glm::vec3(p.normal), 0.0f);
     }
-    const gl::Buffer in("probes", probes.size() * sizeof(glm::vec4), probes.data(), GL_STATIC_DRAW);
-    const gl::Buffer out("irradiances", points.size() * sizeof(glm::vec4), nullptr, GL_STREAM_READ);
-    const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), GL_STATIC_DRAW);
+    const gl::Buffer in("probes", probes.size() * sizeof(glm::vec4), probes.data(), gl::Usage::staticDraw);
+    const gl::Buffer out("irradiances", points.size() * sizeof(glm::vec4), nullptr, gl::Usage::streamRead);
+    const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), gl::Usage::staticDraw);
     {
-      const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
+      const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
       RsmGather::bindMap(programs().loadCompute("rsm gather probe", "rsm/gather_probe.comp",
                                                 RsmGather::flags(settings, RsmGather::Light::sun)),
                          settings, {{textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())}});
-      frameBuffer.bind(GL_UNIFORM_BUFFER, 0);
-      samples.bind(GL_SHADER_STORAGE_BUFFER, 0);
-      in.bind(GL_SHADER_STORAGE_BUFFER, 1);
-      out.bind(GL_SHADER_STORAGE_BUFFER, 2);
+      frameBuffer.bindUniform(0);
+      samples.bindStorage(0);
+      in.bindStorage(1);
+      out.bindStorage(2);
       pass.dispatch(glm::ivec3(static_cast<int>(points.size()), 1, 1), glm::ivec3(64, 1, 1));
     }
     std::vector<glm::dvec3> result;

@@ -38,8 +38,8 @@ class ReflectiveShadowMapGl : public test::SharedProgramsTest {
     frame.sunClipFromWorld = glm::mat4(frustum.clipFromWorld);
     frame.sunDirection = glm::vec3(scene.sun->direction);
     frame.sunIrradiance = scene.sun->irradiance;
-    const gl::Buffer constants("frame", sizeof frame, &frame, GL_STATIC_DRAW);
-    constants.bind(GL_UNIFORM_BUFFER, 0);
+    const gl::Buffer constants("frame", sizeof frame, &frame, gl::Usage::staticDraw);
+    constants.bindUniform(0);
     const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, frustum.texelArea(size));
     EXPECT_NEAR(outputs.texelArea, frustum.width * frustum.height / (static_cast<double>(size) * size),
                 1e-6 * outputs.texelArea);
@@ -49,15 +49,14 @@ class ReflectiveShadowMapGl : public test::SharedProgramsTest {
       drawn.totalFlux += glm::dvec3(drawn.flux[i]);
       if (drawn.position[i].w > 0.5f) ++drawn.covered;
     }
-    LightPropagationVolume::Settings settings;
+    LpvSettings settings;
     settings.cascades.cells = 10;
     settings.cascades.cascades = 1;
     settings.iterations = 0;
     LightPropagationVolume lpv(library(), capabilities(), settings);
-    const LightPropagationVolume::Inputs inputs{
-        {outputs},
-        placeCascades(settings.cascades, scene.bounds, scene.bounds.centre(), glm::dvec3(0.0)),
-        scene.sun->irradiance.x};
+    const LpvInputs inputs{{outputs},
+                           placeCascades(settings.cascades, scene.bounds, scene.bounds.centre(), glm::dvec3(0.0)),
+                           scene.sun->irradiance.x};
     lpv.place(inputs);
     lpv.inject(inputs);
     const double s = inputs.cascades[0].cellSize;

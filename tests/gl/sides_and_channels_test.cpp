@@ -2,8 +2,8 @@
 // factors that a horizon cuts.
 #include "support/form_factor_twin.hpp"
 #include "support/gl_fixture.hpp"
-#include "support/radiosity_scenes.hpp"
 #include "support/pixel_rays.hpp"
+#include "support/radiosity_scenes.hpp"
 #include "support/small_scenes.hpp"
 
 #include "gl/pass.hpp"
@@ -34,7 +34,7 @@ class SidesAndChannels : public test::SharedProgramsTest {
     s.shadow.size = 512;
     s.rsm.size = 64;
     s.lpv.cascades.cells = 16;
-    s.lpv.storage = LightPropagationVolume::Storage::full;
+    s.lpv.storage = LpvSettings::Storage::full;
     return s;
   }
   static Image render(const Scene& scene, const Camera& camera, const RenderSettings& s) {
@@ -164,12 +164,12 @@ TEST_F(SidesAndChannels, FormFactorsOfTrianglesThatTheHorizonCuts) {
   }
   for (const int count : below) EXPECT_GT(count, 300);
   const gl::Program& program = library().loadCompute("polygon probe", "radiosity/polygon_probe.comp", {});
-  const gl::Buffer in("corners", corners.size() * sizeof(glm::vec4), corners.data(), GL_STATIC_DRAW);
-  const gl::Buffer out("form factors", expected.size() * sizeof(float), nullptr, GL_DYNAMIC_READ);
-  in.bind(GL_SHADER_STORAGE_BUFFER, 0);
-  out.bind(GL_SHADER_STORAGE_BUFFER, 1);
+  const gl::Buffer in("corners", corners.size() * sizeof(glm::vec4), corners.data(), gl::Usage::staticDraw);
+  const gl::Buffer out("form factors", expected.size() * sizeof(float), nullptr, gl::Usage::dynamicRead);
+  in.bindStorage(0);
+  out.bindStorage(1);
   {
-    const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
+    const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
     program.use();
     pass.dispatch({static_cast<int>(expected.size()), 1, 1}, {64, 1, 1});
   }

@@ -17,7 +17,7 @@ twin::Sh shOf(const glm::vec4& c, double scale) { return {scale * c.x, scale * g
 
 }  // namespace
 
-RsmTextures::RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLenum normalFormat)
+RsmTextures::RsmTextures(std::span<const RsmTexel> texels, double texelArea, gl::Format normalFormat)
     : texelArea_(static_cast<float>(texelArea)) {
   const int height = std::max(1, (static_cast<int>(texels.size()) + kWidth - 1) / kWidth);
   const glm::ivec3 size(kWidth, height, 1);
@@ -32,14 +32,14 @@ RsmTextures::RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLe
     fluxes[i] = glm::vec4(texels[i].flux,
                           static_cast<float>(texelArea / std::max(static_cast<double>(texels[i].normal.w), 0.05)));
   }
-  position_ = gl::Texture("test rsm position", GL_RGBA32F, size, {}, 1, GL_TEXTURE_2D_ARRAY);
-  normal_ = gl::Texture("test rsm normal", normalFormat, size, {}, 1, GL_TEXTURE_2D_ARRAY);
-  flux_ = gl::Texture("test rsm flux", GL_RGBA32F, size, {}, 1, GL_TEXTURE_2D_ARRAY);
-  albedo_ = gl::Texture("test rsm albedo", GL_RGBA32F, size, {}, 1, GL_TEXTURE_2D_ARRAY);
-  albedo_.upload(GL_RGBA, GL_FLOAT, albedos.data());
-  position_.upload(GL_RGBA, GL_FLOAT, positions.data());
-  normal_.upload(GL_RGBA, GL_FLOAT, normals.data());
-  flux_.upload(GL_RGBA, GL_FLOAT, fluxes.data());
+  position_ = gl::Texture("test rsm position", gl::Format::rgba32f, size, {}, 1, gl::TextureKind::array);
+  normal_ = gl::Texture("test rsm normal", normalFormat, size, {}, 1, gl::TextureKind::array);
+  flux_ = gl::Texture("test rsm flux", gl::Format::rgba32f, size, {}, 1, gl::TextureKind::array);
+  albedo_ = gl::Texture("test rsm albedo", gl::Format::rgba32f, size, {}, 1, gl::TextureKind::array);
+  albedo_.upload(gl::Texels::rgbaFloat, albedos.data());
+  position_.upload(gl::Texels::rgbaFloat, positions.data());
+  normal_.upload(gl::Texels::rgbaFloat, normals.data());
+  flux_.upload(gl::Texels::rgbaFloat, fluxes.data());
 }
 
 std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea) {
@@ -58,8 +58,7 @@ twin::GridSpec gridOf(const Cascade& cascade, int cells) {
 }
 
 LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
-                                 const LightPropagationVolume::Settings& settings,
-                                 const LightPropagationVolume::Inputs& inputs, bool join) {
+                                 const LpvSettings& settings, const LpvInputs& inputs, bool join) {
   LightPropagationVolume lpv(programs, capabilities, settings);
   lpv.place(inputs);
   lpv.inject(inputs);
@@ -69,8 +68,7 @@ LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabil
   return lpv;
 }
 
-std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume,
-                                        const LightPropagationVolume::Inputs& inputs) {
+std::vector<twin::VolumeRgb> readVolume(const LpvVolume& volume, const LpvInputs& inputs) {
   const int cells = volume[0].size().x;
   CHECK(volume[0].size() == glm::ivec3(cells, cells, cells * static_cast<int>(inputs.cascades.size())), "{} cells",
         cells);
@@ -88,8 +86,7 @@ std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& vo
   return result;
 }
 
-std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv,
-                                             const LightPropagationVolume::Inputs& inputs) {
+std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LpvInputs& inputs) {
   const std::vector<glm::vec4> texels = lpv.geometryVolume()->readRgba();
   std::vector<twin::Volume> result;
   auto texel = texels.begin();
@@ -107,14 +104,14 @@ std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const Light
     packed.emplace_back(probe.position, 0.0f);
     packed.emplace_back(probe.normal, 0.0f);
   }
-  const gl::Buffer in("probes", packed.size() * sizeof(glm::vec4), packed.data(), GL_STATIC_DRAW);
-  const gl::Buffer out("irradiances", probes.size() * sizeof(glm::vec4), nullptr, GL_STREAM_READ);
+  const gl::Buffer in("probes", packed.size() * sizeof(glm::vec4), packed.data(), gl::Usage::staticDraw);
+  const gl::Buffer out("irradiances", probes.size() * sizeof(glm::vec4), nullptr, gl::Usage::streamRead);
   {
-    const gl::ComputePass pass("probe", GL_BUFFER_UPDATE_BARRIER_BIT);
+    const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
     programs.loadCompute("lpv probe", "lpv/probe.comp", LightPropagationVolume::lookupFlags(lpv.settings())).use();
     lpv.bindForLookup();
-    in.bind(GL_SHADER_STORAGE_BUFFER, 0);
-    out.bind(GL_SHADER_STORAGE_BUFFER, 1);
+    in.bindStorage(0);
+    out.bindStorage(1);
     pass.dispatch(glm::ivec3(static_cast<int>(probes.size()), 1, 1), glm::ivec3(64, 1, 1));
   }
   std::vector<glm::vec3> result;

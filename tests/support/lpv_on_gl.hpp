@@ -22,7 +22,7 @@ struct RsmTexel {
 /// A reflective shadow map that no light has drawn.
 class RsmTextures {
  public:
-  RsmTextures(std::span<const RsmTexel> texels, double texelArea, GLenum normalFormat = GL_RGBA32F);
+  RsmTextures(std::span<const RsmTexel> texels, double texelArea, gl::Format normalFormat = gl::Format::rgba32f);
   ReflectiveShadowMap::Outputs outputs() const {
     return {position_, normal_, flux_, texelArea_, largestFlux_, ReflectiveShadowMap::Light::sun, &albedo_};
   }
@@ -40,15 +40,12 @@ twin::GridSpec gridOf(const Cascade& cascade, int cells);
 
 /// All stages of a volume made for it; join() unless told otherwise.
 LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
-                                 const LightPropagationVolume::Settings& settings,
-                                 const LightPropagationVolume::Inputs& inputs, bool join = true);
+                                 const LpvSettings& settings, const LpvInputs& inputs, bool join = true);
 
 /// One cascade of a volume that was read back, c = value * E_ref * s^2.
-std::vector<twin::VolumeRgb> readVolume(const LightPropagationVolume::Volume& volume,
-                                        const LightPropagationVolume::Inputs& inputs);
+std::vector<twin::VolumeRgb> readVolume(const LpvVolume& volume, const LpvInputs& inputs);
 /// One cascade each of the geometry volume; nothing is scaled there.
-std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv,
-                                             const LightPropagationVolume::Inputs& inputs);
+std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LpvInputs& inputs);
 
 /// A point and the unit normal of the surface there.
 struct Probe {

@@ -1,7 +1,7 @@
 // Lab 7: path tracing: estimators, multiple importance sampling, roulette, error.
+#include "base/clock.hpp"
 #include "labs/lab.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -223,12 +223,11 @@ void check(Checks& c) {
     // The same against time on this machine; what a run costs without samples counts too.
     Curve time{"Error against time, both strategies, on this machine", "seconds", "standard deviation", {}, {}};
     for (int samples = 4; samples <= 1024; samples *= 4) {
-      const auto start = std::chrono::steady_clock::now();
+      const auto start = Clock::now();
       double square = 0.0;
       for (const glm::vec4& v : c.run(14, std::vector<glm::vec4>{lamp[0], lamp[1], four(samples)}, 0, 512))
         square += std::pow(v.x - light, 2.0) / 512.0;
-      time.mine.emplace_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-                             std::sqrt(square));
+      time.mine.emplace_back(secondsSince(start), std::sqrt(square));
     }
     for (const glm::dvec2& p : time.mine)
       time.reference.emplace_back(p.x, time.mine.back().y * std::sqrt(time.mine.back().x / p.x));

@@ -125,8 +125,8 @@ Camera overviewOf(std::span<const RadTriangle> triangles) {
 
 RadView::RadView(gl::ProgramLibrary& programs, glm::ivec2 size)
     : program_(&programs.loadRaster("radiosity show", "radiosity/show.vert", "radiosity/show.frag")) {
-  color_ = gl::Texture("radiosity show", GL_RGBA8, size);
-  depth_ = gl::Texture("radiosity show depth", GL_DEPTH_COMPONENT32F, size);
+  color_ = gl::Texture("radiosity show", gl::Format::rgba8, size);
+  depth_ = gl::Texture("radiosity show depth", gl::Format::depth32f, size);
   const std::array<const gl::Texture*, 1> colors{&color_};
   framebuffer_ = gl::Framebuffer("radiosity show", colors, &depth_);
 }
@@ -143,7 +143,7 @@ void RadView::show(std::span<const RadTriangle> triangles, const RadDisplay& dis
     }
   extent_ = diagonalOf(triangles);
   count_ = static_cast<GLsizei>(3 * triangles.size());
-  vertices_ = gl::Buffer("radiosity show", vertices.size() * sizeof(glm::vec3), vertices.data(), GL_STATIC_DRAW);
+  vertices_ = gl::Buffer("radiosity show", vertices.size() * sizeof(glm::vec3), vertices.data(), gl::Usage::staticDraw);
   const std::array<gl::VertexArray::Attribute, 2> attributes{{{0, 3, 0}, {1, 3, sizeof(glm::vec3)}}};
   vertexArray_ = gl::VertexArray("radiosity show", vertices_, 2 * sizeof(glm::vec3), attributes, nullptr);
 }

@@ -38,8 +38,8 @@ OriginalRadiosity::OriginalRadiosity(gl::ProgramLibrary& programs, std::span<con
   program_ = &programs.loadRaster(bits24 ? "hemicube view, 24 bits" : "hemicube view, floats",
                                   "radiosity/original.vert", "radiosity/original.frag", {{"BITS_24", bits24 ? 1 : 0}});
   const glm::ivec2 size(settings.view);
-  color_ = gl::Texture("hemicube view", bits24 ? GL_RGBA8 : GL_R32F, size);
-  depth_ = gl::Texture("hemicube view depth", GL_DEPTH_COMPONENT24, size);
+  color_ = gl::Texture("hemicube view", bits24 ? gl::Format::rgba8 : gl::Format::r32f, size);
+  depth_ = gl::Texture("hemicube view depth", gl::Format::depth24, size);
   const std::array<const gl::Texture*, 1> colors{&color_};
   framebuffer_ = gl::Framebuffer("hemicube view", colors, &depth_);
   const auto pixels = static_cast<std::size_t>(settings.view) * static_cast<std::size_t>(settings.view);
@@ -57,7 +57,7 @@ OriginalRadiosity::OriginalRadiosity(gl::ProgramLibrary& programs, std::span<con
   const double diagonal = glm::length(high - low);
   near_ = settings.nearPlane > 0.0 ? settings.nearPlane : 1e-4 * diagonal;
   far_ = std::max(2.0 * diagonal, 2.0 * near_);
-  vertices_ = gl::Buffer("radiosity triangles", corners_.size() * sizeof(glm::vec4), nullptr, GL_DYNAMIC_DRAW);
+  vertices_ = gl::Buffer("radiosity triangles", corners_.size() * sizeof(glm::vec4), nullptr, gl::Usage::dynamicDraw);
   const std::array<gl::VertexArray::Attribute, 1> attributes{{{0, 4, 0}}};
   vertexArray_ = gl::VertexArray("radiosity triangles", vertices_, sizeof(glm::vec4), attributes, nullptr);
   setReceived(start().received);
