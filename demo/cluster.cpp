@@ -6,6 +6,7 @@
 #include "cluster_job.hpp"
 #include "commands.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 

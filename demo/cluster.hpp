@@ -3,8 +3,6 @@
 
 #include "subcommands.hpp"
 
-#include <CLI/CLI.hpp>
-
 namespace lucerna::demo {
 
 Work addCluster(CLI::App& app);

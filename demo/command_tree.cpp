@@ -2,6 +2,8 @@
 
 #include "offers.hpp"
 
+#include <CLI/CLI.hpp>
+
 namespace lucerna::demo {
 
 namespace {

@@ -4,8 +4,6 @@
 
 #include "subcommands.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include <string>
 #include <vector>
 

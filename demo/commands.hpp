@@ -8,7 +8,6 @@
 #include "settings/settings.hpp"
 #include "subcommands.hpp"
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <functional>

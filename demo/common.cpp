@@ -6,6 +6,7 @@
 #include "settings/deviations.hpp"
 #include "settings_file.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <charconv>

@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "offers.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <csignal>

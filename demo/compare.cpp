@@ -10,6 +10,7 @@
 #include "measure/heat_map.hpp"
 #include "measure/image_errors.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

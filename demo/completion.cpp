@@ -3,6 +3,7 @@
 #include "command_tree.hpp"
 #include "offers.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include "scene/scene.hpp"
 #include "settings_page.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cstdlib>

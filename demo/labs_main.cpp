@@ -3,6 +3,8 @@
 #include "labs/command.hpp"
 #include "run_commands.hpp"
 
+#include <CLI/CLI.hpp>
+
 int main(int argc, char** argv) {
   CLI::App app{"Lucerna's teaching labs.\nStart with: lucerna-labs lab list", "lucerna-labs"};
   app.set_version_flag("--version", LUCERNA_VERSION);

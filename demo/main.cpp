@@ -6,6 +6,8 @@
 #include "merge.hpp"
 #include "run_commands.hpp"
 
+#include <CLI/CLI.hpp>
+
 int main(int argc, char** argv) {
   CLI::App app{"Lucerna: real-time global illumination, measured.\nStart with: lucerna walk", "lucerna"};
   app.set_version_flag("--version", LUCERNA_VERSION);

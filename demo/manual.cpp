@@ -2,6 +2,7 @@
 // do.
 #include "command_tree.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -6,6 +6,7 @@
 #include "scene/media_catalogue.hpp"
 #include "scene/original_scene_file.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cmath>

@@ -6,6 +6,7 @@
 #include "parts.hpp"
 #include "pathtracer/film.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

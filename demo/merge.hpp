@@ -4,8 +4,6 @@
 
 #include "subcommands.hpp"
 
-#include <CLI/CLI.hpp>
-
 namespace lucerna::demo {
 
 Work addMerge(CLI::App& app);

@@ -2,6 +2,8 @@
 // its users add.
 #include "offers.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <sstream>
 #include <utility>
 

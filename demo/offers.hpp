@@ -3,8 +3,7 @@
 #pragma once
 
 #include "settings/settings.hpp"
-
-#include <CLI/CLI.hpp>
+#include "subcommands.hpp"
 
 #include <string>
 #include <vector>

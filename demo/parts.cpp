@@ -4,6 +4,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <unistd.h>

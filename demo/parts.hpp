@@ -7,7 +7,8 @@
 // missing, and writes its result: so the result of parts is that of one run.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "subcommands.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <cstddef>

@@ -10,6 +10,7 @@
 #include "radiosity/original/rad_models.hpp"
 #include "radiosity/original/rad_scene.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

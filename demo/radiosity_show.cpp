@@ -10,6 +10,7 @@
 #include "scene/scene.hpp"
 #include "walk/free_camera.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

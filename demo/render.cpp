@@ -8,6 +8,7 @@
 #include "render_path.hpp"
 #include "settings/deviations.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

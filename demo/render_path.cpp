@@ -10,6 +10,7 @@
 #include "pathtracer/path_tracer.hpp"
 #include "settings/deviations.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cmath>

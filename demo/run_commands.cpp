@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "gl/context.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cerrno>

@@ -3,8 +3,6 @@
 
 #include "subcommands.hpp"
 
-#include <CLI/CLI.hpp>
-
 namespace lucerna::demo {
 
 /// The exit code of the program; whatever goes wrong is printed as one line.

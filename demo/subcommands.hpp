@@ -1,13 +1,18 @@
 // Commands that have commands of their own, such as `lucerna bench error`.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "subcommands.hpp"
 
 #include <functional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
+
+// Only sources that declare options include <CLI/CLI.hpp>: it costs each of them four seconds.
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace lucerna::demo {
 
@@ -17,29 +22,14 @@ using Work = std::function<int()>;
 class Subcommands {
  public:
   /// One of them must be named.
-  explicit Subcommands(CLI::App& app) : app_(&app) { app.require_subcommand(1); }
+  explicit Subcommands(CLI::App& app);
 
   /// Its options are declared on what is returned.
-  CLI::App* add(const std::string& name, const std::string& description, Work work) {
-    CLI::App* command = app_->add_subcommand(name, description);
-    commands_.emplace_back(command, std::move(work));
-    return command;
-  }
+  CLI::App* add(const std::string& name, const std::string& description, Work work);
   /// `declare` declares the options and returns the work.
-  template <class Declare>
-  requires std::is_invocable_r_v<Work, Declare, CLI::App&>
-  void add(const std::string& name, const std::string& description, const Declare& declare) {
-    CLI::App* command = app_->add_subcommand(name, description);
-    commands_.emplace_back(command, declare(*command));
-  }
+  void add(const std::string& name, const std::string& description, const std::function<Work(CLI::App&)>& declare);
   /// The work of the one that was named.
-  Work work() const {
-    return [commands = commands_] {
-      for (const auto& [command, work] : commands)
-        if (command->parsed()) return work();
-      return 0;
-    };
-  }
+  Work work() const;
 
  private:
   CLI::App* app_;

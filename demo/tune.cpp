@@ -5,6 +5,7 @@
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

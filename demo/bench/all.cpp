@@ -13,6 +13,7 @@
 #include "offers.hpp"
 #include "parts.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 

@@ -22,6 +22,7 @@
 #include "host/host.hpp"
 #include "offers.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 

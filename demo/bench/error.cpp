@@ -9,6 +9,7 @@
 #include "bench/provenance.hpp"
 #include "offers.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 

@@ -8,6 +8,7 @@
 #include "gl/draw.hpp"
 #include "measure/neutral.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

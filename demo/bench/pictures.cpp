@@ -9,6 +9,7 @@
 #include "offers.hpp"
 #include "settings/deviations.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -11,6 +11,7 @@
 #include "gl/pass.hpp"
 #include "rays/ray_scene.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include "bench/bench.hpp"
 #include "parts.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

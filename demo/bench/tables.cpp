@@ -5,6 +5,7 @@
 #include "bench/rad.hpp"
 #include "offers.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cmath>

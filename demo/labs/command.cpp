@@ -8,6 +8,7 @@
 #include "labs/hand_in.hpp"
 #include "labs/prove.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <unistd.h>
 

@@ -6,6 +6,7 @@
 #include "labs/museum.hpp"
 #include "measure/heat_map.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

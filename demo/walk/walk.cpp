@@ -18,6 +18,7 @@
 #include "walk/paths.hpp"
 #include "walk/window.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -13,7 +13,8 @@ Overlay::Overlay(ProgramLibrary& programs)
 // Buffers grow to twice what is needed, so that they seldom do.
 void Overlay::reserve(std::size_t vertexBytes, std::size_t indexBytes) {
   if (vertexBytes <= vertices_.bytes() && indexBytes <= indices_.bytes()) return;
-  if (vertexBytes > vertices_.bytes()) vertices_ = Buffer("overlay vertices", 2 * vertexBytes, nullptr, Usage::streamDraw);
+  if (vertexBytes > vertices_.bytes())
+    vertices_ = Buffer("overlay vertices", 2 * vertexBytes, nullptr, Usage::streamDraw);
   if (indexBytes > indices_.bytes()) indices_ = Buffer("overlay indices", 2 * indexBytes, nullptr, Usage::streamDraw);
   const std::array<VertexArray::Attribute, 3> attributes{
       {{0, 2, offsetof(Vertex, position)}, {1, 2, offsetof(Vertex, uv)}, {2, 4, offsetof(Vertex, color)}}};
