@@ -46,11 +46,10 @@ std::string settingsPage() {
   std::string text =
       "# Settings\n\n"
       "Made by `lucerna info --settings` from the table in engine/settings/settings.cpp; a test compares them.\n\n"
-      "Set one by `--set KEY=VALUE`, or in a settings file (`--settings FILE`: a JSON object with `technique`, "
-      "`fidelity`, `deviations` and `settings`).\n"
-      "A setting that the technique does not read is a warning. What a change costs: *uniform*, the next frame has it; "
-      "*rebuild*, programs are compiled and\n"
-      "textures allocated anew; *solution*, radiosity is solved anew. Sources are those of shaders/REFERENCES.md.\n";
+      "Set one by `--set KEY=VALUE`, or in a settings file (`--settings FILE`: a JSON object with `technique`,\n"
+      "`fidelity`, `deviations` and `settings`). A setting that the technique does not read is a warning. What a\n"
+      "change costs: *uniform*, the next frame has it; *rebuild*, programs are compiled and textures allocated anew;\n"
+      "*solution*, radiosity is solved anew. Sources are those of shaders/REFERENCES.md.\n";
   std::string_view group;
   for (const Setting& setting : allSettings()) {
     const std::string_view stage = setting.key.substr(0, setting.key.find('.'));
@@ -66,11 +65,11 @@ std::string settingsPage() {
   }
   text +=
       "\n## Deviations\n\n"
-      "What the published originals do differently, each by itself: `--deviation NAME=on|off`. Those with a star are "
-      "on with `--fidelity original`, which is `thesis`;\n"
-      "those with a plus with `demo`, the program published with the thesis on light propagation.\n"
-      "Formulas, sources and measured effects are in the README.md of each technique.\n\n| Name | | Meaning "
-      "|\n|---|---|---|\n";
+      "What the published originals do differently, each by itself: `--deviation NAME=on|off`. Those with a star are\n"
+      "on with `--fidelity original`, which is `thesis`; those with a plus with `demo`, the program published with\n"
+      "the thesis on light propagation. Formulas, sources and measured effects are in the README.md of each "
+      "technique.\n"
+      "\n| Name | | Meaning |\n|---|---|---|\n";
   for (const Deviation& deviation : allDeviations())
     text += fmt::format("| `{}` | {} | {} |\n", deviation.name,
                         std::string(deviation.inOriginal ? "*" : "") + (deviation.inDemo ? "+" : ""),

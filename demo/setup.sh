@@ -14,8 +14,8 @@ is_installed() {
   dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed'
 }
 
-# show_progress WHAT LOG: copies lines to the log; those that begin with [N/M] show on a terminal as one line that changes,
-# elsewhere as a line every 20 seconds.
+# show_progress WHAT LOG: copies lines to the log; those that begin with [N/M] show on a terminal as one line that
+# changes, elsewhere as a line every 20 seconds.
 show_progress() {
   local what="$1" log="$2" line step now last=0
   while IFS= read -r line; do
@@ -54,8 +54,8 @@ apt_install() {
       done; }
 }
 
-# install_packages NAME... [-- OPTIONAL NAME...]: those that are missing, all at once. Optional ones that there are none of, or
-# that cannot be installed for want of rights, are done without.
+# install_packages NAME... [-- OPTIONAL NAME...]: those that are missing, all at once. Optional ones that there are none
+# of, or that cannot be installed for want of rights, are done without.
 install_packages() {
   local missing="" optional="" name needed=1 become=""
   for name in "$@"; do
@@ -97,7 +97,8 @@ install_packages() {
   done
 }
 
-# build PRESET [CMAKE OPTION]...: configures and builds into build/PRESET: everything, or the targets that $targets names.
+# build PRESET [CMAKE OPTION]...: configures and builds into build/PRESET: everything, or the targets that $targets
+# names.
 build() {
   local preset="$1" log
   shift

@@ -1,4 +1,5 @@
-# cmake --install, the program's part (component program), and the packages that cpack makes of both: .deb and a relocatable .tar.gz.
+# cmake --install, the program's part (component program), and the packages that cpack makes of both: .deb and a
+# relocatable .tar.gz.
 include(GNUInstallDirs)
 set(LUCERNA_APP_ID alt.lucerna.Lucerna)  # why this name: alt.lucerna.Lucerna.metainfo.xml
 set(packaging ${CMAKE_CURRENT_LIST_DIR})
@@ -84,7 +85,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lucerna)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# Loaded by name or run as a program, so dpkg-shlibdeps does not see them: a driver, Mesa's renderer in memory, plots of bench.
+# Loaded by name or run as a program, so dpkg-shlibdeps does not see them: a driver, Mesa's renderer in memory, plots of
+# bench.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libgl1-mesa-dri, libosmesa6")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "\

@@ -1,4 +1,5 @@
-# cmake --install, the library's part (component development): lib/liblucerna_*.a, include/lucerna and what find_package(lucerna) reads.
+# cmake --install, the library's part (component development): lib/liblucerna_*.a, include/lucerna and what
+# find_package(lucerna) reads.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

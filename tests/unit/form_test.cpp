@@ -1,10 +1,12 @@
-// The form of the sources: no line over 120 columns, as .editorconfig and .clang-format have it.
+// The form of sources and documents: no line over 120 columns, as .editorconfig and .clang-format have it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -33,6 +35,28 @@ TEST(Form, NoLineOfSourcesIsWiderThan120Columns) {
       }
     }
   EXPECT_GT(files, 500u);
+}
+
+// Tables, listings and pictures are as wide as they must be.
+TEST(Form, NoProseIsWiderThan120Columns) {
+  const fs::path root = LUCERNA_SOURCE_DIR;
+  std::vector<fs::path> documents{root / "README.md", root / "CHANGELOG.md", root / "CONTRIBUTING.md"};
+  for (const char* folder : {"assets", "demo", "docs", "engine", "shaders", "tests"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.path().extension() == ".md") documents.push_back(entry.path());
+  EXPECT_GT(documents.size(), 30u);
+  for (const fs::path& document : documents) {
+    std::ifstream lines(document);
+    int number = 0;
+    bool isListing = false;
+    for (std::string line; std::getline(lines, line);) {
+      ++number;
+      const std::string text = line.substr(std::min(line.find_first_not_of(' '), line.size()));
+      if (text.starts_with("```")) isListing = !isListing;
+      if (isListing || text.starts_with("|") || text.starts_with("![")) continue;
+      EXPECT_LE(columnsOf(line), 120u) << fs::relative(document, root).string() << ":" << number;
+    }
+  }
 }
 
 }  // namespace
