@@ -156,10 +156,9 @@ std::string reportHtml(const Lab& lab, const Folder& folder, const Report& repor
   }
   body += "</table>\n";
 
-  if (!report.yours.empty()) body += "<h2>Parameters of the seed</h2><p>";
-  for (const auto& [name, value] : report.yours)
-    body += fmt::format("{}{} <b>{}</b>", &name == &report.yours.front().first ? "" : ", ", escapeHtml(name), value);
-  if (!report.yours.empty()) body += "</p>\n";
+  std::vector<std::string> yours;
+  for (const auto& [name, value] : report.yours) yours.push_back(fmt::format("{} <b>{}</b>", escapeHtml(name), value));
+  if (!yours.empty()) body += fmt::format("<h2>Parameters of the seed</h2><p>{}</p>\n", fmt::join(yours, ", "));
   const auto answers = folder.path / "answers.txt";
   if (std::filesystem::exists(answers))
     body += "<h2>Answers</h2><pre>" + escapeHtml(readFileText(answers)) + "</pre>\n";

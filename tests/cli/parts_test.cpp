@@ -204,6 +204,15 @@ class FolderParts : public Parts {
     return fmt::format(" --part {}/{} --checkpoint '{}'", k, parts, path(folder));
   }
   std::string whole() const { return " --checkpoint '" + path("whole") + "'"; }
+  /// one.rad by one run, which is told more, and all.rad from the parts; each with its JSON.
+  void solveOneAndWhole(const std::string& solve, const std::string& settings, const std::string& more) {
+    for (const auto& [name, words] : {std::pair{"one", settings + more}, {"all", settings + whole()}})
+      ASSERT_EQ(RUN_LUCERNA(solve + "'" + path(std::string(name) + ".rad") + "'" + words + " --quiet --json '" +
+                            path(std::string(name) + ".json") + "'")
+                    .exitCode,
+                0)
+          << name;
+  }
   /// `command` made parts/0 and parts/1 of two; `another` is the same with another setting.
   void expectWrongJoinsRefused(const std::string& command, const std::string& another) {
     const std::string merge = "merge --checkpoint '" + path("no") + "' '" + path("parts/0") + "' ";
@@ -334,13 +343,7 @@ TEST_F(FolderParts, RowsOfHemicubes) {
                     settings = " 32 --visibility raster --edge 0.3";
   ASSERT_NO_FATAL_FAILURE(make(command + "'" + path("not_written") + "'" + settings, 3));
   EXPECT_FALSE(fs::exists(path("not_written")));
-  ASSERT_EQ(RUN_LUCERNA(command + "'" + path("one.rad") + "'" + settings + " --quiet --json '" + path("one.json") + "'")
-                .exitCode,
-            0);
-  ASSERT_EQ(RUN_LUCERNA(command + "'" + path("all.rad") + "'" + settings + whole() + " --quiet --json '" +
-                        path("all.json") + "'")
-                .exitCode,
-            0);
+  ASSERT_NO_FATAL_FAILURE(solveOneAndWhole(command, settings, ""));
   EXPECT_EQ(json("all.json").at("hemicubes"), 0);  // all were the parts'
   EXPECT_GT(json("one.json").at("hemicubes"), 100);
   EXPECT_EQ(readFileBytes(path("one.rad")), readFileBytes(path("all.rad")));
@@ -363,14 +366,7 @@ TEST_F(FolderParts, RowsOfHemicubesAgreeOnAVisibility) {
     ASSERT_NO_FATAL_FAILURE(
         make(command + "'" + path("not_written") + "'" + settings + " --json '" + path("part.json") + "'", 2));
     EXPECT_EQ(json("part.json").at("visibility"), visibility);
-    ASSERT_EQ(RUN_LUCERNA(command + "'" + path("one.rad") + "'" + settings + " --visibility " + visibility +
-                          " --quiet --json '" + path("one.json") + "'")
-                  .exitCode,
-              0);
-    ASSERT_EQ(RUN_LUCERNA(command + "'" + path("all.rad") + "'" + settings + whole() + " --quiet --json '" +
-                          path("all.json") + "'")
-                  .exitCode,
-              0);
+    ASSERT_NO_FATAL_FAILURE(solveOneAndWhole(command, settings, std::string(" --visibility ") + visibility));
     // Those of the first mesh were the parts'.
     EXPECT_EQ(json("all.json").at("hemicubes").get<int>() + json("part.json").at("of").get<int>(),
               json("one.json").at("hemicubes"));
