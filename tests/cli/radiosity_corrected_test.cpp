@@ -165,7 +165,7 @@ TEST_F(RadiosityCorrected, KilledRunsGoOnToTheSameBits) {
   expectWorks(solve("room.obj", "whole.lit", kLong + "--json '" + path("w.json") + "'"));
   const int all = json("w.json")["hemicubes"];
   int refinedRows = 0;
-  for (const std::size_t size : {100'000, 200'000, 700'000, 900'000, 1'400'000}) {  // rows: 820 kB, refined 1.5 MB
+  for (const std::size_t size : {100'000u, 200'000u, 700'000u, 900'000u, 1'400'000u}) {  // rows: 820 kB, refined 1.5 MB
     const std::string out = "k.lit";
     ASSERT_EQ(killedAt(size, solve("room.obj", out, kLong)).exitCode, kKilled) << size;
     EXPECT_FALSE(fs::exists(path(out)));
@@ -295,7 +295,7 @@ TEST_F(RadiosityCorrected, WithLittleMemoryTheAnswerIsTheSame) {
   // Killed while rows are made, it goes on with those that there are, to the same bits.
   const std::string little = kLong + "--memory 0.05 ";
   expectWorks(solve("room.obj", "whole.lit", little + "--json '" + path("w.json") + "'"));
-  for (const std::size_t size : {200'000, 500'000, 800'000}) {
+  for (const std::size_t size : {200'000u, 500'000u, 800'000u}) {
     ASSERT_EQ(killedAt(size, solve("room.obj", "k.lit", little)).exitCode, kKilled) << size;
     expectWorks(solve("room.obj", "k.lit", little + "--json '" + path("k.json") + "'"));
     EXPECT_LT(json("k.json")["hemicubes"].get<int>(), json("w.json")["hemicubes"].get<int>());

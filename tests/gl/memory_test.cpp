@@ -195,7 +195,7 @@ void expectFlat(const char* what, int times, const Step& step) {
   std::array<MemoryTaken, 4> taken;
   for (int i = 0; i < times; ++i) {
     step(i);
-    if ((i + 1) % (times / 4) == 0) taken.at((i + 1) / (times / 4) - 1) = memoryTaken();
+    if ((i + 1) % (times / 4) == 0) taken.at(static_cast<std::size_t>((i + 1) / (times / 4) - 1)) = memoryTaken();
   }
   for (const auto member : {&MemoryTaken::resident, &MemoryTaken::heap}) {
     double least = std::numeric_limits<double>::infinity();
