@@ -193,14 +193,17 @@ class Figure {
     [this.width, this.height] = this.facts.picture_size;
     this.planes = {};
     for (const element of root.querySelectorAll('script[data-plane]')) this.planes[element.dataset.plane] = element;
-    // 0: the reference; then pictures: the front from its fastest on, then the best of each ladder, then the others, in the order of the ladders.
+    // 0, -1, ...: the references, by one of which each method is judged. From 1 on, methods: the front from its fastest on,
+    // then the best of each ladder, then the others, in the order of the ladders.
     const front = this.facts.pictures.map((p, i) => i).filter(i => this.rows[this.facts.pictures[i].row].pareto).sort((a, b) => this.rows[this.facts.pictures[a].row].front - this.rows[this.facts.pictures[b].row].front);
     const others = this.facts.pictures.map((p, i) => i).filter(i => !front.includes(i)), rest = [true, false].flatMap(first => others.filter(i => this.facts.pictures[i].first_choice === first));
     this.items = [null, ...front.concat(rest).map(i => ({picture: i, row: this.facts.pictures[i].row, truth: this.facts.pictures[i].truth}))];
+    this.order = [...this.facts.truths.map((truth, t) => 0 - t), ...[...this.items.keys()].slice(1)];
     this.seriesNames = [...new Set(this.rows.map(r => r.series))];
-    this.state = {reference: 0, current: Math.min(1, this.items.length - 1), before: 0, mode: 'single', flipped: false, chosen: [], map: 'picture', stops: 0, tone: 'filmic', zoom: 0, x: this.width / 2, y: this.height / 2,
+    this.state = {current: Math.min(1, this.items.length - 1), before: 0, mode: 'single', flipped: false, chosen: [], map: 'picture', stops: 0, tone: 'filmic', zoom: 0, x: this.width / 2, y: this.height / 2,
                   cursor: {x: this.width >> 1, y: this.height >> 1}, wipe: 0.5, ranges: {}, lock: true, cost: 'ms', metric: 'l2', crops: [], selected: this.items.length > 1 ? this.items[1].row : 0};
-    this.state.chosen = this.items.map((item, i) => i).slice(0, 4);
+    const first = [...this.items.keys()].slice(1, 4), judges = first.map(i => this.judgeOf(i));
+    this.state.chosen = [...new Set([...(first.length ? judges : [0]), ...first])];
     this.cache = new Map();
     this.decoded = {};
     this.build();
@@ -211,7 +214,9 @@ class Figure {
     this.draw();
   }
 
-  label(i) { return i === 0 ? this.facts.truths[this.state.reference].name : this.rows[this.items[i].row].label; }
+  label(i) { return i <= 0 ? this.facts.truths[-i].name : this.rows[this.items[i].row].label; }
+  /// The reference that a method is judged by; of a reference, itself.
+  judgeOf(i) { return i <= 0 ? i : 0 - this.items[i].truth; }
   style(series) {
     const i = this.seriesNames.indexOf(series);
     const round = Math.floor(i / PALETTE.length);
@@ -260,7 +265,7 @@ class Figure {
     return block === 1 || !e ? e : this.once(`error ${t} by ${block}`, () => this.blocks(e, block, true));
   }
   pixels(i) {
-    if (i === 0) return this.truth(this.state.reference);
+    if (i <= 0) return this.truth(-i);
     return this.once('pixels' + i, () => {
       const d = this.difference(i), t = this.truthOf(i), result = new Float32Array(d.length);
       for (let k = 0; k < d.length; ++k) result[k] = this.sum(t[k], d[k]);
@@ -319,14 +324,14 @@ class Figure {
   }
   scaleRange(factor) {
     const s = this.state, i = this.shown();
-    if (s.map === 'picture' || i === 0) return;
+    if (s.map === 'picture' || i <= 0) return;
     s.ranges[s.lock ? s.map : s.map + i] = this.range(i, s.map) * factor;
   }
 
   /// A method as a small canvas of the pictures' size.
   canvasOf(i, map = this.state.map) {
-    const s = this.state, real = i === 0 ? 'picture' : map, range = real === 'picture' ? 0 : this.range(i, real);
-    const key = `${i} ${i === 0 ? s.reference : ''} ${real} ${real === 'picture' ? s.stops + s.tone : range}`;
+    const s = this.state, real = i <= 0 ? 'picture' : map, range = real === 'picture' ? 0 : this.range(i, real);
+    const key = `${i} ${real} ${real === 'picture' ? s.stops + s.tone : range}`;
     if (this.cache.has(key)) return this.cache.get(key);
     if (this.cache.size > 40) this.cache.delete(this.cache.keys().next().value);
     const canvas = document.createElement('canvas'), context = canvas.getContext('2d');
@@ -404,25 +409,25 @@ class Figure {
       const step = {ArrowUp: -1, ArrowDown: 1}[event.key];
       if (!step || event.shiftKey) return;
       event.preventDefault();
-      this.show(this.state.current + step);
+      const at = this.order.indexOf(this.state.current) + step;
+      if (at in this.order) this.show(this.order[at]);
     });
-    this.items.forEach((item, i) => {
-      const line = add(this.list, 'div'), key = i <= 9 ? `<kbd>${i}</kbd>` : '<span></span>';
+    for (const i of this.order) {
+      const line = add(this.list, 'div'), key = i >= 0 && i <= 9 ? `<kbd>${i}</kbd>` : '<span></span>';
       line.setAttribute('role', 'option');
       line.id = `figure-${figures.length}-${i}`;
       line.dataset.item = i;
-      if (item) {
-        const row = this.rows[item.row], style = this.style(row.series);
+      if (i > 0) {
+        const row = this.rows[this.items[i].row], style = this.style(row.series);
         line.innerHTML = `${key}<svg width="14" height="14">${mark(style.mark, 7, 7, 4, style.colour)}</svg><span>${escapeText(row.label)}${row.pareto ? ' \u2605' : ''}</span><span class="set" title="in side by side and crops, or not: key a"></span>`;
       } else {
-        line.innerHTML = `${key}<span></span><span>${escapeText(this.label(0))}</span><span class="set" title="in side by side and crops, or not: key a"></span>`;
+        line.innerHTML = `${key}<span></span><span>${escapeText(this.label(i))}</span><span class="set" title="in side by side and crops, or not: key a"></span>`;
       }
       line.addEventListener('click', event => {
-        if (i === 0) this.press('0');
-        else this.show(i);
+        this.show(i);
         if (event.target.className === 'set') this.press('a');
       });
-    });
+    }
     if (this.items.length - 1 < this.rows.length)
       add(left, 'div', 'none', `${this.rows.length - this.items.length + 1} rows without pictures: measured before pictures were kept`);
     const right = add(main, 'div');
@@ -465,7 +470,7 @@ class Figure {
   shown() { return this.state.flipped && this.state.mode !== 'side' ? this.state.before : this.state.current; }
   show(i) {
     const s = this.state;
-    if (i >= this.items.length || i < 0) return;
+    if (!this.order.includes(i)) return;
     if (i !== s.current) s.before = s.current;
     s.current = i;
     s.flipped = false;
@@ -509,7 +514,7 @@ class Figure {
       g.fillStyle = '#fff';
       g.fillText(text, align === 'left' ? x + 5 : x - 5, y + 14, room - 10);
     });
-    const describe = i => (i === 0 || s.map === 'picture' ? this.label(i) : `${this.label(i)}: ${MAPS[s.map].name}`) + (i === 0 ? '' : `, L2 ${errorText(this.rows[this.items[i].row], 'l2')}`);
+    const describe = i => (i <= 0 || s.map === 'picture' ? this.label(i) : `${this.label(i)}: ${MAPS[s.map].name}`) + (i <= 0 ? '' : `, L2 ${errorText(this.rows[this.items[i].row], 'l2')}`);
     this.panes().forEach((i, p) => {
       const left = p % l.columns * l.paneWidth, top = Math.floor(p / l.columns) * l.paneHeight;
       if (s.mode === 'wipe') {
@@ -558,7 +563,6 @@ class Figure {
       const i = Number(line.dataset.item);
       line.setAttribute('aria-selected', String(i === this.shown()));
       line.querySelector('.set').textContent = s.chosen.includes(i) ? '\u25a3' : '\u25a1';
-      if (i === 0) line.children[2].textContent = this.label(0);
       if (i !== this.shown()) continue;
       this.list.setAttribute('aria-activedescendant', line.id);
       // In sight in the list, without a jump of the page.
@@ -579,7 +583,7 @@ class Figure {
   drawScale() {
     const s = this.state, i = s.mode === 'side' ? s.chosen.find(k => k > 0) || 0 : this.shown() || s.before;
     this.scaleBar.innerHTML = '';
-    if (s.map === 'picture' || i === 0) return;
+    if (s.map === 'picture' || i <= 0) return;
     const range = this.range(i, s.map), stops = MAPS[s.map].stops, low = stops === SIGNED ? -range : 0;
     const canvas = document.createElement('canvas');
     canvas.width = 320, canvas.height = 1;
@@ -965,9 +969,9 @@ const redraw = run => (f, key) => { run(f, key); f.draw(); };
 const DIRECTIONS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 const arrows = prefix => Object.keys(DIRECTIONS).map(k => ({key: prefix + k, label: (prefix ? 'Shift ' : '') + {ArrowLeft: '\u2190', ArrowRight: '\u2192', ArrowUp: '\u2191', ArrowDown: '\u2193'}[k]}));
 const KEYS = [
-  {keys: ['0'], help: 'the reference; again: the next one, where methods are judged by several', run: f => { const s = f.state; if (s.current === 0) s.reference = (s.reference + 1) % f.facts.truths.length; f.show(0); }},
+  {keys: ['0'], help: 'the reference of this method; again: the next one, where methods are judged by several', run: f => { const at = f.state.current; f.show(at > 0 ? f.judgeOf(at) : 0 - (1 - at) % f.facts.truths.length); }},
   {keys: ['1', '2', '3', '4', '5', '6', '7', '8', '9'], help: 'method 1 to 9 of the list', run: (f, k) => f.show(Number(k))},
-  {keys: ['n', 'b'], help: 'next method, the one before', run: (f, k) => f.show((f.state.current + (k === 'n' ? 1 : f.items.length - 1)) % f.items.length)},
+  {keys: ['n', 'b'], help: 'next method, the one before', run: (f, k) => f.show(cycle(f.order, f.state.current, k === 'n' ? 1 : -1))},
   {keys: ['v'], help: 'one picture', run: redraw(f => { f.state.mode = 'single'; })},
   {keys: ['w'], help: 'wipe: the method before on the left, this one on the right', run: redraw(f => { f.state.mode = 'wipe'; f.state.flipped = false; })},
   {keys: [',', '.'], help: 'move the wipe', run: redraw((f, k) => { f.state.wipe = Math.min(1, Math.max(0, f.state.wipe + (k === ',' ? -0.05 : 0.05))); })},

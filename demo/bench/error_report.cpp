@@ -318,18 +318,21 @@ nlohmann::ordered_json insideModelsJson(const std::vector<InsideModel>& inside) 
 
 nlohmann::ordered_json referencesJson(const References& references) {
   auto json = nlohmann::ordered_json::array();
-  for (const auto& [paths, r] : references.of) {
+  const auto add = [&](const LightPaths& paths, const char* materials, const measure::Reference& r) {
     const glm::dvec3 mean = meanOf(r.mean);
     json.push_back({{"transport", std::string(nameOf(paths.transport))},
                     {"lights", measure::nameOf(paths.lights)},
                     {"bounces", paths.bounces},
+                    {"materials", materials},
                     {"samples", r.samples},
                     {"seconds", r.seconds},
                     {"mean", {mean.x, mean.y, mean.z}},
                     {"mean_error", r.meanError},
                     {"pixel_error", std::sqrt(references.noise(r).variance)},
                     {"renderer", r.renderer}});
-  }
+  };
+  for (const auto& [paths, r] : references.of) add(paths, "lambert", r);
+  if (references.own) add({Transport::all, references.lights}, "all", *references.own);
   return json;
 }
 
@@ -444,7 +447,8 @@ Figure figureOf(const fs::path& folder, const ErrorReport& report, std::vector<I
                   {"yardsticks", report.yardsticks},
                   {"rows", report.rows}};
   const measure::Reference &all = report.references->all(), &path = report.references->path();
-  figure.references.push_back({"reference, all light", &all.mean, &all.standardError});
+  figure.references.push_back(
+      {&path == &all ? "reference, all light" : "reference, Lambert surfaces", &all.mean, &all.standardError});
   if (&path != &all) figure.references.push_back({"reference, all materials", &path.mean, &path.standardError});
   store.reserve(2 * report.rows.size());
   for (std::size_t i = 0; i < report.rows.size(); ++i) {
