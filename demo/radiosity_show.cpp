@@ -22,9 +22,10 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string file, mode, output, mapping, camera, size = "1280x720";
+  std::string file, mode, output, mapping, camera, fidelity, scene, size = "1280x720";
   double constant = 0.0;
-  bool mesh = false, falseColours = false;
+  std::optional<double> edge;
+  bool mesh = false, falseColours = false, interpolate = false;
 };
 
 RadDisplay displayOf(const Options& options) {
@@ -39,19 +40,35 @@ RadDisplay displayOf(const Options& options) {
     throwBadInput("--constant {}: expected a number above 0, or 0 to choose one", options.constant);
   display.constant = options.constant;
   display.mesh = options.mesh;
+  const bool isOurs = display.mapping == RadMapping::filmic || display.mapping == RadMapping::falseColours;
+  if (options.fidelity == "original" && isOurs)
+    throwBadInput("--mapping {}: the published program has log, linear and bits", nameOf(display.mapping));
+  if (options.fidelity == "corrected" && !options.interpolate)
+    throwBadInput("--fidelity corrected: only with --interpolate; flat triangles are shown as published");
+  if (!options.interpolate) return display;
+  if (display.mapping == RadMapping::bits24)
+    throwBadInput("--interpolate: not with the colours of the computation, whose packed numbers have no mean");
+  display.shading = options.fidelity == "corrected" ? RadShading::withinFaces : RadShading::acrossEdges;
   return display;
 }
 
-void walkAround(Host& host, gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, RadDisplay display,
-                const Camera& camera) {
+/// What the window shows; its pictures lie in the scene.
+struct Shown {
+  std::span<const RadTriangle> triangles;
+  RadDisplay display;
+  RadTextures textures;
+};
+
+void walkAround(Host& host, gl::ProgramLibrary& programs, Shown shown, const Camera& camera) {
   watchForInterrupt();
+  auto& [triangles, display, textures] = shown;
   FreeCamera freeCamera(camera, 0.08 * diagonalOf(triangles));
   glm::ivec2 size = host.framebufferSize();
   auto view = std::make_unique<RadView>(programs, size);
-  view->show(triangles, display);
+  view->show(triangles, display, textures);
   host.setTitle(
-      "Lucerna radiosity - 1 log, 2 linear, 3 filmic, 4 false colours, 5 bits, M mesh, B backs, - = constant, WASD QE "
-      "and drag, Esc");
+      "Lucerna radiosity - 1 log, 2 linear, 3 filmic, 4 false colours, 5 bits, M mesh, B backs, I interpolated, "
+      "- = constant, WASD QE and drag, Esc");
   auto frameStart = Clock::now();
   while (!interrupted()) {
     const HostInput input = host.poll();
@@ -63,11 +80,13 @@ void walkAround(Host& host, gl::ProgramLibrary& programs, std::span<const RadTri
       if (key >= '1' && key <= '5') display.mapping = static_cast<RadMapping>(key - '1');
       if (key == 'M') display.mesh = !display.mesh;
       if (key == 'B') display.backCorners = !display.backCorners;
+      if (key == 'I') display.shading = static_cast<RadShading>((static_cast<int>(display.shading) + 1) % 3);
+      if (display.mapping == RadMapping::bits24) display.shading = RadShading::flat;
       const double constant = display.constant > 0.0 ? display.constant : exposureOf(triangles);
       if (key == '=') display.constant = 1.25 * constant;
       if (key == '-') display.constant = constant / 1.25;
     }
-    if (changed) view->show(triangles, display);
+    if (changed) view->show(triangles, display, textures);
     const double dt = secondsSince(frameStart);
     frameStart = Clock::now();
     freeCamera.move(input, std::min(dt, 0.1));
@@ -84,6 +103,14 @@ int run(const Options& options) {
     throwBadInput("-o {}: the extension must be png", options.output);
   const std::vector<RadTriangle> triangles = readRadFile(options.file);
   checkRadTriangles(triangles, options.file);
+  Shown shown{triangles, display, {}};
+  Scene scene;
+  if (!options.scene.empty()) {
+    scene = loadScene(options.scene);
+    shown.textures = texturesOf(scene, options.edge.value_or(0.0), triangles, options.file);
+  } else if (options.edge) {
+    throwBadInput("--edge {}: of the triangles of --scene SCENE, which is not given", *options.edge);
+  }
   Scene cameras;
   cameras.cameras = {overviewOf(triangles)};
   const Camera camera = chooseCamera(cameras, options.camera);
@@ -98,10 +125,10 @@ int run(const Options& options) {
   gl::ProgramLibrary programs;
   if (options.output.empty()) {
     if (host->kind() != HostKind::window) throwMissingCapability("show: no window is available; use -o OUT.png");
-    walkAround(*host, programs, triangles, display, camera);
+    walkAround(*host, programs, shown, camera);
   } else {
     RadView view(programs, size);
-    view.show(triangles, display);
+    view.show(triangles, display, shown.textures);
     view.record(camera);
     writePng(options.output, view.read());
     if (!options.common.quiet)
@@ -113,6 +140,8 @@ int run(const Options& options) {
   json["host"] = nameOf(host->kind());
   json["triangles"] = triangles.size();
   json["mapping"] = nameOf(display.mapping);
+  json["shading"] = nameOf(display.shading);
+  json["pictures"] = shown.textures.pictures.size();
   json["constant"] = display.constant > 0.0 ? display.constant : exposureOf(triangles);
   json["size"] = {size.x, size.y};
   options.common.writeJson(json);
@@ -134,6 +163,16 @@ Work addRadiosityShow(CLI::App& app) {
         {"log", "linear", "filmic", "false", "bits"});
   app.add_option("--constant", options->constant, "linear and filmic: factor of values, 1 is white (0: from the scene)")
       ->capture_default_str();
+  app.add_flag("--interpolate", options->interpolate,
+               "colours interpolated between corners, each the mean of all triangles that meet there, as published");
+  offer(app.add_option("--fidelity", options->fidelity,
+                       "original: as published; corrected, with --interpolate: values instead of colours, and never "
+                       "across an edge"),
+        {"original", "corrected"})
+      ->check(CLI::IsMember({"original", "corrected"}));
+  app.add_option("--scene", options->scene, "the scene that FILE was generated from: its textures times the light");
+  app.add_option("--edge", options->edge, "with --scene: the --edge that FILE was generated with")
+      ->check(CLI::PositiveNumber);
   app.add_flag("--mesh", options->mesh, "draw the triangles' edges");
   app.add_flag("--false-colours", options->falseColours, "the same as --mapping false");
   app.add_option("--camera", options->camera,

@@ -37,9 +37,9 @@ std::string fileStem(const std::string& name) {
   return text;
 }
 
-/// The rung's options as settings of a renderer that measures.
-RenderSettings settingsOf(const ErrorBench& bench, const Rung& rung, Component component) {
-  RenderSettings settings = rung.picture.parse();
+/// A picture's options as settings of a renderer that measures.
+RenderSettings settingsOf(const ErrorBench& bench, const PictureOptions& picture, Component component) {
+  RenderSettings settings = picture.parse();
   settings.component = component;
   settings.size = bench.size;
   settings.fullFloatTarget = true;
@@ -87,10 +87,6 @@ Timed render(const ErrorBench& bench, const RenderSettings& settings, int frames
   timed.gpuBytes = renderer.gpuBytes();
   timed.picture = renderer.readRadiance();
   return timed;
-}
-
-void keep(const ErrorBench& bench, const std::string& name, const ErrorRow& row) {
-  writeFileAtomically(rowFile(bench.folder, name), row.dump(1) + "\n");
 }
 
 std::optional<ErrorRow> readRow(const fs::path& file) {
@@ -296,17 +292,23 @@ std::optional<ErrorRow> finishedRow(const fs::path& folder, const Rung& rung) {
   return readRow(rowFile(folder, rung.name()));
 }
 
-ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
-  const RenderSettings settings = settingsOf(bench, rung, Component::all);
+void keepRow(const ErrorBench& bench, const Rung& rung, const ErrorRow& row) {
+  writeFileAtomically(rowFile(bench.folder, rung.name()), row.dump(1) + "\n");
+}
+
+ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vector<std::string>& more) {
+  PictureOptions options = rung.picture;
+  options.settings.insert(options.settings.end(), more.begin(), more.end());
+  const RenderSettings settings = settingsOf(bench, options, Component::all);
   const Timed timed = render(bench, settings, bench.frames);
   const bool software = bench.context.capabilities().softwareRenderer;
   const double wall = median(timed.wallMs);
 
   ErrorRow row;
-  row["technique"] = rung.picture.technique;
-  row["fidelity"] = rung.picture.fidelity;
-  row["settings"] = rung.picture.settings;
-  row["deviations"] = rung.picture.deviations;
+  row["technique"] = options.technique;
+  row["fidelity"] = options.fidelity;
+  row["settings"] = options.settings;
+  row["deviations"] = options.deviations;
   row["series"] = rung.series;
   row["label"] = rung.label();
   row["ms"] = software || timed.queryMs == 0.0 ? wall : timed.queryMs;
@@ -328,7 +330,7 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
   if (model.lights.any() && model != LightPaths{Transport::all, bench.references.lights}) {
     const bool whole = showsLights(model.transport);
     const Image picture =
-        whole ? timed.picture : render(bench, settingsOf(bench, rung, Component::indirect), 1).picture;
+        whole ? timed.picture : render(bench, settingsOf(bench, options, Component::indirect), 1).picture;
     row["inside_model"] =
         errorsJson(bench.references.judge(picture, bench.references.inside(model), onSurfacesAlone(model)));
     row["inside_model"]["model"] = nameOf(model);
@@ -337,7 +339,7 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung) {
   }
   row["picture"] = writePictures(bench, rung.name(), timed.picture, bench.references.all(), flip.map, nullptr);
   addProvenance(bench, row);
-  keep(bench, rung.name(), row);
+  keepRow(bench, rung, row);
   return row;
 }
 

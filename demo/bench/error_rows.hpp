@@ -42,8 +42,13 @@ void makeFolder(const std::filesystem::path& folder);
 void claimFolder(const std::filesystem::path& folder, const std::string& identity);
 /// The rung's row from the folder, if it was finished.
 std::optional<ErrorRow> finishedRow(const std::filesystem::path& folder, const Rung& rung);
-/// Renders, judges, writes picture and row.
-ErrorRow measureRung(const ErrorBench& bench, const Rung& rung);
+/// Renders, judges, writes picture and row. `more`: settings that the rung's name does not tell.
+ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vector<std::string>& more = {});
+/// A rung by glReadPixels: the published program solves the scene, its solution is shown and judged. "setup_ms" has the
+/// solving in it, "published" what was solved. Empty, and nothing kept, where it was interrupted.
+ErrorRow measurePublished(const ErrorBench& bench, const Rung& rung);
+/// Writes the row into the folder.
+void keepRow(const ErrorBench& bench, const Rung& rung, const ErrorRow& row);
 /// The path tracer's ladders, corrected and as published: one picture observed at 1, 2, 4, ... samples, a row each.
 /// `deviations`: each alone too, a row each. Empty where it was interrupted; series that were finished are kept.
 std::vector<ErrorRow> measurePath(const ErrorBench& bench, bool deviations);

@@ -82,6 +82,13 @@ std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
       rungs.push_back(rung(
           "radiosity", "hemicubes",
           {fmt::format("radiosity.edge={:.6g}", longestSide / 6), fmt::format("radiosity.resolution={}", pixels)}));
+  // As published, beside the compute solution of the same patches.
+  Rung published = rung("radiosity", "",
+                        {fmt::format("radiosity.edge={:.6g}", longestSide / (shrink ? 3 : 6)),
+                         fmt::format("radiosity.resolution={}", shrink ? 48 : 100), "radiosity.flat=on"},
+                        "original");
+  published.byReadPixels = true;
+  rungs.push_back(std::move(published));
   return rungs;
 }
 
@@ -98,6 +105,7 @@ std::string Rung::label() const {
   for (const std::string& setting : picture.settings)
     text += " " + (setting.starts_with(prefix) ? setting.substr(prefix.size()) : setting);
   for (const std::string& deviation : picture.deviations) text += " " + deviation;
+  if (byReadPixels) text += " by glReadPixels";
   return text;
 }
 

@@ -12,6 +12,7 @@ namespace lucerna::demo::bench {
 struct Rung {
   std::string series;  ///< such as "lpv cells"; a line of the plot
   PictureOptions picture;  ///< technique, fidelity, deviations, settings
+  bool byReadPixels = false;  ///< radiosity: solved by the published program, its colours drawn and read back
   /// What is said of it in tables: settings that differ from the defaults.
   std::string label() const;
   /// The same measurement has the same name: a finished one is not made again.

@@ -1,6 +1,18 @@
-// Faces in their colour; edges of the mesh in one of their own, blended by hand with what a face would have had.
-flat in vec3 shown;
+// Faces in their colour, times that of a picture where they have one [RAD2008 figure 4.3]; edges of the mesh in one of
+// their own, blended by hand with what a face would have had.
+#include "shared/bindings.h"
+in vec3 shown;
 uniform vec4 edge;  // colour, and how much of it
 layout(location = 0) out vec4 displayColor;
+#if TEXTURED
+in vec2 picturePlace;
+layout(binding = UNIT_DIFFUSE) uniform sampler2D picture;
+#endif
 
-void main() { displayColor = vec4(mix(shown, edge.rgb, edge.a), 1.0); }
+void main() {
+  vec3 colour = shown;
+#if TEXTURED
+  colour *= texture(picture, picturePlace).rgb;
+#endif
+  displayColor = vec4(mix(colour, edge.rgb, edge.a), 1.0);
+}

@@ -238,8 +238,11 @@ TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
   ASSERT_EQ(RUN_LUCERNA(benchError("--techniques radiosity")).exitCode, 0);
   std::map<std::string, nlohmann::json> edges, resolutions;  // by the value of the setting that a series changes
   const nlohmann::json ladder = json("error.json");
+  nlohmann::json published;
   for (const auto& row : ladder.at("rows")) {
     EXPECT_EQ(row.at("technique"), "radiosity");
+    if (row.contains("published")) published = row;
+    if (row.at("fidelity") == "original") continue;
     for (const std::string setting : row.at("settings")) {
       if (row.at("series") == "radiosity patches" && setting.starts_with("radiosity.edge="))
         edges[setting.substr(15)] = row;
@@ -253,6 +256,16 @@ TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
   const auto &coarse = edges.at("1.33333"), &fine = edges.at("0.333333");
   EXPECT_GT(fine.at("setup_ms").get<double>(), coarse.at("setup_ms").get<double>());
   EXPECT_NE(fine.at("bias"), coarse.at("bias"));
+  // The published program on the same patches: the same picture but for its map's error in what is reflected.
+  ASSERT_TRUE(published.is_object()) << "a row by glReadPixels";
+  EXPECT_NE(published.at("label").get<std::string>().find("edge=1.33333"), std::string::npos);
+  const auto& solved = published.at("published");
+  for (const int sweeps : solved.at("sweeps")) EXPECT_TRUE(sweeps >= 2 && sweeps <= 7) << sweeps;
+  EXPECT_GE(solved.at("hemicubes").get<int>(), 6 * solved.at("triangles").get<int>());
+  EXPECT_GE(published.at("setup_ms").get<double>(), 1e3 * solved.at("seconds").get<double>());
+  const double here = published.at("relative_bias"), there = coarse.at("relative_bias");
+  EXPECT_NEAR(here, there, 0.1);
+  EXPECT_NE(here, there);
 
   fs::remove_all(path("out"));
   ASSERT_EQ(RUN_LUCERNA(benchError("--techniques radiosity --deviations")).exitCode, 0);

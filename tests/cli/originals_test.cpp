@@ -73,12 +73,13 @@ std::string small(const std::string& command) {
   if (is("bench all")) more = " --parts tables,pictures --scale 0.02 --quiet";
   if (is("bench tables"))
     more = has("lpv") ? " --scale 0.05 --quiet" : has("vpt") ? " --scale 0.001 --quiet" : " --scale 0.0005 --quiet";
+  if (is("bench error")) more = " --small --size 32x18 --reference-spp 8 --budget 1 --frames 1 --quiet";
   if (is("bench pictures"))
     more = has("lpv")   ? " --size 32x18 --quiet"
            : has("vpt") ? " --scale 0.0005 --size 24x14 --quiet"
                         : " --scale 0.01 --size 48x36 --quiet";
   if (is("radiosity generate")) more = has("assets") ? " --edge 1e9 --quiet" : " --quiet";
-  if (is("radiosity show")) more = " --size 48x36 --quiet";
+  if (is("radiosity show")) more = has("--scene") ? " --edge 1e9 --size 48x36 --quiet" : " --size 48x36 --quiet";
   std::string arguments = command.substr(std::string("lucerna ").size());
   if (is("radiosity solve")) {
     // IN OUT VIEW: the third of its words.

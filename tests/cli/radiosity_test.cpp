@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 
 namespace {
 
@@ -169,6 +170,21 @@ TEST_F(Radiosity, WrongInputIsOneClearLine) {
                 {"exact", "original"});
   expectRefused("'" LUCERNA_BINARY "' radiosity show '" + good + "' x -o '" + path("o.png") + "'", {"x", "s ", "c "});
   expectRefused("'" LUCERNA_BINARY "' radiosity show '" + good + "' -o '" + path("o.jpg") + "'", {"png"});
+  // --fidelity is obeyed or refused.
+  ASSERT_EQ(run(solve(good, path("lit.rad"), "--max-sweeps 1")).exitCode, 0);
+  const std::string show =
+      "'" LUCERNA_BINARY "' radiosity show '" + path("lit.rad") + "' -o '" + path("o.png") + "' --size 32x24 ";
+  expectRefused(show + "--fidelity corrected", {"--interpolate"});
+  expectRefused(show + "--fidelity original --mapping filmic", {"filmic", "bits"});
+  expectRefused(show + "--mapping bits --interpolate", {"--interpolate", "no mean"});
+  expectRefused(show + "--edge 2", {"--scene"});
+  expectRefused(show + "--scene '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.obj'", {"--edge", "cornell"});
+  std::set<std::string> pictures;
+  for (const char* way : {"", "--interpolate", "--interpolate --fidelity corrected"}) {
+    EXPECT_EQ(run(show + way).exitCode, 0) << way;
+    pictures.insert(lucerna::readFileText(path("o.png")));
+  }
+  EXPECT_EQ(pictures.size(), 3u) << "each way of shading is another picture";
   expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 7", {"MODEL 7"});
   expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 1 2.5", {"all three or none"});
   expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + out + "' 1 2.5 0.15 20000000",

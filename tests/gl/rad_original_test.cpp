@@ -2,14 +2,18 @@
 #include "radiosity/original/checkpoint.hpp"
 #include "radiosity/original/display.hpp"
 #include "radiosity/original/rad_models.hpp"
+#include "radiosity/original/rad_scene.hpp"
+#include "radiosity/original/scene_solution.hpp"
 #include "radiosity/original/solver.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/rad_twin.hpp"
+#include "support/radiosity_scenes.hpp"
 #include "support/temp_folder.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <numeric>
 
 namespace lucerna {
@@ -276,6 +280,59 @@ TEST_F(RadOriginal, RollTurnsHemicubesOneByOne) {
   EXPECT_GE(differBySeed, 7);
 }
 
+// A furnace of three colours: after k sweeps every triangle has k + 1 terms of the series E (1 + ro + ro^2 + ...), in
+// each channel its own, less what whole numbers lose.
+TEST_F(RadOriginal, ScenesAreSolvedInEachChannel) {
+  const glm::dvec3 reflectance(0.5, 0.25, 0.75), emitted(1.0, 2.0, 3.0);
+  int index = -1;
+  const Scene room = test::dark(test::cubeRoom(2, [&](test::SceneBuilder& builder, int, double, double) {
+    if (index >= 0) return index;
+    index = builder.material(glm::vec3(reflectance));
+    builder.materialAt(index).emission = glm::vec3(emitted / std::numbers::pi);
+    return index;
+  }));
+  PublishedSceneSettings settings;
+  settings.view = 16;
+  const PublishedScene made =
+      solveAsPublished(context(), library(), room, settings, [](double share) { return share <= 1.0; });
+  ASSERT_EQ(made.solution.exitance.size(), 48u);
+  EXPECT_EQ(made.sweeps, (std::array<std::uint32_t, 3>{7, 7, 7}));
+  EXPECT_EQ(made.hemicubes, 3u * 7u * 48u);
+  EXPECT_EQ(made.overflows, 0u);
+  EXPECT_NEAR(made.exitanceOfStep, 3e-6, 1e-11);
+  const double mean = (2.0 + 8.0 / 3.0 + 12.0) / 3.0;
+  double worst = 0.0;
+  for (const glm::dvec3& exitance : made.solution.exitance)
+    for (int c = 0; c < 3; ++c) {
+      const double whole = emitted[c] / (1.0 - reflectance[c]);
+      // A step in each sweep's number, and the map's sum of floats.
+      EXPECT_NEAR(exitance[c], whole * (1.0 - std::pow(reflectance[c], 8.0)), 4.0 * 3e-6 + 4e-6 * whole) << c;
+      worst = std::max(worst, std::abs(exitance[c] - whole) / mean);
+    }
+  EXPECT_GE(made.solution.progress.errorBound, worst);
+  EXPECT_LT(made.solution.progress.errorBound, 1.3 * worst);
+  // With time for all of it nothing changes at the end.
+  settings.mostSweeps = 100;
+  const PublishedScene rest = solveAsPublished(context(), library(), room, settings, [](double) { return true; });
+  for (const std::uint32_t sweeps : rest.sweeps) EXPECT_LT(sweeps, 60u);
+  for (const glm::dvec3& exitance : rest.solution.exitance) EXPECT_NEAR(exitance.z, 12.0, 2e-4);
+}
+
+// What sun and lamps give is reflected as if it were emitted: the program's files know no other light.
+TEST_F(RadOriginal, SunlightIsHandedOverAsEmission) {
+  test::SceneBuilder builder;
+  builder.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, builder.material(glm::vec3(0.5f, 0.4f, 0.2f)));
+  builder.sun({0.0, -1.0, 1.0}, glm::vec3(4.0f));
+  const Scene scene = builder.scene();
+  PublishedSceneSettings settings;
+  settings.view = 8;
+  const PublishedScene made = solveAsPublished(context(), library(), scene, settings, [](double) { return true; });
+  for (const glm::dvec3& exitance : made.solution.exitance)
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(exitance[c], glm::dvec3(0.5, 0.4, 0.2)[c] * 4.0 * std::sqrt(0.5), 1e-5) << c;
+  EXPECT_THROW(solveAsPublished(context(), library(), test::dark(scene), settings, [](double) { return true; }), Error);
+}
+
 TEST_F(RadOriginal, TrianglesWithoutAreaKeepTheirBytes) {
   std::vector<RadTriangle> room = test::litUnitCube(1, 0.5f, 1000);
   RadTriangle sliver = room[0];
@@ -288,6 +345,51 @@ TEST_F(RadOriginal, TrianglesWithoutAreaKeepTheirBytes) {
   EXPECT_EQ(after.back().b, 77u);
   EXPECT_GT(after.front().b, 0u);
   EXPECT_EQ(after.front().e, room.front().e);
+}
+
+// White light on a picture of four colours: they are where texture coordinates put them, the bottom row at v = 0.
+TEST_F(RadOriginal, ShowDrawsTheScenesTexturesTimesTheLight) {
+  test::SceneBuilder builder;
+  const int picture = builder.texture(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255});
+  const int painted = builder.material(glm::vec3(0.5f));
+  builder.materialAt(painted).diffuseTexture = picture;
+  builder.materialAt(painted).emission = glm::vec3(1.0f);
+  builder.plate({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, painted);
+  const Scene scene = builder.scene();
+  std::vector<RadTriangle> triangles = radTrianglesOf(scene, {10.0, 1000}).triangles;
+  RadView view(library(), {64, 64});
+  Camera camera;
+  camera.position = {0, 0, 2}, camera.direction = {0, 0, -1}, camera.up = {0, 1, 0};
+  camera.verticalFov = 2.0 * std::atan(0.5);
+  const auto at = [](const Bitmap& bitmap, int x, int y) {
+    const std::uint8_t* p = &bitmap.rgba[4 * static_cast<std::size_t>(64 * y + x)];
+    return std::array<int, 3>{p[0], p[1], p[2]};
+  };
+  const RadTextures textures = texturesOf(scene, 10.0, triangles, "x.rad");
+  view.show(triangles, {}, textures);
+  view.record(camera);
+  const Bitmap whole = view.read();
+  // A texel's middle is 1/64 of a texel beside the pixel's.
+  const auto expect = [&](int x, int y, const std::array<int, 3>& colour) {
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(at(whole, x, y)[c], colour[c], 9) << x << ", " << y;
+  };
+  expect(16, 16, {255, 0, 0});
+  expect(48, 16, {0, 255, 0});
+  expect(16, 48, {0, 0, 255});
+  expect(48, 48, {255, 255, 255});
+  // Half the light is half the colour; without the picture there is grey.
+  RadDisplay half;
+  half.mapping = RadMapping::linear, half.constant = 0.5 / 1000.0;
+  view.show(triangles, half, textures);
+  view.record(camera);
+  EXPECT_NEAR(at(view.read(), 48, 16)[1], 127.5, 5.0);
+  view.show(triangles, half);
+  view.record(camera);
+  EXPECT_NEAR(at(view.read(), 8, 8)[2], 127.5, 1.0);
+  // Triangles of another size are not the scene's.
+  EXPECT_THROW(texturesOf(scene, 0.5, triangles, "x.rad"), Error);
+  triangles[0].p2[0] += 1.0f;
+  EXPECT_THROW(texturesOf(scene, 10.0, triangles, "x.rad"), Error);
 }
 
 TEST_F(RadOriginal, ShowLooksIntoRoomsAndDrawsBackCornersAndMesh) {

@@ -266,23 +266,55 @@ TEST(RadCheckpoint, ComesBackAndDamageIsFound) {
   }
 }
 
+// A floor of two triangles and a wall beside them, which meet in two corners.
+TEST(RadDisplayColours, CornersHaveTheMeanOfWhatMeetsThere) {
+  RadTriangle a, b, wall;
+  a.p1 = {0, 0, 0}, a.p2 = {0, 0, 2}, a.p3 = {2, 0, 0}, a.n = {0, 1, 0}, a.b = 100;
+  b.p1 = {2, 0, 2}, b.p2 = {2, 0, 0}, b.p3 = {0, 0, 2}, b.n = {0, 1, 0}, b.b = 10000;
+  wall.p1 = {0, 0, 0}, wall.p2 = {0, 3, 0}, wall.p3 = {0, 0, 2}, wall.n = {1, 0, 0}, wall.b = 1000000;
+  b.p1 = {4, 0, 4};  // three times as large as a
+  const std::vector<RadTriangle> triangles{a, b, wall};
+  RadDisplay display;
+  const auto grey = [](double value) { return static_cast<float>(std::log(value / 50.0) / std::log(1e6 / 50.0)); };
+  const auto check = [&](std::size_t triangle, std::size_t corner, float expected) {
+    EXPECT_NEAR(cornerColours(triangles, display)[triangle][corner].x, expected, 1e-6f)
+        << triangle << ", " << corner << ", " << nameOf(display.shading);
+  };
+  check(0, 1, grey(100));
+  // As published: colours, of everything that meets, over the edge too.
+  display.shading = RadShading::acrossEdges;
+  check(0, 0, (grey(100) + grey(1000000)) / 2.0f);
+  check(0, 1, (grey(100) + grey(10000) + grey(1000000)) / 3.0f);
+  check(0, 2, (grey(100) + grey(10000)) / 2.0f);
+  check(1, 0, grey(10000));
+  check(2, 2, (grey(100) + grey(10000) + grey(1000000)) / 3.0f);
+  // Values by area, of the floor alone.
+  display.shading = RadShading::withinFaces;
+  check(0, 0, grey(100));
+  check(0, 1, grey((100.0 + 3.0 * 10000.0) / 4.0));
+  check(2, 2, grey(1000000));
+}
+
 TEST(RadDisplayColours, FollowTheirMapping) {
   std::vector<RadTriangle> triangles(3, someTriangle());
   triangles[0].e = 0, triangles[0].b = 0;
-  triangles[1].e = 0, triangles[1].b = 999;
-  triangles[2].e = 999999, triangles[2].b = 0;
+  triangles[1].e = 0, triangles[1].b = 1000;
+  triangles[2].e = 500000, triangles[2].b = 0;
   RadDisplay display;
   auto colours = displayColours(triangles, display);
+  EXPECT_EQ(blackOf(triangles), 500.0) << "half of the least that is lit";
   EXPECT_EQ(colours[0].x, 0.0f);
-  EXPECT_NEAR(colours[1].x, 0.5f, 1e-6f) << "log 1000 is half of log 1000000";
+  EXPECT_NEAR(colours[1].x, std::log10(2.0) / 3.0, 1e-6f) << "a factor of 2 of 1000";
   EXPECT_EQ(colours[2].x, 1.0f);
-  display.mapping = RadMapping::linear, display.constant = 1.0 / 1998.0;
+  display.mapping = RadMapping::linear, display.constant = 1.0 / 2000.0;
   colours = displayColours(triangles, display);
   EXPECT_NEAR(colours[1].x, 0.5f, 1e-6f);
   EXPECT_EQ(colours[2].x, 1.0f);
   display.mapping = RadMapping::bits24;
   triangles[2].e = 0x102030;
   EXPECT_EQ(displayColours(triangles, display)[2], glm::vec3(0x10, 0x20, 0x30) / 255.0f);
+  // Of a triangle that is flat all corners are alike.
+  EXPECT_EQ(cornerColours(triangles, display)[2][1], glm::vec3(0x10, 0x20, 0x30) / 255.0f);
   EXPECT_EQ(parseName<RadMapping>("filmic", ""), RadMapping::filmic);
   EXPECT_NE(badInputMessage([] { parseName<RadMapping>("x", ""); }).find("log, linear"), std::string::npos);
 }

@@ -3,13 +3,19 @@
 #include "base/error.hpp"
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
+#include "radiosity/original/rad_scene.hpp"
+#include "shared/bindings.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <iterator>
+#include <map>
 #include <numeric>
 
 namespace lucerna {
@@ -48,42 +54,171 @@ glm::vec3 bytesOf(const RadTriangle& t) {
 
 }  // namespace
 
-double exposureOf(std::span<const RadTriangle> triangles) {
-  std::vector<std::size_t> order(triangles.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return triangles[a].b < triangles[b].b; });
-  std::vector<double> areas(triangles.size());
-  std::transform(triangles.begin(), triangles.end(), areas.begin(), areaOf);
-  const double most = 0.99 * std::accumulate(areas.begin(), areas.end(), 0.0);
-  double sum = 0.0;
-  for (std::size_t i : order) {
-    sum += areas[i];
-    if (sum >= most) return triangles[i].b > 0 ? 1.0 / triangles[i].b : 1.0;
+namespace {
+
+/// The value of triangles below which this share of their area lies; 0 without any.
+template <class Value>
+double percentileByArea(std::span<const RadTriangle> triangles, double share, Value value) {
+  std::vector<std::pair<double, double>> values;  // and areas
+  double area = 0.0;
+  for (const RadTriangle& t : triangles) {
+    values.emplace_back(value(t), areaOf(t));
+    area += areaOf(t);
   }
-  return 1.0;
+  std::sort(values.begin(), values.end());
+  double sum = 0.0;
+  for (const auto& [v, own] : values)
+    if ((sum += own) >= share * area) return v;
+  return 0.0;
 }
 
+}  // namespace
+
+double exposureOf(std::span<const RadTriangle> triangles) {
+  const double most = percentileByArea(triangles, 0.99, [](const RadTriangle& t) { return static_cast<double>(t.b); });
+  return most > 0.0 ? 1.0 / most : 1.0;
+}
+
+double blackOf(std::span<const RadTriangle> triangles) {
+  std::vector<RadTriangle> lit;
+  std::copy_if(triangles.begin(), triangles.end(), std::back_inserter(lit),
+               [](const RadTriangle& t) { return shownRadiosity(t) > 0.0 && areaOf(t) > 0.0; });
+  return lit.empty() ? 1.0 : 0.5 * percentileByArea(lit, 0.01, shownRadiosity);
+}
+
+namespace {
+
+/// What a value of e + b looks like.
+class Mapping {
+ public:
+  Mapping(std::span<const RadTriangle> triangles, const RadDisplay& display)
+      : mapping_(display.mapping), constant_(display.constant > 0.0 ? display.constant : exposureOf(triangles)) {
+    double greatest = 0.0;
+    for (const RadTriangle& t : triangles) greatest = std::max(greatest, shownRadiosity(t));
+    black_ = blackOf(triangles);
+    scale_ = greatest > black_ ? 1.0 / std::log(greatest / black_) : 0.0;
+  }
+
+  glm::vec3 operator()(double value) const {
+    switch (mapping_) {
+      case RadMapping::logarithmic: return grey(logarithm(value));
+      case RadMapping::linear: return grey(value * constant_);
+      case RadMapping::filmic: return grey(encodedFilmic(value * constant_));
+      case RadMapping::falseColours: return falseColour(logarithm(value));
+      case RadMapping::bits24: break;  // of a triangle, not of a value: bytesOf
+    }
+    return {};
+  }
+
+ private:
+  double logarithm(double value) const { return value > black_ ? std::log(value / black_) * scale_ : 0.0; }
+
+  RadMapping mapping_;
+  double constant_, black_ = 1.0, scale_ = 0.0;
+};
+
+using Corner = std::array<float, 3>;
+
+std::array<Corner, 3> cornersOf(const RadTriangle& t) { return {t.p1, t.p2, t.p3}; }
+
+/// Triangles that meet at a corner's place: the list of vertices that the text looks up once [RAD2008 chapter 4].
+std::map<Corner, std::vector<std::size_t>> meetingAt(std::span<const RadTriangle> triangles) {
+  std::map<Corner, std::vector<std::size_t>> meeting;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (const Corner& corner : cornersOf(triangles[i])) meeting[corner].push_back(i);
+  return meeting;
+}
+
+/// Whether light is interpolated from one to the other: within 20 degrees, as patches have it (PatchSettings::crease).
+/// A source is apart from what it lights.
+bool areOneFace(const RadTriangle& a, const RadTriangle& b) {
+  const double cosine = glm::dot(glm::dvec3(a.n[0], a.n[1], a.n[2]), glm::dvec3(b.n[0], b.n[1], b.n[2]));
+  return cosine >= PatchSettings{}.crease && (a.e > 0) == (b.e > 0);
+}
+
+}  // namespace
+
 std::vector<glm::vec3> displayColours(std::span<const RadTriangle> triangles, const RadDisplay& display) {
-  const double constant = display.constant > 0.0 ? display.constant : exposureOf(triangles);
-  double greatest = 0.0;
-  for (const RadTriangle& t : triangles) greatest = std::max(greatest, shownRadiosity(t));
-  const double scale = greatest > 0.0 ? 1.0 / std::log1p(greatest) : 0.0;
+  const Mapping mapped(triangles, display);
   std::vector<glm::vec3> colours;
   colours.reserve(triangles.size());
-  for (const RadTriangle& t : triangles) {
-    const double value = shownRadiosity(t);
-    switch (display.mapping) {
-      case RadMapping::logarithmic: colours.push_back(grey(std::log1p(value) * scale)); break;
-      case RadMapping::linear: colours.push_back(grey(value * constant)); break;
-      case RadMapping::filmic: colours.push_back(grey(encodedFilmic(value * constant))); break;
-      case RadMapping::falseColours: colours.push_back(falseColour(std::log1p(value) * scale)); break;
-      case RadMapping::bits24: colours.push_back(bytesOf(t)); break;
+  for (const RadTriangle& t : triangles)
+    colours.push_back(display.mapping == RadMapping::bits24 ? bytesOf(t) : mapped(shownRadiosity(t)));
+  return colours;
+}
+
+std::vector<std::array<glm::vec3, 3>> cornerColours(std::span<const RadTriangle> triangles, const RadDisplay& display) {
+  const std::vector<glm::vec3> flat = displayColours(triangles, display);
+  std::vector<std::array<glm::vec3, 3>> colours;
+  colours.reserve(triangles.size());
+  if (display.shading == RadShading::flat) {
+    for (const glm::vec3& colour : flat) colours.push_back({colour, colour, colour});
+    return colours;
+  }
+  CHECK(display.mapping != RadMapping::bits24, "packed numbers have no mean");
+  const Mapping mapped(triangles, display);
+  const auto meeting = meetingAt(triangles);
+  const auto colourAt = [&](std::size_t i, const Corner& corner) {
+    const std::vector<std::size_t>& around = meeting.at(corner);
+    if (display.shading == RadShading::acrossEdges) {
+      glm::vec3 sum(0.0f);
+      for (const std::size_t other : around) sum += flat[other];
+      return sum / static_cast<float>(around.size());
     }
+    double value = 0.0, area = 0.0;
+    for (const std::size_t other : around) {
+      if (!areOneFace(triangles[i], triangles[other])) continue;
+      value += areaOf(triangles[other]) * shownRadiosity(triangles[other]);
+      area += areaOf(triangles[other]);
+    }
+    return area > 0.0 ? mapped(value / area) : flat[i];
+  };
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto corners = cornersOf(triangles[i]);
+    colours.push_back({colourAt(i, corners[0]), colourAt(i, corners[1]), colourAt(i, corners[2])});
   }
   return colours;
 }
 
+RadTextures texturesOf(const Scene& scene, double longestEdge, std::span<const RadTriangle> triangles,
+                       const std::string& file) {
+  const RadScene made = radTrianglesOf(scene, {longestEdge, 1});
+  const auto isSame = [](const RadTriangle& a, const RadTriangle& b) { return cornersOf(a) == cornersOf(b); };
+  if (made.triangles.size() != triangles.size() ||
+      !std::equal(triangles.begin(), triangles.end(), made.triangles.begin(), isSame))
+    throwBadInput(
+        "{}: {} triangles, which are not the {} that lucerna radiosity generate makes of {} with edges of at most "
+        "{:.6g} "
+        "units (--edge)",
+        file, triangles.size(), made.triangles.size(), scene.file.string(), made.longestEdge);
+  PatchSettings patches;
+  patches.longestEdge = made.longestEdge;
+  RadTextures textures;
+  for (const Texture& texture : scene.textures) textures.pictures.push_back(&texture.bitmap);
+  for (const Patch& patch : makePatches(scene, patches).patches) {
+    textures.ofTriangle.push_back(scene.materials[static_cast<std::size_t>(patch.material)].diffuseTexture);
+    textures.texCoords.push_back(patch.texCoord);
+  }
+  return textures;
+}
+
 namespace {
+
+/// Bottom row first, with mipmaps; texels as they are, since colours are multiplied as the display shows them.
+gl::Texture uploaded(const Bitmap& bitmap) {
+  const glm::ivec2 size(bitmap.width, bitmap.height);
+  const gl::Sampling sampling{gl::Filter::linearMipmaps, gl::Filter::linear, gl::Wrap::repeat};
+  gl::Texture texture("radiosity picture", gl::Format::rgba8, size, sampling,
+                      std::bit_width(static_cast<unsigned>(std::max(size.x, size.y))));
+  const auto row = static_cast<std::ptrdiff_t>(4 * size.x);
+  std::vector<std::uint8_t> bottomUp;
+  bottomUp.reserve(bitmap.rgba.size());
+  for (std::ptrdiff_t y = size.y; y-- > 0;)
+    bottomUp.insert(bottomUp.end(), bitmap.rgba.begin() + y * row, bitmap.rgba.begin() + (y + 1) * row);
+  texture.upload(gl::Texels::rgbaByte, bottomUp.data());
+  texture.generateMipmaps();
+  return texture;
+}
 
 std::pair<glm::dvec3, glm::dvec3> boundsOf(std::span<const RadTriangle> triangles) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
@@ -124,42 +259,78 @@ Camera overviewOf(std::span<const RadTriangle> triangles) {
 }
 
 RadView::RadView(gl::ProgramLibrary& programs, glm::ivec2 size)
-    : program_(&programs.loadRaster("radiosity show", "radiosity/show.vert", "radiosity/show.frag")) {
+    : programs_(programs),
+      program_(
+          &programs.loadRaster("radiosity show", "radiosity/show.vert", "radiosity/show.frag", {{"TEXTURED", 0}})) {
   color_ = gl::Texture("radiosity show", gl::Format::rgba8, size);
   depth_ = gl::Texture("radiosity show depth", gl::Format::depth32f, size);
   const std::array<const gl::Texture*, 1> colors{&color_};
   framebuffer_ = gl::Framebuffer("radiosity show", colors, &depth_);
 }
 
-void RadView::show(std::span<const RadTriangle> triangles, const RadDisplay& display) {
+std::size_t RadView::gpuBytes() const {
+  std::size_t bytes = vertices_.bytes() + indices_.bytes() + color_.bytes() + depth_.bytes();
+  for (const gl::Texture& texture : textures_) bytes += texture.bytes();
+  return bytes;
+}
+
+void RadView::show(std::span<const RadTriangle> triangles, const RadDisplay& display, const RadTextures& textures) {
+  struct Place {
+    std::array<float, 3> position;
+    glm::vec3 colour;
+    glm::vec2 texCoord;
+  };
   display_ = display;
-  const std::vector<glm::vec3> colours = displayColours(triangles, display);
-  std::vector<glm::vec3> vertices;
-  vertices.reserve(6 * triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (const auto* p : {&triangles[i].p1, &triangles[i].p2, &triangles[i].p3}) {
-      vertices.emplace_back((*p)[0], (*p)[1], (*p)[2]);
-      vertices.push_back(colours[i]);
+  const auto colours = cornerColours(triangles, display);
+  const bool hasPictures = !textures.ofTriangle.empty() && display.mapping != RadMapping::bits24;
+  std::vector<Place> vertices;
+  vertices.reserve(3 * triangles.size());
+  std::map<int, std::vector<std::uint32_t>> ofPicture;  // indices
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto corners = cornersOf(triangles[i]);
+    std::vector<std::uint32_t>& indices = ofPicture[hasPictures ? textures.ofTriangle[i] : -1];
+    for (std::size_t k = 0; k < 3; ++k) {
+      indices.push_back(static_cast<std::uint32_t>(vertices.size()));
+      vertices.push_back({corners[k], colours[i][k], hasPictures ? textures.texCoords[i][k] : glm::vec2(0.0f)});
     }
+  }
+  textures_.clear();
+  parts_.clear();
+  std::vector<std::uint32_t> indices;
+  for (const auto& [picture, own] : ofPicture) {
+    parts_.push_back({picture < 0 ? -1 : static_cast<int>(textures_.size()), static_cast<std::uint32_t>(indices.size()),
+                      static_cast<std::uint32_t>(own.size())});
+    if (picture >= 0) textures_.push_back(uploaded(*textures.pictures[static_cast<std::size_t>(picture)]));
+    indices.insert(indices.end(), own.begin(), own.end());
+  }
+  if (!textures_.empty() && !textured_)
+    textured_ = &programs_.loadRaster("radiosity show textured", "radiosity/show.vert", "radiosity/show.frag",
+                                      {{"TEXTURED", 1}});
   extent_ = diagonalOf(triangles);
-  count_ = static_cast<GLsizei>(3 * triangles.size());
-  vertices_ = gl::Buffer("radiosity show", vertices.size() * sizeof(glm::vec3), vertices.data(), gl::Usage::staticDraw);
-  const std::array<gl::VertexArray::Attribute, 2> attributes{{{0, 3, 0}, {1, 3, sizeof(glm::vec3)}}};
-  vertexArray_ = gl::VertexArray("radiosity show", vertices_, 2 * sizeof(glm::vec3), attributes, nullptr);
+  vertices_ = gl::Buffer("radiosity show", vertices.size() * sizeof(Place), vertices.data(), gl::Usage::staticDraw);
+  indices_ = gl::Buffer("radiosity show indices", indices.size() * sizeof(std::uint32_t), indices.data(),
+                        gl::Usage::staticDraw);
+  const std::array<gl::VertexArray::Attribute, 3> attributes{
+      {{0, 3, offsetof(Place, position)}, {1, 3, offsetof(Place, colour)}, {2, 2, offsetof(Place, texCoord)}}};
+  vertexArray_ = gl::VertexArray("radiosity show", vertices_, sizeof(Place), attributes, &indices_);
 }
 
 void RadView::record(const Camera& camera) const {
-  CHECK(count_ > 0, "{} corners", count_);
+  CHECK(!parts_.empty(), "{} parts", parts_.size());
   const glm::dvec2 size(framebuffer_.size());
   const glm::dmat4 clipFromView = glm::perspective(camera.verticalFov, size.x / size.y, 1e-3 * extent_, 10.0 * extent_);
   const glm::mat4 clipFromWorld(clipFromView *
                                 glm::lookAt(camera.position, camera.position + camera.direction, camera.up));
   const auto draw = [&](const glm::vec4& edge) {
-    program_->use();
-    program_->set("clipFromWorld", clipFromWorld);
-    program_->set("edge", edge);
     vertexArray_.bind();
-    gl::drawTriangles(count_);
+    for (const Part& part : parts_) {
+      const gl::Program& program = part.texture < 0 ? *program_ : *textured_;
+      program.use();
+      program.set("clipFromWorld", clipFromWorld);
+      program.set("edge", edge);
+      if (part.texture >= 0) textures_[static_cast<std::size_t>(part.texture)].bind(UNIT_DIFFUSE);
+      gl::drawIndexedTriangles(part.firstIndex, part.indexCount);
+    }
   };
   gl::RasterState state;
   state.depth = gl::Depth::lessWrite;

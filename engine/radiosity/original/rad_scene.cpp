@@ -21,6 +21,21 @@ glm::dvec3 hueOf(const glm::dvec3& v) {
   return largest > 0.0 ? v / largest : glm::dvec3(0.0);
 }
 
+/// Its corners, normal and colour.
+RadTriangle triangleOf(const RadiosityMesh& mesh, const Patch& patch) {
+  const auto corners = mesh.corners(patch);
+  RadTriangle t;
+  t.p1 = toFloats(corners[0]), t.p2 = toFloats(corners[1]), t.p3 = toFloats(corners[2]);
+  t.n = toFloats(patch.faceNormal);
+  t.c = toFloats(hueOf(meanOfChannels(patch.emission) > 0.0 ? patch.emission : patch.reflectance));
+  return t;
+}
+
+/// What emits at all has 1 at least.
+std::uint32_t stepsOf(double exitance, double step) {
+  return exitance > 0.0 ? std::max(1u, static_cast<std::uint32_t>(std::lround(exitance / step))) : 0u;
+}
+
 }  // namespace
 
 RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings) {
@@ -39,18 +54,29 @@ RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings) {
   result.exitanceOfStep = brightest / settings.lightPower;
   result.triangles.reserve(mesh.patches.size());
   for (const Patch& patch : mesh.patches) {
-    const auto corners = mesh.corners(patch);
     const double emission = meanOfChannels(patch.emission);
-    RadTriangle t;
-    t.p1 = toFloats(corners[0]), t.p2 = toFloats(corners[1]), t.p3 = toFloats(corners[2]);
-    t.n = toFloats(patch.faceNormal);
-    t.c = toFloats(hueOf(emission > 0.0 ? patch.emission : patch.reflectance));
+    RadTriangle t = triangleOf(mesh, patch);
     t.ro = static_cast<float>(meanOfChannels(patch.reflectance));
-    t.e = emission > 0.0 ? std::max(1u, static_cast<std::uint32_t>(std::lround(emission / result.exitanceOfStep))) : 0u;
+    t.e = stepsOf(emission, result.exitanceOfStep);
     result.sources += t.e > 0;
     result.triangles.push_back(t);
   }
   return result;
+}
+
+std::vector<RadTriangle> radTrianglesOf(const RadiosityMesh& mesh, std::span<const glm::dvec3> exitance, int channel,
+                                        double exitanceOfStep) {
+  CHECK(exitance.size() == mesh.patches.size(), "{} values of {} patches", exitance.size(), mesh.patches.size());
+  CHECK(channel >= 0 && channel < 3, "channel {}", channel);
+  std::vector<RadTriangle> triangles;
+  triangles.reserve(mesh.patches.size());
+  for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
+    RadTriangle t = triangleOf(mesh, mesh.patches[i]);
+    t.ro = static_cast<float>(mesh.patches[i].reflectance[channel]);
+    t.e = stepsOf(exitance[i][channel], exitanceOfStep);
+    triangles.push_back(t);
+  }
+  return triangles;
 }
 
 }  // namespace lucerna

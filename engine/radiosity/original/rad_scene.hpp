@@ -12,6 +12,7 @@
 #pragma once
 
 #include "radiosity/original/rad_file.hpp"
+#include "radiosity/patches.hpp"
 #include "scene/scene.hpp"
 
 namespace lucerna {
@@ -30,5 +31,9 @@ struct RadScene {
 
 /// Throws Error(badInput): no surface emits, no triangle has an area, a reflectance above 1.
 RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings);
+
+/// A mesh's patches in order, one colour channel (0 to 2) of reflectance and of what each sends out by itself.
+std::vector<RadTriangle> radTrianglesOf(const RadiosityMesh& mesh, std::span<const glm::dvec3> exitance, int channel,
+                                        double exitanceOfStep);
 
 }  // namespace lucerna
