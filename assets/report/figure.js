@@ -820,7 +820,7 @@ class Figure {
     this.scaleBar.append(span(short(low)), canvas, span(short(range)), span(note));
   }
   drawValues() {
-    const {x, y} = this.state.cursor, k = y * this.width + x, t = this.truth(0), e = this.truthError(0);
+    const {x, y} = this.state.cursor, k = y * this.width + x;
     const three = (p, j = k) => [0, 1, 2].map(c => `<td>${short(p[3 * j + c], 5)}</td>`).join('');
     const columns = [`pixel ${x}, ${y}`, 'R', 'G', 'B', 'luminance', 'difference', 'relative', 'z-score', 'FLIP'];
     const none = '<td></td><td></td><td></td><td></td>';
