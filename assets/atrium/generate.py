@@ -1,4 +1,7 @@
-"""Builds the atrium: python3 assets/atrium/generate.py. Needs numpy. Writes atrium.obj and atrium.mtl beside this file."""
+"""Builds the atrium: python3 assets/atrium/generate.py. Needs numpy.
+
+Writes atrium.obj and atrium.mtl beside this file.
+"""
 import pathlib
 import sys
 

@@ -1,7 +1,7 @@
 """Writes cornell.obj and cornell.mtl: the Cornell box as measured, in metres. python3 assets/cornell/generate.py
 
-The coordinates and colours are facts published by the Cornell Program of Computer Graphics (see README.md); they are given
-here in millimetres. The room's faces point inwards, the blocks are closed and their faces point outwards.
+The coordinates and colours are facts published by the Cornell Program of Computer Graphics (see README.md); they are
+given here in millimetres. The room's faces point inwards, the blocks are closed and their faces point outwards.
 """
 import pathlib
 
@@ -51,7 +51,8 @@ def number(value):
 
 
 def obj_text():
-    lines = ["# The Cornell box as measured at the Cornell Program of Computer Graphics. Metres, y up. Made by generate.py.",
+    lines = ["# The Cornell box as measured at the Cornell Program of Computer Graphics. "
+             "Metres, y up. Made by generate.py.",
              "mtllib cornell.mtl"]
     parts = [(name, material, *room_faces(corners)) for name, material, corners in ROOM]
     parts += [(name, "white", *block_faces(height, outline)) for name, height, outline in BLOCKS]

@@ -1,5 +1,5 @@
-"""Builds the media scenes: python3 assets/media/generate.py [NAME...]. Writes models, materials, scene JSON, camera paths and the density grid. No packages needed;
-the grid takes about a minute."""
+"""Builds the media scenes: python3 assets/media/generate.py [NAME...]. Writes models, materials, scene JSON, camera
+paths and the density grid. No packages needed; the grid takes about a minute."""
 import pathlib
 import sys
 

@@ -19,13 +19,15 @@ def spandrel(mesh, material, s0, s1, centre, radius, spring, top, segments):
     th = np.linspace(math.pi, 0.0, segments + 1)
     s = centre + radius * np.cos(th)
     points = np.array([[(x, spring + radius * math.sin(t), 0.0) for x, t in zip(s, th)], [(x, top, 0.0) for x in s]])
-    mesh.grid(material, points, mesh.box_uv(material, points.reshape(-1, 3), (0, 0, 1)), np.tile([0.0, 0.0, 1.0], (2, len(s), 1)))
+    mesh.grid(material, points, mesh.box_uv(material, points.reshape(-1, 3), (0, 0, 1)),
+              np.tile([0.0, 0.0, 1.0], (2, len(s), 1)))
 
 
 def archivolt(radius, thick, width, step, beads):
     """Profile (radius, d) of an arch from its back edge through the intrados to the moulding on its court face."""
     r, t, w = radius, thick, width
-    bead = [(r + 0.55 * w + 0.16 * w * (1 - math.cos(a)), step + 0.2 * w * math.sin(a)) for a in np.linspace(0.4, 2.5, beads)] if beads else []
+    bead = [(r + 0.55 * w + 0.16 * w * (1 - math.cos(a)), step + 0.2 * w * math.sin(a))
+            for a in np.linspace(0.4, 2.5, beads)] if beads else []
     return [(r, -t), (r, step * 0.6), (r + 0.38 * w, step * 0.6), (r + 0.42 * w, step), *bead,
             (r + w - 0.012, step * 0.75), (r + w, step * 0.5), (r + w, 0.0)]
 
@@ -33,7 +35,8 @@ def archivolt(radius, thick, width, step, beads):
 def arcade(mesh, edges, feet, spring, top, thick, width, step, segments, material="limestone"):
     """A wall on arches, one for each bay; d from 0 (court face) to -thick.
 
-    `feet`: half the width of the wall's foot at each edge; `spring`: height, or one for each bay; `width`, `step`: moulding."""
+    `feet`: half the width of the wall's foot at each edge; `spring`: height, or one for each bay; `width`, `step`:
+    moulding."""
     for i in range(len(edges) - 1):
         s0, s1 = edges[i], edges[i + 1]
         a, b = s0 + feet[i], s1 - feet[i + 1]

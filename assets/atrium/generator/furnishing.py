@@ -7,7 +7,9 @@ from .mesh import turn
 
 
 def curtain(mesh, material, s0, s1, top, bottom, d, folds, depth, gather=None, seed=0):
-    """A hanging sheet between s0 and s1; folds deepen towards the hem. `gather`: (height, where, how much) ties it aside."""
+    """A hanging sheet between s0 and s1; folds deepen towards the hem.
+
+    `gather`: (height, where, how much) ties it aside."""
     cols, rows = folds * 6 + 1, 12 if gather else 7
     u, v = np.meshgrid(np.linspace(0, 1, cols), np.linspace(0, 1, rows))
     rng = np.random.default_rng(seed)
@@ -39,24 +41,26 @@ def rod(mesh, s0, s1, y, d, r=0.018):
 def fountain(mesh):
     """An eight-sided basin with a bowl on a baluster in its middle; stands at the origin."""
     eighth = math.pi / 8
-    wall = [(2.12, 0.0), (2.12, 0.1), (2.08, 0.12), (1.84, 0.12), (1.84, 0.16), (1.78, 0.2), (1.76, 0.36), (1.8, 0.41), (1.9, 0.44), (1.92, 0.47),
-            (1.92, 0.53), (1.89, 0.55), (1.62, 0.55), (1.58, 0.53), (1.58, 0.3)]
+    wall = [(2.12, 0.0), (2.12, 0.1), (2.08, 0.12), (1.84, 0.12), (1.84, 0.16), (1.78, 0.2), (1.76, 0.36), (1.8, 0.41),
+            (1.9, 0.44), (1.92, 0.47), (1.92, 0.53), (1.89, 0.55), (1.62, 0.55), (1.58, 0.53), (1.58, 0.3)]
     mesh.lathe("stone_trim", wall, 8, start=eighth, flat=True)
     mesh.lathe("water", [(1.6, 0.43), (0.0, 0.43)], 8, start=eighth, flat=True)
-    stem = [(0.36, 0.38), (0.36, 0.52), (0.3, 0.55), (0.2, 0.62), (0.15, 0.7), (0.19, 0.8), (0.2, 0.88), (0.13, 1.02), (0.12, 1.06), (0.17, 1.09),
-            (0.17, 1.12), (0.3, 1.14), (0.6, 1.22), (0.76, 1.32), (0.81, 1.4), (0.84, 1.41), (0.84, 1.45), (0.8, 1.46), (0.74, 1.4)]
+    stem = [(0.36, 0.38), (0.36, 0.52), (0.3, 0.55), (0.2, 0.62), (0.15, 0.7), (0.19, 0.8), (0.2, 0.88), (0.13, 1.02),
+            (0.12, 1.06), (0.17, 1.09), (0.17, 1.12), (0.3, 1.14), (0.6, 1.22), (0.76, 1.32), (0.81, 1.4), (0.84, 1.41),
+            (0.84, 1.45), (0.8, 1.46), (0.74, 1.4)]
     mesh.lathe("stone_trim", stem, 24)
     mesh.lathe("water", [(0.77, 1.42), (0.0, 1.42)], 24)
-    finial = [(0.13, 1.38), (0.13, 1.48), (0.09, 1.5), (0.07, 1.6), (0.1, 1.66), (0.15, 1.7), (0.16, 1.74), (0.1, 1.78), (0.06, 1.82), (0.09, 1.88),
-              (0.08, 1.94), (0.0, 1.99)]
+    finial = [(0.13, 1.38), (0.13, 1.48), (0.09, 1.5), (0.07, 1.6), (0.1, 1.66), (0.15, 1.7), (0.16, 1.74), (0.1, 1.78),
+              (0.06, 1.82), (0.09, 1.88), (0.08, 1.94), (0.0, 1.99)]
     mesh.lathe("stone_trim", finial, 16)
 
 
 def pot(mesh, radius, height):
     """A terracotta pot with soil."""
     r, h = radius, height
-    body = [(0.66 * r, 0.0), (0.7 * r, 0.03 * h), (0.68 * r, 0.06 * h), (0.84 * r, 0.4 * h), (0.93 * r, 0.66 * h), (0.93 * r, 0.72 * h), (0.96 * r, 0.72 * h),
-            (0.96 * r, 0.76 * h), (0.92 * r, 0.78 * h), (0.9 * r, 0.86 * h), (r, 0.89 * h), (1.02 * r, 0.96 * h), (0.98 * r, h), (0.86 * r, h), (0.84 * r, 0.86 * h)]
+    body = [(0.66 * r, 0.0), (0.7 * r, 0.03 * h), (0.68 * r, 0.06 * h), (0.84 * r, 0.4 * h), (0.93 * r, 0.66 * h),
+            (0.93 * r, 0.72 * h), (0.96 * r, 0.72 * h), (0.96 * r, 0.76 * h), (0.92 * r, 0.78 * h), (0.9 * r, 0.86 * h),
+            (r, 0.89 * h), (1.02 * r, 0.96 * h), (0.98 * r, h), (0.86 * r, h), (0.84 * r, 0.86 * h)]
     mesh.lathe("terracotta", body, 18)
     mesh.lathe("wood", [(0.86 * r, 0.9 * h), (0.0, 0.9 * h)], 12)
 
@@ -79,9 +83,11 @@ def crown(mesh, centre, size, cards, card, seed):
             side, face = -side, -face
         length = card * rng.uniform(0.8, 1.15)
         foot = np.asarray(centre) + np.asarray(size) * out * rng.uniform(0.45, 0.8) - tip * length * 0.35
-        rows = [[foot + side * length * 0.5 * u + tip * length * v + face * bend for u in (-1.0, 1.0)] for v, bend in ((0.0, 0.0), (0.55, 0.06 * length), (1.0, -0.1 * length))]
+        rows = [[foot + side * length * 0.5 * u + tip * length * v + face * bend for u in (-1.0, 1.0)]
+                for v, bend in ((0.0, 0.0), (0.55, 0.06 * length), (1.0, -0.1 * length))]
         normal = 0.55 * face + 0.6 * out                       # softened towards the crown's own shape
-        mesh.grid("leaf", rows, [[(0, v), (1, v)] for v in (0.0, 0.55, 1.0)], np.tile(normal / np.linalg.norm(normal), (3, 2, 1)))
+        mesh.grid("leaf", rows, [[(0, v), (1, v)] for v in (0.0, 0.55, 1.0)],
+                  np.tile(normal / np.linalg.norm(normal), (3, 2, 1)))
 
 
 def bush(mesh, x, z, y=0.0, seed=0):
@@ -100,8 +106,10 @@ def tree(mesh, x, z, y=0.0, seed=0):
 def lantern(mesh, s, y, d):
     """A six-sided iron lantern whose hook is at (s, y, d); hangs 1.1 m."""
     with mesh.frame(offset=(s, y - 1.1, d)):
-        mesh.lathe("iron", [(0.0, 0.0), (0.03, 0.03), (0.03, 0.06), (0.11, 0.08), (0.12, 0.1), (0.1, 0.12)], 6, flat=True)
-        mesh.lathe("iron", [(0.15, 0.42), (0.19, 0.43), (0.19, 0.45), (0.1, 0.53), (0.03, 0.58), (0.03, 0.62), (0.008, 0.64), (0.008, 1.1)], 6, flat=True)
+        mesh.lathe("iron", [(0.0, 0.0), (0.03, 0.03), (0.03, 0.06), (0.11, 0.08), (0.12, 0.1), (0.1, 0.12)],
+                   6, flat=True)
+        mesh.lathe("iron", [(0.15, 0.42), (0.19, 0.43), (0.19, 0.45), (0.1, 0.53), (0.03, 0.58), (0.03, 0.62),
+                            (0.008, 0.64), (0.008, 1.1)], 6, flat=True)
         mesh.lathe("iron", [(0.19, 0.43), (0.15, 0.42), (0.0, 0.45)][::-1], 6, flat=True)
         for k in range(6):
             with mesh.frame(turn("y", 60.0 * k)):

@@ -1,8 +1,8 @@
 """A triangle mesh by material, the primitives the atrium is made of, and its OBJ writer.
 
-Local frames: the builders work in (s, y, d): s along a wall, y up, d out of the wall towards the viewer's side; the frame
-is right-handed (s x y = d). Mesh.frame() places it in the world. Lengths are metres. UVs are metres divided by the
-material's SCALE (metres a texture unit) unless a primitive says otherwise; v grows upwards.
+Local frames: the builders work in (s, y, d): s along a wall, y up, d out of the wall towards the viewer's side; the
+frame is right-handed (s x y = d). Mesh.frame() places it in the world. Lengths are metres. UVs are metres divided by
+the material's SCALE (metres a texture unit) unless a primitive says otherwise; v grows upwards.
 """
 import contextlib
 import math
@@ -125,7 +125,8 @@ class Mesh:
                 self.quad(material, *corners)
 
     def grid(self, material, points, uvs, normals=None):
-        """A patch of (rows, columns, 3) points, facing column direction x row direction; smooth normals unless given."""
+        """A patch of (rows, columns, 3) points, facing column direction x row direction; smooth normals unless
+        given."""
         p = np.asarray(points, float)
         rows, cols = p.shape[:2]
         if normals is None:
@@ -177,10 +178,13 @@ class Mesh:
         k = 1.0 if rise is None else rise
         scale = SCALE[material]
         for a, b, na, nb, ua, ub in profile_pieces([(r, d) for r, d in profile]):
-            points = np.stack([np.stack([centre + q[0] * np.cos(th), y + k * q[0] * np.sin(th), np.full_like(th, q[1])], 1) for q in (a, b)], 1)
-            normals = np.stack([np.stack([-n[0] * np.cos(th), -n[0] * np.sin(th) / k, np.full_like(th, -n[1])], 1) for n in (na, nb)], 1)
+            points = np.stack([np.stack([centre + q[0] * np.cos(th), y + k * q[0] * np.sin(th),
+                                         np.full_like(th, q[1])], 1) for q in (a, b)], 1)
+            normals = np.stack([np.stack([-n[0] * np.cos(th), -n[0] * np.sin(th) / k,
+                                          np.full_like(th, -n[1])], 1) for n in (na, nb)], 1)
             uvs = [[(t * a[0] / scale, ua / scale), (t * a[0] / scale, ub / scale)] for t in th]
             self.grid(material, points, uvs, normals)
 
     def triangle_count(self):
-        return sum(2 * len(part[3]) - int((part[3][:, 2] == part[3][:, 3]).sum()) for parts in self.parts.values() for part in parts)
+        return sum(2 * len(part[3]) - int((part[3][:, 2] == part[3][:, 3]).sum())
+                   for parts in self.parts.values() for part in parts)

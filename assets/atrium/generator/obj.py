@@ -32,7 +32,8 @@ def _area2(points, triangles):
 
 
 def write(mesh, obj_path, mtl_path):
-    """Writes both files, quads as quads (they split along 0-2); triangles without area after rounding are left out. Returns counts."""
+    """Writes both files, quads as quads (they split along 0-2); triangles without area after rounding are left out.
+    Returns counts."""
     points, normals, uvs, faces, spans = [], [], [], [], []
     corners = 0
     for material in sorted(mesh.parts):
@@ -66,9 +67,12 @@ def write(mesh, obj_path, mtl_path):
     for name in sorted(mesh.parts):
         if name in TEXTURED:
             ks, ns = TEXTURED[name]
-            kd, maps = (1, 1, 1), [f"map_Kd textures/{name}.png"] + (["map_d textures/leaf_mask.png"] if name == "leaf" else [])
+            kd, maps = (1, 1, 1), ([f"map_Kd textures/{name}.png"] +
+                                   (["map_d textures/leaf_mask.png"] if name == "leaf" else []))
         else:
             (kd, ks, ns), maps = PLAIN[name], []
-        lines += ["", "newmtl " + name, "Kd " + " ".join(map(str, kd)), f"Ks {ks} {ks} {ks}", f"Ns {ns}", "illum 2", *maps]
+        lines += ["", "newmtl " + name, "Kd " + " ".join(map(str, kd)), f"Ks {ks} {ks} {ks}", f"Ns {ns}",
+                  "illum 2", *maps]
     mtl_path.write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
-    return {"triangles": int(solid.sum()), "positions": len(v), "uvs": len(vt), "normals": len(vn), "faces": int(solid.any(axis=1).sum())}
+    return {"triangles": int(solid.sum()), "positions": len(v), "uvs": len(vt), "normals": len(vn),
+            "faces": int(solid.any(axis=1).sum())}

@@ -4,8 +4,10 @@ from .furnishing import banner, bush, curtain, fountain, lantern, rod, tree
 from .layout import EAST, GALLERY, NORTH, SOUTH, SPRING, STEP, UPPER_FLOOR, WALL, WEST
 
 # Bay: colour and how it hangs. On the south side s runs towards -x, on the north side towards +x.
-CURTAINS = {SOUTH: {0: ("teal", "closed"), 1: ("ochre", "left"), 2: ("red", "closed"), 4: ("teal", "pair"), 5: ("ochre", "closed"), 6: ("red", "left")},
-            NORTH: {0: ("ochre", "closed"), 1: ("red", "pair"), 3: ("teal", "closed"), 5: ("ochre", "right"), 6: ("red", "closed")}}
+CURTAINS = {SOUTH: {0: ("teal", "closed"), 1: ("ochre", "left"), 2: ("red", "closed"), 4: ("teal", "pair"),
+                    5: ("ochre", "closed"), 6: ("red", "left")},
+            NORTH: {0: ("ochre", "closed"), 1: ("red", "pair"), 3: ("teal", "closed"), 5: ("ochre", "right"),
+                    6: ("red", "closed")}}
 TOP, BOTTOM = SPRING - 0.13, STEP + 0.1
 
 
@@ -34,14 +36,17 @@ def build(mesh):
         with side.frame(mesh):
             for i in (1, 3, 5):
                 lantern(mesh, (side.bays[i] + side.bays[i + 1]) / 2, SPRING + VAULT_RISE, -WALL - GALLERY / 2)
-    for side, places in ((EAST, (-2.3, 2.3)), (NORTH, (SIDE_COLUMNS[1], SIDE_COLUMNS[3], SIDE_COLUMNS[4], SIDE_COLUMNS[6])), (WEST, (-5.0 / 3, 5.0 / 3))):
+    for side, places in ((EAST, (-2.3, 2.3)),
+                         (NORTH, (SIDE_COLUMNS[1], SIDE_COLUMNS[3], SIDE_COLUMNS[4], SIDE_COLUMNS[6])),
+                         (WEST, (-5.0 / 3, 5.0 / 3))):
         with side.frame(mesh):
             for k, s in enumerate(places):
                 banner(mesh, s, UPPER_FLOOR + 0.72, 3.5, 0.22, 0.78, 1.7 * k)
     fountain(mesh)
     for k, (x, z) in enumerate(((-10.9, 3.95), (10.75, 3.95), (-10.9, -3.95), (10.75, -3.95))):
         tree(mesh, x, z, seed=k)
-    for k, (x, z) in enumerate(((-5.14, 4.25), (1.71, 4.25), (5.14, -4.25), (-1.71, -4.25), (10.95, 2.3), (10.95, -2.3))):
+    for k, (x, z) in enumerate(((-5.14, 4.25), (1.71, 4.25), (5.14, -4.25), (-1.71, -4.25), (10.95, 2.3),
+                                (10.95, -2.3))):
         bush(mesh, x, z, seed=10 + k)
 
 

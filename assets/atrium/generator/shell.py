@@ -3,8 +3,8 @@ import numpy as np
 
 from .architecture import (GROUND_FOOT, PIER_FOOT, UPPER_FOOT, VAULT_RISE, arcade, groin_vault, keystone,
                            wall_with_openings)
-from .layout import (BACK_X, BACK_Z, CEILING, COURT_X, COURT_Z, EAST, GALLERY, OUTER, SHELL_TOP, SIDES, SLAB, SPRING, STEP,
-                     STEP_OUT, UPPER_FLOOR, UPPER_SPRING, UPPER_TOP, UPPER_WALL, WALL)
+from .layout import (BACK_X, BACK_Z, CEILING, COURT_X, COURT_Z, EAST, GALLERY, OUTER, SHELL_TOP, SIDES, SLAB, SPRING,
+                     STEP, STEP_OUT, UPPER_FLOOR, UPPER_SPRING, UPPER_TOP, UPPER_WALL, WALL)
 from .mesh import turn
 from .openings import openings
 
@@ -22,18 +22,22 @@ def floors(mesh):
         inner = side.inner - STEP_OUT
         with side.frame(mesh):
             d0, d1 = STEP_OUT - 0.03, STEP_OUT + BORDER
-            mesh.quad("floor_border", (-inner + BORDER, 0, d1), (inner - BORDER, 0, d1), (inner + 0.03, 0, d0), (-inner - 0.03, 0, d0),
+            mesh.quad("floor_border",
+                      (-inner + BORDER, 0, d1), (inner - BORDER, 0, d1), (inner + 0.03, 0, d0), (-inner - 0.03, 0, d0),
                       [(-inner + BORDER, 0), (inner - BORDER, 0), (inner, 1), (-inner, 1)])
-            nose = [(d0, 0.0), (d0, 0.085), (d0 + 0.03, 0.1), (d0 + 0.03, STEP - 0.02), (d0 + 0.01, STEP), (-WALL - 0.1, STEP)]
+            nose = [(d0, 0.0), (d0, 0.085), (d0 + 0.03, 0.1), (d0 + 0.03, STEP - 0.02), (d0 + 0.01, STEP),
+                    (-WALL - 0.1, STEP)]
             mesh.run("stone_trim", nose, -side.inner, side.inner, 1, -1)
             s = side.back if side.long else side.inner + WALL + 0.1
             if side.long:
                 mesh.quad("floor", (-s, STEP, -WALL - 0.1), (-s, STEP, BACK), (s, STEP, BACK), (s, STEP, -WALL - 0.1))
-                mesh.quad("floor", (-s, UPPER_FLOOR, 0), (s, UPPER_FLOOR, 0), (s, UPPER_FLOOR, BACK), (-s, UPPER_FLOOR, BACK))
+                mesh.quad("floor", (-s, UPPER_FLOOR, 0), (s, UPPER_FLOOR, 0), (s, UPPER_FLOOR, BACK),
+                          (-s, UPPER_FLOOR, BACK))
             else:
                 mesh.quad("floor", (-s, STEP, -WALL - 0.1), (s, STEP, -WALL - 0.1), (s, STEP, BACK), (-s, STEP, BACK))
                 s = side.inner
-                mesh.quad("floor", (-s, UPPER_FLOOR, 0), (s, UPPER_FLOOR, 0), (s, UPPER_FLOOR, BACK), (-s, UPPER_FLOOR, BACK))
+                mesh.quad("floor", (-s, UPPER_FLOOR, 0), (s, UPPER_FLOOR, 0), (s, UPPER_FLOOR, BACK),
+                          (-s, UPPER_FLOOR, BACK))
     x, z = BACK_X + OUTER, BACK_Z + OUTER
     mesh.quad("limestone", (-x, -0.5, -z), (x, -0.5, -z), (x, -0.5, z), (-x, -0.5, z))
 
@@ -59,7 +63,8 @@ def arcades(mesh, side):
 
 def responds(mesh, side):
     """The square half piers in the corners, both storeys, and the portal's piers."""
-    for half, foot, low, high, thick in ((side.inner, GROUND_FOOT, STEP, SPRING, WALL), (side.inner, UPPER_FOOT, UPPER_FLOOR, UPPER_SPRING, UPPER_WALL)):
+    for half, foot, low, high, thick in ((side.inner, GROUND_FOOT, STEP, SPRING, WALL),
+                                         (side.inner, UPPER_FOOT, UPPER_FLOOR, UPPER_SPRING, UPPER_WALL)):
         mesh.box("limestone", (-half, low, -thick), (-half + foot, high, 0), "lbt")
         mesh.box("limestone", (half - foot, low, -thick), (half, high, 0), "rbt")
     if side is EAST:
@@ -78,11 +83,13 @@ def vaults(mesh, side):
         groin_vault(mesh, s0, s1, d0, d1)
     groin_vault(mesh, side.inner + WALL, side.back, d0, d1)
     half = GALLERY / 2
-    for s, w in [(e, 0.15) for e in edges[1:-1]] + [(-side.inner - WALL / 2, WALL / 2), (side.inner + WALL / 2, WALL / 2)]:
+    for s, w in ([(e, 0.15) for e in edges[1:-1]] +
+                 [(-side.inner - WALL / 2, WALL / 2), (side.inner + WALL / 2, WALL / 2)]):
         with mesh.frame(turn("y", 90), (s, 0, (d0 + d1) / 2)):
             profile = [(half + 0.02, -w), (half - 0.1, -w), (half - 0.1, w), (half + 0.02, w)]
             mesh.arc("stone_trim", profile, 0.0, SPRING, 20, rise=VAULT_RISE / half)
-    for s, w in [(e, 0.15) for e in edges[1:-1]] + [(-side.inner - WALL / 2, WALL / 2), (side.inner + WALL / 2, WALL / 2)]:
+    for s, w in ([(e, 0.15) for e in edges[1:-1]] +
+                 [(-side.inner - WALL / 2, WALL / 2), (side.inner + WALL / 2, WALL / 2)]):
         mesh.box("stone_trim", (s - w, STEP, BACK), (s + w, SPRING, BACK + 0.1), "kbt")
         mesh.box("stone_trim", (s - w - 0.04, SPRING - 0.16, BACK), (s + w + 0.04, SPRING, BACK + 0.15), "k")
         mesh.box("stone_trim", (s - w - 0.04, STEP, BACK), (s + w + 0.04, STEP + 0.3, BACK + 0.15), "kb")

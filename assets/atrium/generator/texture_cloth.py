@@ -1,7 +1,7 @@
 """The court's hangings: three curtains of figured cloth and a long banner. Their ornaments were drawn for this scene.
 
-The device that comes back in all of them is the oil lamp (lucerna) with its flame. Lengths are in widths of the cloth, u
-across, v up from the hem; none of these tile. Shapes are signed distances, negative inside.
+The device that comes back in all of them is the oil lamp (lucerna) with its flame. Lengths are in widths of the cloth,
+u across, v up from the hem; none of these tile. Shapes are signed distances, negative inside.
 """
 import numpy as np
 
@@ -11,7 +11,7 @@ GOLD = rgb(0.560, 0.360, 0.095)
 PALE_GOLD = rgb(0.640, 0.485, 0.215)
 
 
-# ---------------------------------------------------------------------------------------------------------------- shapes
+# ------------------------------------------------------------------------------------ shapes
 
 def disc(x, y, radius):
     return np.hypot(x, y) - radius
@@ -90,12 +90,13 @@ def sprig(x, y, size):
         a, b = turned(np.abs(x) - 0.02 * size, y - at * size, -52 + 6 * k)
         vein = petal(a, b - reach * size, 0.72 * reach * size, 0.012 * size)
         leaves = np.minimum(leaves, np.maximum(petal(a, b - reach * size, reach * size, 0.098 * size), -vein))
-    bud = np.maximum(petal(x, y - 0.52 * size, 0.40 * size, 0.22 * size), -petal(x, y - 0.50 * size, 0.26 * size, 0.085 * size))
+    bud = np.maximum(petal(x, y - 0.52 * size, 0.40 * size, 0.22 * size),
+                     -petal(x, y - 0.50 * size, 0.26 * size, 0.085 * size))
     cup = np.maximum(ring(x, y - 0.36 * size, 0.25 * size, 0.030 * size), y - 0.30 * size)
     return np.minimum.reduce([stem, leaves, bud, cup, petal(x, y - 0.50 * size, 0.19 * size, 0.045 * size)])
 
 
-# ----------------------------------------------------------------------------------------------------------------- cloth
+# ------------------------------------------------------------------------------------ cloth
 
 def weave(shape, seed, coarse=1.0):
     """Height of woven threads: a twill's diagonal, uneven warp and weft, slubs. Mean about 0, deviation about 1."""
@@ -105,7 +106,8 @@ def weave(shape, seed, coarse=1.0):
     twill = np.sin(2 * np.pi * (columns + 2 * rows) / 6.0)
     warp_threads = rng.standard_normal(width)[None, :]
     weft_threads = rng.standard_normal(height)[:, None]
-    slubs = noise(shape, seed + 1, 30, 250, 0.1, stretch=(14.0, 1.0)) + 0.7 * noise(shape, seed + 2, 30, 250, 0.1, stretch=(1.0, 22.0))
+    slubs = (noise(shape, seed + 1, 30, 250, 0.1, stretch=(14.0, 1.0)) +
+             0.7 * noise(shape, seed + 2, 30, 250, 0.1, stretch=(1.0, 22.0)))
     return coarse * (0.35 * twill + 0.35 * warp_threads + 0.45 * weft_threads) + 0.45 * slubs
 
 
@@ -116,11 +118,13 @@ def stitched(cloth, thread, amount, height, slant):
     uneven = noise(amount.shape, 900 + slant, 8, 120, 0.5)
     colour = shade(thread * np.ones(amount.shape + (3,)), np.exp(0.13 * stitch + 0.09 * uneven))
     shadow = 0.34 * blur(amount, 2.2) * (1.0 - amount)
-    return blend(shade(cloth, 1.0 - shadow), colour, amount), height * (1 - 0.6 * amount) + 2.0 * blur(amount, 1.2) + 0.35 * amount * stitch
+    return (blend(shade(cloth, 1.0 - shadow), colour, amount),
+            height * (1 - 0.6 * amount) + 2.0 * blur(amount, 1.2) + 0.35 * amount * stitch)
 
 
 def lattice(u, v, across, up):
-    """Ogee lattice: local coordinates from the nearest centre (alternate rows shifted) and the net's signed distance."""
+    """Ogee lattice: local coordinates from the nearest centre (alternate rows shifted) and the net's signed
+    distance."""
     best = None
     for shift in (0.0, 0.5):
         x = (u / across + shift) % 1.0 - 0.5
@@ -137,7 +141,8 @@ def lattice(u, v, across, up):
 
 
 def curtain(ground, shadow, thread, accent, motif, seed, across, up, motif_size):
-    """Figured cloth with a net and motifs in metal thread, braid along its edges, a rich border and fringe at the hem."""
+    """Figured cloth with a net and motifs in metal thread, braid along its edges, a rich border and fringe at the
+    hem."""
     width, height = 512, 1024
     shape = (height, width)
     pixel = 1.0 / width
@@ -155,7 +160,8 @@ def curtain(ground, shadow, thread, accent, motif, seed, across, up, motif_size)
     field = (v > 0.35) & (v < 1.95) & (np.abs(u - 0.5) < 0.47)
     figures = np.where(field, np.minimum(motif(x, y, motif_size), np.abs(net) - 0.0042), 1.0)
     cloth, relief_height = stitched(cloth, thread, inside(figures, pixel), relief_height, 1)
-    dots = np.where(field, np.minimum(np.hypot(x, np.abs(y) - 0.5 * up), np.hypot(np.abs(x) - 0.5 * across, y)) - 0.017, 1.0)
+    dots = np.where(field, np.minimum(np.hypot(x, np.abs(y) - 0.5 * up),
+                                      np.hypot(np.abs(x) - 0.5 * across, y)) - 0.017, 1.0)
     cloth, relief_height = stitched(cloth, accent, inside(dots, pixel), relief_height, -1)
 
     # Hem: an arcade of flames between braids; all on a darker band.
@@ -168,7 +174,8 @@ def curtain(ground, shadow, thread, accent, motif, seed, across, up, motif_size)
     sill = np.abs(v - 0.108) - 0.0055
     buds = np.minimum(lamp(a, v - 0.152, 0.074), flame(a, v - 0.180, 0.066))
     spandrel = np.hypot(np.abs(a) - 0.5 * pitch, v - 0.296) - 0.0125
-    cloth, relief_height = stitched(cloth, thread, inside(np.minimum.reduce([arch, posts, sill, spandrel]), pixel), relief_height, -1)
+    cloth, relief_height = stitched(cloth, thread, inside(np.minimum.reduce([arch, posts, sill, spandrel]), pixel),
+                                    relief_height, -1)
     cloth, relief_height = stitched(cloth, accent, inside(buds, pixel), relief_height, 1)
 
     # Braids: along both edges, above and below the hem's band, at the head.
@@ -194,23 +201,27 @@ def curtain(ground, shadow, thread, accent, motif, seed, across, up, motif_size)
 
 def curtain_red():
     """Madder red with lit lamps."""
-    return curtain(rgb(0.485, 0.038, 0.034), rgb(0.235, 0.022, 0.026), GOLD, PALE_GOLD, lit_lamp, 1000, 0.30, 0.428, 0.100)
+    return curtain(rgb(0.485, 0.038, 0.034), rgb(0.235, 0.022, 0.026), GOLD, PALE_GOLD, lit_lamp, 1000, 0.30, 0.428,
+                   0.100)
 
 
 def curtain_teal():
     """Teal with rosettes."""
-    return curtain(rgb(0.032, 0.395, 0.415), rgb(0.030, 0.165, 0.195), GOLD, PALE_GOLD, rosette, 1100, 0.30, 0.428, 0.096)
+    return curtain(rgb(0.032, 0.395, 0.415), rgb(0.030, 0.165, 0.195), GOLD, PALE_GOLD, rosette, 1100, 0.30, 0.428,
+                   0.096)
 
 
 def curtain_ochre():
     """Ochre with sprigs in madder, edged in pale gold."""
-    return curtain(rgb(0.560, 0.310, 0.042), rgb(0.380, 0.175, 0.032), rgb(0.290, 0.052, 0.034), PALE_GOLD, sprig, 1200, 0.30, 0.428, 0.120)
+    return curtain(rgb(0.560, 0.310, 0.042), rgb(0.380, 0.175, 0.032), rgb(0.290, 0.052, 0.034), PALE_GOLD, sprig, 1200,
+                   0.30, 0.428, 0.120)
 
 
-# ---------------------------------------------------------------------------------------------------------------- banner
+# ------------------------------------------------------------------------------------ banner
 
 def banner():
-    """Long heraldic banner: azure with the golden lamp, a dancing chevron; gules below with a rosette and two stars; a chequered foot."""
+    """Long heraldic banner: azure with the golden lamp, a dancing chevron; gules below with a rosette and two stars; a
+    chequered foot."""
     width, height = 512, 1024
     shape = (height, width)
     pixel = 1.0 / width
@@ -242,13 +253,15 @@ def banner():
     base = -0.34 * size  # of the lamp, below the ring's centre
     device = lit_lamp(cx, cy, size, 11)
     cloth, height_field = stitched(cloth, PALE_GOLD, inside(device, pixel), height_field, 1)
-    cloth, height_field = stitched(cloth, gules, inside(flame(cx, cy - base - 0.40 * size, 0.31 * size), pixel), height_field, -1)
+    cloth, height_field = stitched(cloth, gules, inside(flame(cx, cy - base - 0.40 * size, 0.31 * size), pixel),
+                                   height_field, -1)
     grooves = np.abs(np.hypot(0.74 * cx, cy - base - 0.30 * size) - 0.31 * size) - 0.003
     cloth = blend(cloth, cloth * 0.45, inside(np.maximum(grooves, cy - base - 0.21 * size), pixel))
     # A rosette between two stars of six points in the gules.
     for sx, sy in ((-0.235, 0.520), (0.235, 0.520)):
         star = petals(x - sx, v - sy, 6, -0.02, 0.085, 0.024)
-        cloth, height_field = stitched(cloth, PALE_GOLD, inside(np.minimum(star, disc(x - sx, v - sy, 0.030)), pixel), height_field, 1)
+        cloth, height_field = stitched(cloth, PALE_GOLD, inside(np.minimum(star, disc(x - sx, v - sy, 0.030)), pixel),
+                                       height_field, 1)
     cloth, height_field = stitched(cloth, PALE_GOLD, inside(rosette(x, v - 0.530, 0.150), pixel), height_field, -1)
 
     # Foot: two rows of chequers; border of braid all round; fringe.
@@ -265,5 +278,6 @@ def banner():
 
     folds = np.repeat(noise(shape, 1307, 4, 40, 0.5, stretch=(1.0, 30.0)).mean(0, keepdims=True), height, 0)
     cloth = shade(cloth, np.exp(0.055 * threads + 0.04 * folds + 0.03 * noise(shape, 1308, 3, 60, 0.8)))
-    cloth = blend(cloth, rgb(0.33, 0.27, 0.20), 0.12 * step(0.5, 0.0, v) * step(-1.2, 1.6, noise(shape, 1309, 2, 30, 0.9)))
+    cloth = blend(cloth, rgb(0.33, 0.27, 0.20),
+                  0.12 * step(0.5, 0.0, v) * step(-1.2, 1.6, noise(shape, 1309, 2, 30, 0.9)))
     return shade(cloth, relief(height_field, 0.17))

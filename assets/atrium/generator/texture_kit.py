@@ -1,7 +1,7 @@
 """What the texture recipes share: colour, seamless noise, masks from distances, and a PNG writer.
 
-Conventions: images are float arrays [height, width, 3] of linear albedo, row 0 at the top (v = 1). Fields are float arrays
-[height, width]. All noise is periodic, so that what is made of it tiles; all of it comes from fixed seeds.
+Conventions: images are float arrays [height, width, 3] of linear albedo, row 0 at the top (v = 1). Fields are float
+arrays [height, width]. All noise is periodic, so that what is made of it tiles; all of it comes from fixed seeds.
 """
 import struct
 import zlib
@@ -9,7 +9,7 @@ import zlib
 import numpy as np
 
 
-# ---------------------------------------------------------------------------------------------------------------- colour
+# ------------------------------------------------------------------------------------ colour
 
 def rgb(r, g, b):
     """A linear colour, ready to be broadcast over an image."""
@@ -36,7 +36,7 @@ def srgb_bytes(linear):
     return np.floor(encoded * 255.0 + 0.5).astype(np.uint8)
 
 
-# ---------------------------------------------------------------------------------------------------------------- fields
+# ------------------------------------------------------------------------------------ fields
 
 def grid(width, height, tile_width=1.0, tile_height=1.0):
     """x to the right and y up of the pixel centres, over [0, tile_width] x [0, tile_height]."""
@@ -59,8 +59,8 @@ def inside(distance, pixel):
 def noise(shape, seed, low, high, slope=1.0, stretch=(1.0, 1.0)):
     """Seamless Gaussian noise of mean 0 and deviation 1, made of waves of `low` to `high` periods a tile.
 
-    slope: amplitude falls as frequency^-slope (1 about as clouds, 0 all alike). stretch: (x, y) lengthens features along
-    an axis by that factor. The band's ends are soft.
+    slope: amplitude falls as frequency^-slope (1 about as clouds, 0 all alike). stretch: (x, y) lengthens features
+    along an axis by that factor. The band's ends are soft.
     """
     height, width = shape
     fx = np.abs(np.fft.rfftfreq(width, 1.0 / width))[None, :] * stretch[0]
@@ -121,7 +121,7 @@ def veins(shape, seed, low, high, width, wander=18.0):
     return np.exp(-(distance / uneven) ** 2) * presence
 
 
-# ------------------------------------------------------------------------------------------------------------------- png
+# ------------------------------------------------------------------------------------ png
 
 def _filtered(rows, step_bytes, adaptive):
     """The image's rows with PNG's filter bytes; adaptive: for each row the filter of the least sum of differences."""

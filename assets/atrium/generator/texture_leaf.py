@@ -27,7 +27,8 @@ def _strokes(x, y, points, width0, width1):
 
 
 def _leaf_shape(x, y, root, angle, length, bend):
-    """Signed distance of a leaf from its root outwards, and its own coordinates: s along (0 to 1), w across (-1 to 1)."""
+    """Signed distance of a leaf from its root outwards, and its own coordinates: s along (0 to 1), w across (-1 to
+    1)."""
     a = np.radians(angle)
     px, py = x - root[0], y - root[1]
     along = (px * np.sin(a) + py * np.cos(a)) / length
@@ -80,7 +81,8 @@ def leaf():
     def paint_stem(points, width0, width1):
         distance, along = _strokes(x, y, points, width0, width1)
         bark = blend(rgb(0.115, 0.080, 0.040), rgb(0.130, 0.170, 0.045), step(0.1, 0.9, along))
-        paint(shade(bark, np.exp(0.12 * mottle) * (1.0 + 0.25 * np.clip(-distance / 0.006, 0, 1))), inside(distance, pixel), 3.0)
+        paint(shade(bark, np.exp(0.12 * mottle) * (1.0 + 0.25 * np.clip(-distance / 0.006, 0, 1))),
+              inside(distance, pixel), 3.0)
 
     def paint_leaf(root, angle, length, bend, young):
         distance, s, w = _leaf_shape(x, y, root, angle, length, bend)
@@ -93,7 +95,8 @@ def leaf():
         side_vein = step(0.13, 0.02, wave) * step(1.0, 0.7, np.abs(w))
         bulge = np.cos(2 * np.pi * phase) * np.sign(w + 1e-9)
         rib = step(0.075, 0.02, np.abs(w) * (0.30 + s))
-        tone = 0.10 * mottle + 0.05 * cells - 0.075 * bulge + 0.24 * (s - 0.5) + 0.13 * np.tanh(4 * w) * np.cos(np.radians(angle - 40))
+        tone = (0.10 * mottle + 0.05 * cells - 0.075 * bulge + 0.24 * (s - 0.5) +
+                0.13 * np.tanh(4 * w) * np.cos(np.radians(angle - 40)))
         blade = shade(blade * np.ones(shape + (3,)), np.exp(tone))
         blade = blend(blade, rgb(0.27, 0.36, 0.11), 0.30 * side_vein)
         blade = blend(blade, rgb(0.32, 0.39, 0.14), 0.72 * rib)
@@ -104,15 +107,17 @@ def leaf():
     stem = [_stem_point(t) for t in np.linspace(0.0, 0.93, 18)]
     paint_stem(stem, 0.0105, 0.0035)
     # Pairs from the root upwards, the lowest behind: (place on the stem, angle, length).
-    for at, angle, length in [(0.15, -98, 0.25), (0.13, 92, 0.27), (0.24, -80, 0.33), (0.25, 78, 0.35), (0.32, -66, 0.25),
-                              (0.36, -61, 0.39), (0.42, 52, 0.26), (0.44, 62, 0.37), (0.53, -47, 0.36), (0.60, 44, 0.35),
-                              (0.64, -18, 0.24), (0.71, -41, 0.29), (0.77, 33, 0.27), (0.85, -24, 0.22), (0.88, 22, 0.20)]:
+    for at, angle, length in [
+            (0.15, -98, 0.25), (0.13, 92, 0.27), (0.24, -80, 0.33), (0.25, 78, 0.35), (0.32, -66, 0.25),
+            (0.36, -61, 0.39), (0.42, 52, 0.26), (0.44, 62, 0.37), (0.53, -47, 0.36), (0.60, 44, 0.35),
+            (0.64, -18, 0.24), (0.71, -41, 0.29), (0.77, 33, 0.27), (0.85, -24, 0.22), (0.88, 22, 0.20)]:
         base = _stem_point(at)
         a = np.radians(angle + rng.uniform(-5, 5))
         reach = 0.055
         root = (base[0] + reach * np.sin(a), base[1] + reach * np.cos(a))
         paint_stem([base, root], 0.0045, 0.0030)
-        paint_leaf(root, np.degrees(a), length * rng.uniform(0.94, 1.04), -0.20 * np.sign(angle) * rng.uniform(0.3, 1.0), 0.15 + 0.75 * at)
+        paint_leaf(root, np.degrees(a), length * rng.uniform(0.94, 1.04),
+                   -0.20 * np.sign(angle) * rng.uniform(0.3, 1.0), 0.15 + 0.75 * at)
     paint_leaf(_stem_point(0.90), 3.0, 0.25, 0.08, 0.95)
     # Nothing may touch the card's border but the root.
     frame = np.minimum(np.minimum(x, 1 - x), 1 - y)

@@ -11,7 +11,8 @@ What tiles:            metres a tile (u x v)
   floor_border         1 x 0.5    inlaid band, repeats along u only
   terracotta           1 x 1
   wood                 1 x 1      four planks along u
-What does not: curtain_red, curtain_teal, curtain_ochre, banner (see texture_cloth.py), leaf, leaf_mask (texture_leaf.py).
+What does not: curtain_red, curtain_teal, curtain_ochre, banner (see texture_cloth.py), leaf, leaf_mask
+(texture_leaf.py).
 """
 import pathlib
 import sys
@@ -24,7 +25,7 @@ from texture_kit import (blend, blur, grid, inside, noise, relief, rgb, sample, 
                          write_png)
 
 
-# ----------------------------------------------------------------------------------------------------------------- ashlar
+# ------------------------------------------------------------------------------------ ashlar
 
 def ashlar(x, y, courses, tile, radius):
     """Blocks in courses: number of each pixel's block and signed distance to its rounded edge (negative inside).
@@ -60,7 +61,8 @@ def limestone():
     size, tile = 1024, 2.0
     shape = (size, size)
     metre = size / tile
-    courses = [(0.56, [0.13, 0.98, 1.52]), (0.46, [0.42, 1.06, 1.78]), (0.52, [0.20, 0.72, 1.44]), (0.46, [0.55, 1.20, 1.90])]
+    courses = [(0.56, [0.13, 0.98, 1.52]), (0.46, [0.42, 1.06, 1.78]), (0.52, [0.20, 0.72, 1.44]),
+               (0.46, [0.55, 1.20, 1.90])]
     x, y = grid(size, size, tile, tile)
     wobble = 0.0016
     x_edge = x + wobble * noise(shape, 11, 6, 90, 0.7)
@@ -85,12 +87,14 @@ def limestone():
     cloud = in_block(noise(shape, 16, 2, 16, 1.0))
     mottle = in_block(noise(shape, 17, 14, 90, 0.7))
     grain = noise(shape, 18, 90, 400, 0.2)
-    tooled = in_block(warp(noise(shape, 19, 40, 130, 0.0, stretch=(0.5, 2.5)), *[4 * noise(shape, s, 2, 9) for s in (20, 21)]))
+    tooled = in_block(warp(noise(shape, 19, 40, 130, 0.0, stretch=(0.5, 2.5)),
+                           *[4 * noise(shape, s, 2, 9) for s in (20, 21)]))
 
     tone = each(number, rng.permutation(np.linspace(-1.0, 1.0, blocks)))
     honey = each(number, rng.uniform(0.0, 1.0, blocks))
     colour = blend(rgb(0.575, 0.510, 0.400), rgb(0.585, 0.475, 0.325), honey)
-    colour = shade(colour, np.exp(0.125 * tone + 0.030 * bedding + 0.040 * cloud + 0.026 * mottle + 0.030 * grain + 0.014 * tooled))
+    colour = shade(colour, np.exp(0.125 * tone + 0.030 * bedding + 0.040 * cloud + 0.026 * mottle + 0.030 * grain +
+                                  0.014 * tooled))
     iron = step(0.9, 2.6, in_block(noise(shape, 22, 2, 22, 1.0)))  # rusty clouds
     colour = blend(colour, colour * rgb(1.0, 0.86, 0.66), 0.55 * iron)
     pits = step(1.7, 2.5, in_block(noise(shape, 23, 50, 190, 0.3))) * step(-0.6, 0.9, in_block(noise(shape, 24, 3, 14)))
@@ -101,8 +105,10 @@ def limestone():
     # Edges: rubbed pale at the arris, dirty just outside it; height makes the joint's shadow.
     arris = np.exp(-((distance + 5.0) / 4.0) ** 2) * step(-0.8, 1.0, noise(shape, 26, 4, 40))
     colour = shade(colour, 1.0 + 0.07 * arris)
-    height = 3.0 * step(2.0, -7.0, distance - 5.0 * np.minimum(bite, 1.0)) - 1.2 * pits + 0.35 * mottle + 0.2 * grain + 0.35 * tooled
-    mortar = shade(rgb(0.47, 0.41, 0.32) * np.ones(shape + (3,)), np.exp(0.07 * noise(shape, 27, 60, 330, 0.2) + 0.07 * noise(shape, 28, 3, 20)))
+    height = (3.0 * step(2.0, -7.0, distance - 5.0 * np.minimum(bite, 1.0)) - 1.2 * pits + 0.35 * mottle +
+              0.2 * grain + 0.35 * tooled)
+    mortar = shade(rgb(0.47, 0.41, 0.32) * np.ones(shape + (3,)),
+                   np.exp(0.07 * noise(shape, 27, 60, 330, 0.2) + 0.07 * noise(shape, 28, 3, 20)))
     colour = blend(mortar, colour, stone)
     colour = shade(colour, 1.0 - 0.22 * np.exp(-((distance - 1.0) / 2.2) ** 2) * step(0.5, 0.0, bite))
     colour = shade(colour, relief(height, 0.17))
@@ -116,7 +122,7 @@ def limestone():
     return blend(colour, colour * rgb(0.60, 0.555, 0.49), np.clip(soot, 0, 1))
 
 
-# ----------------------------------------------------------------------------------------------------- plaster, trim, clay
+# ------------------------------------------------------------------------------------ plaster, trim, clay
 
 def plaster():
     """Lime plaster: trowel sweeps, water stains with rims, a few repairs and hair cracks."""
@@ -188,7 +194,7 @@ def terracotta():
     return shade(colour, relief(0.6 * grain + 0.7 * mottle + 0.8 * bands - 2.0 * pits + 0.8 * moss, 0.12))
 
 
-# ----------------------------------------------------------------------------------------------------------------- wood
+# ------------------------------------------------------------------------------------ wood
 
 def wood():
     """Four old oak planks along u: year rings, rays, knots, checks, and the shadowed gaps between."""
@@ -227,17 +233,19 @@ def wood():
     colour = blend(colour, rgb(0.075, 0.036, 0.018), 0.85 * step(0.25, 0.8, knots))
     colour = shade(colour, 1.0 - 0.25 * np.exp(-((knots - 0.25) / 0.1) ** 2))
     grey = step(-0.2, 2.0, in_plank(noise(shape, 106, 2, 20, 1.0, stretch=(3.0, 1.0))))
-    colour = blend(colour, shade(rgb(0.25, 0.185, 0.125) * np.ones(shape + (3,)), np.exp(0.12 * fibre - 0.2 * late)), 0.35 * grey)
+    colour = blend(colour, shade(rgb(0.25, 0.185, 0.125) * np.ones(shape + (3,)), np.exp(0.12 * fibre - 0.2 * late)),
+                   0.35 * grey)
     edge = np.minimum(across, 1.0 - across) * size / planks  # pixels from the gap
     edge = edge + 0.7 * noise(shape, 107, 4, 60, 0.6, stretch=(3.0, 1.0))
     check = step(2.3, 3.0, in_plank(noise(shape, 108, 12, 120, 0.4, stretch=(16.0, 1.0))))
     colour = shade(colour, 1.0 + 0.22 * np.exp(-((edge - 5.0) / 2.5) ** 2))
-    colour = shade(colour, (1.0 - 0.86 * step(2.6, 0.8, edge)) * (1.0 - 0.25 * step(9.0, 2.0, edge)) * (1.0 - 0.5 * check))
+    colour = shade(colour,
+                   (1.0 - 0.86 * step(2.6, 0.8, edge)) * (1.0 - 0.25 * step(9.0, 2.0, edge)) * (1.0 - 0.5 * check))
     height = 2.0 * step(0.5, 5.0, edge) + 0.35 * fibre - 0.4 * late - 0.8 * vessel - 1.0 * check
     return shade(colour, relief(height, 0.16))
 
 
-# ---------------------------------------------------------------------------------------------------------------- floor
+# ------------------------------------------------------------------------------------ floor
 
 def _seams(shape, seed, count, width):
     """Long jagged veins that run aslant, thin out and swell: contours of several stretched fields, sheared; 0 to 1."""
@@ -321,14 +329,16 @@ def floor():
 
     # Wear: the rubbed middle of the slabs is paler, their edges hold dirt; fine scratches every way.
     edge = np.exp(-np.maximum(-distance, 0) / 5.0)
-    scratches = sum(step(2.3, 3.2, noise(shape, 205 + k, 40, 400, 0.0, stretch=s)) for k, s in enumerate([(9, 1), (1, 9), (5, 1)]))
+    scratches = sum(step(2.3, 3.2, noise(shape, 205 + k, 40, 400, 0.0, stretch=s))
+                    for k, s in enumerate([(9, 1), (1, 9), (5, 1)]))
     colour = blend(colour, rgb(0.56, 0.52, 0.45), 0.16 * np.clip(scratches, 0, 1))
     pits = step(2.4, 3.0, noise(shape, 208, 70, 240, 0.2))
     colour = shade(colour, 1.0 - 0.4 * pits)
     dull = step(-0.6, 1.8, noise(shape, 209, 2, 24, 0.9))
     colour = blend(colour, colour * rgb(0.80, 0.765, 0.70) + 0.015, 0.42 * dull)
     colour = shade(colour, 1.0 - 0.22 * edge * step(-1.0, 1.0, noise(shape, 199, 3, 40)))
-    grout = shade(rgb(0.235, 0.200, 0.160) * np.ones(shape + (3,)), np.exp(0.16 * noise(shape, 198, 50, 350, 0.2) + 0.14 * noise(shape, 197, 3, 30)))
+    grout = shade(rgb(0.235, 0.200, 0.160) * np.ones(shape + (3,)),
+                  np.exp(0.16 * noise(shape, 198, 50, 350, 0.2) + 0.14 * noise(shape, 197, 3, 30)))
     colour = blend(grout, colour, slab)
     return shade(colour, relief(1.3 * step(2.0, -2.5, distance) - 0.7 * pits, 0.12))
 
@@ -403,10 +413,11 @@ def floor_border():
     colour = blend(colour, rgb(0.47, 0.43, 0.36), 0.10 * step(0.2, 2.4, noise(shape, 504, 5, 90, 0.7)))
     colour = blend(colour, rgb(0.150, 0.118, 0.088), 0.62 * seam * step(-1.8, 0.6, noise(shape, 505, 4, 60, 0.6)))
     pits = step(2.3, 3.0, noise(shape, 506, 50, 200, 0.2))
-    return shade(shade(colour, 1.0 - 0.35 * pits), np.exp(0.03 * noise(shape, 507, 60, 230, 0.1)) * relief(-0.6 * seam, 0.10))
+    return shade(shade(colour, 1.0 - 0.35 * pits),
+                 np.exp(0.03 * noise(shape, 507, 60, 230, 0.1)) * relief(-0.6 * seam, 0.10))
 
 
-# ------------------------------------------------------------------------------------------------------------------ main
+# ------------------------------------------------------------------------------------ main
 
 RECIPES = {
     "limestone": limestone, "plaster": plaster, "stone_trim": stone_trim, "terracotta": terracotta, "wood": wood,

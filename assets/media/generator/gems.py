@@ -1,4 +1,5 @@
-"""Cuts of gems as planes [Webster1994, names and usual angles]: round and oval brilliant, emerald (step) cut, rose cut. The girdle's radius is 1 before scaling."""
+"""Cuts of gems as planes [Webster1994, names and usual angles]: round and oval brilliant, emerald (step) cut, rose
+cut. The girdle's radius is 1 before scaling."""
 import math
 
 from .mesh import convex, rotation_between, unit

@@ -1,4 +1,5 @@
-"""Meshes of the media scenes: solids (closed, outward), sheets, normals by crease angle, OBJ and MTL. Millimetres, y up."""
+"""Meshes of the media scenes: solids (closed, outward), sheets, normals by crease angle, OBJ and MTL. Millimetres, y
+up."""
 import math
 
 
@@ -53,7 +54,8 @@ class Part:
     """Points and polygons of one material. `crease`: edges sharper than this many degrees stay hard; 0: flat."""
 
     def __init__(self, name, material, points, faces, crease=35.0, closed=True):
-        self.name, self.material, self.points, self.faces = name, material, [tuple(p) for p in points], [list(f) for f in faces]
+        self.name, self.material, self.points, self.faces = (
+            name, material, [tuple(p) for p in points], [list(f) for f in faces])
         self.crease, self.closed = crease, closed
         if closed:
             if self.volume() < 0.0:
@@ -119,7 +121,8 @@ class Part:
 
 
 def rounded(corners, step, turn_step=18.0):
-    """A polyline of (x, y) or (x, y, radius) with its corners rounded, no piece longer than `step` nor an arc's turning more than `turn_step` degrees."""
+    """A polyline of (x, y) or (x, y, radius) with its corners rounded, no piece longer than `step` nor an arc's
+    turning more than `turn_step` degrees."""
     corners = [(c[0], c[1], c[2] if len(c) > 2 else 0.0) for c in corners]
     points = [corners[0][:2]]
 
@@ -148,7 +151,8 @@ def rounded(corners, step, turn_step=18.0):
         end = math.atan2(y1 + by * cut - cy, x1 + bx * cut - cx)
         sweep = (end - start + math.pi) % (2.0 * math.pi) - math.pi
         count = max(1, math.ceil(abs(sweep) * r / step), math.ceil(abs(math.degrees(sweep)) / turn_step))
-        points.extend((cx + r * math.cos(start + sweep * i / count), cy + r * math.sin(start + sweep * i / count)) for i in range(1, count + 1))
+        points.extend((cx + r * math.cos(start + sweep * i / count), cy + r * math.sin(start + sweep * i / count))
+                      for i in range(1, count + 1))
     line_to(*corners[-1][:2])
     return points
 
@@ -162,7 +166,8 @@ def lathe_mesh(profile, segments):
             points.append((0.0, y, 0.0))
         else:
             rows.append(list(range(len(points), len(points) + segments)))
-            points.extend((r * math.cos(2 * math.pi * k / segments), y, -r * math.sin(2 * math.pi * k / segments)) for k in range(segments))
+            points.extend((r * math.cos(2 * math.pi * k / segments), y, -r * math.sin(2 * math.pi * k / segments))
+                          for k in range(segments))
     faces = []
     for a, b in zip(rows, rows[1:]):
         for k in range(segments):
@@ -178,7 +183,8 @@ def lathe(name, material, profile, segments, crease=35.0):
 
 
 def convex(name, material, planes):
-    """The polyhedron within planes (normal, distance from the origin): each in turn cuts what is left of a large cube. Flat facets."""
+    """The polyhedron within planes (normal, distance from the origin): each in turn cuts what is left of a large cube.
+    Flat facets."""
     s = 1e3
     polygons = []
     for axis in range(3):
@@ -248,7 +254,8 @@ def convex(name, material, planes):
 
 
 def rounded_box(name, material, half, radius, arc=4, inner=1, shape=None):
-    """A box with rounded edges about the origin, `half` its half sizes; `inner` pieces a side between the roundings; `shape` moves its points."""
+    """A box with rounded edges about the origin, `half` its half sizes; `inner` pieces a side between the roundings;
+    `shape` moves its points."""
     steps = [math.tan(math.radians(45.0 * i / arc)) for i in range(arc + 1)]
 
     def coordinates(h):
@@ -324,7 +331,8 @@ def softbox(name, centre, target, width, height, material="light"):
     u = unit(cross((0.0, 1.0, 0.0) if abs(n[1]) < 0.95 else (0.0, 0.0, 1.0), n))
     v = cross(n, u)
     u, v = mul(u, 0.5 * width), mul(v, 0.5 * height)
-    return quad(name, material, *(add(centre, add(mul(u, i), mul(v, j))) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))))
+    return quad(name, material,
+                *(add(centre, add(mul(u, i), mul(v, j))) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))))
 
 
 def backdrop(name, material, half_width, front, back, height, radius, segments=12):
@@ -355,7 +363,8 @@ def write(folder, stem, parts, materials, comment):
                     lines.append("vn " + key)
                 pieces.append(f"{a + first}//{normal_index[key]}")
             # Larger facets as a fan, so that every reader cuts them alike.
-            polygons = [pieces] if len(pieces) <= 4 else [[pieces[0], pieces[i], pieces[i + 1]] for i in range(1, len(pieces) - 1)]
+            polygons = ([pieces] if len(pieces) <= 4 else
+                        [[pieces[0], pieces[i], pieces[i + 1]] for i in range(1, len(pieces) - 1)])
             faces += ["f " + " ".join(p) for p in polygons]
             triangles += len(f) - 2
         lines += faces
@@ -363,6 +372,7 @@ def write(folder, stem, parts, materials, comment):
     (folder / f"{stem}.obj").write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
     lines = [f"# {comment} Linear colours. MIT licence. Made by assets/media/generate.py."]
     for name, keys in materials.items():
-        lines += ["", f"newmtl {name}"] + [f"{k} {text(v) if isinstance(v, (tuple, list)) else text([v])}" for k, v in keys.items()]
+        lines += ["", f"newmtl {name}"] + [f"{k} {text(v) if isinstance(v, (tuple, list)) else text([v])}"
+                                           for k, v in keys.items()]
     (folder / f"{stem}.mtl").write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
     return triangles

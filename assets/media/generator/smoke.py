@@ -1,5 +1,5 @@
-"""A smoke cloud: a density of our own on a grid (gradient noise [Perlin2002] over some soft balls), and a closed surface round it for the original, which knows
-homogeneous media only."""
+"""A smoke cloud: a density of our own on a grid (gradient noise [Perlin2002] over some soft balls), and a closed
+surface round it for the original, which knows homogeneous media only."""
 import math
 import random
 
@@ -34,8 +34,10 @@ class Noise:
 
 
 # Centre and radius of the balls, in the unit box: a rising plume that leans and opens like a mushroom.
-BALLS = [((0.40, 0.12, 0.52), 0.075), ((0.44, 0.20, 0.50), 0.085), ((0.42, 0.29, 0.53), 0.10), ((0.48, 0.38, 0.48), 0.125), ((0.41, 0.47, 0.54), 0.13), ((0.54, 0.50, 0.46), 0.15),
-         ((0.34, 0.58, 0.50), 0.14), ((0.62, 0.60, 0.53), 0.16), ((0.47, 0.63, 0.60), 0.16), ((0.26, 0.68, 0.46), 0.12), ((0.72, 0.70, 0.46), 0.14), ((0.54, 0.74, 0.43), 0.17),
+BALLS = [((0.40, 0.12, 0.52), 0.075), ((0.44, 0.20, 0.50), 0.085), ((0.42, 0.29, 0.53), 0.10),
+         ((0.48, 0.38, 0.48), 0.125), ((0.41, 0.47, 0.54), 0.13), ((0.54, 0.50, 0.46), 0.15),
+         ((0.34, 0.58, 0.50), 0.14), ((0.62, 0.60, 0.53), 0.16), ((0.47, 0.63, 0.60), 0.16),
+         ((0.26, 0.68, 0.46), 0.12), ((0.72, 0.70, 0.46), 0.14), ((0.54, 0.74, 0.43), 0.17),
          ((0.40, 0.77, 0.53), 0.15), ((0.63, 0.80, 0.57), 0.13), ((0.80, 0.62, 0.52), 0.10), ((0.50, 0.85, 0.48), 0.10)]
 
 
@@ -54,7 +56,8 @@ def density(noise, x, y, z, octaves=5):
     base = envelope(x, y, z)
     if base < -0.47:
         return 0.0
-    wx, wy, wz = (noise.at(4.0 * x + o, 4.0 * y + 7.1, 4.0 * z - o) for o in (3.3, 21.7, 47.9))  # bends the finer noise: swirls
+    # Bends the finer noise: swirls.
+    wx, wy, wz = (noise.at(4.0 * x + o, 4.0 * y + 7.1, 4.0 * z - o) for o in (3.3, 21.7, 47.9))
     sx, sy, sz = x + 0.05 * wx, y + 0.05 * wy, z + 0.05 * wz
     total, amplitude, frequency = 0.0, 0.62, 5.0
     for _ in range(octaves):
@@ -77,11 +80,13 @@ def grid(size):
 
 
 def write_nrrd(path, size, values):
-    head = f"NRRD0004\n# Smoke cloud, density 0..1. MIT licence. Made by assets/media/generate.py.\ntype: uint8\ndimension: 3\nsizes: {size[0]} {size[1]} {size[2]}\nencoding: raw\n\n"
+    head = ("NRRD0004\n# Smoke cloud, density 0..1. MIT licence. Made by assets/media/generate.py.\n"
+            f"type: uint8\ndimension: 3\nsizes: {size[0]} {size[1]} {size[2]}\nencoding: raw\n\n")
     path.write_bytes(head.encode("ascii") + bytes(values))
 
 
-# Each cube in six tetrahedra about its long diagonal: neighbouring cubes cut their common face alike, so the surface is closed.
+# Each cube in six tetrahedra about its long diagonal: neighbouring cubes cut their common face alike, so the surface is
+# closed.
 TETRAHEDRA = [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)]
 
 
@@ -96,7 +101,8 @@ def surface(name, material, cells, low, high):
                 field[c] = -1.0
             else:
                 x, y, z = (i / cells for i in c)
-                field[c] = envelope(x, y, z) + 0.55 * sum(a * (0.4 - 1.3 * abs(noise.at(f * x, f * y, f * z))) for a, f in ((0.62, 5.0), (0.3, 10.3)))
+                lumps = sum(a * (0.4 - 1.3 * abs(noise.at(f * x, f * y, f * z))) for a, f in ((0.62, 5.0), (0.3, 10.3)))
+                field[c] = envelope(x, y, z) + 0.55 * lumps
             if abs(field[c]) < 1e-4:
                 field[c] = -1e-4
         return field[c]
@@ -125,7 +131,8 @@ def surface(name, material, cells, low, high):
                     if not inside or not outside:
                         continue
                     if len(inside) == 2:
-                        ring = [cut(inside[0], outside[0]), cut(inside[0], outside[1]), cut(inside[1], outside[1]), cut(inside[1], outside[0])]
+                        ring = [cut(inside[0], outside[0]), cut(inside[0], outside[1]), cut(inside[1], outside[1]),
+                                cut(inside[1], outside[0])]
                         polygons = [[ring[0], ring[1], ring[2]], [ring[0], ring[2], ring[3]]]
                     elif len(inside) == 1:
                         polygons = [[cut(inside[0], o) for o in outside]]
@@ -135,7 +142,8 @@ def surface(name, material, cells, low, high):
                     middle_out = [sum(c[a] for c in outside) / len(outside) for a in range(3)]
                     for f in polygons:
                         p, q, r = (points[v] for v in f)
-                        n = ((q[1] - p[1]) * (r[2] - p[2]) - (q[2] - p[2]) * (r[1] - p[1]), (q[2] - p[2]) * (r[0] - p[0]) - (q[0] - p[0]) * (r[2] - p[2]),
+                        n = ((q[1] - p[1]) * (r[2] - p[2]) - (q[2] - p[2]) * (r[1] - p[1]),
+                             (q[2] - p[2]) * (r[0] - p[0]) - (q[0] - p[0]) * (r[2] - p[2]),
                              (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
                         along = sum(n[a] * (middle_out[a] - middle_in[a]) for a in range(3))
                         faces.append(f if along > 0.0 else f[::-1])
@@ -161,11 +169,13 @@ def surface(name, material, cells, low, high):
         for a in f:
             neighbours.setdefault(a, set()).update(v for v in f if v != a)
     for _ in range(4):
-        moved = {v: mul((sum(points[n][0] for n in around), sum(points[n][1] for n in around), sum(points[n][2] for n in around)), 1.0 / len(around))
+        moved = {v: mul((sum(points[n][0] for n in around), sum(points[n][1] for n in around),
+                         sum(points[n][2] for n in around)), 1.0 / len(around))
                  for v, around in neighbours.items()}
         for v, p in moved.items():
             points[v] = add(mul(points[v], 0.5), mul(p, 0.5))
     used = sorted(neighbours)
     number = {old: new for new, old in enumerate(used)}
     span = sub(high, low)
-    return Part(name, material, [tuple(low[a] + span[a] * points[v][a] for a in range(3)) for v in used], [[number[v] for v in f] for f in faces], crease=180.0)
+    return Part(name, material, [tuple(low[a] + span[a] * points[v][a] for a in range(3)) for v in used],
+                [[number[v] for v in f] for f in faces], crease=180.0)

@@ -1,4 +1,5 @@
-"""Glasses, what is in them, saucer, spoon, ice. A vessel's profile runs from the axis below, up the outside, over the rim and down the inside to the axis."""
+"""Glasses, what is in them, saucer, spoon, ice. A vessel's profile runs from the axis below, up the outside, over the
+rim and down the inside to the axis."""
 import math
 import random
 
@@ -6,8 +7,8 @@ from .mesh import Part, add, cross, dot, lathe, lathe_mesh, mul, rotation, round
 
 
 def liquid(name, material, inside, level, overlap, meniscus, reach, segments):
-    """What fills a vessel up to `level`. `inside`: the glass's inner profile from the axis up. The liquid's skin lies `overlap` within the glass; at the wall its
-    surface climbs by `meniscus`, falling off over `reach`."""
+    """What fills a vessel up to `level`. `inside`: the glass's inner profile from the axis up. The liquid's skin lies
+    `overlap` within the glass; at the wall its surface climbs by `meniscus`, falling off over `reach`."""
     profile = []
     top = level + meniscus
     for (r0, y0), (r1, y1) in zip(inside, inside[1:]):
@@ -29,13 +30,14 @@ def liquid(name, material, inside, level, overlap, meniscus, reach, segments):
 
 
 def handled(name, material, profile, segments, upper, lower, columns, reach, thickness):
-    """A vessel with a handle at azimuth 0: where it joins, `columns` quads round and as many rows as lie within `upper` and `lower` (y from, to) are cut from
-    the outer wall, and a tube is led from one hole to the other."""
+    """A vessel with a handle at azimuth 0: where it joins, `columns` quads round and as many rows as lie within
+    `upper` and `lower` (y from, to) are cut from the outer wall, and a tube is led from one hole to the other."""
     points, faces, rows = lathe_mesh(profile, segments)
     outer = max(range(len(profile)), key=lambda i: profile[i][1])  # the rim: beyond it is the inside
 
     def rows_in(span):
-        inside = [i for i in range(outer) if span[0] - 1e-6 <= profile[i][1] <= span[1] + 1e-6 and profile[i][0] > 0.5 * profile[outer][0]]
+        inside = [i for i in range(outer)
+                  if span[0] - 1e-6 <= profile[i][1] <= span[1] + 1e-6 and profile[i][0] > 0.5 * profile[outer][0]]
         return inside[0], inside[-1]
 
     spans = [rows_in(upper), rows_in(lower)]
@@ -52,16 +54,19 @@ def handled(name, material, profile, segments, upper, lower, columns, reach, thi
                 kept.append([c for j, c in enumerate(corners) if c != corners[j - 1]])
             at += 1
     # The holes' edges as (column, row), once round; the lower one upside down, as the tube arrives so.
-    ring = [(c, 0) for c in range(-half, half)] + [(half, r) for r in range(count)] + [(c, count) for c in range(half, -half, -1)] + [(-half, r) for r in range(count, 0, -1)]
+    ring = ([(c, 0) for c in range(-half, half)] + [(half, r) for r in range(count)] +
+            [(c, count) for c in range(half, -half, -1)] + [(-half, r) for r in range(count, 0, -1)])
     loops = []
     for s, (a, b) in enumerate(spans):
         loops.append([rows[a + (r if s == 0 else count - r)][c % segments] for c, r in ring])
     angles = [math.atan2(2.0 * r / count - 1.0, -2.0 * c / columns) for c, r in ring]  # z runs against the columns
-    centres = [mul((sum(points[i][0] for i in loop), sum(points[i][1] for i in loop), 0.0), 1.0 / len(loop)) for loop in loops]
+    centres = [mul((sum(points[i][0] for i in loop), sum(points[i][1] for i in loop), 0.0), 1.0 / len(loop))
+               for loop in loops]
     start, end = centres
     slope = [unit(sub(points[rows[b][0]], points[rows[a][0]])) for a, b in spans]
     out = [(t[1], -t[0], 0.0) for t in slope]  # the wall's normals
-    p = [start, add(start, add(mul(out[0], 0.9 * reach), (0, 6.0, 0))), add(end, add(mul(out[1], 1.25 * reach), (0, 3.0, 0))), end]
+    p = [start, add(start, add(mul(out[0], 0.9 * reach), (0, 6.0, 0))),
+         add(end, add(mul(out[1], 1.25 * reach), (0, 3.0, 0))), end]
 
     def bezier(t):
         u = 1.0 - t
@@ -91,7 +96,8 @@ def handled(name, material, profile, segments, upper, lower, columns, reach, thi
             points.append(add(c, add(mul((0.0, 0.0, 1.0), a * math.cos(angle)), mul(n, b * math.sin(angle)))))
         rings.append(new)
     rings.append(loops[1])
-    tube = [[a[m], a[(m + 1) % len(a)], b[(m + 1) % len(a)], b[m]] for a, b in zip(rings, rings[1:]) for m in range(len(a))]
+    tube = [[a[m], a[(m + 1) % len(a)], b[(m + 1) % len(a)], b[m]] for a, b in zip(rings, rings[1:])
+            for m in range(len(a))]
     edges = {(a, b) for f in kept for a, b in zip(f, f[1:] + f[:1])}
     if (tube[0][0], tube[0][1]) in edges:
         tube = [f[::-1] for f in tube]
@@ -110,7 +116,8 @@ def spoon(name, material):
         bowl = 22.0
         if x < bowl:
             t = x / bowl
-            width = 8.2 * math.sqrt(max(0.0, 1.0 - (2.0 * t - 1.0) ** 2)) ** 0.9 if t < 0.5 else 8.2 - (8.2 - 2.0) * (3 * (2 * t - 1) ** 2 - 2 * (2 * t - 1) ** 3)
+            width = (8.2 * math.sqrt(max(0.0, 1.0 - (2.0 * t - 1.0) ** 2)) ** 0.9 if t < 0.5 else
+                     8.2 - (8.2 - 2.0) * (3 * (2 * t - 1) ** 2 - 2 * (2 * t - 1) ** 3))
             depth = 3.4 * math.sin(math.pi * min(1.0, t * 1.02)) ** 0.8 if t < 0.98 else 0.2
         else:
             t = (x - bowl) / (length - bowl)
@@ -126,7 +133,8 @@ def spoon(name, material):
             y = lift - depth * (1.0 - u * u) + 0.5 * thick * top
             points.append((x, y, width * u))
     count = 2 * half
-    faces = [[j * count + m, j * count + (m + 1) % count, (j + 1) * count + (m + 1) % count, (j + 1) * count + m] for j in range(rings) for m in range(count)]
+    faces = [[j * count + m, j * count + (m + 1) % count, (j + 1) * count + (m + 1) % count, (j + 1) * count + m]
+             for j in range(rings) for m in range(count)]
     faces += [list(range(count))[::-1], [rings * count + m for m in range(count)]]
     return Part(name, material, points, faces, crease=60.0)
 
@@ -134,7 +142,7 @@ def spoon(name, material):
 def boxes_apart(a, b, gap):
     """Two turned boxes (centre, matrix, half sizes) by separating axes, `gap` between them."""
     def axes(box):
-        return [turn(tuple(zip(*box[1])), e) if False else tuple(row[i] for row in box[1]) for i, e in enumerate(((1, 0, 0), (0, 1, 0), (0, 0, 1)))]
+        return [tuple(row[i] for row in box[1]) for i in range(3)]
 
     u, v = axes(a), axes(b)
     apart = sub(b[0], a[0])
@@ -150,19 +158,22 @@ def boxes_apart(a, b, gap):
 
 
 def ice_cubes(count, half, radius_at, low, high, level, seed):
-    """Cubes at random that touch neither each other nor the wall, as high and as near the wall as they fit: ice floats, and through 1 cm of cola one
-    hardly sees. (centre, matrix, half sizes) each."""
+    """Cubes at random that touch neither each other nor the wall, as high and as near the wall as they fit: ice
+    floats, and through 1 cm of cola one hardly sees. (centre, matrix, half sizes) each."""
     rng = random.Random(seed)
     placed = []
     for n in range(count):
         best, best_score = None, 0.0
         for _ in range(6000):
             sizes = tuple(h * rng.uniform(0.9, 1.08) for h in half)
-            m = rotation((rng.gauss(0, 1), rng.gauss(0, 1), rng.gauss(0, 1)), rng.uniform(0, 360) if n else rng.uniform(5, 40))
+            m = rotation((rng.gauss(0, 1), rng.gauss(0, 1), rng.gauss(0, 1)),
+                         rng.uniform(0, 360) if n else rng.uniform(5, 40))
             a, r = rng.uniform(0, 2 * math.pi), rng.uniform(0.0, 24.0)
             c = (r * math.cos(a), rng.uniform(low, high), r * math.sin(a))
-            corners = [add(c, turn(m, (sizes[0] * i, sizes[1] * j, sizes[2] * k))) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
-            if any(math.hypot(p[0], p[2]) > radius_at(p[1]) - 0.2 for p in corners) or min(p[1] for p in corners) < 20.0:
+            corners = [add(c, turn(m, (sizes[0] * i, sizes[1] * j, sizes[2] * k)))
+                       for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
+            if (any(math.hypot(p[0], p[2]) > radius_at(p[1]) - 0.2 for p in corners) or
+                    min(p[1] for p in corners) < 20.0):
                 continue
             above = sum(p[1] > level for p in corners)
             if above > 4:
@@ -181,7 +192,8 @@ def ice_cube(name, material, placing, seed):
     """A rounded cube, a little melted: its sides wave."""
     centre, matrix, half = placing
     rng = random.Random(seed)
-    waves = [((rng.gauss(0, 1), rng.gauss(0, 1), rng.gauss(0, 1)), rng.uniform(0, 6.3), rng.uniform(0.12, 0.3)) for _ in range(5)]
+    waves = [((rng.gauss(0, 1), rng.gauss(0, 1), rng.gauss(0, 1)), rng.uniform(0, 6.3), rng.uniform(0.12, 0.3))
+             for _ in range(5)]
 
     def shape(p):
         push = sum(a * math.sin(0.22 * dot(w, p) + f) for w, f, a in waves) - 0.75
