@@ -28,73 +28,109 @@ def palette_chunk(data):
 
 
 def tga(kind, width, height, bits, data, palette=b"", entries=0):
-    return struct.pack("<BBBHHBHHHHBB", 0, entries > 0, kind, 0, entries, 24 if entries else 0, 0, 0, width, height, bits, 32) + palette + data
+    head = struct.pack("<BBBHHBHHHHBB", 0, entries > 0, kind, 0, entries, 24 if entries else 0, 0, 0, width, height,
+                       bits, 32)
+    return head + palette + data
 
 
 def bmp(width, height, bits, palette, data):
     begin = 54 + len(palette)
-    return b"BM" + struct.pack("<IIIIiiHHIIiiII", begin + len(data), 0, begin, 40, width, height, 1, bits, 0, 0, 0, 0, len(palette) // 4, 0) + palette + data
+    head = struct.pack("<IIIIiiHHIIiiII", begin + len(data), 0, begin, 40, width, height, 1, bits, 0, 0, 0, 0,
+                       len(palette) // 4, 0)
+    return b"BM" + head + palette + data
 
 
 # 16 x 8 pixels, progressive: as tests/unit/picture_header_test.cpp has it.
-jpeg_test = (pathlib.Path(__file__).parent.parent / "unit/picture_header_test.cpp").read_text().split("kJpegHex =")[1].split(";")[0]
+jpeg_test = (pathlib.Path(__file__).parent.parent / "unit/picture_header_test.cpp").read_text()
+jpeg_test = jpeg_test.split("kJpegHex =")[1].split(";")[0]
 jpeg = bytes.fromhex("".join(part for part in jpeg_test.split('"')[1::2]))
 
 pictures = [
-    png(2, 2, 8, 2, b"\0\1\2\3\4\5\6" * 2), png(8, 2, 1, 0, b"\0\xaa" * 2), png(2, 1, 8, 6, b"\0" + bytes(8)), png(2, 1, 16, 4, b"\0" + bytes(8)),
-    png(2, 1, 8, 3, b"\0\0\1", palette_chunk(b"\1\2\3\4\5\6")), jpeg, tga(2, 2, 1, 24, bytes(6)), tga(2, 1, 1, 32, bytes(4)), tga(3, 2, 1, 8, b"\1\2"),
-    tga(10, 4, 1, 24, b"\x82\1\2\3\0\4\5\6"), tga(11, 3, 1, 8, b"\x82\7"), tga(1, 2, 1, 8, b"\0\1", bytes(6), 2), tga(9, 2, 1, 8, b"\x81\1", bytes(6), 2),
+    png(2, 2, 8, 2, b"\0\1\2\3\4\5\6" * 2), png(8, 2, 1, 0, b"\0\xaa" * 2), png(2, 1, 8, 6, b"\0" + bytes(8)),
+    png(2, 1, 16, 4, b"\0" + bytes(8)), png(2, 1, 8, 3, b"\0\0\1", palette_chunk(b"\1\2\3\4\5\6")), jpeg,
+    tga(2, 2, 1, 24, bytes(6)), tga(2, 1, 1, 32, bytes(4)), tga(3, 2, 1, 8, b"\1\2"),
+    tga(10, 4, 1, 24, b"\x82\1\2\3\0\4\5\6"), tga(11, 3, 1, 8, b"\x82\7"),
+    tga(1, 2, 1, 8, b"\0\1", bytes(6), 2), tga(9, 2, 1, 8, b"\x81\1", bytes(6), 2),
     bmp(1, 2, 24, b"", bytes(8)), bmp(1, -2, 32, b"", bytes(8)), bmp(2, 1, 8, bytes(8), bytes(4))]
 put("picture", *pictures)
 put("picture_header", *pictures)
 
 runs = b"\2\2\0\x08" + b"\x88\x80" * 4
-put("linear_picture", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 8\n" + runs * 2, b"#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n+Y 1 -X 4\n" + b"\1\2\3\x80\1\1\1\3",
+put("linear_picture",
+    b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 8\n" + runs * 2,
+    b"#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n+Y 1 -X 4\n" + b"\1\2\3\x80\1\1\1\3",
     b"PF\n2 1\n-1.0\n" + struct.pack("<6f", 1, 2, 3, 4, 5, 6), b"Pf\n1 2\n1.0\n" + struct.pack(">2f", 1, 2))
 
 put("obj", "v 0 0 0\nv 1 .5 0\nv 0 -1e-3 +2\nvt 0 .1\nvn 0 0 1\nf 1/1/1 2//1 -1/1\nf 1 2 \\\n 3\n", "v 1 2 3\nf 1 1 1")
 
 put("scene_json",
-    '{"model":"m.obj","scale":1000,"camera":{"position":[0,0,4],"target":[0,0,0],"up":[0,1,0],"fov":40},"sun":{"direction":[0,-1,0],"irradiance":[1,1,1]},'
-    '"background":[0,0,0],"exposure":1}',
-    '{"model":"m.obj","cameras":[{"name":"a","position":[0,0,4],"direction":[0,0,-1]}],"sun":null,"spots":[{"position":[0,3,0],"target":[0,0,0],"intensity":[1,1,1],'
-    '"innerAngle":20,"outerAngle":30}],"points":[{"position":[0,3,0],"intensity":[1,1,1]}],"environment":{"picture":"p.pfm","radiance":[1,1,1],"rotation":90}}',
-    '{"model":"m.obj","scale":1,"media":{"x":{"catalogue":"milk","scale":2},"y":{"scattering":[1,1,1],"absorption":[0.1,0.1,0.1],"g":0.5,"density":{"file":"d.raw",'
-    '"size":[2,2,2]}}},"materials":{"a":{"bsdf":"dielectric","ior":1.5,"interior":"x","priority":1,"roughness":0.1}},"cameraMedium":"y","keyFrames":"k.txt"}')
+    '{"model":"m.obj","scale":1000,"camera":{"position":[0,0,4],"target":[0,0,0],"up":[0,1,0],"fov":40},'
+    '"sun":{"direction":[0,-1,0],"irradiance":[1,1,1]},"background":[0,0,0],"exposure":1}',
+    '{"model":"m.obj","cameras":[{"name":"a","position":[0,0,4],"direction":[0,0,-1]}],"sun":null,'
+    '"spots":[{"position":[0,3,0],"target":[0,0,0],"intensity":[1,1,1],"innerAngle":20,"outerAngle":30}],'
+    '"points":[{"position":[0,3,0],"intensity":[1,1,1]}],'
+    '"environment":{"picture":"p.pfm","radiance":[1,1,1],"rotation":90}}',
+    '{"model":"m.obj","scale":1,"media":{"x":{"catalogue":"milk","scale":2},'
+    '"y":{"scattering":[1,1,1],"absorption":[0.1,0.1,0.1],"g":0.5,"density":{"file":"d.raw","size":[2,2,2]}}},'
+    '"materials":{"a":{"bsdf":"dielectric","ior":1.5,"interior":"x","priority":1,"roughness":0.1}},'
+    '"cameraMedium":"y","keyFrames":"k.txt"}')
 put("original_scene_json",
-    '{"scene":{"camera":[0,0,4],"cameraLookAt":[0,0,0],"fov":45,"lightPos":[0,4,0],"lightColor":[1,1,1],"lightIntensity":100,"scale":1},'
+    '{"scene":{"camera":[0,0,4],"cameraLookAt":[0,0,0],"fov":45,"lightPos":[0,4,0],"lightColor":[1,1,1],'
+    '"lightIntensity":100,"scale":1},'
     '"b c":{"sigma_s":[1,1,1],"sigma_a":[0.1,0.1,0.1],"g":[0.5,0.5,0.5],"ior":1.33},"// a":0}',
-    '{"scene":{"camera":[0,4,0],"cameraLookAt":[0,0,0],"fov":45,"lightPos":[0,4,0],"lightColor":[1,1,1],"lightIntensity":1},"0":{"sigma_s":[0,0,0],"sigma_a":[0,0,0],"g":[0,0,0],"ior":1}}')
+    '{"scene":{"camera":[0,4,0],"cameraLookAt":[0,0,0],"fov":45,"lightPos":[0,4,0],"lightColor":[1,1,1],'
+    '"lightIntensity":1},"0":{"sigma_s":[0,0,0],"sigma_a":[0,0,0],"g":[0,0,0],"ior":1}}')
 put("mtl", "newmtl Milk.001\nNi 1.33\nd 0.5\nKd 1 1 1\nnewmtl wall\nTr 0.2\n", "newmtl a b\n")
 
-gltf = ('{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],'
-        '"materials":[{"name":"m","alphaMode":"MASK","alphaCutoff":0.3,"emissiveFactor":[1,1,1],"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"baseColorTexture":{"index":0,'
-        '"extensions":{"KHR_texture_transform":{"offset":[0.1,0.2],"scale":[2,2],"rotation":0.5}}}},"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":5},'
+gltf = ('{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"mesh":0}],'
+        '"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],'
+        '"materials":[{"name":"m","alphaMode":"MASK","alphaCutoff":0.3,"emissiveFactor":[1,1,1],'
+        '"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"baseColorTexture":{"index":0,'
+        '"extensions":{"KHR_texture_transform":{"offset":[0.1,0.2],"scale":[2,2],"rotation":0.5}}}},'
+        '"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":5},'
         '"KHR_materials_volume":{"attenuationDistance":1,"attenuationColor":[0.5,0.5,0.5],"thicknessFactor":1}}}],'
-        '"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]}')
+        '"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],'
+        '"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]}')
 padded = gltf + " " * (-len(gltf) % 4)
 put("gltf", gltf, b"glTF" + struct.pack("<III", 2, 20 + len(padded), len(padded)) + b"JSON" + padded.encode())
 
-put("key_frames", "# a path\np 4 2 4 d -1 -0.3 -1 u 0 1 0 f 45\np 3 2 5 d -0.8 -0.3 -1 u 0 1 0 r 1 0 0 a 1.5\n", "p 0 0 0 d 1 0 0 u 0 1 0\np 0 0 0 d -1 0 0 u 0 1 0")
+put("key_frames",
+    "# a path\np 4 2 4 d -1 -0.3 -1 u 0 1 0 f 45\np 3 2 5 d -0.8 -0.3 -1 u 0 1 0 r 1 0 0 a 1.5\n",
+    "p 0 0 0 d 1 0 0 u 0 1 0\np 0 0 0 d -1 0 0 u 0 1 0")
 
 header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nendian: little\n\n"
-ktx = b"\xabKTX 20\xbb\r\n\x1a\n" + struct.pack("<9I", 9, 1, 2, 2, 2, 0, 1, 1, 0) + bytes(32) + struct.pack("<3Q", 104, 8, 8)
-put("density", b"\0" + header.encode() + bytes(8), b"\0" + header.replace("uint8", "float").encode() + struct.pack("<8f", *range(8)), b"\1" + ktx[:104] + bytes(8), b"\2" + bytes(8), b"\2" + bytes(32))
+ktx = (b"\xabKTX 20\xbb\r\n\x1a\n" + struct.pack("<9I", 9, 1, 2, 2, 2, 0, 1, 1, 0) + bytes(32) +
+       struct.pack("<3Q", 104, 8, 8))
+put("density",
+    b"\0" + header.encode() + bytes(8),
+    b"\0" + header.replace("uint8", "float").encode() + struct.pack("<8f", *range(8)),
+    b"\1" + ktx[:104] + bytes(8), b"\2" + bytes(8), b"\2" + bytes(32))
 
 triangle = struct.pack("<9f3fIIf", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 100, 0, 0.5)
 put("rad_file", struct.pack("<I", 1) + triangle, struct.pack("<I", 2) + triangle * 2)
 
-patch = struct.pack("<6I15fiI2f", 0, 1, 2, 0, 1, 2, *([0] * 6), *([0, 0, 1] * 3), 0, 0, 0.5, 0) + struct.pack("<25d", *([0] * 6), 0.5, *([0.5] * 18))
-settings = b"radiosity.edge=0 radiosity.resolution=64 radiosity.exact-pixels=12 radiosity.part-distance=3 radiosity.parts=8 radiosity.seed=1 radiosity.repair=on radiosity.refinements=0"
+patch = (struct.pack("<6I15fiI2f", 0, 1, 2, 0, 1, 2, *([0] * 6), *([0, 0, 1] * 3), 0, 0, 0.5, 0) +
+         struct.pack("<25d", *([0] * 6), 0.5, *([0.5] * 18)))
+settings = (b"radiosity.edge=0 radiosity.resolution=64 radiosity.exact-pixels=12 radiosity.part-distance=3 "
+            b"radiosity.parts=8 radiosity.seed=1 radiosity.repair=on radiosity.refinements=0")
 points = struct.pack("<9d", 0, 0, 0, 1, 0, 0, 0, 1, 0)
-put("solution", struct.pack("<8s4I5Q5d", b"LUCLIGHT", 3, 1, 0, len(settings), 0, 3, 1, 3, 0, 1, 0, 0, 0, 1) + settings + points + patch)
+solution = struct.pack("<8s4I5Q5d", b"LUCLIGHT", 3, 1, 0, len(settings), 0, 3, 1, 3, 0, 1, 0, 0, 0, 1)
+put("solution", solution + settings + points + patch)
 
 rows = struct.pack("<IIQQ", 0, 1, 1, 0) + struct.pack("<IffIf", 1, 0.5, 0, 1, 0.5)
 head = struct.pack("<8sIIQ", b"LUCROWS\n", 2, 16, 7)
-put("rows", head, head + rows, head + rows + struct.pack("<IIQQ", 1, 2, 0, 0) + struct.pack("<IIffff", 0, 0, 0, 0, 1, 1))
+more_rows = struct.pack("<IIQQ", 1, 2, 0, 0) + struct.pack("<IIffff", 0, 0, 0, 0, 1, 1)
+put("rows", head, head + rows, head + rows + more_rows)
 
-put("sweep_checkpoint", struct.pack("<8sII5Qd", b"LUCRADSW", 1, 2, 1, 2, 3, 2, 1, 0.5) + struct.pack("<3f", 1, 2, 3) + bytes(8))
-put("reference", struct.pack("<8sQQdd4i", b"LUCREF01", 5, 4, 1.5, 0.1, 2, 1, 3, 4) + b"mesa" + struct.pack("<12f", *range(12)) + bytes(8))
-put("settings_file", '{"technique":"lpv","fidelity":"corrected","deviations":["lpv.x=on"],"settings":["lpv.cells=16"],"measured":{"ms":3.5}}', '{"technique":"path","spp":16}')
-put("stability_table", '{"rows":[{"technique":"lpv","case":"a","parameter":"b","expected":1.5,"tolerance":0.1,"rule":"equals","measured":1.45,"verdict":"pass"},'
-    '{"technique":"path","case":"c","parameter":"","expected":0,"tolerance":0,"rule":"at most","measured":null,"verdict":"fail"}]}')
+put("sweep_checkpoint",
+    struct.pack("<8sII5Qd", b"LUCRADSW", 1, 2, 1, 2, 3, 2, 1, 0.5) + struct.pack("<3f", 1, 2, 3) + bytes(8))
+reference = struct.pack("<8sQQdd4i", b"LUCREF01", 5, 4, 1.5, 0.1, 2, 1, 3, 4)
+put("reference", reference + b"mesa" + struct.pack("<12f", *range(12)) + bytes(8))
+put("settings_file",
+    '{"technique":"lpv","fidelity":"corrected","deviations":["lpv.x=on"],"settings":["lpv.cells=16"],'
+    '"measured":{"ms":3.5}}', '{"technique":"path","spp":16}')
+put("stability_table",
+    '{"rows":[{"technique":"lpv","case":"a","parameter":"b","expected":1.5,"tolerance":0.1,"rule":"equals",'
+    '"measured":1.45,"verdict":"pass"},'
+    '{"technique":"path","case":"c","parameter":"","expected":0,"tolerance":0,"rule":"at most","measured":null,'
+    '"verdict":"fail"}]}')

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Kills, interrupts and terminates long commands at random moments. Called by tests/kills/run, which builds first.
 
-A chain: the command is stopped up to five times by SIGKILL, SIGINT or SIGTERM, then left alone. It must end with exit code 0 and with
-the file that an undisturbed run wrote, bit by bit, and leave no file of its own behind. While it is stopped: no final file, and the
-exit code 130 after SIGINT, 143 after SIGTERM (or death by that signal before the program watches for it).
+A chain: the command is stopped up to five times by SIGKILL, SIGINT or SIGTERM, then left alone. It must end with exit
+code 0 and with the file that an undisturbed run wrote, bit by bit, and leave no file of its own behind. While it is
+stopped: no final file, and the exit code 130 after SIGINT, 143 after SIGTERM (or death by that signal before the
+program watches for it).
 """
 import argparse
 import hashlib
@@ -42,7 +43,8 @@ usemtl lamp
 f 9 10 11 12
 """
 MTL = "newmtl grey\nKd 0.8 0.7 0.6\nnewmtl lamp\nKd 0 0 0\nKe 5 5 5\n"
-WATCHED = {signal.SIGINT: (130, -signal.SIGINT), signal.SIGTERM: (143, -signal.SIGTERM), signal.SIGKILL: (-signal.SIGKILL,)}
+WATCHED = {signal.SIGINT: (130, -signal.SIGINT), signal.SIGTERM: (143, -signal.SIGTERM),
+           signal.SIGKILL: (-signal.SIGKILL,)}
 
 
 def digest(path):
@@ -66,17 +68,16 @@ def cases(lucerna, scenes):
     room, rad = scenes / "room.obj", scenes / "room.rad"
     subprocess.run([lucerna, "radiosity", "generate", rad, "1", "--quiet"], check=True, stdout=subprocess.DEVNULL)
     solve = ["radiosity", "solve", room, "o.sol", "16", "--visibility", "rays", "--memory", "0.01"]
+    original = ["radiosity", "solve", rad, "o.rad", "16", "--fidelity", "original"]
+    path = ["render", room, "--technique", "path", "--camera", "0,1,0.9,0,1,0,70", "--size", "48x48", "--spp", "256"]
+    bench = ["bench", "error", room, "--small", "--size", "16x16", "--reference-spp", "4", "--references", "refs"]
     return [
         Case("solve", solve + ["--edge", "0.2", "--error", "1e-6", "--solver", "jacobi"], "o.sol"),
         Case("refine", solve + ["--edge", "0.4", "--refinements", "2"], "o.sol"),
-        Case("original", ["radiosity", "solve", rad, "o.rad", "16", "--fidelity", "original", "--save-every", "0.05", "--max-sweeps", "2"],
-             "o.rad", grows=True),
-        Case("path", ["render", room, "--technique", "path", "--camera", "0,1,0.9,0,1,0,70", "--size", "48x48", "--spp", "256", "-o", "o.pfm"],
-             "o.pfm"),
-        Case("checkpoint", ["render", room, "--technique", "path", "--camera", "0,1,0.9,0,1,0,70", "--size", "48x48", "--spp", "256",
-                            "--checkpoint", "o.film", "-o", "o.pfm"], "o.pfm"),
-        Case("bench", ["bench", "error", room, "--small", "--size", "16x16", "--reference-spp", "4", "--references", "refs", "--techniques", "direct",
-                       "--frames", "1", "--out", "b"], "b/error.json", rows_of),
+        Case("original", original + ["--save-every", "0.05", "--max-sweeps", "2"], "o.rad", grows=True),
+        Case("path", path + ["-o", "o.pfm"], "o.pfm"),
+        Case("checkpoint", path + ["--checkpoint", "o.film", "-o", "o.pfm"], "o.pfm"),
+        Case("bench", bench + ["--techniques", "direct", "--frames", "1", "--out", "b"], "b/error.json", rows_of),
     ]
 
 
@@ -142,7 +143,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--lucerna", type=pathlib.Path, required=True, help="the program")
     parser.add_argument("--kills", type=int, default=20, help="signals a command (20)")
-    parser.add_argument("--seed", type=int, default=None, help="of the moments; chosen by the clock without it, and said")
+    parser.add_argument("--seed", type=int, default=None,
+                        help="of the moments; chosen by the clock without it, and said")
     parser.add_argument("--only", default="", help="the command of that name")
     arguments = parser.parse_args()
     seed = arguments.seed if arguments.seed is not None else int(time.time())
@@ -158,7 +160,8 @@ def main():
                 continue
             begun = time.monotonic()
             faults = try_case(case, lucerna, folder / "work", arguments.kills, random.Random(f"{seed} {case.name}"))
-            print(f"{case.name}: {arguments.kills} signals, {len(faults)} faults, {time.monotonic() - begun:.0f} s", flush=True)
+            print(f"{case.name}: {arguments.kills} signals, {len(faults)} faults, {time.monotonic() - begun:.0f} s",
+                  flush=True)
             for fault in faults:
                 print(f"  {fault}")
             failed |= bool(faults)

@@ -55,7 +55,8 @@ def read_list(path, engine):
     for fault in faults:
         count = (SOURCE / fault.path).read_text().count(fault.before)
         if count != 1:
-            sys.exit(f"{path}:{fault.line}: {fault.path} has the text {count} times, and it must be once: {fault.before}")
+            sys.exit(f"{path}:{fault.line}: {fault.path} has the text {count} times, and it must be once: "
+                     f"{fault.before}")
     return faults
 
 
@@ -113,7 +114,8 @@ class EngineTrial:
 
     def __init__(self, build, folder):
         self.folder, self.build = folder / "source", SOURCE / "build" / "mutants"
-        ignore = lambda path, names: [n for n in names if n in ("build", ".git", "out")] if pathlib.Path(path) == SOURCE else []
+        ignore = lambda path, names: ([n for n in names if n in ("build", ".git", "out")]
+                                      if pathlib.Path(path) == SOURCE else [])
         shutil.copytree(SOURCE, self.folder, ignore=ignore, symlinks=True)
         shutil.rmtree(self.build, ignore_errors=True)
         subprocess.run(["cmake", "-S", self.folder, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"],
@@ -142,7 +144,8 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, required=True, help="build folder with the test programs")
     parser.add_argument("--share", default="1/1", help="N/M: every M-th fault, beginning with the N-th")
     parser.add_argument("--only", default="", help="faults of files whose path contains this")
-    parser.add_argument("--own", action="store_true", help="show a fault to the tests that its list names and to no others")
+    parser.add_argument("--own", action="store_true",
+                        help="show a fault to the tests that its list names and to no others")
     parser.add_argument("--check", action="store_true", help="only check that every fault can be planted")
     arguments = parser.parse_args()
     if arguments.own:
@@ -160,7 +163,8 @@ def main():
         trials = {}
         for number, fault in enumerate(faults, 1):
             if fault.engine not in trials:
-                trials[fault.engine] = (EngineTrial if fault.engine else ShaderTrial)(arguments.build, pathlib.Path(folder))
+                trial = EngineTrial if fault.engine else ShaderTrial
+                trials[fault.engine] = trial(arguments.build, pathlib.Path(folder))
             # Tests that fail without a fault would notice every one, no tests none.
             if not exists(arguments.build, fault.test):
                 sys.exit(f"there are no tests {fault.test[0]} {fault.test[1]}")

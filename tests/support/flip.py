@@ -1,5 +1,5 @@
-"""FLIP in plain Python, a second time: whole two-dimensional kernels, nothing separated [Andersson2020], [Andersson2021]. Slow; for small pictures.
-
+"""FLIP in plain Python, a second time: whole two-dimensional kernels, nothing separated [Andersson2020],
+[Andersson2021]. Slow; for small pictures.
 python3 tests/support/flip.py prints the means that tests/unit/image_errors_test.cpp expects of the pictures made below.
 """
 import math
@@ -50,14 +50,16 @@ def hyab(a, b): return abs(a[0] - b[0]) + math.hypot(a[1] - b[1], a[2] - b[2])
 def filtered(plane, kernel, radius):
     height, width = len(plane), len(plane[0])
     at = lambda x, y: plane[min(max(y, 0), height - 1)][min(max(x, 0), width - 1)]
-    return [[sum(kernel[j + radius][i + radius] * at(x + i, y + j) for j in range(-radius, radius + 1) for i in range(-radius, radius + 1))
+    return [[sum(kernel[j + radius][i + radius] * at(x + i, y + j) for j in range(-radius, radius + 1)
+                 for i in range(-radius, radius + 1))
              for x in range(width)] for y in range(height)]
 
 
 def sensitivity(terms):
     """The filter of one channel, summing to 1: terms are (a, b)."""
     radius = math.ceil(3 * math.sqrt(0.04 / (2 * math.pi ** 2)) * PPD)
-    k = [[sum(a * math.sqrt(math.pi / b) * math.exp(-math.pi ** 2 * (x * x + y * y) / PPD ** 2 / b) for a, b in terms) for x in range(-radius, radius + 1)] for y in range(-radius, radius + 1)]
+    k = [[sum(a * math.sqrt(math.pi / b) * math.exp(-math.pi ** 2 * (x * x + y * y) / PPD ** 2 / b) for a, b in terms)
+          for x in range(-radius, radius + 1)] for y in range(-radius, radius + 1)]
     total = sum(map(sum, k))
     return [[v / total for v in row] for row in k], radius
 
@@ -66,7 +68,8 @@ def detector(point):
     """First or second derivative along x; positive weights sum to 1, negative ones to -1."""
     sd = 0.5 * 0.082 * PPD
     radius = math.ceil(3 * sd)
-    k = [[((x * x / sd ** 2 - 1) if point else -x) * math.exp(-(x * x + y * y) / (2 * sd * sd)) for x in range(-radius, radius + 1)] for y in range(-radius, radius + 1)]
+    k = [[((x * x / sd ** 2 - 1) if point else -x) * math.exp(-(x * x + y * y) / (2 * sd * sd))
+          for x in range(-radius, radius + 1)] for y in range(-radius, radius + 1)]
     up, down = sum(v for row in k for v in row if v > 0), -sum(v for row in k for v in row if v < 0)
     return [[v / (up if v > 0 else down) for v in row] for row in k], radius
 
@@ -80,7 +83,8 @@ def prepared(picture):
     """Hunt-adjusted colours as they are seen, and strengths of edges and points."""
     planes = [[[opponent([min(max(v, 0), 1) for v in p])[c] for p in row] for row in picture] for c in range(3)]
     seen = [filtered(plane, *CSF[c]) for c, plane in enumerate(planes)]
-    colour = [[hunt([min(max(v, 0), 1) for v in from_opponent([seen[c][y][x] for c in range(3)])]) for x in range(len(picture[0]))] for y in range(len(picture))]
+    colour = [[hunt([min(max(v, 0), 1) for v in from_opponent([seen[c][y][x] for c in range(3)])])
+               for x in range(len(picture[0]))] for y in range(len(picture))]
     grey = [[(v + 16) / 116 for v in row] for row in planes[0]]
     strengths = []
     for kernel, radius in (EDGE, POINT):
@@ -109,7 +113,8 @@ def hdr(test, reference):
     bright = (-b + math.sqrt(b * b - 4 * a * c)) / (2 * a) / 0.6
     luminance = sorted(times(XYZ, p)[1] for row in reference for p in row)
     n = len(luminance)
-    start, stop = math.log2(bright / luminance[-1]), math.log2(bright / (0.5 * (luminance[(n - 1) // 2] + luminance[n // 2])))
+    middle = 0.5 * (luminance[(n - 1) // 2] + luminance[n // 2])
+    start, stop = math.log2(bright / luminance[-1]), math.log2(bright / middle)
     count = max(2, math.ceil(stop - start))
     worst = [0.0] * n
     for i in range(count):
@@ -120,7 +125,9 @@ def hdr(test, reference):
 
 
 # The pictures: a lattice of colours with an edge and a spot; the other one has the edge elsewhere, a tint and no spot.
-def reference(x, y): return [0.1 + 0.8 * (x % 5) / 4, 0.9 - 0.7 * (y % 4) / 3, 0.2 + 0.5 * (x >= 9) + (0.3 if (x, y) == (4, 5) else 0)]
+def reference(x, y):
+    return [0.1 + 0.8 * (x % 5) / 4, 0.9 - 0.7 * (y % 4) / 3,
+            0.2 + 0.5 * (x >= 9) + (0.3 if (x, y) == (4, 5) else 0)]
 def test(x, y): return [0.1 + 0.8 * (x % 5) / 4, 0.85 - 0.7 * (y % 4) / 3, 0.25 + 0.5 * (x >= 11)]
 
 
