@@ -6,12 +6,14 @@ set(packaging ${CMAKE_CURRENT_LIST_DIR})
 set(generated ${CMAKE_CURRENT_BINARY_DIR}/packaging)
 file(MAKE_DIRECTORY ${generated})
 # The project has no address; example.org is reserved [RFC 2606].
-set(LUCERNA_MAINTAINER "Lucerna maintainers <lucerna@example.org>" CACHE STRING "Who answers for the packages: whoever distributes them")
+set(LUCERNA_MAINTAINER "Lucerna maintainers <lucerna@example.org>"
+    CACHE STRING "Who answers for the packages: whoever distributes them")
 
 # The manual page and completions come from the command line's own tree: the program prints them.
 find_program(LUCERNA_GZIP gzip REQUIRED)
 set(pages "")
-foreach(page IN ITEMS "manual|lucerna.1" "completion bash|lucerna.bash" "completion zsh|_lucerna" "completion fish|lucerna.fish")
+foreach(page IN ITEMS
+        "manual|lucerna.1" "completion bash|lucerna.bash" "completion zsh|_lucerna" "completion fish|lucerna.fish")
   string(REGEX MATCH "^(.*)\\|(.*)$" matched ${page})
   set(file ${generated}/${CMAKE_MATCH_2})
   separate_arguments(arguments UNIX_COMMAND "${CMAKE_MATCH_1}")
@@ -19,12 +21,15 @@ foreach(page IN ITEMS "manual|lucerna.1" "completion bash|lucerna.bash" "complet
   list(APPEND pages ${file})
 endforeach()
 # -n: no time stamp, so that the same sources give the same file.
-add_custom_command(OUTPUT ${generated}/lucerna.1.gz COMMAND ${LUCERNA_GZIP} -9nc ${generated}/lucerna.1 > ${generated}/lucerna.1.gz
+add_custom_command(OUTPUT ${generated}/lucerna.1.gz
+                   COMMAND ${LUCERNA_GZIP} -9nc ${generated}/lucerna.1 > ${generated}/lucerna.1.gz
                    DEPENDS ${generated}/lucerna.1 VERBATIM)
 execute_process(COMMAND ${CMAKE_COMMAND} -E env LC_ALL=C date --utc --rfc-email --date ${LUCERNA_RELEASE_DATE}
-                OUTPUT_VARIABLE LUCERNA_RELEASE_DATE_RFC5322 OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+                OUTPUT_VARIABLE LUCERNA_RELEASE_DATE_RFC5322 OUTPUT_STRIP_TRAILING_WHITESPACE
+                COMMAND_ERROR_IS_FATAL ANY)
 configure_file(${packaging}/changelog.in ${generated}/changelog @ONLY)
-add_custom_command(OUTPUT ${generated}/changelog.gz COMMAND ${LUCERNA_GZIP} -9nc ${generated}/changelog > ${generated}/changelog.gz
+add_custom_command(OUTPUT ${generated}/changelog.gz
+                   COMMAND ${LUCERNA_GZIP} -9nc ${generated}/changelog > ${generated}/changelog.gz
                    DEPENDS ${generated}/changelog VERBATIM)
 configure_file(${packaging}/${LUCERNA_APP_ID}.metainfo.xml.in ${generated}/${LUCERNA_APP_ID}.metainfo.xml @ONLY)
 add_custom_target(lucerna_pages ALL DEPENDS ${pages} ${generated}/lucerna.1.gz ${generated}/changelog.gz)
@@ -40,9 +45,12 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/demo/labs DESTINATION ${CMAKE_INSTALL_DA
         FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.md" PATTERN "*.txt")
 
 # The desktop: entry, description, icon.
-install(FILES ${packaging}/${LUCERNA_APP_ID}.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)
-install(FILES ${generated}/${LUCERNA_APP_ID}.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT program)
-install(FILES ${packaging}/${LUCERNA_APP_ID}.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT program)
+install(FILES ${packaging}/${LUCERNA_APP_ID}.desktop
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)
+install(FILES ${generated}/${LUCERNA_APP_ID}.metainfo.xml
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT program)
+install(FILES ${packaging}/${LUCERNA_APP_ID}.svg
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT program)
 
 # The shell: manual page and completions. Debian's zsh looks into a folder of its own.
 if(EXISTS /etc/debian_version)
@@ -50,17 +58,21 @@ if(EXISTS /etc/debian_version)
 else()
   set(zsh_folder site-functions)
 endif()
-set(LUCERNA_ZSH_COMPLETIONS ${CMAKE_INSTALL_DATADIR}/zsh/${zsh_folder} CACHE STRING "Where zsh looks for completions, relative to the prefix")
+set(LUCERNA_ZSH_COMPLETIONS ${CMAKE_INSTALL_DATADIR}/zsh/${zsh_folder}
+    CACHE STRING "Where zsh looks for completions, relative to the prefix")
 install(FILES ${generated}/lucerna.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
-install(FILES ${generated}/lucerna.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME lucerna COMPONENT program)
+install(FILES ${generated}/lucerna.bash
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME lucerna COMPONENT program)
 install(FILES ${generated}/_lucerna DESTINATION ${LUCERNA_ZSH_COMPLETIONS} COMPONENT program)
-install(FILES ${generated}/lucerna.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
+install(FILES ${generated}/lucerna.fish
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
 
 # What Debian asks of every package; other systems find the licence there too.
 foreach(name_component IN ITEMS "lucerna;program" "liblucerna-dev;development")
   list(GET name_component 0 name)
   list(GET name_component 1 component)
-  install(FILES ${packaging}/copyright ${generated}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+  install(FILES ${packaging}/copyright ${generated}/changelog.gz
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
 endforeach()
 
 # ---------------------------------------------------------------------------------------------------- packages
@@ -97,8 +109,8 @@ hemicubes and path tracing of participating media, as published and physically
 correct. No GPU is needed: Mesa's software renderer will do.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblucerna-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "lucerna (= ${PROJECT_VERSION}), libglew-dev, libglfw3-dev, libglm-dev, libassimp-dev, libdevil-dev, \
-libegl-dev, libopenexr-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "lucerna (= ${PROJECT_VERSION}), libglew-dev, libglfw3-dev, libglm-dev, \
+libassimp-dev, libdevil-dev, libegl-dev, libopenexr-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "\
 Lucerna renders scenes with global illumination by OpenGL 4.3, in a window or
 off-screen.
