@@ -46,7 +46,8 @@ logged() {
 apt_install() {
   local total
   total="$($become apt-get install -s --no-install-recommends "$@" 2>/dev/null | grep -c '^Inst ')" || :
-  DEBIAN_FRONTEND=noninteractive $become apt-get install -y -q --no-install-recommends -o Dpkg::Use-Pty=0 "$@" </dev/null 2>&1 |
+  DEBIAN_FRONTEND=noninteractive \
+    $become apt-get install -y -q --no-install-recommends -o Dpkg::Use-Pty=0 "$@" </dev/null 2>&1 |
     { count=0
       while IFS= read -r line; do
         case "$line" in "Setting up "*) count=$((count + 1)); line="[$count/$total] $line" ;; esac
@@ -105,7 +106,8 @@ build() {
   log="build/$preset.log"
   mkdir -p build
   echo "lucerna: building (log: $log)" >&2
-  if ! { cmake --preset "$preset" "$@" >"$log" 2>&1 && logged "building" "$log" cmake --build --preset "$preset" ${targets:+--target $targets}; }; then
+  if ! { cmake --preset "$preset" "$@" >"$log" 2>&1 &&
+         logged "building" "$log" cmake --build --preset "$preset" ${targets:+--target $targets}; }; then
     tail -n 40 "$log" >&2
     exit 1
   fi
