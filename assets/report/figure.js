@@ -295,6 +295,35 @@ function equalTable(kind, cost, heads, rows, cell) {
 }
 /// Of text that lies on lines and bands.
 const HALO = 'stroke="#fff" stroke-width="3" paint-order="stroke"';
+// ------------------------------------------------------------------------------------------------ page elements
+
+function add(parent, tag, name, html) {
+  const e = document.createElement(tag);
+  if (name) e.className = name;
+  if (html) e.innerHTML = html;
+  parent.appendChild(e);
+  return e;
+}
+/// A selection with its title; the first option is chosen.
+function addChoice(parent, title, options, change) {
+  const span = add(parent, 'span', '', escapeText(title)), select = add(span, 'select');
+  select.setAttribute('aria-label', title);
+  const [first] = Object.keys(options);
+  for (const [key, o] of Object.entries(options)) select.add(new Option(o.name, key, false, key === first));
+  select.addEventListener('change', () => { change(select.value); });
+  return select;
+}
+/// Text on a dark ground; it ends at x where it is aligned right.
+function drawCaption(g, {text, x, y, align, room}) {
+  g.font = '12px system-ui, sans-serif';
+  g.textAlign = align;
+  const w = Math.min(g.measureText(text).width + 10, room);
+  g.fillStyle = 'rgba(0,0,0,.72)';
+  g.fillRect(align === 'left' ? x : x - w, y, w, 19);
+  g.fillStyle = '#fff';
+  g.fillText(text, align === 'left' ? x + 5 : x - 5, y + 14, room - 10);
+}
+
 // ------------------------------------------------------------------------------------------------ a figure
 
 const figures = [];
@@ -531,18 +560,33 @@ class Figure {
 
   // ---------------------------------------------------------------- page elements
   build() {
-    const add = (parent, tag, name, html) => {
-      const e = document.createElement(tag);
-      if (name) e.className = name;
-      if (html) e.innerHTML = html;
-      parent.appendChild(e);
-      return e;
-    };
     const root = this.root;
     root.tabIndex = 0;
     root.setAttribute('role', 'application');
     root.setAttribute('aria-label', `Figure: ${this.facts.title}. Press question mark for keys.`);
-    const bar = this.bar = add(root, 'div', 'lf-bar');
+    this.buildBar(add(root, 'div', 'lf-bar'));
+    const main = add(root, 'div', 'lf-main');
+    this.buildList(add(main, 'div'));
+    this.buildViewer(add(main, 'div'));
+    this.buildHelp();
+
+    // The plot, what it says of the selected row, tables, crops.
+    const plotted = add(root, 'div');
+    plotted.hidden = !this.rows.some(row => isNumber(row.ms));  // two pictures alone have no times
+    add(plotted, 'h3', '', 'Error against time');
+    this.buildAxes(add(plotted, 'div', 'lf-bar'));
+    const columns = add(root, 'div', 'lf-columns');
+    this.plotBox = add(columns, 'div', 'lf-plot');
+    this.factsBox = add(columns, 'div', 'lf-facts');
+    this.tableBox = add(root, 'div', 'lf-tables');
+    add(root, 'h3', '', 'Crops');
+    this.cropBox = add(root, 'div', 'lf-crops');
+    this.plotBox.hidden = this.tableBox.hidden = plotted.hidden;
+    root.addEventListener('focusin', () => { activate(this); });
+    root.addEventListener('pointerdown', () => { activate(this); });
+  }
+  /// Buttons and selections over the pictures; each button is for a key.
+  buildBar(bar) {
     this.buttons = {};
     const group = title => add(bar, 'span', '', escapeText(title));
     const button = (parent, key, text, action) => {
@@ -558,15 +602,12 @@ class Figure {
     button(view, 'w', 'wipe', 'wipe');
     button(view, 's', 'side by side', 'side');
     button(view, 'f', 'flip', 'flip');
-    const choose = (title, options, value, change) => {
-      const span = group(title), select = add(span, 'select');
-      select.setAttribute('aria-label', title);
-      for (const [key, o] of Object.entries(options)) select.add(new Option(o.name, key, false, key === value));
-      select.addEventListener('change', () => { change(select.value); this.draw(); });
-      return select;
-    };
-    this.mapSelect = choose('Map', MAPS, 'picture', v => { this.state.map = v; });
-    this.toneSelect = choose('Tone map', TONES, 'filmic', v => { this.state.tone = v; });
+    const choose = (title, options, change) => addChoice(bar, title, options, value => {
+      change(value);
+      this.draw();
+    });
+    this.mapSelect = choose('Map', MAPS, v => { this.state.map = v; });
+    this.toneSelect = choose('Tone map', TONES, v => { this.state.tone = v; });
     const exposure = group('Exposure');
     button(exposure, 'e', '\u2212', 'darker');
     this.stops = add(exposure, 'output');
@@ -590,10 +631,10 @@ class Figure {
     button(save, 'L', 'LaTeX', 'latex');
     button(save, 'P', 'print, PDF', 'print');
     button(group(''), '?', 'keys', 'help');
-
-    const main = add(root, 'div', 'lf-main');
-    const left = add(main, 'div');
-    this.list = add(left, 'div', 'lf-list');
+  }
+  /// The references and methods, to choose one and to take it into the set of side by side and crops.
+  buildList(parent) {
+    this.list = add(parent, 'div', 'lf-list');
     this.list.setAttribute('role', 'listbox');
     this.list.setAttribute('aria-label', 'Methods');
     this.list.tabIndex = 0;
@@ -623,47 +664,32 @@ class Figure {
       });
     }
     const missing = this.rows.length - this.items.length + 1;
-    if (missing > 0) add(left, 'div', 'none', `${missing} rows without pictures: measured before pictures were kept`);
-    const right = add(main, 'div');
-    const viewBox = add(right, 'div', 'lf-view');
-    this.canvas = add(viewBox, 'canvas');
+    if (missing > 0)
+      add(parent, 'div', 'none', `${missing} rows without pictures: measured before pictures were kept`);
+  }
+  /// The pictures, the scale of their map, what they are, and the values under the cursor.
+  buildViewer(parent) {
+    this.canvas = add(add(parent, 'div', 'lf-view'), 'canvas');
     this.canvas.setAttribute('role', 'img');
-    this.scaleBar = add(right, 'div', 'lf-scale');
-    this.status = add(right, 'div', 'lf-status');
+    this.scaleBar = add(parent, 'div', 'lf-scale');
+    this.status = add(parent, 'div', 'lf-status');
     this.status.setAttribute('aria-live', 'polite');
-    this.valuesBox = add(right, 'div', 'lf-values');
+    this.valuesBox = add(parent, 'div', 'lf-values');
     this.bindPointer();
-
+  }
+  buildHelp() {
     const keysOf = k => k.keys.map(x => `<kbd>${escapeText(x.label || x)}</kbd>`).join(' ');
     const list = KEYS.map(k => `<div><dt>${keysOf(k)}</dt><dd>${escapeText(k.help)}</dd></div>`).join('');
-    this.help = add(root, 'details', 'lf-help', `<summary>Keys</summary><dl class="keys">${list}</dl>`);
-
-    const plotted = add(root, 'div');
-    plotted.hidden = !this.rows.some(row => isNumber(row.ms));  // two pictures alone have no times
-    add(plotted, 'h3', '', 'Error against time');
-    const axes = add(plotted, 'div', 'lf-bar');
-    const axis = (title, options, value, change) => {
-      const span = add(axes, 'span', '', escapeText(title)), select = add(span, 'select');
-      select.setAttribute('aria-label', title);
-      for (const [key, o] of Object.entries(options)) select.add(new Option(o.name, key, false, key === value));
-      select.addEventListener('change', () => {
-        change(select.value);
-        this.drawPlot();
-        this.drawTables();
-      });
-      return select;
-    };
-    this.costSelect = axis('Cost', COSTS, 'ms', v => { this.state.cost = v; });
-    this.metricSelect = axis('Error', METRICS, 'l2', v => { this.state.metric = v; });
-    const columns = add(root, 'div', 'lf-columns');
-    this.plotBox = add(columns, 'div', 'lf-plot');
-    this.factsBox = add(columns, 'div', 'lf-facts');
-    this.tableBox = add(root, 'div', 'lf-tables');
-    add(root, 'h3', '', 'Crops');
-    this.cropBox = add(root, 'div', 'lf-crops');
-    this.plotBox.hidden = this.tableBox.hidden = plotted.hidden;
-    root.addEventListener('focusin', () => { activate(this); });
-    root.addEventListener('pointerdown', () => { activate(this); });
+    this.help = add(this.root, 'details', 'lf-help', `<summary>Keys</summary><dl class="keys">${list}</dl>`);
+  }
+  buildAxes(bar) {
+    const choose = (title, options, change) => addChoice(bar, title, options, value => {
+      change(value);
+      this.drawPlot();
+      this.drawTables();
+    });
+    this.costSelect = choose('Cost', COSTS, v => { this.state.cost = v; });
+    this.metricSelect = choose('Error', METRICS, v => { this.state.metric = v; });
   }
 
   // ---------------------------------------------------------------- view
@@ -691,80 +717,91 @@ class Figure {
     const scale = this.state.zoom || Math.min(paneWidth / this.width, paneHeight / this.height);
     return {columns, lines, paneWidth, paneHeight, width: box, height: lines * paneHeight, scale};
   }
+  /// What a pane shows: the method, its map, its error.
+  describe(i) {
+    if (i <= 0) return this.label(i);
+    const map = this.state.map === 'picture' ? '' : `: ${MAPS[this.state.map].name}`;
+    return `${this.label(i)}${map}, L2 ${errorText(this.rows[this.items[i].row], 'l2')}`;
+  }
   draw() {
-    const s = this.state, l = this.layout(), ratio = window.devicePixelRatio || 1, canvas = this.canvas;
+    const l = this.layout(), ratio = window.devicePixelRatio || 1, canvas = this.canvas;
     canvas.style.height = l.height + 'px';
     canvas.width = Math.round(l.width * ratio), canvas.height = Math.round(l.height * ratio);
     const g = canvas.getContext('2d');
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.imageSmoothingEnabled = false;
-    const put = (i, left, top, from, to) => {
-      g.save();
-      g.beginPath();
-      g.rect(left + from, top, to - from, l.paneHeight);
-      g.clip();
-      const x = left + l.paneWidth / 2 - s.x * l.scale, y = top + l.paneHeight / 2 - s.y * l.scale;
-      g.drawImage(this.canvasOf(i), x, y, this.width * l.scale, this.height * l.scale);
-      g.restore();
-    };
     const captions = [];  // above what is drawn over the pictures
-    const caption = (text, x, y, align, room = l.paneWidth) => captions.push(() => {
-      g.font = '12px system-ui, sans-serif';
-      g.textAlign = align;
-      const w = Math.min(g.measureText(text).width + 10, room);
-      g.fillStyle = 'rgba(0,0,0,.72)';
-      g.fillRect(align === 'left' ? x : x - w, y, w, 19);
-      g.fillStyle = '#fff';
-      g.fillText(text, align === 'left' ? x + 5 : x - 5, y + 14, room - 10);
-    });
-    const describe = i => {
-      if (i <= 0) return this.label(i);
-      const map = s.map === 'picture' ? '' : `: ${MAPS[s.map].name}`;
-      return `${this.label(i)}${map}, L2 ${errorText(this.rows[this.items[i].row], 'l2')}`;
-    };
     this.panes().forEach((i, p) => {
       const left = p % l.columns * l.paneWidth, top = Math.floor(p / l.columns) * l.paneHeight;
-      if (s.mode === 'wipe') {
-        const at = s.wipe * l.paneWidth;
-        put(s.before, left, top, 0, at);
-        put(s.current, left, top, at, l.paneWidth);
-        g.fillStyle = '#fff';
-        g.fillRect(left + at - 1, top, 2, l.paneHeight);
-        g.fillStyle = '#000';
-        g.fillRect(left + at + 1, top, 1, l.paneHeight);
-        caption(describe(s.before), left, top, 'left', l.paneWidth / 2 - 4);
-        caption(describe(s.current), left + l.paneWidth, top, 'right', l.paneWidth / 2 - 4);
-      } else {
-        put(i, left, top, 0, l.paneWidth);
-        caption(describe(i), left, top, 'left');
-      }
-      // The cursor's pixel, and crops.
-      const box = (x, y, w, h, colour, width, text) => {
-        const a = left + l.paneWidth / 2 + (x - s.x) * l.scale, b = top + l.paneHeight / 2 + (y - s.y) * l.scale;
-        g.strokeStyle = '#000';
-        g.lineWidth = width + 2;
-        g.save();
-        g.beginPath();
-        g.rect(left, top, l.paneWidth, l.paneHeight);
-        g.clip();
-        g.strokeRect(a, b, w * l.scale, h * l.scale);
-        g.strokeStyle = colour;
-        g.lineWidth = width;
-        g.strokeRect(a, b, w * l.scale, h * l.scale);
-        if (text) {
-          g.font = 'bold 12px system-ui, sans-serif';
-          g.textAlign = 'left';
-          g.fillStyle = '#000';
-          g.fillRect(a - 1, b + h * l.scale - 16, 15, 17);
-          g.fillStyle = '#fff';
-          g.fillText(text, a + 3, b + h * l.scale - 3);
-        }
-        g.restore();
-      };
-      s.crops.forEach((c, k) => box(c.x, c.y, c.width, c.height, cropColour(k), 2, String(k + 1)));
-      box(s.cursor.x, s.cursor.y, 1, 1, '#fff', 1);
+      captions.push(...this.drawPane(g, l, i, left, top));
     });
-    for (const write of captions) write();
+    for (const caption of captions) drawCaption(g, caption);
+    this.updateControls();
+    this.drawStatus(l);
+    this.drawScale();
+    this.drawValues();
+    this.drawCrops();
+  }
+  /// A method in its pane, or two with the wipe between them, with crops and the cursor. Returns the pane's captions.
+  drawPane(g, l, i, left, top) {
+    const s = this.state, captions = [];
+    if (s.mode === 'wipe') {
+      const at = s.wipe * l.paneWidth, room = l.paneWidth / 2 - 4;
+      this.drawPicture(g, l, s.before, left, top, 0, at);
+      this.drawPicture(g, l, s.current, left, top, at, l.paneWidth);
+      g.fillStyle = '#fff';
+      g.fillRect(left + at - 1, top, 2, l.paneHeight);
+      g.fillStyle = '#000';
+      g.fillRect(left + at + 1, top, 1, l.paneHeight);
+      captions.push({text: this.describe(s.before), x: left, y: top, align: 'left', room});
+      captions.push({text: this.describe(s.current), x: left + l.paneWidth, y: top, align: 'right', room});
+    } else {
+      this.drawPicture(g, l, i, left, top, 0, l.paneWidth);
+      captions.push({text: this.describe(i), x: left, y: top, align: 'left', room: l.paneWidth});
+    }
+    s.crops.forEach((c, k) => this.drawFrame(g, l, left, top, c, cropColour(k), 2, String(k + 1)));
+    this.drawFrame(g, l, left, top, {x: s.cursor.x, y: s.cursor.y, width: 1, height: 1}, '#fff', 1);
+    return captions;
+  }
+  /// The part of a picture that lies between two places across its pane.
+  drawPicture(g, l, i, left, top, from, to) {
+    const s = this.state;
+    g.save();
+    g.beginPath();
+    g.rect(left + from, top, to - from, l.paneHeight);
+    g.clip();
+    const x = left + l.paneWidth / 2 - s.x * l.scale, y = top + l.paneHeight / 2 - s.y * l.scale;
+    g.drawImage(this.canvasOf(i), x, y, this.width * l.scale, this.height * l.scale);
+    g.restore();
+  }
+  /// A rectangle of the picture, outlined in its pane, with a number in its corner.
+  drawFrame(g, l, left, top, rectangle, colour, width, text) {
+    const x = left + l.paneWidth / 2 + (rectangle.x - this.state.x) * l.scale;
+    const y = top + l.paneHeight / 2 + (rectangle.y - this.state.y) * l.scale;
+    const w = rectangle.width * l.scale, h = rectangle.height * l.scale;
+    g.save();
+    g.beginPath();
+    g.rect(left, top, l.paneWidth, l.paneHeight);
+    g.clip();
+    g.strokeStyle = '#000';
+    g.lineWidth = width + 2;
+    g.strokeRect(x, y, w, h);
+    g.strokeStyle = colour;
+    g.lineWidth = width;
+    g.strokeRect(x, y, w, h);
+    if (text) {
+      g.font = 'bold 12px system-ui, sans-serif';
+      g.textAlign = 'left';
+      g.fillStyle = '#000';
+      g.fillRect(x - 1, y + h - 16, 15, 17);
+      g.fillStyle = '#fff';
+      g.fillText(text, x + 3, y + h - 3);
+    }
+    g.restore();
+  }
+  /// Buttons, selections and the list show the state.
+  updateControls() {
+    const s = this.state;
     for (const mode of ['single', 'wipe', 'side'])
       this.buttons[mode].setAttribute('aria-pressed', String(s.mode === mode));
     this.buttons.flip.setAttribute('aria-pressed', String(s.flipped));
@@ -782,13 +819,12 @@ class Figure {
       const low = line.offsetTop - this.list.offsetTop, high = low + line.offsetHeight - this.list.clientHeight;
       this.list.scrollTop = Math.max(high, Math.min(low, this.list.scrollTop));
     }
-    const text = this.panes().map(describe).join('; ');
-    canvas.setAttribute('aria-label', text);
-    const told = s.mode === 'wipe' ? `left: ${describe(s.before)}; right: ${describe(s.current)}` : text;
+  }
+  drawStatus(l) {
+    const s = this.state, text = this.panes().map(i => this.describe(i)).join('; ');
+    this.canvas.setAttribute('aria-label', text);
+    const told = s.mode === 'wipe' ? `left: ${this.describe(s.before)}; right: ${this.describe(s.current)}` : text;
     this.status.textContent = `${told}. Zoom ${short(l.scale)}${this.blockNote()}`;
-    this.drawScale();
-    this.drawValues();
-    this.drawCrops();
   }
   blockNote() {
     const most = Math.max(...this.panes().map(i => this.facts.block * (i > 0 ? this.picture(i).block : 1)));
