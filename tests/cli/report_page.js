@@ -490,6 +490,36 @@ async function cursorChecks(evaluate) {
   check(z === 0, `${z} pixels of the z-score have the wrong colour`);
 }
 
+// What keys save, copy and print; notes which were tested.
+async function exportChecks(evaluate, press, state, tested) {
+  const saved = async key => {
+    tested.add(key);
+    await press(key);
+    return evaluate('return report.lastSaved');
+  };
+  const figure = await saved('x'), plot = await saved('X'), csv = await saved('d'), tex = await saved('L');
+  check(figure.name === 'figure.svg' && /<image [^>]*data:image\/png/.test(figure.text), 'figure as SVG');
+  check(plot.name === 'plot.svg' && (plot.text.match(/class="point"/g) || []).length > 3, 'plot as SVG');
+  const legend = await evaluate('return f.seriesNames.filter(name => f.seriesPoints(name).length)');
+  const isNamed = name => plot.text.includes(`>${name}</text>`);
+  check(legend.every(isNamed) && plot.text.endsWith('</svg>'), 'the plot as SVG names its series');
+  const csvLines = csv.text.trim().split('\n');
+  check(csvLines.length === json.rows.length + 1, `CSV of ${csvLines.length} lines`);
+  const hasPoints = json.rows.some(r => r.ms > 0 && r.l2 > 0 && !r.at_noise);
+  check(/\\begin{tabular}/.test(tex.text) && /\\addplot/.test(tex.text) === hasPoints, 'LaTeX');
+  tested.add('p');
+  await press('p');
+  const {command} = json.rows[(await state()).selected];
+  check(await evaluate('return report.lastCopied') === command, 'key p: the command is copied');
+  tested.add('?');
+  await press('?');
+  check(await evaluate('return f.help.open'), 'key ?: help');
+  tested.add('P');
+  await evaluate('window.printed = 0; window.print = () => { ++window.printed; }');
+  await press('P');
+  check(await evaluate('return window.printed') === 1, 'key P: print');
+}
+
 // Keys: each does what help says of it.
 async function keyChecks(evaluate, press, state, screenshots) {
   const items = await evaluate('return f.items.length');
@@ -532,6 +562,7 @@ async function keyChecks(evaluate, press, state, screenshots) {
     check(shown.label === truths[k % truths.length] && shown.list === shown.label && shown.same,
           `key 0 again: ${JSON.stringify(shown)}`);
   }
+  // Methods.
   for (let k = 1; k <= 9; ++k)
     await expectKey(String(k), 'method', (a, b) => b.current === (k < items ? k : a.current));
   const order = [...truths.keys()].map(t => 0 - t).concat([...judged.keys()].slice(1));
@@ -540,6 +571,7 @@ async function keyChecks(evaluate, press, state, screenshots) {
   await expectKey('b', 'before', (a, b) => b.current === order[(order.indexOf(a.current) + places - 1) % places]);
   await expectKey('f', 'flip', (a, b) => b.flipped && b.shown === b.before);
   await expectKey('f', 'flip back', (a, b) => !b.flipped && b.shown === b.current);
+  // Ways to see them: wipe, side by side, one.
   await expectKey('w', 'wipe', (a, b) => b.mode === 'wipe');
   await expectKey(',', 'wipe to the left', (a, b) => near(b.wipe, a.wipe - 0.05, 1e-9));
   await expectKey('.', 'wipe to the right', (a, b) => near(b.wipe, a.wipe + 0.05, 1e-9));
@@ -553,6 +585,7 @@ async function keyChecks(evaluate, press, state, screenshots) {
     ['plot', 'f.state.mode = "side"; f.state.map = "picture"; f.draw(); f.plotBox.scrollIntoView()'],
   ]);
   await expectKey('v', 'one', (a, b) => b.mode === 'single');
+  // Maps, their range, exposure.
   for (const map of ['signed', 'relative', 'flip', 'z', 'picture'])
     await expectKey('m', 'map', (a, b) => b.map === map);
   await expectKey('M', 'map before', (a, b) => b.map === 'z');
@@ -565,6 +598,7 @@ async function keyChecks(evaluate, press, state, screenshots) {
   await expectKey('E', 'brighter', (a, b) => b.stops === a.stops + 0.5);
   await expectKey('e', 'darker', (a, b) => b.stops === a.stops - 0.5);
   await expectKey('t', 'tone map', (a, b) => a.tone === 'filmic' && b.tone === 'linear');
+  // Place and crops.
   const scale = () => evaluate('return f.layout().scale');
   await expectFactor('+', 'zoom', scale, 1.25);
   await expectFactor('-', 'zoom', scale, 0.8);
@@ -577,34 +611,10 @@ async function keyChecks(evaluate, press, state, screenshots) {
   await expectKey('C', 'crop away', (a, b) => b.crops.length === a.crops.length - 1);
   await press('C');
   await expectKey('A', 'crops of its own', (a, b) => b.crops.length === 3);
+  // Plot and what is saved.
   await expectKey('k', 'cost', (a, b) => a.cost === 'ms' && b.cost === 'setup');
   await expectKey('y', 'error', (a, b) => a.metric === 'l2' && b.metric === 'nrmse');
-  const saved = async key => {
-    tested.add(key);
-    await press(key);
-    return evaluate('return report.lastSaved');
-  };
-  const figure = await saved('x'), plot = await saved('X'), csv = await saved('d'), tex = await saved('L');
-  check(figure.name === 'figure.svg' && /<image [^>]*data:image\/png/.test(figure.text), 'figure as SVG');
-  check(plot.name === 'plot.svg' && (plot.text.match(/class="point"/g) || []).length > 3, 'plot as SVG');
-  const legend = await evaluate('return f.seriesNames.filter(name => f.seriesPoints(name).length)');
-  const isNamed = name => plot.text.includes(`>${name}</text>`);
-  check(legend.every(isNamed) && plot.text.endsWith('</svg>'), 'the plot as SVG names its series');
-  const csvLines = csv.text.trim().split('\n');
-  check(csvLines.length === json.rows.length + 1, `CSV of ${csvLines.length} lines`);
-  const hasPoints = json.rows.some(r => r.ms > 0 && r.l2 > 0 && !r.at_noise);
-  check(/\\begin{tabular}/.test(tex.text) && /\\addplot/.test(tex.text) === hasPoints, 'LaTeX');
-  tested.add('p');
-  await press('p');
-  const {command} = json.rows[(await state()).selected];
-  check(await evaluate('return report.lastCopied') === command, 'key p: the command is copied');
-  tested.add('?');
-  await press('?');
-  check(await evaluate('return f.help.open'), 'key ?: help');
-  tested.add('P');
-  await evaluate('window.printed = 0; window.print = () => { ++window.printed; }');
-  await press('P');
-  check(await evaluate('return window.printed') === 1, 'key P: print');
+  await exportChecks(evaluate, press, state, tested);
   const all = await evaluate('return report.KEYS.flatMap(k => k.keys.map(x => x.key || x))');
   check(all.every(k => tested.has(k)), `keys without a test: ${all.filter(k => !tested.has(k))}`);
 }
@@ -628,7 +638,9 @@ async function pointChecks(evaluate, press, state) {
   check((await state()).current === 1 && (await state()).selected === another, 'Enter on a point loads its picture');
 }
 
-async function main() {
+// Loads the page; how to call the browser, evaluate in the page (report, f: its first figure), press keys, and see the
+// figure's state.
+async function openPage() {
   const {targetInfos} = await send('Target.getTargets');
   const {targetId} = targetInfos.find(t => t.type === 'page');
   const {sessionId} = await send('Target.attachToTarget', {targetId, flatten: true});
@@ -664,7 +676,11 @@ async function main() {
     await call('Input.dispatchKeyEvent', {type: 'keyDown', ...event});
     await call('Input.dispatchKeyEvent', {type: 'keyUp', ...event});
   };
+  return {call, evaluate, press, state};
+}
 
+async function main() {
+  const {call, evaluate, press, state} = await openPage();
   // The page is one file, small, ready soon, without errors of its own, and fetches nothing.
   check(fs.statSync(page).size <= 20e6, `the page has ${fs.statSync(page).size} bytes`);
   const ready = await evaluate('return report.ready');
