@@ -59,4 +59,32 @@ TEST(Form, NoProseIsWiderThan120Columns) {
   }
 }
 
+/// By its name; without an extension, by the interpreter that its first line asks for.
+bool isScript(const fs::path& file) {
+  if (file.filename() == "CMakeLists.txt") return true;
+  if (file.has_extension())
+    return std::set<std::string>{".cmake", ".css", ".html", ".in", ".js", ".py", ".sh"}.contains(
+        file.extension().string());
+  std::ifstream stream(file);
+  return stream.get() == '#' && stream.get() == '!';
+}
+
+// Lists of settings, hints and faults (.txt), JSON and models are data, and as wide as what they hold.
+TEST(Form, NoLineOfScriptsIsWiderThan120Columns) {
+  const fs::path root = LUCERNA_SOURCE_DIR;
+  std::vector<fs::path> scripts{root / "CMakeLists.txt"};
+  for (const char* folder : {".ci", "assets", "demo", "docs", "engine", "shaders", "tests"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.is_regular_file() && isScript(entry.path())) scripts.push_back(entry.path());
+  EXPECT_GT(scripts.size(), 50u);
+  for (const fs::path& script : scripts) {
+    std::ifstream lines(script);
+    int number = 0;
+    for (std::string line; std::getline(lines, line);) {
+      ++number;
+      EXPECT_LE(columnsOf(line), 120u) << fs::relative(script, root).string() << ":" << number;
+    }
+  }
+}
+
 }  // namespace
