@@ -1,10 +1,12 @@
 // lucerna render SCENE ... -o OUT: one picture. PNG is tone mapped; hdr, exr and pfm keep linear radiance.
+#include "ask.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "commands.hpp"
 #include "gl/draw.hpp"
 #include "offers.hpp"
+#include "render/ask.hpp"
 #include "render_path.hpp"
 #include "settings/deviations.hpp"
 
@@ -22,18 +24,52 @@ struct Options {
   CommonOptions common;
   PictureOptions picture;
   PathOptions path;
-  std::string scene, camera, output;
+  std::string scene, camera, output, ask;
   int repeat = 1;
 };
+
+/// --ask: prints what lit a pixel. Path tracing follows the paths of that pixel alone.
+int ask(const Options& options) {
+  if (!options.output.empty()) throwBadInput("--ask {}: prints JSON and writes no picture: not with -o", options.ask);
+  const PathOptions& path = options.path;
+  if (path.seconds || path.error || !path.samples.empty() || !path.part.empty() || !path.checkpoint.empty())
+    throwBadInput("--ask {}: of path tracing takes --spp, --bounces and --seed", options.ask);
+  RenderSettings settings = options.picture.parse();
+  settings.fullFloatTarget = true;
+  if (settings.radiosity.direct == RadiosityView::Direct::automatic)
+    settings.radiosity.direct = RadiosityView::Direct::pixels;
+  const glm::ivec2 pixel = parsePixel(options.ask, settings.size);
+  const Scene scene = loadScene(options.scene);
+  const Camera camera = chooseCamera(scene, options.camera);
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  PixelAnswer answer;
+  if (settings.technique == Technique::path) {
+    answer = askPaths(context, programs, scene, camera, tracerSettings(options.picture, path, settings),
+                      path.spp.value_or(static_cast<std::uint32_t>(settings.path.samples)), pixel);
+  } else {
+    Renderer renderer(context, programs, scene, settings);
+    renderer.renderToTheEnd(camera);
+    answer = renderer.ask(context, programs, scene, camera, pixel);
+    renderer.drain();
+  }
+  answer.condense(kAskedShares);
+  const nlohmann::ordered_json json = toJson(answer);
+  fmt::print("{}\n", json.dump(2));
+  options.common.writeJson(json);
+  return 0;
+}
 
 int run(Options options) {
   options.common.apply();
   if (!options.output.empty()) checkWritable(options.output);
   options.picture.readSettingsFile();
   if (!options.path.spp) options.path.spp = options.picture.settingsSpp;
+  if (options.picture.technique != "path") options.path.refuseIfGiven(options.picture.technique);
+  if (!options.ask.empty()) return ask(options);
   if (options.picture.technique == "path")
     return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
-  options.path.refuseIfGiven(options.picture.technique);
   if (options.output.empty()) throwBadInput("--output is missing: where the picture goes");
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
@@ -123,6 +159,9 @@ Work addRender(CLI::App& app) {
   app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  app.add_option("--ask", options->ask,
+                 "X,Y: instead of a picture print as JSON what lit this pixel, from the top left: each lamp, texel, "
+                 "cell, receiver, patch or path, with its share");
   options->picture.declare(app);
   options->path.declare(app);
   options->common.declare(app);

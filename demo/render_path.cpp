@@ -101,26 +101,32 @@ void PathOptions::refuseIfGiven(const std::string& technique) const {
         technique);
 }
 
-int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,
-               const std::string& sceneFile, const std::string& cameraText, const std::string& output) {
+PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOptions& path,
+                                    const RenderSettings& shared) {
   for (const std::string& deviation : picture.deviations)
     if (!deviation.starts_with("path."))
       throwBadInput("--deviation {}: --technique path supports only deviations that begin with path.", deviation);
-  PictureOptions rest = picture;
-  if (!path.sizeGiven && (picture.fidelity != "corrected" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
-  const RenderSettings shared = rest.parse();
-  const std::optional<SampleRange> part = sampleRange(path);
-  if (output.empty() && !part) throwBadInput("--output is missing: where the picture goes");
-  if (!output.empty() && !isWritableImageName(output))
-    throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
-  const Scene scene = loadScene(sceneFile);
-  const Camera camera = chooseCamera(scene, cameraText);
   PathTracer::Settings settings;
   settings.size = shared.size;
   settings.transport = transportOf(shared.component);
   settings.bounces = path.bounces.value_or(shared.path.scatterings);
   settings.seed = path.seed.value_or(shared.path.seed);
   settings.deviations = shared.path.deviations;
+  return settings;
+}
+
+int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,
+               const std::string& sceneFile, const std::string& cameraText, const std::string& output) {
+  PictureOptions rest = picture;
+  if (!path.sizeGiven && (picture.fidelity != "corrected" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
+  const RenderSettings shared = rest.parse();
+  const PathTracer::Settings settings = tracerSettings(picture, path, shared);
+  const std::optional<SampleRange> part = sampleRange(path);
+  if (output.empty() && !part) throwBadInput("--output is missing: where the picture goes");
+  if (!output.empty() && !isWritableImageName(output))
+    throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
+  const Scene scene = loadScene(sceneFile);
+  const Camera camera = chooseCamera(scene, cameraText);
 
   const auto host = common.makeHost(false);
   gl::Context context;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "commands.hpp"
+#include "pathtracer/path_tracer.hpp"
 
 namespace lucerna::demo {
 
@@ -23,6 +24,10 @@ struct PathOptions {
   /// Throws Error(badInput) where one is given with another technique.
   void refuseIfGiven(const std::string& technique) const;
 };
+
+/// The tracer's settings of a path traced picture.
+PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOptions& path,
+                                    const RenderSettings& shared);
 
 /// output: empty where the checkpoint of --samples alone is wanted.
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,

@@ -158,6 +158,22 @@ void LightPropagationVolume::bindForLookup() const {
   for (GLuint channel = 0; channel < 3; ++channel) result()[channel].bind(UNIT_LPV_RED + channel);
 }
 
+std::vector<AskedPart> LightPropagationVolume::ask(gl::ProgramLibrary& programs, const glm::vec3& position,
+                                                   const glm::vec3& normal) const {
+  const AskedParts parts(8 * LPV_MAX_CASCADES);
+  {
+    const gl::Program& program = programs.loadCompute("lpv ask", "lpv/ask.comp", lookupFlags(settings_));
+    const gl::ComputePass pass("lpv ask", gl::Barrier::bufferUpdate);
+    program.use();
+    bindForLookup();
+    program.set("askedPosition", position);
+    program.set("askedNormal", normal);
+    parts.bind();
+    pass.dispatch(glm::ivec3(1), glm::ivec3(1));
+  }
+  return parts.read();
+}
+
 std::size_t LightPropagationVolume::gpuBytes() const {
   return constants_.bytes() + injection_.gpuBytes() + (geometry_ ? geometry_->gpuBytes() : 0) +
          (compute_ ? compute_->gpuBytes() : 0) + (layered_ ? layered_->gpuBytes() : 0) +

@@ -2,6 +2,7 @@
 // See README.md in this folder for inputs, outputs, units, sources and measurements.
 #pragma once
 
+#include "forward/asked_pixel.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "lpv/cascade_join.hpp"
@@ -12,6 +13,7 @@
 #include "shared/lpv.h"
 
 #include <optional>
+#include <vector>
 
 namespace lucerna {
 
@@ -33,6 +35,10 @@ class LightPropagationVolume {
 
   /// Binds block 1 and units 4, 5, 6 for shaders/lpv/lookup.glsl.
   void bindForLookup() const;
+
+  /// What the lookup takes of each cell at a point, among the frame's positions; cells beside the volume give nothing.
+  /// `normal`: for shading. Compiles and allocates.
+  std::vector<AskedPart> ask(gl::ProgramLibrary& programs, const glm::vec3& position, const glm::vec3& normal) const;
 
   const LpvVolume& injected() const { return injection_.volume(); }
   /// The sum G_0 + ... + G_iterations; after join() of all cascades together.

@@ -365,6 +365,24 @@ void LpvReceivers::bindForLookup() const {
   irradiance_.bind(UNIT_RECEIVED);
 }
 
+std::vector<AskedPart> LpvReceivers::ask(const glm::vec3& position, const glm::vec3& normal) const {
+  const AskedParts parts(24 * LPV_MAX_CASCADES);
+  {
+    const gl::Program& program =
+        programs_->loadCompute("lpv ask receivers", "lpv/receivers/ask.comp", lookupFlags(settings_));
+    const gl::ComputePass pass("lpv ask receivers", gl::Barrier::bufferUpdate);
+    program.use();
+    bindReceivers();
+    bindForLookup();
+    slotTable_.bind(kSlotsUnit);
+    program.set("askedPosition", position);
+    program.set("askedNormal", normal);
+    parts.bind();
+    pass.dispatch(glm::ivec3(1), glm::ivec3(1));
+  }
+  return parts.read();
+}
+
 void LpvReceivers::collect(bool wait) {
   for (std::vector<GLuint> words = ring_->fetch(wait); !words.empty(); words = ring_->fetch(wait)) {
     counts_.receivers = std::min<std::uint64_t>(words[3], capacity_);

@@ -16,6 +16,7 @@
 #include "forward/visible_surfaces.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
+#include "forward/asked_pixel.hpp"
 #include "gl/read_back.hpp"
 #include "lpv/cascades.hpp"
 #include "lpv/light_propagation_volume.hpp"
@@ -67,6 +68,10 @@ class LpvReceivers {
   /// Binds blocks 1 and 6 and unit 5 for shaders/lpv/receivers/lookup.glsl.
   void bindForLookup() const;
   static gl::ShaderFlags lookupFlags(const LpvSettings& settings);
+
+  /// What the lookup takes of each receiver at a point, among the frame's positions, with the mesh's normal. Compiles
+  /// and allocates.
+  std::vector<AskedPart> ask(const glm::vec3& position, const glm::vec3& normal) const;
 
   void collect(bool wait = false);
   const Counts& counts() const { return counts_; }

@@ -36,6 +36,10 @@ struct StateHeader {
                 padding[2]{};
 };
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
+/// Of the pixel that is asked for: room for the lights that a pass of kAskedSamples brings.
+constexpr std::size_t kAskedHead = 1 + PATH_ASKED_PLACES, kAskedRecords = 32768,
+                      kAskedWords = kAskedHead + kAskedRecords * PATH_ASKED_RECORD;
+constexpr std::uint32_t kAskedSamples = 64;
 
 /// Whether every lamp is in the open, where the index is 1. Conservative: emissive triangles are tested by bounding
 /// box.
@@ -136,11 +140,12 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
 }
 
 void PathTracer::allocateFilm() {
-  const glm::ivec2 tile = glm::min(settings_.size, glm::ivec2(tileSide_));
+  const glm::ivec2 tile = settings_.askedPixel ? glm::ivec2(1) : glm::min(settings_.size, glm::ivec2(tileSide_));
   const std::size_t lanes = static_cast<std::size_t>(tile.x) * static_cast<std::size_t>(tile.y);
   constants_.picture = glm::ivec4(settings_.size, static_cast<int>(lanes), 0);
-  state_ =
-      gl::Buffer("path state", kStateHeaderBytes + lanes * kStateWords * kVec4Bytes, nullptr, gl::Usage::dynamicCopy);
+  const std::size_t asked = settings_.askedPixel ? kAskedWords : 0;
+  state_ = gl::Buffer("path state", kStateHeaderBytes + (lanes * kStateWords + asked) * kVec4Bytes, nullptr,
+                      gl::Usage::dynamicCopy);
   filmMean_ = gl::Texture("film mean", gl::Format::rgba32ui, settings_.size);
   filmSpread_ = gl::Texture("film spread", gl::Format::rgba32ui, settings_.size);
   filmRest_ = gl::Texture("film rest", gl::Format::rgba32ui, settings_.size);
@@ -189,6 +194,7 @@ gl::ShaderFlags PathTracer::flags() const {
 gl::ShaderFlags PathTracer::kernelFlags() const {
   gl::ShaderFlags all = flags();
   all.insert(all.end(), {{"SHARED_STACK", scene_->rays().sharedStack()},
+                         {"ASKED", settings_.askedPixel.has_value()},
                          {"SHADOW_AT_ONCE", scene_->rays().sharedStack() == 0 && !hasInteriors()}});
   return all;
 }
@@ -305,9 +311,35 @@ void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::strin
 }
 
 PathTracer::Tile PathTracer::tile() const {
+  if (settings_.askedPixel) return {*settings_.askedPixel, glm::ivec2(1)};
   const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_;
   const glm::ivec2 corner = tileSide_ * glm::ivec2(tile_ % columns, tile_ / columns);
   return {corner, glm::min(glm::ivec2(tileSide_), settings_.size - corner)};
+}
+
+int PathTracer::tileCount() const {
+  const glm::ivec2 tiles = (settings_.size + tileSide_ - 1) / tileSide_;
+  return settings_.askedPixel ? 1 : tiles.x * tiles.y;
+}
+
+// The layout is that of shared/path_tracer.h.
+void PathTracer::readAsked() {
+  const std::vector<glm::uvec4> words = state_.read<glm::uvec4>();
+  const std::size_t base = kStateHeaderBytes / kVec4Bytes + kStateWords;
+  const std::size_t told = words[base].x, kept = std::min(told, kAskedRecords);
+  if (kept < told) logWarning("{} of {} lights of the pixel that is asked for found no room", told - kept, told);
+  const auto place = [&](std::size_t i) {
+    return glm::dvec3(std::bit_cast<float>(words[i].x), std::bit_cast<float>(words[i].y),
+                      std::bit_cast<float>(words[i].z));
+  };
+  for (std::size_t r = 0; r < kept; ++r) {
+    const std::size_t at = base + kAskedHead + r * PATH_ASKED_RECORD, end = at + 2 + PATH_ASKED_PLACES;
+    const glm::uvec4 about = words[at + 1];
+    AskedLight light{glm::vec3(place(at)), words[at].w, about.x, about.y, about.z, {}, place(end), words[end].w != 0};
+    for (std::size_t i = 0; i < about.w; ++i) light.places.push_back(place(at + 2 + i) + scene_->origin());
+    if (!light.infinite) light.end += scene_->origin();
+    asked_.push_back(std::move(light));
+  }
 }
 
 void PathTracer::dropUnfinishedPass() {
@@ -325,7 +357,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   if (passTarget_ == done_ || passTarget_ > samples) {
     // At the end of a pass lanes wait for the last path of a tile. A pass that doubles the samples lets them wait
     // seldom and yet pictures come early.
-    const std::uint32_t most = needs_.media ? 1024 : 64;
+    const std::uint32_t most = settings_.askedPixel ? kAskedSamples : needs_.media ? 1024 : 64;
     passTarget_ = done_ + std::min(samples - done_, passes == Passes::whole ? most : std::clamp(done_, 1u, most));
     if (!tileBegun_) tile_ = 0;
   }
@@ -360,8 +392,8 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   turns_.setTurnsOfUnit(std::max(unfinished, 1u));  // the others have nothing left to do
   turns_.took(turns_.units(), seconds);
   tileBegun_ = unfinished > 0;
-  const glm::ivec2 tiles = (settings_.size + tileSide_ - 1) / tileSide_;
-  if (!tileBegun_ && ++tile_ == tiles.x * tiles.y) {
+  if (!tileBegun_ && settings_.askedPixel) readAsked();
+  if (!tileBegun_ && ++tile_ == tileCount()) {
     done_ = passTarget_;
     tile_ = 0;
   }

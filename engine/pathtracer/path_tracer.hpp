@@ -26,6 +26,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lucerna {
@@ -46,6 +47,17 @@ class PathTracer {
     double submissionSeconds = 0.05;
     RayScene::Settings rays;
     PathDeviations deviations;
+    /// The one pixel of the picture that is traced, from its lower left; whatever lights it is kept for takeAsked().
+    std::optional<glm::ivec2> askedPixel;
+  };
+  /// Light that one path has brought to the pixel that is asked for.
+  struct AskedLight {
+    glm::vec3 radiance;  ///< of that sample; the pixel's is the sum over samples divided by their number
+    std::uint32_t sample, scatterings;
+    std::uint32_t kind, number;  ///< PATH_LIGHT_* or PATH_ASKED_*; of a triangle or of the table's light
+    std::vector<glm::dvec3> places;  ///< the camera and the first scatterings, in the scene's coordinates
+    glm::dvec3 end;  ///< where the light is; at infinity the direction to it
+    bool infinite;
   };
   /// Of the current film.
   struct Statistics {
@@ -84,6 +96,9 @@ class PathTracer {
   /// the finished ones alone would be too dark. Call this when stopping between two calls of advance(), before reading
   /// the film.
   void dropUnfinishedPass();
+
+  /// With Settings::askedPixel: all light of the samples that were made since the last call.
+  std::vector<AskedLight> takeAsked() { return std::exchange(asked_, {}); }
 
   std::uint32_t samples() const { return done_; }  ///< that every pixel has
   /// Whether no tile is in the middle of a pass: then the film holds whole passes alone.
@@ -132,6 +147,8 @@ class PathTracer {
     glm::ivec2 corner, size;
   };
   Tile tile() const;  ///< the current or next one
+  int tileCount() const;
+  void readAsked();
 
   Settings settings_;
   SceneNeeds needs_;
@@ -163,6 +180,7 @@ class PathTracer {
   bool tileBegun_ = false;
   gl::PieceSize turns_;  ///< per lane, in the next submission
   std::uint64_t largestBegun_ = 0, largest_ = 0;
+  std::vector<AskedLight> asked_;
 };
 
 }  // namespace lucerna

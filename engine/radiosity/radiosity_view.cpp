@@ -78,14 +78,15 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
   faces_ = gl::Buffer("radiosity faces", faces.size() * sizeof(float), faces.data(), gl::Usage::staticDraw);
 }
 
-SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene) const {
+SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene, bool asked) const {
   const auto load = [&](const char* name, bool masked) {
     gl::ShaderFlags flags = gpuScene.materialFlags(masked);
     flags.insert(flags.end(), {{"EMISSION", gpuScene.needs().emission && settings_.light != Light::indirect},
                                {"MESH", settings_.mesh},
                                {"DIRECT_RAYS", takesDirectRays()},
                                {"ALPHA_MASKS", 0},
-                               {"SHARED_STACK", 0}});
+                               {"SHARED_STACK", 0},
+                               {"ASKED", asked}});
     return &programs.loadRaster(name, "radiosity/view.vert", "radiosity/view.frag", flags);
   };
   SurfacePrograms result;

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <numeric>
@@ -440,14 +441,76 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
   }
 }
 
+namespace {
+
+/// How much a patch counts at the light vertices that it has a part in.
+double countsAtVertices(const RadiositySolution& solution, std::size_t i) {
+  const double seesFronts = std::max(1.0 - static_cast<double>(solution.backs[i]), 0.0);
+  return solution.mesh.patches[i].area * (1e-6 + seesFronts * seesFronts * seesFronts);
+}
+
+/// What each patch counts in the light of a point of one of them; they sum to 1.
+std::map<std::uint32_t, double> weightsAround(const RadiositySolution& solution, std::uint32_t patch,
+                                              const glm::dvec3& corners, bool flat) {
+  if (flat) return {{patch, 1.0}};
+  std::map<std::uint32_t, double> weights;
+  const std::vector<Patch>& patches = solution.mesh.patches;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t vertex = patches[patch].light[static_cast<std::size_t>(k)];
+    std::vector<std::pair<std::uint32_t, double>> around;
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < patches.size(); ++i)
+      for (const std::uint32_t v : patches[i].light)
+        if (v == vertex) {
+          around.emplace_back(i, countsAtVertices(solution, i));
+          sum += around.back().second;
+        }
+    for (const auto& [i, w] : around)
+      if (sum > 0.0) weights[i] += corners[k] * w / sum;
+  }
+  return weights;
+}
+
+}  // namespace
+
+RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                           const RadiositySolution& solution, const RadiositySolutionSettings& settings,
+                           std::uint32_t patch, const glm::dvec3& corners, bool flat) {
+  RadiosityMesh mesh = solution.mesh;
+  if (const glm::dvec3 origin = exactOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
+    for (glm::dvec3& point : mesh.points) point -= origin;
+    for (Patch& p : mesh.patches) p.centroid -= origin;
+  }
+  HemicubeSettings hemicubeSettings = withDeviations(settings).hemicubes;
+  if (hemicubeSettings.visibility == HemicubeVisibility::automatic)
+    hemicubeSettings.visibility = visibilityByCount(mesh, hemicubeSettings.resolution);
+  Hemicubes hemicubes(programs, context.capabilities(), mesh, hemicubeSettings);
+  RadiosityOrigins origins;
+  std::map<std::uint32_t, double> factors;
+  for (const auto& [i, weight] : weightsAround(solution, patch, corners, flat)) {
+    if (!(weight > 0.0)) continue;
+    origins.lamps += weight * solution.direct[i];
+    origins.sky += weight * solution.fromSky[i];
+    const FormFactorRows rows = hemicubes.rows(static_cast<int>(i), 1);
+    for (std::size_t k = 0; k < rows.patches.size(); ++k)
+      factors[rows.patches[k]] += weight * static_cast<double>(rows.factors[k]);
+  }
+  for (const auto& [i, factor] : factors) {
+    const glm::dvec3 emission = mesh.patches[i].emission;
+    origins.patches.push_back({i, factor, factor * emission, factor * (solution.exitance[i] - emission)});
+  }
+  const auto brightness = [](const RadiosityOrigins::FromPatch& p) { return mean3(p.emitted + p.reflected); };
+  std::ranges::sort(origins.patches, [&](const auto& a, const auto& b) { return brightness(a) > brightness(b); });
+  return origins;
+}
+
 std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution,
                                               std::span<const glm::dvec3> ofPatches) {
   std::vector<glm::dvec3> sum(solution.mesh.lightVertices, glm::dvec3(0.0));
   std::vector<double> weight(sum.size(), 0.0);
   for (std::size_t i = 0; i < solution.mesh.patches.size(); ++i) {
     const Patch& patch = solution.mesh.patches[i];
-    const double seesFronts = std::max(1.0 - static_cast<double>(solution.backs[i]), 0.0);
-    const double w = patch.area * (1e-6 + seesFronts * seesFronts * seesFronts);
+    const double w = countsAtVertices(solution, i);
     for (const std::uint32_t v : patch.light) {
       sum[v] += w * ofPatches[i];
       weight[v] += w;

@@ -104,6 +104,23 @@ void removeCheckpoints(const std::filesystem::path& checkpoint);
 /// backs (inside something) count less.
 std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution, std::span<const glm::dvec3> ofPatches);
 
+/// Where the irradiance of a point of a patch comes from, W per square scene unit.
+struct RadiosityOrigins {
+  glm::dvec3 lamps{0.0}, sky{0.0};  ///< of the patches around
+  struct FromPatch {
+    std::uint32_t patch;
+    double factor;  ///< of the point to it
+    glm::dvec3 emitted, reflected;
+  };
+  std::vector<FromPatch> patches;  ///< the largest first
+};
+/// Of the point of `patch` with these weights of its corners; `flat`: of the patch as a whole. The form factors are
+/// made anew, by hemicubes alone: the solution's own were made reciprocal, which is the difference between the sum and
+/// the solution's irradiance.
+RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                           const RadiositySolution& solution, const RadiositySolutionSettings& settings,
+                           std::uint32_t patch, const glm::dvec3& corners, bool flat);
+
 /// The patches as a scene of their own, three vertices per patch in order, so that gl_VertexID finds a corner's light;
 /// relative to `origin`.
 Scene litScene(const Scene& scene, const RadiosityMesh& mesh, const glm::dvec3& origin = glm::dvec3(0.0));

@@ -31,8 +31,8 @@ class RadiosityFrame {
 
   /// What GpuScene is to draw: the patches.
   const Scene& scene() const { return view_.scene(); }
-  SurfacePrograms loadPrograms(gl::ProgramLibrary& programs, const GpuScene& drawn) const {
-    return view_.loadPrograms(programs, drawn);
+  SurfacePrograms loadPrograms(gl::ProgramLibrary& programs, const GpuScene& drawn, bool asked) const {
+    return view_.loadPrograms(programs, drawn, asked);
   }
   const gl::Program* loadMapping(gl::ProgramLibrary& programs) const {
     return view_.loadMapping(programs);

@@ -20,19 +20,22 @@ namespace {
 
 constexpr float kShadowNormalOffset = 1.5f;  // texels of the sun's shadow map
 
-double nearPlane(const Bounds& bounds) { return 5e-4 * std::max(glm::length(bounds.extent()), 1e-6); }
-
-// Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal.
-glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 size) {
-  const double diagonal = std::max(glm::length(bounds.extent()), 1e-6);
-  double farthest = diagonal;
+double farPlane(const Camera& camera, const Bounds& bounds) {
+  double farthest = std::max(glm::length(bounds.extent()), 1e-6);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 p(corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
                        corner & 4 ? bounds.max.z : bounds.min.z);
     farthest = std::max(farthest, glm::length(p - camera.position));
   }
+  return 1.01 * farthest;
+}
+
+double nearPlane(const Bounds& bounds) { return 5e-4 * std::max(glm::length(bounds.extent()), 1e-6); }
+
+// Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal.
+glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 size) {
   const double aspect = static_cast<double>(size.x) / size.y;
-  return glm::perspective(camera.verticalFov, aspect, nearPlane(bounds), 1.01 * farthest) *
+  return glm::perspective(camera.verticalFov, aspect, nearPlane(bounds), farPlane(camera, bounds)) *
          glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
 }
 
@@ -109,7 +112,8 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   if (LocalLights::isNeeded(needs_)) localLights_.emplace(programs, *gpuScene_, settings_.lights, spots_, points_);
 }
 
-void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
+SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool asked) const {
+  if (radiosity_) return radiosity_->loadPrograms(programs, *gpuScene_, asked);
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_->materialFlags(masked);
     const bool showsRest = settings_.component != Component::indirect;  // specular and emission belong to direct light
@@ -118,7 +122,8 @@ void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
                                {"SPOTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
                                {"POINTS", localLights_ ? static_cast<int>(points_.size()) : 0},
                                {"SPECULAR", needs_.specular && showsDirect()},
-                               {"EMISSION", needs_.emission && showsRest}});
+                               {"EMISSION", needs_.emission && showsRest},
+                               {"ASKED", asked}});
     // Of the technique, which has one of the first three; the others are not there.
     const gl::ShaderFlags own = lpv_         ? lpv_->shadingFlags()
                                 : receivers_ ? receivers_->shadingFlags()
@@ -130,12 +135,14 @@ void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
         flags.push_back({flag, 0});
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
   };
-  if (radiosity_) {
-    surfacePrograms_ = radiosity_->loadPrograms(programs, *gpuScene_);
-  } else {
-    surfacePrograms_.opaque = loadSurface("surface opaque", false);
-    if (needs_.alphaMasks) surfacePrograms_.masked = loadSurface("surface masked", true);
-  }
+  SurfacePrograms result;
+  result.opaque = loadSurface("surface opaque", false);
+  if (needs_.alphaMasks) result.masked = loadSurface("surface masked", true);
+  return result;
+}
+
+void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
+  surfacePrograms_ = surfacePrograms(programs, false);
   depthPrograms_.opaque =
       &programs.loadRaster("depth opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}});
   if (needs_.alphaMasks)
@@ -221,6 +228,16 @@ FrameView Renderer::viewOf(const Camera& cameraInScene, const Camera& volumeCame
   return view;
 }
 
+gl::Lines::View Renderer::linesView(const Camera& cameraInScene, const Bounds& boundsInScene) const {
+  Camera camera = cameraInScene;
+  camera.position -= origin_;
+  Bounds bounds = boundsInScene;
+  bounds.min -= origin_;
+  bounds.max -= origin_;
+  return {glm::mat4(clipFromWorld(camera, bounds, settings_.size)), static_cast<float>(nearPlane(bounds)),
+          static_cast<float>(farPlane(camera, bounds)), depth()};
+}
+
 void Renderer::bindFrameConstants(const FrameView& view) {
   const Scene& scene = gpuScene_->scene();
   shared::FrameConstants frame{};
@@ -245,6 +262,19 @@ void Renderer::bindFrameConstants(const shared::FrameConstants& constants) {
   frameConstants_.bindUniform(BLOCK_FRAME);
 }
 
+void Renderer::bindForShading() const {
+  if (shadowMap_) shadowMap_->depth().bind(UNIT_SUN_SHADOW);
+  if (sunCascades_) {
+    sunCascades_->depth().bind(UNIT_SUN_SHADOW);
+    sunCascadeConstants_.bindUniform(BLOCK_SUN_CASCADES);
+  }
+  if (localLights_) localLights_->bindForShading();
+  if (lpv_) lpv_->bindForShading();
+  if (receivers_) receivers_->bindForShading();
+  if (rsm_) rsm_->bindForShading();
+  if (radiosity_) radiosity_->bindForShading();
+}
+
 void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
   const gl::TimeQuery::Scope stage(timer_, "shading");
   using Sides = RadiosityFrame::Sides;
@@ -260,13 +290,7 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
       if (&sides == &all.front()) pass.clearDepth();
       gpuScene_->draw(depthPrograms_, view.drawn());
     }
-  if (shadowMap_) shadowMap_->depth().bind(UNIT_SUN_SHADOW);
-  if (sunCascades_) sunCascades_->depth().bind(UNIT_SUN_SHADOW);
-  if (localLights_) localLights_->bindForShading();
-  if (lpv_) lpv_->bindForShading();
-  if (receivers_) receivers_->bindForShading();
-  if (rsm_) rsm_->bindForShading();
-  if (radiosity_) radiosity_->bindForShading();
+  bindForShading();
   for (const Sides& sides : all) {
     gl::RasterState state;
     state.depth = gl::Depth::equalReadOnly;

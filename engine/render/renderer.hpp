@@ -15,10 +15,12 @@
 #include "forward/sun_cascades.hpp"
 #include "forward/sun_frustum.hpp"
 #include "gl/context.hpp"
+#include "gl/lines.hpp"
 #include "gl/program.hpp"
 #include "gl/time_query.hpp"
 #include "render/lpv_frame.hpp"
 #include "render/path_frame.hpp"
+#include "render/pixel_answer.hpp"
 #include "render/radiosity_frame.hpp"
 #include "render/receivers_frame.hpp"
 #include "render/rsm_frame.hpp"
@@ -51,6 +53,11 @@ class Renderer {
   /// The same with the light propagation volume placed for another view, to separate flicker from motion.
   void render(const Camera& camera, const Camera& volumeCamera);
 
+  /// What lit a pixel (from the top left) of the last frame, which was of this view; `scene` as the renderer was made
+  /// with. Compiles, allocates and waits.
+  PixelAnswer ask(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
+                  glm::ivec2 pixel);
+
   /// The picture that frames of this view converge to: everything accumulated over frames, at once.
   void renderToTheEnd(const Camera& camera);
 
@@ -58,6 +65,11 @@ class Renderer {
   Bitmap readDisplay() const;  ///< tone mapped, sRGB, top row first
   const gl::Framebuffer& displayFramebuffer() const { return displayTarget_; }
   const gl::Texture& display() const { return display_; }  ///< of that framebuffer
+  /// Of what the last frame shows; null for path tracing, which draws none.
+  const gl::Texture* depth() const { return path_ ? nullptr : &depth_; }
+  /// For lines over the last frame, about origin(). `bounds`: the scene's.
+  gl::Lines::View linesView(const Camera& camera, const Bounds& bounds) const;
+  const glm::dvec3& origin() const { return origin_; }
   const gl::Texture& radiance() const { return radiance_; }  ///< linear, scene units, bottom row first
   glm::ivec2 size() const { return settings_.size; }
   void resize(glm::ivec2 size);
@@ -99,6 +111,14 @@ class Renderer {
   void bindFrameConstants(const shared::FrameConstants& constants);
   void recordShadows(const Camera& camera);
   void shade(const FrameView& view, bool depthIsDrawn);
+  void bindForShading() const;
+  /// Shading's own; asked: with which one pixel writes down what it adds up.
+  SurfacePrograms surfacePrograms(gl::ProgramLibrary& programs, bool asked) const;
+  AskedTerms drawAsked(gl::ProgramLibrary& programs, const FrameView& view, glm::ivec2 fromBelow);
+  void answerOfForward(gl::ProgramLibrary& programs, const FrameView& view, const AskedTerms& terms,
+                       glm::ivec2 fromBelow, PixelAnswer& answer);
+  void answerOfPatches(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                       const AskedTerms& terms, PixelAnswer& answer);
   bool showsDirect() const;  ///< direct light of any kind, by shadow maps
   bool showsSun() const { return shadowMap_ || sunCascades_; }
 

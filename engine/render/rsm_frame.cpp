@@ -17,7 +17,7 @@ void RsmFrame::resize(const gl::Texture& depth) {
   gather_.resize();
 }
 
-void RsmFrame::record(gl::TimeQuery& timer, const FrameView& view) {
+RsmGather::Inputs RsmFrame::inputsOf(gl::TimeQuery& timer, const FrameView& view) {
   RsmGather::Inputs inputs{{},
                            glm::mat4(glm::inverse(view.clip)),
                            static_cast<float>(2.0 * std::tan(0.5 * view.camera.verticalFov) / visible_.size().y)};
@@ -26,6 +26,11 @@ void RsmFrame::record(gl::TimeQuery& timer, const FrameView& view) {
     using Light = ReflectiveShadowMap::Light;
     inputs.maps.push_back({map, map.light == Light::spot ? &*spot++ : map.light == Light::point ? &*point++ : nullptr});
   }
+  return inputs;
+}
+
+void RsmFrame::record(gl::TimeQuery& timer, const FrameView& view) {
+  const RsmGather::Inputs inputs = inputsOf(timer, view);
   {
     const gl::TimeQuery::Scope stage(timer, "geometry");
     visible_.record(parts_.drawn, view.drawn());

@@ -22,6 +22,10 @@ class RsmFrame {
 
   /// Draws depth, too.
   void record(gl::TimeQuery& timer, const FrameView& view);
+  /// What it gathered for one pixel of the last frame, whose view this is; pixels from the lower left.
+  std::vector<AskedPart> ask(gl::TimeQuery& timer, const FrameView& view, glm::ivec2 pixel) {
+    return gather_.ask(parts_.programs, inputsOf(timer, view), pixel);
+  }
   void forget() { maps_.forget(); }
   void collect(bool wait = false) { gather_.collect(wait); }
 
@@ -37,6 +41,7 @@ class RsmFrame {
   std::size_t gpuBytes() const { return maps_.gpuBytes() + visible_.gpuBytes() + gather_.gpuBytes(); }
 
  private:
+  RsmGather::Inputs inputsOf(gl::TimeQuery& timer, const FrameView& view);
   FrameParts parts_;
   LightMaps maps_;
   VisibleSurfaces visible_;

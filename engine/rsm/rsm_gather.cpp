@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -47,7 +48,8 @@ std::vector<glm::vec4> RsmGather::pattern(int samples, Weight weight, const glm:
 gl::ShaderFlags RsmGather::flags(const Settings& settings, Light light) {
   return {{"NEAR", static_cast<int>(settings.nearField)},
           {"ROTATION", settings.rotation == Rotation::noise},
-          {"MAP_LIGHT", static_cast<int>(light)}};
+          {"MAP_LIGHT", static_cast<int>(light)},
+          {"ASKED", 0}};
 }
 
 RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings,
@@ -109,6 +111,44 @@ void RsmGather::bindVisible(const gl::Program& program, const Inputs& inputs) co
   work_.bindStorage(kWorkBinding);
 }
 
+void RsmGather::setFit(const gl::Program& program, const Inputs& inputs) const {
+  program.set("pixelWidth", inputs.pixelWidth);
+  program.set("fitNormal", settings_.fitNormal);
+  program.set("fitPlane", settings_.fitPlane);
+  program.set("fitDistance", settings_.fitDistance);
+}
+
+std::vector<AskedPart> RsmGather::ask(gl::ProgramLibrary& programs, const Inputs& inputs, glm::ivec2 pixel) const {
+  constexpr std::size_t kPlaces = 4;  // that interpolation takes
+  std::vector<AskedPart> all;
+  for (std::size_t i = 0; i < inputs.maps.size(); ++i) {
+    const Map& map = inputs.maps[i];
+    gl::ShaderFlags flagsOfLight = flags(settings_, map.rsm.light);
+    flagsOfLight.back().second = 1;
+    const AskedParts parts(kPlaces * static_cast<std::size_t>(settings_.samples));
+    {
+      const gl::Program& program = programs.loadCompute(fmt::format("rsm ask {}", static_cast<int>(map.rsm.light)),
+                                                        "rsm/ask.comp", flagsOfLight);
+      const gl::ComputePass pass("rsm ask", gl::Barrier::bufferUpdate);
+      bindMap(program, settings_, map);
+      visible_->bind(program, inputs.worldFromClip);
+      program.set("lowStep", std::max(settings_.lowResolution, 1));
+      setFit(program, inputs);
+      program.set("askedPixel", pixel);
+      program.set("interpolates", settings_.interpolates() ? 1 : 0);
+      pattern_.bindStorage(kPatternBinding);
+      irradiance_.bind(kLowUnit);
+      parts.bind();
+      pass.dispatch(glm::ivec3(1), glm::ivec3(1));
+    }
+    for (AskedPart& part : parts.read()) {
+      part.number.w = static_cast<int>(i);
+      all.push_back(part);
+    }
+  }
+  return all;
+}
+
 void RsmGather::gatherLow(const Inputs& inputs) {
   const GatherCounts start;
   work_.upload(0, sizeof start, &start);
@@ -127,10 +167,7 @@ void RsmGather::interpolate(const Inputs& inputs) {
       "interpolation", gl::Barrier::storage | gl::Barrier::command | gl::Barrier::image | gl::Barrier::textureFetch);
   bindVisible(*interpolate_, inputs);
   lowIrradiance_.bind(kLowUnit);
-  interpolate_->set("pixelWidth", inputs.pixelWidth);
-  interpolate_->set("fitNormal", settings_.fitNormal);
-  interpolate_->set("fitPlane", settings_.fitPlane);
-  interpolate_->set("fitDistance", settings_.fitDistance);
+  setFit(*interpolate_, inputs);
   irradiance_.bindImage(0, gl::Access::write);
   refused_.bindImage(kRefusedImage, gl::Access::write);
   pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));

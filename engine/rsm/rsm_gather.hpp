@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/named_values.hpp"
+#include "forward/asked_pixel.hpp"
 #include "forward/visible_surfaces.hpp"
 #include "gl/pass.hpp"
 #include "gl/read_back.hpp"
@@ -71,6 +72,10 @@ class RsmGather {
   const Settings& settings() const { return settings_; }
   std::size_t gpuBytes() const;
 
+  /// What the gather found for one pixel, from the lower left: an entry a sample and map, in the order of the maps;
+  /// number.w is the map's. Of the frame that was gathered last, with the same inputs. Compiles and allocates.
+  std::vector<AskedPart> ask(gl::ProgramLibrary& programs, const Inputs& inputs, glm::ivec2 pixel) const;
+
   // Shared by the passes and the tests' probe.
   /// (xi1 sin 2 pi xi2, xi1 cos 2 pi xi2, xi1 or xi1^2, 0): a Hammersley set, shifted on the torus by `shift`.
   static std::vector<glm::vec4> pattern(int samples, Weight weight, const glm::dvec2& shift = glm::dvec2(0.0));
@@ -79,6 +84,7 @@ class RsmGather {
   static void bindMap(const gl::Program& program, const Settings& settings, const Map& map, bool adds = false);
 
  private:
+  void setFit(const gl::Program& program, const Inputs& inputs) const;
   void bindVisible(const gl::Program& program, const Inputs& inputs) const;
 
   Settings settings_;

@@ -7,6 +7,10 @@
 #include "lib/material.glsl"
 #include "lib/shadow.glsl"  // here, outside any condition: two of those below share it
 #include "forward/indirect.glsl"
+#include "shared/asked.h"
+#if ASKED
+#include "forward/asked.glsl"
+#endif
 
 in vec3 vPosition;
 in vec3 vNormal;
@@ -39,6 +43,14 @@ vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
   return reflected;
 }
 
+// Adds a term of the radiance; a pixel that is asked for writes each down.
+void add(inout vec3 result, vec3 radiance, int term) {
+  result += radiance;
+#if ASKED
+  asked[term] = vec4(radiance, 0.0);
+#endif
+}
+
 void main() {
   vec3 albedo = materialAlbedo(vTexCoord), mapped = materialNormal(vNormal, vPosition, vTexCoord);
 #if SPECULAR
@@ -60,24 +72,35 @@ void main() {
   float cosine = dot(normal, -frame.sunDirection);
   if (cosine > 0.0) {
     vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, meshNormal));
-    result += reflection(albedo, normal, toCamera, -frame.sunDirection) * irradiance;
+    add(result, reflection(albedo, normal, toCamera, -frame.sunDirection) * irradiance, ASKED_SUN);
   }
 #endif
 #if SPOTS
   for (int i = 0; i < SPOTS; ++i) {
     Arriving light = spotLight(i, vPosition, normal, meshNormal);
-    if (light.cosine > 0.0) result += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
+    if (light.cosine > 0.0)
+      add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, ASKED_SPOTS + i);
   }
 #endif
 #if POINTS
   for (int i = 0; i < POINTS; ++i) {
     Arriving light = pointLight(i, vPosition, normal, meshNormal);
-    if (light.cosine > 0.0) result += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
+    if (light.cosine > 0.0)
+      add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, ASKED_POINTS + i);
   }
 #endif
-  result += albedo / kPi * indirectIrradiance(vPosition, normal, meshNormal);
+  vec3 indirect = indirectIrradiance(vPosition, normal, meshNormal);
+  result += albedo / kPi * indirect;
 #if EMISSION
-  result += emitted;
+  add(result, emitted, ASKED_EMISSION);
+#endif
+#if ASKED
+  asked[ASKED_POSITION] = vec4(vPosition, 1.0);
+  asked[ASKED_NORMAL] = vec4(normal, 0.0);
+  asked[ASKED_MESH_NORMAL] = vec4(meshNormal, 0.0);
+  asked[ASKED_ALBEDO] = vec4(albedo, 0.0);
+  asked[ASKED_RADIANCE] = vec4(result, 0.0);
+  asked[ASKED_INDIRECT] = vec4(indirect, 0.0);
 #endif
   if (indirectIsRefused()) result = vec3(1.0, 0.0, 0.0) / frame.exposure;
   radiance = vec4(result, 1.0);

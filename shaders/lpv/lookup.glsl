@@ -21,25 +21,36 @@ layout(binding = UNIT_LPV_RED) uniform sampler3D lpvRed;
 layout(binding = UNIT_LPV_GREEN) uniform sampler3D lpvGreen;
 layout(binding = UNIT_LPV_BLUE) uniform sampler3D lpvBlue;
 
-vec3 lpvCascadeIrradiance(int k, vec3 position, vec3 normal) {
+// Where a cascade is looked up, in cells of the stack; border: 0 outside of it, where the sampler cannot say so.
+vec3 lpvPlace(int k, vec3 position, vec3 normal, out float border) {
   float cells = float(lpv.shape.x);
   vec3 texel = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize + lpv.lookupOffset * normal;
   // x and y end in the sampler's border of zeros; z, where the next cascade's layers follow, does so by hand.
-  float border = clamp(min(texel.z, cells - texel.z) + 0.5, 0.0, 1.0);
+  border = clamp(min(texel.z, cells - texel.z) + 0.5, 0.0, 1.0);
   texel.z = clamp(texel.z, 0.5, cells - 0.5) + float(k) * cells;
-  vec3 uvw = texel / vec3(cells, cells, cells * float(lpv.shape.y));
+  return texel;
+}
+
+// The receiver's lobe: irradiance is its product with the light's coefficients, times 4 / pi and E_ref.
+vec4 lpvLobe(vec3 normal) {
 #if FLUX_LOOKUP
   // sr, as in lpv/kernel.glsl
   const float kFront = 0.40066968464623916, kSide = 0.42343135443673924, kRoot5 = 2.2360679774997897;
-  vec4 lobe = vec4(kY00 * (kFront + 4.0 * kSide), -kY1 * (kFront + 8.0 * kSide / kRoot5) * normal) * (kPi / 4.0);
+  return vec4(kY00 * (kFront + 4.0 * kSide), -kY1 * (kFront + 8.0 * kSide / kRoot5) * normal) * (kPi / 4.0);
 #elif FLUX_UNITS
   // Deviation lpv.flux-units: intensity towards the surface times 1.7, a factor set by eye.
-  vec4 lobe = shBasis(-normal) * (1.7 * kPi / 4.0);
+  return shBasis(-normal) * (1.7 * kPi / 4.0);
 #elif UNWINDOWED
-  vec4 lobe = shCosineLobe(-normal);
+  return shCosineLobe(-normal);
 #else
-  vec4 lobe = shCosineLobe(-normal) * vec4(1.0, vec3(0.75));
+  return shCosineLobe(-normal) * vec4(1.0, vec3(0.75));
 #endif
+}
+
+vec3 lpvCascadeIrradiance(int k, vec3 position, vec3 normal) {
+  float cells = float(lpv.shape.x), border;
+  vec3 uvw = lpvPlace(k, position, normal, border) / vec3(cells, cells, cells * float(lpv.shape.y));
+  vec4 lobe = lpvLobe(normal);
   vec3 c = vec3(dot(textureLod(lpvRed, uvw, 0.0), lobe), dot(textureLod(lpvGreen, uvw, 0.0), lobe),
                 dot(textureLod(lpvBlue, uvw, 0.0), lobe));
   return max(c, 0.0) * (border * 4.0 / kPi * lpv.referenceIrradiance);

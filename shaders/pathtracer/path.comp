@@ -28,6 +28,9 @@ layout(rgba32ui, binding = 2) uniform uimage2D filmRest;
 #if MEDIA
 uint collisionCount = 0u;  // of this lane, in this submission
 #endif
+#if ASKED
+#include "pathtracer/asked.glsl"
+#endif
 #include "pathtracer/shadow_ray.glsl"
 #if INTERIORS
 #include "pathtracer/volume.glsl"
@@ -67,7 +70,7 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
 #endif
 
 // Light from beyond all surfaces.
-void addFromAfar(inout Path path) {
+void addFromAfar(inout Path path, PathNumbers numbers) {
 #if ENVIRONMENT
   if (counts(path.scatterings)) {
     vec3 radiance = environmentRadiance(path.direction);
@@ -75,14 +78,22 @@ void addFromAfar(inout Path path) {
     if (path.pdf > 0.0) radiance *= powerHeuristic(path.pdf, tracer.environmentPick * environmentPdf(path.direction));
 #endif
     addLight(path, radiance);
+#if ASKED
+    noteLight(path, numbers, lightOf(path, radiance), PATH_LIGHT_ENVIRONMENT, 0u, path.origin, path.direction, true);
+#endif
   }
 #elif BACKGROUND
-  if (path.scatterings == 0u && counts(0u)) addLight(path, tracer.background);  // is seen, but lights nothing
+  if (path.scatterings == 0u && counts(0u)) {
+    addLight(path, tracer.background);  // is seen, but lights nothing
+#if ASKED
+    noteLight(path, numbers, tracer.background, PATH_ASKED_BACKGROUND, 0u, path.origin, path.direction, true);
+#endif
+  }
 #endif
 }
 
 #if EMISSION
-void addEmission(inout Path path, Hit hit, Surface surface) {
+void addEmission(inout Path path, Hit hit, Surface surface, PathNumbers numbers) {
   vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
 #if NEXT_EVENT
   if (path.pdf > 0.0) {
@@ -92,6 +103,10 @@ void addEmission(inout Path path, Hit hit, Surface surface) {
   }
 #endif
   addLight(path, emission);
+#if ASKED
+  noteLight(path, numbers, lightOf(path, emission), PATH_LIGHT_TRIANGLE, hit.triangle, path.origin, surface.position,
+            false);
+#endif
 }
 #endif
 
@@ -134,7 +149,7 @@ bool meet(inout Path path, Hit hit, uvec4 beyond, uvec4 before, PathNumbers numb
 bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #endif
   if (hit.triangle == kNoHit) {
-    addFromAfar(path);
+    addFromAfar(path, numbers);
     return false;
   }
   Surface surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
@@ -164,7 +179,8 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
     return false;
 #endif
 #if EMISSION
-  if (any(greaterThan(material.emission, vec3(0.0))) && counts(path.scatterings)) addEmission(path, hit, surface);
+  if (any(greaterThan(material.emission, vec3(0.0))) && counts(path.scatterings))
+    addEmission(path, hit, surface, numbers);
 #endif
   float iorBeyond = path.ior;
 #if INTERIORS
@@ -286,6 +302,9 @@ void main() {
     if (job == kPathRay) {
       if (loopTurns >= tracer.turns) break;
       loopTurns += 4u;
+#if ASKED
+      notePlace(path);
+#endif
 #if MEDIA
       // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
       int medium = mediumInside(path.inside);
@@ -378,6 +397,9 @@ void main() {
     }
     if (stage == kLit) {
       path.radiance += shadow.light;
+#if ASKED
+      noteShadow(path, after == kFlown, numbers);
+#endif
       shadow.waits = false;
       job = kPathRay;
       stage = after;
@@ -431,8 +453,13 @@ void main() {
       stage = meet(path, arrival, numbers) ? kGoesOn : kEnds;
 #endif
 #if SHADOW_AT_ONCE
-      if (shadow.waits && !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip))
+      if (shadow.waits &&
+          !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip)) {
         path.radiance += shadow.light;
+#if ASKED
+        noteShadow(path, false, numbers);
+#endif
+      }
       shadow.waits = false;
 #else
       if (shadow.waits) {

@@ -16,6 +16,10 @@ struct Shadow {
   uvec4 inside;    // of which closed boundaries
   uvec4 words;     // random
 #endif
+#if ASKED
+  uint kind;       // of the lamp
+  uint number;     // its triangle, or place among the lights
+#endif
 };
 Shadow shadow;
 
@@ -30,6 +34,10 @@ void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint 
   shadow.infinite = light.infinite;
   shadow.skip = skip;
   shadow.light = lightOf(path, contribution);
+#if ASKED
+  shadow.kind = lights[pickedLight].kind;
+  shadow.number = shadow.kind == PATH_LIGHT_TRIANGLE ? lights[pickedLight].p : pickedLight;
+#endif
   shadow.origin = start;
   shadow.direction = light.infinite ? light.direction : light.end - start;
 #if INTERIORS
@@ -40,3 +48,13 @@ void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint 
   shadow.words = randomWords(numbers, path.event, kPurposeTransmittance);
 #endif
 }
+
+#if ASKED
+// What the shadow ray brought; its path has not moved since, though it may have a new direction.
+// inFlight: it was asked from a point of a flight through a medium, which scatters there.
+void noteShadow(Path path, bool inFlight, PathNumbers numbers) {
+  path.scatterings += inFlight ? 1u : 0u;
+  noteLight(path, numbers, shadow.light, shadow.kind, shadow.number, shadow.origin,
+            shadow.infinite ? shadow.direction : shadow.origin + shadow.direction, shadow.infinite);
+}
+#endif

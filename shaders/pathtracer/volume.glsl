@@ -351,8 +351,14 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
       vec3 q = channelProbabilities(path.throughput);
       float real = dot(q, share);
 #if VOLUME_EMISSION
-      if (counts(path.scatterings))
-        addLight(path, medium.emission * (densityAt(g, march.origin + t * march.direction) / rate));
+      if (counts(path.scatterings)) {
+        vec3 emitted = medium.emission * (densityAt(g, march.origin + t * march.direction) / rate);
+        addLight(path, emitted);
+#if ASKED
+        noteLight(path, numbers, lightOf(path, emitted), PATH_ASKED_MEDIUM, 0u, path.origin,
+                  path.origin + t * path.direction, false);
+#endif
+      }
 #endif
       bool collides = unitFloat(words.y) < real;
       if (medium.greyExtinction != 0)
@@ -414,7 +420,12 @@ void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, b
   if (counts(path.scatterings) && distance < 0.5 * kFar) {
     // By the length of the flight: one point of it stands for all. Where little collides that has hardly any noise.
     float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
-    addLight(path, distance * medium.emission * passageWeight(medium, q, x));
+    vec3 emitted = distance * medium.emission * passageWeight(medium, q, x);
+    addLight(path, emitted);
+#if ASKED
+    noteLight(path, numbers, lightOf(path, emitted), PATH_ASKED_MEDIUM, 0u, path.origin,
+              path.origin + x * path.direction, false);
+#endif
   }
 #endif
 #if DISTANCE_WITHOUT_PDF

@@ -7,6 +7,10 @@ in vec3 vPosition;
 in vec3 vIrradiance;
 in vec2 vTexCoord;
 in vec3 vCorner;
+#if ASKED
+flat in int vPatch;
+#include "forward/asked.glsl"
+#endif
 #if DIRECT_RAYS
 #include "radiosity/direct_rays.glsl"
 in vec3 vNormal;
@@ -35,11 +39,21 @@ void main() {
   if (gl_FrontFacing) {
     vec3 irradiance = vIrradiance;
 #if DIRECT_RAYS
-    irradiance += directIrradiance(vPosition, normal, vFace, vFacePlace.x, vFacePlace.y);
+    irradiance += directIrradiance(vPosition, normal, vFace, vFacePlace.x, vFacePlace.y, albedo / kPi);
 #endif
     result = albedo * irradiance / kPi;
 #if EMISSION
     result += emitted;
+#endif
+#if ASKED
+    asked[ASKED_POSITION] = vec4(vPosition, 1.0);
+    asked[ASKED_ALBEDO] = vec4(albedo, 0.0);
+    asked[ASKED_RADIANCE] = vec4(result, 0.0);
+    asked[ASKED_INDIRECT] = vec4(vIrradiance, 0.0);
+    asked[ASKED_CORNERS] = vec4(vCorner, float(vPatch));
+#if EMISSION
+    asked[ASKED_EMISSION] = vec4(emitted, 0.0);
+#endif
 #endif
   }
 #if MESH

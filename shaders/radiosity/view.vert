@@ -17,6 +17,9 @@ out vec3 vPosition;
 out vec3 vIrradiance;
 out vec2 vTexCoord;
 out vec3 vCorner;  // barycentric
+#if ASKED
+flat out int vPatch;
+#endif
 
 void main() {
   int at = 3 * gl_VertexID;
@@ -24,6 +27,9 @@ void main() {
   vIrradiance = vec3(irradiances[at], irradiances[at + 1], irradiances[at + 2]);
   vTexCoord = texCoord;
   vCorner = vec3(gl_VertexID % 3 == 0, gl_VertexID % 3 == 1, gl_VertexID % 3 == 2);
+#if ASKED
+  vPatch = gl_VertexID / 3;
+#endif
 #if DIRECT_RAYS
   int face = 5 * (gl_VertexID / 3);
   vFace = vec3(faces[face], faces[face + 1], faces[face + 2]);

@@ -14,11 +14,14 @@ struct LightSample {
   bool infinite;
 };
 
+uint pickedLight;  // by sampleLight, for who wants to know
+
 // xi: where on the light; words: which. False: no light comes from what was picked.
 bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
   uint i = scaledWord(words.x, uint(lights.length()));
   if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
   PathLight source = lights[i];
+  pickedLight = i;
   light.infinite = false;
   light.pdf = 0.0;
   light.end = source.a;

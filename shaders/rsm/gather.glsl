@@ -7,6 +7,10 @@
 layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // xi1 sin, xi1 cos, weight, unused
 uniform int adds;
 uniform float gatherRadius;  // r, fraction of the map's side
+#if ASKED
+// Of the pixel that is asked for (rsm/ask.comp): what the sample i gives of the irradiance, and from which surfel.
+void tell(int i, RsmSurfel surfel, ivec3 texel, vec3 irradiance);
+#endif
 
 #if MAP_LIGHT == MAP_POINT
 // The map is a whole sphere about the lamp: samples lie at the angle pi r xi1 from the point's direction, turned by 2
@@ -27,7 +31,12 @@ vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
     float sine = sin(most * xi1), solidAngle;
     ivec3 texel = rsmTexel(cos(most * xi1) * axis + sine * (turned.x * right + turned.y * up), solidAngle);
     RsmSurfel surfel = rsmSurfel(texel);
-    if (surfel.lit) sum += p.z * (sine / (xi1 * solidAngle)) * surfelIrradiance(surfel, position, normal);
+    if (!surfel.lit) continue;
+    vec3 part = p.z * (sine / (xi1 * solidAngle)) * surfelIrradiance(surfel, position, normal);
+    sum += part;
+#if ASKED
+    tell(i, surfel, texel, part * (2.0 * kPi * most / float(pattern.length())));
+#endif
   }
   return sum * (2.0 * kPi * most / float(pattern.length()));
 }
@@ -44,7 +53,12 @@ vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
     // Beyond the map is no light; compared as floats, since the integer of a huge or undefined number is undefined.
     if (!(min(at.x, at.y) >= 0.0 && at.x < float(size.x) && at.y < float(size.y))) continue;
     RsmSurfel surfel = rsmSurfel(ivec3(at, 0));
-    if (surfel.lit) sum += p.z * surfelIrradiance(surfel, position, normal);
+    if (!surfel.lit) continue;
+    vec3 part = p.z * surfelIrradiance(surfel, position, normal);
+    sum += part;
+#if ASKED
+    tell(i, surfel, ivec3(at, 0), part * (2.0 * kPi * radius.x * radius.y / float(pattern.length())));
+#endif
   }
   return sum * (2.0 * kPi * radius.x * radius.y / float(pattern.length()));
 }

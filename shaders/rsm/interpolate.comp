@@ -1,19 +1,12 @@
 // Irradiance of a pixel from the 4 nearest low-resolution samples, where at least 3 of them fit it: a similar normal,
 // near its tangent plane, not far away [Dachsbacher2005]. Bilinear weights of those that fit. Every other pixel goes
 // into the list that the full gather works through.
-#include "lib/frame.glsl"
-#include "forward/visible.glsl"
-#include "rsm/low.glsl"
+#include "rsm/fit.glsl"
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;  // w: 0 no surface, 1 interpolated, 2 gathered
 layout(r32ui, binding = 1) writeonly uniform uimage2D refusedPixels;  // x | y << 16, row by row
 layout(binding = 5) uniform sampler2D lowIrradiance;
-uniform float pixelWidth;   // of a pixel, scene units across the view per unit of distance
-uniform float fitNormal;    // least cosine between the normals
-// most distance from the tangent plane, in steps between low-resolution samples at the pixel
-uniform float fitPlane;
-uniform float fitDistance;  // most distance, in the same
 shared uint groupSurfaces;
 
 void main() {
@@ -23,25 +16,13 @@ void main() {
   if (all(lessThan(pixel, imageSize(irradianceImage)))) {
     if (isVisibleSurface(pixel)) {
       atomicAdd(groupSurfaces, 1u);
-      vec3 position = visiblePosition(pixel), normal = visibleUnitNormal(pixel);
-      float stepLength = float(lowStep) * pixelWidth * distance(position, frame.cameraPosition);
-      ivec2 lowSize = textureSize(lowIrradiance, 0);
-      vec2 at = (vec2(pixel) - float(lowStep / 2)) / float(lowStep);
-      ivec2 base = clamp(ivec2(floor(at)), ivec2(0), max(lowSize - 2, 0));
-      vec2 f = clamp(at - vec2(base), 0.0, 1.0);
       vec4 sum = vec4(0.0);
       int fits = 0;
       for (int i = 0; i < 4; ++i) {
-        ivec2 corner = ivec2(i & 1, i >> 1);
-        ivec2 low = min(base + corner, lowSize - 1), there = lowPixel(low);
-        if (!isVisibleSurface(there)) continue;
-        vec3 away = visiblePosition(there) - position, otherNormal = visibleUnitNormal(there);
-        if (dot(normal, otherNormal) < fitNormal || length(away) > fitDistance * stepLength ||
-            max(abs(dot(normal, away)), abs(dot(otherNormal, away))) > fitPlane * stepLength)
-          continue;
+        LowSample near = lowSample(pixel, i);
+        if (!near.fits) continue;
         ++fits;
-        vec2 weight = mix(1.0 - f, f, vec2(corner));
-        sum += weight.x * weight.y * vec4(texelFetch(lowIrradiance, low, 0).rgb, 1.0);
+        sum += near.weight * vec4(texelFetch(lowIrradiance, near.low, 0).rgb, 1.0);
       }
       if (fits >= 3 && sum.w > 1e-3) {
         imageStore(irradianceImage, pixel, vec4(sum.rgb / sum.w, 1.0));

@@ -22,6 +22,14 @@ SHARED_BEGIN
 
 #define PATH_NO_TEXTURE (-1)
 
+// Of the one pixel that is asked what lit it, behind the lanes' state in uvec4: how many records there are; places of
+// the present path; records. A record: radiance and sample; scatterings, kind of the light, its number, places; the
+// places, and where the light is (w: 1 at infinity, then the direction to it).
+#define PATH_ASKED_PLACES 8
+#define PATH_ASKED_RECORD 11
+#define PATH_ASKED_MEDIUM 5u      // besides the kinds of lights: a medium that emits
+#define PATH_ASKED_BACKGROUND 6u
+
 struct PathConstants {
   vec3 cameraPosition;
   uint seed;

@@ -1,0 +1,59 @@
+#include "ask.hpp"
+
+#include "base/error.hpp"
+
+#include <cstdio>
+
+namespace lucerna::demo {
+
+namespace {
+
+nlohmann::ordered_json toJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+nlohmann::ordered_json toJson(const PixelAnswer& answer, const PixelShare& share) {
+  nlohmann::ordered_json json = {{"group", share.group},
+                                 {"name", share.name},
+                                 {"share", answer.shareOf(share.radiance)},
+                                 {"radiance", toJson(share.radiance)}};
+  if (share.count > 1) json["count"] = share.count;
+  if (share.weight) json["weight"] = *share.weight;
+  if (share.lobe)
+    for (const glm::vec4& c : *share.lobe) json["lobe"].push_back({c.x, c.y, c.z, c.w});
+  for (const glm::dvec3& place : share.places) json["places"].push_back(toJson(place));
+  return json;
+}
+
+}  // namespace
+
+nlohmann::ordered_json toJson(const PixelAnswer& answer) {
+  nlohmann::ordered_json json;
+  json["pixel"] = {answer.pixel.x, answer.pixel.y};
+  json["technique"] = answer.technique;
+  json["radiance"] = toJson(answer.radiance);
+  json["sum"] = toJson(answer.sum());
+  if (answer.samples > 0) {
+    json["samples"] = answer.samples;
+    json["standard_error"] = toJson(answer.standardError);
+  }
+  if (answer.surface)
+    json["surface"] = {{"position", toJson(answer.surface->position)},
+                       {"normal", toJson(answer.surface->normal)},
+                       {"albedo", toJson(answer.surface->albedo)}};
+  json["groups"] = nlohmann::ordered_json::array();
+  for (const auto& [name, radiance] : answer.groups())
+    json["groups"].push_back({{"group", name}, {"share", answer.shareOf(radiance)}, {"radiance", toJson(radiance)}});
+  json["shares"] = nlohmann::ordered_json::array();
+  for (const PixelShare& share : answer.shares) json["shares"].push_back(toJson(answer, share));
+  return json;
+}
+
+glm::ivec2 parsePixel(const std::string& text, glm::ivec2 size) {
+  glm::ivec2 pixel(-1);
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%d,%d%c", &pixel.x, &pixel.y, &rest) != 2 || pixel.x < 0 || pixel.y < 0 ||
+      pixel.x >= size.x || pixel.y >= size.y)
+    throwBadInput("--ask {}: expected X,Y, a pixel of {}x{}, from 0,0 at the top left", text, size.x, size.y);
+  return pixel;
+}
+
+}  // namespace lucerna::demo

@@ -1,0 +1,19 @@
+// What lit a pixel, as JSON: `lucerna render --ask` and the window's panel.
+#pragma once
+
+#include "render/pixel_answer.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace lucerna::demo {
+
+/// Of each group; the others are one share.
+constexpr std::size_t kAskedShares = 32;
+
+nlohmann::ordered_json toJson(const PixelAnswer& answer);
+/// "X,Y" within a picture, from its top left; throws Error(badInput) naming --ask.
+glm::ivec2 parsePixel(const std::string& text, glm::ivec2 size);
+
+}  // namespace lucerna::demo

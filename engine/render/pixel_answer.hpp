@@ -1,0 +1,50 @@
+// What lit a pixel: the answer to a question about one pixel of a frame (no GL calls).
+//
+// Renderer::ask draws that pixel again with shaders that write each term down (flag ASKED), and asks the technique's
+// own lookup which texels, cells, receivers or patches it took. Nothing of it is compiled, allocated or done in a frame
+// that nobody asks about.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lucerna {
+
+/// One source of the pixel's light, or several of a kind together.
+struct PixelShare {
+  std::string group;  ///< emission, direct, indirect, scattered twice, ...
+  std::string name;  ///< "sun", "texel 17, 40 of the sun's map", ...
+  glm::dvec3 radiance{0.0};
+  std::vector<glm::dvec3> places;  ///< from the pixel's surface (a path: the camera) to the light, scene coordinates
+  std::optional<double> weight;  ///< of a cell or receiver in the lookup; the form factor to a patch
+  std::optional<std::array<glm::vec4, 3>> lobe;  ///< of a cell: coefficients of red, green and blue, as stored
+  std::size_t count = 1;  ///< of those that are together
+};
+
+struct PixelAnswer {
+  struct Surface {
+    glm::dvec3 position{0.0}, normal{0.0}, albedo{0.0};
+  };
+  glm::ivec2 pixel{0};  ///< from the top left
+  std::string technique;
+  glm::dvec3 radiance{0.0};  ///< of the picture, linear, scene units
+  std::optional<Surface> surface;  ///< that is seen there; path tracing has none
+  std::vector<PixelShare> shares;  ///< the brightest first; some are negative (cells with a light that ebbs)
+  std::uint64_t samples = 0;  ///< of path tracing
+  glm::dvec3 standardError{0.0};  ///< of path tracing, of `radiance`
+
+  glm::dvec3 sum() const;
+  /// Of a share, by luminance, of the pixel's; 0 for a black pixel.
+  double shareOf(const glm::dvec3& radiance) const;
+  /// Radiance by group, the brightest first.
+  std::vector<std::pair<std::string, glm::dvec3>> groups() const;
+  /// Sorts, and keeps the `most` brightest of each group; the others become one of their group and sign.
+  void condense(std::size_t most);
+};
+
+}  // namespace lucerna

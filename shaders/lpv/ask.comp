@@ -1,0 +1,41 @@
+// What the lookup takes of each cell for one point: an entry a cell. One invocation.
+layout(local_size_x = 1) in;
+#include "lpv/lookup.glsl"
+#include "forward/asked_parts.glsl"
+uniform vec3 askedPosition;
+uniform vec3 askedNormal;
+
+void main() {
+  int cells = lpv.shape.x;
+  float left = 1.0;
+  for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
+#if SUM_CASCADES
+    float weight = 1.0;
+#else
+    float weight = left * lpvCascadeWeight(k, askedPosition);
+    left -= weight;
+#endif
+    float border;
+    vec3 place = lpvPlace(k, askedPosition, askedNormal, border) - 0.5;
+    vec4 lobe = lpvLobe(askedNormal);
+    for (int i = 0; i < 8; ++i) {
+      ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2), texel = ivec3(floor(place)) + corner;
+      vec3 near = mix(1.0 - fract(place), fract(place), vec3(corner));
+      float share = weight * border * near.x * near.y * near.z;
+      ivec3 cell = texel - ivec3(0, 0, k * cells);
+      if (!(share > 0.0) || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(cells)))) continue;
+      AskedPart part;
+      part.red = texelFetch(lpvRed, texel, 0);
+      part.green = texelFetch(lpvGreen, texel, 0);
+      part.blue = texelFetch(lpvBlue, texel, 0);
+      part.irradiance = (share * 4.0 / kPi * lpv.referenceIrradiance) *
+                        vec3(dot(part.red, lobe), dot(part.green, lobe), dot(part.blue, lobe));
+      part.weight = share;
+      part.place = lpv.cascades[k].minimum + lpv.cascades[k].cellSize * (vec3(cell) + 0.5);
+      part.padding = 0.0;
+      part.number = ivec4(cell, k);
+      tellPart(part);
+    }
+  }
+  endParts();
+}

@@ -1,0 +1,48 @@
+// What the lookup takes of each receiver for one point: an entry a receiver. One invocation.
+layout(local_size_x = 1) in;
+#include "lpv/receivers/lookup.glsl"
+#include "forward/asked_parts.glsl"
+layout(binding = 0) uniform usamplerBuffer lpvSlots;
+layout(std430, binding = 0) readonly buffer LpvReceivers { LpvReceiver receivers[]; };
+uniform vec3 askedPosition;
+uniform vec3 askedNormal;  // of the mesh
+
+
+// The sum of the cascades' weights, by which all of them are divided.
+float weightsOfCascades(out float weights[LPV_MAX_CASCADES], out float there[LPV_MAX_CASCADES]) {
+  float left = 1.0, sum = 0.0;
+  for (int k = 0; k < LPV_MAX_CASCADES; ++k) {
+    weights[k] = there[k] = 0.0;
+    if (k >= lpv.shape.y || !(left > 0.0)) continue;
+    float weight = left * lpvCascadeWeight(k, askedPosition);
+    if (!(weight > 0.0)) continue;
+    there[k] = receivedInCascade(k, askedPosition, askedNormal).w;
+    if (!(there[k] > kLeast)) continue;
+    weights[k] = weight * min(there[k] / kEnough, 1.0);
+    sum += weights[k];
+    left -= weights[k];
+  }
+  return sum;
+}
+
+void main() {
+  int cells = lpv.shape.x;
+  float weights[LPV_MAX_CASCADES], there[LPV_MAX_CASCADES], sum = weightsOfCascades(weights, there);
+  for (int k = 0; k < lpv.shape.y; ++k) {
+    if (!(weights[k] > 0.0)) continue;
+    vec3 place = receivedPlace(k, askedPosition) - 0.5;
+    for (int i = 0; i < 24; ++i) {
+      int axis = i >> 3, face = faceOf(axis, askedNormal[axis]);
+      ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2 & 1), cell = ivec3(floor(place)) + corner;
+      vec3 near = mix(1.0 - fract(place), fract(place), vec3(corner));
+      float share = askedNormal[axis] * askedNormal[axis] * near.x * near.y * near.z * weights[k] / (there[k] * sum);
+      if (!(share > 0.0) || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(cells)))) continue;
+      vec4 held = texelFetch(lpvReceived, cell + ivec3(0, 0, (k * LPV_FACES + face) * cells), 0);
+      uint slot = texelFetch(lpvSlots, slotOf(k, face, cell + receiving.firstCell[k].xyz)).x;
+      if (!(held.w > 0.0) || slot == 0u) continue;
+      tellPart(AskedPart(share * lpv.referenceIrradiance * held.rgb, share * held.w, receivers[slot - 1u].position,
+                         0.0, ivec4(cell, k), vec4(0.0), vec4(0.0), vec4(0.0)));
+    }
+  }
+  endParts();
+}

@@ -1,0 +1,29 @@
+// The one pixel that is asked what lit it: whatever is added to a path's radiance is written down with the path's places
+// (shared/path_tracer.h). A single lane is at work, on one path after the other.
+const uint kStateWords = 6u;  // of a lane, in uvec4
+
+uint askedBase() { return kStateWords * uint(tracer.picture.z); }
+
+uvec4 asPlace(vec3 place, float w) { return uvec4(floatBitsToUint(place), floatBitsToUint(w)); }
+
+// Where the path scattered last, or the camera.
+void notePlace(Path path) {
+  if (path.scatterings >= uint(PATH_ASKED_PLACES)) return;
+  state[askedBase() + 1u + path.scatterings] = asPlace(path.origin, 0.0);
+}
+
+// light: what was added; end: where it comes from, or the direction to it; from: where the last ray begins.
+void noteLight(Path path, PathNumbers numbers, vec3 light, uint kind, uint number, vec3 from, vec3 end,
+               bool infinite) {
+  if (light == vec3(0.0)) return;
+  uint base = askedBase(), index = state[base].x, first = base + 1u + uint(PATH_ASKED_PLACES),
+       record = first + index * uint(PATH_ASKED_RECORD);
+  state[base].x = index + 1u;
+  if (record + uint(PATH_ASKED_RECORD) > uint(state.length())) return;
+  uint places = min(path.scatterings + 1u, uint(PATH_ASKED_PLACES));
+  if (path.scatterings < uint(PATH_ASKED_PLACES)) state[base + 1u + path.scatterings] = asPlace(from, 0.0);
+  state[record] = uvec4(floatBitsToUint(light), numbers.sampleIndex);
+  state[record + 1u] = uvec4(path.scatterings, kind, number, places);
+  for (uint i = 0u; i < places; ++i) state[record + 2u + i] = state[base + 1u + i];
+  state[record + 2u + uint(PATH_ASKED_PLACES)] = asPlace(end, infinite ? 1.0 : 0.0);
+}

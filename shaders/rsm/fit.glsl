@@ -1,0 +1,39 @@
+// Which of the low-resolution samples around a pixel fit it [Dachsbacher2005]: a similar normal, near its tangent
+// plane, not far away.
+#include "lib/frame.glsl"
+#include "forward/visible.glsl"
+#include "rsm/low.glsl"
+uniform float pixelWidth;   // of a pixel, scene units across the view per unit of distance
+uniform float fitNormal;    // least cosine between the normals
+// most distance from the tangent plane, in steps between low-resolution samples at the pixel
+uniform float fitPlane;
+uniform float fitDistance;  // most distance, in the same
+
+struct LowSample {
+  ivec2 low;     // which of them
+  ivec2 pixel;   // that it stands on
+  bool fits;
+  float weight;  // bilinear
+};
+
+// The i-th of the four around the pixel.
+LowSample lowSample(ivec2 pixel, int i) {
+  vec3 position = visiblePosition(pixel), normal = visibleUnitNormal(pixel);
+  float stepLength = float(lowStep) * pixelWidth * distance(position, frame.cameraPosition);
+  ivec2 lowSize = (textureSize(visibleDepth, 0) + lowStep - 1) / lowStep;
+  vec2 at = (vec2(pixel) - float(lowStep / 2)) / float(lowStep);
+  ivec2 base = clamp(ivec2(floor(at)), ivec2(0), max(lowSize - 2, 0));
+  vec2 f = clamp(at - vec2(base), 0.0, 1.0);
+  ivec2 corner = ivec2(i & 1, i >> 1);
+  LowSample result;
+  result.low = min(base + corner, lowSize - 1);
+  result.pixel = lowPixel(result.low);
+  vec2 weight = mix(1.0 - f, f, vec2(corner));
+  result.weight = weight.x * weight.y;
+  result.fits = false;
+  if (!isVisibleSurface(result.pixel)) return result;
+  vec3 away = visiblePosition(result.pixel) - position, otherNormal = visibleUnitNormal(result.pixel);
+  result.fits = !(dot(normal, otherNormal) < fitNormal || length(away) > fitDistance * stepLength ||
+                  max(abs(dot(normal, away)), abs(dot(otherNormal, away))) > fitPlane * stepLength);
+  return result;
+}
