@@ -70,6 +70,24 @@ std::optional<float> Compare::meteredExposure(const gl::Texture& radiance) const
   return static_cast<float>(std::clamp(0.3 / std::exp2(sum / count), 1e-9, 1e9));
 }
 
+bool Compare::isRight(const Inputs& in, glm::ivec2 target, glm::vec2 pixel) {
+  const float edge = in.layout == Layout::sideBySide ? 0.5f : in.split;
+  return in.layout != Layout::one && pixel.x >= edge * static_cast<float>(target.x);
+}
+
+// As shaders/walk/compose.frag has it.
+gl::Lines::Placement Compare::placementOf(const Inputs& in, glm::ivec2 target, bool right) {
+  const glm::vec2 pixels(target), size(in.left.radiance ? in.left.radiance->size2d() : target);
+  const bool halves = in.layout == Layout::sideBySide;
+  const int edge = in.layout == Layout::one ? target.x
+                   : halves                 ? target.x / 2
+                                            : static_cast<int>(std::lround(in.split * pixels.x));
+  const glm::vec2 region = halves ? glm::vec2(0.5f * pixels.x, pixels.y) : pixels;
+  const glm::vec2 middle = halves ? glm::vec2(right ? 0.75f : 0.25f, 0.5f) * pixels : 0.5f * pixels;
+  const float pixelsOfTexel = in.zoom * std::min(region.x / size.x, region.y / size.y);
+  return {{right ? edge : 0, 0}, {right ? target.x - edge : edge, target.y}, middle, in.centre, pixelsOfTexel * size};
+}
+
 std::optional<glm::ivec2> Compare::pictureAt(const Inputs& in, glm::ivec2 target, glm::vec2 pixel) {
   if (!in.left.radiance) return {};
   const glm::vec2 pixels(target), size(in.left.radiance->size2d());

@@ -2,6 +2,7 @@
 // one exposure, tone map and zoom.
 #pragma once
 
+#include "gl/lines.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 
@@ -45,6 +46,10 @@ class Compare {
   /// GPU.
   std::optional<float> meteredExposure(const gl::Texture& radiance) const;
 
+  /// Where in the target the left picture, or the right one, is drawn.
+  static gl::Lines::Placement placementOf(const Inputs& inputs, glm::ivec2 target, bool right);
+  /// Whether a pixel of the target (from the top left) is of the right picture.
+  static bool isRight(const Inputs& inputs, glm::ivec2 target, glm::vec2 pixel);
   /// The pixel of the picture (from the top left) under a pixel of the target; none beside it.
   static std::optional<glm::ivec2> pictureAt(const Inputs& inputs, glm::ivec2 target, glm::vec2 pixel);
 

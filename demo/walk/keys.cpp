@@ -13,6 +13,8 @@ constexpr KeyBinding kKeys[] = {
     {'L', false, Action::reload, "the same"},
     {key::kF11, false, Action::fullScreen, "full screen"},
     {key::kF12, false, Action::shot, "save the picture: PNG as shown, HDR linear, settings inside"},
+    {'V', false, Action::video, "record a video, end it (ffmpeg)"},
+    {key::kF11, true, Action::capture, "a frame for RenderDoc (walk --capture N loads it)"},
     {' ', false, Action::pause, "pause and go on along the path"},
     {'R', false, Action::follow, "leave the path, take it up again"},
     {'[', false, Action::slower, "half the speed along the path"},
@@ -34,6 +36,7 @@ constexpr KeyBinding kKeys[] = {
     {'Z', false, Action::magnifier, "magnifier with values"},
     {'H', false, Action::nextView, "picture, signed error, relative error, z-score, FLIP"},
     {'T', false, Action::truth, "live truth: a reference of this view while the camera rests"},
+    {'I', false, Action::ask, "what lit the pixel under the cursor"},
     {'F', false, Action::fit, "the whole picture again, after zooming"},
     {key::kEscape, false, Action::end, "stop what is being made; else end"},
 };

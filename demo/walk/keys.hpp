@@ -15,6 +15,8 @@ enum class Action {
   reload,
   fullScreen,
   shot,
+  capture,
+  video,
   end,
   pause,
   follow,
@@ -37,6 +39,7 @@ enum class Action {
   magnifier,
   nextView,
   truth,
+  ask,
   fit,
 };
 

@@ -16,6 +16,7 @@ struct WalkOptions {
   bool flicker = false;
   /// Off-screen into files, instead of a window.
   bool records() const { return !record.empty() || part.isPart() || !part.checkpoint.empty(); }
+  int capture = -1;  ///< the frame that RenderDoc captures; negative: none
   int frames = 0;  ///< 0: 12 when recording, the whole path in a window
 };
 

@@ -5,13 +5,17 @@
 #include "base/statistics.hpp"
 #include "walk/controls.hpp"
 #include "walk/keys.hpp"
+#include "walk/pixel_section.hpp"
 #include "walk/settings_section.hpp"
 #include "walk/shots.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cfloat>
 #include <cmath>
+#include <utility>
 
 namespace lucerna::demo {
 
@@ -100,6 +104,32 @@ void showCamera(Ui& ui, WalkState& s, Host& host) {
   (void)host;
 }
 
+/// Whether it was changed.
+bool showSun(Ui& ui, DirectionalLight& sun) {
+  bool changed = false;
+  const glm::dvec3 to = -sun.direction;
+  float height = static_cast<float>(glm::degrees(std::asin(std::clamp(to.y, -1.0, 1.0))));
+  float azimuth = static_cast<float>(glm::degrees(std::atan2(to.x, -to.z)));
+  const bool raised = slider(ui, "sun height", height, 1.0f, 90.0f, "%.1f degrees");  // both are drawn, whichever moved
+  const bool turned = slider(ui, "sun azimuth", azimuth, -180.0f, 180.0f, "%.1f degrees");
+  const bool moved = raised || turned;
+  if (moved) {
+    const double h = glm::radians(std::clamp(static_cast<double>(height), 0.5, 89.9)),
+                 a = glm::radians(static_cast<double>(azimuth));
+    sun.direction = -glm::dvec3(std::cos(h) * std::sin(a), std::sin(h), -std::cos(h) * std::cos(a));
+    changed = true;
+  }
+  float strength = std::max({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z});
+  if (strength > 0.0f) {
+    float asked = strength;
+    if (slider(ui, "sun irradiance", asked, 1e-3f, 1e4f, "%.4g W/unit^2", true)) {
+      sun.irradiance *= asked / strength;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
 void showLight(Ui& ui, WalkState& s) {
   slider(ui, "exposure", s.exposure, 1e-3f, 1e3f, "%.4g", true);
   explain("Multiplies radiance before the tone curve, in all pictures alike.");
@@ -109,30 +139,7 @@ void showLight(Ui& ui, WalkState& s) {
   if (button(ui, "meter once")) s.meterWanted = true;
   Scene& scene = *s.scene;
   bool changed = false;
-  if (scene.sun) {
-    DirectionalLight& sun = *scene.sun;
-    const glm::dvec3 to = -sun.direction;
-    float height = static_cast<float>(glm::degrees(std::asin(std::clamp(to.y, -1.0, 1.0))));
-    float azimuth = static_cast<float>(glm::degrees(std::atan2(to.x, -to.z)));
-    const bool raised =
-        slider(ui, "sun height", height, 1.0f, 90.0f, "%.1f degrees");  // both are drawn, whichever moved
-    const bool turned = slider(ui, "sun azimuth", azimuth, -180.0f, 180.0f, "%.1f degrees");
-    const bool moved = raised || turned;
-    if (moved) {
-      const double h = glm::radians(std::clamp(static_cast<double>(height), 0.5, 89.9)),
-                   a = glm::radians(static_cast<double>(azimuth));
-      sun.direction = -glm::dvec3(std::cos(h) * std::sin(a), std::sin(h), -std::cos(h) * std::cos(a));
-      changed = true;
-    }
-    float strength = std::max({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z});
-    if (strength > 0.0f) {
-      float asked = strength;
-      if (slider(ui, "sun irradiance", asked, 1e-3f, 1e4f, "%.4g W/unit^2", true)) {
-        sun.irradiance *= asked / strength;
-        changed = true;
-      }
-    }
-  }
+  if (scene.sun) changed = showSun(ui, *scene.sun);
   const auto lamp = [&](const std::string& name, glm::vec3& intensity, glm::dvec3& position) {
     ImGui::PushID(name.c_str());
     line(name);
@@ -157,6 +164,10 @@ void showLight(Ui& ui, WalkState& s) {
     }
     ImGui::PopID();
   };
+  if (!scene.spots.empty() || !scene.points.empty()) {
+    checkbox(ui, "move lamps in the picture", s.movesLamps);
+    explain("Each lamp has three axes: drag it along one. The light follows when the button is let go.");
+  }
   for (std::size_t i = 0; i < scene.spots.size() && i < 16; ++i)
     lamp(fmt::format("spot {}", i + 1), scene.spots[i].intensity, scene.spots[i].position);
   for (std::size_t i = 0; i < scene.points.size() && i < 16; ++i)
@@ -288,6 +299,52 @@ void showStages(Ui& ui, WalkState& s) {
     ui.note("layer");
   }
   if (isLight) slider(ui, "brightness", s.stageFactor, -20.0f, 40.0f, "2^%.1f");
+  int count = static_cast<int>(s.countView), glyphs = static_cast<int>(s.glyphs);
+  if (menu(ui, "count of", count, kCountViewNames)) s.countView = static_cast<CountView>(count);
+  explain("Instead of the picture: black is none, then red, yellow, and white for as many as the slider says.");
+  if (s.countView != CountView::none) {
+    slider(ui, "white is", s.countWhite, 1.0f, 512.0f, "%.0f", true);
+    if (s.countViews)
+      line(fmt::format("{:.1f} in the mean, {:.0f} at most", s.countViews->mean(), s.countViews->most()));
+  }
+  if (menu(ui, "in the scene", glyphs, kGlyphNames)) s.glyphs = static_cast<Glyphs>(glyphs);
+  explain(
+      "As lines: the light in the brightest cells of a propagated volume by direction (its intensity, the largest half "
+      "a cell long), the corners of cells that block light, or the voxels of lpv.visibility about the middle of the "
+      "picture.");
+  if (s.glyphs == Glyphs::none) return;
+  if (s.glyphs != Glyphs::voxels) {
+    const int last = side.renderer->settings().lpv.cascades.cascades - 1;
+    s.glyphCascade = std::clamp(s.glyphCascade, 0, last);
+    ImGui::SliderInt("cascade", &s.glyphCascade, 0, last);
+    ui.note("cascade");
+  }
+  ImGui::SliderInt("at most", &s.glyphMost, 10, 5000, "%d", ImGuiSliderFlags_Logarithmic);
+  ui.note("at most");
+  if (s.glyphs != Glyphs::voxels && !side.renderer->lpv())
+    wrapped("Only technique lpv with lpv.transport=propagate has them.");
+  else if (s.glyphs == Glyphs::geometry && !side.renderer->lpv()->geometryVolume())
+    wrapped("Only with lpv.blocking=on.");
+}
+
+/// How often frames took how long, with the budget as a line.
+void showHistogram(const WalkState& s, double most) {
+  constexpr std::size_t kBins = 48;
+  std::array<float, kBins> bins{};
+  const double end = 1.5 * std::max(most, 1e-3);
+  std::size_t beyond = 0;
+  for (const float ms : s.frameMs) {
+    const double at = static_cast<double>(ms) / end * kBins;
+    if (at < kBins) ++bins[static_cast<std::size_t>(at)];
+    else ++beyond;
+  }
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 size(ImGui::GetContentRegionAvail().x, 3.0f * ImGui::GetFontSize());
+  ImGui::PlotHistogram("##histogram", bins.data(), static_cast<int>(kBins), 0, nullptr, 0.0f, FLT_MAX, size);
+  explain(fmt::format("Frames by their time, 0 to {:.1f} ms from left to right; {} took longer.", end, beyond));
+  if (const float x = s.budgetMs / static_cast<float>(end); x < 1.0f)
+    ImGui::GetWindowDrawList()->AddLine({corner.x + x * size.x, corner.y}, {corner.x + x * size.x, corner.y + size.y},
+                                        IM_COL32(255, 170, 40, 255));
 }
 
 void showTimings(Ui& ui, WalkState& s) {
@@ -301,6 +358,10 @@ void showTimings(Ui& ui, WalkState& s) {
     ImGui::PlotLines("##frames", s.frameMs.data(), static_cast<int>(s.frameMs.size()), 0, nullptr, 0.0f, top, size);
     const float y = corner.y + size.y * (1.0f - s.budgetMs / top);
     ImGui::GetWindowDrawList()->AddLine({corner.x, y}, {corner.x + size.x, y}, IM_COL32(255, 170, 40, 255));
+    showHistogram(s, most);
+    const auto over = std::count_if(ms.begin(), ms.end(), [&](double t) { return t > s.budgetMs; });
+    line(fmt::format("{:.0f} % of {} frames over the budget",
+                     100.0 * static_cast<double>(over) / static_cast<double>(ms.size()), ms.size()));
   }
   slider(ui, "budget", s.budgetMs, 1.0f, 1000.0f, "%.1f ms", true);
   for (int i = 0; i < 2; ++i) {
@@ -350,6 +411,12 @@ void showMemory(Ui& ui, WalkState& s) {
 void showRecord(Ui& ui, WalkState& s, Host& host) {
   if (button(ui, "save the picture")) s.shotWanted = true;
   explain("PNG as shown and HDR with linear radiance, both with settings, camera and exposure inside.");
+  if (button(ui, s.records ? "end the video" : "record a video")) s.records = !s.records;
+  explain("What the picture's part of the window shows, by ffmpeg, 30 pictures a second.");
+  if (s.canCapture) {
+    ImGui::SameLine();
+    if (button(ui, "RenderDoc capture")) s.captureWanted = true;
+  }
   std::string folder = s.shotFolder.string();
   if (textField(ui, "into", folder)) s.shotFolder = folder;
   ImGui::Separator();
@@ -431,6 +498,11 @@ void Panel::show(Ui& ui, WalkState& s, Host& host) {
   };
   part("Technique A", true, [&] { showSide(ui, s, 0); });
   part("Technique B", false, [&] { showSide(ui, s, 1); });
+  if (s.answerIsNew) ImGui::SetNextItemOpen(true);
+  part("Pixel", false, [&] {
+    if (std::exchange(s.answerIsNew, false)) ImGui::SetScrollHereY(0.0f);
+    showPixel(ui, s);
+  });
   part("Settings and deviations", false, [&] { showSettings(ui, s); });
   part("Compare", true, [&] { showCompare(ui, s); });
   part("Light", false, [&] { showLight(ui, s); });
@@ -449,6 +521,7 @@ void Panel::showHelp(Ui& ui, WalkState& s) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.02f * screen.x, 0.04f * screen.y}, ImGuiCond_Always);
   ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, {0.96f * screen.x, 0.92f * screen.y});
+  ImGui::SetNextWindowBgAlpha(1.0f);  // it may lie over the panel
   ImGui::Begin("Keys", nullptr,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
   line(keysHelp());
@@ -482,8 +555,14 @@ void Panel::showValues(const WalkState& s) {
   if (!s.magnifier || !s.pixel) return;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (!ImGui::IsMousePosValid(&mouse) || ImGui::GetIO().WantCaptureMouse) return;
-  ImGui::SetNextWindowPos({mouse.x + 90.0f, mouse.y}, ImGuiCond_Always);
-  ImGui::SetNextWindowBgAlpha(0.8f);
+  // Beside the magnifier; where the panel or the window's edge is in the way, on its other side.
+  constexpr float kBeside = 90.0f, kWidth = 300.0f;
+  const float scale = ImGui::GetFontSize() / 13.0f,
+              end = ImGui::GetIO().DisplaySize.x - (s.panel ? static_cast<float>(widthOf(scale)) : 0.0f);
+  const bool fits = mouse.x + kBeside + kWidth * scale < end;
+  ImGui::SetNextWindowPos({fits ? mouse.x + kBeside : mouse.x - kBeside, mouse.y}, ImGuiCond_Always,
+                          {fits ? 0.0f : 1.0f, 0.0f});
+  ImGui::SetNextWindowBgAlpha(1.0f);
   ImGui::Begin("##values", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);

@@ -70,10 +70,11 @@ void writeHdrWithNote(const fs::path& file, const Image& image, const std::strin
       });
 }
 
-fs::path freeName(const fs::path& folder, const std::string& name) {
+fs::path freeName(const fs::path& folder, const std::string& name, const std::vector<std::string>& extensions) {
   for (int number = 1;; ++number) {
     const fs::path stem = folder / fmt::format("{}_{:04}", name, number);
-    if (!fs::exists(stem.string() + ".png") && !fs::exists(stem.string() + ".hdr")) return stem;
+    if (std::ranges::none_of(extensions, [&](const std::string& e) { return fs::exists(stem.string() + e); }))
+      return stem;
   }
 }
 

@@ -16,8 +16,9 @@ void writePngWithNote(const std::filesystem::path& file, const Bitmap& bitmap, c
 /// at all.
 void writeHdrWithNote(const std::filesystem::path& file, const Image& image, const std::string& note);
 
-/// FOLDER/NAME_0001, the first number that is free for both extensions.
-std::filesystem::path freeName(const std::filesystem::path& folder, const std::string& name);
+/// FOLDER/NAME_0001, the first number that is free for all of the extensions.
+std::filesystem::path freeName(const std::filesystem::path& folder, const std::string& name,
+                               const std::vector<std::string>& extensions = {".png", ".hdr"});
 
 /// The text of a key frame file (scene/key_frames.hpp), readable by readKeyFrames().
 std::string textOfKeyFrames(const std::vector<KeyFrame>& keys, const std::string& comment);

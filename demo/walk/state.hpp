@@ -6,6 +6,7 @@
 #include "scene/key_frames.hpp"
 #include "walk/compare.hpp"
 #include "walk/free_camera.hpp"
+#include "walk/scene_views.hpp"
 #include "walk/truth.hpp"
 
 #include <array>
@@ -58,6 +59,7 @@ struct WalkState {
   std::optional<std::filesystem::path> sceneToLoad;
   bool ground = true;  ///< under scenes that are loaded here and come without light of their own: models
   float emissionFactor = 1.0f;
+  bool movesLamps = false;  ///< by axes in the picture
   std::vector<Material> materialsAsLoaded;
 
   // Camera
@@ -87,6 +89,11 @@ struct WalkState {
   std::string stage;  ///< of the shown side's Renderer::stagePictures(); empty: the frame
   int stageLayer = 0;
   float stageFactor = 0.0f;  ///< powers of two of flux
+  CountView countView = CountView::none;
+  float countWhite = 32.0f;
+  std::unique_ptr<CountViews> countViews;
+  Glyphs glyphs = Glyphs::none;
+  int glyphCascade = LPV_MAX_CASCADES - 1, glyphMost = 400;
 
   // Truth
   bool truthOn = false;
@@ -100,10 +107,20 @@ struct WalkState {
   float budgetMs = 16.7f;
   std::filesystem::path shotFolder = ".";
   bool shotWanted = false, meterWanted = false, reloadWanted = false, endWanted = false;
+  bool records = false;  ///< a video
+  bool canCapture = false, captureWanted = false;  ///< a frame for RenderDoc
   std::deque<std::string> messages;  ///< the newest last
   double messageAge = 0.0;  ///< seconds
   std::vector<float> frameMs;  ///< the last ones
   std::string rendererName;
+
+  // The pixel that was asked what lit it.
+  bool asksByClick = false, drawsAnswer = true;
+  std::optional<glm::dvec2> askedPlace;  ///< of the window, to be asked in this frame
+  std::optional<PixelAnswer> answer;
+  int askedSide = 0;
+  bool answerIsNew = false;
+  int pointedShare = -1;  ///< under the cursor
 
   // Under the cursor, for the magnifier.
   std::optional<glm::ivec2> pixel;  ///< from the picture's top left

@@ -228,6 +228,12 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
 }
 
 int run(Options options) {
+  if (options.capture >= 0 && !RenderDoc::find()) {
+    RenderDoc::preload();
+    throwMissingCapability(
+        "--capture {}: librenderdoc.so is not there, or does not work: install RenderDoc (apt install renderdoc)",
+        options.capture);
+  }
   options.common.apply();
   options.picture.readSettingsFile();
   const RenderSettings settings = options.picture.parse();
@@ -268,6 +274,8 @@ Work addWalk(CLI::App& app) {
                "measure how much the light itself changes between pictures, without the camera's motion");
   app.add_option("--play-input", options->playInput,
                  "drive the window by this file of recorded input (demo/walk/input_file.hpp), on any host");
+  app.add_option("--capture", options->capture, "in a window: the frame, from 0, that RenderDoc captures")
+      ->check(CLI::Range(0, 1000000));
   app.add_option("--shots", options->shots, "folder for screenshots")->capture_default_str();
   offer(app.add_option("--panel", options->panel,
                        "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"),

@@ -1,5 +1,6 @@
 #include "walk/window.hpp"
 
+#include "ask.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
@@ -10,6 +11,7 @@
 #include "walk/ground.hpp"
 #include "walk/panel.hpp"
 #include "walk/paths.hpp"
+#include "walk/pixel_section.hpp"
 #include "walk/shots.hpp"
 
 #include <fmt/format.h>
@@ -47,6 +49,8 @@ WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context
   state_.rendererName = context.capabilities().renderer;
   if (!options.playInput.empty()) player_.emplace(options.playInput);
   playedSize_ = parseSize(options.picture.size);
+  renderDoc_ = RenderDoc::find();
+  state_.canCapture = renderDoc_.has_value();
   state_.swapAtRefresh = host.swapInterval().value_or(0) > 0;
 }
 
@@ -94,6 +98,17 @@ bool WalkWindow::takeInput() {
           state_.centre - glm::vec2(1.0f, -1.0f) * glm::vec2(input_.cursor - cursorBefore_) / pixels / state_.zoom,
           0.0f, 1.0f);
   }
+  const bool left = input_.buttons[static_cast<std::size_t>(MouseButton::left)];
+  if (state_.movesLamps && screen_ && !pointing &&
+      gizmo_.take(*state_.scene, *screen_, glm::vec2(input_.cursor), left)) {
+    input_.mouseDelta = glm::dvec2(0.0);
+    if (gizmo_.takeMoved()) ++state_.sceneVersion;
+    changed();
+  } else if (state_.asksByClick && !pointing) {
+    if (left && !leftBefore_) state_.askedPlace = input_.cursor;
+    input_.mouseDelta = glm::dvec2(0.0);
+  }
+  leftBefore_ = left;
   cursorBefore_ = input_.cursor;
   for (const fs::path& file : input_.dropped) {
     if (isPicture(file)) {
@@ -120,6 +135,8 @@ void WalkWindow::act(Action action) {
     case Action::reload: s.reloadWanted = true; break;
     case Action::fullScreen: host_.setFullScreen(!host_.isFullScreen()); break;
     case Action::shot: s.shotWanted = true; break;
+    case Action::video: s.records = !s.records; break;
+    case Action::capture: s.captureWanted = true; break;
     case Action::end: s.endWanted = true; break;
     case Action::pause: s.path.paused = !s.path.paused; break;
     case Action::follow: s.path.follows = !s.path.follows; break;
@@ -157,6 +174,7 @@ void WalkWindow::act(Action action) {
       s.show = static_cast<Show>((static_cast<int>(s.show) + 1) % static_cast<int>(kShowNames.size()));
       break;
     case Action::truth: s.truthOn = !s.truthOn; break;
+    case Action::ask: s.askedPlace = input_.cursor; break;
     case Action::fit:
       s.zoom = 1.0f;
       s.centre = glm::vec2(0.5f);
@@ -207,6 +225,7 @@ void WalkWindow::loadWantedScene() {
     auto renderer = std::make_unique<Renderer>(context_, programs_, *scene, settings);
     // Nothing can fail from here on: the new scene takes the old one's place.
     state_.truth.reset();
+    state_.countViews.reset();
     for (SideState& side : state_.sides) {
       side.renderer.reset();
       side.builtAs.clear();
@@ -214,6 +233,7 @@ void WalkWindow::loadWantedScene() {
     }
     state_.scene = std::move(scene);
     ++state_.sceneVersion;
+    state_.answer.reset();
     state_.emissionFactor = 1.0f;
     state_.materialsAsLoaded = state_.scene->materials;
     SideState& a = state_.sides[0];
@@ -422,17 +442,85 @@ void WalkWindow::readPixel(const Compare::Inputs& inputs) {
   }
 }
 
+void WalkWindow::askPixel(const Compare::Inputs& inputs) {
+  if (!state_.askedPlace) return;
+  const glm::vec2 place(*std::exchange(state_.askedPlace, std::nullopt));
+  if (place.x < 0.0f || place.x >= static_cast<float>(view_.x)) return;
+  const auto pixel = Compare::pictureAt(inputs, view_, place);
+  if (!pixel) return;
+  state_.askedSide = inputs.layout == Layout::one ? state_.shown : Compare::isRight(inputs, view_, place) ? 1 : 0;
+  SideState& side = state_.sides[static_cast<std::size_t>(state_.askedSide)];
+  if (!side.renderer || side.shows == Shows::picture || *pixel != glm::min(*pixel, side.renderer->size() - 1)) return;
+  try {
+    breathe("asking what lit the pixel");
+    const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
+    state_.answer = side.renderer->ask(context_, programs_, *state_.scene, state_.camera->camera(), *pixel);
+    state_.answer->condense(kAskedShares);
+    state_.answerIsNew = true;
+  } catch (const Error& error) { state_.say(error.what()); } catch (const Stopped&) {
+    state_.say("not asked");
+  }
+}
+
+// Made anew where the camera or what they are of has changed; voxels, which take a while, stay as they were chosen.
+void WalkWindow::drawGlyphs(const Compare::Inputs& inputs) {
+  const SideState& side = state_.side();
+  if (state_.glyphs == Glyphs::none || !side.renderer || side.shows == Shows::picture) return;
+  const Camera& camera = state_.camera->camera();
+  const std::string are =
+      fmt::format("{} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs, state_.glyphCascade,
+                  state_.glyphMost, state_.glyphs == Glyphs::voxels ? "" : cameraText(camera), state_.shown);
+  if (are != glyphsAre_)
+    glyphs_ = glyphsOf(state_.glyphs, *side.renderer, *state_.scene, camera, state_.glyphCascade, state_.glyphMost);
+  glyphsAre_ = are;
+  if (!lines_) lines_.emplace(programs_);
+  lines_->draw(pictureTarget_, Compare::placementOf(inputs, view_, inputs.layout != Layout::one && state_.shown == 1),
+               side.renderer->linesView(camera, state_.scene->bounds), glyphs_, host_.contentScale());
+}
+
+void WalkWindow::drawGizmo(const Compare::Inputs& inputs) {
+  const SideState& side = state_.side();
+  screen_.reset();
+  if (!state_.movesLamps || !side.renderer) return;
+  const Renderer& renderer = *side.renderer;
+  screen_ =
+      Gizmo::Screen{Compare::placementOf(inputs, view_, inputs.layout != Layout::one && state_.shown == 1),
+                    renderer.linesView(state_.camera->camera(), state_.scene->bounds), renderer.origin(), window_.y};
+  if (!lines_) lines_.emplace(programs_);
+  gl::Lines::View view = screen_->view;
+  view.depth = nullptr;  // a lamp behind a wall can be taken, too
+  lines_->draw(pictureTarget_, screen_->placement, view, gizmo_.lines(*state_.scene, renderer.origin()),
+               3.0f * host_.contentScale());
+}
+
+// Over the picture of the side that it is about, hidden by what that one shows.
+void WalkWindow::drawLines(const Compare::Inputs& inputs) {
+  if (!state_.answer || !state_.drawsAnswer) return;
+  const bool right = inputs.layout != Layout::one && state_.askedSide == 1;
+  if (inputs.layout == Layout::one && state_.askedSide != state_.shown) return;
+  const SideState& side = state_.sides[static_cast<std::size_t>(state_.askedSide)];
+  if (!side.renderer || side.shows == Shows::picture) return;
+  const Renderer& renderer = *side.renderer;
+  const gl::Lines::View view = renderer.linesView(state_.camera->camera(), state_.scene->bounds);
+  if (!lines_) lines_.emplace(programs_);
+  lines_->draw(pictureTarget_, Compare::placementOf(inputs, view_, right), view,
+               linesOf(*state_.answer, state_.pointedShare, renderer.origin(), state_.scene->bounds),
+               1.5f * host_.contentScale());
+}
+
 void WalkWindow::compose() {
   SideState& shown = state_.side();
   const bool truthThere = state_.truth && state_.truthOn && state_.truth->ready() && still_ >= kStillFrames;
   const bool shows = state_.show == Show::picture || (truthThere && radianceOf(state_.shown) &&
                                                       radianceOf(state_.shown)->size2d() == state_.truth->size());
   const bool stage = !state_.stage.empty() && shown.renderer;
-  const bool plain = !stage && state_.layout == Layout::one && (state_.show == Show::picture || !shows) &&
+  const bool counts = state_.countView != CountView::none && shown.renderer;
+  const bool plain = !stage && !counts && state_.layout == Layout::one && (state_.show == Show::picture || !shows) &&
                      state_.zoom == 1.0f && !state_.magnifier &&
                      radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) &&
                      shown.renderer && shown.renderer->size() == view_;
-  presented_ = plain && !drawsUi() && !state_.shotWanted && view_ == window_;
+  presented_ = plain && !drawsUi() && !state_.shotWanted && !state_.askedPlace && !state_.answer && !state_.records &&
+               state_.glyphs == Glyphs::none && !state_.movesLamps && !video_ && view_ == window_;
   if (presented_) {
     host_.present(shown.renderer->displayFramebuffer().id(), window_);
     return;
@@ -475,9 +563,25 @@ void WalkWindow::compose() {
           Show::values, nullptr};
     }
   }
+  if (!counts) {
+    state_.countViews.reset();
+  } else {
+    if (!state_.countViews)
+      state_.countViews = std::make_unique<CountViews>(context_, programs_, *state_.scene, shown.renderer->origin());
+    const Camera& camera = state_.camera->camera();
+    inputs.layout = Layout::one;
+    inputs.left = {&state_.countViews->record(state_.countView, camera,
+                                              shown.renderer->linesView(camera, state_.scene->bounds).clipFromWorld,
+                                              shown.renderer->size(), state_.countWhite),
+                   Show::values, nullptr};
+  }
   if (plain) gl::copyTexels(shown.renderer->display(), {0, 0}, picture_, {0, 0}, view_);
   else if (inputs.left.radiance) compare_->record(pictureTarget_, view_, inputs);
   readPixel(inputs);
+  askPixel(inputs);
+  drawGlyphs(inputs);
+  drawGizmo(inputs);
+  drawLines(inputs);
   if (state_.shotWanted) takeShot();
 }
 
@@ -515,6 +619,43 @@ void WalkWindow::takeShot() {
     if (side.renderer) writeHdrWithNote(stem.string() + ".hdr", side.renderer->readRadiance(), note);
     state_.say(fmt::format("{}.png and .hdr written", stem.string()));
   } catch (const Error& error) { state_.say(error.what()); }
+}
+
+void WalkWindow::recordVideo(double seconds) {
+  const auto end = [&] {
+    const bool whole = video_->finish();
+    state_.say(whole ? fmt::format("{}: {} pictures", video_->file().string(), video_->pictures())
+                     : fmt::format("{0} is not whole; what ffmpeg says is in {0}.log", video_->file().string()));
+    video_.reset();
+    state_.records = false;
+  };
+  if (video_ && (!state_.records || video_->size() != view_)) end();
+  if (!state_.records) return;
+  try {
+    if (!video_) {
+      std::error_code ignored;
+      fs::create_directories(state_.shotFolder, ignored);
+      video_.emplace(freeName(state_.shotFolder, state_.scene->name + "_video", {".mp4"}).string() + ".mp4", view_);
+      state_.say(fmt::format("recording {}", video_->file().string()));
+    }
+    if (!video_->add(shownPicture(view_), seconds)) end();
+  } catch (const Error& error) {
+    state_.records = false;
+    state_.say(error.what());
+  }
+}
+
+void WalkWindow::beginCapture() {
+  captures_ = std::exchange(state_.captureWanted, false) || frames_ == options_.capture;
+  if (!captures_) return;
+  if (renderDoc_) renderDoc_->begin();
+  else state_.say("RenderDoc is not there: install it and begin with walk --capture N");
+}
+
+void WalkWindow::endCapture() {
+  if (!captures_ || !renderDoc_) return;
+  const auto file = renderDoc_->end();
+  state_.say(file ? fmt::format("RenderDoc: {}", *file) : "RenderDoc saw no frame on this host");
 }
 
 // ---------------------------------------------------------------------------------------------------- showing it
@@ -603,10 +744,12 @@ void WalkWindow::run() {
     makeReady();
     if (stop_) break;
     moveCamera(dt);
+    beginCapture();
     draw();
     seekTruth(measured);
     judge();
     compose();
+    recordVideo(dt);
     if (drawsUi()) {
       drawUi(input_, dt, "", -1.0);
       if (player_)
@@ -615,6 +758,7 @@ void WalkWindow::run() {
     } else if (!presented_) {
       host_.present(pictureTarget_.id(), window_);
     }
+    endCapture();
     ++still_;
     ++frames_;
     state_.messageAge += dt;
@@ -632,6 +776,8 @@ void WalkWindow::run() {
     if (options_.frames > 0 && frames_ >= options_.frames) break;
     pace(start);
   }
+  state_.records = false;
+  recordVideo(0.0);
   for (SideState& side : state_.sides)
     if (side.renderer) side.renderer->drain();
   seconds_ = secondsSince(begin);
@@ -648,6 +794,9 @@ nlohmann::ordered_json WalkWindow::toJson() const {
                         {"count", ms.size()}};
   }
   json["messages"] = state_.messages;
+  json["lamps"] = nlohmann::ordered_json::array();
+  for (const SpotLight& l : state_.scene->spots) json["lamps"].push_back({l.position.x, l.position.y, l.position.z});
+  for (const PointLight& l : state_.scene->points) json["lamps"].push_back({l.position.x, l.position.y, l.position.z});
   if (ui_) {
     json["panel_gpu_bytes"] = ui_->gpuBytes();
     json["controls"] = ui_->labels();

@@ -3,12 +3,15 @@
 #pragma once
 
 #include "base/clock.hpp"
+#include "walk/gizmo.hpp"
 #include "walk/input_file.hpp"
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
+#include "walk/renderdoc.hpp"
 #include "walk/stage_view.hpp"
 #include "walk/state.hpp"
 #include "walk/ui.hpp"
+#include "walk/video.hpp"
 
 #include <chrono>
 
@@ -43,7 +46,14 @@ class WalkWindow {
   void judge();
   void compose();
   void readPixel(const Compare::Inputs& inputs);
+  void askPixel(const Compare::Inputs& inputs);
+  void drawLines(const Compare::Inputs& inputs);
+  void drawGlyphs(const Compare::Inputs& inputs);
+  void drawGizmo(const Compare::Inputs& inputs);
   void takeShot();
+  void recordVideo(double seconds);
+  void beginCapture();
+  void endCapture();
   void pace(Clock::time_point start);
 
   /// Called while something long is made: shows the old picture with what is going on; throws Stopped where Escape was
@@ -66,8 +76,17 @@ class WalkWindow {
   std::optional<InputPlayer> player_;
   std::optional<Compare> compare_;
   std::optional<StageView> stageView_;
+  std::optional<gl::Lines> lines_;
+  Gizmo gizmo_;
+  std::optional<Gizmo::Screen> screen_;  ///< of the last frame
+  std::vector<gl::Lines::Line> glyphs_;
+  std::string glyphsAre_;  ///< what glyphs_ was made of
+  std::optional<Video> video_;
+  std::optional<RenderDoc> renderDoc_;
+  bool captures_ = false;  ///< this frame
   HostInput input_;
   glm::dvec2 cursorBefore_{0.0};
+  bool leftBefore_ = false;  ///< the left button was held
   glm::ivec2 window_{0}, playedSize_{0};
   glm::ivec2 view_{0};  ///< the window less the panel: where the picture is
   gl::Texture picture_;  ///< what is presented, where that is not the renderer's own

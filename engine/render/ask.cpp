@@ -25,9 +25,8 @@ glm::dvec3 texelAt(const gl::Texture& texture, glm::ivec2 fromBelow) {
 std::string nameOfTriangle(const Scene& scene, std::uint32_t triangle) {
   for (const Mesh& mesh : scene.meshes)
     if (3 * triangle >= mesh.firstIndex && 3 * triangle < mesh.firstIndex + mesh.indexCount)
-      return fmt::format("emissive triangle {} ({})", triangle,
-                         scene.materials[static_cast<std::size_t>(mesh.material)].name);
-  return fmt::format("emissive triangle {}", triangle);
+      return fmt::format("triangle {} ({})", triangle, scene.materials[static_cast<std::size_t>(mesh.material)].name);
+  return fmt::format("triangle {}", triangle);
 }
 
 /// Names of the lamps in the table that light samples are drawn from: rays/light_table.cpp has this order, without
@@ -52,9 +51,11 @@ PixelShare shareOf(const Scene& scene, const std::vector<std::string>& lamps, co
     case PATH_ASKED_BACKGROUND: share.name = "background"; break;
     default: share.name = light.number < lamps.size() ? lamps[light.number] : "a lamp";
   }
-  share.group = light.scatterings == 0   ? "seen directly"
-                : light.scatterings == 1 ? "direct"
-                                         : fmt::format("scattered {} times", light.scatterings);
+  constexpr std::uint32_t kMostApart = 8;  // light in media is scattered hundreds of times
+  share.group = light.scatterings == 0            ? "seen directly"
+                : light.scatterings == 1          ? "direct"
+                : light.scatterings <= kMostApart ? fmt::format("scattered {} times", light.scatterings)
+                                                  : fmt::format("scattered over {} times", kMostApart);
   share.places = light.places;
   const double reach = glm::length(scene.bounds.extent());
   share.places.push_back(light.infinite ? light.places.back() + reach * light.end : light.end);
@@ -223,8 +224,7 @@ void Renderer::answerOfPatches(const gl::Context& context, gl::ProgramLibrary& p
   if (byPixel) {
     const std::size_t emitters = DirectRays::emitterCount(scene);
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < emitters; ++i)
-      names.push_back(fmt::format("emissive triangle {} of the lights", i + 1));
+    for (std::size_t i = 0; i < emitters; ++i) names.push_back(fmt::format("emissive triangle {}", i + 1));
     if (scene.sun) names.emplace_back("sun");
     for (std::size_t i = 0; i < scene.spots.size(); ++i) names.push_back(fmt::format("spot {}", i + 1));
     for (std::size_t i = 0; i < scene.points.size(); ++i) names.push_back(fmt::format("point {}", i + 1));

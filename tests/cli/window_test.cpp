@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -129,6 +130,113 @@ TEST_F(Window, DebugViewsShowWhatStagesMade) {
   EXPECT_GT(brightest("normals.png"), 120);
   EXPECT_NE(read("flux.png"), read("frame.png"));
   EXPECT_NE(read("normals.png"), read("flux.png"));
+}
+
+// The pixel under the cursor: its light in the file that the button writes, its lines in the picture.
+TEST_F(Window, APixelIsAskedWhatLitIt) {
+  write("input.txt",
+        "1 key R\n4 save before.png\n5 cursor 200.5 250.5\n6 key I\n10 touch Pixel/save as JSON\n12 save lines.png\n"
+        "13 touch Pixel/draw its light\n15 save hidden.png\n16 touch Pixel/forget\n");
+  const RunResult result = play(path("input.txt"), "--technique rsm --set rsm.samples=16 --shots .", "", "800x700");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  const auto file = nlohmann::json::parse(std::ifstream(path("room_pixel_200_250.json")));
+  EXPECT_EQ(file.at("technique"), "rsm");
+  double shares = 0.0;
+  for (const auto& share : file.at("shares")) shares += share.at("share").get<double>();
+  EXPECT_NEAR(shares, 1.0, 0.01);
+  // Yellow lines and a green cross, where walls are white and red.
+  const auto lineColours = [&](const char* name) {
+    const lucerna::Bitmap picture = lucerna::readBitmap(path(name));
+    int count = 0;
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
+      count += static_cast<int>(i / 4) % picture.width < 480 && picture.rgba[i + 1] > 180 && picture.rgba[i] < 100;
+    return count;
+  };
+  EXPECT_GT(lineColours("lines.png"), 10);
+  EXPECT_EQ(lineColours("hidden.png"), 0);
+  EXPECT_EQ(lineColours("before.png"), 0);
+}
+
+// Counts a pixel instead of the picture, and lobes, boxes and voxels in the scene.
+TEST_F(Window, DebugViewsOfTheSceneItself) {
+  write("input.txt",
+        "1 key R\n3 save frame.png\n4 touch Debug view\n5 touch Debug view/count of\n6 touch Debug view/count of: "
+        "surfaces in a pixel\n7 save overdraw.png\n8 touch Debug view/count of\n9 touch Debug view/count of: nodes a "
+        "ray visits\n10 save visits.png\n11 touch Debug view/count of\n12 touch Debug view/count of: nothing\n"
+        "13 touch Debug view/in the scene\n14 touch Debug view/in the scene: lobes of cells\n15 save lobes.png\n"
+        "16 touch Debug view/in the scene\n17 touch Debug view/in the scene: geometry volume\n18 save geometry.png\n"
+        "19 touch Debug view/in the scene\n20 touch Debug view/in the scene: visibility voxels\n21 save voxels.png\n");
+  const RunResult result =
+      play(path("input.txt"), "--technique lpv --set lpv.transport=propagate --set lpv.blocking=on", "", "800x700");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  const auto pixels = [&](const char* name) {  // of the picture, beside the panel and above the hint
+    const lucerna::Bitmap picture = lucerna::readBitmap(path(name));
+    std::vector<std::uint8_t> part;
+    for (int y = 50; y < 600; ++y)
+      for (int x = 0; x < 480; ++x)
+        for (int c = 0; c < 3; ++c)
+          part.push_back(picture.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                                           static_cast<std::size_t>(x)) +
+                                      static_cast<std::size_t>(c)]);
+    return part;
+  };
+  const auto frame = pixels("frame.png");
+  for (const char* name : {"overdraw.png", "visits.png", "lobes.png", "geometry.png", "voxels.png"})
+    EXPECT_NE(pixels(name), frame) << name;
+}
+
+// The lamp's axis along x is dragged: the lamp is where it was let go, and another picture is made.
+TEST_F(Window, LampsAreDraggedAlongTheirAxes) {
+  write("room.json", R"({"model": "room.obj", "points": [{"position": [0, 1, 0], "intensity": [5, 5, 5]}],
+    "cameras": [{"name": "first", "position": [0, 1, 4], "target": [0, 1, 0], "fov": 60}]})");
+  write("path.txt", "p 0 1 4 d 0 0 -1 u 0 1 0 f 60\np 0 1 4 d 0 0 -1 u 0 1 0.001 f 60\n");
+  // The lamp is in the middle of the picture, 490 x 700 beside the panel; the axis goes to the right from there.
+  write("input.txt",
+        "1 key R\n2 touch Light\n3 touch Light/move lamps in the picture\n60 save before.png\n61 cursor 265 350\n"
+        "62 press left\n64 cursor 365 350\n66 release left\n70 save after.png\n");
+  const RunResult result = play(path("input.txt"), "--technique direct", "", "800x700");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  const auto lamps = json().at("window").at("lamps");
+  ASSERT_EQ(lamps.size(), 1u);
+  // 100 pixels of 700 over the height 2 tan(30 degrees) 4.
+  EXPECT_NEAR(lamps.at(0).at(0).get<double>(), 100.0 / 700.0 * 2.0 * std::tan(M_PI / 6.0) * 4.0, 0.05);
+  EXPECT_NEAR(lamps.at(0).at(1).get<double>(), 1.0, 1e-9);
+  EXPECT_NE(read("after.png"), read("before.png"));
+}
+
+// Without ffmpeg a line says so; with one, it is given every picture. Here one stands in for it that counts bytes.
+TEST_F(Window, VideosGoToFfmpeg) {
+  write("input.txt", "1 key R\n2 key V\n30 key V\n32 key F2\n");
+  const RunResult without = play(path("input.txt"), "--technique direct --shots .", "PATH=/nowhere");
+  ASSERT_EQ(without.exitCode, 0) << without.err;
+  const auto messagesOf = [&] { return json().at("window").at("messages").dump(); };
+  EXPECT_NE(messagesOf().find("ffmpeg cannot be started"), std::string::npos) << messagesOf();
+  write("ffmpeg", "#!/bin/sh\nfor last; do :; done\necho \"$@\" >\"$last\"\nwc -c >>\"$last\"\n");
+  fs::permissions(path("ffmpeg"), fs::perms::owner_all);
+  const RunResult with = play(path("input.txt"), "--technique direct --shots .", "PATH=.:$PATH");
+  ASSERT_EQ(with.exitCode, 0) << with.err;
+  EXPECT_NE(messagesOf().find("room_video_0001.mp4: 14 pictures"), std::string::npos) << messagesOf();
+  std::ifstream file(path("room_video_0001.mp4"));
+  std::string arguments;
+  long bytes = 0;
+  std::getline(file, arguments);
+  file >> bytes;
+  EXPECT_NE(arguments.find("-video_size 128x72"), std::string::npos) << arguments;
+  EXPECT_EQ(bytes, 14L * 128 * 72 * 4);  // 28 frames of 1/60 s, 30 pictures a second
+}
+
+TEST_F(Window, RenderDocIsAskedForOrSaidToBeMissing) {
+  if (run("ldconfig -p | grep -q librenderdoc.so").exitCode == 0) GTEST_SKIP() << "RenderDoc is installed";
+  write("input.txt", "1 key control+F11\n3 key F2\n");
+  const RunResult inside = play(path("input.txt"), "--technique direct");
+  ASSERT_EQ(inside.exitCode, 0) << inside.err;
+  EXPECT_NE(json().at("window").at("messages").dump().find("RenderDoc is not there"), std::string::npos);
+  const RunResult asked = play(path("input.txt"), "--technique direct --capture 2");
+  EXPECT_EQ(asked.exitCode, 3);
+  EXPECT_NE(asked.err.find("librenderdoc.so"), std::string::npos) << asked.err;
 }
 
 TEST_F(Window, SizesOfAllKinds) {

@@ -1,0 +1,40 @@
+// What the window shows as a video, by ffmpeg where it is installed: pictures go to it as they are, it makes the file.
+#pragma once
+
+#include "base/image.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <sys/types.h>
+
+namespace lucerna::demo {
+
+class Video {
+ public:
+  static constexpr int kPicturesASecond = 30;
+  /// Throws Error(missingCapability) where there is no ffmpeg; what it says goes beside the file, as FILE.log.
+  Video(std::filesystem::path file, glm::ivec2 size);
+  ~Video();
+  Video(const Video&) = delete;
+  Video& operator=(const Video&) = delete;
+
+  glm::ivec2 size() const { return size_; }
+  const std::filesystem::path& file() const { return file_; }
+  int pictures() const { return pictures_; }
+  /// What was shown for the next `seconds`. False: ffmpeg takes no more.
+  bool add(const Bitmap& shown, double seconds);
+  /// Waits for ffmpeg; true: the file is whole.
+  bool finish();
+
+ private:
+  std::filesystem::path file_;
+  glm::ivec2 size_;
+  pid_t ffmpeg_ = -1;
+  int pipe_ = -1;
+  int pictures_ = 0;
+  double owed_ = 0.0;  ///< pictures
+};
+
+}  // namespace lucerna::demo

@@ -1,0 +1,4 @@
+// One more surface in this pixel, whether it is hidden or not.
+layout(location = 0) out vec4 count;
+
+void main() { count = vec4(1.0, 0.0, 0.0, 1.0); }

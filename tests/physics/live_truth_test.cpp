@@ -1,0 +1,90 @@
+// The window's live truth (demo/walk/truth.hpp): the interval that it states for a picture's error holds the true error
+// in at least 95 of 100 views. The truth here is a reference with many times the samples and other random numbers.
+// LUCERNA_LONG_TESTS=1: 201 views of three scenes, some twenty minutes of one core.
+#include "measure/error_interval.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "render/renderer.hpp"
+#include "scene/key_frames.hpp"
+#include "support/gl_fixture.hpp"
+#include "support/long_tests.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+
+namespace lucerna::test {
+namespace {
+
+class LiveTruth : public SharedProgramsTest {
+ protected:
+  /// As demo/walk/truth.cpp samples; another seed is independent.
+  PathTracer sampler(const Scene& scene, std::uint32_t seed) const {
+    PathTracer::Settings settings;
+    settings.size = kSize;
+    settings.diffuseOnly = true;
+    settings.pixelCentres = true;
+    settings.seed = seed;
+    return PathTracer(context(), library(), scene, settings);
+  }
+  struct Tally {
+    int views = 0;
+    std::array<int, 2> held{};  ///< with 16 samples a pixel, and with 64
+    std::array<double, 2> width{};  ///< of the interval over its middle, sums
+  };
+  static constexpr std::array<std::uint32_t, 2> kSamples{16, 64};
+  static constexpr glm::ivec2 kSize{40, 24};
+
+  /// `views` along the scene's path, techniques in turn.
+  Tally judge(const std::string& file, int views, std::uint32_t samplesOfTruth) const {
+    const Scene scene = loadScene(std::string(LUCERNA_SOURCE_DIR "/assets/") + file);
+    const Spline path(readKeyFrames(scene.keyFrames));
+    PathTracer live = sampler(scene, 1), truth = sampler(scene, 2);
+    Tally tally;
+    for (const Technique technique : {Technique::direct, Technique::rsm, Technique::lpv}) {
+      RenderSettings settings;
+      settings.technique = technique;
+      settings.size = kSize;
+      settings.fullFloatTarget = true;
+      settings.lpv.transport = LpvTransport::propagate;
+      Renderer renderer(context(), library(), scene, settings);
+      for (int i = static_cast<int>(technique) % 3; i < views; i += 3) {
+        const Camera camera = path.view(i * (path.viewCount() - 1) / std::max(views - 1, 1));
+        renderer.renderToTheEnd(camera);
+        const Image picture = renderer.readRadiance();
+        truth.setCamera(camera);
+        truth.record(samplesOfTruth);
+        const double error = measure::nrmseInterval(picture, truth.mean(), truth.standardError()).value;
+        live.setCamera(camera);
+        live.setFirstSample(static_cast<std::uint32_t>(i) * kSamples.back());  // other numbers in each view
+        for (std::size_t k = 0; k < kSamples.size(); ++k) {
+          live.record(kSamples[k]);
+          const measure::ErrorInterval stated = measure::nrmseInterval(picture, live.mean(), live.standardError());
+          tally.held[k] += stated.low <= error && error <= stated.high ? 1 : 0;
+          tally.width[k] += (stated.high - stated.low) / std::max(stated.value, 1e-9);
+        }
+        ++tally.views;
+      }
+    }
+    fmt::print("{}: {} views; held {} with 16 samples a pixel (width {:.1f} % of the error), {} with 64 ({:.1f} %)\n",
+               file, tally.views, tally.held[0], 100.0 * tally.width[0] / tally.views, tally.held[1],
+               100.0 * tally.width[1] / tally.views);
+    std::fflush(stdout);
+    return tally;
+  }
+};
+
+TEST_F(LiveTruth, TheStatedIntervalHoldsTheTrueError) {
+  const bool all = longTests();
+  int views = 0;
+  std::array<int, 2> held{};
+  for (const char* file : {"cornell/cornell.json", "atrium/atrium.json", "media/gems/gems.json"}) {
+    const Tally tally = judge(file, all ? 67 : 6, all ? 2048 : 256);
+    views += tally.views;
+    for (std::size_t k = 0; k < held.size(); ++k) held[k] += tally.held[k];
+    if (!all) break;  // the others take minutes
+  }
+  for (const int count : held) EXPECT_GE(count, all ? static_cast<int>(std::ceil(0.95 * views)) : views - 1);
+}
+
+}  // namespace
+}  // namespace lucerna::test
