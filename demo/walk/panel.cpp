@@ -555,13 +555,15 @@ void Panel::showValues(const WalkState& s) {
   if (!s.magnifier || !s.pixel) return;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (!ImGui::IsMousePosValid(&mouse) || ImGui::GetIO().WantCaptureMouse) return;
-  // Beside the magnifier; where the panel or the window's edge is in the way, on its other side.
-  constexpr float kBeside = 90.0f, kWidth = 300.0f;
-  const float scale = ImGui::GetFontSize() / 13.0f,
-              end = ImGui::GetIO().DisplaySize.x - (s.panel ? static_cast<float>(widthOf(scale)) : 0.0f);
-  const bool fits = mouse.x + kBeside + kWidth * scale < end;
-  ImGui::SetNextWindowPos({fits ? mouse.x + kBeside : mouse.x - kBeside, mouse.y}, ImGuiCond_Always,
-                          {fits ? 0.0f : 1.0f, 0.0f});
+  // Beside the magnifier; where the panel or the window's edge is in the way, below or above it.
+  const float scale = ImGui::GetFontSize() / 13.0f, beside = 90.0f, width = 300.0f * scale, height = 80.0f * scale;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float end = screen.x - (s.panel ? static_cast<float>(widthOf(scale)) : 0.0f);
+  ImVec2 place(mouse.x + beside, mouse.y);
+  if (place.x + width > end)
+    place = {std::max(std::min(mouse.x - 0.5f * width, end - width), 0.0f),
+             mouse.y + beside + height > screen.y ? mouse.y - beside - height : mouse.y + beside};
+  ImGui::SetNextWindowPos(place, ImGuiCond_Always);
   ImGui::SetNextWindowBgAlpha(1.0f);
   ImGui::Begin("##values", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |

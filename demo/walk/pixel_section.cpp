@@ -96,7 +96,7 @@ void showPixel(Ui& ui, WalkState& s) {
     ImGui::PopID();
   }
   ImGui::EndChild();
-  if (button(ui, "save as JSON")) saveAnswer(s);
+  if (button(ui, "export as JSON")) saveAnswer(s);
   ImGui::SameLine();
   if (button(ui, "forget")) s.answer.reset();
 }

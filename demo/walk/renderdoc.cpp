@@ -1,8 +1,11 @@
 #include "walk/renderdoc.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <vector>
 
 #include <dlfcn.h>
@@ -29,6 +32,13 @@ std::optional<RenderDoc> RenderDoc::find() {
 
 void RenderDoc::preload() {
   if (std::getenv(kBegunAgain)) return;
+  // As it is now: the library changes it when it is loaded.
+  std::vector<std::string> settings;
+  for (char** setting = environ; *setting; ++setting)
+    if (!std::string_view(*setting).starts_with("LD_PRELOAD=")) settings.emplace_back(*setting);
+  const char* before = std::getenv("LD_PRELOAD");
+  settings.push_back(fmt::format("LD_PRELOAD={}{}{}", kLibrary, before ? ":" : "", before ? before : ""));
+  settings.push_back(fmt::format("{}=1", kBegunAgain));
   void* library = dlopen(kLibrary, RTLD_LAZY);
   if (!library) return;
   dlclose(library);
@@ -38,10 +48,10 @@ void RenderDoc::preload() {
   for (std::size_t at = 0; at < bytes.size(); ++at)
     if (at == 0 || bytes[at - 1] == 0) arguments.push_back(&bytes[at]);
   arguments.push_back(nullptr);
-  const char* before = std::getenv("LD_PRELOAD");
-  setenv("LD_PRELOAD", (std::string(kLibrary) + (before ? std::string(":") + before : "")).c_str(), 1);
-  setenv(kBegunAgain, "1", 1);
-  execv("/proc/self/exe", arguments.data());
+  std::vector<char*> environment;
+  for (std::string& setting : settings) environment.push_back(setting.data());
+  environment.push_back(nullptr);
+  execve("/proc/self/exe", arguments.data(), environment.data());
 }
 
 void RenderDoc::begin() const { function<StartFrameCapture>(kStartFrameCapture)(nullptr, nullptr); }

@@ -16,7 +16,7 @@ namespace lucerna::demo {
 
 /// Counts a pixel; the first is none of these.
 enum class CountView { none, overdraw, visits };
-constexpr std::array<std::string_view, 3> kCountViewNames{"nothing", "surfaces in a pixel", "nodes a ray visits"};
+constexpr std::array<std::string_view, 3> kCountViewNames{"nothing", "surfaces a pixel", "visits a ray"};
 
 class CountViews {
  public:

@@ -135,7 +135,7 @@ TEST_F(Window, DebugViewsShowWhatStagesMade) {
 // The pixel under the cursor: its light in the file that the button writes, its lines in the picture.
 TEST_F(Window, APixelIsAskedWhatLitIt) {
   write("input.txt",
-        "1 key R\n4 save before.png\n5 cursor 200.5 250.5\n6 key I\n10 touch Pixel/save as JSON\n12 save lines.png\n"
+        "1 key R\n4 save before.png\n5 cursor 200.5 250.5\n6 key I\n10 touch Pixel/export as JSON\n12 save lines.png\n"
         "13 touch Pixel/draw its light\n15 save hidden.png\n16 touch Pixel/forget\n");
   const RunResult result = play(path("input.txt"), "--technique rsm --set rsm.samples=16 --shots .", "", "800x700");
   ASSERT_EQ(result.exitCode, 0) << result.err;
@@ -162,8 +162,8 @@ TEST_F(Window, APixelIsAskedWhatLitIt) {
 TEST_F(Window, DebugViewsOfTheSceneItself) {
   write("input.txt",
         "1 key R\n3 save frame.png\n4 touch Debug view\n5 touch Debug view/count of\n6 touch Debug view/count of: "
-        "surfaces in a pixel\n7 save overdraw.png\n8 touch Debug view/count of\n9 touch Debug view/count of: nodes a "
-        "ray visits\n10 save visits.png\n11 touch Debug view/count of\n12 touch Debug view/count of: nothing\n"
+        "surfaces a pixel\n7 save overdraw.png\n8 touch Debug view/count of\n9 touch Debug view/count of: "
+        "visits a ray\n10 save visits.png\n11 touch Debug view/count of\n12 touch Debug view/count of: nothing\n"
         "13 touch Debug view/in the scene\n14 touch Debug view/in the scene: lobes of cells\n15 save lobes.png\n"
         "16 touch Debug view/in the scene\n17 touch Debug view/in the scene: geometry volume\n18 save geometry.png\n"
         "19 touch Debug view/in the scene\n20 touch Debug view/in the scene: visibility voxels\n21 save voxels.png\n");
