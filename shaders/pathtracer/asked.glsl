@@ -1,5 +1,5 @@
-// The one pixel that is asked what lit it: whatever is added to a path's radiance is written down with the path's places
-// (shared/path_tracer.h). A single lane is at work, on one path after the other.
+// The one pixel that is asked what lit it: whatever is added to a path's radiance is written down with the path's
+// places (shared/path_tracer.h). A single lane is at work, on one path after the other.
 const uint kStateWords = 6u;  // of a lane, in uvec4
 
 uint askedBase() { return kStateWords * uint(tracer.picture.z); }
