@@ -29,9 +29,9 @@ vec2 directShift(uvec2 v) {
 
 // position: of the pixel; normal: of shading; face: of the geometry; both unit, to the front. plane, magnitude: the
 // distance of the face's plane from the origin along `face`, the largest coordinate of the triangle that rays know it
-// by. reflection: radiance over irradiance, for a pixel that is asked for. Interpolated over a large face, a position is
-// off it by more than its own rounding: it is brought back to the plane, and a ray then starts beyond the rounding of
-// that triangle, as a path's does.
+// by. reflection: radiance over irradiance, for a pixel that is asked for.
+// Interpolated over a large face, a position is off it by more than its own rounding: it is brought back to the plane,
+// and a ray then starts beyond the rounding of that triangle, as a path's does.
 vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float magnitude, vec3 reflection) {
   vec3 p = position - directOrigin.xyz - face * (dot(position, face) - plane), start = offsetRay(p, face, magnitude);
   vec3 u = normalize(abs(normal.x) > 0.5 ? vec3(normal.y, -normal.x, 0.0) : vec3(0.0, normal.z, -normal.y)),
