@@ -124,11 +124,10 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ask
                                {"SPECULAR", needs_.specular && showsDirect()},
                                {"EMISSION", needs_.emission && showsRest},
                                {"ASKED", asked}});
-    // Of the technique, which has one of the first three; the others are not there.
-    const gl::ShaderFlags own = lpv_         ? lpv_->shadingFlags()
-                                : receivers_ ? receivers_->shadingFlags()
-                                : rsm_       ? rsm_->shadingFlags()
-                                             : gl::ShaderFlags{};
+    gl::ShaderFlags own;  // of the technique, which has one of the first three; the others are not there
+    forTechniques(*this, [&](const auto& technique) {
+      if constexpr (requires { technique.shadingFlags(); }) own = technique.shadingFlags();
+    });
     flags.insert(flags.end(), own.begin(), own.end());
     for (const char* flag : {"PROPAGATED", "RECEIVED", "GATHERED", "SHOW_REFUSED"})
       if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
@@ -167,8 +166,9 @@ void Renderer::resize(glm::ivec2 size) {
   if (size == settings_.size || size.x <= 0 || size.y <= 0) return;
   settings_.size = size;
   allocateTargets();
-  if (rsm_) rsm_->resize(depth_);
-  if (receivers_) receivers_->resize(depth_);
+  forTechniques(*this, [&](auto& technique) {
+    if constexpr (requires { technique.resize(depth_); }) technique.resize(depth_);
+  });
   if (path_) path_->resize(size);
 }
 
@@ -179,10 +179,9 @@ void Renderer::apply(const RenderSettings& settings) {
 
 void Renderer::forget() {
   shadowsMade_ = false;
-  if (rsm_) rsm_->forget();
-  if (lpv_) lpv_->forget();
-  if (receivers_) receivers_->forget();
-  if (path_) path_->forget();
+  forTechniques(*this, [](auto& technique) {
+    if constexpr (requires { technique.forget(); }) technique.forget();
+  });
 }
 
 void Renderer::recordShadows(const Camera& camera) {
@@ -269,10 +268,9 @@ void Renderer::bindForShading() const {
     sunCascadeConstants_.bindUniform(BLOCK_SUN_CASCADES);
   }
   if (localLights_) localLights_->bindForShading();
-  if (lpv_) lpv_->bindForShading();
-  if (receivers_) receivers_->bindForShading();
-  if (rsm_) rsm_->bindForShading();
-  if (radiosity_) radiosity_->bindForShading();
+  forTechniques(*this, [](const auto& technique) {
+    if constexpr (requires { technique.bindForShading(); }) technique.bindForShading();
+  });
 }
 
 void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
@@ -390,11 +388,7 @@ std::size_t Renderer::gpuBytes() const {
   if (shadowMap_) bytes += shadowMap_->gpuBytes();
   if (sunCascades_) bytes += sunCascades_->gpuBytes() + sunCascadeConstants_.bytes();
   if (localLights_) bytes += localLights_->gpuBytes();
-  if (rsm_) bytes += rsm_->gpuBytes();
-  if (lpv_) bytes += lpv_->gpuBytes();
-  if (receivers_) bytes += receivers_->gpuBytes();
-  if (radiosity_) bytes += radiosity_->gpuBytes();
-  if (path_) bytes += path_->gpuBytes();
+  forTechniques(*this, [&](const auto& technique) { bytes += technique.gpuBytes(); });
   if (environmentView_) bytes += environmentView_->gpuBytes();
   return bytes;
 }
@@ -403,9 +397,9 @@ std::vector<StagePicture> Renderer::stagePictures() const {
   std::vector<StagePicture> pictures;
   if (shadowMap_) pictures.push_back({StagePicture::Kind::depth, "shadow map", &shadowMap_->depth()});
   if (sunCascades_) pictures.push_back({StagePicture::Kind::depth, "sun cascades", &sunCascades_->depth()});
-  if (rsm_) rsm_->addStagePictures(pictures);
-  if (lpv_) lpv_->addStagePictures(pictures);
-  if (receivers_) receivers_->addStagePictures(pictures);
+  forTechniques(*this, [&](const auto& technique) {
+    if constexpr (requires { technique.addStagePictures(pictures); }) technique.addStagePictures(pictures);
+  });
   if (!path_) pictures.push_back({StagePicture::Kind::depth, "depth", &depth_});
   return pictures;
 }

@@ -119,6 +119,15 @@ class Renderer {
                        glm::ivec2 fromBelow, PixelAnswer& answer);
   void answerOfPatches(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                        const AskedTerms& terms, PixelAnswer& answer);
+  /// Calls `visit` with each technique that there is.
+  template <class Self, class Visit>
+  static void forTechniques(Self& self, const Visit& visit) {
+    const auto visitIfThere = [&](auto& technique) {
+      if (technique) visit(*technique);
+    };
+    visitIfThere(self.rsm_), visitIfThere(self.lpv_), visitIfThere(self.receivers_);
+    visitIfThere(self.radiosity_), visitIfThere(self.path_);
+  }
   bool showsDirect() const;  ///< direct light of any kind, by shadow maps
   bool showsSun() const { return shadowMap_ || sunCascades_; }
 
