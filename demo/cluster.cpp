@@ -6,7 +6,6 @@
 #include "cluster_job.hpp"
 #include "commands.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 
@@ -409,61 +408,56 @@ int join(const Options& options) {
 
 }  // namespace
 
-Work addCluster(CLI::App& app) {
+Work addCluster(Command app) {
   Subcommands commands(app);
   auto options = std::make_shared<Options>();
-  CLI::App* planned =
+  Command planned =
       commands.add("plan", "Cut a command's work into tasks, in a folder that all machines see; with scripts for Slurm",
                    [options] { return plan(*options); });
-  planned->add_option("COMMAND", options->command, "after --: " + listOfCuts())->required();
-  planned->add_option("-o,--output", options->output, "the job's folder")->required();
-  planned->add_option("--tasks", options->tasks, "into how many")
-      ->capture_default_str()
-      ->check(CLI::Range(1u, 1000000u));
+  planned.addOption("COMMAND", options->command, "after --: " + listOfCuts()).required();
+  planned.addOption("-o,--output", options->output, "the job's folder").required();
+  planned.addOption("--tasks", options->tasks, "into how many").showDefault().range(1u, 1000000u);
   planned
-      ->add_option(
-          "--time", options->time,
-          "Slurm's time limit of a task; one that reaches it gives its task back, and the join goes on with it")
-      ->capture_default_str();
-  planned->add_option("--account", options->account, "Slurm's account");
-  planned->add_option("--gpus", options->gpus,
-                      "Slurm's GPUs a task, such as 1; the task's program uses the first of them");
-  const auto deadAfter = [&](CLI::App* command) {
+      .addOption("--time", options->time,
+                 "Slurm's time limit of a task; one that reaches it gives its task back, and the join goes on with it")
+      .showDefault();
+  planned.addOption("--account", options->account, "Slurm's account");
+  planned.addOption("--gpus", options->gpus,
+                    "Slurm's GPUs a task, such as 1; the task's program uses the first of them");
+  const auto deadAfter = [&](Command command) {
     command
-        ->add_option(
-            "--dead-after", options->deadAfter,
-            "seconds without a sign of life after which a task is taken up by another one; signs come every 5 s")
-        ->capture_default_str()
-        ->check(CLI::Range(6.0, 1e6));
+        .addOption("--dead-after", options->deadAfter,
+                   "seconds without a sign of life after which a task is taken up by another one; signs come every 5 s")
+        .showDefault()
+        .range(6.0, 1e6);
   };
   deadAfter(planned);
-  const auto saveEvery = [&](CLI::App* command) {
+  const auto saveEvery = [&](Command command) {
     command
-        ->add_option("--save-every", options->saveEvery,
-                     "of a path traced picture: seconds between a task's checkpoints; other work is kept unit by unit")
-        ->capture_default_str()
-        ->check(CLI::Range(0.0, 1e6));
+        .addOption("--save-every", options->saveEvery,
+                   "of a path traced picture: seconds between a task's checkpoints; other work is kept unit by unit")
+        .showDefault()
+        .range(0.0, 1e6);
   };
   saveEvery(planned);
-  CLI::App* running = commands.add("run", "Work on a job's tasks until none is left; any number of machines at once",
-                                   [options] { return run(*options); });
-  running->add_option("JOB", options->folder, "the job's folder")->required();
-  running->add_option("--jobs", options->jobs, "tasks at once")->capture_default_str()->check(CLI::Range(1, 256));
+  Command running = commands.add("run", "Work on a job's tasks until none is left; any number of machines at once",
+                                 [options] { return run(*options); });
+  running.addOption("JOB", options->folder, "the job's folder").required();
+  running.addOption("--jobs", options->jobs, "tasks at once").showDefault().range(1, 256);
   running
-      ->add_option(
-          "--devices", options->devices,
-          "EGL devices for the workers of --jobs in turn, such as 0,1: each is its worker's LUCERNA_EGL_DEVICE")
-      ->delimiter(',');
-  running->add_option("--task", options->task, "that one alone, such as of a Slurm array");
+      .addOption("--devices", options->devices,
+                 "EGL devices for the workers of --jobs in turn, such as 0,1: each is its worker's LUCERNA_EGL_DEVICE")
+      .delimiter(',');
+  running.addOption("--task", options->task, "that one alone, such as of a Slurm array");
   deadAfter(running);
   saveEvery(running);
-  CLI::App* asked = commands.add("status", "How many tasks are done, running, abandoned, waiting",
-                                 [options] { return status(*options); });
-  asked->add_option("JOB", options->folder, "the job's folder")->required();
+  Command asked = commands.add("status", "How many tasks are done, running, abandoned, waiting",
+                               [options] { return status(*options); });
+  asked.addOption("JOB", options->folder, "the job's folder").required();
   deadAfter(asked);
-  CLI::App* joined = commands.add("join", "Make the result of all parts", [options] { return join(*options); });
-  joined->add_option("JOB", options->folder, "the job's folder")->required();
-  for (CLI::App* command : {planned, running, asked, joined}) options->common.declare(*command);
+  Command joined = commands.add("join", "Make the result of all parts", [options] { return join(*options); });
+  joined.addOption("JOB", options->folder, "the job's folder").required();
+  for (Command command : {planned, running, asked, joined}) options->common.declare(command);
   return commands.work();
 }
 

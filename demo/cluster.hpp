@@ -1,10 +1,10 @@
 // lucerna cluster plan|run|status|join: work that is cut by --part, made by many machines that share a folder.
 #pragma once
 
-#include "subcommands.hpp"
+#include "command_line.hpp"
 
 namespace lucerna::demo {
 
-Work addCluster(CLI::App& app);
+Work addCluster(Command app);
 
 }  // namespace lucerna::demo

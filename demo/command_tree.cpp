@@ -2,7 +2,7 @@
 
 #include "offers.hpp"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 
 namespace lucerna::demo {
 
@@ -20,7 +20,7 @@ OptionEntry entryOf(CLI::Option& option) {
   entry.defaultValue = option.get_default_str();
   entry.required = option.get_required();
   entry.repeats = option.get_items_expected_max() > 1;
-  entry.values = offered(option);
+  entry.values = offered(Option(option));
   if (option.get_items_expected_max() > 0) {
     // "INT:INT in [1 - 8]": the type, then what its validators say.
     const std::string text = option.get_type_name();
@@ -48,9 +48,9 @@ void append(std::vector<CommandEntry>& commands, CLI::App& app, const std::strin
 
 }  // namespace
 
-std::vector<CommandEntry> commandTree(CLI::App& program) {
+std::vector<CommandEntry> commandTree(Command program) {
   std::vector<CommandEntry> commands;
-  append(commands, program, "");
+  append(commands, program.cli11(), "");
   return commands;
 }
 

@@ -2,7 +2,7 @@
 // of.
 #pragma once
 
-#include "subcommands.hpp"
+#include "command_line.hpp"
 
 #include <string>
 #include <vector>
@@ -36,10 +36,10 @@ struct CommandEntry {
 
 /// The program first, then its commands in their order, each followed by its own. What is in no group is hidden and
 /// left out.
-std::vector<CommandEntry> commandTree(CLI::App& program);
+std::vector<CommandEntry> commandTree(Command program);
 
 /// The subcommands that print it, as commands.hpp has the others.
-Work addCompletion(CLI::App& app);
-Work addManual(CLI::App& app);
+Work addCompletion(Command app);
+Work addManual(Command app);
 
 }  // namespace lucerna::demo

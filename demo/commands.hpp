@@ -6,7 +6,7 @@
 #include "host/host.hpp"
 #include "render/renderer.hpp"
 #include "settings/settings.hpp"
-#include "subcommands.hpp"
+#include "command_line.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -19,14 +19,14 @@
 namespace lucerna::demo {
 
 /// A subcommand: its options are declared on `app`, its work is returned and run after parsing.
-Work addWalk(CLI::App& app);
-Work addRender(CLI::App& app);
-Work addInfo(CLI::App& app);
-Work addMedia(CLI::App& app);
-Work addBench(CLI::App& app);
-Work addRadiosity(CLI::App& app);
-Work addCompare(CLI::App& app);
-Work addTune(CLI::App& app);
+Work addWalk(Command app);
+Work addRender(Command app);
+Work addInfo(Command app);
+Work addMedia(Command app);
+Work addBench(Command app);
+Work addRadiosity(Command app);
+Work addCompare(Command app);
+Work addTune(Command app);
 
 /// --host, --json, --quiet: every subcommand has them.
 struct CommonOptions {
@@ -34,7 +34,7 @@ struct CommonOptions {
   std::string json;  ///< empty: none
   bool quiet = false;
 
-  void declare(CLI::App& app);
+  void declare(Command app);
   void apply() const;  ///< checks the host asked for and sets the log level
   std::string askedHost() const;  ///< by the option, else by LUCERNA_HOST; empty: neither
   std::unique_ptr<Host> makeHost(bool wantsWindow, const HostOptions& options = {}) const;
@@ -47,7 +47,7 @@ struct PictureOptions {
   std::vector<std::string> deviations, settings;
   std::string settingsFile;  ///< --settings: what it says counts as given before the command line
 
-  void declare(CLI::App& app);
+  void declare(Command app);
   std::optional<std::uint32_t> settingsSpp;  ///< samples a pixel that the settings file asks for, path tracing alone
 
   /// Reads --settings, if given; options that were given on the command line stay. Call once, before parse().

@@ -6,7 +6,6 @@
 #include "settings/deviations.hpp"
 #include "settings_file.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <charconv>
@@ -70,33 +69,32 @@ std::string deviationsHelp() {
   return text;
 }
 
-void PictureOptions::declare(CLI::App& app) {
-  const auto offerNames = [](CLI::Option* option, const auto& names) {
+void PictureOptions::declare(Command app) {
+  const auto offerNames = [](Option option, const auto& names) {
     offer(option, std::vector<std::string>(names.begin(), names.end()));
   };
-  offerNames(app.add_option("--technique", technique, "direct, rsm, lpv, radiosity or path")->capture_default_str(),
+  offerNames(app.addOption("--technique", technique, "direct, rsm, lpv, radiosity or path").showDefault(),
              namesOf(Technique{}));
-  offerNames(app.add_option("--component", component, "all, direct or indirect")->capture_default_str(),
-             namesOf(Component{}));
+  offerNames(app.addOption("--component", component, "all, direct or indirect").showDefault(), namesOf(Component{}));
   offerNames(
-      app.add_option("--fidelity", fidelity,
-                     "corrected; original: as published; lpv: thesis (original) or demo, the program published with it")
-          ->capture_default_str(),
+      app.addOption("--fidelity", fidelity,
+                    "corrected; original: as published; lpv: thesis (original) or demo, the program published with it")
+          .showDefault(),
       namesOf(Fidelity{}));
   std::vector<std::string> switches;
   for (const Deviation& deviation : allDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
-  offer(app.add_option("--deviation", deviations,
-                       "NAME=on|off: one deviation of the published original; may be repeated"),
-        switches);
-  app.add_option("--size", size,
-                 "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for "
-                 "--fidelity original")
-      ->capture_default_str();
-  offer(app.add_option("--set", settings, "KEY=VALUE, see below; may be repeated"), offeredSettings());
-  app.add_option("--settings", settingsFile,
-                 "a settings file, as written by `lucerna tune`; other options here override it");
-  app.footer(settingsHelp() + deviationsHelp());
+  offer(
+      app.addOption("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated"),
+      switches);
+  app.addOption("--size", size,
+                "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for "
+                "--fidelity original")
+      .showDefault();
+  offer(app.addOption("--set", settings, "KEY=VALUE, see below; may be repeated"), offeredSettings());
+  app.addOption("--settings", settingsFile,
+                "a settings file, as written by `lucerna tune`; other options here override it");
+  app.setFooter(settingsHelp() + deviationsHelp());
 }
 
 void PictureOptions::readSettingsFile() {

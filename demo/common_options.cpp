@@ -6,7 +6,6 @@
 #include "commands.hpp"
 #include "offers.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <csignal>
@@ -15,13 +14,13 @@
 
 namespace lucerna::demo {
 
-void CommonOptions::declare(CLI::App& app) {
+void CommonOptions::declare(Command app) {
   offer(
-      app.add_option("--host", host,
-                     "what creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
+      app.addOption("--host", host,
+                    "what creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
       {"window", "egl", "osmesa"});
-  app.add_option("--json", json, "write machine-readable results to this file");
-  app.add_flag("--quiet", quiet, "no warnings, no progress");
+  app.addOption("--json", json, "write machine-readable results to this file");
+  app.addFlag("--quiet", quiet, "no warnings, no progress");
 }
 
 std::string CommonOptions::askedHost() const {

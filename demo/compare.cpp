@@ -10,7 +10,6 @@
 #include "measure/heat_map.hpp"
 #include "measure/image_errors.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -153,15 +152,15 @@ int run(const Options& options) {
 
 }  // namespace
 
-Work addCompare(CLI::App& app) {
+Work addCompare(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("A", options->image, "a picture: hdr, exr, pfm, or png, jpg, tga, bmp taken as sRGB")->required();
-  app.add_option("B", options->reference, "the reference, of the same size")->required();
-  app.add_option("--heatmap", options->heatMap, "OUT.png: absolute and signed differences side by side");
-  app.add_option("--page", options->page,
-                 "OUT.html: both in the viewer of the reports, with maps and values under the cursor");
-  app.add_option("--standard-error", options->standardError,
-                 "with --page: B's standard error of each pixel, such as of lucerna merge --error; gives z-scores");
+  app.addOption("A", options->image, "a picture: hdr, exr, pfm, or png, jpg, tga, bmp taken as sRGB").required();
+  app.addOption("B", options->reference, "the reference, of the same size").required();
+  app.addOption("--heatmap", options->heatMap, "OUT.png: absolute and signed differences side by side");
+  app.addOption("--page", options->page,
+                "OUT.html: both in the viewer of the reports, with maps and values under the cursor");
+  app.addOption("--standard-error", options->standardError,
+                "with --page: B's standard error of each pixel, such as of lucerna merge --error; gives z-scores");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -3,7 +3,6 @@
 #include "command_tree.hpp"
 #include "offers.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -235,12 +234,12 @@ std::string fish(const std::vector<CommandEntry>& commands) {
 
 }  // namespace
 
-Work addCompletion(CLI::App& app) {
+Work addCompletion(Command app) {
   auto shell = std::make_shared<std::string>();
-  offer(app.add_option("SHELL", *shell, "bash, zsh or fish")->required(), {"bash", "zsh", "fish"});
-  app.footer("For this shell alone: source <(lucerna completion bash)");
-  return [&app, shell] {
-    const std::vector<CommandEntry> commands = commandTree(*app.get_parent());
+  offer(app.addOption("SHELL", *shell, "bash, zsh or fish").required(), {"bash", "zsh", "fish"});
+  app.setFooter("For this shell alone: source <(lucerna completion bash)");
+  return [app, shell] {
+    const std::vector<CommandEntry> commands = commandTree(app.parent());
     if (*shell == "bash") fmt::print("{}", bash(commands));
     else if (*shell == "zsh") fmt::print("{}", zsh(commands));
     else if (*shell == "fish") fmt::print("{}", fish(commands));

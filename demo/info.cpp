@@ -4,7 +4,6 @@
 #include "scene/scene.hpp"
 #include "settings_page.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cstdlib>
@@ -116,12 +115,12 @@ int run(const Options& options) {
 
 }  // namespace
 
-Work addInfo(CLI::App& app) {
+Work addInfo(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...");
-  app.add_flag("--devices", options->devices, "list EGL's devices and mark the one that is tried first");
-  app.add_flag("--settings", options->settings,
-               "print every setting and deviation, with ranges, defaults, units and sources (docs/settings.md)");
+  app.addOption("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...");
+  app.addFlag("--devices", options->devices, "list EGL's devices and mark the one that is tried first");
+  app.addFlag("--settings", options->settings,
+              "print every setting and deviation, with ranges, defaults, units and sources (docs/settings.md)");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

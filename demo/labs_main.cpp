@@ -8,11 +8,11 @@
 int main(int argc, char** argv) {
   CLI::App app{"Lucerna's teaching labs.\nStart with: lucerna-labs lab list", "lucerna-labs"};
   app.set_version_flag("--version", LUCERNA_VERSION);
-  lucerna::demo::Subcommands commands(app);
-  commands.add("lab", "Teaching labs that check and grade themselves", [](CLI::App& lab) {
+  lucerna::demo::Subcommands commands{lucerna::demo::Command(app)};
+  commands.add("lab", "Teaching labs that check and grade themselves", [](lucerna::demo::Command lab) {
     lucerna::demo::Subcommands labs(lab);
     lucerna::demo::addLabs(labs);
     return labs.work();
   });
-  return lucerna::demo::runCommands(app, commands.work(), argc, argv);
+  return lucerna::demo::runCommands(lucerna::demo::Command(app), commands.work(), argc, argv);
 }

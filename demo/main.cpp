@@ -11,7 +11,7 @@
 int main(int argc, char** argv) {
   CLI::App app{"Lucerna: real-time global illumination, measured.\nStart with: lucerna walk", "lucerna"};
   app.set_version_flag("--version", LUCERNA_VERSION);
-  lucerna::demo::Subcommands commands(app);
+  lucerna::demo::Subcommands commands{lucerna::demo::Command(app)};
   commands.add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times",
                lucerna::demo::addWalk);
   commands.add("render", "Render one picture of a scene", lucerna::demo::addRender);
@@ -31,5 +31,5 @@ int main(int argc, char** argv) {
   commands.add("lab", "Teaching labs that check and grade themselves", lucerna::demo::addLab);
   commands.add("completion", "Print a completion script for a shell", lucerna::demo::addCompletion);
   commands.add("manual", "Print the manual page, in roff", lucerna::demo::addManual);
-  return lucerna::demo::runCommands(app, commands.work(), argc, argv);
+  return lucerna::demo::runCommands(lucerna::demo::Command(app), commands.work(), argc, argv);
 }

@@ -2,7 +2,6 @@
 // do.
 #include "command_tree.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -105,7 +104,7 @@ const char* kExitCodes[][2] = {
     {"130", "Interrupted by Ctrl-C; finished work is kept."},
 };
 
-std::string manual(CLI::App& program) {
+std::string manual(Command program) {
   const std::vector<CommandEntry> commands = commandTree(program);
   // The date of the release, not of the build: the same sources give the same page.
   std::string text = fmt::format(
@@ -158,9 +157,9 @@ std::string manual(CLI::App& program) {
 
 }  // namespace
 
-Work addManual(CLI::App& app) {
-  return [&app] {
-    fmt::print("{}", manual(*app.get_parent()));
+Work addManual(Command app) {
+  return [app] {
+    fmt::print("{}", manual(app.parent()));
     return 0;
   };
 }

@@ -6,7 +6,6 @@
 #include "scene/media_catalogue.hpp"
 #include "scene/original_scene_file.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cmath>
@@ -68,18 +67,18 @@ int draft(const Options& options) {
 
 }  // namespace
 
-Work addMedia(CLI::App& app) {
+Work addMedia(Command app) {
   Subcommands commands(app);
   auto options = std::make_shared<Options>();
-  CLI::App* listed = commands.add("list", "The catalogue: the original's twelve media and 27 measured liquids",
-                                  [options] { return list(*options); });
-  options->common.declare(*listed);
-  CLI::App* drafted = commands.add("draft", "Draft the original's scene JSON from an MTL, to be edited",
-                                   [options] { return draft(*options); });
-  drafted->add_option("MTL", options->mtl, "the material library; an OBJ of the same stem gives camera and light")
-      ->required();
-  drafted->add_option("-o,--output", options->output, "FILE.json (default: standard output)");
-  options->common.declare(*drafted);
+  Command listed = commands.add("list", "The catalogue: the original's twelve media and 27 measured liquids",
+                                [options] { return list(*options); });
+  options->common.declare(listed);
+  Command drafted = commands.add("draft", "Draft the original's scene JSON from an MTL, to be edited",
+                                 [options] { return draft(*options); });
+  drafted.addOption("MTL", options->mtl, "the material library; an OBJ of the same stem gives camera and light")
+      .required();
+  drafted.addOption("-o,--output", options->output, "FILE.json (default: standard output)");
+  options->common.declare(drafted);
   return commands.work();
 }
 

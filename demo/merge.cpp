@@ -6,7 +6,6 @@
 #include "parts.hpp"
 #include "pathtracer/film.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -98,20 +97,19 @@ int run(Options options) {
 
 }  // namespace
 
-Work addMerge(CLI::App& app) {
+Work addMerge(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("PART", options->parts,
-                 "what a command made with --part K/N --checkpoint PART (render: --samples FIRST:LAST too), of one "
-                 "scene and with one setting, in any order");
-  app.add_option("--parts", options->folder, "a folder: all parts in it");
-  app.add_option(
-      "-o,--output", options->output,
-      "of a path traced picture's samples: OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear");
-  app.add_option("--error", options->errorOutput, "OUT.{hdr,exr,pfm}: the standard error of each pixel");
-  app.add_option("--checkpoint", options->checkpoint,
-                 "all parts as one, from which the same command goes on with --checkpoint: of samples a film, if they "
-                 "begin with sample 0; of frames, batches and rows a folder");
-  app.add_option("--exposure", options->exposure, "of a png")->capture_default_str();
+  app.addOption("PART", options->parts,
+                "what a command made with --part K/N --checkpoint PART (render: --samples FIRST:LAST too), of one "
+                "scene and with one setting, in any order");
+  app.addOption("--parts", options->folder, "a folder: all parts in it");
+  app.addOption("-o,--output", options->output,
+                "of a path traced picture's samples: OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear");
+  app.addOption("--error", options->errorOutput, "OUT.{hdr,exr,pfm}: the standard error of each pixel");
+  app.addOption("--checkpoint", options->checkpoint,
+                "all parts as one, from which the same command goes on with --checkpoint: of samples a film, if they "
+                "begin with sample 0; of frames, batches and rows a folder");
+  app.addOption("--exposure", options->exposure, "of a png").showDefault();
   options->common.declare(app);
   return [options] { return run(*options); };
 }

@@ -2,10 +2,10 @@
 // one folder (parts.hpp).
 #pragma once
 
-#include "subcommands.hpp"
+#include "command_line.hpp"
 
 namespace lucerna::demo {
 
-Work addMerge(CLI::App& app);
+Work addMerge(Command app);
 
 }  // namespace lucerna::demo

@@ -2,7 +2,7 @@
 // its users add.
 #include "offers.hpp"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 
 #include <sstream>
 #include <utility>
@@ -15,12 +15,12 @@ constexpr const char* kName = "offers";
 
 }  // namespace
 
-CLI::Option* offer(CLI::Option* option, const std::vector<std::string>& values) {
+Option offer(Option option, const std::vector<std::string>& values) {
   try {
-    option->get_validator(kName)->description(joined(values));
+    option.cli11().get_validator(kName)->description(joined(values));
   } catch (const CLI::OptionNotFound&) {
     CLI::Validator validator([](std::string&) { return std::string(); }, joined(values), kName);
-    option->check(validator.active(false));
+    option.cli11().check(validator.active(false));
   }
   return option;
 }
@@ -31,10 +31,10 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::vector<std::string> offered(CLI::Option& option) {
+std::vector<std::string> offered(Option option) {
   std::vector<std::string> values;
   try {
-    std::istringstream text(std::as_const(*option.get_validator(kName)).active(true).get_description());
+    std::istringstream text(std::as_const(*option.cli11().get_validator(kName)).active(true).get_description());
     for (std::string value; text >> value;) values.push_back(value);
   } catch (const CLI::OptionNotFound&) {}
   return values;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "settings/settings.hpp"
-#include "subcommands.hpp"
+#include "command_line.hpp"
 
 #include <string>
 #include <vector>
@@ -11,10 +11,10 @@
 namespace lucerna::demo {
 
 /// `values` that end in '=' are keys, which a value follows. What was offered before is replaced.
-CLI::Option* offer(CLI::Option* option, const std::vector<std::string>& values);
+Option offer(Option option, const std::vector<std::string>& values);
 
 /// What was offered; empty where nothing was. (CLI11 gives validators of options that may be changed alone.)
-std::vector<std::string> offered(CLI::Option& option);
+std::vector<std::string> offered(Option option);
 
 /// With spaces between them.
 std::string joined(const std::vector<std::string>& words);

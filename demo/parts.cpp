@@ -4,7 +4,6 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -53,13 +52,13 @@ Json readDescription(const fs::path& folder) {
 
 }  // namespace
 
-void PartOptions::declare(CLI::App& app, const std::string& units) {
-  app.add_option("--part", part,
-                 "K/N: only part K of N, from 0, of the " + units +
-                     ", kept in --checkpoint and nothing else; lucerna merge makes one of all parts");
-  app.add_option("--checkpoint", checkpoint,
-                 "a folder: finished " + units +
-                     " are kept there and taken from there, such as those of lucerna merge --checkpoint");
+void PartOptions::declare(Command app, const std::string& units) {
+  app.addOption("--part", part,
+                "K/N: only part K of N, from 0, of the " + units +
+                    ", kept in --checkpoint and nothing else; lucerna merge makes one of all parts");
+  app.addOption("--checkpoint", checkpoint,
+                "a folder: finished " + units +
+                    " are kept there and taken from there, such as those of lucerna merge --checkpoint");
 }
 
 PartOptions::Range PartOptions::rangeOf(std::size_t units) const {

@@ -7,7 +7,7 @@
 // missing, and writes its result: so the result of parts is that of one run.
 #pragma once
 
-#include "subcommands.hpp"
+#include "command_line.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -24,7 +24,7 @@ struct PartOptions {
   std::string checkpoint;  ///< a folder; empty: none
 
   /// `units`: what the work is cut into, for --help.
-  void declare(CLI::App& app, const std::string& units);
+  void declare(Command app, const std::string& units);
   bool isPart() const { return !part.empty(); }
   struct Range {
     std::size_t first = 0, last = 0;  ///< `last` not counted; empty where there are more parts than units

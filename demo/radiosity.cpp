@@ -10,7 +10,6 @@
 #include "radiosity/original/rad_models.hpp"
 #include "radiosity/original/rad_scene.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -108,24 +107,23 @@ int generate(const Generate& options) {
   return 0;
 }
 
-Work addGenerate(CLI::App& app) {
+Work addGenerate(Command app) {
   auto options = std::make_shared<Generate>();
-  app.add_option("FILE", options->file, "the triangle file to write")->required();
-  offer(app.add_option("MODEL", options->model,
-                       "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle; or a "
-                       "scene file: OBJ, glTF, PLY, ...")
-            ->required(),
+  app.addOption("FILE", options->file, "the triangle file to write").required();
+  offer(app.addOption("MODEL", options->model,
+                      "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle; or a "
+                      "scene file: OBJ, glTF, PLY, ...")
+            .required(),
         {"1", "2", "3"});
-  app.add_option("NUMBERS", options->numbers,
-                 "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until smaller than "
-                 "the area; 0 to 1; 0 to 16777215")
-      ->expected(0, 3);
-  app.add_option("--edge", options->edge,
-                 "of a scene: longest edge of the triangles in scene units (a 12th of the scene)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--power", options->power, "of a scene: e of its brightest triangle, 1 to 16777215")
-      ->capture_default_str();
-  app.footer("As published: lucerna radiosity generate model1.out 1 2.5 0.15 100000");
+  app.addOption("NUMBERS", options->numbers,
+                "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until smaller than "
+                "the area; 0 to 1; 0 to 16777215")
+      .values(0, 3);
+  app.addOption("--edge", options->edge,
+                "of a scene: longest edge of the triangles in scene units (a 12th of the scene)")
+      .positive();
+  app.addOption("--power", options->power, "of a scene: e of its brightest triangle, 1 to 16777215").showDefault();
+  app.setFooter("As published: lucerna radiosity generate model1.out 1 2.5 0.15 100000");
   options->common.declare(app);
   return [options] { return generate(*options); };
 }
@@ -163,81 +161,79 @@ std::string radiosityDeviationsHelp() {
   return text;
 }
 
-Work addSolve(CLI::App& app) {
+Work addSolve(Command app) {
   auto options = std::make_shared<RadiositySolve>();
-  app.add_option("IN", options->in, "a triangle file; corrected: or any scene")->required();
-  app.add_option("OUT", options->out,
-                 "file that every sweep is saved to; may be IN. Ctrl-C stops at any time, the same command resumes")
-      ->required();
+  app.addOption("IN", options->in, "a triangle file; corrected: or any scene").required();
+  app.addOption("OUT", options->out,
+                "file that every sweep is saved to; may be IN. Ctrl-C stops at any time, the same command resumes")
+      .required();
   // Options that are shorter spellings of settings; the original reads some of them itself.
-  auto shorter = std::make_shared<std::vector<std::pair<const char*, const CLI::Option*>>>();
-  const auto shortFor = [&](const char* key, CLI::Option* option) {
+  auto shorter = std::make_shared<std::vector<std::pair<const char*, Option>>>();
+  const auto shortFor = [&](const char* key, Option option) {
     shorter->emplace_back(key, option);
     return option;
   };
-  shortFor("radiosity.resolution", app.add_option("RESOLUTION", options->resolution,
-                                                  "pixels per side of a hemicube's face (original 500, corrected 64)"));
-  offer(app.add_option("--fidelity", options->fidelity, "corrected, or original: as published")->capture_default_str(),
+  shortFor("radiosity.resolution", app.addOption("RESOLUTION", options->resolution,
+                                                 "pixels per side of a hemicube's face (original 500, corrected 64)"));
+  offer(app.addOption("--fidelity", options->fidelity, "corrected, or original: as published").showDefault(),
         {"corrected", "original"});
   offer(shortFor("radiosity.solver",
-                 app.add_option("--solver", options->solver,
-                                "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, "
-                                "progressive, overshoot, anderson, cg")),
+                 app.addOption("--solver", options->solver,
+                               "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, "
+                               "progressive, overshoot, anderson, cg")),
         {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "cg"});
   std::vector<std::string> switches;
   for (const RadiosityDeviation& deviation : allRadiosityDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
-  offer(app.add_option("--deviation", options->deviations,
-                       "NAME=on|off: one deviation of the published original; may be repeated"),
+  offer(app.addOption("--deviation", options->deviations,
+                      "NAME=on|off: one deviation of the published original; may be repeated"),
         switches);
   shortFor("radiosity.products",
-           app.add_option("--max-sweeps", options->maxSweeps, "stop after this many sweeps (0: when nothing changes)")
-               ->capture_default_str());
-  app.add_option("--near-plane", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
-  app.add_option_function<double>("--near",
-                                  [options](double distance) {
-                                    logWarning("--near: now written --near-plane");
-                                    options->nearPlane = distance;
-                                  })
-      ->group("");
-  shortFor("radiosity.seed",
-           app.add_option("--seed", options->seed, "of the random roll with radiosity.fixed-orientation=off")
-               ->capture_default_str());
-  app.add_option("--save-every", options->saveEvery, "seconds between checkpoints within a sweep")
-      ->capture_default_str();
-  app.add_flag("--restart", options->restart, "start over instead of resuming a stopped run");
+           app.addOption("--max-sweeps", options->maxSweeps, "stop after this many sweeps (0: when nothing changes)")
+               .showDefault());
+  app.addOption("--near-plane", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
+  app.addAction("--near",
+                [options](double distance) {
+                  logWarning("--near: now written --near-plane");
+                  options->nearPlane = distance;
+                })
+      .hidden();
+  shortFor(
+      "radiosity.seed",
+      app.addOption("--seed", options->seed, "of the random roll with radiosity.fixed-orientation=off").showDefault());
+  app.addOption("--save-every", options->saveEvery, "seconds between checkpoints within a sweep").showDefault();
+  app.addFlag("--restart", options->restart, "start over instead of resuming a stopped run");
   options->part.declare(app, "rows of hemicubes");
   const auto addShort = [&](const char* option, const char* key, const char* meaning) {
-    return shortFor(key, app.add_option_function<std::string>(
-                             option, [](const std::string&) {}, std::string("corrected: ") + meaning));
+    return shortFor(key, app.addOption(option, std::string("corrected: ") + meaning));
   };
-  addShort("--error", "radiosity.error", "stop at this guaranteed relative error (0.001)")->type_name("FLOAT");
+  addShort("--error", "radiosity.error", "stop at this guaranteed relative error (0.001)").typeName("FLOAT");
   addShort("--memory", "radiosity.memory",
            "MiB for form factors; more are read from OUT.rows for each product (half of what is free)")
-      ->type_name("FLOAT");
+      .typeName("FLOAT");
   addShort("--edge", "radiosity.edge", "longest edge of a scene's patches in scene units (a 12th of the scene)")
-      ->type_name("FLOAT");
+      .typeName("FLOAT");
   addShort("--refinements", "radiosity.refinements",
            "times that a scene's patches are halved where light changes steeply (0)")
-      ->type_name("INT");
+      .typeName("INT");
   offer(
-      app.add_option(
+      app.addOption(
           "--set", options->set,
           "corrected: radiosity.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated"),
       offeredSettings(&kSolutionCost));
   offer(addShort("--visibility", "radiosity.visibility",
                  "what tells pixels what they see: auto (measured at start), raster, rays, item-buffer"),
         {"auto", "raster", "rays", "item-buffer"});
-  app.footer(radiosityDeviationsHelp());
+  app.setFooter(radiosityDeviationsHelp());
   options->common.declare(app);
   return [options, shorter] {
     for (const auto& [key, option] : *shorter) {
-      if (option->count() == 0) continue;
-      std::string value = option->results().back();
-      if (option->get_name() == "RESOLUTION" && options->resolution % 2 != 0)
+      if (option.count() == 0) continue;
+      std::string value = option.last();
+      if (option.name() == "RESOLUTION" && options->resolution % 2 != 0)
         value = std::to_string(options->resolution + 1);
-      if (option->get_name() == "--max-sweeps" && options->maxSweeps == 0) continue;  // no limit but the setting's own
-      options->shortSettings.emplace_back(option->get_name(), std::string(key) + "=" + value);
+      if (option.name() == "--max-sweeps" && options->maxSweeps == 0) continue;  // no limit but the setting's own
+      options->shortSettings.emplace_back(option.name(), std::string(key) + "=" + value);
     }
     return solve(*options);
   };
@@ -245,7 +241,7 @@ Work addSolve(CLI::App& app) {
 
 }  // namespace
 
-Work addRadiosity(CLI::App& app) {
+Work addRadiosity(Command app) {
   Subcommands commands(app);
   commands.add("generate", "Make one of the original's three models, or triangles of any scene", addGenerate);
   commands.add("solve", "Compute the radiosity of a scene", addSolve);

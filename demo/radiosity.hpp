@@ -34,6 +34,6 @@ int solveOriginal(const RadiositySolve& options);
 /// Any scene or triangle file. demo/radiosity_corrected.cpp
 int solveCorrected(const RadiositySolve& options);
 
-Work addRadiosityShow(CLI::App& app);
+Work addRadiosityShow(Command app);
 
 }  // namespace lucerna::demo

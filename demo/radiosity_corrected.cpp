@@ -113,6 +113,7 @@ void takeParts(const RadiositySolve& options, const std::filesystem::path& check
 }  // namespace
 
 int solveCorrected(const RadiositySolve& options) {
+  // The scene and the settings.
   if (options.nearPlane) throwBadInput("--near-plane: corrected hemicubes have no near plane");
   const bool rad = isRadFile(options.in);
   std::vector<RadTriangle> triangles;
@@ -135,6 +136,7 @@ int solveCorrected(const RadiositySolve& options) {
   settings.wholeTriangles = rad;
   if (rad) settings.refinements = 0;
 
+  // A part alone; or the whole, from the rows that there are.
   const auto host = options.common.makeHost(false);
   gl::Context context;
   gl::ProgramLibrary programs;
@@ -161,6 +163,7 @@ int solveCorrected(const RadiositySolve& options) {
         "{}: was changed by something else while it was being solved; it is left as it is. The same command takes the "
         "form factors from {}",
         options.out, checkpoint.string());
+  // Kept in the kind of file that it came from, then told.
   if (rad) {
     for (RadTriangle& triangle : triangles) triangle.b = 0;
     // Patches name triangles in the scene's order, which is by material.

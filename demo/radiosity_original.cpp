@@ -120,6 +120,7 @@ double leastChange(const OriginalRadiosity::Settings& settings, std::span<const 
 }  // namespace
 
 int solveOriginal(const RadiositySolve& options) {
+  // Settings, as the options have them.
   OriginalRadiosity::Settings settings;
   settings.view = options.resolution;
   settings.seed = options.seed;
@@ -132,6 +133,7 @@ int solveOriginal(const RadiositySolve& options) {
   }
   for (const std::string& deviation : options.deviations) applyRadiosityDeviation(settings.deviations, deviation);
 
+  // The scene, and the program that was published.
   const std::vector<RadTriangle> triangles = readRadFile(options.in);
   const std::size_t zeroArea = checkRadTriangles(triangles, options.in);
   if (zeroArea > 0) logWarning("{}: {} triangles without area are left out of the computation", options.in, zeroArea);
@@ -143,6 +145,7 @@ int solveOriginal(const RadiositySolve& options) {
   OriginalRadiosity solver(programs, triangles, settings);
   const std::uint64_t key = digestOf(settings, solver.nearPlane(), renderer);
 
+  // A run that was stopped goes on from its files.
   OriginalProgress progress = solver.start();
   std::error_code error;
   Files files(options.out, key);
@@ -157,6 +160,7 @@ int solveOriginal(const RadiositySolve& options) {
     files.saveSweep(progress, triangles);  // so that a folder or disk that cannot be written is known before the work
   }
 
+  // Sweeps, until nothing changes; kept after each and every so often within one.
   watchForInterrupt();
   const auto start = Clock::now();
   const std::uint32_t sweepsBefore = progress.sweeps;
@@ -197,6 +201,7 @@ int solveOriginal(const RadiositySolve& options) {
         "LIGHT_POWER avoids it)",
         options.in, solver.overflows());
 
+  // What it came to, for people and as JSON.
   const double hemicubes = static_cast<double>(solver.hemicubes());
   const double rate = seconds > 0.0 ? hemicubes / seconds : 0.0,
                triangleRate = seconds > 0.0 ? static_cast<double>(solver.drawnTriangles()) / seconds / 1e6 : 0.0;

@@ -10,7 +10,6 @@
 #include "scene/scene.hpp"
 #include "walk/free_camera.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -150,34 +149,33 @@ int run(const Options& options) {
 
 }  // namespace
 
-Work addRadiosityShow(CLI::App& app) {
+Work addRadiosityShow(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->file, "a triangle file")->required();
-  offer(app.add_option("MODE", options->mode,
-                       "s: back-facing triangles too, by their corners; c: the 24-bit colours of the computation"),
+  app.addOption("FILE", options->file, "a triangle file").required();
+  offer(app.addOption("MODE", options->mode,
+                      "s: back-facing triangles too, by their corners; c: the 24-bit colours of the computation"),
         {"s", "c"});
-  app.add_option("-o,--output", options->output, "OUT.png: a picture instead of a window");
-  offer(app.add_option("--mapping", options->mapping,
-                       "log (as published, default), linear (times a constant), filmic (the engine's), false "
-                       "(colours), bits (as c)"),
+  app.addOption("-o,--output", options->output, "OUT.png: a picture instead of a window");
+  offer(app.addOption("--mapping", options->mapping,
+                      "log (as published, default), linear (times a constant), filmic (the engine's), false "
+                      "(colours), bits (as c)"),
         {"log", "linear", "filmic", "false", "bits"});
-  app.add_option("--constant", options->constant, "linear and filmic: factor of values, 1 is white (0: from the scene)")
-      ->capture_default_str();
-  app.add_flag("--interpolate", options->interpolate,
-               "colours interpolated between corners, each the mean of all triangles that meet there, as published");
-  offer(app.add_option("--fidelity", options->fidelity,
-                       "original: as published; corrected, with --interpolate: values instead of colours, and never "
-                       "across an edge"),
+  app.addOption("--constant", options->constant, "linear and filmic: factor of values, 1 is white (0: from the scene)")
+      .showDefault();
+  app.addFlag("--interpolate", options->interpolate,
+              "colours interpolated between corners, each the mean of all triangles that meet there, as published");
+  offer(app.addOption("--fidelity", options->fidelity,
+                      "original: as published; corrected, with --interpolate: values instead of colours, and never "
+                      "across an edge"),
         {"original", "corrected"})
-      ->check(CLI::IsMember({"original", "corrected"}));
-  app.add_option("--scene", options->scene, "the scene that FILE was generated from: its textures times the light");
-  app.add_option("--edge", options->edge, "with --scene: the --edge that FILE was generated with")
-      ->check(CLI::PositiveNumber);
-  app.add_flag("--mesh", options->mesh, "draw the triangles' edges");
-  app.add_flag("--false-colours", options->falseColours, "the same as --mapping false");
-  app.add_option("--camera", options->camera,
-                 "px,py,pz,tx,ty,tz,fov (position, target, degrees); default: from above a corner");
-  app.add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+      .oneOf({"original", "corrected"});
+  app.addOption("--scene", options->scene, "the scene that FILE was generated from: its textures times the light");
+  app.addOption("--edge", options->edge, "with --scene: the --edge that FILE was generated with").positive();
+  app.addFlag("--mesh", options->mesh, "draw the triangles' edges");
+  app.addFlag("--false-colours", options->falseColours, "the same as --mapping false");
+  app.addOption("--camera", options->camera,
+                "px,py,pz,tx,ty,tz,fov (position, target, degrees); default: from above a corner");
+  app.addOption("--size", options->size, "WIDTHxHEIGHT in pixels").showDefault();
   options->common.declare(app);
   return [options] { return run(*options); };
 }

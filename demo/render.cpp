@@ -10,7 +10,6 @@
 #include "render_path.hpp"
 #include "settings/deviations.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -62,6 +61,7 @@ int ask(const Options& options) {
 }
 
 int run(Options options) {
+  // What is asked for, refused before any work where it cannot be done.
   options.common.apply();
   if (!options.output.empty()) checkWritable(options.output);
   options.picture.readSettingsFile();
@@ -80,6 +80,7 @@ int run(Options options) {
   const Scene scene = loadScene(options.scene);
   const Camera camera = chooseCamera(scene, options.camera);
 
+  // The picture.
   const auto host = options.common.makeHost(false);
   gl::Context context;
   if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
@@ -93,6 +94,7 @@ int run(Options options) {
   const double seconds = secondsSince(start) / options.repeat;
   renderer.drain();
 
+  // Written, then told to people and as JSON.
   const Image image = renderer.readRadiance();
   if (lowerExtension(options.output) == ".png") writePng(options.output, renderer.readDisplay());
   else writeImage(options.output, image);
@@ -150,23 +152,21 @@ int run(Options options) {
 
 }  // namespace
 
-Work addRender(CLI::App& app) {
+Work addRender(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...")->required();
-  app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("-o,--output", options->output,
-                 "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");
-  app.add_option("--repeat", options->repeat, "draw this many frames, for stage times")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  app.add_option("--ask", options->ask,
-                 "X,Y: instead of a picture print as JSON what lit this pixel, from the top left: each lamp, texel, "
-                 "cell, receiver, patch or path, with its share");
+  app.addOption("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...").required();
+  app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.addOption("-o,--output", options->output,
+                "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");
+  app.addOption("--repeat", options->repeat, "draw this many frames, for stage times").range(1, 100000).showDefault();
+  app.addOption("--ask", options->ask,
+                "X,Y: instead of a picture print as JSON what lit this pixel, from the top left: each lamp, texel, "
+                "cell, receiver, patch or path, with its share");
   options->picture.declare(app);
   options->path.declare(app);
   options->common.declare(app);
-  return [options, size = app.get_option("--size")] {
-    options->path.sizeGiven = size->count() > 0;
+  return [options, size = app.find("--size")] {
+    options->path.sizeGiven = size.count() > 0;
     return run(*options);
   };
 }

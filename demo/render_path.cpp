@@ -10,7 +10,6 @@
 #include "pathtracer/path_tracer.hpp"
 #include "settings/deviations.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cmath>
@@ -71,26 +70,23 @@ std::optional<SampleRange> sampleRange(const PathOptions& path) {
 
 }  // namespace
 
-void PathOptions::declare(CLI::App& app) {
-  app.add_option("--spp", spp, "path: samples per pixel, at most (64, without --seconds and --error)")
-      ->check(CLI::Range(1u, 4000000000u));
-  app.add_option("--seconds", seconds, "path: stop after this time, with at least one sample per pixel")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--error", error,
-                 "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
-  app.add_option("--checkpoint", checkpoint,
-                 "path: resume from this file if it exists; it is written every minute and at the end. Without it a "
-                 "stopped picture is stored in OUT.film, and the same command resumes it");
-  app.add_option("--samples", samples,
-                 "path: FIRST:LAST, a part of the samples of a pixel, FIRST up to but without LAST, kept by "
-                 "--checkpoint; lucerna merge makes one picture of all parts");
-  app.add_option("--part", part, "path: K/N, part K of N, from 0, of the samples of --spp, as --samples");
-  app.add_option("--save-every", saveEvery, "path: seconds between checkpoints")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--seed", seed, "path: of the random numbers (0)");
+void PathOptions::declare(Command app) {
+  app.addOption("--spp", spp, "path: samples per pixel, at most (64, without --seconds and --error)")
+      .range(1u, 4000000000u);
+  app.addOption("--seconds", seconds, "path: stop after this time, with at least one sample per pixel").positive();
+  app.addOption("--error", error,
+                "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance")
+      .positive();
+  app.addOption("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
+  app.addOption("--checkpoint", checkpoint,
+                "path: resume from this file if it exists; it is written every minute and at the end. Without it a "
+                "stopped picture is stored in OUT.film, and the same command resumes it");
+  app.addOption("--samples", samples,
+                "path: FIRST:LAST, a part of the samples of a pixel, FIRST up to but without LAST, kept by "
+                "--checkpoint; lucerna merge makes one picture of all parts");
+  app.addOption("--part", part, "path: K/N, part K of N, from 0, of the samples of --spp, as --samples");
+  app.addOption("--save-every", saveEvery, "path: seconds between checkpoints").showDefault().range(0.0, 1e6);
+  app.addOption("--seed", seed, "path: of the random numbers (0)");
 }
 
 void PathOptions::refuseIfGiven(const std::string& technique) const {
@@ -128,6 +124,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const Scene scene = loadScene(sceneFile);
   const Camera camera = chooseCamera(scene, cameraText);
 
+  // The path tracer, and the film that an earlier run left.
   const auto host = common.makeHost(false);
   gl::Context context;
   if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
@@ -151,6 +148,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const auto save = [&] { writeFileAtomically(checkpoint, tracer.checkpoint()); };
   watchForInterrupt();
 
+  // Samples, to their number, time or error.
   const std::uint32_t target =
       part ? part->last - part->first
            : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : shared.path.samples);
@@ -190,6 +188,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
                               tracer.statistics().samples, checkpoint));
   }
 
+  // The picture; then told to people and as JSON.
   const PathTracer::Statistics statistics = tracer.statistics();
   const Image image = tracer.mean();
   if (lowerExtension(output) == ".png") writePng(output, toneMapped(image, shared.exposure.value_or(scene.exposure)));

@@ -20,7 +20,7 @@ struct PathOptions {
   double saveEvery = 60.0;  ///< seconds between checkpoints
   bool sizeGiven = true;  ///< --size was; without it the original's files and fidelity have the original's size
 
-  void declare(CLI::App& app);
+  void declare(Command app);
   /// Throws Error(badInput) where one is given with another technique.
   void refuseIfGiven(const std::string& technique) const;
 };

@@ -5,7 +5,7 @@
 #include "commands.hpp"
 #include "gl/context.hpp"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <fmt/core.h>
 
 #include <cerrno>
@@ -52,7 +52,8 @@ void checkNumbers(const CLI::App& app) {
 
 }  // namespace
 
-int lucerna::demo::runCommands(CLI::App& app, const Work& work, int argc, char** argv) {
+int lucerna::demo::runCommands(Command program, const Work& work, int argc, char** argv) {
+  CLI::App& app = program.cli11();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,7 +5,6 @@
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -125,19 +124,18 @@ int run(Options options) {
 
 }  // namespace
 
-Work addTune(CLI::App& app) {
+Work addTune(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->bench.scene, "a scene file (default: the atrium)");
-  app.add_option("--frame-time", options->frameTime,
-                 "at most this many milliseconds per picture: settings with the least error")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--error", options->error, "at most this NRMSE, such as 0.1: settings with the least time")
-      ->check(CLI::PositiveNumber);
-  app.add_option(
+  app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
+  app.addOption("--frame-time", options->frameTime,
+                "at most this many milliseconds per picture: settings with the least error")
+      .positive();
+  app.addOption("--error", options->error, "at most this NRMSE, such as 0.1: settings with the least time").positive();
+  app.addOption(
          "--setup-time", options->setupTime,
          "at most this many seconds before the first picture (10); a radiosity solution of a large scene takes longer")
-      ->check(CLI::PositiveNumber);
-  app.add_option("-o,--output", options->output, "the settings file")->required();
+      .positive();
+  app.addOption("-o,--output", options->output, "the settings file").required();
   options->bench.declare(app);
   options->common.declare(app);
   return [options] { return run(*options); };

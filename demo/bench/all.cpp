@@ -13,7 +13,6 @@
 #include "offers.hpp"
 #include "parts.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 
@@ -302,19 +301,19 @@ int run(AllOptions options) {
 
 }  // namespace bench
 
-Work addBenchAll(CLI::App& app) {
+Work addBenchAll(Command app) {
   auto options = std::make_shared<bench::AllOptions>();
-  app.add_option("SCENE", options->scenes,
-                 "scene files for error and needs (default: the Cornell box and the atrium); the first for the tables "
-                 "and pictures of lpv (default: the atrium)");
-  app.add_option("--out", options->out, "folder of the report; an interrupted one is resumed")->required();
-  offer(app.add_option("--parts", options->parts,
-                       "of error, deviations, stability, needs, rays, tables, pictures; default: all")
-            ->delimiter(','),
+  app.addOption("SCENE", options->scenes,
+                "scene files for error and needs (default: the Cornell box and the atrium); the first for the tables "
+                "and pictures of lpv (default: the atrium)");
+  app.addOption("--out", options->out, "folder of the report; an interrupted one is resumed").required();
+  offer(app.addOption("--parts", options->parts,
+                      "of error, deviations, stability, needs, rays, tables, pictures; default: all")
+            .delimiter(','),
         {std::begin(bench::kParts), std::end(bench::kParts)});
-  app.add_option("--scale", options->scale,
-                 "how much work: pixels and seconds; 1 takes four times as long as the default")
-      ->capture_default_str();
+  app.addOption("--scale", options->scale,
+                "how much work: pixels and seconds; 1 takes four times as long as the default")
+      .showDefault();
   options->common.declare(app);
   return [options] { return bench::run(*options); };
 }

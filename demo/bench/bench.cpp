@@ -20,7 +20,7 @@ std::string sceneOrAtrium(const std::string& scene) { return scene.empty() ? ass
 
 }  // namespace bench
 
-Work addBench(CLI::App& app) {
+Work addBench(Command app) {
   Subcommands commands(app);
   commands.add("tables", "Measure an original's published tables again: published, measured, ratio", addBenchTables);
   commands.add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);

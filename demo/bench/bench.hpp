@@ -10,14 +10,14 @@
 
 namespace lucerna::demo {
 
-Work addBenchTables(CLI::App& app);
-Work addBenchPictures(CLI::App& app);
-Work addBenchRays(CLI::App& app);
-Work addBenchError(CLI::App& app);
-Work addBenchReferences(CLI::App& app);
-Work addBenchStability(CLI::App& app);
-Work addBenchNeeds(CLI::App& app);
-Work addBenchAll(CLI::App& app);
+Work addBenchTables(Command app);
+Work addBenchPictures(Command app);
+Work addBenchRays(Command app);
+Work addBenchError(Command app);
+Work addBenchReferences(Command app);
+Work addBenchStability(Command app);
+Work addBenchNeeds(Command app);
+Work addBenchAll(Command app);
 
 namespace bench {
 

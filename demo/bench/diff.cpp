@@ -22,7 +22,6 @@
 #include "host/host.hpp"
 #include "offers.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 
@@ -201,6 +200,7 @@ bool isBeyondLadder(const ErrorRow& row, const std::map<std::string, ErrorRow>& 
 }
 
 int run(const DiffOptions& options) {
+  // What is compared.
   options.common.apply();
   const auto wants = [&](const char* what) {
     return std::find(options.what.begin(), options.what.end(), what) != options.what.end();
@@ -209,6 +209,7 @@ int run(const DiffOptions& options) {
     if (what != "error" && what != "time") throwBadInput("--only {}: unknown; expected error or time", what);
   if (!(options.significance > 0.0 && options.significance < 1.0))
     throwBadInput("--significance {}: expected a number between 0 and 1", options.significance);
+  // Rows by their labels: of both reports, or of one alone.
   const nlohmann::ordered_json reportA = readReport(options.a), reportB = readReport(options.b);
   if (reportA.at("bench") != reportB.at("bench"))
     throwBadInput("{} is of '{}', {} of '{}': only reports of one scene, view and size are compared", options.a,
@@ -231,6 +232,7 @@ int run(const DiffOptions& options) {
   const bool byProcessor = Host::isSoftwareRenderer(reportA.value("renderer", "")) &&
                            Host::isSoftwareRenderer(reportB.value("renderer", ""));
 
+  // Each row's findings, and its verdict: worse where anything is.
   std::vector<RowDiff> diffs;
   int worse = 0, better = 0;
   for (const std::string& label : both) {
@@ -260,6 +262,7 @@ int run(const DiffOptions& options) {
     diffs.push_back(std::move(diff));
   }
 
+  // Told to people, and as JSON.
   if (!options.common.quiet) {
     std::size_t width = 10;
     for (const RowDiff& diff : diffs) width = std::max(width, diff.label.size());
@@ -313,19 +316,19 @@ int run(const DiffOptions& options) {
 
 }  // namespace bench
 
-Work addBenchDiff(CLI::App& app) {
+Work addBenchDiff(Command app) {
   auto options = std::make_shared<bench::DiffOptions>();
-  app.add_option("A", options->a, "a report: its JSON, or the folder of `bench error`")->required();
-  app.add_option("B", options->b,
-                 "another of the same scene, view and size; exit code 1 where a row of it is worse, or gone")
-      ->required();
-  offer(app.add_option("--only", options->what, "of error, time; default: both")->delimiter(','), {"error", "time"});
-  app.add_option("--significance", options->significance,
-                 "the chance that any row is called better or worse where nothing changed")
-      ->capture_default_str();
-  app.add_option("--time-floor", options->timeFloor, "smaller changes of a time, as a fraction, are undecided")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+  app.addOption("A", options->a, "a report: its JSON, or the folder of `bench error`").required();
+  app.addOption("B", options->b,
+                "another of the same scene, view and size; exit code 1 where a row of it is worse, or gone")
+      .required();
+  offer(app.addOption("--only", options->what, "of error, time; default: both").delimiter(','), {"error", "time"});
+  app.addOption("--significance", options->significance,
+                "the chance that any row is called better or worse where nothing changed")
+      .showDefault();
+  app.addOption("--time-floor", options->timeFloor, "smaller changes of a time, as a fraction, are undecided")
+      .showDefault()
+      .notNegative();
   options->common.declare(app);
   return [options] {
     try {

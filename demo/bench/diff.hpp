@@ -5,6 +5,6 @@
 
 namespace lucerna::demo {
 
-Work addBenchDiff(CLI::App& app);
+Work addBenchDiff(Command app);
 
 }  // namespace lucerna::demo

@@ -9,7 +9,6 @@
 #include "bench/provenance.hpp"
 #include "offers.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 
@@ -92,26 +91,25 @@ std::string pictureCommand(const ErrorBenchOptions& options) {
 
 }  // namespace
 
-void ErrorBenchOptions::declareView(CLI::App& app) {
-  app.add_option("--camera", camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("--size", size, "WIDTHxHEIGHT of the pictures")->capture_default_str();
-  app.add_option("--references", references,
-                 "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
-  offer(
-      app.add_option("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all")->delimiter(','),
-      {"direct", "rsm", "lpv", "radiosity", "path"});
-  app.add_flag("--small", small, "without the most expensive rungs");
+void ErrorBenchOptions::declareView(Command app) {
+  app.addOption("--camera", camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.addOption("--size", size, "WIDTHxHEIGHT of the pictures").showDefault();
+  app.addOption("--references", references,
+                "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
+  offer(app.addOption("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all").delimiter(','),
+        {"direct", "rsm", "lpv", "radiosity", "path"});
+  app.addFlag("--small", small, "without the most expensive rungs");
 }
 
-void ErrorBenchOptions::declare(CLI::App& app) {
+void ErrorBenchOptions::declare(Command app) {
   declareView(app);
-  app.add_option("--budget", budget, "seconds for references and path tracing; known references are used again")
-      ->capture_default_str()
-      ->check(CLI::Range(0.01, 1e6));
-  app.add_option("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")
-      ->check(CLI::Range(2, 1 << 30));
-  app.add_option("--frames", frames, "pictures a rung at least")->capture_default_str()->check(CLI::Range(1, 10000));
-  app.add_option("--out", out, "folder of the report; an interrupted bench goes on where it was");
+  app.addOption("--budget", budget, "seconds for references and path tracing; known references are used again")
+      .showDefault()
+      .range(0.01, 1e6);
+  app.addOption("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")
+      .range(2, 1 << 30);
+  app.addOption("--frames", frames, "pictures a rung at least").showDefault().range(1, 10000);
+  app.addOption("--out", out, "folder of the report; an interrupted bench goes on where it was");
 }
 
 ErrorBenchPlan::ErrorBenchPlan(const Scene& original, const ErrorBenchOptions& options)
@@ -172,6 +170,7 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                                   context.capabilities().renderer, cpuName()),
                       rungs.size() + plan.withPath);
   };
+  // The folder, and in it what an earlier run or parts have left.
   const bool isPart = options.part.isPart();
   if (isPart && options.referenceSamples > 0 && !hasReferences(plan.references(context, programs, options)))
     throwBadInput(
@@ -201,6 +200,7 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                                   measure::keyOf(scene, plan.camera, plan.size, Transport::all, "rows 2").name(),
                                   result->references.all().samples));
 
+  // Rows: of the raster ladders, then of path tracing.
   const ErrorBench bench{context,
                          programs,
                          scene,
@@ -238,6 +238,7 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   }
   markFront(rows);
 
+  // The report.
   ErrorReport& report = result->report;
   report.title = plan.title;
   report.renderer = context.capabilities().renderer;
@@ -368,25 +369,25 @@ int runReferences(ReferencesOptions options) {
 
 }  // namespace
 
-Work addBenchReferences(CLI::App& app) {
+Work addBenchReferences(Command app) {
   auto options = std::make_shared<ReferencesOptions>();
-  app.add_option("SCENE", options->bench.scene, "a scene file (default: the atrium)");
+  app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
   options->bench.declareView(app);
-  app.add_option("--reference-spp", options->bench.referenceSamples, "paths a pixel of every reference")
-      ->required()
-      ->check(CLI::Range(2, 1 << 30));
-  app.add_flag("--deviations", options->bench.deviations, "those of bench error --deviations");
+  app.addOption("--reference-spp", options->bench.referenceSamples, "paths a pixel of every reference")
+      .required()
+      .range(2, 1 << 30);
+  app.addFlag("--deviations", options->bench.deviations, "those of bench error --deviations");
   options->bench.part.declare(app, "batches");
   options->common.declare(app);
   return [options] { return runReferences(*options); };
 }
 
-Work addBenchError(CLI::App& app) {
+Work addBenchError(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->bench.scene, "a scene file (default: the atrium)");
+  app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
   options->bench.declare(app);
-  app.add_flag("--deviations", options->bench.deviations,
-               "each deviation of the originals alone, instead of ladders of settings");
+  app.addFlag("--deviations", options->bench.deviations,
+              "each deviation of the originals alone, instead of ladders of settings");
   options->bench.part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return run(*options); };

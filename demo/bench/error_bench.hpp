@@ -15,8 +15,8 @@ struct ErrorBenchOptions {
   bool deviations = false, small = false, quiet = false;
   PartOptions part;  ///< of rows; the command's alone
 
-  void declare(CLI::App& app);
-  void declareView(CLI::App& app);  ///< of them what decides the references
+  void declare(Command app);
+  void declareView(Command app);  ///< of them what decides the references
 };
 
 struct ErrorBenchResult {

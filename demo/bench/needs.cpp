@@ -8,7 +8,6 @@
 #include "gl/draw.hpp"
 #include "measure/neutral.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -153,14 +152,12 @@ int run(Options options) {
 
 }  // namespace
 
-Work addBenchNeeds(CLI::App& app) {
+Work addBenchNeeds(Command app) {
   auto options = std::make_shared<Options>();
   options->picture.size = "320x180";
-  app.add_option("SCENE", options->scenes, "scene files (default: the atrium)");
-  app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("--frames", options->frames, "pictures of each kind, in turn")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 10000));
+  app.addOption("SCENE", options->scenes, "scene files (default: the atrium)");
+  app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.addOption("--frames", options->frames, "pictures of each kind, in turn").showDefault().range(1, 10000);
   options->picture.declare(app);
   options->common.declare(app);
   return [options] { return run(*options); };

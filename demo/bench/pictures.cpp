@@ -9,7 +9,6 @@
 #include "offers.hpp"
 #include "settings/deviations.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -199,23 +198,23 @@ int run(const Options& options) {
 
 }  // namespace
 
-Work addBenchPictures(CLI::App& app) {
+Work addBenchPictures(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene,
-                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  offer(app.add_option("--original", options->original, "whose pictures: lpv, rad or vpt")->required(),
+  app.addOption("SCENE", options->scene,
+                "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
+  offer(app.addOption("--original", options->original, "whose pictures: lpv, rad or vpt").required(),
         {"lpv", "rad", "vpt"});
-  app.add_option("-o,--output", options->output, "FILE.png")->required();
-  app.add_option("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  offer(app.add_option("--fidelity", options->fidelity,
-                       "corrected; original: as published; lpv: thesis (original) or demo")
-            ->capture_default_str(),
+  app.addOption("-o,--output", options->output, "FILE.png").required();
+  app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  offer(app.addOption("--fidelity", options->fidelity,
+                      "corrected; original: as published; lpv: thesis (original) or demo")
+            .showDefault(),
         {"corrected", "original", "thesis", "demo"});
-  app.add_option("--size", options->size, "WIDTHxHEIGHT of a tile in pixels (lpv and rad 640x360, vpt 320x180)");
-  app.add_option("--scale", options->scale,
-                 "vpt: the published samples times this (0.02); rad: triangles over and pixels times this (1); above "
-                 "0, at most 1");
-  app.add_option("--exposure", options->exposure, "multiplies radiance before tone mapping (the scene's)");
+  app.addOption("--size", options->size, "WIDTHxHEIGHT of a tile in pixels (lpv and rad 640x360, vpt 320x180)");
+  app.addOption("--scale", options->scale,
+                "vpt: the published samples times this (0.02); rad: triangles over and pixels times this (1); above "
+                "0, at most 1");
+  app.addOption("--exposure", options->exposure, "multiplies radiance before tone mapping (the scene's)");
   options->common.declare(app);
   return [options] { return run(*options); };
 }

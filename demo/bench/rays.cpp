@@ -11,7 +11,6 @@
 #include "gl/pass.hpp"
 #include "rays/ray_scene.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -201,6 +200,7 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
   double embreeBuild = 0.0;
   if (EmbreeRays::isBuilt()) embreeBuild = secondsOf([&] { embree.emplace(scene, rayScene.origin()); });
 
+  // Rays of three kinds, each from what those before it have met.
   const auto hitsOf = [&](const std::vector<PlainRay>& rays) {
     tracer.upload(rays);
     tracer.trace(tracer.program(false, false), rays.size());
@@ -222,6 +222,7 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
     points = second;
   kinds[2] = {.name = "diffuse", .anyHit = false, .rays = diffuseRays(points, count, random)};
 
+  // Traced in turn with Embree's, so that a ratio is of one moment.
   Progress progress("bench rays", options.repeats * static_cast<int>(kinds.size()), quiet);
   int done = 0;
   for (Kind& kind : kinds) {
@@ -245,6 +246,7 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
     }
   }
 
+  // As JSON and as a table.
   const BvhStatistics& s = rayScene.statistics();
   nlohmann::ordered_json json{{"renderer", context.capabilities().renderer},
                               {"scene", scene.file.string()},
@@ -319,18 +321,17 @@ int run(const Options& options) {
 
 }  // namespace
 
-Work addBenchRays(CLI::App& app) {
+Work addBenchRays(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene, "a scene file (default: the atrium)");
-  app.add_option("--rays", options->bench.rays, "rays of each kind")->capture_default_str();
-  app.add_option("--repeats", options->bench.repeats, "measurements of each kind, after one to warm up")
-      ->capture_default_str();
-  app.add_option("--camera", options->bench.camera,
-                 "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.add_option("--split-budget", options->bench.splitBudget, "references that spatial splits may add, a fraction")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
-  app.footer(
+  app.addOption("SCENE", options->scene, "a scene file (default: the atrium)");
+  app.addOption("--rays", options->bench.rays, "rays of each kind").showDefault();
+  app.addOption("--repeats", options->bench.repeats, "measurements of each kind, after one to warm up").showDefault();
+  app.addOption("--camera", options->bench.camera,
+                "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.addOption("--split-budget", options->bench.splitBudget, "references that spatial splits may add, a fraction")
+      .range(0.0, 10.0)
+      .showDefault();
+  app.setFooter(
       "Medians with least and most. Lanes: how much of the work of eight rays side by side is not waiting for the "
       "slowest of them, by nodes.\n"
       "Differ: rays that Embree answers otherwise, by more than 1e-4 of the distance. All of this machine's cores work "

@@ -7,7 +7,6 @@
 #include "bench/bench.hpp"
 #include "parts.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -186,12 +185,12 @@ int run(const Options& options) {
 
 }  // namespace
 
-Work addBenchStability(CLI::App& app) {
+Work addBenchStability(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("--technique", options->technique, "only this one's rows");
-  app.add_option("--compare", options->compare,
-                 "a table kept by --json: rows that are gone, fail now, expect another answer or allow more are named, "
-                 "exit code 1");
+  app.addOption("--technique", options->technique, "only this one's rows");
+  app.addOption("--compare", options->compare,
+                "a table kept by --json: rows that are gone, fail now, expect another answer or allow more are named, "
+                "exit code 1");
   options->part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return run(*options); };

@@ -5,7 +5,6 @@
 #include "bench/rad.hpp"
 #include "offers.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <cmath>
@@ -178,24 +177,24 @@ int run(Options options) {
 
 }  // namespace
 
-Work addBenchTables(CLI::App& app) {
+Work addBenchTables(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene,
-                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  offer(app.add_option("--original", options->original, "original whose tables are measured: lpv, rad or vpt")
-            ->required(),
-        {"lpv", "rad", "vpt"});
-  app.add_option("--scale", options->scale,
-                 "less work on a slow machine, above 0, at most 1. lpv and rad (1): fewer frames or hemicubes; below "
-                 "0.5 also smaller "
-                 "grids and models. vpt (0.05): each side and the samples of the published pictures times this");
-  offer(app.add_option("--fidelity", options->fidelity,
-                       "vpt: original: the published estimator on scenes lit as published, the corrected beside it; or "
-                       "corrected (default)"),
+  app.addOption("SCENE", options->scene,
+                "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
+  offer(
+      app.addOption("--original", options->original, "original whose tables are measured: lpv, rad or vpt").required(),
+      {"lpv", "rad", "vpt"});
+  app.addOption("--scale", options->scale,
+                "less work on a slow machine, above 0, at most 1. lpv and rad (1): fewer frames or hemicubes; below "
+                "0.5 also smaller "
+                "grids and models. vpt (0.05): each side and the samples of the published pictures times this");
+  offer(app.addOption("--fidelity", options->fidelity,
+                      "vpt: original: the published estimator on scenes lit as published, the corrected beside it; or "
+                      "corrected (default)"),
         {"corrected", "original"});
-  offer(app.add_option("--fill", options->fill,
-                       "lpv: the way to fill the grids that is measured beside the published one: layered, fixed, "
-                       "atomic (the fastest here, tried first)"),
+  offer(app.addOption("--fill", options->fill,
+                      "lpv: the way to fill the grids that is measured beside the published one: layered, fixed, "
+                      "atomic (the fastest here, tried first)"),
         {"layered", "fixed", "atomic"});
   options->part.declare(app, "rows");
   options->common.declare(app);

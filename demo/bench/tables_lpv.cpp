@@ -352,6 +352,7 @@ nlohmann::ordered_json samplesJson(const std::vector<double>& samples) {
 }  // namespace
 
 Tables measureLpvTables(const TablesInput& input) {
+  // What is measured, at this scale.
   const gl::Capabilities& capabilities = input.context.capabilities();
   const bool haveAtomic = capabilities.shaderAtomicFloat || capabilities.shaderAtomicFp16Vector;
   const int frames = std::max(1, static_cast<int>(std::ceil(10.0 * input.scale - 1e-9)));
@@ -439,6 +440,7 @@ Tables measureLpvTables(const TablesInput& input) {
     if (unit == wanted.size()) return {"copy", "copy and sum", "glClearTexImage", "glTexSubImage3D"};
     return {rsmStage(wanted[unit].rsmSize), wanted[unit].key() + " injection", wanted[unit].key() + " propagation"};
   };
+  // Units that a part has are taken from it; the others are measured round by round.
   std::vector<std::size_t> measured;
   for (std::size_t unit = part.first(); unit < part.last(); ++unit) {
     if (const auto kept = part.load(unit)) {
@@ -475,6 +477,7 @@ Tables measureLpvTables(const TablesInput& input) {
     return tables;
   }
 
+  // How to read them.
   tables.notes = {
       fmt::format("Scale    {}: {} frame{} a figure after one of warm-up{}", input.scale, frames, frames > 1 ? "s" : "",
                   shrink > 1 ? "; grids of 16^3 where 32^3 was published, 32^3 for 64^3" : ""),
@@ -496,6 +499,7 @@ Tables measureLpvTables(const TablesInput& input) {
         "Scene    not the published one: that is Crytek Sponza (262,267 triangles), no part of this repository; give "
         "its OBJ as SCENE");
 
+  // A row for each published figure and way.
   for (const Planned& planned : plan) {
     const PublishedRow& row = *planned.row;
     const auto add = [&](const char* stage, double nvidia, double amd, const std::vector<double>& samples,
@@ -518,6 +522,7 @@ Tables measureLpvTables(const TablesInput& input) {
     add("injection", row.nvidia.injection, row.amd.injection, bench.injection(planned.config), true, true);
     add("propagation", row.nvidia.propagation, row.amd.propagation, bench.propagation(planned.config), true, true);
   }
+  // Clearing a grid.
   for (const auto& [name, ms] :
        {std::pair("glClearTexImage", kClearTexImage), std::pair("glTexSubImage3D", kTexSubImage)}) {
     Row row;

@@ -266,6 +266,7 @@ void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, doubl
 
 nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramLibrary& programs, double scale,
                                         bool quiet, bool prints, const PartOptions& part) {
+  // What is measured, at this scale.
   const std::string& renderer = context.capabilities().renderer;
   const auto most = static_cast<std::size_t>(std::max(8.0, std::round(400.0 * scale)));
   const double mostSeconds = std::max(1.0, 40.0 * scale);
@@ -284,6 +285,7 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
   say(prints, "Renderer {}\n", renderer);
   for (const std::string& note : notes) say(prints, "{}\n", note);
 
+  // Each published model in each size of its views: the rate, and the whole computed from it.
   say(prints, "\nTables 4.1 and 4.2\n{:<28}{:>14}{:>14}{:>9}{:>14}{:>14}{:>13}{:>14}\n", "", "whole, min", "here, min",
       "ratio", "s a triangle", "here, s", "hemicubes/s", "Mtriangles/s");
   json["rows"] = nlohmann::ordered_json::array();

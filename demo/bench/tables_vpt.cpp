@@ -147,6 +147,7 @@ VptResult resultOf(const PartFolder::Json& kept) {
 }  // namespace
 
 Tables measureVptTables(const VptTablesInput& input) {
+  // What is measured, at this scale.
   const glm::ivec2 size = vptSize(input.scale);
   const double mostSeconds = input.scale < 1.0 ? kMostSeconds : 0.0;
   Tables tables;
@@ -175,6 +176,7 @@ Tables measureVptTables(const VptTablesInput& input) {
                         fmt::format("vpt, scale {}, {}, {} on {}", input.scale, published ? "original" : "corrected",
                                     input.context.capabilities().renderer, cpuName()),
                         units);
+  // A picture a unit: drawn, or taken from the part's folder; its row, and one for its scene's preparation.
   Progress progress("bench tables", static_cast<int>(part.last() - part.first()), input.quiet);
   std::size_t unit = 0;
   for (const Fidelity fidelity : fidelities) {
@@ -204,6 +206,7 @@ Tables measureVptTables(const VptTablesInput& input) {
           if (!interrupted()) part.store(own, made);  // else it ended early
           results.push_back(resultOf(made));
         }
+        // What it would have taken at the published pixels and samples.
         const VptResult& result = results.back();
         const double done = result.statistics.samples * size.x * size.y;
         const double wanted = static_cast<double>(picture.samples) * kVptSize.x * kVptSize.y;
@@ -244,6 +247,7 @@ Tables measureVptTables(const VptTablesInput& input) {
                                   measured / 1000.0, publishedMs / 1000.0, measured / publishedMs);
     tables.summary += growthOf(pictures, results, size);
   }
+  // The estimators, the last unit.
   if (!interrupted() && part.last() == units) {
     auto estimators = part.load(units - 1);
     if (!estimators) {

@@ -8,7 +8,6 @@
 #include "labs/hand_in.hpp"
 #include "labs/prove.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -293,55 +292,54 @@ int figures(const Options& options) {
 void addLabs(Subcommands& commands) {
   auto options = std::make_shared<Options>();
   const auto add = [&](const char* name, const char* description, int (*work)(const Options&)) {
-    CLI::App* command = commands.add(name, description, [options, work] { return work(*options); });
-    options->common.declare(*command);
+    Command command = commands.add(name, description, [options, work] { return work(*options); });
+    options->common.declare(command);
     return command;
   };
-  const auto addLabAndFolder = [&](CLI::App* command) {
-    command->add_option("LAB", options->lab, "number of the lab")->required();
-    command->add_option("DIR", options->folder, "folder of the hand-in")->capture_default_str();
+  const auto addLabAndFolder = [&](Command command) {
+    command.addOption("LAB", options->lab, "number of the lab").required();
+    command.addOption("DIR", options->folder, "folder of the hand-in").showDefault();
   };
-  const auto addSeed = [&](CLI::App* command, const char* what) { command->add_option("--seed", options->seed, what); };
-  const auto addNonce = [&](CLI::App* command) {
-    command->add_option("--nonce", options->nonce, "probe points and noise of an earlier run; 0: new ones")
-        ->capture_default_str();
+  const auto addSeed = [&](Command command, const char* what) { command.addOption("--seed", options->seed, what); };
+  const auto addNonce = [&](Command command) {
+    command.addOption("--nonce", options->nonce, "probe points and noise of an earlier run; 0: new ones").showDefault();
   };
   add("list", "The labs and their tasks", list);
-  CLI::App* startApp = add("start", "Copy a lab's files into a folder of your own", start);
-  startApp->add_option("LAB", options->lab, "number of the lab")->required();
-  startApp->add_option("DIR", options->folder, "folder to make")->required();
+  Command startApp = add("start", "Copy a lab's files into a folder of your own", start);
+  startApp.addOption("LAB", options->lab, "number of the lab").required();
+  startApp.addOption("DIR", options->folder, "folder to make").required();
   addSeed(startApp, "your ID: your figures follow from it (default: example)");
-  CLI::App* checkApp = add("check", "Check and grade a hand-in", check);
+  Command checkApp = add("check", "Check and grade a hand-in", check);
   addLabAndFolder(checkApp);
   addSeed(checkApp, "for graders: instead of the hand-in's own");
   addNonce(checkApp);
-  checkApp->add_option("--junit", options->junit, "FILE.xml: results as JUnit XML");
-  checkApp->add_option("--gradescope", options->gradescope, "FILE.json: results for Gradescope's autograder");
-  CLI::App* hintApp = add("hint", "The next of three hints of a task; the hand-in notes it", hint);
-  hintApp->add_option("LAB.TASK", options->lab, "such as 1.2")->required();
-  hintApp->add_option("DIR", options->folder, "folder of the hand-in")->capture_default_str();
+  checkApp.addOption("--junit", options->junit, "FILE.xml: results as JUnit XML");
+  checkApp.addOption("--gradescope", options->gradescope, "FILE.json: results for Gradescope's autograder");
+  Command hintApp = add("hint", "The next of three hints of a task; the hand-in notes it", hint);
+  hintApp.addOption("LAB.TASK", options->lab, "such as 1.2").required();
+  hintApp.addOption("DIR", options->folder, "folder of the hand-in").showDefault();
   addLabAndFolder(add("solution", "Put the sample solution into a hand-in; the hand-in notes it", solution));
-  CLI::App* showApp = add("show", "Write the lab's pictures: yours, the reference, the difference", show);
+  Command showApp = add("show", "Write the lab's pictures: yours, the reference, the difference", show);
   addLabAndFolder(showApp);
   addNonce(showApp);
-  showApp->add_flag("--watch", options->watch,
-                    "anew whenever tasks.glsl is saved, in a window where there is a display, until Escape or Ctrl-C");
-  CLI::App* reportApp = add("report", "Write the hand-in as one self-contained HTML page", report);
+  showApp.addFlag("--watch", options->watch,
+                  "anew whenever tasks.glsl is saved, in a window where there is a display, until Escape or Ctrl-C");
+  Command reportApp = add("report", "Write the hand-in as one self-contained HTML page", report);
   addLabAndFolder(reportApp);
   addNonce(reportApp);
   addSeed(reportApp, "for graders: instead of the hand-in's own");
-  reportApp->add_option("-o,--output", options->html, "FILE.html (default: DIR/report.html)");
-  CLI::App* proveApp =
+  reportApp.addOption("-o,--output", options->html, "FILE.html (default: DIR/report.html)");
+  Command proveApp =
       add("prove", "For authors: stub, solution and every wrong answer of a lab, and what the checks say", prove);
-  proveApp->add_option("LAB", options->lab, "number of the lab (default: all)");
-  proveApp->add_option("--runs", options->runs, "checks of the solution with other noise, to count false alarms")
-      ->check(CLI::Range(0, 1000000))
-      ->capture_default_str();
+  proveApp.addOption("LAB", options->lab, "number of the lab (default: all)");
+  proveApp.addOption("--runs", options->runs, "checks of the solution with other noise, to count false alarms")
+      .range(0, 1000000)
+      .showDefault();
   addNonce(proveApp);
-  CLI::App* figuresApp = add("figures", "For authors: the figures that a lab's README quotes", figures);
-  figuresApp->add_option("LAB", options->lab, "number of the lab")->required();
+  Command figuresApp = add("figures", "For authors: the figures that a lab's README quotes", figures);
+  figuresApp.addOption("LAB", options->lab, "number of the lab").required();
   addSeed(figuresApp, "default: example");
-  figuresApp->add_option("--pictures", options->pictures, "DIR: write the pictures that README.md shows, too");
+  figuresApp.addOption("--pictures", options->pictures, "DIR: write the pictures that README.md shows, too");
 }
 
 }  // namespace lucerna::demo

@@ -6,7 +6,6 @@
 #include "labs/museum.hpp"
 #include "measure/heat_map.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -82,22 +81,22 @@ int mystery(const Options& options) {
 
 }  // namespace
 
-Work addLab(CLI::App& app) {
+Work addLab(Command app) {
   Subcommands commands(app);
   addLabs(commands);
   auto options = std::make_shared<Options>();
-  CLI::App* mysteryApp =
+  Command mysteryApp =
       commands.add("mystery", "A picture with one hidden deviation: find it by instruments, and say which",
                    [options] { return mystery(*options); });
-  options->common.declare(*mysteryApp);
-  mysteryApp->add_option("--seed", options->seed, "which deviation is hidden follows from it")->required();
-  mysteryApp->add_option("--answer", options->answer, "name of the deviation: graded");
-  mysteryApp->add_option("-o,--output", options->folder, "folder of the pictures")->capture_default_str();
-  CLI::App* museumApp = commands.add(
+  options->common.declare(mysteryApp);
+  mysteryApp.addOption("--seed", options->seed, "which deviation is hidden follows from it").required();
+  mysteryApp.addOption("--answer", options->answer, "name of the deviation: graded");
+  mysteryApp.addOption("-o,--output", options->folder, "folder of the pictures").showDefault();
+  Command museumApp = commands.add(
       "museum", "One HTML page of every deviation: symptom, cause, formula, picture, the test that catches it",
       [options] { return museum(*options); });
-  options->common.declare(*museumApp);
-  museumApp->add_option("-o,--output", options->html, "FILE.html")->capture_default_str();
+  options->common.declare(museumApp);
+  museumApp.addOption("-o,--output", options->html, "FILE.html").showDefault();
   return commands.work();
 }
 

@@ -18,7 +18,6 @@
 #include "walk/paths.hpp"
 #include "walk/window.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -193,6 +192,7 @@ int record(const Options& options, const Host& host, const gl::Context& context,
 /// In a window, or driven by recorded input.
 int play(const Options& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, Scene scene,
          Spline path) {
+  // The state that the window begins with.
   watchForInterrupt();
   WalkState state;
   state.scene = std::make_unique<Scene>(std::move(scene));
@@ -213,6 +213,7 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
   state.panel = options.panel == "on" || (options.panel == "auto" && !measures);
   state.hint = !measures;
   state.messageAge = measures ? 1e9 : 0.0;
+  // Until it is closed; then what came of it.
   WalkWindow window(options, host, context, programs, std::move(state));
   window.run();
   SideState& side = window.state().sides[0];
@@ -259,30 +260,30 @@ int run(Options options) {
 
 }  // namespace
 
-Work addWalk(CLI::App& app) {
+Work addWalk(Command app) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENE", options->scene, "a scene file (default: the atrium)");
-  app.add_option("--keys", options->keys,
-                 "key frames of the camera path (default: the scene's, else one round around it)");
-  app.add_option("--record", options->record,
-                 "draw off-screen and write pictures into this folder (without a window: walk)");
+  app.addOption("SCENE", options->scene, "a scene file (default: the atrium)");
+  app.addOption("--keys", options->keys,
+                "key frames of the camera path (default: the scene's, else one round around it)");
+  app.addOption("--record", options->record,
+                "draw off-screen and write pictures into this folder (without a window: walk)");
   options->part.declare(app, "frames of --record");
-  app.add_option("--frames", options->frames, "number of pictures (12), or frames in a window (the whole path)")
-      ->check(CLI::Range(1, 1000000));
-  app.add_option("--views", options->views, "FIRST:LAST: only these views of the path; 200 between two key frames");
-  app.add_flag("--flicker", options->flicker,
-               "measure how much the light itself changes between pictures, without the camera's motion");
-  app.add_option("--play-input", options->playInput,
-                 "drive the window by this file of recorded input (demo/walk/input_file.hpp), on any host");
-  app.add_option("--capture", options->capture, "in a window: the frame, from 0, that RenderDoc captures")
-      ->check(CLI::Range(0, 1000000));
-  app.add_option("--shots", options->shots, "folder for screenshots")->capture_default_str();
-  offer(app.add_option("--panel", options->panel,
-                       "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"),
+  app.addOption("--frames", options->frames, "number of pictures (12), or frames in a window (the whole path)")
+      .range(1, 1000000);
+  app.addOption("--views", options->views, "FIRST:LAST: only these views of the path; 200 between two key frames");
+  app.addFlag("--flicker", options->flicker,
+              "measure how much the light itself changes between pictures, without the camera's motion");
+  app.addOption("--play-input", options->playInput,
+                "drive the window by this file of recorded input (demo/walk/input_file.hpp), on any host");
+  app.addOption("--capture", options->capture, "in a window: the frame, from 0, that RenderDoc captures")
+      .range(0, 1000000);
+  app.addOption("--shots", options->shots, "folder for screenshots").showDefault();
+  offer(app.addOption("--panel", options->panel,
+                      "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"),
         {"on", "off", "auto"});
   options->picture.declare(app);
   options->common.declare(app);
-  app.footer(keysHelp() + "\n" + app.get_footer());
+  app.setFooter(keysHelp() + "\n" + app.footer());
   return [options] { return run(*options); };
 }
 
