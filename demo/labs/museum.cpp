@@ -115,6 +115,7 @@ std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
                                  : Traced{rendered(context, programs, settingsOf(technique, deviation))};
     };
     if (!sound.contains(scene)) sound[scene] = shown("");
+    // Both pictures and their difference.
     const Traced &right = sound[scene], wrong = shown(room.deviation);
     const double change = meanOfAll(wrong.image) / meanOfAll(right.image) - 1.0,
                  noise = std::hypot(wrong.error, right.error) / meanOfAll(right.image);
@@ -132,6 +133,7 @@ std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
                   "{:.2g}</figure></div>",
                   png(measure::heatMap(wrong.image, right.image, measure::HeatMap::signedLuminance, scale)), scale)
             : std::string("<figure><div class=\"none\">not seen in this scene</div>no difference</figure></div>");
+    // The room's entry and its section.
     index += fmt::format("<a href=\"#{0}\">{0}</a>", room.deviation);
     body += fmt::format(
         "<section "

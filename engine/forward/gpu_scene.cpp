@@ -75,6 +75,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
     return place->second;
   };
 
+  // Materials, with the textures that the needs ask for.
   for (const Material& material : scene.materials) {
     Surface surface{material.diffuse, material.specular, material.emission, material.shininess};
     if (needs.diffuseTextures && material.diffuseTexture >= 0)

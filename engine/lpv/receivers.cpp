@@ -66,6 +66,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
       clearTexture_(capabilities.clearTexture),
       cached_(settings.bounces == LpvSettings::kAllBounces && light != Light::direct) {
   CHECK(settings.rays >= 1 && settings.rays <= LPV_LANES && LPV_LANES % settings.rays == 0, "rays = {}", settings.rays);
+  // Slots of the grids, and how many of them may hold a receiver.
   const auto cells = static_cast<std::size_t>(settings.cascades.cells),
              cascades = static_cast<std::size_t>(settings.cascades.cascades);
   const int layers = settings.cascades.cells * settings.cascades.cascades * LPV_FACES;
@@ -78,6 +79,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   // Surfaces cross a grid in some cells^2 cells; times four, for the faces that each normal covers.
   capacity_ = std::min(slots_, 24 * cells * cells * cascades);
 
+  // Tables, receivers and what they received.
   const auto words = [&](const std::string& name, std::size_t count) {
     if (count > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
       throwMissingCapability(
@@ -106,6 +108,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
                             glm::ivec3(settings.cascades.cells, settings.cascades.cells, layers), linear);
   ring_ = std::make_unique<gl::ReadBackRing>("lpv receiver counts", sizeof kNoWork);
 
+  // Which light paths bring, and the programs of every transport.
   scene_.fill(path_);
   path_.minScatterings = light == Light::indirect ? 2 : 1;
   path_.maxScatterings = light == Light::direct ? 1
@@ -129,6 +132,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   if (settings.transport == LpvTransport::rays)
     paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
   store_ = &programs.loadCompute("lpv store receivers", "lpv/receivers/store.comp", common);
+  // Those of the gather alone, and the voxels that block it.
   if (settings.transport == LpvTransport::gather) {
     if (settings.bounces != 1)
       throwBadInput("lpv.bounces={}: lpv.transport=gather has one bounce; rays has more",

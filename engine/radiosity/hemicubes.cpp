@@ -220,6 +220,7 @@ Hemicubes::Frame Hemicubes::frameOf(int index) const {
 }
 
 DrawnHemicubes Hemicubes::draw(int first, int count) {
+  // The hemicubes' frames, and what all programs read and write.
   CHECK(first >= 0 && count > 0 && count <= batch_ && first + count <= patchCount_, "rows {} + {} of {}, at most {}",
         first, count, patchCount_, batch_);
   const auto start = Clock::now();
@@ -247,6 +248,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   constexpr int kRow = 1024 * kGroup;
   const int all = 3 * settings_.resolution * settings_.resolution;
   const glm::ivec3 pixels(std::min(all, kRow), count, (all + kRow - 1) / kRow), pixelsGroup(kGroup, 1, 1);
+  // What each pixel sees: all triangles over all pixels, or the item buffer, or a ray a pixel.
   if (!listsKept()) {
     keys_.buffer().clear();
     for (const gl::Program* program : {depth_, depthLarge_}) {
@@ -282,6 +284,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
     }
     pass.dispatch(pixels, pixelsGroup);
   }
+  // Pixels into form factors, then near pairs by their closed form.
   for (const gl::Program* program : {sum_, sumLarge_, exact_}) {
     const gl::ComputePass pass(program->name(), kBarrier);
     begin(*program, first, count);
@@ -294,6 +297,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
     else if (program == sumLarge_) pass.dispatchIndirect(largeList_);
     else pass.dispatch(glm::ivec3(kExactGroups, 1, 1), glm::ivec3(1));
   }
+  // Read back.
   DrawnHemicubes drawn;
   drawn.first = first;
   drawn.count = count;

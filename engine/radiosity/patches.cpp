@@ -208,6 +208,7 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
 }
 
 RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
+  // What the equation has no solution for.
   for (const Material& m : scene.materials)
     for (int c = 0; c < 3; ++c) {
       if (!(m.diffuse[c] >= 0.0f && m.diffuse[c] <= 1.0f))
@@ -217,6 +218,7 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
       if (!(m.emission[c] >= 0.0f && std::isfinite(m.emission[c])))
         throwBadInput("material {}: emission {} is not a finite number >= 0", m.name, m.emission[c]);
     }
+  // Triangles become patches: welded, turned to their normals, each once.
   RadiosityMesh mesh;
   Bounds bounds;
   for (const std::uint32_t index : scene.indices)
@@ -272,6 +274,7 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
   if (mesh.patches.empty())
     throwBadInput("{}: no triangle with an area ({} without, {} with corners that are not finite)", scene.name,
                   mesh.degenerate, mesh.notFinite);
+  // Cut until no edge is too long.
   numberLightVertices(mesh, settings);
   if (settings.longestEdge > 0.0) {
     const double most = settings.longestEdge * settings.longestEdge * (1.0 + 1e-9);

@@ -158,6 +158,7 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
 }
 
 RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& scene) {
+  // The header, and whether the file is whole, undamaged and of this scene.
   const std::vector<std::uint8_t> bytes = readFileBytes(file);
   FileHeader header{};
   if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
@@ -186,6 +187,7 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
     throwBadInput("{}: no such solver: {}", file.string(), header.solver);
   for (const double figure : {header.products, header.residual, header.errorBound, header.energyBalance, header.extent})
     if (!std::isfinite(figure)) throwBadInput("{}: a figure of its header is not finite", file.string());
+  // Settings and points.
   RadiositySolution s;
   s.settings.assign(reinterpret_cast<const char*>(at), header.settingsBytes);
   at += header.settingsBytes;
@@ -196,6 +198,7 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
   s.mesh.lightVertices = header.lightVertices;
   s.mesh.extent = header.extent;
   at += header.points * sizeof(glm::dvec3);
+  // Patches, each with what the solution says of it.
   const auto vector = [](const double* v) { return glm::dvec3(v[0], v[1], v[2]); };
   for (std::size_t i = 0; i < header.patches; ++i) {
     FilePatch from;

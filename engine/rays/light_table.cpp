@@ -72,6 +72,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
     powers.push_back(power);
   };
 
+  // Sun and lamps.
   if (scene.sun) {
     shared::PathLight light{};
     light.kind = PATH_LIGHT_SUN;
@@ -96,6 +97,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
     light.c = point.intensity;
     add(light, worth(light.c) * 4.0 * kPi);
   }
+  // Emissive triangles.
   const std::size_t lamps = table.lights.size();
   std::vector<double> areas;
   for (const Mesh& mesh : scene.meshes) {
@@ -128,6 +130,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
       if (table.lights.size() > before) areas.push_back(area);
     }
   }
+  // The environment, last.
   const std::size_t triangles = table.lights.size() - lamps;
   if (scene.environment && scene.environment->picture) {
     shared::PathLight light{};
@@ -138,6 +141,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
   if (table.lights.empty()) return table;
   const bool environment = table.lights.back().kind == PATH_LIGHT_ENVIRONMENT;
 
+  // Picked half by power, half evenly; the triangles together are as one light there.
   double sum = 0.0, triangleSum = 0.0;
   for (std::size_t i = 0; i < powers.size(); ++i) {
     sum += powers[i];

@@ -251,6 +251,7 @@ GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t in
   if (material.has("emissiveTexture")) read(material.at("emissiveTexture"), "emissive");
   result.transform = baseTransform.value_or(TextureTransform{});
 
+  // Alpha.
   if (material.has("alphaMode")) {
     const std::string mode = material.at("alphaMode").text();
     if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND") material.at("alphaMode").fail("OPAQUE, MASK or BLEND");
@@ -262,6 +263,7 @@ GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t in
   if (material.has("alphaCutoff"))
     result.alphaCutoff = material.at("alphaCutoff").numberBetween(0.0, 1e6, "a number, 0 or more");
 
+  // Extensions; those unknown are named.
   if (!material.has("extensions")) return result;
   const Value extensions = material.at("extensions");
   if (!extensions.json.is_object()) extensions.fail("an object {...}");

@@ -719,6 +719,7 @@ void setKeyFrames(Scene& scene, const fs::path& file) {
 }
 
 Scene loadModel(const fs::path& file) {
+  // What Assimp would misread or not survive is looked at first.
   Scene scene;
   scene.name = file.stem().string();
   scene.file = file;
@@ -738,6 +739,7 @@ Scene loadModel(const fs::path& file) {
   const bool isGltf2 = gltf.is_object() && gltf.contains("materials") && gltf.at("materials").is_array();
   if (isGltf2) content = withNumberedMaterials(gltf, content);
 
+  // Assimp reads it, with every file it asks for through us.
   const auto end = [&](Assimp::Importer* ended) {
     const ImportGuard guard(file);
     delete ended;
@@ -773,6 +775,7 @@ Scene loadModel(const fs::path& file) {
       scene.materials.push_back(convertMaterial(*source->mMaterials[index], textures, scene, gltfMaterial, tint));
     return known->second;
   };
+  // Meshes, node by node, in world space.
   std::vector<std::pair<const aiNode*, glm::dmat4>> open = {{source->mRootNode, glm::dmat4(1.0)}};
   while (!open.empty()) {
     const auto [node, worldFromParent] = open.back();
@@ -808,6 +811,7 @@ Scene loadModel(const fs::path& file) {
     }
     for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], worldFromNode);
   }
+  // What was left out, and whether anything is there.
   for (const auto& [index, rest] : gltfMaterials)
     if (!rest.notDone.empty()) logWarning("{}: material '{}': {}", file.string(), rest.name, rest.notDone);
   if (const std::string ranged = gltfLightsWithRange(gltf); !ranged.empty())
@@ -820,6 +824,7 @@ Scene loadModel(const fs::path& file) {
   if (scene.droppedTriangles > 0)
     logWarning("{}: {} triangles with positions that are not finite ignored", file.string(), scene.droppedTriangles);
 
+  // Lights, cameras, key frames.
   appendLights(scene, *source);
   appendCameras(scene, *source);
   if (const auto data = findDataFolder()) {

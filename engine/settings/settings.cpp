@@ -149,6 +149,7 @@ constexpr SettingReaders kMaps{bit(Technique::rsm) | bit(Technique::lpv),
 const std::vector<Setting>& table() {
   constexpr auto uniform = SettingCost::uniform, rebuild = SettingCost::rebuild, solution = SettingCost::solution;
   static const std::vector<Setting> settings{
+      // Light propagation volumes.
       {"lpv.transport", choice(FIELD(lpv.transport)), "",
        "how light travels: propagate, through the grids' cells; to surface points: gather, from the lights' maps, or "
        "rays, along paths",
@@ -206,6 +207,7 @@ const std::vector<Setting>& table() {
        "of a receiver while light and geometry are static", "", rebuild, kRays, ""},
       {"lpv.most-change", number(FIELD(lpv.mostChange), 0.0, 1.0), "",
        "largest relative change of a receiver's light that is shown in a frame; 0: any", "", rebuild, kReceivers, ""},
+      // Reflective shadow maps and their gather.
       {"rsm.size", number(FIELD(rsm.size), 1, 8192), "texels",
        "side of the reflective shadow map; an omnidirectional light's faces have half of it", "[Dachsbacher2005]",
        rebuild, kMaps, ""},
@@ -234,6 +236,7 @@ const std::vector<Setting>& table() {
        "greatest distance that fits", "", rebuild, kRsm, ""},
       {"rsm.show-refused", boolean(FIELD(gather.showRefused)), "", "paint the pixels red that interpolation refused",
        "", rebuild, kRsm, ""},
+      // Radiosity.
       {"radiosity.edge", number(FIELD(radiosity.solution.patches.longestEdge), 0.0, 1e12, "auto"), "scene units",
        "longest edge of a patch; auto: a 12th of the scene", "", solution, kRadiosity, ""},
       {"radiosity.resolution", evenNumber(FIELD(radiosity.solution.hemicubes.resolution), 2, 4096), "pixels",
@@ -282,6 +285,7 @@ const std::vector<Setting>& table() {
        "", rebuild, kRadiosity, ""},
       {"radiosity.shadow-rays", number(FIELD(radiosity.shadowRays), 1, 4096), "rays",
        "a pixel with radiosity.direct=pixels, divided among the emissive triangles", "", rebuild, kRadiosity, ""},
+      // Path tracing.
       {"path.samples", number(FIELD(path.samples), 1, 4000000000.0), "samples",
        "a pixel, of a finished picture (--spp)", "", rebuild, kPath, ""},
       {"path.least-samples", number(FIELD(path.leastSamples), 1, 4000000000.0), "samples",
@@ -291,6 +295,7 @@ const std::vector<Setting>& table() {
        rebuild, kPath, ""},
       {"path.seed", number(FIELD(path.seed), 0, 4294967295.0), "", "of the random numbers (--seed)", "", rebuild, kPath,
        ""},
+      // Shadow maps, textures, the frame.
       {"shadow.size", number(FIELD(shadow.size), 1, 16384), "texels", "side of the sun's shadow map, of each cascade",
        "", rebuild, kShadowed, ""},
       {"shadow.cascades", number(FIELD(sunCascades.cascades), 1, SUN_MAX_CASCADES), "",

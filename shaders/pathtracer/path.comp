@@ -148,10 +148,12 @@ bool meet(inout Path path, Hit hit, uvec4 beyond, uvec4 before, PathNumbers numb
 #else
 bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #endif
+  // Nothing: the light from afar.
   if (hit.triangle == kNoHit) {
     addFromAfar(path, numbers);
     return false;
   }
+  // A surface, what is behind it, and its material.
   Surface surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
 #if INTERIORS
   int rank = int(materials[surface.material].boundary);
@@ -170,6 +172,7 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #if NORMAL_MAPS
   applyNormalMap(surface, hit.triangle);
 #endif
+  // The step is done.
   path.travelled += hit.t;
   ++path.event;
 #if MEDIA && ROULETTE_AT_SURFACES
@@ -182,6 +185,7 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   if (any(greaterThan(material.emission, vec3(0.0))) && counts(path.scatterings))
     addEmission(path, hit, surface, numbers);
 #endif
+  // A boundary where nothing refracts is passed.
   float iorBeyond = path.ior;
 #if INTERIORS
   if (rank >= 0) {
@@ -193,6 +197,7 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
     }
   }
 #endif
+  // Light that arrives here from lamps.
   if (path.scatterings >= tracer.maxScatterings) return false;
   Facet facet = facetOf(path, surface, material, iorBeyond);
   ++path.scatterings;
@@ -211,6 +216,7 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #if !SCATTERED_LIGHT
   if (path.scatterings >= tracer.maxScatterings && !isSmooth(facet)) return false;  // nothing more could be found
 #endif
+  // The next direction, and on whose side it goes on.
   path.travelled = 0.0;
 #if DIELECTRICS
   uvec2 choice = randomWordPair(numbers, path.event, kPurposeChoice);
@@ -263,6 +269,7 @@ const int kEnds = 6;
 const int kGoesOn = 7;   // with the next ray
 
 void main() {
+  // The pixel's film, and its path where the last dispatch left it.
   ivec2 lane = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(lane, tracer.tile.zw))) return;
   ivec2 pixel = tracer.tile.xy + lane;
@@ -296,6 +303,7 @@ void main() {
   bool right = true;    // whether the path was where it can cross the boundary
 #endif
   for (;;) {
+    // The ray of this turn.
     int stage = kTraces;
     Ray ray = Ray(path.origin, 0.0, path.direction, 3e38);
     uint skip = path.skip;
@@ -340,6 +348,7 @@ void main() {
     }
 #endif
 
+    // Traced: the one traversal.
     BvhTraversal traversal = beginRay(ray, skip);
     if (stage == kEnds) traversal.top = -1;
 #if INTERIORS || SHADOW_AT_ONCE
@@ -351,6 +360,7 @@ void main() {
     Hit hit = traversal.hit;
     if (!any) hit = finishRay(traversal, ray.direction);
 
+    // What the hit is to the job: the path's arrival, a step across a boundary, or a shadow ray's.
     if (job == kPathRay && stage == kTraces) {
       arrival = hit;
       stage = kFlies;
@@ -395,6 +405,7 @@ void main() {
       stage = kLit;
 #endif
     }
+    // A shadow ray's light arrives; the path goes on where it had waited.
     if (stage == kLit) {
       path.radiance += shadow.light;
 #if ASKED
@@ -405,6 +416,7 @@ void main() {
       stage = after;
     }
 
+    // The flight through a medium: lamps beside it, then whether it ends before the surface.
 #if MEDIA
     if (stage == kFlies) {
       int medium = mediumInside(path.inside);
@@ -433,6 +445,7 @@ void main() {
 #else
     if (stage == kFlies) stage = kArrives;
 #endif
+    // The surface: first all boundaries there, then what the path meets and the lamps that it sees.
     if (stage == kArrives) {
       stage = kMeets;
 #if TOUCHING
@@ -469,6 +482,7 @@ void main() {
       }
 #endif
     }
+    // A sample is done: Welford's mean and spread [Welford1962], with what the mean's floats lack.
     if (stage == kEnds) {
       ++samples;
       vec3 difference = (path.radiance - mean) - rest;
@@ -483,6 +497,7 @@ void main() {
     }
   }
 
+  // Counters, the film, and the path in flight.
   atomicMax(longest, loopTurns);
   atomicAdd(allTurns, loopTurns);
 #if MEDIA

@@ -153,6 +153,7 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
   const auto leaves = [](const Made& drawn, const char* name) {
     return std::count(drawn.leftOut.begin(), drawn.leftOut.end(), name) > 0;
   };
+  // Programs, stages and resources of one are not those of the other.
   Scene scene = test::openBox();
   const Made propagated = draw(LpvTransport::propagate, Component::all, scene),
              traced = draw(LpvTransport::rays, Component::all, scene);

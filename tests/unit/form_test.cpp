@@ -1,4 +1,5 @@
-// The form of sources and documents: no line over 120 columns, as .editorconfig and .clang-format have it.
+// The form of sources and documents: no line over 120 columns, as .editorconfig and .clang-format have it; headings in
+// long functions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,22 +20,53 @@ std::size_t columnsOf(const std::string& line) {
   return columns;
 }
 
-TEST(Form, NoLineOfSourcesIsWiderThan120Columns) {
+/// C++ and GLSL, by their paths in the project.
+std::vector<std::pair<std::string, std::vector<std::string>>> sources() {
   const std::set<std::string> kinds{".cpp", ".hpp", ".h", ".glsl", ".comp", ".vert", ".geom", ".frag"};
   const fs::path root = LUCERNA_SOURCE_DIR;
-  std::size_t files = 0;
+  std::vector<std::pair<std::string, std::vector<std::string>>> result;
   for (const char* folder : {"engine", "demo", "shaders", "tests"})
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
       if (!entry.is_regular_file() || !kinds.contains(entry.path().extension().string())) continue;
-      ++files;
-      std::ifstream lines(entry.path());
-      int number = 0;
-      for (std::string line; std::getline(lines, line);) {
-        ++number;
-        EXPECT_LE(columnsOf(line), 120u) << fs::relative(entry.path(), root).string() << ":" << number;
+      std::ifstream file(entry.path());
+      std::vector<std::string>& lines =
+          result.emplace_back(fs::relative(entry.path(), root).string(), std::vector<std::string>()).second;
+      for (std::string line; std::getline(file, line);) lines.push_back(line);
+    }
+  EXPECT_GT(result.size(), 500u);
+  return result;
+}
+
+TEST(Form, NoLineOfSourcesIsWiderThan120Columns) {
+  for (const auto& [file, lines] : sources())
+    for (std::size_t i = 0; i < lines.size(); ++i) EXPECT_LE(columnsOf(lines[i]), 120u) << file << ":" << i + 1;
+}
+
+// A function of over 80 lines has a heading over each of its parts. Functions are what ends with a brace alone in the
+// first column and begins where that column was used before: .clang-format's layout.
+TEST(Form, LongFunctionsHaveHeadings) {
+  constexpr std::size_t kLong = 80, kPart = 60;
+  std::size_t longOnes = 0;
+  for (const auto& [file, lines] : sources())
+    for (std::size_t end = 0; end < lines.size(); ++end) {
+      if (lines[end] != "}") continue;
+      const auto beginsSomething = [](const std::string& line) {
+        return !line.empty() && line[0] != ' ' && line[0] != '#' && !line.starts_with("//");
+      };
+      std::size_t begin = end;
+      do --begin;
+      while (begin > 0 && !beginsSomething(lines[begin]));
+      if (end - begin < kLong) continue;
+      ++longOnes;
+      std::size_t heading = begin;
+      for (std::size_t i = begin; i <= end; ++i) {
+        const std::string text = lines[i].substr(std::min(lines[i].find_first_not_of(' '), lines[i].size()));
+        if (!text.starts_with("//") && i < end) continue;
+        EXPECT_LE(i - heading, kPart) << file << ":" << heading + 1 << ": no heading up to line " << i + 1;
+        heading = i;
       }
     }
-  EXPECT_GT(files, 500u);
+  EXPECT_GT(longOnes, 20u);
 }
 
 // Tables, listings and pictures are as wide as they must be.

@@ -36,6 +36,7 @@ void check(Checks& c) {
   const double full = 1.0 - band, meanWeight = std::pow(full, 3.0) +
                                                (1.0 - std::pow(full, 3.0) - 0.75 * (1.0 - std::pow(full, 4.0))) / band;
   const double cascades = c.yours("cascades", 3.0, 7.0, 0);
+  // The README's questions, with what common wrong answers say.
   c.answer("snapped", std::floor(place / cell + 0.5) * cell, 0.0005,
            {{{"truncation", "int() cuts towards zero; below zero that is the wrong cell"},
              std::trunc(place / cell + 0.5) * cell}});
@@ -44,6 +45,7 @@ void check(Checks& c) {
              (1.0 - lambda) * near * std::pow(far / near, 1.0 / count) + lambda * (near + (far - near) / count)}});
   c.answer("saving", std::pow(8.0, cascades - 1.0) / cascades, 0.005, {});
 
+  // Task 1: snapped: a cascade moves by whole cells.
   if (c.task(1)) {
     const auto of = [](double (*value)(double x, double s)) {
       return
@@ -75,6 +77,7 @@ void check(Checks& c) {
         c.mean("the mean square of what snapping moves is cell^2 / 12",
                {.probe = 8, .inputs = {four(cell)}, .expected = std::pow(static_cast<float>(cell), 2.0) / 12.0});
   }
+  // Task 2: cascadeOf: the finest cascade that holds a point.
   if (c.task(2)) {
     const auto of = [](double (*norm)(const glm::dvec3&), double ratio, int outside) {
       return [=](Point p) {
@@ -118,6 +121,7 @@ void check(Checks& c) {
               [ofMost](Point p) { return ofMost(p).x < 0.0 ? glm::dvec4(-1.0) : ofMost(p) + 1.0; }},
              {{"one-axis", "all three axes count"}, of([](const glm::dvec3& v) { return std::abs(v.x); }, 2.0, -1)}}});
   }
+  // Task 3: blendWeight: linear over the outer band.
   if (c.task(3)) {
     const auto of = [](double (*value)(const glm::dvec3& off, double b)) {
       return [=](Point p) { return glm::dvec4(value((glm::dvec3(p[0]) - glm::dvec3(p[1])) / double(p[0].w), p[1].w)); };
@@ -154,6 +158,7 @@ void check(Checks& c) {
         c.mean("mean weight over the cascade",
                {.probe = 9, .inputs = {four(halfExtent, band)}, .expected = meanWeight});
   }
+  // Task 4: blended: flux of cells of two sizes.
   if (c.task(4)) {
     const auto of = [](double (*value)(double f, double fc, double g, double gc, double w)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, p[0].z, p[0].w, p[1].x)); };
@@ -184,6 +189,7 @@ void check(Checks& c) {
                                     of(BLEND { return w * f / (fc * fc) + g / (gc * gc); })}}});
 #undef BLEND
   }
+  // Task 5: splitDistance: between logarithmic and even splits.
   if (c.task(5)) {
     const auto of = [](double (*value)(double t, double n, double f, double l)) {
       return [=](Point p) { return glm::dvec4(value((p[0].x + 1.0) / p[0].y, p[0].z, p[0].w, p[1].x)); };
@@ -232,6 +238,7 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
+  // Task 6: three cascades around a point, by tasks 2 to 4.
   if (c.task(6)) {
     c.twin("both sides of a border agree", {.probe = 6,
                                             .stride = 2,
@@ -260,6 +267,7 @@ void check(Checks& c) {
                             .caption = "Three cascades, each a little brighter than the one within, blended by your "
                                        "functions: no line may show; the reference is the twin in double precision"});
   }
+  // Numbers that the README quotes.
   c.figure("snapped", std::floor(place / cell + 0.5) * cell);
   c.figure("split", split);
   c.figure("mean weight", meanWeight);

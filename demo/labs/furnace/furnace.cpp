@@ -25,6 +25,7 @@ void check(Checks& c) {
   const Mistake noClamp{"no-clamp", "what is on the far side of a surface counts, negative: max(0, cos)"};
   const Mistake absolute{"absolute-cosine",
                          "what is on the far side of a surface counts like the near one: max(0, cos), not abs(cos)"};
+  // The README's questions, with what common wrong answers say.
   c.answer(
       "furnace", furnace, 0.005,
       {{{"lost-emission", "that is the reflected part alone: the walls' own emission is seen too"}, furnace - emission},
@@ -34,6 +35,7 @@ void check(Checks& c) {
              side * side * height / std::pow(away * away + height * height, 1.5)}});
   c.answer("bounces", bounces, 0.0, {});
 
+  // Task 1: reflected: the integrand for Lambert's surface.
   if (c.task(1)) {
     const auto formula = [&](double constant, double (*cosine)(double)) {
       return [=](Point p) {
@@ -82,6 +84,7 @@ void check(Checks& c) {
     c.curve(curve);
   }
 
+  // Task 2: sampleCosine: directions distributed as the cosine.
   if (c.task(2)) {
     constexpr int kRings = 8, kSectors = 16;
     const glm::dvec3 n = glm::normalize(glm::dvec3(c.parameter("sx", -1.0, 1.0), c.parameter("sy", -1.0, 1.0), -0.6));
@@ -124,6 +127,7 @@ void check(Checks& c) {
                       shares([](double m) { return m * m * m * m; })}}});
   }
 
+  // Task 3: pdfCosine: their density.
   if (c.task(3)) {
     const glm::dvec3 n = glm::normalize(glm::dvec3(0.3, c.parameter("py", -1.0, 1.0), c.parameter("pz", -1.0, 1.0)));
     const auto of = [](double (*value)(double)) {
@@ -145,6 +149,7 @@ void check(Checks& c) {
         c.mean("furnace by your directions: no noise", {.probe = 6, .inputs = {withW(n, albedo)}, .expected = albedo});
   }
 
+  // Task 4: solidAngleOfArea: from area to solid angle.
   if (c.task(4)) {
     const auto of = [](double (*value)(double cosine, double distance)) {
       return [=](Point p) {
@@ -174,6 +179,7 @@ void check(Checks& c) {
               of([](double x, double d) { return std::max(0.0, x) * d / (d * d * d * d); })},
              {{"not-over-area", "the distance is lost"}, of([](double x, double) { return std::max(0.0, x); })}}});
   }
+  // Task 5: furnace: radiance after so many bounces.
   if (c.task(5)) {
     const auto of = [](double (*value)(double e, double a, int n)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, static_cast<int>(p[0].z))); };
@@ -197,6 +203,7 @@ void check(Checks& c) {
                           of([](double e, double a, int n) { return e * std::pow(a, n); })}}});
   }
   // Together: a floor under a lamp, each pixel an estimate over the lamp's area.
+  // Task 6: a floor under a square lamp, by tasks 1 and 4.
   if (c.task(6)) {
     const std::vector<glm::vec4> lamp{withW({side, height, albedo}), withW({away, 0.0, 0.0})};
     c.mean("light of a square lamp at a point", {.probe = 8, .inputs = lamp, .expected = albedo / kPi * irradiance}) &&
@@ -212,6 +219,7 @@ void check(Checks& c) {
                            .caption = "The floor under a square lamp, from above: your two functions, 64 points of the "
                                       "lamp a pixel; the reference is Lambert's formula for polygons"});
   }
+  // Numbers that the README quotes.
   c.figure("furnace", furnace);
   c.figure("irradiance", irradiance);
   c.figure("bounces", bounces);

@@ -21,6 +21,7 @@ void check(Checks& c) {
                tilt = c.yours("tilt", 20.0, 70.0, 0), angle = c.yours("angle", 15.0, 85.0, 0);
   const double cosine = std::cos(tilt * kPi / 180.0);
   const double exact = kPi * base + 2.0 * kPi / 3.0 * slope * cosine, lobe = 0.25 + 0.5 * std::cos(angle * kPi / 180.0);
+  // The README's questions, with what common wrong answers say.
   c.answer("irradiance", exact, 0.005,
            {{{"lobe-lost", "that is radiance times pi: band 1 is damped by the cosine, 2 pi / 3 for pi"},
              kPi * (base + slope * cosine)}});
@@ -43,6 +44,7 @@ void check(Checks& c) {
   };
   const glm::dvec4 probe{0.5, -0.4, 0.6, 0.7}, other{0.3, 0.8, -0.2, 0.5};
 
+  // Task 1: shBasis: bands 0 and 1.
   if (c.task(1)) {
     const auto of = [](double y0, double y1) { return [=](Point p) { return joined(y0, y1 * glm::dvec3(p[0])); }; };
     c.twin(
@@ -63,6 +65,7 @@ void check(Checks& c) {
         c.mean("orthonormal: an integral over the sphere",
                {.probe = 2, .inputs = {inFloat(probe), inFloat(other)}, .expected = glm::dot(probe, other)});
   }
+  // Task 2: cosineLobe: the clamped cosine about a normal.
   if (c.task(2)) {
     const auto of = [](double l0, double l1) { return [=](Point p) { return joined(l0, l1 * glm::dvec3(p[0])); }; };
     c.twin(
@@ -82,6 +85,7 @@ void check(Checks& c) {
         c.mean("lobe against the integral over the sphere",
                {.probe = 4, .inputs = {inFloat(glm::dvec4(normal, 0.0)), inFloat(probe)}, .expected = 0.0});
   }
+  // Task 3: projectSample: one sample's estimate.
   if (c.task(3)) {
     const auto of = [](double (*weight)(double l, double pdf)) {
       return [=](Point p) { return weight(p[1].x, p[1].y) * joined(kY0, kY1 * glm::dvec3(p[0])); };
@@ -116,6 +120,7 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
+  // Task 4: irradiance: from the coefficients of radiance.
   if (c.task(4)) {
     const auto of = [](double l0, double l1) {
       return [=](Point p) { return glm::dvec4(glm::dot(glm::dvec4(p[0]), joined(l0, l1 * glm::dvec3(p[1])))); };
@@ -146,6 +151,7 @@ void check(Checks& c) {
                 .inputs = with(glm::dvec4(normal, 0.0)),
                 .expected = kPi * base + 2.0 * kPi / 3.0 * slope * glm::dot(normal, axis)});
   }
+  // Task 5: rotateAboutZ: band 1 turns as a vector.
   if (c.task(5)) {
     const auto of = [](double sense, int axisOf) {
       return [=](Point p) {
@@ -170,6 +176,7 @@ void check(Checks& c) {
                 {{"band-0-turns", "band 0 is the same in all directions: it does not turn"}, of(1.0, 1)},
                 {{"not-turned", "nothing turns"}, [](Point p) { return glm::dvec4(p[0]); }}}});
   }
+  // Task 6: a ball in an environment, by tasks 1 to 4.
   if (c.task(6))
     c.picture(
         "ball",
@@ -183,6 +190,7 @@ void check(Checks& c) {
                                                             glm::dot(axis, glm::dvec3(x, y, std::sqrt(1.0 - square))));
              },
          .caption = "A white ball in an environment of bands 0 and 1, 64 samples a pixel; the reference is exact"});
+  // Numbers that the README quotes.
   c.figure("irradiance", exact);
   c.figure("reconstructed", lobe);
   c.figure("share", share);

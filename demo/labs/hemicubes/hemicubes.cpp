@@ -71,6 +71,7 @@ void check(Checks& c) {
   const double x = c.yours("pixel x", 0.1, 0.95), y = c.yours("pixel y", 0.1, 0.95),
                reflectance = c.yours("reflectance", 0.6, 0.95), change = c.yours("change", 0.001, 0.01, 4);
   const double factor = squareLampIrradiance(side, height, {away, 0.0, 0.0}) / kPi;
+  // The README's questions, with what common wrong answers say.
   c.answer("form factor", factor, 0.02, {});
   c.answer(
       "published", 1.0 + x * x + y * y, 0.005,
@@ -78,6 +79,7 @@ void check(Checks& c) {
   c.answer("bound", change * reflectance / (1.0 - reflectance), 0.005,
            {{{"change-is-no-error", "the last change is not the error: the changes to come add up"}, change}});
 
+  // Task 1: deltaTop: form factor of a small area of the top.
   if (c.task(1)) {
     const auto of = [](double (*value)(double square)) {
       return
@@ -102,6 +104,7 @@ void check(Checks& c) {
                          return glm::dvec4(1.0 / (kPi * q * q));
                        }}}});
   }
+  // Task 2: deltaSide: of a small area of a side.
   if (c.task(2)) {
     const auto of = [](double (*value)(double z, double square)) {
       return [=](Point p) {
@@ -129,6 +132,7 @@ void check(Checks& c) {
                          return glm::dvec4(p[0].z * p[0].x / (kPi * q * q));
                        }}}});
   }
+  // Task 3: pixelDirection: every face, every pixel.
   if (c.task(3)) {
     const auto of = [](double shift, bool halfHeight, bool unit) {
       return [=](Point p) {
@@ -162,7 +166,7 @@ void check(Checks& c) {
                                      0.0);
                  }}}});
   }
-  // Together: the form factors of tasks 1 and 2 on the whole hemicube.
+  // Task 6, before tasks 4 and 5: form factors on the whole hemicube, by tasks 1 and 2.
   if (c.task(6)) {
     c.mean("all pixels sum to 1", {.probe = 3, .expected = 1.0}) &&
         c.mean("form factor of a square", {.probe = 5, .inputs = {four(side, height, away)}, .expected = factor}) &&
@@ -178,6 +182,7 @@ void check(Checks& c) {
                              .caption = "Form factor from each point of the floor to a square above it: 256 random "
                                         "points of the hemicube a pixel; the reference is exact"});
   }
+  // Task 4: sweep: one sweep of Jacobi's.
   if (c.task(4)) {
     const auto of = [](const std::function<glm::dvec3(Point, glm::dvec3)>& value) {
       return [=](Point p) { return glm::dvec4(value(p, glm::dvec3(p[5])), 0.0); };
@@ -252,6 +257,7 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
+  // Task 5: errorBound: how far from the solution.
   if (c.task(5)) {
     const auto of = [](double (*value)(double change, double r)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
@@ -280,6 +286,7 @@ void check(Checks& c) {
                                                     .truth = [](Point) { return glm::dvec4(1.0); },
                                                     .points = 256});
   }
+  // Numbers that the README quotes.
   c.figure("form factor", factor);
   c.figure("the same by the published map", publishedFactor(side, height, away), 4);
   c.figure("published", 1.0 + x * x + y * y);

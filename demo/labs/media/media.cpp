@@ -41,6 +41,7 @@ void check(Checks& c) {
                absorption = c.yours("absorption", 0.1, 0.5), depth = c.yours("depth", 0.5, 2.0);
   const double table = c.yours("table", 0.5, 9.0), millilitres = c.yours("millilitres", 15.0, 600.0, 0);
   const double extinction = scattering + absorption;
+  // The README's questions, with what common wrong answers say.
   c.answer(
       "transmittance", std::exp(-extinction * depth), 0.005,
       {{{"absorption-alone", "scattering takes light away too: extinction is both"}, std::exp(-absorption * depth)},
@@ -51,6 +52,7 @@ void check(Checks& c) {
   c.answer("way", 2.0 * depth, 0.005,
            {{{"straight", "that is the way straight through; light enters at all angles"}, depth}});
 
+  // Task 1: henyeyGreenstein: density of a cosine.
   if (c.task(1)) {
     const auto of = [](double (*value)(double cosine, double g)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
@@ -74,6 +76,7 @@ void check(Checks& c) {
                          {{"isotropic", "g is ignored"}, of([](double, double) { return 0.25 / kPi; })}}}) &&
         c.mean("its integral over the sphere is 1", {.probe = 2, .inputs = {four(g)}, .expected = 1.0});
   }
+  // Task 2: sampleHenyeyGreenstein: cosines of that density.
   if (c.task(2)) {
     const double other = c.fresh(-0.8, -0.2);
     const auto bin = [](double h) {
@@ -110,6 +113,7 @@ void check(Checks& c) {
         c.chiSquare("isotropic scattering, 32 bins",
                     {.probe = 3, .inputs = {four(0.0)}, .bin = bin(0.0), .shares = even});
   }
+  // Task 3: freeFlight: distance to the next collision.
   if (c.task(3)) {
     const auto of = [](double (*value)(double u, double s, double a)) {
       return [=](Point p) { return glm::dvec4(value(p[0].z, p[0].x, p[0].y)); };
@@ -156,6 +160,7 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
+  // Task 4: deltaTracking: collisions where the density varies.
   if (c.task(4)) {
     const double base = c.fresh(0.3, 0.8), slope = c.fresh(0.5, 1.5), majorant = base + 2.0 * slope + 0.2;
     const auto depthAt = [=](double t) { return base * t + 0.5 * slope * t * t; };
@@ -195,6 +200,7 @@ void check(Checks& c) {
                             .caption = "Light that gets through a wedge of fog: to the right it is longer, to the "
                                        "bottom it thickens faster; 64 flights a pixel, the reference is exact"});
   }
+  // Task 5: naturalCoefficient: of the liquid as it is.
   if (c.task(5)) {
     const auto of = [](double (*value)(double t, double ml)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
@@ -212,6 +218,7 @@ void check(Checks& c) {
                 {{"tank", "the share is liquid / tank: 23 litres of water take the liquid in, all is 23 litres"},
                  of([](double t, double ml) { return t * 0.01 * (23000.0 + ml) / ml; })}}});
   }
+  // Task 6: photons through slabs, by tasks 2 and 3.
   if (c.task(6)) {
     const std::vector<glm::vec4> slab{four(2.0, 0.9, 0.1, 0.75), four(0.0)}, through{slab[0], four(1.0)};
     c.mean("slab: reflectance by van de Hulst's table", {.probe = 9, .inputs = slab, .expected = reflected}) &&
@@ -219,6 +226,7 @@ void check(Checks& c) {
         c.mean("mean way through your slab without absorption",
                {.probe = 10, .inputs = {four(depth, scattering, 0.0, g)}, .expected = 2.0 * static_cast<float>(depth)});
   }
+  // Numbers that the README quotes.
   c.figure("transmittance", std::exp(-extinction * depth));
   c.figure("free path", 1.0 / extinction);
   c.figure("coefficient", table * 0.01 * 23000.0 / millilitres);

@@ -21,6 +21,7 @@ void check(Checks& c) {
                away = c.yours("lamp away", 0.2, 0.9);
   const double error = c.yours("error at 64", 0.01, 0.05), wanted = c.yours("error wanted", 0.001, 0.004, 4);
   const double light = albedo / kPi * squareLampIrradiance(side, height, {away, 0.0, 0.0});
+  // The README's questions, with what common wrong answers say.
   c.answer("samples", 64.0 * std::pow(error / wanted, 2.0), 0.02,
            {{{"linear", "the error falls with the square root of the samples"}, 64.0 * error / wanted}});
   c.answer("bounces", survival / (1.0 - survival), 0.005,
@@ -28,6 +29,7 @@ void check(Checks& c) {
   c.answer("furnace", emission / (1.0 - albedo), 0.005,
            {{{"survival-counts", "survival changes the noise, not the mean"}, emission / (1.0 - albedo * survival)}});
 
+  // Task 1: misWeight: the balance heuristic.
   if (c.task(1)) {
     const auto of = [](double (*value)(double a, double b)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
@@ -56,6 +58,7 @@ void check(Checks& c) {
                           of([](double a, double b) { return a > b ? 1.0 : 0.0; })}}}) &&
         c.mean("the two weights make one", {.probe = 2, .expected = 1.0});
   }
+  // Task 2: lampSample: next-event estimation.
   if (c.task(2)) {
     const auto of = [](double (*value)(double l, double a, double cosX, double cosY, double d, double pdf)) {
       return [=](Point p) {
@@ -96,6 +99,7 @@ void check(Checks& c) {
                {.probe = 4, .inputs = {four(side, height, albedo), four(away)}, .expected = light});
 #undef LIGHT
   }
+  // Task 3: roulette: survivors stand for those that ended.
   if (c.task(3)) {
     const auto of = [](bool exchanged, double (*after)(double t, double s)) {
       return [=](Point p) {
@@ -126,6 +130,7 @@ void check(Checks& c) {
                           [](Point p) { return glm::dvec4(1.0, p[0].x / p[0].y, 0.0, 0.0); }}}}) &&
         c.mean("throughput is kept on average", {.probe = 7, .inputs = {four(1.5, survival)}, .expected = 1.5});
   }
+  // Task 4: furnacePath: one path in a closed box.
   if (c.task(4)) {
     const double otherAlbedo = c.fresh(0.3, 0.8), otherEmission = c.fresh(0.5, 2.0);
     const std::vector<glm::vec4> box{four(emission, albedo, survival)};
@@ -172,6 +177,7 @@ void check(Checks& c) {
                            }()}}}) &&
         c.mean("each path's radiance by its reflections", {.probe = 10, .inputs = box, .expected = 1.0});
   }
+  // Task 5: standardError: of a mean.
   if (c.task(5)) {
     const auto of = [](double (*value)(double mean, double meanSquare, double n)) {
       return [=](Point p) { return glm::dvec4(value(double(p[0].x) / p[0].z, double(p[0].y) / p[0].z, p[0].z)); };
@@ -197,6 +203,7 @@ void check(Checks& c) {
                 {{"mean-not-subtracted", "the square of the mean is not subtracted"},
                  of([](double, double q, double n) { return std::sqrt(q / (n - 1.0)); })}}});
   }
+  // Task 6: the floor close below a lamp, by tasks 1, 2 and 5.
   if (c.task(6)) {
     const std::vector<glm::vec4> lamp{four(side, height, albedo), four(away)};
     c.mean("both strategies together", {.probe = 12, .inputs = lamp, .expected = light}) &&
@@ -233,6 +240,7 @@ void check(Checks& c) {
       time.reference.emplace_back(p.x, time.mine.back().y * std::sqrt(time.mine.back().x / p.x));
     c.curve(time);
   }
+  // Numbers that the README quotes.
   c.figure("samples", 64.0 * std::pow(error / wanted, 2.0));
   c.figure("bounces", survival / (1.0 - survival));
   c.figure("furnace", emission / (1.0 - albedo));

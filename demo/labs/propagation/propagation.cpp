@@ -81,11 +81,13 @@ void check(Checks& c) {
   const double flux = c.yours("flux", 0.5, 4.0), cell = c.yours("cell", 0.3, 1.2),
                steps = c.yours("steps", 3.0, 9.0, 0);
   const double kept = bandOneKept();
+  // The README's questions, with what common wrong answers say.
   c.answer("injected", flux / (2.0 * std::sqrt(kPi)), 0.005,
            {{{"lost-pi", "1 / pi is lost: a surface of Lambert's has the intensity flux / pi * cos"}, flux * kLobe0}});
   c.answer("band 1", std::pow(kept, steps), 0.02, {{{"one-step", "that is one step"}, kept}});
   c.answer("reach", steps * cell, 0.005, {});
 
+  // Task 1: injectionCell: half a cell off the surface.
   if (c.task(1)) {
     const auto of = [](double shift, double (*whole)(double)) {
       return [=](Point p) {
@@ -123,6 +125,7 @@ void check(Checks& c) {
                 return glm::dvec4(glm::floor(q), 0.0);
               }}}});
   }
+  // Task 2: injectedLight: coefficients of the intensity.
   if (c.task(2)) {
     const auto of = [](double l0, double l1) {
       return [=](Point p) { return double(p[0].w) * joined(l0, l1 * glm::dvec3(p[0])); };
@@ -142,6 +145,7 @@ void check(Checks& c) {
                 {{"lost-flux", "the flux is lost"},
                  [](Point p) { return joined(kLobe0, kLobe1 * glm::dvec3(p[0])) / kPi; }}}});
   }
+  // Task 3: fluxInto: through a face.
   if (c.task(3)) {
     const auto of = [](double sign, bool clamped, bool solid) {
       return [=](Point p) {
@@ -179,6 +183,7 @@ void check(Checks& c) {
                 .expected = 1.125 * flux,
                 .mistakes = {{{"no-clamp", "negative intensities are not cut off"}, flux}}});
   }
+  // Task 4: propagated: what a cell gets from the neighbour behind it.
   if (c.task(4)) {
     const auto of = [](Kernel kernel) {
       return
@@ -232,6 +237,7 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
+  // Task 5: irradianceAt: what a surface stops.
   if (c.task(5)) {
     const auto of = [](Kernel kernel, double sign, bool area) {
       return [=](Point p) {
@@ -256,6 +262,7 @@ void check(Checks& c) {
                                 Kernel{}.irradiance(glm::dvec4(p[0]), glm::dvec3(p[1]), std::sqrt(double(p[1].w))));
                           }}}});
   }
+  // Task 6: two lights in a grid, against the twin.
   if (c.task(6)) {
     // Two lights on the floor of a grid, eight steps summed: a slice through them.
     std::vector<glm::dvec4> grid(static_cast<std::size_t>(kGrid.x * kGrid.y * kGrid.z), glm::dvec4(0.0));
@@ -284,6 +291,7 @@ void check(Checks& c) {
                           "band 0; the reference is the twin in double precision"},
               pixels);
   }
+  // Numbers that the README quotes.
   c.figure("injected", flux / (2.0 * std::sqrt(kPi)));
   c.figure("band 1", std::pow(kept, steps));
   c.figure("reach", steps * cell);

@@ -26,6 +26,7 @@ void check(Checks& c) {
                high = c.yours("point height", 0.4, 1.2);
   const double texel = c.yours("texel", 0.01, 0.1), cosine = std::cos(sun * kPi / 180.0);
   const double light = albedo * cosine / kPi * fromFloor(side, gap, {0.0, high, 0.0});
+  // The README's questions, with what common wrong answers say.
   c.answer("bias", 0.5 * texel * std::tan(sun * kPi / 180.0), 0.005,
            {{{"whole-texel", "half a texel, not a whole one"}, texel * std::tan(sun * kPi / 180.0)}});
   c.answer("flux", albedo * side * side * cosine, 0.005,
@@ -34,6 +35,7 @@ void check(Checks& c) {
             {{"lost-cosine", "tilted to the sun the patch catches less"}, albedo * side * side}});
   c.answer("light", light, 0.02, {});
 
+  // Task 1: slopeBias: half a texel's change of depth.
   if (c.task(1)) {
     const auto of = [](double (*value)(double cosine, double texel)) {
       return [=](Point p) {
@@ -71,6 +73,7 @@ void check(Checks& c) {
                    return glm::dvec4(0.5 * p[0].w * std::sqrt(1.0 - x * x) / std::abs(x));
                  }}}});
   }
+  // Task 2: filteredShadow: compared, then filtered.
   if (c.task(2)) {
     const auto mixed = [](const glm::dvec4& v, double u, double w) {
       return (v.x * (1 - u) + v.y * u) * (1 - w) + (v.z * (1 - u) + v.w * u) * w;
@@ -119,6 +122,7 @@ void check(Checks& c) {
                    return glm::dvec4(s);
                  }}}});
   }
+  // Task 3: texelFlux: what a texel of the map reflects.
   if (c.task(3)) {
     const auto of = [](double (*value)(double a, double e, double t, double x)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, p[0].z, p[0].w)); };
@@ -143,6 +147,7 @@ void check(Checks& c) {
               of([](double a, double e, double, double) { return a * e; })},
              {{"lost-albedo", "the albedo is lost"}, of([](double, double e, double t, double) { return e * t; })}}});
   }
+  // Task 4: texelLight: from a texel to a point.
   if (c.task(4)) {
     const auto of = [](double (*value)(double cosP, double cosX, double d)) {
       return [=](Point p) {
@@ -184,6 +189,7 @@ void check(Checks& c) {
                           of(PART { return std::max(0.0, cp * cx) / (kPi * d * d); })}}});
 #undef PART
   }
+  // Task 5: discSample: points of a disc.
   if (c.task(5)) {
     const auto of = [](double (*weight)(double xi, double r)) {
       return [=](Point p) {
@@ -227,6 +233,7 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
+  // Task 6: a wall lit by the floor before it, by tasks 3 and 4.
   if (c.task(6)) {
     const std::vector<glm::vec4> scene{four(side, gap, albedo, cosine), four(0.0, high)};
     c.mean("light of a floor on a wall", {.probe = 7, .inputs = scene, .expected = light}) &&
@@ -241,6 +248,7 @@ void check(Checks& c) {
                            .caption = "A wall lit by a sunlit patch of the floor before it, 64 texels of the map a "
                                       "pixel; the reference is exact"});
   }
+  // Numbers that the README quotes.
   c.figure("bias", 0.5 * texel * std::tan(sun * kPi / 180.0));
   c.figure("flux", albedo * side * side * cosine);
   c.figure("light", light);

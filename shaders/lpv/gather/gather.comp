@@ -55,6 +55,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
   vec3 sum = vec3(0.0);
   share = 1.0;
 #if SKY
+  // The sky: a ray a lane by the cosine, and what it shows where nothing is in its way.
   PathNumbers numbers = PathNumbers(pcg4d(cell).x, lane, tracer.seed);
   vec3 direction = cosineSample(normal, randomPair(numbers, 1u, kPurposeScatter));
 #if VOXELS
@@ -65,6 +66,8 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
   weights[lane] = 0.0;
   barrier();
 #else
+  // The map's texels: a walk down the light tree, its top shared out over the lanes. Texels for rays are kept by
+  // weighted reservoirs of one [Chao1982].
   uint chosen[kReservoirs];
   int chosenLayer[kReservoirs];
   for (int i = 0; i < kReservoirs; ++i) {
@@ -86,6 +89,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
       vec3 given = vec3(0.0);
       uint texel;
       if (level == 0) {
+        // A texel, whole.
         texel = uint(place.x) | uint(place.y) << 16u;
 #if PERSPECTIVE
         vec4 p = texelFetch(rsmPosition, ivec3(place, layer), 0), flux = texelFetch(rsmFlux, ivec3(place, layer), 0);
@@ -101,6 +105,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
         given = surfelIrradiance(surfel, position, normal);
 #endif
       } else {
+        // A node: as one texel from afar, else its children.
         int at = treeNode(level, layer, place);
         uvec4 a = texelFetch(treeNodes, at);
         float radius = uintBitsToFloat(a.w);
@@ -126,6 +131,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
         given = uintBitsToFloat(c.xyz) * (c1 * c2 / (kPi * r2 + uintBitsToFloat(b.w) * c2));
         texel = c.w;
       }
+      // It counts, and may be chosen for a ray.
       float w = given.r + given.g + given.b;
       if (!(w > 0.0)) continue;
       sum += given;
@@ -138,6 +144,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
         }
     }
   }
+  // Rays to chosen texels: the share that arrives, as many rays as the lane has of all weight.
   weights[lane] = weight;
   barrier();
   float all = 0.0;
