@@ -136,7 +136,8 @@ TEST_F(Window, DebugViewsShowWhatStagesMade) {
 TEST_F(Window, APixelIsAskedWhatLitIt) {
   write("input.txt",
         "1 key R\n4 save before.png\n5 cursor 200.5 250.5\n6 key I\n10 touch Pixel/export as JSON\n12 save lines.png\n"
-        "13 touch Pixel/draw its light\n15 save hidden.png\n16 touch Pixel/forget\n");
+        "13 touch Pixel/draw its light\n15 save hidden.png\n16 touch Pixel/forget\n"
+        "17 touch Pixel/ask by clicking\n130 cursor 100.5 300.5\n133 click 100.5 300.5\n136 touch Pixel/export as JSON\n");
   const RunResult result = play(path("input.txt"), "--technique rsm --set rsm.samples=16 --shots .", "", "800x700");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
@@ -145,6 +146,7 @@ TEST_F(Window, APixelIsAskedWhatLitIt) {
   double shares = 0.0;
   for (const auto& share : file.at("shares")) shares += share.at("share").get<double>();
   EXPECT_NEAR(shares, 1.0, 0.01);
+  EXPECT_TRUE(fs::exists(path("room_pixel_100_300.json"))) << "a click asks, too";
   // Yellow lines and a green cross, where walls are white and red.
   const auto lineColours = [&](const char* name) {
     const lucerna::Bitmap picture = lucerna::readBitmap(path(name));
@@ -163,8 +165,10 @@ TEST_F(Window, DebugViewsOfTheSceneItself) {
   write("input.txt",
         "1 key R\n3 save frame.png\n4 touch Debug view\n5 touch Debug view/count of\n6 touch Debug view/count of: "
         "surfaces a pixel\n7 save overdraw.png\n8 touch Debug view/count of\n9 touch Debug view/count of: "
-        "visits a ray\n10 save visits.png\n11 touch Debug view/count of\n12 touch Debug view/count of: nothing\n"
+        "visits a ray\n10 save visits.png\n10 touch Debug view/white is\n11 touch Debug view/count of\n12 touch Debug "
+        "view/count of: nothing\n"
         "13 touch Debug view/in the scene\n14 touch Debug view/in the scene: lobes of cells\n15 save lobes.png\n"
+        "15 touch Debug view/cascade\n15 touch Debug view/at most\n"
         "16 touch Debug view/in the scene\n17 touch Debug view/in the scene: geometry volume\n18 save geometry.png\n"
         "19 touch Debug view/in the scene\n20 touch Debug view/in the scene: visibility voxels\n21 save voxels.png\n");
   const RunResult result =

@@ -1,6 +1,7 @@
 // The window's live truth (demo/walk/truth.hpp): the interval that it states for a picture's error holds the true error
 // in at least 95 of 100 views. The truth here is a reference with many times the samples and other random numbers.
-// LUCERNA_LONG_TESTS=1: 201 views of three scenes, some twenty minutes of one core.
+// Its own noise can only make it leave the interval more often.
+// LUCERNA_LONG_TESTS=1: 201 views of three scenes, some five minutes of one core.
 #include "measure/error_interval.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
@@ -32,7 +33,7 @@ class LiveTruth : public SharedProgramsTest {
     std::array<double, 2> width{};  ///< of the interval over its middle, sums
   };
   static constexpr std::array<std::uint32_t, 2> kSamples{16, 64};
-  static constexpr glm::ivec2 kSize{40, 24};
+  static constexpr glm::ivec2 kSize{24, 14};
 
   /// `views` along the scene's path, techniques in turn.
   Tally judge(const std::string& file, int views, std::uint32_t samplesOfTruth) const {
@@ -60,7 +61,7 @@ class LiveTruth : public SharedProgramsTest {
           live.record(kSamples[k]);
           const measure::ErrorInterval stated = measure::nrmseInterval(picture, live.mean(), live.standardError());
           tally.held[k] += stated.low <= error && error <= stated.high ? 1 : 0;
-          tally.width[k] += (stated.high - stated.low) / std::max(stated.value, 1e-9);
+          tally.width[k] += (stated.high - stated.low) / std::max(error, 1e-9);
         }
         ++tally.views;
       }
@@ -78,7 +79,7 @@ TEST_F(LiveTruth, TheStatedIntervalHoldsTheTrueError) {
   int views = 0;
   std::array<int, 2> held{};
   for (const char* file : {"cornell/cornell.json", "atrium/atrium.json", "media/gems/gems.json"}) {
-    const Tally tally = judge(file, all ? 67 : 6, all ? 2048 : 256);
+    const Tally tally = judge(file, all ? 67 : 6, all ? 512 : 256);
     views += tally.views;
     for (std::size_t k = 0; k < held.size(); ++k) held[k] += tally.held[k];
     if (!all) break;  // the others take minutes
