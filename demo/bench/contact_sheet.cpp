@@ -2,9 +2,13 @@
 
 #include "base/error.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <numeric>
 #include <string_view>
 
 namespace lucerna::demo::bench {
@@ -146,6 +150,43 @@ Bitmap contactSheet(const std::string& title, const std::vector<Tile>& tiles, in
     top += labelHeights[row] + height;
   }
   return sheet;
+}
+
+Bitmap barChart(glm::ivec2 size, const std::vector<std::string>& parts, const std::vector<Bar>& bars,
+                const std::string& unit) {
+  CHECK(!bars.empty() && !parts.empty(), "{} bars of {} parts", bars.size(), parts.size());
+  constexpr std::array<std::array<std::uint8_t, 3>, 3> kColors{{{96, 150, 210}, {222, 150, 70}, {120, 180, 110}}};
+  Bitmap chart;
+  chart.width = size.x, chart.height = size.y;
+  chart.rgba.assign(4 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), 255);
+  fill(chart, 0, 0, size.x, size.y, {28, 28, 30});
+  const int scale = size.x >= 400 ? 2 : 1, line = kLine * scale;
+  const auto widthOf = [&](const std::string& text) { return kAdvance * scale * static_cast<int>(text.size()); };
+  int left = line;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    fill(chart, left, line / 2, line - 2 * scale, line - 2 * scale, kColors[i % kColors.size()]);
+    write(chart, left + line, line / 2, scale, parts[i]);
+    left += 2 * line + widthOf(parts[i]);
+  }
+  double most = 0.0;
+  const auto sumOf = [](const Bar& bar) { return std::accumulate(bar.parts.begin(), bar.parts.end(), 0.0); };
+  for (const Bar& bar : bars) most = std::max(most, sumOf(bar));
+  const int top = 2 * line, step = (size.y - top) / static_cast<int>(bars.size()),
+            room = std::max(size.x - 2 * line - widthOf("0000.00 " + unit), 1);
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    const int y = top + static_cast<int>(i) * step;
+    write(chart, line, y, scale, bars[i].label);
+    double sum = 0.0;
+    int from = 0;
+    for (std::size_t k = 0; k < bars[i].parts.size(); ++k) {
+      sum += bars[i].parts[k];
+      const int to = most > 0.0 ? static_cast<int>(std::lround(sum / most * room)) : 0;
+      fill(chart, line + from, y + line, to - from, std::max(step - line - 3 * scale, 1), kColors[k % kColors.size()]);
+      from = to;
+    }
+    write(chart, line + from + 4 * scale, y + line, scale, fmt::format("{:.4g} {}", sum, unit));
+  }
+  return chart;
 }
 
 }  // namespace lucerna::demo::bench

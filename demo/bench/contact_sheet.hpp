@@ -3,6 +3,8 @@
 
 #include "base/image.hpp"
 
+#include <glm/glm.hpp>
+
 #include <string>
 #include <vector>
 
@@ -15,5 +17,15 @@ struct Tile {
 
 /// `columns` tiles a row, under a title.
 Bitmap contactSheet(const std::string& title, const std::vector<Tile>& tiles, int columns);
+
+/// A line of a bar chart: parts that are drawn one after the other, in colours of their own.
+struct Bar {
+  std::string label;
+  std::vector<double> parts;  ///< 0 or more each
+};
+
+/// Bars from the left, each with its sum behind it, all to one scale. `parts`: their names, above the bars.
+Bitmap barChart(glm::ivec2 size, const std::vector<std::string>& parts, const std::vector<Bar>& bars,
+                const std::string& unit);
 
 }  // namespace lucerna::demo::bench

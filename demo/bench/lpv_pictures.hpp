@@ -1,4 +1,4 @@
-// Pictures 7.3 to 7.7 of the LPV original on one sheet, on any scene.
+// Pictures 6.1, 6.6 and 7.2 to 7.7 of the LPV original on one sheet, on any scene.
 #pragma once
 
 #include "bench/bench.hpp"

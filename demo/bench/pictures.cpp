@@ -1,17 +1,22 @@
-// lucerna bench pictures --original NAME [SCENE] -o FILE.png: pictures 7.3 to 7.7 of the LPV original, or those of the
-// VPT one, on one labelled sheet.
+// lucerna bench pictures --original NAME [SCENE] -o FILE.png: pictures 6.1, 6.6 and 7.3 to 7.7 of the LPV original, or
+// those of the VPT one, on one labelled sheet.
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/statistics.hpp"
 #include "bench/bench.hpp"
 #include "bench/contact_sheet.hpp"
 #include "bench/lpv_pictures.hpp"
 #include "bench/rad.hpp"
 #include "offers.hpp"
+#include "scene/place.hpp"
 #include "settings/deviations.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
 
 namespace lucerna::demo {
 
@@ -26,9 +31,52 @@ struct Options {
 struct Picture {
   std::string label;
   RenderSettings settings;
+  Camera camera;
   Bitmap display;
   glm::dvec3 mean{0.0};
 };
+
+/// The camera of that name, else the one given.
+const Camera& cameraOf(const Scene& scene, std::string_view name, const Camera& otherwise) {
+  const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                  [&](const Camera& camera) { return camera.name == name; });
+  return found == scene.cameras.end() ? otherwise : *found;
+}
+
+/// A target of the first reflective shadow map as a square in the middle of a tile: positions over the scene's bounds,
+/// normals as 0.5 + 0.5 n, flux over what 99 % of its texels have.
+Bitmap mapTile(const StagePicture& stage, const Bounds& bounds, glm::ivec2 size) {
+  const std::vector<glm::vec4> texels = stage.texture->readRgba();
+  const int side = stage.texture->size().x;
+  const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+  std::vector<double> lights;
+  for (std::size_t i = 0; i < pixels; ++i)
+    lights.push_back(static_cast<double>(std::max({texels[i].x, texels[i].y, texels[i].z})));
+  const double white = std::max(percentile(lights, 0.99), 1e-30);
+  const auto shown = [&](const glm::dvec3& v) {
+    switch (stage.kind) {
+      case StagePicture::Kind::position: return (v - bounds.min) / glm::max(bounds.extent(), glm::dvec3(1e-30));
+      case StagePicture::Kind::normal: return 0.5 + 0.5 * v;
+      default: return glm::sqrt(glm::clamp(v / white, 0.0, 1.0));  // near enough to what a display does
+    }
+  };
+  Bitmap tile;
+  tile.width = size.x, tile.height = size.y;
+  tile.rgba.reserve(4 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+  const int square = std::min(size.x, size.y);
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x) {
+      const int u = (x - (size.x - square) / 2) * side / square, v = (size.y - 1 - y) * side / square;
+      glm::dvec3 colour(0.0);
+      if (x >= (size.x - square) / 2 && u < side && v < side)
+        colour = shown(glm::dvec3(
+            texels[static_cast<std::size_t>(v) * static_cast<std::size_t>(side) + static_cast<std::size_t>(u)]));
+      for (int c = 0; c < 3; ++c)
+        tile.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(colour[c], 0.0, 1.0))));
+      tile.rgba.push_back(255);
+    }
+  return tile;
+}
 
 // What b has and a has not, four times as strong, about grey.
 Bitmap difference(const Bitmap& a, const Bitmap& b) {
@@ -43,65 +91,128 @@ Bitmap difference(const Bitmap& a, const Bitmap& b) {
 
 namespace bench {
 
-VptSheet drawLpvPictures(const LpvPicturesInput& input) {
-  std::vector<Picture> pictures;
-  const auto add = [&](const std::string& label, auto change) {
-    pictures.push_back({label, input.usual, {}, {}});
-    change(pictures.back().settings);
-    return pictures.size() - 1;
-  };
-  const std::size_t rsm128 = add("RSM 128", [](RenderSettings& s) { s.rsm.size = 128; });
-  const std::size_t plain = add("RSM 256", [](RenderSettings&) {});
-  const std::size_t rsm512 = add("RSM 512", [](RenderSettings& s) { s.rsm.size = 512; });
-  const std::size_t single =
-      add("one 64^3", [](RenderSettings& s) { s.lpv.cascades.cascades = 1, s.lpv.cascades.cells = 64; });
-  const std::size_t unblocked = add("without blocking", [](RenderSettings& s) { s.lpv.blocking = false; });
-  const std::size_t indirect =
-      add("indirect light alone", [](RenderSettings& s) { s.component = Component::indirect; });
-  const std::size_t direct = add("without indirect light", [](RenderSettings& s) { s.component = Component::direct; });
+namespace {
 
-  Progress progress("bench pictures", static_cast<int>(pictures.size()), input.quiet);
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    if (interrupted()) return {};
-    Renderer renderer(input.context, input.programs, input.scene, pictures[i].settings);
-    if (input.exposure) renderer.setExposure(static_cast<float>(*input.exposure));
-    renderer.renderToTheEnd(input.camera);
-    pictures[i].display = renderer.readDisplay();
-    pictures[i].mean = meanOf(renderer.readRadiance());
-    progress.update(static_cast<int>(i) + 1);
+/// What the sheet of the LPV original is made of, each rendered once.
+class LpvPictures {
+ public:
+  explicit LpvPictures(const LpvPicturesInput& input) : input_(input) {
+    using S = RenderSettings&;
+    rsm128 = add("RSM 128", [](S s) { s.rsm.size = 128; });
+    plain = add("RSM 256", [](S) {});
+    rsm512 = add("RSM 512", [](S s) { s.rsm.size = 512; });
+    const Camera &pillar = cameraOf(input.scene, "pillar", input.camera),
+                 &curtain = cameraOf(input.scene, "curtain", input.camera);
+    // Indirect light alone and brighter, as the text shows it: details of it drown in the sun.
+    const auto alone = [](S s) { s.component = Component::indirect; };
+    single = add(
+        "one 64^3", [&](S s) { alone(s), s.lpv.cascades.cascades = 1, s.lpv.cascades.cells = 64; }, pillar);
+    three = add("three 32^3", alone, pillar);
+    unblocked = add(
+        "without blocking", [&](S s) { alone(s), s.lpv.blocking = false; }, curtain);
+    blocked = add("with blocking", alone, curtain);
+    indirect = add("indirect light alone", alone);
+    direct = add("without indirect light", [](S s) { s.component = Component::direct; });
+    flickering = add("without mipmaps", [](S s) {
+      s.component = Component::direct, s.textures.mipmaps = false, s.textures.anisotropy = 1.0f;
+    });
+    smooth = add("with mipmaps", [](S s) { s.component = Component::direct, s.textures.anisotropy = 1.0f; });
   }
 
-  const auto luminance = [](const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; };
-  std::vector<Tile> tiles;
-  const auto tile = [&](const std::string& label, std::size_t picture) {
-    tiles.push_back(
-        {fmt::format("{}  (mean {:.4g})", label, luminance(pictures[picture].mean)), pictures[picture].display});
-  };
-  const auto compare = [&](const std::string& label, std::size_t a, std::size_t b) {
-    tiles.push_back({label, difference(pictures[a].display, pictures[b].display)});
-  };
-  tile("7.3  RSM 128 x 128", rsm128);
-  tile("7.3  RSM 256 x 256", plain);
-  tile("7.3  RSM 512 x 512", rsm512);
-  tile("7.4  one grid, 64^3", single);
-  tile("7.4  three grids, 32^3", plain);
-  compare("7.4  three less one, x 4, grey: none", single, plain);
-  tile("7.5  without blocking", unblocked);
-  tile("7.5  with blocking", plain);
-  compare("7.5  with less without, x 4, grey: none", unblocked, plain);
-  tile("7.6  indirect alone, 8 iterations", indirect);
-  tile("7.7  without indirect light", direct);
-  tile("7.7  with indirect light", plain);
-  const std::string title = fmt::format(
-      "LPV original, pictures 7.3 to 7.7, {}: {}; three grids of 32^3, 8 iterations, RSM 256, blocking, where not said "
-      "otherwise",
-      input.fidelity, input.scene.name);
-  VptSheet result;
-  result.tiles = tiles.size();
-  for (const Picture& picture : pictures)
-    result.json.push_back({{"picture", picture.label}, {"mean", {picture.mean.x, picture.mean.y, picture.mean.z}}});
-  result.sheet = contactSheet(title, tiles, 3);
-  return result;
+  /// False where it was interrupted.
+  bool render() {
+    Progress progress("bench pictures", static_cast<int>(pictures_.size()), input_.quiet);
+    for (std::size_t i = 0; i < pictures_.size(); ++i) {
+      if (interrupted()) return false;
+      Picture& picture = pictures_[i];
+      Renderer renderer(input_.context, input_.programs, input_.scene, picture.settings);
+      if (input_.exposure) renderer.setExposure(static_cast<float>(*input_.exposure));
+      if (i == single || i == three || i == unblocked || i == blocked) renderer.setExposure(2.0f * renderer.exposure());
+      renderer.renderToTheEnd(picture.camera);
+      picture.display = renderer.readDisplay();
+      picture.mean = meanOf(renderer.readRadiance());
+      if (i == plain) readMap(renderer);
+      progress.update(static_cast<int>(i) + 1);
+    }
+    return true;
+  }
+
+  VptSheet sheet() {
+    addMapTiles();
+    tile("6.6  without mipmaps", flickering);
+    tile("6.6  with mipmaps", smooth);
+    compare("6.6  with less without, x 4, grey: none", flickering, smooth);
+    tile("7.3  RSM 128 x 128", rsm128);
+    tile("7.3  RSM 256 x 256", plain);
+    tile("7.3  RSM 512 x 512", rsm512);
+    tile("7.4  one grid, 64^3, indirect, twice as bright", single);
+    tile("7.4  three grids, 32^3", three);
+    compare("7.4  three less one, x 4, grey: none", single, three);
+    tile("7.5  without blocking, indirect, twice as bright", unblocked);
+    tile("7.5  with blocking", blocked);
+    compare("7.5  with less without, x 4, grey: none", unblocked, blocked);
+    tile("7.6  indirect alone, 8 iterations", indirect);
+    tile("7.7  without indirect light", direct);
+    tile("7.2, 7.7  with indirect light", plain);
+    VptSheet result;
+    result.tiles = tiles_.size();
+    for (const Picture& picture : pictures_)
+      result.json.push_back({{"picture", picture.label}, {"mean", {picture.mean.x, picture.mean.y, picture.mean.z}}});
+    result.sheet = contactSheet(
+        fmt::format("LPV original, pictures 6.1 to 7.7, {}: {}; three grids of 32^3, 8 iterations, RSM 256, blocking, "
+                    "where not said otherwise",
+                    input_.fidelity, input_.scene.name),
+        tiles_, 3);
+    return result;
+  }
+
+ private:
+  template <class Change>
+  std::size_t add(const std::string& label, Change change) {
+    return add(label, change, input_.camera);
+  }
+  template <class Change>
+  std::size_t add(const std::string& label, Change change, const Camera& camera) {
+    pictures_.push_back({label, input_.usual, camera, {}, {}});
+    change(pictures_.back().settings);
+    return pictures_.size() - 1;
+  }
+
+  void readMap(const Renderer& renderer) {
+    const glm::dvec3 origin = exactOrigin(input_.scene.bounds);
+    Bounds bounds = input_.scene.bounds;
+    bounds.min -= origin, bounds.max -= origin;
+    for (const StagePicture& stage : renderer.stagePictures())
+      if (stage.name.starts_with("rsm 1 ")) map_[stage.kind] = mapTile(stage, bounds, input_.usual.size);
+  }
+  void addMapTiles() {
+    using Kind = StagePicture::Kind;
+    for (const auto& [kind, label] :
+         {std::pair(Kind::normal, "6.1a  normals of the RSM"), std::pair(Kind::position, "6.1b  positions"),
+          std::pair(Kind::flux, "6.1c  flux")})
+      if (map_.contains(kind)) tiles_.push_back({label, map_.at(kind)});
+  }
+  void tile(const std::string& label, std::size_t picture) {
+    const glm::dvec3& c = pictures_[picture].mean;
+    tiles_.push_back({fmt::format("{}  (mean {:.4g})", label, 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z),
+                      pictures_[picture].display});
+  }
+  void compare(const std::string& label, std::size_t a, std::size_t b) {
+    tiles_.push_back({label, difference(pictures_[a].display, pictures_[b].display)});
+  }
+
+  const LpvPicturesInput& input_;
+  std::vector<Picture> pictures_;
+  std::size_t rsm128, plain, rsm512, single, three, unblocked, blocked, indirect, direct, flickering, smooth;
+  std::map<StagePicture::Kind, Bitmap> map_;  ///< of the first light
+  std::vector<Tile> tiles_;
+};
+
+}  // namespace
+
+VptSheet drawLpvPictures(const LpvPicturesInput& input) {
+  LpvPictures pictures(input);
+  return pictures.render() ? pictures.sheet() : VptSheet{};
 }
 
 }  // namespace bench

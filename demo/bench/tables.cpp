@@ -1,12 +1,16 @@
 // lucerna bench tables --original NAME [SCENE]: every published table of an original, measured again here.
 #include "base/error.hpp"
 #include "base/statistics.hpp"
+#include "base/files.hpp"
+#include "base/image.hpp"
 #include "bench/bench.hpp"
+#include "bench/contact_sheet.hpp"
 #include "bench/rad.hpp"
 #include "offers.hpp"
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -35,7 +39,7 @@ namespace {
 struct Options {
   CommonOptions common;
   PartOptions part;
-  std::string original, scene, fidelity, fill;
+  std::string original, scene, fidelity, fill, chart;
   std::optional<double> scale;
 };
 
@@ -102,6 +106,36 @@ nlohmann::ordered_json rowsJson(const bench::Tables& tables, const std::string& 
   return rows;
 }
 
+/// Figure 7.1 of the LPV original: image atomics against the geometry shader (tables 7.6 and 7.7), as published and
+/// here.
+void drawChart(const std::string& file, const bench::Tables& tables, const std::string& renderer) {
+  std::vector<bench::Bar> published, here;
+  for (const bench::Row& injection : tables.rows) {
+    const bool isCompared = injection.table == "7.6" || (injection.table == "7.7" && injection.grids == 1);
+    if (!isCompared || injection.stage != "injection") continue;
+    const auto propagation = std::find_if(tables.rows.begin(), tables.rows.end(), [&](const bench::Row& row) {
+      return row.table == injection.table && row.setting == injection.setting && row.grids == injection.grids &&
+             row.fill == injection.fill && row.propagate == injection.propagate && row.stage == "propagation";
+    });
+    if (propagation == tables.rows.end()) continue;
+    const std::string label =
+        fmt::format("{}, {} grid{}", injection.setting, injection.grids, injection.grids > 1 ? "s" : "");
+    if (!injection.published.empty() && !propagation->published.empty() &&
+        std::none_of(published.begin(), published.end(), [&](const bench::Bar& bar) { return bar.label == label; }))
+      published.push_back({label, {injection.published[0].ms, propagation->published[0].ms}});
+    if (!injection.samples.empty() && !propagation->samples.empty())
+      here.push_back({fmt::format("{} ({}/{})", label, injection.fill, injection.propagate),
+                      {injection.measured(), propagation->measured()}});
+  }
+  if (published.empty() || here.empty()) throwBadInput("--chart {}: nothing of tables 7.6 and 7.7 was measured", file);
+  const std::vector<std::string> stages{"injection", "propagation"};
+  const glm::ivec2 size(760, 60 + 46 * static_cast<int>(std::max(published.size(), here.size())));
+  writePng(file, bench::contactSheet("LPV original, figure 7.1: image atomics and the geometry shader, 8 iterations",
+                                     {{"published, NVIDIA GTX 960", bench::barChart(size, stages, published, "ms")},
+                                      {"here, " + renderer, bench::barChart(size, stages, here, "ms")}},
+                                     2));
+}
+
 /// So that a software renderer needs minutes.
 constexpr double kVptScale = 0.05;
 
@@ -111,6 +145,11 @@ int run(Options options) {
   const bool vpt = options.original == "vpt";
   const double scale = options.scale.value_or(vpt ? kVptScale : 1.0);
   if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
+  if (!options.chart.empty()) {
+    if (options.original != "lpv") throwBadInput("--chart {}: only of --original lpv, its figure 7.1", options.chart);
+    if (lowerExtension(options.chart) != ".png") throwBadInput("--chart {}: the extension must be png", options.chart);
+    checkWritable(options.chart);
+  }
   if (!options.fidelity.empty() && !vpt)
     throwBadInput(
         "--fidelity {}: the tables of {} are measured in each way that has a name of its own there; only --original "
@@ -158,6 +197,8 @@ int run(Options options) {
   fmt::print("Renderer {}\n", renderer);
   if (!vpt) fmt::print("Scene    {}, {} triangles\n", scene.file.string(), scene.triangleCount());
   print(tables);
+  if (!options.chart.empty() && !interrupted())
+    drawChart(options.chart, tables, renderer + (scale < 0.5 ? ", smaller grids by --scale" : ""));
 
   nlohmann::ordered_json json;
   json["renderer"] = renderer;
@@ -196,6 +237,7 @@ Work addBenchTables(Command app) {
                       "lpv: the way to fill the grids that is measured beside the published one: layered, fixed, "
                       "atomic (the fastest here, tried first)"),
         {"layered", "fixed", "atomic"});
+  app.add_option("--chart", options->chart, "lpv: FILE.png, figure 7.1: atomics and the geometry shader as bars");
   options->part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return run(*options); };

@@ -43,7 +43,8 @@ bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, con
 GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities,
                    const GpuSceneSettings& settings)
     : scene_(&scene), needs_(needs) {
-  gl::Sampling sampling{gl::Filter::linearMipmaps, gl::Filter::linear, gl::Wrap::repeat};
+  gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear,
+                        gl::Wrap::repeat};
   sampling.anisotropy =
       capabilities.anisotropicFilter ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
 
@@ -107,7 +108,9 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
 
   // Opaque meshes first, so that a depth pass draws them in one call; of one material together.
   std::vector<const Mesh*> order;
-  for (const Mesh& mesh : scene.meshes) order.push_back(&mesh);
+  for (const Mesh& mesh : scene.meshes)
+    if (settings.boundaries || scene.materials[static_cast<std::size_t>(mesh.material)].bsdf != Bsdf::none)
+      order.push_back(&mesh);
   const auto isMasked = [&](const Mesh* mesh) { return surfaces_[static_cast<std::size_t>(mesh->material)].masked; };
   std::stable_sort(order.begin(), order.end(), [&](const Mesh* a, const Mesh* b) {
     return std::pair(isMasked(a), a->material) < std::pair(isMasked(b), b->material);
@@ -126,6 +129,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
 
   vertices_ = gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(),
                          gl::Usage::staticDraw);
+  if (indices.empty()) throwBadInput("{}: nothing but boundaries of media", scene.file.string());
   indices_ = gl::Buffer("scene indices", indices.size() * sizeof(std::uint32_t), indices.data(), gl::Usage::staticDraw);
   const std::array<gl::VertexArray::Attribute, 3> attributes{
       {{0, 3, offsetof(Vertex, position)}, {1, 2, offsetof(Vertex, texCoord)}, {2, 3, offsetof(Vertex, normal)}}};

@@ -14,6 +14,8 @@ namespace lucerna {
 
 struct GpuSceneSettings {
   float anisotropy = 4.0f;  ///< at most; 1 where the extension is missing
+  bool mipmaps = true;
+  bool boundaries = true;  ///< meshes of Bsdf::none, which light passes straight, are drawn as any other
 };
 
 /// The programs of a pass: masked meshes need a discard, which would disable early depth tests for the others.

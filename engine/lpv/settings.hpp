@@ -84,6 +84,8 @@ struct LpvSettings {
   bool mergeViews = false;  ///< several maps: of a surfel seen twice the longer vector counts; else all are summed
   int bounces = 1;  ///< with propagate more than 1 need blocking, two iterations and maps with albedo; with rays
                     ///< kAllBounces too
+  bool shafts = false;  ///< light shafts in the scene's haze (light_shafts.hpp)
+  int shaftSteps = 64;  ///< of them along a view ray
   float blendBand = 0.25f;  ///< fraction of a cascade's half extent over which it fades into the next
   int handOver = 0;  ///< steps after which a finer cascade takes light from the coarser one; 0: lpvHandOverStep()
   std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not

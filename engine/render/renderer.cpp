@@ -59,8 +59,15 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     return;
   }
   if (technique == Technique::radiosity) radiosity_.emplace(context, programs, scene, settings_, origin_);
+  const std::optional<Haze> haze = asksForShafts() ? hazeOf(aboutOrigin(scene)) : std::nullopt;
+  if (asksForShafts() && !haze)
+    logWarning(
+        "lpv.shafts: the scene has no homogeneous medium, within a boundary of bsdf none or about the camera: nothing "
+        "scatters");
+  settings_.rsm.haze = haze.has_value();
+  settings_.textures.boundaries = !haze;
   gpuScene_.emplace(radiosity_ ? radiosity_->scene() : aboutOrigin(scene), needs_, context.capabilities(),
-                    settings.textures);
+                    settings_.textures);
   if (moved_) moved_->textures.clear();  // they are on the GPU
   const Scene& drawn = gpuScene_->scene();
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
@@ -81,6 +88,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   if (ReceiversFrame::isNeeded(settings, needs_)) receivers_.emplace(frame, depth_);
   if (EnvironmentView::isNeeded(needs_) && settings.component != Component::indirect)
     environmentView_.emplace(programs, scene);
+  if (haze) makeShafts(programs, *haze);
   loadPrograms(programs);
 
   if (needs_.environment && !receivers_ && !radiosity_)
@@ -95,7 +103,24 @@ bool Renderer::showsDirect() const {
 }
 
 const Scene& Renderer::aboutOrigin(const Scene& scene) {
-  return origin_ == glm::dvec3(0.0) ? scene : moved_.emplace(movedTo(scene, origin_));
+  if (origin_ == glm::dvec3(0.0)) return scene;
+  return moved_ ? *moved_ : moved_.emplace(movedTo(scene, origin_));
+}
+
+bool Renderer::asksForShafts() const {
+  return settings_.technique == Technique::lpv && settings_.lpv.transport == LpvTransport::propagate &&
+         settings_.lpv.shafts;
+}
+
+void Renderer::makeShafts(gl::ProgramLibrary& programs, const Haze& haze) {
+  LightShafts::Settings shafts;
+  shafts.steps = settings_.lpv.shaftSteps;
+  shafts.sun = showsSun();
+  shafts.sunCascades = sunCascades_ ? settings_.sunCascades.cascades : 0;
+  shafts.volume = lpv_.has_value();
+  shafts.fullFloat = settings_.fullFloatTarget;
+  shafts.lookup = LightPropagationVolume::lookupFlags(settings_.lpv);
+  shafts_.emplace(programs, haze, shafts);
 }
 
 void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
@@ -119,6 +144,7 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ask
     const bool showsRest = settings_.component != Component::indirect;  // specular and emission belong to direct light
     flags.insert(flags.end(), {{"SUN", showsSun()},
                                {"SUN_CASCADES", sunCascades_ ? settings_.sunCascades.cascades : 0},
+                               {"HAZE", shafts_.has_value()},
                                {"SPOTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
                                {"POINTS", localLights_ ? static_cast<int>(points_.size()) : 0},
                                {"SPECULAR", needs_.specular && showsDirect()},
@@ -303,6 +329,14 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
   }
 }
 
+void Renderer::recordShafts(const FrameView& view) {
+  const gl::TimeQuery::Scope stage(timer_, "light shafts");
+  if (shadowMap_) shadowMap_->depth().bind(UNIT_SUN_SHADOW);
+  if (sunCascades_) sunCascades_->depth().bind(UNIT_SUN_SHADOW);
+  if (lpv_) lpv_->bindForShading();
+  shafts_->record(radiance_, depth_, view.clip);
+}
+
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) { renderFrame(camera, volumeCamera, {}); }
 
 void Renderer::renderToTheEnd(const Camera& camera) {
@@ -324,6 +358,7 @@ void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, Fra
   } else {
     const FrameView view = viewOf(camera, volumeCamera);
     bindFrameConstants(view);
+    if (shafts_) shafts_->bind();
     recordShadows(view.camera);
     if (rsm_) rsm_->record(timer_, view);
     const bool depthIsDrawn = (receivers_ && receivers_->record(timer_, view, effort)) || rsm_;
@@ -333,6 +368,7 @@ void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, Fra
       const gl::TimeQuery::Scope stage(timer_, "environment");
       environmentView_->record(radianceTarget_, noAttributes_, view.camera, settings_.size);
     }
+    if (shafts_) recordShafts(view);
   }
   {
     const gl::TimeQuery::Scope stage(timer_, "tone mapping");
@@ -390,6 +426,7 @@ std::size_t Renderer::gpuBytes() const {
   if (localLights_) bytes += localLights_->gpuBytes();
   forTechniques(*this, [&](const auto& technique) { bytes += technique.gpuBytes(); });
   if (environmentView_) bytes += environmentView_->gpuBytes();
+  if (shafts_) bytes += shafts_->gpuBytes();
   return bytes;
 }
 
@@ -419,7 +456,8 @@ std::vector<std::string> Renderer::leftOut() const {
                                                  {"radiosity", radiosity_.has_value()},
                                                  {"shadow rays", radiosity_ && radiosity_->hasShadowRays()},
                                                  {"receivers", receivers_.has_value()},
-                                                 {"light propagation volume", lpv_.has_value()}};
+                                                 {"light propagation volume", lpv_.has_value()},
+                                                 {"light shafts", shafts_.has_value()}};
   for (const auto& [name, there] : stages)
     if (!there) names.emplace_back(name);
   if (lpv_) lpv_->addLeftOut(names);

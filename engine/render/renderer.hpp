@@ -18,6 +18,7 @@
 #include "gl/lines.hpp"
 #include "gl/program.hpp"
 #include "gl/time_query.hpp"
+#include "lpv/light_shafts.hpp"
 #include "render/lpv_frame.hpp"
 #include "render/path_frame.hpp"
 #include "render/pixel_answer.hpp"
@@ -103,6 +104,9 @@ class Renderer {
  private:
   const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ where that is another
   void makeShadowMaps(gl::ProgramLibrary& programs);
+  bool asksForShafts() const;
+  void makeShafts(gl::ProgramLibrary& programs, const Haze& haze);
+  void recordShafts(const FrameView& view);
   void loadPrograms(gl::ProgramLibrary& programs);
   void allocateTargets();
   void renderFrame(const Camera& camera, const Camera& volumeCamera, FrameEffort effort);
@@ -162,6 +166,7 @@ class Renderer {
   std::optional<ReceiversFrame> receivers_;
   std::optional<PathFrame> path_;
   std::optional<EnvironmentView> environmentView_;
+  std::optional<LightShafts> shafts_;  ///< over all of it
 };
 
 }  // namespace lucerna

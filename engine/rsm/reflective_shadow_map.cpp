@@ -25,7 +25,8 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
     flags.insert(flags.end(), {{"PERSPECTIVE", settings.light != Light::sun},
                                {"LAYERS", layers},
                                {"FLUX_COSINE", settings.fluxCosine},
-                               {"ALBEDO", settings.albedo}});
+                               {"ALBEDO", settings.albedo},
+                               {"HAZE", settings.haze && settings.light == Light::sun}});
     return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "rsm/rsm.vert",
                                 "rsm/rsm.frag", flags, layers > 1 ? "rsm/rsm.geom" : "");
   };

@@ -17,6 +17,7 @@ class ReflectiveShadowMap {
     Light light = Light::sun;
     bool fluxCosine = false;  ///< deviation rsm.flux-cosine: flux times N.L
     bool albedo = false;  ///< a fourth target, for several bounces
+    bool haze = false;  ///< sunlight comes through the medium that is bound (lpv/light_shafts.hpp)
   };
   /// 2D arrays: one layer, or the six faces of an omnidirectional light.
   struct Outputs {

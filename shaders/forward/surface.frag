@@ -31,6 +31,9 @@ Highlight highlight;
 #if EMISSION
 #include "lib/emission.glsl"
 #endif
+#if HAZE
+#include "lib/haze.glsl"
+#endif
 
 // Reflected radiance over irradiance.
 vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
@@ -72,6 +75,9 @@ void main() {
   float cosine = dot(normal, -frame.sunDirection);
   if (cosine > 0.0) {
     vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, meshNormal));
+#if HAZE
+    irradiance *= hazeTransmittance(vPosition, -frame.sunDirection);
+#endif
     add(result, reflection(albedo, normal, toCamera, -frame.sunDirection) * irradiance, ASKED_SUN);
   }
 #endif

@@ -11,6 +11,9 @@
 #include "lib/frame.glsl"
 #include "lib/material.glsl"
 #include "lib/spot.glsl"
+#if HAZE
+#include "lib/haze.glsl"
+#endif
 in vec3 vPosition;
 in vec3 vNormal;
 in vec2 vTexCoord;
@@ -55,6 +58,9 @@ void main() {
   vec3 toLight = -frame.sunDirection;
   float across = texelArea;
   vec3 incoming = frame.sunIrradiance * texelArea;
+#if HAZE
+  incoming *= hazeTransmittance(vPosition, toLight);
+#endif
 #endif
   float cosine = dot(normal, toLight);
   if (cosine < 0.0) {  // an interpolated normal may turn away from the light where the face does not

@@ -6,6 +6,7 @@
 // Uniform blocks
 #define BLOCK_FRAME 0
 #define BLOCK_LPV 1
+#define BLOCK_HAZE 2
 #define BLOCK_LIGHTS 3
 #define BLOCK_SUN_CASCADES 4
 #define BLOCK_RECEIVER_PATHS 5

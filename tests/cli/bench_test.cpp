@@ -105,9 +105,11 @@ std::vector<PublishedFigure> publishedFigures() {
 }
 
 TEST_F(Bench, TablesOfTheLpvOriginalStandBesideOurs) {
-  const RunResult result = RUN_LUCERNA("bench tables --original lpv " + path("scene.obj") +
-                                       " --scale 0.05 --quiet --json " + path("tables.json"));
+  const RunResult result =
+      RUN_LUCERNA("bench tables --original lpv " + path("scene.obj") + " --scale 0.05 --quiet --chart " +
+                  path("chart.png") + " --json " + path("tables.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_GT(lucerna::readBitmap(path("chart.png")).width, 2 * 760);
   for (const char* text : {"llvmpipe", "Scale    0.05", "16^3", "Crytek Sponza", "Speed:", "Bound:"})
     EXPECT_NE(result.out.find(text), std::string::npos) << text;
   const auto tables = json("tables.json");
@@ -158,8 +160,13 @@ TEST_F(Bench, PicturesOfTheLpvOriginalAreOneSheet) {
   const lucerna::Bitmap sheet = lucerna::readBitmap(path("p.png"));
   EXPECT_GT(sheet.width, 3 * 96);
   EXPECT_LT(sheet.width, 4 * 96);
-  EXPECT_GT(sheet.height, 4 * 54);
-  EXPECT_EQ(json("p.json").at("pictures").size(), 7u);
+  EXPECT_GT(sheet.height, 6 * 54);
+  EXPECT_EQ(json("p.json").at("pictures").size(), 11u);
+  // The reflective shadow map's normals: the floor's is up, 0.5 + 0.5 (0, 1, 0).
+  int up = 0;
+  for (std::size_t i = 0; i < sheet.rgba.size(); i += 4)
+    up += sheet.rgba[i] == 128 && sheet.rgba[i + 1] == 255 && sheet.rgba[i + 2] == 128;
+  EXPECT_GT(up, 200);
 }
 
 TEST_F(Bench, PicturesOfTheVptOriginalAreOneSheet) {

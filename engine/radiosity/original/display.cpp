@@ -209,7 +209,7 @@ gl::Texture uploaded(const Bitmap& bitmap) {
   const glm::ivec2 size(bitmap.width, bitmap.height);
   const gl::Sampling sampling{gl::Filter::linearMipmaps, gl::Filter::linear, gl::Wrap::repeat};
   gl::Texture texture("radiosity picture", gl::Format::rgba8, size, sampling,
-                      std::bit_width(static_cast<unsigned>(std::max(size.x, size.y))));
+                      static_cast<int>(std::bit_width(static_cast<unsigned>(std::max(size.x, size.y)))));
   const auto row = static_cast<std::ptrdiff_t>(4 * size.x);
   std::vector<std::uint8_t> bottomUp;
   bottomUp.reserve(bitmap.rgba.size());
