@@ -188,6 +188,7 @@ const std::vector<Setting>& table() {
        kPropagate, ""},
       {"lpv.shaft-steps", number(FIELD(lpv.shaftSteps), 1, 4096), "steps", "of light shafts along a view ray", "",
        rebuild, kPropagate, ""},
+      // Of them: filling, propagation, receivers.
       {"lpv.fill", choice(FIELD(lpv.fill)), "",
        "how the grid is filled: layered, by blending; atomic, in floats; fixed, in integers, the same bits every run",
        "", rebuild, kPropagate, ""},
