@@ -237,7 +237,7 @@ Work addBenchTables(Command app) {
                       "lpv: the way to fill the grids that is measured beside the published one: layered, fixed, "
                       "atomic (the fastest here, tried first)"),
         {"layered", "fixed", "atomic"});
-  app.add_option("--chart", options->chart, "lpv: FILE.png, figure 7.1: atomics and the geometry shader as bars");
+  app.addOption("--chart", options->chart, "lpv: FILE.png, figure 7.1: atomics and the geometry shader as bars");
   options->part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return run(*options); };
