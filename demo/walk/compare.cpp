@@ -12,6 +12,8 @@ namespace {
 constexpr glm::ivec2 kMeter(32, 18);
 constexpr float kMagnifierRadius = 80.0f, kMagnification = 8.0f;
 
+glm::vec2 middleOfPixel(const glm::vec2& cursor) { return glm::floor(cursor) + 0.5f; }
+
 }  // namespace
 
 Compare::Compare(gl::ProgramLibrary& programs)
@@ -46,8 +48,10 @@ void Compare::record(const gl::Framebuffer& target, glm::ivec2 size, const Input
   compose_->set("exposure", in.exposure);
   compose_->set("errorScale", in.errorScale);
   glm::vec4 magnifier(0.0f);
-  if (in.magnifier)
-    magnifier = {in.magnifier->x, static_cast<float>(size.y) - in.magnifier->y, kMagnifierRadius, kMagnification};
+  if (in.magnifier) {
+    const glm::vec2 middle = middleOfPixel(*in.magnifier);
+    magnifier = {middle.x, static_cast<float>(size.y) - middle.y, kMagnifierRadius, kMagnification};
+  }
   compose_->set("magnifier", magnifier);
   gl::drawFullScreen(noAttributes_);
 }
@@ -70,9 +74,9 @@ std::optional<float> Compare::meteredExposure(const gl::Texture& radiance) const
   return static_cast<float>(std::clamp(0.3 / std::exp2(sum / count), 1e-9, 1e9));
 }
 
-bool Compare::isRight(const Inputs& in, glm::ivec2 target, glm::vec2 pixel) {
+bool Compare::isRight(const Inputs& in, glm::ivec2 target, glm::vec2 cursor) {
   const float edge = in.layout == Layout::sideBySide ? 0.5f : in.split;
-  return in.layout != Layout::one && pixel.x >= edge * static_cast<float>(target.x);
+  return in.layout != Layout::one && middleOfPixel(cursor).x >= edge * static_cast<float>(target.x);
 }
 
 // As shaders/walk/compose.frag has it.
@@ -88,10 +92,10 @@ gl::Lines::Placement Compare::placementOf(const Inputs& in, glm::ivec2 target, b
   return {{right ? edge : 0, 0}, {right ? target.x - edge : edge, target.y}, middle, in.centre, pixelsOfTexel * size};
 }
 
-std::optional<glm::ivec2> Compare::pictureAt(const Inputs& in, glm::ivec2 target, glm::vec2 pixel) {
+std::optional<glm::ivec2> Compare::pictureAt(const Inputs& in, glm::ivec2 target, glm::vec2 cursor) {
   if (!in.left.radiance) return {};
   const glm::vec2 pixels(target), size(in.left.radiance->size2d());
-  const glm::vec2 fromBelow(pixel.x, pixels.y - pixel.y);
+  const glm::vec2 pixel = middleOfPixel(cursor), fromBelow(pixel.x, pixels.y - pixel.y);
   const bool halves = in.layout == Layout::sideBySide;
   const glm::vec2 region = halves ? glm::vec2(0.5f * pixels.x, pixels.y) : pixels;
   const glm::vec2 middle =

@@ -35,7 +35,7 @@ class Compare {
     float exposure = 1.0f;
     const gl::Texture *reference = nullptr, *standardError = nullptr;  ///< where errors are shown
     float errorScale = 1.0f;  ///< radiance
-    std::optional<glm::vec2> magnifier;  ///< pixel of the target, from the top left
+    std::optional<glm::vec2> magnifier;  ///< place in the target, from the top left
   };
 
   explicit Compare(gl::ProgramLibrary& programs);
@@ -48,10 +48,12 @@ class Compare {
 
   /// Where in the target the left picture, or the right one, is drawn.
   static gl::Lines::Placement placementOf(const Inputs& inputs, glm::ivec2 target, bool right);
-  /// Whether a pixel of the target (from the top left) is of the right picture.
-  static bool isRight(const Inputs& inputs, glm::ivec2 target, glm::vec2 pixel);
-  /// The pixel of the picture (from the top left) under a pixel of the target; none beside it.
-  static std::optional<glm::ivec2> pictureAt(const Inputs& inputs, glm::ivec2 target, glm::vec2 pixel);
+  // Places are of the cursor, from the top left: whole numbers are a pixel's upper left corner, and mean that pixel.
+
+  /// Whether the pixel of the target at that place is of the right picture.
+  static bool isRight(const Inputs& inputs, glm::ivec2 target, glm::vec2 cursor);
+  /// The pixel of the picture (from the top left) in the middle of that pixel; none beside it.
+  static std::optional<glm::ivec2> pictureAt(const Inputs& inputs, glm::ivec2 target, glm::vec2 cursor);
 
  private:
   const gl::Program *compose_, *meter_;

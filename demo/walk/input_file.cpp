@@ -88,10 +88,11 @@ void InputPlayer::act(const Event& event) {
   else if (event.verb == "close") state_.close();
   else if (event.verb == "save") save_ = event.rest;
   else if (event.verb == "touch") {
-    every_ = event.rest == "*";
-    touching_ = every_ ? "" : event.rest;
+    every_.reset();
+    touching_ = event.rest;
+    if (touching_.ends_with('*')) every_ = std::exchange(touching_, "").substr(0, event.rest.size() - 1);
     touchingLine_ = event.line;
-    touchStep_ = waited_ = 0;
+    touchStep_ = waited_ = rests_ = 0;
   } else {
     fail(event.line, fmt::format("{}: unknown; there are key, down, up, cursor, press, release, click, wheel, text, "
                                  "touch, drop, resize, focus, save, close",
@@ -103,18 +104,21 @@ void InputPlayer::act(const Event& event) {
 // what is not there: the section is opened, or the menu, and what does not come by that has gone.
 void InputPlayer::chooseNext(Ui& ui) {
   const auto isItem = [](const std::string& label) { return label.find(": ") != std::string::npos; };
+  const auto isWanted = [&](const std::string& label) { return label.starts_with(*every_); };
   const auto parentOf = [&](const std::string& label) {
     return isItem(label) ? label.substr(0, label.find(": ")) : label.substr(0, label.find('/'));
   };
-  touchStep_ = waited_ = 0;
+  touchStep_ = waited_ = rests_ = 0;
   touching_.clear();
   for (const std::string& label : ui.labels())
-    if (isItem(label) && ui.isThere(label) && (touching_.empty() || touched_.contains(touching_))) touching_ = label;
+    if (isWanted(label) && isItem(label) && ui.isThere(label) && (touching_.empty() || touched_.contains(touching_)))
+      touching_ = label;
   if (!touching_.empty()) return;
   const auto isSection = [](const std::string& label) { return label.find('/') == std::string::npos; };
   for (const bool sections : {false, true})
     for (const std::string& label : ui.labels())
-      if (isSection(label) == sections && !touched_.contains(label) && ui.isThere(label)) {
+      if (isWanted(label) && isSection(label) == sections && !touched_.contains(label) && ui.isThere(label) &&
+          attempts_[label] < kAttempts) {
         touching_ = label;
         idle_ = 0;
         return;
@@ -122,17 +126,17 @@ void InputPlayer::chooseNext(Ui& ui) {
   if (++idle_ < kSettles) return;  // what the last one changed may show others
   idle_ = 0;
   for (const std::string& label : ui.labels()) {
-    if (touched_.contains(label) || gone_.contains(label)) continue;
+    if (!isWanted(label) || touched_.contains(label) || gone_.contains(label)) continue;
     std::string parent = parentOf(label);
     if (!ui.isThere(parent)) parent = parentOf(parent);  // a menu's section
-    if (++attempts_[label] > 4 || !ui.isThere(parent)) {
+    if (++attempts_[label] > kAttempts || !ui.isThere(parent)) {
       gone_.insert(label);
       continue;
     }
     touching_ = parent;
     return;
   }
-  every_ = false;
+  every_.reset();
 }
 
 void InputPlayer::touch(Ui* ui) {
@@ -143,6 +147,7 @@ void InputPlayer::touch(Ui* ui) {
   if (touchStep_ == 0 && (!place || !place->visible)) {
     if (++waited_ <= kPatience) return;
     if (every_) {  // it went away with what it belonged to
+      ++attempts_[touching_];
       gone_.insert(touching_);
       touching_.clear();
       return;

@@ -9,6 +9,7 @@
 //   click X Y        wheel STEPS       text WORDS
 //   touch LABEL      click the panel's control of that name, such as `Light/sun height`; it is scrolled into view first
 //   touch *          every control once, also those that appear on the way; the next line waits for it
+//   touch LABEL*     the same of those whose names begin so, such as `Light/*`
 //   drop FILE        relative to the input file
 //   resize W H       also 0 0: minimised
 //   focus on|off     close
@@ -48,6 +49,7 @@ class InputPlayer {
 
  private:
   static constexpr int kPatience = 60, kSettles = 4;  // frames
+  static constexpr int kAttempts = 4;
   struct Event {
     int line = 0;
     int frame = 0;
@@ -69,7 +71,7 @@ class InputPlayer {
   int touchingLine_ = 0, touchStep_ = 0, waited_ = 0, idle_ = 0;
   glm::vec2 restsAt_{-1.0f};  ///< where the control was in the frame before
   int rests_ = 0;  ///< frames
-  bool every_ = false;
+  std::optional<std::string> every_;  ///< being touched: controls whose names begin so
   std::set<std::string> touched_, gone_;
   std::map<std::string, int> attempts_;  ///< to bring a control in sight
 };

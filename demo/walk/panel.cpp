@@ -411,10 +411,17 @@ void showMemory(Ui& ui, WalkState& s) {
 void showRecord(Ui& ui, WalkState& s, Host& host) {
   if (button(ui, "save the picture")) s.shotWanted = true;
   explain("PNG as shown and HDR with linear radiance, both with settings, camera and exposure inside.");
+  ImGui::BeginDisabled(!s.canRecord);
   if (button(ui, s.records ? "end the video" : "record a video")) s.records = !s.records;
-  explain("What the picture's part of the window shows, by ffmpeg, 30 pictures a second.");
+  explain("What the picture's part of the window shows, by ffmpeg, 30 pictures a second. Key V does the same.");
+  ImGui::EndDisabled();
+  if (!s.canRecord) wrapped("No video: ffmpeg is not installed (apt install ffmpeg).");
+  if (!s.recording.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 90, 80, 255));
+    wrapped(s.recording);
+    ImGui::PopStyleColor();
+  }
   if (s.canCapture) {
-    ImGui::SameLine();
     if (button(ui, "RenderDoc capture")) s.captureWanted = true;
   }
   std::string folder = s.shotFolder.string();
@@ -487,9 +494,12 @@ void Panel::show(Ui& ui, WalkState& s, Host& host) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x - std::min(width, screen.x), 0.0f}, ImGuiCond_Always);
   ImGui::SetNextWindowSize({std::min(width, screen.x), screen.y}, ImGuiCond_Always);
+  // Beside the picture nothing is behind it but what it was in the frame before.
+  if (screen.x > 2.0f * width) ImGui::SetNextWindowBgAlpha(1.0f);
   ImGui::Begin(
       "Lucerna", nullptr,
       ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar);
+  ui.noteWindow();
   ImGui::PushItemWidth(0.52f * ImGui::GetContentRegionAvail().x);
   const auto part = [&](const char* name, bool open, auto content) {
     if (!section(ui, name, open)) return;
@@ -524,6 +534,7 @@ void Panel::showHelp(Ui& ui, WalkState& s) {
   ImGui::SetNextWindowBgAlpha(1.0f);  // it may lie over the panel
   ImGui::Begin("Keys", nullptr,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
+  ui.noteWindow();
   line(keysHelp());
   if (ImGui::Button("close")) s.help = false;
   ui.section("Keys");

@@ -93,7 +93,11 @@ void showSetting(Ui& ui, SideState& side, const RenderSettings& settings, const 
   explain(explanation(setting));
   if (given) {
     ImGui::PopStyleColor();
-    ImGui::SameLine();
+    // Beside the name, or below it where that would be beyond the panel's edge.
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float end =
+        ImGui::GetItemRectMax().x + style.ItemSpacing.x + ImGui::CalcTextSize("reset").x + 2.0f * style.FramePadding.x;
+    if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
     reset = ImGui::SmallButton("reset");
     ui.note(key + " reset");
   }

@@ -108,6 +108,8 @@ struct WalkState {
   std::filesystem::path shotFolder = ".";
   bool shotWanted = false, meterWanted = false, reloadWanted = false, endWanted = false;
   bool records = false;  ///< a video
+  bool canRecord = false;  ///< there is an ffmpeg
+  std::string recording;  ///< the video that is being recorded, and how long it is; empty: none is
   bool canCapture = false, captureWanted = false;  ///< a frame for RenderDoc
   std::deque<std::string> messages;  ///< the newest last
   double messageAge = 0.0;  ///< seconds

@@ -64,25 +64,24 @@ void Truth::look(const Camera& camera) {
   cachedSamples_ = cached_ ? cached_->samples : 0;
   shownSamples_ = keptSamples_ = 0;
   target_ = 1;
-  credit_ = seconds_ = 0.0;
+  seconds_ = 0.0;
   shown_ = {};
   if (cached_) publish();
 }
 
 void Truth::advance(double seconds) {
   if (!key_) return;
-  credit_ = std::min(credit_ + seconds, std::max(4.0 * submission_, seconds));
-  while (credit_ >= submission_) {
+  const auto begin = Clock::now();
+  do {
     const auto start = Clock::now();
     const bool more = tracer_->advance(target_);
     submission_ = secondsSince(start);
-    credit_ -= submission_;
     seconds_ += submission_;
     if (more) continue;
     shownSamples_ = target_;
     target_ += std::clamp(target_, 1u, 16u);
     publish();
-  }
+  } while (secondsSince(begin) + submission_ <= seconds);
 }
 
 // Of whole passes alone: every pixel has the same number of samples.
@@ -127,13 +126,13 @@ void Judgement::clear() {
   flipMap_ = {};
 }
 
-void Judgement::judge(Image picture, const measure::Reference& reference) {
+void Judgement::judge(Image picture, const measure::Reference& reference, bool withFlip) {
   nrmse_ = measure::nrmseInterval(picture, reference.mean, reference.standardError);
   const glm::dvec3 a = meanOf(picture), b = meanOf(reference.mean);
   const double mean = b.x + b.y + b.z;
   bias_ = mean > 0.0 ? (a.x + a.y + a.z) / mean - 1.0 : 0.0;
   known_ = true;
-  if (pending_.valid()) return;  // the next one will have better pictures
+  if (!withFlip || pending_.valid()) return;  // the next one will have better pictures
   pending_ = std::async(std::launch::async, [picture = std::move(picture), truth = reference.mean] {
     const measure::Flip flip = measure::flipHdr(picture, truth);
     return FlipResult{flip.mean, flip.map, truth.width, truth.height};

@@ -30,8 +30,10 @@ class Truth {
   Component component() const { return component_; }
   /// Another view: what was sampled is put into the cache where it is worth it, and sampling begins again.
   void look(const Camera& camera);
-  /// Spends about `seconds`; less than a submission takes is saved up.
+  /// Spends about `seconds`: after the first no submission begins that would probably take longer than what is left.
   void advance(double seconds);
+  /// What a submission takes, as the last one did; 0 before the first.
+  double submissionSeconds() const { return submission_; }
 
   /// Samples a pixel, the cache's among them; 0: there is nothing yet.
   std::uint64_t samples() const { return cachedSamples_ + shownSamples_; }
@@ -63,19 +65,19 @@ class Truth {
   measure::Reference shown_;
   std::uint64_t cachedSamples_ = 0, shownSamples_ = 0, keptSamples_ = 0;
   std::uint32_t target_ = 1;
-  double credit_ = 0.0, submission_ = 0.0, seconds_ = 0.0;
+  double submission_ = 0.0, seconds_ = 0.0;
   std::uint64_t version_ = 0;
   gl::Texture meanTexture_, errorTexture_;
 };
 
-/// A picture judged by a reference: the figures at once, FLIP on a thread of its own.
+/// A picture judged by a reference: the figures at once, FLIP on a thread of its own (a second of a core at 640x360).
 class Judgement {
  public:
   Judgement() = default;
   Judgement(Judgement&&) = default;
   Judgement& operator=(Judgement&&) = default;
   ~Judgement();
-  void judge(Image picture, const measure::Reference& reference);
+  void judge(Image picture, const measure::Reference& reference, bool withFlip);
   void clear();
   bool known() const { return known_; }
   const measure::ErrorInterval& nrmse() const { return nrmse_; }

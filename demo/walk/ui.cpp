@@ -86,7 +86,23 @@ void Ui::begin(const HostInput& input, glm::ivec2 size, double seconds) {
   }
   io.AddInputCharactersUTF8(input.text.c_str());
   places_.clear();
+  held_ = input.buttons[0] || input.buttons[1] || input.buttons[2];
   ImGui::NewFrame();
+}
+
+void Ui::noteWindow() {
+  const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  windows_.push_back({glm::vec2(corner.x, corner.y), glm::vec2(corner.x + size.x, corner.y + size.y)});
+}
+
+// A button belongs to where it went down, until it is let go; an open menu takes every click.
+bool Ui::wantsMouse(const HostInput& input) const {
+  if (held_) return ImGui::GetIO().WantCaptureMouse;
+  if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return true;
+  const glm::vec2 cursor(input.cursor);
+  return std::ranges::any_of(windows_, [&](const std::array<glm::vec2, 2>& window) {
+    return glm::all(glm::greaterThanEqual(cursor, window[0])) && glm::all(glm::lessThan(cursor, window[1]));
+  });
 }
 
 void Ui::drop() { ImGui::EndFrame(); }

@@ -10,6 +10,7 @@
 
 #include <imgui.h>
 
+#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -32,7 +33,9 @@ class Ui {
   void end(const gl::Framebuffer& target);
   /// Ends a frame without drawing it.
   void drop();
-  bool wantsMouse() const { return ImGui::GetIO().WantCaptureMouse; }
+  /// Whether the mouse is the panel's and not the picture's, with the cursor and the buttons of this frame's input;
+  /// ImGui itself says so only once the frame has begun.
+  bool wantsMouse(const HostInput& input) const;
   bool wantsKeyboard() const { return ImGui::GetIO().WantTextInput; }
   float scale() const { return scale_; }
   std::size_t gpuBytes() const { return overlay_.gpuBytes() + font_.bytes(); }
@@ -42,6 +45,10 @@ class Ui {
     glm::vec2 centre;
     bool visible;
   };
+  /// Notes the window that is being made: where it lies the mouse is not the picture's.
+  void noteWindow();
+  /// Before all windows are made anew; without it those of the last frame stay.
+  void beginWindows() { windows_.clear(); }
   /// Notes the control that was made last; `label` with its section before it, such as "Light/sun height".
   void note(const std::string& label);
   /// The section that the following controls belong to.
@@ -58,6 +65,8 @@ class Ui {
   gl::Overlay overlay_;
   gl::Texture font_;
   std::string section_, wanted_;
+  std::vector<std::array<glm::vec2, 2>> windows_;  ///< corner and end
+  bool held_ = false;  ///< a mouse button, in the last frame
   std::map<std::string, Place> places_;
   std::set<std::string> labels_;
   std::string clipboard_;

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <sstream>
 #include <vector>
 
 #include <fcntl.h>
@@ -61,6 +63,14 @@ Video::Video(std::filesystem::path file, glm::ivec2 size) : file_(std::move(file
       "video: ffmpeg cannot be started: it is not installed (apt install ffmpeg), or {} cannot be "
       "written",
       log);
+}
+
+bool Video::canBeMade() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((folder.empty() ? "./ffmpeg" : folder + "/ffmpeg").c_str(), X_OK) == 0) return true;
+  return false;
 }
 
 Video::~Video() { finish(); }

@@ -16,6 +16,8 @@ class Video {
   static constexpr int kPicturesASecond = 30;
   /// Throws Error(missingCapability) where there is no ffmpeg; what it says goes beside the file, as FILE.log.
   Video(std::filesystem::path file, glm::ivec2 size);
+  /// Whether there is an ffmpeg in the folders of PATH.
+  static bool canBeMade();
   ~Video();
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;

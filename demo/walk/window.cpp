@@ -7,6 +7,7 @@
 #include "base/log.hpp"
 #include "base/statistics.hpp"
 #include "gl/build_watch.hpp"
+#include "gl/draw.hpp"
 #include "gl/pass.hpp"
 #include "walk/ground.hpp"
 #include "walk/panel.hpp"
@@ -51,6 +52,7 @@ WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context
   playedSize_ = parseSize(options.picture.size);
   renderDoc_ = RenderDoc::find();
   state_.canCapture = renderDoc_.has_value();
+  state_.canRecord = Video::canBeMade();
   state_.swapAtRefresh = host.swapInterval().value_or(0) > 0;
 }
 
@@ -74,7 +76,7 @@ bool WalkWindow::takeInput() {
     input_ = host_.poll();
   }
   if (input_.closeRequested || interrupted()) return false;
-  const bool typing = ui_ && ui_->wantsKeyboard(), pointing = ui_ && ui_->wantsMouse();
+  const bool typing = ui_ && ui_->wantsKeyboard(), pointing = ui_ && drawsUi() && ui_->wantsMouse(input_);
   if (typing) {
     input_.move = glm::dvec3(0.0);
     input_.pressed.clear();
@@ -259,13 +261,15 @@ void WalkWindow::loadWantedScene() {
 
 void WalkWindow::make(SideState& side) {
   if (side.shows == Shows::picture) {
-    if (side.pictureFile == side.pictureShown) return;
-    side.pictureShown = side.pictureFile;
-    try {
-      side.picture = textureOf("stored picture", readImage(side.pictureFile));
-      side.judgedTruth = 0;
-      ++side.pictureVersion;
-    } catch (const Error& error) { state_.say(error.what()); }
+    if (side.pictureFile != side.pictureShown) {
+      side.pictureShown = side.pictureFile;
+      try {
+        side.picture = textureOf("stored picture", readImage(side.pictureFile));
+        side.judgedTruth = 0;
+        ++side.pictureVersion;
+      } catch (const Error& error) { state_.say(error.what()); }
+    }
+    if (side.picture) return;
   }
   const std::string wanted = textOf(side.options) + fmt::format(" {}", state_.sceneVersion);
   if (side.shows != Shows::technique && side.renderer) return;
@@ -336,7 +340,7 @@ const gl::Texture* WalkWindow::radianceOf(int index) const {
   return side.renderer ? &side.renderer->radiance() : nullptr;
 }
 
-// A side that shows the reference draws its technique until there is one.
+// A side that shows the reference, or a stored picture, draws its technique until there is one.
 void WalkWindow::draw() {
   if ((state_.autoExposure && frames_ % 8 == 0) || state_.meterWanted) {
     if (const gl::Texture* radiance = radianceOf(state_.shown); radiance && frames_ > 0) {
@@ -358,9 +362,38 @@ void WalkWindow::draw() {
   }
 }
 
-void WalkWindow::seekTruth(double frameSeconds) {
+bool WalkWindow::allSettled() const {
+  for (int i = 0; i < 2; ++i) {
+    const SideState& side = state_.sides[static_cast<std::size_t>(i)];
+    if (state_.isVisible(i) && side.shows == Shows::technique && !side.settled) return false;
+  }
+  return true;
+}
+
+// All of it is measured: sampling, reading back, judging. While pictures are still being made that is at most the share
+// of what the frames take by themselves; when they have settled, all that is idle.
+void WalkWindow::makeTruth(double frameSeconds) {
+  constexpr double kIdleSeconds = 0.03;  // a frame: the panel still answers
+  constexpr double kLongestFrame = 1.0;  // longer ones were something else, such as compiling
   if (!state_.truthOn || !state_.side().renderer) return;
+  const double share = std::clamp(static_cast<double>(state_.truthShare), 0.01, 0.9);
+  const double submission = state_.truth ? state_.truth->submissionSeconds() : 0.0;
+  truthTime_.frame(frameSeconds, share, std::max(4.0 * submission, share * std::min(frameSeconds, kLongestFrame)));
   if (still_ < kStillFrames) return;
+  const bool idle = allSettled();
+  if (!idle && truthTime_.left() < submission) return;
+  gl::finish();  // the picture's own work is not the truth's
+  auto start = Clock::now();
+  if (seekTruth()) start = Clock::now();  // compiling, once
+  if (state_.truth) state_.truth->advance(idle ? kIdleSeconds : truthTime_.left());
+  judge();
+  if (idle) truthTime_.idle(secondsSince(start));
+  else truthTime_.spend(secondsSince(start));
+}
+
+/// The path tracer for what is shown now. Whether it had to be made.
+bool WalkWindow::seekTruth() {
+  bool made = false;
   const SideState& shown = state_.side();
   const glm::ivec2 size = shown.renderer->size();
   const Component component = shown.renderer->settings().component;
@@ -373,33 +406,29 @@ void WalkWindow::seekTruth(double frameSeconds) {
       state_.truth = std::make_unique<Truth>(context_, programs_, *state_.scene, size, component);
       truthVersion_ = state_.sceneVersion;
       truthCamera_.reset();
+      made = true;
     } catch (const Error& error) {
       state_.truthOn = false;
       state_.say(error.what());
     } catch (const Stopped&) { state_.truthOn = false; }
-    if (!state_.truth) return;
+    if (!state_.truth) return made;
   }
   if (!truthCamera_ || !sameView(*truthCamera_, state_.camera->camera())) {
     truthCamera_ = state_.camera->camera();
     state_.truth->look(*truthCamera_);
     for (SideState& side : state_.sides) side.judgement.clear(), side.judgedTruth = 0;
   }
-  bool all = true;
-  for (int i = 0; i < 2; ++i) {
-    const SideState& side = state_.sides[static_cast<std::size_t>(i)];
-    if (state_.isVisible(i) && side.shows == Shows::technique) all = all && side.settled;
-  }
-  constexpr double kIdleSeconds = 0.03;  // a frame, where nothing else is to be done: the panel still answers
-  const double share = std::clamp(static_cast<double>(state_.truthShare), 0.01, 0.9);
-  const double budget = share / (1.0 - share) * std::min(frameSeconds, 1.0);
-  state_.truth->advance(all ? std::max(budget, kIdleSeconds) : budget);
+  return made;
 }
 
-// Pictures that have settled, twice a second at most: reading them back waits for the GPU.
+// Twice a second at most: pictures are read back for it.
 void WalkWindow::judge() {
-  if (!state_.truth || !state_.truthOn || !state_.truth->ready() || still_ < kStillFrames) return;
-  if (!player_ && secondsSince(made_) < 0.5) return;
-  made_ = Clock::now();
+  if (!state_.truth || !state_.truth->ready()) return;
+  for (SideState& side : state_.sides) side.judgement.flip();  // its picture, where it has been made
+  const double since = player_ ? kPlayedFrame * (frames_ - judgedFrame_) : secondsSince(judged_);
+  if (since < 0.5) return;
+  judged_ = Clock::now();
+  judgedFrame_ = frames_;
   for (int i = 0; i < 2; ++i) {
     SideState& side = state_.sides[static_cast<std::size_t>(i)];
     if (!state_.isVisible(i) || side.shows == Shows::reference) continue;
@@ -415,9 +444,9 @@ void WalkWindow::judge() {
           image.at(x, image.height - 1 - y) =
               glm::vec3(texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                                static_cast<std::size_t>(x)]);
-      side.judgement.judge(std::move(image), state_.truth->reference());
+      side.judgement.judge(std::move(image), state_.truth->reference(), allSettled());
     } else if (side.renderer && side.renderer->size() == state_.truth->size()) {
-      side.judgement.judge(side.renderer->readRadiance(), state_.truth->reference());
+      side.judgement.judge(side.renderer->readRadiance(), state_.truth->reference(), allSettled());
     }
   }
 }
@@ -551,7 +580,7 @@ void WalkWindow::compose() {
                             ? state_.errorScale
                             : std::max(0.5f * static_cast<float>(mean.x + mean.y + mean.z) / 3.0f, 1e-30f);
   }
-  if (state_.magnifier && input_.cursor.x >= 0.0 && !(ui_ && ui_->wantsMouse()))
+  if (state_.magnifier && input_.cursor.x >= 0.0 && !(ui_ && drawsUi() && ui_->wantsMouse(input_)))
     inputs.magnifier = glm::vec2(input_.cursor);
   if (stage) {
     for (const StagePicture& picture : shown.renderer->stagePictures()) {
@@ -628,6 +657,7 @@ void WalkWindow::recordVideo(double seconds) {
                      : fmt::format("{0} is not whole; what ffmpeg says is in {0}.log", video_->file().string()));
     video_.reset();
     state_.records = false;
+    state_.recording.clear();
   };
   if (video_ && (!state_.records || video_->size() != view_)) end();
   if (!state_.records) return;
@@ -638,7 +668,12 @@ void WalkWindow::recordVideo(double seconds) {
       video_.emplace(freeName(state_.shotFolder, state_.scene->name + "_video", {".mp4"}).string() + ".mp4", view_);
       state_.say(fmt::format("recording {}", video_->file().string()));
     }
-    if (!video_->add(shownPicture(view_), seconds)) end();
+    if (!video_->add(shownPicture(view_), seconds)) {
+      end();
+      return;
+    }
+    state_.recording = fmt::format("recording {}: {:.1f} s", video_->file().string(),
+                                   static_cast<double>(video_->pictures()) / Video::kPicturesASecond);
   } catch (const Error& error) {
     state_.records = false;
     state_.say(error.what());
@@ -690,6 +725,7 @@ void WalkWindow::drawUi(const HostInput& input, double seconds, const std::strin
   if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
   ui_->begin(input, window_, seconds);
   if (work.empty()) {
+    ui_->beginWindows();
     if (state_.panel) Panel::show(*ui_, state_, host_);
     if (state_.help) Panel::showHelp(*ui_, state_);
     Panel::showValues(state_);
@@ -746,8 +782,7 @@ void WalkWindow::run() {
     moveCamera(dt);
     beginCapture();
     draw();
-    seekTruth(measured);
-    judge();
+    makeTruth(measured);
     compose();
     recordVideo(dt);
     if (drawsUi()) {
@@ -806,7 +841,11 @@ nlohmann::ordered_json WalkWindow::toJson() const {
     json["gone"] = player_->gone();
   }
   if (state_.truth) {
-    json["truth"] = {{"samples", state_.truth->samples()}, {"seconds", state_.truth->seconds()}};
+    json["truth"] = {{"samples", state_.truth->samples()},
+                     {"seconds", state_.truth->seconds()},
+                     {"seconds_in_frames", truthTime_.spent()},
+                     {"seconds_of_frames", truthTime_.rest()},
+                     {"longest_in_a_frame", truthTime_.longest()}};
     for (std::size_t i = 0; i < 2; ++i)
       if (const Judgement& j = state_.sides[i].judgement; j.known())
         json["truth"][i == 0 ? "a" : "b"] = {

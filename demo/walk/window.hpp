@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/clock.hpp"
+#include "base/time_share.hpp"
 #include "walk/gizmo.hpp"
 #include "walk/input_file.hpp"
 #include "walk/keys.hpp"
@@ -42,8 +43,10 @@ class WalkWindow {
   void makeReady();
   void make(SideState& side);
   void draw();
-  void seekTruth(double frameSeconds);
+  void makeTruth(double frameSeconds);
+  bool seekTruth();
   void judge();
+  bool allSettled() const;
   void compose();
   void readPixel(const Compare::Inputs& inputs);
   void askPixel(const Compare::Inputs& inputs);
@@ -98,10 +101,12 @@ class WalkWindow {
   bool presented_ = false;  ///< compose() showed the renderer's own picture
   std::optional<Camera> truthCamera_;  ///< that the truth is of
   std::uint64_t truthVersion_ = 0;  ///< of the scene that the truth is of
+  TimeShare truthTime_;
   int frames_ = 0;
   double seconds_ = 0.0, sinceHint_ = 0.0;
   int framesOfTitle_ = 0;
-  Clock::time_point lastBreath_{}, made_{};
+  Clock::time_point lastBreath_{}, judged_{};
+  int judgedFrame_ = 0;
 };
 
 }  // namespace lucerna::demo
