@@ -1,6 +1,6 @@
-// What a propagation step must at least do: read one set of grids and write the next, and add to the sum. As
-// lpv/propagate.comp does it: texels of a buffer in 32 bits read, a storage block written, the fastest ways there are
-// on llvmpipe. A yardstick of `lucerna bench tables`; no technique uses it.
+// The least work a propagation step must do: read one set of grids, write the next, and add to the sum. It does so as
+// lpv/propagate.comp does, reading texels of a 32-bit buffer and writing a storage block, the fastest accesses on
+// llvmpipe. A baseline for `lucerna bench tables`; no technique uses it.
 layout(local_size_x = 64) in;
 layout(binding = 0) uniform samplerBuffer source;
 layout(std430, binding = 0) writeonly buffer Next { vec4 next[]; };
@@ -8,7 +8,7 @@ layout(std430, binding = 0) writeonly buffer Next { vec4 next[]; };
 layout(binding = 1) uniform samplerBuffer sumBefore;
 layout(std430, binding = 1) writeonly buffer Sums { vec4 sums[]; };
 #endif
-uniform int count;  // of texels of a channel
+uniform int count;  // texels per channel
 
 void main() {
   int at = int(gl_GlobalInvocationID.x);

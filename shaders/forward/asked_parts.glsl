@@ -1,5 +1,5 @@
-// The block into which a technique's lookup writes its parts, for the pixel that is asked for: one invocation. The
-// first entry's number.x says how many there were; beyond the block's room they are counted, not kept.
+// The block to which a technique's lookup writes its contributions for the queried pixel. One invocation. number.x of
+// the first entry counts them all, including those that did not fit and were dropped.
 #include "shared/asked.h"
 layout(std430, binding = ASKED_PARTS_BINDING) writeonly buffer AskedParts { AskedPart parts[]; };
 int partsTold = 0;

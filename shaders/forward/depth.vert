@@ -1,6 +1,6 @@
-// Depth alone, from the sun (shadow map) or from the camera (before shading, so that hidden surfaces are not shaded).
+// Depth only, from the sun (shadow map) or from the camera (depth pre-pass, so that hidden surfaces are not shaded).
 #include "lib/frame.glsl"
-invariant gl_Position;  // the shading pass must find exactly this depth
+invariant gl_Position;  // the shading pass must compute exactly this depth
 layout(location = 0) in vec3 position;
 #if ALPHA_MASK
 layout(location = 1) in vec2 texCoord;

@@ -1,4 +1,4 @@
-// A mesh vertex on its way to several depth maps: the geometry shader projects it.
+// Passes mesh vertices on for rendering several depth maps; the geometry shader projects them.
 layout(location = 0) in vec3 position;
 #if ALPHA_MASK
 layout(location = 1) in vec2 texCoord;

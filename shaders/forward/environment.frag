@@ -1,6 +1,6 @@
-// The environment where no surface is: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl),
-// bilinear.
-uniform vec3 environmentRadiance;  // or a factor on the picture
+// The environment behind all surfaces: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl),
+// filtered bilinearly.
+uniform vec3 environmentRadiance;  // or a factor that scales the picture
 layout(location = 0) out vec4 radiance;
 
 #if ENVIRONMENT_PICTURE
@@ -9,7 +9,7 @@ layout(binding = 0) uniform sampler2D environmentTexture;
 uniform vec2 environmentTurn;  // cosine and sine of its rotation
 in vec3 vDirection;
 
-// By hand: its left edge joins its right one, its upper and lower edge do not join.
+// Filtered by hand: the picture wraps around from left to right, but not from top to bottom.
 vec3 pictureRadiance(vec3 direction) {
   ivec2 size = textureSize(environmentTexture, 0);
   vec2 uv = latitudeLongitude(turnAboutY(direction, environmentTurn * vec2(1.0, -1.0)));

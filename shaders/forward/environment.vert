@@ -1,6 +1,6 @@
-// One triangle that covers the picture, from gl_VertexID, at the far plane: where depth is that of nothing.
+// One triangle that covers the picture, made from gl_VertexID, at the far plane, the depth of the cleared background.
 #if ENVIRONMENT_PICTURE
-uniform vec3 viewForward, viewRight, viewUp;  // through the picture's middle; to its right and its upper edge
+uniform vec3 viewForward, viewRight, viewUp;  // forward: through the picture's centre; right, up: to its edges
 out vec3 vDirection;
 #endif
 

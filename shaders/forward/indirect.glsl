@@ -1,8 +1,8 @@
-// The one place where a technique adds to direct light: irradiance at a surface, W per square scene unit. Flags, one of
-// them at most: PROPAGATED, from the light propagation volume; RECEIVED, from receivers about the surface; GATHERED,
-// from a picture made before shading. Without any it is 0.
-// normal: for shading, where a picture may bend it; meshNormal: of the mesh, on which receivers stand, so that their
-// irradiance is that of it, as gathered one is.
+// The only place where a technique adds to direct light. Returns irradiance at a surface, W per square scene unit. At
+// most one of these flags is set: PROPAGATED (light propagation volume), RECEIVED (receivers around the surface),
+// GATHERED (a picture made before shading). Without any the result is 0.
+// normal: the shading normal, possibly normal-mapped. meshNormal: the mesh's own; receivers and gathered irradiance are
+// defined for it.
 #include "shared/bindings.h"
 #if PROPAGATED
 #include "lpv/lookup.glsl"
@@ -14,7 +14,7 @@ vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal) {
   return receivedIrradiance(position, meshNormal, found);
 }
 #elif GATHERED
-layout(binding = UNIT_GATHERED) uniform sampler2D gatheredIrradiance;  // w = 2: interpolation refused the pixel
+layout(binding = UNIT_GATHERED) uniform sampler2D gatheredIrradiance;  // w = 2: interpolation rejected the pixel
 vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal) {
   return texelFetch(gatheredIrradiance, ivec2(gl_FragCoord.xy), 0).rgb;
 }
@@ -22,7 +22,7 @@ vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal) {
 vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal) { return vec3(0.0); }
 #endif
 
-// Whether the pixel is to be shown as one that interpolation refused.
+// Whether to mark the pixel as one that interpolation rejected.
 bool indirectIsRefused() {
 #if SHOW_REFUSED
   return texelFetch(gatheredIrradiance, ivec2(gl_FragCoord.xy), 0).w > 1.5;

@@ -1,5 +1,5 @@
-// Light that arrives from spot and omnidirectional lights: E = I(omega) cos / d^2, shadowed. The flags SPOTS and POINTS
-// are their numbers.
+// Incoming light from spot and omnidirectional lights: E = I(omega) cos / d^2, shadowed. The flags SPOTS and POINTS
+// give their numbers.
 #include "shared/bindings.h"
 #include "lib/shadow.glsl"
 #include "lib/spot.glsl"
@@ -9,17 +9,17 @@ layout(std140, binding = BLOCK_LIGHTS) uniform LightBlock { LightConstants light
 struct Arriving {
   vec3 irradiance;
   vec3 toLight;  // unit
-  float cosine;  // to the normal; at or below 0 nothing arrives
+  float cosine;  // to the normal; no light arrives at or below 0
 };
 
 const float kNormalOffset = 1.5;  // texels of the shadow map at the receiver's depth
-// distance squared: a surface point in the lamp itself has no direction to it and gets no light, not NaN
+// squared distance; a surface point inside the lamp has no direction to it and gets no light rather than NaN
 const float kTouching = 1e-30;
 
 #if SPOTS
 layout(binding = UNIT_SPOT_SHADOWS) uniform sampler2DArrayShadow spotShadows;
 
-// normal: for shading; meshNormal: along which the shadow map is asked beside the surface.
+// normal: for shading; meshNormal: the direction in which the shadow lookup is offset.
 Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   vec3 away = lights.spots[i].position - position;
   float distance2 = dot(away, away);
@@ -52,12 +52,12 @@ Arriving pointLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
   result.cosine = dot(normal, result.toLight);
   if (result.cosine <= 0.0) return result;
-  // Depth is measured along the face's axis, the largest component.
+  // Depth is measured along the face's axis, that of the largest component.
   vec3 size = abs(away);
   float texel = lights.points[i].shadowTexel * max(size.x, max(size.y, size.z));
   vec3 fromLight = meshNormal * (kNormalOffset * texel) - away;
-  // Half a texel along the two axes of the face; a tap beyond its edge is looked up in its neighbour, at that one's
-  // depth.
+  // Half a texel along the face's two axes. A tap beyond the face's edge is looked up in the neighbouring face, at the
+  // depth measured along that face's axis.
   vec3 u = size.x >= size.y && size.x >= size.z ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 v = size.z > size.x && size.z > size.y ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
   u *= 0.5 * texel;

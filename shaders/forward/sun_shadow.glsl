@@ -1,5 +1,5 @@
-// Fraction of the sun that is seen: one shadow map for the whole scene, or cascades (flag SUN_CASCADES: how many, 0 for
-// one map).
+// The visible fraction of the sun, from one shadow map for the whole scene or from cascades (flag SUN_CASCADES: their
+// number, 0 for one map).
 #include "shared/bindings.h"
 #include "lib/frame.glsl"
 #include "lib/shadow.glsl"
@@ -9,16 +9,16 @@
 layout(std140, binding = BLOCK_SUN_CASCADES) uniform SunCascadeBlock { SunCascadeConstants sun; };
 layout(binding = UNIT_SUN_SHADOW) uniform sampler2DArrayShadow shadowMap;
 
-// From the finest cascade that holds the point to coarser ones, each blended into the next over the outer tenth of its
-// map.
+// From the finest cascade that contains the point to coarser ones, each blended into the next over the outer tenth of
+// its map.
 float sunVisibility(vec3 position, vec3 normal) {
   const float kBlend = 0.1;
-  // a point near a map's border may lie outside the next: hence the division at the end
+  // a point near a map's border may lie outside the next map, so the sum is divided by its weights at the end
   float visibility = 0.0, left = 1.0;
   for (int k = 0; k < SUN_CASCADES && left > 0.0; ++k) {
     vec4 clip = sun.clipFromWorld[k] * vec4(position + normal * sun.normalOffset[k], 1.0);
     float inside = 1.0 - max(abs(clip.x), abs(clip.y));
-    float border = 2.0 / float(textureSize(shadowMap, 0).x);  // the filter's reach
+    float border = 2.0 / float(textureSize(shadowMap, 0).x);  // the filter's radius
     float weight = k + 1 < SUN_CASCADES ? clamp((inside - border) / kBlend, 0.0, 1.0) : float(inside > 0.0);
     if (weight > 0.0) visibility += left * weight * shadowTent(shadowMap, float(k), 0.5 * clip.xyz + 0.5);
     left -= left * weight;
@@ -28,7 +28,7 @@ float sunVisibility(vec3 position, vec3 normal) {
 #else
 layout(binding = UNIT_SUN_SHADOW) uniform sampler2DShadow shadowMap;
 
-// Outside the map is lit.
+// Points outside the map are lit.
 float sunVisibility(vec3 position, vec3 normal) {
   vec4 clip = frame.sunClipFromWorld * vec4(position + normal * frame.shadowNormalOffset, 1.0);
   return shadowTent(shadowMap, 0.5 * clip.xyz + 0.5, frame.shadowTexelUv);

@@ -1,11 +1,11 @@
-// Forward shading: direct light of the sun, of spot and of omnidirectional lights with filtered shadow maps, indirect
-// light from the light propagation volume or gathered beforehand, emission.
+// Forward shading: direct light of the sun, spot and omnidirectional lights with filtered shadow maps; indirect light
+// from the light propagation volume or gathered beforehand; emission.
 // Output: radiance, linear, scene units. Lambert: L = albedo / pi * E. Specular: Blinn-Phong, normalised so that its
 // energy does not depend on the exponent, (n + 8) / (8 pi) [AkenineMoller2018, section 9.8].
 #include "lib/frame.glsl"
 #include "lib/sh.glsl"
 #include "lib/material.glsl"
-#include "lib/shadow.glsl"  // here, outside any condition: two of those below share it
+#include "lib/shadow.glsl"  // outside any condition, because two of the files below share it
 #include "forward/indirect.glsl"
 #include "shared/asked.h"
 #if ASKED
@@ -35,7 +35,7 @@ Highlight highlight;
 #include "lib/haze.glsl"
 #endif
 
-// Reflected radiance over irradiance.
+// BRDF value: reflected radiance per irradiance.
 vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
   vec3 reflected = albedo / kPi;
 #if SPECULAR
@@ -46,7 +46,7 @@ vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
   return reflected;
 }
 
-// Adds a term of the radiance; a pixel that is asked for writes each down.
+// Adds one term of the radiance; the queried pixel also records it.
 void add(inout vec3 result, vec3 radiance, int term) {
   result += radiance;
 #if ASKED
@@ -64,7 +64,8 @@ void main() {
 #endif
   if (materialCutOut(vTexCoord)) discard;
   vec3 toCamera = normalize(frame.cameraPosition - vPosition);
-  // Surfaces have two sides: the normal is turned to the viewer by the face's own side, not by the interpolated normal.
+  // Surfaces are two-sided. The geometric side of the face, not the interpolated normal, decides whether to flip the
+  // normal towards the viewer.
   vec3 meshNormal = normalize(gl_FrontFacing ? vNormal : -vNormal);
   vec3 normal = meshNormal;
 #if NORMAL_MAPS

@@ -1,4 +1,4 @@
-// A mesh vertex seen by the camera.
+// Transforms mesh vertices for the camera.
 #include "lib/frame.glsl"
 invariant gl_Position;
 layout(location = 0) in vec3 position;

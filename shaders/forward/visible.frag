@@ -1,5 +1,5 @@
-// What the camera sees, for techniques that start from its pixels: normals, turned to the viewer as forward shading
-// turns them. Depth gives the position.
+// Visible surfaces for techniques that start from the camera's pixels: normals, turned to the viewer as in forward
+// shading. The position is reconstructed from depth.
 #include "lib/material.glsl"
 in vec3 vNormal;
 in vec2 vTexCoord;

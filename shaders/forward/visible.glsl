@@ -1,4 +1,4 @@
-// The visible surface of a pixel, from the geometry pass: depth and normal.
+// The surface visible in a pixel, read from the geometry pass: depth and normal.
 #include "shared/bindings.h"
 layout(binding = UNIT_VISIBLE_DEPTH) uniform sampler2D visibleDepth;
 layout(binding = UNIT_VISIBLE_NORMAL) uniform sampler2D visibleNormal;

@@ -1,4 +1,4 @@
-// Radiance that a mesh's material sends out. Sampled before `discard`, as albedo is (lib/material.glsl).
+// Radiance emitted by a mesh's material. Sampled before `discard`, like the albedo (lib/material.glsl).
 #include "shared/bindings.h"
 uniform vec3 materialEmission;
 #if EMISSION_TEXTURES

@@ -1,13 +1,13 @@
-// Numbers as unevaluated sums of two floats, 48 bits in all: where a float's 24 do not do and a GPU's double is slow or
-// emulated. Three numbers at once. Error-free sums after [Knuth1997, 4.2.2], products after [Dekker1971]. `precise`
-// keeps compilers from contracting and reordering. fma() is not
-// used: a driver may compute it as two operations. Range: no product may overflow, and errors below 1e-38 are lost.
+// Numbers as unevaluated sums of two floats, 48 bits in all, for where a float's 24 are not enough and doubles are slow
+// or emulated on a GPU. Handles three numbers at once. Error-free sums after [Knuth1997, 4.2.2], products after
+// [Dekker1971]. `precise` keeps compilers from contracting and reordering. fma() is avoided: a driver may compute it as
+// two operations. Range: no product may overflow, and errors below 1e-38 are lost.
 
 struct Pairs {
-  vec3 hi, lo;  // |lo| at most some 2^-22 of |hi|
+  vec3 hi, lo;  // |lo| is at most about 2^-22 |hi|
 };
 
-// hi + lo renormalised, |hi| >= |lo|.
+// hi + lo renormalised; requires |hi| >= |lo|.
 Pairs pairsNormal(vec3 hi, vec3 lo) {
   precise vec3 sum = hi + lo;
   precise vec3 rest = lo - (sum - hi);
@@ -22,10 +22,10 @@ Pairs pairsDifference(vec3 a, vec3 b) {
   return Pairs(difference, rest);
 }
 
-// The upper 12 of 24 bits: products of halves are exact.
+// The upper 12 of the 24 significant bits: products of such halves are exact.
 vec3 upperHalf(vec3 a) { return uintBitsToFloat(floatBitsToUint(a) & 0xfffff000u); }
 
-// a b - product, exact where `product` is a b rounded.
+// a b - product; exact if `product` is a b rounded.
 vec3 productRest(vec3 a, vec3 b, vec3 product) {
   vec3 au = upperHalf(a), bu = upperHalf(b);
   precise vec3 al = a - au;
@@ -34,14 +34,14 @@ vec3 productRest(vec3 a, vec3 b, vec3 product) {
   return rest;
 }
 
-// Relative error some 2^-46.
+// Relative error about 2^-46.
 Pairs pairsProduct(Pairs a, Pairs b) {
   precise vec3 product = a.hi * b.hi;
   precise vec3 rest = productRest(a.hi, b.hi, product) + (a.hi * b.lo + a.lo * b.hi);
   return Pairs(product, rest);
 }
 
-// Errors of these: some 2^-46 of the largest term.
+// Error about 2^-46 of the largest term.
 Pairs pairsDifference(Pairs a, Pairs b) {
   Pairs high = pairsDifference(a.hi, b.hi);
   precise vec3 low = high.lo + (a.lo - b.lo);
@@ -53,7 +53,7 @@ Pairs pairsCross(Pairs a, Pairs b) {
                          pairsProduct(Pairs(a.hi.zxy, a.lo.zxy), Pairs(b.hi.yzx, b.lo.yzx)));
 }
 
-// One number: x + y.
+// A single number: x + y.
 vec2 pairsDot(Pairs a, Pairs b) {
   Pairs p = pairsProduct(a, b);
   precise float xy = p.hi.x + p.hi.y;
@@ -67,7 +67,7 @@ vec2 pairsDot(Pairs a, Pairs b) {
   return vec2(hi, lo);
 }
 
-// Rounded to float: off by little more than half a unit in the last place, however the driver divides.
+// Rounded to float. The error is little more than half a unit in the last place, however the driver divides.
 vec3 pairsOver(Pairs a, vec2 b) {
   precise vec3 quotient = a.hi / b.x;
   precise vec3 product = quotient * b.x;
@@ -78,7 +78,7 @@ vec3 pairsOver(Pairs a, vec2 b) {
 
 float largestOf(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
-// The power of two that brings v > 0 to [1, 2).
+// The power of two that scales v > 0 into [1, 2).
 float inversePowerOfTwo(float v) {
   return uintBitsToFloat(0x7f000000u - clamp(floatBitsToUint(v) & 0x7f800000u, 0x00800000u, 0x7e800000u));
 }

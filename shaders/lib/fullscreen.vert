@@ -1,4 +1,4 @@
-// One triangle that covers the picture, from gl_VertexID.
+// One triangle that covers the picture, made from gl_VertexID.
 out vec2 uv;
 
 void main() {

@@ -1,4 +1,4 @@
-// What a mesh's material reflects to one side: Blinn-Phong of that colour and exponent.
+// Specular reflection of a mesh's material: Blinn-Phong with this colour and exponent.
 #include "lib/material.glsl"
 uniform vec3 materialSpecular;
 uniform float materialShininess;

@@ -1,10 +1,10 @@
 // Latitude-longitude pictures of all directions: the top row is +y, u grows with atan2(x, -z).
 const float kTwoPi = 6.28318530717958648;
 
-// About +y, by an angle's cosine and sine.
+// Rotation about +y; `turn` is the angle's cosine and sine.
 vec3 turnAboutY(vec3 d, vec2 turn) { return vec3(d.x * turn.x + d.z * turn.y, d.y, d.z * turn.x - d.x * turn.y); }
 
-// u, v of a direction of any length, 0..1, v = 0 at the top.
+// u, v in 0..1 of a direction of any length; v = 0 at the top.
 vec2 latitudeLongitude(vec3 d) {
   return vec2(0.5 + atan(d.x, -d.z) / kTwoPi, 0.5 - atan(d.y, length(d.xz)) / (0.5 * kTwoPi));
 }

@@ -1,5 +1,5 @@
-// A triangle sent to several views of a layered target, an instance of the geometry shader each. Triangles wholly
-// beyond one side of a view's frustum are dropped here: of the six views of a cube most see few.
+// Sends a triangle to several views of a layered target, one instance of the geometry shader per view. Triangles wholly
+// outside one side of a view's frustum are dropped here: most triangles are visible in few of a cube's six views.
 uniform mat4 clipFromPlace[LAYERS];  // of positions relative to viewPlace
 uniform vec3 viewPlace[LAYERS];
 

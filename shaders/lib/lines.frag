@@ -1,4 +1,4 @@
-// What of a line lies behind the picture's surfaces is faint and broken.
+// Draws the parts of a line behind the picture's surfaces faint and dashed.
 layout(binding = 0) uniform sampler2D depthTexture;
 uniform bool hasDepth;
 uniform vec2 middle;

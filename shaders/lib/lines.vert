@@ -1,5 +1,5 @@
-// Lines between places of a scene over a picture of it: two triangles a line, some pixels wide, in the picture's place
-// in the target.
+// Lines between points of a scene, drawn over a picture of it. Each line is two triangles, a few pixels wide, placed
+// where the picture lies in the target.
 layout(location = 0) in vec3 start;
 layout(location = 1) in vec3 end;
 layout(location = 2) in vec2 corner;  // which end, 0 or 1; which side, -1 or 1
@@ -7,10 +7,10 @@ layout(location = 3) in vec4 color;
 uniform mat4 clipFromWorld;
 uniform vec2 pixels;   // of the target
 uniform vec2 middle;   // pixel of the target where `centre` of the picture lies
-uniform vec2 centre;   // of the picture, 0..1
-uniform vec2 scale;    // pixels of the target that the whole picture takes
+uniform vec2 centre;   // point of the picture, 0..1
+uniform vec2 scale;    // size of the whole picture in pixels of the target
 uniform float width;   // pixels
-uniform float nearest; // distance along the view where lines are cut off
+uniform float nearest; // lines are clipped at this distance along the view
 out float vInverseDepth;  // linear on the screen
 out float vAcross;
 flat out vec4 vColor;
@@ -22,7 +22,7 @@ void main() {
   vColor = color;
   vAcross = corner.y;
   vInverseDepth = 1.0;
-  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside: nothing of the line is before the camera
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside the clip volume: the whole line lies behind the camera
   if (max(a.w, b.w) < nearest) return;
   if (a.w < nearest) a = mix(a, b, (nearest - a.w) / (b.w - a.w));
   if (b.w < nearest) b = mix(b, a, (nearest - b.w) / (a.w - b.w));

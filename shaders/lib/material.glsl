@@ -1,7 +1,7 @@
-// A mesh's material. Flags leave out what no mesh of the scene has.
-// Sampled first in a fragment shader, before `discard` and outside of any branch: which mip level is read comes of
-// differences between neighbouring invocations, and those are undefined after non-uniform control flow, of which
-// discarding is one [GLSL 4.30, 8.13.1, 8.9].
+// A mesh's material. Flags leave out features that no mesh of the scene uses.
+// Textures are sampled first in a fragment shader, before `discard` and outside any branch: the mip level is chosen by
+// derivatives, which are undefined after non-uniform control flow, and discarding counts as such [GLSL 4.30, 8.13.1,
+// 8.9].
 #include "shared/bindings.h"
 uniform vec3 materialDiffuse;
 #if DIFFUSE_TEXTURES
@@ -23,7 +23,7 @@ vec3 materialColour(vec2 texCoord) {
 // roughness in green, metallic in blue; white where a material has none
 layout(binding = UNIT_METAL_MAP) uniform sampler2D metalTexture;
 uniform float materialMetallic;                       // 0 where a material has no MetalMap (scene/scene.hpp)
-uniform float materialRoughness;                      // negative where it has none
+uniform float materialRoughness;                      // negative if it has no MetalMap
 #endif
 
 vec3 materialAlbedo(vec2 texCoord) {
@@ -37,10 +37,10 @@ vec3 materialAlbedo(vec2 texCoord) {
 #if NORMAL_MAPS
 #include "lib/normal_map.glsl"
 layout(binding = UNIT_NORMAL_MAP) uniform sampler2D normalTexture;
-uniform float materialNormalScale;  // 0 where a material has none
+uniform float materialNormalScale;  // 0 if the material has no normal map
 #endif
 
-// The normal that the material's picture makes of an interpolated one, on the same side of the face.
+// Applies the material's normal map to an interpolated normal. The result lies on the same side of the face.
 vec3 materialNormal(vec3 normal, vec3 position, vec2 texCoord) {
 #if NORMAL_MAPS
   vec3 e1 = dFdx(position), e2 = dFdy(position);

@@ -1,4 +1,4 @@
-// Colour times texture; alpha as it is.
+// Colour times texture; alpha is passed through.
 in vec2 uv;
 in vec4 color;
 layout(binding = 0) uniform sampler2D picture;

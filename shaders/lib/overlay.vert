@@ -1,4 +1,4 @@
-// Triangles of a user interface, in pixels from the top left.
+// Triangles of a user interface. Positions in pixels from the top left.
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec2 texCoord;
 layout(location = 2) in vec4 vertexColor;

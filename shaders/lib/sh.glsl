@@ -1,5 +1,6 @@
 // Real spherical harmonics of bands 0 and 1 as a vec4 (c0, c1x, c1y, c1z).
-// The published packing (Y00, -Y1 y, Y1 z, -Y1 x) [LPV2015, 5.1] differs in order and sign only, which cancel, since
+// The published packing (Y00, -Y1 y, Y1 z, -Y1 x) [LPV2015, 5.1] differs only in order and sign. These differences
+// cancel, since evaluation and projection use the same packing.
 // evaluation and projection share it.
 const float kPi = 3.14159265358979;
 const float kY00 = 0.28209479177387814;  // 1 / (2 sqrt(pi))

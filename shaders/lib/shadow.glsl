@@ -1,6 +1,6 @@
-// Fraction of a light that is seen: four bilinear depth comparisons, which make a 3x3 tent. A receiver is moved along
-// its normal first by a length that grows with the shadow map's texels; in the maps themselves depth is offset by
-// slope.
+// The visible fraction of a light, from four bilinear depth comparisons that form a 3x3 tent filter. The receiver is
+// first moved along its normal by a distance that grows with the texel size; the maps themselves are rendered with
+// slope-scaled depth bias.
 
 float shadowTent(sampler2DShadow map, vec3 uvz, float texelUv) {
   float d = 0.5 * texelUv;

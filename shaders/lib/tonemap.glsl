@@ -1,7 +1,7 @@
 // Radiance to display: a filmic curve and sRGB encoding.
 // Curve: the rational fit of the ACES reference rendering [Narkowicz2015], applied per channel to linear values.
 vec3 filmic(vec3 x) {
-  x *= 0.6;  // the fit's own white is 1/0.6 too bright beside the reference
+  x *= 0.6;  // the fit as published is 1/0.6 times brighter than the reference
   return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
 }
 

@@ -1,4 +1,4 @@
-// What the lookup takes of each cell for one point: an entry a cell. One invocation.
+// Lists what the lookup reads from each cell for one point: one entry per cell. One invocation.
 layout(local_size_x = 1) in;
 #include "lpv/lookup.glsl"
 #include "forward/asked_parts.glsl"

@@ -1,21 +1,21 @@
-// The balance of a cascade with the next coarser one, already joined: one value for 2x2x2 cells, b = (M' + dark) / (own
-// + dark).
+// The balance between a cascade and the next coarser one, which is already joined: one value per 2x2x2 cells, b = (M' +
+// dark) / (own + dark).
 //
-// own is the mean over the eight cells of the cascade's own light, M + F; M' is the coarser cascade's M at their
-// centre, which the eight replace. Both are band 0, red, green and blue together, stored as c / (E_ref s^2), so that
-// they are comparable. The quotient is taken here, a cell at a time, and lpv/join.comp interpolates it: interpolating
-// the two brightnesses instead lets dark cells behind walls into the quotient beside them, which then no longer keeps a
-// cell's mean (engine/lpv/README.md has the figures).
+// own is the cascade's own light M + F averaged over the eight cells; M' is the coarser cascade's M at their centre,
+// which these cells replace. Both are band 0, summed over the three channels and stored as c / (E_ref s^2), so they are
+// comparable. The quotient is taken here, per cell, and lpv/join.comp interpolates it. Interpolating the two
+// brightnesses instead lets dark cells behind walls leak into the quotient next to them, which then no longer preserves
+// a cell's mean (engine/lpv/README.md has the figures).
 #include "lpv/common.glsl"
 #include "lpv/stacked.glsl"
 #include "lpv/sums.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
-layout(binding = 6) uniform samplerBuffer balanced;  // b M of the coarser cascade, band 0 of all channels
+layout(binding = 6) uniform samplerBuffer balanced;  // b M of the coarser cascade, band 0 summed over the channels
 layout(std430, binding = 3) writeonly buffer Balances { float balances[]; };
 uniform int cascade;
 
-const float kLargestBalance = 4.0;  // and its inverse the smallest: a guard where one of the grids sees no light at all
-const float kDark = 1e-4;           // c / (E_ref s^2) below which there is no light to balance
+const float kLargestBalance = 4.0;  // and its inverse the smallest: a guard for where one grid has no light
+const float kDark = 1e-4;           // c / (E_ref s^2) below which there is nothing to balance
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
@@ -24,7 +24,7 @@ void main() {
   float own = 0.0;
   for (int i = 0; i < 8; ++i) {
     ivec3 cell = 2 * at + ivec3(i & 1, i >> 1 & 1, i >> 2);
-    // with an odd number of cells the last pair reaches beyond the cascade
+    // with an odd number of cells the last block of two extends beyond the cascade
     if (any(greaterThanEqual(cell, ivec3(cells)))) continue;
     cell.z += cascade * cells;
     own += SUM_AT(nearSums, cell, 0).x + SUM_AT(nearSums, cell, 1).x + SUM_AT(nearSums, cell, 2).x +

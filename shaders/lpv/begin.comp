@@ -1,5 +1,5 @@
-// The light that is to be propagated as the first front: from the textures that blending fills into a buffer of the
-// steps, as coefficients.
+// Copies the light to propagate, as coefficients, from the textures filled by blending into a buffer of the propagation
+// steps: the first front.
 #include "lpv/common.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 0) uniform sampler3D injectedRed;

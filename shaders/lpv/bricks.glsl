@@ -1,23 +1,23 @@
-// The bricks of 4^3 cells that light has reached: a propagation step is dispatched for these alone, all others stay
-// zero.
+// Bricks of 4^3 cells that light has reached. A propagation step is dispatched for these alone; all others stay zero.
 //
-// The lit cells of a front mark the neighbouring bricks that they touch; between two steps lpv/list_bricks.comp adds
-// what is newly marked to the list. A brick that is on the list stays there: so a brick that is not has never been
+// The lit cells of a front mark the neighbouring bricks they touch. Between two steps lpv/list_bricks.comp appends
+// newly marked bricks to the list. Bricks are never removed from the list, so a brick that is not on it has not been
 // written since the buffers were cleared. Needs lpv/common.glsl.
 const int kBrick = 4;
 
 layout(std430, binding = 4) buffer Bricks {
-  // of the next step's dispatch, one a brick, in rows of kGroupsInRow: a dispatch has 65535 along an axis
+  // of the next step's dispatch, one per brick, in rows of kGroupsInRow: an axis of a dispatch is limited to 65535
+  // groups
   uint groups[3];
   uint count;
-  uint bricks[];   // the list; then one flag a brick: reached; then: listed
+  uint bricks[];   // the list, then two flags per brick: reached, and listed
 };
-const uint kGroupsInRow = 64u;  // as the engine sets groups[0]
+const uint kGroupsInRow = 64u;  // must match the engine's groups[0]
 
 int bricksOfAxis() { return (lpv.shape.x + kBrick - 1) / kBrick; }
 int brickCount() { return bricksOfAxis() * bricksOfAxis() * bricksOfAxis() * lpv.shape.y; }
 
-// A cell of a cascade that holds light: what it reaches beyond its own brick.
+// Marks the bricks next to its own that a lit cell of a cascade can reach.
 void markNeighbours(ivec3 local, int brick) {
   int ofAxis = bricksOfAxis(), reached = brickCount() + brick, cells = lpv.shape.x;
   ivec3 inBrick = local % kBrick;

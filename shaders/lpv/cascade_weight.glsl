@@ -1,4 +1,4 @@
-// How far a point is inside a cascade: 1 well inside, 0 from where it has faded out. Needs lpv/common.glsl.
+// How far a point is inside a cascade: 1 well inside, 0 where the cascade has faded out. Needs lpv/common.glsl.
 float lpvCascadeWeight(int k, vec3 position) {
   vec3 away = abs(position - lpv.cascades[k].blendCentre);
   float rest = lpv.cascades[k].blendHalf - max(away.x, max(away.y, away.z));

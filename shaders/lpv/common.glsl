@@ -1,6 +1,6 @@
-// The light propagation volume's block and storage format. All cascades lie in one 3D texture, stacked along z: cascade
-// k has the layers k * cells .. (k + 1) * cells - 1; the geometry volume's cells lie on the corners, so it has cells +
-// 1 a side.
+// The light propagation volume's uniform block and storage format. All cascades share one 3D texture, stacked along z:
+// cascade k has the layers k * cells .. (k + 1) * cells - 1. The geometry volume's cells are centred on the grid's
+// corners, so it has cells + 1 per side.
 #include "shared/bindings.h"
 #include "shared/lpv.h"
 layout(std140, binding = BLOCK_LPV) uniform LpvBlock { LpvConstants lpv; };

@@ -1,6 +1,6 @@
-// The geometry volume by atomics, as lpv/inject_atomic.comp does for light: one invocation a tile of the reflective
-// shadow map, the blocking potential of lpv/geometry_volume.geom. FILL_FIXED: `fixedScale` is derived from the area of
-// all texels together; for the sun's map alone, whose texels have a largest area.
+// Fills the geometry volume by atomics, as lpv/inject_atomic.comp does for light: one invocation per tile of the
+// reflective shadow map. The blocking potential is that of lpv/geometry_volume.geom. FILL_FIXED: `fixedScale` is
+// derived from the total area of all texels, so it works only for the sun's map, whose texel areas are bounded.
 #include "shared/bindings.h"
 #if FILL_FLOAT
 #extension GL_NV_shader_atomic_float : require
@@ -25,7 +25,7 @@ void addRun() {
 }
 
 void main() {
-  ivec3 tile = ivec3(gl_GlobalInvocationID);  // z: the map's layer
+  ivec3 tile = ivec3(gl_GlobalInvocationID);  // z: layer of the map
   ivec3 size = textureSize(rsmPosition, 0);
   if (any(greaterThanEqual(ivec3(kTile * tile.xy, tile.z), size))) return;
   int corners = lpv.shape.x + 1;

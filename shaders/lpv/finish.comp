@@ -1,4 +1,4 @@
-// The sum of all fronts as the lookup reads it, where no cascades are joined.
+// Writes the sum of all fronts in the lookup's format. Used without joined cascades.
 #include "lpv/common.glsl"
 #include "lpv/sums.glsl"
 #include "lpv/result.glsl"

@@ -1,8 +1,8 @@
-// Steps of the fixed-point counts. A coefficient is stored as c / (E_ref s^2), so the same light counts less in a
-// coarser cascade: it gets as many more steps a unit. Needs lpv/common.glsl.
+// Scale of the fixed-point counters. Coefficients are stored as c / (E_ref s^2), so the same light gives smaller values
+// in a coarser cascade; it gets proportionally more steps per unit. Needs lpv/common.glsl.
 float stepsOfCascade(int k, float fixedScale) {
 #if FLUX_UNITS
-  return fixedScale;  // deviation lpv.flux-units: cells of all sizes count the same
+  return fixedScale;  // deviation lpv.flux-units: cells of all sizes use the same scale
 #else
   float ratio = lpv.cascades[k].cellSize / lpv.cascades[0].cellSize;
   return fixedScale * ratio * ratio;

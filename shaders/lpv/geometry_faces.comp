@@ -1,15 +1,16 @@
 // Blocking potential at the centre of every face: the mean of the four geometry-volume cells at the face's corners
-// [Kaplanyan2010; LPV2015, figure 5.3]. Done once a frame, so that each propagation step reads one texel a face.
-// Face (i,j,k) of axis x lies between the cells (i-1,j,k) and (i,j,k); likewise y, z.
+// [Kaplanyan2010; LPV2015, figure 5.3]. Computed once per frame, so that each propagation step reads one texel per
+// face.
+// Face (i,j,k) of axis x lies between the cells (i-1,j,k) and (i,j,k); likewise for y and z.
 #include "lpv/common.glsl"
 #include "lpv/stored_units.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 #if FROM_BUFFER
-layout(binding = 0) uniform samplerBuffer geometryVolume;  // as atomics count it
+layout(binding = 0) uniform samplerBuffer geometryVolume;  // as counted by atomics
 #else
 layout(binding = 0) uniform sampler3D geometryVolume;
 #endif
-layout(std430, binding = 3) writeonly buffer Faces { vec4 faces[]; };  // all of x before y before z
+layout(std430, binding = 3) writeonly buffer Faces { vec4 faces[]; };  // all x faces, then y, then z
 
 vec4 potential(ivec3 corner) {
 #if FROM_BUFFER
@@ -25,7 +26,7 @@ void main() {
   int corners = lpv.shape.x + 1;
   int layer = at.z % corners;
   if (any(greaterThanEqual(at, ivec3(corners, corners, corners * lpv.shape.y)))) return;
-  // Faces beyond the last cell of an axis do not exist; what is written there is never read.
+  // Faces beyond the last cell of an axis do not exist; the values written for them are never read.
   vec4 here = potential(at);
   ivec3 x = ivec3(at.x + 1 < corners ? 1 : 0, 0, 0);
   ivec3 y = ivec3(0, at.y + 1 < corners ? 1 : 0, 0);

@@ -1,6 +1,6 @@
-// Blocking potential [Kaplanyan2010, section 4.2]: a surfel of area A and normal n adds A / s^2 * lobe(n) to the cell
-// of the geometry volume that it lies in. That volume is shifted half a cell, so that its centres lie on the grid's
-// corners. A is the surface's true area, which the reflective shadow map holds beside the flux.
+// Blocking potential [Kaplanyan2010, section 4.2]: a surfel of area A and normal n adds A / s^2 * lobe(n) to its cell
+// of the geometry volume. That volume is shifted by half a cell, so that its cell centres lie on the grid's corners. A
+// is the surface's true area, which the reflective shadow map stores next to the flux.
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
 #include "lpv/surfel.glsl"
@@ -16,7 +16,7 @@ flat out vec3 fReflectance;
 #endif
 #if SURFEL_AREA
 uniform vec3 lightPosition;
-uniform float texelCount;  // 0: the light is a perspective one, which has true areas
+uniform float texelCount;  // 0: a perspective light, which has true areas
 #endif
 
 void main() {
@@ -25,7 +25,8 @@ void main() {
   int corners = lpv.shape.x + 1;
   float area = gFlux[0].w;
 #if SURFEL_AREA
-  // Deviation lpv.surfel-area: the formula of a 90 degree perspective light, weighted by N.L, for an orthographic one.
+  // Deviation lpv.surfel-area: uses the formula of a 90 degree perspective light, weighted by N.L, for an orthographic
+  // one.
   vec3 away = gPosition[0].xyz - lightPosition;
   if (texelCount > 0.0) area = 4.0 * dot(away, away) / texelCount * gNormal[0].w;
 #endif

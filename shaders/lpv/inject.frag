@@ -1,4 +1,4 @@
-// Three targets, one a colour channel; additive blending sums the virtual point lights of a cell.
+// Three targets, one per colour channel; additive blending sums the virtual point lights of a cell.
 flat in vec4 fRed;
 flat in vec4 fGreen;
 flat in vec4 fBlue;

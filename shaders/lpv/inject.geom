@@ -1,5 +1,5 @@
-// A virtual point light goes into one cell of every cascade that it lies in: gl_Layer chooses the slice, blending adds
-// [LPV2015, 6.4.2].
+// Puts a virtual point light into one cell of every cascade that contains it: gl_Layer selects the slice, and blending
+// adds [LPV2015, 6.4.2].
 #include "lib/sh.glsl"
 #include "lpv/common.glsl"
 #include "lpv/vpl.glsl"
@@ -12,7 +12,7 @@ flat out vec4 fRed;
 flat out vec4 fGreen;
 flat out vec4 fBlue;
 
-uniform float fluxScale;  // 1, or without units 1 / texel area of the light's map
+uniform float fluxScale;  // 1; without units, 1 / texel area of the light's map
 
 void main() {
   vec3 normal = gNormal[0].xyz;

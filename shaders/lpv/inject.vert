@@ -1,11 +1,11 @@
-// One point per texel of the reflective shadow map, no vertex buffer: the texel follows from gl_VertexID.
+// One point per texel of the reflective shadow map, without a vertex buffer: gl_VertexID gives the texel.
 #include "shared/bindings.h"
 layout(binding = UNIT_RSM_POSITION) uniform sampler2DArray rsmPosition;
 layout(binding = UNIT_RSM_NORMAL) uniform sampler2DArray rsmNormal;
 layout(binding = UNIT_RSM_FLUX) uniform sampler2DArray rsmFlux;
 out vec4 gPosition;  // world; w = 0: background
 out vec4 gNormal;    // unit; w = cosine to the light
-out vec4 gFlux;      // reflected flux of the texel; w = area of the surface in it
+out vec4 gFlux;      // reflected flux of the texel; w = surface area in it
 #if REFLECTS
 layout(binding = UNIT_RSM_ALBEDO) uniform sampler2DArray rsmAlbedo;
 out vec3 gAlbedo;

@@ -1,10 +1,11 @@
-// Injection by atomics: one invocation a tile of the reflective shadow map. Coefficient i of a cell is counted in word
-// 4 cell + i of the first front, all of red before green before blue, in place: FILL_FIXED in 32-bit integers, core
-// OpenGL 4.3, which lpv/resolve.comp turns into floats; `fixedScale` is derived from the largest flux that there can
-// be, so that nothing overflows; each light is rounded by itself and integer sums do not depend on their order, so
-// every run gives the same bits, and so does every order of the texels. FILL_FLOAT: NV_shader_atomic_float.
-// FILL_HALF: NV_shader_atomic_fp16_vector, four half floats at once in images, as the published text has it, only where
-// there are no atomics on 32 bits.
+// Injection by atomics: one invocation per tile of the reflective shadow map. Coefficient i of a cell is accumulated in
+// word 4 cell + i of the first front, all red, then green, then blue, in place.
+// FILL_FIXED: 32-bit integers, core OpenGL 4.3, which lpv/resolve.comp converts to floats. `fixedScale` is derived from
+// the largest possible flux, so nothing overflows. Each light is rounded separately and integer sums do not depend on
+// their order, so every run and every order of the texels gives the same bits.
+// FILL_FLOAT: NV_shader_atomic_float.
+// FILL_HALF: NV_shader_atomic_fp16_vector, four half floats at once in images, as in the published text; used only
+// where 32-bit float atomics are missing.
 #include "shared/bindings.h"
 #if FILL_FLOAT
 #extension GL_NV_shader_atomic_float : require
@@ -29,11 +30,11 @@ layout(binding = 2, rgba16f) coherent uniform image3D countBlue;
 #else
 layout(std430, binding = 0) buffer Counts { WORD_TYPE words[]; };
 #endif
-uniform float fluxScale;   // 1, or without units 1 / texel area of the light's map
-uniform float fixedScale;  // integer steps a unit of a coefficient stored in the finest cascade, see lpv/fixed.glsl
+uniform float fluxScale;   // 1; without units, 1 / texel area of the light's map
+uniform float fixedScale;  // integer steps per unit of a coefficient stored in the finest cascade, see lpv/fixed.glsl
 
-COUNT_TYPE run[3];  // of the texels since `runCell` was entered
-int runCell;        // in the stack of cascades; -1: none yet
+COUNT_TYPE run[3];  // sum over the texels since `runCell` was entered
+int runCell;        // index in the stack of cascades; -1: none yet
 
 void addRun() {
   if (runCell < 0) return;
@@ -52,7 +53,7 @@ void addRun() {
 }
 
 void main() {
-  ivec3 tile = ivec3(gl_GlobalInvocationID);  // z: the map's layer
+  ivec3 tile = ivec3(gl_GlobalInvocationID);  // z: layer of the map
   ivec3 size = textureSize(rsmPosition, 0);
   if (any(greaterThanEqual(ivec3(kTile * tile.xy, tile.z), size))) return;
   int cells = lpv.shape.x;

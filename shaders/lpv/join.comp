@@ -1,26 +1,26 @@
-// Joins the cascades, from the coarsest to the finest, one a dispatch: C_k = b_k (M_k + F_k) + up(R_k+1), R_k = b_k F_k
-// + up(R_k+1).
+// Joins the cascades from the coarsest to the finest, one per dispatch: C_k = b_k (M_k + F_k) + up(R_k+1), R_k = b_k
+// F_k + up(R_k+1).
 //
-// In a fixed number of steps light travels a fixed number of cells, so a finer grid brings it less far: blended as they
-// are, grids would darken the picture with each cascade more; summed, as in the published text, they would brighten it.
-// So each grid's sum is kept in two parts: M, the light of the first steps, which the next finer grid carries by itself
-// and better, and F, that of the later ones, which is too far-travelled for it. A finer grid takes the coarser grids' F
-// over: every step of the light is counted once, nothing is ever subtracted. The balance b_k (lpv/balance.comp) makes
-// the finer grid as bright, on the average over a coarser cell, as the M that it replaces, so that it adds detail and
-// leaves the brightness alone.
+// In a fixed number of steps light travels a fixed number of cells, so a finer grid carries it less far. Simply
+// blending the grids would darken the picture with each added cascade; summing them, as in the published text, would
+// brighten it. So each grid's sum is kept in two parts: M, the light of the first steps, which the next finer grid
+// computes itself and more accurately, and F, the light of the later steps, which travels too far for the finer grid. A
+// finer grid takes over F from the coarser grids: every step of the light counts once, and nothing is ever subtracted.
+// The balance b_k (lpv/balance.comp) makes the finer grid as bright, averaged over a coarser cell, as the M it
+// replaces. It therefore adds detail and preserves brightness.
 #include "lpv/common.glsl"
 #include "lpv/stacked.glsl"
 #include "lpv/sums.glsl"
 #include "lpv/result.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 6) uniform samplerBuffer coarserReceived;  // R of the next coarser cascade
-layout(binding = 7) uniform samplerBuffer balances;         // of this cascade, one for 2x2x2 cells
-layout(std430, binding = 0) writeonly buffer Received { vec4 received[]; };  // R of this one
-// band 0 of b M, the channels together, for lpv/balance.comp
+layout(binding = 7) uniform samplerBuffer balances;         // of this cascade, one per 2x2x2 cells
+layout(std430, binding = 0) writeonly buffer Received { vec4 received[]; };  // R of this cascade
+// band 0 of b M, summed over the channels, for lpv/balance.comp
 layout(std430, binding = 2) writeonly buffer Balanced { float balanced[]; };
 uniform int cascade;
 
-// Between the balances of 2x2x2 cells each, at the border the nearest.
+// Interpolates between the balances, one per 2x2x2 cells; clamps at the border.
 float balanceAt(ivec3 cell) {
   int pairs = (lpv.shape.x + 1) / 2;
   vec3 texel = 0.5 * (vec3(cell) + 0.5) - 0.5;

@@ -1,4 +1,4 @@
-// Adds the bricks that are newly marked to the list, in any order: no cell's light depends on it.
+// Appends newly marked bricks to the list, in any order: no cell's light depends on it.
 #include "lpv/common.glsl"
 #include "lpv/bricks.glsl"
 layout(local_size_x = 64) in;

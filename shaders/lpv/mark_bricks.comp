@@ -1,4 +1,4 @@
-// Marks the bricks that the first front's light is in and those beside its cells.
+// Marks the bricks that contain light of the first front, and those next to its lit cells.
 #include "lpv/common.glsl"
 #include "lpv/bricks.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;

@@ -1,4 +1,4 @@
-// Irradiance from the light propagation volume at given points and normals: for measuring and for tests.
+// Irradiance from the light propagation volume at given points and normals, for measurements and tests.
 #include "lpv/lookup.glsl"
 layout(local_size_x = 64) in;
 struct Probe {

@@ -1,9 +1,9 @@
 // One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels.
-// One work group a brick that light has reached (lpv/bricks.glsl).
+// One work group per brick that light has reached (lpv/bricks.glsl).
 //
-// A front lies in a buffer, cell by cell, x fastest, all of red before green before blue; the sum of fronts in another.
-// They are read as texels: on llvmpipe a gather from a storage block takes three times as long. No branches where a sum
-// begins: a software rasteriser runs both sides of each.
+// A front lies in one buffer, cell by cell, x fastest, all red, then green, then blue; the sum of fronts lies in
+// another. They are read as texels: on llvmpipe a gather from a storage block takes three times as long. Starting a sum
+// uses no branches, because a software rasteriser executes both sides of each.
 #include "lpv/common.glsl"
 #include "lpv/stored_units.glsl"
 #include "lpv/bricks.glsl"
@@ -28,7 +28,7 @@ layout(std430, binding = 2) writeonly buffer Sums { vec4 sums[]; };
 #endif
 
 #if FACE_KERNEL
-// Face by face in world axes: what the deviations need.
+// Face by face in world axes, as the deviations need it.
 #define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                    \
   if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
     int from = at - int(way) * stride;                                                                                 \
@@ -45,8 +45,8 @@ void gatherFaces(vec4 light[3], vec3 travel, vec4 potential, inout vec4 sum[3]) 
   }
 }
 #else
-// From the neighbour behind along one axis; `way` is +1 or -1, `stride` that axis' step in the buffer. toFrame and
-// fromFrame rotate (c0, x, y, z) into (c0, travel, u, v) and back. `face` is the crossed face's index.
+// Gathers from the neighbour behind along one axis; `way` is +1 or -1, `stride` that axis' step in the buffer. toFrame
+// and fromFrame rotate (c0, x, y, z) into (c0, travel, u, v) and back. `face` is the index of the crossed face.
 #define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                    \
   if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
     const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                        \
@@ -70,7 +70,7 @@ void main() {
   if (any(greaterThanEqual(local, ivec3(cells)))) return;
   int layer = cells * cells, at = (cascade * cells + local.z) * layer + local.y * cells + local.x,
       channel = layer * layers;
-  // The faces before this cell, at its lower corner in the geometry volume.
+  // The cell's lower faces, indexed by its lower corner in the geometry volume.
   int corners = cells + 1, corner = ((cascade * corners + local.z) * corners + local.y) * corners + local.x;
   int facesOfAxis = corners * corners * corners * lpv.shape.y;
   vec4 sum[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
@@ -90,6 +90,6 @@ void main() {
 #endif
     sums[at + i * channel] = kSumUnits * sum[i] + before;
   }
-  // A flux is never negative: without band 0 there is none.
+  // Fluxes are never negative, so a zero band 0 means no light.
   if (sum[0].x + sum[1].x + sum[2].x != 0.0) markNeighbours(local, brick);
 }

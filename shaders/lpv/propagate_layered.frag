@@ -1,5 +1,5 @@
-// One propagation step of one cascade as published [LPV2015, 5.3]: drawn slice by slice, six neighbours, five faces
-// each, the blocking potential read at the crossed face's centre for each. Three targets take the new front, three add
+// One propagation step of one cascade as published [LPV2015, 5.3]: drawn slice by slice, with six neighbours of five
+// faces each and the blocking potential read at each crossed face's centre. Three targets take the new front, three add
 // to the sum.
 #include "lpv/common.glsl"
 #include "lpv/kernel_faces.glsl"
@@ -20,7 +20,7 @@ uniform int cascade;
 
 float passes(ivec3 cell, vec3 travel, vec3 towards) {
 #if BLOCKED
-  // The crossed face's centre among the geometry volume's cells, whose centres are the corners.
+  // The crossed face's centre in cells of the geometry volume, whose cell centres are the grid's corners.
   float corners = float(lpv.shape.x + 1);
   vec3 texel = vec3(cell) + 0.5 - 0.5 * travel + 0.5;
   texel.z += float(cascade) * corners;
@@ -55,7 +55,7 @@ void main() {
   nextGreen = sum[1];
   nextBlue = sum[2];
 #if BEGINS_WITH_INJECTED
-  // The first step adds the injected grid as well: the sum begins with G_0.
+  // The first step also adds the injected grid: the sum begins with G_0.
   ivec3 here = cell + ivec3(0, 0, layers);
   sum = vec4[3](sum[0] + texelFetch(sourceRed, here, 0), sum[1] + texelFetch(sourceGreen, here, 0),
                 sum[2] + texelFetch(sourceBlue, here, 0));

@@ -1,5 +1,5 @@
-// POINTS: one point a cell, as the published program has it. Else one triangle a slice of the cascade; the slice is the
-// instance.
+// POINTS: one point per cell, as in the published program. Otherwise one triangle per slice of the cascade; the
+// instance is the slice.
 uniform int cells;
 flat out ivec3 gCell;
 

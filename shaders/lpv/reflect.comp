@@ -1,12 +1,13 @@
-// One more bounce: what is injected and what surfaces throw back of the light that has travelled, the source of the
-// next propagation.
+// One more bounce: combines the injected light and the light that surfaces reflect after propagation into the source of
+// the next propagation.
 //
 // Light that crosses one of a cell's six faces is held back there by the surfels' blocking potential B
-// (lpv/kernel.glsl). What is held back comes back into the cell it came from, times the albedo, as a cosine lobe about
-// the surfels' mean normal. Every face sees the sum of all fronts, T - S: as max(0, sum) <= sum of max(0, .), no more
-// is held back than the steps did.
-// Bounded: the clamp of negative intensities lets a cosine lobe gain a factor 1.138208 in its first step, never more
-// (engine/lpv/README.md), which is divided out. So a source of flux S comes back as rho S at most, and the sum of all
+// (lpv/kernel.glsl). The blocked part returns to the cell it came from, times the albedo, as a cosine lobe about the
+// surfels' mean normal. Every face sees the sum of all fronts, T - S; since max(0, sum) <= sum of max(0, .), no more is
+// held back than in the steps themselves.
+// Bounded: clamping negative intensities lets a cosine lobe gain a factor 1.138208 in its first step, never more
+// (engine/lpv/README.md). That factor is divided out, so a source of flux S returns at most rho S, and the sum of all
+// bounces stays below S / (1 - rho).
 // bounces stays below S / (1 - rho).
 #include "lpv/common.glsl"
 #include "lpv/kernel.glsl"
@@ -17,7 +18,7 @@ layout(binding = 7) uniform sampler3D injectedGreen;
 layout(binding = 8) uniform sampler3D injectedBlue;
 layout(binding = 9) uniform sampler3D geometryVolume;
 layout(binding = 10) uniform sampler3D reflectance;
-layout(binding = 0, rgba32f) uniform image3D sourceRed;  // S, becomes the next one
+layout(binding = 0, rgba32f) uniform image3D sourceRed;  // S, replaced by the next one
 layout(binding = 1, rgba32f) uniform image3D sourceGreen;
 layout(binding = 2, rgba32f) uniform image3D sourceBlue;
 uniform bool first;         // S is still the injected grid
@@ -33,8 +34,8 @@ float heldBack(vec4 light, FaceValues passes) {
          kSideSolidAngle * dot(max(intensity.sides, 0.0), 1.0 - passes.sides);
 }
 
-// The face that light leaves the cell by, with `way` along an axis; `corner` is the first of its four corners, u and v
-// lead to the others. toFrame rotates (c0, x, y, z) into (c0, travel, u, v).
+// The face through which light leaves the cell, with `way` along an axis; `corner` is the first of its four corners, u
+// and v lead to the others. toFrame rotates (c0, x, y, z) into (c0, travel, u, v).
 #define FACE(way, axis, corner, u, v, toFrame)                                                                      \
   {                                                                                                                 \
     ivec3 a = corner, b = corner + u, c = corner + v, d = corner + u + v;                                           \

@@ -1,5 +1,5 @@
-// Turns what atomics counted into coefficients: FILL_FIXED in place, integers into floats, of lights or of surfels;
-// FILL_HALF from images into the first front. FILL_FLOAT needs no such pass.
+// Turns atomic counters into coefficients. FILL_FIXED: converts integers to floats in place, for lights or surfels.
+// FILL_HALF: copies images into the first front. FILL_FLOAT needs no such pass.
 #include "lpv/common.glsl"
 #include "lpv/fixed.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
@@ -7,7 +7,7 @@ uniform float fixedScale;
 #if FILL_FIXED
 layout(std430, binding = 0) buffer Counts { uvec4 counts[]; };
 uniform ivec3 size;    // of a stack of cascades
-uniform int channels;  // stacks one after the other
+uniform int channels;  // number of stacks, one after the other
 #else
 layout(std430, binding = 0) writeonly buffer Front { vec4 front[]; };
 layout(binding = 0) uniform sampler3D countRed;

@@ -1,5 +1,5 @@
-// Where the result is written: a buffer, from which the engine copies it to the textures that the lookup filters, all
-// of red before green before blue. llvmpipe takes forty times as long to store a texel to an image as to store it to a
+// Where the result is written: a buffer, all red, then green, then blue, from which the engine copies it to the
+// textures that the lookup filters. llvmpipe takes forty times as long to store a texel to an image as to store it to a
 // buffer and copy it.
 #include "lpv/storage.glsl"
 #if LPV_FULL_FLOAT

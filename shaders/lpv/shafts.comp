@@ -1,11 +1,11 @@
-// Light shafts: single scattering in a homogeneous medium along the view ray, of the sun (flag SUN) and of the light
-// propagation volume (flag PROPAGATED), added to what is seen through the medium.
+// Light shafts: single scattering in a homogeneous medium along the view ray, of light from the sun (flag SUN) and the
+// light propagation volume (flag PROPAGATED), added to the surface radiance seen through the medium.
 //
 // L = T(0, D) L_surface + integral from 0 to D of T(0, t) sigma_s S(t) dt [Chandrasekhar1960], T(0, t) = exp(-sigma_t
-// t). In each of `steps` pieces S is that of one point, and T is integrated exactly: what is taken from a piece of
-// length d is (1 - exp(-sigma_t d)) / sigma_t. The points lie in the same part of every piece, which differs from pixel
-// to pixel [Jimenez2014]: edges of shadows become noise instead of bands.
-// S of the sun: its irradiance, what of it comes through the medium and past blockers, times the phase function.
+// t). The ray is divided into `steps` segments. S is sampled at one point per segment and T is integrated exactly: a
+// segment of length d has the weight (1 - exp(-sigma_t d)) / sigma_t. The points have the same relative position in
+// every segment of a ray, which differs between pixels [Jimenez2014]: shadow edges become noise instead of bands.
+// S of the sun: its irradiance, times the transmittance of the medium and the visibility, times the phase function.
 // Input: depth, shadow map, volume. In place: radiance, linear, scene units.
 #include "lib/frame.glsl"
 #include "lib/haze.glsl"
@@ -27,11 +27,11 @@ uniform mat4 worldFromClip;
 uniform int steps;
 
 #if PROPAGATED
-// What the volume's light at a point scatters into a direction: W per square scene unit and sr, over sigma_s.
+// Light of the volume scattered at a point into a direction: W per square scene unit and sr, over sigma_s.
 //
-// Radiance with the flux that the kernel and the lookup give it: radiance Y00 l0 + Y1 <l1, w> gives a plane the
-// irradiance pi Y00 l0 + 2 pi / 3 Y1 <l1, -n>, and coefficients c give it a0 c0 + a1 <c1, -n> (lpv/lookup.glsl). So
-// l0 = 2/3 c0 and l1 = 3 / (2 pi) (Omega_f + 8 Omega_s / sqrt 5) c1. Scattering multiplies band 1 by g, the phase
+// The radiance is chosen to carry the flux of the kernel and the lookup. Radiance Y00 l0 + Y1 <l1, w> gives a plane the
+// irradiance pi Y00 l0 + 2 pi / 3 Y1 <l1, -n>, and coefficients c give it a0 c0 + a1 <c1, -n> (lpv/lookup.glsl). So l0
+// = 2/3 c0 and l1 = 3 / (2 pi) (Omega_f + 8 Omega_s / sqrt 5) c1. Scattering multiplies band 1 by g, the phase
 // function's mean cosine [HenyeyGreenstein1941].
 vec3 volumeScattered(vec3 position, vec3 towardsEye) {
   const float kBand0 = 2.0 / 3.0, kBand1 = 0.91461886;
@@ -80,8 +80,8 @@ void main() {
 
   float piece = (range.y - range.x) / float(steps);
   float part = fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
-  vec3 passes = exp(-haze.extinction * piece);  // of a piece
-  // 1 - exp(-x) over x, whose quotient has no digits where x is small
+  vec3 passes = exp(-haze.extinction * piece);  // transmittance of a segment
+  // (1 - exp(-x)) / x; the quotient cancels for small x
   vec3 x = haze.extinction * piece;
   vec3 taken = piece * mix((1.0 - passes) / max(x, vec3(1e-20)), 1.0 - 0.5 * x, lessThan(x, vec3(1e-3)));
   vec3 sum = vec3(0.0), through = vec3(1.0);

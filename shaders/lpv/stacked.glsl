@@ -1,5 +1,5 @@
-// Trilinear reading of one cascade of a stack that lies in a buffer, x fastest; outside is dark, as where the lookup
-// filters textures.
+// Trilinear interpolation in one cascade of a stack that lies in a buffer, x fastest. Values outside are zero, as with
+// filtered textures.
 struct StackedTexels {
   int at[8];
   float weight[8];
@@ -21,7 +21,7 @@ StackedTexels stackedTexels(vec3 texel, int index) {
   return result;
 }
 
-// Where a point of a cascade, in its cells, lies in the next coarser one.
+// Maps a point of a cascade, in its cells, to the next coarser cascade.
 vec3 lpvCoarserTexel(vec3 texel, int cascade) {
   vec3 position = lpv.cascades[cascade].minimum + texel * lpv.cascades[cascade].cellSize;
   return (position - lpv.cascades[cascade + 1].minimum) / lpv.cascades[cascade + 1].cellSize;

@@ -1,8 +1,8 @@
-// The sums of fronts, in 32 bits: from the buffers of the compute steps, or from the textures that the layered pass
-// blends into. All steps, or, where cascades are joined, those before and those after the hand-over. FROM_BUFFER
-// chooses. Needs lpv/common.glsl.
+// The sums of fronts, in 32 bits. FROM_BUFFER: from the buffers of the compute steps, else from the textures that the
+// layered pass blends into. They cover all steps, or, with joined cascades, those before and those after the hand-over.
+// Needs lpv/common.glsl.
 #if FROM_BUFFER
-layout(binding = 0) uniform samplerBuffer nearSums;  // cell by cell, all of red before green before blue
+layout(binding = 0) uniform samplerBuffer nearSums;  // cell by cell, all red, then green, then blue
 layout(binding = 3) uniform samplerBuffer farSums;
 #define SUM_AT(sums, cell, channel) \
   texelFetch(sums, (((channel)*lpv.shape.x * lpv.shape.y + (cell).z) * lpv.shape.x + (cell).y) * lpv.shape.x + (cell).x)

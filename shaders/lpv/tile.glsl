@@ -1,13 +1,13 @@
-// The texels of a reflective shadow map that one invocation adds up: a tile of TILE x TILE (4; 1: an atomic a light, as
-// published), to and fro, so that those that follow each other are neighbours and mostly fall into the same cell. What
-// they bring is summed as long as they do, and only then added to the cell by atomics.
+// The texels of a reflective shadow map that one invocation sums: a tile of TILE x TILE (4; 1: one atomic per light, as
+// published). The rows are traversed alternately left and right, so that successive texels are neighbours and mostly
+// fall into the same cell. Contributions are summed while the cell stays the same and only then added to it by atomics.
 const int kTile = TILE;
 ivec3 texelOfTile(ivec3 tile, int i) {
   int y = i / kTile, x = i % kTile;
   return ivec3(kTile * tile.xy + ivec2((y & 1) == 0 ? x : kTile - 1 - x, y), tile.z);
 }
 
-// Words of a buffer that counts in place of what it will hold: FILL_FIXED in integer steps, else in floats.
+// Words of a buffer that accumulates in place: integer steps with FILL_FIXED, otherwise floats.
 #if FILL_FIXED
 #define COUNT_TYPE ivec4
 #define WORD_TYPE int

@@ -1,5 +1,5 @@
-// A virtual point light of the reflective shadow map as the grid takes it, shared by all ways to fill it.
-// Needs lib/sh.glsl and lpv/common.glsl. LOWEST_CELL is 0; 1 with the deviation lpv.first-cell.
+// Converts a virtual point light of the reflective shadow map for the grid; shared by all ways to fill it. Needs
+// lib/sh.glsl and lpv/common.glsl. LOWEST_CELL is 0; 1 with the deviation lpv.first-cell.
 #include "lib/finite.glsl"
 
 // Background, black, zero and non-finite texels carry no light.
@@ -9,19 +9,20 @@ bool isUsableVpl(vec4 position, vec3 normal, vec3 flux) {
          length2 < 4.0 && flux.r + flux.g + flux.b > 0.0;
 }
 
-// Its cell in cascade k: it is moved half a cell along its normal first, so that it does not light its own surface
-// [GPUPro2, p. 190].
+// Its cell in cascade k. The light is first moved half a cell along its normal, so that it does not light its own
+// surface [GPUPro2, p. 190].
 bool vplCell(int k, vec3 position, vec3 normal, out ivec3 cell) {
   float s = lpv.cascades[k].cellSize;
   cell = ivec3(floor((position + 0.5 * s * normal - lpv.cascades[k].minimum) / s));
   return all(greaterThanEqual(cell, ivec3(LOWEST_CELL))) && all(lessThan(cell, ivec3(lpv.shape.x)));
 }
 
-// Intensity Phi / pi * max(0, cos) of unit flux, as stored: c / (E_ref s^2) is near 1 whatever the units, so that
-// 16-bit floats neither overflow nor fall into subnormals.
+// Intensity Phi / pi * max(0, cos) of unit flux, as stored: c / (E_ref s^2) is near 1 in any units, so that 16-bit
+// floats neither overflow nor become subnormal.
 vec4 vplLobe(int k, vec3 normal, float fluxScale) {
 #if FLUX_UNITS
-  // Deviation lpv.flux-units: neither the texel's area nor the cell's counts; brightness follows their number and size.
+  // Deviation lpv.flux-units: neither the texel's area nor the cell's counts, so brightness depends on their number and
+  // size.
   return shCosineLobe(normal) * (fluxScale / (kPi * lpv.referenceIrradiance));
 #else
   float s = lpv.cascades[k].cellSize;

@@ -1,18 +1,18 @@
-// The one pixel that is asked what lit it: whatever is added to a path's radiance is written down with the path's
-// places (shared/path_tracer.h). A single lane is at work, on one path after the other.
-const uint kStateWords = 6u;  // of a lane, in uvec4
+// Records what lit the queried pixel: every addition to a path's radiance is written down with the path's vertices
+// (shared/path_tracer.h). A single lane runs, one path after the other.
+const uint kStateWords = 6u;  // per lane, in uvec4
 
 uint askedBase() { return kStateWords * uint(tracer.picture.z); }
 
 uvec4 asPlace(vec3 place, float w) { return uvec4(floatBitsToUint(place), floatBitsToUint(w)); }
 
-// Where the path scattered last, or the camera.
+// The path's last scattering vertex, or the camera.
 void notePlace(Path path) {
   if (path.scatterings >= uint(PATH_ASKED_PLACES)) return;
   state[askedBase() + 1u + path.scatterings] = asPlace(path.origin, 0.0);
 }
 
-// light: what was added; end: where it comes from, or the direction to it; from: where the last ray begins.
+// light: the radiance added; end: the point it comes from, or the direction to it; from: the start of the last ray.
 void noteLight(Path path, PathNumbers numbers, vec3 light, uint kind, uint number, vec3 from, vec3 end,
                bool infinite) {
   if (light == vec3(0.0)) return;

@@ -1,17 +1,16 @@
-// Which closed boundaries a path is inside of, and what that makes of the place: its medium and its index of
-// refraction.
+// Tracks which closed boundaries contain the path, and derives the medium and refractive index at its position.
 //
-// Where closed dielectrics overlap the one of the highest priority is there [SchmidtBudge2002]. Materials that bound
+// Where closed dielectrics overlap, the one with the highest priority applies [SchmidtBudge2002]. Materials that bound
 // something are ranked by priority; a path counts its entries by rank, 4 bits each. Counts need no order, hold any
-// nesting and never overflow: a boundary crossed below a higher one changes nothing but its count. A boundary of
-// Bsdf::none holds a medium, but no index of its own: the dielectric around it keeps its own.
+// nesting and never overflow: a boundary crossed below a higher one changes nothing but its count. A boundary with
+// Bsdf::none holds a medium but has no index of its own: the index of the surrounding dielectric applies.
 #include "shared/media.h"
 
 layout(std430, binding = 7) restrict readonly buffer InteriorBlock { InteriorRecord interiors[]; };  // by rank
-uniform int outerMedium;         // where the path is inside of nothing
-uniform uvec4 dielectricRanks;   // 15 in the counts of dielectrics
+uniform int outerMedium;         // where the path is outside all boundaries
+uniform uvec4 dielectricRanks;   // 15 in the counts of ranks that are dielectrics
 
-// The highest rank with a count, -1 without.
+// The highest rank with a nonzero count, or -1.
 int topRank(uvec4 inside) {
   ivec4 bit = findMSB(inside);
   if (bit.w >= 0) return 24 + (bit.w >> 2);
@@ -32,8 +31,8 @@ float iorInside(uvec4 inside) {
 
 bool isInsideOf(uvec4 inside, int rank) { return ((inside[rank >> 3] >> (4 * (rank & 7))) & 15u) != 0u; }
 
-// After crossing the boundary of a rank. False where it is left without having been entered (an open or turned mesh),
-// or entered for the sixteenth time: the counts stay as they are then.
+// The counts after crossing the boundary of a rank. False if it is left without having been entered (an open or flipped
+// mesh) or entered for the sixteenth time; the counts then stay unchanged.
 bool crossBoundary(inout uvec4 inside, int rank, bool entering) {
   int word = rank >> 3, shift = 4 * (rank & 7);
   uint count = (inside[word] >> shift) & 15u;

@@ -1,8 +1,8 @@
-// Heterogeneous media: a density on a grid that multiplies a medium's coefficients, interpolated trilinearly between
-// cell centres, 0 outside its box. Blocks of cells know a bound of the density in them; between their faces collisions
-// are drawn at the bound's rate and told real from null by chance [Woodcock1965; Novak2018]. A block's bound holds for
-// the interpolated density, neighbouring cells counted. The channel that decides is chosen as in media.glsl, so that
-// here too no weight exceeds the number of channels.
+// Heterogeneous media: a density on a grid scales a medium's coefficients. It is interpolated trilinearly between cell
+// centres and is 0 outside its box. Each block of cells stores an upper bound of its interpolated density, neighbouring
+// cells included. Tentative collisions are drawn at that bound's rate and classified as real or null at random
+// [Woodcock1965; Novak2018]. The channel that decides is chosen as in media.glsl, so that here too no weight exceeds
+// the number of channels.
 #include "pathtracer/media.glsl"
 
 layout(std430, binding = 0) restrict readonly buffer DensityRecords { DensityRecord densityRecords[]; };
@@ -13,7 +13,7 @@ float cellDensity(DensityRecord g, ivec3 cell) {
   return densities[g.firstDensity + c.x + g.size.x * (c.y + g.size.y * c.z)];
 }
 
-// p: in cells from the box's least corner, within the box.
+// p: in cells from the box's minimum corner, within the box.
 float densityInside(DensityRecord g, vec3 p) {
   vec3 base = floor(p - 0.5), f = p - 0.5 - base;
   ivec3 c = ivec3(base);
@@ -29,12 +29,12 @@ float densityAt(DensityRecord g, vec3 p) {
   return densityInside(g, p);
 }
 
-// The density's integral from `near` to `far` along origin + t direction, in cells and inside of the box, over t. Exact
-// but for rounding: between two of the planes through cells' centres it is a cubic in t, for which Simpson's rule is
-// exact. So many turns as planes are crossed, one more, and no more.
+// The integral over t of the density from `near` to `far` along origin + t direction, in cells and inside the box.
+// Exact but for rounding: between two planes through cell centres the density is a cubic in t, for which Simpson's rule
+// is exact. The number of iterations is bounded by the number of planes crossed plus one.
 float densityIntegral(DensityRecord g, vec3 origin, vec3 direction, float near, float far) {
   vec3 start = origin + near * direction, towards = mix(vec3(-1.0), vec3(1.0), greaterThanEqual(direction, vec3(0.0)));
-  // the last one passed
+  // the last plane passed
   vec3 plane = mix(ceil(start - 0.5), floor(start - 0.5), greaterThanEqual(direction, vec3(0.0))) + 0.5;
   float from = near, sum = 0.0, atFrom = densityInside(g, start);
   int most = g.size.x + g.size.y + g.size.z + 3;
@@ -60,15 +60,16 @@ float densityIntegral(DensityRecord g, vec3 origin, vec3 direction, float near, 
   return sum;
 }
 
-// The parts of a ray in which a bound holds, front to back. Distances along the ray in scene units, positions in cells.
+// Divides a ray into the segments within which one bound applies, front to back. Distances along the ray in scene
+// units, positions in cells.
 struct DensityMarch {
   vec3 origin, direction;  // in cells; cells per unit of distance
-  float near, far;         // of the present part
-  float last;              // where the ray leaves the box, or its own end
+  float near, far;         // of the current segment
+  float last;              // where the ray leaves the box, or ends
   ivec3 block;
 };
 
-// False where the ray misses the box.
+// False if the ray misses the box.
 bool densityMarchStart(DensityRecord g, vec3 origin, vec3 direction, float tMax, out DensityMarch march) {
   march.origin = (origin - g.min) * g.cellsPerUnit;
   march.direction = direction * g.cellsPerUnit;
@@ -92,7 +93,7 @@ bool densityMarchStart(DensityRecord g, vec3 origin, vec3 direction, float tMax,
   return near < far;
 }
 
-// The next part: [near, far] and its bound. False behind the last.
+// The next segment [near, far] and its bound. False after the last one.
 bool densityMarchNext(DensityRecord g, inout DensityMarch march, out float bound) {
   if (march.far >= march.last || any(lessThan(march.block, ivec3(0))) ||
       any(greaterThanEqual(march.block, g.blocks.xyz)))

@@ -1,12 +1,13 @@
-// Surfaces as a path meets them: the BSDF, its value and its sampling.
+// The surface that a path meets: its BSDF, evaluated and sampled.
 
-// What a surface does to light where a path has met it. Lambert: `albedo` is its reflectance; mirrors, conductors:
+// The scattering properties at a path's hit. Lambert: `albedo` is the reflectance; mirrors and conductors: the
+// reflectance at normal incidence.
 // reflectance at normal incidence.
 struct Facet {
   uint kind;
   vec3 albedo;
   float roughness;
-  float eta;       // dielectrics: index on the path's side over the other's
+  float eta;       // dielectrics: index on the path's side over that on the other
   vec3 normal;     // for shading, on the path's side
 };
 
@@ -18,7 +19,7 @@ bool isSmooth(Facet facet) {
 #endif
 }
 
-// BSDF times the cosine of `i`, and the density with which scatter() draws it; not for smooth surfaces. `o` and `i`
+// BSDF times the cosine of `i`, and the density with which scatter() draws `i`; not for smooth surfaces. `o` and `i`
 // point away from the surface.
 vec3 evaluate(Facet facet, vec3 o, vec3 i, out float pdf) {
 #if GLOSSY
@@ -45,8 +46,8 @@ vec3 evaluate(Facet facet, vec3 o, vec3 i, out float pdf) {
   return facet.albedo * pdf;
 }
 
-// Draws a direction: multiplies the throughput by what that leaves and sets direction and density, 0 for smooth
-// surfaces. False: absorbed.
+// Draws a direction: multiplies the throughput by BSDF cos / density and sets direction and density (0 for smooth
+// surfaces). False: absorbed.
 bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float choice) {
   if (facet.kind == PATH_DIFFUSE) {
     path.direction = cosineSample(facet.normal, xi);
@@ -69,7 +70,7 @@ bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float 
 #endif
   float cosI = clamp(dot(o, h), 0.0, 1.0), cosT = 0.0;
   bool reflects = true;
-  float share = 1.0;  // of the two ways
+  float share = 1.0;  // probability of the chosen way, reflection or refraction
 #if DIELECTRICS
   if (facet.kind == PATH_DIELECTRIC) {
     float reflectance = fresnelDielectric(cosI, facet.eta, cosT);
@@ -79,7 +80,7 @@ bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float 
 #endif
   vec3 scattered = reflects ? 2.0 * cosI * h - o : (facet.eta * cosI - cosT) * h - facet.eta * o;
   float side = dot(scattered, geometricNormal);
-  if (reflects ? side <= 0.0 : side >= 0.0) {  // the shading normal sends it to the wrong side of the face
+  if (reflects ? side <= 0.0 : side >= 0.0) {  // the shading normal sends the direction to the wrong side of the face
 #if GLOSSY
     if (rough) return false;
 #endif

@@ -1,4 +1,4 @@
-// The path tracer's film as radiance: the mean of each pixel's samples, 0 where there is none yet.
+// Converts the path tracer's film to radiance: the mean of each pixel's samples, 0 without samples.
 layout(binding = 0) uniform usampler2D filmMean;  // bits of three floats, and the number of samples
 layout(location = 0) out vec4 radiance;
 

@@ -12,13 +12,13 @@
 
 const float kFar = 1e30;  // a distance that no scene has; its products with coefficients stay finite
 
-// Of no throughput the result is 0: there is no channel to choose then, nor a path to follow.
+// Zero for zero throughput: there is no channel to choose then, and no path to continue.
 vec3 channelProbabilities(vec3 throughput) {
   float sum = throughput.r + throughput.g + throughput.b;
   return sum > 0.0 ? throughput / sum : vec3(0.0);
 }
 
-// u in [0,1); never a channel of probability 0 as long as there is another.
+// u in [0,1). Never picks a channel of probability 0 if another has a positive one.
 int pickChannel(vec3 q, float u) {
   float r = u * (q.r + q.g + q.b);
   if (r < q.r) return 0;
@@ -26,7 +26,7 @@ int pickChannel(vec3 q, float u) {
   return q.b > 0.0 ? 2 : (q.g > 0.0 ? 1 : 0);
 }
 
-// T_c(t) of the live channels over the largest of them; 0 for dead ones.
+// T_c(t) of the live channels, relative to the largest of them; 0 for dead channels.
 vec3 relativeTransmittance(vec3 extinction, bvec3 live, float t) {
   vec3 bounded = mix(vec3(3e38), extinction, live);
   float least = min(min(bounded.r, bounded.g), bounded.b);
@@ -39,8 +39,8 @@ float flightDistance(MediumRecord medium, int channel, uint k) {
   return extinction > 0.0 ? min(exponentialSample(k) / extinction, kFar) : kFar;
 }
 
-// T_c / sum_j q_j sigma_t,j T_j: what a quantity per unit of length found at a collision counts. 0 in channels that
-// never collide.
+// T_c / sum_j q_j sigma_t,j T_j: the weight of a quantity per unit length that is evaluated at a collision. 0 in
+// channels without collisions.
 vec3 collisionWeight(MediumRecord medium, vec3 q, float t) {
   bvec3 live = bvec3(vec3(greaterThan(q, vec3(0.0))) * vec3(greaterThan(medium.extinction, vec3(0.0))));
   vec3 e = relativeTransmittance(medium.extinction, live, t);
@@ -52,7 +52,7 @@ vec3 scatteringWeight(MediumRecord medium, vec3 q, float t) {
   return medium.albedo * medium.extinction * collisionWeight(medium, q, t);
 }
 
-// Likewise at the boundary.
+// The weight for reaching the boundary at distance d.
 vec3 passageWeight(MediumRecord medium, vec3 q, float d) {
   if (medium.greyExtinction != 0) return vec3(1.0);
   vec3 e = relativeTransmittance(medium.extinction, greaterThan(q, vec3(0.0)), d);
@@ -63,9 +63,9 @@ vec3 phaseValue(MediumRecord medium, vec3 w, vec3 to) {
   return medium.phase == 1 ? vec3(rayleighPdf(w, to)) : henyeyGreensteinPdf(w, to, medium.oneMinusG, medium.onePlusG);
 }
 
-// A direction from the phase function of a channel that q chooses; `weight` by the balance heuristic where the
-// channels' g differ.
-// pdf: the density of the direction, all channels considered.
+// A direction from the phase function of a channel chosen by q; `weight` by the balance heuristic if the channels' g
+// differ.
+// pdf: the density of the direction, over all channels.
 vec3 phaseSample(MediumRecord medium, vec3 w, vec3 q, float u, vec2 xi, out vec3 weight, out float pdf) {
   weight = vec3(1.0);
   if (medium.phase == 1) {

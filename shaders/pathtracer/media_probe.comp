@@ -1,5 +1,5 @@
-// The path tracer's functions for media and their boundaries at given arguments: for tests.
-uint loopTurns = 0u;  // turns of loops so far: as in bvh.glsl
+// For tests: evaluates the path tracer's functions for media and boundaries at given arguments.
+uint loopTurns = 0u;  // loop iterations so far, as in bvh.glsl
 #include "pathtracer/density.glsl"
 #include "pathtracer/boundary.glsl"
 #include "pathtracer/fresnel.glsl"
@@ -47,8 +47,8 @@ void main() {
     DensityRecord g = densityRecords[p.k.x];
     r.a.x = densityAt(g, (p.a.xyz - g.min) * g.cellsPerUnit);
   } else if (what == 7) {
-    // Along a ray: the length in the box, the least of bound minus density, and the optical depth of density by the
-    // midpoint rule.
+    // Along a ray: the length in the box, the minimum of bound minus density, and the optical depth of the density by
+    // the midpoint rule.
     DensityRecord g = densityRecords[p.k.x];
     DensityMarch march;
     float slack = 1e30, inBox = 0.0, parts = 0.0, depth = 0.0, bound;
@@ -70,7 +70,7 @@ void main() {
     if (densityMarchStart(g, p.a.xyz, p.b.xyz, p.a.w, march))
       r.a = vec4(densityIntegral(g, march.origin, march.direction, march.near, march.last), float(loopTurns), 0.0, 0.0);
   } else if (what == 8) {
-    // k.x: entries, least rank first, 8 bits each; k.y: how many of them; k.z: left again, likewise; k.w: how many.
+    // k.x: entries, lowest rank first, 8 bits each; k.y: their number; k.z: exits, likewise; k.w: their number.
     uvec4 inside = uvec4(0u);
     bool sound = true;
     for (uint n = 0u; n < p.k.y; ++n) sound = crossBoundary(inside, int((p.k.x >> (8u * n)) & 255u), true) && sound;

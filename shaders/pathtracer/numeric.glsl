@@ -1,7 +1,7 @@
-// Logarithm and exponential where GLSL's own are good in absolute terms alone: log() may be off by 2^-21 in [0.5, 2],
-// so that -log(1 - u) of a small u, the length of a free flight in a thin medium, may be all error.
+// Logarithm and exponential with small relative error. GLSL's own are only accurate in absolute terms: log() may be off
+// by 2^-21 in [0.5, 2], so -log(1 - u) for small u, the length of a free flight in a thin medium, may be pure error.
 
-// -log(1 - u), 0 <= u < 1, by 2 artanh(u / (2 - u)): relative error below 3e-7 for u < 1/2, and log()'s own beyond.
+// -log(1 - u), 0 <= u < 1, by 2 artanh(u / (2 - u)): relative error below 3e-7 for u < 1/2, log()'s own error above.
 float negativeLog1m(float u) {
   if (u >= 0.5) return -log(1.0 - u);
   float z = u / (2.0 - u), zz = z * z;
@@ -10,8 +10,8 @@ float negativeLog1m(float u) {
           zz * (1.0 / 3.0 + zz * (0.2 + zz * (1.0 / 7.0 + zz * (1.0 / 9.0 + zz * (1.0 / 11.0 + zz * (1.0 / 13.0)))))));
 }
 
-// A standard exponential number from all 32 bits of k: with 24 bits a medium of optical depth 1e-6 collides 1.3 % too
-// often.
+// An exponentially distributed number of mean 1, from all 32 bits of k: with 24 bits a medium of optical depth 1e-6
+// collides 1.3 % too often.
 float exponentialSample(uint k) {
   if (k < 0x80000000u) return negativeLog1m((float(k) + 0.5) * 2.3283064365386963e-10);
   return -log((float(~k) + 0.5) * 2.3283064365386963e-10);

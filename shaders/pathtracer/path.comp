@@ -1,14 +1,15 @@
-// Path tracing: one invocation a pixel follows its paths one after the other, segment by segment, and starts the next
-// as soon as one has ended, until the pixel has its samples or this submission's turns of loops are used up; the
-// unfinished path then waits in the state buffer. So every submission is bounded however long paths get, and no path is
-// dropped: dropping the long ones would bias the picture.
+// Path tracing. One invocation per pixel traces its paths one after the other, segment by segment, until the pixel has
+// its samples or this submission's budget of loop iterations is used up. An unfinished path then waits in the state
+// buffer. So every submission is bounded however long paths get, and no path is dropped: dropping the long ones would
+// bias the picture.
 //
-// A path: camera ray, then at each surface next-event estimation towards one light and a new direction drawn from the
-// surface, weighted against each other [Veach1997], and Russian roulette. `throughput` is without the squares of
-// refractive indices, as L / n^2 is what a boundary conserves; what a light adds is multiplied by (n_camera / n_here)^2
+// A path: camera ray, then at each surface next-event estimation for one light and a new direction sampled from the
+// BSDF, combined by multiple importance sampling [Veach1997], and Russian roulette. `throughput` omits the squared
+// refractive indices, since a boundary conserves L / n^2; light contributions are multiplied by (n_camera / n_here)^2
 // instead.
-// Film: three images of 32-bit words that hold floats' bits: mean and number of samples; sum of squared deviations
-// [Welford1962]; the mean's rest below a float's last place, so that it does not stall however many samples there are.
+// Film: three images of 32-bit words that hold the bits of floats: mean and number of samples; sum of squared
+// deviations [Welford1962]; the low part of the mean below a float's last place, so that the mean keeps converging
+// however many samples there are.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/path_tracer.h"
 layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
@@ -38,7 +39,7 @@ uint collisionCount = 0u;  // of this lane, in this submission
 #include "pathtracer/facet.glsl"
 
 #if NEXT_EVENT
-// iorBeyond, beyond: refractive index behind the surface, and the boundaries around that side.
+// iorBeyond, beyond: refractive index behind the surface, and the closed boundaries that contain that side.
 void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float iorBeyond, uvec4 beyond,
                   PathNumbers numbers) {
   LightSample light;
@@ -61,7 +62,7 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
   if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, pdf);
 #endif
 #if LAMPS_OUTSIDE
-  if (path.ior != 1.0) return;  // a lamp beyond a boundary that refracts lies on no straight line
+  if (path.ior != 1.0) return;  // a straight line across a refracting boundary does not reach a lamp
 #endif
   if (all(equal(contribution, vec3(0.0)))) return;
   askLight(path, contribution, beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal), light,
@@ -69,7 +70,7 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
 }
 #endif
 
-// Light from beyond all surfaces.
+// Light from infinity.
 void addFromAfar(inout Path path, PathNumbers numbers) {
 #if ENVIRONMENT
   if (counts(path.scatterings)) {
@@ -84,7 +85,7 @@ void addFromAfar(inout Path path, PathNumbers numbers) {
   }
 #elif BACKGROUND
   if (path.scatterings == 0u && counts(0u)) {
-    addLight(path, tracer.background);  // is seen, but lights nothing
+    addLight(path, tracer.background);  // visible, but lights nothing
 #if ASKED
     noteLight(path, numbers, tracer.background, PATH_ASKED_BACKGROUND, 0u, path.origin, path.direction, true);
 #endif
@@ -113,7 +114,7 @@ void addEmission(inout Path path, Hit hit, Surface surface, PathNumbers numbers)
 // iorBeyond: refractive index behind the surface.
 Facet facetOf(Path path, Surface surface, PathMaterial material, float iorBeyond) {
   Facet facet = Facet(material.kind, material.specular, material.roughness, 1.0, surface.normal);
-  // Mirrors and glass are not there for a path that sees the shading normal's back.
+  // For a path that sees the back of the shading normal, mirrors and glass use the geometric normal.
   if (facet.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0))
     facet.normal = surface.geometricNormal;
   if (facet.kind == PATH_DIFFUSE) facet.albedo = albedoAt(surface);
@@ -123,9 +124,9 @@ Facet facetOf(Path path, Surface surface, PathMaterial material, float iorBeyond
   return facet;
 }
 
-// Roulette [Arvo1990]. From a throughput of 1 or more nothing dies for long; then a little does, so that every path
-// ends. Total reflection may catch paths in glass for ever, which hold next to no light: after many smooth
-// scatterings in a row more of them die. False: the path ends.
+// Russian roulette [Arvo1990]. While the throughput is 1 or more the survival probability stays high but below 1, so
+// that every path ends. Total internal reflection may trap paths in glass forever with almost no light; after many
+// smooth scatterings in a row the probability drops. False: the path ends.
 bool survivesSurface(inout Path path, float random) {
   float most = path.chain > 32u ? 0.99 : path.event < 1024u ? 1.0 : 0.999;
   float largest = max(path.throughput.x, max(path.throughput.y, path.throughput.z));
@@ -142,24 +143,24 @@ bool survivesSurface(inout Path path, float random) {
 #endif
 }
 
-// What the path's ray has met, and on from there; false where the path has ended.
+// Handles the hit of the path's ray, and continues the path; false if the path has ended.
 #if TOUCHING
 bool meet(inout Path path, Hit hit, uvec4 beyond, uvec4 before, PathNumbers numbers) {
 #else
 bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #endif
-  // Nothing: the light from afar.
+  // No hit: light from infinity.
   if (hit.triangle == kNoHit) {
     addFromAfar(path, numbers);
     return false;
   }
-  // A surface, what is behind it, and its material.
+  // A surface: the sides of the boundary and the material.
   Surface surface = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
 #if INTERIORS
   int rank = int(materials[surface.material].boundary);
 #endif
 #if !TOUCHING
-  uvec4 beyond = uvec4(0u);  // of which closed boundaries the other side is
+  uvec4 beyond = uvec4(0u);  // the closed boundaries that contain the other side
 #if INTERIORS
   beyond = path.inside;
   if (rank >= 0 && !crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
@@ -172,11 +173,11 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #if NORMAL_MAPS
   applyNormalMap(surface, hit.triangle);
 #endif
-  // The step is done.
+  // The step is complete.
   path.travelled += hit.t;
   ++path.event;
 #if MEDIA && ROULETTE_AT_SURFACES
-  // A turn of [VPT2024, algorithm 3] that went into a medium ends here, at the medium's end.
+  // An iteration of [VPT2024, algorithm 3] that entered a medium ends here, at the medium's far boundary.
   if (mediumInside(path.inside) >= 0 &&
       !survivesTurn(path, unitFloat(randomWordPair(numbers, path.event, kPurposeMediumChoice).x)))
     return false;
@@ -185,19 +186,19 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   if (any(greaterThan(material.emission, vec3(0.0))) && counts(path.scatterings))
     addEmission(path, hit, surface, numbers);
 #endif
-  // A boundary where nothing refracts is passed.
+  // Pass straight through a boundary without refraction.
   float iorBeyond = path.ior;
 #if INTERIORS
   if (rank >= 0) {
     iorBeyond = iorInside(beyond);
-    if (iorBeyond == path.ior) {  // nothing refracts: another medium, or a boundary that a higher one covers
+    if (iorBeyond == path.ior) {  // no refraction: another medium, or a boundary overlapped by a higher-priority one
       path.inside = beyond;
       startAt(path, surface, hit.triangle);
       return true;
     }
   }
 #endif
-  // Light that arrives here from lamps.
+  // Light from lamps at this surface.
   if (path.scatterings >= tracer.maxScatterings) return false;
   Facet facet = facetOf(path, surface, material, iorBeyond);
   ++path.scatterings;
@@ -206,7 +207,7 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
     addNextEvent(path, surface, hit.triangle, facet, iorBeyond, beyond, numbers);
 #endif
 #if UNOCCLUDED
-  if (path.scatterings == 2u && facet.kind == PATH_DIFFUSE) {  // nothing is in the way: on to the surfaces behind
+  if (path.scatterings == 2u && facet.kind == PATH_DIFFUSE) {  // surfaces do not block: continue to those behind
     path.scatterings = 1u;
     path.origin = beside(surface, -surface.geometricNormal);
     path.skip = hit.triangle;
@@ -214,14 +215,14 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   }
 #endif
 #if !SCATTERED_LIGHT
-  if (path.scatterings >= tracer.maxScatterings && !isSmooth(facet)) return false;  // nothing more could be found
+  if (path.scatterings >= tracer.maxScatterings && !isSmooth(facet)) return false;  // no further light can be found
 #endif
-  // The next direction, and on whose side it goes on.
+  // Sample the next direction, and find the side on which the path continues.
   path.travelled = 0.0;
 #if DIELECTRICS
   uvec2 choice = randomWordPair(numbers, path.event, kPurposeChoice);
 #else
-  uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);  // for roulette alone
+  uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);  // for roulette only
 #endif
   if (!scatter(path, facet, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter),
                unitFloat(choice.x)))
@@ -244,7 +245,7 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   return true;
 }
 
-// a + b as a float and what that float lacks [Knuth1997, 4.2.2].
+// a + b rounded to a float, and the rounding error [Knuth1997, 4.2.2].
 vec3 twoSum(vec3 a, vec3 b, out vec3 rest) {
   precise vec3 sum = a + b;
   precise vec3 back = sum - a;
@@ -253,23 +254,23 @@ vec3 twoSum(vec3 a, vec3 b, out vec3 rest) {
   return sum;
 }
 
-// A lane's job: which ray it traces.
+// A lane's job: which kind of ray it traces.
 const uint kPathRay = 0u;
 const uint kShadowRay = 1u;
-const uint kBesidesRay = 2u;  // the short one across a boundary
+const uint kBesidesRay = 2u;  // the short ray across a boundary
 
-// Its stages: what is to be done next.
+// Its stages: what to do next.
 const int kTraces = 0;
-const int kLit = 1;      // a shadow ray has been followed to its end
+const int kLit = 1;      // a shadow ray has been traced to its end
 const int kFlies = 2;    // the path's ray was traced
-const int kFlown = 3;    // and lamps beside it were asked
+const int kFlown = 3;    // and lamps along it were sampled
 const int kArrives = 4;  // at a surface, or far away
 const int kMeets = 5;    // all boundaries there are known
 const int kEnds = 6;
 const int kGoesOn = 7;   // with the next ray
 
 void main() {
-  // The pixel's film, and its path where the last dispatch left it.
+  // The pixel's film, and the path left by the previous dispatch.
   ivec2 lane = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(lane, tracer.tile.zw))) return;
   ivec2 pixel = tracer.tile.xy + lane;
@@ -279,7 +280,7 @@ void main() {
   vec3 mean = uintBitsToFloat(meanWords.xyz), rest = uintBitsToFloat(imageLoad(filmRest, pixel).xyz);
   vec3 spread = uintBitsToFloat(imageLoad(filmSpread, pixel).xyz);
 
-  // picture.w: number of the film's first sample.
+  // picture.w: index of the film's first sample.
   PathNumbers numbers =
       PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(tracer.picture.w) + samples, tracer.seed);
   Lane here = Lane(uint(lane.y * tracer.tile.z + lane.x), uint(tracer.picture.z));
@@ -287,23 +288,23 @@ void main() {
   if (!restorePath(here, path)) path = startPath(pixel, numbers);
 
   // One traversal serves all rays, since drivers inline every function: each further call site costs registers and
-  // minutes of compiling. What is to be traced next is the lane's job; what is to be done with a hit its stages, each
-  // of which follows from those above it.
+  // minutes of compiling. The lane's job says what to trace next. Its stage says what to do with the hit; each stage
+  // follows from those above it.
   bool inFlight = true;
   uint job = kPathRay;
-  int after = kGoesOn;  // the stage to go on with once a shadow ray has been followed to its end
-  Hit arrival;          // what the path's ray has met
+  int after = kGoesOn;  // the stage to resume after a shadow ray has been traced to its end
+  Hit arrival;          // the hit of the path's ray
   shadow.waits = false;
 #if MEDIA
-  float flight = 3e38;  // length of the path's present flight
+  float flight = 3e38;  // length of the path's current flight
 #endif
 #if TOUCHING
-  Hit crossed;          // the boundary that a shadow ray crosses
+  Hit crossed;          // the boundary that a shadow ray is crossing
   Besides besides;
-  bool right = true;    // whether the path was where it can cross the boundary
+  bool right = true;    // whether the path could validly cross the boundary
 #endif
   for (;;) {
-    // The ray of this turn.
+    // Set up the ray of this iteration.
     int stage = kTraces;
     Ray ray = Ray(path.origin, 0.0, path.direction, 3e38);
     uint skip = path.skip;
@@ -314,7 +315,7 @@ void main() {
       notePlace(path);
 #endif
 #if MEDIA
-      // In a homogeneous medium the flight is drawn first: rays that need not go far are cheap.
+      // In a homogeneous medium the flight length is drawn first: short rays are cheap to trace.
       int medium = mediumInside(path.inside);
       flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
 #if WALKS
@@ -348,7 +349,7 @@ void main() {
     }
 #endif
 
-    // Traced: the one traversal.
+    // The only traversal.
     BvhTraversal traversal = beginRay(ray, skip);
     if (stage == kEnds) traversal.top = -1;
 #if INTERIORS || SHADOW_AT_ONCE
@@ -360,7 +361,7 @@ void main() {
     Hit hit = traversal.hit;
     if (!any) hit = finishRay(traversal, ray.direction);
 
-    // What the hit is to the job: the path's arrival, a step across a boundary, or a shadow ray's.
+    // Assign the hit to the job: the path's arrival, a step across a boundary, or a shadow ray's hit.
     if (job == kPathRay && stage == kTraces) {
       arrival = hit;
       stage = kFlies;
@@ -377,7 +378,7 @@ void main() {
       } else {
         job = kPathRay;
         stage = kMeets;
-        if (hit.triangle != kNoHit) {  // a wall right behind is what the path has met, from where it is
+        if (hit.triangle != kNoHit) {  // a surface immediately behind: the path has hit it from its current position
           besides.beyond = besides.before = path.inside;
           arrival.triangle = hit.triangle;
           arrival.barycentrics = hit.barycentrics;
@@ -405,7 +406,7 @@ void main() {
       stage = kLit;
 #endif
     }
-    // A shadow ray's light arrives; the path goes on where it had waited.
+    // Add the shadow ray's light; the path resumes where it waited.
     if (stage == kLit) {
       path.radiance += shadow.light;
 #if ASKED
@@ -416,7 +417,7 @@ void main() {
       stage = after;
     }
 
-    // The flight through a medium: lamps beside it, then whether it ends before the surface.
+    // The flight through a medium: sample lamps along it, then decide whether it ends before the surface.
 #if MEDIA
     if (stage == kFlies) {
       int medium = mediumInside(path.inside);
@@ -445,11 +446,12 @@ void main() {
 #else
     if (stage == kFlies) stage = kArrives;
 #endif
-    // The surface: first all boundaries there, then what the path meets and the lamps that it sees.
+    // At the surface: first find all boundaries there, then handle the hit and sample lamps.
     if (stage == kArrives) {
       stage = kMeets;
 #if TOUCHING
-      // What else the step beyond crosses: a face that coincides with this one is of the same interface.
+      // The other boundaries crossed by the step to the far side: a face that coincides with this one belongs to the
+      // same interface.
       besides = Besides(path.inside, path.inside, 0.0, arrival.triangle, 0u);
       int rank = arrival.triangle != kNoHit ? rankOf(arrival.triangle) : -1;
       if (rank >= 0) {
@@ -482,7 +484,7 @@ void main() {
       }
 #endif
     }
-    // A sample is done: Welford's mean and spread [Welford1962], with what the mean's floats lack.
+    // A sample is complete: update Welford's mean and sum of squares [Welford1962], with the mean's low part.
     if (stage == kEnds) {
       ++samples;
       vec3 difference = (path.radiance - mean) - rest;
@@ -497,7 +499,7 @@ void main() {
     }
   }
 
-  // Counters, the film, and the path in flight.
+  // Store the counters, the film, and the path in flight.
   atomicMax(longest, loopTurns);
   atomicAdd(allTurns, loopTurns);
 #if MEDIA

@@ -1,14 +1,14 @@
-// The path that a lane follows: where it is, what it carries, how it starts, and how it waits for the next submission.
-// path.comp says what its throughput is.
+// The path that a lane traces: its state, how it starts, and how it waits for the next submission. path.comp defines
+// its throughput.
 
 layout(std430, binding = 5) restrict buffer StateBlock {
-  uint unfinished;      // pixels of the tile that do not have their samples yet
-  uint leakedPaths;     // ended, since they were found outside of the scene, yet inside of a closed boundary
-  uint wrongCrossings;  // of boundaries left without having been entered: open or turned meshes
-  uint longest;         // turns of loops that a lane took
-  // and that all lanes took; below 2^32, as a submission has no more than 2^28 but for the last segments
+  uint unfinished;      // pixels of the tile that still lack samples
+  uint leakedPaths;     // terminated because they were found outside the scene, yet inside a closed boundary
+  uint wrongCrossings;  // boundaries left without having been entered: open or flipped meshes
+  uint longest;         // most loop iterations of any lane
+  // loop iterations of all lanes; below 2^32, since a submission has at most 2^28 plus the last segments
   uint allTurns;
-  uint collisions;      // in media, of all lanes
+  uint collisions;      // in media, over all lanes
   uvec4 state[];        // STATE_WORDS a lane, lane by lane within each
 };
 
@@ -16,42 +16,43 @@ struct Path {
   vec3 origin;
   uint skip;            // triangle that the ray starts on
   vec3 direction;       // unit
-  // density with which it was sampled, 1/sr; 0 where nothing else could have: camera and smooth surfaces
+  // density with which it was sampled, 1/sr; 0 if no other strategy could sample it: camera and smooth surfaces
   float pdf;
   vec3 throughput;
-  float travelled;      // since the last scattering, along boundaries that change nothing
+  float travelled;      // since the last scattering, including across boundaries that change nothing
   vec3 radiance;
-  uint scatterings;     // up to here
-  uint event;           // place in the sequence of random numbers: one a surface or medium met
-  float ior;            // of where the ray is
-  uint chain;           // smooth scatterings in a row up to here
+  uint scatterings;     // so far
+  uint event;           // index in the sequence of random numbers: one per surface or medium event
+  float ior;            // at the ray's origin
+  uint chain;           // smooth scatterings in a row so far
 #if INTERIORS
-  uvec4 inside;         // of which closed boundaries (boundary.glsl)
-  // length of the ray before its origin, which lies a little beside a surface; negative: what the origin is too early
+  uvec4 inside;         // the closed boundaries that contain the path (boundary.glsl)
+  // length of the ray before its origin, which is offset from a surface; negative: the amount by which the origin is
+  // too early
   float head;
-  uint face;            // that surface, where head is not 0
+  uint face;            // that surface, if head is not 0
 #endif
 };
 
-// Throughput below which roulette begins. In media many weak scatterings make up what is seen, and dying at each of
-// them costs more in noise than it saves in time: a slab of albedo 0.5 needs a third of the time for the same error
-// with 1/4 as with 1.
+// Throughput below which roulette begins. In media many weak scatterings make up the picture, and roulette at each of
+// them costs more in noise than it saves in time: for the same error a slab of albedo 0.5 needs a third of the time
+// with 1/4 compared with 1.
 #if MEDIA
 const float kRouletteBelow = 0.25;
 #else
 const float kRouletteBelow = 1.0;
 #endif
 
-const uint kInFlight = 0x80000000u;  // in the saved event: there is a path to be gone on with
+const uint kInFlight = 0x80000000u;  // in the saved event: a path is waiting to be continued
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
 #if INTERIORS
-uniform uvec4 cameraInside;  // of which closed boundaries the camera is
-uniform float cameraIor;     // and the index of refraction there
+uniform uvec4 cameraInside;  // the closed boundaries that contain the camera
+uniform float cameraIor;     // refractive index at the camera
 #endif
 
-// What a light adds where the path now is.
+// A light's contribution at the path's current position.
 vec3 lightOf(Path path, vec3 light) {
 #if DIELECTRICS
   light *= cameraIor * cameraIor / (path.ior * path.ior);
@@ -87,13 +88,13 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   return path;
 }
 
-// A lane's place in `state`.
+// A lane's position in `state`.
 struct Lane {
   uint slot;
-  uint count;  // of all lanes
+  uint count;  // number of lanes
 };
 
-// The path that waits, if there is one.
+// Restores the waiting path, if there is one.
 bool restorePath(Lane lane, out Path path) {
   uvec4 saved = state[lane.slot + 4u * lane.count];
   if ((saved.x & kInFlight) == 0u) return false;
@@ -131,11 +132,11 @@ void savePath(Lane lane, Path path, bool inFlight) {
 
 #if MEDIA
 // In media a ray starts nearer to its surface than elsewhere, 8 units in the last place of the triangle's largest
-// coordinate, as what lies between may be a good part of a mean free path; and the flight through it is counted.
+// coordinate, because the gap may be a good part of a mean free path. The flight through the gap is accounted for.
 const float kBeside = 4.76837158203125e-7;  // 2^-21
 #endif
 
-// How far beside a surface rays start that leave it.
+// The gap between a surface and the origin of a ray that leaves it.
 float gapAt(Surface surface) {
 #if FIXED_EPSILON
   return 1e-3;  // scene units, whatever the scene's size [VPT2024]
@@ -146,7 +147,7 @@ float gapAt(Surface surface) {
 #endif
 }
 
-// Where a ray starts that leaves a surface towards the side of `normal`.
+// Origin of a ray that leaves a surface towards the side of `normal`.
 vec3 beside(Surface surface, vec3 normal) { return surface.position + normal * gapAt(surface); }
 
 // Starts the path's next ray on a surface.

@@ -1,4 +1,4 @@
-// For tests: the path tracer's pure functions by themselves, one invocation an input. PROBE chooses.
+// For tests: the path tracer's pure functions in isolation, one invocation per input. PROBE selects the function.
 layout(local_size_x = 64) in;
 #include "rays/random.glsl"
 #include "rays/bsdf.glsl"
@@ -29,7 +29,7 @@ void main() {
   second.y = pdf;
   second.zw = schlick(vec3(0.04, 0.9, 0.0), a.z).xy;
 #elif PROBE == 2
-  // a: o, alpha; b: two numbers. A direction reflected by a facet, and its density; a direction about the normal.
+  // a: o, alpha; b: two numbers. A direction reflected by a facet and its density; a direction about the normal.
   vec3 h = ggxSample(a.xyz, a.w, b.xy), r = reflect(-a.xyz, h);
   ggxReflect(a.xyz, r, a.w, pdf);
   first = vec4(r, pdf);

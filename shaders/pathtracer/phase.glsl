@@ -1,5 +1,5 @@
-// Phase functions: how a medium scatters light that travels along `w` into the direction `to`, both unit; a density
-// over solid angle in 1/sr. cos = dot(w, to): 1 is straight on.
+// Phase functions: scattering of light that travels along `w` into the direction `to`, both unit, as a density over
+// solid angle in 1/sr. cos = dot(w, to): 1 is straight ahead.
 
 const float kOver4Pi = 0.079577471545947668;
 
@@ -30,7 +30,7 @@ vec3 henyeyGreensteinSample(vec3 w, float om, float op, vec2 xi) {
   return phaseDirection(w, sqrt(omc * opc), cosine, xi.y);
 }
 
-// A channel each. 1 - cos and 1 + cos come from differences of the vectors, not from their dot product.
+// One component per channel. 1 - cos and 1 + cos come from differences of the vectors, not from their dot product.
 vec3 henyeyGreensteinPdf(vec3 w, vec3 to, vec3 om, vec3 op) {
   vec3 apart = w - to, together = w + to;
   vec3 forward = om * om + (op - om) * (0.5 * dot(apart, apart));

@@ -1,24 +1,24 @@
-// The ray to a lamp that next-event estimation has chosen: it waits until the lane's one traversal is free.
+// The shadow ray of next-event estimation. It waits until the lane's one traversal is free.
 
-// A lamp that was asked: its ray waits to be traced.
+// A sampled lamp whose ray waits to be traced.
 struct Shadow {
   bool waits;
   bool infinite;
   uint skip;
-  vec3 light;      // what it adds to the path's radiance where nothing is in the way
+  vec3 light;      // contribution to the path's radiance if nothing blocks it
   vec3 origin;
-  vec3 direction;  // to the lamp, its length the distance; unit to one at infinity
+  vec3 direction;  // to the lamp, its length the distance; unit if the lamp is at infinity
 #if INTERIORS
   float tMin;
-  float from;      // where the present medium begins
+  float from;      // where the current medium begins
   float ior;
-  uint crossed;    // boundaries
-  uvec4 inside;    // of which closed boundaries
+  uint crossed;    // number of boundaries crossed
+  uvec4 inside;    // the closed boundaries that contain the current position
   uvec4 words;     // random
 #endif
 #if ASKED
   uint kind;       // of the lamp
-  uint number;     // its triangle, or place among the lights
+  uint number;     // its triangle, or index among the lights
 #endif
 };
 Shadow shadow;
@@ -28,7 +28,7 @@ Shadow shadow;
 const uint kPurposeTransmittance = kFreePurpose + 3u;
 #endif
 
-// start: where the ray begins, on the triangle `skip`.
+// start: origin of the ray, on the triangle `skip`.
 void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint skip, PathNumbers numbers) {
   shadow.waits = true;
   shadow.infinite = light.infinite;
@@ -50,8 +50,8 @@ void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint 
 }
 
 #if ASKED
-// What the shadow ray brought; its path has not moved since, though it may have a new direction.
-// inFlight: it was asked from a point of a flight through a medium, which scatters there.
+// Records the shadow ray's contribution. The path has not moved since, though it may have a new direction.
+// inFlight: the ray started at a point of a flight through a medium, which scatters there.
 void noteShadow(Path path, bool inFlight, PathNumbers numbers) {
   path.scatterings += inFlight ? 1u : 0u;
   noteLight(path, numbers, shadow.light, shadow.kind, shadow.number, shadow.origin,

@@ -1,8 +1,8 @@
-// A path through participating media: how far it flies, what it adds and where it goes on from a collision; and how
-// much light a straight line lets through. The lights, path.glsl and shadow_ray.glsl stand before this file.
+// A path in participating media: how far it flies, what it gathers, and how it continues from a collision; and the
+// transmittance of straight lines. Include the lights, path.glsl and shadow_ray.glsl before this file.
 //
-// Flags: INTERIORS (closed boundaries: paths count what they are inside of), MEDIA, HETEROGENEOUS, VOLUME_EMISSION,
-// LAMPS_OUTSIDE (no lamp is within a dielectric), WALKS (dense media have clearance grids); deviations
+// Flags: INTERIORS (closed boundaries: paths count those that contain them), MEDIA, HETEROGENEOUS, VOLUME_EMISSION,
+// LAMPS_OUTSIDE (no lamp is inside a dielectric), WALKS (dense media have clearance grids); deviations
 // DISTANCE_WITHOUT_PDF, BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, ROULETTE_AT_SURFACES, STRAIGHT_SHADOW_RAYS,
 // UNATTENUATED_SHADOW_RAYS.
 #include "pathtracer/boundary.glsl"
@@ -19,9 +19,9 @@ const uint kPurposePhase = kFreePurpose + 1u;
 const uint kPurposeMediumChoice = kFreePurpose + 2u;
 const uint kPurposeSeek = kFreePurpose + 4u;
 
-// What becomes of a ray in a medium.
-const int kFlightArrives = 0;    // at what the ray was traced to
-const int kScattered = 1;  // or is in the midst of a long flight: goes on with a ray of its own
+// Outcome of a ray in a medium.
+const int kFlightArrives = 0;    // it reaches the target of the traced ray
+const int kScattered = 1;  // it scatters, or is amid a long flight: continues with its own ray
 const int kEnded = 2;
 
 int rankOf(uint triangle) { return int(materials[triangleData[triangle * TRIANGLE_WORDS].w].boundary); }
@@ -31,14 +31,14 @@ vec3 normalOf(uint triangle) {
   return uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
 }
 
-// Whether a ray comes from the triangle's front.
+// Whether a ray comes from the triangle's front side.
 bool facesAgainst(uint triangle, vec3 direction) { return dot(normalOf(triangle), direction) < 0.0; }
 
 #if TOUCHING
-// Crosses what lies within a gap of a surface, where rounding matters: `beyond` is what rays start in that go on behind
-// the surface, `before` in front of it. Faces that coincide with the surface may be met in any order, up to half a gap
-// before it too, so that the counts decide: a boundary can be entered where the path is outside of it and left where it
-// is inside. A short ray looks for them, hit after hit.
+// Crosses all boundaries within a gap of a surface, where rounding decides. Rays that continue behind the surface start
+// inside `beyond`, rays in front of it inside `before`. Coinciding faces may be hit in any order, up to half a gap
+// before the surface too, so the counts decide: a boundary can be entered if the path is outside it and left if it is
+// inside. A short ray finds the faces, hit after hit.
 struct Besides {
   uvec4 beyond, before;
   float tMin;
@@ -47,11 +47,11 @@ struct Besides {
 };
 const uint kMostBesides = 8u;
 
-// ahead: a gap long, to behind the surface.
+// ahead: one gap long, through to the far side of the surface.
 Ray besidesRay(Besides b, vec3 position, vec3 ahead) { return Ray(position - ahead, b.tMin, 2.0 * ahead, 1.0); }
 
-// What the short ray has hit. False: there is nothing more, but perhaps the first surface there that bounds nothing,
-// then in `hit`, else kNoHit.
+// Handles a hit of the short ray. False: the search is over, and `hit` is the first surface found that bounds nothing,
+// or kNoHit.
 bool crossBesides(inout Besides b, inout Hit hit, vec3 ahead) {
   if (hit.triangle == kNoHit) return false;
   int rank = rankOf(hit.triangle);
@@ -76,10 +76,10 @@ const uint kMostTries = 256u;  // tentative collisions of a straight line throug
 vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float distance, inout uvec4 words) {
 #if HETEROGENEOUS
   if (medium.grid >= 0) {
-    // Ratio tracking [Novak2014]: at each tentative collision what is null of it. Roulette from a tenth on. Where a
-    // bound lies far above the density there is no end of null collisions: after some the rest of the way is
-    // integrated, cell by cell. That leaves the mean as it is, as what is found up to a collision, times the
-    // transmittance from there on, has the whole way's for its mean at every collision.
+    // Ratio tracking [Novak2014]: each tentative collision multiplies by the probability of a null collision. Roulette
+    // starts below a tenth. A bound far above the density causes endless null collisions, so after a maximum number the
+    // rest of the way is integrated cell by cell. That keeps the mean unbiased: at every collision, the estimate so far
+    // times the transmittance of the rest has the transmittance of the whole way as its mean.
     DensityRecord g = densityRecords[medium.grid];
     DensityMarch march;
     vec3 through = vec3(1.0);
@@ -114,8 +114,8 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
 }
 #endif
 
-// What a shadow ray has hit. Index-matched boundaries are crossed; one that refracts stops the light, since the
-// straight line is no path of light then. True: it goes on behind. Else what is left of shadow.light arrives.
+// Handles a shadow ray's hit. Index-matched boundaries are crossed; a refracting one blocks the light, since the
+// straight line is no light path then. True: the ray continues behind it. Otherwise the remaining shadow.light arrives.
 bool crossShadow(Hit hit) {
   int rank = -1;
   bool front = false;
@@ -127,7 +127,7 @@ bool crossShadow(Hit hit) {
       return false;
     }
   }
-#if MEDIA && !UNATTENUATED_SHADOW_RAYS  // [VPT2024, 4.1] decides only whether a point is in shadow
+#if MEDIA && !UNATTENUATED_SHADOW_RAYS  // [VPT2024, 4.1] only tests whether a point is in shadow
   int medium = mediumInside(shadow.inside);
   if (medium >= 0) {
     float unit = shadow.infinite ? 1.0 : length(shadow.direction),
@@ -143,7 +143,7 @@ bool crossShadow(Hit hit) {
   return true;
 }
 
-// Whether a shadow ray that has crossed a boundary still is in the index that it began in.
+// Whether a shadow ray that has crossed a boundary is still in the refractive index it started in.
 bool shadowGoesOn() {
 #if !STRAIGHT_SHADOW_RAYS
   if (iorInside(shadow.inside) != shadow.ior) shadow.light = vec3(0.0);
@@ -152,19 +152,19 @@ bool shadowGoesOn() {
 }
 
 #if MEDIA
-// The largest coordinate of any triangle: in the header of the ray caster's triangles.
+// The largest coordinate of any triangle, stored in the header of the ray caster's triangles.
 float sceneMagnitude() { return uintBitsToFloat(texelFetch(bvhTriangles, 0).x); }
 
-// A path that left a closed boundary through a crack would be in its medium for ever: outside of all coordinates it
-// has.
+// A path that left a closed boundary through a crack would stay in its medium forever: detected by a position outside
+// all of the scene's coordinates.
 bool leaked(Path path) {
   vec3 a = abs(path.origin);
   return any(greaterThan(path.inside, uvec4(0u))) && max(a.x, max(a.y, a.z)) > sceneMagnitude() * 1.001;
 }
 
 #if ROULETTE_AT_SURFACES
-// Roulette once a turn of the published loop [VPT2024, algorithm 3]; which turn is the first (rrStart) the text does
-// not say: all are. False: the path ends.
+// Roulette once per iteration of the published loop [VPT2024, algorithm 3]. The text does not say at which iteration it
+// starts (rrStart), so it is played in all. False: the path ends.
 bool survivesTurn(inout Path path, float u) {
   float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
 #if ROULETTE_WITHOUT_DIVISION
@@ -178,20 +178,20 @@ bool survivesTurn(inout Path path, float u) {
 }
 #endif
 
-// Roulette by the throughput alone: a limit by depth would darken milk. False: the path ends.
+// Roulette by the throughput alone: a depth limit would darken milk. False: the path ends.
 bool survives(inout Path path, float u) {
   float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
 #if ROULETTE_WITHOUT_DIVISION && !ROULETTE_AT_SURFACES
   return u < min(largest, 0.95);
 #else
 #if ROULETTE_AT_SURFACES
-  float survival = 1.0;  // [VPT2024, algorithm 3] plays it once traceMedium as a whole is done
+  float survival = 1.0;  // [VPT2024, algorithm 3] plays it once, after traceMedium as a whole
 #else
   float survival = min(largest / kRouletteBelow, 1.0);
 #endif
-  // In an endless medium without absorption nothing else ends a path. Rare enough that a path across a slab of optical
-  // depth 1000 (slowest mode: 3.3e-6 per collision) is seldom lost: if weights grew faster than half of that, late
-  // arrivals would have infinite variance.
+  // In an endless medium without absorption nothing else ends a path. The probability is so small that a path across a
+  // slab of optical depth 1000 (slowest mode: 3.3e-6 per collision) is rarely lost: if weights grew faster than half of
+  // that, late arrivals would have infinite variance.
   if (path.event > (1u << 20)) survival = min(survival, 1.0 - exp2(-20.0));
   if (!(u < survival)) return false;
   path.throughput /= survival;
@@ -200,24 +200,24 @@ bool survives(inout Path path, float u) {
 }
 
 #if NEXT_EVENT
-// Whether the lamp that `words` pick has a place, but no size: one whose 1/r^2 collisions alone would sample with
-// infinite variance.
+// Whether the lamp selected by `words` is a point light: its 1/r^2 sampled at collisions alone would have infinite
+// variance.
 bool isPointLike(uvec4 words) {
   uint i = scaledWord(words.x, uint(lights.length()));
   if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
   return lights[i].kind == PATH_LIGHT_POINT || lights[i].kind == PATH_LIGHT_SPOT;
 }
 
-// Light from such a lamp, scattered once on a flight of length `s` from the path's origin. The place is drawn in
-// proportion to 1 / r^2 [KullaFajardo2012], on the flight rather than on the whole ray: that it comes so far is the
-// transmittance, but for the channels' differences.
+// Light from a point lamp, scattered once on a flight of length `s` from the path's origin. The scattering position is
+// drawn in proportion to 1 / r^2 [KullaFajardo2012], on the flight rather than on the whole ray: the probability of
+// flying that far is the transmittance, except for the channels' differences.
 void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNumbers numbers) {
   uvec4 words = randomWords(numbers, path.event, kPurposePick);
   if (!counts(path.scatterings + 1u) || all(equal(medium.albedo, vec3(0.0))) || !isPointLike(words)) return;
   LightSample light;
   vec2 xi = randomPair(numbers, path.event, kPurposeLight);
   if (!sampleLight(path.origin, xi, words, light)) {
-    // A spot may not light the origin: its place is asked for all the same.
+    // A spot may not light the origin; its position is needed all the same.
     uint i = scaledWord(words.x, uint(lights.length()));
     if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
     light.end = lights[i].a;
@@ -241,11 +241,11 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
 #endif
 
 #if NEXT_EVENT
-// A new direction, drawn from the phase function, and now and then instead towards the lamp that the next flight asks.
-// A flight that passes the lamp at a distance h finds light in proportion to 1/h; by directions of the phase function
-// alone that has an infinite variance. Angles to the lamp drawn uniformly have a density in proportion to 1/h
-// themselves. The farther the lamp the more seldom, as the flight would hardly get there, and since each such choice
-// makes the path's weight a little more uneven.
+// A new direction, drawn from the phase function or, occasionally, towards the lamp that the next flight samples. A
+// flight that passes the lamp at a distance h finds light in proportion to 1/h; with directions from the phase function
+// alone this has infinite variance. Drawing the angle to the lamp uniformly gives a density proportional to 1/h. The
+// farther the lamp, the less often: the flight would rarely get there, and each such choice makes the path's weight a
+// little more uneven.
 void seekLamp(inout Path path, MediumRecord medium, vec3 before, vec3 q, PathNumbers numbers, inout vec3 weight) {
   uvec4 words = randomWords(numbers, path.event, kPurposePick), choice = randomWords(numbers, path.event, kPurposeSeek);
   uint i = scaledWord(words.x, uint(lights.length()));
@@ -265,8 +265,8 @@ void seekLamp(inout Path path, MediumRecord medium, vec3 before, vec3 q, PathNum
 }
 #endif
 
-// Whether a straight line from where the path is may reach a lamp at all: with all lamps outside, not from within
-// anything that refracts.
+// Whether a straight line from the path's position can reach any lamp. If all lamps are outside, it cannot from within
+// a refracting boundary.
 bool lampsReach(Path path) {
 #if LAMPS_OUTSIDE
   return path.ior == 1.0;
@@ -275,7 +275,7 @@ bool lampsReach(Path path) {
 #endif
 }
 
-// At a collision: light from a lamp where `asks`, then on in a direction of the phase function.
+// At a collision: light from a lamp if `asks`, then a new direction from the phase function.
 int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, bool asks) {
   path.skip = kNoHit;
   path.head = 0.0;
@@ -294,7 +294,7 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
   const bool asked = false;
 #else
-  // it has been, on the way here
+  // a point light was already sampled on the way here
   bool asked = asks && medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));
 #endif
   if (counts(path.scatterings) && asks && !asked &&
@@ -319,16 +319,16 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
 #if NEXT_EVENT && (POINTS || SPOTS)
   if (asked) seekLamp(path, medium, before, q, numbers, weight);
 #endif
-  // Roulette by what the path is worth, not by the weight of a direction that seeks a lamp: that is small where the
-  // flight finds much.
+  // Roulette by the path's value, not by the weight of a direction towards a lamp: that weight is small where the
+  // flight finds much light.
   if (!survives(path, unitFloat(choice.y))) return kEnded;
   path.throughput *= weight;
   return kScattered;
 }
 
 #if HETEROGENEOUS
-// Delta tracking over the part of the ray that is free. After some tentative collisions the flight is broken off where
-// it is and goes on with the next ray: exponential flights have no memory, and no submission is held up.
+// Delta tracking over the free part of the ray. After a number of tentative collisions the flight is interrupted and
+// continues with the next ray: exponential flights have no memory, and no submission is held up.
 int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbers numbers, out bool collided) {
   collided = false;
   DensityRecord g = densityRecords[medium.grid];
@@ -383,8 +383,8 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
 #endif
 
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
-// Probability of an interaction [VPT2024, algorithm 4]: the largest albedo, of which the published text makes a half at
-// least.
+// Probability of an interaction [VPT2024, algorithm 4]: the largest albedo, which the published text raises to at least
+// a half.
 float interactionProbability(MediumRecord medium) {
   float w = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
 #if BOOSTED_INTERACTION
@@ -394,13 +394,13 @@ float interactionProbability(MediumRecord medium) {
 }
 #endif
 
-// How far the ray may go before it collides, negative where that is before its origin; with a density grid that is told
-// once it is known where the ray ends.
+// How far the ray may go before it collides; negative if the collision lies before its origin. With a density grid the
+// distance is found once the ray's end is known.
 float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   if (medium.grid >= 0) return kFar;
   uvec2 words = randomWordPair(numbers, path.event, kPurposeFlight);
 #if DISTANCE_WITHOUT_PDF
-  // [VPT2024, algorithm 4]: from the least of the extinctions, and only with the probability of an interaction.
+  // [VPT2024, algorithm 4]: with the smallest extinction, and only with the probability of an interaction.
   float least = min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b));
   if (unitFloat(words.y) >= interactionProbability(medium) || !(least > 0.0)) return kFar;
   return max(min(exponentialSample(words.x) / least, kFar) - path.head, 0.0);
@@ -409,16 +409,16 @@ float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
          path.head;
 }
 
-// How far beyond a collision to look for a surface. Where one is so near, the next ray might miss it by the rounding of
-// its distance, which is that of the triangles' coordinates: collisions keep a distance from it, and a ray may meet it
-// at a grazing angle.
+// How far beyond a collision to look for a surface. If one is this near, the next ray might miss it by the rounding
+// error of its distance, which is that of the triangles' coordinates. Collisions keep this distance from surfaces, also
+// at grazing angles.
 float flightMargin() { return sceneMagnitude() * kBeside * 64.0; }
 
-// What a flight of that length adds, and leaves of the throughput.
+// Contribution of a flight of the given length, and its effect on the throughput.
 void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, bool arrives, PathNumbers numbers) {
 #if VOLUME_EMISSION
   if (counts(path.scatterings) && distance < 0.5 * kFar) {
-    // By the length of the flight: one point of it stands for all. Where little collides that has hardly any noise.
+    // Emission along the flight, estimated at one point of it. Where collisions are rare this has hardly any noise.
     float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
     vec3 emitted = distance * medium.emission * passageWeight(medium, q, x);
     addLight(path, emitted);
@@ -440,13 +440,13 @@ void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, b
 }
 
 #if WALKS
-// distances from cells' centres to the nearest triangle of the scene
+// distances from cell centres to the scene's nearest triangle
 layout(binding = 3) uniform samplerBuffer clearances;
 const uint kWalkSteps = 64u;
 
-// From collision to collision as long as `flight`, the one drawn last, ends before it could meet any triangle: no ray
-// is traced for such. Every number drawn and every sum is that of a path that traces them all. Where a lamp might be
-// asked there is no walk. False: the path ends.
+// Moves from collision to collision as long as `flight`, the last one drawn, ends before it could meet any triangle; no
+// ray is traced for these. Every random number and every sum is that of a path that traces them all. There is no walk
+// where a lamp might be sampled. False: the path ends.
 bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers numbers) {
   int rank = topRank(path.inside);
   if (rank < 0 || (NEXT_EVENT != 0 && lampsReach(path))) return true;
@@ -473,12 +473,12 @@ bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers 
 
 bool arrivesAt(Hit hit, float flight) { return hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar; }
 
-// Of the flight before what it meets: that through the gap behind the ray's start counts too.
+// Length of the flight before the hit; it includes the gap behind the ray's start.
 float flownDistance(Path path, Hit hit, float flight) {
   return max(path.head + (hit.triangle != kNoHit && arrivesAt(hit, flight) ? hit.t : flight), 0.0);
 }
 
-// What happens on the way to `hit`, the first hit within `flight`.
+// Handles what happens on the way to `hit`, the first hit within `flight`.
 int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
   vec3 inward = vec3(0.0);
 #if HETEROGENEOUS
@@ -493,9 +493,9 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
     weighFlight(path, medium, channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives,
                 numbers);
     if (arrives) return kFlightArrives;
-    // Nearer to a face than a gap the path goes on from a gap beside it, and the flight that it does not make or makes
-    // twice, along the face's normal, is made good in the next: as if it had begun where it should have. Where a gap is
-    // no small part of a mean free path that is much.
+    // Nearer to a face than a gap, the path continues from a gap beside it. The piece of flight along the face's normal
+    // that is thereby skipped or repeated is made up for in the next flight, as if it had begun where it should have.
+    // This matters where a gap is a sizeable part of a mean free path.
     if (flight < 0.0) {
       vec3 normal = normalOf(path.face);
       inward = -flight * abs(dot(normal, path.direction)) * (dot(normal, path.direction) < 0.0 ? -normal : normal);
@@ -513,7 +513,7 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
     }
   }
   int became = scatterInMedium(path, medium, numbers, lampsReach(path));
-#if !FIXED_EPSILON  // published rays have no such thing
+#if !FIXED_EPSILON  // published rays have no such correction
   float shift = length(inward);
   if (shift > 0.0) {
     float cosine = dot(inward, path.direction) / shift;

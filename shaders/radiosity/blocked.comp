@@ -1,10 +1,10 @@
-// Whether anything lies between a patch and a light, through the hierarchy of the path tracer. x: rays.
+// Shadow rays between patches and lights, through the path tracer's hierarchy. x: rays.
 layout(local_size_x = 64) in;
 #include "rays/bvh.glsl"
 struct LightRay {
-  vec4 origin;     // in the hierarchy's space; w: the patch that it starts from, not looked at
+  vec4 origin;     // in the hierarchy's space; w: the patch it starts from, which is ignored
   vec4 direction;  // to the light, its length the distance
-  vec4 normal;     // of the patch; w: the largest of its coordinates
+  vec4 normal;     // of the patch; w: its largest coordinate
 };
 layout(std430, binding = 1) readonly buffer Rays { LightRay rays[]; };
 layout(std430, binding = 2) writeonly buffer Blocked { uint blocked[]; };

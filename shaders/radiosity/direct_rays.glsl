@@ -1,7 +1,7 @@
 // Direct irradiance at a point by shadow rays; see engine/radiosity/direct_rays.hpp. Storage block 1, texture units 60
-// and 61. What an emissive triangle sends to the point were nothing between is its closed form
-// (radiosity/polygon.glsl); the part of it that is free is the mean over points of the triangle, evenly spread by area
-// and weighted by what each of them sends: without a blocker there is no noise.
+// and 61. Unoccluded irradiance from an emissive triangle is computed in closed form (radiosity/polygon.glsl). Its
+// visible fraction is the mean over points of the triangle, evenly distributed by area and weighted by their
+// contribution, so without a blocker there is no noise.
 #include "lib/spot.glsl"
 #include "rays/bvh.glsl"
 #include "radiosity/polygon.glsl"
@@ -10,12 +10,12 @@ struct DirectLight {
   vec4 a, b, c, d;  // Light in direct_rays.cpp
 };
 layout(std430, binding = 1) readonly buffer DirectLights {
-  ivec4 directHead;  // lights, rays a triangle
+  ivec4 directHead;  // lights, rays per triangle
   vec4 directOrigin;
   DirectLight directLights[];
 };
 
-// 32 bits of a pixel [JarzynskiOlano2020, pcg2d], as two numbers in 0..1.
+// Hashes 32 bits per pixel [JarzynskiOlano2020, pcg2d] to two numbers in 0..1.
 vec2 directShift(uvec2 v) {
   v = v * 1664525u + 1013904223u;
   v.x += v.y * 1664525u;
@@ -27,11 +27,11 @@ vec2 directShift(uvec2 v) {
   return vec2(v >> 8) * 5.9604645e-8;
 }
 
-// position: of the pixel; normal: of shading; face: of the geometry; both unit, to the front. plane, magnitude: the
-// distance of the face's plane from the origin along `face`, the largest coordinate of the triangle that rays know it
-// by. reflection: radiance over irradiance, for a pixel that is asked for.
-// Interpolated over a large face, a position is off it by more than its own rounding: it is brought back to the plane,
-// and a ray then starts beyond the rounding of that triangle, as a path's does.
+// position: of the pixel; normal: for shading; face: of the geometry; both unit, on the front side. plane: distance of
+// the face's plane from the origin along `face`; magnitude: the largest coordinate of the triangle in the ray caster.
+// reflection: radiance per irradiance, for the queried pixel.
+// A position interpolated over a large face is off by more than its own rounding, so it is projected back onto the
+// plane. Rays then start beyond the rounding error of that triangle, as a path's do.
 vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float magnitude, vec3 reflection) {
   vec3 p = position - directOrigin.xyz - face * (dot(position, face) - plane), start = offsetRay(p, face, magnitude);
   vec3 u = normalize(abs(normal.x) > 0.5 ? vec3(normal.y, -normal.x, 0.0) : vec3(0.0, normal.z, -normal.y)),
@@ -60,7 +60,7 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
     float open = 0.0, all = 0.0;
     int rays = kind == 0 ? directHead.y : 1;
     for (int k = 0; k < rays; ++k) {
-      // The plastic number's sequence [Roberts2018], shifted for each pixel, folded onto the triangle.
+      // The R2 sequence, based on the plastic number [Roberts2018], shifted per pixel and folded onto the triangle.
       vec2 xi = fract(shift + float(k + 1) * vec2(0.7548776662, 0.5698402910));
       if (xi.x + xi.y > 1.0) xi = 1.0 - xi;
       Ray ray;

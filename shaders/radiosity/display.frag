@@ -1,13 +1,13 @@
-// Display mappings of radiosity besides the engine's tone mapping. MAPPING 1: linear, a constant factor (the exposure),
-// cut at 1. 2: logarithmic, as the original shows its values [RAD2008 section 3.6]: range decades below 1 / exposure.
-// 3: false colours of the same decades, by luminance.
+// Display mappings of radiosity besides the engine's tone mapping. MAPPING 1: linear, scaled by the exposure and
+// clamped at 1. 2: logarithmic, as in the original [RAD2008 section 3.6]: a range of decades below 1 / exposure. 3:
+// false colours over the same decades, by luminance.
 #include "lib/frame.glsl"
 #include "lib/tonemap.glsl"
 layout(binding = 0) uniform sampler2D hdr;
 uniform float decades;
 out vec4 color;
 
-// Where v lies in the decades below 1: 0..1.
+// Position of v in the decades below 1: 0..1.
 vec3 logarithmic(vec3 v) { return clamp(1.0 + log2(max(v, vec3(1e-30))) / (decades * 3.321928), 0.0, 1.0); }
 
 void main() {
@@ -17,7 +17,7 @@ void main() {
 #elif MAPPING == 2
   color = vec4(logarithmic(value), 1.0);
 #else
-  // Black, blue, cyan, green, yellow, red, white: a sixth of the range each.
+  // Black, blue, cyan, green, yellow, red, white: each step a sixth of the range.
   float t = 6.0 * logarithmic(vec3(dot(value, vec3(0.2126, 0.7152, 0.0722)))).x;
   float red = t < 5.0 ? t - 3.0 : 1.0;
   float green = t < 4.0 ? t - 1.0 : t < 5.0 ? 5.0 - t : t - 5.0;

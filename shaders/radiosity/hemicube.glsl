@@ -1,19 +1,18 @@
-// Hemicubes [CohenGreenberg1985] without a projection matrix: a pixel's direction d = (x, y, 1) in a face's frame meets
-// a triangle of corners a, b, c (seen from the hemicube's centre) where d . (a x b), d . (b x c) and d . (c x a) have
-// the sign of det = a . (b x c), at the inverse distance (their sum) / det along d [Olano1997]. So nothing is clipped,
-// there is no near plane, and what touches the centre still blocks.
+// Hemicubes [CohenGreenberg1985] without a projection matrix. A pixel's direction d = (x, y, 1) in a face's frame hits
+// a triangle with corners a, b, c (relative to the hemicube's centre) if d . (a x b), d . (b x c) and d . (c x a) have
+// the sign of det = a . (b x c); the inverse distance along d is (their sum) / det [Olano1997]. So nothing is clipped,
+// there is no near plane, and triangles that touch the centre still block.
 //
-// Three ways tell which patch each pixel sees: raster (hemicube_depth.comp), rays (hemicube_rays.comp) and an item
-// buffer (hemicube_item.*). hemicube_sum.comp adds up what each patch has of the delta form factors; a sum's order
-// never changes. Layout of a hemicube's pixels: the full face N x N, then four half faces N x N/2, rows upwards from
-// the horizon. Corners come from a buffer texture, which llvmpipe gathers from three times as fast as from a storage
-// block.
-layout(binding = 59) uniform samplerBuffer corners;  // three texels a patch
+// There are three ways to find the patch that each pixel sees: raster (hemicube_depth.comp), rays (hemicube_rays.comp)
+// and an item buffer (hemicube_item.*). hemicube_sum.comp sums each patch's delta form factors, always in the same
+// order. Pixel layout of a hemicube: the full face N x N, then four half faces N x N/2, rows upwards from the horizon.
+// Corners come from a buffer texture, which llvmpipe gathers from three times as fast as from a storage block.
+layout(binding = 59) uniform samplerBuffer corners;  // three texels per patch
 uniform int patchCount;
 
 struct Frame {
-  vec4 origin;   // w: 1 / (distance below which a corner lies in the patch's plane)
-  vec4 u, v, n;  // unit; n the patch's normal. u's w: a bit for each of the patch's parts that is hidden
+  vec4 origin;   // w: 1 / (distance below which a corner counts as lying in the patch's plane)
+  vec4 u, v, n;  // unit; n: the patch's normal. w of u: one bit for each hidden part of the patch
 };
 layout(std140, binding = 9) uniform Frames { Frame frames[256]; };
 
@@ -42,7 +41,7 @@ Triangle worldTriangle(int index) {
 }
 Triangle triangleOf(Frame f, int index) { return toFrame(f, worldTriangle(index)); }
 
-// Not the patch itself, nor what lies in its plane or below.
+// Excludes the patch itself and triangles in its plane or below.
 bool isAbove(Frame f, Triangle t, int index, int self) {
   return index != self && max(t.a.z, max(t.b.z, t.c.z)) * f.origin.w >= 1.0;
 }
@@ -56,8 +55,8 @@ vec3 toFace(int face, vec3 p) {
 
 bool anyLess(vec3 a, vec3 b) { return any(lessThan(a, b)); }
 
-// A bit for each face that may see the triangle. Software renderers run both sides of a branch: so a lane goes on with
-// the faces that it has, instead of asking five times.
+// One bit per face that may see the triangle. Software renderers execute both sides of a branch, so a lane iterates
+// over its set bits instead of testing five faces.
 uint facesOf(Triangle t) {
   vec3 x = vec3(t.a.x, t.b.x, t.c.x), y = vec3(t.a.y, t.b.y, t.c.y), z = vec3(t.a.z, t.b.z, t.c.z), none = vec3(0.0);
   bool xBelowZ = anyLess(x, z), yBelowZ = anyLess(y, z), minusXBelowZ = anyLess(-x, z), minusYBelowZ = anyLess(-y, z);
@@ -70,7 +69,7 @@ uint facesOf(Triangle t) {
   return anyLess(none, z) ? faces : 0u;
 }
 
-// The lowest of them; 0 where there is none.
+// The lowest set bit's index; 0 if none is set.
 int lowestFace(uint faces) { return faces == 0u ? 0 : (floatBitsToInt(float(int(faces & -faces))) >> 23) - 127; }
 
 int facePixels(int face) { return face == 0 ? 0 : (face + 1) * halfFacePixels; }
@@ -87,14 +86,14 @@ vec3 pixelDirection(int face, ivec2 pixel) {
   return face == 0 ? vec3(at, 1.0) : vec3((face & 1) == 1 ? level.yx : vec2(-level.x, level.y), at.y);
 }
 
-// Where a pixel of a hemicube lies: face, column, row.
+// Position of a hemicube's pixel: face, column, row.
 ivec3 placeOf(int pixel) {
   int face = pixel < 2 * halfFacePixels ? 0 : pixel / halfFacePixels - 1;
   int inFace = pixel - facePixels(face);
   return ivec3(face, inFace % faceSize, inFace / faceSize);
 }
 
-// The inverse distance of a triangle's plane along a direction.
+// The inverse distance to a triangle's plane along a direction.
 float inverseAlong(Triangle t, vec3 direction) {
   vec3 normal = cross(t.b - t.a, t.c - t.a);
   return dot(normal, direction) / dot(normal, t.a);

@@ -1,5 +1,5 @@
 // Hemicubes, pass 1: each pixel's nearest surface.
-// LARGE 0: x: triangles, y: hemicubes of the batch. LARGE 1: what that listed, a work group each.
+// LARGE 0: x: triangles, y: hemicubes of the batch. LARGE 1: the large triangles listed by it, one work group each.
 #include "radiosity/hemicube_walk.glsl"
 
 layout(std430, binding = 2) buffer Keys { uint keys[]; };

@@ -1,30 +1,30 @@
-// Hemicubes, pass 3: where the closed form tells more than pixels can, it replaces their sum, and pixels tell
-// visibility alone: for what covers many pixels (exact but for its border), what is near (averaged over the receiving
-// patch too [BaumRushmeierWinget1989]), and small sources. Each invocation takes entries of pass 2's list, a stride of
-// the whole dispatch apart.
+// Hemicubes, pass 3: replaces pixel sums by the closed form where it is more accurate; pixels then supply only
+// visibility. That applies to triangles that cover many pixels (exact except at the border), near ones (averaged over
+// the receiving patch too [BaumRushmeierWinget1989]) and small sources. Each invocation takes entries of pass 2's list
+// with the whole dispatch as stride.
 #include "radiosity/hemicube.glsl"
 #include "radiosity/polygon.glsl"
 #include "radiosity/triangle_parts.glsl"
 layout(local_size_x = 64) in;
 #if SOURCES
 #include "rays/bvh.glsl"
-uniform vec3 raysOrigin;  // of the hierarchy's space
+uniform vec3 raysOrigin;  // in the hierarchy's space
 #endif
 
 #if ITEMS
 #include "radiosity/hemicube_keep.glsl"
 #endif
-// the share's place takes the form factor
+// the slot of the share receives the form factor
 layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };
-uniform float nearDistance;  // a receiver is divided so that (distance / size of a part) reaches this; 0: never
-uniform int mostParts;       // a side, at most
+uniform float nearDistance;  // a receiver is subdivided until (distance / size of a part) reaches this; 0: never
+uniform int mostParts;       // per side, at most
 
-// The mean over a triangle of what a small, far one sends to its points, over what it sends to its centroid, to second
-// order: with the kernel N.v / |v|^4 (v from a point to the other's centroid, N its normal; the receiver's own cosine
-// cancels) and the second moments M of the triangle, the sum of c c^T / 12 over its corners c from its centroid, it is
-// 1 + tr(M f'') / (2 f). At a distance of ten sizes the centroid alone is off by 0.3 %.
+// The mean over a triangle's points of the irradiance from a small, distant one, relative to that at its centroid, to
+// second order. With the kernel N.v / |v|^4 (v from a point to the other's centroid, N its normal; the receiver's own
+// cosine cancels) and the triangle's second moments M, the sum of c c^T / 12 over its corners c from its centroid, it
+// is 1 + tr(M f'') / (2 f). At a distance of ten sizes the centroid alone is off by 0.3 %.
 float spread(vec3 v, vec3 n, mat3 c) {
-  // its length drops out; in a scene of 1e6 units its square would overflow
+  // scale n, whose length cancels; in a scene of 1e6 units its square would overflow
   n /= max(max(abs(n.x), max(abs(n.y), abs(n.z))), 1e-30);
   vec3 alongV = v * c, alongN = n * c;
   float squares = dot(c[0], c[0]) + dot(c[1], c[1]) + dot(c[2], c[2]), r2 = dot(v, v), nv = dot(n, v),
@@ -34,14 +34,13 @@ float spread(vec3 v, vec3 n, mat3 c) {
          (12.0 * dot(alongV, alongV) / (r2 * r2) - 2.0 * squares / r2 - 4.0 * dot(alongN, alongV) / (nv * r2)) / 12.0;
 }
 
-// Mean over what is not hidden of the receiver, of the closed form, from the centroids of parts x parts equal
-// triangles.
+// Mean of the closed form over the receiver's visible area, sampled at the centroids of parts x parts equal triangles.
 float meanOfParts(vec3 r0, vec3 r1, vec3 r2, int parts, uint hidden, Triangle t) {
   float sum = 0.0, open = 0.0;
   float side = 1.0 / float(parts);
-  int i = 0, j = 0;  // strip and place in it: 2 (parts - i) - 1 parts, every second upside down
+  int i = 0, j = 0;  // strip and position in it: a strip has 2 (parts - i) - 1 parts, every second one upside down
   for (int k = 0; k < parts * parts || open == 0.0; ++k) {
-    // where the hemicube stands; also where each centroid lies in what is hidden
+    // use the hemicube's own position; also if every centroid lies in the hidden area
     bool own = parts == 1 && hidden != 0u || k == parts * parts;
     float third = (j & 1) == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
     float u = (float(i) + third) * side, v = (float(j / 2) + third) * side;
@@ -74,15 +73,15 @@ float receivedFrom(Frame frame, int self, Triangle t) {
   if (parts < mostParts) parts += parts & 1;
   float fine = meanOfParts(r0, r1, r2, parts, hidden, t);
   if (hidden != 0u || (parts & 1) != 0) return fine;
-  // The error of the centroids falls with the square of the parts: what halving them shows of it is taken off
+  // The centroids' error falls with the square of the number of parts: Richardson extrapolation from half as many
   // [Richardson1911].
   return max(fine + (fine - meanOfParts(r0, r1, r2, parts / 2, hidden, t)) / 3.0, 0.0);
 }
 
 #if SOURCES
-// Whether nothing stands between the hemicube's centre and the centroid of a source that no pixel's centre met. Pixels
-// beside it cannot tell: on a hollow surface its plane runs behind theirs, on a bulging one theirs before it. What lies
-// in the patch's own plane is not met, nor what lies on the source.
+// Whether nothing blocks the line from the hemicube's centre to the centroid of a source that no pixel's centre hit.
+// Pixels beside it cannot tell: on a concave surface its plane runs behind theirs, on a convex one theirs before it.
+// Surfaces in the patch's own plane and on the source are ignored.
 bool isSeen(Frame frame, int self, Triangle t) {
   vec3 m = (t.a + t.b + t.c) / 3.0;
   if (m.z * frame.origin.w < 1.0) return false;

@@ -1,4 +1,4 @@
-// Item buffer: a patch's number + 1, at a depth in which floats are equally exact near and far.
+// Item buffer: writes the patch number + 1, and a depth with the same relative precision near and far.
 flat in uint fItem;
 flat in float fBias;
 in float fDistance;

@@ -1,6 +1,6 @@
-// Item buffer: a triangle goes to the faces that may see it, a layer a face [CohenGreenberg1985]. Everything in front
-// of the centre lies between the near and the far plane: depth is the distance along the face's axis, written by the
-// fragment shader.
+// Item buffer: sends a triangle to the faces that may see it, one layer per face [CohenGreenberg1985]. Everything in
+// front of the centre lies between the near and the far plane: depth is the distance along the face's axis, written by
+// the fragment shader.
 #include "radiosity/hemicube.glsl"
 layout(triangles, invocations = 5) in;
 layout(triangle_strip, max_vertices = 3) out;
@@ -15,7 +15,7 @@ void main() {
   int hemicube = gPatch[0].y, face = gl_InvocationID;
   if (!isAbove(frames[hemicube], t, gPatch[0].x, firstPatch + hemicube) || (facesOf(t) & (1u << uint(face))) == 0u)
     return;
-  // A front wins over a back at the same place: sheets of two fronts.
+  // A front face wins over a back face in the same place, for sheets with two fronts.
   float bias = dot(t.a, cross(t.b, t.c)) < 0.0 ? 1.0 : 1.000002;
   for (int k = 0; k < 3; ++k) {
     vec3 p = toFace(face, gPosition[k]);

@@ -1,4 +1,4 @@
-// Item buffer: three vertices a patch, an instance a hemicube; positions in the hemicube's frame.
+// Item buffer: three vertices per patch, one instance per hemicube; positions in the hemicube's frame.
 #include "radiosity/hemicube.glsl"
 out vec3 gPosition;
 flat out ivec2 gPatch;  // and hemicube

@@ -1,10 +1,10 @@
-// Item buffer, second pass: its layers become one row of pixels a hemicube, as the other ways write them, and each
-// patch's share of the hemisphere is summed (hemicube_keep.glsl). x, z: pixels, y: hemicubes of the batch.
+// Item buffer, second pass: copies its layers to one row of pixels per hemicube, the layout of the other methods, and
+// sums each patch's share of the hemisphere (hemicube_keep.glsl). x, z: pixels, y: hemicubes of the batch.
 #include "radiosity/hemicube.glsl"
 #include "radiosity/hemicube_keep.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 56) uniform usampler2DArray drawn;       // a layer a face, half faces in the upper half
+layout(binding = 56) uniform usampler2DArray drawn;       // one layer per face, half faces in the upper half
 layout(binding = 58) uniform samplerBuffer deltaFactors;  // the full face, then one half face
 layout(std430, binding = 2) writeonly buffer Items { uint items[]; };
 

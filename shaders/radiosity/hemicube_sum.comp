@@ -1,13 +1,13 @@
-// Hemicubes, pass 2: form factors. A triangle's form factor is the sum of the delta form factors of the pixels that it
-// kept in pass 1. Written: the form factor, negative where a patch's back was seen. What pass 3 (hemicube_exact.comp)
-// knows better is listed for it, with the share of its pixels that was seen.
-// DRAWN 1: the GPU's rasteriser has drawn the pixels. ITEMS 1: pixels name their patches, and hemicube_keep.glsl has
-// summed already what each kept; sums here are of what it covers.
-// LARGE 0: x: hemicubes of the batch, y: triangles; ITEMS: x: what was listed as kept. LARGE 1: what is listed as
-// large, a work group each; after pass 1, as it writes over it.
+// Hemicubes, pass 2: form factors. A triangle's form factor is the sum of the delta form factors of its visible pixels
+// from pass 1. Writes the form factor, negative if a patch's back was seen. Form factors that pass 3
+// (hemicube_exact.comp) computes more accurately are listed for it, with the visible share of their pixels.
+// DRAWN 1: the GPU's rasteriser has drawn the pixels. ITEMS 1: pixels name their patches, hemicube_keep.glsl has
+// already summed the visible ones, and sums here are over the covered pixels.
+// LARGE 0: x: hemicubes of the batch, y: triangles; ITEMS: x: the list of visible patches. LARGE 1: the listed large
+// triangles, one work group each; runs after pass 1, as it overwrites its data.
 #include "radiosity/hemicube_walk.glsl"
 
-layout(binding = 57) uniform usamplerBuffer keys;          // of pass 1
+layout(binding = 57) uniform usamplerBuffer keys;          // from pass 1
 layout(binding = 58) uniform samplerBuffer deltaFactors;   // the full face, then one half face
 #if ITEMS
 #include "radiosity/hemicube_keep.glsl"
@@ -16,25 +16,25 @@ uniform int sourceCount;  // small sources
 layout(std430, binding = 4) writeonly buffer Factors { float factors[]; };  // hemicube-major
 layout(std430, binding = 5) readonly buffer Sources { uint sources[]; };    // 1 where a patch is a small source
 #endif
-// place of the form factor; share as bits, negative: no pixel
+// slot of the form factor; share as bits, negative: no pixel
 layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };
-uniform int exactPixels;  // what should cover as many takes the closed form; 0: never
+uniform int exactPixels;  // triangles expected to cover this many use the closed form; 0: never
 
-// Whether a triangle is so large that it should cover as many pixels as take the closed form: by its solid angle, not
-// by the pixels that happened to fall into it. Were those counted, what is there by chance would decide: pieces that
-// met more than their share would lose it to the closed form, those that met less would stay, and a surface cut into
-// pieces about that size came out 0.2 % too small.
+// Whether a triangle is large enough to be expected to cover exactPixels. Its solid angle decides, not the pixels that
+// happened to fall into it: with actual counts, pieces that received more than their share would lose the excess to the
+// closed form while those with less kept their deficit, and a surface cut into pieces of about that size came out 0.2 %
+// too small.
 bool isExact(Triangle t) {
   vec3 m = (t.a + t.b + t.c) / 3.0;
   float depth = max(m.z, max(abs(m.x), abs(m.y)));
-  // Its area over depth^2 as the face sees it; of what lies below the horizon the part above counts, roughly.
+  // Its area over depth^2 as the face sees it; for triangles that cross the horizon, roughly the part above.
   float high = max(t.a.z, max(t.b.z, t.c.z)), low = min(t.a.z, min(t.b.z, t.c.z)),
         above = low < 0.0 ? high / (high - low) : 1.0;
   return exactPixels > 0 && 0.5 * abs(dot(m, cross(t.b - t.a, t.c - t.a))) * above * above * halfSize * halfSize >=
                                 float(exactPixels) * depth * depth * depth;
 }
 
-// The delta form factors: x of the pixels that the triangle kept, y of all that it covers, z their count.
+// Sums of delta form factors: x over the triangle's visible pixels, y over all that it covers, z their count.
 vec3 sumOf(FaceTriangle f, int face, int firstPixel, int index) {
   vec3 sum = vec3(0.0);
   int start = firstPixel + facePixels(face), toDelta = (face == 0 ? 0 : 2 * halfFacePixels) - start;
@@ -54,7 +54,7 @@ vec3 sumOf(FaceTriangle f, int face, int firstPixel, int index) {
   return sum;
 }
 
-// place: hemicube * patchCount + patch; ITEMS: in the list of what was kept.
+// place: hemicube * patchCount + patch; ITEMS: index in the list of visible patches.
 void write(int place, int hemicube, int index, Triangle t, bool above, vec3 sum) {
   bool front = dot(t.a, cross(t.b, t.c)) < 0.0;
 #if ITEMS
@@ -65,9 +65,9 @@ void write(int place, int hemicube, int index, Triangle t, bool above, vec3 sum)
 #else
   factors[place] = front ? sum.x : -sum.x;
 #endif
-  // Of what is large the pixels met tell how much is seen, unless it met far fewer than it should: a sliver, or what
-  // the horizon cuts. So they do of a small source in few pixels, but where the GPU has drawn them: its rasteriser
-  // rounds edges otherwise than this pass does, and a source of a pixel or two would lose by it.
+  // For a large triangle its pixels give the visible fraction, unless it received far fewer than it should: a sliver,
+  // or one cut by the horizon. The same holds for a small source in few pixels, except where the GPU has drawn them:
+  // its rasteriser rounds edges differently from this pass, and a source of a pixel or two would lose light.
   bool exact = isExact(t) && 1.25 * sum.z >= float(exactPixels), source = sources[index] != 0u && above,
        pixelsTell = exact || (DRAWN == 0 && sum.z > 0.0);
   if (exactPixels > 0 && front && (pixelsTell ? sum.x > 0.0 && (exact || source) : source))
@@ -141,7 +141,7 @@ void main() {
       faces &= faces - 1u;
     } while (faces != 0u);
 #if ITEMS
-    if (tooLarge) listLarge(place);  // else pass 1 has done so
+    if (tooLarge) listLarge(place);  // otherwise pass 1 has done so
 #endif
     if (!tooLarge) write(place, hemicube, index, t, above, sum);
   } while (++hemicube < end);

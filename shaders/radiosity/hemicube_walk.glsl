@@ -1,35 +1,35 @@
-// A hemicube's triangles drawn by compute: which pixels of a face a triangle covers, and at which inverse distance. An
-// invocation takes one triangle and some hemicubes. What spans more than kMostPixels of a face is listed for a pass of
-// its own, a work group a triangle, a lane a row: lanes stay busy, and no loop comes near the 65,535 turns after which
-// Mesa's software renderer leaves any shader's loops.
+// Rasterises a hemicube's triangles in compute: which pixels of a face a triangle covers, and at which inverse
+// distance. An invocation takes one triangle and several hemicubes. Triangles that span more than kMostPixels of a face
+// are listed for a separate pass, one work group per triangle, one lane per row. This keeps lanes busy, and no loop
+// comes near the 65,535 iterations after which Mesa's software renderer leaves any shader's loops.
 #include "radiosity/hemicube.glsl"
 
 layout(local_size_x = 64) in;
-// places of form factors (hemicube_sum.comp); begins with an indirect dispatch
+// slots of form factors (hemicube_sum.comp); begins with an indirect dispatch
 layout(std430, binding = 3) buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };
 uniform int hemicubes;      // in this batch
-uniform int hemicubesEach;  // an invocation's share of them: a triangle's corners are read once for them
+uniform int hemicubesEach;  // processed by an invocation, which reads a triangle's corners once for all of them
 const int kMostPixels = 1024;
 const uint kMostGroups = 65535u;
 
-// The nearest surface has the largest key: inverse distance, a front a hair nearer than a back at the same place
-// (sheets of two fronts), its last bits taken for the front and for the patch, so that a tie is settled alike in every
-// run.
+// The nearest surface has the largest key. It consists of the inverse distance, with a front face slightly nearer than
+// a back face in the same place (sheets of two fronts); the last bits hold the front flag and the patch, so that ties
+// are resolved identically in every run.
 uint keyOf(float inverseDistance, bool front, uint patchIndex) {
   return (floatBitsToUint(front ? inverseDistance * 1.000004 : inverseDistance) & ~15u) | (front ? 8u : 0u) |
          (patchIndex & 7u);
 }
 
-// A triangle as one face sees it: what a pixel needs.
+// Per-face triangle setup: what a pixel test needs.
 struct FaceTriangle {
   vec3 e0, e1, e2;   // edge functions over (x, y, 1), positive inside
   vec3 inverse;      // inverse distance over (x, y, 1)
-  ivec2 low, high;   // pixels to look at, inclusive
+  ivec2 low, high;   // pixel bounds, inclusive
   bool front;
 };
 
-// Neighbours take an edge in opposite senses; without contraction the products are the same, so no pixel falls between
-// them.
+// Neighbours traverse a shared edge in opposite directions; without contraction the products are identical, so no pixel
+// falls between them.
 vec3 edge(vec3 a, vec3 b) {
   precise vec3 across = vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
   return across;
@@ -55,7 +55,7 @@ FaceTriangle onFace(int face, Triangle t) {
     low = max(low, vec2(min(px.x, min(px.y, px.z)), min(py.x, min(py.y, py.z))));
     high = min(high, vec2(max(px.x, max(px.y, px.z)), max(py.x, max(py.y, py.z))));
   }
-  // Centres are at (i + 1/2 - N/2) / (N/2); a hair wider, as the quotients are rounded.
+  // Pixel centres are at (i + 1/2 - N/2) / (N/2). The bounds are slightly wider, since the quotients are rounded.
   r.low = ivec2(ceil((low - vec2(-1.0, bottom)) * halfSize - 0.501));
   r.high = ivec2(floor((high - vec2(-1.0, bottom)) * halfSize - 0.499));
   r.low = max(r.low, ivec2(0));
@@ -64,17 +64,17 @@ FaceTriangle onFace(int face, Triangle t) {
   return r;
 }
 
-// A walk over the pixels that a triangle may cover, row by row. One loop for rows and columns: where lanes run in step,
-// the longest row of one does not wait for the longest of another. To be looped with do .. while (row <= high.y), which
-// never covers a pixel of another row: before a software renderer leaves a loop whose condition stands at its
-// beginning, it runs the whole body once more for no lane at all.
+// Iterates over the pixels that a triangle may cover, row by row, in one loop for rows and columns: with lanes in
+// lockstep, one lane's longest row does not wait for another's. Loop with do .. while (row <= high.y), which never
+// touches a pixel of another row: before a software renderer leaves a loop whose condition comes first, it runs the
+// whole body once more with no lane active.
 struct Walk {
   int column, row, lastColumn;
-  int rowStart;    // of the row's pixels
+  int rowStart;    // first pixel of the row
   float bottom;    // y where the face begins
   vec4 rowValue;   // edge functions and inverse distance at x = 0 of this row
   vec4 slope;      // their change with x
-  vec3 low, high;  // 1 / slope where the edge bounds columns from below, from above; else 0
+  vec3 low, high;  // 1 / slope of edges that bound columns from below and from above; else 0
 };
 
 float highest(vec3 v) { return max(v.x, max(v.y, v.z)); }
@@ -82,15 +82,15 @@ float highest(vec3 v) { return max(v.x, max(v.y, v.z)); }
 void beginRow(inout Walk w, FaceTriangle t) {
   float y = (float(w.row) + 0.5) * pixelSize + w.bottom;
   w.rowValue = vec4(t.e0.y, t.e1.y, t.e2.y, t.inverse.y) * y + vec4(t.e0.z, t.e1.z, t.e2.z, t.inverse.z);
-  // An edge is positive from x = -rowValue / slope on, or up to there: counted from the left end, from the right end; a
-  // hair wider, as quotients are rounded.
+  // An edge is positive from x = -rowValue / slope on, or up to there; measured from the left end and from the right
+  // end. Slightly wider, since quotients are rounded.
   vec3 first = (w.slope.xyz - w.rowValue.xyz) * w.low, last = (w.slope.xyz + w.rowValue.xyz) * w.high;
   vec2 from = clamp(vec2(highest(first), highest(last)), 0.0, 2.1) * halfSize + 0.49;  // ceil(v - 0.51)
   w.column = max(t.low.x, int(from.x));
   w.lastColumn = w.row > t.high.y ? -1 : min(t.high.x, faceSize - 1 - int(from.y));
 }
 
-// firstPixel: of the face.
+// firstPixel: the face's first pixel.
 Walk beginWalk(FaceTriangle t, int face, int firstPixel) {
   Walk w;
   w.slope = vec4(t.e0.x, t.e1.x, t.e2.x, t.inverse.x);
@@ -129,7 +129,7 @@ void listLarge(int place) {
   atomicMax(largeGroups, min(slot + 1u, kMostGroups));
 }
 
-// All rows of a hemicube, 3 N: which face and which row of it.
+// All 3 N rows of a hemicube: the face and the row in it.
 int rowsPerHemicube() { return 3 * faceSize; }
 ivec2 faceAndRow(int row) {
   int half_ = faceSize / 2;

@@ -1,13 +1,14 @@
-// What is seen from the parts of patches (engine/radiosity/hidden_parts.hpp). x: rays, raysEach a part.
+// Casts rays from the parts of patches to find out what they see (engine/radiosity/hidden_parts.hpp). x: rays, raysEach
+// per part.
 layout(local_size_x = 64) in;
 #include "radiosity/patch_rays.glsl"
 #include "radiosity/triangle_parts.glsl"
 struct Receiver {
   vec4 a, b, c;  // corners, in the hierarchy's space; a's w: the patch
-  vec4 normal;   // w: the largest of the coordinates
+  vec4 normal;   // w: the largest coordinate
 };
 layout(std430, binding = 1) readonly buffer Receivers { Receiver receivers[]; };
-// part + 1 of a front, 0 where nothing is met, ~0 for a back
+// part + 1 for a front face, 0 if nothing is hit, ~0 for a back face
 layout(std430, binding = 2) writeonly buffer Seen { uint seen[]; };
 uniform int receiverCount, raysEach;
 
@@ -18,8 +19,8 @@ void main() {
   Receiver r = receivers[patchPlace];
   vec2 weights = partCentroid(part);
   vec3 at = r.a.xyz + weights.x * (r.b.xyz - r.a.xyz) + weights.y * (r.c.xyz - r.a.xyz), n = r.normal.xyz;
-  // A sunflower's places in the unit disk [Vogel1979], turned from part to part by the golden section of a turn, and
-  // lifted to the hemisphere: as the cosine.
+  // Sunflower points in the unit disk [Vogel1979], rotated from part to part by the golden section of a turn and lifted
+  // to the hemisphere for a cosine distribution.
   float k = float(index % raysEach), radius = sqrt((k + 0.5) / float(raysEach)),
         angle = 2.39996323 * k + 3.88322208 * float(part) + 1.0;
   vec3 u = normalize(r.b.xyz - r.a.xyz), v = cross(n, u);
@@ -28,7 +29,7 @@ void main() {
   PatchMet met = patchMet(ray, uint(r.a.w));
   uint result = 0u;
   if (met.patchIndex != kNoHit) {
-    // Barycentrics of the place in the plane.
+    // Barycentrics of the hit point.
     vec3 a = bvhCorner(met.texel, 0), toB = bvhCorner(met.texel, 1) - a, toC = bvhCorner(met.texel, 2) - a,
          normal = cross(toB, toC);
     vec3 place = ray.origin - a + direction * (dot(normal, a - ray.origin) / dot(normal, direction));

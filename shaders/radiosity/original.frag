@@ -1,5 +1,5 @@
-// The number a triangle sends out as a colour: its three bytes as red, green and blue [RAD2008 section 3.7.2], or as it
-// is (BITS_24 0).
+// A triangle's radiosity as a number, encoded as a colour: its three bytes as red, green and blue [RAD2008 section
+// 3.7.2], or unencoded (BITS_24 0).
 flat in float number;
 layout(location = 0) out vec4 color;
 

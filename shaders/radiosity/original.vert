@@ -1,5 +1,5 @@
-// A triangle of the scene as one view of a hemicube draws it [RAD2008 section 3.6]: the number that it sends out goes
-// along with its corners.
+// Draws a triangle of the scene in one view of a hemicube [RAD2008 section 3.6]; its radiosity is passed along with its
+// corners.
 layout(location = 0) in vec4 cornerAndNumber;
 uniform mat4 clipFromWorld;
 flat out float number;

@@ -1,5 +1,5 @@
-// Which patch a ray meets, through the hierarchy of the path tracer. Of sheets in one place the one that shows its
-// front is met.
+// The patch that a ray hits, through the path tracer's hierarchy. Of coinciding sheets, the one that shows its front is
+// hit.
 #include "rays/bvh.glsl"
 
 struct PatchMet {
@@ -25,7 +25,7 @@ PatchMet firstMet(Ray ray, uint skip) {
                   texel);
 }
 
-// self: the patch that the ray starts from, which it does not meet.
+// self: the patch that the ray starts from, which it ignores.
 PatchMet patchMet(Ray ray, uint self) {
   PatchMet met = firstMet(ray, self);
   if (met.patchIndex == kNoHit || met.front) return met;

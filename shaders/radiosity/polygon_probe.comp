@@ -1,7 +1,7 @@
-// For tests: form factors of points to triangles by themselves, one invocation a triangle.
+// For tests: form factors from points to triangles in isolation, one invocation per triangle.
 layout(local_size_x = 64) in;
 #include "radiosity/polygon.glsl"
-// three a triangle, relative to the point; w unused
+// three per triangle, relative to the point; w unused
 layout(std430, binding = 0) readonly restrict buffer Corners { vec4 corners[]; };
 layout(std430, binding = 1) writeonly restrict buffer FormFactors { float formFactors[]; };
 

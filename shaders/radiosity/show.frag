@@ -1,8 +1,8 @@
-// Faces in their colour, times that of a picture where they have one [RAD2008 figure 4.3]; edges of the mesh in one of
-// their own, blended by hand with what a face would have had.
+// Faces in their colour, multiplied by a texture if they have one [RAD2008 figure 4.3]. Edges of the mesh have their
+// own colour, blended manually with the face's.
 #include "shared/bindings.h"
 in vec3 shown;
-uniform vec4 edge;  // colour, and how much of it
+uniform vec4 edge;  // colour and opacity
 layout(location = 0) out vec4 displayColor;
 #if TEXTURED
 in vec2 picturePlace;

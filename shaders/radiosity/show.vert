@@ -1,4 +1,4 @@
-// A triangle file on the display [RAD2008 section 3.8]: colours chosen on the CPU, of triangles or corners.
+// Displays a triangle file [RAD2008 section 3.8]. The CPU chooses the colours, per triangle or per corner.
 layout(location = 0) in vec3 corner;
 layout(location = 1) in vec3 colour;
 uniform mat4 clipFromWorld;

@@ -1,4 +1,4 @@
-// A patch as 4 x 4 equal triangles, numbered as engine/scene/triangle_parts.hpp does.
+// A patch divided into 4 x 4 equal triangles, numbered as in engine/scene/triangle_parts.hpp.
 const int kPatchParts = 16;
 
 // Weights of the second and third corner at a part's centroid.
@@ -8,7 +8,7 @@ vec2 partCentroid(int part) {
   return 0.25 * (vec2(i, j / 2) + third);
 }
 
-// The part that a point lies in.
+// The part that contains a point.
 int partAt(vec2 weights) {
   vec2 at = 4.0 * weights;
   int i = clamp(int(at.x), 0, 3), pair = clamp(int(at.y), 0, 3 - i);

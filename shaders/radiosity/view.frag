@@ -1,5 +1,5 @@
-// A radiosity solution: the albedo, its texture modulated by the light, and what the surface emits. Output: radiance,
-// linear, scene units. A patch's back sends nothing.
+// Displays a radiosity solution: albedo and texture times irradiance, plus emission. Output: radiance, linear, scene
+// units. A patch's back emits nothing.
 #include "lib/frame.glsl"
 #include "lib/material.glsl"
 const float kPi = 3.14159265358979;
@@ -28,7 +28,7 @@ void main() {
   vec3 emitted = materialEmitted(vTexCoord);
 #endif
 #if DIRECT_RAYS
-  // Where shading normals are none or turned away the face's own is taken, as in the solution.
+  // If shading normals are missing or face away, the face's own normal is used, as in the solution.
   vec3 normal = materialNormal(dot(vNormal, vFace) > 0.0 ? normalize(vNormal) : vFace, vPosition, vTexCoord);
 #endif
 #if MESH

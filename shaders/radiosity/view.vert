@@ -1,4 +1,4 @@
-// A patch's corner seen by the camera, with the irradiance found there. litScene() lists three vertices a patch, so
+// A patch's corner seen by the camera, with the irradiance there. litScene() lists three vertices per patch, so
 // gl_VertexID is 3 * patch + corner.
 #include "lib/frame.glsl"
 invariant gl_Position;
@@ -6,13 +6,13 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
 #if DIRECT_RAYS
 layout(location = 2) in vec3 normal;
-// five floats a patch: normal, distance of its plane, largest coordinate
+// five floats per patch: normal, distance of its plane, largest coordinate
 layout(std430, binding = 2) readonly buffer Faces { float faces[]; };
 out vec3 vNormal;
 flat out vec3 vFace;
 flat out vec2 vFacePlace;
 #endif
-layout(std430, binding = 0) readonly buffer Light { float irradiances[]; };  // three floats a corner
+layout(std430, binding = 0) readonly buffer Light { float irradiances[]; };  // three floats per corner
 out vec3 vPosition;
 out vec3 vIrradiance;
 out vec2 vTexCoord;

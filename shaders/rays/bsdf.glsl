@@ -1,5 +1,5 @@
-// How surfaces scatter light: pure functions. Directions are unit and point away from the surface; `normal` is on the
-// side of `out` (towards the camera); a density is over solid angle, 1/sr.
+// BSDFs as pure functions. Directions are unit and point away from the surface; `normal` is on the side of `out`
+// (towards the camera); densities are over solid angle, 1/sr.
 
 const float kPi = 3.14159265358979324;
 
@@ -19,26 +19,26 @@ vec3 cosineSample(vec3 normal, vec2 xi) {
   return normalize(r * cos(angle) * t + r * sin(angle) * b + sqrt(1.0 - xi.x) * normal);
 }
 
-// Points on a triangle by area: weights of its second and third corner.
+// Points on a triangle, uniform by area: weights of its second and third corner.
 vec2 triangleSample(vec2 xi) {
   float r = sqrt(xi.x);
   return vec2(r * (1.0 - xi.y), r * xi.y);
 }
 
-// The share that one of two ways of sampling has in what both could have found: power heuristic, exponent 2
+// The weight of one of two sampling strategies that could both have produced a sample: power heuristic, exponent 2
 // [Veach1997].
-// a: density of the way taken, above 0; b: that of the other.
+// a: density of the strategy used, above 0; b: that of the other.
 float powerHeuristic(float a, float b) {
   float r = b / a;
   return 1.0 / (1.0 + r * r);
 }
 
 #if GLOSSY
-// Microfacets after Trowbridge-Reitz (GGX) with height-correlated shadowing [Walter2007], [Heitz2014]. Directions in
-// the surface's frame, z along the normal.
+// Trowbridge-Reitz (GGX) microfacets with height-correlated shadowing [Walter2007], [Heitz2014]. Directions in the
+// surface's frame, z along the normal.
 
-// Density of facets' normals a unit of projected area and solid angle; by components, as 1 - z^2 would cancel for small
-// alpha.
+// Distribution of facet normals per unit of projected area and solid angle; computed by components, since 1 - z^2 would
+// cancel for small alpha.
 float ggxDensity(vec3 h, float alpha) {
   float a2 = alpha * alpha, t = dot(h.xy, h.xy) / a2 + h.z * h.z;
   return 1.0 / (kPi * a2 * t * t);
@@ -61,8 +61,8 @@ vec3 schlick(vec3 f0, float cosine) {
   return f0 + (1.0 - f0) * (m2 * m2 * m);
 }
 
-// Reflected by facets of reflectance 1: BSDF times the cosine of i, and the density of sampling i from o. 0 unless both
-// are above.
+// Reflection by facets of reflectance 1: BSDF times the cosine of i, and the density of sampling i from o. 0 unless
+// both are above the surface.
 float ggxReflect(vec3 o, vec3 i, float alpha, out float pdf) {
   pdf = 0.0;
   if (!(o.z > 0.0 && i.z > 0.0)) return 0.0;
@@ -72,9 +72,9 @@ float ggxReflect(vec3 o, vec3 i, float alpha, out float pdf) {
   return common_ / (1.0 + lambda + ggxLambda(i, alpha));
 }
 
-// Refracted by facets that let everything through, i below: the same, for radiance over n^2 (which is what a boundary
-// conserves).
-// eta: index on o's side over that below, not 1 [Walter2007 eq 17, 21]. h: the facet, on o's side.
+// Refraction by facets of transmittance 1, i below the surface: the same quantities, for radiance over n^2 (which a
+// boundary conserves).
+// eta: index on o's side over that below, not 1 [Walter2007 eq 17, 21]. h: the facet's normal, on o's side.
 float ggxRefract(vec3 o, vec3 i, float alpha, float eta, out vec3 h, out float pdf) {
   pdf = 0.0;
   h = normalize(eta * o + i);

@@ -1,43 +1,43 @@
-// Rays against the triangles of a RayScene (engine/rays/ray_scene.hpp): the first hit, or any.
+// Traces rays against the triangles of a RayScene (engine/rays/ray_scene.hpp): closest hit or any hit.
 //
 // Space: RayScene's (the world moved by -RayScene::origin()). Flag ALPHA_MASKS: the including file declares, before the
-// include, `bool isCutOut(uint triangle, vec2 barycentrics)`, asked for triangles whose material is masked. Takes
-// texture units 60 and 61.
-// Method: eight quantised boxes a node and their order after [Ylitie2017], a watertight triangle test after [Woop2013],
-// boxes widened by the rounding of their distances after [Ize2013]. Buffer textures, since llvmpipe gathers from those
-// three times as fast as from storage blocks.
+// include, `bool isCutOut(uint triangle, vec2 barycentrics)`, which is called for triangles with a masked material.
+// Uses texture units 60 and 61.
+// Method: nodes of eight quantised boxes and their traversal order after [Ylitie2017], a watertight triangle test after
+// [Woop2013], boxes widened by the rounding of their distances after [Ize2013]. Buffer textures are used because
+// llvmpipe gathers from them three times as fast as from storage blocks.
 #include "shared/bindings.h"
 #include "shared/bvh.h"
 #include "lib/float_pairs.glsl"
 
-layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS a BvhNode
-// one with the magnitude, then BVH_TRIANGLE_TEXELS a BvhTriangle
+layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS per BvhNode
+// one texel with the magnitude, then BVH_TRIANGLE_TEXELS per BvhTriangle
 layout(binding = UNIT_BVH_TRIANGLES) uniform usamplerBuffer bvhTriangles;
 
-// no triangle: Hit::triangle of a ray that hit nothing, and skipTriangle where nothing is to be skipped
+// no triangle: Hit::triangle of a ray that hit nothing, and skipTriangle if nothing is to be skipped
 const uint kNoHit = 0xffffffffu;
 
 struct Ray {
   vec3 origin;
   float tMin;      // hits lie at tMin < t < tMax
-  vec3 direction;  // of any length above 0; t counts in lengths of it
+  vec3 direction;  // of any length above 0; t is in units of that length
   float tMax;
 };
 
 struct Hit {
   float t;
-  uint triangle;      // in the order of the scene: its corners are indices[3 * triangle] and the next two
+  uint triangle;      // index in the scene's order: its corners are indices[3 * triangle] and the next two
   vec2 barycentrics;  // weights of the second and third corner
 };
 
-// What a traversal keeps of its ray. For boxes: one over the direction, components near zero taken for 2^-60 of the
-// longest, so that nothing is infinite, and which octant it goes to. For triangles: the ray's own space, in which it
-// runs along z from the origin [Woop2013]: axes turned so that z is the longest, then sheared.
+// A ray prepared for traversal. For boxes: the inverse direction, with components near zero replaced by 2^-60 of the
+// longest so that nothing is infinite, and the direction's octant. For triangles: the ray's own space, in which it runs
+// along z from the origin [Woop2013]: axes permuted so that z is the longest, then sheared.
 struct BvhRay {
   vec3 origin;
   vec3 inverse;
   bvec3 negative;
-  uint octant;  // 7 less the octant, as child places are counted down
+  uint octant;  // 7 - octant, since child slots are counted down
   vec3 shear;
   bvec2 turn;
 };
@@ -58,9 +58,9 @@ BvhRay bvhPrepare(Ray ray) {
   return r;
 }
 
-// Twice the area of (0, a, b) in the plane. Each product is rounded, but that cannot change which of the two is larger:
-// the sign is right or the area is zero. Neighbours see a shared edge with the same numbers, and zero counts as inside
-// for both, so nothing passes between them.
+// Twice the area of (0, a, b) in the plane. Each product is rounded, but rounding is monotonic, so the sign is right or
+// the area is zero. Neighbours see a shared edge with the same numbers, and zero counts as inside for both, so nothing
+// passes between them.
 float bvhEdge(precise vec2 a, precise vec2 b) {
   precise float ab = a.x * b.y;
   precise float ba = a.y * b.x;
@@ -68,7 +68,7 @@ float bvhEdge(precise vec2 a, precise vec2 b) {
   return area;
 }
 
-// Whether the ray meets the triangle at tMin < t < tMax; then where.
+// Whether the ray hits the triangle at tMin < t < tMax, and where.
 bool bvhHitTriangle(BvhRay r, vec3 a, vec3 b, vec3 c, float tMin, float tMax, out float t, out vec2 barycentrics) {
   vec3 pa = bvhTurn(a - r.origin, r.turn), pb = bvhTurn(b - r.origin, r.turn), pc = bvhTurn(c - r.origin, r.turn);
   precise vec2 sa = pa.xy - r.shear.xy * pa.z;
@@ -90,19 +90,19 @@ bool bvhMissesMask(uint id, vec2 barycentrics) {
 #endif
 }
 
-// The place of the highest bit of a number from 1 to 2^24 - 1.
+// Index of the highest set bit of a number from 1 to 2^24 - 1.
 int bvhHighest(uint bits) { return (floatBitsToInt(float(int(bits))) >> 23) - 127; }
 
 ivec3 bvhChoose(ivec3 a, ivec3 b, bvec3 second) {
   return ivec3(second.x ? b.x : a.x, second.y ? b.y : a.y, second.z ? b.z : a.z);
 }
 
-// Bits of the four children in one word of a node's words, where the ray enters their boxes before it leaves them.
-// near, far: grid steps, four bytes an axis; scale, nearBase, farBase: from steps to distances.
+// Tests the four children in one word of a node's data: sets their bits if the ray enters their boxes before it leaves
+// them. near, far: grid steps, four bytes per axis; scale, nearBase, farBase: convert steps to distances.
 uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, float tMin, float tMax, uint meta,
                 uint octant) {
-  uint nodes = (meta & (meta << 1)) & 0x10101010u;                   // meta >= 24: a node
-  uint turned = meta ^ ((octant * 0x01010101u) & (((nodes >> 4) * 0xffu)));  // its place against the octant
+  uint nodes = (meta & (meta << 1)) & 0x10101010u;                   // meta >= 24: an inner node
+  uint turned = meta ^ ((octant * 0x01010101u) & (((nodes >> 4) * 0xffu)));  // slot permuted by the octant
   uint hits = 0u;
   for (int k = 0; k < 4; ++k) {
     int shift = 8 * k;
@@ -114,23 +114,23 @@ uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, 
   return hits;
 }
 
-// A ray on its way. For kernels whose lanes take up new rays while others still trace: beginRay, then advanceRay until
-// it is done, then finishRay. An invocation has one at a time, since they share one stack.
+// A traversal in progress, for kernels whose lanes start new rays while others are still tracing: beginRay, then
+// advanceRay until it is done, then finishRay. An invocation has one at a time, since they share one stack.
 struct BvhTraversal {
   BvhRay ray;
   float tMin;
   uint skipTriangle;
   Hit hit;         // the nearest so far; its triangle is a texel of bvhTriangles
-  // yet to be visited: x the first child of their parent; y bits 24..31 which are left, against the octant, bits 0..7
-  // which are nodes
+  // children to visit: x the first child of their parent; y bits 24..31 the remaining ones, in octant order, bits 0..7
+  // those that are nodes
   uvec2 siblings;
   int top;         // of the stack; below zero: the ray is done
   int tested;      // triangles, for statistics
 };
 
-// Flag SHARED_STACK: entries of a stack in shared memory, as many as the hierarchy is deep (compute programs alone,
-// after their local_size). On GPUs a local array takes 64 registers a lane or lies in memory; 0: a local array, which
-// software renderers are faster with.
+// Flag SHARED_STACK: number of entries of a stack in shared memory, the hierarchy's depth (compute programs only, after
+// their local_size). On GPUs a local array takes 64 registers per lane or spills to memory. 0: a local array, which is
+// faster on software renderers.
 #if SHARED_STACK
 const uint kBvhLanes = gl_WorkGroupSize.x * gl_WorkGroupSize.y;
 shared uint bvhStackX[SHARED_STACK * kBvhLanes], bvhStackY[SHARED_STACK * kBvhLanes];
@@ -140,19 +140,19 @@ uint bvhStackX[BVH_MAX_DEPTH], bvhStackY[BVH_MAX_DEPTH];
 int bvhStackPlace(int entry) { return entry; }
 #endif
 
-// Of this invocation, so far: for kernels that must stop before a driver leaves all loops (llvmpipe does after 65,535
-// turns of a vector of lanes).
+// Loop iterations of this invocation so far, for kernels that must stop before a driver leaves all loops (llvmpipe does
+// after 65,535 iterations of a vector of lanes).
 uint loopTurns = 0u;
 
 BvhTraversal beginRay(Ray ray, uint skipTriangle) {
-  // The root is the only child of nothing, in the place that is visited first.
+  // The root is treated as the only child of a virtual parent, in the slot that is visited first.
   return BvhTraversal(bvhPrepare(ray), ray.tMin, skipTriangle, Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u),
                       0, 0);
 }
 
 bool isDone(BvhTraversal s) { return s.top < 0; }
 
-// Visits one node and tests the triangles of its leaves. any: the first hit ends the ray.
+// Visits one node and tests the triangles of its leaves. any: stop at the first hit.
 void advanceRay(inout BvhTraversal s, bool any) {
   ++loopTurns;
   int place = bvhHighest(s.siblings.y >> 24);
@@ -168,7 +168,7 @@ void advanceRay(inout BvhTraversal s, bool any) {
         n3 = texelFetch(bvhNodes, node + 3), n4 = texelFetch(bvhNodes, node + 4);
   vec3 scale = uintBitsToFloat(uvec3(n0.w << 23, n0.w << 15, n0.w << 7) & 0x7f800000u) * s.ray.inverse;
   vec3 base = (uintBitsToFloat(n0.xyz) - s.ray.origin) * s.ray.inverse;
-  // 2^-21: of this, of what follows and of the triangle test
+  // 2^-21: the rounding of this, of the next lines and of the triangle test
   vec3 error = (abs(base) + abs(scale) * 256.0) * 4.76837158e-7;
   ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z),
         high47 = ivec3(n3.w, n4.y, n4.w);
@@ -177,7 +177,7 @@ void advanceRay(inout BvhTraversal s, bool any) {
               bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale,
                          base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
   s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
-  uint leaves = hits & 0x00ffffffu;  // triangles to be tested, counted from the node's first
+  uint leaves = hits & 0x00ffffffu;  // triangles to test, counted from the node's first
   while (leaves != 0u) {
     int k = bvhHighest(leaves);
     leaves &= ~(1u << k);
@@ -203,17 +203,18 @@ void advanceRay(inout BvhTraversal s, bool any) {
   }
 }
 
-// What a ray that is done has hit. Edge functions in float tell exactly whether, but in a sliver their ratios hardly
-// tell where: distance and barycentrics are computed once more from the plane and the areas in it, in pairs of floats
-// (not double, which many GPUs lack and emulate). With the edges e1 and e2 from the corner a (seen from the origin), n
-// = e1 x e2 and m = d x a: t = n.a / n.d, the second corner's weight -e2.m / n.d, the third's e1.m / n.d.
+// The hit of a finished ray. Float edge functions decide exactly whether a triangle is hit, but in a sliver their
+// ratios locate the hit poorly. So distance and barycentrics are recomputed from the plane and the areas in it, in
+// pairs of floats (not double, which many GPUs lack or emulate). With the edges e1 and e2 from the corner a (relative
+// to the origin), n = e1 x e2 and m = d x a: t = n.a / n.d, the second corner's weight is -e2.m / n.d, the third's e1.m
+// / n.d.
 Hit finishRay(BvhTraversal s, vec3 direction) {
   bool met = s.hit.triangle != kNoHit;
   int triangle = met ? int(s.hit.triangle) : 0;
   uvec4 first = texelFetch(bvhTriangles, triangle);
   vec3 a = uintBitsToFloat(first.xyz), b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz),
        c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
-  // Edges and direction are scaled by powers of two to a length near 1, so that no product leaves the range of floats.
+  // Edges and direction are scaled by powers of two to lengths near 1, so that no product overflows or underflows.
   float scale = inversePowerOfTwo(max(largestOf(b - a), largestOf(c - a))),
         directionScale = inversePowerOfTwo(largestOf(direction));
   a *= scale, b *= scale, c *= scale;
@@ -233,7 +234,7 @@ Hit finishRay(BvhTraversal s, vec3 direction) {
   return hit;
 }
 
-// The nearest hit; its triangle is kNoHit where there is none. skipTriangle: the one the ray starts on, or kNoHit.
+// The nearest hit; its triangle is kNoHit if there is none. skipTriangle: the triangle the ray starts on, or kNoHit.
 Hit closestHit(Ray ray, uint skipTriangle) {
   BvhTraversal s = beginRay(ray, skipTriangle);
   while (!isDone(s)) advanceRay(s, false);
@@ -247,16 +248,16 @@ bool anyHit(Ray ray, uint skipTriangle) {
   return s.hit.triangle != kNoHit;
 }
 
-// A point just off a surface, on the side that the GEOMETRIC normal (unit) points to, beyond the rounding of a point
-// computed from a triangle's barycentrics and of the test of its neighbours. As in [WaechterBinder2019] a number of
-// units in the last place, so that no scale is assumed; theirs are each component's own, with a floor near zero, these
-// are of the triangle's largest coordinate, which is what the rounding depends on: `magnitude` = the largest absolute
-// coordinate of its corners.
+// A point just off a surface, on the side that the GEOMETRIC normal (unit) points to. The offset exceeds the rounding
+// error of a point computed from a triangle's barycentrics and that of testing its neighbours. As in
+// [WaechterBinder2019] it is a number of units in the last place, so no scale is assumed. Theirs are per component,
+// with a floor near zero; here they are those of the triangle's largest coordinate, which determines the rounding
+// error: `magnitude` = the largest absolute coordinate of its corners.
 vec3 offsetRay(vec3 p, vec3 geometricNormal, float magnitude) {
   return p + geometricNormal * (magnitude * 3.814697265625e-6);
 }  // 2^-18
 
-// The same for a point whose triangle is not at hand.
+// The same for a point whose triangle is not available.
 vec3 offsetRay(vec3 p, vec3 geometricNormal) {
   vec3 a = abs(p);
   return offsetRay(p, geometricNormal,

@@ -1,10 +1,10 @@
-// Light from infinitely far all around: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl) turned
-// about +y. The picture's texels are picked in proportion to what they send, a row first, by alias tables [Vose1991];
-// uniformly over each texel's solid angle.
+// Light from infinity in all directions: constant, or a latitude-longitude picture (lib/latitude_longitude.glsl)
+// rotated about +y. The picture's texels are sampled in proportion to their power, row first, by alias tables
+// [Vose1991]; uniformly over each texel's solid angle.
 #if ENVIRONMENT_PICTURE
 #include "lib/latitude_longitude.glsl"
 layout(binding = 1) uniform sampler2D environmentPicture;  // radiance without the factor
-// of each row: threshold of 2^32, alias (a column); bits of the density over solid angle, 1/sr
+// per row: threshold of 2^32, alias (a column); bits of the density over solid angle, 1/sr
 layout(binding = 2) uniform usampler2D environmentTable;
 layout(binding = 4) uniform usampler2D environmentRows;    // threshold of 2^32, alias (a row)
 
@@ -13,7 +13,7 @@ vec2 environmentTexel(vec3 direction, ivec2 size) {
   return latitudeLongitude(turnAboutY(direction, tracer.environmentTurn.xy * vec2(1.0, -1.0))) * vec2(size);
 }
 
-// A texel's value wherever a direction falls into it: what is picked is what is seen.
+// Nearest texel, without filtering: sampling and evaluation agree.
 vec3 environmentRadiance(vec3 direction) {
   ivec2 size = textureSize(environmentPicture, 0);
   ivec2 texel = clamp(ivec2(environmentTexel(direction, size)), ivec2(0), size - 1);
@@ -27,7 +27,7 @@ float environmentPdf(vec3 direction) {
   return uintBitsToFloat(texelFetch(environmentTable, texel, 0).z);
 }
 
-// words: which texel; xi: where in it. Gives radiance and density.
+// words: select the texel; xi: the position in it. Returns radiance and density.
 vec3 environmentSample(vec2 xi, uvec2 words, out vec3 radiance, out float pdf) {
   ivec2 size = textureSize(environmentPicture, 0);
   uvec4 choice = pcg4d(uvec4(words, 0u, 0u));

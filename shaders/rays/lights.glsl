@@ -1,22 +1,22 @@
-// One light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: SUN, SPOTS, POINTS,
-// EMISSION, ENVIRONMENT_PICTURE; a constant environment is found by scattered rays alone, which sample it as well as
-// anything could.
+// Samples one light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: SUN, SPOTS,
+// POINTS, EMISSION, ENVIRONMENT_PICTURE. A constant environment is left to scattered rays, which sample it optimally.
 #include "lib/spot.glsl"
 
 layout(std430, binding = 4) readonly restrict buffer LightBlock { PathLight lights[]; };
 
 struct LightSample {
   vec3 direction;  // unit, towards it
-  float pdf;       // density with which this direction is sampled, 1/sr; 0: the light has one direction alone
-  // radiance over pdf; of a light of one direction the irradiance across the rays over the probability of picking it
+  float pdf;       // density with which this direction is sampled, 1/sr; 0: the light has only one direction
+  // radiance over pdf; for a light with one direction, the irradiance across the rays over the probability of picking
+  // it
   vec3 value;
-  vec3 end;        // where it is, moved off its surface; unused at infinity
+  vec3 end;        // its position, offset from its surface; unused at infinity
   bool infinite;
 };
 
-uint pickedLight;  // by sampleLight, for who wants to know
+uint pickedLight;  // by sampleLight; for callers that need it
 
-// xi: where on the light; words: which. False: no light comes from what was picked.
+// xi: position on the light; words: select the light. False: the selected light does not reach the point.
 bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
   uint i = scaledWord(words.x, uint(lights.length()));
   if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
@@ -39,7 +39,7 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
     light.direction = away * inversesqrt(distance2);
     float cosine = dot(light.direction, normal);
     if (!(abs(cosine) > 0.0 && distance2 > 0.0)) return false;
-    float area = 0.5 * twiceArea / source.probability;  // over the density by area
+    float area = 0.5 * twiceArea / source.probability;  // over the density per area
     light.pdf = distance2 / (abs(cosine) * area);
     light.value = emissionAt(source.q, source.p, w) / light.pdf;
     vec3 largest = max(abs(source.a), max(abs(source.a + source.b), abs(source.a + source.c)));

@@ -1,29 +1,31 @@
-// What a ray has hit: place, normals and material. Storage blocks 2 (triangles) and 3 (materials). Textures lie in one
-// atlas; they are read bilinearly from the finest level, since many paths a pixel filter them.
+// Evaluates a ray's hit: position, normals and material. Storage blocks 2 (triangles) and 3 (materials). Textures lie
+// in one atlas. They are read bilinearly from the finest level, since many paths per pixel filter them.
 #include "shared/bindings.h"
 #if TEXTURES || ALPHA_MASKS
 layout(binding = 0) uniform sampler2DArray textureAtlas;
 #endif
 #if NORMAL_MAPS || METAL_MAPS
-layout(binding = UNIT_VALUE_ATLAS) uniform sampler2DArray valueAtlas;  // of pictures that are not sRGB-encoded
+layout(binding = UNIT_VALUE_ATLAS) uniform sampler2DArray valueAtlas;  // for pictures that are not sRGB-encoded
 #endif
 #if NORMAL_MAPS
 #include "lib/normal_map.glsl"
 #endif
 
-// TRIANGLE_WORDS uvec4 a triangle, floats as their bits:
+// TRIANGLE_WORDS uvec4 per triangle, floats as their bits:
 // 0: first corner, material; 1: second corner, geometric normal x; 2: third corner, geometric normal y; 3: geometric
-// normal z, the third corner's texture coordinates, pickDensity; after it with TEXTURES || ALPHA_MASKS the first's and
-// second's; with SMOOTH_NORMALS the corners' normals.
+// normal z, the third corner's texture coordinates, pickDensity. With TEXTURES
+//
+// ALPHA_MASKS these are followed by the first and second corners' texture coordinates, with SMOOTH_NORMALS by the
+// corners' normals.
 layout(std430, binding = 2) readonly restrict buffer TriangleBlock { uvec4 triangleData[]; };
 layout(std430, binding = 3) readonly restrict buffer MaterialBlock { PathMaterial materials[]; };
 
 struct Surface {
   vec3 position;
-  float magnitude;       // largest coordinate of the triangle's corners: what the rounding of `position` depends on
+  float magnitude;       // largest coordinate of the triangle's corners; determines the rounding of `position`
   vec3 geometricNormal;  // unit, on the side the ray came from
-  bool front;            // that is the triangle's front
-  vec3 normal;           // for shading, unit; turned as the geometric one was
+  bool front;            // whether that is the triangle's front
+  vec3 normal;           // for shading, unit; flipped together with the geometric one
   uint material;
   vec2 texCoord;
 };
@@ -36,7 +38,7 @@ vec2 texCoordAt(uint triangle, vec2 barycentrics) {
   return ab.xy + barycentrics.x * (ab.zw - ab.xy) + barycentrics.y * (c - ab.xy);
 }
 
-// Repeated both ways, bilinear between texel centres.
+// Wraps in both directions; bilinear between texel centres.
 vec4 readAtlas(sampler2DArray atlas, PathTexture t, vec2 texCoord) {
   ivec2 size = ivec2(t.width, t.height);
   vec2 p = fract(texCoord) * vec2(size) - 0.5;
@@ -57,7 +59,7 @@ vec4 readTexture(PathTexture t, vec2 texCoord) { return readAtlas(textureAtlas, 
 #endif
 
 #if ALPHA_MASKS
-// Asked by the ray caster. Below a half there is nothing.
+// Called by the ray caster. Alpha below one half is cut out.
 bool isCutOut(uint triangle, vec2 barycentrics) {
   uint material = triangleData[triangle * TRIANGLE_WORDS].w;
   return readTexture(materials[material].maskTexture, texCoordAt(triangle, barycentrics)).a < 0.5;
@@ -83,7 +85,7 @@ Surface surfaceAt(uint triangle, vec2 barycentrics, vec3 direction) {
                   barycentrics.x * uintBitsToFloat(triangleData[n + 1u].xyz) +
                   barycentrics.y * uintBitsToFloat(triangleData[n + 2u].xyz);
   float length2 = dot(smoothed, smoothed);
-  // Turned by the face's side alone, as in forward/surface.frag; opposite normals at the corners may cancel.
+  // Flipped by the side of the face alone, as in forward/surface.frag; opposite normals at the corners may cancel.
   surface.normal =
       length2 > 1e-12 ? (surface.front ? smoothed : -smoothed) * inversesqrt(length2) : surface.geometricNormal;
 #else
@@ -105,7 +107,7 @@ vec3 colourAt(Surface surface) {
 }
 
 #if METAL_MAPS
-// Factors of a MetalMap: x on its roughness' square root, y the metallic share.
+// Factors from a MetalMap: x for the square root of the roughness, y the metallic share.
 vec2 metalAt(Surface surface) {
   PathTexture t = materials[surface.material].metalTexture;
   vec2 map = t.layer >= 0 ? readAtlas(valueAtlas, t, surface.texCoord).gb : vec2(1.0);
@@ -113,7 +115,7 @@ vec2 metalAt(Surface surface) {
 }
 
 #if GLOSSY
-// A metal where more than half of it is one, as materials without pictures are taken.
+// Becomes a metal if the metallic share exceeds one half, like materials without textures.
 void applyMetalMap(Surface surface, inout PathMaterial material) {
   if (material.metallic < 0.0) return;
   vec2 metal = metalAt(surface);
@@ -135,7 +137,7 @@ vec3 albedoAt(Surface surface) {
 }
 
 #if NORMAL_MAPS
-// For shading, by the material's picture: turned as the surface's normals are.
+// Applies the material's normal map to the shading normal; flipped like the surface's normals.
 void applyNormalMap(inout Surface surface, uint triangle) {
   PathTexture t = materials[surface.material].normalTexture;
   if (t.layer < 0) return;
@@ -152,7 +154,7 @@ void applyNormalMap(inout Surface surface, uint triangle) {
 #endif
 
 #if EMISSION
-// Probability a unit of area that a light sample goes to a point of the triangle.
+// Probability per unit area that a light sample falls on a point of the triangle.
 float pickDensity(uint triangle) { return uintBitsToFloat(triangleData[triangle * TRIANGLE_WORDS + 3u].w); }
 
 vec3 emissionAt(uint material, uint triangle, vec2 barycentrics) {

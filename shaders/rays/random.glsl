@@ -1,12 +1,12 @@
-// Random numbers by their place alone: (pixel, sample, event on the path, purpose). Nothing is carried along, so any
-// path can be followed again by itself, and the order in which paths are followed does not matter.
+// Random numbers addressed by (pixel, sample, event on the path, purpose). They are stateless, so any path can be
+// replayed by itself, and the order in which paths are traced does not matter.
 //
-// Numbers in general are hashes, pcg4d [JarzynskiOlano2020]. The first events' pairs of numbers come from Sobol's
-// (0,2)-sequence, its order shuffled and its points scrambled after Owen a pixel and purpose by hashes [Burley2020].
+// Most numbers are hashes, pcg4d [JarzynskiOlano2020]. Pairs of numbers for the first events come from Sobol's
+// (0,2)-sequence, with shuffled order and Owen-scrambled points per pixel and purpose, by hashes [Burley2020].
 
 const uint kLowDiscrepancyEvents = 4u;
 
-// Purposes: one a decision. Media use those from kFreePurpose on.
+// Purposes: one per decision. Media use those from kFreePurpose on.
 const uint kPurposeFilm = 0u;
 const uint kPurposeLight = 1u;      // where on the light
 const uint kPurposePick = 2u;       // which light
@@ -32,7 +32,7 @@ uvec4 pcg4d(uvec4 v) {
 float unitFloat(uint word) { return float(word >> 8u) * (1.0 / 16777216.0); }
 vec2 unitFloat(uvec2 words) { return vec2(words >> 8u) * (1.0 / 16777216.0); }
 
-// A whole number below `count`, from all 32 bits.
+// An integer in [0, count), from all 32 bits.
 uint scaledWord(uint word, uint count) {
   uint high, low;
   umulExtended(word, count, high, low);
@@ -51,8 +51,8 @@ uint pcgOutput(uint state) {
   return (word >> 22u) ^ word;
 }
 
-// [VPT2024, 5.4]: PCG rxs_m_xs_32, seeded with the number of the pixel; a pixel's draws follow each other on the one
-// cycle of 2^32 that all pixels share, 16 words an event here.
+// [VPT2024, 5.4]: PCG rxs_m_xs_32, seeded with the number of the pixel. A pixel's draws are successive states on the
+// one cycle of 2^32 that all pixels share, 16 words per event here.
 uvec4 linearWords(PathNumbers numbers, uint event, uint purpose) {
   uint steps = ((numbers.sampleIndex * 64u + event) * 16u + purpose) * 4u + 1u;
   uint factor = 747796405u, addend = 1u, state = numbers.pixel + numbers.seed;
@@ -77,8 +77,7 @@ uvec4 randomWords(PathNumbers numbers, uint event, uint purpose) {
   return pcg4d(uvec4(numbers.pixel, numbers.sampleIndex, event, purpose ^ numbers.seed));
 }
 
-// Owen's scrambling of a number whose bits are reversed: each bit is turned over by a hash of those below it
-// [Burley2020].
+// Owen scrambling of a bit-reversed number: a hash of the lower bits decides whether to flip each bit [Burley2020].
 uint owenReversed(uint x, uint seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -88,8 +87,8 @@ uint owenReversed(uint x, uint seed) {
   return x;
 }
 
-// The second dimension of Sobol's sequence before its bits are reversed. Bit k is the sum over j of bit j times
-// binomial(j, k), which is odd where k's bits are among j's: a sum over supersets, one step a bit of the index.
+// The second dimension of Sobol's sequence before bit reversal. Bit k is the sum over j of bit j times binomial(j, k),
+// which is odd if k's bits are a subset of j's: a sum over supersets, one step per bit of the index.
 uint sobolReversed(uint i) {
   i ^= (i >> 1u) & 0x55555555u;
   i ^= (i >> 2u) & 0x33333333u;
@@ -99,7 +98,7 @@ uint sobolReversed(uint i) {
   return i;
 }
 
-// Two numbers, all 32 bits.
+// Two numbers of 32 random bits each.
 uvec2 randomWordPair(PathNumbers numbers, uint event, uint purpose) {
 #if LINEAR_SEEDS
   return linearWords(numbers, event, purpose).xy;

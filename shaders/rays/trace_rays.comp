@@ -1,7 +1,7 @@
-// Rays from a buffer, hits into another: for tests and benchmarks. COUNT_WORK: in place of t and barycentrics how many
-// nodes were visited and how many triangles tested.
+// Traces rays from one buffer and writes hits to another, for tests and benchmarks. COUNT_WORK: writes the numbers of
+// visited nodes and tested triangles in place of t and barycentrics.
 #if ALPHA_MASKS
-// tests alone: half of every masked triangle
+// for tests: cuts out half of every masked triangle
 bool isCutOut(uint triangle, vec2 barycentrics) { return barycentrics.x < 0.5; }
 #endif
 layout(local_size_x = 64) in;
@@ -17,7 +17,7 @@ void main() {
   int i = firstRay + int(gl_GlobalInvocationID.x);
   if (i >= rayCount) return;
   Ray start = rays[i];
-#if OFFSET_ORIGINS  // along the direction, which is that of the surface's normal
+#if OFFSET_ORIGINS  // along the direction, taken as the surface's normal
   start.origin = offsetRay(start.origin, normalize(start.direction));
 #endif
 #if COUNT_WORK

@@ -1,14 +1,14 @@
-// What the gather found for one pixel: an entry a sample of the pattern and place at which it was gathered, as
-// interpolation weighs it. One invocation; flag ASKED.
+// Lists what the gather found for one pixel: one entry per sample of the pattern and gather point, with the
+// interpolation weights. One invocation; flag ASKED.
 layout(local_size_x = 1) in;
 #include "rsm/gather.glsl"
 #include "rsm/fit.glsl"
 #include "forward/asked_parts.glsl"
-layout(binding = 5) uniform sampler2D gathered;  // w: 2 where interpolation refused the pixel
+layout(binding = 5) uniform sampler2D gathered;  // w: 2 if interpolation rejected the pixel
 uniform ivec2 askedPixel;
 uniform int interpolates;
 
-float share = 1.0;  // of the place that is gathered at
+float share = 1.0;  // weight of the gather point
 
 void tell(int i, RsmSurfel surfel, ivec3 texel, vec3 irradiance) {
   if (irradiance == vec3(0.0)) return;

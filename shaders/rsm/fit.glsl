@@ -1,17 +1,17 @@
-// Which of the low-resolution samples around a pixel fit it [Dachsbacher2005]: a similar normal, near its tangent
-// plane, not far away.
+// Which of the low-resolution samples around a pixel can represent it [Dachsbacher2005]: a similar normal, near its
+// tangent plane, not far away.
 #include "lib/frame.glsl"
 #include "forward/visible.glsl"
 #include "rsm/low.glsl"
-uniform float pixelWidth;   // of a pixel, scene units across the view per unit of distance
-uniform float fitNormal;    // least cosine between the normals
-// most distance from the tangent plane, in steps between low-resolution samples at the pixel
+uniform float pixelWidth;   // width of a pixel, scene units across the view per unit of distance
+uniform float fitNormal;    // minimum cosine between the normals
+// maximum distance from the tangent plane, in low-resolution sample spacings at the pixel
 uniform float fitPlane;
-uniform float fitDistance;  // most distance, in the same
+uniform float fitDistance;  // maximum distance, in the same unit
 
 struct LowSample {
-  ivec2 low;     // which of them
-  ivec2 pixel;   // that it stands on
+  ivec2 low;     // index of the low-resolution sample
+  ivec2 pixel;   // its pixel
   bool fits;
   float weight;  // bilinear
 };

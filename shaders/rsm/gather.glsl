@@ -1,20 +1,20 @@
-// Irradiance at a point from the reflective shadow map: samples of it around the point's projection (s,t) at
+// Irradiance at a point from the reflective shadow map, sampled around the point's projection (s,t) at
 // (s + r xi1 sin 2 pi xi2, t + r xi1 cos 2 pi xi2) [Dachsbacher2005 sec 4.1].
-// The density of these per texel is 1 / (2 pi R^2 xi1), R = r in texels, so the sum over all texels within R is
-// estimated without bias by sum_i E_i xi1_i 2 pi R^2 / N. The published weight is xi1^2 in xi1's place. Lights follow
-// each other, a dispatch each: `adds` is 1 from the second on.
+// The sampling density per texel is 1 / (2 pi R^2 xi1), R = r in texels, so the unbiased estimate of the sum over all
+// texels within R is sum_i E_i xi1_i 2 pi R^2 / N. The published weight has xi1^2 in place of xi1. Lights are gathered
+// one after the other, one dispatch each: `adds` is 1 from the second on.
 #include "rsm/transfer.glsl"
 layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // xi1 sin, xi1 cos, weight, unused
 uniform int adds;
-uniform float gatherRadius;  // r, fraction of the map's side
+uniform float gatherRadius;  // r, as a fraction of the map's width
 #if ASKED
-// Of the pixel that is asked for (rsm/ask.comp): what the sample i gives of the irradiance, and from which surfel.
+// For the queried pixel (rsm/ask.comp): receives sample i's contribution to the irradiance, and its surfel.
 void tell(int i, RsmSurfel surfel, ivec3 texel, vec3 irradiance);
 #endif
 
 #if MAP_LIGHT == MAP_POINT
-// The map is a whole sphere about the lamp: samples lie at the angle pi r xi1 from the point's direction, turned by 2
-// pi xi2. Their density per texel is dOmega / (2 pi^2 r sin(pi r xi1)), so xi1 of the plane becomes sin / dOmega.
+// The map covers the whole sphere about the lamp: samples lie at the angle pi r xi1 from the point's direction, rotated
+// by 2 pi xi2. Their density per texel is dOmega / (2 pi^2 r sin(pi r xi1)), so sin / dOmega replaces the plane's xi1.
 vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
   vec3 away = position - lightPlace;
   if (!(dot(away, away) > 0.0)) return vec3(0.0);
@@ -50,7 +50,8 @@ vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
   for (int i = 0; i < pattern.length(); ++i) {
     vec3 p = pattern[i].xyz;
     vec2 at = floor(centre + radius * vec2(c * p.x + s * p.y, c * p.y - s * p.x));
-    // Beyond the map is no light; compared as floats, since the integer of a huge or undefined number is undefined.
+    // There is no light beyond the map. Compared as floats, since converting a huge or undefined number to an integer
+    // is undefined.
     if (!(min(at.x, at.y) >= 0.0 && at.x < float(size.x) && at.y < float(size.y))) continue;
     RsmSurfel surfel = rsmSurfel(ivec3(at, 0));
     if (!surfel.lit) continue;
@@ -64,8 +65,8 @@ vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
 }
 #endif
 
-// The angle by which a pixel turns the pattern: neighbours differ most, after the interleaved gradient noise of
-// J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", SIGGRAPH course 2014.
+// The angle by which a pixel rotates the pattern, chosen so that neighbours differ most: the interleaved gradient noise
+// of J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", SIGGRAPH course 2014.
 float pixelRotation(ivec2 pixel) {
 #if ROTATION
   return 2.0 * kPi * fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));

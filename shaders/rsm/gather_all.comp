@@ -1,4 +1,4 @@
-// The full gather of every pixel: what there is without interpolation.
+// The full gather for every pixel, without interpolation.
 #include "rsm/gather.glsl"
 #include "forward/visible.glsl"
 #include "rsm/work.glsl"

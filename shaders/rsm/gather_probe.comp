@@ -1,4 +1,4 @@
-// Gathered irradiance at given points and normals: for measuring and for tests.
+// Gathered irradiance at given points and normals, for measurements and tests.
 #include "rsm/gather.glsl"
 layout(local_size_x = 64) in;
 struct Probe {

@@ -1,5 +1,5 @@
-// The full gather of the pixels in the list that interpolation left. Dispatched indirectly; where the list is longer
-// than the groups that a dispatch may have, each takes several.
+// The full gather for the pixels that interpolation rejected and listed. Dispatched indirectly; if the list exceeds the
+// dispatch limit, each group takes several pixels.
 #include "rsm/gather.glsl"
 #include "forward/visible.glsl"
 #include "rsm/work.glsl"

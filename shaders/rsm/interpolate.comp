@@ -1,6 +1,6 @@
-// Irradiance of a pixel from the 4 nearest low-resolution samples, where at least 3 of them fit it: a similar normal,
-// near its tangent plane, not far away [Dachsbacher2005]. Bilinear weights of those that fit. Every other pixel goes
-// into the list that the full gather works through.
+// Interpolates a pixel's irradiance from the 4 nearest low-resolution samples if at least 3 of them fit it: a similar
+// normal, near its tangent plane, not far away [Dachsbacher2005]. Weights are bilinear among those that fit. Every
+// other pixel is appended to the list for the full gather.
 #include "rsm/fit.glsl"
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

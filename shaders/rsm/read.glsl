@@ -1,6 +1,6 @@
-// A light's reflective shadow map as the gathering passes read it: everything that depends on how it is stored is in
+// A light's reflective shadow map as the gathering passes read it. Everything that depends on its storage format is
 // here.
-// MAP_LIGHT says whose map it is: its texels' edges and solid angles, and how directions fall into it.
+// MAP_LIGHT tells the kind of light, which determines the texels' edges and solid angles and the mapping of directions.
 #include "shared/bindings.h"
 #include "lib/frame.glsl"
 #define MAP_SUN 0
@@ -15,14 +15,14 @@ uniform mat4 clipFromPlace[MAP_LIGHT == MAP_POINT ? 6 : 1];  // of positions rel
 uniform float texelWidth;                                    // at depth 1
 #endif
 
-// A texel: a virtual point light, and the surfel that it stands for.
+// A texel: a virtual point light, and the surfel that it represents.
 struct RsmSurfel {
   vec3 position;
   vec3 normal;  // unit, on the side that the light sees
   vec3 flux;    // reflected, W
-  float area;   // of the surface, scene units squared; cut off at 20 times the texel's
-  float across; // the texel's area across the rays; sun: 1, as it is the same for all
-  float near2;  // squared distance below which the surfel is no point: twice the sum of its outline's squared edges
+  float area;   // of the surface, scene units squared; at most 20 times the texel's area
+  float across; // the texel's area across the rays; sun: 1, since it is the same for all
+  float near2;  // below this squared distance it is no point: twice the sum of its outline's squared edges
   bool lit;     // false: background, or nothing is reflected
   int layer;
 };
@@ -30,7 +30,7 @@ struct RsmSurfel {
 ivec2 rsmSize() { return textureSize(rsmPosition, 0).xy; }
 
 #if MAP_LIGHT == MAP_SUN
-// Edges of a texel across the rays: the rows of an orthographic light's matrix are its axes, over half its extent.
+// Edges of a texel across the rays. The rows of an orthographic light's matrix are its axes divided by half its extent.
 void rsmTexelEdges(out vec3 u, out vec3 v) {
   mat4 clip = frame.sunClipFromWorld;
   vec3 right = vec3(clip[0][0], clip[1][0], clip[2][0]), up = vec3(clip[0][1], clip[1][1], clip[2][1]);
@@ -39,8 +39,7 @@ void rsmTexelEdges(out vec3 u, out vec3 v) {
 }
 vec3 rsmRay(vec3 position) { return frame.sunDirection; }
 #else
-// Edges of a texel where a view's pyramid has reached a point: parallel to the view's axes, as wide as it is deep
-// there.
+// Edges of a texel at a point's depth in a view's frustum: parallel to the view's axes; their length grows with depth.
 void rsmTexelEdges(int layer, vec3 position, out vec3 u, out vec3 v) {
   mat4 clip = clipFromPlace[layer];
   vec3 right = vec3(clip[0][0], clip[1][0], clip[2][0]), up = vec3(clip[0][1], clip[1][1], clip[2][1]),
@@ -53,8 +52,8 @@ vec3 rsmRay(vec3 position) { return normalize(position - lightPlace); }
 #endif
 
 // The surfel's outline: the texel's, projected along the light onto the surfel's plane, so that the surfels of
-// neighbouring texels tile a flat surface without gap or overlap. `u` and `v` are its edges; the sun's: a parallelogram
-// of the area texelArea / cosine.
+// neighbouring texels tile a flat surface without gap or overlap. `u` and `v` are its edges; for the sun it is a
+// parallelogram of the area texelArea / cosine.
 void rsmSurfelEdges(RsmSurfel surfel, out vec3 u, out vec3 v) {
 #if MAP_LIGHT == MAP_SUN
   rsmTexelEdges(u, v);
@@ -87,16 +86,16 @@ RsmSurfel rsmSurfel(ivec3 texel) {
 }
 
 #if MAP_LIGHT == MAP_SUN
-// Where a point lies in the map: 0..1 inside.
+// Projects a point into the map: 0..1 inside.
 vec2 rsmProject(vec3 position) { return 0.5 * (frame.sunClipFromWorld * vec4(position, 1.0)).xy + 0.5; }
 #elif MAP_LIGHT == MAP_SPOT
-// The same, or the place in the map that is nearest to it; the middle for what lies behind the lamp.
+// The same, clamped to the nearest position in the map; the middle for points behind the lamp.
 vec2 rsmProject(vec3 position) {
   vec4 clip = clipFromPlace[0] * vec4(position - lightPlace, 1.0);
   return clip.w > 0.0 ? clamp(0.5 * clip.xy / clip.w + 0.5, 0.0, 1.0) : vec2(0.5);
 }
 #else
-// The texel that a direction from the lamp falls into, and its solid angle (rsm.frag).
+// The texel that contains a direction from the lamp, and its solid angle (rsm.frag).
 ivec3 rsmTexel(vec3 direction, out float solidAngle) {
   vec4 clip = vec4(0.0);
   int layer = 0;

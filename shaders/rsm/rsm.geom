@@ -1,4 +1,4 @@
-// The six faces of an omnidirectional light in one draw: see lib/layered_triangle.glsl.
+// Renders the six faces of an omnidirectional light in one draw: see lib/layered_triangle.glsl.
 #include "lib/layered_triangle.glsl"
 layout(triangles, invocations = LAYERS) in;
 layout(triangle_strip, max_vertices = 3) out;

@@ -1,5 +1,5 @@
-// A mesh vertex seen by the light. Flag LAYERS: views of the target that the geometry shader projects it to; at 1 there
-// is none.
+// Transforms mesh vertices for the light. Flag LAYERS: number of target views that the geometry shader projects to; 1:
+// there is no geometry shader.
 #include "lib/frame.glsl"
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;

@@ -1,27 +1,27 @@
-// What shading writes down of the one pixel that is asked what lit it (engine/render/asked_pixel.hpp): places in a
-// storage block of vec4. The forward and the radiosity shader write it, with the flag ASKED alone.
+// What shading records for the queried pixel (engine/render/asked_pixel.hpp): indices in a storage block of vec4. The
+// forward and the radiosity shader write it if compiled with the flag ASKED.
 #pragma once
 #include "shared/types.h"
 
 SHARED_BEGIN
 
-#define ASKED_BINDING 3      // of storage blocks
+#define ASKED_BINDING 3      // a storage block
 #define ASKED_POSITION 0     // of the surface, among the frame's positions; w: 1 where there is a surface
 #define ASKED_NORMAL 1       // for shading
 #define ASKED_MESH_NORMAL 2  // on the viewer's side
 #define ASKED_ALBEDO 3
-#define ASKED_RADIANCE 4     // all of it
+#define ASKED_RADIANCE 4     // total
 #define ASKED_EMISSION 5     // radiance
-#define ASKED_INDIRECT 6     // irradiance, by what the technique adds to direct light
+#define ASKED_INDIRECT 6     // irradiance that the technique adds to direct light
 #define ASKED_CORNERS 7      // of radiosity: weights of the patch's corners; w: the patch
-#define ASKED_LIGHTS 8       // radiance by each light. Forward shading: as below; radiosity: the order of DirectLights
+#define ASKED_LIGHTS 8       // radiance per light. Forward shading: as below; radiosity: the order of DirectLights
 #define ASKED_SUN 8
 #define ASKED_SPOTS 9
 #define ASKED_POINTS 13
 
 #define ASKED_PARTS_BINDING 1
 
-// A part of the irradiance at that pixel: a texel of a reflective shadow map, a cell, a receiver.
+// A contribution to the irradiance at that pixel: from a texel of a reflective shadow map, a cell or a receiver.
 struct AskedPart {
   vec3 irradiance;
   float weight;   // of a cell or receiver in the lookup

@@ -1,6 +1,6 @@
-// Where programs of more than one folder find what they share: uniform blocks and texture units. Storage blocks and
-// units of one program alone stand beside that program. OpenGL 4.3 guarantees 36 uniform blocks and 80 units for all
-// stages together, and 16 units a stage.
+// Bindings shared by programs of more than one folder: uniform blocks and texture units. Storage blocks, and units of a
+// single program, are listed with that program. OpenGL 4.3 guarantees 36 uniform blocks and 80 units for all stages
+// together, and 16 units per stage.
 #pragma once
 
 // Uniform blocks
@@ -27,7 +27,7 @@
 #define UNIT_METAL_MAP 13
 #define UNIT_EMISSION_MAP 14
 
-// Of programs that read a reflective shadow map, or what the camera sees
+// Programs that read a reflective shadow map or the visible surfaces
 #define UNIT_RSM_POSITION 0
 #define UNIT_RSM_NORMAL 1
 #define UNIT_RSM_FLUX 2
@@ -35,7 +35,7 @@
 #define UNIT_VISIBLE_DEPTH 3
 #define UNIT_VISIBLE_NORMAL 4
 
-// Of programs that trace rays
+// Programs that trace rays
 #define UNIT_BVH_NODES 60
 #define UNIT_BVH_TRIANGLES 61
 #define UNIT_VALUE_ATLAS 62

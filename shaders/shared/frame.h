@@ -1,4 +1,4 @@
-// What every pass of a frame reads: uniform block 0.
+// Per-frame data for every pass: uniform block 0.
 #pragma once
 #include "shared/types.h"
 
@@ -6,14 +6,14 @@ SHARED_BEGIN
 
 struct FrameConstants {
   mat4 clipFromWorld;     // the camera's
-  mat4 sunClipFromWorld;  // orthographic: shadow map and reflective shadow map share it
+  mat4 sunClipFromWorld;  // orthographic; used by the shadow map and the reflective shadow map
   vec3 cameraPosition;
   float exposure;          // multiplies radiance before tone mapping
   vec3 sunDirection;       // unit, along which light travels
   float shadowNormalOffset;  // world units: a receiver is moved this far along its normal before the shadow test
   vec3 sunIrradiance;      // across the rays
   float shadowTexelUv;     // 1 / shadow map size
-  vec3 background;         // radiance where no surface is
+  vec3 background;         // radiance where there is no surface
   float padding;
 };
 

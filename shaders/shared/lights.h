@@ -1,5 +1,5 @@
-// Spot and omnidirectional lights as the forward shader reads them: uniform block 3, there only where the scene has one
-// of them.
+// Spot and omnidirectional lights as the forward shader reads them: uniform block 3, present only if the scene has such
+// lights.
 #pragma once
 #include "shared/types.h"
 
@@ -11,9 +11,9 @@ SHARED_BEGIN
 struct SpotLightConstants {
   mat4 clipFromPlace;  // perspective, of its shadow map, for positions relative to `position`
   vec3 position;
-  float cosInner;      // of the half angle of the cone of full intensity
+  float cosInner;      // of the cone's half angle of full intensity
   vec3 direction;      // unit, along the axis
-  float cosOuter;      // of the half angle where the intensity has fallen to zero
+  float cosOuter;      // of the half angle at which the intensity has fallen to zero
   vec3 intensity;      // W/sr on the axis
   float shadowTexel;   // width of a texel of the shadow map at depth 1 (scene units per scene unit)
 };

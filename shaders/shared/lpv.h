@@ -1,4 +1,4 @@
-// Where the light propagation volume's cascades lie: uniform block 1. Cascade 0 is the finest.
+// Layout of the light propagation volume's cascades: uniform block 1. Cascade 0 is the finest.
 #pragma once
 #include "shared/types.h"
 
@@ -15,10 +15,10 @@ struct LpvCascade {
 
 struct LpvConstants {
   LpvCascade cascades[LPV_MAX_CASCADES];
-  ivec4 shape;          // x: cells a side, y: cascades, z and w unused
+  ivec4 shape;          // x: cells per side, y: cascades, z and w unused
   float referenceIrradiance;  // E_ref: coefficients are stored as c / (E_ref cellSize^2)
   float blendBand;      // fraction of blendHalf over which a cascade fades into the next
-  float lookupOffset;   // cells along the normal by which a receiver is moved before the lookup
+  float lookupOffset;   // a receiver is moved by this many cells along its normal before the lookup
   float padding;
 };
 

@@ -1,4 +1,4 @@
-// Participating media and the closed boundaries that hold them, as the path tracer reads them: storage buffers
+// Participating media and the closed boundaries that contain them, as the path tracer reads them: storage buffers
 // (std430).
 #pragma once
 #include "shared/types.h"
@@ -8,20 +8,21 @@ SHARED_BEGIN
 // Lengths in scene units.
 struct MediumRecord {
   vec3 extinction;   // 1/unit
-  // with a density grid: times the density's bound, the rate of tentative collisions; > 0 where anything happens
+  // with a density grid: multiplied by the density's bound, the rate of tentative collisions; > 0 unless the medium is
+  // void
   float majorant;
-  vec3 albedo;       // scattering over extinction, 0 where there is no extinction
+  vec3 albedo;       // scattering over extinction; 0 if the extinction is 0
   int phase;         // 0 Henyey-Greenstein, 1 Rayleigh
   vec3 emission;     // radiance per unit
   int grid;          // index of its DensityRecord, -1: homogeneous
   vec3 oneMinusG;
-  int greyExtinction;  // the channels are the same: a free flight's weight is the albedo itself
+  int greyExtinction;  // the channels are equal: a free flight's weight is the albedo itself
   vec3 onePlusG;
   int greyPhase;       // likewise: the direction's weight is 1
 };
 
-// A density grid: cell centres in `densities` from firstDensity on, x fastest; bounds of blocks of cells in `bounds`
-// from firstBound on.
+// A density grid: cell centres in `densities` starting at firstDensity, x fastest; bounds of blocks of cells in
+// `bounds` starting at firstBound.
 struct DensityRecord {
   vec3 min;          // of the box
   int firstDensity;
@@ -31,11 +32,11 @@ struct DensityRecord {
   ivec4 blocks;      // blocks; w unused
 };
 
-// What is inside of a closed boundary, by its rank in the order of priorities.
+// The interior of a closed boundary, indexed by its rank in the order of priorities.
 struct InteriorRecord {
-  float ior;        // of a dielectric; unused elsewhere
+  float ior;        // of a dielectric; otherwise unused
   int medium;       // -1: vacuum
-  int clearance;    // where its clearance grid begins among the radii, -1: it has none
+  int clearance;    // index of its clearance grid's first radius; -1: none
   float cell;       // edge of that grid's cells
   vec3 min;         // corner of its first cell
   int padding0;

@@ -1,4 +1,4 @@
-// What the path tracer's kernel reads: uniform block 0 and the storage blocks of triangles, materials and lights
+// Inputs of the path tracer's kernel: uniform block 0 and the storage blocks of triangles, materials and lights
 // (std430).
 // Space: that of the ray caster, the world moved by -origin (engine/rays/ray_scene.hpp).
 #pragma once
@@ -22,33 +22,33 @@ SHARED_BEGIN
 
 #define PATH_NO_TEXTURE (-1)
 
-// Of the one pixel that is asked what lit it, behind the lanes' state in uvec4: how many records there are; places of
-// the present path; records. A record: radiance and sample; scatterings, kind of the light, its number, places; the
-// places, and where the light is (w: 1 at infinity, then the direction to it).
+// Data of the queried pixel, stored after the lanes' state, in uvec4: number of records; vertices of the current path;
+// records. A record: radiance and sample; scatterings, kind of light, its number, number of vertices; the vertices, and
+// the light's position (w: 1 at infinity, then the direction to it).
 #define PATH_ASKED_PLACES 8
 #define PATH_ASKED_RECORD 11
-#define PATH_ASKED_MEDIUM 5u      // besides the kinds of lights: a medium that emits
+#define PATH_ASKED_MEDIUM 5u      // in addition to the kinds of lights: an emissive medium
 #define PATH_ASKED_BACKGROUND 6u
 
 struct PathConstants {
   vec3 cameraPosition;
   uint seed;
   vec3 pixelRight;          // one pixel to the right, at distance 1 along the view
-  uint sampleTarget;        // samples that every pixel of the tile shall have
+  uint sampleTarget;        // samples that every pixel of the tile should have
   vec3 pixelUp;             // one pixel up
-  uint turns;               // of loops that a lane may take before it begins no other segment in this submission
+  uint turns;               // loop iterations after which a lane starts no further segment in this submission
   vec3 firstPixel;          // from the camera to the lower left corner of the picture at distance 1
-  uint minScatterings;      // light counts that was scattered so often on its way to the camera
+  uint minScatterings;      // light with fewer scatterings on its way to the camera is not counted
   vec3 background;
   uint maxScatterings;
-  vec3 environment;         // radiance, or a factor on the picture
+  vec3 environment;         // radiance, or a factor that scales the picture
   float environmentPick;    // probability that a light sample goes to the environment
   vec4 environmentTurn;     // cosine and sine of its rotation
   ivec4 tile;               // its lower left pixel, its size
   ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile
 };
 
-// Where a texture lies in the atlas; layer is PATH_NO_TEXTURE where there is none.
+// Position of a texture in the atlas; layer is PATH_NO_TEXTURE if there is none.
 struct PathTexture {
   int layer;
   int x, y;                 // texel of its lower left corner
@@ -57,23 +57,23 @@ struct PathTexture {
 };
 
 struct PathMaterial {
-  vec3 albedo;              // a factor on the texture
+  vec3 albedo;              // scales the texture
   uint kind;
   vec3 specular;
   float roughness;          // GGX alpha
   vec3 emission;
-  float metallic;           // of a MetalMap (scene/scene.hpp), whose base is `albedo`; negative where there is none
+  float metallic;           // of a MetalMap (scene/scene.hpp), whose base is `albedo`; negative: none
   float ior;
-  uint boundary;            // which closed boundary it is of: index of the material
+  uint boundary;            // the closed boundary it belongs to: index of the material
   float normalScale;
   float padding;
   PathTexture diffuseTexture;
   PathTexture maskTexture;  // in alpha
   PathTexture emissionTexture;
-  PathTexture normalTexture, metalTexture;  // in the atlas of values that are no colours
+  PathTexture normalTexture, metalTexture;  // in the atlas of non-colour values
 };
 
-// A light and, for the choice of one by one number, an entry of an alias table over all of them [Vose1991].
+// A light, combined with an entry of an alias table over all of them for picking one with a single number [Vose1991].
 struct PathLight {
   vec3 a;                   // position; a triangle's first corner
   uint kind;
@@ -81,7 +81,7 @@ struct PathLight {
   uint p;                   // bits of a spot's cosInner; a triangle's number in the scene
   vec3 c;                   // intensity or irradiance; from the first corner to the third
   uint q;                   // bits of a spot's cosOuter; a triangle's material
-  float threshold;          // of the alias table: below it this light, else alias
+  float threshold;          // of the alias table: below it this light is picked, otherwise alias
   uint alias;
   float probability;        // of being picked
   float padding;

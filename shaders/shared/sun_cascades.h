@@ -1,4 +1,4 @@
-// The sun's cascades: uniform block 4, there only where shadow.cascades is above 1. Cascade 0 is the finest.
+// The sun's cascades: uniform block 4, present only if shadow.cascades is above 1. Cascade 0 is the finest.
 #pragma once
 #include "shared/types.h"
 
@@ -8,7 +8,7 @@ SHARED_BEGIN
 
 struct SunCascadeConstants {
   mat4 clipFromWorld[SUN_MAX_CASCADES];  // orthographic
-  vec4 normalOffset;                     // world units, of each cascade: a receiver is moved this far along its normal
+  vec4 normalOffset;                     // world units, per cascade: a receiver is moved this far along its normal
 };
 
 SHARED_END

@@ -1,5 +1,5 @@
-// Lets a struct be declared once and compiled by C++ (as GLM types) and by GLSL. std140: each vec3 is followed by a
-// scalar.
+// Allows a struct to be declared once and compiled by C++ (as GLM types) and by GLSL. std140: each vec3 is followed by
+// a scalar.
 #pragma once
 #ifdef __cplusplus
 #include <glm/glm.hpp>

@@ -1,5 +1,6 @@
-// The window's picture: one or two pictures of a view, whole, divided by a wipe or side by side, under one exposure,
-// tone map and zoom; each shown as it is or as its difference from a reference. A magnifier about the cursor.
+// The window's picture: one or two pictures of a view, each whole, or divided by a wipe or side by side, with a common
+// exposure, tone map and zoom. Each is shown as it is or as its difference from a reference. A magnifier follows the
+// cursor.
 // Curve and encoding: shaders/forward/tonemap.frag.
 #include "lib/tonemap.glsl"
 layout(binding = 0) uniform sampler2D leftPicture;    // linear radiance
@@ -8,26 +9,26 @@ layout(binding = 2) uniform sampler2D reference;      // mean, as many texels as
 layout(binding = 3) uniform sampler2D standardError;  // of the mean
 layout(binding = 4) uniform sampler2D leftFlip;       // FLIP's map, 0..1
 layout(binding = 5) uniform sampler2D rightFlip;
-uniform ivec2 views;       // of left and right: what SHOW_* say
+uniform ivec2 views;       // of left and right: SHOW_* values
 uniform vec2 pixels;       // of the target
-uniform float split;       // of the width where the right picture begins; 1: the left one alone
+uniform float split;       // fraction of the width where the right picture begins; 1: only the left one
 uniform bool sideBySide;
 uniform float zoom;        // 1: the picture fits
-uniform vec2 centre;       // of the picture, 0..1, in the middle of the target
+uniform vec2 centre;       // point of the picture, 0..1, shown in the middle of the target
 uniform float exposure;
 uniform float errorScale;  // radiance at the end of the signed colours
-uniform vec4 magnifier;    // pixel of the target, radius in pixels (0: none), factor
+uniform vec4 magnifier;    // centre in pixels of the target, radius in pixels (0: none), factor
 layout(location = 0) out vec4 displayColor;
 
 const int SHOW_PICTURE = 0, SHOW_SIGNED = 1, SHOW_RELATIVE = 2, SHOW_Z = 3, SHOW_FLIP = 4, SHOW_VALUES = 5;
 
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }  // IEC 61966-2-1
 
-// Blue (-1) over white (0) to red (+1).
+// Blue (-1) through white (0) to red (+1).
 vec3 diverging(float t) {
   return t < 0.0 ? vec3(1.0 + max(t, -1.0), 1.0 + max(t, -1.0), 1.0) : vec3(1.0, 1.0 - min(t, 1.0), 1.0 - min(t, 1.0));
 }
-// Black (0) over red and yellow to white (1).
+// Black (0) through red and yellow to white (1).
 vec3 heat(float t) { return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0); }
 
 vec3 shown(bool right, ivec2 texel) {
@@ -47,8 +48,8 @@ vec3 shown(bool right, ivec2 texel) {
     vec3 d = abs(radiance - truth);
     return heat(max(d.x, max(d.y, d.z)) / max(max(truth.x, max(truth.y, truth.z)), 1e-30));
   }
-  // In standard errors of the reference; grey where the noise explains it. Channels of a pixel are taken to rise and
-  // fall together.
+  // In standard errors of the reference; grey where noise explains the difference. A pixel's channels are assumed to
+  // rise and fall together.
   float z = difference / max(luminance(noise), 1e-30);
   return abs(z) < 3.0 ? vec3(0.35) : diverging(sign(z) * clamp(abs(z) / 20.0, 0.15, 1.0));
 }
@@ -80,7 +81,7 @@ void main() {
     displayColor = vec4(0.08, 0.08, 0.08, 1.0);
     return;
   }
-  float side = 1.0 / (pixelsOfTexel * magnified / zoom);  // of a pixel, in texels
+  float side = 1.0 / (pixelsOfTexel * magnified / zoom);  // width of a pixel, in texels
   int taps = clamp(int(ceil(side - 0.01)), 1, 4);
   vec3 sum = vec3(0.0);
   for (int y = 0; y < taps; ++y)

@@ -1,5 +1,4 @@
-// Logarithm of luminance over the picture, for automatic exposure: each texel of the small target takes 16 texels of
-// its part.
+// Log luminance of the picture, for automatic exposure: each texel of the small target samples 16 texels of its region.
 layout(binding = 0) uniform sampler2D radianceTexture;
 uniform vec2 pixels;  // of the target
 layout(location = 0) out vec4 result;  // sum of log2, count

@@ -1,6 +1,6 @@
-// A stage's own picture as colours: light by a factor; normals and positions as they lie within -1..1 and the scene's
-// bounds; depth from white (near) to black.
-// SHAPE: 0 2D, 1 an array's layer, 2 a slice of a volume, 3 a slice of three volumes, of red, green and blue.
+// Displays an intermediate picture as colours: light scaled by a factor; normals and positions mapped from -1..1 and
+// the scene's bounds; depth from white (near) to black.
+// SHAPE: 0 2D, 1 a layer of an array, 2 a slice of a volume, 3 a slice of three volumes: red, green and blue.
 #include "lib/sh.glsl"
 in vec2 uv;
 #if SHAPE == 0
@@ -17,7 +17,7 @@ layout(binding = 2) uniform sampler3D blue;
 uniform int layer;
 // StagePicture::Kind: 0 position, 1 normal, 2 flux, 3 depth, 4 irradiance of receivers, 5 coefficients
 uniform int kind;
-uniform float factor;  // of light
+uniform float factor;  // scales light
 uniform vec3 minimum;  // of the scene
 uniform vec3 extent;
 layout(location = 0) out vec4 color;
@@ -38,7 +38,7 @@ void main() {
   vec3 shown = factor * value.rgb;
   if (kind == 0) shown = value.w > 0.0 ? (value.xyz - minimum) / extent : vec3(0.0);
   if (kind == 1) shown = dot(value.xyz, value.xyz) > 0.0 ? 0.5 * value.xyz + 0.5 : vec3(0.0);
-  // Perspective depth lies near 1: its distance from there by the fourth root tells most.
+  // Perspective depth is concentrated near 1: the fourth root of the distance from 1 spreads it best.
   if (kind == 3) shown = vec3(pow(clamp(1.0 - value.r, 0.0, 1.0), 0.25));
   if (kind == 4) shown = value.w > 0.0 ? factor * value.rgb / value.w : vec3(0.0);
   color = vec4(shown, 1.0);

@@ -1,5 +1,5 @@
-// One level of the hierarchy over a reflective shadow map (tree.glsl), from the level below. FROM_TEXELS: the first,
-// from the map itself.
+// Builds one level of the hierarchy over a reflective shadow map (tree.glsl) from the level below. FROM_TEXELS: the
+// first level, from the map itself.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/bindings.h"
 #include "lpv/gather/tree.glsl"

@@ -1,13 +1,13 @@
-// Irradiance at receivers from a reflective shadow map, by a hierarchy over its texels (tree.glsl): a group of lanes
-// gathers at one receiver.
+// Irradiance at receivers from a reflective shadow map, through a hierarchy over its texels (tree.glsl). One group of
+// lanes gathers for one receiver.
 //
 // From a receiver at x with normal n a node of flux Phi, area A and mean normal n_p at p gives
 //   E = Phi c1 c2 / (pi (r^2 + A c2 / pi)),  c1 = <n, p - x>+ / r,  c2 = <n_p, x - p>+ / r:
-// a point [Dachsbacher2005] far away, a disc near by. What is near is opened; what lies behind is passed over. Texels
-// that are near take the outline that they have in the sun's map (rsm/transfer.glsl).
-// Visibility: each lane keeps up to four of its nodes, drawn in proportion to what they give (reservoirs [Chao1982]);
-// lanes that gave more send more rays, so that some 64 to 100 rays through voxels stand for all nodes. SKY: no map;
-// each lane looks for the sky in one direction drawn by the cosine.
+// a point [Dachsbacher2005] at a distance, a disc near by. Near nodes are opened; nodes behind the receiver are
+// skipped. Near texels use their outline in the sun's map (rsm/transfer.glsl).
+// Visibility: each lane keeps up to four of its nodes, drawn in proportion to their contribution (reservoir sampling
+// [Chao1982]). Lanes with larger contributions trace more rays, so that 64 to 100 rays through voxels represent all
+// nodes. SKY: no map; each lane tests the sky in one cosine-weighted direction.
 layout(local_size_x = 64) in;  // LPV_LANES
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"
@@ -32,14 +32,14 @@ uniform uint last;  // 1: after this dispatch receivers have all their light
 shared vec3 sums[LPV_LANES];
 shared float weights[LPV_LANES];
 
-const float kOff = 2.0;  // voxels that both ends of a ray lie off their surfaces
+const float kOff = 2.0;  // voxels by which both ends of a ray are moved off their surfaces
 
 #if !SKY
 const float kOpen = 2.0;         // radii
-const float kOpenTurning = 8.0;  // of nodes whose surfaces turn: the mean normal tells too little of what they give
-const float kFlat = 0.98;        // square of the mean normal's length from which they do not
+const float kOpenTurning = 8.0;  // for nodes with varying normals: the mean normal is a poor estimate
+const float kFlat = 0.98;        // normals count as varying below this squared length of the mean normal
 const int kReservoirs = 4;
-const int kStack = 40;       // three siblings a level wait, and the levels are at most nine
+const int kStack = 40;       // up to three siblings wait per level, and there are at most nine levels
 
 struct Candidate {
   vec3 position, normal;
@@ -55,7 +55,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
   vec3 sum = vec3(0.0);
   share = 1.0;
 #if SKY
-  // The sky: a ray a lane by the cosine, and what it shows where nothing is in its way.
+  // The sky: one cosine-weighted ray per lane, and the radiance it finds if nothing blocks it.
   PathNumbers numbers = PathNumbers(pcg4d(cell).x, lane, tracer.seed);
   vec3 direction = cosineSample(normal, randomPair(numbers, 1u, kPurposeScatter));
 #if VOXELS
@@ -66,8 +66,8 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
   weights[lane] = 0.0;
   barrier();
 #else
-  // The map's texels: a walk down the light tree, its top shared out over the lanes. Texels for rays are kept by
-  // weighted reservoirs of one [Chao1982].
+  // The map's texels: traverse the light tree, with its top levels divided among the lanes. Texels for rays are kept in
+  // weighted reservoirs of size one [Chao1982].
   uint chosen[kReservoirs];
   int chosenLayer[kReservoirs];
   for (int i = 0; i < kReservoirs; ++i) {
@@ -89,7 +89,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
       vec3 given = vec3(0.0);
       uint texel;
       if (level == 0) {
-        // A texel, whole.
+        // A single texel.
         texel = uint(place.x) | uint(place.y) << 16u;
 #if PERSPECTIVE
         vec4 p = texelFetch(rsmPosition, ivec3(place, layer), 0), flux = texelFetch(rsmFlux, ivec3(place, layer), 0);
@@ -105,7 +105,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
         given = surfelIrradiance(surfel, position, normal);
 #endif
       } else {
-        // A node: as one texel from afar, else its children.
+        // A node: treated as one texel from afar, otherwise opened.
         int at = treeNode(level, layer, place);
         uvec4 a = texelFetch(treeNodes, at);
         float radius = uintBitsToFloat(a.w);
@@ -131,7 +131,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
         given = uintBitsToFloat(c.xyz) * (c1 * c2 / (kPi * r2 + uintBitsToFloat(b.w) * c2));
         texel = c.w;
       }
-      // It counts, and may be chosen for a ray.
+      // Add its contribution, and offer it to a reservoir.
       float w = given.r + given.g + given.b;
       if (!(w > 0.0)) continue;
       sum += given;
@@ -144,7 +144,7 @@ vec3 gatherAt(vec3 position, vec3 normal, uvec4 cell, uint lane, out float share
         }
     }
   }
-  // Rays to chosen texels: the share that arrives, as many rays as the lane has of all weight.
+  // Trace rays to the chosen texels for the visible share. The number of rays is the lane's share of the total weight.
   weights[lane] = weight;
   barrier();
   float all = 0.0;

@@ -1,4 +1,4 @@
-// What the lookup takes of each receiver for one point: an entry a receiver. One invocation.
+// Lists what the lookup reads from each receiver for one point: one entry per receiver. One invocation.
 layout(local_size_x = 1) in;
 #include "lpv/receivers/lookup.glsl"
 #include "forward/asked_parts.glsl"
@@ -8,7 +8,7 @@ uniform vec3 askedPosition;
 uniform vec3 askedNormal;  // of the mesh
 
 
-// The sum of the cascades' weights, by which all of them are divided.
+// The cascades' weights, and the sum that normalises them.
 float weightsOfCascades(out float weights[LPV_MAX_CASCADES], out float there[LPV_MAX_CASCADES]) {
   float left = 1.0, sum = 0.0;
   for (int k = 0; k < LPV_MAX_CASCADES; ++k) {

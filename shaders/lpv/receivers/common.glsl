@@ -1,6 +1,6 @@
-// Receivers: each cell of each cascade has six slots, one a direction of axis and sign; a slot holds one real point of
-// a surface that faces that way. Slots are addressed by the cell's number from the origin, modulo the cascade's cells,
-// so that a receiver keeps its slot while the grid moves.
+// Receivers: each cell of each cascade has six slots, one per axis and sign. A slot holds one actual point of a surface
+// that faces that way. Slots are addressed by the cell's index from the origin, modulo the cascade's cells, so that a
+// receiver keeps its slot while the grid moves.
 #include "shared/bindings.h"
 #include "lpv/common.glsl"
 #include "shared/lpv_receivers.h"
@@ -8,7 +8,7 @@ layout(std140, binding = BLOCK_RECEIVERS) uniform LpvReceiverBlock { LpvReceiver
 
 int faceOf(int axis, float component) { return 2 * axis + (component < 0.0 ? 1 : 0); }
 
-// cell: counted from the origin.
+// cell: index counted from the origin.
 int slotOf(int cascade, int face, ivec3 cell) {
   int cells = lpv.shape.x;
   ivec3 place = cell - cells * ivec3(floor(vec3(cell) / float(cells)));

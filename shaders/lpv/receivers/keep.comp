@@ -1,4 +1,4 @@
-// After the cascades have moved: receivers whose cell is still theirs are kept, and their slots entered anew.
+// Runs after the cascades have moved: keeps the receivers whose cell is still inside, and registers their slots again.
 layout(local_size_x = 64) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"

@@ -1,6 +1,6 @@
-// Every receiver once a frame: a new one is placed where its pixel's ray meets the scene, in the ray caster's own
-// numbers, so that no path starts inside of a surface; and those that are needed and do not have all their paths yet
-// are listed. What a new one shows at first is what was looked up at its place in the frame before.
+// Visits every receiver once per frame. A new one is placed where its pixel's ray meets the scene, in the ray caster's
+// coordinates, so that no path starts inside a surface. Needed receivers that do not have all their paths yet are
+// listed. A new one first shows the irradiance looked up at its place in the previous frame.
 layout(local_size_x = 64) in;
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"
@@ -15,8 +15,8 @@ layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers
 layout(std430, binding = 1) writeonly restrict buffer LpvLit { uint lit[]; };
 layout(binding = 6) uniform usamplerBuffer lpvSeen;
 uniform uint mostLit;     // receivers
-uniform uint pathTarget;  // paths that a receiver shall have
-uniform bool countsFading;  // those that have not arrived at what they shall show are listed, too
+uniform uint pathTarget;  // paths that each receiver should have
+uniform bool countsFading;  // also list receivers whose shown value is still fading in
 
 void main() {
   uint index = gl_GlobalInvocationID.x;
@@ -43,7 +43,7 @@ void main() {
     }
   }
   if (triangle == LPV_NOWHERE) return;
-  // also where it is not needed itself, but looked up beside those that are
+  // also if it is not needed itself, but is looked up next to needed ones
   bool fades = countsFading && receivers[index].presence < LPV_PRESENT;
   bool lacksPaths = receivers[index].paths < pathTarget &&
                     (receivers[index].born == receiving.frame || texelFetch(lpvSeen, int(index)).x == receiving.frame);

@@ -1,12 +1,12 @@
-// Irradiance at a surface from the receivers around it: for each axis the receivers whose surface leans the way of the
-// normal, trilinear among those that there are, weighted by the square of the normal's component. Alpha is how much a
-// receiver counts, 0 in empty cells.
+// Irradiance at a surface from the receivers around it. For each axis, interpolates trilinearly between the existing
+// receivers whose surface leans the same way as the normal, weighted by the square of the normal's component. Alpha is
+// how much a receiver counts, 0 in empty cells.
 #include "shared/bindings.h"
 #include "lpv/receivers/common.glsl"
 #include "lpv/cascade_weight.glsl"
 layout(binding = UNIT_RECEIVED) uniform sampler3D lpvReceived;  // faces of cascades stacked along z
 
-// Where a cascade is looked up, in cells of one face.
+// Position for a lookup in a cascade, in cells of one face.
 vec3 receivedPlace(int k, vec3 position) {
   float cells = float(lpv.shape.x);
   vec3 texel = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize;
@@ -14,7 +14,7 @@ vec3 receivedPlace(int k, vec3 position) {
   return texel;
 }
 
-// xyz: irradiance over E_ref, times w; w: how much there is to interpolate from.
+// xyz: irradiance over E_ref, times w; w: total weight of the receivers found.
 vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
   float cells = float(lpv.shape.x);
   vec3 uvw = receivedPlace(k, position) / vec3(cells, cells, cells * float(lpv.shape.y * LPV_FACES));
@@ -28,10 +28,10 @@ vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
 
 const float kEnough = 1.0 / 32.0, kLeast = 1e-5;
 
-// From the finest cascade to the coarsest, each blended into the next near its border, and where it has little to
-// interpolate from: what a point's own receiver weighs at least when it is new, 1/8 of 1/4, or more is enough. Less
-// than kLeast is no more than the filter's rounding: its colour would be noise.
-// found: false where none has anything.
+// From the finest cascade to the coarsest, each blended into the next near its border and where it has few receivers. A
+// total weight of 1/8 of 1/4, the least that a point's own new receiver contributes, is enough. A weight below kLeast
+// is only the filter's rounding: its colour would be noise.
+// found: false if no cascade has any receiver.
 vec3 receivedIrradiance(vec3 position, vec3 normal, out bool found) {
   vec3 irradiance = vec3(0.0);
   float left = 1.0, sum = 0.0;
@@ -42,7 +42,7 @@ vec3 receivedIrradiance(vec3 position, vec3 normal, out bool found) {
     if (!(here.w > kLeast)) continue;
     weight *= min(here.w / kEnough, 1.0);
     irradiance += weight * here.rgb / here.w;
-    sum += weight;  // not 1 - left, which loses a small weight's digits
+    sum += weight;  // not 1 - left, which would cancel for a small weight
     left -= weight;
   }
   found = sum > 0.0;

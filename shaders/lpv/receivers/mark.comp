@@ -1,13 +1,14 @@
-// Which slots the camera needs: each pixel names those of its cell, in every cascade that counts there, for each axis
-// that its normal leans to. Slots that hold a receiver keep it. For an empty one the pixel nearest to its cell's centre
-// and most along its axis wins: a real point, never a mean of several, which would lie buried in edges and corners.
-// First pass: the best key of each empty slot; second pass, CLAIM: the winner makes the receiver.
+// Marks the slots that the camera needs. Each pixel names those of its cell, in every cascade that contributes there,
+// for each axis that its normal leans to. Slots with a receiver keep it. An empty slot goes to the pixel nearest to its
+// cell's centre and most aligned with its axis: an actual point, because the mean of several would lie buried in edges
+// and corners.
+// First pass: the best key of each empty slot. Second pass, CLAIM: the winner creates the receiver.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
 #include "lpv/cascade_weight.glsl"
 #include "forward/visible.glsl"
-layout(binding = 0) uniform usamplerBuffer lpvSlots;  // 0: empty, else the receiver's index and 1
+layout(binding = 0) uniform usamplerBuffer lpvSlots;  // 0: empty, else the receiver's index + 1
 #if CLAIM
 layout(binding = 1) uniform usamplerBuffer lpvKeys;
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
@@ -17,7 +18,7 @@ layout(std430, binding = 0) restrict buffer LpvSeen { uint seen[]; };
 layout(std430, binding = 1) restrict buffer LpvKeys { uint keys[]; };
 #endif
 
-const float kLeans = 0.02;  // square of the component from which a normal's slot is filled
+const float kLeans = 0.02;  // squared component of the normal from which the slot is filled
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(visibleDepth, 0);

@@ -1,13 +1,13 @@
-// Irradiance at receivers by paths: PATHS lanes follow one each from a receiver, and their mean is added to what the
-// receiver has.
+// Irradiance at receivers by path tracing: PATHS lanes trace one path each from a receiver, and their mean is added to
+// the receiver's estimate.
 //
-// A path leaves the receiver by the cosine and asks one light at each surface, weighted against each other [Veach1997],
-// as the path tracer's do (pathtracer/path.comp), whose triangles, materials, lights and random numbers these are.
-// Every surface is Lambert's, as forward shading takes it. Sun, spots and omnidirectional lamps do not light the
-// receiver itself: forward shading does that in each pixel.
-// CACHED: where a path's hit lies among receivers, their irradiance of the frame before stands for all that would
-// follow, so that one bounce a frame adds up to all of them; elsewhere the path goes on.
-layout(local_size_x = 64) in;  // LPV_LANES; GLSL 4.30 takes literals alone
+// A path leaves the receiver with cosine weighting and samples one light at each surface, combined by multiple
+// importance sampling [Veach1997] as in the path tracer (pathtracer/path.comp), whose triangles, materials, lights and
+// random numbers it shares. Every surface is treated as Lambertian, as forward shading treats it. Direct light of the
+// sun, spots and omnidirectional lamps is excluded: forward shading adds it per pixel.
+// CACHED: where a path's hit lies among receivers, their irradiance of the previous frame replaces the rest of the
+// path. One bounce per frame thus adds up to all of them; elsewhere the path continues.
+layout(local_size_x = 64) in;  // LPV_LANES; GLSL 4.30 accepts only literals here
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"
 layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants tracer; };
@@ -31,18 +31,18 @@ shared vec3 found[LPV_LANES];
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
-// Light that the receiver itself is given by emissive surfaces and the sky is part of what is kept, and so of what is
-// looked up.
+// Whether receivers store direct light from emissive surfaces and the sky, which lookups then include.
 bool keepsDirectLight() { return tracer.minScatterings <= 1u; }
 
 struct Shadow {
   bool waits;
-  vec3 light;  // what it adds where nothing is in the way
+  vec3 light;  // added if nothing blocks it
   Ray ray;
 };
 
 #if NEXT_EVENT
-// One light asked from a surface of reflectance `throughput` * pi over irradiance; scatterings: those at and before it.
+// Next-event estimation from a surface of reflectance `throughput` * pi over irradiance; scatterings: including this
+// one.
 Shadow askLight(Surface surface, vec3 throughput, uint scatterings, bool lampsAlone, PathNumbers numbers) {
   Shadow shadow = Shadow(false, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0));
   LightSample light;
@@ -62,7 +62,7 @@ Shadow askLight(Surface surface, vec3 throughput, uint scatterings, bool lampsAl
 }
 #endif
 
-// Radiance that reaches the receiver along one path, drawn by the cosine: irradiance is pi times its mean.
+// Radiance that reaches the receiver along one cosine-weighted path; irradiance is pi times its mean.
 vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
   vec3 radiance = vec3(0.0), throughput = vec3(1.0);
   Shadow shadow;
@@ -70,8 +70,8 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
   Ray ray;
   float pdf = 0.0;
   uint scatterings = 0u;
-  bool arrives = true, ends = false;  // at `surface`; after the shadow ray that waits
-  bool last = false;                  // where the next ray ends light is seen, nothing is scattered
+  bool arrives = true, ends = false;  // at `surface`; after the pending shadow ray
+  bool last = false;                  // the next ray only collects light at its end and does not scatter
   for (;;) {
     if (arrives) {
       arrives = false;
@@ -83,8 +83,8 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
         radiance += throughput * kept / kPi;
         ends = cached;
 #if EMISSION || ENVIRONMENT
-        // What is kept without the direct light of shining surfaces and the sky lacks it at this surface, too: the
-        // other half of what asking a light finds is one more ray.
+        // If receivers store no direct light of emitters and the sky, this surface lacks it too. One more ray supplies
+        // the other half of what next-event estimation finds.
         last = cached && !keepsDirectLight();
         ends = cached && !last;
 #endif
@@ -142,7 +142,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
 #endif
     if (last || scatterings >= tracer.maxScatterings) break;
     throughput *= albedoAt(surface);
-    // roulette [Arvo1990]
+    // Russian roulette [Arvo1990]
     float survival = scatterings < 3u ? 1.0 : min(max(throughput.x, max(throughput.y, throughput.z)), 1.0);
     if (!(unitFloat(randomWords(numbers, scatterings, kPurposeChoice).x) < survival)) break;
     throughput /= survival;
@@ -163,7 +163,7 @@ void main() {
         uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
     Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third),
                                 (receiver.state & LPV_FRONT) != 0u ? -normal : normal);
-    // The place decides the numbers, not the order in which receivers were found.
+    // The receiver's place determines the random numbers, not the order in which receivers were found.
     found[lane] =
         followPath(surface, receiver.triangle,
                    PathNumbers(pcg4d(uvec4(receiver.cell)).x, receiver.paths + lane % uint(PATHS), tracer.seed));

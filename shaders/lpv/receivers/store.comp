@@ -1,22 +1,22 @@
-// What the lookup filters: each receiver's irradiance at its cell and face, times how much it counts. A receiver counts
-// more the more paths it has, so that new ones fade in among those that are there. While it has few it takes its
-// neighbours' in, those of the same face whose surfaces lean the same way, weighted by their paths: noise gives way to
-// a little blur, and both to what is right, since with all its paths it stands for itself.
+// Writes the texture that the lookup filters: each receiver's irradiance at its cell and face, times its weight. The
+// weight grows with the number of paths, so that new receivers fade in among existing ones. A receiver with few paths
+// is averaged with its neighbours (same face, surfaces that lean the same way), weighted by their paths. This trades
+// noise for a little blur, and both vanish once the receiver has all its paths and stands for itself.
 layout(local_size_x = 64) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(LPV_FORMAT, binding = 0) writeonly uniform image3D lpvReceived;
 layout(binding = 0) uniform usamplerBuffer lpvSlots;
-uniform float fullPaths;   // from which it counts fully, and alone
-uniform uint enoughPaths;  // from which one that was first does not jump any more
-// of what is shown in a frame, relative to the larger of what it was and shall be; 0: at once
+uniform float fullPaths;   // paths from which a receiver counts fully and is no longer averaged
+uniform uint enoughPaths;  // an LPV_FIRST receiver follows its estimate without limit until it has this many
+// largest change per frame of the shown irradiance, relative to the larger of old and target; 0: no limit
 uniform float mostChange;
-const float kFadeIn = 1.0 / 16.0;  // a frame
+const float kFadeIn = 1.0 / 16.0;  // per frame
 
-// Nothing that is seen jumps: the irradiance that a receiver shows moves towards what its paths and its neighbours'
-// say, and a new one comes in by and by. Where nothing was seen before it shows what the paths of its first frame have
-// found.
+// Avoids visible jumps: the irradiance that a receiver shows moves gradually towards the estimate from its own and its
+// neighbours' paths, and a new receiver fades in. Where nothing was shown before, it starts with the estimate of its
+// first frame.
 void show(uint index, inout LpvReceiver receiver, vec3 target) {
   vec3 change = target - receiver.shown;
   float largest = max(max(abs(change.x), abs(change.y)), abs(change.z));
@@ -61,8 +61,8 @@ void main() {
   int cascade = receiver.cell.w / LPV_FACES;
   ivec3 place = receiver.cell.xyz - receiving.firstCell[cascade].xyz;
   if (any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(lpv.shape.x)))) return;
-  // No less than a quarter: times 1/8, the least share of a point's own cell, that is still more than the lookup asks
-  // for. Else what few paths have found would stay black.
+  // At least a quarter: times 1/8, the least share of a point's own cell, that still exceeds the lookup's threshold.
+  // Otherwise regions with few paths would stay black.
   float counts = clamp(float(receiver.paths) / fullPaths, 0.25, 1.0);
   show(index, receiver, withNeighbours(receiver));
   imageStore(lpvReceived, ivec3(place.xy, receiver.cell.w * lpv.shape.x + place.z),

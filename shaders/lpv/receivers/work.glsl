@@ -1,10 +1,10 @@
-// How many receivers there are, and dispatches over them: LPV_LANES receivers a group, and of those to be lit a path a
-// lane.
+// Counts of receivers and the indirect dispatches over them: LPV_LANES receivers per group, and one path per lane for
+// those to be lit.
 layout(std430, binding = 5) restrict buffer LpvReceiverWork {
   uint allGroupsX, allGroupsY, allGroupsZ;
-  uint wanted;   // receivers; those beyond the capacity found no room
+  uint wanted;   // receivers, including those that did not fit into the capacity
   uint litGroupsX, litGroupsY, litGroupsZ;
-  uint waiting;  // receivers that have not all their paths yet; those beyond the dispatch wait for the next
+  uint waiting;  // receivers that still lack paths; those beyond the dispatch wait for the next one
   uint frame;
 } work;
 
