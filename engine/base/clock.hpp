@@ -1,4 +1,4 @@
-// Time that passes.
+// Wall-clock time measurement.
 #pragma once
 
 #include <chrono>

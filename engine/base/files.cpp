@@ -32,7 +32,7 @@ Container readWhole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throwCannotOpen(file, errno);
   Container content;
-  // Piece by piece, as pipes have no size; the first piece holds all of a regular file, plus one byte to detect its
+  // Read in pieces, as pipes have no size; the first piece holds all of a regular file, plus one byte to detect its
   // end.
   std::size_t piece = 1u << 20, used = 0;
   if (const std::uintmax_t size = fs::file_size(file, error); !error) piece = static_cast<std::size_t>(size) + 1;
@@ -61,8 +61,8 @@ const std::string& temporaryPrefix() {
   return prefix;
 }
 
-/// Removes the temporary files that killed processes of this machine left in a folder; once a folder and run, before
-/// the first file is written to it.
+/// Removes the temporary files that killed processes of this machine left in a folder. Runs once per folder and
+/// process, before the first file is written there.
 void sweepOnce(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<std::string> swept;
@@ -81,7 +81,7 @@ void sweepOnce(const fs::path& folder) {
   }
 }
 
-/// Writes and closes; returns 0 or the errno of what failed first.
+/// Writes and closes; returns 0 or the errno of the first failure.
 int writeAll(const fs::path& file, std::span<const std::uint8_t> bytes, bool durably) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return errno;
@@ -97,7 +97,7 @@ int writeAll(const fs::path& file, std::span<const std::uint8_t> bytes, bool dur
   return failure;
 }
 
-/// A name beside the file, from which it may be renamed. Throws where the file cannot be written.
+/// A name next to the file, from which it may be renamed. Throws if the file cannot be written.
 fs::path temporaryFor(const fs::path& file) {
   if (!file.has_filename()) throwBadInput("'{}': cannot be written: expected a file name", file.string());
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");

@@ -30,11 +30,11 @@ void writeFileAtomically(const std::filesystem::path& file, std::string_view tex
 /// The same for checkpoints: on return both content and name are on disk (fsync), not only in the page cache.
 void writeFileDurably(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 
-/// Throws what writing it would throw now (no such folder, a folder of that name, no permission), and writes nothing:
-/// for commands to ask before hours of work.
+/// Throws the error that writing the file would throw now (no such folder, a folder of that name, no permission),
+/// without writing anything: lets commands fail before hours of work.
 void checkWritable(const std::filesystem::path& file);
 
-/// The extension in lower case with its dot, such as ".png"; empty where there is none.
+/// The extension in lower case with its dot, such as ".png"; empty if there is none.
 std::string lowerExtension(const std::filesystem::path& file);
 
 }  // namespace lucerna

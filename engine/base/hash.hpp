@@ -1,4 +1,4 @@
-// 64-bit FNV-1a: tells contents apart and detects damaged files; not cryptographic (no GL).
+// 64-bit FNV-1a: compares contents and detects damaged files; not cryptographic (no GL).
 #pragma once
 
 #include <glm/glm.hpp>
@@ -16,7 +16,7 @@ class Hash {
     const auto* p = static_cast<const std::uint8_t*>(data);
     for (std::size_t i = 0; i < size; ++i) value_ = (value_ ^ p[i]) * 0x100000001b3u;
   }
-  /// Only for types without padding: padding is not content.
+  /// Only for types without padding, whose bytes are undefined.
   template <class T>
   void add(const T& value) {
     static_assert(std::is_trivially_copyable_v<T> &&

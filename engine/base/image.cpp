@@ -1,11 +1,9 @@
-// Images on disk. Which library does what, and why:
+// Images on disk. The library for each format, and why:
 // - 8-bit pictures (png, jpg, tga, bmp): DevIL, after the checks of base/picture_header.hpp. It keeps its current
-// image, error
-//   stack and modes in globals, so one mutex guards all of it.
-// - Radiance hdr: here. DevIL 1.7.8 reads every value 256/255 times too large (0.4 %), cuts mantissas off instead of
-// rounding
-//   them when writing, and accepts truncated files; comparisons here measure bias far below that.
-// - exr: OpenEXR, as Debian's DevIL has none. pfm: a header and raw floats.
+//   image, error stack and modes in globals, so one mutex guards all of it.
+// - Radiance hdr: implemented here. DevIL 1.7.8 reads every value 256/255 times too large (0.4 %), truncates mantissas
+//   instead of rounding them when writing, and accepts truncated files; comparisons here measure bias far below that.
+// - exr: OpenEXR, since Debian's DevIL has none. pfm: a header and raw floats.
 // Every format goes through memory, so file errors are handled in one place (base/files.hpp).
 #include "base/image.hpp"
 
@@ -59,7 +57,7 @@ class DevilImage {
       return true;
     }();
     static_cast<void>(initialised);
-    // Pictures come out top row first whatever the file's order is.
+    // Decoded pictures have their top row first, whatever the file's order.
     ilEnable(IL_ORIGIN_SET);
     ilOriginFunc(IL_ORIGIN_UPPER_LEFT);
     drainErrors();
@@ -73,8 +71,8 @@ class DevilImage {
   DevilImage(const DevilImage&) = delete;
   DevilImage& operator=(const DevilImage&) = delete;
 
-  /// Decodes into the bound image, or throws. Pictures that are damaged may "succeed" with read errors on the stack:
-  /// those are refused.
+  /// Decodes into the bound image, or throws. Damaged pictures may "succeed" with read errors on the stack; those are
+  /// refused.
   void decode(std::span<const std::uint8_t> bytes, const fs::path& file) {
     const PictureHeader header = checkPicture(bytes, file);
     constexpr ILenum kTypes[] = {IL_PNG, IL_JPG, IL_TGA, IL_BMP};
@@ -89,14 +87,14 @@ class DevilImage {
                     ilGetInteger(IL_IMAGE_WIDTH), ilGetInteger(IL_IMAGE_HEIGHT), header.width, header.height);
   }
 
-  /// The bound image as RGBA, 8 bits a channel.
+  /// The bound image as RGBA, 8 bits per channel.
   std::span<const std::uint8_t> rgba(const fs::path& file) {
     if (ilConvertImage(IL_RGBA, IL_UNSIGNED_BYTE) == IL_FALSE)
       throwBadInput("{}: a picture that cannot be converted", file.string());
     return {ilGetData(), 4 * pixelCount(ilGetInteger(IL_IMAGE_WIDTH), ilGetInteger(IL_IMAGE_HEIGHT))};
   }
 
-  /// Empties the error stack; returns the first error, or a read error where there was any.
+  /// Empties the error stack; returns the first error, or a read error if there was any.
   static ILenum drainErrors() {
     ILenum result = IL_NO_ERROR;
     for (ILenum error = ilGetError(); error != IL_NO_ERROR; error = ilGetError())
@@ -250,8 +248,8 @@ void decodeHdrRow(HdrBytes& bytes, std::vector<std::array<std::uint8_t, 4>>& row
     }
     return;
   }
-  // Flat pixels; among them (1, 1, 1, n) repeats the last one n times, and one right after another counts in the next
-  // byte up.
+  // Flat pixels. Among them (1, 1, 1, n) repeats the last one n times; one directly after another supplies the next
+  // higher byte of the count.
   int shift = 0;
   for (std::size_t x = 0; x < row.size();) {
     const std::span<const std::uint8_t> pixel = bytes.take(4);
@@ -271,7 +269,7 @@ void decodeHdrRow(HdrBytes& bytes, std::vector<std::array<std::uint8_t, 4>>& row
 
 Image decodeHdr(std::span<const std::uint8_t> content, const fs::path& file) {
   HdrBytes bytes(content, file);
-  double exposure = 1.0;  // what the pixels were multiplied by; may be given several times
+  double exposure = 1.0;  // factor already applied to the pixels; may be given several times
   bytes.line();  // "#?RADIANCE" or another program's name
   for (std::string line = bytes.line(); !line.empty(); line = bytes.line()) {
     if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
@@ -368,12 +366,12 @@ std::vector<std::uint8_t> encodeExr(const Image& image, const fs::path& file) {
   return std::move(stream.bytes);
 }
 
-/// OpenEXR makes room for as many bytes as an attribute of the header says it has: those left are counted first. An
-/// attribute is its name and its type, each ended by a zero byte, its size in four bytes and its value; an empty name
-/// ends a part's header, and of a file of several parts another the last one's.
+/// OpenEXR allocates as many bytes as an attribute of the header claims, so the remaining bytes are checked first. An
+/// attribute is its name and its type, each ended by a zero byte, its size in four bytes and its value. An empty name
+/// ends a part's header; in a file of several parts another empty name ends the last header.
 void checkExrHeader(std::span<const std::uint8_t> bytes, const fs::path& file) {
-  constexpr std::size_t kAttributes = 8;  // behind magic number and version
-  constexpr std::uint8_t kSeveralParts = 0x10;  // of the version's second byte
+  constexpr std::size_t kAttributes = 8;  // after magic number and version
+  constexpr std::uint8_t kSeveralParts = 0x10;  // flag in the version's second byte
   std::size_t at = kAttributes;
   const auto truncated = [&] { throwBadInput("{}: truncated: the EXR picture ends within its header", file.string()); };
   const auto skipText = [&] {
@@ -577,7 +575,7 @@ void writePng(const fs::path& file, const Bitmap& bitmap) {
   std::vector<std::uint8_t> rgb(3 * count);
   for (std::size_t i = 0; i < count; ++i) std::copy_n(&bitmap.rgba[4 * i], 3, &rgb[3 * i]);
 
-  // Deflate grows what it cannot compress by far less than this.
+  // Deflate enlarges incompressible data by far less than this.
   std::vector<std::uint8_t> png(rgb.size() + rgb.size() / 50 + static_cast<std::size_t>(bitmap.height) + 65536);
   std::size_t size = 0;
   {

@@ -50,8 +50,8 @@ glm::dvec3 meanOf(const Image& image);
 float srgbFromLinear(float linear);
 float linearFromSrgb(float encoded);
 
-/// The display curve: the rational fit of the ACES reference rendering [Narkowicz2015], as shaders/lib/tonemap.glsl has
-/// it. From radiance times exposure, at least 0, to linear in [0,1].
+/// The display curve: the rational fit of the ACES reference rendering [Narkowicz2015], as in shaders/lib/tonemap.glsl.
+/// From radiance times exposure, at least 0, to linear in [0,1].
 template <class T>
 T filmic(T x) {
   x *= static_cast<T>(0.6);
@@ -64,7 +64,7 @@ T filmic(T x) {
 /// Radiance as shown: exposure, the filmic curve, sRGB encoding. Pixels that are not finite become pure green.
 Bitmap toneMapped(const Image& radiance, float exposure);
 
-/// Reads png, jpg, tga or bmp as 8-bit RGBA. Throws Error(badInput) naming the file when it is missing, a folder, of
+/// Reads png, jpg, tga or bmp as 8-bit RGBA. Throws Error(badInput) naming the file if it is missing, a folder, of
 /// another format, or damaged.
 Bitmap readBitmap(const std::filesystem::path& file);
 

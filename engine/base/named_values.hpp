@@ -1,7 +1,6 @@
-// Names of enum values, as the command line, files and JSON spell them: one table an enum, one parser for all.
+// Names of enum values, as the command line, files and JSON spell them: one table per enum, one parser for all.
 //
-// An enum class whose values count from 0 has names once a function namesOf(E) stands beside it that returns them in
-// order:
+// An enum class whose values count from 0 has names once a function namesOf(E) next to it returns them in order:
 //   constexpr std::array<std::string_view, 2> namesOf(LpvLookup) { return {"flux", "published"}; }
 #pragma once
 
@@ -27,7 +26,7 @@ constexpr std::string_view nameOf(E value) {
   return names[index];
 }
 
-/// Throws Error(badInput) with the names that there are; `what` is what the message begins with, such as "--host".
+/// Throws Error(badInput) with the valid names; `what` is the beginning of the message, such as "--host".
 template <NamedEnum E>
 E parseName(std::string_view name, std::string_view what) {
   const auto names = namesOf(E{});

@@ -45,9 +45,9 @@ PictureHeader checkedHeader(const fs::path& file, Bytes bytes, PictureFormat for
   return {format, static_cast<int>(width), static_cast<int>(height)};
 }
 
-/// Chunk by chunk up to IEND: length, type, data, checksum. Data behind IEND is ignored.
+/// Chunk by chunk up to IEND: length, type, data, checksum. Data after IEND are ignored.
 PictureHeader checkPng(Bytes bytes, const fs::path& file) {
-  constexpr std::size_t kSignature = 8, kFrame = 12;  // of a chunk: length, type, checksum
+  constexpr std::size_t kSignature = 8, kFrame = 12;  // chunk overhead: length, type, checksum
   if (bytes.size() < kSignature + kFrame + 13) throwTruncated(file, "PNG");
   const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (bigEndian(bytes, 8, 4) != 13 || all.substr(12, 4) != "IHDR")
@@ -68,7 +68,7 @@ PictureHeader checkPng(Bytes bytes, const fs::path& file) {
   return header;
 }
 
-/// Segment by segment up to EOI; entropy-coded data, which follow SOS, end at the next marker that is not a restart.
+/// Segment by segment up to EOI; the entropy-coded data after SOS end at the next marker that is not a restart.
 PictureHeader checkJpeg(Bytes bytes, const fs::path& file) {
   constexpr std::uint8_t kSof0 = 0xc0, kSof2 = 0xc2, kDht = 0xc4, kJpg = 0xc8, kDac = 0xcc, kSof15 = 0xcf, kRst0 = 0xd0,
                          kRst7 = 0xd7, kSoi = 0xd8, kEoi = 0xd9, kSos = 0xda, kTem = 0x01;
@@ -110,7 +110,7 @@ PictureHeader checkJpeg(Bytes bytes, const fs::path& file) {
   return *header;
 }
 
-/// 18 bytes of header, an identification, a palette, pixels plain or as packets of up to 128.
+/// 18 bytes of header, an identification, a palette, pixels raw or as packets of up to 128.
 PictureHeader checkTga(Bytes bytes, const fs::path& file) {
   constexpr std::size_t kHead = 18;
   if (bytes.size() < kHead) throwTruncated(file, "Targa");
@@ -121,7 +121,8 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
   const bool grey = kind == 3 || kind == 11, palette = kind == 1 || kind == 9, packets = kind >= 9;
   const bool known = (kind >= 1 && kind <= 3) || (kind >= 9 && kind <= 11);
   const bool depth = palette || grey ? bits == 8 : bits == 24 || bits == 32;
-  // Palettes: entries from 0 on, of whole bytes; others may carry none (DevIL would read its bytes as pixels).
+  // Palettes: entries from 0 on, of whole bytes. Other kinds may have no palette (DevIL would read its bytes as
+  // pixels).
   const bool paletteFits = palette ? paletteKind == 1 && paletteEntries >= 1 && paletteEntries <= 256 &&
                                          littleEndian(bytes, 3, 2) == 0 && (paletteBits == 24 || paletteBits == 32)
                                    : paletteKind == 0;
@@ -156,7 +157,7 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
   return header;
 }
 
-/// 14 bytes of file header, 40 or more of picture header, a palette, rows filled up to four bytes.
+/// 14 bytes of file header, 40 or more of picture header, a palette, rows padded to a multiple of four bytes.
 PictureHeader checkBmp(Bytes bytes, const fs::path& file) {
   constexpr std::size_t kHead = 14 + 40;
   if (bytes.size() < kHead) throwTruncated(file, "BMP");

@@ -4,7 +4,7 @@
 
 namespace lucerna {
 
-// The first entry says how many there were.
+// The first entry holds the count.
 std::vector<AskedPart> AskedParts::read() const {
   std::vector<AskedPart> parts = buffer_.read<AskedPart>();
   const auto told = static_cast<std::size_t>(parts.front().number.x);

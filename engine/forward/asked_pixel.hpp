@@ -1,5 +1,5 @@
-// The one pixel that is asked what lit it, between the shaders that write it down (shaders/forward/asked.glsl,
-// asked_parts.glsl) and the answer (render/pixel_answer.hpp). Made when somebody asks, and dropped with the answer.
+// Data of the queried pixel (what lit it), between the shaders that record it (shaders/forward/asked.glsl,
+// asked_parts.glsl) and the answer (render/pixel_answer.hpp). Created on request, and dropped with the answer.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -11,10 +11,10 @@ namespace lucerna {
 
 using AskedPart = shared::AskedPart;
 
-/// What shading wrote: vectors at the places of shared/asked.h.
+/// Vectors recorded by shading, at the indices of shared/asked.h.
 class AskedTerms {
  public:
-  static constexpr std::size_t kCount = 1024;  ///< lights of radiosity are as many as the scene has
+  static constexpr std::size_t kCount = 1024;  ///< radiosity has as many lights as the scene
   AskedTerms() : buffer_("asked terms", kCount * sizeof(glm::vec4), nullptr, gl::Usage::dynamicCopy) {
     buffer_.clear();
   }
@@ -28,10 +28,10 @@ class AskedTerms {
   std::vector<glm::vec4> values_;
 };
 
-/// What a technique's lookup wrote.
+/// Contributions recorded by a technique's lookup.
 class AskedParts {
  public:
-  /// Room for `count`; what a lookup tells beyond it is counted alone.
+  /// Capacity `count`; parts beyond it are only counted.
   explicit AskedParts(std::size_t count)
       : buffer_("asked parts", (1 + count) * sizeof(AskedPart), nullptr, gl::Usage::dynamicCopy) {
     buffer_.clear();

@@ -1,8 +1,8 @@
 // Draws the environment behind the surfaces, as the path tracer sees it: radiance where the depth is still 1.
 //
 // In: a camera, a target with the scene's depth. Out: radiance in the target's first attachment. A picture is read
-// bilinearly, while paths take the texel that a direction falls into: equal at texel centres, and in between different
-// by at most the difference of neighbouring texels.
+// bilinearly, while paths use the texel that contains the direction. The two agree at texel centres and differ between
+// them by at most the difference of neighbouring texels.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -19,7 +19,7 @@ class EnvironmentView {
 
   static bool isNeeded(const SceneNeeds& needs) { return needs.environment; }
 
-  /// `size` of the target, whose depth has been drawn through the same camera.
+  /// `target` has the given size; its depth has been drawn with the same camera.
   void record(const gl::Framebuffer& target, const gl::VertexArray& noAttributes, const Camera& camera,
               glm::ivec2 size) const;
   std::size_t gpuBytes() const { return picture_ ? picture_->bytes() : 0; }

@@ -16,7 +16,7 @@ namespace {
 
 int mipLevels(int width, int height) { return 1 + static_cast<int>(std::floor(std::log2(std::max(width, height)))); }
 
-// Rows top first in a Bitmap, bottom first in OpenGL; v = 0 is the bottom row.
+// A Bitmap has its top row first, OpenGL the bottom row (v = 0).
 std::vector<std::uint8_t> flippedRows(const Bitmap& bitmap) {
   const std::size_t row = 4 * static_cast<std::size_t>(bitmap.width);
   std::vector<std::uint8_t> flipped(bitmap.rgba.size());
@@ -54,7 +54,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
   };
   constexpr Use kColour{"albedo", gl::Format::srgb8Alpha8}, kMask{"mask", gl::Format::r8},
       kLinear{"values", gl::Format::rgba8};
-  std::map<std::pair<int, gl::Format>, int> known;  // a picture may be a colour here, a mask there
+  std::map<std::pair<int, gl::Format>, int> known;  // a picture may be a colour for one material and a mask for another
   const auto upload = [&](int index, const Use& use) {
     const auto [place, isNew] = known.try_emplace({index, use.format}, static_cast<int>(textures_.size()));
     if (!isNew) return place->second;
@@ -76,7 +76,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
     return place->second;
   };
 
-  // Materials, with the textures that the needs ask for.
+  // Materials, with the textures that the scene needs.
   for (const Material& material : scene.materials) {
     Surface surface{material.diffuse, material.specular, material.emission, material.shininess};
     if (needs.diffuseTextures && material.diffuseTexture >= 0)
@@ -106,7 +106,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
     white_->upload(gl::Texels::rgbaByte, texel.data());
   }
 
-  // Opaque meshes first, so that a depth pass draws them in one call; of one material together.
+  // Opaque meshes first, so that a depth pass draws them in one call; then grouped by material.
   std::vector<const Mesh*> order;
   for (const Mesh& mesh : scene.meshes)
     if (settings.boundaries || scene.materials[static_cast<std::size_t>(mesh.material)].bsdf != Bsdf::none)

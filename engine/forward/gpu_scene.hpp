@@ -13,9 +13,9 @@
 namespace lucerna {
 
 struct GpuSceneSettings {
-  float anisotropy = 4.0f;  ///< at most; 1 where the extension is missing
+  float anisotropy = 4.0f;  ///< maximum; 1 without the extension
   bool mipmaps = true;
-  bool boundaries = true;  ///< meshes of Bsdf::none, which light passes straight, are drawn as any other
+  bool boundaries = true;  ///< draw meshes of Bsdf::none, which light passes straight through, like any other
 };
 
 /// The programs of a pass: masked meshes need a discard, which would disable early depth tests for the others.
@@ -52,8 +52,8 @@ class GpuScene {
     float shininess;
     int diffuseTexture = -1, maskTexture = -1, emissionTexture = -1, normalTexture = -1, metalTexture = -1;
     bool masked = false;
-    float normalScale = 0.0f;  ///< 0: no picture of normals
-    float metallic = 0.0f, roughness = -1.0f;  ///< factors on a MetalMap; these: none
+    float normalScale = 0.0f;  ///< 0: no normal map
+    float metallic = 0.0f, roughness = -1.0f;  ///< factors of a MetalMap; these values: none
   };
   struct Draw {
     std::uint32_t firstIndex, indexCount;

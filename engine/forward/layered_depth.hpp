@@ -16,7 +16,7 @@ class LayeredDepth {
     gl::TextureKind kind;  ///< array or cubeArray
     int size;  ///< texels per side
     int layers;  ///< of cube maps: 6 each
-    int layersPerDraw;  ///< that one draw of the scene fills; divides `layers`
+    int layersPerDraw;  ///< filled by one draw of the scene; divides `layers`
   };
   LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, const std::string& name, const Shape& shape);
 
@@ -25,9 +25,9 @@ class LayeredDepth {
     glm::mat4 clipFromPlace;
     glm::vec3 place;
   };
-  /// Draws the scene from every view, one per layer. Geometry before a near plane is kept, at depth 0.
+  /// Draws the scene from every view, one per layer. Geometry in front of a near plane is kept, at depth 0.
   void record(const GpuScene& scene, std::span<const View> views) const;
-  /// Depth in [0,1], comparison on: sampler2DArrayShadow or samplerCubeArrayShadow. Beyond a 2D map is lit.
+  /// Depth in [0,1], comparison on: sampler2DArrayShadow or samplerCubeArrayShadow. Points outside a 2D map are lit.
   const gl::Texture& depth() const { return depth_; }
   int size() const { return shape_.size; }
   std::size_t gpuBytes() const { return depth_.bytes(); }

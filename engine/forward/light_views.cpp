@@ -47,9 +47,9 @@ glm::mat4 LightViews::clipFromPlace(std::size_t view) const {
 }
 
 double LightViews::largestSolidAngle(int size) const {
-  // A square pyramid of half opening angle with the tangent t has 4 asin(t^2 / (1 + t^2)) sr. The shader sums w^2 f at
-  // the texels' middles, f = (1 + x^2 + y^2)^(-3/2), which bends down nowhere by more than 3: each texel is above its
-  // integral by 3/2 * w^4 / 6 at most, N^2 of them by t^2 w^2. And f is 1 at most.
+  // A square pyramid whose half opening angle has the tangent t subtends 4 asin(t^2 / (1 + t^2)) sr. The shader sums
+  // w^2 f at texel centres, f = (1 + x^2 + y^2)^(-3/2), whose curvature is at least -3 everywhere: each texel exceeds
+  // its integral by at most 3/2 * w^4 / 6, N^2 texels by t^2 w^2. And f is at most 1.
   const double t2 = tangent * tangent, width = texelWidth(size);
   return static_cast<double>(clipFromWorld.size()) *
          std::min(4.0 * std::asin(t2 / (1.0 + t2)) + t2 * width * width, 4.0 * t2);

@@ -9,28 +9,28 @@
 
 namespace lucerna {
 
-/// A light at a point: one view of a spot, the six faces of a cube map in OpenGL's order (+x, -x, +y, -y, +z, -z) of an
-/// omnidirectional light. Both planes follow the scene: far just behind its farthest corner, near at 1/2000 of that;
-/// what is nearer must be drawn with depth clamp, so that it still casts its shadow.
+/// A point-like light: one view for a spot, the six faces of a cube map in OpenGL's order (+x, -x, +y, -y, +z, -z) for
+/// an omnidirectional light. Both planes follow the scene: far just behind its farthest corner, near at 1/2000 of that.
+/// Nearer geometry must be drawn with depth clamp, so that it still casts its shadow.
 struct LightViews {
   glm::dvec3 position{0.0};
-  glm::vec3 intensity{0.0f};  ///< W/sr, of a spot on its axis
+  glm::vec3 intensity{0.0f};  ///< W/sr; for a spot, on its axis
   glm::dvec3 direction{0.0, 0.0, -1.0};  ///< a spot's axis
   double cosInner = -1.0, cosOuter = -1.0;  ///< of a spot's half angles
-  std::vector<glm::dmat4> clipFromWorld;  ///< 1 or 6
+  std::vector<glm::dmat4> clipFromWorld;  ///< one or six matrices
   double tangent = 1.0;  ///< of half the opening angle of each view
   double near = 0.0, far = 1.0;
-  std::size_t index = 0;  ///< in the scene's list of its kind
+  std::size_t index = 0;  ///< in the scene's list of lights of its kind
 
-  /// The light's position in float, and a view's matrix for positions relative to it: rounding depends on what the
-  /// light sees, not on its position.
+  /// The light's position in float, and a view's matrix for positions relative to it. Rounding then depends on the
+  /// scene around the light, not on the light's position.
   glm::vec3 place() const { return glm::vec3(position); }
   glm::mat4 clipFromPlace(std::size_t view) const;
   bool omnidirectional() const { return clipFromWorld.size() == 6; }
   /// Width of a texel at depth 1 along the view's axis, for a map of size x size texels per view.
   double texelWidth(int size) const { return 2.0 * tangent / size; }
-  /// Upper bound of the sum of the texels' solid angles in shaders/rsm/rsm.frag, all views together, sr; tends to the
-  /// views' own.
+  /// Upper bound of the sum of the texels' solid angles in shaders/rsm/rsm.frag, over all views, sr; converges to the
+  /// views' solid angle.
   double largestSolidAngle(int size) const;
 };
 
@@ -41,8 +41,8 @@ LightViews lightViews(const PointLight& light, const Bounds& scene);
 std::vector<LightViews> spotViews(const Scene& scene);
 std::vector<LightViews> pointViews(const Scene& scene);
 
-/// Typical irradiance from a scene's lights, the largest of all lights and channels: the sun's own, of the others
-/// I / r^2 with r a quarter of the scene's diagonal. Finite and above 0 (1 without lights). Storage normalisation only;
+/// Typical irradiance from a scene's lights, the largest of all lights and channels: the sun's own; for the others I /
+/// r^2 with r a quarter of the scene's diagonal. Finite and above 0 (1 without lights). Storage normalisation only;
 /// does not affect the result.
 float typicalIrradiance(const Scene& scene);
 

@@ -13,8 +13,8 @@ namespace lucerna {
 
 class LocalLights {
  public:
-  /// Lamps of a kind, the size of the shaders' arrays. A scene may have more: the frame keeps those that surfaces
-  /// reflect most of (rsm/lamp_choice.hpp) and names the others.
+  /// Maximum number of lamps of each kind, the size of the shaders' arrays. A scene may have more: the frame keeps
+  /// those of which surfaces reflect most (rsm/lamp_choice.hpp) and names the others.
   static constexpr std::size_t kMostSpots = LIGHTS_MAX_SPOTS, kMostPoints = LIGHTS_MAX_POINTS;
   struct Settings {
     int spotSize = 1024;  ///< texels per side of a spot's shadow map

@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 constexpr double kFilterTexels =
-    4.0;  // border of a map, so that the filter and the normal offset stay inside: two texels a side
+    4.0;  // border of two texels per side, so that the filter and the normal offset stay inside the map
 }
 
 std::vector<double> splitDistances(double near, double far, int cascades, double lambda) {

@@ -32,9 +32,9 @@ struct SunCascade {
   double texel = 1.0;  ///< side of a texel, scene units
 };
 
-/// Finest first. The depth that is cut reaches from `near` to the first of diagonal * 2^(i/4), i = 0, 1, ..., that
-/// holds the whole scene, so that sizes do not change with every step of the camera. mapSize: texels per side; aspect:
-/// width over height.
+/// Finest first. The depth range that is split reaches from `near` to the first of diagonal * 2^(i/4), i = 0, 1, ...,
+/// that contains the whole scene, so that sizes do not change with every camera movement. mapSize: texels per side;
+/// aspect: width over height.
 std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, const Scene& scene,
                                          const glm::dvec3& sunDirection, const SunFrustum& whole, const Camera& camera,
                                          double aspect, double near, int mapSize);

@@ -1,4 +1,4 @@
-// Who waits for programs to be built is told before each, so that a window can show what is going on, and stop it.
+// Notifies a listener before each program is built, so that a window can show progress and stop it.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,9 @@
 
 namespace lucerna::gl {
 
-/// For its lifetime, `watch` is called on this thread before each program that is built, with its name. It may draw
-/// with passes of its own, and may throw, which ends what the program was built for. The innermost watch alone is told.
+/// During its lifetime, `watch` is called on this thread before each program is built, with the program's name. It may
+/// draw with passes of its own. It may throw, which aborts the operation that needed the program. Only the innermost
+/// watch is called.
 class BuildWatch {
  public:
   explicit BuildWatch(std::function<void(const std::string& name)> watch);

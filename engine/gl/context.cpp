@@ -50,7 +50,7 @@ GLenum firstError() {
   return first;
 }
 
-/// outOfMemory: what is said where memory is what is missing; place: what was done, for every other error.
+/// outOfMemory: the message if memory ran out; place: the last operation, for every other error.
 void throwFirstError(const std::string& outOfMemory, const std::string& place) {
   const GLenum error = firstError();
   if (error == GL_OUT_OF_MEMORY) throwMissingCapability("{}", outOfMemory);

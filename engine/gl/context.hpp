@@ -34,7 +34,7 @@ struct Capabilities {
 };
 
 /// Whether the driver reports errors and hazards as they happen (KHR_debug). It does so within the failing call
-/// (GL_DEBUG_OUTPUT_SYNCHRONOUS), for which drivers give up their own threads: for tests and verbose runs, not for
+/// (GL_DEBUG_OUTPUT_SYNCHRONOUS), for which drivers disable their own threads: for tests and verbose runs, not for
 /// measurements.
 enum class DebugOutput { off, synchronous };
 /// synchronous in a verbose run (LogLevel::verbose), else off.

@@ -1,4 +1,4 @@
-// Draw calls for what is bound (a pass, a program in use, a vertex array), and reads of framebuffers.
+// Draw calls for the bound state (a pass, a program in use, a vertex array), and reads of framebuffers.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -10,12 +10,12 @@
 namespace lucerna::gl {
 
 void drawPoints(int count);
-/// Vertices 0..count - 1, three a triangle.
+/// Vertices 0..count - 1, three per triangle.
 void drawTriangles(int count, int instances = 1);
-/// Of the bound vertex array's indices, 32 bits each.
+/// From the bound vertex array's index buffer, 32 bits per index.
 void drawIndexedTriangles(std::uint32_t firstIndex, std::uint32_t count);
 
-/// Triangles as their edges or corners, for a lifetime within a pass.
+/// Draws triangles as edges or corners, for its lifetime within a pass.
 class PolygonMode {
  public:
   enum class Parts { edges, corners };
@@ -25,14 +25,14 @@ class PolygonMode {
   PolygonMode& operator=(const PolygonMode&) = delete;
 };
 
-/// An attachment of unsigned integers of the pass' framebuffer.
+/// Clears an unsigned integer attachment of the pass' framebuffer.
 void clearWords(int attachment, const glm::uvec4& value);
 
-/// Of the first attachment, bottom row first: 8 bits RGBA, or floats of red alone. Rows without padding.
+/// Reads the first attachment, bottom row first: 8-bit RGBA, or the red channel as floats. Rows without padding.
 void readBytes(const Framebuffer& from, const glm::ivec2& corner, const glm::ivec2& size, std::uint8_t* rgba);
 void readFloats(const Framebuffer& from, const glm::ivec2& corner, const glm::ivec2& size, float* red);
 
-/// Waits until the GPU has done all that it was given; for measurements.
+/// Waits until the GPU has finished all submitted work; for measurements.
 void finish();
 
 }  // namespace lucerna::gl

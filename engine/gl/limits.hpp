@@ -10,15 +10,15 @@
 
 namespace lucerna::gl {
 
-/// The driver's value of a limit such as GL_MAX_TEXTURE_SIZE; only those listed in limits.cpp. With LUCERNA_GL_MINIMA=1
-/// in the environment at most the minimum that OpenGL 4.3 guarantees, for testing.
+/// The driver's value of a limit such as GL_MAX_TEXTURE_SIZE; only for limits listed in limits.cpp. With
+/// LUCERNA_GL_MINIMA=1 in the environment it is capped at the minimum that OpenGL 4.3 guarantees, for testing.
 GLint limit(GLenum name);
 
-/// The same of GL_MAX_COMPUTE_WORK_GROUP_COUNT, which has a value for each axis.
+/// The same for GL_MAX_COMPUTE_WORK_GROUP_COUNT, which has a value per axis.
 glm::uvec3 mostWorkGroups();
 
-/// Throws Error(missingCapability), which names `what`, the limit and its value, where `needed` is over it. What is
-/// guaranteed costs no call of the driver.
+/// Throws Error(missingCapability) naming `what`, the limit and its value if `needed` exceeds it. Values within the
+/// guaranteed minimum need no driver call.
 void requireWithin(GLenum limitName, std::size_t needed, std::string_view what);
 
 /// The same with the object's label as `what` (see label()). identifier: GL_BUFFER, GL_TEXTURE.

@@ -19,7 +19,7 @@ void Lines::draw(const Framebuffer& target, const Placement& placement, const Vi
   for (const Line& line : lines)
     for (const glm::vec2& corner : kCorners) vertices.push_back({line.start, line.end, corner, line.color});
   const std::size_t bytes = vertices.size() * sizeof(Vertex);
-  if (bytes > vertices_.bytes()) {  // twice what is needed, so that it seldom grows
+  if (bytes > vertices_.bytes()) {  // twice the required size, so that it rarely grows
     vertices_ = Buffer("lines", 2 * bytes, nullptr, Usage::streamDraw);
     const std::array<VertexArray::Attribute, 4> attributes{{{0, 3, offsetof(Vertex, start)},
                                                             {1, 3, offsetof(Vertex, end)},

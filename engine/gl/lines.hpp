@@ -1,4 +1,4 @@
-// Lines between places of a scene, drawn over a picture of it: what lies behind the picture's surfaces is faint.
+// Lines between points of a scene, drawn over a picture of it; parts behind the picture's surfaces are faint.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -13,17 +13,17 @@ class Lines {
  public:
   struct Line {
     glm::vec3 start, end;
-    glm::vec4 color;  ///< as it is written, alpha not multiplied in
+    glm::vec4 color;  ///< written unchanged, alpha not premultiplied
   };
-  /// Where in the target the picture is: pixels from the lower left.
+  /// Position of the picture in the target: pixels from the lower left.
   struct Placement {
     glm::ivec2 corner, size;  ///< only these pixels are drawn
-    glm::vec2 middle, centre, scale;  ///< `centre` of the picture (0..1) lies at `middle`; all of it takes `scale`
+    glm::vec2 middle, centre, scale;  ///< `centre` of the picture (0..1) lies at `middle`; its whole size is `scale`
   };
   struct View {
     glm::mat4 clipFromWorld;
     float near = 0.0f, far = 1.0f;  ///< planes of that projection
-    const Texture* depth = nullptr;  ///< of the picture; null: nothing hides anything
+    const Texture* depth = nullptr;  ///< of the picture; null: no occlusion
   };
 
   explicit Lines(ProgramLibrary& programs);

@@ -177,7 +177,7 @@ void Texture::create(const std::string& name, const Sampling& s) {
 
 glm::ivec3 Texture::levelSize(int level) const {
   glm::ivec3 size = glm::max(size_ >> level, glm::ivec3(1));
-  if (target() == GL_TEXTURE_2D_ARRAY) size.z = size_.z;  // layers stay
+  if (target() == GL_TEXTURE_2D_ARRAY) size.z = size_.z;  // the number of layers stays
   return size;
 }
 

@@ -1,5 +1,5 @@
-// Move-only owners of OpenGL objects. Every object carries a debug name (KHR_debug), so that RenderDoc, apitrace and
-// Nsight show it, and knows its size in bytes. OpenGL 4.3 has no direct state access: buffers are edited through
+// Move-only owners of OpenGL objects. Every object carries a debug name (KHR_debug), shown by RenderDoc, apitrace and
+// Nsight, and knows its size in bytes. OpenGL 4.3 has no direct state access: buffers are edited through
 // GL_COPY_WRITE_BUFFER, textures through the last texture unit, so that no other binding changes.
 //
 // Only barriers order shader writes to storage blocks and images [OpenGL 4.3, 7.12.2]. Between shaders, passes issue

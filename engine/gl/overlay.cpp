@@ -10,7 +10,7 @@ namespace lucerna::gl {
 Overlay::Overlay(ProgramLibrary& programs)
     : program_(&programs.loadRaster("overlay", "lib/overlay.vert", "lib/overlay.frag")) {}
 
-// Buffers grow to twice what is needed, so that they seldom do.
+// Buffers grow to twice the required size, so that they rarely do.
 void Overlay::reserve(std::size_t vertexBytes, std::size_t indexBytes) {
   if (vertexBytes <= vertices_.bytes() && indexBytes <= indices_.bytes()) return;
   if (vertexBytes > vertices_.bytes())

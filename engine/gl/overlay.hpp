@@ -1,8 +1,7 @@
-// Coloured, textured triangles over a picture, each run of them within a rectangle: what a user interface is drawn
-// with.
+// Coloured, textured triangles over a picture, in runs with a clip rectangle each: draws user interfaces.
 //
-// Vertices are in pixels of the target, (0,0) top left. Colours are written as they are (an sRGB-encoded target takes
-// sRGB-encoded colours) and laid over what is there by their alpha.
+// Vertices are in pixels of the target, (0,0) top left. Colours are written unchanged (an sRGB-encoded target takes
+// sRGB-encoded colours) and alpha-blended over the picture.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -19,7 +18,7 @@ class Overlay {
   struct Vertex {
     glm::vec2 position;
     glm::vec2 uv;
-    glm::vec4 color;  ///< 0..1, alpha not multiplied in
+    glm::vec4 color;  ///< 0..1, alpha not premultiplied
   };
   struct Run {
     glm::ivec2 corner, size;  ///< only these pixels are drawn; corner from the top left

@@ -66,7 +66,7 @@ void RasterPass::restrictTo(const glm::ivec2& corner, const glm::ivec2& size) co
 
 void ComputePass::dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const {
   const glm::uvec3 groups((size + groupSize - 1) / groupSize);
-  static const glm::uvec3 most = mostWorkGroups();  // asked once, as above
+  static const glm::uvec3 most = mostWorkGroups();  // queried once, as above
   if (glm::any(glm::greaterThan(groups, most)))
     throwMissingCapability("{} x {} x {} work groups; this driver's limit is {} x {} x {}", groups.x, groups.y,
                            groups.z, most.x, most.y, most.z);

@@ -52,10 +52,10 @@ class ComputePass {
  public:
   ComputePass(const std::string& name, Barrier barrierAtEnd) : group_(name), barrier_(barrierAtEnd) {}
   ~ComputePass() { glMemoryBarrier(raw(barrier_)); }
-  /// Enough groups of `groupSize` to cover `size`.
+  /// Dispatches enough groups of `groupSize` to cover `size`.
   void dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const;
-  /// Group counts from three words of the buffer at `offset` (bytes), written by an earlier pass with
-  /// Barrier::command at its end.
+  /// Reads group counts from three words of the buffer at `offset` (bytes), written by an earlier pass that ended with
+  /// Barrier::command.
   void dispatchIndirect(const Buffer& groups, std::size_t offset = 0) const;
 
  private:
@@ -63,7 +63,7 @@ class ComputePass {
   Barrier barrier_;
 };
 
-/// Three vertices that cover the picture; `emptyVertexArray` has no attributes.
+/// Draws three vertices that cover the picture; `emptyVertexArray` has no attributes.
 void drawFullScreen(const VertexArray& emptyVertexArray);
 
 }  // namespace lucerna::gl

@@ -1,13 +1,13 @@
-// Work cut into pieces, so that no submission blocks a GPU: a driver resets a GPU that does not respond (Windows after
-// 2 s, Linux' i915 after 2.5 s, amdgpu after 10 s), and until then nothing else is drawn.
+// Divides work into pieces, so that no submission blocks a GPU. A driver resets a GPU that does not respond (Windows
+// after 2 s, Linux' i915 after 2.5 s, amdgpu after 10 s), and until then nothing else is drawn.
 //
 // A piece consists of units: hemicubes, rows of pixels, turns of all lanes of a tile. Work is counted in turns: loop
 // iterations of about the cost of one step of a ray through its hierarchy, summed over work items. A GPU at the low end
 // of OpenGL 4.3 does 0.3 to 0.5 billion per second. So:
-//   - before any measurement a piece has kUnmeasuredTurns, some 0.2 s there;
-//   - then pieces follow the clock, to at most twice the size of the one before;
-//   - they never exceed four times kUnmeasuredTurns, under a second there: the measured piece may be sky, and the next
-//   one is not.
+//   - before any measurement a piece has kUnmeasuredTurns, about 0.2 s there;
+//   - then the size follows the measured time, growing to at most twice that of the piece before;
+//   - pieces never exceed four times kUnmeasuredTurns, under a second there: the measured piece may be sky and the
+//   next one not.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@ namespace lucerna::gl {
 
 constexpr double kUnmeasuredTurns = 0x1p26;
 constexpr double kMostOverUnmeasured = 4.0;
-constexpr double kTurnsOfRay = 64.0;  ///< about, for a ray through a hierarchy
+constexpr double kTurnsOfRay = 64.0;  ///< approximate, for a ray through a hierarchy
 
 /// Units of the next piece, at least one: a unit cannot be cut.
 class PieceSize {
@@ -31,9 +31,9 @@ class PieceSize {
   double largestTurns() const { return largestTurns_; }
   /// Reports how long a piece took from submission to end.
   void took(std::uint32_t units, double seconds);
-  /// Unknown work begins, such as another tile or view: as before any measurement, or smaller if that was too slow.
+  /// Starts unknown work, such as another tile or view: as before any measurement, or smaller if that was too slow.
   void restart();
-  /// Changes the turns per unit, as some work items are done.
+  /// Changes the turns per unit, when some work items are finished.
   void setTurnsOfUnit(double turnsOfUnit);
 
  private:

@@ -46,8 +46,8 @@ const char* suffixOf(GLenum stage) {
                                        : "comp";
 }
 
-/// A linked program's use of OpenGL's limits: lines "NAME VALUE", NAME of GL_MAX_NAME, zeros left out. Shared memory
-/// cannot be queried.
+/// A linked program's use of OpenGL's limits: lines "NAME VALUE" for GL_MAX_NAME, zeros omitted. Shared memory cannot
+/// be queried.
 std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::string>>& texts) {
   struct Stage {
     GLenum referenced;
@@ -76,7 +76,8 @@ std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::str
   };
   const auto raise = [&](const std::string& what, GLint value) { needs[what] = std::max(needs[what], value); };
   for (GLuint i = 0; i < countOf(GL_SHADER_STORAGE_BLOCK); ++i) {
-    // Mesa does not say which stages refer to most of them: those whose text declares an active block.
+    // For most of them Mesa does not say which stages refer to them; a stage counts if its source declares an active
+    // block.
     std::array<char, 128> block{};
     glGetProgramResourceName(program, GL_SHADER_STORAGE_BLOCK, i, static_cast<GLsizei>(block.size()), nullptr,
                              block.data());
@@ -121,8 +122,8 @@ std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::str
 }
 
 /// LUCERNA_DUMP_PROGRAMS=FOLDER stores the sources, for other drivers and validators: FOLDER/HASH.vert .geom .frag
-/// .comp per stage, HASH.name the program's name and flags, HASH.needs its requirements. Programs of the same text are
-/// stored once.
+/// .comp per stage, HASH.name the program's name and flags, HASH.needs its requirements. Programs with identical source
+/// are stored once.
 void dump(const std::string& name, GLuint program, const std::vector<std::pair<GLenum, std::string>>& texts) {
   const char* folder = std::getenv("LUCERNA_DUMP_PROGRAMS");
   if (!folder || !*folder) return;
@@ -235,8 +236,8 @@ void ProgramLibrary::build(Program& program) {
   const auto fail = [&](const std::string& message, ErrorKind kind = ErrorKind::badInput) {
     for (GLuint shader : shaders) glDeleteShader(shader);
     glDeleteProgram(id);
-    // So that mending a file is noticed, and the same failure not met again until then: the files of old, as they are
-    // now, and those read since.
+    // So that an edit that fixes a file is noticed, and the same failure is not repeated until then: the previous files
+    // with their current times, and those read since.
     for (auto& [file, time] : program.dependencies_) {
       std::error_code gone;
       if (const auto now = fs::last_write_time(root_ / file, gone); !gone) time = now;

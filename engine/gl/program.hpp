@@ -41,7 +41,7 @@ struct ExpandedSource {
     int file;
     int line;
   };
-  std::vector<Line> lines;  ///< of each line of `text`
+  std::vector<Line> lines;  ///< one per line of `text`
   std::vector<std::filesystem::path> files;  ///< relative to the root, in order of first inclusion
 };
 

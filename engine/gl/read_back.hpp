@@ -1,6 +1,6 @@
-// Reads shader results on the CPU through buffers that no shader sees: a driver moves a buffer that the CPU reads
-// repeatedly into host memory, where shader writes are slow. ReadBackRing: small buffers without waiting, copied into a
-// ring during the frame, fetched when they have arrived. Staging: waits.
+// Reads shader results on the CPU through separate buffers: a driver moves a buffer that the CPU reads repeatedly into
+// host memory, where shader writes are slow. ReadBackRing: small buffers without waiting, copied into a ring during the
+// frame and fetched when they have arrived. Staging: waits.
 #pragma once
 
 #include "gl/objects.hpp"

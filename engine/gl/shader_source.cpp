@@ -98,8 +98,8 @@ class Expander {
       branches_.push_back(value.value_or(true));
       taken_.push_back(value);
     } else if (std::regex_match(line, kElse) && !branches_.empty()) {
-      // An earlier branch that is certainly taken closes the later ones; one that is certainly not leaves them to their
-      // own flag.
+      // An earlier branch that is certainly taken closes the later ones; after one that is certainly not taken, each
+      // depends on its own flag.
       branches_.back() = taken_.back() == true ? false : value.value_or(true);
       if (taken_.back() != true)
         taken_.back() = value == true ? std::optional(true) : taken_.back() == false ? value : std::nullopt;
@@ -109,7 +109,7 @@ class Expander {
     }
   }
 
-  // Every identifier in a condition must be a declared flag or a macro of the file's own.
+  // Every identifier in a condition must be a declared flag or a macro defined in the file.
   void checkCondition(std::string condition, const std::string& where) {
     if (const auto comment = condition.find("//"); comment != std::string::npos) condition.resize(comment);
     static const std::regex kIdentifier(R"([A-Za-z_]\w*)");
@@ -124,8 +124,8 @@ class Expander {
   fs::path root_;
   std::set<std::string> known_;
   std::map<std::string, int> values_;
-  std::vector<bool> branches_;  // whether each open #if's present branch counts as taken
-  std::vector<std::optional<bool>> taken_;  // whether one of its branches surely was, surely was not, or cannot be told
+  std::vector<bool> branches_;  // whether each open #if's current branch counts as taken
+  std::vector<std::optional<bool>> taken_;  // whether an earlier branch was certainly taken, certainly not, or unknown
   std::vector<std::string> open_;
   ExpandedSource result_;
 };

@@ -2,8 +2,8 @@
 //
 // A stage is one GL_TIME_ELAPSED query per frame, from a ring per stage: results are fetched when they have arrived,
 // some frames later. The first result of each stage is a warm-up and is dropped (on llvmpipe it can be garbage). On a
-// software renderer a query sees only rasterisation, since vertices are processed at submission; there `finishStages`
-// puts glFinish around each stage, and the wall clock is the figure to read. Both are recorded.
+// software renderer a query sees only rasterisation, since vertices are processed at submission. There `finishStages`
+// puts glFinish around each stage, and the wall-clock time is the one to use. Both are recorded.
 #pragma once
 
 #include "host/api.hpp"
@@ -19,12 +19,12 @@ namespace lucerna::gl {
 struct StageStatistics {
   std::string name;
   std::size_t count = 0;  ///< samples after the warm-up
-  double medianMs = 0.0, p95Ms = 0.0;  ///< the figure to read: query on hardware, wall clock on software
+  double medianMs = 0.0, p95Ms = 0.0;  ///< the time to use: query on hardware, wall clock on software
   double queryMedianMs = 0.0, queryP95Ms = 0.0;
   double wallMedianMs = 0.0, wallP95Ms = 0.0;  ///< NaN unless stages are finished
   std::size_t ran = 0, frames = 0;  ///< how often it ran, in how many frames; a stage with unchanged inputs runs once
-  /// Average per frame, because it did not run in every frame. A stage that only ran in the warm-up counts with that
-  /// time.
+  /// Average per frame saved because it did not run in every frame. A stage that ran only in the warm-up counts with
+  /// that time.
   double savedMs() const;
 };
 

@@ -1,4 +1,4 @@
-// OpenGL's names that the engine passes around, as types of their own: a format cannot be given where a usage is meant.
+// Enum types for the OpenGL constants that the engine passes around: a format cannot be passed where a usage is meant.
 #pragma once
 
 #include "host/api.hpp"
@@ -7,7 +7,7 @@
 
 namespace lucerna::gl {
 
-/// Of texels in textures and texture buffers.
+/// Texel formats of textures and texture buffers.
 enum class Format : GLenum {
   r8 = GL_R8,
   r32f = GL_R32F,
@@ -23,7 +23,7 @@ enum class Format : GLenum {
   depth32f = GL_DEPTH_COMPONENT32F,
 };
 
-/// Of texels in memory, as upload() takes them.
+/// Texel formats in memory, for upload().
 enum class Texels { redByte, redFloat, redInt, rgbaByte, rgbaHalf, rgbaFloat, rgbaWord, depthFloat };
 
 enum class TextureKind : GLenum {
@@ -47,10 +47,10 @@ enum class Usage : GLenum {
   streamRead = GL_STREAM_READ,
 };
 
-/// What shaders do with an image.
+/// How shaders access an image.
 enum class Access : GLenum { read = GL_READ_ONLY, write = GL_WRITE_ONLY, readWrite = GL_READ_WRITE };
 
-/// What sees shader writes from here on [OpenGL 4.3, 7.12.2].
+/// The use of shader writes that a barrier waits for [OpenGL 4.3, 7.12.2].
 enum class Barrier : GLbitfield {
   none = 0,
   textureFetch = GL_TEXTURE_FETCH_BARRIER_BIT,
@@ -66,7 +66,7 @@ constexpr Barrier operator|(Barrier a, Barrier b) {
   return static_cast<Barrier>(static_cast<GLbitfield>(a) | static_cast<GLbitfield>(b));
 }
 
-/// The value that OpenGL takes.
+/// The underlying OpenGL constant.
 template <class Enum>
 constexpr std::underlying_type_t<Enum> raw(Enum value) {
   return static_cast<std::underlying_type_t<Enum>>(value);

@@ -38,7 +38,7 @@ std::optional<std::size_t> numberOf(const std::string& text) {
   return number;
 }
 
-/// "0000:65:00.0"; empty where the kernel does not say. Slots have as many digits each, so that they sort as text.
+/// "0000:65:00.0"; empty if the kernel does not report it. Slots have fixed-width numbers, so they sort as text.
 std::string slotOf(const EglDevice& device, const fs::path& sys) {
   if (device.node.empty()) return {};
   std::error_code missing;
@@ -46,7 +46,7 @@ std::string slotOf(const EglDevice& device, const fs::path& sys) {
   return missing ? std::string() : entry.filename().string();
 }
 
-/// Slots of NVIDIA's devices whose UUID begins so, from the driver's own list.
+/// Slots of NVIDIA's devices whose UUID begins with `uuid`, from the driver's own list.
 std::vector<std::string> slotsOfUuid(const std::string& uuid, const fs::path& proc) {
   std::vector<std::string> slots;
   std::error_code missing;
@@ -72,7 +72,7 @@ std::size_t eglDeviceNamed(const std::string& name, const std::vector<EglDevice>
   }
   const std::string family = name.substr(0, colon), which = name.substr(colon + 1);
   if (family != "cuda" && family != "rocm") refuse(name, "no such device", devices);
-  std::vector<std::pair<std::string, std::size_t>> known;  // slot, index
+  std::vector<std::pair<std::string, std::size_t>> known;  // pairs of slot and index
   for (std::size_t i = 0; i < devices.size(); ++i)
     if (devices[i].driver == (family == "cuda" ? "nvidia" : "amdgpu")) known.emplace_back(slotOf(devices[i], sys), i);
   std::sort(known.begin(), known.end());  // without slots: EGL's order
@@ -87,7 +87,7 @@ std::size_t eglDeviceNamed(const std::string& name, const std::vector<EglDevice>
   if (slots.size() > 1) refuse(name, "more than one device", devices);
   if (!slots.empty())
     for (const auto& [slot, index] : known)
-      if (slot == slots.front() || (slot.empty() && known.size() == 1)) return index;  // the only one there is
+      if (slot == slots.front() || (slot.empty() && known.size() == 1)) return index;  // the only device
   refuse(name, "no such device", devices);
 }
 

@@ -164,7 +164,7 @@ void setGlLoader(GlProcLoader loader, bool inWindow) {
   for (std::size_t i = 0; i < std::size(kNames); ++i) g_entries[i] = loader ? loader(kNames[i]) : nullptr;
 }
 
-// In a window glX names are answered by the window system; elsewhere there is no GLX and GLEW must not find one.
+// In a window, the window system answers glX names; elsewhere there is no GLX and GLEW must not find one.
 extern "C" __attribute__((visibility("default"))) GlProc glXGetProcAddressARB(const GLubyte* name) {
   const char* text = reinterpret_cast<const char*>(name);
   if (!g_loader || (!g_inWindow && std::strncmp(text, "glX", 3) == 0)) return nullptr;

@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-// glewInit returns 3 or 4 without GLX, although the pointers are valid: judge it by them.
+// glewInit returns 3 or 4 without GLX although the pointers are valid, so the pointers decide.
 void loadPointers(HostKind kind) {
   glewExperimental = GL_TRUE;
   glewInit();
@@ -44,10 +44,10 @@ bool Host::isSoftwareRenderer(std::string_view renderer) {
 }
 
 std::unique_ptr<Host> Host::create(HostKind kind, const HostOptions& options) {
-  // Two faults of Mesa's zink, seen in 25.0 over a software Vulkan (docs/drivers.md); what is set in the environment
-  // already is kept. It compiles uniforms that branches depend on into the shader and runs a dispatch with another's
-  // (GlPasses.AUniformThatBranchesDependOnIsThatOfItsDispatch); and with descriptor buffers the first light propagation
-  // volume of a process reads what it should not (LpvBounces.AgainstTheTwin).
+  // Works around two bugs of Mesa's zink, seen in 25.0 over a software Vulkan (docs/drivers.md); values already set in
+  // the environment are kept. It compiles uniforms that branches depend on into the shader and runs a dispatch with
+  // another's value (GlPasses.AUniformThatBranchesDependOnIsThatOfItsDispatch). And with descriptor buffers the first
+  // light propagation volume of a process reads wrong data (LpvBounces.AgainstTheTwin).
   ::setenv("ZINK_INLINE_UNIFORMS", "0", 0);
   ::setenv("ZINK_DESCRIPTORS", "lazy", 0);
   std::unique_ptr<Host> host;

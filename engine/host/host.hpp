@@ -56,17 +56,17 @@ class Host {
   virtual glm::ivec2 framebufferSize() const = 0;
   virtual void setTitle(const std::string&) {}
 
-  // Of a window alone; elsewhere without effect.
+  // Only in a window; no effect elsewhere.
   virtual void setWindowSize(glm::ivec2) {}
   virtual void setFullScreen(bool) {}
   virtual bool isFullScreen() const { return false; }
   virtual void setSwapInterval(int) {}
-  /// How much larger text and controls are to be drawn than at 96 dots an inch: the system's scale for this window.
+  /// Scale of text and controls relative to 96 dots per inch: the system's scale for this window.
   virtual float contentScale() const { return 1.0f; }
   virtual void setClipboard(const std::string&) {}
   virtual std::string clipboard() const { return {}; }
 
-  /// Refreshes of the display that present() waits for; none without a window.
+  /// Number of display refreshes that present() waits for; none without a window.
   virtual std::optional<int> swapInterval() const { return {}; }
 
   /// Whether the renderer string names a software renderer (llvmpipe, softpipe): stage times then need glFinish.
@@ -98,10 +98,10 @@ std::vector<EglDevice> eglDevices();
 /// equals the one with more dedicated memory first, then EGL's order.
 std::vector<std::size_t> eglPreference(const std::vector<EglDevice>& devices);
 
-/// Describes a device's render node; `sys` is /sys except in tests. Rules, since no interface says "discrete":
+/// Describes a device's render node; `sys` is /sys except in tests. Heuristics, since no interface says "discrete".
 /// NVIDIA (PCI vendor 10de): discrete. Intel (8086): integrated on PCI bus 0, else discrete. AMD (1002): discrete from
-/// 2 GiB of video memory on; an APU has less, as long as its firmware is not told otherwise. No PCI device: integrated
-/// (a chip's own). Others, virtual ones too: unknown.
+/// 2 GiB of video memory on; an APU has less, unless its firmware is configured otherwise. No PCI device: integrated
+/// (part of the chip). Others, including virtual ones: unknown.
 EglDevice describeRenderNode(const std::filesystem::path& node, const std::filesystem::path& sys = "/sys");
 
 /// Whether a window could be opened (DISPLAY or WAYLAND_DISPLAY set).

@@ -8,11 +8,11 @@ namespace lucerna::detail {
 using GlProc = void (*)();
 using GlProcLoader = GlProc (*)(const char* name);
 
-/// The current host's loader; the GL 1.x entry points and glXGetProcAddressARB forward to it. `inWindow`: whether names
-/// that begin with glX may be answered.
+/// Sets the current host's loader, to which the GL 1.x entry points and glXGetProcAddressARB forward. `inWindow`:
+/// whether names that begin with glX may be resolved.
 void setGlLoader(GlProcLoader loader, bool inWindow);
 
-/// LUCERNA_EGL_DEVICE, where it is set and not empty.
+/// LUCERNA_EGL_DEVICE, if set and not empty.
 std::optional<std::string> chosenEglDevice();
 
 std::unique_ptr<Host> createWindowHost(const HostOptions& options);

@@ -1,6 +1,6 @@
 // EGL without a surface: a context on a GPU (or on Mesa's software driver) without a display server.
-// Devices are enumerated (a vendor's driver gives no surfaceless platform) and tried in the order of eglPreference, or
-// the one that LUCERNA_EGL_DEVICE names alone; Mesa's surfaceless platform comes before software.
+// Devices are enumerated (vendor drivers have no surfaceless platform) and tried in the order of eglPreference; if
+// LUCERNA_EGL_DEVICE names a device, only that one is tried. Mesa's surfaceless platform comes before software devices.
 #include "base/error.hpp"
 #include "host/egl_device.hpp"
 #include "host/host_backends.hpp"

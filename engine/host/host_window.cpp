@@ -133,7 +133,7 @@ class WindowHost final : public Host {
         inputOf(window).button(static_cast<MouseButton>(button), action == GLFW_PRESS);
     });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
-      glm::ivec2 points, pixels;  // the cursor is told in screen coordinates, which are not pixels everywhere
+      glm::ivec2 points, pixels;  // cursor positions are in screen coordinates, which may differ from pixels
       glfwGetWindowSize(window, &points.x, &points.y);
       glfwGetFramebufferSize(window, &pixels.x, &pixels.y);
       inputOf(window).cursor(glm::dvec2(x, y) * glm::dvec2(pixels) / glm::dvec2(glm::max(points, glm::ivec2(1))));
@@ -156,7 +156,7 @@ class WindowHost final : public Host {
   GLFWwindow* window_ = nullptr;
   int swapInterval_;
   InputState input_;
-  glm::ivec2 place_{0}, size_{1280, 720};  ///< of the window before it filled the screen
+  glm::ivec2 place_{0}, size_{1280, 720};  ///< the window's before full screen
 };
 
 }  // namespace

@@ -1,5 +1,4 @@
-// What keyboard and mouse did since the last look (no GL): filled by a window's callbacks, or by a file of recorded
-// input.
+// Keyboard and mouse events since the last poll (no GL), filled by a window's callbacks or from a recorded input file.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,16 +12,16 @@
 
 namespace lucerna {
 
-/// Keys: printable ones are their upper-case ASCII character on a US keyboard, others these (GLFW's numbers).
+/// Keys: printable ones are their upper-case ASCII character on a US keyboard, others the values below (GLFW's).
 namespace key {
 inline constexpr int kEscape = 256, kEnter = 257, kTab = 258, kBackspace = 259, kInsert = 260, kDelete = 261,
                      kRight = 262, kLeft = 263, kDown = 264, kUp = 265, kPageUp = 266, kPageDown = 267, kHome = 268,
                      kEnd = 269, kF1 = 290, kF2 = 291, kF5 = 294, kF11 = 300, kF12 = 301, kLeftShift = 340,
                      kLeftControl = 341, kLeftAlt = 342, kRightShift = 344, kRightControl = 345, kRightAlt = 346,
                      kCount = 349;
-/// "A", "F1", "space", "escape"; empty where a key has no name here.
+/// "A", "F1", "space", "escape"; empty if a key has no name here.
 std::string nameOf(int key);
-/// The key of that name, any case; -1 where there is none.
+/// The key of that name, any case; -1 if there is none.
 int named(std::string_view name);
 }  // namespace key
 
@@ -31,29 +30,29 @@ enum class MouseButton { left, right, middle };
 struct KeyEvent {
   int key = 0;
   bool down = false;
-  bool repeat = false;  ///< held long enough for the system to say it again
+  bool repeat = false;  ///< auto-repeat of a held key
   bool control = false, shift = false, alt = false;
 };
 
-/// What the keyboard and mouse did since the last poll; empty without a window.
+/// Keyboard and mouse events since the last poll; empty without a window.
 struct HostInput {
   bool closeRequested = false;
   std::vector<KeyEvent> keys;  ///< in order
-  std::string text;  ///< UTF-8, what was typed
+  std::string text;  ///< typed text, UTF-8
   glm::dvec2 cursor{-1.0};  ///< framebuffer pixels, (0,0) top left
-  std::array<bool, 3> buttons{};  ///< held, by MouseButton; one that was pressed and released since counts as held
+  std::array<bool, 3> buttons{};  ///< held, by MouseButton; also if pressed and released since the last poll
   glm::dvec2 wheel{0.0};  ///< steps; +y away from the user
-  std::vector<std::filesystem::path> dropped;  ///< files let go over the window
+  std::vector<std::filesystem::path> dropped;  ///< files dropped onto the window
   bool focused = true;
 
-  // The same in a form for first-person movement.
+  // The same, prepared for first-person movement.
   glm::dvec2 mouseDelta{0.0};  ///< pixels, while the left button is held; +y down
   glm::dvec3 move{0.0};  ///< held keys: x right (D-A), y up (E-Q), z forward (W-S), each -1, 0 or 1
   bool fast = false;  ///< shift held
   std::string pressed;  ///< characters of the keys pressed since the last poll, upper case; Escape is '\x1b'
 };
 
-/// Collects events and hands them out a frame at a time.
+/// Collects events and hands them out frame by frame.
 class InputState {
  public:
   void key(int key, bool down, bool repeat = false);
@@ -63,9 +62,9 @@ class InputState {
   void wheel(const glm::dvec2& steps) { next_.wheel += steps; }
   void drop(const std::filesystem::path& file) { next_.dropped.push_back(file); }
   void close() { next_.closeRequested = true; }
-  /// Keys and buttons are let go where a window loses the focus: nobody tells of their release.
+  /// Releases all keys and buttons if the window loses focus, because no release events arrive then.
   void focus(bool focused);
-  /// All since the last call.
+  /// All events since the last call.
   HostInput take();
 
  private:

@@ -1,6 +1,6 @@
-// Entry points newer than OpenGL 4.3 core, taken away so that using one is a compile error: a 4.5 context would hide
-// it. Made from the sections of glew.h (GLEW 2.2): VERSION_4_5, VERSION_4_6 and the extensions that 4.4 to 4.6 took in,
-// but for ARB_clear_texture, which is probed and has a fall-back.
+// Disables entry points newer than OpenGL 4.3 core, so that using one is a compile error: a 4.5 context would hide it.
+// Generated from the sections of glew.h (GLEW 2.2): VERSION_4_5, VERSION_4_6 and the extensions that became core in 4.4
+// to 4.6, except ARB_clear_texture, which is probed and has a fall-back.
 #pragma once
 
 #undef glBindBuffersBase

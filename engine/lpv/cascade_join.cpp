@@ -70,7 +70,7 @@ void LpvCascadeJoin::join() {
   copyResult();
 }
 
-// From the buffer to the textures that are filtered: see lpv/result.glsl.
+// Copies the result from the buffer to the filtered textures: see lpv/result.glsl.
 void LpvCascadeJoin::copyResult() {
   for (std::size_t channel = 0; channel < 3; ++channel)
     result_[channel].copyFrom(texels_, channel * result_[channel].bytes());

@@ -13,8 +13,8 @@ std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds
   const glm::dvec3 extent = scene.extent();
   double coarsest = settings.cellSize;
   if (coarsest <= 0.0) {
-    // Half the cells span the scene: eight steps then carry light across a quarter of it. Finer cells would have more
-    // detail, which is what the finer cascades are for, but would leave most of the scene dark.
+    // Half the cells span the scene: eight steps then carry light across a quarter of it. Smaller cells would resolve
+    // more detail, which is the finer cascades' job, but would leave most of the scene dark.
     const double longest = std::max({extent.x, extent.y, extent.z});
     coarsest = longest > 0.0 ? settings.spanOfScene * longest / settings.cells : 1.0;
   }
@@ -26,8 +26,8 @@ std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds
     const double half = 0.5 * settings.cells * cascade.cellSize;
     glm::dvec3 centre = cameraPosition + cameraDirection * (settings.push * half);
     if (!scene.empty() && settings.heldInScene) {
-      // Far enough out that the grid has weight at the scene's outer surfaces: it has faded out some three cells before
-      // its border.
+      // Margin that gives the grid weight at the scene's outer surfaces: it fades out about three cells before its
+      // border.
       const double beyond = std::min(4.0, 0.25 * settings.cells) * cascade.cellSize;
       const glm::dvec3 low = scene.min + half - beyond;
       const glm::dvec3 high = scene.max - half + beyond;

@@ -10,7 +10,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kSmallestCosine = 0.05;  // to which the reflective shadow map bounds a texel's area
+constexpr double kSmallestCosine = 0.05;  // bound of a texel's area in the reflective shadow map
 constexpr GLuint kFacesBuffer = 3;  // storage block of lpv/geometry_faces.comp
 
 }  // namespace
@@ -28,7 +28,7 @@ LpvGeometryVolume::LpvGeometryVolume(gl::ProgramLibrary& programs, const gl::Cap
                                 {"LOWEST_CELL", deviations.firstCell ? 1 : 0},
                                 {"REFLECTS", reflects}},
                                "lpv/geometry_volume.geom");
-  // Views are merged in place, in images of 32 bits.
+  // Views are merged in place, in 32-bit images.
   potential_.emplace("lpv geometry volume", settings.mergeViews ? gl::Format::rgba32f : grid.summed, grid.corners,
                      kLpvSampling);
   const auto allocate = [&](const std::string& name, gl::Texture& reflectance, const gl::Texture& potential,
@@ -47,7 +47,7 @@ LpvGeometryVolume::LpvGeometryVolume(gl::ProgramLibrary& programs, const gl::Cap
     viewPotential_ = gl::Texture("lpv view", gl::Format::rgba32f, grid.corners);
     allocate("lpv view", viewReflectance_, viewPotential_, viewTarget_);
   }
-  // Several views are merged, and reflection needs an albedo: then by blending, with any fill.
+  // Merging several views, and the albedo for reflection, need blending, whatever the fill.
   if (settings.fill != LpvFill::layered && !countsHalfFloats(settings, capabilities) && !settings.mergeViews &&
       !reflects && !deviations.surfelArea) {
     const bool fixed = settings.fill == LpvFill::fixed;
@@ -93,7 +93,7 @@ void LpvGeometryVolume::fill(const LpvInputs& inputs) {
   pass.dispatch(potential_->size(), kLpvGroup);
 }
 
-// The integers' unit follows from the area of all texels together, known only for the sun's map.
+// The unit of the integer counts is derived from the total area of all texels, known only for the sun's map.
 bool LpvGeometryVolume::canCount(const Maps& maps) const {
   if (!count_) return false;
   return settings_.fill != LpvFill::fixed || std::ranges::all_of(maps, [](const ReflectiveShadowMap::Outputs* map) {
@@ -102,8 +102,8 @@ bool LpvGeometryVolume::canCount(const Maps& maps) const {
 }
 
 void LpvGeometryVolume::count(const Maps& maps, const LpvInputs& inputs) {
-  // The largest coefficient that there can be: all texels of all maps in one cell of the finest cascade, and as steep
-  // as they are counted.
+  // Upper bound of a coefficient: all texels of all maps in one cell of the finest cascade, at the steepest counted
+  // angle.
   const double finest = inputs.cascades.front().cellSize;
   double area = 0.0;
   for (const ReflectiveShadowMap::Outputs* map : maps)
@@ -129,7 +129,7 @@ void LpvGeometryVolume::draw(const Maps& maps, const LpvInputs& inputs) {
   std::vector<const gl::Texture*> targets{&*potential_};
   if (settings_.reflects()) targets.push_back(&reflectance_);
   gl::clearToZero(targets, haveClearTexture_);
-  bool merges = false;  // the first map needs none
+  bool merges = false;  // the first map needs no merging
   for (const ReflectiveShadowMap::Outputs* map : maps) {
     CHECK(!settings_.reflects() || map->albedo, "a map without albedo for {} bounces", settings_.bounces);
     if (merges) {

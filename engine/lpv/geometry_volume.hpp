@@ -1,5 +1,5 @@
-// The geometry volume: surfels of the lights' maps or of the camera's view as a blocking potential at the corners of
-// cells, and where light is reflected further, their albedo.
+// The geometry volume: surfels of the lights' maps or of the camera's view, as a blocking potential at the corners of
+// cells and, for further bounces, their albedo.
 #pragma once
 
 #include "lpv/grid.hpp"
@@ -15,7 +15,7 @@ class LpvGeometryVolume {
 
   void fill(const LpvInputs& inputs);
   const gl::Texture& potential() const { return *potential_; }
-  /// Potential at the faces across x, y, z; only with LpvPropagate::compute.
+  /// Potential at the faces perpendicular to x, y, z; only with LpvPropagate::compute.
   const gl::BufferTexture& faces() const { return faces_; }
   /// Albedo A / s^2 of the surfels; only with several bounces.
   const gl::Texture& reflectance() const { return reflectance_; }
@@ -33,8 +33,8 @@ class LpvGeometryVolume {
   bool haveClearTexture_;
   const gl::Program* fill_ = nullptr;
   const gl::Program* mergeViews_ = nullptr;  ///< only with several views
-  const gl::Program* count_ = nullptr;  ///< only with atomics on 32 bits
-  const gl::Program* resolve_ = nullptr;  ///< only with atomics on integers
+  const gl::Program* count_ = nullptr;  ///< only with 32-bit atomics
+  const gl::Program* resolve_ = nullptr;  ///< only with integer atomics
   const gl::Program* averageFaces_ = nullptr;  ///< from the texture; only with LpvPropagate::compute
   const gl::Program* averageCountedFaces_ = nullptr;  ///< from the atomics' counts
   gl::VertexArray noAttributes_;
@@ -43,7 +43,7 @@ class LpvGeometryVolume {
   gl::Framebuffer target_;
   gl::Texture viewPotential_, viewReflectance_;  ///< of one view, before it is merged
   gl::Framebuffer viewTarget_;
-  gl::BufferTexture counts_;  ///< the potential as atomics count it
+  gl::BufferTexture counts_;  ///< the potential as counted by atomics
   gl::BufferTexture faces_;
 };
 

@@ -62,14 +62,13 @@ void LpvInjection::drawLights(const LpvInputs& inputs) {
 }
 
 void LpvInjection::countLights(const LpvInputs& inputs) {
-  // The largest stored coefficient that there can be: all light of all maps, reflected by white, in one cell of the
-  // finest cascade.
+  // Upper bound of a stored coefficient: all light of all maps, reflected by white, in one cell of the finest cascade.
   const double finest = inputs.cascades.front().cellSize;
   const double unit = inputs.referenceIrradiance * (settings_.deviations.fluxUnits ? 1.0 : finest * finest);
   double flux = 0.0;
   for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms)
     flux += rsm.largestFlux * static_cast<double>(fluxScale(rsm));
-  const double largest = 1.0233267079464885 / 3.141592653589793 * flux / unit;  // of the sun alone E_ref cancels
+  const double largest = 1.0233267079464885 / 3.141592653589793 * flux / unit;  // with only the sun, E_ref cancels
   const float scale = fixedScale(settings_, largest);
   const bool halves = halves_[0].id() != 0;
   counts_.clear();

@@ -13,9 +13,9 @@ class LpvInjection {
   void inject(const LpvInputs& inputs);
   const LpvVolume& volume() const { return volume_; }
 
-  /// What atomics counted, as floats, the three channels one after the other; nullptr with LpvFill::layered.
+  /// The atomic counts as floats, the three channels one after the other; nullptr with LpvFill::layered.
   gl::BufferTexture* counts() { return counts_.bytes() > 0 ? &counts_ : nullptr; }
-  /// Whether the counts hold the injected light. From here on they are the caller's to overwrite.
+  /// Whether the counts hold the injected light. The caller may overwrite them from here on.
   bool takeCounts() { return std::exchange(countsHold_, false); }
   std::size_t gpuBytes() const;
 
@@ -28,12 +28,12 @@ class LpvInjection {
   bool haveClearTexture_;
   bool countsHold_ = false;
   const gl::Program* inject_ = nullptr;
-  const gl::Program* resolve_ = nullptr;  ///< only with atomics on integers or half floats
+  const gl::Program* resolve_ = nullptr;  ///< only with integer or half-float atomics
   LpvVolume volume_;
-  gl::VertexArray noAttributes_;  ///< only with LpvFill::layered, as the target
+  gl::VertexArray noAttributes_;  ///< like the target, only with LpvFill::layered
   gl::Framebuffer target_;
   gl::BufferTexture counts_;
-  LpvVolume halves_;  ///< target of atomics on half floats
+  LpvVolume halves_;  ///< target of half-float atomics
 };
 
 }  // namespace lucerna

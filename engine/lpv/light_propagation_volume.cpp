@@ -78,8 +78,7 @@ shared::LpvConstants lpvConstants(const LpvSettings& settings, const std::vector
     auto& target = constants.cascades[k];
     target.minimum = glm::vec3(cascade.minimum());
     if (settings.deviations.truncate) {
-      // int(x + 0.5) cells from the world's origin, wrong where negative; then whole world units, off the raster of
-      // cells.
+      // int(x + 0.5) cells from the world's origin, wrong for negative x; then whole world units, off the cell grid.
       const glm::dvec3 inCells = (cascade.centre - 0.5 * cells * cascade.cellSize) / cascade.cellSize;
       target.minimum = glm::vec3(glm::trunc(glm::trunc(inCells + 0.5) * cascade.cellSize));
     }
@@ -137,7 +136,7 @@ void LightPropagationVolume::bindSums() const {
   else layered_->bindSums();
 }
 
-// What the surfels reflect of the light that has reached them is added to the source of the next bounce.
+// Adds the light reflected by the surfels to the source of the next bounce.
 void LightPropagationVolume::reflect(bool first) {
   const gl::ComputePass pass("lpv reflect", gl::Barrier::textureFetch | gl::Barrier::image);
   reflect_->use();

@@ -36,12 +36,12 @@ class LightPropagationVolume {
   /// Binds block 1 and units 4, 5, 6 for shaders/lpv/lookup.glsl.
   void bindForLookup() const;
 
-  /// What the lookup takes of each cell at a point, among the frame's positions; cells beside the volume give nothing.
-  /// `normal`: for shading. Compiles and allocates.
+  /// The contribution of each cell to the lookup at a point in the frame's coordinates; outside the volume there is
+  /// none. `normal`: for shading. Compiles and allocates.
   std::vector<AskedPart> ask(gl::ProgramLibrary& programs, const glm::vec3& position, const glm::vec3& normal) const;
 
   const LpvVolume& injected() const { return injection_.volume(); }
-  /// The sum G_0 + ... + G_iterations; after join() of all cascades together.
+  /// The sum G_0 + ... + G_iterations; after join(), of all cascades together.
   const LpvVolume& result() const { return join_ ? join_->result() : injected(); }
   const gl::Texture* geometryVolume() const { return geometry_ ? &geometry_->potential() : nullptr; }
   const LpvSettings& settings() const { return settings_; }
@@ -55,11 +55,11 @@ class LightPropagationVolume {
   LpvSettings settings_;  ///< resolved
   gl::Buffer constants_;
   LpvInjection injection_;
-  std::optional<LpvGeometryVolume> geometry_;  ///< only if steps are blocked
-  std::optional<LpvComputePropagation> compute_;  ///< this or the next, and the join, only if there are steps
+  std::optional<LpvGeometryVolume> geometry_;  ///< only with blocking
+  std::optional<LpvComputePropagation> compute_;  ///< this or the next one, and the join; only if there are steps
   std::optional<LpvLayeredPropagation> layered_;
   std::optional<LpvCascadeJoin> join_;
-  const gl::Program* reflect_ = nullptr;  ///< only with several bounces, as the next
+  const gl::Program* reflect_ = nullptr;  ///< only with several bounces, like the next
   LpvVolume source_;  ///< injected light and all bounces so far, 32 bits
 };
 

@@ -1,5 +1,5 @@
 // A hierarchy over the texels of a reflective shadow map, for gathering from all of them: a quadtree in a buffer, each
-// node the mean of four (shaders/lpv/gather/tree.glsl). In: a map. Out: nodes, in the units of the map: W, scene units.
+// node the mean of four (shaders/lpv/gather/tree.glsl). In: a map. Out: nodes, in the map's units: W, scene units.
 #pragma once
 
 #include "gl/context.hpp"
@@ -10,7 +10,7 @@ namespace lucerna {
 
 class LightTree {
  public:
-  static constexpr int kTop = 32;  ///< most nodes per side of the coarsest level
+  static constexpr int kTop = 32;  ///< maximum nodes per side at the coarsest level
   /// size, layers: of the map.
   LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers);
 

@@ -11,8 +11,8 @@ namespace {
 
 // Storage blocks of lpv/propagate.comp.
 constexpr GLuint kNextBuffer = 1, kSumBuffer = 2, kBricksBuffer = 4;
-constexpr int kBrick = 4;  // cells a side, as in lpv/bricks.glsl
-constexpr std::array<GLuint, 4> kNoBricks{64, 0, 1, 0};  // groups of the dispatch, a row at a time, and their count
+constexpr int kBrick = 4;  // cells per side, as in lpv/bricks.glsl
+constexpr std::array<GLuint, 4> kNoBricks{64, 0, 1, 0};  // groups of the dispatch, row by row, and their count
 
 bool isFirstBlocked(const LpvSettings& settings) { return settings.isBlocked() && settings.deviations.blockFirstStep; }
 

@@ -19,13 +19,13 @@ namespace {
 constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3,
                  kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kSeenUnit = 6, kVoxelsUnit = 6, kTreeUnit = 7;
-constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that finds no receivers to end at; it misses albedo^64
-constexpr float kFullPaths = 256.0f;  // from which a receiver has full weight, without its neighbours
+constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no receivers; it misses a share of albedo^64
+constexpr float kFullPaths = 256.0f;  // from here on: full weight, no averaging with neighbours
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
 constexpr std::array<GLuint, 9> kNoWork{0, 1, 1, 0, 0, 1, 1, 0, 0};
-constexpr std::size_t kTurnsOfPath = 256;  // about: gl/pieces.hpp
-constexpr std::size_t kMostPaths = (std::size_t{1} << 28) / kTurnsOfPath;  // paths of a submission
-constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // distinguished by a key
+constexpr std::size_t kTurnsOfPath = 256;  // approximate: gl/pieces.hpp
+constexpr std::size_t kMostPaths = (std::size_t{1} << 28) / kTurnsOfPath;  // per submission
+constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // number that a key distinguishes
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
@@ -41,7 +41,7 @@ float typicalOf(const Scene& scene) {
   return result > 0.0f ? std::clamp(result, 1e-30f, 1e30f) : 1.0f;
 }
 
-/// Whether the camera jumped: then there is no picture before with which this one should agree.
+/// Whether the camera jumped, so that there is no previous picture to stay consistent with.
 bool isCut(const Cascade& before, const Cascade& now) {
   constexpr std::int64_t kCells = 4;
   const glm::i64vec3 moved = glm::abs(now.firstCell - before.firstCell);
@@ -66,7 +66,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
       clearTexture_(capabilities.clearTexture),
       cached_(settings.bounces == LpvSettings::kAllBounces && light != Light::direct) {
   CHECK(settings.rays >= 1 && settings.rays <= LPV_LANES && LPV_LANES % settings.rays == 0, "rays = {}", settings.rays);
-  // Slots of the grids, and how many of them may hold a receiver.
+  // Slots of the grids, and the maximum number of receivers in them.
   const auto cells = static_cast<std::size_t>(settings.cascades.cells),
              cascades = static_cast<std::size_t>(settings.cascades.cascades);
   const int layers = settings.cascades.cells * settings.cascades.cascades * LPV_FACES;
@@ -74,12 +74,12 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
     throwMissingCapability(
         "lpv.cells={}: receivers take {} layers of a 3D texture; this driver has at most {} (GL_MAX_3D_TEXTURE_SIZE)",
         settings.cascades.cells, layers, capabilities.max3dTextureSize);
-  const int lanes = settings.transport == LpvTransport::rays ? settings.rays : LPV_LANES;  // of a receiver
+  const int lanes = settings.transport == LpvTransport::rays ? settings.rays : LPV_LANES;  // per receiver
   slots_ = cells * cells * cells * cascades * LPV_FACES;
-  // Surfaces cross a grid in some cells^2 cells; times four, for the faces that each normal covers.
+  // Surfaces cross a grid in about cells^2 cells; times four, for the faces that each normal covers.
   capacity_ = std::min(slots_, 24 * cells * cells * cascades);
 
-  // Tables, receivers and what they received.
+  // Allocate tables, receivers and their irradiance.
   const auto words = [&](const std::string& name, std::size_t count) {
     if (count > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
       throwMissingCapability(
@@ -108,7 +108,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
                             glm::ivec3(settings.cascades.cells, settings.cascades.cells, layers), linear);
   ring_ = std::make_unique<gl::ReadBackRing>("lpv receiver counts", sizeof kNoWork);
 
-  // Which light paths bring, and the programs of every transport.
+  // Select the light that paths carry, and the programs of every transport.
   scene_.fill(path_);
   path_.minScatterings = light == Light::indirect ? 2 : 1;
   path_.maxScatterings = light == Light::direct ? 1
@@ -132,7 +132,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   if (settings.transport == LpvTransport::rays)
     paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
   store_ = &programs.loadCompute("lpv store receivers", "lpv/receivers/store.comp", common);
-  // Those of the gather alone, and the voxels that block it.
+  // Programs of the gather, and the voxels that block it.
   if (settings.transport == LpvTransport::gather) {
     if (settings.bounces != 1)
       throwBadInput("lpv.bounces={}: lpv.transport=gather has one bounce; rays has more",
@@ -219,7 +219,7 @@ void LpvReceivers::bindReceivers() const {
   work_[0].bindStorage(kWorkBuffer);
 }
 
-// The grids have moved: receivers still inside are copied to a new list and entered in the slots.
+// After the grids have moved, copies receivers that are still inside to a new list and enters them in the slots.
 void LpvReceivers::keep() {
   std::swap(receivers_[0], receivers_[1]);
   std::swap(work_[0], work_[1]);
@@ -265,7 +265,7 @@ void LpvReceivers::list(int target, bool countsFading) {
   const std::array<GLuint, 5> none{0, 1, 1, 0, frame_};
   work_[0].upload(4 * sizeof(GLuint), sizeof none, none.data());
   bindReceivers();
-  lpvConstantsBefore_.bindUniform(BLOCK_LPV);  // new receivers look up what was seen in their place
+  lpvConstantsBefore_.bindUniform(BLOCK_LPV);  // new receivers look up the light shown in their place before
   irradiance_.bind(UNIT_RECEIVED);
   scene_.bind();
   lit_.bindStorage(kSlotsBuffer);

@@ -43,13 +43,13 @@ class LpvReceivers {
     /// For LpvTransport::gather, one per light; the same ones every frame. Read if `mapsAreNew`, and by new receivers.
     const std::vector<ReflectiveShadowMap::Outputs>& maps;
     bool mapsAreNew;
-    bool fades;  ///< what is shown changes by no more than Settings::mostChange; else all of it at once
+    bool fades;  ///< limit changes of the shown irradiance to Settings::mostChange; otherwise they apply at once
   };
-  /// Of the last frame whose counts have arrived.
+  /// Counts of the last frame whose counts have arrived.
   struct Counts {
     std::uint64_t receivers = 0;  ///< in total
     std::uint64_t waiting = 0;  ///< visible ones that still lack paths
-    std::uint64_t left = 0;  ///< without room
+    std::uint64_t left = 0;  ///< receivers that did not fit
     std::uint32_t frame = 0;  ///< as frame() counts them
   };
 
@@ -69,8 +69,8 @@ class LpvReceivers {
   void bindForLookup() const;
   static gl::ShaderFlags lookupFlags(const LpvSettings& settings);
 
-  /// What the lookup takes of each receiver at a point, among the frame's positions, with the mesh's normal. Compiles
-  /// and allocates.
+  /// The contribution of each receiver to the lookup at a point in the frame's coordinates, with the mesh's normal.
+  /// Compiles and allocates.
   std::vector<AskedPart> ask(const glm::vec3& position, const glm::vec3& normal) const;
 
   void collect(bool wait = false);
@@ -100,10 +100,10 @@ class LpvReceivers {
   bool cached_;  ///< paths end at receivers
   std::size_t slots_, capacity_;
   std::uint32_t frame_ = 0;
-  std::vector<Cascade> cascades_;  ///< of the frame before
+  std::vector<Cascade> cascades_;  ///< of the previous frame
   shared::PathConstants path_{};
   const gl::Program *mark_, *claim_, *keep_, *list_, *store_;
-  const gl::Program* paths_ = nullptr;  ///< only rays; the following only gather
+  const gl::Program* paths_ = nullptr;  ///< only for rays; the following only for gather
   const gl::Program *gatherSun_ = nullptr, *gatherLamp_ = nullptr, *gatherSky_ = nullptr;
   std::vector<LightTree> trees_;  ///< one per map
   glm::vec3 voxelMinimum_{0.0f};  ///< in the frame's coordinates
@@ -111,7 +111,7 @@ class LpvReceivers {
   glm::ivec3 voxelBricks_{1};
   gl::BufferTexture voxels_;
   gl::Buffer lpvConstants_,
-      lpvConstantsBefore_;  ///< the second: of the cascades that irradiance_ is of when an update begins
+      lpvConstantsBefore_;  ///< the second: the cascades to which irradiance_ belongs when an update begins
   gl::Buffer constants_, pathConstants_, lit_;
   std::array<gl::Buffer, 2> receivers_, work_;  ///< the second of each: before the cascades moved
   gl::BufferTexture slotTable_, keys_, seen_;

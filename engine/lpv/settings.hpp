@@ -1,4 +1,4 @@
-// What a light propagation volume is asked for and what it is given. README.md in this folder has units and sources.
+// Settings and inputs of a light propagation volume. README.md in this folder has units and sources.
 #pragma once
 
 #include "base/named_values.hpp"
@@ -19,8 +19,8 @@ namespace lucerna {
 enum class LpvFill { layered, atomic, fixed };
 constexpr std::array<std::string_view, 3> namesOf(LpvFill) { return {"layered", "atomic", "fixed"}; }
 
-/// `compute`: all cascades in one dispatch a step. `layered`: as published, one pass a step and cascade with a point a
-/// cell. `slices`: the same pass with a triangle a slice instead.
+/// `compute`: all cascades in one dispatch per step. `layered`: as published, one pass per step and cascade with one
+/// point per cell. `slices`: the same pass with one triangle per slice instead.
 enum class LpvPropagate { compute, layered, slices };
 constexpr std::array<std::string_view, 3> namesOf(LpvPropagate) { return {"compute", "layered", "slices"}; }
 
@@ -30,28 +30,28 @@ constexpr std::array<std::string_view, 3> namesOf(LpvPropagate) { return {"compu
 enum class LpvLookup { flux, published };
 constexpr std::array<std::string_view, 2> namesOf(LpvLookup) { return {"flux", "published"}; }
 
-/// How light gets from what is lit to what is looked up. `propagate`: through the grids' cells, step by step, as
-/// published. The others to receivers, points of surfaces (receivers.hpp): `gather` from the lights' maps, one bounce;
+/// How light gets from lit surfaces to the lookup. `propagate`: through the grids' cells, step by step, as published.
+/// The others store it at receivers, points of surfaces (receivers.hpp): `gather` from the lights' maps, one bounce;
 /// `rays` along paths.
 enum class LpvTransport { propagate, gather, rays };
 constexpr std::array<std::string_view, 3> namesOf(LpvTransport) { return {"propagate", "gather", "rays"}; }
 
-/// What light that is gathered passes through: everything, or everything but the voxels in which surfaces lie.
+/// What blocks gathered light: nothing, or the voxels that contain surfaces.
 enum class LpvVisibility { none, voxels };
 constexpr std::array<std::string_view, 2> namesOf(LpvVisibility) { return {"none", "voxels"}; }
 
-/// Whose surfels fill the geometry volume: those that the lights' maps see, those that the camera sees, or both.
+/// Whose surfels fill the geometry volume: those in the lights' maps, those seen by the camera, or both.
 enum class LpvSurfels { rsm, camera, both };
 constexpr std::array<std::string_view, 3> namesOf(LpvSurfels) { return {"rsm", "camera", "both"}; }
 
 struct LpvSettings {
   /// Storage of the result, rounded to nearest; everything before it is in 32 bits. `full` (32-bit) is for tests.
   enum class Storage { half, full };
-  /// Differences of the published text and its public demo, one by one; README.md has formula, source and effect.
+  /// Deviations of the published text and its public demo, each selectable; README.md has formula, source and effect.
   struct Deviations {
     bool fluxUnits = false;  ///< ignores texel area and cell size; lookup times 1.7 / pi
-    bool sumCascades = false;  ///< all cascades are added, none is joined
-    bool unjoined = false;  ///< cascades are blended as they are
+    bool sumCascades = false;  ///< all cascades are added instead of joined
+    bool unjoined = false;  ///< cascades are blended without joining
     bool truncate = false;  ///< conversion to int instead of floor; grids snap to whole world units
     bool firstCell = false;  ///< bounds tested with > for >=: cell 0 of every axis stays dark
     bool sideDirections = false;  ///< side faces by component-wise product
@@ -60,7 +60,7 @@ struct LpvSettings {
     bool fewerSteps = false;  ///< one step fewer, and the injected grid is not in the sum
     bool blockFirstStep = false;  ///< the first step is blocked too
     bool surfelArea = false;  ///< perspective formula times N.L for an orthographic light; other lights keep true areas
-    bool unwindowed = false;  ///< light that travels away from a surface counts negative
+    bool unwindowed = false;  ///< light travelling away from a surface counts as negative
     bool blockingDirection = false;  ///< potential evaluated in the direction of travel
     bool halfGrids = false;  ///< what leads to the result is kept in 16 bits too; filled and propagated by layered
                              ///< passes, as there alone textures hold it
@@ -81,28 +81,28 @@ struct LpvSettings {
   int iterations = 8;  ///< propagation steps; 0: only injected light
   bool blocking = true;  ///< geometry volume
   LpvSurfels surfels = LpvSurfels::rsm;
-  bool mergeViews = false;  ///< several maps: of a surfel seen twice the longer vector counts; else all are summed
+  bool mergeViews = false;  ///< several maps: the longer vector of a surfel seen twice counts; otherwise all are summed
   int bounces = 1;  ///< with propagate more than 1 need blocking, two iterations and maps with albedo; with rays
                     ///< kAllBounces too
   bool shafts = false;  ///< light shafts in the scene's haze (light_shafts.hpp)
-  int shaftSteps = 64;  ///< of them along a view ray
+  int shaftSteps = 64;  ///< samples along a view ray
   float blendBand = 0.25f;  ///< fraction of a cascade's half extent over which it fades into the next
   int handOver = 0;  ///< steps after which a finer cascade takes light from the coarser one; 0: lpvHandOverStep()
   std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not
                                       ///< set: the lookup's default
-  LpvVisibility visibility = LpvVisibility::voxels;  ///< of LpvTransport::gather
-  int voxels = 256;  ///< the same: along the longest side of the scene
-  int rays = 16;  ///< of LpvTransport::rays: paths per receiver and frame, 1, 2, 4 ... 64
-  int leastRays = 64;  ///< the same: least paths of a receiver in its first frame
-  int samples = 512;  ///< the same: paths of a receiver while light and geometry stand still
-  /// Of receivers: by how much of itself the irradiance that is shown may change in a frame while the camera moves or
-  /// paths are added; 0: by any.
+  LpvVisibility visibility = LpvVisibility::voxels;  ///< for LpvTransport::gather
+  int voxels = 256;  ///< likewise: along the longest side of the scene
+  int rays = 16;  ///< for LpvTransport::rays: paths per receiver and frame, 1, 2, 4 ... 64
+  int leastRays = 64;  ///< likewise: minimum number of paths of a receiver in its first frame
+  int samples = 512;  ///< likewise: paths of a receiver while light and geometry stand still
+  /// For receivers: largest relative change per frame of the shown irradiance while the camera moves or paths are
+  /// added; 0: no limit.
   float mostChange = 0.004f;
   Storage storage = Storage::half;
   /// The compute gather also runs bricks without light; the same bits, for tests and measurements.
   bool everyBrick = false;
 
-  /// Deviations of the published lookup are deviations of that one alone.
+  /// Deviations of the published lookup apply to that lookup only.
   LpvLookup lookupUsed() const { return deviations.fluxUnits || deviations.unwindowed ? LpvLookup::published : lookup; }
   /// In cells along the normal.
   float offset() const { return lookupOffset.value_or(lookupUsed() == LpvLookup::published ? 0.5f : 0.0f); }
@@ -111,11 +111,11 @@ struct LpvSettings {
   int steps() const { return std::max(iterations - (deviations.fewerSteps ? 1 : 0), 0); }
   /// Whether any step is blocked; the first is not by default.
   bool isBlocked() const { return blocking && (steps() > 1 || (steps() == 1 && deviations.blockFirstStep)); }
-  /// Whether cascades are joined: those of resolved() settings.
+  /// Whether cascades are joined; call it on resolved() settings.
   bool joins() const {
     return cascades.cascades > 1 && !deviations.sumCascades && !deviations.unjoined && handOver < steps();
   }
-  /// With the passes and the hand-over that follow from the others: of grids in 16 bits there are layered passes alone.
+  /// With dependent settings filled in, passes and hand-over: 16-bit grids exist only as layered passes.
   LpvSettings resolved() const;
 };
 
@@ -124,7 +124,7 @@ struct LpvInputs {
   std::vector<Cascade> cascades;  ///< finest first, as many as in the settings
   float referenceIrradiance;  ///< E_ref > 0, of the order of the lights' irradiance; only scales stored values
   glm::vec3 lightPosition{0.0f};  ///< the sun's; only read by the deviation surfelArea
-  std::vector<ReflectiveShadowMap::Outputs> views{};  ///< what the camera sees, only for its surfels: flux is not read
+  std::vector<ReflectiveShadowMap::Outputs> views{};  ///< the camera's view, only for its surfels: flux is not read
 };
 
 /// Red, green and blue: 3D textures of SH coefficients c / (E_ref s^2), cascades stacked along z.

@@ -9,7 +9,7 @@ namespace lucerna {
 
 namespace {
 
-/// Whether a material is cut out at a texture coordinate: as in forward shading, at the nearest texel.
+/// Whether a material is cut out at a texture coordinate, as in forward shading, at the nearest texel.
 bool isCutOut(const Scene& scene, const Material& material, const glm::dvec2& texCoord) {
   const int index = material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture;
   if (!material.alphaMasked || index < 0) return false;
@@ -43,7 +43,7 @@ SurfaceVoxels surfaceVoxels(const Scene& scene, int across) {
   const double longest = std::max({extent.x, extent.y, extent.z});
   voxels.size = longest > 0.0 ? longest / across : 1.0;
   voxels.minimum =
-      scene.bounds.empty() ? glm::dvec3(0.0) : scene.bounds.min - voxels.size;  // a voxel of air around everything
+      scene.bounds.empty() ? glm::dvec3(0.0) : scene.bounds.min - voxels.size;  // a voxel of air around the scene
   for (int axis = 0; axis < 3; ++axis)
     voxels.bricks[axis] = static_cast<int>(std::ceil((extent[axis] / voxels.size + 2.0) / SurfaceVoxels::kBrick)) + 1;
   voxels.bits.assign(static_cast<std::size_t>(voxels.bricks.x) * static_cast<std::size_t>(voxels.bricks.y) *
@@ -70,7 +70,7 @@ SurfaceVoxels surfaceVoxels(const Scene& scene, int across) {
         corners[k] = (glm::dvec3(vertex.position) - voxels.minimum) / voxels.size;
         texCoords[k] = vertex.texCoord;
       }
-      // Points in rows along two edges, half a voxel apart.
+      // Sample points in rows along two edges, half a voxel apart.
       const double edge = std::max({glm::length(corners[1] - corners[0]), glm::length(corners[2] - corners[0]),
                                     glm::length(corners[2] - corners[1])});
       const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * edge)));

@@ -110,8 +110,8 @@ Kernel gaussian(double sigma, int radius) {
   return kernel;
 }
 
-/// Positive weights sum to 1, negative ones to -1, as those of the two-dimensional filter do [Andersson2020, 4.2.1]:
-/// the other axis' Gaussian sums to 1.
+/// Scales positive weights to sum to 1 and negative ones to -1, like those of the two-dimensional filter
+/// [Andersson2020, 4.2.1]: the other axis' Gaussian sums to 1.
 Kernel balanced(Kernel kernel) {
   double positive = 0.0, negative = 0.0;
   for (double w : kernel) (w > 0.0 ? positive : negative) += std::abs(w);
@@ -130,7 +130,7 @@ Plane seen(const Plane& ycxcz, Size size, double ppd) {
   };
   constexpr Term kAchromatic{1.0, 0.0047}, kRedGreen{1.0, 0.0053}, kBlueYellow[2] = {{34.1, 0.04}, {13.5, 0.025}};
   const auto sigma = [&](const Term& t) { return std::sqrt(t.b / (2.0 * kPi * kPi)) * ppd; };
-  const int radius = static_cast<int>(std::ceil(3.0 * sigma(kBlueYellow[0])));  // one for all
+  const int radius = static_cast<int>(std::ceil(3.0 * sigma(kBlueYellow[0])));  // the same for all
   const Kernel y = gaussian(sigma(kAchromatic), radius), cx = gaussian(sigma(kRedGreen), radius);
   const Kernel first = gaussian(sigma(kBlueYellow[0]), radius), second = gaussian(sigma(kBlueYellow[1]), radius);
   Plane result = convolve(ycxcz, size, {&y, &cx, &first}, {&y, &cx, &first});

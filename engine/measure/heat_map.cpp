@@ -15,8 +15,8 @@ namespace {
 
 using Colour = std::array<double, 3>;  // sRGB-encoded, 0..255
 
-// Stops of even distance; lightness grows (or grows towards white from both sides) so that they remain readable in
-// grey.
+// Evenly spaced stops; lightness increases (or increases towards white from both sides), so that they remain readable
+// in grey.
 constexpr Colour kAbsolute[] = {{0, 0, 0},      {66, 10, 74},    {147, 26, 72},  {222, 66, 37},
                                 {250, 146, 14}, {252, 228, 120}, {255, 255, 255}};
 constexpr Colour kSigned[] = {{8, 48, 120},    {52, 122, 190}, {150, 199, 226}, {247, 247, 247},

@@ -1,7 +1,7 @@
 // Heat maps of errors (no GL): the difference of two linear pictures at each pixel, absolute or signed.
 //
-// Absolute: the pixel's largest |d| over its channels, black (0) over red and orange to white (scale and beyond).
-// Signed: d of the luminance [IEC 61966-2-1], blue (-scale) over white (0) to red (+scale). Both linear in d; values
+// Absolute: the pixel's largest |d| over its channels, black (0) through red and orange to white (scale and beyond).
+// Signed: d of the luminance [IEC 61966-2-1], blue (-scale) through white (0) to red (+scale). Both linear in d; values
 // that are not finite are green.
 #pragma once
 

@@ -90,7 +90,8 @@ JudgedErrors lessNoise(const ImageErrors& measured, const ReferenceNoise& noise,
   judged.rmse = std::sqrt(std::max(0.0, measured.rmse * measured.rmse - noise.variance));
   judged.nrmse = ratio(judged.rmse, measured.referenceMean);
   judged.relmse = std::max(0.0, measured.relmse - noise.relativeVariance);
-  // sum r^2 holds the reference's variance as sum d^2 does: without both a black picture has 1 exactly.
+  // sum r^2 contains the reference's variance just as sum d^2 does: with it removed from both, a black picture has
+  // exactly 1.
   judged.l2 = ratio(judged.rmse, std::sqrt(std::max(0.0, measured.referenceSquare - noise.variance)));
   judged.noiseL2 = ratio(std::sqrt(noise.variance), std::sqrt(measured.referenceSquare));
   judged.noiseNrmse = ratio(std::sqrt(noise.variance), measured.referenceMean);
@@ -137,7 +138,7 @@ void forBlocks(const Image& image, int side, F f) {
       f(glm::ivec2(x, y), glm::ivec2(std::min(x + side, image.width), std::min(y + side, image.height)));
 }
 
-/// Sets every pixel of a block to `of` of the sum of the block's pixels and their count.
+/// Sets every pixel of a block to `of` applied to the sum of the block's pixels and their count.
 template <typename Value, typename Of>
 Image overBlocks(const Image& image, int side, Value value, Of of) {
   Image result(image.width, image.height);
@@ -179,7 +180,7 @@ PartErrors partErrorsOf(const Image& image, const Image& reference, const Image&
     difference += sum(d) / 3.0;
     truth += sum(r) / 3.0;
     squares += sum(d * d);
-    const double error = sum(e) / 3.0;  // channels share their paths: their errors add up as if wholly dependent
+    const double error = sum(e) / 3.0;  // channels share their paths: their errors add as if fully correlated
     variance += error * error;
   }
   PartErrors part;

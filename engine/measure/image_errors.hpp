@@ -46,9 +46,9 @@ struct ReferenceNoise {
 /// standardError: of each pixel and channel.
 ReferenceNoise noiseOf(const Image& reference, const Image& standardError, double meanError);
 
-/// Standard errors that the reference's own noise gives to what was measured against it: of mean d^2, and of relmse. A
-/// pixel's channels share their paths and count as wholly dependent; true differences are taken as d^2 less the noise.
-/// Var(d + e)^2 = 4 d^2 s^2 + 2 s^4 for normal noise e of standard error s.
+/// Standard errors that the reference's noise causes in mean d^2 and in relmse. A pixel's channels share their paths
+/// and count as fully correlated; true differences are taken as d^2 less the noise. Var(d + e)^2 = 4 d^2 s^2 + 2 s^4
+/// for normal noise e of standard error s.
 struct SquareErrors {
   double squares = 0.0, relative = 0.0;
 };
@@ -57,34 +57,34 @@ SquareErrors squareErrorsOf(const Image& image, const Image& reference, const Im
 struct JudgedErrors {
   ImageErrors measured;
   double rmse = 0.0, nrmse = 0.0, l2 = 0.0,
-         relmse = 0.0;  ///< less the reference's noise, at least 0; l2 over sum r^2 less its noise too
+         relmse = 0.0;  ///< less the reference's noise, at least 0; l2 divides by sum r^2 less its noise too
   double noiseNrmse = 0.0;  ///< that share: sqrt(variance) / m
   double noiseL2 = 0.0;  ///< the same over sqrt(mean r^2)
-  double noiseRelmse = 0.0;  ///< what was taken off relmse
+  double noiseRelmse = 0.0;  ///< subtracted from relmse
   double biasError = 0.0;  ///< standard error of the bias
   bool atNoise = false;  ///< measured rmse is below 3 standard errors of the reference
   bool biasAtNoise = false;  ///< |bias| is below 3 biasError
 };
-/// ownBiasError: the image's own standard error of its mean, where it is sampled too.
+/// ownBiasError: the image's own standard error of its mean, if it is sampled too.
 JudgedErrors lessNoise(const ImageErrors& measured, const ReferenceNoise& noise, double ownBiasError = 0.0);
 
 /// Side of a block in pixels: a sixteenth of the width, rounded, at least 1.
 int blockSide(int width);
-/// Every pixel replaced by the mean of its block of side x side pixels, cut off at the picture's edge: errorsOf() two
-/// of these weighs blocks by their pixels.
+/// Replaces every pixel by the mean of its block of side x side pixels, cut off at the picture's edge: errorsOf() of
+/// two such pictures weighs blocks by their number of pixels.
 Image blockMeans(const Image& image, int side);
-/// Standard errors of those means, the pixels' own being independent.
+/// Standard errors of those means, assuming independent pixels.
 Image blockStandardErrors(const Image& standardError, int side);
 
-/// Errors of some pixels, such as those that the sun lights.
+/// Errors of a subset of the pixels, such as those lit by the sun.
 struct PartErrors {
-  double pixels = 0.0;  ///< their share of the picture, 0..1
-  double bias = 0.0;  ///< mean d of them, radiance
-  double relativeBias = 0.0;  ///< over their mean r; NaN without pixels
+  double pixels = 0.0;  ///< their share of the picture's pixels, 0..1
+  double bias = 0.0;  ///< mean d over them, radiance
+  double relativeBias = 0.0;  ///< bias over their mean r; NaN without pixels
   double biasError = 0.0;  ///< standard error of the relative bias
   double squares = 0.0;  ///< their share of sum d^2, 0..1; 0 where that is 0
 };
-/// isPart: one value per pixel. ownBiasError: as in lessNoise(), of the whole picture; a part of its pixels is taken to
+/// isPart: one value per pixel. ownBiasError: as in lessNoise(), of the whole picture; the part's pixels are assumed to
 /// be as noisy as all of them.
 PartErrors partErrorsOf(const Image& image, const Image& reference, const Image& standardError,
                         const std::vector<bool>& isPart, double ownBiasError = 0.0);
@@ -92,7 +92,7 @@ PartErrors partErrorsOf(const Image& image, const Image& reference, const Image&
 /// The irradiance E, channel by channel, at least 0, for which albedo E / pi is closest to the picture by least
 /// squares: E = pi sum(a r) / sum(a^2).
 glm::dvec3 constantIrradiance(const Image& albedo, const Image& picture);
-/// albedo E / pi: Lambert's surfaces under the same irradiance everywhere.
+/// albedo E / pi: Lambertian surfaces under the same irradiance everywhere.
 Image litByConstant(const Image& albedo, const glm::dvec3& irradiance);
 
 }  // namespace lucerna::measure

@@ -14,7 +14,7 @@ struct LightKinds {
   bool sun = true;
   bool lamps = true;  ///< spots and omnidirectional lamps
   bool surfaces = true;  ///< emissive surfaces and media
-  bool environment = true;  ///< what is seen behind the scene and lights it; a background that lights nothing is none
+  bool environment = true;  ///< lights the scene from behind it; a background that lights nothing does not count
 
   auto operator<=>(const LightKinds&) const = default;
   bool any() const { return sun || lamps || surfaces || environment; }

@@ -1,4 +1,5 @@
-// A scene with data that require a feature and change nothing (no GL), to measure and test what leaving it out saves.
+// Adds data to a scene that require a feature but change nothing (no GL), to measure and test what omitting the feature
+// saves.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -9,10 +10,10 @@
 
 namespace lucerna::measure {
 
-/// Names of those needs of SceneNeeds that neutral data exist for.
+/// The needs of SceneNeeds for which neutral data exist.
 const std::vector<std::string>& neutralNeeds();
-/// Makes the scene need it: a white texture, a mask that cuts nothing out, a light of 1e-30. No effect if it is needed
-/// already or nothing is drawn.
+/// Adds the data that cause the need: a white texture, a mask that cuts nothing out, a light of 1e-30. No effect if the
+/// need already exists or nothing is drawn.
 void addNeutral(Scene& scene, std::string_view need);
 
 }  // namespace lucerna::measure

@@ -89,11 +89,11 @@ std::optional<Reference> sampleReference(const Sampler& sampler, Transport trans
   const auto start = Clock::now();
   const auto elapsed = [&] { return secondsSince(start); };
   const bool byCount = goal.samples > 0;
-  // By time: the batch doubles until a sixteenth of the time is spent on one; then all begin again at that size, so
-  // that they are equal.
+  // By time: the batch size doubles until one batch takes a sixteenth of the time. Then all batches start again at that
+  // size, so that they are equal.
   std::uint32_t size = byCount ? batchSize(goal.samples) : 1;
   std::uint64_t next = first;
-  if (!byCount) sampler(next, 1);  // one-time work, such as compiling, does not belong to a batch's time
+  if (!byCount) sampler(next, 1);  // keep one-time work such as compiling out of the batch's time
   if (!byCount)
     for (double last = 0.0;;) {
       const double before = elapsed();
@@ -161,7 +161,7 @@ std::vector<std::uint8_t> encode(const ReferenceKey& key, const Reference& r) {
   return bytes;
 }
 
-/// Empty if anything is not as it was written.
+/// Empty if anything differs from what was written.
 std::optional<Reference> decode(const ReferenceKey& key, const std::vector<std::uint8_t>& bytes) {
   Header header;
   if (bytes.size() < sizeof header + sizeof(std::uint64_t)) return std::nullopt;

@@ -15,8 +15,8 @@
 
 namespace lucerna::measure {
 
-/// The mean picture of `samples` paths per pixel, numbered from `first`: other numbers are independent, the same ones
-/// give the same picture.
+/// The mean picture of `samples` paths per pixel, numbered from `first`: different numbers give independent pictures,
+/// equal ones the same picture.
 using Sampler = std::function<Image(std::uint64_t first, std::uint32_t samples)>;
 
 struct Reference {
@@ -55,8 +55,8 @@ struct SamplingGoal {
   static constexpr int kBatches = 16;
 };
 
-/// Samples from path number `first` until the goal is met. `stop` is asked between batches; fewer than two batches give
-/// no reference.
+/// Samples from path number `first` until the goal is met. `stop` is called between batches; fewer than two batches
+/// give no reference.
 std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first,
                                          const SamplingGoal& goal, const std::function<bool()>& stop = {});
 

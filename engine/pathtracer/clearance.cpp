@@ -19,7 +19,7 @@ double squaredDistanceToSegment(const glm::dvec3& a, const glm::dvec3& b, const 
   return glm::dot(rest, rest);
 }
 
-/// Halves a cube down to the cells, and passes on only triangles that may be the nearest to a point in it.
+/// Halves a cube down to the cells, and passes on only triangles that may be nearest to a point in it.
 class Filler {
  public:
   Filler(const std::vector<Corners>& triangles, ClearanceGrid& grid) : triangles_(triangles), grid_(grid) {}

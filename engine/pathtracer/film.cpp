@@ -38,7 +38,7 @@ glm::uvec4 wordsOf(const glm::vec3& v, std::uint32_t w) {
   return {std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y), std::bit_cast<std::uint32_t>(v.z), w};
 }
 
-/// Variance of a pixel's mean. Rounding may leave a sum of squares a hair below 0.
+/// Variance of a pixel's mean. Rounding may make a sum of squares slightly negative.
 glm::dvec3 meanVariance(const FilmPixel& p) {
   const double n = p.samples;
   return p.samples < 2 ? glm::dvec3(0.0) : glm::max(glm::dvec3(p.spread), glm::dvec3(0.0)) / (n * (n - 1.0));

@@ -1,9 +1,9 @@
-// The film of a path traced picture as a file (no GL): what PathTracer::checkpoint() writes and resume() takes, and
-// films of parts of the samples as one.
+// The film of a path traced picture as a file (no GL), written by PathTracer::checkpoint() and read by resume(); and
+// merging of films that hold parts of the samples.
 //
-// A film holds the samples number first, first + 1, ..., one after another in every pixel. The random numbers of a
-// sample follow from seed, pixel and its number alone, so that parts that were made anywhere are together what one run
-// makes of all of them, up to rounding.
+// A film holds the samples number first, first + 1, ..., consecutively in every pixel. The random numbers of a sample
+// follow from seed, pixel and sample number alone. Parts computed anywhere therefore combine to what one run computes,
+// up to rounding.
 #pragma once
 
 #include "base/image.hpp"
@@ -22,7 +22,7 @@ struct FilmPixel {
   std::uint32_t samples = 0;
 };
 
-/// Radiance, or what else a film holds, over all its pixels.
+/// Radiance, or other quantity that the film holds, over all its pixels.
 struct FilmStatistics {
   std::uint32_t fewestSamples = 0, mostSamples = 0;
   double samples = 0.0;  ///< mean over pixels
@@ -36,11 +36,11 @@ FilmStatistics statisticsOf(std::span<const FilmPixel> pixels);
 glm::vec3 standardErrorOf(const FilmPixel& pixel);
 
 struct Film {
-  std::uint64_t identity = 0;  ///< of scene, view, size and settings: what decides the picture
+  std::uint64_t identity = 0;  ///< hash of scene, view, size and settings: everything that determines the picture
   glm::ivec2 size{0};
   std::uint32_t first = 0;  ///< number of the first sample
-  /// Words of floats' bits, the bottom row first: mean and, in w, the number of samples; spread; the mean's rest below
-  /// a float's last place.
+  /// Bits of floats as words, bottom row first: mean and, in w, the number of samples; sum of squared deviations; the
+  /// mean's low part below a float's last place.
   std::vector<glm::uvec4> mean, spread, rest;
 
   std::vector<FilmPixel> pixels() const;
@@ -48,27 +48,28 @@ struct Film {
   Image standardError() const;
 };
 
-/// Throws Error(badInput) where the bytes are no film, of another version, damaged or cut off; `name` is for messages.
+/// Throws Error(badInput) if the bytes are not a film, of another version, damaged or truncated; `name` is for
+/// messages.
 Film filmOf(std::span<const std::uint8_t> bytes, const std::string& name);
 std::vector<std::uint8_t> bytesOf(const Film& film);
 
-/// Number of the first sample, from the beginning of a file alone: nothing else of it is checked.
+/// Number of the first sample, read from the beginning of a file; the rest is not checked.
 std::uint32_t firstSampleOf(const std::filesystem::path& file);
 
-/// The films of parts as one [ChanGolubLeVeque1983, pairwise update], one after another in the order of their samples,
-/// so that two are in memory however many there are. Sums in double.
+/// Merges films of parts [ChanGolubLeVeque1983, pairwise update], one by one in the order of their samples, so that
+/// only two are in memory at a time. Sums in double.
 class FilmMerge {
  public:
-  /// Throws Error(badInput) where the film differs from those before in scene, view, size or settings, is not finished
-  /// (pixels of different numbers of samples, or of none), holds samples that one before it holds, or leaves some out
-  /// between them.
+  /// Throws Error(badInput) if the film differs from the previous ones in scene, view, size or settings, is unfinished
+  /// (pixels with different numbers of samples, or none), repeats samples of a previous one, or leaves a gap between
+  /// them.
   void add(const Film& film, const std::string& name);
   int films() const { return films_; }
-  /// At least one was added.
+  /// Requires at least one add().
   Film result() const;
 
  private:
-  Film head_;  ///< of the first: identity, size, first sample
+  Film head_;  ///< of the first film: identity, size, first sample
   std::string headName_, before_;
   std::uint64_t next_ = 0;
   int films_ = 0;

@@ -23,7 +23,7 @@ void checkCoefficient(const Medium& medium, const char* name, const glm::vec3& v
       throwBadInput("medium {}: {} must be finite and 0 or more, and is {}", medium.name, name, value[c]);
 }
 
-/// The largest of the cells of each block and their neighbours: a bound of the interpolated values.
+/// The maximum over each block's cells and their neighbours: a bound of the interpolated values.
 std::vector<float> blockBounds(const DensityGrid& grid, const glm::ivec3& blocks) {
   std::vector<float> bounds;
   for (int bz = 0; bz < blocks.z; ++bz)
@@ -108,7 +108,7 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
     if (medium.grid) {
       record.grid = static_cast<int>(packed.grids.size());
       packed.grids.push_back(packGrid(medium, origin, packed.densities));
-      // A medium that only emits still needs points to look up its emission: some four per crossing of the box.
+      // A medium that only emits still needs points to look up its emission: about four per crossing of the box.
       if (record.majorant <= 0.0f && largest(medium.emission) > 0.0) {
         const double bound = *std::max_element(medium.grid->density.begin(), medium.grid->density.end());
         record.majorant =

@@ -1,5 +1,5 @@
-// What a path traced picture is asked for, and the deviations of the published path tracer of participating media
-// [VPT2024] (no GL): README.md, section Deviations, has formula, source and measured effect of each.
+// Settings of a path traced picture, and the deviations of the published path tracer of participating media [VPT2024]
+// (no GL): README.md, section Deviations, has formula, source and measured effect of each.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +22,9 @@ struct PathDeviations {
 
 struct PathSettings {
   static constexpr std::uint32_t kAllScatterings = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t samples = 64;  ///< a pixel, of a finished picture
-  std::uint32_t leastSamples = 1;  ///< a pixel in the first frame of a view, at least
-  std::uint32_t scatterings = kAllScatterings;  ///< light that was scattered more often is left out
+  std::uint32_t samples = 64;  ///< per pixel of a finished picture
+  std::uint32_t leastSamples = 1;  ///< minimum per pixel in the first frame of a view
+  std::uint32_t scatterings = kAllScatterings;  ///< light with more scatterings is omitted
   std::uint32_t seed = 0;  ///< pictures of different seeds are independent
   PathDeviations deviations;
 };

@@ -25,18 +25,18 @@ constexpr GLuint kStateBinding = 5, kMediaBinding = 6, kInteriorsBinding = 7, kG
 constexpr GLuint kClearancesUnit = 3;
 constexpr int kGroupSide = 8;
 constexpr int kClearanceCells = 64;
-// llvmpipe leaves all loops of a shader after 65,535 turns, those of all lanes of a vector (8, 16 at most) counted
-// together.
+// llvmpipe leaves all loops of a shader after 65,535 iterations, counted together for all lanes of a vector (8, at most
+// 16).
 constexpr std::uint32_t kSoftwareTurns = 3500, kMostTurns = 1u << 16;
 constexpr double kLanesOfTile =
-    512.0 * 512.0;  // on a GPU; a smaller tile, a software renderer's too, begins with as many turns a lane
-/// What StateBlock (path.glsl) begins with; std430 aligns the lanes' vectors behind it to 16 bytes.
+    512.0 * 512.0;  // on a GPU; a smaller tile, also on a software renderer, begins with as many turns per lane
+/// The beginning of StateBlock (path.glsl); std430 aligns the following vectors of the lanes to 16 bytes.
 struct StateHeader {
   std::uint32_t unfinished = 0, leakedPaths = 0, wrongCrossings = 0, longest = 0, allTurns = 0, collisions = 0,
                 padding[2]{};
 };
 constexpr std::size_t kStateWords = 6, kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
-/// Of the pixel that is asked for: room for the lights that a pass of kAskedSamples brings.
+/// For the queried pixel: room for the light contributions of a pass of kAskedSamples.
 constexpr std::size_t kAskedHead = 1 + PATH_ASKED_PLACES, kAskedRecords = 32768,
                       kAskedWords = kAskedHead + kAskedRecords * PATH_ASKED_RECORD;
 constexpr std::uint32_t kAskedSamples = 64;
@@ -67,7 +67,7 @@ bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
                      [&](const SpotLight& light) { return isPlaceOutside(light.position); });
 }
 
-/// The state of a tile's lanes fits in a storage block.
+/// Side of a tile whose lanes' state fits in a storage block.
 int tileSideOn(const gl::Capabilities& capabilities) {
   int side = capabilities.softwareRenderer ? 128 : 512;
   const auto bytes = [&] {
@@ -236,7 +236,7 @@ void PathTracer::setCamera(const Camera& camera) {
       glm::vec3(camera.direction - 0.5 * settings_.size.x * pixel * right - 0.5 * settings_.size.y * pixel * up);
   if (hasInteriors()) {
     const Surroundings surroundings = surroundingsOf(boundaries_, camera.position);
-    // Said when paths start there: another camera may be set before.
+    // Reported when paths start there: another camera may be set first.
     cameraWarning_ =
         surroundings.openness > 0.01
             ? fmt::format("camera {}: lies on a closed boundary, or inside one that is open by {:.3g} of a sphere",
@@ -263,7 +263,7 @@ std::uint64_t PathTracer::identity() const {
   shared::PathConstants constants = constants_;
   constants.tile = glm::ivec4(0);
   constants.sampleTarget = constants.turns = 0;
-  constants.picture.z = constants.picture.w = 0;  // a part of the samples is of the same picture
+  constants.picture.z = constants.picture.w = 0;  // parts of the samples belong to the same picture
   Hash hash = sceneHash_;
   hash.bytes(&constants, sizeof constants);
   for (const auto& [name, value] : flags()) {
@@ -355,8 +355,8 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   if (done_ >= samples) return false;
   if (!cameraWarning_.empty()) logWarning("{}", std::exchange(cameraWarning_, {}));
   if (passTarget_ == done_ || passTarget_ > samples) {
-    // At the end of a pass lanes wait for the last path of a tile. A pass that doubles the samples lets them wait
-    // seldom and yet pictures come early.
+    // At the end of a pass, lanes wait for the last path of a tile. With passes that double the samples they wait
+    // rarely, and pictures still come early.
     const std::uint32_t most = settings_.askedPixel ? kAskedSamples : needs_.media ? 1024 : 64;
     passTarget_ = done_ + std::min(samples - done_, passes == Passes::whole ? most : std::clamp(done_, 1u, most));
     if (!tileBegun_) tile_ = 0;
@@ -389,7 +389,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   largest_ = std::max(largest_, taken);
   if (begins) largestBegun_ = std::max(largestBegun_, taken);
   const double seconds = secondsSince(start);
-  turns_.setTurnsOfUnit(std::max(unfinished, 1u));  // the others have nothing left to do
+  turns_.setTurnsOfUnit(std::max(unfinished, 1u));  // the others are finished
   turns_.took(turns_.units(), seconds);
   tileBegun_ = unfinished > 0;
   if (!tileBegun_ && settings_.askedPixel) readAsked();

@@ -37,7 +37,7 @@ class PathTracer {
   struct Settings {
     glm::ivec2 size{1280, 720};
     Transport transport = Transport::all;
-    std::uint32_t bounces = kUnlimited;  ///< most scatterings; below kUnlimited longer paths are missing
+    std::uint32_t bounces = kUnlimited;  ///< maximum number of scatterings; below kUnlimited longer paths are missing
     bool diffuseOnly =
         false;  ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
     bool walks = true;  ///< no rays in dense media where no triangle is near; the picture is the same, bit by bit
@@ -47,25 +47,26 @@ class PathTracer {
     double submissionSeconds = 0.05;
     RayScene::Settings rays;
     PathDeviations deviations;
-    /// The one pixel of the picture that is traced, from its lower left; whatever lights it is kept for takeAsked().
+    /// The only pixel of the picture to trace, counted from the lower left; its light contributions are kept for
+    /// takeAsked().
     std::optional<glm::ivec2> askedPixel;
   };
-  /// Light that one path has brought to the pixel that is asked for.
+  /// Light that one path has brought to the queried pixel.
   struct AskedLight {
     glm::vec3 radiance;  ///< of that sample; the pixel's is the sum over samples divided by their number
     std::uint32_t sample, scatterings;
-    std::uint32_t kind, number;  ///< PATH_LIGHT_* or PATH_ASKED_*; of a triangle or of the table's light
+    std::uint32_t kind, number;  ///< PATH_LIGHT_* or PATH_ASKED_*; index of the triangle or of the table's light
     std::vector<glm::dvec3> places;  ///< the camera and the first scatterings, in the scene's coordinates
-    glm::dvec3 end;  ///< where the light is; at infinity the direction to it
+    glm::dvec3 end;  ///< the light's position; at infinity the direction to it
     bool infinite;
   };
-  /// Of the current film.
+  /// Statistics of the current film.
   struct Statistics {
-    std::uint32_t fewestSamples = 0, mostSamples = 0;  ///< of a pixel
+    std::uint32_t fewestSamples = 0, mostSamples = 0;  ///< per pixel
     double samples = 0.0;  ///< mean over pixels
     glm::dvec3 mean{0.0};  ///< radiance
     glm::dvec3 meanError{0.0};  ///< standard error of `mean`
-    double standardError = 0.0;  ///< of a pixel, root mean square over pixels and channels; infinite before 2 samples
+    double standardError = 0.0;  ///< per pixel, root mean square over pixels and channels; infinite before 2 samples
     double leakedPaths = 0.0;  ///< ended because found outside the scene yet inside a closed boundary, since setCamera
     double wrongCrossings =
         0.0;  ///< of boundaries left without having been entered, or entered too often: open or turned meshes
@@ -81,13 +82,13 @@ class PathTracer {
 
   /// Sets the view and empties the film.
   void setCamera(const Camera& camera);
-  /// The number of the film's first sample: of parts of a picture's samples. The film must be empty.
+  /// The number of the film's first sample, for computing parts of a picture's samples. The film must be empty.
   void setFirstSample(std::uint32_t first);
   /// A film of another size; setCamera() must follow.
   void resize(glm::ivec2 size);
   /// One submission towards `samples` samples in every pixel, waited for. False once all have them.
   bool advance(std::uint32_t samples) { return submit(samples, Passes::doubling); }
-  /// Everything that is missing, in as few passes as possible, without intermediate pictures.
+  /// Computes everything missing in as few passes as possible, without intermediate pictures.
   void record(std::uint32_t samples) {
     while (submit(samples, Passes::whole)) {}
   }
@@ -97,11 +98,11 @@ class PathTracer {
   /// the film.
   void dropUnfinishedPass();
 
-  /// With Settings::askedPixel: all light of the samples that were made since the last call.
+  /// With Settings::askedPixel: all contributions of samples computed since the last call.
   std::vector<AskedLight> takeAsked() { return std::exchange(asked_, {}); }
 
-  std::uint32_t samples() const { return done_; }  ///< that every pixel has
-  /// Whether no tile is in the middle of a pass: then the film holds whole passes alone.
+  std::uint32_t samples() const { return done_; }  ///< in every pixel
+  /// Whether no tile is in the middle of a pass, so that the film holds only whole passes.
   bool isBetweenTiles() const { return !tileBegun_; }
   /// The film's means, as shaders/pathtracer/film.frag reads them.
   void bindMean(GLuint unit) const { filmMean_.bind(unit); }
@@ -118,9 +119,9 @@ class PathTracer {
   const Settings& settings() const { return settings_; }
   const SceneNeeds& needs() const { return needs_; }
   std::size_t gpuBytes() const;
-  /// Lanes times turns of the slowest lane, of the largest submission so far; `begun`: among those that began a tile,
-  /// of which nothing was known. A lane begins no segment after its share of turns, so it exceeds it by at most one
-  /// segment.
+  /// Number of lanes times turns of the slowest lane, for the largest submission so far; `begun`: among those that
+  /// began a tile, whose cost was unknown. A lane begins no segment after its share of turns, so it exceeds the share
+  /// by at most one segment.
   struct Submissions {
     std::uint64_t largest = 0, begun = 0;
   };
@@ -132,10 +133,10 @@ class PathTracer {
     std::uint32_t samples;
   };
   std::vector<Pixel> readFilm() const;
-  std::uint64_t identity() const;  ///< of what decides the picture
+  std::uint64_t identity() const;  ///< hash of everything that determines the picture
   gl::ShaderFlags flags() const;
   void allocateFilm();
-  /// With those that do not decide the picture, but how it is made.
+  /// With flags that do not affect the picture but how it is computed.
   gl::ShaderFlags kernelFlags() const;
   bool hasInteriors() const { return needs_.dielectrics || needs_.nullBoundaries || needs_.media; }
   /// Grids of distances to the nearest triangle for the boundaries of dense media.
@@ -156,11 +157,11 @@ class PathTracer {
   shared::PathConstants constants_{};
   const gl::Program* program_ = nullptr;
   PackedBoundaries boundaries_;
-  bool touching_ = false;  ///< a boundary may coincide with, or cross, another surface
+  bool touching_ = false;  ///< a boundary may coincide with or cross another surface
   int outerMedium_ = -1;
   InsideCounts cameraInside_{0u};
   float cameraIor_ = 1.0f;
-  std::string cameraWarning_;  ///< to be said before its first path
+  std::string cameraWarning_;  ///< to be reported before the first path
   bool lampsOutside_ = false;  ///< none lies within a dielectric
   gl::Buffer media_, interiors_, grids_, densities_;
   gl::BufferTexture clearances_;

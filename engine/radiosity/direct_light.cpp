@@ -42,7 +42,7 @@ std::vector<Arrival> arrivals(const Scene& scene, const glm::dvec3& point, doubl
   return result;
 }
 
-/// Radiance of the texel that a direction falls into, as paths see it (shaders/rays/environment.glsl).
+/// Radiance of the texel that contains a direction, as paths see it (shaders/rays/environment.glsl).
 glm::dvec3 radianceOf(const Environment& environment, const glm::dvec3& direction) {
   if (!environment.picture) return glm::dvec3(environment.radiance);
   const Image& picture = *environment.picture;
@@ -63,7 +63,7 @@ class ShadowRays {
                                       {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}})),
         rays_(rays) {}
 
-  /// Not 0 if occluded.
+  /// Nonzero if occluded.
   std::vector<GLuint> blocked(const std::vector<Ray>& batch) const {
     if (batch.empty()) return {};
     const gl::Buffer rayBuffer("direct light rays", batch.size() * sizeof(Ray), batch.data(), gl::Usage::streamDraw);
@@ -85,7 +85,8 @@ class ShadowRays {
   const RayScene& rays_;
 };
 
-/// A patch's normal, and the largest coordinate of its corners in the hierarchy's space, which decides the rounding.
+/// A patch's normal, and the largest coordinate of its corners in the hierarchy's space, which determines the rounding
+/// error.
 glm::vec4 faceOf(const RadiosityMesh& mesh, const Patch& patch, const glm::dvec3& origin) {
   double largest = 0.0;
   for (const glm::dvec3& corner : mesh.corners(patch))
@@ -94,7 +95,7 @@ glm::vec4 faceOf(const RadiosityMesh& mesh, const Patch& patch, const glm::dvec3
   return glm::vec4(glm::vec3(patch.faceNormal), static_cast<float>(largest));
 }
 
-/// Of those that are not hidden; at least one.
+/// Centroids of the parts that are not hidden; at least one.
 std::vector<glm::dvec3> pointsOf(const RadiosityMesh& mesh, const Patch& patch,
                                  const std::vector<glm::dvec2>& centroids) {
   const auto c = mesh.corners(patch);

@@ -21,7 +21,7 @@ struct Light {
   glm::vec4 d;  ///< exitance; irradiance across the rays; radiant intensity
 };
 
-/// Emissive triangles as patches are: turned to their fronts, without those that have no area.
+/// Emissive triangles as patches: oriented by their fronts, without those of zero area.
 std::vector<Patch> emittersOf(const Scene& scene, RadiosityMesh& mesh) {
   std::vector<Patch> emitters;
   if (std::none_of(scene.materials.begin(), scene.materials.end(),

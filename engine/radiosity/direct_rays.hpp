@@ -1,8 +1,8 @@
-// Direct light per pixel by shadow rays, for the radiosity view: sharp shadows, where patches have one value each.
+// Direct light per pixel by shadow rays, for the radiosity view: sharp shadows, whereas patches have one value each.
 //
-// Input: a Scene. Output, to fragment shaders that include shaders/radiosity/direct_rays.glsl: irradiance by emissive
+// Input: a Scene. Output, to fragment shaders that include shaders/radiosity/direct_rays.glsl: irradiance from emissive
 // triangles (their closed form [Lambert1760] times their visible fraction, by rays), sun, spot and omnidirectional
-// lights (a ray each). Scene units.
+// lights (one ray each). Scene units.
 #pragma once
 
 #include "gl/objects.hpp"

@@ -45,7 +45,7 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
                                 std::span<const std::uint32_t> sources, double fewPixels) {
   const auto isSource = [&](std::size_t i) { return !sources.empty() && sources[i] != 0; };
   const std::size_t n = rowCount();
-  // The transposed matrix, its rows in order as the rows are visited in order.
+  // The transposed matrix; its rows come out in order, as the rows are visited in order.
   std::vector<std::size_t> starts(n + 1, 0);
   for (const std::uint32_t j : patches_) ++starts[j + 1];
   for (std::size_t i = 0; i < n; ++i) starts[i + 1] += starts[i];
@@ -61,7 +61,7 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
       }
   }
   FormFactorMatrix mean;  // of A F and its transpose
-  std::vector<bool> known(n);  // whether the sum is known: closed rows
+  std::vector<bool> known(n);  // whether the row sum is known: closed rows
   std::vector<std::uint32_t> patches;
   std::vector<float> values;
   for (std::size_t i = 0; i < n; ++i) {
@@ -76,7 +76,7 @@ double FormFactorMatrix::repair(std::span<const double> areas, std::span<const d
       const double own = ja == j ? static_cast<double>(static_cast<float>(areas[i] * static_cast<double>(factors_[a])))
                                  : 0.0,
                    other = jb == j ? static_cast<double>(flux[b]) : 0.0;
-      // Weight of the own one. Both sums add the same numbers in the same order.
+      // Weight of the row's own entry. Both sums add the same numbers in the same order.
       double weight = areas[j] / (areas[i] + areas[j]), against = areas[i] / (areas[i] + areas[j]);
       if (isSource(i) != isSource(j) && std::max(own, other) < fewPixels * areas[isSource(i) ? i : j])
         weight = isSource(j) ? 1.0 : 0.0, against = 1.0 - weight;

@@ -25,15 +25,15 @@ constexpr GLuint kItemsUnit = 56, kKeysUnit = 57, kDeltasUnit = 58, kCornersUnit
 constexpr int kGroup = 64;
 constexpr int kHemicubesEach = 8;
 constexpr std::size_t kMostKept =
-    std::size_t{65535} * kGroup;  // what an indirect dispatch reaches that has a lane an entry
-constexpr std::size_t kMostHemicubes = 256;  // of hemicube.glsl: their frames are 16 KiB, what every driver has
-constexpr double kSmallSources = 0.1;  // of the area: sources that cover more need no care, each pixel meets one
+    std::size_t{65535} * kGroup;  // maximum reach of an indirect dispatch with one lane per entry
+constexpr std::size_t kMostHemicubes = 256;  // limit in hemicube.glsl: their frames take 16 KiB, which every driver has
+constexpr double kSmallSources = 0.1;  // of the area: larger sources need no special care
 constexpr int kExactGroups = 256;
 constexpr double kSecondsOfPiece = 0.25, kTurnsOfPatch = 8.0,
-                 kTurnsOfPixel = 32.0;  // by raster: a patch's setting up; a pixel's layers
-constexpr int kMeasured = 32;  // hemicubes of a batch that a cost is taken from
+                 kTurnsOfPixel = 32.0;  // by raster: a patch's setup; a pixel's layers
+constexpr int kMeasured = 32;  // hemicubes in a batch for measuring the cost
 
-/// The same for a seed and a patch in every run and batch; 0..1. [Steele2014], its finaliser.
+/// The same value for a seed and patch in every run and batch; 0..1. [Steele2014], its finaliser.
 double hashed(std::uint32_t seed, std::uint32_t patch) {
   std::uint64_t z = (static_cast<std::uint64_t>(seed) << 32 | patch) + 0x9e3779b97f4a7c15u;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -48,7 +48,7 @@ gl::Buffer storage(const char* name, std::size_t bytes) {
 }  // namespace
 
 namespace {
-/// Work of a hemicube, about: gl/pieces.hpp.
+/// Approximate work of a hemicube: gl/pieces.hpp.
 struct Turns {
   double rays, raster;
 };
@@ -93,7 +93,7 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   for (std::uint32_t i = 0; i < patches; ++i)
     if (smallSources_[i]) sources.push_back(i);
   sourceCount_ = static_cast<int>(sources.size() - patches);
-  // Pixels that name their patches name so many at most, beside the small sources.
+  // Pixels that name their patches name at most one each, in addition to the small sources.
   const std::size_t listed = items ? std::min(patches, keyBytes / sizeof(GLuint)) + sources.size() - patches : patches;
   const std::size_t each = std::max({keyBytes, factorBytes, listed * sizeof(glm::uvec2) + 16});
   if (each > limit)
@@ -139,7 +139,7 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
   if (items) keptList_ = storage("kept patches", 16 + batch * listed * sizeof(glm::uvec2));
   exactList_ = storage("exact form factors", 8 + batch * listed * sizeof(glm::uvec2));
   largeList_ = storage("large patches", 16 + batch * listed * sizeof(GLuint));
-  // What no pixel meets of the small sources is asked for by a ray.
+  // A ray looks for the small sources that no pixel hit.
   const bool asksForSources = sourceCount_ > 0 && settings_.exactPixels > 0;
   if (!rays_ && (asksForSources || settings_.visibility == HemicubeVisibility::rays)) {
     ownRays_ = std::make_unique<RayScene>(sceneOf(mesh), capabilities);
@@ -176,8 +176,7 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
 }
 
 void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities) {
-  // Raster first: where all the work takes it less time than compiling and measuring the others would, they are left
-  // out.
+  // Raster first: if all the work takes it less time than compiling and measuring the others would, they are skipped.
   for (const HemicubeVisibility one :
        {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
     if (!costs_.empty() && costs_[0].milliseconds * patchCount_ < 1000.0 * settings_.worthMeasuring) break;
@@ -186,7 +185,7 @@ void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& cap
     Hemicubes hemicubes(programs, capabilities, *mesh_, settings, rays_);
     const int count = std::min(hemicubes.pieceSize(), kMeasured);
     Cost cost{one, 0.0};
-    for (int k = 0; k < 3; ++k) {  // the first warms up; then the better of two places
+    for (int k = 0; k < 3; ++k) {  // the first run warms up; then the better of two positions
       const int first = static_cast<int>(static_cast<std::int64_t>(patchCount_ - count) * k / 2);
       const auto start = Clock::now();
       hemicubes.draw(first, count);
@@ -220,7 +219,7 @@ Hemicubes::Frame Hemicubes::frameOf(int index) const {
 }
 
 DrawnHemicubes Hemicubes::draw(int first, int count) {
-  // The hemicubes' frames, and what all programs read and write.
+  // The hemicubes' frames, and the buffers that all programs read and write.
   CHECK(first >= 0 && count > 0 && count <= batch_ && first + count <= patchCount_, "rows {} + {} of {}, at most {}",
         first, count, patchCount_, batch_);
   const auto start = Clock::now();
@@ -248,7 +247,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   constexpr int kRow = 1024 * kGroup;
   const int all = 3 * settings_.resolution * settings_.resolution;
   const glm::ivec3 pixels(std::min(all, kRow), count, (all + kRow - 1) / kRow), pixelsGroup(kGroup, 1, 1);
-  // What each pixel sees: all triangles over all pixels, or the item buffer, or a ray a pixel.
+  // Visibility of each pixel: all triangles over all pixels, the item buffer, or one ray per pixel.
   if (!listsKept()) {
     keys_.buffer().clear();
     for (const gl::Program* program : {depth_, depthLarge_}) {
@@ -284,7 +283,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
     }
     pass.dispatch(pixels, pixelsGroup);
   }
-  // Pixels into form factors, then near pairs by their closed form.
+  // Turn pixels into form factors, then replace near pairs by their closed form.
   for (const gl::Program* program : {sum_, sumLarge_, exact_}) {
     const gl::ComputePass pass(program->name(), kBarrier);
     begin(*program, first, count);
@@ -406,7 +405,7 @@ FormFactorRows rowsOf(DrawnHemicubes drawn) {
   result.first = drawn.first;
   std::size_t entries = 0;
   for (std::size_t row = 0; row < rowCount; ++row) {
-    // Eight sums side by side, so that the processor adds them at once; always the same eight, so the same bits.
+    // Eight sums side by side, so that the processor adds them at once; always the same eight, for identical bits.
     const float* factors = drawn.factors.data() + row * patches;
     double fronts[8] = {}, backs[8] = {};
     std::size_t seen = 0;
@@ -426,8 +425,7 @@ FormFactorRows rowsOf(DrawnHemicubes drawn) {
   for (std::size_t row = 0; row < rowCount; ++row) {
     const float* factors = drawn.factors.data() + row * patches;
     const std::size_t before = at;
-    for (std::size_t i = 0; i < patches;
-         ++i) {  // written over by the next where there is none: no branch to guess wrong
+    for (std::size_t i = 0; i < patches; ++i) {  // overwritten by the next entry if empty: avoids a mispredicted branch
       result.patches[at] = static_cast<std::uint32_t>(i);
       result.factors[at] = factors[i];
       at += factors[i] > 0.0f;

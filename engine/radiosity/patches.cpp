@@ -19,7 +19,8 @@ bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v
 
 glm::dvec3 cross3(const std::array<glm::dvec3, 3>& c) { return glm::cross(c[1] - c[0], c[2] - c[0]); }
 
-/// A triangle whose doubled area is this small relative to its longest edge squared is a line in floats.
+/// Whether a triangle has an area in float. Below this ratio of the doubled area to the squared longest edge it is a
+/// line.
 bool hasArea(const std::array<glm::dvec3, 3>& c) {
   const double longest = std::max(
       {glm::dot(c[1] - c[0], c[1] - c[0]), glm::dot(c[2] - c[1], c[2] - c[1]), glm::dot(c[0] - c[2], c[0] - c[2])});
@@ -78,7 +79,7 @@ void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
         meanTexture(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap, patch.texCoord);
 }
 
-/// Corners share a light vertex where point and material are the same and their normals differ by less than the crease.
+/// Corners share a light vertex if point and material are the same and their normals differ by less than the crease.
 void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings) {
   struct Group {
     int material;
@@ -126,7 +127,7 @@ int longestEdge(const RadiosityMesh& mesh, const Patch& patch) {
   return longest;
 }
 
-/// Cuts a patch at edge k's middle point.
+/// Cuts a patch at the midpoint of edge k.
 std::array<Patch, 2> halved(const Patch& patch, int k, std::uint32_t middle) {
   const auto a = static_cast<std::size_t>(k), b = (a + 1) % 3;
   std::array<Patch, 2> halves{patch, patch};
@@ -208,7 +209,7 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
 }
 
 RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
-  // What the equation has no solution for.
+  // Reject materials for which the equation has no solution.
   for (const Material& m : scene.materials)
     for (int c = 0; c < 3; ++c) {
       if (!(m.diffuse[c] >= 0.0f && m.diffuse[c] <= 1.0f))

@@ -1,8 +1,8 @@
 // A scene's surfaces as patches of constant exitance (no GL, pure): the unknowns of radiosity.
 //
-// Every triangle with an area becomes one or more patches. Corners at one place are one point, edges are cut for both
-// of their patches at once, so that no T-junctions arise. A patch faces the side of its shading normals (else of its
-// winding); its back blocks light and sends none.
+// Every triangle with an area becomes one or more patches. Corners in the same place become one point, and edges are
+// cut for both of their patches at once, so that no T-junctions arise. A patch faces the side of its shading normals
+// (or of its winding without them); its back blocks light and emits none.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -16,11 +16,11 @@
 
 namespace lucerna {
 
-constexpr int kPatchParts = 4;  ///< per side, of those that may be hidden
+constexpr int kPatchParts = 4;  ///< per side; parts can be hidden separately
 
 struct Patch {
   std::array<std::uint32_t, 3> point{};  ///< into RadiosityMesh::points, counterclockwise seen from the front
-  std::array<std::uint32_t, 3> light{};  ///< light vertices: shared by corners that light is interpolated across
+  std::array<std::uint32_t, 3> light{};  ///< light vertices, shared by corners between which light is interpolated
   std::array<glm::vec2, 3> texCoord{};
   std::array<glm::vec3, 3> normal{};  ///< shading normals, on the front side
   glm::dvec3 centroid{0.0}, faceNormal{0.0};
@@ -36,16 +36,16 @@ struct Patch {
 struct PatchSettings {
   double longestEdge = 0.0;  ///< scene units; longer edges are halved. 0: triangles stay whole
   double weld = 1e-6;  ///< corners closer than this fraction of the scene's largest extent are one point
-  double crease = 0.94;  ///< least cosine between shading normals that light is interpolated across
+  double crease = 0.94;  ///< minimum cosine between shading normals across which light is interpolated
 };
 
 struct RadiosityMesh {
   std::vector<glm::dvec3> points;
   std::vector<Patch> patches;
   std::size_t lightVertices = 0;
-  std::size_t degenerate = 0;  ///< triangles without area, left out
-  std::size_t notFinite = 0;  ///< triangles with a corner that is not finite, left out
-  std::size_t duplicates = 0;  ///< triangles that lie on another with the same front, left out
+  std::size_t degenerate = 0;  ///< triangles without area, omitted
+  std::size_t notFinite = 0;  ///< triangles with a corner that is not finite, omitted
+  std::size_t duplicates = 0;  ///< triangles that coincide with another of the same front, omitted
   std::size_t flipped = 0;  ///< triangles wound against their shading normals, turned
   double extent = 0.0;  ///< largest side of the bounds
 
@@ -60,17 +60,17 @@ struct RadiosityMesh {
 /// (reflectances above 1 are refused too: they would create energy).
 RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings);
 
-/// Halves the marked edges of patches and, so that patches stay well shaped and no T-junction arises, the longest edges
-/// of the patches that they belong to [Rivara1984]. `marked` takes a patch's index and an edge 0..2 (from corner k to
+/// Halves the marked edges of patches, and the longest edges of the patches that they belong to [Rivara1984], so that
+/// patches stay well shaped and no T-junction arises. `marked` takes a patch's index and an edge 0..2 (from corner k to
 /// corner k + 1). `parent`, if given, receives the index of each new patch's original patch.
 RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const PatchSettings& settings,
                       const std::function<bool(std::size_t, int)>& marked,
                       std::vector<std::uint32_t>* parent = nullptr);
 
-/// Patches as a scene of their own, in order and of one material, for a hierarchy.
+/// Patches as a separate scene, in order and with one material, for a hierarchy.
 Scene sceneOf(const RadiosityMesh& mesh);
 
-/// Vertices inside another patch's edge, where light is lost through cracks. Each counts once; quadratic, for tests.
+/// Vertices inside another patch's edge, where light leaks through cracks. Each counts once; quadratic, for tests.
 std::size_t countTJunctions(const RadiosityMesh& mesh);
 
 }  // namespace lucerna

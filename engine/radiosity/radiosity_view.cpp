@@ -44,7 +44,7 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
       lit_(litScene(scene, solution_.mesh, origin)) {
   std::vector<glm::dvec3> patchLight = solution_.irradiance;
   for (std::size_t i = 0; i < patchLight.size(); ++i) {
-    // Pixels ask for what may have sharp shadows; the sky's light is always that of the patches.
+    // Light with potentially sharp shadows is computed per pixel; the sky's light always comes from the patches.
     const glm::dvec3 lamps = solution_.direct[i] + solution_.fromEmitters[i], sky = solution_.fromSky[i];
     const bool byPixel = settings.direct == Direct::pixels;
     if (settings.light == Light::direct) patchLight[i] = byPixel ? sky : lamps + sky;
@@ -61,8 +61,8 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
     }
   light_ = gl::Buffer("radiosity light", corners.size() * sizeof(float), corners.data(), gl::Usage::staticDraw);
   if (settings.direct != Direct::pixels) return;
-  // A face's plane, and the largest coordinate of the triangle that it is part of: that is what rounds where rays meet
-  // it.
+  // A face's plane, and the largest coordinate of the triangle that contains it, which determines the rounding error of
+  // ray hits.
   std::vector<float> faces;
   for (const Patch& patch : solution_.mesh.patches) {
     const glm::vec3 normal(patch.faceNormal);

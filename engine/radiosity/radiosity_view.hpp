@@ -1,8 +1,8 @@
-// A radiosity solution in the frame: solved or loaded once, then rendered from anywhere in real time.
+// A radiosity solution in the frame: solved or loaded once, then rendered from any viewpoint in real time.
 //
-// Input: a Scene. Output, each frame: radiance of the patches into the bound target, irradiance interpolated between
+// Input: a Scene. Output, each frame: radiance of the patches into the bound target; irradiance is interpolated between
 // light vertices (never across an edge or to another material) and multiplied by the texture. Direct light is included,
-// or left to shadow rays per pixel (shaders/radiosity/direct_rays.glsl, bound by the caller): then patches give only
+// or left to shadow rays per pixel (shaders/radiosity/direct_rays.glsl, bound by the caller); then patches give only
 // reflected light.
 #pragma once
 
@@ -33,11 +33,11 @@ class RadiosityView {
     std::filesystem::path file;  ///< loaded if it exists, else saved here once solved; empty: neither
     Mapping mapping = Mapping::tone;
     float decades = 4.0f;  ///< spanned by logarithmic and false colours below 1 / exposure
-    bool mesh = false;  ///< patch edges drawn over
-    bool flat = false;  ///< patches not interpolated
+    bool mesh = false;  ///< draw patch edges on top
+    bool flat = false;  ///< do not interpolate patches
     Light light = Light::all;
     Direct direct = Direct::automatic;
-    int shadowRays = 32;  ///< per pixel, divided among the emissive triangles; not read here
+    int shadowRays = 32;  ///< per pixel, divided among the emissive triangles; used by the caller
   };
 
   /// Solves or loads; throws as solveScene and loadSolution do. scene() is drawn about `origin`.
@@ -47,8 +47,8 @@ class RadiosityView {
   /// The patches, for GpuScene.
   const Scene& scene() const { return lit_; }
   const RadiositySolution& solution() const { return solution_; }
-  /// Programs for GpuScene::draw with depth equal, and the display mapping (null: the engine's). asked: with which one
-  /// pixel writes down what it adds up.
+  /// Programs for GpuScene::draw with depth equal, and the display mapping (null: the engine's). asked: the variant
+  /// with which one pixel records its terms.
   SurfacePrograms loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene, bool asked = false) const;
   const gl::Program* loadMapping(gl::ProgramLibrary& programs) const;
   /// Whether direct light is computed per pixel: then DirectRays must be bound too.

@@ -27,7 +27,7 @@ struct Header {
 };
 struct BlockHeader {
   std::uint32_t first, rows;
-  std::uint64_t entries, checksum;  ///< of everything that follows in the block, and of the three before
+  std::uint64_t entries, checksum;  ///< checksum over the rest of the block and the three previous fields
 };
 
 std::uint64_t checksumOf(const BlockHeader& header, std::span<const std::uint8_t> data) {
@@ -72,8 +72,8 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
   Header header{};
   if (status.st_size > 0) {
     if (!readAll(descriptor_, &header, sizeof header)) {
-      // Killed before its first bytes were written, or a foreign file: only a prefix of our own magic may be
-      // overwritten.
+      // The file of a run killed before its first bytes were written, or a foreign file: overwrite only a prefix of our
+      // own magic.
       char start[sizeof kMagic] = {};
       const auto got = static_cast<std::size_t>(std::max<ssize_t>(::pread(descriptor_, start, sizeof start, 0), 0));
       if (std::memcmp(start, kMagic, got) != 0) refuse("is not a checkpoint of radiosity");
@@ -131,7 +131,7 @@ std::optional<FormFactorRows> RowFile::readBlock(std::uint32_t expected, std::ui
   get(rows.backs, block.rows);
   get(rows.patches, block.entries);
   get(rows.factors, block.entries);
-  // The checksum finds damage; this finds foreign writes.
+  // The checksum detects damage; this detects files that something else wrote.
   if (std::accumulate(rows.counts.begin(), rows.counts.end(), std::uint64_t{0}) != block.entries) return std::nullopt;
   for (std::size_t i = 0; i < rows.patches.size(); ++i)
     if (rows.patches[i] >= patches_ || !(rows.factors[i] >= 0.0f && rows.factors[i] <= kMostFactor))

@@ -17,7 +17,7 @@ class RowFile {
  public:
   /// Opens or creates the file; calls `take` for each complete block, in order. Throws Error(badInput) if the file is
   /// not a row file, of another version, or of another scene or settings (`fingerprint`); it is then left unchanged.
-  /// `first`: the file's first row; others than 0 are parts, which joinRowFiles() puts together.
+  /// `first`: the file's first row; files with other values than 0 are parts, which joinRowFiles() joins.
   RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, std::uint32_t patches,
           const std::function<void(const FormFactorRows&)>& take, std::uint32_t first = 0);
   ~RowFile();
@@ -26,14 +26,14 @@ class RowFile {
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;
 
-  /// Rows must follow the previous ones. On a full disk the file is cut back to its last complete block, and
+  /// Rows must follow the previous ones. If the disk is full the file is cut back to its last complete block, and
   /// Error(badInput) is thrown.
   void append(const FormFactorRows& rows);
-  /// All its rows, block by block, in order. Throws Error(badInput) if they are gone.
+  /// Passes all rows to `take`, block by block, in order. Throws Error(badInput) if they are gone.
   void forEach(const std::function<void(const FormFactorRows&)>& take);
 
  private:
-  /// The block at the file's position, whose first row is `expected`, if it is complete; ends at `end`.
+  /// The block at the file's position, whose first row is `expected`, if it is complete; sets `end` to its end.
   std::optional<FormFactorRows> readBlock(std::uint32_t expected, std::uint64_t& end);
 
   std::filesystem::path file_;
@@ -42,9 +42,9 @@ class RowFile {
   std::uint64_t end_ = 0;  ///< of the last complete block
 };
 
-/// Files of parts, with their first rows, in the order of rows, as one file `whole`; the same bytes of rows as of one
-/// run. Throws Error(badInput) where one is of another scene or settings, or rows are missing between them or at the
-/// end, or held twice; nothing is then written.
+/// Joins files of parts, given with their first rows and in that order, into one file `whole`, with the same bytes of
+/// rows as from one run. Throws Error(badInput) if one belongs to another scene or settings, or if rows are missing or
+/// repeated; nothing is then written.
 void joinRowFiles(const std::vector<std::pair<std::uint32_t, std::filesystem::path>>& parts,
                   const std::filesystem::path& whole);
 

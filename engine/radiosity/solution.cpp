@@ -26,8 +26,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kEdges = 12.0;  // default: longest edges that span the scene
-// Of a form factor, its mirrored copy and their mean, while they are repaired.
+constexpr double kEdges = 12.0;  // default: number of longest edges that span the scene
+// For a form factor, its transposed copy and their mean, during the repair.
 constexpr std::size_t kBytesPerEntry = 32;
 
 std::size_t freeMemory() {
@@ -37,7 +37,7 @@ std::size_t freeMemory() {
 
 std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings& s) {
   Hash f;
-  f.add(std::uint32_t{2});  // of the way rows are made
+  f.add(std::uint32_t{2});  // version of how rows are computed
   for (const Patch& patch : mesh.patches) {
     for (const glm::dvec3& corner : mesh.corners(patch)) f.add(corner);
     f.add(patch.emission != glm::dvec3(0.0));
@@ -62,7 +62,7 @@ void append(FormFactorMatrix& matrix, const FormFactorRows& rows) {
   }
 }
 
-/// One mesh solved: direct light, form factors, system. What comes out stands in the solution.
+/// Solves one mesh: direct light, form factors, system. The results go into the solution.
 class MeshSolver {
  public:
   MeshSolver(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
@@ -100,7 +100,7 @@ class MeshSolver {
   }
 
  private:
-  /// Tells what is done; false: the caller wants it to stop.
+  /// Reports progress; false: the caller wants it to stop.
   bool stage(RadiosityStage::Kind kind, std::size_t done, const RadiosityProgress& progress = {}) const {
     return !onStage_ || onStage_({kind, refinement_, done, count_, progress});
   }
@@ -112,8 +112,8 @@ class MeshSolver {
 
   // ---------------------------------------------------------------------------------------------- form factors
 
-  /// How patches learn what they see. Rows by different ways differ in their last bits: a checkpoint is gone on with as
-  /// it was begun, and a refinement is made as the mesh before it was.
+  /// The visibility method. Rows by different methods differ in their last bits, so a checkpoint is continued with the
+  /// method it was begun with, and a refinement uses the method of the previous mesh.
   HemicubeVisibility visibility() const {
     if (refinement_ > 0) return solution_.visibility;
     HemicubeSettings way = settings_.hemicubes;
@@ -127,7 +127,7 @@ class MeshSolver {
     return HemicubeVisibility::automatic;
   }
 
-  /// Rows of form factors: those of the checkpoint, then the rest, which are appended to it.
+  /// Rows of form factors: reads those of the checkpoint, then computes the rest and appends them to it.
   void makeRows() {
     solution_.fronts.clear();
     solution_.backs.clear();
@@ -158,7 +158,7 @@ class MeshSolver {
     if (stopped) stop();
   }
 
-  /// The next rows: into the matrix, as long as all of it will have room.
+  /// Takes the next rows into the matrix, as long as all of it will fit in memory.
   void take(const FormFactorRows& rows) {
     if (kept_) append(matrix_, rows);
     auto factor = rows.factors.begin();
@@ -179,7 +179,7 @@ class MeshSolver {
 
   // ---------------------------------------------------------------------------------------------- system
 
-  /// Areas, reflectance and emission of all patches, and what each row of form factors must sum to.
+  /// Areas, reflectance and emission of all patches, and the required sum of each row of form factors.
   RadiositySystem balances() {
     RadiositySystem system;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -187,14 +187,14 @@ class MeshSolver {
       system.areas.push_back(patch.area);
       system.reflectance.push_back(patch.reflectance);
       system.emission.push_back(patch.emission + patch.reflectance * (solution_.direct[i] + solution_.fromSky[i]));
-      // Shares are counted in parts of 2^28, each rounded: what is closed to 1e-5 is closed. An open row sums to what
-      // its factors say: closed forms know of lights that no pixel meets.
+      // Shares are counted in units of 2^-28, each rounded: a row within 1e-5 of closed is closed. An open row sums to
+      // its factors: closed forms include lights that no pixel meets.
       sums_.push_back(static_cast<double>(solution_.fronts[i]) > 1.0 - 1e-5 ? 1.0 : std::min(1.0, rowSums_[i]));
     }
     return system;
   }
 
-  /// Of the matrix in memory, made reciprocal and given its sums.
+  /// The product with the matrix in memory, made reciprocal and with corrected row sums.
   void keptProduct(RadiositySystem& system) {
     double off = 0.0;
     for (std::size_t i = 0; i < count_; ++i) off += std::abs(rowSums_[i] - sums_[i]);
@@ -211,8 +211,8 @@ class MeshSolver {
     system.product = [this](auto x, auto y) { matrix_.multiply(x, y); };
   }
 
-  /// Each product reads all rows from the checkpoint, or draws all hemicubes again where there is none. Of the repair
-  /// rows get their sums; reciprocity stays as hemicubes have it.
+  /// Each product reads all rows from the checkpoint, or draws all hemicubes again if there is none. Of the repair,
+  /// only the row sums are applied; reciprocity stays as the hemicubes left it.
   void streamedProduct(RadiositySystem& system) {
     system.rowSums = settings_.repair ? sums_ : rowSums_;
     system.product = [this](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
@@ -238,15 +238,15 @@ class MeshSolver {
     };
   }
 
-  /// What comes from emitters straight, so that a view may put sharper shadows in its place.
+  /// Separates light directly from emitters, so that a view can replace it with sharper shadows.
   void shareOfEmitters(RadiositySystem& system) {
     solution_.fromEmitters.assign(count_, glm::dvec3(0.0));
     std::vector<glm::dvec3> emission;
     for (const Patch& patch : solution_.mesh.patches) emission.push_back(patch.emission);
     if (std::ranges::all_of(emission, [](const glm::dvec3& e) { return e == glm::dvec3(0.0); })) return;
     system.product(emission, solution_.fromEmitters);
-    // Solvers begin with this very product where there are no lamps besides: not a second time, which is dear where
-    // rows are computed anew.
+    // Without other lamps, solvers begin with this very product. Reuse it, since it is expensive if rows are
+    // recomputed.
     system.product = [this, emission = std::move(emission), product = std::move(system.product)](
                          std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
       if (std::ranges::equal(x, emission)) std::ranges::copy(solution_.fromEmitters, y.begin());
@@ -284,19 +284,19 @@ class MeshSolver {
   RadiositySolution& solution_;
   const std::size_t count_;  ///< patches
 
-  std::optional<RayScene> rays_;  ///< of the patches
+  std::optional<RayScene> rays_;  ///< for the patches
   std::optional<Hemicubes> hemicubes_;
-  std::unique_ptr<RowFile> file_;  ///< of the checkpoint
+  std::unique_ptr<RowFile> file_;  ///< the checkpoint
   const std::size_t memory_ = settings_.memoryBytes ? settings_.memoryBytes : freeMemory() / 2;
-  bool kept_ = true;  ///< in memory
+  bool kept_ = true;  ///< whether the matrix is in memory
   FormFactorMatrix matrix_;
-  std::vector<double> rowSums_;  ///< as hemicubes have them
-  std::vector<double> sums_;  ///< as they must be
+  std::vector<double> rowSums_;  ///< from the hemicubes
+  std::vector<double> sums_;  ///< required
 };
 
 double mean3(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
-/// Patches on both sides of a step in the light, and those along it, are marked.
+/// Marks patches on both sides of a step in the light, and those along it.
 RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution, const PatchSettings& patches,
                           double steep, double shortest) {
   const RadiosityMesh& mesh = solution.mesh;
@@ -307,7 +307,7 @@ RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution,
   }
   mean /= area;
   std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::size_t>>
-      across;  // light vertices of an edge: patch and edge
+      across;  // light vertices of an edge, mapped to patch and edge
   std::vector<bool> steepPatch(mesh.patches.size(), false);
   for (std::size_t i = 0; i < mesh.patches.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -326,8 +326,8 @@ RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution,
   });
 }
 
-/// What each deviation is in this solver. The published map knows neither closed forms nor a repair, which would hide
-/// it.
+/// Implements each deviation in this solver's terms. The published map uses neither closed forms nor a repair, which
+/// would hide it.
 RadiositySolutionSettings withDeviations(RadiositySolutionSettings settings) {
   const RadiosityDeviations& d = settings.deviations;
   if (d.values24Bit)
@@ -415,7 +415,8 @@ void removeCheckpoints(const std::filesystem::path& checkpoint) {
 RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                              const RadiositySolutionSettings& asked, const std::filesystem::path& checkpoint,
                              const std::function<bool(const RadiosityStage&)>& onStage) {
-  // Far from the origin float would not hold the patches: solved near it, told in the scene's own coordinates.
+  // Far from the origin, floats cannot represent the patches: solve near the origin, and return the scene's own
+  // coordinates.
   if (const glm::dvec3 origin = exactOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
     RadiositySolution solution = solveScene(context, programs, movedTo(scene, origin), asked, checkpoint, onStage);
     for (glm::dvec3& point : solution.mesh.points) point += origin;
@@ -443,13 +444,13 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
 
 namespace {
 
-/// How much a patch counts at the light vertices that it has a part in.
+/// Weight of a patch at the light vertices that it contributes to.
 double countsAtVertices(const RadiositySolution& solution, std::size_t i) {
   const double seesFronts = std::max(1.0 - static_cast<double>(solution.backs[i]), 0.0);
   return solution.mesh.patches[i].area * (1e-6 + seesFronts * seesFronts * seesFronts);
 }
 
-/// What each patch counts in the light of a point of one of them; they sum to 1.
+/// Weight of each patch in the light at a point of one of them; they sum to 1.
 std::map<std::uint32_t, double> weightsAround(const RadiositySolution& solution, std::uint32_t patch,
                                               const glm::dvec3& corners, bool flat) {
   if (flat) return {{patch, 1.0}};

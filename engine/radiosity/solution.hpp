@@ -29,14 +29,14 @@ struct RadiositySolutionSettings {
   double error = 1e-3;  ///< guaranteed: max |B - exact| over the mean of B
   int mostProducts = 100000;
   bool repair = true;  ///< reciprocity and row sums
-  int refinements = 0;  ///< how often patches are halved where light changes steeply
+  int refinements = 0;  ///< number of times that patches are halved where light changes steeply
   double steep = 0.1;  ///< change between patches, relative to the mean irradiance, that is refined
   std::size_t memoryBytes = 0;  ///< for form factors; the rest is read from the checkpoint for each product, or
                                 ///< recomputed. 0: half of the free memory
 };
 
-/// What decides a solution, as on the command line: "radiosity.edge=0 radiosity.resolution=64 ...". Solver, memory and
-/// visibility are no part of it: with them a solution differs at most within its error.
+/// The settings that determine a solution, as on the command line: "radiosity.edge=0 radiosity.resolution=64 ...".
+/// Solver, memory and visibility are excluded: they change a solution at most within its error.
 std::string textOf(const RadiositySolutionSettings& settings);
 
 struct RadiosityStage {
@@ -49,7 +49,7 @@ struct RadiosityStage {
 struct RadiositySolution {
   RadiosityMesh mesh;
   RadiosityDeviations deviations;
-  std::string settings;  ///< textOf() its settings
+  std::string settings;  ///< textOf() of its settings
   std::vector<glm::dvec3> direct;  ///< irradiance from sun, spot and omnidirectional lights
   std::vector<glm::dvec3> fromEmitters;  ///< irradiance directly from emissive patches
   std::vector<glm::dvec3> fromSky;  ///< irradiance directly from the environment
@@ -75,20 +75,20 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
                              const RadiositySolutionSettings& settings, const std::filesystem::path& checkpoint = {},
                              const std::function<bool(const RadiosityStage&)>& onStage = {});
 
-/// The form factors of a scene's first mesh alone (refinements have others), so that parts of their rows can be made
-/// apart; joinRowFiles() (row_file.hpp) makes of them the checkpoint that solveScene() would have made, to the same
-/// bits. Parts must all be made in one way: automatic visibility is visibilityByCount() here, and solveScene() goes on
-/// with it as with any checkpoint.
+/// The form factors of a scene's first mesh only (refinements have others), so that parts of their rows can be computed
+/// separately. joinRowFiles() (row_file.hpp) joins them to the checkpoint that solveScene() would have written, to the
+/// same bits. All parts must use the same method: automatic visibility here means visibilityByCount(), and solveScene()
+/// continues with it as with any checkpoint.
 class FormFactorParts {
  public:
   FormFactorParts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                   const RadiositySolutionSettings& settings);
   ~FormFactorParts();
-  std::size_t patches() const;  ///< rows there are
+  std::size_t patches() const;  ///< number of rows
   HemicubeVisibility visibility() const;
-  std::uint64_t fingerprint() const;  ///< of what decides them
-  /// Rows `first` to `last` - 1 into `file`, submission by submission, or goes on with it. `goOn` is called with the
-  /// rows made so far; false stops. Returns how many were made now.
+  std::uint64_t fingerprint() const;  ///< hash of everything that determines them
+  /// Computes rows `first` to `last` - 1 into `file`, submission by submission, or continues it. `goOn` is called with
+  /// the number of rows computed so far; false stops. Returns the number computed in this call.
   std::size_t make(std::size_t first, std::size_t last, const std::filesystem::path& file,
                    const std::function<bool(std::size_t done)>& goOn);
 
@@ -104,24 +104,24 @@ void removeCheckpoints(const std::filesystem::path& checkpoint);
 /// backs (inside something) count less.
 std::vector<glm::vec3> interpolatedToVertices(const RadiositySolution& solution, std::span<const glm::dvec3> ofPatches);
 
-/// Where the irradiance of a point of a patch comes from, W per square scene unit.
+/// Sources of the irradiance at a point of a patch, W per square scene unit.
 struct RadiosityOrigins {
-  glm::dvec3 lamps{0.0}, sky{0.0};  ///< of the patches around
+  glm::dvec3 lamps{0.0}, sky{0.0};  ///< of the surrounding patches
   struct FromPatch {
     std::uint32_t patch;
-    double factor;  ///< of the point to it
+    double factor;  ///< form factor from the point to it
     glm::dvec3 emitted, reflected;
   };
   std::vector<FromPatch> patches;  ///< the largest first
 };
-/// Of the point of `patch` with these weights of its corners; `flat`: of the patch as a whole. The form factors are
-/// made anew, by hemicubes alone: the solution's own were made reciprocal, which is the difference between the sum and
-/// the solution's irradiance.
+/// For the point of `patch` with these weights of its corners; `flat`: for the patch as a whole. The form factors are
+/// recomputed, by hemicubes only; the solution's own were made reciprocal, which explains the difference between this
+/// sum and the solution's irradiance.
 RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                            const RadiositySolution& solution, const RadiositySolutionSettings& settings,
                            std::uint32_t patch, const glm::dvec3& corners, bool flat);
 
-/// The patches as a scene of their own, three vertices per patch in order, so that gl_VertexID finds a corner's light;
+/// The patches as a separate scene, three vertices per patch in order, so that gl_VertexID finds a corner's light;
 /// relative to `origin`.
 Scene litScene(const Scene& scene, const RadiosityMesh& mesh, const glm::dvec3& origin = glm::dvec3(0.0));
 

@@ -1,4 +1,4 @@
-// Solutions on disk (no GL): what they were solved with, whether that is what is asked for, writing and reading.
+// Solution files (no GL): their settings, comparison with the requested ones, writing and reading.
 #include "radiosity/solution.hpp"
 
 #include "base/error.hpp"
@@ -19,7 +19,7 @@ namespace lucerna {
 namespace {
 
 constexpr char kMagic[8] = {'L', 'U', 'C', 'L', 'I', 'G', 'H', 'T'};
-constexpr std::uint32_t kVersion = 4;  // 4: what the sky gives
+constexpr std::uint32_t kVersion = 4;  // 4: with the sky's irradiance
 
 struct FileHeader {
   char magic[8];
@@ -43,7 +43,7 @@ std::uint64_t fingerprint(const Scene& scene) {
   return hash.value();
 }
 
-/// "KEY=VALUE" each. Files of versions before this one have former spellings of keys.
+/// "KEY=VALUE" each. Files of earlier versions use former spellings of keys.
 std::vector<std::string> wordsOf(const std::string& text) {
   std::istringstream stream(text);
   std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
@@ -158,7 +158,7 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
 }
 
 RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& scene) {
-  // The header, and whether the file is whole, undamaged and of this scene.
+  // The header, and whether the file is complete, undamaged and of this scene.
   const std::vector<std::uint8_t> bytes = readFileBytes(file);
   FileHeader header{};
   if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
@@ -179,7 +179,7 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
   const std::uint8_t* at = bytes.data() + sizeof header;
   if (Hash::of(at, bytes.size() - sizeof header) != header.checksum)
     throwBadInput("{}: is damaged: wrong checksum", file.string());
-  // The checksum finds damage; what was written by something else is found here.
+  // The checksum detects damage; this detects files that something else wrote.
   if (header.points == 0 || header.patches == 0) throwBadInput("{}: a solution without patches", file.string());
   if (header.lightVertices > 3 * header.patches)
     throwBadInput("{}: {} light vertices for {} patches", file.string(), header.lightVertices, header.patches);
@@ -198,7 +198,7 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
   s.mesh.lightVertices = header.lightVertices;
   s.mesh.extent = header.extent;
   at += header.points * sizeof(glm::dvec3);
-  // Patches, each with what the solution says of it.
+  // Patches, each with its part of the solution.
   const auto vector = [](const double* v) { return glm::dvec3(v[0], v[1], v[2]); };
   for (std::size_t i = 0; i < header.patches; ++i) {
     FilePatch from;

@@ -2,8 +2,8 @@
 //
 // B: exitance, E: a patch's own, rho: reflectance, F B = H: irradiance; three channels at once. All solvers stop at the
 // same bound: after a last Jacobi step of change c, |B - exact| <= q / (1 - q) max |c| in every patch, q = max rho_i
-// sum_j F_ij. Where q is not below 1 (a white surface in an open scene) a supersolution replaces it: (I - rho F) w >= o
-// > 0 gives |error| <= max w / min o times the residual.
+// sum_j F_ij. If q is not below 1 (a white surface in an open scene) a supersolution replaces it: (I - rho F) w >= o >
+// 0 gives |error| <= max w / min o times the residual.
 #pragma once
 
 #include "radiosity/settings.hpp"
@@ -22,14 +22,14 @@ struct RadiositySystem {
   std::vector<double> areas;
   std::vector<glm::dvec3> reflectance, emission;  ///< per patch
   std::vector<double> rowSums;  ///< of F
-  /// H = F B. Solvers are compared by its calls.
+  /// H = F B. The cost of a solver is the number of its calls.
   std::function<void(std::span<const glm::dvec3> exitance, std::span<glm::dvec3> irradiance)> product;
   const FormFactorMatrix* matrix = nullptr;  ///< if rows are stored: Gauss-Seidel and progressive need them
   bool reciprocal = false;  ///< A_i F_ij = A_j F_ji: conjugate gradients need it
 };
 
 struct RadiosityProgress {
-  double products = 0.0;  ///< so far; rows used over rows for solvers that take single rows
+  double products = 0.0;  ///< so far; for solvers that use single rows, rows used over number of rows
   double residual = 0.0;  ///< max |E + rho F B - B| over the mean exitance
   double errorBound = 0.0;  ///< guaranteed: max |B - exact| over the mean exitance
   double energyBalance = 0.0;  ///< (emitted - absorbed - lost through openings) / emitted

@@ -46,13 +46,13 @@ Box boxOf(const BvhTriangle& t) {
   return box;
 }
 
-// A reference's box is that of the part of its triangle that lies in its node.
+// The box of the part of a triangle that lies in the reference's node.
 struct Reference {
   Box box;
   std::uint32_t triangle;
 };
 
-// Corners may be anything; kept triangles are finite and have an area.
+// Corners may be arbitrary; kept triangles are finite and have an area.
 bool hasArea(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const glm::dvec3 n = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
   const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
@@ -185,7 +185,7 @@ class BinaryBuilder {
     return best;
   }
 
-  // `enter`: how many references begin in a bin, `leave`: how many end there.
+  // `enter`: number of references that begin in a bin, `leave`: number that end there.
   static void improve(Cut& best, int axis, const std::array<Box, kBins>& boxes,
                       const std::array<std::size_t, kBins>& enter, const std::array<std::size_t, kBins>& leave) {
     std::array<Box, kBins> rightBoxes{};
@@ -386,7 +386,7 @@ class Collapse {
  private:
   static constexpr std::size_t kMaxRoots = BVH_WIDTH - 1;
   // cost[i - 1]: of a subtree as a forest of at most i trees; left[i - 1]: how many of those are in its left child, 0:
-  // one tree less is as good.
+  // one tree fewer is as good.
   struct Choice {
     std::array<float, kMaxRoots> cost;
     std::array<std::uint8_t, kMaxRoots> left;
@@ -440,8 +440,9 @@ class Collapse {
     gatherTriangles(binary_[n].left, out), gatherTriangles(binary_[n].right, out);
   }
 
-  // A child's place says when rays visit it: those whose direction has the signs s = place bits (4: x, 2: y, 1: z; set:
-  // negative) visit it first, so it should lie far back against such directions. Greedily by what a place gains.
+  // A child's slot determines when rays visit it. Rays whose direction has the signs s = slot bits (4: x, 2: y, 1: z;
+  // set: negative) visit it first, so it should lie far back against such directions. Assigned greedily by the gain of
+  // each slot.
   std::array<int, BVH_WIDTH> arrange(const std::vector<std::uint32_t>& children, const Box& box) const {
     std::array<int, BVH_WIDTH> childAt;
     childAt.fill(-1);
@@ -468,7 +469,7 @@ class Collapse {
     const Choice& c = choices_[n];
     std::vector<std::uint32_t> children;
     if (c.leaf) {
-      children.push_back(n);  // the root alone: everything fits a leaf
+      children.push_back(n);  // the root alone: everything fits in one leaf
     } else {
       gather(binary_[n].left, c.childrenOfLeft, children);
       gather(binary_[n].right, BVH_WIDTH - std::size_t{c.childrenOfLeft}, children);
@@ -494,7 +495,7 @@ class Collapse {
       if (choices_[child].leaf) {
         std::vector<std::uint32_t> leaf;
         gatherTriangles(child, leaf);
-        // Two parts of one triangle in a leaf are that triangle once.
+        // Two parts of one triangle in a leaf count as that triangle once.
         std::sort(leaf.begin(), leaf.end());
         leaf.erase(std::unique(leaf.begin(), leaf.end()), leaf.end());
         meta = ((1u << leaf.size()) - 1u) << 5 |
@@ -554,7 +555,7 @@ bool refitBvh(Bvh& bvh, const Scene& scene) {
   for (BvhTriangle& triangle : bvh.triangles) triangle = moved.kept[place[triangle.id & BVH_TRIANGLE_ID_MASK]];
   bvh.magnitude = moved.magnitude;
   std::vector<Box> boxes(bvh.nodes.size());
-  for (std::size_t n = bvh.nodes.size(); n-- > 0;) {  // children lie behind their parents
+  for (std::size_t n = bvh.nodes.size(); n-- > 0;) {  // children follow their parents
     BvhNode& node = bvh.nodes[n];
     std::array<Box, BVH_WIDTH> children;
     std::size_t child = node.firstChild;

@@ -1,8 +1,8 @@
 // A bounding volume hierarchy of a scene's triangles, for shaders/rays/bvh.glsl. No GL.
 //
 // Space: the scene moved by -origin, so that no precision is lost far from the world's origin; lengths in scene units.
-// An axis is moved only where the scene lies so far along it that every difference is exact in float, so the triangles
-// are those of the scene. Sources: binned surface area heuristic [Wald2007], collapse to eight children and node layout
+// An axis is moved only if the scene lies so far along it that every difference is exact in float, so the triangles
+// keep their exact shape. Sources: binned surface area heuristic [Wald2007], collapse to eight children and node layout
 // [Ylitie2017]; README.md, section "Ray casting".
 #pragma once
 
@@ -22,11 +22,11 @@ struct BvhSettings {
 struct BvhStatistics {
   std::size_t triangles = 0;  ///< that rays can hit
   std::size_t degenerate = 0;  ///< dropped: no area, or a corner that is not finite
-  std::size_t references = 0;  ///< of leaves to triangles; above `triangles` if spatial splits paid off
+  std::size_t references = 0;  ///< from leaves to triangles; above `triangles` if spatial splits paid off
   std::size_t nodes = 0, leaves = 0;
   int depth = 0;  ///< of the deepest node; the root has 1
   double sahCost =
-      0.0;  ///< expected cost of a ray that meets the root's box: 1 per node visit, kBvhTriangleCost per triangle
+      0.0;  ///< expected cost of a ray that hits the root's box: 1 per node visit, kBvhTriangleCost per triangle
   double seconds = 0.0;  ///< wall clock
 };
 

@@ -50,8 +50,8 @@ AliasTable aliasTable(const std::vector<double>& weights) {
       small.push_back(l);
     }
   }
-  // What rounding has left in `small` has a share of 1 but for rounding, unless it weighs nothing and must never come
-  // up.
+  // Entries that rounding has left in `small` have a share of 1 up to rounding, unless their weight is 0 and they must
+  // never be chosen.
   for (const std::uint32_t s : small)
     if (weights[s] == 0.0) {
       table.threshold[s] = 0.0f;
@@ -111,8 +111,8 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
       if (!(area > 0.0) || !std::isfinite(area)) continue;
       double brightness = worth(material.emission);
       if (material.emissionTexture >= 0) {
-        // By the mean over the triangle, plus a part of the picture's own: the lookups here may have missed a bright
-        // spot.
+        // Weighted by the mean over the triangle plus a share of the picture's own mean: the lookups here may have
+        // missed a bright spot.
         const auto uv = [&](std::uint32_t k) { return scene.vertices[scene.indices[i + k]].texCoord; };
         const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap;
         brightness = 0.9 * worth(glm::dvec3(material.emissionScale) * meanTexture(bitmap, {uv(0), uv(1), uv(2)})) +
@@ -141,7 +141,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
   if (table.lights.empty()) return table;
   const bool environment = table.lights.back().kind == PATH_LIGHT_ENVIRONMENT;
 
-  // Picked half by power, half evenly; the triangles together are as one light there.
+  // Picked half by power, half evenly; for the even half all triangles together count as one light.
   double sum = 0.0, triangleSum = 0.0;
   for (std::size_t i = 0; i < powers.size(); ++i) {
     sum += powers[i];
@@ -180,8 +180,8 @@ glm::dvec3 meanRadiance(const Image& picture) {
 
 EnvironmentTable environmentTable(const Image& picture) {
   const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
-  // A number below 2^32 is below the threshold with its probability; all of them where that is 1, as the alias then is
-  // the entry itself.
+  // A 32-bit number is below the threshold with the entry's probability. At probability 1 any number will do, since the
+  // alias is the entry itself.
   const auto wordOf = [](float threshold) {
     return static_cast<std::uint32_t>(std::min(static_cast<double>(threshold) * 4294967296.0, 4294967295.0));
   };
@@ -193,7 +193,7 @@ EnvironmentTable environmentTable(const Image& picture) {
     for (std::size_t x = 0; x < width; ++x) weights[x] = worth(glm::dvec3(picture.at(static_cast<int>(x), row)));
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     ofRows[y] = sum * texelSolidAngle(picture, row);
-    if (!(sum > 0.0)) continue;  // is never sampled
+    if (!(sum > 0.0)) continue;  // never sampled
     const AliasTable picks = aliasTable(weights);
     for (std::size_t x = 0; x < width; ++x)
       table.texels[y * width + x] = glm::uvec4(wordOf(picks.threshold[x]), picks.alias[x], 0u, 0u);

@@ -50,7 +50,7 @@ PathScene::PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capa
     if (from.metalMap) {
       to.albedo = from.metalMap->base;
       to.roughness = from.metalMap->roughness * from.metalMap->roughness;
-      if (to.kind == PATH_CONDUCTOR) to.kind = PATH_DIFFUSE;  // the texel says
+      if (to.kind == PATH_CONDUCTOR) to.kind = PATH_DIFFUSE;  // the texel decides
     }
     to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = to.normalTexture.layer =
         to.metalTexture.layer = PATH_NO_TEXTURE;
@@ -95,14 +95,15 @@ void PathScene::uploadEnvironment(const Environment& environment) {
 
 namespace {
 
-/// What of a picture an atlas takes: it may be in one twice, as colour, and as mask in the alpha channel.
+/// The part of a picture that an atlas stores. A picture may occur twice: as colour, and as a mask in the alpha
+/// channel.
 struct AtlasEntry {
   int texture;
   bool mask;
   auto operator<=>(const AtlasEntry&) const = default;
 };
 
-/// Pictures of one encoding that go into one array texture, and the materials' fields that say where.
+/// Pictures of one encoding that share an array texture, and the material fields that receive their positions.
 struct AtlasContent {
   std::map<AtlasEntry, std::size_t> index;
   std::vector<AtlasEntry> entries;
@@ -114,7 +115,7 @@ struct AtlasContent {
   }
 };
 
-/// Nothing where there is nothing to put into it.
+/// Empty if there is nothing to store.
 std::optional<gl::Texture> makeAtlas(const Scene& scene, const gl::Capabilities& capabilities, const char* name,
                                      gl::Format format, const AtlasContent& content) {
   if (content.entries.empty()) return std::nullopt;
@@ -203,7 +204,7 @@ void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capa
     const glm::dvec3 cross = glm::cross(place(1) - place(0), place(2) - place(0));
     const double length = glm::length(cross);
     const glm::vec3 normal =
-        length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0f);  // rays meet no triangle without area
+        length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0f);  // rays hit no triangle without area
     add3(glm::vec3(place(0)));
     words.push_back(materialOf[t]);
     add3(glm::vec3(place(1)));

@@ -1,6 +1,6 @@
 // A scene on the GPU for path tracing: triangles and their hierarchy, materials and textures in one atlas, lights and
-// environment, for programs that include shaders/rays/{materials,bvh,environment,lights}.glsl. The path tracer follows
-// paths from a camera in it, the light propagation volume's receivers from points of surfaces (lpv/receivers.hpp).
+// environment, for programs that include shaders/rays/{materials,bvh,environment,lights}.glsl. The path tracer starts
+// paths at a camera, the light propagation volume's receivers at surface points (lpv/receivers.hpp).
 //
 // Space: the scene moved by -origin() (ray_scene.hpp). Units: scene units.
 #pragma once
@@ -43,21 +43,21 @@ class PathScene {
     bool nextEvent = true;  ///< with a table of lights for sampling
     RaySceneSettings rays;
   };
-  /// `needs`: of the scene, without what the programs leave out. rankOfMaterial: of closed boundaries (media.hpp); may
-  /// be empty. Throws Error(missingCapability) if the scene exceeds the driver's limits.
+  /// `needs`: the scene's needs minus those the programs leave out. rankOfMaterial: for closed boundaries (media.hpp);
+  /// may be empty. Throws Error(missingCapability) if the scene exceeds the driver's limits.
   PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const Settings& settings,
             const std::vector<int>& rankOfMaterial = {});
 
   /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62.
   void bind() const;
-  /// Those of the shaders named above.
+  /// Flags for the shaders named above.
   gl::ShaderFlags flags() const;
   /// Fills in the environment and the probability of sampling it.
   void fill(shared::PathConstants& constants) const;
   bool hasLights() const { return lightCount_ > 0; }
   const RayScene& rays() const { return rays_; }
   const glm::dvec3& origin() const { return rays_.origin(); }
-  const Hash& hash() const { return hash_; }  ///< of everything that paths depend on
+  const Hash& hash() const { return hash_; }  ///< over everything that affects paths
   std::size_t gpuBytes() const;
 
  private:

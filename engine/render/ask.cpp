@@ -29,8 +29,8 @@ std::string nameOfTriangle(const Scene& scene, std::uint32_t triangle) {
   return fmt::format("triangle {}", triangle);
 }
 
-/// Names of the lamps in the table that light samples are drawn from: rays/light_table.cpp has this order, without
-/// those that are dark.
+/// Names of the lamps in the table that light samples are drawn from: the order of rays/light_table.cpp, without dark
+/// lamps.
 std::vector<std::string> namesOfLamps(const Scene& scene) {
   std::vector<std::string> names;
   const auto shines = [](const glm::vec3& c) { return c.x > 0.0f || c.y > 0.0f || c.z > 0.0f; };
@@ -76,7 +76,7 @@ PixelAnswer askPaths(const gl::Context& context, gl::ProgramLibrary& programs, c
   const std::vector<std::string> lamps = namesOfLamps(scene);
   const double each = 1.0 / samples;
   std::map<std::uint32_t, glm::dvec3> ofSample;
-  // Beyond this many the faintest are only counted: a pixel has some thousands of paths.
+  // Beyond this number the faintest are only counted: a pixel has thousands of paths.
   constexpr std::size_t kMost = 4096;
   constexpr std::uint32_t kStep = 1024;
   for (std::uint32_t done = 0; done < samples; done = tracer.samples()) {
@@ -92,7 +92,7 @@ PixelAnswer askPaths(const gl::Context& context, gl::ProgramLibrary& programs, c
   for (const auto& [sample, radiance] : ofSample) answer.radiance += each * radiance;
   for (const auto& [sample, radiance] : ofSample)
     squares += (radiance - answer.radiance) * (radiance - answer.radiance);
-  squares += static_cast<double>(samples - ofSample.size()) * answer.radiance * answer.radiance;  // those without light
+  squares += static_cast<double>(samples - ofSample.size()) * answer.radiance * answer.radiance;  // without light
   if (samples > 1) answer.standardError = glm::sqrt(squares / (static_cast<double>(samples) * (samples - 1.0)));
   return answer;
 }
@@ -150,7 +150,7 @@ PixelAnswer Renderer::ask(const gl::Context& context, gl::ProgramLibrary& progra
   answer.radiance = texelAt(radiance_, fromBelow);
   const FrameView view = viewOf(camera, camera);
   const AskedTerms terms = drawAsked(programs, view, fromBelow);
-  if (terms.fourth(ASKED_POSITION) != 1.0f) {  // none, or a patch's back
+  if (terms.fourth(ASKED_POSITION) != 1.0f) {  // no surface, or a patch's back
     add(answer, "seen directly", "what lies behind the scene", answer.radiance);
     return answer;
   }
@@ -180,7 +180,7 @@ void Renderer::answerOfForward(gl::ProgramLibrary& programs, const FrameView& vi
   const glm::dvec3 reflection = answer.surface->albedo / kPi;
   const glm::vec3 place = terms[ASKED_POSITION];
   if (rsm_) {
-    // Samples of one texel, of several places that interpolation joins, are one share.
+    // Samples of one texel, from several gather points joined by interpolation, form one share.
     std::map<std::array<int, 4>, PixelShare> texels;
     for (const AskedPart& part : rsm_->ask(timer_, view, fromBelow)) {
       PixelShare& share = texels[{part.number.x, part.number.y, part.number.z, part.number.w}];
@@ -208,7 +208,7 @@ void Renderer::answerOfForward(gl::ProgramLibrary& programs, const FrameView& vi
     answer.shares.back().weight = part.weight;
     if (lpv_) answer.shares.back().lobe = {part.red, part.green, part.blue};
   }
-  glm::dvec3 cut(0.0);  // the lookup takes no channel of a cascade below 0
+  glm::dvec3 cut(0.0);  // the lookup clamps each channel of a cascade at 0
   for (const auto& [cascade, sum] : ofCascade) cut += glm::max(sum, glm::dvec3(0.0)) - sum;
   if (lpv_) add(answer, "lpv", "light below 0, cut off", reflection * cut, {position});
 }

@@ -1,4 +1,4 @@
-// Asks what lit a pixel: the paths that path tracing has sent through it. Of other techniques: Renderer::ask.
+// Finds out what lit a pixel of a path traced picture: the paths through it. For other techniques: Renderer::ask.
 #pragma once
 
 #include "gl/context.hpp"
@@ -8,7 +8,7 @@
 
 namespace lucerna {
 
-/// The first `samples` paths of the pixel (from the top left) are followed again, with the numbers that they have in a
+/// Retraces the first `samples` paths of the pixel (counted from the top left), with the random numbers they have in a
 /// picture with these settings: their sum is the picture's pixel.
 PixelAnswer askPaths(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
                      PathTracer::Settings settings, std::uint32_t samples, glm::ivec2 pixel);

@@ -1,4 +1,4 @@
-// What the frame's techniques are made from, and what they are given each frame (no GL calls).
+// Inputs of the frame's techniques, at construction and in each frame (no GL calls).
 #pragma once
 
 #include "forward/gpu_scene.hpp"
@@ -13,24 +13,24 @@
 
 namespace lucerna {
 
-/// Of the frame, which keeps all of it: it outlives the techniques.
+/// Owned by the frame, which outlives its techniques.
 struct FrameParts {
   const gl::Context& context;
   gl::ProgramLibrary& programs;
   const RenderSettings& settings;
   const SceneNeeds& needs;
   const Scene& scene;  ///< as loaded
-  const glm::dvec3& origin;  ///< of what is drawn, in the scene's coordinates
+  const glm::dvec3& origin;  ///< of the drawn coordinates, in the scene's coordinates
   const GpuScene& drawn;
   const SunFrustum& sun;
   const std::vector<LightViews>& spots;
   const std::vector<LightViews>& points;
 };
 
-/// Positions are those of what is drawn, about FrameParts::origin.
+/// Positions are in the drawn coordinates, relative to FrameParts::origin.
 struct FrameView {
   Camera camera;
-  Camera volumeCamera;  ///< that the light propagation volume is placed for
+  Camera volumeCamera;  ///< determines where the light propagation volume is placed
   glm::dmat4 clip;  ///< from world
   glm::mat4 clipFromWorld;
   glm::vec3 viewPoint;
@@ -38,10 +38,10 @@ struct FrameView {
   GpuScene::View drawn() const { return {&clipFromWorld, &viewPoint}; }
 };
 
-/// How much of a picture that is added up over frames a frame makes.
+/// How much of an accumulated picture one frame computes.
 struct FrameEffort {
   bool wholePicture = false;  ///< all samples at once
-  bool fadesIn = true;  ///< what is new is shown by and by, so that nothing flickers while the camera moves
+  bool fadesIn = true;  ///< new contributions fade in, so that nothing flickers while the camera moves
 };
 
 }  // namespace lucerna

@@ -1,5 +1,5 @@
-// The reflective shadow maps of the lights whose light a technique reflects. They do not depend on the camera: lights
-// and geometry stand still, so they are drawn once (with frame.reuse=off each frame).
+// The reflective shadow maps of the lights whose reflected light a technique needs. They do not depend on the camera,
+// and lights and geometry stand still, so they are drawn once (with frame.reuse=off in each frame).
 #pragma once
 
 #include "gl/time_query.hpp"
@@ -18,7 +18,7 @@ class LightMaps {
   };
   LightMaps(const FrameParts& parts, Lights lights, bool albedo);
 
-  /// One a light: the sun, the spots, the omnidirectional lights. Stage: rsm, where they are drawn.
+  /// One per light: the sun, the spots, the omnidirectional lights. Stage: rsm, if they are drawn.
   const std::vector<ReflectiveShadowMap::Outputs>& record(gl::TimeQuery& timer);
   bool willBeDrawn() const { return !(parts_.settings.reuse && made_); }
   void forget() { made_ = false; }
@@ -29,7 +29,7 @@ class LightMaps {
  private:
   FrameParts parts_;
   std::vector<ReflectiveShadowMap> maps_;
-  std::vector<ReflectiveShadowMap::Outputs> outputs_;  ///< since they were last drawn
+  std::vector<ReflectiveShadowMap::Outputs> outputs_;  ///< of the last drawing
   bool made_ = false;
 };
 

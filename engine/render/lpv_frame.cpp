@@ -7,7 +7,7 @@ namespace lucerna {
 
 namespace {
 
-/// Whether the geometry volume has surfels of what the camera sees.
+/// Whether the geometry volume contains surfels seen by the camera.
 bool takesCameraSurfels(const LpvSettings& volume) {
   return volume.blocking && volume.iterations > 1 && volume.surfels != LpvSurfels::rsm;
 }
@@ -37,7 +37,7 @@ LpvFrame::LpvFrame(const FrameParts& parts)
       cameraMap_(cameraMap(parts)),
       volume_(parts.programs, parts.context.capabilities(), volumeSettings(parts.settings, maps_.count())) {}
 
-// The camera as a lamp without light: the map's texels hold position, normal and area of what it sees.
+// Treats the camera as a lamp without light: the map's texels hold position, normal and area of the visible surfaces.
 std::vector<ReflectiveShadowMap::Outputs> LpvFrame::recordCameraMap(gl::TimeQuery& timer, const Camera& camera) {
   if (!cameraMap_) return {};
   const gl::TimeQuery::Scope stage(timer, "camera surfels");
@@ -57,7 +57,7 @@ void LpvFrame::record(gl::TimeQuery& timer, const FrameView& view) {
                          placeCascades(parts_.settings.lpv.cascades, scene.bounds, view.volumeCamera.position,
                                        view.volumeCamera.direction),
                          typicalIrradiance(scene), glm::vec3(lightPosition), recordCameraMap(timer, view.volumeCamera)};
-  // The volume's light is kept while its grids lie where they did, unless surfels come from what the camera sees.
+  // The volume's light is kept while its grids stay in place, unless it uses surfels seen by the camera.
   const shared::LpvConstants constants = lpvConstants(parts_.settings.lpv, inputs.cascades, inputs.referenceIrradiance);
   const auto liesWhere = [](const shared::LpvCascade& a, const shared::LpvCascade& b) {
     return a.minimum == b.minimum && a.cellSize == b.cellSize;
@@ -65,7 +65,7 @@ void LpvFrame::record(gl::TimeQuery& timer, const FrameView& view) {
   const bool same = parts_.settings.reuse && !cameraMap_ && cascades_.size() == inputs.cascades.size() &&
                     std::equal(cascades_.begin(), cascades_.end(), constants.cascades, liesWhere);
   if (same) {
-    volume_.place(inputs);  // where cascades fade into each other follows the camera
+    volume_.place(inputs);  // the blending between cascades follows the camera
     return;
   }
   cascades_.assign(constants.cascades, constants.cascades + inputs.cascades.size());

@@ -1,9 +1,9 @@
 // Technique lpv with transport propagate in the frame: light injected from the lights' maps, propagated through nested
 // grids, looked up in shading.
 //
-// Stages, with their inputs: rsm (lights, geometry) -> camera surfels (camera; where lpv.blocking asks for them) ->
-// injection, geometry volume, propagation (maps, placement of the cascades). They run again where a grid has moved, or
-// surfels come from what the camera sees.
+// Stages, with their inputs: rsm (lights, geometry) -> camera surfels (camera; if lpv.blocking requires them) ->
+// injection, geometry volume, propagation (maps, placement of the cascades). They run again if a grid has moved, or if
+// surfels come from the camera.
 #pragma once
 
 #include "lpv/light_propagation_volume.hpp"
@@ -26,7 +26,7 @@ class LpvFrame {
   void record(gl::TimeQuery& timer, const FrameView& view);
   void forget();
 
-  /// Of shaders/forward/indirect.glsl, and what it reads.
+  /// Flags of shaders/forward/indirect.glsl, and its inputs.
   gl::ShaderFlags shadingFlags() const;
   void bindForShading() const { volume_.bindForLookup(); }
 
@@ -40,13 +40,13 @@ class LpvFrame {
 
  private:
   std::vector<ReflectiveShadowMap::Outputs> recordCameraMap(gl::TimeQuery& timer,
-                                                            const Camera& camera);  ///< empty where none is needed
+                                                            const Camera& camera);  ///< empty if not needed
 
   FrameParts parts_;
   LightMaps maps_;
-  std::optional<ReflectiveShadowMap> cameraMap_;  ///< what the camera sees, for the geometry volume
+  std::optional<ReflectiveShadowMap> cameraMap_;  ///< the camera's view, for the geometry volume
   LightPropagationVolume volume_;
-  std::vector<shared::LpvCascade> cascades_;  ///< that the propagated light is of
+  std::vector<shared::LpvCascade> cascades_;  ///< those of the propagated light
 };
 
 }  // namespace lucerna

@@ -48,7 +48,7 @@ void PathFrame::record(gl::TimeQuery& timer, const Camera& camera, const gl::Fra
     else tracer_.advance(settings_.path.samples);
     settled_ = tracer_.samples() >= settings_.path.samples;
   }
-  // In the middle of a tile's pass the paths that have ended are the short ones: the picture before stays.
+  // In the middle of a tile's pass only short paths have ended, so the previous picture stays.
   if (!tracer_.isBetweenTiles()) return;
   const gl::TimeQuery::Scope stage(timer, "film");
   const gl::RasterPass pass("film", target, {});

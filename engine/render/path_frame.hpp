@@ -1,7 +1,7 @@
-// Technique path in the frame: a path traced picture that gets better while the view stands still, shown with the
-// frame's tone mapping.
+// Technique path in the frame: a path traced picture that improves while the view stands still, shown with the frame's
+// tone mapping.
 //
-// Stages, with their inputs: path tracing (scene, camera) -> film (the means so far). It draws nothing else: no shadow
+// Stages, with their inputs: path tracing (scene, camera) -> film (the means so far). Nothing else is drawn: no shadow
 // maps, no depth.
 #pragma once
 
@@ -18,8 +18,8 @@ class PathFrame {
             const RenderSettings& settings);
   void resize(glm::ivec2 size);
 
-  /// `camera`: in the scene's coordinates. A new view gets PathSettings::leastSamples in each pixel at once, the same
-  /// view one more submission. `wholePicture`: all samples at once.
+  /// `camera`: in the scene's coordinates. A new view gets PathSettings::leastSamples in each pixel at once, an
+  /// unchanged view one more submission. `wholePicture`: all samples at once.
   void record(gl::TimeQuery& timer, const Camera& camera, const gl::Framebuffer& target,
               const gl::VertexArray& noAttributes, bool wholePicture);
   void forget() { hasView_ = false; }
@@ -32,7 +32,7 @@ class PathFrame {
   const RenderSettings& settings_;
   PathTracer tracer_;
   const gl::Program* film_;
-  Camera camera_;  ///< that the film is of
+  Camera camera_;  ///< of the film
   bool hasView_ = false, settled_ = false;
 };
 

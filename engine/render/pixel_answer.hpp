@@ -1,8 +1,8 @@
-// What lit a pixel: the answer to a question about one pixel of a frame (no GL calls).
+// What lit a pixel: the answer to a query about one pixel of a frame (no GL calls).
 //
-// Renderer::ask draws that pixel again with shaders that write each term down (flag ASKED), and asks the technique's
-// own lookup which texels, cells, receivers or patches it took. Nothing of it is compiled, allocated or done in a frame
-// that nobody asks about.
+// Renderer::ask draws that pixel again with shaders that record each term (flag ASKED), and asks the technique's own
+// lookup for the texels, cells, receivers or patches it used. Frames without a query compile, allocate and compute none
+// of this.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -15,7 +15,7 @@
 
 namespace lucerna {
 
-/// One source of the pixel's light, or several of a kind together.
+/// One source of the pixel's light, or several of a kind combined.
 struct PixelShare {
   std::string group;  ///< emission, direct, indirect, scattered twice, ...
   std::string name;  ///< "sun", "texel 17, 40 of the sun's map", ...
@@ -23,7 +23,7 @@ struct PixelShare {
   std::vector<glm::dvec3> places;  ///< from the pixel's surface (a path: the camera) to the light, scene coordinates
   std::optional<double> weight;  ///< of a cell or receiver in the lookup; the form factor to a patch
   std::optional<std::array<glm::vec4, 3>> lobe;  ///< of a cell: coefficients of red, green and blue, as stored
-  std::size_t count = 1;  ///< of those that are together
+  std::size_t count = 1;  ///< number of combined sources
 };
 
 struct PixelAnswer {
@@ -32,18 +32,18 @@ struct PixelAnswer {
   };
   glm::ivec2 pixel{0};  ///< from the top left
   std::string technique;
-  glm::dvec3 radiance{0.0};  ///< of the picture, linear, scene units
-  std::optional<Surface> surface;  ///< that is seen there; path tracing has none
-  std::vector<PixelShare> shares;  ///< the brightest first; some are negative (cells with a light that ebbs)
-  std::uint64_t samples = 0;  ///< of path tracing
-  glm::dvec3 standardError{0.0};  ///< of path tracing, of `radiance`
+  glm::dvec3 radiance{0.0};  ///< in the picture, linear, scene units
+  std::optional<Surface> surface;  ///< the visible one; path tracing has none
+  std::vector<PixelShare> shares;  ///< brightest first; some are negative (cells with decreasing light)
+  std::uint64_t samples = 0;  ///< for path tracing
+  glm::dvec3 standardError{0.0};  ///< for path tracing, of `radiance`
 
   glm::dvec3 sum() const;
-  /// Of a share, by luminance, of the pixel's; 0 for a black pixel.
+  /// A share's part of the pixel, by luminance; 0 for a black pixel.
   double shareOf(const glm::dvec3& radiance) const;
-  /// Radiance by group, the brightest first.
+  /// Radiance by group, brightest first.
   std::vector<std::pair<std::string, glm::dvec3>> groups() const;
-  /// Sorts, and keeps the `most` brightest of each group; the others become one of their group and sign.
+  /// Sorts, and keeps the `most` brightest of each group; the others are combined by group and sign.
   void condense(std::size_t most);
 };
 

@@ -1,8 +1,8 @@
-// Technique radiosity in the frame: a solution, made or loaded once, drawn from anywhere; direct light by shadow rays
-// in each pixel where asked for.
+// Technique radiosity in the frame: a solution, computed or loaded once and drawn from any viewpoint; direct light by
+// shadow rays per pixel on request.
 //
-// It replaces what is drawn (patches instead of the scene's triangles), the programs of shading and, where asked for,
-// the display mapping.
+// It replaces the drawn geometry (patches instead of the scene's triangles), the shading programs and, on request, the
+// display mapping.
 #pragma once
 
 #include "gl/pieces.hpp"
@@ -17,8 +17,8 @@ namespace lucerna {
 
 class RadiosityFrame {
  public:
-  /// How a picture is drawn: backs are black. On edge at a silhouette, where rounding of a back's depth could bring it
-  /// before the front that it hides behind, backs are drawn apart and pushed away by their slope.
+  /// How the two sides of surfaces are drawn: backs are black. Seen edge-on at a silhouette, rounding could bring a
+  /// back's depth before the front that hides it, so backs are drawn separately, with a slope-scaled depth offset.
   struct Sides {
     gl::Cull cull = gl::Cull::none;
     glm::vec2 polygonOffset{0.0f};
@@ -29,7 +29,7 @@ class RadiosityFrame {
   RadiosityFrame(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                  const RenderSettings& settings, const glm::dvec3& origin);
 
-  /// What GpuScene is to draw: the patches.
+  /// The geometry for GpuScene: the patches.
   const Scene& scene() const { return view_.scene(); }
   SurfacePrograms loadPrograms(gl::ProgramLibrary& programs, const GpuScene& drawn, bool asked) const {
     return view_.loadPrograms(programs, drawn, asked);
@@ -39,7 +39,8 @@ class RadiosityFrame {
   }  ///< null: the engine's tone mapping
 
   void bindForShading() const;
-  /// Some shadow rays a pixel keep a small GPU busy for seconds: rows of pixels in pieces, each waited for.
+  /// A few shadow rays per pixel keep a small GPU busy for seconds, so rows of pixels are drawn in pieces, each waited
+  /// for.
   void draw(const gl::RasterPass& pass, const GpuScene& drawn, const SurfacePrograms& programs, const FrameView& view);
 
   const RadiosityView& view() const { return view_; }
@@ -51,7 +52,7 @@ class RadiosityFrame {
   const RenderSettings& settings_;
   RadiosityView view_;
   std::optional<DirectRays> rays_;
-  std::optional<gl::PieceSize> pieces_;  ///< rows of pixels a submission, of the last frame's shadow rays
+  std::optional<gl::PieceSize> pieces_;  ///< rows of pixels per submission, for the last frame's shadow rays
 };
 
 }  // namespace lucerna

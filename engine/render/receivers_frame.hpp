@@ -1,8 +1,8 @@
-// Technique lpv with transport gather or rays in the frame: irradiance kept at points of surfaces, which camera and
-// grids choose.
+// Technique lpv with transport gather or rays in the frame: irradiance stored at surface points, chosen by camera and
+// grids.
 //
-// Stages, with their inputs: rsm (lights, geometry; gather alone) -> geometry (camera) -> receivers (maps, visible
-// surfaces, placement of the cascades). Nothing is done for a view whose receivers have all their paths.
+// Stages, with their inputs: rsm (lights, geometry; only for gather) -> geometry (camera) -> receivers (maps, visible
+// surfaces, placement of the cascades). A view whose receivers have all their paths needs no work.
 #pragma once
 
 #include "forward/visible_surfaces.hpp"
@@ -25,14 +25,14 @@ class ReceiversFrame {
   ReceiversFrame(const FrameParts& parts, const gl::Texture& depth);
   void resize(const gl::Texture& depth);
 
-  /// Whether depth was drawn.
+  /// Returns whether depth was drawn.
   bool record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort);
   void forget();
   void collect(bool wait = false) { receivers_.collect(wait); }
-  /// Whether another frame of the same view would show the same.
+  /// Whether another frame of the same view would look the same.
   bool isSettled() const { return settled_; }
 
-  /// Of shaders/forward/indirect.glsl, and what it reads.
+  /// Flags of shaders/forward/indirect.glsl, and its inputs.
   gl::ShaderFlags shadingFlags() const;
   void bindForShading() const { receivers_.bindForLookup(); }
 
@@ -47,10 +47,10 @@ class ReceiversFrame {
 
  private:
   FrameParts parts_;
-  std::optional<LightMaps> maps_;  ///< where they take them
+  std::optional<LightMaps> maps_;  ///< if they use maps
   VisibleSurfaces visible_;
   LpvReceivers receivers_;
-  /// The view that they were brought up to date for, since which frame, and whether nothing of it waits any more.
+  /// The view for which they were last updated, the frame of its first update, and whether no work is left.
   glm::dmat4 clip_{0.0};
   glm::dvec3 volumePosition_{0.0}, volumeDirection_{0.0};
   std::uint32_t since_ = 0;

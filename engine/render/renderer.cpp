@@ -68,7 +68,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   settings_.textures.boundaries = !haze;
   gpuScene_.emplace(radiosity_ ? radiosity_->scene() : aboutOrigin(scene), needs_, context.capabilities(),
                     settings_.textures);
-  if (moved_) moved_->textures.clear();  // they are on the GPU
+  if (moved_) moved_->textures.clear();  // they are on the GPU now
   const Scene& drawn = gpuScene_->scene();
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   spots_ = spotViews(drawn);
@@ -150,7 +150,7 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ask
                                {"SPECULAR", needs_.specular && showsDirect()},
                                {"EMISSION", needs_.emission && showsRest},
                                {"ASKED", asked}});
-    gl::ShaderFlags own;  // of the technique, which has one of the first three; the others are not there
+    gl::ShaderFlags own;  // of the technique: one of the first three below; the others are 0
     forTechniques(*this, [&](const auto& technique) {
       if constexpr (requires { technique.shadingFlags(); }) own = technique.shadingFlags();
     });
@@ -352,7 +352,7 @@ void Renderer::renderToTheEnd(const Camera& camera) {
 void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, FrameEffort effort) {
   if (path_) {
     path_->record(timer_, camera, radianceTarget_, noAttributes_, effort.wholePicture);
-    shared::FrameConstants constants{};  // after the path tracer's own, which have the same binding
+    shared::FrameConstants constants{};  // set after the path tracer's own constants, which share the binding
     constants.exposure = exposure_;
     bindFrameConstants(constants);
   } else {
@@ -380,7 +380,7 @@ void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, Fra
   timer_.collect();
   if (rsm_) rsm_->collect();
   gl::throwIfReset();
-  // Now and then: asking stops drivers that have threads of their own. Whoever reads a result asks again.
+  // Checked occasionally: glGetError stalls drivers with their own threads. Readers of a result check again.
   constexpr std::uint64_t kFramesBetweenLooks = 64;
   if (++frames_ % kFramesBetweenLooks == 1) gl::throwIfError("a frame");
 }

@@ -1,9 +1,9 @@
 // A frame, from a scene and a camera to an HDR picture and a display picture: the techniques in order, each built only
-// where needed.
+// if needed.
 //
-// Renderer::render reads from top to bottom: direct light's shadow maps, then what the technique makes, then shading
-// (or the path tracer's film), the environment and tone mapping. A technique is one object (rsm_frame, lpv_frame,
-// receivers_frame, radiosity_frame, path_frame) with its stages, what shading takes of it and its bytes.
+// Renderer::render reads from top to bottom: direct light's shadow maps, the technique's own passes, shading (or the
+// path tracer's film), the environment and tone mapping. A technique is one object (rsm_frame, lpv_frame,
+// receivers_frame, radiosity_frame, path_frame) with its stages, its inputs to shading and its bytes.
 #pragma once
 
 #include "base/image.hpp"
@@ -54,8 +54,8 @@ class Renderer {
   /// The same with the light propagation volume placed for another view, to separate flicker from motion.
   void render(const Camera& camera, const Camera& volumeCamera);
 
-  /// What lit a pixel (from the top left) of the last frame, which was of this view; `scene` as the renderer was made
-  /// with. Compiles, allocates and waits.
+  /// What lit a pixel (counted from the top left) of the last frame, which must have been of this view; `scene`: as
+  /// passed to the constructor. Compiles, allocates and waits.
   PixelAnswer ask(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
                   glm::ivec2 pixel);
 
@@ -66,7 +66,7 @@ class Renderer {
   Bitmap readDisplay() const;  ///< tone mapped, sRGB, top row first
   const gl::Framebuffer& displayFramebuffer() const { return displayTarget_; }
   const gl::Texture& display() const { return display_; }  ///< of that framebuffer
-  /// Of what the last frame shows; null for path tracing, which draws none.
+  /// Depth of the last frame; null for path tracing, which draws none.
   const gl::Texture* depth() const { return path_ ? nullptr : &depth_; }
   /// For lines over the last frame, about origin(). `bounds`: the scene's.
   gl::Lines::View linesView(const Camera& camera, const Bounds& bounds) const;
@@ -74,8 +74,7 @@ class Renderer {
   const gl::Texture& radiance() const { return radiance_; }  ///< linear, scene units, bottom row first
   glm::ivec2 size() const { return settings_.size; }
   void resize(glm::ivec2 size);
-  /// Takes over the settings whose cost is SettingCost::uniform (exposure, frame.reuse); for others a new Renderer is
-  /// made.
+  /// Applies the settings whose cost is SettingCost::uniform (exposure, frame.reuse); others need a new Renderer.
   void apply(const RenderSettings& settings);
   void setExposure(float exposure) { exposure_ = exposure; }
   float exposure() const { return exposure_; }
@@ -86,23 +85,23 @@ class Renderer {
   const RenderSettings& settings() const { return settings_; }
   std::vector<StagePicture> stagePictures() const;
   const LpvReceivers* receivers() const { return receivers_ ? &receivers_->receivers() : nullptr; }
-  /// Whether more frames of the same view would show the same: nothing is added up any more.
+  /// Whether more frames of the same view would look the same: nothing accumulates any more.
   bool isSettled() const { return (!receivers_ || receivers_->isSettled()) && (!path_ || path_->isSettled()); }
-  /// All that is kept from frame to frame is dropped: the next one begins as the first did.
+  /// Drops everything kept from frame to frame: the next frame starts like the first.
   void forget();
   const LightPropagationVolume* lpv() const { return lpv_ ? &lpv_->volume() : nullptr; }
   const RadiosityView* radiosity() const { return radiosity_ ? &radiosity_->view() : nullptr; }
   const RsmGather* gather() const { return rsm_ ? &rsm_->gather() : nullptr; }
   const PathTracer* path() const { return path_ ? &path_->tracer() : nullptr; }
-  /// Turns, about, of the largest submission of the last frame's shadow rays; 0 without any.
+  /// Estimated turns of the largest submission of the last frame's shadow rays; 0 without any.
   double largestTurns() const { return radiosity_ ? radiosity_->largestTurns() : 0.0; }
-  /// Waits for everything still on its way, times and counts; for the end of a run, not for a frame.
+  /// Waits for all pending results, times and counts; for the end of a run, not for a frame.
   void drain();
-  /// Names of features that were left out.
+  /// Names of the omitted features.
   std::vector<std::string> leftOut() const;
 
  private:
-  const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ where that is another
+  const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ if it must be moved
   void makeShadowMaps(gl::ProgramLibrary& programs);
   bool asksForShafts() const;
   void makeShafts(gl::ProgramLibrary& programs, const Haze& haze);
@@ -116,14 +115,14 @@ class Renderer {
   void recordShadows(const Camera& camera);
   void shade(const FrameView& view, bool depthIsDrawn);
   void bindForShading() const;
-  /// Shading's own; asked: with which one pixel writes down what it adds up.
+  /// Shading programs; asked: the variant with which one pixel records its terms.
   SurfacePrograms surfacePrograms(gl::ProgramLibrary& programs, bool asked) const;
   AskedTerms drawAsked(gl::ProgramLibrary& programs, const FrameView& view, glm::ivec2 fromBelow);
   void answerOfForward(gl::ProgramLibrary& programs, const FrameView& view, const AskedTerms& terms,
                        glm::ivec2 fromBelow, PixelAnswer& answer);
   void answerOfPatches(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                        const AskedTerms& terms, PixelAnswer& answer);
-  /// Calls `visit` with each technique that there is.
+  /// Calls `visit` with each existing technique.
   template <class Self, class Visit>
   static void forTechniques(Self& self, const Visit& visit) {
     const auto visitIfThere = [&](auto& technique) {
@@ -138,12 +137,12 @@ class Renderer {
   RenderSettings settings_;
   std::uint64_t frames_ = 0;
   SceneNeeds needs_;
-  glm::dvec3 origin_;  ///< of what is drawn, in the scene's coordinates
-  std::optional<Scene> moved_;  ///< the scene about it, where that is not 0
+  glm::dvec3 origin_;  ///< of the drawn coordinates, in the scene's coordinates
+  std::optional<Scene> moved_;  ///< the scene relative to it, if it is not 0
   float sceneExposure_, exposure_;
   gl::TimeQuery timer_;
   std::optional<RadiosityFrame> radiosity_;  ///< before gpuScene_, which draws its patches
-  std::optional<GpuScene> gpuScene_;  ///< not for path tracing, which has a scene of its own
+  std::optional<GpuScene> gpuScene_;  ///< not for path tracing, which has its own copy of the scene
   SunFrustum sunFrustum_;
   std::vector<LightViews> spots_, points_;
   gl::Buffer frameConstants_;
@@ -153,20 +152,20 @@ class Renderer {
   SurfacePrograms depthPrograms_, surfacePrograms_;
   const gl::Program* toneMap_ = nullptr;
 
-  // Shadow maps of direct light. They are drawn once, but the sun's cascades, which follow the camera.
+  // Shadow maps of direct light. They are drawn once, except for the sun's cascades, which follow the camera.
   std::optional<ShadowMap> shadowMap_;
   std::optional<LayeredDepth> sunCascades_;  ///< instead of shadowMap_
   gl::Buffer sunCascadeConstants_;
   std::optional<LocalLights> localLights_;
   bool shadowsMade_ = false;
 
-  // One of them at most, besides radiosity_.
+  // At most one of them, besides radiosity_.
   std::optional<RsmFrame> rsm_;
   std::optional<LpvFrame> lpv_;
   std::optional<ReceiversFrame> receivers_;
   std::optional<PathFrame> path_;
   std::optional<EnvironmentView> environmentView_;
-  std::optional<LightShafts> shafts_;  ///< over all of it
+  std::optional<LightShafts> shafts_;  ///< added to the finished picture
 };
 
 }  // namespace lucerna

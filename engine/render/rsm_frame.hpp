@@ -20,16 +20,16 @@ class RsmFrame {
   RsmFrame(const FrameParts& parts, const gl::Texture& depth);
   void resize(const gl::Texture& depth);
 
-  /// Draws depth, too.
+  /// Also draws depth.
   void record(gl::TimeQuery& timer, const FrameView& view);
-  /// What it gathered for one pixel of the last frame, whose view this is; pixels from the lower left.
+  /// What it gathered for one pixel of the last frame, which must have had this view; pixels from the lower left.
   std::vector<AskedPart> ask(gl::TimeQuery& timer, const FrameView& view, glm::ivec2 pixel) {
     return gather_.ask(parts_.programs, inputsOf(timer, view), pixel);
   }
   void forget() { maps_.forget(); }
   void collect(bool wait = false) { gather_.collect(wait); }
 
-  /// Of shaders/forward/indirect.glsl, and what it reads.
+  /// Flags of shaders/forward/indirect.glsl, and its inputs.
   gl::ShaderFlags shadingFlags() const { return {{"GATHERED", 1}, {"SHOW_REFUSED", gather_.settings().showRefused}}; }
   void bindForShading() const;
 

@@ -1,4 +1,4 @@
-// What a stage of the frame has made, to be looked at (debug views).
+// Intermediate results of the frame's stages, for debug views.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -14,12 +14,12 @@ struct StagePicture {
     normal,
     flux,
     depth,
-    irradiance,  ///< of receivers: a slice of cells a layer, faces and cascades one after the other
-    coefficients  ///< spherical harmonics of light in cells: a slice a layer, cascades one after the other
+    irradiance,  ///< at receivers: a slice of cells per layer, faces and cascades one after the other
+    coefficients  ///< spherical harmonics of light in cells: one slice per layer, cascades one after the other
   };
   Kind kind;
   std::string name;
-  const gl::Texture* texture;  ///< 2D, an array of layers or 3D; red's, where green and blue lie in others
+  const gl::Texture* texture;  ///< 2D, an array of layers or 3D; the red channel's, if green and blue are separate
   const gl::Texture* green = nullptr;
   const gl::Texture* blue = nullptr;
 

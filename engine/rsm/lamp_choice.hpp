@@ -11,7 +11,7 @@
 namespace lucerna {
 
 /// Keeps the `most` lamps of `views` (all of one kind) that light the scene most, in their order. One warning names the
-/// others and their share of the light. Draws nothing if there are at most that many.
+/// others and their share of the light. Draws nothing if there are no more than that.
 void keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene, std::vector<LightViews>& views,
                        std::size_t most);
 

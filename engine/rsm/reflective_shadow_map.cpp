@@ -32,7 +32,8 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
   };
   programs_.opaque = load(false);
   if (scene.needs().alphaMasks) programs_.masked = load(true);
-  // Positions and flux in 32 bits: world coordinates do not fit 16, nor does a flux of any unit. Read texel by texel.
+  // Positions and flux in 32 bits: neither world coordinates nor flux in arbitrary units fit into 16. Read texel by
+  // texel.
   const glm::ivec3 size(settings.size, settings.size, layers);
   const auto texture = [&](const char* what, gl::Format format) {
     return gl::Texture(fmt::format("{} {}", name, what), format, size, {}, 1, gl::TextureKind::array);
@@ -87,7 +88,7 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, 
     program->set("cosInner", static_cast<float>(light.cosInner));
     program->set("cosOuter", static_cast<float>(light.cosOuter));
   }
-  draw(scene, true);  // geometry before the near plane reflects too
+  draw(scene, true);  // geometry in front of the near plane reflects too
   return {position_, normal_, flux_, 1.0f, largest(light.intensity) * light.largestSolidAngle(size()),
           light_,    albedo()};
 }

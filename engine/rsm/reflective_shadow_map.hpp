@@ -1,5 +1,6 @@
-// Reflective shadow map of a light [Dachsbacher2005]: what the light sees, each texel a virtual point light. One map
-// per light: of the sun, of a spot light, or of an omnidirectional light with its six faces drawn in one pass.
+// Reflective shadow map of a light [Dachsbacher2005]: the surfaces that the light sees, each texel a virtual point
+// light. One map per light: of the sun, of a spot light, or of an omnidirectional light with its six faces drawn in one
+// pass.
 #pragma once
 
 #include "forward/gpu_scene.hpp"
@@ -17,7 +18,7 @@ class ReflectiveShadowMap {
     Light light = Light::sun;
     bool fluxCosine = false;  ///< deviation rsm.flux-cosine: flux times N.L
     bool albedo = false;  ///< a fourth target, for several bounces
-    bool haze = false;  ///< sunlight comes through the medium that is bound (lpv/light_shafts.hpp)
+    bool haze = false;  ///< sunlight is attenuated by the bound medium (lpv/light_shafts.hpp)
   };
   /// 2D arrays: one layer, or the six faces of an omnidirectional light.
   struct Outputs {
@@ -25,12 +26,11 @@ class ReflectiveShadowMap {
     const gl::Texture& normal;  ///< RGBA16F, unit, on the light's side; w = cosine to the light
     const gl::Texture&
         flux;  ///< RGBA32F, reflected flux of the texel, W; w = area of the surface in it, scene units squared
-    float texelArea =
-        1.0f;  ///< sun: across the rays, scene units squared; other lights have no such area: 1. Only for deviations
+    float texelArea = 1.0f;  ///< sun: across the rays, scene units squared; other lights: 1. Only for deviations
     double largestFlux =
         0.0;  ///< of all texels together, W: the light's flux into the map, an upper bound for any albedo up to 1
     Light light = Light::sun;
-    const gl::Texture* albedo = nullptr;  ///< RGBA16F, linear; null unless asked for
+    const gl::Texture* albedo = nullptr;  ///< RGBA16F, linear; null unless requested
     /// Texels of all layers.
     int texelCount() const { return position.size().x * position.size().y * position.size().z; }
     /// Binds to units 0, 1, 2 and, if there is an albedo, 3, where all readers of a map expect it.

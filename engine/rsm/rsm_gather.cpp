@@ -83,7 +83,7 @@ void RsmGather::resize() {
   if (settings_.interpolates()) {
     lowIrradiance_ =
         gl::Texture("gathered irradiance low", gl::Format::rgba32f, lowSize(size, settings_.lowResolution));
-    // A list, yet no buffer: storage blocks may end at 16 MiB, a picture's pixels do not.
+    // A list, but not a buffer: storage blocks may be limited to 16 MiB, too small for a picture's pixels.
     refused_ = gl::Texture("refused pixels", gl::Format::r32ui, size);
   }
 }
@@ -119,7 +119,7 @@ void RsmGather::setFit(const gl::Program& program, const Inputs& inputs) const {
 }
 
 std::vector<AskedPart> RsmGather::ask(gl::ProgramLibrary& programs, const Inputs& inputs, glm::ivec2 pixel) const {
-  constexpr std::size_t kPlaces = 4;  // that interpolation takes
+  constexpr std::size_t kPlaces = 4;  // places that interpolation uses
   std::vector<AskedPart> all;
   for (std::size_t i = 0; i < inputs.maps.size(); ++i) {
     const Map& map = inputs.maps[i];

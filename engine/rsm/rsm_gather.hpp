@@ -20,7 +20,7 @@ namespace lucerna {
 class RsmGather {
  public:
   enum class Weight { unbiased, published };  ///< xi1, or xi1^2 [Dachsbacher2005]
-  enum class Rotation { none, noise };  ///< the same pattern for every pixel, or turned by interleaved gradient noise
+  enum class Rotation { none, noise };  ///< the same pattern for every pixel, or rotated by interleaved gradient noise
   enum class Near { none, clamp, disc, quad };  ///< replacement of 1/d^2 near a surfel; see README.md
   struct Settings {
     int samples = 400;
@@ -28,24 +28,24 @@ class RsmGather {
     Weight weight = Weight::unbiased;
     Rotation rotation = Rotation::none;
     Near nearField = Near::quad;
-    float clampTexels = 1.0f;  ///< Near::clamp: least distance, in texel sides across the rays
+    float clampTexels = 1.0f;  ///< Near::clamp: minimum distance, in texel sides across the rays
     bool interpolate = true;
     int lowResolution = 4;  ///< pixels between low-resolution samples; 1 is the same as interpolate = false
-    float fitNormal = 0.9f;  ///< least cosine between the normals of a pixel and a fitting sample
-    float fitPlane = 0.25f;  ///< most distance from each other's tangent plane, in steps between samples at the pixel
-    float fitDistance = 8.0f;  ///< most distance, in the same unit
-    bool showRefused = false;  ///< paint the refused pixels red
+    float fitNormal = 0.9f;  ///< minimum cosine between the normals of a pixel and a fitting sample
+    float fitPlane = 0.25f;  ///< maximum distance from each other's tangent plane, in sample spacings at the pixel
+    float fitDistance = 8.0f;  ///< maximum distance, in the same unit
+    bool showRefused = false;  ///< paint rejected pixels red
     bool interpolates() const { return interpolate && lowResolution > 1; }
   };
   using Light = ReflectiveShadowMap::Light;
   struct Map {
     ReflectiveShadowMap::Outputs rsm;
-    const LightViews* views = nullptr;  ///< a spot's or an omnidirectional light's; the sun's lie in the frame's block
+    const LightViews* views = nullptr;  ///< for a spot or omnidirectional light; the sun's are in the frame's block
   };
   struct Inputs {
-    std::vector<Map> maps;  ///< one a light, at least one; what they give is added up
+    std::vector<Map> maps;  ///< one per light, at least one; their contributions are added
     glm::mat4 worldFromClip;  ///< the camera's
-    float pixelWidth;  ///< of a pixel, scene units across the view per unit of distance
+    float pixelWidth;  ///< width of a pixel, scene units across the view per unit of distance
   };
   /// Pixels, summed over `frames` whose counts have arrived.
   struct Counts {
@@ -54,13 +54,13 @@ class RsmGather {
   };
   static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
 
-  /// Gathers at the pixels of `visible`, which outlives it and is drawn before. Compiles for the kinds of light in
-  /// `needs`.
+  /// Gathers at the pixels of `visible`, which must outlive this and be drawn before. Compiles for the kinds of light
+  /// in `needs`.
   RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings,
             const VisibleSurfaces& visible);
-  void resize();  ///< to the size that the visible surfaces have now
+  void resize();  ///< to the current size of the visible surfaces
 
-  // In this order; the first two only where settings().interpolates().
+  // Call in this order; the first two only if settings().interpolates().
   void gatherLow(const Inputs& inputs);
   void interpolate(const Inputs& inputs);
   void gatherFull(const Inputs& inputs);
@@ -72,15 +72,15 @@ class RsmGather {
   const Settings& settings() const { return settings_; }
   std::size_t gpuBytes() const;
 
-  /// What the gather found for one pixel, from the lower left: an entry a sample and map, in the order of the maps;
-  /// number.w is the map's. Of the frame that was gathered last, with the same inputs. Compiles and allocates.
+  /// What the gather found for one pixel, counted from the lower left: one entry per sample and map, in the order of
+  /// the maps; number.w is the map's index. For the last gathered frame, with the same inputs. Compiles and allocates.
   std::vector<AskedPart> ask(gl::ProgramLibrary& programs, const Inputs& inputs, glm::ivec2 pixel) const;
 
   // Shared by the passes and the tests' probe.
   /// (xi1 sin 2 pi xi2, xi1 cos 2 pi xi2, xi1 or xi1^2, 0): a Hammersley set, shifted on the torus by `shift`.
   static std::vector<glm::vec4> pattern(int samples, Weight weight, const glm::dvec2& shift = glm::dvec2(0.0));
   static gl::ShaderFlags flags(const Settings& settings, Light light);
-  /// adds: to what is in the image already.
+  /// adds: to the present content of the image.
   static void bindMap(const gl::Program& program, const Settings& settings, const Map& map, bool adds = false);
 
  private:
@@ -88,12 +88,12 @@ class RsmGather {
   void bindVisible(const gl::Program& program, const Inputs& inputs) const;
 
   Settings settings_;
-  std::array<const gl::Program*, 3> low_{}, full_{};  ///< by the kind of light
+  std::array<const gl::Program*, 3> low_{}, full_{};  ///< by kind of light
   const gl::Program* interpolate_ = nullptr;
   gl::Buffer pattern_, work_;
   const VisibleSurfaces* visible_;
   gl::Texture lowIrradiance_, irradiance_;
-  gl::Texture refused_;  ///< of 32 bits: a list of pixels, row by row
+  gl::Texture refused_;  ///< 32 bits: a list of pixels, row by row
   std::unique_ptr<gl::ReadBackRing> ring_;
   Counts counts_;
 };

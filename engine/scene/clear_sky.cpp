@@ -35,8 +35,8 @@ constexpr double kZenithX[3][4] = {
 constexpr double kZenithY[3][4] = {
     {0.00275, -0.00610, 0.00317, 0.0}, {-0.04214, 0.08970, -0.04153, 0.00516}, {0.15346, -0.26756, 0.06670, 0.26688}};
 
-// Illuminance before the atmosphere, klx: the Illuminating Engineering Society's (RP-21, 1984); newer measurements come
-// to 133.1.
+// Illuminance outside the atmosphere, klx: the Illuminating Engineering Society's (RP-21, 1984); newer measurements
+// give 133.1.
 constexpr double kSolarIlluminance = 127.5;
 
 double airMass(double zenithAngle) {
@@ -55,7 +55,7 @@ double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
 SkyColour skyColour(double turbidity, const glm::dvec3& toSun, const glm::dvec3& direction) {
   const double t = turbidity, sunZenith = std::acos(std::clamp(toSun.y, 0.0, 1.0)),
                gamma = angleBetween(toSun, direction);
-  const double cosZenith = std::max(direction.y, 1e-6);  // every b is below 0: the horizon is a limit
+  const double cosZenith = std::max(direction.y, 1e-6);  // every b is below 0: the value at the horizon is a limit
   const Perez luminance{0.1787 * t - 1.4630, -0.3554 * t + 0.4275, -0.0227 * t + 5.3251, 0.1206 * t - 2.5771,
                         -0.0670 * t + 0.3703};
   const Perez x{-0.0193 * t - 0.2592, -0.0665 * t + 0.0008, -0.0004 * t + 0.2125, -0.0641 * t - 0.8989,
@@ -71,7 +71,7 @@ SkyColour skyColour(double turbidity, const glm::dvec3& toSun, const glm::dvec3&
 
 glm::dvec3 linearSrgb(const SkyColour& colour) {
   const glm::dvec3 xyz(colour.x / colour.y, 1.0, (1.0 - colour.x - colour.y) / colour.y);
-  // IEC 61966-2-1, in more digits, so that white stays white.
+  // IEC 61966-2-1, with more digits, so that white stays white.
   const glm::dvec3 rgb(3.2404541621 * xyz.x - 1.5371385128 * xyz.y - 0.4985314096 * xyz.z,
                        -0.9692660305 * xyz.x + 1.8760108454 * xyz.y + 0.0415560175 * xyz.z,
                        0.0556434310 * xyz.x - 0.2040259135 * xyz.y + 1.0572251882 * xyz.z);

@@ -18,14 +18,14 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// Little endian whatever the machine.
+/// Little endian on every machine.
 std::uint64_t unsignedAt(Bytes bytes, std::size_t offset, std::size_t count) {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < count; ++i) value |= std::uint64_t{bytes[offset + i]} << (8 * i);
   return value;
 }
 
-/// What a file says of its values.
+/// Value format and position in the file.
 struct Layout {
   glm::ivec3 size{0};
   std::size_t bytesPerValue = 0;  ///< 1: uint8, 2: uint16, 4: float
@@ -102,7 +102,7 @@ Layout nrrdLayout(const fs::path& file, Bytes bytes) {
       break;
     }
     const std::size_t colon = line.find(": ");
-    if (line[0] == '#' || colon == std::string::npos) continue;  // a comment, or a key:=value of somebody's own
+    if (line[0] == '#' || colon == std::string::npos) continue;  // a comment, or a user-defined key:=value
     const std::string field = line.substr(0, colon), value = line.substr(colon + 2);
     if (field == "type") type = value;
     if (field == "encoding") encoding = value;

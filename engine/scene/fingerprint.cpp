@@ -4,8 +4,8 @@ namespace lucerna {
 
 namespace {
 
-// A field added to one of these changes its size: then add it below (or here, where light does not see it) and correct
-// the figure.
+// Adding a field to one of these changes its size: then add the field below (or here, if light does not depend on it)
+// and correct the number.
 #if defined(__x86_64__) && defined(__GLIBCXX__)
 static_assert(sizeof(Material) == 160, "add what is new to the fingerprint");
 static_assert(sizeof(Medium) == 184, "add what is new to the fingerprint");

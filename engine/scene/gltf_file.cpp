@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Elements of an accessor without bytes of its own (all zero, or sparse) at most.
+/// Maximum number of elements of an accessor without bytes of its own (all zero, or sparse).
 constexpr std::uint64_t kMostZeroElements = 1u << 24;
 
 std::uint32_t wordAt(std::span<const std::uint8_t> bytes, std::size_t at) {
@@ -31,7 +31,7 @@ std::string_view jsonText(const fs::path& file, std::span<const std::uint8_t> by
   if (!all.starts_with("glTF")) return all;
   if (bytes.size() < 20)
     throwBadInput("{}: {} bytes are too few for a binary glTF; is the file truncated?", file.string(), bytes.size());
-  if (wordAt(bytes, 4) == 1) {  // version 1: length and format (0: JSON) of the scene stand in the header
+  if (wordAt(bytes, 4) == 1) {  // version 1: length and format (0: JSON) of the scene are in the header
     const std::uint32_t length = wordAt(bytes, 12);
     if (length > bytes.size() - 20)
       throwBadInput("{}: a scene of {} bytes, {} are there; is the file truncated?", file.string(), length,
@@ -75,7 +75,7 @@ void checkNodes(const fs::path& file, const Json& root) {
                       before->second, name);
     }
   }
-  // Every node has one parent at most, so that only a walk upwards that does not end is a cycle.
+  // Every node has at most one parent, so only a cycle makes the walk upwards endless.
   std::map<std::string, int> depths;
   for (const auto& [name, node] : nodes) {
     std::vector<std::string> way;
@@ -97,7 +97,7 @@ void checkNodes(const fs::path& file, const Json& root) {
   }
 }
 
-/// A whole number of an object; 0 where it is missing. What is no such number is Assimp's to refuse.
+/// A non-negative integer of an object; 0 if missing. Anything else is left for Assimp to reject.
 std::uint64_t wholeNumber(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
@@ -140,14 +140,14 @@ std::vector<std::uint8_t> withNumberedMaterials(const Json& root, std::span<cons
   for (std::size_t i = 0; i < materials.size(); ++i) {
     if (!materials[i].is_object()) continue;
     const auto name = materials[i].find("name");
-    if (name != materials[i].end() && !name->is_string()) continue;  // Assimp refuses it
+    if (name != materials[i].end() && !name->is_string()) continue;  // Assimp rejects it
     materials[i]["name"] =
         fmt::format("{}#{}", i, name == materials[i].end() ? std::string() : name->get<std::string>());
   }
   std::string text = numbered.dump(-1, ' ', false, Json::error_handler_t::replace);
   const std::size_t oldLength = jsonText({}, bytes).size();
   if (oldLength == bytes.size()) return {text.begin(), text.end()};
-  // Binary: header, length and type of the first chunk, the text filled up with blanks, the other chunks.
+  // Binary: header, length and type of the first chunk, the text padded with blanks, the other chunks.
   text.append((4 - text.size() % 4) % 4, ' ');
   std::vector<std::uint8_t> result(bytes.begin(), bytes.begin() + 20);
   result.insert(result.end(), text.begin(), text.end());
@@ -263,7 +263,7 @@ GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t in
   if (material.has("alphaCutoff"))
     result.alphaCutoff = material.at("alphaCutoff").numberBetween(0.0, 1e6, "a number, 0 or more");
 
-  // Extensions; those unknown are named.
+  // Extensions; unknown ones are reported.
   if (!material.has("extensions")) return result;
   const Value extensions = material.at("extensions");
   if (!extensions.json.is_object()) extensions.fail("an object {...}");
@@ -284,7 +284,8 @@ GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t in
       if (!extension.has("attenuationDistance")) continue;  // no absorption
       const double distance = extension.at("attenuationDistance").positiveNumber();
       if (!extension.has("attenuationColor")) continue;
-      // Light is `colour` of itself after `distance`. Black would be infinitely dense: a millionth is black too.
+      // Light is reduced to `colour` after `distance`. Black would be infinitely dense; a millionth is as good as
+      // black.
       const glm::dvec3 colour =
           glm::max(extension.at("attenuationColor").vectorBetween(0.0, 1.0, "an array of 3 numbers from 0 to 1"),
                    glm::dvec3(1e-6));

@@ -22,8 +22,8 @@ inline constexpr int kMostNodeDepth = 1000;
 /// than kMostNodeDepth, and if an accessor has more elements than its bytes can hold.
 Json checkedGltf(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 
-/// The file with the number of each material before its name, "3#paint": Assimp returns materials in the order of their
-/// first use. `root` is its JSON.
+/// The file with each material's number before its name, "3#paint": Assimp returns materials in order of first use.
+/// `root` is its JSON.
 std::vector<std::uint8_t> withNumberedMaterials(const Json& root, std::span<const std::uint8_t> bytes);
 
 /// The number before such a name; empty if there is none (Assimp's material for meshes without one).
@@ -44,19 +44,19 @@ struct GltfMaterial {
   enum class Alpha { opaque, mask, blend };
   Alpha alpha = Alpha::opaque;
   double alphaCutoff = 0.5,
-         baseAlpha = 1.0;  ///< cut out where baseAlpha * texture's alpha * vertex's alpha is below alphaCutoff (mask)
+         baseAlpha = 1.0;  ///< cut out if baseAlpha * texture's alpha * vertex's alpha is below alphaCutoff (mask)
   float emissiveStrength = 1.0f;  ///< KHR_materials_emissive_strength
   float ior = 1.5f;  ///< KHR_materials_ior
   double transmission = 0.0;  ///< KHR_materials_transmission
   double thickness = 0.0;  ///< KHR_materials_volume; 0: a thin wall
-  glm::vec3 absorption{0.0f};  ///< of what fills it, 1 / scene unit: -ln(attenuationColor) / attenuationDistance
+  glm::vec3 absorption{0.0f};  ///< of the interior, 1 / scene unit: -ln(attenuationColor) / attenuationDistance
   float normalScale = 1.0f;  ///< of its normal map
-  TextureTransform transform;  ///< of the base colour's texture; where there is none, of the first other one
-  bool clamped = false;  ///< a texture is to be clamped or mirrored beyond its edge; it repeats here
-  std::string notDone;  ///< what of it no technique shows, for one warning; empty: nothing
+  TextureTransform transform;  ///< of the base colour's texture; without one, of the first other texture
+  bool clamped = false;  ///< a texture should be clamped or mirrored beyond its edge; it repeats here
+  std::string notDone;  ///< unsupported properties, for one warning; empty: none
 };
 
-/// Material `index` of a glTF 2; the default material if there is none of that number. Throws Error(badInput) naming
+/// Material `index` of a glTF 2; the default material if there is none with that number. Throws Error(badInput) naming
 /// file and key.
 GltfMaterial gltfMaterial(const Json& root, const std::filesystem::path& file, std::size_t index);
 

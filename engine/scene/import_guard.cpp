@@ -14,9 +14,9 @@ namespace {
 constexpr int kSignals[4] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE};
 constexpr std::size_t kStackBytes = 64 * 1024;
 
-thread_local std::string g_message;  // made beforehand: a handler may only write it
+thread_local std::string g_message;  // formatted in advance: a handler may only write it
 
-/// Only what a signal handler may do: write and end. Another thread's fault goes on as it would have.
+/// Only async-signal-safe calls: write and exit. A fault of another thread proceeds as usual.
 extern "C" void onFault(int signal) {
   if (g_message.empty()) {
     std::signal(signal, SIG_DFL);

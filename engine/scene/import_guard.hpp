@@ -1,7 +1,7 @@
 // A last line of defence around the model library (no GL; private to engine/scene). Assimp 5.2.5 recurses once per
 // level of nesting in most of its readers, and Debian's build aborts if its assumptions fail: a small broken file ends
-// the process silently. While a guard lives, such an end of its thread gives one line on standard error and exit code
-// 2, as for every other unreadable file.
+// the process silently. While a guard lives, such a crash of its thread instead prints one line on standard error and
+// exits with code 2, as for every other unreadable file.
 #pragma once
 
 #include <csignal>
@@ -18,7 +18,7 @@ class ImportGuard {
   ImportGuard& operator=(const ImportGuard&) = delete;
 
  private:
-  std::vector<char> stack_;  ///< that the handler runs on: the thread's own may be what ran out
+  std::vector<char> stack_;  ///< the handler's stack: the thread's own may be exhausted
   stack_t stackBefore_{};
   struct sigaction before_[4]{};
 };

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-/// Below this length (of vectors that are unit at the keys) a direction is taken as lost.
+/// Below this length an interpolated direction (from unit vectors at the keys) counts as lost.
 constexpr double kLost = 1e-6;
 
 // --------------------------------------------------------------------------------------------------------------
@@ -79,9 +79,9 @@ KeyFrame readKey(LineReader line) {
     } else if (word == "u") {
       up = line.vector(word);
     } else if (word == "r") {
-      line.vector(word);  // follows from d and u
+      line.vector(word);  // implied by d and u
     } else if (word == "a") {
-      line.number(word);  // follows from the picture's size
+      line.number(word);  // implied by the picture's size
     } else if (word == "f") {
       const double degrees = line.number(word);
       if (!(degrees > 0.0 && degrees < 180.0))
@@ -192,8 +192,8 @@ Camera Spline::at(double t) const {
 
   Camera camera;
   camera.position = hermite(k0.position, k1.position, d0.position, d1.position, u);
-  // Between opposite directions the spline may pass through zero, and up may meet the direction: then the nearest
-  // key's.
+  // Between opposite directions the spline may pass through zero, and up may become parallel to the direction: then use
+  // the nearest key's.
   const glm::dvec3 direction = hermite(k0.direction, k1.direction, d0.direction, d1.direction, u);
   camera.direction = glm::length(direction) > kLost ? glm::normalize(direction) : nearest.direction;
   const auto acrossDirection = [&](const glm::dvec3& up) {

@@ -1,6 +1,6 @@
 // The catalogue's numbers. Measured liquids were diluted: `millilitres` of the substance in 23 litres of water
-// [Narasimhan2006]; as single scattering makes coefficients proportional to concentration, the undiluted ones are 23000
-// / millilitres times what was measured.
+// [Narasimhan2006]. Single scattering makes coefficients proportional to concentration, so the undiluted ones are 23000
+// / millilitres times the measured ones.
 #include "scene/media_catalogue.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace lucerna {
 
 namespace {
 
-/// [VPT2024, table 4.1]; ior from the text under it.
+/// [VPT2024, table 4.1]; ior from the text below it.
 struct Published {
   const char* name;
   glm::dvec3 scattering, absorption, anisotropy;
@@ -97,14 +97,14 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Lower case letters alone: "Coca_Cola.001" is "cocacola".
+/// Keeps only letters, in lower case: "Coca_Cola.001" is "cocacola".
 std::string lettersOf(std::string_view text) {
   std::string result = lower(text);
   std::erase_if(result, [](char c) { return c < 'a' || c > 'z'; });
   return result;
 }
 
-/// Other words for the original's media, letters alone; the Czech ones as they come without accents.
+/// Synonyms for the original's media, letters only; the Czech ones without accents.
 constexpr std::pair<const char*, const char*> kOtherWords[] = {
     {"mleko", "milk"},        {"kava", "espresso"},
     {"coffee", "espresso"},   {"coke", "coca cola"},

@@ -12,11 +12,11 @@ bool anyPositive(const Image& picture) {
   return std::any_of(picture.pixels.begin(), picture.pixels.end(), [](const glm::vec3& v) { return anyPositive(v); });
 }
 
-/// Whether a corner's normal is not that of the triangle, by more than its rounding; which way round the normals look
-/// counts too, as surfaces are turned by the triangle's side.
+/// Whether a corner's normal differs from the triangle's by more than rounding. Its orientation counts too, since
+/// surfaces are flipped by the triangle's side.
 bool isSmooth(const Scene& scene, const Mesh& mesh) {
   if (mesh.firstIndex + std::size_t{mesh.indexCount} > scene.indices.size())
-    return false;  // a scene without geometry, for its settings alone
+    return false;  // a scene without geometry, used only for its settings
   for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; i += 3) {
     const auto corner = [&](std::uint32_t k) -> const Vertex& { return scene.vertices[scene.indices[i + k]]; };
     const glm::dvec3 a(corner(0).position);
@@ -36,7 +36,7 @@ bool isDense(const Medium& medium, double extent) {
     const double scattering = medium.scattering[c], absorption = medium.absorption[c];
     const double depth = (scattering + absorption) * extent,
                  g = medium.phase == PhaseFunction::rayleigh ? 0.0 : static_cast<double>(medium.anisotropy[c]);
-    // Collisions before absorption; and before leaving, which is a random walk.
+    // Mean numbers of collisions before absorption, and before leaving by a random walk.
     if (scattering > 31.0 * absorption && depth * std::max(1.0, depth * (1.0 - g)) > 32.0) return true;
   }
   return false;
@@ -96,7 +96,7 @@ SceneNeeds analyse(const Scene& scene) {
     needs.metalMaps |= material.metalMap.has_value();
     needs.smoothNormals = needs.smoothNormals || isSmooth(scene, mesh);
     needs.mirrors |= material.bsdf == Bsdf::mirror;
-    // A picture's mean may be no metal where texels are.
+    // A picture's mean may be non-metallic even if some texels are metal.
     needs.conductors |= material.bsdf == Bsdf::conductor ||
                         (material.bsdf == Bsdf::diffuse && material.metalMap && material.metalMap->metallic > 0.5f);
     needs.dielectrics |= material.bsdf == Bsdf::dielectric;
@@ -107,7 +107,7 @@ SceneNeeds analyse(const Scene& scene) {
         material.interior < static_cast<int>(scene.media.size()))
       needs.denseMedia = needs.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)],
                                                      glm::length(mesh.bounds.extent()));
-    // A texture only scales the factor down, so the factor alone tells whether anything can be reflected.
+    // A texture only scales the factor down, so the factor alone decides whether anything can be reflected.
     reflects |= anyPositive(material.diffuse);
   }
   needs.directionalLight = scene.sun && anyPositive(scene.sun->irradiance);

@@ -1,6 +1,7 @@
 // SceneNeeds: the features that a scene and the chosen settings require (no GL, pure).
 //
-// The only source of shader flags and of what is built. A feature that is false here is not compiled, allocated or run.
+// The only source of shader flags and of decisions what to build. A feature that is false here is not compiled,
+// allocated or run.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -22,16 +23,16 @@ struct SceneNeeds {
   bool spotLights = false;  ///< a spot light with intensity > 0
   bool pointLights = false;  ///< an omnidirectional light with intensity > 0
   bool environment =
-      false;  ///< light from all around, seen behind surfaces; whoever does not let it light them says so
+      false;  ///< light from all directions, visible behind surfaces; code that does not let it light them says so
   bool environmentPicture = false;
-  bool emissionTextures = false;  ///< any drawn mesh emits by a picture
-  bool normalMaps = false;  ///< any drawn mesh has a picture of normals
-  bool metalMaps = false;  ///< any drawn mesh is a metal, or rough, by a picture
-  // Of the path tracer alone:
-  bool smoothNormals = false;  ///< a vertex normal that is not its triangle's
+  bool emissionTextures = false;  ///< any drawn mesh emits by a texture
+  bool normalMaps = false;  ///< any drawn mesh has a normal map
+  bool metalMaps = false;  ///< any drawn mesh is metallic or rough by a texture
+  // Only for the path tracer:
+  bool smoothNormals = false;  ///< a vertex normal that differs from its triangle's
   bool mirrors = false;
   bool conductors = false;
-  bool dielectrics = false;  ///< refracting ones, smooth or rough
+  bool dielectrics = false;  ///< refracting, smooth or rough
   bool roughDielectrics = false;
   bool nullBoundaries = false;  ///< a boundary that changes only the medium
   bool media = false;  ///< a medium with an effect, inside a drawn boundary or around the camera
@@ -48,7 +49,7 @@ struct SceneNeeds {
 
 SceneNeeds analyse(const Scene& scene);
 
-/// Whether light scatters some 32 times or more in a body of that extent: the path tracer then walks without rays if
+/// Whether light scatters about 32 times or more in a body of that extent: the path tracer then walks without rays if
 /// possible.
 bool isDense(const Medium& medium, double extent);
 

@@ -1,6 +1,6 @@
-// A strict look over Wavefront OBJ text before Assimp reads it. Assimp 5.2 accepts a face cut down to two vertices (the
+// A strict check of Wavefront OBJ text before Assimp reads it. Assimp 5.2 accepts a face cut down to two vertices (the
 // usual end of a truncated file) and texture-coordinate or normal indices that no line defines, and names no lines.
-// Only what a loader must rely on is checked: the numbers of v, vt, vn and the indices of f; all else passes.
+// Only what a loader must rely on is checked: the numbers of v, vt, vn and the indices of f; everything else passes.
 // Source: "Advanced Visualizer Manual", appendix B1, Wavefront Technologies (object files).
 #include "scene/scene_file.hpp"
 
@@ -37,7 +37,7 @@ class ObjChecker {
       skipLine();
     }
     endsInUnusedVertex();
-    // Faces may refer to vertices further down; so this is known only here.
+    // Faces may refer to vertices further down, so this is checked only at the end.
     for (std::size_t part = 0; part < 3; ++part) {
       if (highest_[part] <= counts_[part]) continue;
       line_ = highestLine_[part];
@@ -77,7 +77,7 @@ class ObjChecker {
       std::string_view text = word();
       if (text.empty()) fail(fmt::format("{} has {} numbers, expected {}; is the file truncated?", keyword, i, needed));
       if (text[0] == '+') text.remove_prefix(1);
-      float value = 0.0f;  // not finite is allowed here: the loader drops such triangles, and counts them
+      float value = 0.0f;  // non-finite values are allowed here: the loader drops and counts such triangles
       const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
       if (error == std::errc::invalid_argument || end != text.data() + text.size())
         fail(fmt::format("'{}' in a {} line, expected a number", text, keyword));
@@ -120,13 +120,13 @@ class ObjChecker {
       else if (lastLine() && parts != partsOfFirst) fail(fmt::format("the file ends within a face, at '{}'", text));
       ++vertices;
     }
-    // Elsewhere such faces are only useless; at the very end they are what a cut leaves behind.
+    // Elsewhere such faces are merely useless; at the very end they indicate a truncated file.
     if (vertices < 3 && lastLine())
       fail(fmt::format("the file ends within a face: {} vertices, expected at least 3", vertices));
   }
 
-  /// Vertices come before the faces that use them: a last line that defines one no face uses, and has no line end, was
-  /// cut.
+  /// Vertices come before the faces that use them. If the last line has no line end and defines a vertex that no face
+  /// uses, the file was truncated.
   void endsInUnusedVertex() const {
     if (endsWithLineEnd_ || lastPart_ < 0) return;
     const auto part = static_cast<std::size_t>(lastPart_);
@@ -145,9 +145,9 @@ class ObjChecker {
   std::size_t at_ = 0;
   int line_ = 0;
   std::array<long, 3> counts_{};  ///< lines v, vt, vn so far
-  std::array<long, 3> highest_{};  ///< the highest index any face has
-  std::array<int, 3> highestLine_{};  ///< where
-  int lastPart_ = -1;  ///< what the last line among v, vt, vn, f defines; -1: a face
+  std::array<long, 3> highest_{};  ///< highest index in any face
+  std::array<int, 3> highestLine_{};  ///< its line
+  int lastPart_ = -1;  ///< defined by the last line among v, vt, vn, f; -1: a face
   bool endsWithLineEnd_ = true;
 };
 
@@ -160,7 +160,7 @@ std::string repairedObj(std::string_view obj) {
   text.reserve(obj.size() + obj.size() / 16);
   const auto isBlank = [](char c) { return c == ' ' || c == '\t'; };
   bool vertex = false,
-       continued = false;  // within a line of v, vt or vn; whether the line goes on one that a backslash ended
+       continued = false;  // within a line of v, vt or vn; whether a backslash continues the previous line
   for (std::size_t i = 0; i < obj.size(); ++i) {
     if (i == 0 || obj[i - 1] == '\n') {
       const std::size_t end = obj.substr(0, i).find_last_not_of("\r\n");

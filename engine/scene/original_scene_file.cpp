@@ -106,15 +106,14 @@ std::vector<std::string> wordsOf(const std::string& line) {
   return words;
 }
 
-/// The rest of a line after its first word, without blanks around: names may hold blanks.
+/// The rest of a line after its first word, trimmed: names may contain blanks.
 std::string restOf(const std::string& line, const std::string& firstWord) {
   const std::size_t from = line.find_first_not_of(" \t", line.find(firstWord) + firstWord.size());
   const std::size_t to = line.find_last_not_of(" \t\r");
   return from == std::string::npos || to < from ? std::string() : line.substr(from, to - from + 1);
 }
 
-/// The materials of all libraries that an OBJ names, in order; those that cannot be read are left out (the loader has
-/// warned).
+/// The materials of all libraries named by an OBJ, in order; unreadable ones are left out (the loader has warned).
 std::vector<std::string> materialNames(const fs::path& obj) {
   std::istringstream text(readFileText(obj));
   std::vector<std::string> names;
@@ -127,7 +126,7 @@ std::vector<std::string> materialNames(const fs::path& obj) {
   return names;
 }
 
-/// The material that an ID means; empty where there is none.
+/// The material for an ID; empty if there is none.
 std::string materialOfId(const std::string& id, const std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), id) != names.end()) return id;
   std::size_t number = 0;
@@ -161,7 +160,7 @@ Scene loadOriginalScene(const Value& root) {
     material.specular = glm::vec3(0.0f);
   }
   std::vector<std::string> names = materialNames(model);
-  if (names.empty())  // no MTL: the names in the OBJ are all there is
+  if (names.empty())  // no MTL: only the names in the OBJ are known
     for (const Material& material : scene.materials) names.push_back(material.name);
   for (const auto& [id, published] : media) {
     const std::string name = materialOfId(id, names);
@@ -241,7 +240,7 @@ std::pair<std::string, std::vector<std::string>> draftOriginalScene(const fs::pa
     report.push_back(fmt::format("no {}: camera and light look at the origin", model.string()));
   }
   const glm::dvec3 light = target + 2.0 * radius * glm::normalize(glm::dvec3(0.5, 1.5, 1.0));
-  const double intensity = 10.0 * glm::dot(light - target, light - target);  // 10 W/m^2 in the middle
+  const double intensity = 10.0 * glm::dot(light - target, light - target);  // 10 W/m^2 in the centre
 
   const auto vector = [](const glm::dvec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); };
   const auto quoted = [](const std::string& text) {
@@ -271,7 +270,7 @@ std::pair<std::string, std::vector<std::string>> draftOriginalScene(const fs::pa
           "{}: resembles no medium, diffuse{}; commented out as glass of ior {:g}", entry.name,
           entry.opacity < 1.0 || entry.ior > 1.0 ? ", though the MTL has it transparent or gives it an ior" : "", ior));
     }
-    if (!written.insert(key).second) continue;  // named twice in the MTL
+    if (!written.insert(key).second) continue;  // occurs twice in the MTL
     text += fmt::format(
         ",\n  {}: {{\n    \"sigma_s\": {},\n    \"sigma_a\": {},\n    \"g\": {},\n    \"ior\": {:g}\n  }}", quoted(key),
         vector(medium->scattering), vector(medium->absorption), vector(medium->anisotropy), ior);

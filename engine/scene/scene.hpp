@@ -1,7 +1,7 @@
-// A scene as plain data (no GL): what the loaders produce and what every technique reads.
+// A scene as plain data (no GL): written by the loaders, read by every technique.
 //
-// Space: right-handed, +y up unless the file says otherwise, lengths in scene units; `metresPerUnit` says how long a
-// unit is. Colours are linear. Reflectances are Lambertian albedos (exitance over irradiance), 0..1.
+// Space: right-handed, +y up unless the file says otherwise, lengths in scene units; `metresPerUnit` is the length of a
+// unit. Colours are linear. Reflectances are Lambertian albedos (exitance over irradiance), 0..1.
 #pragma once
 
 #include "base/image.hpp"
@@ -34,7 +34,7 @@ struct Bounds {
   glm::dvec3 extent() const { return empty() ? glm::dvec3(0.0) : max - min; }
 };
 
-/// One vertex as the vertex buffer holds it: attribute 0 position, 1 texture coordinate, 2 normal.
+/// A vertex as laid out in the vertex buffer: attribute 0 position, 1 texture coordinate, 2 normal.
 struct Vertex {
   glm::vec3 position{0.0f};
   glm::vec2 texCoord{0.0f};  ///< v = 0 is the bottom row of a texture (OBJ, OpenGL)
@@ -43,7 +43,7 @@ struct Vertex {
 
 /// A picture used by materials; several materials may share one.
 struct Texture {
-  std::filesystem::path file;  ///< where it came from; messages name it
+  std::filesystem::path file;  ///< its source, for messages
   Bitmap bitmap;  ///< 8-bit; albedo maps are sRGB-encoded
 };
 
@@ -53,12 +53,12 @@ enum class Bsdf {
   mirror,  ///< reflects `specular`, smooth
   conductor,  ///< GGX of `roughness`, Fresnel by Schlick between `specular` at normal incidence and 1
   dielectric,  ///< reflects and refracts by `ior`; smooth at roughness 0, else GGX
-  none,  ///< only a boundary between media: light passes straight
+  none,  ///< only a boundary between media: light passes straight through
 };
 
-/// A surface whose metallic share, roughness or highlight differ from texel to texel [GLTF2, appendix B]: base colour b
-/// = `base` * diffuseTexture, m = `metallic` * blue, r = `roughness` * green; then diffuse b (1 - m), specular
-/// mix(0.04, b, m), GGX alpha r^2, Blinn-Phong exponent 2 / r^4 - 2.
+/// A surface whose metallic share, roughness or highlight vary by texel [GLTF2, appendix B]: base colour b = `base` *
+/// diffuseTexture, m = `metallic` * blue, r = `roughness` * green; then diffuse b (1 - m), specular mix(0.04, b, m),
+/// GGX alpha r^2, Blinn-Phong exponent 2 / r^4 - 2.
 struct MetalMap {
   glm::vec3 base{1.0f};
   float metallic = 1.0f;
@@ -70,16 +70,16 @@ struct Material {
   std::string name;
   Bsdf bsdf = Bsdf::diffuse;
   float roughness = 0.0f;  ///< GGX alpha, 0..1; 0: smooth
-  float ior = 1.5f;  ///< of the inside (against the normal) over vacuum
-  int interior = -1;  ///< index into Scene::media of what fills a dielectric or none; -1: vacuum
+  float ior = 1.5f;  ///< of the inside (against the normal) relative to vacuum
+  int interior = -1;  ///< index into Scene::media of the interior of a dielectric or none; -1: vacuum
   int priority = 0;  ///< where two closed dielectrics overlap, the higher one counts [SchmidtBudge2002]
   glm::vec3 diffuse{0.5f};  ///< albedo factor (Kd), multiplies the texture
   glm::vec3 specular{0.0f};  ///< Ks
   float shininess = 1.0f;  ///< Blinn-Phong exponent (Ns)
-  glm::vec3 emission{0.0f};  ///< emitted radiance (Ke); with a picture of it, its mean over the picture
-  glm::vec3 emissionScale{0.0f};  ///< with a picture: emitted radiance where that is white
+  glm::vec3 emission{0.0f};  ///< emitted radiance (Ke); with an emission texture, its mean
+  glm::vec3 emissionScale{0.0f};  ///< with an emission texture: emitted radiance where that is white
   float opacity = 1.0f;  ///< d
-  int emissionTexture = -1;  ///< picture of the emission (map_Ke), sRGB-encoded; radiosity takes its mean over a patch
+  int emissionTexture = -1;  ///< emission texture (map_Ke), sRGB-encoded; radiosity uses its mean over a patch
   int diffuseTexture = -1;  ///< index into Scene::textures, -1: none
   int alphaTexture = -1;  ///< mask in its own file (map_d); its red channel, or its alpha where it has one
                           ///< (bitmap.hasAlpha); not sRGB-encoded, and never a diffuseTexture of this material
@@ -88,7 +88,7 @@ struct Material {
       -1;  ///< normals, x along u and y along v, as 0.5 + 0.5 n; not sRGB-encoded (shaders/lib/normal_map.glsl)
   float normalScale = 1.0f;  ///< on their x and y
   std::optional<MetalMap>
-      metalMap;  ///< then diffuse, specular, shininess, roughness and bsdf are those of the picture's mean
+      metalMap;  ///< then diffuse, specular, shininess, roughness and bsdf are those of the texture's mean
 };
 
 /// A run of indices drawn with one material.
@@ -103,7 +103,7 @@ struct Mesh {
 /// Light from one direction, the sun: parallel rays.
 struct DirectionalLight {
   glm::dvec3 direction{0.0, -1.0, 0.0};  ///< unit vector along which the light travels
-  glm::vec3 irradiance{0.0f};  ///< on a plane across the rays, W/m^2 in scene units
+  glm::vec3 irradiance{0.0f};  ///< on a plane perpendicular to the rays, W/m^2 in scene units
 };
 
 /// A lamp with a cone of light. Radiant intensity at an angle theta from `direction`:
@@ -136,34 +136,34 @@ struct Camera {
   double verticalFov = 0.9;  ///< radians
 };
 
-/// Light from infinitely far all around. A latitude-longitude picture: u grows with atan2(x, -z), v from +y (top row)
+/// Light from infinity in all directions. A latitude-longitude picture: u grows with atan2(x, -z), v from +y (top row)
 /// to -y.
 struct Environment {
-  glm::vec3 radiance{0.0f};  ///< constant, or a factor on the picture
+  glm::vec3 radiance{0.0f};  ///< constant, or a factor that scales the picture
   std::optional<Image> picture;  ///< linear radiance
   double rotation = 0.0;  ///< about +y, radians
 };
 
 struct Scene {
   std::string name;  ///< file stem
-  std::filesystem::path file;  ///< what was loaded
+  std::filesystem::path file;  ///< the loaded file
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  ///< triangles
   std::vector<Mesh> meshes;
-  std::vector<Material> materials;  ///< at least one where there is a mesh
+  std::vector<Material> materials;  ///< at least one if there is a mesh
   std::vector<Texture> textures;
   std::optional<DirectionalLight> sun;
-  bool defaultSun = false;  ///< no file has a light: the sun is the default
+  bool defaultSun = false;  ///< no file has a light, so the sun is the default
   std::vector<SpotLight> spots;
   std::vector<PointLight> points;
   std::vector<Medium> media;
-  int cameraMedium = -1;  ///< index of the medium that the camera is in where no boundary tells; -1: vacuum
+  int cameraMedium = -1;  ///< index of the medium around the camera outside all boundaries; -1: vacuum
   std::optional<Environment> environment;  ///< seen behind the scene; lights it in the path tracer, in radiosity and
                                            ///< with lpv.transport=gather or rays
   std::vector<Camera> cameras;  ///< never empty after loading: the first is the default view
   Bounds bounds;
   double metresPerUnit = 1.0;
-  glm::vec3 background{0.0f};  ///< radiance seen where there is neither surface nor environment; it lights nothing
+  glm::vec3 background{0.0f};  ///< radiance visible where there is neither surface nor environment; it lights nothing
   float exposure = 1.0f;  ///< multiplies radiance before tone mapping; 3 with the default sun
   std::filesystem::path keyFrames;  ///< the walk's camera path; empty: none named
   std::size_t degenerateTriangles =
@@ -174,9 +174,9 @@ struct Scene {
   std::size_t triangleCount() const { return indices.size() / 3; }
 };
 
-/// Reads a scene: a scene JSON (ours; see scene_file.cpp for its keys) or whatever Assimp reads.
+/// Reads a scene: a scene JSON (ours; see scene_file.cpp for its keys) or any format that Assimp reads.
 /// Problems that leave something to show (missing texture, missing MTL) give one warning naming the file; others
-/// (missing file, a folder, nothing to draw, truncated or malformed data) throws Error(badInput).
+/// (missing file, a folder, nothing to draw, truncated or malformed data) throw Error(badInput).
 /// Files without any light get the default sun, files without a camera a view computed from the bounds.
 Scene loadScene(const std::filesystem::path& file);
 

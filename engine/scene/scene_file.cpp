@@ -1,7 +1,7 @@
-// Our scene JSON: a model and what its file cannot say. One object; every key but "model" may be left out.
+// Our scene JSON: a model, and properties that its file cannot express. One object; every key but "model" is optional.
 //   "description": text for people
 //   "model":       path of the model, relative to the JSON
-//   "scale":       millimetres a scene unit
+//   "scale":       millimetres per scene unit
 //   "camera":      {"position": [x,y,z], "target": [x,y,z] or "direction": [x,y,z], "up": [x,y,z],
 //                  "fov": vertical, degrees}
 //   "cameras":     an array of such, each with a "name"; instead of "camera"
@@ -10,15 +10,15 @@
 //                   "intensity": [r,g,b] on the axis, W/sr,
 //                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula}]
 //   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr}]
-//                  Where one of these is given and "sun" is not, there is no default sun.
-//   "background":  [r,g,b], radiance seen where there is no environment
+//                  If one of these is given and "sun" is not, there is no default sun.
+//   "background":  [r,g,b], radiance visible where there is no environment
 //   "exposure":    factor before tone mapping
 //   "keyFrames":   path of the camera path, relative to the JSON
 //   "environment": {"radiance": [r,g,b], constant or a factor (1) on
 //                   "picture": path of a latitude-longitude hdr, exr or pfm; "rotation": degrees about +y},
 //                  or {"sky": {"turbidity": 1.7 to 10 (3), "ground": albedo below the horizon (0.2)},
-//                      "radiance": a factor (1)}: a clear sky as the sun asks for, which must stand above the horizon
-//                  (scene/clear_sky.hpp); or null for none. Not given, the default sun has its clear sky.
+//                      "radiance": a factor (1)}: a clear sky for the sun's position, which must be above the horizon
+//                  (scene/clear_sky.hpp); or null for none. Without the key, the default sun has its clear sky.
 //   "media", "materials", "cameraMedium": see scene_media.hpp
 // A top-level key "scene" marks the JSON of the VPT original instead: see original_scene_file.cpp.
 // Unknown keys are errors. A new key is one more entry in the table in loadSceneFile.
@@ -147,7 +147,7 @@ std::vector<Light> readLights(const Value& array, Light (*read)(const Value&)) {
   return lights;
 }
 
-/// Whether the picture lights anything; throws where a texel is no radiance.
+/// Whether the picture lights anything; throws if a texel is not a valid radiance.
 bool checkRadiance(const Image& picture, const std::filesystem::path& file, const glm::vec3& factor) {
   bool lights = false;
   for (int y = 0; y < picture.height; ++y)
@@ -218,7 +218,7 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   if (!json.is_object()) throwBadInput("{}: expected a JSON object with the key \"model\"", file.string());
   if (root.has("scene")) return loadOriginalScene(root);
 
-  // What is said is kept until the model is there: it overrides what the model's file says.
+  // Values given here are kept until the model is loaded: they override those of the model's file.
   std::filesystem::path model, keyFrames;
   std::optional<double> scale, exposure;
   std::vector<Camera> cameras;

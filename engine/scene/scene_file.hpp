@@ -14,8 +14,8 @@ Scene loadModel(const std::filesystem::path& file);
 /// The scene JSON: a model with cameras, lights and settings. Its keys: scene_file.cpp.
 Scene loadSceneFile(const std::filesystem::path& file);
 
-/// Throws Error(badInput) naming file and line where Wavefront OBJ text is malformed or truncated: numbers missing, a
-/// face with vertices that the file does not have, binary data.
+/// Throws Error(badInput) naming file and line if Wavefront OBJ text is malformed or truncated: numbers missing, a face
+/// with vertices that the file does not have, binary data.
 void checkObj(const std::filesystem::path& file, std::string_view text);
 
 /// The text in a form that Assimp 5.2.5 reads correctly: with a 0 before every number that begins with a dot (it

@@ -1,40 +1,35 @@
-// Models through Assimp: geometry into one vertex and one index buffer, materials, textures, cameras and the sun.
+// Loads models through Assimp: geometry into one vertex and one index buffer, materials, textures, cameras and the sun.
 //
-// What is decided here, as files do not say it:
-// - Normals that are missing are made by Assimp, smooth across edges up to kCreaseAngle.
+// Decisions where files are silent:
+// - Missing normals are made by Assimp, smooth across edges up to kCreaseAngle.
 // - Triangles with positions that are not finite are dropped and counted (Scene::droppedTriangles); lines and points
-// are
-//   dropped. Triangles of zero area are counted (Scene::degenerateTriangles) and kept: Crytek Sponza has one, and its
-//   published count of 262,267 is to be met.
-// - Equal vertices of a mesh are joined where all their floats are equal, bit by bit: no tolerance, so that scenes of
-// any
-//   scale keep their shape.
-// - A material with opacity 0 would be invisible; exporters that mix up `d` and `Tr` write it for solid things: taken
-// as 1.
+//   are dropped. Triangles of zero area are counted (Scene::degenerateTriangles) and kept: Crytek Sponza has one, and
+//   its published count of 262,267 should be met.
+// - Vertices of a mesh are merged if all their floats are equal, bit by bit: no tolerance, so that scenes of any scale
+//   keep their shape.
+// - A material with opacity 0 would be invisible; exporters that mix up `d` and `Tr` write it for solid things, so it
+//   counts as 1.
 // - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic),
-// Blinn-Phong
-//   exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). glTF's pictures of
-//   it are read texel by texel (MetalMap); what takes a material as a whole, and files of other formats, have their
-//   mean, which keeps a surface's total.
-// - glTF 2 by its own JSON where Assimp 5.2.5 leaves things out (gltf_file.hpp): KHR_texture_transform goes into the
-// texture coordinates, alphaCutoff over
-//   baseColorFactor's alpha into the mask, KHR_materials_emissive_strength into the emission, KHR_materials_volume into
-//   a medium, colours that all vertices of a mesh share into its material. What is not shown is one warning a material.
-//   Occlusion textures are light that techniques find themselves: not read.
-// - How surfaces scatter in the path tracer (Material::bsdf; the real-time techniques do not read it). MTL: illum 5 is
-// a mirror of Ks;
-//   illum 4, 6, 7 and 9 with an Ni are a smooth dielectric of that index (Ni 1: a boundary that does nothing). glTF:
-//   transmission above 0.5 a dielectric of index 1.5, else metallic above 0.5 a conductor of the base colour; alpha =
-//   roughness^2. All else is Lambert.
+//   Blinn-Phong exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). glTF's
+//   textures of it are read texel by texel (MetalMap). Code that treats a material as a whole, and files of other
+//   formats, use their mean, which preserves a surface's total.
+// - glTF 2 is read from its own JSON where Assimp 5.2.5 leaves things out (gltf_file.hpp): KHR_texture_transform goes
+//   into the texture coordinates, alphaCutoff over baseColorFactor's alpha into the mask,
+//   KHR_materials_emissive_strength into the emission, KHR_materials_volume into a medium, colours that all vertices of
+//   a mesh share into its material. Unsupported properties give one warning per material. Occlusion textures are not
+//   read: techniques compute that light themselves.
+// - Scattering in the path tracer (Material::bsdf; the real-time techniques do not read it). MTL: illum 5 is a mirror
+//   of Ks; illum 4, 6, 7 and 9 with an Ni are a smooth dielectric of that index (Ni 1: a boundary without effect).
+//   glTF: transmission above 0.5 is a dielectric of index 1.5, otherwise metallic above 0.5 a conductor of the base
+//   colour; alpha = roughness^2. Everything else is Lambertian.
 // - Lights: a directional light's colour is its irradiance, that of a spot or point light its radiant intensity in
-// W/sr, as
-//   the file has it (glTF's candela are not divided by a luminous efficacy); where other formats give a quadratic
-//   attenuation q, colour / q. Constant and linear attenuation are no physics and are ignored.
-// - Lamps far too weak or strong for an exposure of 1, as their units are anybody's: another exposure, with a warning.
-// - No light in the file: a sun, over the shoulder of a view that we chose, else slanted as suits courts and halls, and
-// its clear sky (loadScene, as the sun may still be turned). No camera: the first key of keyFrames/<stem>.txt where the
-// repository has one, else a
-//   view from outside that frames the bounding sphere.
+//   W/sr, as in the file (glTF's candela are not divided by a luminous efficacy); if other formats give a quadratic
+//   attenuation q, colour / q. Constant and linear attenuation are unphysical and ignored.
+// - Lamps far too weak or strong for an exposure of 1, since their units are arbitrary: another exposure, with a
+//   warning.
+// - No light in the file: a sun, over the shoulder of a view that we chose, otherwise slanted to suit courtyards and
+//   halls; and its clear sky (set in loadScene, as the sun may still be turned). No camera: the first key of
+//   keyFrames/<stem>.txt if the repository has one, otherwise a view from outside that frames the bounding sphere.
 #include "scene/scene_file.hpp"
 
 #include "base/data.hpp"
@@ -79,11 +74,11 @@ constexpr double kDefaultFov = 50.0 * kPi / 180.0;
 /// Slanted, so that walls are lit too. In Crytek Sponza it reaches a quarter of the court's floor and the curtains on
 /// +z.
 const glm::dvec3 kDefaultSunDirection = glm::normalize(glm::dvec3(0.12, -1.0, 0.2));
-/// For the default view from outside: over its right shoulder, so that all visible sides of a box are lit, and so is a
+/// For the default view from outside: over its right shoulder, so that all visible sides of a box are lit, and also a
 /// sheet that faces +z.
 const glm::dvec3 kSunOverShoulder = glm::normalize(glm::dvec3(-0.3, -1.0, -0.6));
 const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
-/// Goes with that sun: bright where it shines, still readable where only its reflection comes.
+/// Matches that sun: sunlit surfaces are bright, those lit by reflection alone still readable.
 const float kDefaultExposure = 3.0f;
 
 glm::dvec3 toGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
@@ -102,8 +97,8 @@ std::string withForwardSlashes(std::string path) {
   return path;
 }
 
-/// Files for Assimp: back slashes turned, the model itself from memory as it was checked, and the material libraries
-/// that are missing remembered (Assimp only logs them).
+/// File access for Assimp: replaces backslashes, serves the checked model from memory, and records missing material
+/// libraries (Assimp only logs them).
 class ModelFiles : public Assimp::DefaultIOSystem {
  public:
   ModelFiles(std::string model, std::span<const std::uint8_t> content) : model_(std::move(model)), content_(content) {}
@@ -142,7 +137,7 @@ Bitmap checkerBitmap() {
   return bitmap;
 }
 
-/// Mean over all texels, values as they are in 0..1.
+/// Mean over all texels, encoded values in 0..1.
 glm::vec3 meanValue(const Bitmap& bitmap) {
   glm::dvec3 sum(0.0);
   for (std::size_t i = 0; i < bitmap.rgba.size(); i += 4)
@@ -156,7 +151,7 @@ class TextureLoader {
   TextureLoader(Scene& scene, const aiScene& source)
       : scene_(scene), source_(source), folder_(scene.file.parent_path()) {}
 
-  /// Index of an albedo map; the shared checker where it cannot be read; -1 where the material has none.
+  /// Index of an albedo map; the shared checker if it cannot be read; -1 if the material has none.
   int albedo(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
     const std::string name = nameOf(material, types);
     if (name.empty()) return -1;
@@ -164,8 +159,8 @@ class TextureLoader {
     return index >= 0 ? index : checker();
   }
 
-  /// An albedo map whose alpha is moved so that what lay at `threshold` lies at 0.5, where masks are cut: to the same
-  /// texture coordinates, as moving by a constant and interpolating may be exchanged.
+  /// An albedo map whose alpha is shifted so that `threshold` becomes 0.5, the cut-off of masks. The cut stays at the
+  /// same texture coordinates, since adding a constant commutes with interpolation.
   int withThreshold(int texture, double threshold) {
     const auto [known, isNew] = moved_.try_emplace({texture, threshold}, static_cast<int>(scene_.textures.size()));
     if (!isNew) return known->second;
@@ -177,13 +172,13 @@ class TextureLoader {
     return known->second;
   }
 
-  /// Index of a picture that only refines the material: -1 also where it cannot be read.
+  /// Index of a picture that only refines the material: -1 also if it cannot be read.
   int optional(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
     const std::string name = nameOf(material, types);
     return name.empty() ? -1 : load(name);
   }
 
-  /// The mean of a picture that is not kept, encoded values in 0..1; 1 where there is none.
+  /// The mean of a picture that is not kept, encoded values in 0..1; 1 without a picture.
   glm::vec3 mean(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
     const std::string name = nameOf(material, types);
     if (name.empty()) return glm::vec3(1.0f);
@@ -246,7 +241,7 @@ class TextureLoader {
     return {file, std::move(bitmap)};
   }
 
-  /// Beside the model; where the path is another machine's, the bare name beside the model.
+  /// Relative to the model; if the path is from another machine, the bare file name next to the model.
   fs::path resolve(const std::string& name) const {
     const fs::path path = (folder_ / withForwardSlashes(name)).lexically_normal();
     const fs::path bare = folder_ / path.filename();
@@ -278,8 +273,8 @@ float clampedNumber(float value, float low, float high, float fallback) {
   return std::isfinite(value) ? std::clamp(value, low, high) : fallback;
 }
 
-/// `gltf`: where the file is one, what Assimp does not hand on. `tint`: the vertices' colour, a factor on the base
-/// colour.
+/// `gltf`: properties that Assimp does not pass on, if the file is glTF. `tint`: the vertices' colour, a factor on the
+/// base colour.
 Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scene& scene, const GltfMaterial* gltf,
                          const glm::vec3& tint) {
   Material material;
@@ -387,7 +382,7 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
   if (!gltf) return material;
   material.opacity = 1.0f;
   if (gltf->alpha == GltfMaterial::Alpha::opaque) material.alphaMasked = false;
-  // Nothing is blended: what alpha leaves is cut at the cut-off, or at a half.
+  // Alpha is never blended: masks are cut at the cut-off, or at one half.
   if (gltf->alpha == GltfMaterial::Alpha::opaque) return material;
   const double cutoff = gltf->alpha == GltfMaterial::Alpha::mask ? gltf->alphaCutoff : 0.5;
   const double threshold = gltf->alpha == GltfMaterial::Alpha::blend ? 0.5
@@ -401,15 +396,15 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
   return material;
 }
 
-/// Whether vertices are transparent in part. Colours of three numbers come with an alpha of 0.
+/// Whether some vertices are transparent. Colours of three numbers come with an alpha of 0.
 bool haveAlpha(const aiMesh& mesh) {
   if (!mesh.HasVertexColors(0)) return false;
   return std::any_of(mesh.mColors[0], mesh.mColors[0] + mesh.mNumVertices,
                      [](const aiColor4D& colour) { return colour.a > 0.0f && colour.a < 1.0f; });
 }
 
-/// The colour that a mesh's vertices have, a factor on the base colour: its mean over the surface, and whether all have
-/// that one.
+/// The vertices' colour of a mesh, a factor on the base colour: its mean over the surface, and whether all vertices
+/// share it.
 std::pair<glm::vec3, bool> vertexColour(const aiMesh& mesh) {
   if (!mesh.HasVertexColors(0)) return {glm::vec3(1.0f), true};
   const auto at = [&](unsigned i) {
@@ -447,8 +442,8 @@ struct VertexHash {
 };
 static_assert(sizeof(Vertex) == 8 * sizeof(float), "compared bit by bit, so without padding");
 
-/// Assimp makes room for as many vertices as an OFF file says it has, whatever its size. A vertex or face takes two
-/// bytes at least.
+/// Assimp allocates as many vertices as an OFF file claims, whatever the file's size. A vertex or face takes at least
+/// two bytes.
 void checkOff(const fs::path& file, std::span<const std::uint8_t> content) {
   std::istringstream text(std::string(
       content.begin(), content.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(content.size(), 4096))));
@@ -460,8 +455,7 @@ void checkOff(const fs::path& file, std::span<const std::uint8_t> content) {
                   faces, content.size());
 }
 
-/// Assimp hands on whatever its readers made: RAW files leave nodes that are not there, and any mesh number may be
-/// wrong.
+/// Assimp passes on whatever its readers produced: RAW files leave missing nodes, and any mesh index may be wrong.
 void checkNodes(const aiScene& source, const fs::path& file) {
   std::vector<std::pair<const aiNode*, int>> open = {{source.mRootNode, 0}};
   while (!open.empty()) {
@@ -477,8 +471,8 @@ void checkNodes(const aiScene& source, const fs::path& file) {
   }
 }
 
-/// Assimp's post-processing trusts faces blindly: an index out of range is undefined behaviour, a face without vertices
-/// (truncated PLY) aborts the program in Debian's build, as does a mesh called polygonal that has no polygon.
+/// Assimp's post-processing trusts faces blindly. An index out of range is undefined behaviour; a face without vertices
+/// (truncated PLY) aborts the program in Debian's build, as does a mesh marked polygonal that has no polygon.
 void checkFaces(const aiScene& source, const fs::path& file) {
   for (unsigned m = 0; m < source.mNumMeshes; ++m) {
     aiMesh& mesh = *source.mMeshes[m];
@@ -499,7 +493,7 @@ void checkFaces(const aiScene& source, const fs::path& file) {
   }
 }
 
-/// The transform is glTF's, whose v runs downwards.
+/// The transform is glTF's, in which v points down.
 glm::vec2 texCoordOf(const aiMesh& mesh, unsigned vertex, const TextureTransform& transform) {
   const aiVector3D& uv = mesh.mTextureCoords[transform.texCoord][vertex];
   if (transform == TextureTransform{.texCoord = transform.texCoord}) return {uv.x, uv.y};
@@ -507,7 +501,7 @@ glm::vec2 texCoordOf(const aiMesh& mesh, unsigned vertex, const TextureTransform
   return {static_cast<float>(moved.x), static_cast<float>(1.0 - moved.y)};
 }
 
-/// Whether any texture coordinate lies outside of the picture, by more than rounding.
+/// Whether any texture coordinate lies outside the picture by more than rounding.
 bool leavesPicture(const aiMesh& mesh, const TextureTransform& transform) {
   constexpr float kRounding = 1e-4f;
   for (unsigned i = 0; mesh.HasTextureCoords(transform.texCoord) && i < mesh.mNumVertices; ++i) {
@@ -522,8 +516,8 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
                 const TextureTransform& transform, const std::string& name) {
   const glm::dmat3 linear(worldFromNode);
   const bool mirrored = glm::determinant(linear) < 0.0;
-  // Normals go with the inverse transpose; the cofactor matrix is that times the determinant, and exists for flat
-  // scalings too.
+  // Normals transform by the inverse transpose. The cofactor matrix is that times the determinant, and also exists for
+  // flattening scalings.
   const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                             glm::cross(linear[0], linear[1]));
 
@@ -543,7 +537,7 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
   triangles.reserve(source.mNumFaces);
   std::vector<glm::dvec3> lentNormals(source.mNumVertices,
                                       glm::dvec3(0.0));  // area-weighted, for vertices that have none
-  double agreement = 0.0;  // of faces' sides with vertices' normals, by area
+  double agreement = 0.0;  // area-weighted agreement of faces' sides with vertices' normals
   for (unsigned f = 0; f < source.mNumFaces; ++f) {
     const aiFace& face = source.mFaces[f];
     if (face.mNumIndices != 3) continue;  // points and lines
@@ -556,15 +550,14 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
       ++scene.droppedTriangles;
       continue;
     }
-    // Exact up to rounding in double: float corners in one line give 0, or 1e-16 of the square built on the longest
-    // side.
+    // Exact up to rounding in double: collinear float corners give 0, or 1e-16 of the longest side squared.
     if (!(glm::length(cross) > 1e-14 * longest2)) ++scene.degenerateTriangles;
     for (const unsigned i : t) lentNormals[i] += cross, agreement += glm::dot(cross, glm::dvec3(vertices[i].normal));
     triangles.push_back(t);
   }
   if (triangles.empty()) return;
-  // A mesh that turns its backs to where its normals point was written for another handedness. Its normals are what was
-  // looked at: faces follow them, as shading turns normals to the viewer by the side of the face.
+  // A mesh whose faces are wound against its normals was written for another handedness. Its author judged the normals,
+  // so faces follow them, as shading turns normals to the viewer by the side of the face.
   if (agreement < 0.0) {
     for (std::array<unsigned, 3>& t : triangles) std::swap(t[1], t[2]);
     for (glm::dvec3& normal : lentNormals) normal = -normal;
@@ -605,7 +598,7 @@ void appendMesh(Scene& scene, const aiMesh& source, const glm::dmat4& worldFromN
 // ---------------------------------------------------------------------------------------------------- cameras and
 // lights
 
-/// The placement of the node of that name (Assimp ties cameras and lights to nodes by name).
+/// The transform of the node of that name (Assimp ties cameras and lights to nodes by name).
 glm::dmat4 worldFromNamedNode(const aiScene& source, const aiString& name) {
   aiMatrix4x4 world;
   for (const aiNode* node = source.mRootNode->FindNode(name); node; node = node->mParent)
@@ -654,7 +647,7 @@ void appendLights(Scene& scene, const aiScene& source) {
     const glm::dvec3 position(world * glm::dvec4(toGlm(light.mPosition), 1.0));
     const glm::dvec3 direction = glm::dmat3(world) * toGlm(light.mDirection);
     const glm::vec3 colour = glm::max(toGlm(light.mColorDiffuse), glm::vec3(0.0f));
-    if (colour == glm::vec3(0.0f)) continue;  // no light: no reason to go without the default sun
+    if (colour == glm::vec3(0.0f)) continue;  // no light: keep the default sun
     const bool aimed = isFinite(direction) && glm::length(direction) > 0.0;
     const float attenuation = gltf || !(light.mAttenuationQuadratic > 0.0f) ? 1.0f : light.mAttenuationQuadratic;
     const glm::vec3 intensity = colour / attenuation;
@@ -664,7 +657,7 @@ void appendLights(Scene& scene, const aiScene& source) {
     } else if (light.mType == aiLightSource_POINT && placed) {
       scene.points.push_back({position, intensity});
     } else if (light.mType == aiLightSource_SPOT && placed && aimed && light.mAngleOuterCone > 0.0f) {
-      // Assimp's angles are whole cones, but its glTF reader hands on that format's half angles.
+      // Assimp's angles are full cones, but its glTF reader passes on that format's half angles.
       const double half = gltf ? 1.0 : 0.5;
       const double outer = std::min(half * light.mAngleOuterCone, kLargestSpotAngle);
       if (half * light.mAngleOuterCone > kLargestSpotAngle)
@@ -686,7 +679,7 @@ void appendLights(Scene& scene, const aiScene& source) {
   scene.exposure = kDefaultExposure;
 }
 
-/// Whether the ball about the bounds reaches into the cone about the view's corners, of a picture of 16 to 9.
+/// Whether the bounding sphere of the bounds intersects the cone around the view's corners, for a 16:9 picture.
 bool seesAnything(const Camera& camera, const Bounds& bounds) {
   const glm::dvec3 away = bounds.centre() - camera.position;
   const double distance = glm::length(away), radius = 0.5 * glm::length(bounds.extent());
@@ -719,7 +712,7 @@ void setKeyFrames(Scene& scene, const fs::path& file) {
 }
 
 Scene loadModel(const fs::path& file) {
-  // What Assimp would misread or not survive is looked at first.
+  // First check for data that Assimp would misread or crash on.
   Scene scene;
   scene.name = file.stem().string();
   scene.file = file;
@@ -739,7 +732,7 @@ Scene loadModel(const fs::path& file) {
   const bool isGltf2 = gltf.is_object() && gltf.contains("materials") && gltf.at("materials").is_array();
   if (isGltf2) content = withNumberedMaterials(gltf, content);
 
-  // Assimp reads it, with every file it asks for through us.
+  // Assimp reads the model; all file access goes through ModelFiles.
   const auto end = [&](Assimp::Importer* ended) {
     const ImportGuard guard(file);
     delete ended;
@@ -765,7 +758,7 @@ Scene loadModel(const fs::path& file) {
                files->missingMaterials.front());
 
   TextureLoader textures(scene, *source);
-  // Only those in use are converted; of glTF once for each colour that vertices give it.
+  // Only materials in use are converted; for glTF once per vertex colour.
   std::map<std::pair<unsigned, std::array<float, 3>>, int> materialOf;
   std::map<unsigned, GltfMaterial> gltfMaterials;
   const auto convertedMaterial = [&](unsigned index, const glm::vec3& tint, const GltfMaterial* gltfMaterial) {
@@ -811,7 +804,7 @@ Scene loadModel(const fs::path& file) {
     }
     for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], worldFromNode);
   }
-  // What was left out, and whether anything is there.
+  // Report what was left out, and check that anything is left.
   for (const auto& [index, rest] : gltfMaterials)
     if (!rest.notDone.empty()) logWarning("{}: material '{}': {}", file.string(), rest.name, rest.notDone);
   if (const std::string ranged = gltfLightsWithRange(gltf); !ranged.empty())
@@ -831,8 +824,8 @@ Scene loadModel(const fs::path& file) {
     const fs::path walk = *data / "keyFrames" / (scene.name + ".txt");
     if (fs::exists(walk)) setKeyFrames(scene, walk);
   }
-  // Cameras that animations would have turned, or that were read with the other handedness, may see nothing at all:
-  // then they do not come first.
+  // Cameras that animations would have turned, or that were read with the wrong handedness, may see nothing: then they
+  // do not come first.
   const bool blind = !scene.cameras.empty() && !seesAnything(scene.cameras.front(), scene.bounds);
   if (blind)
     logWarning("{}: camera '{}' sees nothing of the scene; the default view is from outside", file.string(),
@@ -854,8 +847,8 @@ void setDefaultSky(Scene& scene) {
 
 namespace {
 
-/// Lamps of model files are in the units of whoever wrote them. Where what they give in the scene's middle is far from
-/// what an exposure of 1 shows, another is taken.
+/// Model files specify lamps in arbitrary units. If their light in the middle of the scene is far from what an exposure
+/// of 1 shows, choose another exposure.
 void setExposureForLamps(Scene& scene) {
   if (scene.defaultSun) return;
   const auto strongest = [](const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); };

@@ -16,7 +16,7 @@ struct NamedMedium {
   double ior = 1.0;
 };
 
-/// Adds media to a scene as names ask for them.
+/// Adds media to a scene when they are first named.
 class Media {
  public:
   Media(Scene& scene, std::optional<double> millimetresPerUnit)
@@ -30,7 +30,7 @@ class Media {
     }
   }
 
-  /// What "interior" or "cameraMedium" names: one of "media", else of the catalogue.
+  /// Resolves the name in "interior" or "cameraMedium": one of "media", otherwise of the catalogue.
   NamedMedium named(const Value& value) {
     const std::string name = value.text();
     const auto known = media_.find(name);

@@ -8,7 +8,7 @@
 namespace lucerna {
 
 namespace {
-/// Bytes of a texture where texture coordinates wrap; nearest texel.
+/// Bytes of the nearest texel; texture coordinates wrap.
 const std::uint8_t* bytesAt(const Bitmap& bitmap, const glm::dvec2& uv) {
   const auto wrap = [](double t, int n) { return std::min(static_cast<int>((t - std::floor(t)) * n), n - 1); };
   const int x = wrap(uv.x, bitmap.width), y = bitmap.height - 1 - wrap(uv.y, bitmap.height);

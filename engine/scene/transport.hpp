@@ -1,5 +1,5 @@
-// Which light paths a picture holds, by the number of scatterings between lamp and camera; passing a boundary straight
-// is not a scattering.
+// The light paths in a picture, by the number of scatterings between lamp and camera; passing straight through a
+// boundary is not a scattering.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@ namespace lucerna {
 
 /// Stored in files: append new ones at the end.
 enum class Transport {
-  direct,  ///< 0 and 1: visible lights, and what they light
+  direct,  ///< 0 and 1: visible lights, and surfaces they light
   oneBounce,  ///< exactly 2
   oneBounceUnoccluded,  ///< exactly 2, without occlusion between the two scatterings: what a reflective shadow map
                         ///< gathers

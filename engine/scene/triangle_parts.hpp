@@ -1,6 +1,6 @@
-// A triangle as n x n equal triangles: where values over it are sampled (no GL, pure).
+// Divides a triangle into n x n equal triangles, for sampling values over it (no GL, pure).
 //
-// Strip i = 0..n-1 along the second corner holds 2 (n - i) - 1 parts, every second upside down. Shaders:
+// Strip i = 0..n-1 along the second corner has 2 (n - i) - 1 parts, every second one upside down. Shaders:
 // radiosity/triangle_parts.glsl.
 #pragma once
 
@@ -22,7 +22,7 @@ inline std::vector<glm::dvec2> partCentroids(int n) {
   return centroids;
 }
 
-/// The part that a point of the triangle lies in, as partCentroids counts them.
+/// The part that contains a point of the triangle, numbered as in partCentroids.
 inline int partAt(int n, const glm::dvec2& weights) {
   const glm::dvec2 at = static_cast<double>(n) * weights;
   const int i = std::clamp(static_cast<int>(at.x), 0, n - 1), pair = std::clamp(static_cast<int>(at.y), 0, n - 1 - i);

@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 
-/// Where a deviation comes from: the text, the program published with it, both, or other publications.
+/// Source of a deviation: the text, the program published with it, both, or other publications.
 enum Source : unsigned { elsewhere = 0, text = 1, program = 2, both = text | program };
 
 #define SWITCH(name, meaning, source, member)                                                                     \
@@ -21,7 +21,7 @@ enum Source : unsigned { elsewhere = 0, text = 1, program = 2, both = text | pro
   }
 #define LPV_DEVIATION(name, meaning, source, member) SWITCH("lpv." name, meaning, source, lpv.deviations.member)
 
-/// Those of radiosity stand in one table of their own, which its files and the published solver read.
+/// Those of radiosity are in a separate table, which its files and the published solver use.
 template <bool RadiosityDeviations::*kMember>
 Deviation radiosityDeviation() {
   const auto all = allRadiosityDeviations();
@@ -104,8 +104,8 @@ void applyFidelity(RenderSettings& settings, Fidelity fidelity) {
   settings.lpv.transport = LpvTransport::propagate;
   settings.lpv.lookup = LpvLookup::published;
   settings.lpv.lookupOffset = 0.0f;
-  // The demo's cells are 2.5, 1.625 and 1.0 units, its coarsest grid 80 units in a scene of some 112; the text gives no
-  // sizes. Neither holds grids inside the scene.
+  // The demo's cells are 2.5, 1.625 and 1.0 units, its coarsest grid 80 units in a scene of about 112; the text gives
+  // no sizes. Neither clamps grids to the scene.
   settings.lpv.cascades.ratio = 1.58;
   settings.lpv.cascades.spanOfScene = 80.0 / 112.0;
   settings.lpv.cascades.heldInScene = false;

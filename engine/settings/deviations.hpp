@@ -1,8 +1,8 @@
 // Deviations: what the published originals do differently, each a named switch (no GL, pure).
 //
-// `--fidelity thesis` turns on those that the published text has, `demo` those of the program published with it where
-// that is another (the light propagation volume's); `original` is the thesis. `--deviation NAME=on|off` sets one. Each
-// has a line in its technique's README.md with formula, source and effect (a test checks that the line is there).
+// `--fidelity thesis` turns on those of the published text, `demo` those of the program published with it if it differs
+// (the light propagation volume's); `original` is the thesis. `--deviation NAME=on|off` sets one. Each has a line in
+// its technique's README.md with formula, source and effect (a test checks that the line is there).
 #pragma once
 
 #include "settings/render_settings.hpp"
@@ -15,17 +15,17 @@
 namespace lucerna {
 
 struct Deviation {
-  const char* name;  ///< technique, dot, what deviates
+  const char* name;  ///< technique, dot, name of the deviation
   const char* meaning;  ///< one line
-  bool inOriginal;  ///< whether the published text has it
-  bool inDemo;  ///< whether the program published with it has
+  bool inOriginal;  ///< present in the published text
+  bool inDemo;  ///< present in the program published with it
   bool (*isOn)(const RenderSettings&);
   void (*turn)(RenderSettings&, bool on);
 };
 
 std::span<const Deviation> allDeviations();
 
-/// Sets every switch as that fidelity has it, and the settings that go with it (one layered pass a step and cascade,
+/// Sets every switch to that fidelity, together with the settings it requires (one layered pass per step and cascade,
 /// ...).
 void applyFidelity(RenderSettings& settings, Fidelity fidelity);
 

@@ -1,5 +1,5 @@
-// What a picture is made with: the technique, what of its light is shown, and the settings of every stage (no GL
-// calls). engine/settings/settings.hpp lists those that people set, by key.
+// Settings of a picture: the technique, the light components to show, and the settings of every stage (no GL calls).
+// engine/settings/settings.hpp lists the user settings by key.
 #pragma once
 
 #include "base/named_values.hpp"
@@ -27,15 +27,14 @@ constexpr std::array<std::string_view, 5> namesOf(Technique) { return {"direct",
 
 enum class Component { all, direct, indirect };
 constexpr std::array<std::string_view, 3> namesOf(Component) { return {"all", "direct", "indirect"}; }
-/// The light paths that a picture of it holds.
+/// The light paths in a picture of a component.
 constexpr Transport transportOf(Component component) {
   return component == Component::direct     ? Transport::direct
          : component == Component::indirect ? Transport::indirect
                                             : Transport::all;
 }
 
-/// `original` is the thesis; `demo` the program published with it, where that is another (the light propagation
-/// volume's).
+/// `original` is the thesis; `demo` the program published with it, if it differs (the light propagation volume's).
 enum class Fidelity { corrected, original, thesis, demo };
 constexpr std::array<std::string_view, 4> namesOf(Fidelity) { return {"corrected", "original", "thesis", "demo"}; }
 
@@ -43,12 +42,11 @@ struct RenderSettings {
   Technique technique = Technique::lpv;
   Component component = Component::all;
   glm::ivec2 size{1280, 720};
-  bool reuse =
-      true;  ///< stages whose inputs are those of the frame before are not run again; the same picture, bit by bit
-  bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits: for pictures that are measured
+  bool reuse = true;  ///< stages with unchanged inputs are not run again; the same picture, bit by bit
+  bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits, for measured pictures
   std::optional<float> exposure;  ///< multiplies radiance before tone mapping; not set: the scene's
   GpuSceneSettings textures;
-  ShadowMap::Settings shadow;  ///< of the sun; the size is that of each cascade where there are several
+  ShadowMap::Settings shadow;  ///< of the sun; with several cascades the size is that of each
   SunCascadeSettings sunCascades;
   LocalLights::Settings lights;
   ReflectiveShadowMap::Settings rsm;  ///< the size serves the sun and spots; each face of an omnidirectional light has
@@ -56,9 +54,9 @@ struct RenderSettings {
   RsmGather::Settings gather;
   LpvSettings lpv;
   PathSettings path;
-  RadiosityView::Settings radiosity;  ///< `light` is not read: the component says it
+  RadiosityView::Settings radiosity;  ///< `light` is not read: the component determines it
   double unmeasuredTurns =
-      gl::kUnmeasuredTurns;  ///< of a piece of radiosity's shadow rays of which nothing is known (gl/pieces.hpp)
+      gl::kUnmeasuredTurns;  ///< of a piece of radiosity's shadow rays of unknown cost (gl/pieces.hpp)
 };
 
 }  // namespace lucerna

@@ -16,7 +16,7 @@ namespace {
 
 // ---------------------------------------------------------------------------------------------------- kinds of values
 
-/// The place of a value in RenderSettings.
+/// Accessor of a value in RenderSettings.
 #define FIELD(member) \
   [](auto& s) -> auto& { return s.member; }
 
@@ -54,7 +54,7 @@ SettingValue number(Field, double least, double most, std::string_view word = ""
   return value;
 }
 
-/// A number that need not be set: then "auto" stands for it.
+/// An optional number; "auto" if it is not set.
 template <class Field>
 SettingValue optionalNumber(Field, double least, double most) {
   using T = typename FieldType<Field>::value_type;
@@ -91,7 +91,7 @@ SettingValue file(Field) {
   return value;
 }
 
-/// Bytes, which people give in MiB; 0 is "auto".
+/// Bytes, given in MiB; 0 is "auto".
 template <class Field>
 SettingValue mebibytes(Field, double most) {
   SettingValue value = valueOf(SettingType::real, 0.0, most);
@@ -101,7 +101,7 @@ SettingValue mebibytes(Field, double most) {
   return value;
 }
 
-/// Powers of two up to 64, as the groups of lanes that find paths want them.
+/// Powers of two up to 64, as required by the groups of lanes that trace paths.
 SettingValue raysOfFrame() {
   SettingValue value = valueOf(SettingType::choice, 0.0, 6.0, {"1", "2", "4", "8", "16", "32", "64"});
   value.get = [](const RenderSettings& s) { return std::log2(static_cast<double>(s.lpv.rays)); };
@@ -120,7 +120,7 @@ SettingValue blocking() {
   return value;
 }
 
-/// Pixels a side of a hemicube: its side faces have half as many rows.
+/// Pixels per side of a hemicube: its side faces have half as many rows.
 template <class Field>
 SettingValue evenNumber(Field field, double least, double most) {
   SettingValue value = number(field, least, most);
@@ -188,7 +188,7 @@ const std::vector<Setting>& table() {
        kPropagate, ""},
       {"lpv.shaft-steps", number(FIELD(lpv.shaftSteps), 1, 4096), "steps", "of light shafts along a view ray", "",
        rebuild, kPropagate, ""},
-      // Of them: filling, propagation, receivers.
+      // More of them: filling, propagation, receivers.
       {"lpv.fill", choice(FIELD(lpv.fill)), "",
        "how the grid is filled: layered, by blending; atomic, in floats; fixed, in integers, the same bits every run",
        "", rebuild, kPropagate, ""},
@@ -327,7 +327,7 @@ const std::vector<Setting>& table() {
 
 #undef FIELD
 
-/// What people may have in scripts, and what is written today.
+/// A former spelling, found in old scripts, and today's.
 struct Former {
   std::string_view was, is;
 };
@@ -346,7 +346,7 @@ std::string numberText(const SettingValue& value, double number) {
 
 std::string joined(const std::vector<std::string_view>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
 
-/// As the setting's own type holds it: what a float was read as is within its bounds again.
+/// The number as stored in the setting's type: a rounded float is brought back within its bounds.
 double held(const SettingValue& value, double number) {
   return value.singlePrecision ? static_cast<double>(static_cast<float>(number)) : number;
 }
@@ -463,7 +463,7 @@ std::string allowedValues(const Setting& setting) {
     case SettingType::integer:
     case SettingType::real: break;
   }
-  // Bounds as numbers, even where a word stands for one of them.
+  // Bounds as numbers, even if a word stands for one of them.
   SettingValue plain;
   plain.type = value.type;
   return fmt::format("{} to {}{}", numberText(plain, value.least), numberText(plain, value.most),

@@ -26,7 +26,7 @@ glm::vec3 grey(double value) { return glm::vec3(static_cast<float>(std::clamp(va
 
 double encodedFilmic(double x) { return static_cast<double>(srgbFromLinear(static_cast<float>(filmic(x)))); }
 
-/// Black, blue, cyan, green, yellow, red, white at equal steps: ordered by lightness at its ends, told apart in
+/// Black, blue, cyan, green, yellow, red, white at equal steps: ordered by lightness at both ends, distinct by hue in
 /// between.
 glm::vec3 falseColour(double value) {
   constexpr std::array<std::array<float, 3>, 7> stops{{{0, 0, 0},
@@ -56,10 +56,10 @@ glm::vec3 bytesOf(const RadTriangle& t) {
 
 namespace {
 
-/// The value of triangles below which this share of their area lies; 0 without any.
+/// The value below which this share of the triangles' area lies; 0 without triangles.
 template <class Value>
 double percentileByArea(std::span<const RadTriangle> triangles, double share, Value value) {
-  std::vector<std::pair<double, double>> values;  // and areas
+  std::vector<std::pair<double, double>> values;  // with areas
   double area = 0.0;
   for (const RadTriangle& t : triangles) {
     values.emplace_back(value(t), areaOf(t));
@@ -88,7 +88,7 @@ double blackOf(std::span<const RadTriangle> triangles) {
 
 namespace {
 
-/// What a value of e + b looks like.
+/// Maps a value of e + b to its displayed colour.
 class Mapping {
  public:
   Mapping(std::span<const RadTriangle> triangles, const RadDisplay& display)
@@ -105,7 +105,7 @@ class Mapping {
       case RadMapping::linear: return grey(value * constant_);
       case RadMapping::filmic: return grey(encodedFilmic(value * constant_));
       case RadMapping::falseColours: return falseColour(logarithm(value));
-      case RadMapping::bits24: break;  // of a triangle, not of a value: bytesOf
+      case RadMapping::bits24: break;  // depends on the triangle, not on a value: bytesOf
     }
     return {};
   }
@@ -121,7 +121,7 @@ using Corner = std::array<float, 3>;
 
 std::array<Corner, 3> cornersOf(const RadTriangle& t) { return {t.p1, t.p2, t.p3}; }
 
-/// Triangles that meet at a corner's place: the list of vertices that the text looks up once [RAD2008 chapter 4].
+/// Triangles that share a corner's position: the list of vertices in the text [RAD2008 chapter 4].
 std::map<Corner, std::vector<std::size_t>> meetingAt(std::span<const RadTriangle> triangles) {
   std::map<Corner, std::vector<std::size_t>> meeting;
   for (std::size_t i = 0; i < triangles.size(); ++i)
@@ -129,8 +129,8 @@ std::map<Corner, std::vector<std::size_t>> meetingAt(std::span<const RadTriangle
   return meeting;
 }
 
-/// Whether light is interpolated from one to the other: within 20 degrees, as patches have it (PatchSettings::crease).
-/// A source is apart from what it lights.
+/// Whether light is interpolated between two triangles: within 20 degrees, as for patches (PatchSettings::crease). A
+/// source is separate from surfaces that it lights.
 bool areOneFace(const RadTriangle& a, const RadTriangle& b) {
   const double cosine = glm::dot(glm::dvec3(a.n[0], a.n[1], a.n[2]), glm::dvec3(b.n[0], b.n[1], b.n[2]));
   return cosine >= PatchSettings{}.crease && (a.e > 0) == (b.e > 0);
@@ -204,7 +204,7 @@ RadTextures texturesOf(const Scene& scene, double longestEdge, std::span<const R
 
 namespace {
 
-/// Bottom row first, with mipmaps; texels as they are, since colours are multiplied as the display shows them.
+/// Bottom row first, with mipmaps; texels are not decoded, since colours are multiplied as displayed.
 gl::Texture uploaded(const Bitmap& bitmap) {
   const glm::ivec2 size(bitmap.width, bitmap.height);
   const gl::Sampling sampling{gl::Filter::linearMipmaps, gl::Filter::linear, gl::Wrap::repeat};
@@ -245,7 +245,7 @@ Camera overviewOf(std::span<const RadTriangle> triangles) {
   camera.up = {0.0, 1.0, 0.0};
   const glm::dvec3 middle = 0.5 * (low + high), right = glm::normalize(glm::cross(camera.direction, camera.up)),
                    up = glm::cross(right, camera.direction);
-  // As near as leaves every corner of the bounds 4 % inside a picture of 4 by 3.
+  // The nearest position that keeps every corner of the bounds within a 4:3 picture, with a margin of 4 %.
   const double tall = 0.92 * std::tan(0.5 * camera.verticalFov), wide = tall * 4.0 / 3.0;
   double distance = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -285,7 +285,7 @@ void RadView::show(std::span<const RadTriangle> triangles, const RadDisplay& dis
   const bool hasPictures = !textures.ofTriangle.empty() && display.mapping != RadMapping::bits24;
   std::vector<Place> vertices;
   vertices.reserve(3 * triangles.size());
-  std::map<int, std::vector<std::uint32_t>> ofPicture;  // indices
+  std::map<int, std::vector<std::uint32_t>> ofPicture;  // indices by picture
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const auto corners = cornersOf(triangles[i]);
     std::vector<std::uint32_t>& indices = ofPicture[hasPictures ? textures.ofTriangle[i] : -1];

@@ -1,5 +1,5 @@
-// The original's third program: a triangle file drawn, each triangle in one colour [RAD2008 section 3.8], or with
-// colours interpolated between corners, or with pictures on the triangles [RAD2008 chapter 4].
+// The original's third program: draws a triangle file, each triangle in one colour [RAD2008 section 3.8], with colours
+// interpolated between corners, or with pictures on the triangles [RAD2008 chapter 4].
 //
 // Shows e + b [RAD2008 eq 3-1], mapped to 0..255 by a logarithm as published, by a constant factor (for comparison), by
 // the engine's filmic curve, as false colours, or as the 24-bit colours of the computation. Colours are chosen on the
@@ -24,15 +24,15 @@ namespace lucerna {
 enum class RadMapping { logarithmic, linear, filmic, falseColours, bits24 };
 constexpr std::array<std::string_view, 5> namesOf(RadMapping) { return {"log", "linear", "filmic", "false", "bits"}; }
 
-/// flat: a colour per triangle. acrossEdges: a corner has the mean colour of all triangles that meet there, as
-/// published; light bleeds over edges [RAD2008 figure 4.2b]. withinFaces: the mean value, by area, of those that face
-/// its way.
+/// flat: one colour per triangle. acrossEdges: a corner has the mean colour of all triangles that meet there, as
+/// published; light bleeds over edges [RAD2008 figure 4.2b]. withinFaces: the area-weighted mean value of those that
+/// face the same way.
 enum class RadShading { flat, acrossEdges, withinFaces };
 constexpr std::array<std::string_view, 3> namesOf(RadShading) { return {"flat", "across-edges", "within-faces"}; }
 
 struct RadDisplay {
   RadMapping mapping = RadMapping::logarithmic;
-  RadShading shading = RadShading::flat;  ///< but flat: not with bits24, whose packed numbers have no mean
+  RadShading shading = RadShading::flat;  ///< other modes not with bits24, whose packed numbers have no mean
   double constant = 0.0;  ///< linear and filmic: factor on values, 1 is white; 0: exposureOf()
   bool backCorners = false;  ///< show back-facing triangles by their corners; else not at all
   bool mesh = false;  ///< edges over the faces
@@ -42,7 +42,7 @@ struct RadDisplay {
 /// above it. 1 if nothing is received.
 double exposureOf(std::span<const RadTriangle> triangles);
 
-/// What the logarithm shows black: half of what 99 % of the lit area has at least. Without any 1.
+/// The value that the logarithm shows as black: half of the value reached by 99 % of the lit area. 1 if nothing is lit.
 double blackOf(std::span<const RadTriangle> triangles);
 
 /// Colours as displayed (sRGB), 0..1, one per triangle. Pure. The logarithm is log(v / blackOf()) over that of the
@@ -52,22 +52,23 @@ std::vector<glm::vec3> displayColours(std::span<const RadTriangle> triangles, co
 /// The same for each triangle's corners p1, p2, p3. Corners meet where all three coordinates are equal.
 std::vector<std::array<glm::vec3, 3>> cornerColours(std::span<const RadTriangle> triangles, const RadDisplay& display);
 
-/// Pictures on the triangles; what is shown is theirs times the colour, in display values [RAD2008 figure 4.3].
+/// Pictures on the triangles; the displayed value is their texel times the colour, in display values [RAD2008 figure
+/// 4.3].
 struct RadTextures {
   std::vector<const Bitmap*> pictures;
-  std::vector<int> ofTriangle;  ///< an index into `pictures`, -1: none; one per triangle
+  std::vector<int> ofTriangle;  ///< index into `pictures`, -1: none; one per triangle
   std::vector<std::array<glm::vec2, 3>> texCoords;  ///< of its corners, v = 0 is the bottom row
 };
 
-/// Those of the scene that `triangles` were generated from (radTrianglesOf, longestEdge as there). Throws
-/// Error(badInput) naming `file`: it holds other triangles.
+/// The pictures of the scene that `triangles` were generated from (radTrianglesOf, with the same longestEdge). Throws
+/// Error(badInput) naming `file` if it holds other triangles.
 RadTextures texturesOf(const Scene& scene, double longestEdge, std::span<const RadTriangle> triangles,
                        const std::string& file);
 
-/// From above one corner into the scene, all of it in view.
+/// A view from above one corner into the scene, with all of it visible.
 Camera overviewOf(std::span<const RadTriangle> triangles);
 
-/// Of the corners' bounds.
+/// Diagonal of the corners' bounds.
 double diagonalOf(std::span<const RadTriangle> triangles);
 
 class RadView {
@@ -87,7 +88,7 @@ class RadView {
 
   gl::ProgramLibrary& programs_;
   const gl::Program* program_;
-  const gl::Program* textured_ = nullptr;  ///< once there is a picture
+  const gl::Program* textured_ = nullptr;  ///< only if there is a picture
   gl::Buffer vertices_, indices_;
   gl::VertexArray vertexArray_;
   gl::Texture color_, depth_;

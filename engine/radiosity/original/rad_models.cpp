@@ -47,7 +47,7 @@ class Builder {
       }
   }
 
-  /// A rectangle with a rectangular hole from (s0, t0) to (s1, t1), fractions of u and v; the hole is a lamp or left
+  /// A rectangle with a rectangular hole from (s0, t0) to (s1, t1), in fractions of u and v; the hole is a lamp or
   /// open.
   void pierced(const dvec3& corner, const dvec3& u, const dvec3& v, double s0, double t0, double s1, double t1,
                const dvec3& color, bool lamp) {
@@ -150,7 +150,7 @@ void hall(Builder& b) {
   // A wall across, with an opening from floor up; it ends below the ceiling, so that light passes over it.
   b.box({112.0, 0.0, 0.0}, {115.0, 28.0, 38.0}, 0.0, kPlaster, Builder::bottom | Builder::back);
   b.box({112.0, 0.0, 58.0}, {115.0, 28.0, d}, 0.0, kPlaster, Builder::bottom | Builder::front);
-  // A table, a box turned, a low block, and a panel hung under the lamp.
+  // A table, a rotated box, a low block, and a panel hung under the lamp.
   b.box({48.0, 9.0, 46.0}, {72.0, 10.5, 62.0}, 0.0, kWood, Builder::none);
   for (double lx : {49.0, 69.0})
     for (double lz : {47.0, 59.0})
@@ -163,9 +163,9 @@ void hall(Builder& b) {
 void twoChambers(Builder& b) {
   const double w = 48, h = 16, d = 28;
   const dvec3 x{w, 0, 0}, y{0, h, 0}, z{0, 0, d};
-  // The wall between, from floor to ceiling, joined to the back wall (z = 0), leaving a gap of 8 units before the front
-  // one. What it touches is cut along its edges: a triangle below it would be lit in one chamber and visible in the
-  // other.
+  // The dividing wall, from floor to ceiling, joined to the back wall (z = 0), leaving a gap of 8 units before the
+  // front wall. Surfaces it touches are cut along its edges: a triangle below it would be lit in one chamber and
+  // visible in the other.
   const double x0 = 23, x1 = 25, end = 20;
   b.rectangle({0, 0, 0}, z, {x0, 0, 0}, kFloor);
   b.rectangle({x1, 0, 0}, z, {w - x1, 0, 0}, kFloor);
@@ -183,8 +183,8 @@ void twoChambers(Builder& b) {
   b.rectangle({x0, 0, end}, {x1 - x0, 0, 0}, y, kStone);
 }
 
-// With it model 2 has 25,932, 136,328 and 545,312 triangles at thresholds of 5, 1 and 0.25; published are 26,360,
-// 136,512 and 546,048 [RAD2008 table 4.1].
+// With this scale model 2 has 25,932, 136,328 and 545,312 triangles at thresholds of 5, 1 and 0.25; published are
+// 26,360, 136,512 and 546,048 [RAD2008 table 4.1].
 constexpr double kHallScale = 1.15;
 
 }  // namespace

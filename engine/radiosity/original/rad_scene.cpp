@@ -31,7 +31,7 @@ RadTriangle triangleOf(const RadiosityMesh& mesh, const Patch& patch) {
   return t;
 }
 
-/// What emits at all has 1 at least.
+/// Emission in steps; at least 1 if the patch emits at all.
 std::uint32_t stepsOf(double exitance, double step) {
   return exitance > 0.0 ? std::max(1u, static_cast<std::uint32_t>(std::lround(exitance / step))) : 0u;
 }

@@ -13,7 +13,7 @@ namespace lucerna {
 
 namespace {
 
-/// Direct light of the mesh, and an empty place for all that is solved.
+/// Starts a solution with the mesh's direct light; all solved quantities are still empty.
 RadiositySolution begin(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                         const PublishedSceneSettings& settings) {
   RadiositySolution solution;
@@ -32,9 +32,9 @@ RadiositySolution begin(const gl::Context& context, gl::ProgramLibrary& programs
   return solution;
 }
 
-/// A patch's error after a sweep that changed no b by more than `change`: of the sweeps that are missing, and of
-/// numbers rounded down by less than 1 in each. q is the largest reflectance: rows of the published map sum to 1 at
-/// most, so a sweep is a contraction by q, and q / (1 - q) times its last step bounds what is missing.
+/// Error bound of a patch after a sweep that changed no b by more than `change`: from the missing sweeps, and from
+/// numbers rounded down by less than 1 in each. q is the largest reflectance. Rows of the published map sum to at most
+/// 1, so a sweep is a contraction by q, and q / (1 - q) times its last step bounds the missing rest.
 double errorOfExitance(double q, double change) {
   return q < 1.0 ? q * (q * change + 1.0) / (1.0 - q) : std::numeric_limits<double>::infinity();
 }
@@ -46,7 +46,7 @@ PublishedScene solveAsPublished(const gl::Context& context, gl::ProgramLibrary& 
   PublishedScene result;
   RadiositySolution& solution = result.solution = begin(context, programs, scene, settings);
   const std::vector<Patch>& patches = solution.mesh.patches;
-  std::vector<glm::dvec3> own;  // exitance before anything is solved
+  std::vector<glm::dvec3> own;  // exitance before solving
   double brightest = 0.0;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     own.push_back(patches[i].emission + patches[i].reflectance * (solution.direct[i] + solution.fromSky[i]));
@@ -62,7 +62,7 @@ PublishedScene solveAsPublished(const gl::Context& context, gl::ProgramLibrary& 
     const std::vector<RadTriangle> triangles = radTrianglesOf(solution.mesh, own, channel, step);
     OriginalRadiosity solver(programs, triangles, program);
     OriginalProgress progress = solver.start();
-    double change = 0.0;  // the largest of a triangle in the last sweep
+    double change = 0.0;  // largest change of a triangle in the last sweep
     bool stopped = false;
     do {
       const std::vector<float> before = progress.received;

@@ -18,7 +18,7 @@ namespace {
 
 glm::dvec3 vec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
-/// PCG-RXS-M-XS, 32 bits [ONeill2014]: an angle of its own for every triangle.
+/// PCG-RXS-M-XS, 32 bits [ONeill2014]: a different angle for every triangle.
 double rollOf(std::uint32_t triangle, std::uint32_t seed) {
   const std::uint32_t state = (triangle + 0x9e3779b9u * seed) * 747796405u + 2891336453u;
   const std::uint32_t word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -74,7 +74,7 @@ float OriginalRadiosity::sentBy(std::size_t triangle, float received) const {
   const RadTriangle& t = triangles_[triangle];
   const float sent = static_cast<float>(t.e) + received * t.ro;
   if (!settings_.deviations.values24Bit) return sent;
-  // Three bytes are sent, whatever the number: what lies above them is lost, as it was.
+  // Only three bytes of the number are sent: higher bits are lost, as in the original.
   const auto number = static_cast<std::uint32_t>(sent);
   if (number > kRadMost) ++overflows_;
   return static_cast<float>(number & kRadMost);
@@ -154,7 +154,7 @@ float OriginalRadiosity::gather(std::size_t triangle) {
   }
   if (!settings_.deviations.values24Bit) return static_cast<float>(sum);
   return static_cast<float>(
-      std::min(static_cast<std::uint32_t>(sum), kRadMost));  // the map's floats sum to 1 within their rounding only
+      std::min(static_cast<std::uint32_t>(sum), kRadMost));  // the map's floats sum to 1 only within rounding
 }
 
 bool OriginalRadiosity::sweep(OriginalProgress& progress, const std::function<bool(const OriginalProgress&)>& goOn) {

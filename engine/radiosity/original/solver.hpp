@@ -1,11 +1,11 @@
-// The radiosity original: a picture of the scene from every triangle, five views, read back and summed on the CPU
-// [RAD2008 chapter 3].
+// The radiosity original: renders the scene from every triangle in five views, read back and summed on the CPU [RAD2008
+// chapter 3].
 //
 // From a triangle's centroid five views of 90 degrees are drawn, each triangle in the colour whose red, green and blue
-// bytes are the number e + b ro of its exitance [RAD2008 eq 3-2]; glReadPixels brings them to the CPU, which multiplies
-// each pixel with a map (map.hpp) and sums: that is the triangle's received radiosity b. A sweep over all triangles is
-// one iteration; done when nothing changed in one. Units: the file's (rad_file.hpp). Nothing is accelerated here; see
-// the corrected solver.
+// bytes are the number e + b ro of its exitance [RAD2008 eq 3-2]. glReadPixels copies them to the CPU, which multiplies
+// each pixel by a map (map.hpp) and sums: that is the triangle's received radiosity b. A sweep over all triangles is
+// one iteration; the solution is done when a sweep changes nothing. Units: the file's (rad_file.hpp). Nothing is
+// accelerated here; see the corrected solver.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -36,16 +36,16 @@ class OriginalRadiosity {
  public:
   struct Settings {
     int view = 500;  ///< pixels per side, 2 to 4096
-    bool gaussSeidel = false;  ///< new values used at once, else from the next sweep on
+    bool gaussSeidel = false;  ///< new values are used at once; otherwise from the next sweep on
     RadiosityDeviations deviations = publishedRadiosity();
     double nearPlane = 0.0;  ///< scene units; 0: 1e-4 of the scene's diagonal
-    unsigned seed = 1;  ///< of the roll where radiosity.fixed-orientation is off
+    unsigned seed = 1;  ///< for the roll, if radiosity.fixed-orientation is off
   };
 
-  /// `triangles` are checked ones (checkRadTriangles) and must outlive this.
+  /// `triangles` must have passed checkRadTriangles and must outlive this.
   OriginalRadiosity(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles, const Settings& settings);
 
-  /// The state of the file: its b, no sweep begun.
+  /// The file's state: its b, with no sweep begun.
   OriginalProgress start() const;
 
   /// Continues the sweep in `progress` to its end (true), or until `goOn`, called after every triangle, returns false
