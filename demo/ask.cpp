@@ -8,18 +8,18 @@ namespace lucerna::demo {
 
 namespace {
 
-nlohmann::ordered_json toJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+nlohmann::ordered_json vectorToJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-nlohmann::ordered_json toJson(const PixelAnswer& answer, const PixelShare& share) {
+nlohmann::ordered_json shareToJson(const PixelAnswer& answer, const PixelShare& share) {
   nlohmann::ordered_json json = {{"group", share.group},
                                  {"name", share.name},
                                  {"share", answer.shareOf(share.radiance)},
-                                 {"radiance", toJson(share.radiance)}};
+                                 {"radiance", vectorToJson(share.radiance)}};
   if (share.count > 1) json["count"] = share.count;
   if (share.weight) json["weight"] = *share.weight;
   if (share.lobe)
     for (const glm::vec4& c : *share.lobe) json["lobe"].push_back({c.x, c.y, c.z, c.w});
-  for (const glm::dvec3& place : share.places) json["places"].push_back(toJson(place));
+  for (const glm::dvec3& place : share.places) json["places"].push_back(vectorToJson(place));
   return json;
 }
 
@@ -29,21 +29,22 @@ nlohmann::ordered_json toJson(const PixelAnswer& answer) {
   nlohmann::ordered_json json;
   json["pixel"] = {answer.pixel.x, answer.pixel.y};
   json["technique"] = answer.technique;
-  json["radiance"] = toJson(answer.radiance);
-  json["sum"] = toJson(answer.sum());
+  json["radiance"] = vectorToJson(answer.radiance);
+  json["sum"] = vectorToJson(answer.sum());
   if (answer.samples > 0) {
     json["samples"] = answer.samples;
-    json["standard_error"] = toJson(answer.standardError);
+    json["standard_error"] = vectorToJson(answer.standardError);
   }
   if (answer.surface)
-    json["surface"] = {{"position", toJson(answer.surface->position)},
-                       {"normal", toJson(answer.surface->normal)},
-                       {"albedo", toJson(answer.surface->albedo)}};
+    json["surface"] = {{"position", vectorToJson(answer.surface->position)},
+                       {"normal", vectorToJson(answer.surface->normal)},
+                       {"albedo", vectorToJson(answer.surface->albedo)}};
   json["groups"] = nlohmann::ordered_json::array();
   for (const auto& [name, radiance] : answer.groups())
-    json["groups"].push_back({{"group", name}, {"share", answer.shareOf(radiance)}, {"radiance", toJson(radiance)}});
+    json["groups"].push_back(
+        {{"group", name}, {"share", answer.shareOf(radiance)}, {"radiance", vectorToJson(radiance)}});
   json["shares"] = nlohmann::ordered_json::array();
-  for (const PixelShare& share : answer.shares) json["shares"].push_back(toJson(answer, share));
+  for (const PixelShare& share : answer.shares) json["shares"].push_back(shareToJson(answer, share));
   return json;
 }
 

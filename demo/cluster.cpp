@@ -3,6 +3,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "bench/provenance.hpp"
 #include "cluster_job.hpp"
 #include "commands.hpp"
 
@@ -32,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 using State = ClusterJob::State;
 
-struct Options {
+struct ClusterOptions {
   CommonOptions common;
   std::string folder, output, time = "1-00:00:00", account, gpus;
   std::vector<std::string> command, devices;
@@ -43,12 +44,6 @@ struct Options {
 };
 
 std::string thisProgram() { return fs::read_symlink("/proc/self/exe").string(); }
-
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
 
 // ---------------------------------------------------------------------------------------------------- plan
 
@@ -138,9 +133,9 @@ Planned readCommand(std::vector<std::string> words, std::uint32_t tasks) {
 /// The array, a task each, and the join after it, for Slurm. A task that a signal ended, a node that fell out and a
 /// preemption give their tasks back, or leave them to be found abandoned: the join finishes what is left before it
 /// joins.
-void writeSlurm(const fs::path& folder, const Options& options) {
+void writeSlurm(const fs::path& folder, const ClusterOptions& options) {
   const fs::path whole = fs::absolute(folder);
-  const std::string program = quoted(thisProgram()), job = quoted(whole.string());
+  const std::string program = bench::shellWord(thisProgram()), job = bench::shellWord(whole.string());
   std::string head =
       fmt::format("#!/bin/bash\n#SBATCH --time={}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n", options.time);
   if (!options.account.empty()) head += fmt::format("#SBATCH --account={}\n", options.account);
@@ -181,7 +176,7 @@ void writeSlurm(const fs::path& folder, const Options& options) {
   }
 }
 
-int plan(const Options& options) {
+int plan(const ClusterOptions& options) {
   options.common.apply();
   const Planned planned = readCommand(options.command, options.tasks);
   ClusterJob::plan(options.output, planned.command, options.tasks);
@@ -286,7 +281,7 @@ bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& cla
   return done;
 }
 
-int run(const Options& options) {
+int runCluster(const ClusterOptions& options) {
   options.common.apply();
   const ClusterJob job(options.folder);
   const int count = static_cast<int>(job.tasks().size());
@@ -356,7 +351,7 @@ int run(const Options& options) {
 
 // ---------------------------------------------------------------------------------------------------- status, join
 
-int status(const Options& options) {
+int status(const ClusterOptions& options) {
   options.common.apply();
   const ClusterJob job(options.folder);
   std::map<State, int> counts;
@@ -378,7 +373,7 @@ int runHere(const std::vector<std::string>& words, const std::string& directory)
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-int join(const Options& options) {
+int join(const ClusterOptions& options) {
   options.common.apply();
   const ClusterJob job(options.folder);
   for (const ClusterTask& task : job.tasks()) {
@@ -410,7 +405,7 @@ int join(const Options& options) {
 
 Work addCluster(Command app) {
   Subcommands commands(app);
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ClusterOptions>();
   Command planned =
       commands.add("plan", "Cut a command's work into tasks, in a folder that all machines see; with scripts for Slurm",
                    [options] { return plan(*options); });
@@ -441,7 +436,7 @@ Work addCluster(Command app) {
   };
   saveEvery(planned);
   Command running = commands.add("run", "Work on a job's tasks until none is left; any number of machines at once",
-                                 [options] { return run(*options); });
+                                 [options] { return runCluster(*options); });
   running.addOption("JOB", options->folder, "the job's folder").required();
   running.addOption("--jobs", options->jobs, "tasks at once").showDefault().range(1, 256);
   running

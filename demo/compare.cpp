@@ -20,13 +20,13 @@ namespace lucerna::demo {
 
 namespace {
 
-struct Options {
+struct CompareOptions {
   CommonOptions common;
   std::string image, reference, heatMap, page, standardError;
 };
 
 /// The pair as one page with the reports' figure: A against B, which is of no time.
-void writePage(const Options& options, const Image& image, const Image& reference, const measure::ImageErrors& e,
+void writePage(const CompareOptions& options, const Image& image, const Image& reference, const measure::ImageErrors& e,
                const measure::Flip& flip) {
   std::optional<Image> error;
   measure::ReferenceNoise noise;
@@ -99,7 +99,7 @@ void writeHeatMaps(const std::string& file, const Image& image, const Image& ref
           2));
 }
 
-int run(const Options& options) {
+int runCompare(const CompareOptions& options) {
   options.common.apply();
   if (!options.heatMap.empty() && lowerExtension(options.heatMap) != ".png")
     throwBadInput("--heatmap {}: the extension must be png", options.heatMap);
@@ -153,7 +153,7 @@ int run(const Options& options) {
 }  // namespace
 
 Work addCompare(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   app.addOption("A", options->image, "a picture: hdr, exr, pfm, or png, jpg, tga, bmp taken as sRGB").required();
   app.addOption("B", options->reference, "the reference, of the same size").required();
   app.addOption("--heatmap", options->heatMap, "OUT.png: absolute and signed differences side by side");
@@ -162,7 +162,7 @@ Work addCompare(Command app) {
   app.addOption("--standard-error", options->standardError,
                 "with --page: B's standard error of each pixel, such as of lucerna merge --error; gives z-scores");
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runCompare(*options); };
 }
 
 }  // namespace lucerna::demo

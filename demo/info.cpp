@@ -12,14 +12,14 @@ namespace lucerna::demo {
 
 namespace {
 
-struct Options {
+struct InfoOptions {
   CommonOptions common;
   std::string scene;
   bool devices = false, settings = false;
 };
 
 /// EGL's devices, and what each draws with. The first that host egl would try is marked.
-int listDevices(const Options& options) {
+int listDevices(const InfoOptions& options) {
   const std::vector<EglDevice> devices = eglDevices();
   const std::vector<std::size_t> order = eglPreference(devices);
   nlohmann::ordered_json json{{"devices", nlohmann::ordered_json::array()}};
@@ -51,7 +51,7 @@ int listDevices(const Options& options) {
   return 0;
 }
 
-int run(const Options& options) {
+int runInfo(const InfoOptions& options) {
   options.common.apply();
   if (options.devices) return listDevices(options);
   if (options.settings) {
@@ -116,13 +116,13 @@ int run(const Options& options) {
 }  // namespace
 
 Work addInfo(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoOptions>();
   app.addOption("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...");
   app.addFlag("--devices", options->devices, "list EGL's devices and mark the one that is tried first");
   app.addFlag("--settings", options->settings,
               "print every setting and deviation, with ranges, defaults, units and sources (docs/settings.md)");
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runInfo(*options); };
 }
 
 }  // namespace lucerna::demo

@@ -14,7 +14,7 @@ namespace lucerna::demo {
 
 namespace {
 
-struct Options {
+struct MediaOptions {
   CommonOptions common;
   std::string mtl, output;
 };
@@ -26,7 +26,7 @@ nlohmann::ordered_json array(const glm::dvec3& v) {
   return json;
 }
 
-int list(const Options& options) {
+int list(const MediaOptions& options) {
   options.common.apply();
   nlohmann::ordered_json json;
   json["unit"] = "1/mm";
@@ -50,7 +50,7 @@ int list(const Options& options) {
   return 0;
 }
 
-int draft(const Options& options) {
+int draft(const MediaOptions& options) {
   options.common.apply();
   const auto [text, report] = draftOriginalScene(options.mtl);
   if (options.output.empty()) fmt::print("{}", text);
@@ -69,7 +69,7 @@ int draft(const Options& options) {
 
 Work addMedia(Command app) {
   Subcommands commands(app);
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MediaOptions>();
   Command listed = commands.add("list", "The catalogue: the original's twelve media and 27 measured liquids",
                                 [options] { return list(*options); });
   options->common.declare(listed);

@@ -16,7 +16,7 @@ namespace lucerna::demo {
 
 namespace {
 
-struct Options {
+struct MergeOptions {
   CommonOptions common;
   std::vector<std::string> parts;
   std::string folder, output, checkpoint, errorOutput;
@@ -24,7 +24,7 @@ struct Options {
 };
 
 /// Frames, batches or rows: folders as one folder.
-int mergeFolders(const Options& options) {
+int mergeFolders(const MergeOptions& options) {
   for (const std::string& part : options.parts)
     if (!isPartFolder(part)) throwBadInput("{}: is no folder of a --part, as those before it are", part);
   if (options.checkpoint.empty() || !options.output.empty())
@@ -41,7 +41,7 @@ int mergeFolders(const Options& options) {
   return 0;
 }
 
-int run(Options options) {
+int runMerge(MergeOptions options) {
   options.common.apply();
   if (!options.folder.empty()) {
     std::error_code error;
@@ -98,7 +98,7 @@ int run(Options options) {
 }  // namespace
 
 Work addMerge(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeOptions>();
   app.addOption("PART", options->parts,
                 "what a command made with --part K/N --checkpoint PART (render: --samples FIRST:LAST too), of one "
                 "scene and with one setting, in any order");
@@ -111,7 +111,7 @@ Work addMerge(Command app) {
                 "begin with sample 0; of frames, batches and rows a folder");
   app.addOption("--exposure", options->exposure, "of a png").showDefault();
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runMerge(*options); };
 }
 
 }  // namespace lucerna::demo

@@ -19,7 +19,7 @@ namespace lucerna::demo {
 
 namespace {
 
-struct Options {
+struct RadiosityShowOptions {
   CommonOptions common;
   std::string file, mode, output, mapping, camera, fidelity, scene, size = "1280x720";
   double constant = 0.0;
@@ -27,7 +27,7 @@ struct Options {
   bool mesh = false, falseColours = false, interpolate = false;
 };
 
-RadDisplay displayOf(const Options& options) {
+RadDisplay displayOf(const RadiosityShowOptions& options) {
   RadDisplay display;
   if (!options.mode.empty() && options.mode != "s" && options.mode != "c")
     throwBadInput("{}: unknown; expected s (back-facing triangles too) or c (the computed colours)", options.mode);
@@ -94,7 +94,7 @@ void walkAround(Host& host, gl::ProgramLibrary& programs, Shown shown, const Cam
   }
 }
 
-int run(const Options& options) {
+int runRadiosityShow(const RadiosityShowOptions& options) {
   options.common.apply();
   const RadDisplay display = displayOf(options);
   const glm::ivec2 size = parseSize(options.size);
@@ -150,7 +150,7 @@ int run(const Options& options) {
 }  // namespace
 
 Work addRadiosityShow(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RadiosityShowOptions>();
   app.addOption("FILE", options->file, "a triangle file").required();
   offer(app.addOption("MODE", options->mode,
                       "s: back-facing triangles too, by their corners; c: the 24-bit colours of the computation"),
@@ -177,7 +177,7 @@ Work addRadiosityShow(Command app) {
                 "px,py,pz,tx,ty,tz,fov (position, target, degrees); default: from above a corner");
   app.addOption("--size", options->size, "WIDTHxHEIGHT in pixels").showDefault();
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runRadiosityShow(*options); };
 }
 
 }  // namespace lucerna::demo

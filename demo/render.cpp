@@ -19,7 +19,7 @@ namespace lucerna::demo {
 
 namespace {
 
-struct Options {
+struct RenderOptions {
   CommonOptions common;
   PictureOptions picture;
   PathOptions path;
@@ -28,7 +28,7 @@ struct Options {
 };
 
 /// --ask: prints what lit a pixel. Path tracing follows the paths of that pixel alone.
-int ask(const Options& options) {
+int ask(const RenderOptions& options) {
   if (!options.output.empty()) throwBadInput("--ask {}: prints JSON and writes no picture: not with -o", options.ask);
   const PathOptions& path = options.path;
   if (path.seconds || path.error || !path.samples.empty() || !path.part.empty() || !path.checkpoint.empty())
@@ -60,7 +60,7 @@ int ask(const Options& options) {
   return 0;
 }
 
-int run(Options options) {
+int runRender(RenderOptions options) {
   // What is asked for, refused before any work where it cannot be done.
   options.common.apply();
   if (!options.output.empty()) checkWritable(options.output);
@@ -153,7 +153,7 @@ int run(Options options) {
 }  // namespace
 
 Work addRender(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderOptions>();
   app.addOption("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...").required();
   app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("-o,--output", options->output,
@@ -167,7 +167,7 @@ Work addRender(Command app) {
   options->common.declare(app);
   return [options, size = app.find("--size")] {
     options->path.sizeGiven = size.count() > 0;
-    return run(*options);
+    return runRender(*options);
   };
 }
 

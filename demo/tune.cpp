@@ -15,7 +15,7 @@ namespace lucerna::demo {
 
 namespace {
 
-struct Options {
+struct TuneOptions {
   CommonOptions common;
   bench::ErrorBenchOptions bench;
   std::string output;
@@ -85,7 +85,7 @@ std::string describe(const ErrorRow& row) {
                      100.0 * bench::rankedError(row, "nrmse"));
 }
 
-int run(Options options) {
+int runTune(TuneOptions options) {
   if (options.frameTime.has_value() == options.error.has_value())
     throwBadInput("tune: give either --frame-time MS or --error E");
   checkWritable(options.output);
@@ -125,7 +125,7 @@ int run(Options options) {
 }  // namespace
 
 Work addTune(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TuneOptions>();
   app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
   app.addOption("--frame-time", options->frameTime,
                 "at most this many milliseconds per picture: settings with the least error")
@@ -138,7 +138,7 @@ Work addTune(Command app) {
   app.addOption("-o,--output", options->output, "the settings file").required();
   options->bench.declare(app);
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runTune(*options); };
 }
 
 }  // namespace lucerna::demo

@@ -242,7 +242,7 @@ class Report {
   nlohmann::ordered_json json_;
 };
 
-int run(AllOptions options) {
+int runAll(AllOptions options) {
   options.common.apply();
   if (!(options.scale > 0.0 && options.scale <= 4.0))
     throwBadInput("--scale {}: expected a number above 0, at most 4", options.scale);
@@ -315,7 +315,7 @@ Work addBenchAll(Command app) {
                 "how much work: pixels and seconds; 1 takes four times as long as the default")
       .showDefault();
   options->common.declare(app);
-  return [options] { return bench::run(*options); };
+  return [options] { return bench::runAll(*options); };
 }
 
 }  // namespace lucerna::demo

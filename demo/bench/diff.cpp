@@ -199,7 +199,7 @@ bool isBeyondLadder(const ErrorRow& row, const std::map<std::string, ErrorRow>& 
   return number(row, "spp") > longest && std::isfinite(longest);
 }
 
-int run(const DiffOptions& options) {
+int runDiff(const DiffOptions& options) {
   // What is compared.
   options.common.apply();
   const auto wants = [&](const char* what) {
@@ -332,7 +332,7 @@ Work addBenchDiff(Command app) {
   options->common.declare(app);
   return [options] {
     try {
-      return bench::run(*options);
+      return bench::runDiff(*options);
     } catch (const nlohmann::json::exception& error) {
       throwBadInput("{}, {}: no reports of lucerna bench error ({})", options->a, options->b, error.what());
     }

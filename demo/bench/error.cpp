@@ -310,12 +310,12 @@ nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const Erro
 
 namespace {
 
-struct Options {
+struct ErrorOptions {
   CommonOptions common;
   bench::ErrorBenchOptions bench;
 };
 
-int run(Options options) {
+int runError(ErrorOptions options) {
   if (options.bench.out.empty()) options.bench.out = options.bench.deviations ? "bench-deviations" : "bench-error";
   const auto result = bench::benchScene(options.common, options.bench);
   if (!result) return exitCode();
@@ -383,14 +383,14 @@ Work addBenchReferences(Command app) {
 }
 
 Work addBenchError(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ErrorOptions>();
   app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
   options->bench.declare(app);
   app.addFlag("--deviations", options->bench.deviations,
               "each deviation of the originals alone, instead of ladders of settings");
   options->bench.part.declare(app, "rows");
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runError(*options); };
 }
 
 }  // namespace lucerna::demo

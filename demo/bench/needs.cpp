@@ -117,7 +117,7 @@ std::string needsText(const NeedsResult& r) {
 
 namespace {
 
-struct Options {
+struct NeedsOptions {
   CommonOptions common;
   PictureOptions picture;
   std::vector<std::string> scenes;
@@ -125,7 +125,7 @@ struct Options {
   int frames = 5;
 };
 
-int run(Options options) {
+int runNeeds(NeedsOptions options) {
   options.common.apply();
   options.picture.readSettingsFile();
   const RenderSettings settings = options.picture.parse();
@@ -153,14 +153,14 @@ int run(Options options) {
 }  // namespace
 
 Work addBenchNeeds(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<NeedsOptions>();
   options->picture.size = "320x180";
   app.addOption("SCENE", options->scenes, "scene files (default: the atrium)");
   app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("--frames", options->frames, "pictures of each kind, in turn").showDefault().range(1, 10000);
   options->picture.declare(app);
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runNeeds(*options); };
 }
 
 }  // namespace lucerna::demo

@@ -22,7 +22,7 @@ namespace lucerna::demo {
 
 namespace {
 
-struct Options {
+struct PicturesOptions {
   CommonOptions common;
   std::string original, scene, output, camera, fidelity = "corrected", size;
   std::optional<double> exposure, scale;
@@ -221,11 +221,11 @@ namespace {
 
 /// Tiles, and the published samples times this, where nothing else is asked for.
 constexpr const char* kVptTile = "320x180";
-constexpr double kVptScale = 0.02;
+constexpr double kVptPicturesScale = 0.02;
 
-int runVpt(const Options& options) {
+int runVpt(const PicturesOptions& options) {
   const glm::ivec2 size = parseSize(options.size.empty() ? kVptTile : options.size);
-  const double scale = options.scale.value_or(kVptScale);
+  const double scale = options.scale.value_or(kVptPicturesScale);
   if (size.x > 1920 || size.y > 1080) throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
   if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
   if (!options.scene.empty())
@@ -256,7 +256,7 @@ int runVpt(const Options& options) {
   return 0;
 }
 
-int run(const Options& options) {
+int runPictures(const PicturesOptions& options) {
   options.common.apply();
   checkWritable(options.output);
   bench::checkOriginal(options.original);
@@ -310,7 +310,7 @@ int run(const Options& options) {
 }  // namespace
 
 Work addBenchPictures(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PicturesOptions>();
   app.addOption("SCENE", options->scene,
                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
   offer(app.addOption("--original", options->original, "whose pictures: lpv, rad or vpt").required(),
@@ -327,7 +327,7 @@ Work addBenchPictures(Command app) {
                 "0, at most 1");
   app.addOption("--exposure", options->exposure, "multiplies radiance before tone mapping (the scene's)");
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runPictures(*options); };
 }
 
 }  // namespace lucerna::demo

@@ -13,7 +13,7 @@ namespace {
 
 /// That a picture with fewer than the published samples may take: what a slow machine does not get done is noisier, not
 /// left out.
-constexpr double kMostSeconds = 20.0;
+constexpr double kMostSecondsAPicture = 20.0;
 constexpr int kZoom = 6;  // of figure 5.11
 
 float luminance(const glm::vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
@@ -66,8 +66,9 @@ class Drawing {
   VptResult add(const VptPicture& picture, Fidelity fidelity, const PathDeviations& deviations,
                 const std::string& note) {
     const Scene scene = loadVptScene(picture, fidelity);
-    VptResult drawn = renderVpt(input_.context, input_.programs, picture, scene, size_,
-                                vptSamples(picture, input_.scale), input_.scale < 1.0 ? kMostSeconds : 0.0, deviations);
+    VptResult drawn =
+        renderVpt(input_.context, input_.programs, picture, scene, size_, vptSamples(picture, input_.scale),
+                  input_.scale < 1.0 ? kMostSecondsAPicture : 0.0, deviations);
     const glm::dvec3 mean = drawn.statistics.mean;
     const std::string label = fmt::format("{}  {}{}", picture.figure, picture.label, note);
     tiles.push_back({fmt::format("{} ({:.3g} spp, mean {:.3g}, noise {:.2g})", label, drawn.statistics.samples,
@@ -139,7 +140,7 @@ VptSheet drawVptPictures(const VptTablesInput& input, glm::ivec2 size, std::opti
       "{:.0f} s a picture go",
       drawing.published() ? "5.7" : "5.8",
       drawing.published() ? "published estimator lit by points, corrected beside it" : "corrected estimator",
-      input.scale, kMostSeconds);
+      input.scale, kMostSecondsAPicture);
   result.sheet = contactSheet(title, drawing.tiles, 4);
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "bench/provenance.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -134,10 +135,9 @@ int writeLogLogPlot(const fs::path& folder, const std::string& stem, const LogLo
   if (!haveGnuplot())
     throwMissingCapability("gnuplot is missing, which draws the plots (Debian package gnuplot-nox); the script is {}",
                            (folder / (stem + ".gp")).string());
-  std::string quotedFolder = "'";
-  for (char c : fs::absolute(folder).string()) quotedFolder += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  quotedFolder += "'";
-  const int status = std::system(fmt::format("cd {} && gnuplot {}.gp >{}.log 2>&1", quotedFolder, stem, stem).c_str());
+  const std::string where = shellWord(fs::absolute(folder).string());
+  const std::string command = fmt::format("cd {} && gnuplot {}.gp >{}.log 2>&1", where, stem, stem);
+  const int status = std::system(command.c_str());
   if (status != 0)
     throwMissingCapability("gnuplot fails on {}: see {}", (folder / (stem + ".gp")).string(),
                            (folder / (stem + ".log")).string());

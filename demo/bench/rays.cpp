@@ -300,13 +300,13 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
 
 namespace {
 
-struct Options {
+struct RaysCommandOptions {
   CommonOptions common;
   std::string scene;
   bench::RaysOptions bench;
 };
 
-int run(const Options& options) {
+int runRaysCommand(const RaysCommandOptions& options) {
   options.common.apply();
   watchForInterrupt();
   const Scene scene = loadScene(bench::sceneOrAtrium(options.scene));
@@ -322,7 +322,7 @@ int run(const Options& options) {
 }  // namespace
 
 Work addBenchRays(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RaysCommandOptions>();
   app.addOption("SCENE", options->scene, "a scene file (default: the atrium)");
   app.addOption("--rays", options->bench.rays, "rays of each kind").showDefault();
   app.addOption("--repeats", options->bench.repeats, "measurements of each kind, after one to warm up").showDefault();
@@ -337,7 +337,7 @@ Work addBenchRays(Command app) {
       "Differ: rays that Embree answers otherwise, by more than 1e-4 of the distance. All of this machine's cores work "
       "for either.");
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runRaysCommand(*options); };
 }
 
 }  // namespace lucerna::demo

@@ -132,13 +132,13 @@ nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows) {
 
 namespace {
 
-struct Options {
+struct StabilityOptions {
   CommonOptions common;
   PartOptions part;
   std::string technique, compare;
 };
 
-int run(const Options& options) {
+int runStabilityCommand(const StabilityOptions& options) {
   options.common.apply();
   if (options.part.isPart() && !options.compare.empty())
     throwBadInput("--compare {}: needs all rows; --part makes some", options.compare);
@@ -186,14 +186,14 @@ int run(const Options& options) {
 }  // namespace
 
 Work addBenchStability(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StabilityOptions>();
   app.addOption("--technique", options->technique, "only this one's rows");
   app.addOption("--compare", options->compare,
                 "a table kept by --json: rows that are gone, fail now, expect another answer or allow more are named, "
                 "exit code 1");
   options->part.declare(app, "rows");
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runStabilityCommand(*options); };
 }
 
 }  // namespace lucerna::demo

@@ -125,8 +125,8 @@ double frontFlux(const StabilityContext& context, const Setup& setup, int n) {
   return fluxOf(context, setup, n, light) - fluxOf(context, setup, n - 1, light);
 }
 
-void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
-         std::function<Measurement(const StabilityContext&)> run) {
+void addLpvRow(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
+               std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({"lpv", std::move(name), std::move(parameter), std::move(run)});
 }
 
@@ -135,10 +135,10 @@ void addKernel(std::vector<StabilityCase>& cases) {
   constexpr std::pair<int, double> kDecay[] = {
       {1, 1.138208}, {16, 1.138208}, {32, 1.138115}, {64, 1.123262}, {128, 0.944911}};
   for (const auto& [step, expected] : kDecay)  // clang 14 captures no structured bindings
-    add(cases, "one light in 32^3, flux after N steps", fmt::format("N = {}", step),
-        [n = step, flux = expected](const StabilityContext& c) {
-          return Measurement{flux, frontFlux(c, {}, n), 3e-5};
-        });
+    addLpvRow(cases, "one light in 32^3, flux after N steps", fmt::format("N = {}", step),
+              [n = step, flux = expected](const StabilityContext& c) {
+                return Measurement{flux, frontFlux(c, {}, n), 3e-5};
+              });
   struct Tiny {
     int cells, step;
     double flux;
@@ -146,30 +146,31 @@ void addKernel(std::vector<StabilityCase>& cases) {
   constexpr Tiny kTiny[] = {{1, 1, 0.0},      {2, 1, .333333}, {2, 2, .110472}, {2, 3, .042324},
                             {3, 1, 1.138208}, {3, 3, .566864}, {3, 6, .147829}};
   for (const Tiny& t : kTiny)
-    add(cases, "one light in a tiny grid, flux after N steps", fmt::format("{}^3, N = {}", t.cells, t.step),
-        [t](const StabilityContext& c) {
-          Setup setup;
-          setup.cells = t.cells;
-          return Measurement{t.flux, frontFlux(c, setup, t.step), 5e-6};
-        });
+    addLpvRow(cases, "one light in a tiny grid, flux after N steps", fmt::format("{}^3, N = {}", t.cells, t.step),
+              [t](const StabilityContext& c) {
+                Setup setup;
+                setup.cells = t.cells;
+                return Measurement{t.flux, frontFlux(c, setup, t.step), 5e-6};
+              });
   for (const auto& [amplifier, gain] :
        {std::pair{3.0f, 0.75}, std::pair{4.0f, 1.0}, std::pair{4.2f, 1.05}, std::pair{5.0f, 1.25}})
-    add(cases, "4 pi kernel, gain of a step (amplifier / 4)", fmt::format("amplifier {:g}", amplifier),
-        [amplifier = amplifier, gain = gain](const StabilityContext& c) {
-          Setup setup;
-          setup.amplifier = amplifier;
-          return Measurement{gain, frontFlux(c, setup, 5) / frontFlux(c, setup, 4), 1e-4};
-        });
+    addLpvRow(cases, "4 pi kernel, gain of a step (amplifier / 4)", fmt::format("amplifier {:g}", amplifier),
+              [amplifier = amplifier, gain = gain](const StabilityContext& c) {
+                Setup setup;
+                setup.amplifier = amplifier;
+                return Measurement{gain, frontFlux(c, setup, 5) / frontFlux(c, setup, 4), 1e-4};
+              });
 }
 
 void addIterations(std::vector<StabilityCase>& cases) {
-  add(cases, "no step: the injected light alone", "N = 0", [](const StabilityContext& c) {
+  addLpvRow(cases, "no step: the injected light alone", "N = 0", [](const StabilityContext& c) {
     return Measurement{1.0, fluxOf(c, {}, 0, {inTheMiddle(32)}), 1e-6};
   });
   // The sum over all fronts of 8^3 is below what leaves in ever smaller parts: it is bounded by its value at 256 steps
   // plus nothing that floats show.
   for (const bool full : {true, false})
-    add(cases, fmt::format("ten thousand steps in 8^3 over 256, {} bits", full ? 32 : 16), "N = 10000",
+    addLpvRow(
+        cases, fmt::format("ten thousand steps in 8^3 over 256, {} bits", full ? 32 : 16), "N = 10000",
         [full](const StabilityContext& c) {
           Setup setup;
           setup.cells = 8;
@@ -181,23 +182,23 @@ void addIterations(std::vector<StabilityCase>& cases) {
 
 void addInjection(std::vector<StabilityCase>& cases) {
   for (const float flux : {1e-12f, 1e-5f, 1e5f, 1e12f})
-    add(cases, "flux of a light over what it sends, 16 bits", fmt::format("{:g} W", static_cast<double>(flux)),
-        [flux](const StabilityContext& c) {
-          Setup setup;
-          setup.full = false;
-          setup.referenceIrradiance = flux;
-          Vpl light = inTheMiddle(32);
-          light.flux = flux;
-          return Measurement{1.0, fluxOf(c, setup, 0, {light}) / static_cast<double>(flux), 1e-3};
-        });
+    addLpvRow(cases, "flux of a light over what it sends, 16 bits", fmt::format("{:g} W", static_cast<double>(flux)),
+              [flux](const StabilityContext& c) {
+                Setup setup;
+                setup.full = false;
+                setup.referenceIrradiance = flux;
+                Vpl light = inTheMiddle(32);
+                light.flux = flux;
+                return Measurement{1.0, fluxOf(c, setup, 0, {light}) / static_cast<double>(flux), 1e-3};
+              });
   for (const LpvFill fill : {LpvFill::layered, LpvFill::fixed})
-    add(cases, "ten thousand equal lights in one cell, sum", fmt::format("{}", nameOf(fill)),
-        [fill](const StabilityContext& c) {
-          Setup setup;
-          setup.fill = fill;
-          setup.referenceIrradiance = 1e4f;
-          return Measurement{1e4, fluxOf(c, setup, 0, std::vector<Vpl>(10000, inTheMiddle(32))), 10.0};
-        });
+    addLpvRow(cases, "ten thousand equal lights in one cell, sum", fmt::format("{}", nameOf(fill)),
+              [fill](const StabilityContext& c) {
+                Setup setup;
+                setup.fill = fill;
+                setup.referenceIrradiance = 1e4f;
+                return Measurement{1e4, fluxOf(c, setup, 0, std::vector<Vpl>(10000, inTheMiddle(32))), 10.0};
+              });
   struct Place {
     const char* name;
     glm::vec3 position;
@@ -211,7 +212,7 @@ void addInjection(std::vector<StabilityCase>& cases) {
                                   {"at the far border", {kMiddle, 32.0f, kMiddle}, 0.0},
                                   {"at -1e30", {-1e30f, kMiddle, kMiddle}, 0.0}};
   for (const Place& place : kPlaces)
-    add(cases, "flux of a light, by place", place.name, [place](const StabilityContext& c) {
+    addLpvRow(cases, "flux of a light, by place", place.name, [place](const StabilityContext& c) {
       return Measurement{place.flux, fluxOf(c, {}, 0, {{place.position}}), 1e-6};
     });
 }
@@ -225,12 +226,13 @@ void addBadTexels(std::vector<StabilityCase>& cases) {
                                                      {"NaN flux", {glm::vec3(16.5f), {0, 0, 1}, kNan}},
                                                      {"infinite flux", {glm::vec3(16.5f), {0, 0, 1}, kInfinity}}};
   for (const auto& [name, bad] : kBad)
-    add(cases, "beside a bad texel: not finite cells after 8 steps", name, [bad = bad](const StabilityContext& c) {
-      Setup setup;
-      setup.iterations = 8;
-      const Volume volume(c, setup, {bad, inTheMiddle(32)});
-      return Measurement{0.0, static_cast<double>(volume.notFinite()), 0.0};
-    });
+    addLpvRow(cases, "beside a bad texel: not finite cells after 8 steps", name,
+              [bad = bad](const StabilityContext& c) {
+                Setup setup;
+                setup.iterations = 8;
+                const Volume volume(c, setup, {bad, inTheMiddle(32)});
+                return Measurement{0.0, static_cast<double>(volume.notFinite()), 0.0};
+              });
 }
 
 }  // namespace

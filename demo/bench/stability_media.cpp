@@ -15,8 +15,8 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
-         std::function<Measurement(const StabilityContext&)> run) {
+void addMediaRow(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
+                 std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({"path", std::move(name), std::move(parameter), std::move(run)});
 }
 
@@ -100,39 +100,40 @@ void addDepths(std::vector<StabilityCase>& cases) {
                            {1e3, NAN, 1, 8}};
   for (const Row& row : kRows) {
     if (std::isfinite(row.transmittance))
-      add(cases, "slab that absorbs nothing, transmittance", fmt::format("optical depth {:g}", row.depth),
-          [row](const StabilityContext& c) {
-            const auto s = trace(c, slabScene(grey(row.depth, 1.0)), row.samples, row.side);
-            return within(s.mean.y, s.meanError.y, row.transmittance, 0.02);
-          });
-    add(cases, "slab that absorbs nothing, both sides", fmt::format("optical depth {:g}", row.depth),
-        [row](const StabilityContext& c) {
-          Slab slab;
-          if (row.depth >= 1e3) slab.halfWidth = 0.5;  // a block: coordinates no larger than they must be
-          const auto s = trace(c, slabScene(grey(row.depth, 1.0), slab), row.samples, row.side);
-          return Measurement{1.0, s.mean.x + s.mean.y, 2e-5};
-        });
+      addMediaRow(cases, "slab that absorbs nothing, transmittance", fmt::format("optical depth {:g}", row.depth),
+                  [row](const StabilityContext& c) {
+                    const auto s = trace(c, slabScene(grey(row.depth, 1.0)), row.samples, row.side);
+                    return within(s.mean.y, s.meanError.y, row.transmittance, 0.02);
+                  });
+    addMediaRow(cases, "slab that absorbs nothing, both sides", fmt::format("optical depth {:g}", row.depth),
+                [row](const StabilityContext& c) {
+                  Slab slab;
+                  if (row.depth >= 1e3) slab.halfWidth = 0.5;  // a block: coordinates no larger than they must be
+                  const auto s = trace(c, slabScene(grey(row.depth, 1.0), slab), row.samples, row.side);
+                  return Measurement{1.0, s.mean.x + s.mean.y, 2e-5};
+                });
   }
   // A block as wide as it is thick: coordinates resolve a mean free path of 1e-6 of it, but no shorter one.
   for (const double depth : {1e3, 1e4, 1e5, 1e6})
     for (const auto& [albedo, reflectance] : {std::pair{.5, .115225878}, std::pair{.99, .752720717}})
-      add(cases, "half-space, 1 - H(1) sqrt(1 - albedo)", fmt::format("depth {:g}, albedo {:g}", depth, albedo),
-          [depth, albedo = albedo, reflectance = reflectance](const StabilityContext& c) {
-            Slab block;
-            block.halfWidth = 0.5;
-            const auto s = trace(c, slabScene(grey(depth, albedo), block), albedo > .9 ? 64 : 256);
-            return within(s.mean.x, s.meanError.x, reflectance, 0.005);
-          });
+      addMediaRow(cases, "half-space, 1 - H(1) sqrt(1 - albedo)", fmt::format("depth {:g}, albedo {:g}", depth, albedo),
+                  [depth, albedo = albedo, reflectance = reflectance](const StabilityContext& c) {
+                    Slab block;
+                    block.halfWidth = 0.5;
+                    const auto s = trace(c, slabScene(grey(depth, albedo), block), albedo > .9 ? 64 : 256);
+                    return within(s.mean.x, s.meanError.x, reflectance, 0.005);
+                  });
   for (const double depth : {1e-6, 1e-3, 1.0, 1e3})
-    add(cases, "absorption alone: what a medium emits", fmt::format("optical depth {:g}", depth),
-        [depth](const StabilityContext& c) {
-          Scene scene = slabScene(grey(depth, 0.0));
-          scene.environment.reset();
-          scene.media[0].emission = scene.media[0].absorption / static_cast<float>(depth);
-          // A share of the radiance, in units of what an infinitely thin one would have.
-          const auto s = trace(c, scene, 256);
-          return within(s.mean.x, s.meanError.x, -std::expm1(-depth) / depth, 0.01 * std::min(1.0, 1.0 / depth));
-        });
+    addMediaRow(cases, "absorption alone: what a medium emits", fmt::format("optical depth {:g}", depth),
+                [depth](const StabilityContext& c) {
+                  Scene scene = slabScene(grey(depth, 0.0));
+                  scene.environment.reset();
+                  scene.media[0].emission = scene.media[0].absorption / static_cast<float>(depth);
+                  // A share of the radiance, in units of what an infinitely thin one would have.
+                  const auto s = trace(c, scene, 256);
+                  return within(s.mean.x, s.meanError.x, -std::expm1(-depth) / depth,
+                                0.01 * std::min(1.0, 1.0 / depth));
+                });
 }
 
 /// Reflectance of matter that scatters straight back alone, the limit g = -1: light of one direction, there and back.
@@ -149,24 +150,24 @@ void addPhases(std::vector<StabilityCase>& cases) {
                       {.99, .5, 4.30e-4, .60503},   {.9999, .5, 4.30e-6, std::exp(-.5)},
                       {-.99, .5, .22227, .39539},   {-.9999, .5, rodReflectance(.5, 1.0), NAN}};
   for (const Row& row : rows) {
-    add(cases, "slab of depth 1, reflectance", fmt::format("g {:g}, albedo {:g}", row.g, row.albedo),
-        [row](const StabilityContext& c) {
-          const auto s = trace(c, slabScene(grey(1.0, row.albedo, row.g)), 256);
-          return within(s.mean.x, s.meanError.x, row.reflectance, 0.003);
-        });
+    addMediaRow(cases, "slab of depth 1, reflectance", fmt::format("g {:g}, albedo {:g}", row.g, row.albedo),
+                [row](const StabilityContext& c) {
+                  const auto s = trace(c, slabScene(grey(1.0, row.albedo, row.g)), 256);
+                  return within(s.mean.x, s.meanError.x, row.reflectance, 0.003);
+                });
     if (std::isfinite(row.transmittance))
-      add(cases, "slab of depth 1, transmittance", fmt::format("g {:g}, albedo {:g}", row.g, row.albedo),
-          [row](const StabilityContext& c) {
-            const auto s = trace(c, slabScene(grey(1.0, row.albedo, row.g)), 256);
-            return within(s.mean.y, s.meanError.y, row.transmittance, 0.003);
-          });
+      addMediaRow(cases, "slab of depth 1, transmittance", fmt::format("g {:g}, albedo {:g}", row.g, row.albedo),
+                  [row](const StabilityContext& c) {
+                    const auto s = trace(c, slabScene(grey(1.0, row.albedo, row.g)), 256);
+                    return within(s.mean.y, s.meanError.y, row.transmittance, 0.003);
+                  });
   }
   for (const double g : {.9999, -.9999})
-    add(cases, "slab of depth 10 that absorbs nothing, both sides", fmt::format("g {:g}", g),
-        [g](const StabilityContext& c) {
-          const auto s = trace(c, slabScene(grey(10.0, 1.0, g)), 64);
-          return Measurement{1.0, s.mean.x + s.mean.y, 2e-5};
-        });
+    addMediaRow(cases, "slab of depth 10 that absorbs nothing, both sides", fmt::format("g {:g}", g),
+                [g](const StabilityContext& c) {
+                  const auto s = trace(c, slabScene(grey(10.0, 1.0, g)), 64);
+                  return Measurement{1.0, s.mean.x + s.mean.y, 2e-5};
+                });
 }
 
 void addSpectra(std::vector<StabilityCase>& cases) {
@@ -181,24 +182,25 @@ void addSpectra(std::vector<StabilityCase>& cases) {
                                "no medium in this channel, transmittance"};
   const double exact[] = {std::exp(-1e-2), .752720717, 1.0};
   for (int k = 0; k < 3; ++k)
-    add(cases, std::string("extinctions 0.01 : 100 : 0, ") + names[k], "ratio 1e4", [=](const StabilityContext& c) {
-      const auto s = trace(c, spectral(), 256);
-      return within(s.mean[k], s.meanError[k], exact[k], 0.01);
-    });
+    addMediaRow(cases, std::string("extinctions 0.01 : 100 : 0, ") + names[k], "ratio 1e4",
+                [=](const StabilityContext& c) {
+                  const auto s = trace(c, spectral(), 256);
+                  return within(s.mean[k], s.meanError[k], exact[k], 0.01);
+                });
   for (int k = 0; k < 3; ++k)
-    add(cases, "extinctions 0.001 : 0.3 : 10, nothing absorbed, radiance",
-        fmt::format("ratio 1e4, {}", k == 0   ? "red"
-                                     : k == 1 ? "green"
-                                              : "blue"),
-        [k](const StabilityContext& c) {
-          const auto s = trace(c, slabScene(medium({1e-3, .3, 10.0}, glm::dvec3(1.0)), {}, true), 256);
-          return within(s.mean[k], s.meanError[k], 1.0, 0.01);
-        });
-  add(cases, "medium of no extinction at all, transmittance", "depth 0", [](const StabilityContext& c) {
+    addMediaRow(cases, "extinctions 0.001 : 0.3 : 10, nothing absorbed, radiance",
+                fmt::format("ratio 1e4, {}", k == 0   ? "red"
+                                             : k == 1 ? "green"
+                                                      : "blue"),
+                [k](const StabilityContext& c) {
+                  const auto s = trace(c, slabScene(medium({1e-3, .3, 10.0}, glm::dvec3(1.0)), {}, true), 256);
+                  return within(s.mean[k], s.meanError[k], 1.0, 0.01);
+                });
+  addMediaRow(cases, "medium of no extinction at all, transmittance", "depth 0", [](const StabilityContext& c) {
     const auto s = trace(c, slabScene(grey(0.0, .5)), 16);
     return Measurement{1.0, s.mean.y, 0.0};
   });
-  add(cases, "medium next to nothing, transmittance", "depth 1e-30", [](const StabilityContext& c) {
+  addMediaRow(cases, "medium next to nothing, transmittance", "depth 1e-30", [](const StabilityContext& c) {
     const auto s = trace(c, slabScene(grey(1e-30, .5)), 16);
     return Measurement{1.0, s.mean.y, 1e-6};
   });
@@ -210,17 +212,20 @@ void addBoundaries(std::vector<StabilityCase>& cases) {
   for (const auto& [name, bsdf, ior] :
        {std::tuple{"none", Bsdf::none, 1.7}, std::tuple{"index 1", Bsdf::dielectric, 1.0},
         std::tuple{"index 1.0001", Bsdf::dielectric, 1.0001}})
-    add(cases, "matched boundary, reflectance of a slab", name, [=, bsdf = bsdf, ior = ior](const StabilityContext& c) {
-      const auto s = trace(c, slabScene(usual, {1.0, glm::dvec3(0.0), bsdf, ior}), 512);
-      return within(s.mean.x, s.meanError.x, reflectance, 0.002);
-    });
+    addMediaRow(cases, "matched boundary, reflectance of a slab", name,
+                [=, bsdf = bsdf, ior = ior](const StabilityContext& c) {
+                  const auto s = trace(c, slabScene(usual, {1.0, glm::dvec3(0.0), bsdf, ior}), 512);
+                  return within(s.mean.x, s.meanError.x, reflectance, 0.002);
+                });
   for (const double scale : {std::exp2(-20), 1e-3, 1e3, std::exp2(20)})
-    add(cases, "reflectance of a scaled slab", fmt::format("scale {:g}", scale), [=](const StabilityContext& c) {
-      const auto s = trace(c, slabScene(usual, {scale}), 512);
-      return within(s.mean.x, s.meanError.x, reflectance, 0.002);
-    });
+    addMediaRow(cases, "reflectance of a scaled slab", fmt::format("scale {:g}", scale),
+                [=](const StabilityContext& c) {
+                  const auto s = trace(c, slabScene(usual, {scale}), 512);
+                  return within(s.mean.x, s.meanError.x, reflectance, 0.002);
+                });
   for (const double distance : {1e3, 1e4, 1e6})
-    add(cases, "reflectance of a slab far from the origin", fmt::format("{:g} thicknesses", distance),
+    addMediaRow(
+        cases, "reflectance of a slab far from the origin", fmt::format("{:g} thicknesses", distance),
         [=](const StabilityContext& c) {
           const auto s = trace(c, slabScene(usual, {1.0, glm::dvec3(distance, -0.5 * distance, 0.75 * distance)}), 512);
           return within(s.mean.x, s.meanError.x, reflectance, 0.002);
@@ -254,12 +259,12 @@ Scene nested() {
 }
 
 void addInside(std::vector<StabilityCase>& cases) {
-  add(cases, "glass, milk and crystal overlapping, nothing absorbed, radiance", "outside",
-      [](const StabilityContext& c) {
-        const auto s = trace(c, nested(), 128);
-        return within(s.mean.y, s.meanError.y, 1.0, 0.01);
-      });
-  add(cases, "the same with the camera in the milk, radiance n^2", "n 1.33", [](const StabilityContext& c) {
+  addMediaRow(cases, "glass, milk and crystal overlapping, nothing absorbed, radiance", "outside",
+              [](const StabilityContext& c) {
+                const auto s = trace(c, nested(), 128);
+                return within(s.mean.y, s.meanError.y, 1.0, 0.01);
+              });
+  addMediaRow(cases, "the same with the camera in the milk, radiance n^2", "n 1.33", [](const StabilityContext& c) {
     Scene scene = nested();
     scene.cameras[0].position = glm::dvec3(0.1, 0.0, 0.0);
     scene.cameras[0].direction = glm::normalize(glm::dvec3(1.0, 0.2, 0.3));
@@ -268,37 +273,37 @@ void addInside(std::vector<StabilityCase>& cases) {
     return within(s.mean.y, s.meanError.y, exact, 0.02);
   });
   for (const double depth : {1e-3, 1.0, 100.0})
-    add(cases, "camera inside of a glowing slab, up: 1 - exp(-depth / 2)", fmt::format("optical depth {:g}", depth),
-        [depth](const StabilityContext& c) {
-          Scene scene = slabScene(grey(depth, 0.0));
-          scene.environment.reset();
-          scene.media[0].emission = scene.media[0].absorption;
-          scene.cameras[0].position.y = 0.0;
-          scene.cameras[0].direction.y = 1.0;
-          const auto s = trace(c, scene, 256);
-          return within(s.mean.x, s.meanError.x, -std::expm1(-0.5 * depth), 0.01);
-        });
-  add(cases, "camera inside of what absorbs nothing, all around lit, radiance", "depth 20",
-      [](const StabilityContext& c) {
-        Scene scene = slabScene(grey(20.0, 1.0, 0.9), {}, true);
-        scene.cameras[0].position.y = 0.0;
-        const auto s = trace(c, scene, 64);
-        return Measurement{1.0, s.mean.y, 2e-5};
-      });
-  add(cases, "camera without a boundary about it: exp(-depth) through an endless medium", "a black wall 2 away",
-      [](const StabilityContext& c) {
-        SceneParts parts("endless");
-        const int wall = parts.material(glm::vec3(0.0f), glm::vec3(1.0f));
-        parts.plate({0.013, 0.007, -2.0}, {4, 0, 0}, {0, 4, 0}, wall);
-        Scene& scene = parts.scene();
-        scene.media = {grey(0.7, 0.0)};
-        scene.cameraMedium = 0;
-        Camera camera;
-        camera.verticalFov = 1e-4;
-        scene.cameras = {camera};
-        const auto s = trace(c, scene, 256);
-        return within(s.mean.x, s.meanError.x, std::exp(-1.4), 0.005);
-      });
+    addMediaRow(cases, "camera inside of a glowing slab, up: 1 - exp(-depth / 2)",
+                fmt::format("optical depth {:g}", depth), [depth](const StabilityContext& c) {
+                  Scene scene = slabScene(grey(depth, 0.0));
+                  scene.environment.reset();
+                  scene.media[0].emission = scene.media[0].absorption;
+                  scene.cameras[0].position.y = 0.0;
+                  scene.cameras[0].direction.y = 1.0;
+                  const auto s = trace(c, scene, 256);
+                  return within(s.mean.x, s.meanError.x, -std::expm1(-0.5 * depth), 0.01);
+                });
+  addMediaRow(cases, "camera inside of what absorbs nothing, all around lit, radiance", "depth 20",
+              [](const StabilityContext& c) {
+                Scene scene = slabScene(grey(20.0, 1.0, 0.9), {}, true);
+                scene.cameras[0].position.y = 0.0;
+                const auto s = trace(c, scene, 64);
+                return Measurement{1.0, s.mean.y, 2e-5};
+              });
+  addMediaRow(cases, "camera without a boundary about it: exp(-depth) through an endless medium", "a black wall 2 away",
+              [](const StabilityContext& c) {
+                SceneParts parts("endless");
+                const int wall = parts.material(glm::vec3(0.0f), glm::vec3(1.0f));
+                parts.plate({0.013, 0.007, -2.0}, {4, 0, 0}, {0, 4, 0}, wall);
+                Scene& scene = parts.scene();
+                scene.media = {grey(0.7, 0.0)};
+                scene.cameraMedium = 0;
+                Camera camera;
+                camera.verticalFov = 1e-4;
+                scene.cameras = {camera};
+                const auto s = trace(c, scene, 256);
+                return within(s.mean.x, s.meanError.x, std::exp(-1.4), 0.005);
+              });
 }
 
 }  // namespace

@@ -17,12 +17,12 @@ struct Answer {
   double notFinite = 0.0;
 };
 
-struct View {
+struct PathView {
   glm::ivec2 size{24, 16};
   std::uint32_t samples = 64;
 };
 
-Answer trace(const StabilityContext& c, const Scene& scene, const View& view = {}) {
+Answer trace(const StabilityContext& c, const Scene& scene, const PathView& view = {}) {
   PathTracer::Settings settings;
   settings.size = view.size;
   settings.seed = 1;
@@ -47,26 +47,26 @@ Measurement within(const Answer& answer, double expected, double relative = 0.00
   return {expected, precise ? answer.mean : NAN, tolerance};
 }
 
-void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
-         std::function<Measurement(const StabilityContext&)> run) {
+void addPathRow(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
+                std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({"path", std::move(name), std::move(parameter), std::move(run)});
 }
 
 /// All surfaces emit 1 and reflect rho: 1 / (1 - rho) everywhere.
 void addFurnaces(std::vector<StabilityCase>& cases) {
   for (const float rho : {0.0f, 0.5f, 0.9f, 0.99f, 0.999f})
-    add(cases, "closed furnace, radiance 1 / (1 - albedo)", fmt::format("albedo {:g}", static_cast<double>(rho)),
-        [rho](const StabilityContext& c) {
-          Room room;
-          room.closed = true;
-          room.albedo = rho;
-          room.emission = glm::vec3(1.0f);
-          View view;
-          // Paths grow as 1 / (1 - rho), and with them the work of a sample and its spread.
-          view.samples = rho > 0.995f ? 16 : rho > 0.95f ? 32 : 128;
-          return within(trace(c, makeRoom(room), view), 1.0 / (1.0 - static_cast<double>(rho)),
-                        rho > 0.95f ? 0.05 : 0.005);
-        });
+    addPathRow(cases, "closed furnace, radiance 1 / (1 - albedo)", fmt::format("albedo {:g}", static_cast<double>(rho)),
+               [rho](const StabilityContext& c) {
+                 Room room;
+                 room.closed = true;
+                 room.albedo = rho;
+                 room.emission = glm::vec3(1.0f);
+                 PathView view;
+                 // Paths grow as 1 / (1 - rho), and with them the work of a sample and its spread.
+                 view.samples = rho > 0.995f ? 16 : rho > 0.95f ? 32 : 128;
+                 return within(trace(c, makeRoom(room), view), 1.0 / (1.0 - static_cast<double>(rho)),
+                               rho > 0.95f ? 0.05 : 0.005);
+               });
 }
 
 /// Surfaces that lose nothing, lit by 1 from all around: radiance 1 in every pixel.
@@ -81,7 +81,7 @@ void addWhiteFurnaces(std::vector<StabilityCase>& cases) {
       {"glass, ior 1.5", Bsdf::dielectric, 0.0f, 1.5f}, {"ior 1.0001", Bsdf::dielectric, 0.0f, 1.0001f},
       {"ior 1", Bsdf::dielectric, 0.0f, 1.0f},          {"ior 5", Bsdf::dielectric, 0.0f, 5.0f}};
   for (const Kind& kind : kKinds)
-    add(cases, "white furnace, radiance", kind.name, [kind](const StabilityContext& c) {
+    addPathRow(cases, "white furnace, radiance", kind.name, [kind](const StabilityContext& c) {
       Room room;
       room.irradiance = 0.0f;
       room.albedo = 1.0f;
@@ -100,9 +100,9 @@ void addWhiteFurnaces(std::vector<StabilityCase>& cases) {
     });
 }
 
-void addUnits(std::vector<StabilityCase>& cases) {
+void addPathUnits(std::vector<StabilityCase>& cases) {
   const auto against = [&](const std::string& name, const std::string& parameter, const Room& room, double factor) {
-    add(cases, name, parameter, [room, factor](const StabilityContext& c) {
+    addPathRow(cases, name, parameter, [room, factor](const StabilityContext& c) {
       const Answer usual = trace(c, makeRoom({})), other = trace(c, makeRoom(room));
       return Measurement{1.0, other.mean / factor / usual.mean,
                          4.0 * std::hypot(usual.error, other.error / factor) / usual.mean};
@@ -130,8 +130,8 @@ void addUnits(std::vector<StabilityCase>& cases) {
 }
 
 void addExtremes(std::vector<StabilityCase>& cases) {
-  const auto finite = [&](const char* name, const char* parameter, const Room& room, const View& view) {
-    add(cases, std::string(name) + ": pixels not finite", parameter, [room, view](const StabilityContext& c) {
+  const auto finite = [&](const char* name, const char* parameter, const Room& room, const PathView& view) {
+    addPathRow(cases, std::string(name) + ": pixels not finite", parameter, [room, view](const StabilityContext& c) {
       return Measurement{0.0, trace(c, makeRoom(room), view).notFinite, 0.0};
     });
   };
@@ -143,7 +143,7 @@ void addExtremes(std::vector<StabilityCase>& cases) {
   finite("sun along the floor", "grazing", room, {});
   finite("a picture of one pixel", "1x1", {}, {{1, 1}, 64});
   finite("one sample", "spp 1", {}, {{24, 16}, 1});
-  add(cases, "no light: mean", "sun 0", [](const StabilityContext& c) {
+  addPathRow(cases, "no light: mean", "sun 0", [](const StabilityContext& c) {
     Room dark;
     dark.irradiance = 0.0f;
     return Measurement{0.0, trace(c, makeRoom(dark)).mean, 0.0};
@@ -155,7 +155,7 @@ void addExtremes(std::vector<StabilityCase>& cases) {
 void addPathCases(std::vector<StabilityCase>& cases) {
   addFurnaces(cases);
   addWhiteFurnaces(cases);
-  addUnits(cases);
+  addPathUnits(cases);
   addExtremes(cases);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 enum class Lamp { sun, spot, point, emissive, environment };
 constexpr std::array kLamps{Lamp::sun, Lamp::spot, Lamp::point, Lamp::emissive, Lamp::environment};
-constexpr glm::ivec2 kSize{48, 32};
+constexpr glm::ivec2 kPlacesSize{48, 32};
 
 const char* nameOf(Lamp lamp) {
   switch (lamp) {
@@ -105,7 +105,7 @@ const char* techniqueOf(How how) {
 Image picture(const StabilityContext& c, const Scene& scene, How how, Component component) {
   if (how == How::path) {
     PathTracer::Settings settings;
-    settings.size = kSize;
+    settings.size = kPlacesSize;
     settings.transport = component == Component::direct ? Transport::direct : Transport::all;
     settings.pixelCentres = true;
     PathTracer tracer(c.context, c.programs, scene, settings);
@@ -116,7 +116,7 @@ Image picture(const StabilityContext& c, const Scene& scene, How how, Component 
   RenderSettings settings;
   settings.technique = parseName<Technique>(techniqueOf(how), "technique");
   settings.component = component;
-  settings.size = kSize;
+  settings.size = kPlacesSize;
   settings.fullFloatTarget = true;
   settings.shadow.size = 512;
   settings.rsm.size = 128;

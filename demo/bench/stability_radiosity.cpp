@@ -1,6 +1,7 @@
 // Stiff and extreme cases of radiosity: walls that absorb next to nothing, patches that nearly touch, patches tiny and
 // huge, scale and place. Scenes without lamps, so that all light comes by form factors and the linear system; answers
 // are closed forms, or a solution that is a million times as exact.
+#include "base/angles.hpp"
 #include "base/error.hpp"
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
@@ -11,14 +12,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace lucerna::demo::bench {
 
 namespace {
 
 constexpr double kSide = 10.0;  ///< of a closed room of scale 1
-constexpr double kPi = std::numbers::pi;
 
 /// Patches of a sixth of a room's side; hemicubes of few pixels: what is tested does not need more.
 RadiositySolutionSettings settingsFor(double longestEdge, double error = 1e-6) {
@@ -34,8 +33,8 @@ RadiositySolution solve(const StabilityContext& c, const Scene& scene, const Rad
   return solveScene(c.context, c.programs, scene, settings);
 }
 
-void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
-         std::function<Measurement(const StabilityContext&)> run) {
+void addRadiosityRow(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
+                     std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({"radiosity", std::move(name), std::move(parameter), std::move(run)});
 }
 
@@ -88,39 +87,42 @@ std::string albedoText(float rho) { return fmt::format("albedo {:g}", static_cas
 
 void addStiff(std::vector<StabilityCase>& cases) {
   for (const float rho : {0.0f, 0.5f, 0.9f, 0.99f, 0.999f, 0.9999f})
-    add(cases, "closed furnace, worst exitance over pi / (1 - albedo)", albedoText(rho),
-        [rho](const StabilityContext& c) {
-          Room room;
-          room.closed = true;
-          room.albedo = rho;
-          room.emission = glm::vec3(1.0f);
-          const RadiositySolution s = solve(c, makeRoom(room), settingsFor(kSide / 3.0));
-          const double exact = kPi / (1.0 - static_cast<double>(rho));
-          double worst = 1.0;
-          for (const glm::dvec3& b : s.exitance)
-            for (int k = 0; k < 3; ++k)
-              if (!(std::abs(b[k] / exact - 1.0) <= std::abs(worst - 1.0))) worst = b[k] / exact;
-          return Measurement{1.0, worst, 2e-6};
-        });
+    addRadiosityRow(cases, "closed furnace, worst exitance over pi / (1 - albedo)", albedoText(rho),
+                    [rho](const StabilityContext& c) {
+                      Room room;
+                      room.closed = true;
+                      room.albedo = rho;
+                      room.emission = glm::vec3(1.0f);
+                      const RadiositySolution s = solve(c, makeRoom(room), settingsFor(kSide / 3.0));
+                      const double exact = kPi / (1.0 - static_cast<double>(rho));
+                      double worst = 1.0;
+                      for (const glm::dvec3& b : s.exitance)
+                        for (int k = 0; k < 3; ++k)
+                          if (!(std::abs(b[k] / exact - 1.0) <= std::abs(worst - 1.0))) worst = b[k] / exact;
+                      return Measurement{1.0, worst, 2e-6};
+                    });
   for (const float rho : {0.9f, 0.99f, 0.999f, 0.9999f}) {
-    add(cases, "one lit wall: true error over the guaranteed one", albedoText(rho), [rho](const StabilityContext& c) {
-      const Scene scene = stiffRoom(rho);
-      const RadiositySolution exact = solve(c, scene, settingsFor(kSide / 3.0, 1e-9)),
-                              s = solve(c, scene, settingsFor(kSide / 3.0, 1e-2));
-      return Measurement{1.0, s.reached ? trueError(s, exact) / s.progress.errorBound : NAN, 0.0, Rule::atMost};
-    });
-    add(cases, "one lit wall: matrix products to 1e-6", albedoText(rho), [rho](const StabilityContext& c) {
+    addRadiosityRow(
+        cases, "one lit wall: true error over the guaranteed one", albedoText(rho), [rho](const StabilityContext& c) {
+          const Scene scene = stiffRoom(rho);
+          const RadiositySolution exact = solve(c, scene, settingsFor(kSide / 3.0, 1e-9)),
+                                  s = solve(c, scene, settingsFor(kSide / 3.0, 1e-2));
+          return Measurement{1.0, s.reached ? trueError(s, exact) / s.progress.errorBound : NAN, 0.0, Rule::atMost};
+        });
+    addRadiosityRow(cases, "one lit wall: matrix products to 1e-6", albedoText(rho), [rho](const StabilityContext& c) {
       const RadiositySolution s = solve(c, stiffRoom(rho), settingsFor(kSide / 3.0));
       return Measurement{20.0, s.reached ? s.progress.products : NAN, 0.0, Rule::atMost};
     });
-    add(cases, "one lit wall: energy that is not accounted for", albedoText(rho), [rho](const StabilityContext& c) {
-      return Measurement{0.0, solve(c, stiffRoom(rho), settingsFor(kSide / 3.0)).progress.energyBalance, 2e-5};
-    });
+    addRadiosityRow(
+        cases, "one lit wall: energy that is not accounted for", albedoText(rho), [rho](const StabilityContext& c) {
+          return Measurement{0.0, solve(c, stiffRoom(rho), settingsFor(kSide / 3.0)).progress.energyBalance, 2e-5};
+        });
   }
   for (const RadiositySolver solver :
        {RadiositySolver::jacobi, RadiositySolver::gaussSeidel, RadiositySolver::progressive, RadiositySolver::overshoot,
         RadiositySolver::anderson, RadiositySolver::conjugateGradients})
-    add(cases, "true error over the guaranteed one, albedo 0.99", std::string(nameOf(solver)),
+    addRadiosityRow(
+        cases, "true error over the guaranteed one, albedo 0.99", std::string(nameOf(solver)),
         [solver](const StabilityContext& c) {
           RadiositySolutionSettings settings = settingsFor(kSide / 3.0, 1e-2);
           settings.solver = solver;
@@ -131,15 +133,17 @@ void addStiff(std::vector<StabilityCase>& cases) {
               s.reached ? trueError(s, solve(c, scene, settingsFor(kSide / 3.0, 1e-9))) / s.progress.errorBound : NAN,
               0.0, Rule::atMost};
         });
-  add(cases, "channels of albedo 0, 0.5 and 0.9999, furnace", "blue over green", [](const StabilityContext& c) {
-    Room room;
-    room.closed = true;
-    room.emission = glm::vec3(1.0f);
-    Scene scene = makeRoom(room);
-    for (Material& m : scene.materials) m.diffuse = {0.0f, 0.5f, 0.9999f};
-    const RadiositySolution s = solve(c, scene, settingsFor(kSide / 3.0));
-    return Measurement{0.5 / (1.0 - static_cast<double>(0.9999f)), s.exitance.front().z / s.exitance.front().y, 1e-2};
-  });
+  addRadiosityRow(cases, "channels of albedo 0, 0.5 and 0.9999, furnace", "blue over green",
+                  [](const StabilityContext& c) {
+                    Room room;
+                    room.closed = true;
+                    room.emission = glm::vec3(1.0f);
+                    Scene scene = makeRoom(room);
+                    for (Material& m : scene.materials) m.diffuse = {0.0f, 0.5f, 0.9999f};
+                    const RadiositySolution s = solve(c, scene, settingsFor(kSide / 3.0));
+                    return Measurement{0.5 / (1.0 - static_cast<double>(0.9999f)),
+                                       s.exitance.front().z / s.exitance.front().y, 1e-2};
+                  });
 }
 
 /// 1 where `scene` is refused as bad input, 0 where it is solved.
@@ -152,16 +156,16 @@ double refused(const StabilityContext& c, const Scene& scene) {
 
 void addRefusals(std::vector<StabilityCase>& cases) {
   const auto refuses = [&](const char* parameter, double expected, bool closed, float albedo, float emission) {
-    add(cases, closed ? "closed room refused (1) or solved (0)" : "open room refused (1) or solved (0)", parameter,
-        [=](const StabilityContext& c) {
-          Room room;
-          room.closed = closed;
-          room.albedo = albedo;
-          room.emission = glm::vec3(emission);
-          Scene scene = makeRoom(room);
-          for (Material& m : scene.materials) m.diffuse = glm::vec3(albedo);
-          return Measurement{expected, refused(c, scene), 0.0};
-        });
+    addRadiosityRow(cases, closed ? "closed room refused (1) or solved (0)" : "open room refused (1) or solved (0)",
+                    parameter, [=](const StabilityContext& c) {
+                      Room room;
+                      room.closed = closed;
+                      room.albedo = albedo;
+                      room.emission = glm::vec3(emission);
+                      Scene scene = makeRoom(room);
+                      for (Material& m : scene.materials) m.diffuse = glm::vec3(albedo);
+                      return Measurement{expected, refused(c, scene), 0.0};
+                    });
   };
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   refuses("albedo 1", 1.0, true, 1.0f, 1.0f);
@@ -191,7 +195,8 @@ struct Plates {
 
 void addNear(std::vector<StabilityCase>& cases) {
   for (const double d : {10.0, 1.0, 0.1, 1e-2, 1e-3, 1e-4})
-    add(cases, "squares of side 1 face to face, form factor", fmt::format("distance {:g}", d),
+    addRadiosityRow(
+        cases, "squares of side 1 face to face, form factor", fmt::format("distance {:g}", d),
         [d](const StabilityContext& c) {
           Plates p;
           p.parts.plate({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, p.light);
@@ -203,16 +208,18 @@ void addNear(std::vector<StabilityCase>& cases) {
           // large costs up to 2 %.
           return Measurement{exact, irradianceOf(solve(c, p.parts.scene(), settings), p.black), 0.02 * exact};
         });
-  add(cases, "squares at a right angle with a common edge", "32 patches each", [](const StabilityContext& c) {
-    Plates p;
-    p.parts.plate({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, p.light);
-    p.parts.plate({0, 0.5, -0.5}, {1, 0, 0}, {0, 1, 0}, p.black);
-    return Measurement{0.2000438, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.25)), p.black), 0.002};
-  });
+  addRadiosityRow(
+      cases, "squares at a right angle with a common edge", "32 patches each", [](const StabilityContext& c) {
+        Plates p;
+        p.parts.plate({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, p.light);
+        p.parts.plate({0, 0.5, -0.5}, {1, 0, 0}, {0, 1, 0}, p.black);
+        return Measurement{0.2000438, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.25)), p.black), 0.002};
+      });
   // Nothing gets past a wall that all but touches. (At 1e-4, 2e-5 of the distance to the light, hemicubes' depth in
   // floats lets 0.9 % past.)
   for (const double d : {1e-3, 1e-2})
-    add(cases, "light behind a wall close to the patch, irradiance", fmt::format("distance {:g}", d),
+    addRadiosityRow(
+        cases, "light behind a wall close to the patch, irradiance", fmt::format("distance {:g}", d),
         [d](const StabilityContext& c) {
           Plates p;
           p.parts.plate({0, 5, 0}, {4, 0, 0}, {0, 0, 4}, p.light);
@@ -225,7 +232,8 @@ void addNear(std::vector<StabilityCase>& cases) {
 void addSizes(std::vector<StabilityCase>& cases) {
   // Straight above the middle of a tiny probe: s^2 / pi in the limit.
   for (const double s : {0.1, 1e-2, 1e-3, 1e-4})
-    add(cases, "tiny light over a tiny patch at distance 1", fmt::format("side {:g}", s),
+    addRadiosityRow(
+        cases, "tiny light over a tiny patch at distance 1", fmt::format("side {:g}", s),
         [s](const StabilityContext& c) {
           Plates p;
           p.parts.plate({0, 1, 0}, {s, 0, 0}, {0, 0, s}, p.light);
@@ -238,7 +246,8 @@ void addSizes(std::vector<StabilityCase>& cases) {
         });
   // What a tiny light sends to a huge floor all arrives: flux over what was sent.
   for (const double side : {1e2, 1e4, 1e5})
-    add(cases, "light of side 1 over a huge patch, flux that arrives", fmt::format("side {:g}", side),
+    addRadiosityRow(
+        cases, "light of side 1 over a huge patch, flux that arrives", fmt::format("side {:g}", side),
         [side](const StabilityContext& c) {
           Plates p;
           p.parts.plate({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, p.light);
@@ -247,7 +256,7 @@ void addSizes(std::vector<StabilityCase>& cases) {
                              0.01};
         });
   // The floor of a white furnace cut into strips of 1 : 1000.
-  add(cases, "needles in a closed furnace of albedo 0.9", "1 : 1000", [](const StabilityContext& c) {
+  addRadiosityRow(cases, "needles in a closed furnace of albedo 0.9", "1 : 1000", [](const StabilityContext& c) {
     Room room;
     room.closed = true;
     room.albedo = 0.9f;
@@ -279,26 +288,29 @@ void addPlace(std::vector<StabilityCase>& cases) {
     return meanExitance(solve(c, room(scale, place, emission), settingsFor(kSide * scale / 3.0)));
   };
   for (const double scale : {std::exp2(-20), 1e-3, 1e3, std::exp2(20)})
-    add(cases, "mean of a scaled room, against 1x", fmt::format("scale {:g}", scale), [=](const StabilityContext& c) {
-      return Measurement{1.0, mean(c, scale, glm::dvec3(0.0)) / mean(c, 1.0, glm::dvec3(0.0)),
-                         std::exp2(std::round(std::log2(scale))) == scale ? 1e-6 : 2e-3};
-    });
+    addRadiosityRow(cases, "mean of a scaled room, against 1x", fmt::format("scale {:g}", scale),
+                    [=](const StabilityContext& c) {
+                      return Measurement{1.0, mean(c, scale, glm::dvec3(0.0)) / mean(c, 1.0, glm::dvec3(0.0)),
+                                         std::exp2(std::round(std::log2(scale))) == scale ? 1e-6 : 2e-3};
+                    });
   for (const double distance : {1e3, 1e4, 1e5})
-    add(cases, "mean of a room far from the origin", fmt::format("{:g} room sides", 0.1 * distance),
+    addRadiosityRow(
+        cases, "mean of a room far from the origin", fmt::format("{:g} room sides", 0.1 * distance),
         [=](const StabilityContext& c) {
           return Measurement{
               1.0, mean(c, 1.0, glm::dvec3(distance, -0.5 * distance, 0.7 * distance)) / mean(c, 1.0, glm::dvec3(0.0)),
               5e-3};
         });
   for (const float emission : {1e-12f, 1e12f})
-    add(cases, "mean over the light's radiance, against 1x",
+    addRadiosityRow(
+        cases, "mean over the light's radiance, against 1x",
         fmt::format("radiance {:g}", static_cast<double>(emission)), [=](const StabilityContext& c) {
           return Measurement{
               1.0,
               mean(c, 1.0, glm::dvec3(0.0), emission) / static_cast<double>(emission) / mean(c, 1.0, glm::dvec3(0.0)),
               1e-6};
         });
-  add(cases, "zero-area, needle and doubled triangles: mean", "3 more", [=](const StabilityContext& c) {
+  addRadiosityRow(cases, "zero-area, needle and doubled triangles: mean", "3 more", [=](const StabilityContext& c) {
     Room bad;
     bad.closed = bad.badTriangles = true;
     Scene scene = makeRoom(bad);
@@ -306,7 +318,8 @@ void addPlace(std::vector<StabilityCase>& cases) {
     return Measurement{1.0, meanExitance(solve(c, scene, settingsFor(kSide / 3.0))) / mean(c, 1.0, glm::dvec3(0.0)),
                        2e-3};
   });
-  add(cases, "a corner at infinity and one that is no number: exitances not finite", "2 more",
+  addRadiosityRow(
+      cases, "a corner at infinity and one that is no number: exitances not finite", "2 more",
       [=](const StabilityContext& c) {
         SceneParts parts("bad");
         parts.scene() = room(1.0, glm::dvec3(0.0));

@@ -35,14 +35,15 @@ double mean(const Image& image) {
   return (m.x + m.y + m.z) / 3.0;
 }
 
-void add(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
-         std::function<Measurement(const StabilityContext&)> run) {
+void addReceiversRow(std::vector<StabilityCase>& cases, std::string name, std::string parameter,
+                     std::function<Measurement(const StabilityContext&)> run) {
   cases.push_back({"lpv", "rays: " + std::move(name), std::move(parameter), std::move(run)});
 }
 
-void addUnits(std::vector<StabilityCase>& cases) {
+void addReceiversUnits(std::vector<StabilityCase>& cases) {
   for (const float factor : {1e-9f, 1e9f})
-    add(cases, "mean over the sun's irradiance, against 1x", fmt::format("sun {:g}x", static_cast<double>(factor)),
+    addReceiversRow(
+        cases, "mean over the sun's irradiance, against 1x", fmt::format("sun {:g}x", static_cast<double>(factor)),
         [factor](const StabilityContext& c) {
           Room room;
           const double usual = mean(picture(c, makeRoom(room), settingsOf()));
@@ -51,7 +52,8 @@ void addUnits(std::vector<StabilityCase>& cases) {
                              1e-3};
         });
   for (const double scale : {std::exp2(-20), std::exp2(20), 1e-3, 1e6})
-    add(cases, "mean of a scaled scene, against 1x", fmt::format("scale {:g}", scale),
+    addReceiversRow(
+        cases, "mean of a scaled scene, against 1x", fmt::format("scale {:g}", scale),
         [scale](const StabilityContext& c) {
           Room room;
           const double usual = mean(picture(c, makeRoom(room), settingsOf()));
@@ -61,13 +63,13 @@ void addUnits(std::vector<StabilityCase>& cases) {
                              std::exp2(std::round(std::log2(scale))) == scale ? 1e-5 : 5e-3};
         });
   for (const double sides : {1e3, 1e4})
-    add(cases, "mean of a scene far from the origin", fmt::format("{:g} room sides", sides),
-        [sides](const StabilityContext& c) {
-          Room room;
-          const double usual = mean(picture(c, makeRoom(room), settingsOf()));
-          room.place = 10.0 * sides * glm::dvec3(1.0, -0.5, 0.7);
-          return Measurement{1.0, mean(picture(c, makeRoom(room), settingsOf())) / usual, 0.02};
-        });
+    addReceiversRow(cases, "mean of a scene far from the origin", fmt::format("{:g} room sides", sides),
+                    [sides](const StabilityContext& c) {
+                      Room room;
+                      const double usual = mean(picture(c, makeRoom(room), settingsOf()));
+                      room.place = 10.0 * sides * glm::dvec3(1.0, -0.5, 0.7);
+                      return Measurement{1.0, mean(picture(c, makeRoom(room), settingsOf())) / usual, 0.02};
+                    });
 }
 
 /// A closed room whose walls emit 1 and absorb next to nothing: after N bounces its radiance is that of N + 2 terms of
@@ -82,15 +84,17 @@ void addAlbedo(std::vector<StabilityCase>& cases) {
     return makeRoom(room);
   };
   for (const int bounces : {1, 8, 64})
-    add(cases, "closed room of albedo 1 - 1e-6, radiance over the exact one", fmt::format("lpv.bounces={}", bounces),
+    addReceiversRow(
+        cases, "closed room of albedo 1 - 1e-6, radiance over the exact one", fmt::format("lpv.bounces={}", bounces),
         [bounces](const StabilityContext& c) {
           return Measurement{1.0, mean(picture(c, shining(), settingsOf(bounces, 64))) / (bounces + 2.0), 0.02};
         });
-  add(cases, "the same, all bounces: no more than there is", "lpv.bounces=all", [](const StabilityContext& c) {
-    return Measurement{1.0 / (1.0 - kAlbedo), mean(picture(c, shining(), settingsOf(LpvSettings::kAllBounces, 128))),
-                       0.0, Rule::atMost};
-  });
-  add(cases, "the same: more than 64 bounces have", "lpv.bounces=all", [](const StabilityContext& c) {
+  addReceiversRow(
+      cases, "the same, all bounces: no more than there is", "lpv.bounces=all", [](const StabilityContext& c) {
+        return Measurement{1.0 / (1.0 - kAlbedo),
+                           mean(picture(c, shining(), settingsOf(LpvSettings::kAllBounces, 128))), 0.0, Rule::atMost};
+      });
+  addReceiversRow(cases, "the same: more than 64 bounces have", "lpv.bounces=all", [](const StabilityContext& c) {
     return Measurement{66.0, mean(picture(c, shining(), settingsOf(LpvSettings::kAllBounces, 128))), 0.0,
                        Rule::atLeast};
   });
@@ -100,7 +104,8 @@ void addAlbedo(std::vector<StabilityCase>& cases) {
 /// of it comes through.
 void addThinSheet(std::vector<StabilityCase>& cases) {
   for (const double thickness : {0.0, 1e-4})
-    add(cases, "dark side of a thin sheet: largest radiance", fmt::format("thickness {:g} sides", thickness),
+    addReceiversRow(
+        cases, "dark side of a thin sheet: largest radiance", fmt::format("thickness {:g} sides", thickness),
         [thickness](const StabilityContext& c) {
           SceneParts parts("sheet");
           const int white = parts.material(glm::vec3(0.8f));
@@ -144,7 +149,8 @@ void addCornerLamp(std::vector<StabilityCase>& cases) {
       return parts.scene();
     };
     for (const bool emissive : {false, true})
-      add(cases, fmt::format("{} in a corner: pixels not finite or negative", emissive ? "a shining plate" : "a lamp"),
+      addReceiversRow(
+          cases, fmt::format("{} in a corner: pixels not finite or negative", emissive ? "a shining plate" : "a lamp"),
           fmt::format("{:g} sides away", distance), [room, emissive](const StabilityContext& c) {
             double count = 0.0;
             for (const glm::vec3& p : picture(c, room(emissive), settingsOf(LpvSettings::kAllBounces, 64)).pixels)
@@ -157,7 +163,8 @@ void addCornerLamp(std::vector<StabilityCase>& cases) {
 /// A room of one radiance has it in cells of any size; what differs elsewhere is how finely irradiance is interpolated.
 void addCells(std::vector<StabilityCase>& cases) {
   for (const double size : {1e-3, 0.1, 100.0, 1e5})
-    add(cases, "room in cells of one size, mean against the usual ones", fmt::format("lpv.cell-size={:g}", size),
+    addReceiversRow(
+        cases, "room in cells of one size, mean against the usual ones", fmt::format("lpv.cell-size={:g}", size),
         [size](const StabilityContext& c) {
           Room room;
           room.closed = true;
@@ -177,7 +184,7 @@ void addCells(std::vector<StabilityCase>& cases) {
 }  // namespace
 
 void addReceiverCases(std::vector<StabilityCase>& cases) {
-  addUnits(cases);
+  addReceiversUnits(cases);
   addAlbedo(cases);
   addThinSheet(cases);
   addCornerLamp(cases);

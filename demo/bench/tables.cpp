@@ -36,7 +36,7 @@ double Row::measured() const {
 
 namespace {
 
-struct Options {
+struct TablesOptions {
   CommonOptions common;
   PartOptions part;
   std::string original, scene, fidelity, fill, chart;
@@ -137,13 +137,13 @@ void drawChart(const std::string& file, const bench::Tables& tables, const std::
 }
 
 /// So that a software renderer needs minutes.
-constexpr double kVptScale = 0.05;
+constexpr double kVptTablesScale = 0.05;
 
-int run(Options options) {
+int runTables(TablesOptions options) {
   options.common.apply();
   bench::checkOriginal(options.original);
   const bool vpt = options.original == "vpt";
-  const double scale = options.scale.value_or(vpt ? kVptScale : 1.0);
+  const double scale = options.scale.value_or(vpt ? kVptTablesScale : 1.0);
   if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
   if (!options.chart.empty()) {
     if (options.original != "lpv") throwBadInput("--chart {}: only of --original lpv, its figure 7.1", options.chart);
@@ -219,7 +219,7 @@ int run(Options options) {
 }  // namespace
 
 Work addBenchTables(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TablesOptions>();
   app.addOption("SCENE", options->scene,
                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
   offer(
@@ -240,7 +240,7 @@ Work addBenchTables(Command app) {
   app.addOption("--chart", options->chart, "lpv: FILE.png, figure 7.1: atomics and the geometry shader as bars");
   options->part.declare(app, "rows");
   options->common.declare(app);
-  return [options] { return run(*options); };
+  return [options] { return runTables(*options); };
 }
 
 }  // namespace lucerna::demo

@@ -50,7 +50,7 @@ struct PublishedRow {
 constexpr const char* kNvidia = "NVIDIA GTX 960";
 constexpr const char* kAmd = "AMD R9 270";
 
-constexpr PublishedRow kPublished[] = {
+constexpr PublishedRow kPublishedTimes[] = {
     {"7.2",
      "8 iterations, blocking",
      Way::anyPath,
@@ -403,7 +403,7 @@ Tables measureLpvTables(const TablesInput& input) {
   const auto want = [&](const Config& one) {
     if (std::find(wanted.begin(), wanted.end(), one) == wanted.end()) wanted.push_back(one);
   };
-  for (const PublishedRow& row : kPublished) {
+  for (const PublishedRow& row : kPublishedTimes) {
     const auto add = [&](LpvFill fill, LpvPropagate propagate, bool first, bool published = false) {
       const bool there = fill != LpvFill::atomic || haveAtomic;
       plan.push_back({&row, config(row, fill, propagate, published), first, there});
@@ -419,7 +419,7 @@ Tables measureLpvTables(const TablesInput& input) {
       add(LpvFill::fixed, LpvPropagate::compute, false);
     }
   }
-  const PublishedRow& usual = kPublished[1];  // 3 x 32^3, 8 iterations, blocking
+  const PublishedRow& usual = kPublishedTimes[1];  // 3 x 32^3, 8 iterations, blocking
   const Config published = config(usual, LpvFill::layered, LpvPropagate::layered),
                best = config(usual, bestFill, LpvPropagate::compute);
   const Config slices =

@@ -36,7 +36,7 @@ struct Published {
   int triangles;
   std::array<double, 3> minutes, secondsATriangle;  // at 100, 200 and 500 pixels
 };
-constexpr std::array kPublished{
+constexpr std::array kPublishedSolutions{
     Published{5.0, 26360, {4.0 + 40.0 / 60.0, 8.75, 39.0 + 40.0 / 60.0}, {0.011, 0.020, 0.091}},
     Published{1.0, 136512, {58.0 + 20.0 / 60.0, 81.0 + 40.0 / 60.0, 233.0}, {0.026, 0.036, 0.102}},
     Published{0.25, 546048, {583.0, 700.0, 1516.0}, {0.064, 0.077, 0.166}}};
@@ -272,7 +272,7 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
   const double mostSeconds = std::max(1.0, 40.0 * scale);
 
   Units units(part, fmt::format("rad, scale {}, {} on {}", scale, renderer, cpuName()),
-              kPublished.size() * kViews.size() + 2 + kBoxes.size() * kWays.size());
+              kPublishedSolutions.size() * kViews.size() + 2 + kBoxes.size() * kWays.size());
   nlohmann::ordered_json json;
   const std::vector<std::string> notes{
       fmt::format("Scale    {}: at most {} hemicubes or {:.0f} s a figure, of triangles spread evenly over the scene",
@@ -289,7 +289,7 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
   say(prints, "\nTables 4.1 and 4.2\n{:<28}{:>14}{:>14}{:>9}{:>14}{:>14}{:>13}{:>14}\n", "", "whole, min", "here, min",
       "ratio", "s a triangle", "here, s", "hemicubes/s", "Mtriangles/s");
   json["rows"] = nlohmann::ordered_json::array();
-  for (const Published& published : kPublished) {
+  for (const Published& published : kPublishedSolutions) {
     if (interrupted()) break;
     RadModelSettings model;
     model.areaThreshold = published.threshold;

@@ -21,7 +21,7 @@ namespace lucerna::demo::bench {
 namespace {
 
 /// Seconds a picture below full scale may take.
-constexpr double kMostSeconds = 15.0;
+constexpr double kMostSecondsATable = 15.0;
 
 /// Of the picture that stands for the estimator: espresso, as much absorbed as scattered behind a boundary that
 /// refracts.
@@ -149,7 +149,7 @@ VptResult resultOf(const PartFolder::Json& kept) {
 Tables measureVptTables(const VptTablesInput& input) {
   // What is measured, at this scale.
   const glm::ivec2 size = vptSize(input.scale);
-  const double mostSeconds = input.scale < 1.0 ? kMostSeconds : 0.0;
+  const double mostSeconds = input.scale < 1.0 ? kMostSecondsATable : 0.0;
   Tables tables;
   const bool published = input.fidelity != Fidelity::corrected;
   tables.notes.push_back(published ? fmt::format("Scenes of our own after the published pictures (assets/media) in the "

@@ -25,7 +25,7 @@ namespace {
 using namespace labs;
 namespace fs = std::filesystem;
 
-struct Options {
+struct LabOptions {
   CommonOptions common;
   std::string lab, folder = ".", seed, junit, gradescope, html, name, pictures;
   std::uint64_t nonce = 0;
@@ -47,13 +47,13 @@ void watchTime() {
   alarm(kLongest);
 }
 
-std::uint64_t nonceOf(const Options& options) {
+std::uint64_t nonceOf(const LabOptions& options) {
   if (options.nonce != 0) return options.nonce;
   std::random_device device;
   return (static_cast<std::uint64_t>(device()) << 16 ^ device()) & 0xffffffffffffu;  // short enough to be typed
 }
 
-int list(const Options& options) {
+int list(const LabOptions& options) {
   options.common.apply();
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const Lab& lab : allLabs()) {
@@ -70,7 +70,7 @@ int list(const Options& options) {
   return 0;
 }
 
-int start(const Options& options) {
+int start(const LabOptions& options) {
   options.common.apply();
   const Lab& lab = findLab(options.lab);
   const std::string seed = options.seed.empty() ? "example" : options.seed;
@@ -86,7 +86,7 @@ struct Judged {
   Folder folder;
   Report report;
 };
-Judged judge(const Lab& lab, const Options& options) {
+Judged judge(const Lab& lab, const LabOptions& options) {
   Judged judged{Folder::open(lab, options.folder, options.seed), {}};
   const HandIn handIn = judged.folder.handIn();
   watchTime();
@@ -111,7 +111,7 @@ void note(Judged& judged, const Lab& lab) {
   if (access(judged.folder.path.c_str(), W_OK) == 0) judged.folder.save();
 }
 
-int check(const Options& options) {
+int check(const LabOptions& options) {
   options.common.apply();
   const Lab& lab = findLab(options.lab);
   Judged judged = judge(lab, options);
@@ -123,7 +123,7 @@ int check(const Options& options) {
   return judged.report.allPassed() ? 0 : kWrong;
 }
 
-int hint(const Options& options) {
+int hint(const LabOptions& options) {
   options.common.apply();
   const auto dot = options.lab.find('.');
   if (dot == std::string::npos) throwBadInput("hint {}: expected LAB.TASK, such as 1.2", options.lab);
@@ -134,7 +134,7 @@ int hint(const Options& options) {
   return 0;
 }
 
-int solution(const Options& options) {
+int solution(const LabOptions& options) {
   options.common.apply();
   const Lab& lab = findLab(options.lab);
   putSolution(lab, options.folder);
@@ -190,7 +190,7 @@ Shown sideBySide(const Report& report) {
 
 /// Checks and pictures anew whenever the task file is saved, in a window where there is a display, until Escape or
 /// Ctrl-C. What does not compile leaves the last good pictures.
-int watch(const Options& options, const Lab& lab) {
+int watch(const LabOptions& options, const Lab& lab) {
   watchForInterrupt();
   const auto host = options.common.makeHost(
       true, {.windowSize = {1152, 384}, .windowTitle = fmt::format("Lab {}: yours, and the reference", lab.number)});
@@ -231,7 +231,7 @@ int watch(const Options& options, const Lab& lab) {
   return 0;
 }
 
-int show(const Options& options) {
+int show(const LabOptions& options) {
   options.common.apply();
   const Lab& lab = findLab(options.lab);
   if (options.watch) return watch(options, lab);
@@ -247,7 +247,7 @@ int show(const Options& options) {
   return 0;
 }
 
-int report(const Options& options) {
+int report(const LabOptions& options) {
   options.common.apply();
   const Lab& lab = findLab(options.lab);
   Judged judged = judge(lab, options);
@@ -258,7 +258,7 @@ int report(const Options& options) {
   return 0;
 }
 
-int prove(const Options& options) {
+int prove(const LabOptions& options) {
   options.common.apply();
   const auto host = options.common.makeHost(false);
   const gl::Context context;
@@ -276,7 +276,7 @@ int prove(const Options& options) {
   return good ? 0 : kWrong;
 }
 
-int figures(const Options& options) {
+int figures(const LabOptions& options) {
   options.common.apply();
   const Lab& lab = findLab(options.lab);
   const auto host = options.common.makeHost(false);
@@ -290,8 +290,8 @@ int figures(const Options& options) {
 }  // namespace
 
 void addLabs(Subcommands& commands) {
-  auto options = std::make_shared<Options>();
-  const auto add = [&](const char* name, const char* description, int (*work)(const Options&)) {
+  auto options = std::make_shared<LabOptions>();
+  const auto add = [&](const char* name, const char* description, int (*work)(const LabOptions&)) {
     Command command = commands.add(name, description, [options, work] { return work(*options); });
     options->common.declare(command);
     return command;

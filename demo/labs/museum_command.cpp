@@ -17,12 +17,12 @@ namespace {
 using namespace labs;
 namespace fs = std::filesystem;
 
-struct Options {
+struct MuseumOptions {
   CommonOptions common;
   std::string seed, answer, folder = ".", html = "museum.html";
 };
 
-int museum(const Options& options) {
+int museum(const MuseumOptions& options) {
   options.common.apply();
   const auto host = options.common.makeHost(false);
   const gl::Context context;
@@ -34,7 +34,7 @@ int museum(const Options& options) {
 }
 
 /// The hidden deviation's readings beside sound ones; with --answer it is graded instead, without a GPU.
-int mystery(const Options& options) {
+int mystery(const MuseumOptions& options) {
   options.common.apply();
   const Mystery mystery = mysteryOf(options.seed);
   if (!options.answer.empty()) {
@@ -84,7 +84,7 @@ int mystery(const Options& options) {
 Work addLab(Command app) {
   Subcommands commands(app);
   addLabs(commands);
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MuseumOptions>();
   Command mysteryApp =
       commands.add("mystery", "A picture with one hidden deviation: find it by instruments, and say which",
                    [options] { return mystery(*options); });

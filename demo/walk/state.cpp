@@ -1,5 +1,7 @@
 #include "walk/state.hpp"
 
+#include "bench/provenance.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,16 +12,6 @@ namespace lucerna::demo {
 namespace {
 
 /// As a shell takes it.
-std::string quoted(const std::string& text) {
-  const bool plain = !text.empty() &&
-                     text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=,:+-") ==
-                         std::string::npos;
-  if (plain) return text;
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
 }  // namespace
 
 std::string textOf(const PictureOptions& o) {
@@ -36,12 +28,12 @@ void chooseTechnique(PictureOptions& options, const std::string& technique) {
 
 std::string commandLine(const std::string& command, const std::string& scene, const PictureOptions& o) {
   const PictureOptions usual;
-  std::string line = "lucerna " + command + " " + quoted(scene);
+  std::string line = "lucerna " + command + " " + bench::shellWord(scene);
   if (o.technique != usual.technique) line += " --technique " + o.technique;
   if (o.component != usual.component) line += " --component " + o.component;
   if (o.fidelity != usual.fidelity) line += " --fidelity " + o.fidelity;
-  for (const std::string& deviation : o.deviations) line += " --deviation " + quoted(deviation);
-  for (const std::string& setting : o.settings) line += " --set " + quoted(setting);
+  for (const std::string& deviation : o.deviations) line += " --deviation " + bench::shellWord(deviation);
+  for (const std::string& setting : o.settings) line += " --set " + bench::shellWord(setting);
   return line;
 }
 

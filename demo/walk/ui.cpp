@@ -7,27 +7,27 @@ namespace lucerna::demo {
 
 namespace {
 
-constexpr std::pair<ImGuiKey, int> kKeys[] = {{ImGuiKey_Tab, key::kTab},
-                                              {ImGuiKey_LeftArrow, key::kLeft},
-                                              {ImGuiKey_RightArrow, key::kRight},
-                                              {ImGuiKey_UpArrow, key::kUp},
-                                              {ImGuiKey_DownArrow, key::kDown},
-                                              {ImGuiKey_PageUp, key::kPageUp},
-                                              {ImGuiKey_PageDown, key::kPageDown},
-                                              {ImGuiKey_Home, key::kHome},
-                                              {ImGuiKey_End, key::kEnd},
-                                              {ImGuiKey_Insert, key::kInsert},
-                                              {ImGuiKey_Delete, key::kDelete},
-                                              {ImGuiKey_Backspace, key::kBackspace},
-                                              {ImGuiKey_Space, ' '},
-                                              {ImGuiKey_Enter, key::kEnter},
-                                              {ImGuiKey_Escape, key::kEscape},
-                                              {ImGuiKey_A, 'A'},
-                                              {ImGuiKey_C, 'C'},
-                                              {ImGuiKey_V, 'V'},
-                                              {ImGuiKey_X, 'X'},
-                                              {ImGuiKey_Y, 'Y'},
-                                              {ImGuiKey_Z, 'Z'}};
+constexpr std::pair<ImGuiKey, int> kImguiKeys[] = {{ImGuiKey_Tab, key::kTab},
+                                                   {ImGuiKey_LeftArrow, key::kLeft},
+                                                   {ImGuiKey_RightArrow, key::kRight},
+                                                   {ImGuiKey_UpArrow, key::kUp},
+                                                   {ImGuiKey_DownArrow, key::kDown},
+                                                   {ImGuiKey_PageUp, key::kPageUp},
+                                                   {ImGuiKey_PageDown, key::kPageDown},
+                                                   {ImGuiKey_Home, key::kHome},
+                                                   {ImGuiKey_End, key::kEnd},
+                                                   {ImGuiKey_Insert, key::kInsert},
+                                                   {ImGuiKey_Delete, key::kDelete},
+                                                   {ImGuiKey_Backspace, key::kBackspace},
+                                                   {ImGuiKey_Space, ' '},
+                                                   {ImGuiKey_Enter, key::kEnter},
+                                                   {ImGuiKey_Escape, key::kEscape},
+                                                   {ImGuiKey_A, 'A'},
+                                                   {ImGuiKey_C, 'C'},
+                                                   {ImGuiKey_V, 'V'},
+                                                   {ImGuiKey_X, 'X'},
+                                                   {ImGuiKey_Y, 'Y'},
+                                                   {ImGuiKey_Z, 'Z'}};
 
 }  // namespace
 
@@ -36,7 +36,7 @@ Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), sca
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // nothing is written beside the user's files
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-  for (const auto& [imguiKey, ours] : kKeys) io.KeyMap[imguiKey] = ours;
+  for (const auto& [imguiKey, ours] : kImguiKeys) io.KeyMap[imguiKey] = ours;
   io.ClipboardUserData = this;
   io.GetClipboardTextFn = [](void* self) -> const char* {
     Ui& ui = *static_cast<Ui*>(self);

@@ -31,8 +31,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Options = WalkOptions;
-
 // "FIRST:LAST", views of the path; empty: all.
 std::pair<int, int> parseViews(const std::string& text, int viewCount) {
   if (text.empty()) return {0, viewCount - 1};
@@ -69,7 +67,7 @@ Change changeBetween(const Image& before, const Image& after) {
   return change;
 }
 
-nlohmann::ordered_json resultJson(const Options& options, const Host& host, const gl::Context& context,
+nlohmann::ordered_json resultJson(const WalkOptions& options, const Host& host, const gl::Context& context,
                                   Renderer& renderer, int frames, double seconds) {
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
@@ -92,7 +90,7 @@ nlohmann::ordered_json resultJson(const Options& options, const Host& host, cons
 }
 
 /// Frames of a walk as units. All that decides a frame: scene, settings, and where the camera is in each.
-PartFolder framesOf(const Options& options, const Scene& scene, const Renderer& renderer,
+PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Renderer& renderer,
                     const std::vector<Camera>& cameras) {
   if (options.part.checkpoint.empty()) return PartFolder(options.part, "walk", "", cameras.size());
   if (options.flicker)
@@ -117,8 +115,8 @@ PartFolder framesOf(const Options& options, const Scene& scene, const Renderer& 
       cameras.size());
 }
 
-int record(const Options& options, const Host& host, const gl::Context& context, const Scene& scene, Renderer& renderer,
-           const Spline& path) {
+int record(const WalkOptions& options, const Host& host, const gl::Context& context, const Scene& scene,
+           Renderer& renderer, const Spline& path) {
   const fs::path folder = options.record.empty() ? fs::path("walk") : fs::path(options.record);
   std::error_code error;
   if (!options.part.isPart()) fs::create_directories(folder, error);
@@ -190,7 +188,7 @@ int record(const Options& options, const Host& host, const gl::Context& context,
 }
 
 /// In a window, or driven by recorded input.
-int play(const Options& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, Scene scene,
+int play(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, Scene scene,
          Spline path) {
   // The state that the window begins with.
   watchForInterrupt();
@@ -228,7 +226,7 @@ int play(const Options& options, Host& host, const gl::Context& context, gl::Pro
   return exitCode();
 }
 
-int run(Options options) {
+int runWalk(WalkOptions options) {
   if (options.capture >= 0 && !RenderDoc::find()) {
     RenderDoc::preload();
     throwMissingCapability(
@@ -261,7 +259,7 @@ int run(Options options) {
 }  // namespace
 
 Work addWalk(Command app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WalkOptions>();
   app.addOption("SCENE", options->scene, "a scene file (default: the atrium)");
   app.addOption("--keys", options->keys,
                 "key frames of the camera path (default: the scene's, else one round around it)");
@@ -284,7 +282,7 @@ Work addWalk(Command app) {
   options->picture.declare(app);
   options->common.declare(app);
   app.setFooter(keysHelp() + "\n" + app.footer());
-  return [options] { return run(*options); };
+  return [options] { return runWalk(*options); };
 }
 
 }  // namespace lucerna::demo

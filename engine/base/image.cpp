@@ -480,10 +480,6 @@ Image decodePfm(std::span<const std::uint8_t> bytes, const fs::path& file) {
   return image;
 }
 
-bool startsWith(std::span<const std::uint8_t> bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-}
-
 }  // namespace
 
 Image::Image(int width_, int height_, glm::vec3 value) : width(width_), height(height_) {

@@ -31,10 +31,6 @@ std::int64_t littleEndian(Bytes bytes, std::size_t at, std::size_t count) {
   return value;
 }
 
-bool startsWith(Bytes bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-}
-
 [[noreturn]] void throwTruncated(const fs::path& file, const char* format) {
   throwBadInput("{}: truncated picture: the {} file ends too early", file.string(), format);
 }

@@ -8,8 +8,10 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <span>
+#include <string_view>
 
 namespace lucerna {
 
@@ -28,6 +30,11 @@ inline constexpr std::int64_t kMostPixelsPerByte = 1032;
 /// Pictures up to this size may be denser: flat pictures with 1 bit per pixel are eight times as dense.
 inline constexpr std::int64_t kFreeBitmapPixels = std::int64_t{1} << 24;
 inline constexpr std::int64_t kFreeFloatPixels = std::int64_t{1} << 20;
+
+/// Whether a file's bytes begin with a format's first ones.
+inline bool startsWith(std::span<const std::uint8_t> bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
 
 /// Throws Error(badInput) if a picture has no pixels, or more than kMostPixels.
 void checkPictureSize(const std::filesystem::path& file, std::int64_t width, std::int64_t height);

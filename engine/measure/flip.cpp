@@ -1,5 +1,6 @@
 #include "measure/flip.hpp"
 
+#include "base/angles.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 
@@ -11,8 +12,6 @@
 namespace lucerna::measure {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // ---------------------------------------------------------------------------------------------------- colour spaces
 

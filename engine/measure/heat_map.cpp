@@ -49,7 +49,7 @@ void put(Bitmap& bitmap, const Colour& colour) {
   bitmap.rgba.push_back(255);
 }
 
-void checkSizes(const Image& a, const Image& b) {
+void checkSameSize(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
     throwBadInput("pictures of {}x{} and {}x{}: pictures must have the same size", a.width, a.height, b.width,
                   b.height);
@@ -58,7 +58,7 @@ void checkSizes(const Image& a, const Image& b) {
 }  // namespace
 
 double heatMapScale(const Image& image, const Image& reference) {
-  checkSizes(image, reference);
+  checkSameSize(image, reference);
   std::vector<double> differences;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const double d = difference(HeatMap::absolute, image.pixels[i], reference.pixels[i]);
@@ -75,7 +75,7 @@ double heatMapScale(const Image& image, const Image& reference) {
 }
 
 Bitmap heatMap(const Image& image, const Image& reference, HeatMap kind, double scale) {
-  checkSizes(image, reference);
+  checkSameSize(image, reference);
   CHECK(scale > 0.0, "scale = {}", scale);
   Bitmap bitmap;
   bitmap.width = image.width;

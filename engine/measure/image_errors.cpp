@@ -1,5 +1,6 @@
 #include "measure/image_errors.hpp"
 
+#include "base/angles.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 
@@ -199,7 +200,6 @@ PartErrors partErrorsOf(const Image& image, const Image& reference, const Image&
 
 glm::dvec3 constantIrradiance(const Image& albedo, const Image& picture) {
   checkSizes(albedo, picture);
-  constexpr double kPi = 3.14159265358979323846;
   glm::dvec3 products(0.0), squares(0.0), irradiance(0.0);
   for (std::size_t i = 0; i < albedo.pixels.size(); ++i) {
     const glm::dvec3 a(albedo.pixels[i]);
@@ -211,7 +211,6 @@ glm::dvec3 constantIrradiance(const Image& albedo, const Image& picture) {
 }
 
 Image litByConstant(const Image& albedo, const glm::dvec3& irradiance) {
-  constexpr double kPi = 3.14159265358979323846;
   Image result = albedo;
   for (glm::vec3& p : result.pixels) p = glm::vec3(glm::dvec3(p) * irradiance / kPi);
   return result;

@@ -1,5 +1,6 @@
 #include "radiosity/direct_light.hpp"
 
+#include "base/angles.hpp"
 #include "gl/pass.hpp"
 #include "scene/triangle_parts.hpp"
 
@@ -9,8 +10,6 @@
 namespace lucerna {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Input of blocked.comp.
 struct Ray {

@@ -1,15 +1,13 @@
 #include "radiosity/hemicube_map.hpp"
 
+#include "base/angles.hpp"
 #include "base/error.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace lucerna {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // Antiderivatives over the rectangle from the origin to (x, y) of a face at distance 1: of 1/(pi r^4) and of y/(pi
 // r^4).

@@ -15,8 +15,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr char kMagic[8] = {'L', 'U', 'C', 'R', 'O', 'W', 'S', '\n'};
-constexpr std::uint32_t kVersion = 2;  // 2: rows depend on the visibility method
+constexpr char kRowMagic[8] = {'L', 'U', 'C', 'R', 'O', 'W', 'S', '\n'};
+constexpr std::uint32_t kRowVersion = 2;  // 2: rows depend on the visibility method
 
 constexpr float kMostFactor = 1.01f;  // fractions of a hemisphere, with rounding
 
@@ -74,13 +74,13 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
     if (!readAll(descriptor_, &header, sizeof header)) {
       // The file of a run killed before its first bytes were written, or a foreign file: overwrite only a prefix of our
       // own magic.
-      char start[sizeof kMagic] = {};
+      char start[sizeof kRowMagic] = {};
       const auto got = static_cast<std::size_t>(std::max<ssize_t>(::pread(descriptor_, start, sizeof start, 0), 0));
-      if (std::memcmp(start, kMagic, got) != 0) refuse("is not a checkpoint of radiosity");
+      if (std::memcmp(start, kRowMagic, got) != 0) refuse("is not a checkpoint of radiosity");
       header = {};
     } else {
-      if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) refuse("is not a checkpoint of radiosity");
-      if (header.version != kVersion) refuse("is a checkpoint of another version of this program");
+      if (std::memcmp(header.magic, kRowMagic, sizeof kRowMagic) != 0) refuse("is not a checkpoint of radiosity");
+      if (header.version != kRowVersion) refuse("is a checkpoint of another version of this program");
       if (header.fingerprint != fingerprint || header.patches != patches)
         refuse("is the checkpoint of another scene or of other settings");
     }
@@ -97,8 +97,8 @@ RowFile::RowFile(const std::filesystem::path& file, std::uint64_t fingerprint, s
     throwBadInput("{}: {}", file.string(), std::strerror(errno));
   ::lseek(descriptor_, static_cast<off_t>(end_), SEEK_SET);
   if (end_ == 0) {
-    std::memcpy(header.magic, kMagic, sizeof kMagic);
-    header.version = kVersion;
+    std::memcpy(header.magic, kRowMagic, sizeof kRowMagic);
+    header.version = kRowVersion;
     header.patches = patches;
     header.fingerprint = fingerprint;
     if (::write(descriptor_, &header, sizeof header) != static_cast<ssize_t>(sizeof header))
@@ -159,7 +159,7 @@ std::optional<std::uint64_t> RowFile::fingerprintOf(const std::filesystem::path&
   std::ifstream stream(file, std::ios::binary);
   Header header{};
   if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) ||
-      std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion)
+      std::memcmp(header.magic, kRowMagic, sizeof kRowMagic) != 0 || header.version != kRowVersion)
     return std::nullopt;
   return header.fingerprint;
 }
@@ -170,7 +170,7 @@ void joinRowFiles(const std::vector<std::pair<std::uint32_t, std::filesystem::pa
   Header header{};
   std::ifstream stream(parts.front().second, std::ios::binary);
   if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) ||
-      std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion)
+      std::memcmp(header.magic, kRowMagic, sizeof kRowMagic) != 0 || header.version != kRowVersion)
     throwBadInput("{}: is no checkpoint of radiosity", parts.front().second.string());
   std::filesystem::path draft = whole;
   draft += ".joining";

@@ -18,8 +18,8 @@ namespace lucerna {
 
 namespace {
 
-constexpr char kMagic[8] = {'L', 'U', 'C', 'L', 'I', 'G', 'H', 'T'};
-constexpr std::uint32_t kVersion = 4;  // 4: with the sky's irradiance
+constexpr char kSolutionMagic[8] = {'L', 'U', 'C', 'L', 'I', 'G', 'H', 'T'};
+constexpr std::uint32_t kSolutionVersion = 4;  // 4: with the sky's irradiance
 
 struct FileHeader {
   char magic[8];
@@ -127,8 +127,8 @@ void saveSolution(const std::filesystem::path& file, const Scene& scene, const R
     to.backs = s.backs[i];
   }
   FileHeader header{};
-  std::memcpy(header.magic, kMagic, sizeof kMagic);
-  header.version = kVersion;
+  std::memcpy(header.magic, kSolutionMagic, sizeof kSolutionMagic);
+  header.version = kSolutionVersion;
   header.solver = static_cast<std::uint32_t>(s.solver);
   header.deviations = bitsOf(s.deviations);
   header.settingsBytes = static_cast<std::uint32_t>(s.settings.size());
@@ -161,12 +161,12 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
   // The header, and whether the file is complete, undamaged and of this scene.
   const std::vector<std::uint8_t> bytes = readFileBytes(file);
   FileHeader header{};
-  if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
+  if (bytes.size() < sizeof header || std::memcmp(bytes.data(), kSolutionMagic, sizeof kSolutionMagic) != 0)
     throwBadInput("{}: not a radiosity solution", file.string());
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.version != kVersion)
+  if (header.version != kSolutionVersion)
     throwBadInput("{}: a solution of version {}, this program reads {}: solve it again", file.string(), header.version,
-                  kVersion);
+                  kSolutionVersion);
   if (header.scene != fingerprint(scene))
     throwBadInput("{}: the solution of another scene, or of this one before it was changed: solve it again",
                   file.string());

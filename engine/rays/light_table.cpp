@@ -1,5 +1,6 @@
 #include "rays/light_table.hpp"
 
+#include "base/angles.hpp"
 #include "base/error.hpp"
 #include "scene/texture_mean.hpp"
 
@@ -11,8 +12,6 @@
 namespace lucerna {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 /// Sampling weight of a light: luminance, but above 0 for a light of any colour.

@@ -1,5 +1,6 @@
 #include "render/ask.hpp"
 
+#include "base/angles.hpp"
 #include "gl/pass.hpp"
 #include "render/renderer.hpp"
 
@@ -8,13 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 namespace lucerna {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 glm::dvec3 texelAt(const gl::Texture& texture, glm::ivec2 fromBelow) {
   const gl::Texture one("asked pixel", texture.format(), glm::ivec2(1));

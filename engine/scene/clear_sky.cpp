@@ -1,5 +1,6 @@
 #include "scene/clear_sky.hpp"
 
+#include "base/angles.hpp"
 #include "base/error.hpp"
 
 #include <algorithm>
@@ -11,8 +12,6 @@ namespace lucerna {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180.0;
 const glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);  // of linear sRGB, IEC 61966-2-1
 
 /// Perez's distribution: darkening towards the horizon (a, b), brightening around the sun (c, d), light scattered back

@@ -9,6 +9,7 @@
 //   D_(n-1) + 2 D_n                 = 3 (P_n - P_(n-1))
 #include "scene/key_frames.hpp"
 
+#include "base/angles.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 
@@ -19,8 +20,6 @@
 namespace lucerna {
 
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 /// Below this length an interpolated direction (from unit vectors at the keys) counts as lost.
 constexpr double kLost = 1e-6;

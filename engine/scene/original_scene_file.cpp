@@ -1,5 +1,6 @@
 #include "scene/original_scene_file.hpp"
 
+#include "base/angles.hpp"
 #include "base/files.hpp"
 #include "scene/media_catalogue.hpp"
 #include "scene/scene_file.hpp"
@@ -16,8 +17,6 @@ namespace lucerna {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 bool isComment(const std::string& key) { return key.rfind("//", 0) == 0; }
 

@@ -24,6 +24,7 @@
 // Unknown keys are errors. A new key is one more entry in the table in loadSceneFile.
 #include "scene/scene_file.hpp"
 
+#include "base/angles.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
@@ -42,8 +43,6 @@
 namespace lucerna {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Camera readCamera(const Value& object) {
   Camera camera;
@@ -102,7 +101,6 @@ DirectionalLight readSun(const Value& object) {
 }
 
 SpotLight readSpot(const Value& object) {
-  constexpr double kDegree = kPi / 180.0;
   std::optional<glm::dvec3> position, direction, target;
   std::optional<glm::vec3> intensity;
   std::optional<double> inner, outer;

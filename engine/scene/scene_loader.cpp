@@ -32,6 +32,7 @@
 //   keyFrames/<stem>.txt if the repository has one, otherwise a view from outside that frames the bounding sphere.
 #include "scene/scene_file.hpp"
 
+#include "base/angles.hpp"
 #include "base/data.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
@@ -67,7 +68,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr float kCreaseAngle = 60.0f;  // degrees between faces
 constexpr double kDefaultFov = 50.0 * kPi / 180.0;
 

@@ -21,7 +21,7 @@ using lucerna::test::RunResult;
 using lucerna::test::TempFolder;
 
 // A floor and a wall that meet, lit by the default sun.
-const char* kScene =
+const char* kRoomScene =
     "mtllib scene.mtl\n"
     "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\n"
     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -31,7 +31,7 @@ const char* kMaterials = "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0
 class CommandLine : public ::testing::Test {
  protected:
   void SetUp() override {
-    write("scene.obj", kScene);
+    write("scene.obj", kRoomScene);
     write("scene.mtl", kMaterials);
     write("path.txt", "p 4 2 4 d -1 -0.3 -1 u 0 1 0\np 3 2 5 d -0.8 -0.3 -1 u 0 1 0\n");
   }
@@ -339,7 +339,8 @@ TEST_F(CommandLine, WrongFilesAreRefused) {
   expectRefused("render " + path("nothing.obj") + tail, 2, {"nothing.obj"}, "x.png");
   fs::create_directory(path("folder"));
   expectRefused("render " + path("folder") + tail, 2, {"folder"}, "x.png");
-  write("cut.obj", std::string(kScene).substr(0, std::string(kScene).rfind("f ") + 5));  // the last face is cut short
+  write("cut.obj",
+        std::string(kRoomScene).substr(0, std::string(kRoomScene).rfind("f ") + 5));  // the last face is cut short
   expectRefused("render " + path("cut.obj") + tail, 2, {"cut.obj"}, "x.png");
   write("noise.obj", std::string("\0\1\2\xff\xfe garbage", 14));
   expectRefused("render " + path("noise.obj") + tail, 2, {"noise.obj"}, "x.png");

@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
 using namespace lucerna;
 using test::RunResult;
 
-const char* kScene =
+const char* kMeasuredScene =
     "mtllib scene.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     "usemtl white\nf 1/1 4/4 3/3 2/2\nusemtl red\nf 1/1 2/2 6/3 5/4\n";
 
 class Measure : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::ofstream(path("scene.obj")) << kScene;
+    std::ofstream(path("scene.obj")) << kMeasuredScene;
     std::ofstream(path("scene.mtl")) << "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0.1\n";
     ::setenv("LUCERNA_REFERENCES", path("references").c_str(), 1);
   }
@@ -178,7 +178,7 @@ TEST_F(Measure, TechniquesAreJudgedByTheLightThatTheyAreGiven) {
     std::ofstream(path("scene.mtl"))
         << "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0.1\nnewmtl lamp\nKd 0.5 0.5 0.5\nKe " << emission
         << "\n";
-    std::ofstream(path("lit.obj")) << kScene
+    std::ofstream(path("lit.obj")) << kMeasuredScene
                                    << "v -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\nusemtl lamp\nf -4/1 -3/2 -2/3 -1/4\n";
     std::ofstream(path("lit.json"))
         << R"({"model": "lit.obj", "sun": {"direction": [0.2, -1, -0.3], "irradiance": [3, 3, 3]}})";

@@ -22,21 +22,21 @@ using lucerna::test::RunResult;
 using lucerna::test::TempFolder;
 
 // Two walls and a floor, a lamp, two views.
-const char* kScene = R"({"model": "room.obj", "sun": {"direction": [-0.5, -1, -0.3], "irradiance": [3, 3, 3]},
+const char* kWindowScene = R"({"model": "room.obj", "sun": {"direction": [-0.5, -1, -0.3], "irradiance": [3, 3, 3]},
   "cameras": [{"name": "first", "position": [1.5, 1.2, 1.8], "target": [0, 0.6, 0], "fov": 55}, {"name": "second",
   "position": [-1, 1, 1.8], "target": [0, 0.5, 0], "fov": 50}]})";
 const char* kRoom =
     "mtllib room.mtl\n"
     "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\nv -2 3 2\n"
     "usemtl white\nf 1 4 3 2\nusemtl red\nf 1 2 6 5\nusemtl white\nf 1 5 7 4\n";
-const char* kMaterials = "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0.1\n";
+const char* kWindowMaterials = "newmtl white\nKd 0.8 0.8 0.8\nnewmtl red\nKd 0.7 0.1 0.1\n";
 
 class Window : public ::testing::Test {
  protected:
   void SetUp() override {
-    write("room.json", kScene);
+    write("room.json", kWindowScene);
     write("room.obj", kRoom);
-    write("room.mtl", kMaterials);
+    write("room.mtl", kWindowMaterials);
     write("path.txt", "p 1.5 1.2 1.8 d -0.6 -0.3 -0.7 u 0 1 0\np -1 1 1.8 d 0.4 -0.2 -0.8 u 0 1 0\n");
   }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }

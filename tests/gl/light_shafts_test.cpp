@@ -15,7 +15,7 @@
 namespace lucerna {
 namespace {
 
-constexpr glm::ivec2 kSize{48, 32};
+constexpr glm::ivec2 kShaftsSize{48, 32};
 
 class LightShaftsTest : public test::SharedProgramsTest {
  protected:
@@ -33,7 +33,7 @@ class LightShaftsTest : public test::SharedProgramsTest {
     RenderSettings settings;
     settings.technique = Technique::lpv;
     settings.component = component;
-    settings.size = kSize;
+    settings.size = kShaftsSize;
     settings.fullFloatTarget = true;
     settings.lpv.transport = LpvTransport::propagate;
     settings.lpv.shafts = true;
@@ -48,7 +48,7 @@ class LightShaftsTest : public test::SharedProgramsTest {
   static Image traced(const Scene& scene, const Camera& camera, Transport transport, std::uint32_t scatterings,
                       std::uint32_t samples) {
     PathTracer::Settings settings;
-    settings.size = kSize;
+    settings.size = kShaftsSize;
     settings.transport = transport;
     settings.bounces = scatterings;
     settings.pixelCentres = true;
@@ -99,8 +99,8 @@ TEST_F(LightShaftsTest, ShaftsOfTheSunAgreeWithThePathTracer) {
   const Image there = traced(scene, camera, Transport::direct, 1, 1024);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean(here)[c] / mean(there)[c], 1.0, 0.01) << c;
   double differences = 0.0, squares = 0.0;
-  for (int by = 0; by < kSize.y; by += 4)
-    for (int bx = 0; bx < kSize.x; bx += 4) {
+  for (int by = 0; by < kShaftsSize.y; by += 4)
+    for (int bx = 0; bx < kShaftsSize.x; bx += 4) {
       double a = 0.0, b = 0.0;
       for (int y = by; y < by + 4; ++y)
         for (int x = bx; x < bx + 4; ++x) a += here.at(x, y).y / 16.0, b += there.at(x, y).y / 16.0;

@@ -1,5 +1,6 @@
 // Spot, omnidirectional and cascaded lights on GL: irradiance, shadows, flux and area of reflective shadow maps, what
 // is left out.
+#include "base/angles.hpp"
 #include "base/log.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
@@ -12,12 +13,10 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
-#include <numbers>
 
 namespace lucerna {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr float kAlbedo = 0.6f;
 
 /// Quads of one grey material; a quad's front is where its corners run anticlockwise.

@@ -19,23 +19,15 @@
 namespace lucerna {
 namespace {
 
+using test::kFullTolerance;
 using test::Probe;
+using test::report;
 using test::RsmTexel;
 using test::RsmTextures;
-using twin::kPi;
+using test::unitCascade;
 using twin::VolumeRgb;
 
-constexpr double kFullTolerance = 1e-5;
 const double kFront = twin::frontSolidAngle(), kSide = twin::sideSolidAngle();
-
-void report(const char* what, double value) { std::cout << "[ measured ] " << what << ": " << value << "\n"; }
-
-std::vector<Cascade> unitCascade(int cells, double cellSize = 1.0) {
-  Cascade cascade;
-  cascade.cellSize = cellSize;
-  cascade.centre = glm::dvec3(0.5 * cells * cellSize);
-  return {cascade};
-}
 
 /// A light that injection moves to the middle of a unit cell. Its area is as good as none.
 RsmTexel lightIn(const glm::ivec3& cell, const glm::vec3& normal, const glm::vec3& flux) {

@@ -195,7 +195,7 @@ TEST_F(LpvWays, FixedPointGivesTheLayeredGridWithinItsQuantum) {
     const std::vector<VolumeRgb> fixed = test::readVolume(run(s, inputs).injected(), inputs);
     // 2^30 steps of flux for all texels, as white as can be, in one cell; each light is off by half a step at most.
     const double largest =
-        twin::kLobeBand1 / twin::kPi *
+        twin::kLobeBand1 / kPi *
         static_cast<double>(textures.outputs().position.size().x * textures.outputs().position.size().y) * kTexelArea;
     for (std::size_t k = 0; k < fixed.size(); ++k) {
       const double quantum = static_cast<double>(kIrradiance) * std::ldexp(largest, -30);
@@ -368,7 +368,7 @@ TEST_F(LpvWays, FixedPointNeverOverflows) {
             double largest = 0.0;
             for (const twin::Sh& cell : injected[k][2].cells)
               largest = std::abs(cell.c1.z) > std::abs(largest) ? cell.c1.z : largest;
-            EXPECT_NEAR(largest / (each * count * way * twin::kLobeBand1 / twin::kPi), 1.0, 1e-4)
+            EXPECT_NEAR(largest / (each * count * way * twin::kLobeBand1 / kPi), 1.0, 1e-4)
                 << count << " " << k << fluxUnits << scale;
           }
         }

@@ -5,10 +5,12 @@
 // Noise: a pixel is filtered from some four receivers of as many paths as the settings say, so that the pixels'
 // standard deviation over the root of a quarter of the receivers bounds the error of a picture's mean where the picture
 // is of one value; kSignificant of these are allowed.
+#include "base/angles.hpp"
 #include "base/error.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
 #include "support/form_factor_twin.hpp"
+#include "support/largest_difference.hpp"
 #include "support/path_scenes.hpp"
 #include "support/pixel_rays.hpp"
 
@@ -24,10 +26,10 @@
 namespace lucerna {
 namespace {
 
+using test::largestDifference;
 using test::lookingAt;
 using test::SceneBuilder;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kSignificant = 4.0;
 constexpr int kAll = LpvSettings::kAllBounces;
 
@@ -77,13 +79,6 @@ class LpvReceiversGl : public test::SharedProgramsTest {
   }
 };
 
-double largestDifference(const Image& a, const Image& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
-  return largest;
-}
 double largestValue(const Image& image) { return largestDifference(image, Image(image.width, image.height)); }
 
 /// sqrt(sum d^2 / sum r^2): a black picture has 1.

@@ -22,13 +22,15 @@
 namespace lucerna {
 namespace {
 
+using test::kFullTolerance;
 using test::Probe;
+using test::report;
 using test::RsmTexel;
 using test::RsmTextures;
+using test::unitCascade;
 using twin::VolumeRgb;
 using Storage = LpvSettings::Storage;
 
-constexpr double kFullTolerance = 1e-5;
 constexpr double kHalfTolerance = 1e-3;
 const double kHalfUlp = std::ldexp(1.0, -10);
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -56,13 +58,6 @@ class LpvGlTest : public test::SharedProgramsTest {
     return test::runVolume(library(), capabilities(), s, inputs, join);
   }
 };
-
-/// One cascade with its minimum in the origin and cells of size 1.
-std::vector<Cascade> unitCascade(int cells) {
-  Cascade cascade;
-  cascade.centre = glm::dvec3(0.5 * cells);
-  return {cascade};
-}
 
 /// A bad texel of each kind: none of them may leave a trace.
 std::vector<RsmTexel> badTexels() {
@@ -209,8 +204,6 @@ TwinRun runTwin(const CaseInputs& c, int cells, int iterations, bool blocking) {
   }
   return run;
 }
-
-void report(const char* what, double error) { std::cout << "[ measured ] " << what << ": " << error << "\n"; }
 
 // ---- against the twin
 // ------------------------------------------------------------------------------------------------
@@ -503,10 +496,10 @@ TEST_F(LpvKnownAnswers, LightFromAheadIsSeenAndFromBehindIsNot) {
     s.deviations.unwindowed = unwindowed;
     const LightPropagationVolume lpv = run(s, field.inputs);
     const std::vector<glm::vec3> seen = test::probeIrradiance(library(), lpv, probes);
-    EXPECT_NEAR(seen[0].x, unwindowed ? 7.0 / (3.0 * twin::kPi) : 2.0 / twin::kPi, 1e-5);
+    EXPECT_NEAR(seen[0].x, unwindowed ? 7.0 / (3.0 * kPi) : 2.0 / kPi, 1e-5);
     EXPECT_NEAR(seen[1].x, 0.0, 1e-6);
     EXPECT_GE(seen[1].x, 0.0f);
-    EXPECT_NEAR(seen[2].x, 1.0 / twin::kPi, 1e-5);
+    EXPECT_NEAR(seen[2].x, 1.0 / kPi, 1e-5);
   }
 }
 
@@ -517,10 +510,10 @@ TEST_F(LpvKnownAnswers, AnIsotropicFillGivesTwoThirdsOfPiTimesItsIntensity) {
   std::vector<Probe> probes;
   for (const glm::vec3& axis : kAxes) probes.push_back({{2.4f, 2.6f, 2.3f}, axis});
   probes.push_back({glm::vec3(2.5f), glm::normalize(glm::vec3(1, -2, 3))});
-  constexpr double kIntensity = 2.0 / (4.0 * twin::kPi);
+  constexpr double kIntensity = 2.0 / (4.0 * kPi);
   LpvSettings s = settings(5, 1, 0);
   for (const glm::vec3& seen : test::probeIrradiance(library(), run(s, field.inputs), probes))
-    EXPECT_NEAR(seen.x, 2.0 * twin::kPi / 3.0 * kIntensity, 2e-6);
+    EXPECT_NEAR(seen.x, 2.0 * kPi / 3.0 * kIntensity, 2e-6);
   s.lookup = LpvLookup::published;
   for (const glm::vec3& seen : test::probeIrradiance(library(), run(s, field.inputs), probes))
     EXPECT_NEAR(seen.x, 4.0 * kIntensity, 2e-6);
@@ -660,9 +653,9 @@ TEST_F(LpvKnownAnswers, AWallBlocksThreeQuartersHeadOnAQuarterAcrossAndNothingFr
       const double across =
           front * passes(0.5, 0.0) + 2.0 * side * passes(0.5, 0.0) + side * (cell.upSides + cell.downSides);
       const twin::Sh step = blocked.at(at) - first.at(at);
-      EXPECT_NEAR(step.c0, twin::kLobeBand0 / twin::kPi * intensity * (towardsUp + towardsDown + 4.0 * across), 2e-6)
+      EXPECT_NEAR(step.c0, twin::kLobeBand0 / kPi * intensity * (towardsUp + towardsDown + 4.0 * across), 2e-6)
           << cell.x;
-      EXPECT_NEAR(step.c1.x, twin::kLobeBand1 / twin::kPi * intensity * (towardsUp - towardsDown), 2e-6) << cell.x;
+      EXPECT_NEAR(step.c1.x, twin::kLobeBand1 / kPi * intensity * (towardsUp - towardsDown), 2e-6) << cell.x;
       EXPECT_NEAR(step.c1.y, 0.0, 1e-6);
       EXPECT_NEAR(step.c1.z, 0.0, 1e-6);
     }

@@ -16,7 +16,7 @@ namespace {
 
 enum What { numeric, hgSample, phasePdf, rayleigh, fresnel, weights, density, march, counts, integral };
 
-struct Probe {
+struct MediaProbe {
   glm::vec4 a{0.0f}, b{0.0f};
   glm::uvec4 k{0u};
 };
@@ -41,7 +41,7 @@ class MediaFunctions : public test::SharedProgramsTest {
     return buffer;
   }
 
-  std::vector<Answer> probe(What what, const std::vector<Probe>& probes, const std::vector<Medium>& media = {},
+  std::vector<Answer> probe(What what, const std::vector<MediaProbe>& probes, const std::vector<Medium>& media = {},
                             const PackedBoundaries& boundaries = {}, int outerMedium = -1,
                             const gl::ShaderFlags& deviations = {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}}) {
     const gl::Program& program = library().loadCompute("media probe", "pathtracer/media_probe.comp", deviations);
@@ -62,9 +62,9 @@ class MediaFunctions : public test::SharedProgramsTest {
 };
 
 TEST_F(MediaFunctions, LogarithmAndExponentialKeepTheirDigitsInThinMedia) {
-  std::vector<Probe> probes;
+  std::vector<MediaProbe> probes;
   for (int i = 0; i < 4096; ++i) {
-    Probe p;
+    MediaProbe p;
     p.k.x = i < 64 ? static_cast<glm::uint>(i) : static_cast<glm::uint>(std::exp2(i * 32.0 / 4096.0) - 0.5);
     p.a.x = static_cast<float>(std::exp2(-30.0 + i * 36.0 / 4096.0));
     p.a.y = static_cast<float>(std::exp2(-30.0 + i * 29.9 / 4096.0));
@@ -87,8 +87,8 @@ TEST_F(MediaFunctions, HenyeyGreensteinForEveryG) {
   std::mt19937 random(1);
   std::printf("g           1-cos    pdf      mean cosine - g, in standard errors\n");
   for (const double g : {0.0, 1e-7, -1e-6, 1e-4, 1e-3, -0.3, 0.75, -0.9, 0.99, -0.999, 0.9999, 0.999999, -0.99999}) {
-    std::vector<Probe> probes(1 << 16);
-    for (Probe& p : probes) {
+    std::vector<MediaProbe> probes(1 << 16);
+    for (MediaProbe& p : probes) {
       p.a = glm::vec4(glm::vec3(unitVector(random)), 0.0f);
       p.b = glm::vec4(static_cast<float>(1.0 - g), static_cast<float>(1.0 + g), 0.0f, 0.0f);
       p.k = glm::uvec4(random(), random(), 0u, 0u);
@@ -127,10 +127,10 @@ TEST_F(MediaFunctions, PhaseFunctionsIntegrateToOneAndHaveTheirMeanCosine) {
   const glm::dvec3 w(0.0, 0.0, 1.0);
   for (const double g : {0.0, 1e-3, 0.5, -0.75, 0.99, -0.99}) {
     const int n = 20000;
-    std::vector<Probe> probes;
+    std::vector<MediaProbe> probes;
     for (int i = 0; i < n; ++i) {
       const double c = twin::henyeyGreensteinCosine(g, (i + 0.5) / n), s = std::sqrt((1.0 - c) * (1.0 + c));
-      Probe p;
+      MediaProbe p;
       p.a = glm::vec4(glm::vec3(w), static_cast<float>(1.0 - g));
       p.b = glm::vec4(static_cast<float>(s), 0.0f, static_cast<float>(c), static_cast<float>(1.0 + g));
       probes.push_back(p);
@@ -180,8 +180,8 @@ TEST_F(MediaFunctions, SamplesFollowTheirDensities) {
     const double g = isRayleigh ? 0.0 : gs[which];
     const glm::dvec3 w = unitVector(random), t = glm::normalize(glm::cross(w, glm::dvec3(0.3, -0.5, 0.8))),
                      b = glm::cross(w, t);
-    std::vector<Probe> probes(1 << 17);
-    for (Probe& p : probes) {
+    std::vector<MediaProbe> probes(1 << 17);
+    for (MediaProbe& p : probes) {
       p.a = glm::vec4(glm::vec3(w), 0.0f);
       p.b = glm::vec4(static_cast<float>(1.0 - g), static_cast<float>(1.0 + g), 0.0f, 0.0f);
       p.k = glm::uvec4(random(), random(), 0u, 0u);
@@ -201,11 +201,11 @@ TEST_F(MediaFunctions, SamplesFollowTheirDensities) {
 }
 
 TEST_F(MediaFunctions, FresnelIsExactAndItsDeviationsAreTheTabledOnes) {
-  std::vector<Probe> probes;
+  std::vector<MediaProbe> probes;
   for (const double n : {1.0001, 1.1, 1.33, 1.5, 2.417})
     for (int i = 0; i <= 200; ++i)
       for (const double eta : {n, 1.0 / n}) {
-        Probe p;
+        MediaProbe p;
         p.a = glm::vec4(static_cast<float>(i / 200.0), static_cast<float>(eta), 0.0f, 0.0f);
         probes.push_back(p);
       }
@@ -218,9 +218,9 @@ TEST_F(MediaFunctions, FresnelIsExactAndItsDeviationsAreTheTabledOnes) {
   const double degrees[] = {0, 20, 30, 40, 41, 41.8, 42, 60, 80},
                exact[] = {.0400, .0417, .0552, .2453, .3798, .8908, 1, 1, 1},
                schlick[] = {.0400, .0400, .0400, .0407, .0409, .0410, 1, 1, 1};
-  std::vector<Probe> angles;
+  std::vector<MediaProbe> angles;
   for (const double d : degrees) {
-    Probe p;
+    MediaProbe p;
     p.a = glm::vec4(static_cast<float>(std::cos(d * M_PI / 180.0)), 1.5f, 0.0f, 0.0f);
     angles.push_back(p);
   }
@@ -233,9 +233,9 @@ TEST_F(MediaFunctions, FresnelIsExactAndItsDeviationsAreTheTabledOnes) {
   }
   EXPECT_NEAR(amplitudes[0].a.x, 0.0, 1e-6);  // r_s = 0.2 and r_p = -0.2 cancel at normal incidence
   const int n = 4000;
-  std::vector<Probe> hemisphere;
+  std::vector<MediaProbe> hemisphere;
   for (int i = 0; i < n; ++i) {
-    Probe p;
+    MediaProbe p;
     p.a = glm::vec4(static_cast<float>(std::sqrt((i + 0.5) / n)), static_cast<float>(1.0 / 1.5), 0.0f, 0.0f);
     hemisphere.push_back(p);
   }
@@ -257,9 +257,9 @@ TEST_F(MediaFunctions, SpectralWeightsAreTheTwinsAndConserveTheSumOfChannels) {
       mediumOf(glm::vec3(3.0f), {0.0f, 1.0f, 2.0f}), mediumOf({1e-6f, 1e-3f, 1e4f}, glm::vec3(0.0f))};
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  std::vector<Probe> probes;
+  std::vector<MediaProbe> probes;
   for (int i = 0; i < 4096; ++i) {
-    Probe p;
+    MediaProbe p;
     p.k = glm::uvec4(static_cast<glm::uint>(i & 3), random(), random(), 0u);
     for (int c = 0; c < 3; ++c) p.a[c] = static_cast<float>(std::exp2(-20.0 * unit(random)));
     if (i % 7 == 0) p.a[i / 7 % 3] = 0.0f;
@@ -312,9 +312,9 @@ TEST_F(MediaFunctions, DensityIsInterpolatedAndBoundedBlockByBlock) {
   medium.grid = unevenGrid();
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(-0.1, 1.1);
-  std::vector<Probe> points, rays;
+  std::vector<MediaProbe> points, rays;
   for (int i = 0; i < 2000; ++i) {
-    Probe p;
+    MediaProbe p;
     const glm::dvec3 extent = medium.grid->max - medium.grid->min;
     p.a = glm::vec4(glm::vec3(medium.grid->min + extent * glm::dvec3(unit(random), unit(random), unit(random))), 3.0f);
     points.push_back(p);
@@ -354,9 +354,9 @@ TEST_F(MediaFunctions, TheDensitysIntegralIsExactAndEndsByItself) {
   const glm::dvec3 extent = medium.grid->max - medium.grid->min;
   std::mt19937 random(10);
   std::uniform_real_distribution<double> unit(-0.1, 1.1);
-  std::vector<Probe> rays;
+  std::vector<MediaProbe> rays;
   for (int i = 0; i < 1000; ++i) {
-    Probe p;
+    MediaProbe p;
     p.a = glm::vec4(glm::vec3(medium.grid->min + extent * glm::dvec3(unit(random), unit(random), unit(random))), 3.0f);
     glm::dvec3 d = unitVector(random);
     if (i % 10 == 0)
@@ -416,7 +416,7 @@ TEST_F(MediaFunctions, BoundariesNestOverlapAndTouchByPriority) {
   EXPECT_LT(glass, smoke);
 
   const auto state = [&](const std::vector<int>& in, const std::vector<int>& out) {
-    Probe p;
+    MediaProbe p;
     for (std::size_t i = 0; i < in.size(); ++i) p.k.x |= static_cast<glm::uint>(in[i]) << (8 * i);
     for (std::size_t i = 0; i < out.size(); ++i) p.k.z |= static_cast<glm::uint>(out[i]) << (8 * i);
     p.k.y = static_cast<glm::uint>(in.size());

@@ -2,6 +2,7 @@
 // Statistical tests: seeds are fixed; chi-square at significance 1e-4.
 #include "support/gl_fixture.hpp"
 
+#include "base/angles.hpp"
 #include "gl/pass.hpp"
 
 #include <gtest/gtest.h>
@@ -10,14 +11,11 @@
 #include <bit>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <random>
 #include <vector>
 
 namespace lucerna::test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // ------------------------------------------------------------------------------------------------------------- the
 // twins

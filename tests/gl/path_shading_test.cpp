@@ -1,6 +1,7 @@
 // The path tracer where several things meet: interpolated normals, pairs of lights of different kinds that share the
 // picks, lamps behind a dense density grid, channels that differ. Statistical tests: seeds are fixed; 4 standard
 // errors.
+#include "base/angles.hpp"
 #include "support/form_factor_twin.hpp"
 #include "support/media_scenes.hpp"
 #include "support/path_scenes.hpp"
@@ -13,13 +14,10 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string>
 
 namespace lucerna::test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 class PathShading : public PathTest {};
 

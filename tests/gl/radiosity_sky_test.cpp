@@ -1,18 +1,16 @@
 // The environment's light in radiosity: what is known of floors, walls and boxes under a sky.
+#include "base/angles.hpp"
 #include "render/renderer.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/radiosity_scenes.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace lucerna {
 namespace {
 
 using test::lambertian;
 using test::SceneBuilder;
-
-constexpr double kPi = std::numbers::pi;
 
 class RadiositySky : public test::SharedProgramsTest {
  protected:

@@ -1,6 +1,7 @@
 // The renderer end to end on small scenes: known radiances, the parts of a picture, what is left out, and what must not
 // change it.
 #include "support/gl_fixture.hpp"
+#include "support/largest_difference.hpp"
 #include "support/small_scenes.hpp"
 
 #include "base/error.hpp"
@@ -15,6 +16,7 @@
 namespace lucerna {
 namespace {
 
+using test::largestDifference;
 using test::lookingAt;
 using test::openBox;
 using test::openBoxCamera;
@@ -44,13 +46,6 @@ class RendererGl : public test::GlTest {
   }
 };
 
-double largestDifference(const Image& a, const Image& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
-  return largest;
-}
 double largestValue(const Image& image) {
   double largest = 0.0;
   for (const glm::vec3& p : image.pixels)

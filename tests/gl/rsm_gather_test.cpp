@@ -159,14 +159,14 @@ void addQuad(Scene& scene, const glm::vec3& corner, const glm::vec3& u, const gl
   scene.meshes.push_back(mesh);
 }
 
-constexpr float kAlbedo = 0.6f, kSun = 3.0f;
+constexpr float kLitAlbedo = 0.6f, kSun = 3.0f;
 
 /// A sunlit floor y = 0, 0 < x < 10, |z| < 50 beside a wall x = 0 that the sun, straight above, does not touch. Exact
-/// for the wall at height h: kAlbedo kSun cornerIrradiance(h).
+/// for the wall at height h: kLitAlbedo kSun cornerIrradiance(h).
 Scene corner() {
   Scene scene;
   scene.materials.resize(1);
-  scene.materials[0].diffuse = glm::vec3(kAlbedo);
+  scene.materials[0].diffuse = glm::vec3(kLitAlbedo);
   addQuad(scene, {0.0f, 0.0f, 50.0f}, {10.0f, 0.0f, 0.0f}, {0.0f, 0.0f, -100.0f}, 0);
   addQuad(scene, {0.0f, 0.0f, 50.0f}, {0.0f, 0.0f, -100.0f}, {0.0f, 6.0f, 0.0f}, 0);
   scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(kSun)};
@@ -249,11 +249,12 @@ TEST_F(RsmRendered, TheWallOfACornerHasTheExactIrradiance) {
     const double e = static_cast<double>(r.irradiance[static_cast<std::size_t>(y * s.size.x + s.size.x / 2)].x);
     // The floor's texels start within half a texel of the wall: 0.02 of h at least is missed or doubled where h is of
     // its size.
-    EXPECT_NEAR(e / (static_cast<double>(kAlbedo * kSun) * test::cornerIrradiance(h)), 1.0, h < 0.15 ? 0.3 : 0.08) << h;
+    EXPECT_NEAR(e / (static_cast<double>(kLitAlbedo * kSun) * test::cornerIrradiance(h)), 1.0, h < 0.15 ? 0.3 : 0.08)
+        << h;
     ++compared;
     // Lambert: the picture's radiance is albedo / pi times it.
     const double radiance = static_cast<double>(r.image.at(s.size.x / 2, s.size.y - 1 - y).x);
-    EXPECT_NEAR(radiance, static_cast<double>(kAlbedo) / M_PI * e, 1e-5 * radiance);
+    EXPECT_NEAR(radiance, static_cast<double>(kLitAlbedo) / M_PI * e, 1e-5 * radiance);
   }
   EXPECT_GT(compared, 80);
 }

@@ -1,4 +1,5 @@
 // The reflective shadow map: what leaves a lit plate, whatever its tilt, the sun's direction and the map's size.
+#include "base/angles.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/small_scenes.hpp"
 
@@ -15,8 +16,6 @@ namespace lucerna {
 namespace {
 
 using test::SceneBuilder;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 class ReflectiveShadowMapGl : public test::SharedProgramsTest {
  protected:

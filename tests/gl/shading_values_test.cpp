@@ -1,5 +1,6 @@
 // Forward shading pixel by pixel against double-precision twins: highlights, the shape of shadow filters, the display
 // curves.
+#include "base/angles.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/pixel_rays.hpp"
 #include "support/radiosity_scenes.hpp"
@@ -15,7 +16,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 namespace lucerna {
 namespace {
@@ -25,15 +25,14 @@ using test::onPlane;
 using test::pixelRay;
 using test::SceneBuilder;
 
-constexpr double kPi = std::numbers::pi;
-constexpr glm::ivec2 kSize{48, 32};
+constexpr glm::ivec2 kPictureSize{48, 32};
 
 class ShadingValues : public test::SharedProgramsTest {
  protected:
   static RenderSettings settings(Technique technique = Technique::direct) {
     RenderSettings s;
     s.technique = technique;
-    s.size = kSize;
+    s.size = kPictureSize;
     s.fullFloatTarget = true;
     return s;
   }
@@ -68,9 +67,9 @@ glm::dvec3 reflected(double shininess, const glm::dvec3& toCamera, const glm::dv
 void expectHighlight(const Image& image, const Camera& camera, double shininess, const char* name,
                      const std::function<glm::dvec3(const glm::dvec3&, glm::dvec3&)>& irradiance) {
   double brightest = 0.0, darkest = 1e300;
-  for (int y = 0; y < kSize.y; ++y)
-    for (int x = 0; x < kSize.x; ++x) {
-      const glm::dvec3 p = onPlane(camera, pixelRay(camera, x, y, kSize), 0.0);
+  for (int y = 0; y < kPictureSize.y; ++y)
+    for (int x = 0; x < kPictureSize.x; ++x) {
+      const glm::dvec3 p = onPlane(camera, pixelRay(camera, x, y, kPictureSize), 0.0);
       glm::dvec3 toLight;
       const glm::dvec3 e = irradiance(p, toLight);
       const glm::dvec3 expected = reflected(shininess, glm::normalize(camera.position - p), toLight) * e;
@@ -175,9 +174,9 @@ void expectFilter(const Image& image, const Camera& camera, const char* name,
                   const std::function<double(const glm::dvec3&)>& unshadowed,
                   const std::function<double(const glm::dvec3&)>& visible) {
   int between = 0, wrong = 0, pixels = 0;
-  for (int y = 0; y < kSize.y; ++y)
-    for (int x = 0; x < kSize.x; ++x) {
-      const glm::dvec3 p = onPlane(camera, pixelRay(camera, x, y, kSize), 0.0);
+  for (int y = 0; y < kPictureSize.y; ++y)
+    for (int x = 0; x < kPictureSize.x; ++x) {
+      const glm::dvec3 p = onPlane(camera, pixelRay(camera, x, y, kPictureSize), 0.0);
       if (std::max(std::abs(p.x), std::abs(p.z)) > 2.5) continue;
       const double fraction = visible(p), expected = 0.5 / kPi * unshadowed(p) * fraction;
       ++pixels;
@@ -273,10 +272,10 @@ void expectDisplay(Renderer& renderer, const Camera& camera,
   for (int i = 0; i < kStripes; ++i) {
     const glm::dvec3 p{i + 0.5 - 0.5 * kStripes, 0, 0};
     // The stripe's middle, projected by the camera that looks along -z from above the origin.
-    const double t = std::tan(0.5 * camera.verticalFov) * camera.position.z * kSize.x / kSize.y;
-    const int x = static_cast<int>((p.x / t * 0.5 + 0.5) * kSize.x), y = kSize.y / 2;
+    const double t = std::tan(0.5 * camera.verticalFov) * camera.position.z * kPictureSize.x / kPictureSize.y;
+    const int x = static_cast<int>((p.x / t * 0.5 + 0.5) * kPictureSize.x), y = kPictureSize.y / 2;
     const glm::dvec3 expected = 255.0 * curve(glm::dvec3(stripe(i)));
-    const std::uint8_t* found = &bitmap.rgba[static_cast<std::size_t>(4 * (y * kSize.x + x))];
+    const std::uint8_t* found = &bitmap.rgba[static_cast<std::size_t>(4 * (y * kPictureSize.x + x))];
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 0.6) << "stripe " << i << " channel " << c;
     const glm::ivec3 now(found[0], found[1], found[2]);
     differentValues += now != last;
@@ -287,7 +286,7 @@ void expectDisplay(Renderer& renderer, const Camera& camera,
 
 const Camera kBeforeStripes = [] {
   Camera camera = lookingAt({0, 0, 10}, {0, 0, 0});
-  camera.verticalFov = 2.0 * std::atan(0.5 * kStripes / 10.0 * kSize.y / kSize.x);
+  camera.verticalFov = 2.0 * std::atan(0.5 * kStripes / 10.0 * kPictureSize.y / kPictureSize.x);
   return camera;
 }();
 

@@ -2,6 +2,7 @@
 // factors that a horizon cuts.
 #include "support/form_factor_twin.hpp"
 #include "support/gl_fixture.hpp"
+#include "support/largest_difference.hpp"
 #include "support/pixel_rays.hpp"
 #include "support/radiosity_scenes.hpp"
 #include "support/small_scenes.hpp"
@@ -20,6 +21,7 @@
 namespace lucerna {
 namespace {
 
+using test::largestDifference;
 using test::openBox;
 using test::openBoxCamera;
 using test::SceneBuilder;
@@ -57,14 +59,6 @@ Scene litBox() {
       {{2.0, 4.0, 3.0}, glm::normalize(glm::dvec3(-0.3, -1.0, -0.8)), glm::vec3(60.0f, 50.0f, 40.0f), 0.3, 0.6});
   scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
   return scene;
-}
-
-double largestDifference(const Image& a, const Image& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      largest = std::max(largest, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])));
-  return largest;
 }
 
 TEST_F(SidesAndChannels, TurningEveryFaceAroundChangesNoPicture) {

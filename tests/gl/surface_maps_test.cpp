@@ -2,6 +2,7 @@
 // against what the texels say.
 #include "support/path_scenes.hpp"
 
+#include "base/angles.hpp"
 #include "base/image.hpp"
 #include "render/renderer.hpp"
 #include "scene/texture_mean.hpp"
@@ -11,12 +12,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace lucerna::test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 class SurfaceMaps : public PathTest {
  protected:

@@ -36,10 +36,6 @@ class MediaDeviations : public SharedProgramsTest {
   }
 };
 
-Medium grey(double albedo, double depth, double g) {
-  return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g);
-}
-
 TEST_F(MediaDeviations, DistanceWithoutPdf) {
   // Drawn from sigma exp(-sigma t) and weighted by exp(-sigma t) again: a medium without absorption renders as one of
   // twice the extinction that scatters half of it. Slab of tau 1, a = 1, against tau 2, a = 0.5.

@@ -29,9 +29,6 @@ class MediaExtremes : public MediaTest {
   }
 };
 
-Medium grey(double albedo, double depth, double g) {
-  return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g);
-}
 PathTracer::Settings found() {
   PathTracer::Settings settings;
   settings.nextEvent = false;

@@ -39,21 +39,18 @@ class MediaPrecision : public MediaTest {
   double seconds_ = 0.0;  ///< of the processor's, for the last measurement
 };
 
-struct SlabRow {
+struct PreciseSlabRow {
   double albedo, depth, g, ior, cosine, reflectance, transmittance;
   double paths;  ///< in thousands, for 0.2 % of the smaller figure
   bool costly = false;
 };
-Medium grey(double albedo, double depth, double g) {
-  return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g);
-}
-std::string nameOf(const SlabRow& row) {
+std::string nameOf(const PreciseSlabRow& row) {
   return fmt::format("a {} tau {} g {} n {} mu {}", row.albedo, row.depth, row.g, row.ior, row.cosine);
 }
 
 // Reflectance and transmittance; [vandeHulst1980], adding-doubling, and Beer, Lambert and Fresnel for the one that does
 // not scatter.
-const SlabRow kSlabs[] = {
+const PreciseSlabRow kSlabs[] = {
     {.9, 2, .75, 1, 1.0, .0973946, .6609577, 790}, {.99, 1, 0, 1, 0.5, .486518, .491628, 260},
     {.5, 1, -.5, 1, 1.0, .164737, .404695, 262},   {.9, 1, .75, 1.5, 0.3, .32282, .40355, 400},
     {.9, 1, .75, 1.5, 1.0, .115171, .681242, 790}, {.5, 1, .9, 1.33, 0.5, .07545, .39517, 790},
@@ -64,7 +61,7 @@ const SlabRow kSlabs[] = {
 
 TEST_F(MediaPrecision, SlabsReflectAndTransmitAsTabled) {
   double sum = 0.0;
-  for (const SlabRow& row : kSlabs) {
+  for (const PreciseSlabRow& row : kSlabs) {
     // Ten seconds and more of the processor's for 0.2 % of what little gets through: in the suite to twice or thrice
     // that.
     const bool less = row.costly && !isLong();
@@ -96,13 +93,13 @@ TEST_F(MediaPrecision, NoCollisionRoundsThroughAFace) {
 
 TEST_F(MediaPrecision, HalfSpacesReflectAsTabled) {
   // [Giovanelli1955] published 0.2600 of the first; Chandrasekhar's 1 - H(mu) sqrt(1 - a); regular milk's red.
-  const SlabRow rows[] = {
+  const PreciseSlabRow rows[] = {
       {.9, 60, 0, 1.5, 1.0, .259919, 0, 262},
       {.9, 60, 0, 1, 0.5, .507938907, 0, 131},
       {.999, 600, 0, 1, 1.0, .912845335, 0, 26},
       {.99992, 4000, .75, 1.33, 1.0, .92327, 0, 24, true},
   };
-  for (const SlabRow& row : rows) {
+  for (const PreciseSlabRow& row : rows) {
     const bool less = row.costly && !isLong();
     PathTracer::Settings settings;
     settings.nextEvent = false;

@@ -52,10 +52,6 @@ struct SlabRow {
   std::uint32_t samples;
 };
 
-Medium grey(double albedo, double depth, double g) {
-  return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g);
-}
-
 std::string nameOf(const SlabRow& row) {
   return fmt::format("a {} tau {} g {} n {} mu {}", row.albedo, row.depth, row.g, row.ior, row.cosine);
 }

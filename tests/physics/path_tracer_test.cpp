@@ -1,17 +1,16 @@
 // The path tracer against exact answers. Statistical tests: seeds are fixed; a mean may be 4 standard errors from its
 // expectation (two-sided probability 6e-5 a channel).
+#include "base/angles.hpp"
 #include "scene/texture_mean.hpp"
 #include "support/path_scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace lucerna::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kSignificant = 4.0;
 
 class PathFurnaceTest : public PathTest {

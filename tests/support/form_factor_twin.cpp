@@ -1,13 +1,10 @@
 #include "support/form_factor_twin.hpp"
 
+#include "base/angles.hpp"
+
 #include <cmath>
-#include <numbers>
 
 namespace lucerna::twin {
-
-namespace {
-constexpr double kPi = std::numbers::pi;
-}
 
 double pointToPolygon(const glm::dvec3& point, const glm::dvec3& normal, std::span<const glm::dvec3> polygon) {
   // Sutherland-Hodgman against the horizon.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <limits>
 #include <utility>
 
@@ -140,5 +141,14 @@ double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& act
     error = std::max(error, relativeError(expected[channel], actual[channel]));
   return error;
 }
+
+std::vector<Cascade> unitCascade(int cells, double cellSize) {
+  Cascade cascade;
+  cascade.cellSize = cellSize;
+  cascade.centre = glm::dvec3(0.5 * cells * cellSize);
+  return {cascade};
+}
+
+void report(const char* what, double value) { std::cout << "[ measured ] " << what << ": " << value << "\n"; }
 
 }  // namespace lucerna::test

@@ -60,5 +60,13 @@ std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const Light
 /// largest terms, and a cell's small coefficients are differences of larger ones.
 double relativeError(const twin::Volume& expected, const twin::Volume& actual);
 double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& actual);
+/// What that may be with 32-bit floats.
+inline constexpr double kFullTolerance = 1e-5;
+
+/// One cascade with its minimum in the origin.
+std::vector<Cascade> unitCascade(int cells, double cellSize = 1.0);
+
+/// Among the test's output.
+void report(const char* what, double value);
 
 }  // namespace lucerna::test

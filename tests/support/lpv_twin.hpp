@@ -12,6 +12,8 @@
 // order and sign only, which cancel as long as projection and evaluation share them.
 #pragma once
 
+#include "base/angles.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +27,6 @@ namespace lucerna::twin {
 
 // ---- spherical harmonics, bands 0 and 1 --------------------------------------------------------------------------
 
-inline constexpr double kPi = std::numbers::pi;
 /// Y00 = 1 / (2 sqrt(pi)).
 inline constexpr double kY00 = 0.5 * std::numbers::inv_sqrtpi;
 /// Y1 = sqrt(3) / (2 sqrt(pi)), times x, y or z of the unit direction.

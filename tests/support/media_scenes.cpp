@@ -82,6 +82,9 @@ Medium homogeneous(const glm::dvec3& scattering, const glm::dvec3& absorption, d
   medium.anisotropy = glm::vec3(static_cast<float>(g));
   return medium;
 }
+Medium grey(double albedo, double depth, double g) {
+  return homogeneous(glm::dvec3(albedo * depth), glm::dvec3((1.0 - albedo) * depth), g);
+}
 
 Environment halves() {
   Environment environment;

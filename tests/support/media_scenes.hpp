@@ -13,6 +13,8 @@ void addSphere(Scene& scene, const glm::dvec3& centre, double radius, int level,
 /// Index of the new material.
 int addBoundary(Scene& scene, Bsdf bsdf, double ior, int interior, int priority = 0);
 Medium homogeneous(const glm::dvec3& scattering, const glm::dvec3& absorption, double g);
+/// Of one value in all channels; depth: the optical depth of a length of 1.
+Medium grey(double albedo, double depth, double g);
 
 /// Light 1 in red from directions with y > 0, light 1 in green from those with y < 0.
 Environment halves();

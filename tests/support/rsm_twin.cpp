@@ -1,15 +1,12 @@
 #include "support/rsm_twin.hpp"
 
+#include "base/angles.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace lucerna::twin {
-
-namespace {
-constexpr double kGatherPi = std::numbers::pi;
-}
 
 glm::dvec2 RsmMap::project(const glm::dvec3& point) const {
   return {glm::dot(point - corner, right) / width, glm::dot(point - corner, up) / height};
@@ -45,7 +42,7 @@ double polygonFormFactor(std::span<const glm::dvec3> corners, const glm::dvec3& 
     const double length = glm::length(across);
     if (length > 0.0) sum += std::atan2(length, glm::dot(a, b)) * glm::dot(across, normal) / length;
   }
-  return std::abs(sum) / (2.0 * kGatherPi);
+  return std::abs(sum) / (2.0 * kPi);
 }
 
 glm::dvec3 surfelIrradiance(const RsmMap& map, const RsmMap::Texel& texel, const glm::dvec3& x, const glm::dvec3& n,
@@ -77,9 +74,9 @@ glm::dvec3 surfelIrradiance(const RsmMap& map, const RsmMap::Texel& texel, const
   const double received = -glm::dot(n, d) / distance;
   if (received <= 0.0) return glm::dvec3(0.0);
   double d2 = distance * distance;
-  if (options.nearField == NearField::disc) d2 += map.texelArea() / cosine / kGatherPi;
+  if (options.nearField == NearField::disc) d2 += map.texelArea() / cosine / kPi;
   if (options.nearField == NearField::clamp) d2 = std::max(d2, options.minimumDistance * options.minimumDistance);
-  return texel.flux * (emitted * received / (kGatherPi * d2));
+  return texel.flux * (emitted * received / (kPi * d2));
 }
 
 glm::dvec3 bruteForceIrradiance(const RsmMap& map, const glm::dvec3& x, const glm::dvec3& n,
@@ -104,7 +101,7 @@ Gathered gather(const RsmMap& map, std::span<const glm::vec4> pattern, const glm
     const RsmMap::Texel& texel = map.at(static_cast<int>(at.x), static_cast<int>(at.y));
     result.irradiance += static_cast<double>(sample.z) * surfelIrradiance(map, texel, x, n, options);
   }
-  const double area = 2.0 * kGatherPi * options.radius * size.x * options.radius * size.y;  // in texels
+  const double area = 2.0 * kPi * options.radius * size.x * options.radius * size.y;  // in texels
   result.irradiance *= area / static_cast<double>(pattern.size());
   return result;
 }

@@ -9,6 +9,7 @@
 #include "radiosity/solution.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
+#include "support/contains.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -23,9 +24,8 @@ namespace lucerna {
 namespace {
 
 using test::badInputMessage;
+using test::contains;
 using test::TempFolder;
-
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 std::string repeated(std::string_view part, int times) {
   std::string text;

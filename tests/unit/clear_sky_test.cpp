@@ -1,21 +1,19 @@
 // The clear sky: the publication's values, how much light it is beside the sun, and its picture.
 #include "scene/clear_sky.hpp"
 
+#include "base/angles.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace lucerna {
 namespace {
 
 using test::badInputMessage;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
 const glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);
 
 /// Azimuth 0 is -z, as in the middle of a picture.

@@ -1,5 +1,6 @@
 // Whole files in and out: what the system refuses is told as what it is, and what killed processes left is swept.
 #include "base/files.hpp"
+#include "support/contains.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -14,9 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::badInputMessage;
+using test::contains;
 using test::TempFolder;
-
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 // Root may read everything: nobody may not.
 TEST(Files, PermissionDeniedIsToldAsSuch) {

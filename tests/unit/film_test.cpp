@@ -17,15 +17,15 @@ glm::uvec4 wordsOf(glm::dvec3 v, std::uint32_t w) {
   return {std::bit_cast<std::uint32_t>(f.x), std::bit_cast<std::uint32_t>(f.y), std::bit_cast<std::uint32_t>(f.z), w};
 }
 
-constexpr int kWidth = 3, kHeight = 2;
+constexpr int kFilmWidth = 3, kFilmHeight = 2;
 
 /// What a tracer would have made of samples first .. last: the same numbers whoever makes them.
 Film filmOfSamples(std::uint32_t first, std::uint32_t last, std::uint64_t identity = 7) {
   Film film;
   film.identity = identity;
-  film.size = {kWidth, kHeight};
+  film.size = {kFilmWidth, kFilmHeight};
   film.first = first;
-  for (std::uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+  for (std::uint32_t pixel = 0; pixel < kFilmWidth * kFilmHeight; ++pixel) {
     glm::dvec3 sum(0.0), squares(0.0);
     std::vector<glm::dvec3> values;
     for (std::uint32_t s = first; s < last; ++s) {

@@ -1,9 +1,11 @@
 // glTF 2: what Assimp 5.2.5 leaves out of it is read here, and what nothing shows is one warning that names the
 // material.
+#include "base/angles.hpp"
 #include "base/image.hpp"
 #include "base/log.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/scene.hpp"
+#include "support/contains.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -15,11 +17,8 @@ namespace lucerna {
 namespace {
 
 using test::badInputMessage;
+using test::contains;
 using test::TempFolder;
-
-constexpr double kPi = 3.14159265358979323846;
-
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 std::string floats(std::initializer_list<float> values) {
   std::string bytes(4 * values.size(), '\0');

@@ -3,6 +3,7 @@
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "base/log.hpp"
+#include "support/contains.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -19,6 +20,7 @@ namespace lucerna {
 namespace {
 
 using test::badInputMessage;
+using test::contains;
 using test::TempFolder;
 
 /// Values over nine decades, no two rows alike.
@@ -38,8 +40,6 @@ Bitmap sampleBitmap(int width, int height) {
     bitmap.rgba[i] = i % 4 == 3 ? 255 : static_cast<std::uint8_t>(i * 37 + i / 64);
   return bitmap;
 }
-
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 TEST(ImageFiles, FloatFormatsKeepEveryBit) {
   const TempFolder folder;

@@ -1,4 +1,5 @@
 // Key-frame files and the natural cubic spline, against its defining properties.
+#include "base/angles.hpp"
 #include "scene/key_frames.hpp"
 #include "support/temp_folder.hpp"
 
@@ -12,8 +13,6 @@ namespace {
 
 using test::badInputMessage;
 using test::TempFolder;
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 KeyFrame keyAt(const glm::dvec3& position, const glm::dvec3& direction = {0, 0, -1}, const glm::dvec3& up = {0, 1, 0}) {
   KeyFrame key;

@@ -1,4 +1,5 @@
 // Spot and omnidirectional lights in scene files and as views; the sun's cascades: splits and snapping. No GL.
+#include "base/angles.hpp"
 #include "base/log.hpp"
 #include "forward/light_views.hpp"
 #include "forward/sun_cascades.hpp"
@@ -20,8 +21,6 @@ namespace {
 
 using test::badInputMessage;
 using test::TempFolder;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct LightFolder : TempFolder {
   LightFolder() { write("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"); }

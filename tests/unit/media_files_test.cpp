@@ -6,6 +6,7 @@
 #include "scene/media_catalogue.hpp"
 #include "scene/original_scene_file.hpp"
 #include "scene/scene.hpp"
+#include "support/contains.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -20,9 +21,8 @@ namespace lucerna {
 namespace {
 
 using test::badInputMessage;
+using test::contains;
 using test::TempFolder;
-
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 void expectVector(const glm::dvec3& measured, const glm::dvec3& expected, double relative, const std::string& what) {
   for (int c = 0; c < 3; ++c)

@@ -18,7 +18,7 @@ namespace {
 using namespace lucerna;
 using namespace lucerna::measure;
 
-constexpr int kWidth = 24, kHeight = 16;
+constexpr int kReferenceWidth = 24, kReferenceHeight = 16;
 constexpr double kDeviation = 0.5;
 
 float truth(int x, int y) { return 1.0f + 0.05f * static_cast<float>(x + y); }
@@ -28,12 +28,12 @@ float truth(int x, int y) { return 1.0f + 0.05f * static_cast<float>(x + y); }
 Sampler noisy(double gain = 1.0, int* calls = nullptr) {
   return [gain, calls](std::uint64_t first, std::uint32_t samples) {
     if (calls) ++*calls;
-    Image image(kWidth, kHeight);
+    Image image(kReferenceWidth, kReferenceHeight);
     for (std::uint64_t s = first; s < first + samples; ++s) {
       std::mt19937_64 random(s * 0x9e3779b97f4a7c15u + 1);
       std::normal_distribution<double> normal(0.0, kDeviation);
-      for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
+      for (int y = 0; y < kReferenceHeight; ++y)
+        for (int x = 0; x < kReferenceWidth; ++x)
           for (int c = 0; c < 3; ++c)
             image.at(x, y)[c] += static_cast<float>(gain * (truth(x, y) + normal(random)) / samples);
     }
@@ -42,9 +42,9 @@ Sampler noisy(double gain = 1.0, int* calls = nullptr) {
 }
 
 Image exact(double gain = 1.0) {
-  Image image(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) image.at(x, y) = glm::vec3(static_cast<float>(gain) * truth(x, y));
+  Image image(kReferenceWidth, kReferenceHeight);
+  for (int y = 0; y < kReferenceHeight; ++y)
+    for (int x = 0; x < kReferenceWidth; ++x) image.at(x, y) = glm::vec3(static_cast<float>(gain) * truth(x, y));
   return image;
 }
 
@@ -67,7 +67,7 @@ TEST(Reference, ItsStandardErrorIsThatOfTheSamples) {
   EXPECT_NEAR(noise.variance, kDeviation * kDeviation / 256.0, 0.055 * kDeviation * kDeviation / 256.0);
   // The mean's error comes from 16 batch means: chi with 15 degrees of freedom, within 0.45 .. 1.65 of the truth at
   // 1e-4 a side.
-  const double expected = kDeviation / std::sqrt(256.0 * 3.0 * kWidth * kHeight);
+  const double expected = kDeviation / std::sqrt(256.0 * 3.0 * kReferenceWidth * kReferenceHeight);
   EXPECT_GT(r.meanError, 0.45 * expected);
   EXPECT_LT(r.meanError, 1.65 * expected);
   EXPECT_LT(std::abs(errorsOf(r.mean, exact()).bias), 4.5 * expected);

@@ -1,8 +1,10 @@
 // Scene JSON: each key, and that whatever is wrong is named by file and key.
+#include "base/angles.hpp"
 #include "base/image.hpp"
 #include "scene/clear_sky.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
+#include "support/contains.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -14,9 +16,8 @@ namespace lucerna {
 namespace {
 
 using test::badInputMessage;
+using test::contains;
 using test::TempFolder;
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 /// A folder with a one-triangle model in a sub-folder.
 struct SceneFolder : TempFolder {
@@ -25,8 +26,6 @@ struct SceneFolder : TempFolder {
     return loadScene(write("room.json", "{\"model\": \"models/box.obj\"" + keys + "}"));
   }
 };
-
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 TEST(SceneFile, AModelAloneTakesTheDefaults) {
   const SceneFolder folder;

@@ -3,6 +3,7 @@
 #include "base/log.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
+#include "support/contains.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -14,11 +15,10 @@ namespace lucerna {
 namespace {
 
 using test::badInputMessage;
+using test::contains;
 using test::TempFolder;
 
 const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 std::size_t warningsNaming(std::string_view part) {
   std::size_t count = 0;

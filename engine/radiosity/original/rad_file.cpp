@@ -23,8 +23,6 @@ constexpr std::size_t kHead = 4;
 
 std::uint64_t sizeFor(std::uint64_t count) { return kHead + count * sizeof(RadTriangle); }
 
-glm::dvec3 vec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
-
 bool isFinite(const std::array<float, 3>& a) {
   return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
 }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,12 @@ struct RadTriangle {
   std::uint32_t b = 0;  ///< received radiosity
 };
 static_assert(sizeof(RadTriangle) == 72);
+
+/// Vectors of the file, and back.
+inline glm::dvec3 vec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+inline std::array<float, 3> toFloats(const glm::dvec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 
 /// The displayed value of a triangle [RAD2008 eq 3-1].
 inline double shownRadiosity(const RadTriangle& t) { return static_cast<double>(t.e) + static_cast<double>(t.b); }

@@ -19,10 +19,6 @@ constexpr dvec3 kPlaster{0.86, 0.84, 0.80}, kFloor{0.55, 0.42, 0.30}, kStone{0.7
 
 constexpr double kMostTriangles = 59e6;  // 4 GiB of 72 bytes
 
-std::array<float, 3> toFloats(const dvec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
 class Builder {
  public:
   Builder(const RadModelSettings& settings, double scale) : settings_(settings), scale_(scale) {}

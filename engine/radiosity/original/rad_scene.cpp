@@ -12,10 +12,6 @@ namespace {
 
 double meanOfChannels(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
-std::array<float, 3> toFloats(const glm::dvec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
 glm::dvec3 hueOf(const glm::dvec3& v) {
   const double largest = std::max({v.x, v.y, v.z});
   return largest > 0.0 ? v / largest : glm::dvec3(0.0);

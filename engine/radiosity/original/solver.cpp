@@ -16,8 +16,6 @@ namespace lucerna {
 
 namespace {
 
-glm::dvec3 vec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
-
 /// PCG-RXS-M-XS, 32 bits [ONeill2014]: a different angle for every triangle.
 double rollOf(std::uint32_t triangle, std::uint32_t seed) {
   const std::uint32_t state = (triangle + 0x9e3779b9u * seed) * 747796405u + 2891336453u;
