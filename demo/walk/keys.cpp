@@ -28,7 +28,7 @@ constexpr KeyBinding kKeys[] = {
     {'2', false, Action::rsm, "technique rsm"},
     {'3', false, Action::lpv, "technique lpv"},
     {'4', false, Action::radiosity, "technique radiosity"},
-    {'5', false, Action::path, "the path-traced reference"},
+    {'5', false, Action::path, "the path-traced reference; as B where two pictures are shown"},
     {'Z', true, Action::undo, "take the last change of settings back"},
     {key::kTab, false, Action::flicker, "the other one of A and B"},
     {'X', false, Action::wipe, "A and B divided by a wipe, which the right button draws"},

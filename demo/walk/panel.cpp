@@ -274,14 +274,18 @@ void showCompare(Ui& ui, WalkState& s) {
     line("the reference: when the camera rests");
     return;
   }
-  line(fmt::format("reference: {} samples a pixel, {:.1f} s", s.truth->samples(), s.truth->seconds()));
+  line(fmt::format("reference: {} sample{} a pixel, {:.1f} s", s.truth->samples(), s.truth->samples() == 1 ? "" : "s",
+                   s.truth->seconds()));
   showJudgement(s, 0);
   showJudgement(s, 1);
 }
 
 void showStages(Ui& ui, WalkState& s) {
   const SideState& side = s.side();
-  if (!side.renderer) return;
+  if (!side.renderer) {
+    line("of a technique's picture alone");
+    return;
+  }
   std::vector<std::string> names{"the frame"};
   int layers = 1;
   bool isLight = false;
@@ -310,8 +314,8 @@ void showStages(Ui& ui, WalkState& s) {
   if (menu(ui, "in the scene", glyphs, kGlyphNames)) s.glyphs = static_cast<Glyphs>(glyphs);
   explain(
       "As lines: the light in the brightest cells of a propagated volume by direction (its intensity, the largest half "
-      "a cell long), the corners of cells that block light, or the voxels of lpv.visibility about the middle of the "
-      "picture.");
+      "a cell long), the corners of cells that block light, the voxels of lpv.visibility about the middle of the "
+      "picture, or receivers: disks on their surfaces, in the colour of their irradiance.");
   if (s.glyphs == Glyphs::none) return;
   if (s.glyphs != Glyphs::voxels) {
     const int last = side.renderer->settings().lpv.cascades.cascades - 1;
@@ -321,7 +325,9 @@ void showStages(Ui& ui, WalkState& s) {
   }
   ImGui::SliderInt("at most", &s.glyphMost, 10, 5000, "%d", ImGuiSliderFlags_Logarithmic);
   ui.note("at most");
-  if (s.glyphs != Glyphs::voxels && !side.renderer->lpv())
+  if (s.glyphs == Glyphs::receivers && !side.renderer->receivers())
+    wrapped("Only technique lpv with lpv.transport=gather or rays has them.");
+  else if ((s.glyphs == Glyphs::lobes || s.glyphs == Glyphs::geometry) && !side.renderer->lpv())
     wrapped("Only technique lpv with lpv.transport=propagate has them.");
   else if (s.glyphs == Glyphs::geometry && !side.renderer->lpv()->geometryVolume())
     wrapped("Only with lpv.blocking=on.");

@@ -1,5 +1,6 @@
 #include "walk/scene_views.hpp"
 
+#include "base/statistics.hpp"
 #include "gl/pass.hpp"
 #include "lpv/surface_voxels.hpp"
 #include "scene/place.hpp"
@@ -242,6 +243,61 @@ std::vector<gl::Lines::Line> voxelsOf(const Scene& scene, int across, const glm:
   return lines;
 }
 
+/// A disk of 12 sectors, with a dark rim so that it is seen on a surface of its own colour.
+void addDisk(std::vector<gl::Lines::Line>& lines, const glm::vec3& centre, const glm::vec3& normal, float radius,
+             const glm::vec3& color) {
+  constexpr int kSectors = 12;
+  const glm::vec3 other = std::abs(normal.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(1.0f, 0.0f, 0.0f);
+  const glm::vec3 u = glm::normalize(glm::cross(other, normal)), v = glm::cross(normal, u);
+  const auto rim = [&](int i) {
+    const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / kSectors;
+    return centre + radius * (std::cos(angle) * u + std::sin(angle) * v);
+  };
+  for (int i = 0; i < kSectors; ++i) {
+    lines.push_back({centre, rim(i), glm::vec4(color, 1.0f)});
+    lines.push_back({0.5f * (centre + rim(i)), 0.5f * (centre + rim(i + 1)), glm::vec4(color, 1.0f)});
+  }
+  for (int i = 0; i < kSectors; ++i) lines.push_back({rim(i), rim(i + 1), {0.0f, 0.0f, 0.0f, 0.8f}});
+}
+
+/// In the order of a hash of their cells: the same ones while the camera moves.
+std::vector<gl::Lines::Line> receiversOf(const LpvReceivers& receivers, const Renderer& renderer, const Camera& camera,
+                                         const Cascade& placed, int cascade, int most) {
+  const glm::vec3 eye(camera.position - renderer.origin()), ahead(camera.direction);
+  const glm::vec3 right = glm::normalize(glm::cross(ahead, glm::vec3(camera.up))), up = glm::cross(right, ahead);
+  const float tangent = std::tan(0.5f * static_cast<float>(camera.verticalFov));
+  const float aspect = static_cast<float>(renderer.size().x) / static_cast<float>(renderer.size().y);
+  std::vector<std::pair<std::uint32_t, LpvReceivers::Shown>> seen;
+  for (const LpvReceivers::Shown& receiver : receivers.shown()) {
+    if (receiver.cascade != cascade) continue;
+    const glm::vec3 to = receiver.position - eye;
+    const float depth = glm::dot(to, ahead);
+    if (depth <= 0.0f || std::abs(glm::dot(to, up)) > tangent * depth ||
+        std::abs(glm::dot(to, right)) > aspect * tangent * depth)
+      continue;
+    const glm::uvec3 cell(receiver.cell);
+    std::uint32_t hash = cell.x * 73856093u ^ cell.y * 19349663u ^ cell.z * 83492791u ^
+                         static_cast<std::uint32_t>(receiver.face) * 2654435761u;
+    hash = (hash ^ hash >> 16) * 0x45d9f3bu;
+    seen.emplace_back(hash ^ hash >> 16, receiver);
+  }
+  std::ranges::sort(seen, [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (seen.size() > static_cast<std::size_t>(most)) seen.resize(static_cast<std::size_t>(most));
+  // One in ten is brighter than white.
+  std::vector<double> largest;
+  for (const auto& [hash, receiver] : seen)
+    largest.push_back(std::max({receiver.irradiance.x, receiver.irradiance.y, receiver.irradiance.z}));
+  const double white = largest.empty() ? 1.0 : std::max(percentile(largest, 0.9), 1e-30);
+  std::vector<gl::Lines::Line> lines;
+  const auto cell = static_cast<float>(placed.cellSize);
+  for (const auto& [hash, receiver] : seen) {
+    const glm::vec3 color = glm::clamp(receiver.irradiance / static_cast<float>(white), 0.0f, 1.0f);
+    addDisk(lines, receiver.position + 0.01f * cell * receiver.normal, receiver.normal, 0.2f * cell,
+            glm::pow(color, glm::vec3(1.0f / 2.2f)));
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, const Scene& scene, const Camera& camera,
@@ -249,7 +305,7 @@ std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, c
   const RenderSettings& settings = renderer.settings();
   if (glyphs == Glyphs::voxels) return voxelsOf(scene, settings.lpv.voxels, renderer.origin(), camera, most);
   const LightPropagationVolume* volume = renderer.lpv();
-  if (!volume || glyphs == Glyphs::none) return {};
+  if (glyphs == Glyphs::none || (glyphs == Glyphs::receivers ? !renderer.receivers() : !volume)) return {};
   // As render/lpv_frame.cpp places them.
   Bounds bounds = scene.bounds;
   bounds.min -= renderer.origin();
@@ -258,6 +314,7 @@ std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, c
       placeCascades(settings.lpv.cascades, bounds, camera.position - renderer.origin(), camera.direction);
   const int k = std::clamp(cascade, 0, static_cast<int>(cascades.size()) - 1);
   const Cascade& placed = cascades[static_cast<std::size_t>(k)];
+  if (glyphs == Glyphs::receivers) return receiversOf(*renderer.receivers(), renderer, camera, placed, k, most);
   return glyphs == Glyphs::lobes ? lobesOf(*volume, placed, k, most) : geometryOf(*volume, placed, k, most);
 }
 

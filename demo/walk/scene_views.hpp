@@ -1,5 +1,5 @@
 // Debug views that no technique makes: how many surfaces lie in a pixel, how many nodes of the hierarchy its ray
-// visits; the light in the cells of a propagation volume as lobes, and voxels as boxes, drawn in the scene.
+// visits; the light in the cells of a propagation volume as lobes, voxels as boxes, receivers as disks, in the scene.
 // What they need is made when they are looked at for the first time, and dropped with the view.
 #pragma once
 
@@ -49,12 +49,14 @@ class CountViews {
 };
 
 /// What is drawn in the scene as lines.
-enum class Glyphs { none, lobes, geometry, voxels };
-constexpr std::array<std::string_view, 4> kGlyphNames{"nothing", "lobes of cells", "geometry volume",
-                                                      "visibility voxels"};
+enum class Glyphs { none, lobes, geometry, voxels, receivers };
+constexpr std::array<std::string_view, 5> kGlyphNames{"nothing", "lobes of cells", "geometry volume",
+                                                      "visibility voxels", "receivers"};
 
 /// About the renderer's origin(); empty where its technique has none of it. Lobes: intensity by direction in each of
-/// the `most` brightest cells of a cascade, the largest half a cell long. Reads textures back: waits for the GPU.
+/// the `most` brightest cells of a cascade, the largest half a cell long. Receivers: `most` of those of a cascade in
+/// the picture, the same ones while the camera moves, as disks on their surfaces in the colour of their irradiance.
+/// Reads textures back: waits for the GPU.
 std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, const Scene& scene, const Camera& camera,
                                       int cascade, int most);
 

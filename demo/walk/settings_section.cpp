@@ -36,19 +36,25 @@ std::string textOfNumber(const Setting& setting, const RenderSettings& settings,
 }
 
 /// A slider that says its value when it is let go: a change may make the technique anew. What is being dragged is kept
-/// in `dragged`.
+/// in `dragged`. The slider ends at 16 times the default: 100,000 propagation steps are allowed, and can be typed after
+/// a click with control, but as the end of a slider they would stop the window.
 std::optional<double> numberControl(Ui& ui, const std::string& key, const Setting& setting, double current) {
+  static const RenderSettings usual;
+  constexpr double kMostOfUsual = 16.0;
   static std::string dragged;
   static double draggedValue = 0.0;
   const SettingValue& v = setting.value;
   double shown = dragged == key ? draggedValue : std::isfinite(current) ? current : v.least;
-  const bool wide = v.most > 100.0 * std::max(1.0, std::abs(v.least));
+  const double often = settingNumber(setting, usual);
+  const double most =
+      std::isfinite(often) && often > 0.0 ? std::min(v.most, std::max(kMostOfUsual * often, shown)) : v.most;
+  const bool wide = most > 100.0 * std::max(1.0, std::abs(v.least));
   const ImGuiSliderFlags flags = wide && v.least >= 0.0 ? ImGuiSliderFlags_Logarithmic : 0;
   const bool whole = v.type == SettingType::integer;
   const std::string unit = setting.unit.empty() ? "" : " " + std::string(setting.unit);
   std::string format = whole ? "%.0f" + unit : "%.4g" + unit;
   std::replace(format.begin() + (whole ? 4 : 4), format.end(), '%', 'p');
-  ImGui::SliderScalar(key.c_str(), ImGuiDataType_Double, &shown, &v.least, &v.most, format.c_str(), flags);
+  ImGui::SliderScalar(key.c_str(), ImGuiDataType_Double, &shown, &v.least, &most, format.c_str(), flags);
   ui.note(key);
   if (ImGui::IsItemActive()) {
     dragged = key;

@@ -1,6 +1,6 @@
 // lucerna walk [SCENE]: the walkthrough. In a window the path plays in real time, views are skipped where drawing is
-// slow, and it ends by itself; without one, or with --record, views spread over the path are drawn and written, with
-// the time of every stage.
+// slow, and it ends by itself where no panel is shown; without one, or with --record, views spread over the path are
+// drawn and written, with the time of every stage.
 #include "base/clock.hpp"
 #include "base/data.hpp"
 #include "base/error.hpp"

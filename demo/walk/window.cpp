@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <thread>
 
 namespace lucerna::demo {
@@ -29,6 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr double kPlayedFrame = 1.0 / 60.0;  // seconds, of recorded input: the same walk on every machine
 constexpr double kMessageSeconds = 8.0, kHintSeconds = 8.0;
+constexpr double kLongestStep = 0.25;  // seconds that the path goes on in a frame
 constexpr int kStillFrames = 3;  // before the truth of a view is sought
 constexpr std::size_t kPlotFrames = 240;
 
@@ -159,7 +161,7 @@ void WalkWindow::act(Action action) {
     case Action::lpv: technique("lpv"); break;
     case Action::radiosity: technique("radiosity"); break;
     case Action::path:
-      s.side().shows = Shows::reference;
+      s.sides[static_cast<std::size_t>(s.layout == Layout::one ? s.shown : 1)].shows = Shows::reference;
       s.truthOn = true;
       break;
     case Action::undo:
@@ -192,7 +194,10 @@ void WalkWindow::moveCamera(double seconds) {
   const bool steers = input_.move != glm::dvec3(0.0) || input_.mouseDelta != glm::dvec2(0.0);
   if (steers) path.follows = false;
   if (path.follows) {
-    if (!path.paused && frames_ > 0) path.seconds += seconds * path.speed;
+    // Somebody who looks misses nothing of the path, however slow its frames are; who measures wants real time.
+    const bool measures = !options_.common.json.empty() && !player_;
+    const double step = measures ? seconds : std::min(seconds, kLongestStep);
+    if (!path.paused && frames_ > 0) path.seconds += step * path.speed;
     const SplinePlayback playback(path.last - path.first + 1);
     auto view = playback.viewAt(path.seconds);
     if (!view && path.loops) {
@@ -200,7 +205,8 @@ void WalkWindow::moveCamera(double seconds) {
       view = playback.viewAt(path.seconds);
     }
     if (!view) {
-      stop_ = !touched_;  // the walk ends by itself where nobody has touched anything
+      stop_ =
+          !touched_ && (!state_.panel || player_);  // nobody has touched anything, and nothing is there to be touched
       path.seconds = playback.duration();
       path.paused = true;
       view = path.last - path.first;
@@ -282,6 +288,8 @@ void WalkWindow::make(SideState& side) {
     breathe("making technique " + side.options.technique);
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
     auto renderer = std::make_unique<Renderer>(context_, programs_, *state_.scene, settings);
+    lastBreath_ = {};  // a driver may finish its programs only now
+    breathe("drawing the first picture by " + side.options.technique);
     side.renderer = std::move(renderer);
     side.buildSeconds = secondsSince(start);
     side.failure.clear();
@@ -496,9 +504,11 @@ void WalkWindow::drawGlyphs(const Compare::Inputs& inputs) {
   const SideState& side = state_.side();
   if (state_.glyphs == Glyphs::none || !side.renderer || side.shows == Shows::picture) return;
   const Camera& camera = state_.camera->camera();
+  const LpvReceivers* receivers = side.renderer->receivers();  // whose light changes from frame to frame
   const std::string are =
-      fmt::format("{} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs, state_.glyphCascade,
-                  state_.glyphMost, state_.glyphs == Glyphs::voxels ? "" : cameraText(camera), state_.shown);
+      fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs, state_.glyphCascade,
+                  state_.glyphMost, state_.glyphs == Glyphs::voxels ? "" : cameraText(camera), state_.shown,
+                  state_.glyphs == Glyphs::receivers && receivers ? receivers->frame() : 0);
   if (are != glyphsAre_)
     glyphs_ = glyphsOf(state_.glyphs, *side.renderer, *state_.scene, camera, state_.glyphCascade, state_.glyphMost);
   glyphsAre_ = are;
@@ -822,7 +832,8 @@ nlohmann::ordered_json WalkWindow::toJson() const {
   nlohmann::ordered_json json;
   if (!state_.frameMs.empty()) {
     const std::vector<double> ms(state_.frameMs.begin(), state_.frameMs.end());
-    json["frame_ms"] = {{"median", median(ms)},
+    json["frame_ms"] = {{"mean", std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size())},
+                        {"median", median(ms)},
                         {"p25", percentile(ms, 0.25)},
                         {"p75", percentile(ms, 0.75)},
                         {"p95", percentile(ms, 0.95)},

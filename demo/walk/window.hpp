@@ -96,7 +96,7 @@ class WalkWindow {
   gl::Framebuffer pictureTarget_;
   Camera lastCamera_;
   int still_ = 0;  ///< frames since something moved
-  bool touched_ = false;  ///< somebody is there: the walk does not end by itself
+  bool touched_ = false;  ///< somebody is there: the walk does not end by itself; nor with the panel
   bool stop_ = false;
   bool presented_ = false;  ///< compose() showed the renderer's own picture
   std::optional<Camera> truthCamera_;  ///< that the truth is of

@@ -387,6 +387,18 @@ std::vector<AskedPart> LpvReceivers::ask(const glm::vec3& position, const glm::v
   return parts.read();
 }
 
+std::vector<LpvReceivers::Shown> LpvReceivers::shown() const {
+  constexpr std::size_t kWanted = 3;  // of shaders/lpv/receivers/work.glsl
+  const std::size_t count = std::min<std::size_t>(work_[0].read<GLuint>()[kWanted], capacity_);
+  std::vector<Shown> result;
+  if (count == 0) return result;
+  for (const shared::LpvReceiver& r : receivers_[0].read<shared::LpvReceiver>(count)) {
+    if (r.triangle == LPV_UNPLACED || r.triangle == LPV_NOWHERE || r.paths == 0) continue;
+    result.push_back({r.position, r.normal, r.shown, glm::ivec3(r.cell), r.cell.w / LPV_FACES, r.cell.w % LPV_FACES});
+  }
+  return result;
+}
+
 void LpvReceivers::collect(bool wait) {
   for (std::vector<GLuint> words = ring_->fetch(wait); !words.empty(); words = ring_->fetch(wait)) {
     counts_.receivers = std::min<std::uint64_t>(words[3], capacity_);

@@ -73,6 +73,16 @@ class LpvReceivers {
   /// Compiles and allocates.
   std::vector<AskedPart> ask(const glm::vec3& position, const glm::vec3& normal) const;
 
+  /// A receiver as it is looked up.
+  struct Shown {
+    glm::vec3 position, normal;  ///< among the frame's positions; unit, on the side that is seen
+    glm::vec3 irradiance;  ///< W per square scene unit
+    glm::ivec3 cell;  ///< of its cascade, counted from the origin
+    int cascade, face;
+  };
+  /// Those that have found light or darkness, as of the last update. Reads back: waits for the GPU.
+  std::vector<Shown> shown() const;
+
   void collect(bool wait = false);
   const Counts& counts() const { return counts_; }
   const LpvSettings& settings() const { return settings_; }

@@ -218,6 +218,27 @@ TEST_F(Window, DebugViewsOfTheSceneItself) {
     EXPECT_NE(pixels(name), frame) << name;
 }
 
+// Disks where light is kept, while the picture below them stays as it is.
+TEST_F(Window, ReceiversAreDrawnInTheScene) {
+  write("input.txt",
+        "1 key R\n2 touch Debug view\n12 save frame.png\n13 touch Debug view/in the scene\n14 touch Debug view/in the "
+        "scene: receivers\n15 save receivers.png\n");
+  const RunResult result = play(path("input.txt"), "--technique lpv --set lpv.transport=rays", "", "700x400");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  const lucerna::Bitmap frame = lucerna::readBitmap(path("frame.png")),
+                        receivers = lucerna::readBitmap(path("receivers.png"));
+  int changed = 0, count = 0;
+  for (int y = 0; y < 300; ++y)
+    for (int x = 0; x < 380; ++x, ++count) {
+      const auto at =
+          4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x));
+      changed += std::abs(frame.rgba[at] - receivers.rgba[at]) > 16;
+    }
+  EXPECT_GT(changed, count / 100);
+  EXPECT_LT(changed, count / 2);
+}
+
 // The lamp's axis along x is dragged: the lamp is where it was let go, and another picture is made.
 TEST_F(Window, LampsAreDraggedAlongTheirAxes) {
   write("room.json", R"({"model": "room.obj", "points": [{"position": [0, 1, 0], "intensity": [5, 5, 5]}],
@@ -370,6 +391,20 @@ TEST_F(Window, InAVirtualDisplay) {
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
   EXPECT_EQ(json().at("host"), "window");
+}
+
+// At the end of its path a walk that nobody touches ends, but not under a panel: that one is there for somebody.
+TEST_F(Window, StaysOpenWithAPanel) {
+  if (run("command -v xvfb-run").exitCode != 0) GTEST_SKIP() << "no xvfb-run";
+  const auto framesWith = [&](const std::string& panel) {
+    const RunResult result =
+        run("cd '" + path("") + "' && xvfb-run -a '" LUCERNA_BINARY "' walk room.json --keys " +
+            "path.txt --views 0:2 --size 64x36 --technique direct --host window --frames 60 " + "--panel " + panel);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return std::atoi(result.out.c_str());  // "60 frames in 1.2 s"
+  };
+  EXPECT_EQ(framesWith("on"), 60);
+  EXPECT_LT(framesWith("off"), 60);
 }
 
 }  // namespace

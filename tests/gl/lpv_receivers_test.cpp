@@ -13,10 +13,12 @@
 #include "support/largest_difference.hpp"
 #include "support/path_scenes.hpp"
 #include "support/pixel_rays.hpp"
+#include "walk/scene_views.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iostream>
@@ -745,6 +747,80 @@ TEST_F(LpvReceiversKept, TinyAndHugeGridsAreDrawn) {
     for (const glm::vec3& p : picture(builder.scene(), kAboveFloor, s).image.pixels)
       ASSERT_NEAR(p.x, 0.5f, 1e-5f) << cells << " " << cascades;
   }
+}
+
+// The window's debug view draws a disk on each receiver: at its place in the picture, in the colour of its irradiance,
+// and nowhere else. demo/walk/scene_views.cpp.
+TEST_F(LpvReceiversGl, AreDrawnAsDisksWhereTheyAre) {
+  const glm::dvec3 albedo(0.5, 0.5, 0.5), emission(1.0, 0.5, 0.1);
+  const Scene scene = furnace(glm::vec3(albedo), glm::vec3(emission));
+  RenderSettings s = settings(kAll, 256);
+  s.size = glm::ivec2(256);
+  Renderer renderer(context(), library(), scene, s);
+  renderer.renderToTheEnd(kInside);
+  const std::vector<LpvReceivers::Shown> receivers = renderer.receivers()->shown();
+  ASSERT_GT(receivers.size(), 100u);
+  const glm::dvec3 irradiance = kPi * emission / (1.0 - albedo);
+  for (const LpvReceivers::Shown& receiver : receivers) {
+    const glm::vec3 place = glm::abs(receiver.position + glm::vec3(renderer.origin()));
+    EXPECT_NEAR(std::max({place.x, place.y, place.z}), 1.0f, 1e-4f);
+    EXPECT_NEAR(glm::dot(receiver.normal, receiver.position + glm::vec3(renderer.origin())), -1.0f, 1e-3f);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(receiver.irradiance[c] / irradiance[c], 1.0, 0.2);
+  }
+
+  // All of the coarsest cascade, over black.
+  const auto lines = demo::glyphsOf(demo::Glyphs::receivers, renderer, scene, kInside, 1, 5000);
+  const gl::Texture picture("glyphs", gl::Format::rgba8, s.size);
+  const std::array<const gl::Texture*, 1> colors{&picture};
+  const gl::Framebuffer target("glyphs", colors);
+  { gl::RasterPass("black", target, {}).clearColor(0, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)); }
+  gl::Lines::View view = renderer.linesView(kInside, scene.bounds);
+  view.depth = nullptr;
+  const glm::vec2 size(s.size);
+  gl::Lines(library()).draw(target, {{0, 0}, s.size, 0.5f * size, glm::vec2(0.5f), size}, view, lines, 1.0f);
+  const std::vector<glm::vec4> texels = picture.readRgba();
+  std::vector<bool> near(texels.size());
+  const double cell = placeCascades(s.lpv.cascades, scene.bounds, kInside.position, kInside.direction)[1].cellSize;
+  int drawn = 0, dark = 0;
+  for (const LpvReceivers::Shown& receiver : receivers) {
+    const glm::vec4 clip = view.clipFromWorld * glm::vec4(receiver.position, 1.0f);
+    const glm::vec2 at = (0.5f * glm::vec2(clip) / clip.w + 0.5f) * size;
+    if (receiver.cascade != 1 || clip.w <= 0.0f || at.x < 0.0f || at.y < 0.0f || at.x >= size.x || at.y >= size.y)
+      continue;
+    ++drawn;
+    const glm::vec4& seen = texels[static_cast<std::size_t>(at.y) * 256 + static_cast<std::size_t>(at.x)];
+    dark += seen.x < 0.7f;
+    if (seen.x >= 0.7f) { EXPECT_NEAR(seen.y, std::pow(0.5, 1.0 / 2.2) * static_cast<double>(seen.x), 0.12); }
+    // Where its disk may be: as far as its rim, and a line's width.
+    const glm::vec3 u = glm::normalize(glm::cross(receiver.normal,
+                                                  glm::vec3(receiver.normal.y, receiver.normal.z, receiver.normal.x))),
+                    v = glm::cross(receiver.normal, u);
+    float farthest = 0.0f;
+    for (double angle = 0.0; angle < 2.0 * kPi; angle += 0.2) {
+      const glm::vec3 rim =
+          receiver.position + 0.21f * static_cast<float>(cell) *
+                                  (static_cast<float>(std::cos(angle)) * u + static_cast<float>(std::sin(angle)) * v);
+      const glm::vec4 there = view.clipFromWorld * glm::vec4(rim, 1.0f);
+      farthest = there.w > view.near
+                     ? std::max(farthest, glm::length((0.5f * glm::vec2(there) / there.w + 0.5f) * size - at))
+                     : size.x;
+    }
+    const int reach = static_cast<int>(std::min(farthest, size.x)) + 3;
+    for (int y = static_cast<int>(at.y) - reach; y <= static_cast<int>(at.y) + reach; ++y)
+      for (int x = static_cast<int>(at.x) - reach; x <= static_cast<int>(at.x) + reach; ++x)
+        if (x >= 0 && y >= 0 && x < 256 && y < 256)
+          near[static_cast<std::size_t>(y) * 256 + static_cast<std::size_t>(x)] = true;
+  }
+  EXPECT_GT(drawn, 50);
+  EXPECT_LE(dark, drawn / 20) << "of " << drawn << ": below another one's rim";
+  int stray = 0, lit = 0;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    lit += texels[i].x > 0.3f;
+    stray += texels[i].x > 0.3f && !near[i];
+  }
+  EXPECT_GT(lit, drawn);
+  EXPECT_LT(lit, static_cast<int>(texels.size()) / 2);
+  EXPECT_EQ(stray, 0);
 }
 
 }  // namespace
