@@ -32,7 +32,7 @@ constexpr std::pair<ImGuiKey, int> kImguiKeys[] = {{ImGuiKey_Tab, key::kTab},
 }  // namespace
 
 Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), scale_(scale), overlay_(programs) {
-  ImGui::CreateContext();
+  panel_ = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // nothing is written beside the user's files
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
@@ -65,9 +65,26 @@ Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), sca
   font_.upload(gl::Texels::rgbaByte, pixels);
   io.Fonts->SetTexID(&font_);
   io.Fonts->ClearTexData();
+  note_ = ImGui::CreateContext(io.Fonts);
+  ImGui::SetCurrentContext(note_);
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui::GetIO().BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+  ImGui::GetStyle() = style;
+  ImGui::SetCurrentContext(panel_);
 }
 
-Ui::~Ui() { ImGui::DestroyContext(); }
+Ui::~Ui() {
+  ImGui::DestroyContext(note_);
+  ImGui::DestroyContext(panel_);
+}
+
+void Ui::beginNote(glm::ivec2 size, double seconds) {
+  ImGui::SetCurrentContext(note_);
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
+  io.DeltaTime = static_cast<float>(seconds);
+  ImGui::NewFrame();
+}
 
 void Ui::begin(const HostInput& input, glm::ivec2 size, double seconds) {
   ImGuiIO& io = ImGui::GetIO();
@@ -109,7 +126,7 @@ void Ui::drop() { ImGui::EndFrame(); }
 
 void Ui::end(const gl::Framebuffer& target) {
   ImGui::Render();
-  wanted_.clear();
+  if (ImGui::GetCurrentContext() == panel_) wanted_.clear();
   const ImDrawData& data = *ImGui::GetDrawData();
   vertices_.clear();
   indices_.clear();
@@ -131,6 +148,7 @@ void Ui::end(const gl::Framebuffer& target) {
     }
   }
   overlay_.draw(target, vertices_, indices_, runs_);
+  ImGui::SetCurrentContext(panel_);
 }
 
 void Ui::note(const std::string& label) {

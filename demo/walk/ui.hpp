@@ -29,6 +29,8 @@ class Ui {
 
   /// Begins a frame of `size` pixels; ImGui's own functions may be called until end().
   void begin(const HostInput& input, glm::ivec2 size, double seconds);
+  /// The same for a note while something long is made. The panel knows nothing of it: what is dragged there stays held.
+  void beginNote(glm::ivec2 size, double seconds);
   /// Draws what was asked for over the target.
   void end(const gl::Framebuffer& target);
   /// Ends a frame without drawing it.
@@ -62,6 +64,7 @@ class Ui {
  private:
   Host& host_;
   float scale_;
+  ImGuiContext *panel_ = nullptr, *note_ = nullptr;
   gl::Overlay overlay_;
   gl::Texture font_;
   std::string section_, wanted_;

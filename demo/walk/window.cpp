@@ -733,7 +733,8 @@ glm::ivec2 WalkWindow::pictureSize() const {
 
 void WalkWindow::drawUi(const HostInput& input, double seconds, const std::string& work, double share) {
   if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
-  ui_->begin(input, window_, seconds);
+  if (work.empty()) ui_->begin(input, window_, seconds);
+  else ui_->beginNote(window_, seconds);
   if (work.empty()) {
     ui_->beginWindows();
     if (state_.panel) Panel::show(*ui_, state_, host_);
