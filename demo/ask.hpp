@@ -1,4 +1,4 @@
-// What lit a pixel, as JSON: `lucerna render --ask` and the window's panel.
+// Answers what lit a pixel, as JSON: for `lucerna render --ask` and the window's panel.
 #pragma once
 
 #include "render/pixel_answer.hpp"
@@ -9,11 +9,11 @@
 
 namespace lucerna::demo {
 
-/// Of each group; the others are one share.
+/// Shares per group; the others are combined.
 constexpr std::size_t kAskedShares = 32;
 
 nlohmann::ordered_json toJson(const PixelAnswer& answer);
-/// "X,Y" within a picture, from its top left; throws Error(badInput) naming --ask.
+/// "X,Y" within a picture, counted from its top left; throws Error(badInput) naming --ask.
 glm::ivec2 parsePixel(const std::string& text, glm::ivec2 size);
 
 }  // namespace lucerna::demo

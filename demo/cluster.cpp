@@ -47,7 +47,7 @@ std::string thisProgram() { return fs::read_symlink("/proc/self/exe").string(); 
 
 // ---------------------------------------------------------------------------------------------------- plan
 
-/// Commands that are cut by --part, and what into.
+/// Commands that --part divides, and their units.
 struct Cut {
   std::vector<std::string> command;
   const char* units;
@@ -82,13 +82,12 @@ Planned readCommand(std::vector<std::string> words, std::uint32_t tasks) {
     if (words.size() >= cut.command.size() && std::equal(cut.command.begin(), cut.command.end(), words.begin()))
       planned.units = cut.units;
   if (planned.units.empty())
-    throwBadInput("cluster plan: what follows -- must be one of the commands that are cut into parts: {}",
-                  listOfCuts());
+    throwBadInput("cluster plan: the command after -- must be one that can be divided into parts: {}", listOfCuts());
   const bool isPicture = words[0] == "render";
   bool isPath = false;
   std::uint32_t samples = 0;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    // "--key value" and "--key=value" alike.
+    // Handles both "--key value" and "--key=value".
     std::string key = words[i], value;
     if (const auto equals = key.find('='); key.starts_with("--") && equals != std::string::npos)
       value = key.substr(equals + 1), key = key.substr(0, equals);
@@ -122,17 +121,16 @@ Planned readCommand(std::vector<std::string> words, std::uint32_t tasks) {
   }
   if (!isPicture) return planned;
   if (!isPath)
-    throwBadInput("cluster plan: of pictures only those with --technique path are cut into parts, of their samples");
-  if (samples == 0) throwBadInput("cluster plan: --spp N is missing: how many samples the tasks share");
+    throwBadInput("cluster plan: only pictures with --technique path can be divided, into parts of their samples");
+  if (samples == 0) throwBadInput("cluster plan: --spp N is missing: the number of samples that the tasks share");
   if (tasks > samples) throwBadInput("--tasks {}: expected 1 to {}, the samples of a pixel", tasks, samples);
   if (!isWritableImageName(planned.command.output))
     throwBadInput("cluster plan: -o {}: the extension must be png, hdr, exr or pfm", planned.command.output);
   return planned;
 }
 
-/// The array, a task each, and the join after it, for Slurm. A task that a signal ended, a node that fell out and a
-/// preemption give their tasks back, or leave them to be found abandoned: the join finishes what is left before it
-/// joins.
+/// Writes the Slurm scripts: the array, one task each, and the join after it. Tasks ended by a signal, a node failure
+/// or a preemption are given back, or are found abandoned; the join finishes what is left before it joins.
 void writeSlurm(const fs::path& folder, const ClusterOptions& options) {
   const fs::path whole = fs::absolute(folder);
   const std::string program = bench::shellWord(thisProgram()), job = bench::shellWord(whole.string());
@@ -140,7 +138,7 @@ void writeSlurm(const fs::path& folder, const ClusterOptions& options) {
       fmt::format("#!/bin/bash\n#SBATCH --time={}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n", options.time);
   if (!options.account.empty()) head += fmt::format("#SBATCH --account={}\n", options.account);
   if (!options.gpus.empty()) head += fmt::format("#SBATCH --gpus-per-task={}\n", options.gpus);
-  // Slurm's numbers and UUIDs are no EGL devices: the host finds the one that is meant (host/egl_device.hpp).
+  // Slurm's numbers and UUIDs are not EGL devices: the host finds the device they mean (host/egl_device.hpp).
   const std::string environment =
       "# Of a node's devices the first that Slurm gave to this task; NoDevFiles: it gave none.\n"
       "given=\"${CUDA_VISIBLE_DEVICES:+cuda:$CUDA_VISIBLE_DEVICES}\"\n"
@@ -192,7 +190,7 @@ int plan(const ClusterOptions& options) {
 
 // ---------------------------------------------------------------------------------------------------- run
 
-/// This process's environment with another LUCERNA_EGL_DEVICE; empty: as it is.
+/// This process's environment with another LUCERNA_EGL_DEVICE; empty: unchanged.
 std::vector<std::string> environmentFor(const std::string& device) {
   constexpr std::string_view kName = "LUCERNA_EGL_DEVICE=";
   std::vector<std::string> all;
@@ -202,11 +200,12 @@ std::vector<std::string> environmentFor(const std::string& device) {
   return all;
 }
 
-/// This program with other words, as a process of its own. Ctrl-C and SIGTERM are handed on to it.
+/// This program with other arguments, as a child process. Ctrl-C and SIGTERM are forwarded to it.
 class Child {
  public:
-  /// Starts in `directory`; what it prints is appended to `log`, unless empty. One with a log ends with the thread that
-  /// started it: a worker that is killed takes its task along. `device`: its LUCERNA_EGL_DEVICE; empty: this one's.
+  /// Starts in `directory`; its output is appended to `log`, unless empty. A child with a log ends together with the
+  /// thread that started it: a worker that is killed takes its task along. `device`: its LUCERNA_EGL_DEVICE; empty:
+  /// this process's.
   Child(const std::vector<std::string>& words, const std::string& directory, const std::string& log = "",
         const std::string& device = "") {
     const std::string program = thisProgram();
@@ -222,7 +221,7 @@ class Child {
     process_ = ::fork();
     if (process_ < 0) throwMissingCapability("cluster: cannot create process ({})", std::strerror(errno));
     if (process_ > 0) return;
-    // Between fork and exec: calls that are safe there alone.
+    // Between fork and exec only async-signal-safe calls are allowed.
     if (!log.empty()) {
       ::prctl(PR_SET_PDEATHSIG, SIGTERM);
       if (::getppid() != parent) ::_exit(143);
@@ -236,7 +235,7 @@ class Child {
   void stop() {
     if (!asked_) asked_ = ::kill(process_, SIGTERM) == 0;
   }
-  /// Its status once it has ended, as waitpid() has it. `meanwhile` is called now and then.
+  /// Its wait status, as from waitpid(), once it has ended. `meanwhile` is called regularly.
   template <class Meanwhile>
   int wait(const Meanwhile& meanwhile) {
     int status = 0;
@@ -253,11 +252,11 @@ class Child {
   bool asked_ = false;
 };
 
-/// Runs a task until it ends, is to stop, or was taken for dead. Returns whether it is done.
+/// Runs a task until it ends, should stop, or was taken over as dead. Returns whether it is done.
 bool runTask(const ClusterJob& job, const ClusterTask& task, const fs::path& claim, const std::string& device,
              double saveEvery, bool quiet) {
   std::vector<std::string> words = job.command().words;
-  // The result is written last: it says that the part is whole.
+  // The result is written last: it marks the part as complete.
   words.insert(words.end(), {"--part", fmt::format("{}/{}", task.number, job.tasks().size()), "--checkpoint",
                              job.part(task).string(), "--json", job.result(task).string(), "--quiet"});
   if (job.command().isPicture()) words.insert(words.end(), {"--save-every", fmt::format("{:g}", saveEvery)});
@@ -288,7 +287,7 @@ int runCluster(const ClusterOptions& options) {
   if (options.task && (*options.task < 0 || *options.task >= count))
     throwBadInput("--task {}: the job has 0 to {}", *options.task, count - 1);
   watchForInterrupt();
-  // A task that fails again and again is not tried for ever.
+  // A task that keeps failing is not retried forever.
   constexpr int kTries = 3;
   std::mutex mutex;
   std::map<std::string, int> failures;
@@ -303,7 +302,7 @@ int runCluster(const ClusterOptions& options) {
         bool isBusy = false, did = false;
         for (int k = 0; k < count && !interrupted(); ++k) {
           if (options.task && k != *options.task) continue;
-          // Workers begin at different places, so that they seldom want the same.
+          // Workers start at different tasks, so that they rarely want the same one.
           const ClusterTask& task = job.tasks()[static_cast<std::size_t>(
               (k + (options.task ? 0 : worker * count / std::max(options.jobs, 1))) % count)];
           if (const std::scoped_lock lock(mutex); failures[task.name] >= kTries) continue;
@@ -322,7 +321,8 @@ int runCluster(const ClusterOptions& options) {
           }
         }
         if (did) continue;
-        // One of an array leaves the others to theirs; else what somebody works on may yet be abandoned.
+        // A worker of an array leaves the other tasks to their workers; otherwise a task in progress may yet be
+        // abandoned.
         if (!isBusy || options.task) break;
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
       }
@@ -335,14 +335,14 @@ int runCluster(const ClusterOptions& options) {
   for (int i = 0; i < options.jobs; ++i) workers.emplace_back(work, i);
   for (std::thread& worker : workers) worker.join();
   if (!fault.empty()) throwBadInput("{}", fault);
-  if (interrupted()) throw Stopped(fmt::format("stopped; lucerna cluster run {} goes on", options.folder));
+  if (interrupted()) throw Stopped(fmt::format("stopped; lucerna cluster run {} resumes", options.folder));
   int left = 0;
   for (int k = 0; k < count; ++k)
     if (!options.task || k == *options.task)
       left += job.state(job.tasks()[static_cast<std::size_t>(k)], options.deadAfter) != State::done;
   if (!options.common.quiet) fmt::print("{} tasks done here, {} left\n", finished.load(), left);
   options.common.writeJson({{"done_here", finished.load()}, {"left", left}});
-  // That somebody else works on the one task that was asked for is no failure.
+  // It is no failure if another worker has the one requested task.
   return left == 0 || (options.task && job.state(job.tasks()[static_cast<std::size_t>(*options.task)],
                                                  options.deadAfter) == State::running)
              ? 0
@@ -367,7 +367,7 @@ int status(const ClusterOptions& options) {
   return 0;
 }
 
-/// A lucerna of its own, in the folder where the job was planned; its exit code.
+/// Runs lucerna in the folder where the job was planned; returns its exit code.
 int runHere(const std::vector<std::string>& words, const std::string& directory) {
   const int status = Child(words, directory).wait([] {});
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -388,7 +388,7 @@ int join(const ClusterOptions& options) {
   std::vector<std::string> last;
   if (!json.empty()) last.insert(last.end(), {"--json", json});
   if (options.common.quiet) last.emplace_back("--quiet");
-  // All parts as one checkpoint, then the command with it, which finds everything made.
+  // Merges all parts into one checkpoint, then runs the command with it, which finds everything computed.
   const std::string whole = (job.folder() / (command.isPicture() ? "whole.film" : "whole")).string();
   if (!fs::exists(whole))
     if (const int code = runHere({"merge", "--parts", parts, "--checkpoint", whole, "--quiet"}, job.directory());
@@ -406,23 +406,23 @@ int join(const ClusterOptions& options) {
 Work addCluster(Command app) {
   Subcommands commands(app);
   auto options = std::make_shared<ClusterOptions>();
-  Command planned =
-      commands.add("plan", "Cut a command's work into tasks, in a folder that all machines see; with scripts for Slurm",
-                   [options] { return plan(*options); });
+  Command planned = commands.add(
+      "plan", "Divide a command's work into tasks, in a folder that all machines see; with scripts for Slurm",
+      [options] { return plan(*options); });
   planned.addOption("COMMAND", options->command, "after --: " + listOfCuts()).required();
   planned.addOption("-o,--output", options->output, "the job's folder").required();
   planned.addOption("--tasks", options->tasks, "into how many").showDefault().range(1u, 1000000u);
   planned
       .addOption("--time", options->time,
-                 "Slurm's time limit of a task; one that reaches it gives its task back, and the join goes on with it")
+                 "Slurm's time limit per task; a task that reaches it is given back, and the join finishes it")
       .showDefault();
   planned.addOption("--account", options->account, "Slurm's account");
   planned.addOption("--gpus", options->gpus,
-                    "Slurm's GPUs a task, such as 1; the task's program uses the first of them");
+                    "Slurm's GPUs per task, such as 1; the task's program uses the first of them");
   const auto deadAfter = [&](Command command) {
     command
         .addOption("--dead-after", options->deadAfter,
-                   "seconds without a sign of life after which a task is taken up by another one; signs come every 5 s")
+                   "seconds without a sign of life after which another worker takes over a task; signs come every 5 s")
         .showDefault()
         .range(6.0, 1e6);
   };
@@ -430,7 +430,7 @@ Work addCluster(Command app) {
   const auto saveEvery = [&](Command command) {
     command
         .addOption("--save-every", options->saveEvery,
-                   "of a path traced picture: seconds between a task's checkpoints; other work is kept unit by unit")
+                   "of a path traced picture: seconds between a task's checkpoints; other work is stored unit by unit")
         .showDefault()
         .range(0.0, 1e6);
   };
@@ -443,14 +443,14 @@ Work addCluster(Command app) {
       .addOption("--devices", options->devices,
                  "EGL devices for the workers of --jobs in turn, such as 0,1: each is its worker's LUCERNA_EGL_DEVICE")
       .delimiter(',');
-  running.addOption("--task", options->task, "that one alone, such as of a Slurm array");
+  running.addOption("--task", options->task, "only that task, for example of a Slurm array");
   deadAfter(running);
   saveEvery(running);
-  Command asked = commands.add("status", "How many tasks are done, running, abandoned, waiting",
+  Command asked = commands.add("status", "Show how many tasks are done, running, abandoned, waiting",
                                [options] { return status(*options); });
   asked.addOption("JOB", options->folder, "the job's folder").required();
   deadAfter(asked);
-  Command joined = commands.add("join", "Make the result of all parts", [options] { return join(*options); });
+  Command joined = commands.add("join", "Compute the result from all parts", [options] { return join(*options); });
   joined.addOption("JOB", options->folder, "the job's folder").required();
   for (Command command : {planned, running, asked, joined}) options->common.declare(command);
   return commands.work();

@@ -1,4 +1,4 @@
-// lucerna cluster plan|run|status|join: work that is cut by --part, made by many machines that share a folder.
+// lucerna cluster plan|run|status|join: work divided by --part, done by many machines that share a folder.
 #pragma once
 
 #include "command_line.hpp"

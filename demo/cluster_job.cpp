@@ -27,7 +27,7 @@ std::string hostName() {
   return name;
 }
 
-/// Made now: false where it is there already.
+/// Creates the file; false if it already exists.
 bool createNew(const fs::path& file, const std::string& text) {
   const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
   if (descriptor < 0) {
@@ -48,7 +48,7 @@ fs::path claimFile(const fs::path& folder, const std::string& task, int number) 
 
 void ClusterJob::plan(const fs::path& folder, const ClusterCommand& command, std::uint32_t tasks) {
   if (fs::exists(folder / "job.json"))
-    throwBadInput("-o {}: holds a job; choose another folder, or go on with lucerna cluster run {}", folder.string(),
+    throwBadInput("-o {}: holds a job; choose another folder, or resume with lucerna cluster run {}", folder.string(),
                   folder.string());
   std::error_code error;
   for (const char* part : {"claims", "parts", "done", "logs"}) {
@@ -68,10 +68,10 @@ void ClusterJob::plan(const fs::path& folder, const ClusterCommand& command, std
 
 ClusterJob::ClusterJob(fs::path folder) : folder_(fs::absolute(folder)) {
   const fs::path file = folder_ / "job.json";
-  if (!fs::exists(file)) throwBadInput("{}: holds no job (lucerna cluster plan makes one)", folder.string());
+  if (!fs::exists(file)) throwBadInput("{}: holds no job (lucerna cluster plan creates one)", folder.string());
   const auto job = parseJson<nlohmann::ordered_json>(readFileText(file), file.string());
   try {
-    if (job.at("lucerna_cluster_job") != 2) throwBadInput("{}: a job of another version", file.string());
+    if (job.at("lucerna_cluster_job") != 2) throwBadInput("{}: a job of a different version", file.string());
     command_ = {job.at("command").get<std::vector<std::string>>(), job.at("output").get<std::string>(),
                 job.at("json").get<std::string>()};
     directory_ = job.at("directory").get<std::string>();
@@ -79,14 +79,14 @@ ClusterJob::ClusterJob(fs::path folder) : folder_(fs::absolute(folder)) {
     const std::size_t digits = std::to_string(std::max(tasks, 1u) - 1).size();
     for (std::uint32_t i = 0; i < tasks; ++i) tasks_.push_back({fmt::format("{:0{}}", i, digits), i});
   } catch (const nlohmann::json::exception& error) {
-    throwBadInput("{}: no job of lucerna cluster plan ({})", file.string(), error.what());
+    throwBadInput("{}: not a job of lucerna cluster plan ({})", file.string(), error.what());
   }
 }
 
 double ClusterJob::age(const fs::path& file) const {
   struct stat claim {
   }, now{};
-  if (::stat(file.c_str(), &claim) != 0) return 0.0;  // given back meanwhile: it is looked at again
+  if (::stat(file.c_str(), &claim) != 0) return 0.0;  // given back meanwhile: look again
   const fs::path clock =
       folder_ / "claims" /
       fmt::format(".clock.{}.{}.{}", hostName(), ::getpid(), std::hash<std::thread::id>{}(std::this_thread::get_id()));
@@ -119,7 +119,7 @@ ClusterJob::State ClusterJob::state(const ClusterTask& task, double deadAfter) c
 
 std::optional<fs::path> ClusterJob::claim(const ClusterTask& task, double deadAfter) const {
   if (fs::exists(result(task))) return std::nullopt;
-  // The number is counted once: whoever claims the task between this look and the claim takes that number.
+  // The count is read once: a worker that claims the task before this one takes that number.
   const int count = claimsOf(task);
   if (count > 0) {
     const fs::path last = claimFile(folder_, task.name, count - 1);
@@ -127,7 +127,7 @@ std::optional<fs::path> ClusterJob::claim(const ClusterTask& task, double deadAf
   }
   const fs::path file = claimFile(folder_, task.name, count);
   if (!createNew(file, fmt::format("{} process {}\n", hostName(), ::getpid()))) return std::nullopt;
-  // Between the look and the claim the one before may have finished.
+  // The previous worker may have finished between the check and the claim.
   if (fs::exists(result(task))) return std::nullopt;
   return file;
 }

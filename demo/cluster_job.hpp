@@ -29,11 +29,11 @@ struct ClusterTask {
   std::uint32_t number = 0;
 };
 
-/// What is cut into tasks.
+/// The work to divide into tasks.
 struct ClusterCommand {
-  /// After `lucerna`, without --part, --checkpoint, --json, --quiet, and of a picture -o.
+  /// Arguments after `lucerna`, without --part, --checkpoint, --json, --quiet, and for a picture -o.
   std::vector<std::string> words;
-  std::string output;  ///< of a path traced picture; empty: a command that writes its result itself, from all parts
+  std::string output;  ///< of a path traced picture; empty: a command that computes its result itself from all parts
   std::string json;  ///< --json of the whole; empty: none
 
   bool isPicture() const { return !output.empty(); }
@@ -43,15 +43,15 @@ class ClusterJob {
  public:
   enum class State { waiting, running, abandoned, done };
 
-  /// Throws Error(badInput) where the folder holds no job.
+  /// Throws Error(badInput) if the folder holds no job.
   explicit ClusterJob(std::filesystem::path folder);
-  /// Throws Error(badInput) where the folder holds a job.
+  /// Throws Error(badInput) if the folder already holds a job.
   static void plan(const std::filesystem::path& folder, const ClusterCommand& command, std::uint32_t tasks);
 
   const std::filesystem::path& folder() const { return folder_; }
   const std::vector<ClusterTask>& tasks() const { return tasks_; }
   const ClusterCommand& command() const { return command_; }
-  /// Where the command was planned: its relative paths are from there.
+  /// The folder where the command was planned; relative paths refer to it.
   const std::string& directory() const { return directory_; }
 
   std::filesystem::path part(const ClusterTask& task) const {
@@ -61,17 +61,17 @@ class ClusterJob {
   std::filesystem::path log(const ClusterTask& task) const { return folder_ / "logs" / (task.name + ".log"); }
   State state(const ClusterTask& task, double deadAfter) const;
 
-  /// The claim, if the task is to be had: it waits, or was abandoned. Empty where it is done, somebody works on it, or
-  /// another one was faster.
+  /// The claim file, if the task is available: waiting or abandoned. Empty if it is done, in progress, or another
+  /// worker was faster.
   std::optional<std::filesystem::path> claim(const ClusterTask& task, double deadAfter) const;
-  /// A sign of life; false where the task was taken up by another one, who took this one for dead.
+  /// Gives a sign of life; false if another worker has taken over the task, assuming this one dead.
   bool keep(const std::filesystem::path& claim) const;
-  /// Gives the task back, so that it is taken up at once.
+  /// Gives the task back, so that it can be taken up at once.
   void giveBack(const std::filesystem::path& claim) const;
 
  private:
-  int claimsOf(const ClusterTask& task) const;  ///< how often it was taken up
-  /// Seconds since a file's last change, by the storage's own clock: those of machines may differ.
+  int claimsOf(const ClusterTask& task) const;  ///< number of times it was taken up
+  /// Seconds since a file's last change, by the storage's clock: those of machines may differ.
   double age(const std::filesystem::path& file) const;
 
   std::filesystem::path folder_;

@@ -1,5 +1,5 @@
-// What commands declare their options on. CLI11 parses them: its header and each type of an option cost a source that
-// sees them seconds, so that command_line.cpp alone does.
+// Declaring the options of commands. CLI11 parses them. Its header and each option type cost seconds of compile time
+// per source, so only command_line.cpp includes it.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class Option;
 
 namespace lucerna::demo {
 
-/// What a command does once the command line is parsed; its exit code.
+/// The work of a command after parsing; returns its exit code.
 using Work = std::function<int()>;
 
 /// An option of a command; a handle.
@@ -23,24 +23,24 @@ class Option {
  public:
   explicit Option(CLI::Option& option) : option_(&option) {}
 
-  // What it takes; each returns the option. Values out of it are refused while parsing.
+  // Constraints on the value; each call returns the option. Values that violate them are rejected while parsing.
   Option required() const;
-  Option showDefault() const;  ///< help shows what the variable holds now
+  Option showDefault() const;  ///< help shows the variable's current value
   Option range(int least, int most) const;
   Option range(unsigned least, unsigned most) const;
   Option range(double least, double most) const;
   Option positive() const;
   Option oneOf(const std::vector<std::string>& words) const;
   Option notNegative() const;
-  Option delimiter(char between) const;  ///< of a list that is one argument
-  Option values(int least, int most) const;  ///< how many
+  Option delimiter(char between) const;  ///< for a list in one argument
+  Option values(int least, int most) const;  ///< number of values
   Option typeName(const std::string& name) const;
-  Option hidden() const;  ///< from help, manual and completions
+  Option hidden() const;  ///< left out of help, manual and completions
 
-  // After parsing.
+  // Valid after parsing.
   std::string name() const;
-  std::size_t count() const;  ///< how often it was given
-  std::string last() const;  ///< its last value; it was given
+  std::size_t count() const;  ///< number of times it was given
+  std::string last() const;  ///< its last value; requires count() > 0
 
   CLI::Option& cli11() const { return *option_; }
 
@@ -53,18 +53,18 @@ class Command {
  public:
   explicit Command(CLI::App& app) : app_(&app) {}
 
-  /// A positional argument ("SCENE") or an option ("-o,--output"), kept in `value`, which outlives parsing. Types: the
-  /// instantiations in command_line.cpp.
+  /// A positional argument ("SCENE") or an option ("-o,--output"), stored in `value`, which must outlive parsing.
+  /// Types: the instantiations in command_line.cpp.
   template <class T>
   Option addOption(const std::string& names, T& value, const std::string& meaning) const;
   Option addFlag(const std::string& names, bool& value, const std::string& meaning) const;
-  /// One that is kept nowhere: Option::last() has it.
+  /// An option without a variable: Option::last() returns its value.
   Option addOption(const std::string& names, const std::string& meaning) const;
-  /// One that is taken at once.
+  /// An option that is passed to `take` during parsing.
   Option addAction(const std::string& names, const std::function<void(double)>& take) const;
   Option find(const std::string& name) const;
-  Command parent() const;  ///< the one whose command it is
-  std::string footer() const;  ///< what help says below the options
+  Command parent() const;  ///< the command that contains it
+  std::string footer() const;  ///< shown in help below the options
   void setFooter(const std::string& text) const;
 
   CLI::App& cli11() const { return *app_; }
@@ -73,17 +73,17 @@ class Command {
   CLI::App* app_;
 };
 
-/// Commands that a command has, such as `lucerna bench error`.
+/// Subcommands of a command, such as `lucerna bench error`.
 class Subcommands {
  public:
-  /// One of them must be named.
+  /// One of them is required on the command line.
   explicit Subcommands(Command command);
 
-  /// Its options are declared on what is returned.
+  /// Declare its options on the returned command.
   Command add(const std::string& name, const std::string& description, Work work);
   /// `declare` declares the options and returns the work.
   void add(const std::string& name, const std::string& description, const std::function<Work(Command)>& declare);
-  /// The work of the one that was named.
+  /// The work of the subcommand that was given.
   Work work() const;
 
  private:

@@ -22,7 +22,7 @@ OptionEntry entryOf(CLI::Option& option) {
   entry.repeats = option.get_items_expected_max() > 1;
   entry.values = offered(Option(option));
   if (option.get_items_expected_max() > 0) {
-    // "INT:INT in [1 - 8]": the type, then what its validators say.
+    // "INT:INT in [1 - 8]": the type, then the validators' description.
     const std::string text = option.get_type_name();
     const auto colon = text.find(':');
     entry.type = text.substr(0, colon);

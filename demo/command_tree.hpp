@@ -1,5 +1,4 @@
-// The command line as a list of commands, read from CLI11's own tree: what the manual page and the completions are made
-// of.
+// The command line as a list of commands, read from CLI11's own tree; source of the manual page and the completions.
 #pragma once
 
 #include "command_line.hpp"
@@ -10,23 +9,23 @@
 namespace lucerna::demo {
 
 struct OptionEntry {
-  std::vector<std::string> names;  ///< "-o", "--output"; of a positional its placeholder alone, such as "SCENE"
+  std::vector<std::string> names;  ///< "-o", "--output"; for a positional only its placeholder, such as "SCENE"
   std::string description;
   std::string type;  ///< TEXT, INT, UINT, FLOAT; empty for a flag
-  std::string range;  ///< what is accepted, as CLI11 says it; empty: not limited
-  std::string defaultValue;  ///< empty: none that is shown
-  std::vector<std::string> values;  ///< what completions offer (offers.hpp)
+  std::string range;  ///< accepted values, as described by CLI11; empty: any
+  std::string defaultValue;  ///< empty: none shown
+  std::vector<std::string> values;  ///< offered by completions (offers.hpp)
   bool required = false, repeats = false;
 
   bool takesValue() const { return !type.empty(); }
   bool takesNumber() const { return takesValue() && type != "TEXT"; }
-  /// A value that may be a file or a folder: text of which nothing else is known.
+  /// Whether the value may be a file or a folder: text about which nothing else is known.
   bool takesFile() const { return type == "TEXT" && values.empty(); }
   bool operator==(const OptionEntry&) const = default;
 };
 
 struct CommandEntry {
-  std::string path;  ///< "" for the program itself, else such as "bench error"
+  std::string path;  ///< "" for the program itself, otherwise for example "bench error"
   std::string description, footer;
   std::vector<OptionEntry> options, positionals;
   std::vector<std::pair<std::string, std::string>> subcommands;  ///< name, description
@@ -34,11 +33,11 @@ struct CommandEntry {
   bool isLeaf() const { return subcommands.empty(); }
 };
 
-/// The program first, then its commands in their order, each followed by its own. What is in no group is hidden and
-/// left out.
+/// The program first, then its commands in order, each followed by its subcommands. Commands without a group are hidden
+/// and left out.
 std::vector<CommandEntry> commandTree(Command program);
 
-/// The subcommands that print it, as commands.hpp has the others.
+/// The subcommand that prints completion scripts; declared like those in commands.hpp.
 Work addCompletion(Command app);
 Work addManual(Command app);
 

@@ -1,4 +1,4 @@
-// The subcommands of `lucerna`, one file each, and what they share.
+// The subcommands of `lucerna`, one file each, and shared declarations.
 #pragma once
 
 #include "gl/context.hpp"
@@ -18,7 +18,7 @@
 
 namespace lucerna::demo {
 
-/// A subcommand: its options are declared on `app`, its work is returned and run after parsing.
+/// A subcommand: declares its options on `app` and returns its work, which runs after parsing.
 Work addWalk(Command app);
 Work addRender(Command app);
 Work addInfo(Command app);
@@ -35,26 +35,26 @@ struct CommonOptions {
   bool quiet = false;
 
   void declare(Command app);
-  void apply() const;  ///< checks the host asked for and sets the log level
-  std::string askedHost() const;  ///< by the option, else by LUCERNA_HOST; empty: neither
+  void apply() const;  ///< checks the requested host and sets the log level
+  std::string askedHost() const;  ///< from the option, else from LUCERNA_HOST; empty: neither
   std::unique_ptr<Host> makeHost(bool wantsWindow, const HostOptions& options = {}) const;
   void writeJson(const nlohmann::ordered_json& json) const;  ///< no effect without --json
 };
 
-/// --technique, --component, --fidelity, --deviation, --set, --size: what a picture is made with.
+/// --technique, --component, --fidelity, --deviation, --set, --size: the options of a picture.
 struct PictureOptions {
   std::string technique = "lpv", component = "all", fidelity = "corrected", size = "1280x720";
   std::vector<std::string> deviations, settings;
-  std::string settingsFile;  ///< --settings: what it says counts as given before the command line
+  std::string settingsFile;  ///< --settings: its content counts as given before the command line
 
   void declare(Command app);
-  std::optional<std::uint32_t> settingsSpp;  ///< samples a pixel that the settings file asks for, path tracing alone
+  std::optional<std::uint32_t> settingsSpp;  ///< samples per pixel from the settings file; path tracing only
 
-  /// Reads --settings, if given; options that were given on the command line stay. Call once, before parse().
+  /// Reads --settings, if given; options from the command line take precedence. Call once, before parse().
   void readSettingsFile();
   /// The options as a settings file, which readSettingsFile() takes.
   nlohmann::ordered_json toJson() const;
-  /// Throws Error(badInput) naming the option. What the technique does not read is a warning.
+  /// Throws Error(badInput) naming the option. Options that the technique does not read cause a warning.
   RenderSettings parse() const;
 };
 
@@ -62,16 +62,16 @@ struct PictureOptions {
 glm::ivec2 parseSize(const std::string& text);
 
 /// A camera's name, or px,py,pz,tx,ty,tz,fov: position, target, vertical field of view in degrees; empty: the scene's
-/// first.
+/// first camera.
 Camera chooseCamera(const Scene& scene, const std::string& text);
 
 /// Every key of --set with its meaning and default, for --help and README.
 std::string settingsHelp();
-/// "KEY=VALUE" of --set; a former spelling of the key is a warning. `only`: the settings that cost as much. Throws
-/// Error(badInput) with the keys.
+/// Parses "KEY=VALUE" of --set; a former spelling of the key causes a warning. `only`: accept only settings of that
+/// cost. Throws Error(badInput) listing the keys.
 SettingAssignment parseSet(const std::string& assignment, const SettingCost* only = nullptr);
 inline constexpr SettingCost kSolutionCost =
-    SettingCost::solution;  ///< of the settings that a radiosity solution depends on
+    SettingCost::solution;  ///< for the settings that a radiosity solution depends on
 /// Every deviation with its meaning.
 std::string deviationsHelp();
 
@@ -89,14 +89,14 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// One rule for every command after watchForInterrupt(): on Ctrl-C (SIGINT) and SIGTERM long work ends after what it is
-/// doing, keeps its state, writes no final file and ends with exitCode(); the same command goes on from there.
+/// Applies to every command after watchForInterrupt(): on Ctrl-C (SIGINT) and SIGTERM, long work finishes its current
+/// step, keeps its state, writes no final file and ends with exitCode(). The same command continues from there.
 void watchForInterrupt();
 bool interrupted();
-int exitCode();  ///< 0, or 128 and the signal's number: 130 after Ctrl-C, 143 after SIGTERM
+int exitCode();  ///< 0, or 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM
 
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages);
-/// What the gather of the reflective shadow map saved: pixels a frame.
+/// The savings of the reflective shadow map's gather, in pixels per frame.
 nlohmann::ordered_json gatherJson(const RsmGather& gather);
 std::string gatherLine(const RsmGather& gather);
 nlohmann::ordered_json receiversJson(const LpvReceivers& receivers);

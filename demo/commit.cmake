@@ -1,5 +1,5 @@
-# cmake -D SOURCE=... -D OUTPUT=... -P commit.cmake: the commit of the sources as a header. "+" behind it: files differ
-# from it.
+# cmake -D SOURCE=... -D OUTPUT=... -P commit.cmake: the commit of the sources as a header. A "+" after it means
+# that files differ from it.
 set(commit "unknown")
 find_program(GIT git)
 if(GIT AND EXISTS ${SOURCE}/.git)

@@ -117,8 +117,8 @@ nlohmann::ordered_json PictureOptions::toJson() const {
 
 namespace {
 
-/// The transport where none is named: that of the first setting or deviation that one transport alone reads, else
-/// paths, which have all light.
+/// The transport if none is named: that of the first setting or deviation read by one transport only, otherwise paths,
+/// which include all light.
 void chooseTransport(RenderSettings& settings, const PictureOptions& options,
                      const std::vector<const Setting*>& given) {
   const auto isSet = [&](std::string_view key) {

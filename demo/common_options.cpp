@@ -1,4 +1,4 @@
-// What every command has, the labs alone too (demo/labs_main.cpp): --host, --json and --quiet, progress, interruption.
+// Options of every command, including the labs: --host, --json and --quiet, progress, interruption.
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
@@ -15,10 +15,9 @@
 namespace lucerna::demo {
 
 void CommonOptions::declare(Command app) {
-  offer(
-      app.addOption("--host", host,
-                    "what creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
-      {"window", "egl", "osmesa"});
+  offer(app.addOption("--host", host,
+                      "creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
+        {"window", "egl", "osmesa"});
   app.addOption("--json", json, "write machine-readable results to this file");
   app.addFlag("--quiet", quiet, "no warnings, no progress");
 }
@@ -64,12 +63,12 @@ void Progress::update(int done) {
 }
 
 namespace {
-volatile std::sig_atomic_t g_interrupted = 0;  // the signal
+volatile std::sig_atomic_t g_interrupted = 0;  // the signal's number
 volatile std::time_t g_interruptedAt = 0;
 
 void onInterrupt(int signal) {
-  // A second Ctrl-C does not wait for the work to end; one that comes with the first (timeout signals a whole group) is
-  // the same.
+  // A second Ctrl-C does not wait for the work to end. One that arrives together with the first (timeout signals a
+  // whole group) counts as the same.
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   if (g_interrupted && now.tv_sec > g_interruptedAt + 1) std::_Exit(128 + signal);

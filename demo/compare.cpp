@@ -1,4 +1,4 @@
-// lucerna compare A B: errors of A, taking B for the truth, with heat maps where asked.
+// lucerna compare A B: errors of A with B as the truth, with heat maps on request.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/contact_sheet.hpp"
@@ -25,7 +25,7 @@ struct CompareOptions {
   std::string image, reference, heatMap, page, standardError;
 };
 
-/// The pair as one page with the reports' figure: A against B, which is of no time.
+/// The pair as one page with the reports' figure: A against B, without times.
 void writePage(const CompareOptions& options, const Image& image, const Image& reference, const measure::ImageErrors& e,
                const measure::Flip& flip) {
   std::optional<Image> error;
@@ -33,7 +33,7 @@ void writePage(const CompareOptions& options, const Image& image, const Image& r
   if (!options.standardError.empty()) {
     error = readImage(options.standardError);
     if (error->width != reference.width || error->height != reference.height)
-      throwBadInput("--standard-error {}: not of the size of {}", options.standardError, options.reference);
+      throwBadInput("--standard-error {}: not the same size as {}", options.standardError, options.reference);
     noise = measure::noiseOf(reference, *error, 0.0);
   }
   const measure::JudgedErrors judged = measure::lessNoise(e, noise);
@@ -81,7 +81,7 @@ void writePage(const CompareOptions& options, const Image& image, const Image& r
 
 void writeHeatMaps(const std::string& file, const Image& image, const Image& reference, double scale) {
   using measure::HeatMap;
-  if (!(scale > 0.0)) scale = 1.0;  // equal pictures: any scale shows that
+  if (!(scale > 0.0)) scale = 1.0;  // equal pictures: any scale will do
   const auto tile = [&](HeatMap kind) {
     const Bitmap picture = measure::heatMap(image, reference, kind, scale),
                  legend = measure::heatMapLegend(kind, picture.width, std::max(4, picture.height / 16));
@@ -125,7 +125,7 @@ int runCompare(const CompareOptions& options) {
         e.rmse, 100.0 * e.nrmse, 100.0 * blackNrmse, e.relmse, measure::kRelativeEpsilon);
     fmt::print("bias {:+.6g} ({:+.4f} %)   99th percentile {:.6g}   largest {:.6g}   HDR-FLIP {:.4f}\n", e.bias,
                100.0 * e.relativeBias, e.p99, e.max, flip);
-    if (e.notFinite > 0) fmt::print("{} pixels are not finite, so no measure is\n", e.notFinite);
+    if (e.notFinite > 0) fmt::print("{} pixels are not finite, so no measure is either\n", e.notFinite);
   }
   options.common.writeJson({{"a", options.image},
                             {"b", options.reference},
@@ -158,7 +158,7 @@ Work addCompare(Command app) {
   app.addOption("B", options->reference, "the reference, of the same size").required();
   app.addOption("--heatmap", options->heatMap, "OUT.png: absolute and signed differences side by side");
   app.addOption("--page", options->page,
-                "OUT.html: both in the viewer of the reports, with maps and values under the cursor");
+                "OUT.html: both in the reports' viewer, with maps and values under the cursor");
   app.addOption("--standard-error", options->standardError,
                 "with --page: B's standard error of each pixel, such as of lucerna merge --error; gives z-scores");
   options->common.declare(app);

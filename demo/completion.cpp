@@ -1,4 +1,4 @@
-// lucerna completion bash|zsh|fish: a completion script, from the command line's own tree.
+// lucerna completion bash|zsh|fish: generates a completion script from the command line's own tree.
 #include "base/error.hpp"
 #include "command_tree.hpp"
 #include "offers.hpp"
@@ -30,7 +30,7 @@ bool areKeys(const OptionEntry& option) {
   return std::any_of(option.values.begin(), option.values.end(), [](const std::string& v) { return v.back() == '='; });
 }
 
-/// Lists have one line an option: what stands before the first semicolon.
+/// Lists have one line per option: the description up to the first semicolon.
 std::string shortened(const std::string& description) { return description.substr(0, description.find(';')); }
 
 // ---------------------------------------------------------------------------------------------------- bash
@@ -92,7 +92,7 @@ _lucerna() {
 complete -F _lucerna lucerna
 )";
 
-/// What bash's functions answer for a value: the values, or <file>, or <none> where nothing can be offered.
+/// What bash's functions return for a value: the values, or <file>, or <none> if there is nothing to offer.
 std::string bashValues(const OptionEntry& option) {
   if (!option.values.empty()) return joined(option.values);
   return option.takesFile() ? "<file>" : "<none>";
@@ -141,7 +141,7 @@ std::string zshAction(const OptionEntry& option) {
   return "(" + values + ")";
 }
 
-/// Within an argument of _arguments ':' and brackets end a part.
+/// Within an argument of _arguments, ':' and brackets end a part.
 std::string zshText(const std::string& text) {
   return replaced(replaced(replaced(replaced(text, "\\", "\\\\"), ":", "\\:"), "[", "\\["), "]", "\\]");
 }
@@ -194,7 +194,7 @@ std::string zsh(const std::vector<CommandEntry>& commands) {
 
 // ---------------------------------------------------------------------------------------------------- fish
 
-/// Fish knows two escapes in single quotes.
+/// In single quotes fish knows two escapes.
 std::string inFishQuotes(const std::string& text) {
   return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'";
 }
@@ -237,7 +237,7 @@ std::string fish(const std::vector<CommandEntry>& commands) {
 Work addCompletion(Command app) {
   auto shell = std::make_shared<std::string>();
   offer(app.addOption("SHELL", *shell, "bash, zsh or fish").required(), {"bash", "zsh", "fish"});
-  app.setFooter("For this shell alone: source <(lucerna completion bash)");
+  app.setFooter("For the current shell only: source <(lucerna completion bash)");
   return [app, shell] {
     const std::vector<CommandEntry> commands = commandTree(app.parent());
     if (*shell == "bash") fmt::print("{}", bash(commands));

@@ -18,7 +18,7 @@ struct InfoOptions {
   bool devices = false, settings = false;
 };
 
-/// EGL's devices, and what each draws with. The first that host egl would try is marked.
+/// Lists EGL's devices and their renderers. The first that host egl would try is marked.
 int listDevices(const InfoOptions& options) {
   const std::vector<EglDevice> devices = eglDevices();
   const std::vector<std::size_t> order = eglPreference(devices);

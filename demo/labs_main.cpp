@@ -1,5 +1,4 @@
-// lucerna-labs: the command `lab` by itself, without museum and mystery, which render. It needs a fraction of the
-// build.
+// lucerna-labs: only the command `lab`, without museum and mystery, which render. It needs a fraction of the build.
 #include "labs/command.hpp"
 #include "run_commands.hpp"
 

@@ -1,4 +1,4 @@
-// lucerna: one executable, one subcommand a file.
+// lucerna: one executable, one subcommand per file.
 #include "cluster.hpp"
 #include "command_tree.hpp"
 #include "commands.hpp"
@@ -15,15 +15,15 @@ int main(int argc, char** argv) {
   commands.add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times",
                lucerna::demo::addWalk);
   commands.add("render", "Render one picture of a scene", lucerna::demo::addRender);
-  commands.add("merge", "Parts made by --part (samples, frames, batches, rows) as one", lucerna::demo::addMerge);
-  commands.add("cluster", "Work on many machines: a folder that they share, Slurm, or this machine alone",
+  commands.add("merge", "Merge parts made by --part (samples, frames, batches, rows)", lucerna::demo::addMerge);
+  commands.add("cluster", "Distribute work over many machines: by a shared folder, by Slurm, or on this machine only",
                lucerna::demo::addCluster);
-  commands.add("radiosity", "Radiosity by hemicubes: make a model, solve it, show it", lucerna::demo::addRadiosity);
+  commands.add("radiosity", "Radiosity by hemicubes: generate a model, solve it, show it", lucerna::demo::addRadiosity);
   commands.add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
   commands.add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL",
                lucerna::demo::addMedia);
   commands.add("bench",
-               "Measure: error over time, stability, what is left out; published tables and pictures made again",
+               "Measure: error over time, stability, unneeded features; reproduce published tables and pictures",
                lucerna::demo::addBench);
   commands.add("compare", "Errors between two HDR pictures, with heat maps", lucerna::demo::addCompare);
   commands.add("tune", "Measure a scene, and choose the technique and settings that meet a frame time or an error",

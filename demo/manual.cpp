@@ -1,5 +1,5 @@
-// lucerna manual: the manual page lucerna(1) in roff, from the command line's own tree; man(7) says what the requests
-// do.
+// lucerna manual: generates the manual page lucerna(1) in roff from the command line's own tree; man(7) documents the
+// requests.
 #include "command_tree.hpp"
 
 #include <fmt/core.h>
@@ -12,7 +12,7 @@ namespace lucerna::demo {
 
 namespace {
 
-/// Text that roff takes for text: no escapes, no requests at the beginning of a line, hyphens that can be searched for
+/// Escapes plain text for roff: no escapes, no requests at the beginning of a line, hyphens that can be searched for
 /// and copied.
 std::string escaped(const std::string& text) {
   std::string result;
@@ -75,7 +75,7 @@ std::string footerText(const std::string& footer) {
   return text;
 }
 
-/// What CommonOptions declares, and --help: told once.
+/// Options declared by CommonOptions, and --help: described once.
 bool isCommon(const OptionEntry& option) {
   const std::string& name = option.names.back();
   return name == "--help" || name == "--host" || name == "--json" || name == "--quiet";
@@ -106,7 +106,7 @@ const char* kExitCodes[][2] = {
 
 std::string manual(Command program) {
   const std::vector<CommandEntry> commands = commandTree(program);
-  // The date of the release, not of the build: the same sources give the same page.
+  // The date of the release rather than of the build: the same sources give the same page.
   std::string text = fmt::format(
       ".\\\" Made by `lucerna manual` from the command line's own tree.\n.TH LUCERNA 1 {} \"lucerna {}\" \"User "
       "Commands\"\n",
@@ -127,7 +127,7 @@ std::string manual(Command program) {
   for (const OptionEntry& option : walk->options)
     if (isCommon(option)) text += optionText(option, false);
   text += ".SH COMMANDS\n";
-  std::map<std::string, std::string> footers;  // told once: what it says, the command that has it
+  std::map<std::string, std::string> footers;  // printed once: text, and the command that has it
   for (const CommandEntry& command : commands) {
     if (!command.isLeaf()) continue;
     text += ".SS \"lucerna " + escaped(command.path) + "\"\n" + escaped(command.description) + ".\n";

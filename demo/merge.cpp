@@ -23,10 +23,10 @@ struct MergeOptions {
   double exposure = 1.0;
 };
 
-/// Frames, batches or rows: folders as one folder.
+/// Frames, batches or rows: merges folders into one.
 int mergeFolders(const MergeOptions& options) {
   for (const std::string& part : options.parts)
-    if (!isPartFolder(part)) throwBadInput("{}: is no folder of a --part, as those before it are", part);
+    if (!isPartFolder(part)) throwBadInput("{}: is not a folder of --part, unlike those before it", part);
   if (options.checkpoint.empty() || !options.output.empty())
     throwBadInput(
         "merge: parts of frames, batches or rows become one with --checkpoint FOLDER, from which their command goes "
@@ -50,10 +50,10 @@ int runMerge(MergeOptions options) {
         options.parts.push_back(entry.path().string());
     if (error) throwBadInput("--parts {}: {}", options.folder, error.message());
   }
-  if (options.parts.empty()) throwBadInput("merge: no parts were given");
+  if (options.parts.empty()) throwBadInput("merge: no parts given");
   if (std::filesystem::is_directory(options.parts.front())) return mergeFolders(options);
   if (options.output.empty() && options.checkpoint.empty())
-    throwBadInput("--output or --checkpoint is missing: where the picture or the film of all parts goes");
+    throwBadInput("--output or --checkpoint is missing: the file for the picture or the film of all parts");
   for (const std::string* file : {&options.output, &options.errorOutput})
     if (!file->empty() && !isWritableImageName(*file))
       throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", *file);

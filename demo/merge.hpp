@@ -1,5 +1,5 @@
-// lucerna merge PART...: parts of a path traced picture's samples as one picture, parts of frames, batches and rows as
-// one folder (parts.hpp).
+// lucerna merge PART...: merges parts of a path traced picture's samples into one picture, and parts of frames, batches
+// and rows into one folder (parts.hpp).
 #pragma once
 
 #include "command_line.hpp"

@@ -1,5 +1,5 @@
-// The values are the description of a validator that is never active: CLI11 has no other place in an option for what
-// its users add.
+// The values are stored as the description of a validator that is never active: CLI11 options have no other field for
+// user data.
 #include "offers.hpp"
 
 #include <CLI/App.hpp>

@@ -1,5 +1,4 @@
-// What completions offer for the values of an option: kept in the command line's own tree, seen neither by help nor by
-// parsing.
+// Values that completions offer for an option, stored in the command line's own tree, invisible to help and parsing.
 #pragma once
 
 #include "settings/settings.hpp"
@@ -10,16 +9,17 @@
 
 namespace lucerna::demo {
 
-/// `values` that end in '=' are keys, which a value follows. What was offered before is replaced.
+/// `values` that end in '=' are keys followed by a value. Replaces earlier offers.
 Option offer(Option option, const std::vector<std::string>& values);
 
-/// What was offered; empty where nothing was. (CLI11 gives validators of options that may be changed alone.)
+/// The offered values, possibly none. (CLI11 gives access to validators only on non-const options.)
 std::vector<std::string> offered(Option option);
 
-/// With spaces between them.
+/// The words joined by spaces.
 std::string joined(const std::vector<std::string>& words);
 
-/// "KEY=" of every setting of --set, with its values where they have names; of those that cost as much, or (null) all.
+/// "KEY=" of every setting of --set, followed by its values if they have names; only settings of that cost, or (null)
+/// all.
 std::vector<std::string> offeredSettings(const SettingCost* only = nullptr);
 
 }  // namespace lucerna::demo

@@ -46,7 +46,7 @@ Json readDescription(const fs::path& folder) {
   if (!json.is_object() || json.value("lucerna_part", 0) != 1 || !isText("command") || !isText("identity") ||
       !isNumber("units") || !isNumber("first") || !isNumber("last") || !json.contains("done") ||
       !json.at("done").is_boolean() || json.at("last") > json.at("units") || json.at("first") > json.at("last"))
-    throwBadInput("{}: no part of lucerna's --part, or a damaged one", file.string());
+    throwBadInput("{}: not a part made by --part, or a damaged one", file.string());
   return json;
 }
 
@@ -55,7 +55,7 @@ Json readDescription(const fs::path& folder) {
 void PartOptions::declare(Command app, const std::string& units) {
   app.addOption("--part", part,
                 "K/N: only part K of N, from 0, of the " + units +
-                    ", kept in --checkpoint and nothing else; lucerna merge makes one of all parts");
+                    ", stored in --checkpoint and nothing else; lucerna merge combines all parts");
   app.addOption("--checkpoint", checkpoint,
                 "a folder: finished " + units +
                     " are kept there and taken from there, such as those of lucerna merge --checkpoint");
@@ -64,7 +64,7 @@ void PartOptions::declare(Command app, const std::string& units) {
 PartOptions::Range PartOptions::rangeOf(std::size_t units) const {
   if (part.empty()) return {0, units};
   const PartOf p = parsePart(part);
-  if (checkpoint.empty()) throwBadInput("--part {}: needs --checkpoint PART, which lucerna merge takes", part);
+  if (checkpoint.empty()) throwBadInput("--part {}: needs --checkpoint PART, which lucerna merge reads", part);
   return {p.part * units / p.parts, (p.part + 1) * units / p.parts};
 }
 
@@ -102,7 +102,7 @@ std::optional<Json> PartFolder::load(std::size_t unit) const {
   if (!folder_ || !fs::exists(file(unit, ".json"))) return std::nullopt;
   Json json = Json::parse(readFileText(file(unit, ".json")), nullptr, false);
   if (!json.is_discarded()) return json;
-  logWarning("{}: damaged, is made again", file(unit, ".json").string());
+  logWarning("{}: damaged, will be recomputed", file(unit, ".json").string());
   return std::nullopt;
 }
 
@@ -134,10 +134,10 @@ void copyUnits(const fs::path& from, const fs::path& to) {
 }
 
 Json mergeParts(std::vector<fs::path> parts, const fs::path& whole) {
-  if (fs::exists(whole)) throwBadInput("--checkpoint {}: is there already; choose another folder", whole.string());
+  if (fs::exists(whole)) throwBadInput("--checkpoint {}: already exists; choose another folder", whole.string());
   std::vector<std::pair<Json, fs::path>> found;
   for (fs::path& part : parts) found.emplace_back(readDescription(part), std::move(part));
-  // In the order of their units; a part without any comes before the one that begins where it does.
+  // In the order of their units; an empty part comes before the one that begins at the same unit.
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
     return std::pair(a.first.at("first").template get<std::size_t>(), a.first.at("last").template get<std::size_t>()) <
            std::pair(b.first.at("first").template get<std::size_t>(), b.first.at("last").template get<std::size_t>());
@@ -150,17 +150,17 @@ Json mergeParts(std::vector<fs::path> parts, const fs::path& whole) {
         throwBadInput("{}: a part of another scene or of other settings than {} ({}: {} instead of {})", part.string(),
                       found.front().second.string(), key, json.at(key).dump(), all.at(key).dump());
     if (!json.at("done").get<bool>())
-      throwBadInput("{}: is not finished; the command that makes it goes on", part.string());
+      throwBadInput("{}: is not finished; the command that makes it resumes it", part.string());
     const auto first = json.at("first").get<std::size_t>(), last = json.at("last").get<std::size_t>();
     if (first < next && first != last)
-      throwBadInput("{}: holds the same units ({} to {}) as a part before it", part.string(), first,
+      throwBadInput("{}: holds the same units ({} to {}) as an earlier part", part.string(), first,
                     std::min(last, next) - 1);
     if (first > next) throwBadInput("units {} to {} are in no part (the next is {})", next, first - 1, part.string());
     next = std::max(next, last);
   }
   if (next < all.at("units").get<std::size_t>())
     throwBadInput("units {} to {} are in no part", next, all.at("units").get<std::size_t>() - 1);
-  // Beside its place until it is whole.
+  // Written next to its final place until it is complete.
   const fs::path draft = fmt::format("{}.draft.{}", whole.string(), ::getpid());
   std::error_code error;
   fs::create_directories(draft, error);

@@ -1,10 +1,10 @@
-// Work that is cut into units (frames, batches, rows), so that many machines make parts of it: `--part K/N --checkpoint
+// Work divided into units (frames, batches, rows), so that many machines compute parts of it: `--part K/N --checkpoint
 // PART` (no GL).
 //
-// A part is a folder. part.json says which command's units it holds; what else lies in it is the command's own, under
-// names that no other part of the same work uses, or with the same bytes. `lucerna merge` puts parts together as one
-// folder of the same kind, and the command with `--checkpoint FOLDER` takes from it what is there, makes what is
-// missing, and writes its result: so the result of parts is that of one run.
+// A part is a folder. part.json says which command's units it holds; all other content belongs to the command, under
+// names that no other part of the same work uses, or with the same bytes. `lucerna merge` combines parts into one
+// folder of the same kind. The command with `--checkpoint FOLDER` reads what is there, computes what is missing, and
+// writes its result: so the result of parts equals that of one run.
 #pragma once
 
 #include "command_line.hpp"
@@ -20,42 +20,42 @@
 namespace lucerna::demo {
 
 struct PartOptions {
-  std::string part;  ///< "K/N": part K of N, from 0; empty: all
+  std::string part;  ///< "K/N": part K of N, counted from 0; empty: all
   std::string checkpoint;  ///< a folder; empty: none
 
-  /// `units`: what the work is cut into, for --help.
+  /// `units`: name of the units of work, for --help.
   void declare(Command app, const std::string& units);
   bool isPart() const { return !part.empty(); }
   struct Range {
-    std::size_t first = 0, last = 0;  ///< `last` not counted; empty where there are more parts than units
+    std::size_t first = 0, last = 0;  ///< `last` is exclusive; empty if there are more parts than units
   };
-  /// Throws Error(badInput) where --part is no K/N, or --checkpoint is missing beside it.
+  /// Throws Error(badInput) if --part is not K/N, or --checkpoint is missing next to it.
   Range rangeOf(std::size_t units) const;
 };
 
-/// The folder of a part or of all units. Without --checkpoint nothing is kept.
+/// The folder of a part or of all units. Without --checkpoint nothing is stored.
 class PartFolder {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// `command`: such as "bench stability"; `identity`: a line with all that decides the units, except which there are.
-  /// Makes the folder, or goes on with one of the same work and part. Throws Error(badInput) where it holds something
-  /// else.
+  /// `command`: for example "bench stability"; `identity`: one line with everything that determines the units, except
+  /// their selection. Creates the folder, or continues one of the same work and part. Throws Error(badInput) if it
+  /// holds something else.
   PartFolder(const PartOptions& options, const std::string& command, const std::string& identity, std::size_t units);
 
   bool isPart() const { return isPart_; }
   std::size_t first() const { return range_.first; }
   std::size_t last() const { return range_.last; }
   std::size_t units() const { return units_; }
-  /// FOLDER/NAME; only where something is kept.
+  /// FOLDER/NAME; only if results are stored.
   const std::optional<std::filesystem::path>& folder() const { return folder_; }
 
-  /// A unit's result, if it is kept. One that is damaged is made again.
+  /// A unit's stored result, if any. A damaged one is recomputed.
   std::optional<Json> load(std::size_t unit) const;
   void store(std::size_t unit, const Json& result) const;
-  /// Where a unit's file lies: its number with this extension, such as ".png".
+  /// The path of a unit's file: its number with this extension, such as ".png".
   std::filesystem::path file(std::size_t unit, const std::string& extension) const;
-  /// All units of the part are there: without that, merge refuses it.
+  /// Marks all units of the part as present: otherwise merge rejects it.
   void finish() const;
 
  private:
@@ -68,15 +68,14 @@ class PartFolder {
   bool isPart_;
 };
 
-/// Whether a folder is one of these.
+/// Whether a folder is a part folder.
 bool isPartFolder(const std::filesystem::path& folder);
 
-/// The parts as one folder of all units, made anew at `whole`; returns its part.json. Throws Error(badInput) where
-/// parts are of another command, scene or settings, are not finished, hold units that another one holds, or leave some
-/// out, or where files of one name differ.
+/// Merges the parts into one new folder `whole` of all units; returns its part.json. Throws Error(badInput) if parts
+/// differ in command, scene or settings, are unfinished, overlap or leave gaps, or if files of the same name differ.
 nlohmann::ordered_json mergeParts(std::vector<std::filesystem::path> parts, const std::filesystem::path& whole);
 
-/// Copies what such a folder holds, but for part.json, into another one; files of one name must be the same.
+/// Copies the content of such a folder, except part.json, into another one; files of the same name must be equal.
 void copyUnits(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace lucerna::demo

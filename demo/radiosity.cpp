@@ -23,7 +23,7 @@ struct Generate {
   CommonOptions common;
   std::string file, model;  // 1, 2, 3, or a scene file
   std::vector<double> numbers;  // threshold, reflectance, light power; all or none
-  std::optional<double> edge;  // of a scene's triangles
+  std::optional<double> edge;  // for a scene's triangles
   std::uint32_t power = RadSceneSettings{}.lightPower;
 };
 
@@ -39,8 +39,8 @@ int generateFromScene(const Generate& options) {
   const RadScene made = radTrianglesOf(scene, {options.edge.value_or(0.0), options.power});
   if (scene.sun || !scene.spots.empty() || !scene.points.empty() || scene.environment)
     logWarning(
-        "{}: the original's files have no other lights than triangles that emit: its sun, lamps and environment are "
-        "left out",
+        "{}: the original's files have no lights except emissive triangles: its sun, lamps and environment are left "
+        "out",
         options.model);
   writeRadFile(options.file, made.triangles);
   if (!options.common.quiet)
@@ -75,7 +75,7 @@ int generate(const Generate& options) {
     settings.areaThreshold = options.numbers[0];
     settings.reflectance = options.numbers[1];
     double power = options.numbers[2];
-    // The manual allows 2^24, which three bytes just do not hold.
+    // The manual allows 2^24, which just does not fit into three bytes.
     if (power == 16777216.0) {
       logWarning("LIGHT_POWER 16777216: does not fit into 24 bits; using {}", kRadMost);
       power = kRadMost;
@@ -165,9 +165,9 @@ Work addSolve(Command app) {
   auto options = std::make_shared<RadiositySolve>();
   app.addOption("IN", options->in, "a triangle file; corrected: or any scene").required();
   app.addOption("OUT", options->out,
-                "file that every sweep is saved to; may be IN. Ctrl-C stops at any time, the same command resumes")
+                "file to save every sweep to; may be IN. Ctrl-C stops at any time, the same command resumes")
       .required();
-  // Options that are shorter spellings of settings; the original reads some of them itself.
+  // Options that are shorthands for settings; the original reads some of them itself.
   auto shorter = std::make_shared<std::vector<std::pair<const char*, Option>>>();
   const auto shortFor = [&](const char* key, Option option) {
     shorter->emplace_back(key, option);
@@ -222,7 +222,7 @@ Work addSolve(Command app) {
           "corrected: radiosity.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated"),
       offeredSettings(&kSolutionCost));
   offer(addShort("--visibility", "radiosity.visibility",
-                 "what tells pixels what they see: auto (measured at start), raster, rays, item-buffer"),
+                 "visibility method of pixels: auto (measured at start), raster, rays, item-buffer"),
         {"auto", "raster", "rays", "item-buffer"});
   app.setFooter(radiosityDeviationsHelp());
   options->common.declare(app);
@@ -243,7 +243,7 @@ Work addSolve(Command app) {
 
 Work addRadiosity(Command app) {
   Subcommands commands(app);
-  commands.add("generate", "Make one of the original's three models, or triangles of any scene", addGenerate);
+  commands.add("generate", "Generate one of the original's three models, or triangles of any scene", addGenerate);
   commands.add("solve", "Compute the radiosity of a scene", addSolve);
   commands.add("show", "Show a triangle file in a window, or render a picture of it", addRadiosityShow);
   return commands.work();

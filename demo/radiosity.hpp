@@ -1,4 +1,4 @@
-// `lucerna radiosity`: what its parts share.
+// `lucerna radiosity`: declarations shared by its parts.
 #pragma once
 
 #include "commands.hpp"
@@ -11,24 +11,24 @@
 
 namespace lucerna::demo {
 
-/// `lucerna radiosity solve`: everything on its command line, checked as far as both solvers agree.
+/// `lucerna radiosity solve`: all of its command line, checked as far as both solvers agree.
 struct RadiositySolve {
   CommonOptions common;
-  PartOptions part;  ///< corrected: of rows of hemicubes
+  PartOptions part;  ///< corrected: rows of hemicubes
   std::string in, out, fidelity = "corrected", solver;
   std::vector<std::string> deviations;
-  std::vector<std::string> set;  ///< corrected: radiosity.KEY=VALUE as `lucerna render` takes them
-  /// Corrected: the other options, which are shorter spellings of settings: option, KEY=VALUE. They come before `set`.
+  std::vector<std::string> set;  ///< corrected: radiosity.KEY=VALUE as for `lucerna render`
+  /// Corrected: the other options, which are shorthands for settings: option, KEY=VALUE. They come before `set`.
   std::vector<std::pair<std::string, std::string>> shortSettings;
-  int resolution = 500;  ///< original: pixels a side of a hemicube
+  int resolution = 500;  ///< original: pixels per side of a hemicube
   int maxSweeps = 0;  ///< original; 0: no limit
-  unsigned seed = 1;  ///< original: of the random roll
+  unsigned seed = 1;  ///< original: for the random roll
   std::optional<double> nearPlane;
   double saveEvery = 10.0;  ///< seconds between checkpoints within a sweep
-  bool restart = false;  ///< take no checkpoint up
+  bool restart = false;  ///< ignore checkpoints
 };
 
-/// The published program on its own file format; --fidelity corrected goes to a function of the same shape beside it.
+/// The published program on its own file format; --fidelity corrected has a function of the same form below.
 /// demo/radiosity_original.cpp
 int solveOriginal(const RadiositySolve& options);
 /// Any scene or triangle file. demo/radiosity_corrected.cpp

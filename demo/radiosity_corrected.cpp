@@ -1,6 +1,6 @@
 // lucerna radiosity solve --fidelity corrected: any scene, or a triangle file of the original.
-// A scene's solution is a file that `render --technique radiosity --set radiosity.file=OUT` shows; a triangle file gets
-// its b, as the original's does.
+// A scene's solution is a file that `render --technique radiosity --set radiosity.file=OUT` displays; a triangle file
+// receives its b, as with the original.
 #include "radiosity.hpp"
 
 #include "base/error.hpp"
@@ -23,7 +23,7 @@ namespace lucerna::demo {
 
 namespace {
 
-/// A triangle file's size follows from its first four bytes.
+/// A triangle file's size is determined by its first four bytes.
 bool isRadFile(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::uint32_t count = 0;
@@ -33,8 +33,8 @@ bool isRadFile(const std::filesystem::path& file) {
          size == 4 + std::uintmax_t{count} * sizeof(RadTriangle);
 }
 
-/// The bag of triangles as a scene: a material for each pair of reflectance and emission. Exitances are the file's own
-/// whole numbers.
+/// The bag of triangles as a scene: one material for each pair of reflectance and emission. Exitances are the file's
+/// own whole numbers.
 Scene sceneOf(const std::vector<RadTriangle>& triangles, const std::string& name) {
   Scene scene;
   scene.name = name;
@@ -60,7 +60,7 @@ Scene sceneOf(const std::vector<RadTriangle>& triangles, const std::string& name
   return scene;
 }
 
-/// Tells a file from what takes its place.
+/// Distinguishes a file from one that replaces it.
 std::array<std::int64_t, 4> stampOf(const std::string& file) {
   struct stat s {};
   if (::stat(file.c_str(), &s) != 0) return {};
@@ -68,7 +68,7 @@ std::array<std::int64_t, 4> stampOf(const std::string& file) {
           static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
 }
 
-/// A part's rows alone.
+/// Computes only a part's rows.
 int makePart(const RadiositySolve& options, const gl::Context& context, gl::ProgramLibrary& programs,
              const Scene& scene, const RadiositySolutionSettings& settings) {
   FormFactorParts rows(context, programs, scene, settings);
@@ -83,7 +83,7 @@ int makePart(const RadiositySolve& options, const gl::Context& context, gl::Prog
       progress.update(static_cast<int>(done));
       return !interrupted();
     });
-  if (interrupted()) throw Stopped(fmt::format("stopped; the same command goes on from {}", options.part.checkpoint));
+  if (interrupted()) throw Stopped(fmt::format("stopped; the same command resumes from {}", options.part.checkpoint));
   part.finish();
   if (!options.common.quiet)
     fmt::print("{}: rows {} to {} of {} by {}, {} made now\n", options.part.checkpoint, part.first(), part.last(),
@@ -95,12 +95,12 @@ int makePart(const RadiositySolve& options, const gl::Context& context, gl::Prog
   return 0;
 }
 
-/// The rows of all parts as the checkpoint from which solving goes on.
+/// Joins the rows of all parts into the checkpoint from which solving continues.
 void takeParts(const RadiositySolve& options, const std::filesystem::path& checkpoint) {
   if (!isPartFolder(options.part.checkpoint))
     throwBadInput("--checkpoint {}: is no folder of lucerna merge; a solution's own checkpoint is OUT.rows",
                   options.part.checkpoint);
-  if (std::filesystem::exists(checkpoint)) return;  // was begun
+  if (std::filesystem::exists(checkpoint)) return;  // already begun
   std::vector<std::pair<std::uint32_t, std::filesystem::path>> files;
   for (const auto& entry : std::filesystem::directory_iterator(options.part.checkpoint))
     if (entry.path().extension() == ".rows")
@@ -136,7 +136,7 @@ int solveCorrected(const RadiositySolve& options) {
   settings.wholeTriangles = rad;
   if (rad) settings.refinements = 0;
 
-  // A part alone; or the whole, from the rows that there are.
+  // Compute only a part; or the whole, starting from existing rows.
   const auto host = options.common.makeHost(false);
   gl::Context context;
   gl::ProgramLibrary programs;
@@ -160,13 +160,14 @@ int solveCorrected(const RadiositySolve& options) {
       });
   if (stampOf(options.out) != before)
     throwBadInput(
-        "{}: was changed by something else while it was being solved; it is left as it is. The same command takes the "
+        "{}: was changed by another program while it was being solved; it is left unchanged. The same command takes "
+        "the "
         "form factors from {}",
         options.out, checkpoint.string());
-  // Kept in the kind of file that it came from, then told.
+  // Store the result in the same kind of file as the input, then report it.
   if (rad) {
     for (RadTriangle& triangle : triangles) triangle.b = 0;
-    // Patches name triangles in the scene's order, which is by material.
+    // Patches index triangles in the scene's order, which is by material.
     for (std::size_t i = 0; i < solution.irradiance.size(); ++i) {
       const std::size_t index = scene.indices[3 * solution.mesh.patches[i].triangle] / 3;
       triangles[index].b = static_cast<std::uint32_t>(

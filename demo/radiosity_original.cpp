@@ -1,4 +1,4 @@
-// lucerna radiosity solve --fidelity original: the published program's run, its files safe at every moment.
+// lucerna radiosity solve --fidelity original: runs the published program, with its files safe at any moment.
 #include "radiosity.hpp"
 
 #include "base/clock.hpp"
@@ -29,7 +29,7 @@ class Files {
 
   const fs::path& checkpoint() const { return checkpoint_; }
 
-  /// What OUT holds, or is about to hold where it is not there yet.
+  /// The content of OUT, or its intended content if it does not exist yet.
   void holds(std::span<const RadTriangle> triangles) {
     digest_ = digestOf(encodeRadFile(triangles));
     stamp_ = stamp();
@@ -40,7 +40,7 @@ class Files {
     writeCheckpoint(checkpoint_, {digest_, digest_, settings_, progress});
   }
 
-  /// First the checkpoint, which fits OUT before and after, then OUT.
+  /// Writes the checkpoint first, which matches OUT before and after the update, then OUT.
   void saveSweep(const OriginalProgress& progress, std::span<const RadTriangle> triangles) {
     refuseIfChanged();
     const std::uint64_t after = digestOf(encodeRadFile(triangles));
@@ -66,8 +66,9 @@ class Files {
   void refuseIfChanged() const {
     if (stamp() != stamp_)
       throwBadInput(
-          "{}: was changed by something else since this run last wrote or read it; it is left as it is, and what was "
-          "computed since is lost",
+          "{}: was changed by another program since this run last wrote or read it; it is left unchanged, and the "
+          "results "
+          "since then are lost",
           out_.string());
   }
 
@@ -86,7 +87,7 @@ bool sameButReceived(std::span<const RadTriangle> a, std::span<const RadTriangle
   return true;
 }
 
-/// The checkpoint beside OUT, if this very run can go on with it; else nothing, and a warning says why.
+/// The checkpoint next to OUT, if this very run can continue from it; otherwise nothing, with a warning that says why.
 std::optional<OriginalProgress> takeUp(const RadiositySolve& options, std::span<const RadTriangle> triangles,
                                        std::uint64_t settings) {
   const fs::path file = checkpointOf(options.out);
@@ -98,9 +99,9 @@ std::optional<OriginalProgress> takeUp(const RadiositySolve& options, std::span<
   };
   try {
     const OriginalCheckpoint checkpoint = readCheckpoint(file);
-    if (checkpoint.settings != settings) return unused("made with other settings or on another renderer");
+    if (checkpoint.settings != settings) return unused("made with different settings or on a different renderer");
     if (checkpoint.progress.received.size() != triangles.size()) return unused("of another scene");
-    std::uint64_t there = digestOf(encodeRadFile(triangles));  // OUT may not be there yet: then it would be IN
+    std::uint64_t there = digestOf(encodeRadFile(triangles));  // OUT may not exist yet: then it would equal IN
     if (fs::exists(options.out, error)) {
       const std::vector<RadTriangle> out = readRadFile(options.out);
       if (!sameButReceived(out, triangles)) return unused(options.out + " holds another scene");
@@ -112,7 +113,7 @@ std::optional<OriginalProgress> takeUp(const RadiositySolve& options, std::span<
   } catch (const Error& fault) { return unused(fault.what()); }
 }
 
-/// Whole numbers come to rest; floats may go on trading their last bit.
+/// Whole numbers stop changing; floats may keep changing their last bit.
 double leastChange(const OriginalRadiosity::Settings& settings, std::span<const float> received) {
   return settings.deviations.values24Bit ? 0.0 : 1e-7 * std::accumulate(received.begin(), received.end(), 0.0);
 }
@@ -120,7 +121,7 @@ double leastChange(const OriginalRadiosity::Settings& settings, std::span<const 
 }  // namespace
 
 int solveOriginal(const RadiositySolve& options) {
-  // Settings, as the options have them.
+  // Settings from the options.
   OriginalRadiosity::Settings settings;
   settings.view = options.resolution;
   settings.seed = options.seed;
@@ -133,7 +134,7 @@ int solveOriginal(const RadiositySolve& options) {
   }
   for (const std::string& deviation : options.deviations) applyRadiosityDeviation(settings.deviations, deviation);
 
-  // The scene, and the program that was published.
+  // Read the scene and create the published program's solver.
   const std::vector<RadTriangle> triangles = readRadFile(options.in);
   const std::size_t zeroArea = checkRadTriangles(triangles, options.in);
   if (zeroArea > 0) logWarning("{}: {} triangles without area are left out of the computation", options.in, zeroArea);
@@ -145,7 +146,7 @@ int solveOriginal(const RadiositySolve& options) {
   OriginalRadiosity solver(programs, triangles, settings);
   const std::uint64_t key = digestOf(settings, solver.nearPlane(), renderer);
 
-  // A run that was stopped goes on from its files.
+  // Continue a stopped run from its files.
   OriginalProgress progress = solver.start();
   std::error_code error;
   Files files(options.out, key);
@@ -157,10 +158,10 @@ int solveOriginal(const RadiositySolve& options) {
                  progress.done, triangles.size());
   } else {
     files.holds(triangles);
-    files.saveSweep(progress, triangles);  // so that a folder or disk that cannot be written is known before the work
+    files.saveSweep(progress, triangles);  // so that an unwritable folder or disk is detected before the work
   }
 
-  // Sweeps, until nothing changes; kept after each and every so often within one.
+  // Sweep until nothing changes; save after each sweep and regularly within one.
   watchForInterrupt();
   const auto start = Clock::now();
   const std::uint32_t sweepsBefore = progress.sweeps;
@@ -201,7 +202,7 @@ int solveOriginal(const RadiositySolve& options) {
         "LIGHT_POWER avoids it)",
         options.in, solver.overflows());
 
-  // What it came to, for people and as JSON.
+  // Report the result, for people and as JSON.
   const double hemicubes = static_cast<double>(solver.hemicubes());
   const double rate = seconds > 0.0 ? hemicubes / seconds : 0.0,
                triangleRate = seconds > 0.0 ? static_cast<double>(solver.drawnTriangles()) / seconds / 1e6 : 0.0;
@@ -213,7 +214,7 @@ int solveOriginal(const RadiositySolve& options) {
         options.out, triangles.size(), progress.sweeps,
         settled   ? "nothing changes any more"
         : stopped ? "stopped; the same command resumes it"
-                  : "as many as asked for",
+                  : "as many as requested",
         seconds, rate, triangleRate, balance, renderer);
   }
   nlohmann::ordered_json json;

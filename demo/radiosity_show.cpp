@@ -51,7 +51,7 @@ RadDisplay displayOf(const RadiosityShowOptions& options) {
   return display;
 }
 
-/// What the window shows; its pictures lie in the scene.
+/// The window's content; its pictures lie in the scene.
 struct Shown {
   std::span<const RadTriangle> triangles;
   RadDisplay display;

@@ -27,12 +27,13 @@ struct RenderOptions {
   int repeat = 1;
 };
 
-/// --ask: prints what lit a pixel. Path tracing follows the paths of that pixel alone.
+/// --ask: prints what lit a pixel. Path tracing traces only that pixel's paths.
 int ask(const RenderOptions& options) {
-  if (!options.output.empty()) throwBadInput("--ask {}: prints JSON and writes no picture: not with -o", options.ask);
+  if (!options.output.empty())
+    throwBadInput("--ask {}: prints JSON and writes no picture; cannot be combined with -o", options.ask);
   const PathOptions& path = options.path;
   if (path.seconds || path.error || !path.samples.empty() || !path.part.empty() || !path.checkpoint.empty())
-    throwBadInput("--ask {}: of path tracing takes --spp, --bounces and --seed", options.ask);
+    throwBadInput("--ask {}: with path tracing accepts --spp, --bounces and --seed", options.ask);
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
   if (settings.radiosity.direct == RadiosityView::Direct::automatic)
@@ -61,7 +62,7 @@ int ask(const RenderOptions& options) {
 }
 
 int runRender(RenderOptions options) {
-  // What is asked for, refused before any work where it cannot be done.
+  // Check the request before any work.
   options.common.apply();
   if (!options.output.empty()) checkWritable(options.output);
   options.picture.readSettingsFile();
@@ -70,7 +71,7 @@ int runRender(RenderOptions options) {
   if (!options.ask.empty()) return ask(options);
   if (options.picture.technique == "path")
     return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
-  if (options.output.empty()) throwBadInput("--output is missing: where the picture goes");
+  if (options.output.empty()) throwBadInput("--output is missing: the file for the picture");
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
   if (settings.radiosity.direct == RadiosityView::Direct::automatic)
@@ -80,7 +81,7 @@ int runRender(RenderOptions options) {
   const Scene scene = loadScene(options.scene);
   const Camera camera = chooseCamera(scene, options.camera);
 
-  // The picture.
+  // Render.
   const auto host = options.common.makeHost(false);
   gl::Context context;
   if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
@@ -94,7 +95,7 @@ int runRender(RenderOptions options) {
   const double seconds = secondsSince(start) / options.repeat;
   renderer.drain();
 
-  // Written, then told to people and as JSON.
+  // Write the picture, then report for people and as JSON.
   const Image image = renderer.readRadiance();
   if (lowerExtension(options.output) == ".png") writePng(options.output, renderer.readDisplay());
   else writeImage(options.output, image);
@@ -159,9 +160,10 @@ Work addRender(Command app) {
   app.addOption("-o,--output", options->output,
                 "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");
   app.addOption("--repeat", options->repeat, "draw this many frames, for stage times").range(1, 100000).showDefault();
-  app.addOption("--ask", options->ask,
-                "X,Y: instead of a picture print as JSON what lit this pixel, from the top left: each lamp, texel, "
-                "cell, receiver, patch or path, with its share");
+  app.addOption(
+      "--ask", options->ask,
+      "X,Y: instead of writing a picture, print as JSON what lit this pixel, from the top left: each lamp, texel, "
+      "cell, receiver, patch or path, with its share");
   options->picture.declare(app);
   options->path.declare(app);
   options->common.declare(app);

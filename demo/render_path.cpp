@@ -22,7 +22,7 @@ nlohmann::ordered_json finiteOrNull(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-/// Of the original's pictures [VPT2024].
+/// Size of the original's pictures [VPT2024].
 constexpr const char* kPublishedSize = "1920x1080";
 
 /// Whether a scene file is the original's JSON, which has a key "scene".
@@ -35,13 +35,14 @@ bool isOriginalScene(const std::string& file) {
 struct SampleRange {
   std::uint32_t first = 0, last = 0;
 };
-/// Of --samples "FIRST:LAST" or --part "K/N"; empty where neither was given.
+/// From --samples "FIRST:LAST" or --part "K/N"; empty if neither was given.
 std::optional<SampleRange> sampleRange(const PathOptions& path) {
   if (!path.part.empty()) {
     if (!path.samples.empty() || path.seconds || path.error)
-      throwBadInput("--part {}: is a part of the samples of --spp; --samples, --seconds and --error do not go with it",
-                    path.part);
-    if (!path.spp) throwBadInput("--part {}: needs --spp, the samples that all parts have together", path.part);
+      throwBadInput(
+          "--part {}: is a part of the samples of --spp; it cannot be combined with --samples, --seconds and --error",
+          path.part);
+    if (!path.spp) throwBadInput("--part {}: needs --spp, the total number of samples", path.part);
     const PartOptions::Range range = PartOptions{path.part, path.checkpoint}.rangeOf(*path.spp);
     if (range.first == range.last)
       throwBadInput("--part {}: has no sample of --spp {}; choose fewer parts", path.part, *path.spp);
@@ -61,32 +62,33 @@ std::optional<SampleRange> sampleRange(const PathOptions& path) {
     throwBadInput("--samples {}: expected FIRST:LAST, whole numbers, FIRST below LAST, LAST at most {}", path.samples,
                   kMost);
   if (path.spp || path.seconds || path.error)
-    throwBadInput("--samples {}: says how many samples there are; --spp, --seconds and --error do not go with it",
+    throwBadInput("--samples {}: sets the number of samples; it cannot be combined with --spp, --seconds and --error",
                   path.samples);
   if (path.checkpoint.empty())
-    throwBadInput("--samples {}: needs --checkpoint PART, which lucerna merge takes", path.samples);
+    throwBadInput("--samples {}: needs --checkpoint PART, which lucerna merge reads", path.samples);
   return SampleRange{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
 }
 
 }  // namespace
 
 void PathOptions::declare(Command app) {
-  app.addOption("--spp", spp, "path: samples per pixel, at most (64, without --seconds and --error)")
+  app.addOption("--spp", spp, "path: maximum samples per pixel (64, without --seconds and --error)")
       .range(1u, 4000000000u);
   app.addOption("--seconds", seconds, "path: stop after this time, with at least one sample per pixel").positive();
   app.addOption("--error", error,
                 "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance")
       .positive();
-  app.addOption("--bounces", bounces, "path: leave out light that was scattered more often (no limit)");
+  app.addOption("--bounces", bounces, "path: maximum number of scatterings (no limit)");
   app.addOption("--checkpoint", checkpoint,
                 "path: resume from this file if it exists; it is written every minute and at the end. Without it a "
                 "stopped picture is stored in OUT.film, and the same command resumes it");
-  app.addOption("--samples", samples,
-                "path: FIRST:LAST, a part of the samples of a pixel, FIRST up to but without LAST, kept by "
-                "--checkpoint; lucerna merge makes one picture of all parts");
+  app.addOption(
+      "--samples", samples,
+      "path: FIRST:LAST, a part of each pixel's samples, LAST excluded, stored by --checkpoint; lucerna merge "
+      "makes one picture of all parts");
   app.addOption("--part", part, "path: K/N, part K of N, from 0, of the samples of --spp, as --samples");
   app.addOption("--save-every", saveEvery, "path: seconds between checkpoints").showDefault().range(0.0, 1e6);
-  app.addOption("--seed", seed, "path: of the random numbers (0)");
+  app.addOption("--seed", seed, "path: seed of the random numbers (0)");
 }
 
 void PathOptions::refuseIfGiven(const std::string& technique) const {
@@ -118,13 +120,13 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const RenderSettings shared = rest.parse();
   const PathTracer::Settings settings = tracerSettings(picture, path, shared);
   const std::optional<SampleRange> part = sampleRange(path);
-  if (output.empty() && !part) throwBadInput("--output is missing: where the picture goes");
+  if (output.empty() && !part) throwBadInput("--output is missing: the file for the picture");
   if (!output.empty() && !isWritableImageName(output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
   const Scene scene = loadScene(sceneFile);
   const Camera camera = chooseCamera(scene, cameraText);
 
-  // The path tracer, and the film that an earlier run left.
+  // Create the path tracer, and load the film of an earlier run.
   const auto host = common.makeHost(false);
   gl::Context context;
   if (std::max(settings.size.x, settings.size.y) > context.capabilities().maxTextureSize)
@@ -133,7 +135,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   gl::ProgramLibrary programs;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
-  // Without --checkpoint the film is kept beside the picture, only where the work was stopped.
+  // Without --checkpoint the film is stored next to the picture, and only if the work was stopped.
   const std::string checkpoint = path.checkpoint.empty() ? output + ".film" : path.checkpoint;
   if (std::filesystem::exists(checkpoint)) {
     const std::vector<std::uint8_t> bytes = readFileBytes(checkpoint);
@@ -148,7 +150,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const auto save = [&] { writeFileAtomically(checkpoint, tracer.checkpoint()); };
   watchForInterrupt();
 
-  // Samples, to their number, time or error.
+  // Targets: number of samples, time or error.
   const std::uint32_t target =
       part ? part->last - part->first
            : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : shared.path.samples);
@@ -159,7 +161,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const std::uint32_t resumed = done;
   double saved = 0.0;
   bool stopped = false;
-  // Within a step too, since steps grow to hours.
+  // Also save within a step, since steps grow to hours.
   const auto saveNowAndThen = [&] {
     if (path.checkpoint.empty() || elapsed() <= saved + path.saveEvery) return;
     try {
@@ -167,7 +169,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     } catch (const Error& error) { logWarning("--checkpoint {}; rendering continues without it", error.what()); }
     saved = elapsed();
   };
-  // Samples in steps: between them the error is looked at, and all pixels have the same number.
+  // Sample in steps: between them the error is checked, and all pixels have the same number of samples.
   while (done < target && !stopped) {
     const std::uint32_t next = std::min(target, done + std::max(1u, done / 4));
     while (!stopped && tracer.advance(next)) {
@@ -188,13 +190,13 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
                               tracer.statistics().samples, checkpoint));
   }
 
-  // The picture; then told to people and as JSON.
+  // Write the picture; then report for people and as JSON.
   const PathTracer::Statistics statistics = tracer.statistics();
   const Image image = tracer.mean();
   if (lowerExtension(output) == ".png") writePng(output, toneMapped(image, shared.exposure.value_or(scene.exposure)));
-  else if (!output.empty())  // of a part the checkpoint may be all that is wanted
+  else if (!output.empty())  // for a part, only the checkpoint may be wanted
     writeImage(output, image);
-  // After the picture: a disk that is full does not cost it.
+  // After the picture, so that a full disk does not cost it.
   if (!path.checkpoint.empty()) save();
   else std::filesystem::remove(checkpoint);
   if (!common.quiet)

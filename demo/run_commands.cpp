@@ -1,4 +1,4 @@
-// Errors become one line and an exit code: 2 bad input, 3 missing capability, 1 a fault of ours.
+// Turns errors into one line and an exit code: 2 bad input, 3 missing capability, 1 internal error.
 #include "run_commands.hpp"
 
 #include "base/error.hpp"
@@ -20,7 +20,7 @@
 
 namespace {
 
-/// One line of an error, whatever files and options put into it; the driver's log of a program keeps its lines.
+/// Prints an error on one line, whatever files and options put into it; a driver's log of a program keeps its lines.
 void printError(std::string message) {
   const bool keepsLines = message.starts_with("program ");
   for (char& c : message)
@@ -28,14 +28,14 @@ void printError(std::string message) {
   fmt::print(stderr, "lucerna: {}\n", message);
 }
 
-/// A full disk behind standard output is only reported here.
+/// A full disk behind standard output is reported only here.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.flush()) return code;
   printError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
   return code != 0 ? code : static_cast<int>(lucerna::ErrorKind::missingCapability);
 }
 
-/// One kind in one place: numbers of options that are not finite, or beyond any use, are refused before a command sees
+/// Checks in one place: numbers in options that are not finite, or absurdly large, are rejected before a command sees
 /// them.
 void checkNumbers(const CLI::App& app) {
   constexpr double kMost = 1e12;
@@ -89,7 +89,7 @@ int lucerna::demo::runCommands(Command program, const Work& work, int argc, char
     printError("out of memory");
     return static_cast<int>(lucerna::ErrorKind::missingCapability);
   } catch (const std::system_error& error) {
-    // The system's own refusals: standard output that is full, threads that cannot be made.
+    // Errors of the system itself: standard output is full, threads cannot be created.
     printError(error.what());
     return static_cast<int>(lucerna::ErrorKind::missingCapability);
   } catch (const std::exception& error) {

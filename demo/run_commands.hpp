@@ -1,11 +1,11 @@
-// Parses the command line and runs the subcommand that it names.
+// Parses the command line and runs the named subcommand.
 #pragma once
 
 #include "command_line.hpp"
 
 namespace lucerna::demo {
 
-/// The exit code of the program; whatever goes wrong is printed as one line.
+/// Returns the program's exit code; prints any error as one line.
 int runCommands(Command app, const Work& work, int argc, char** argv);
 
 }  // namespace lucerna::demo

@@ -32,7 +32,7 @@ SettingsFile readSettingsFile(const std::string& file) {
     } else if (key == "settings") {
       result.settings = texts();
     } else if (key == "spp") {
-      constexpr std::uint64_t kMost = 4000000000u;  // as --spp has it
+      constexpr std::uint64_t kMost = 4000000000u;  // the maximum of --spp
       if (!value.is_number_unsigned() || value.get<std::uint64_t>() < 1 || value.get<std::uint64_t>() > kMost)
         fail("a whole number from 1 to 4000000000");
       result.spp = value.get<std::uint32_t>();

@@ -1,5 +1,5 @@
-// Settings files, such as `lucerna tune` writes (no GL): a JSON object of "technique", "fidelity", "deviations",
-// "settings", "spp" (path tracing alone) and "measured", which is for people.
+// Settings files, such as those written by `lucerna tune` (no GL): a JSON object of "technique", "fidelity",
+// "deviations", "settings", "spp" (only for path tracing) and "measured", which is for people.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace lucerna::demo {
 
 struct SettingsFile {
   std::optional<std::string> technique, fidelity;
-  std::vector<std::string> deviations, settings;  ///< as --deviation and --set take them
-  std::optional<std::uint32_t> spp;  ///< 1 and more
+  std::vector<std::string> deviations, settings;  ///< in the form that --deviation and --set take
+  std::optional<std::uint32_t> spp;  ///< at least 1
 };
 
-/// Throws Error(badInput) naming file and key where one is unknown or of another type. What techniques, deviations and
-/// settings there are is not asked here.
+/// Throws Error(badInput) naming file and key if a key is unknown or has another type. Whether techniques, deviations
+/// and settings exist is not checked here.
 SettingsFile readSettingsFile(const std::string& file);
 
 }  // namespace lucerna::demo

@@ -16,7 +16,7 @@ std::vector<std::string_view> techniquesOf(const Setting& setting) {
   return names;
 }
 
-/// Of the light propagation volume; empty where all read it, or that technique does not.
+/// Transports of the light propagation volume; empty if all read it, or that technique does not.
 std::vector<std::string_view> transportsOf(const Setting& setting) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < namesOf(LpvTransport{}).size(); ++i)
@@ -25,7 +25,7 @@ std::vector<std::string_view> transportsOf(const Setting& setting) {
   return names;
 }
 
-/// What ends a cell of a table stands in one: escaped.
+/// Escapes the characters that would end a table cell.
 std::string cell(std::string_view text) {
   std::string escaped;
   for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);

@@ -1,5 +1,4 @@
-// The settings and deviations as documents: docs/settings.md, and the same as JSON. Both are made from the tables
-// alone.
+// The settings and deviations as documents: docs/settings.md, and the same as JSON. Both are generated from the tables.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,21 +1,21 @@
-# Sourced by demo/run, tests/run and the turns: installs the Debian packages that are missing, and builds with a preset.
+# Sourced by demo/run, tests/run and tests/turn: installs missing Debian packages, and builds with a preset.
 
 run_packages="g++ cmake ninja-build pkg-config libglew-dev libglfw3-dev libglm-dev libassimp-dev libdevil-dev
   libimgui-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev"
 test_packages="libgtest-dev xvfb xauth"
-# What is done without where it is not to be had: the host osmesa, plots, and a yardstick for rays.
+# Optional packages: the host osmesa, plots, and a yardstick for rays.
 optional_run_packages="libosmesa6-dev gnuplot-nox"
 optional_test_packages="libembree-dev glslang-tools"
 
-# ctest runs as many tests at once as there are processors; its -j says otherwise.
+# ctest runs as many tests at once as there are processors; override with its -j.
 export CTEST_PARALLEL_LEVEL="${CTEST_PARALLEL_LEVEL:-$(nproc)}"
 
 is_installed() {
   dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed'
 }
 
-# show_progress WHAT LOG: copies lines to the log; those that begin with [N/M] show on a terminal as one line that
-# changes, elsewhere as a line every 20 seconds.
+# show_progress WHAT LOG: copies lines to the log. Lines that begin with [N/M] appear on a terminal as one changing
+# line, elsewhere as a line every 20 seconds.
 show_progress() {
   local what="$1" log="$2" line step now last=0
   while IFS= read -r line; do
@@ -33,7 +33,7 @@ show_progress() {
   [ ! -t 2 ] || printf '\r\033[K' >&2
 }
 
-# logged WHAT LOG COMMAND...: runs it with show_progress; its exit status.
+# logged WHAT LOG COMMAND...: runs the command with show_progress; returns its exit status.
 logged() {
   local what="$1" log="$2"
   shift 2
@@ -42,7 +42,7 @@ logged() {
   [ -e "$log.ok" ] && rm "$log.ok"
 }
 
-# apt_install NAME...: as root; counts the packages that are set up.
+# apt_install NAME...: needs root; reports the number of packages set up.
 apt_install() {
   local total
   total="$($become apt-get install -s --no-install-recommends "$@" 2>/dev/null | grep -c '^Inst ')" || :
@@ -55,8 +55,8 @@ apt_install() {
       done; }
 }
 
-# install_packages NAME... [-- OPTIONAL NAME...]: those that are missing, all at once. Optional ones that there are none
-# of, or that cannot be installed for want of rights, are done without.
+# install_packages NAME... [-- OPTIONAL NAME...]: installs missing packages, all at once. Optional ones are skipped if
+# they do not exist, or cannot be installed without root.
 install_packages() {
   local missing="" optional="" name needed=1 become=""
   for name in "$@"; do
@@ -69,19 +69,19 @@ install_packages() {
   [ -n "$missing$optional" ] || return 0
   if [ "$(id -u)" != 0 ]; then
     if [ -z "$missing" ]; then
-      echo "lucerna: going on without$optional" >&2
+      echo "lucerna: continuing without$optional" >&2
       return 0
     elif command -v sudo >/dev/null 2>&1; then
       become="sudo"
     else
-      echo "lucerna: these Debian packages are missing, and neither root nor sudo is there to install them:$missing" >&2
+      echo "lucerna: these Debian packages are missing, and installing them needs root or sudo:$missing" >&2
       exit 3
     fi
   fi
-  $become apt-get update -qq || { echo "lucerna: apt-get update fails" >&2; exit 3; }
+  $become apt-get update -qq || { echo "lucerna: apt-get update failed" >&2; exit 3; }
   for name in $optional; do
     if [ -n "$(apt-cache madison "$name" 2>/dev/null)" ]; then missing="$missing $name"
-    else echo "lucerna: there is no package $name here; going on without" >&2
+    else echo "lucerna: there is no package $name here; continuing without it" >&2
     fi
   done
   [ -n "$missing" ] || return 0
@@ -92,14 +92,13 @@ install_packages() {
   for name in $missing; do
     is_installed "$name" || {
       tail -n 20 build/packages.log >&2
-      echo "lucerna: apt-get install fails for $name (log: build/packages.log)" >&2
+      echo "lucerna: apt-get install failed for $name (log: build/packages.log)" >&2
       exit 3
     }
   done
 }
 
-# build PRESET [CMAKE OPTION]...: configures and builds into build/PRESET: everything, or the targets that $targets
-# names.
+# build PRESET [CMAKE OPTION]...: configures and builds into build/PRESET, everything or the targets in $targets.
 build() {
   local preset="$1" log
   shift

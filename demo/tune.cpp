@@ -1,5 +1,5 @@
-// lucerna tune SCENE --frame-time MS | --error E: measures the scene, then picks the technique and settings that meet
-// one of them best.
+// lucerna tune SCENE --frame-time MS | --error E: measures the scene, then picks the technique and settings that best
+// meet one of these goals.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/bench.hpp"
@@ -30,11 +30,11 @@ double figure(const ErrorRow& row, std::string_view name) {
   return name == "nrmse" ? bench::rankedError(row, "nrmse") : number(row, "ms");
 }
 
-/// What comes before the first picture: programs compiled, scene uploaded, a solution made.
+/// Time before the first picture: compiling programs, uploading the scene, computing a solution.
 double setupSeconds(const ErrorRow& row) { return 1e-3 * number(row, "setup_ms"); }
 
-/// Settings of one technique are ranked inside their model: another row of it is as fast, or fast enough, and better
-/// there.
+/// Settings of one technique are ranked inside their model: another row of it is as fast, or fast enough, and more
+/// accurate there.
 bool isOutranked(const ErrorRow& row, const std::vector<ErrorRow>& rows, const char* wish, double limit,
                  double mostSetup) {
   if (!row.contains("inside_model")) return false;
@@ -52,8 +52,8 @@ bool isOutranked(const ErrorRow& row, const std::vector<ErrorRow>& rows, const c
   return false;
 }
 
-/// The row that meets the wish and is best in the other figure; the one that comes nearest where none does. Rows that
-/// need more than `mostSetup` seconds before their first picture are passed over.
+/// The row that meets the goal and is best in the other quantity; if none does, the one that comes closest. Rows that
+/// need more than `mostSetup` seconds before their first picture are skipped.
 const ErrorRow& choose(const std::vector<ErrorRow>& rows, const char* wish, double limit, const char* other,
                        double mostSetup, bool& met) {
   const ErrorRow* best = nullptr;
@@ -91,8 +91,7 @@ int runTune(TuneOptions options) {
   checkWritable(options.output);
   if (options.bench.out.empty()) options.bench.out = "bench-error";
   if (options.bench.techniques.empty())
-    options.bench.techniques =
-        bench::ladderTechniques();  // those that walk in real time; path tracing where it is asked for
+    options.bench.techniques = bench::ladderTechniques();  // the real-time techniques; path tracing on request
   const auto result = bench::benchScene(options.common, options.bench);
   if (!result) return exitCode();
 

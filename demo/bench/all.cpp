@@ -37,7 +37,7 @@ struct AllOptions {
 
 constexpr const char* kParts[] = {"error", "deviations", "stability", "needs", "rays", "tables", "pictures"};
 
-/// Of --scale, so that the originals' own scales end in minutes on a software renderer.
+/// Scales for --scale, so that the originals' own sizes finish in minutes on a software renderer.
 constexpr double kVptTables = 0.04, kVptPictures = 0.01, kRadTables = 0.2, kRadPictures = 0.2;
 constexpr glm::ivec2 kSheetTile{160, 90};
 
@@ -96,7 +96,7 @@ class Report {
   }
 
   void needs(const std::vector<std::string>& files) {
-    page_.section("What scenes leave out");
+    page_.section("Features that scenes do not need");
     HtmlPage::Table table{
         {"scene", "left out", "compile ms", "GPU MiB", "ms a picture", "largest pixel difference"}, {}, {}};
     for (const std::string& file : files) {
@@ -115,11 +115,12 @@ class Report {
            both(r.with.ms, r.without.ms), fmt::format("{:.2g} of {:.2g}", r.maxDifference, r.maxRadiance)});
       json_["needs"].push_back(needsJson(r));
     }
-    page_.paragraph("Left out as the scene does not need it, instead of forced on with data that change nothing.");
+    page_.paragraph(
+        "Features the scene does not need are left out, compared with being forced on with data that change nothing.");
     page_.table(table);
   }
 
-  /// The published tables of all three originals. VPT's with the published estimator, the corrected one beside it.
+  /// The published tables of all three originals; VPT's with the published estimator and the corrected one next to it.
   void tables(const std::string& file) {
     gl::ProgramLibrary programs;
     page_.section("Published tables, measured again");
@@ -147,10 +148,10 @@ class Report {
     json_["tables"]["rad"] = rad;
   }
 
-  /// The published pictures of all three, a sheet each, in the report's folder too.
+  /// The published pictures of all three, one sheet each, stored in the report's folder too.
   void pictures(const std::string& file) {
     gl::ProgramLibrary programs;
-    page_.section("Published pictures, made again");
+    page_.section("Published pictures, reproduced");
     const double scale = std::min(1.0, options_.scale);
     const auto keep = [&](const char* name, const char* caption, const VptSheet& sheet) {
       if (interrupted()) return;
@@ -167,7 +168,7 @@ class Report {
          drawLpvPictures(
              {context_, programs, scene, scene.cameras.front(), usual, "original", {}, options_.common.quiet}));
     if (!interrupted())
-      keep("vpt", "Participating media as published, the corrected estimator beside",
+      keep("vpt", "Participating media as published, next to the corrected estimator",
            drawVptPictures({context_, programs, kVptPictures * scale, options_.common.quiet, Fidelity::original},
                            kSheetTile, {}));
     if (!interrupted())
@@ -199,14 +200,14 @@ class Report {
                               fmt::format("{} of {}", row.at("differ").dump(), row.at("count").dump())});
       json_["rays"].push_back(result.json);
     }
-    page_.paragraph(
-        fmt::format("The compute-shader hierarchy beside Embree's single rays on the same {} rays of each kind, in "
-                    "turn, medians of {}; all of this machine's cores work for either.",
-                    options.rays, options.repeats));
+    page_.paragraph(fmt::format(
+        "The compute-shader hierarchy compared with Embree's single rays on the same {} rays of each kind, in "
+        "turn, medians of {}; both use all of this machine's cores.",
+        options.rays, options.repeats));
     page_.table(table);
   }
 
-  /// Rows with what was published beside.
+  /// Rows with the published values next to them.
   void add(const std::string& heading, const Tables& tables, const char* key) {
     page_.heading(heading);
     HtmlPage::Table table{{"table", "row", "published ms", "here ms", "here / published"}, {}, {}};
@@ -270,7 +271,7 @@ int runAll(AllOptions options) {
     try {
       make();
     } catch (const Error& e) {
-      if (e.kind() == ErrorKind::badInput) throw;  // such as a full disk: nothing after it would fare better
+      if (e.kind() == ErrorKind::badInput) throw;  // such as a full disk, which would make everything after it fail too
       report.missing(name, e.what());
     }
   };
@@ -283,7 +284,7 @@ int runAll(AllOptions options) {
   part("pictures", [&] { report.pictures(originals); });
   const double seconds = secondsSince(start);
   if (interrupted()) {
-    fmt::print(stderr, "lucerna: interrupted; the same command with --out {} goes on\n", options.out);
+    fmt::print(stderr, "lucerna: interrupted; the same command with --out {} resumes\n", options.out);
     return exitCode();
   }
   report.write(seconds);
@@ -306,13 +307,13 @@ Work addBenchAll(Command app) {
   app.addOption("SCENE", options->scenes,
                 "scene files for error and needs (default: the Cornell box and the atrium); the first for the tables "
                 "and pictures of lpv (default: the atrium)");
-  app.addOption("--out", options->out, "folder of the report; an interrupted one is resumed").required();
+  app.addOption("--out", options->out, "folder for the report; an interrupted one is resumed").required();
   offer(app.addOption("--parts", options->parts,
                       "of error, deviations, stability, needs, rays, tables, pictures; default: all")
             .delimiter(','),
         {std::begin(bench::kParts), std::end(bench::kParts)});
   app.addOption("--scale", options->scale,
-                "how much work: pixels and seconds; 1 takes four times as long as the default")
+                "amount of work: pixels and seconds; 1 takes four times as long as the default")
       .showDefault();
   options->common.declare(app);
   return [options] { return bench::runAll(*options); };

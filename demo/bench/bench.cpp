@@ -1,4 +1,4 @@
-// lucerna bench tables|pictures|rays: published results of the originals, made again.
+// lucerna bench tables|pictures|rays: reproduces published results of the originals.
 #include "bench/bench.hpp"
 
 #include "base/data.hpp"
@@ -22,16 +22,17 @@ std::string sceneOrAtrium(const std::string& scene) { return scene.empty() ? ass
 
 Work addBench(Command app) {
   Subcommands commands(app);
-  commands.add("tables", "Measure an original's published tables again: published, measured, ratio", addBenchTables);
-  commands.add("pictures", "Make an original's published pictures again, on one labelled sheet", addBenchPictures);
-  commands.add("rays", "Rays per second of the compute-shader hierarchy, beside Embree on the same rays", addBenchRays);
+  commands.add("tables", "Reproduce an original's published tables: published, measured, ratio", addBenchTables);
+  commands.add("pictures", "Reproduce an original's published pictures on one labelled sheet", addBenchPictures);
+  commands.add("rays", "Rays per second of the compute-shader hierarchy, compared with Embree on the same rays",
+               addBenchRays);
   commands.add("error", "Error against run time: every technique over a ladder of settings", addBenchError);
-  commands.add("references", "The references of bench error alone, in parts where they are to be", addBenchReferences);
+  commands.add("references", "Only the references of bench error, optionally in parts", addBenchReferences);
   commands.add("diff",
-               "Two reports of bench error row by row: better, worse or undecided, by a test that knows both spreads",
+               "Two reports of bench error row by row: better, worse or undecided, by a test that uses both spreads",
                addBenchDiff);
   commands.add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);
-  commands.add("needs", "What a scene leaves out, and what that saves", addBenchNeeds);
+  commands.add("needs", "The features that a scene does not need, and what leaving them out saves", addBenchNeeds);
   commands.add("all", "The whole report on one page: tables, error, stability, needs, rays", addBenchAll);
   return commands.work();
 }

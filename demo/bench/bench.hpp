@@ -1,4 +1,4 @@
-// `lucerna bench`: its sub-subcommands, one file each, and what they share.
+// `lucerna bench`: its subcommands, one file each, and shared declarations.
 #pragma once
 
 #include "commands.hpp"
@@ -21,29 +21,29 @@ Work addBenchAll(Command app);
 
 namespace bench {
 
-/// --original: whose tables and pictures. Throws Error(badInput) listing those that there are.
+/// Checks --original, which names the original. Throws Error(badInput) listing the valid names.
 void checkOriginal(const std::string& name);
 /// A file of the assets folder.
 std::string asset(const std::string& file);
-/// SCENE, or the atrium where none is given.
+/// SCENE, or the atrium if none is given.
 std::string sceneOrAtrium(const std::string& scene);
 
-/// A figure of a published table beside ours.
+/// A number from a published table, and ours.
 struct Row {
   struct Published {
     std::string gpu;
     double ms;
   };
   std::string table, setting, stage;
-  int grids = 0;  ///< 0: does not matter
-  std::vector<Published> published;  ///< one a GPU
-  std::string fill, propagate;  ///< how ours was made; empty where it does not matter
+  int grids = 0;  ///< 0: any
+  std::vector<Published> published;  ///< one per GPU
+  std::string fill, propagate;  ///< how ours was computed; empty if it does not matter
   std::vector<double> samples;  ///< ours, ms; empty: not measured
-  bool isMean = false;  ///< else the median
+  bool isMean = false;  ///< otherwise the median
   std::string missing;  ///< an extension that this driver lacks; empty: none
 
   std::string name() const;
-  double measured() const;  ///< NaN where there is no sample
+  double measured() const;  ///< NaN without samples
 };
 
 struct TablesInput {
@@ -53,14 +53,14 @@ struct TablesInput {
   double scale;  ///< 0..1
   bool quiet;
   PartOptions part = {};  ///< of the rows
-  std::optional<LpvFill> fill = {};  ///< measured beside the published one; none: the fastest here, tried first
+  std::optional<LpvFill> fill = {};  ///< measured next to the published one; none: the fastest here, found by trial
 };
 
 struct Tables {
-  std::vector<std::string> notes;  ///< how it was measured, and how that differs from what was published
+  std::vector<std::string> notes;  ///< how it was measured, and how that differs from the publication
   std::vector<Row> rows;
   std::string summary;  ///< printed after the tables
-  nlohmann::ordered_json json;  ///< the same, and the settings; of a part how many rows it made, and nothing else
+  nlohmann::ordered_json json;  ///< the same with the settings; for a part only the number of rows it made
 };
 
 struct VptTablesInput {
@@ -72,7 +72,7 @@ struct VptTablesInput {
   PartOptions part = {};  ///< of the rows
 };
 
-/// The times under the pictures of the VPT original, on scenes of ours; with the published estimator also those of the
+/// The times given for the pictures of the VPT original, on our scenes; with the published estimator also those of the
 /// corrected one.
 Tables measureVptTables(const VptTablesInput& input);
 
@@ -84,7 +84,7 @@ struct VptSheet {
 };
 VptSheet drawVptPictures(const VptTablesInput& input, glm::ivec2 size, std::optional<double> exposure);
 
-/// Tables 7.2 to 7.8 of the LPV original, and its comparison of ways to clear.
+/// Tables 7.2 to 7.8 of the LPV original, and its comparison of methods to clear textures.
 Tables measureLpvTables(const TablesInput& input);
 
 }  // namespace bench

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kGlyphWidth = 5, kGlyphHeight = 7, kAdvance = 6, kLine = 10;
 
-/// Rows from the top, five bits each, the highest left.
+/// Rows from the top, five bits each, leftmost bit highest.
 struct Glyph {
   char character;
   std::array<std::uint8_t, kGlyphHeight> rows;
@@ -59,7 +59,7 @@ const Glyph& glyphOf(char character) {
   return found == std::end(kGlyphs) ? kUnknown : *found;
 }
 
-/// Broken between words to at most `columns` characters a line; a longer word is cut.
+/// Breaks text between words into lines of at most `columns` characters; cuts longer words.
 std::vector<std::string> wrap(std::string_view text, int columns) {
   const auto most = static_cast<std::size_t>(std::max(columns, 1));
   std::vector<std::string> lines;

@@ -1,4 +1,4 @@
-// Pictures side by side with a line of text over each (no GL), in a 5x7 bitmap font of our own.
+// Pictures side by side with a line of text above each (no GL), in our own 5x7 bitmap font.
 #pragma once
 
 #include "base/image.hpp"
@@ -11,20 +11,20 @@
 namespace lucerna::demo::bench {
 
 struct Tile {
-  std::string label;  ///< letters become capitals; wrapped where it is too long
-  Bitmap picture;  ///< all of one size
+  std::string label;  ///< shown in capitals; wrapped if too long
+  Bitmap picture;  ///< all of the same size
 };
 
-/// `columns` tiles a row, under a title.
+/// `columns` tiles per row, under a title.
 Bitmap contactSheet(const std::string& title, const std::vector<Tile>& tiles, int columns);
 
-/// A line of a bar chart: parts that are drawn one after the other, in colours of their own.
+/// A line of a bar chart: parts drawn one after the other in different colours.
 struct Bar {
   std::string label;
-  std::vector<double> parts;  ///< 0 or more each
+  std::vector<double> parts;  ///< each at least 0
 };
 
-/// Bars from the left, each with its sum behind it, all to one scale. `parts`: their names, above the bars.
+/// Bars from the left, each followed by its sum, all to the same scale. `parts`: their names, shown above the bars.
 Bitmap barChart(glm::ivec2 size, const std::vector<std::string>& parts, const std::vector<Bar>& bars,
                 const std::string& unit);
 

@@ -1,18 +1,18 @@
-// lucerna bench diff A B: two reports of `bench error`, row by row: is B better or worse than A, by tests that know the
-// spreads of both.
+// lucerna bench diff A B: compares two reports of `bench error` row by row. Decides whether B is better or worse than A
+// by tests that use the spreads of both.
 //
 // Errors (relative L2, the same inside the model, bias): the difference over its standard error, which comes from the
-// noise of the references and, for path tracing, from seeds. Student's t where few seeds say how large it is. A figure
-// below the reference's noise is an upper bound, and is decided only where the other one is clear of it. Times: the
-// logarithm of B over A. Two runs of one program differ by more than the spread within each (load, clock, memory), and
-// the rows say by how much: the median of all rows is the machine's part and is reported apart; what rows scatter about
-// it (median absolute deviation) adds to a row's own spread. So many rows are so many chances to err: the level is
-// Sidak's for all tests together [Sidak1967].
+// noise of the references and, for path tracing, from seeds. Student's t applies where the standard error is estimated
+// from few seeds. A value below the reference's noise is an upper bound, and is decided only if the other one clearly
+// exceeds it. Times: the logarithm of B over A. Two runs of one program differ by more than the spread within each
+// (load, clock, memory), and the rows show by how much: the median over all rows is attributed to the machine and
+// reported separately; the rows' scatter about it (median absolute deviation) adds to each row's own spread. Many rows
+// mean many chances of error: the significance level is Sidak-corrected for all tests together [Sidak1967].
 //
-// Where the processor draws, what else runs there makes a picture's time longer, for some rows more than for others:
-// then its processor time, which knows nothing of that, must say the same.
+// If the processor renders, other load on the machine lengthens some pictures' times more than others. Their processor
+// time, which excludes other load, must then agree.
 //
-// A row of A that B lacks is a loss, but not where a ladder of path tracing had less time.
+// A row of A that B lacks counts as a loss, unless it belongs to a ladder of path tracing that had less time.
 #include "bench/diff.hpp"
 
 #include "base/error.hpp"
@@ -46,7 +46,7 @@ struct DiffOptions {
   double significance = 0.01, timeFloor = 0.1;
 };
 
-/// Equal to rounding: atomics add in any order.
+/// Equal up to rounding: atomics add in any order.
 constexpr double kRounding = 1e-5;
 
 enum class Verdict { undecided, better, worse };
@@ -54,7 +54,7 @@ std::string_view nameOf(Verdict v) {
   return v == Verdict::better ? "better" : v == Verdict::worse ? "worse" : "undecided";
 }
 
-/// A figure with its standard error, of which `freedom` degrees tell; infinite: it is known.
+/// A value with its standard error, estimated with `freedom` degrees of freedom; infinite: known exactly.
 struct Estimate {
   double value = NAN, error = 0.0, freedom = INFINITY;
   bool isBound = false;  ///< at most `value`
@@ -62,7 +62,7 @@ struct Estimate {
 
 struct Finding {
   std::string what;
-  double a = NAN, b = NAN, apart = NAN;  ///< standard errors of the difference
+  double a = NAN, b = NAN, apart = NAN;  ///< in standard errors of the difference
   Verdict verdict = Verdict::undecided;
 };
 struct RowDiff {
@@ -71,7 +71,7 @@ struct RowDiff {
   Verdict verdict = Verdict::undecided;
 };
 
-/// The z beyond which a normal variable lies on either side with this probability in all, by bisection.
+/// The z exceeded on either side with this total probability by a normal variable, found by bisection.
 double normalLimit(double probability) {
   double low = 0.0, high = 40.0;
   for (int i = 0; i < 200; ++i) {
@@ -92,7 +92,7 @@ bool flagOf(const ErrorRow& row, const char* key) {
   return found != row.end() && found->is_boolean() && found->get<bool>();
 }
 
-/// errors: a row, or its inside_model. freedom: of the row's seeds.
+/// errors: a row, or its inside_model. freedom: degrees of freedom from the row's seeds.
 Estimate l2Of(const ErrorRow& errors, double freedom) {
   if (flagOf(errors, "at_noise")) return {3.0 * number(errors, "noise_l2"), 0.0, INFINITY, true};
   const double error = number(errors, "l2_error");
@@ -109,11 +109,11 @@ double freedomOf(const ErrorRow& row) {
   return std::isfinite(freedom) ? freedom : INFINITY;
 }
 
-/// Less is better. z: the normal limit.
+/// Smaller is better. z: the normal limit.
 Finding judge(const std::string& what, const Estimate& a, const Estimate& b, double z) {
   Finding finding{what, a.value, b.value, NAN, Verdict::undecided};
   if (!std::isfinite(a.value) || !std::isfinite(b.value)) {
-    // What is no longer finite is worse, whatever it was.
+    // A value that is no longer finite is worse, whatever it was.
     if (std::isfinite(a.value) != std::isfinite(b.value))
       finding.verdict = std::isfinite(a.value) ? Verdict::worse : Verdict::better;
     return finding;
@@ -127,7 +127,7 @@ Finding judge(const std::string& what, const Estimate& a, const Estimate& b, dou
   return finding;
 }
 
-/// A median time as a logarithm, "ms" or "cpu_ms": the standard error of the former from its samples.
+/// A median time as a logarithm, "ms" or "cpu_ms", with the standard error of "ms" from its samples.
 Estimate logTimeOf(const ErrorRow& row, const char* key) {
   std::vector<double> samples;
   if (const auto found = row.find("wall_ms_samples");
@@ -138,9 +138,10 @@ Estimate logTimeOf(const ErrorRow& row, const char* key) {
           std::isfinite(error) ? static_cast<double>(samples.size()) - 1.0 : INFINITY, false};
 }
 
-/// Times of many rows, B over A as logarithms: what the machine does to all of them, and how far they scatter about it.
+/// Logarithms of the time ratios B over A of many rows: the shift that the machine causes in all of them, and their
+/// scatter about it.
 struct TimeRatios {
-  double shift = 0.0, scatter = INFINITY;  ///< infinite: too few rows to tell
+  double shift = 0.0, scatter = INFINITY;  ///< infinite: too few rows to estimate it
   std::size_t count = 0;
 };
 TimeRatios timeRatios(const std::vector<std::pair<ErrorRow, ErrorRow>>& rows, const char* key) {
@@ -156,7 +157,7 @@ TimeRatios timeRatios(const std::vector<std::pair<ErrorRow, ErrorRow>>& rows, co
   return result;
 }
 
-/// floor: changes below that fraction are undecided.
+/// floor: changes below this fraction are undecided.
 Finding judgeTime(const ErrorRow& a, const ErrorRow& b, const char* key, const TimeRatios& all, double z,
                   double floor) {
   Finding finding{key, number(a, key), number(b, key), NAN, Verdict::undecided};
@@ -190,7 +191,7 @@ std::map<std::string, ErrorRow> byLabel(const nlohmann::ordered_json& report, st
   return rows;
 }
 
-/// Whether a ladder of path tracing, which goes as far as there is time, ends before this row in the other report.
+/// Whether a path tracing ladder, which climbs as long as time permits, ends before this row in the other report.
 bool isBeyondLadder(const ErrorRow& row, const std::map<std::string, ErrorRow>& others) {
   double longest = -INFINITY;
   for (const auto& [label, other] : others)
@@ -200,7 +201,7 @@ bool isBeyondLadder(const ErrorRow& row, const std::map<std::string, ErrorRow>& 
 }
 
 int runDiff(const DiffOptions& options) {
-  // What is compared.
+  // Read the inputs.
   options.common.apply();
   const auto wants = [&](const char* what) {
     return std::find(options.what.begin(), options.what.end(), what) != options.what.end();
@@ -209,7 +210,7 @@ int runDiff(const DiffOptions& options) {
     if (what != "error" && what != "time") throwBadInput("--only {}: unknown; expected error or time", what);
   if (!(options.significance > 0.0 && options.significance < 1.0))
     throwBadInput("--significance {}: expected a number between 0 and 1", options.significance);
-  // Rows by their labels: of both reports, or of one alone.
+  // Match rows by their labels: in both reports, or in only one.
   const nlohmann::ordered_json reportA = readReport(options.a), reportB = readReport(options.b);
   if (reportA.at("bench") != reportB.at("bench"))
     throwBadInput("{} is of '{}', {} of '{}': only reports of one scene, view and size are compared", options.a,
@@ -223,7 +224,7 @@ int runDiff(const DiffOptions& options) {
     if (!a.contains(label)) onlyB.push_back(label);
   if (both.empty()) throwBadInput("{} and {} have no row in common", options.a, options.b);
 
-  // Sidak: four tests a row.
+  // Sidak correction: four tests per row.
   const double tests = 4.0 * static_cast<double>(both.size()),
                z = normalLimit(1.0 - std::pow(1.0 - options.significance, 1.0 / tests));
   std::vector<std::pair<ErrorRow, ErrorRow>> pairs;
@@ -232,7 +233,7 @@ int runDiff(const DiffOptions& options) {
   const bool byProcessor = Host::isSoftwareRenderer(reportA.value("renderer", "")) &&
                            Host::isSoftwareRenderer(reportB.value("renderer", ""));
 
-  // Each row's findings, and its verdict: worse where anything is.
+  // Each row's findings, and its verdict: worse if any finding is.
   std::vector<RowDiff> diffs;
   int worse = 0, better = 0;
   for (const std::string& label : both) {
@@ -262,7 +263,7 @@ int runDiff(const DiffOptions& options) {
     diffs.push_back(std::move(diff));
   }
 
-  // Told to people, and as JSON.
+  // Print for people, and write JSON.
   if (!options.common.quiet) {
     std::size_t width = 10;
     for (const RowDiff& diff : diffs) width = std::max(width, diff.label.size());
@@ -320,11 +321,12 @@ Work addBenchDiff(Command app) {
   auto options = std::make_shared<bench::DiffOptions>();
   app.addOption("A", options->a, "a report: its JSON, or the folder of `bench error`").required();
   app.addOption("B", options->b,
-                "another of the same scene, view and size; exit code 1 where a row of it is worse, or gone")
+                "another one of the same scene, view and size; exit code 1 if a row of it is worse or missing")
       .required();
-  offer(app.addOption("--only", options->what, "of error, time; default: both").delimiter(','), {"error", "time"});
+  offer(app.addOption("--only", options->what, "compare only error or time; default: both").delimiter(','),
+        {"error", "time"});
   app.addOption("--significance", options->significance,
-                "the chance that any row is called better or worse where nothing changed")
+                "probability that any row is called better or worse although nothing changed")
       .showDefault();
   app.addOption("--time-floor", options->timeFloor, "smaller changes of a time, as a fraction, are undecided")
       .showDefault()

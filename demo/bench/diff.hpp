@@ -1,4 +1,4 @@
-// lucerna bench diff A B: two reports row by row.
+// lucerna bench diff A B: compares two reports row by row.
 #pragma once
 
 #include "commands.hpp"

@@ -28,7 +28,7 @@ struct EmbreeRays::Handles {
 
 EmbreeRays::EmbreeRays(const Scene& scene, const glm::dvec3& origin) : handles_(std::make_unique<Handles>()) {
   handles_->device = rtcNewDevice(nullptr);
-  if (!handles_->device) throw Error(ErrorKind::fault, "Embree makes no device");
+  if (!handles_->device) throw Error(ErrorKind::fault, "Embree cannot create a device");
   handles_->scene = rtcNewScene(handles_->device);
   rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(handles_->scene, RTC_BUILD_QUALITY_HIGH);
@@ -38,7 +38,7 @@ EmbreeRays::EmbreeRays(const Scene& scene, const glm::dvec3& origin) : handles_(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, scene.vertices.size()));
   auto* indices = static_cast<unsigned*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, scene.triangleCount()));
-  CHECK(vertices && indices, "Embree takes no buffers for {} triangles", scene.triangleCount());
+  CHECK(vertices && indices, "Embree cannot create buffers for {} triangles", scene.triangleCount());
   for (const Vertex& vertex : scene.vertices)
     for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(static_cast<double>(vertex.position[k]) - origin[k]);
   std::copy(scene.indices.begin(), scene.indices.end(), indices);
@@ -91,7 +91,7 @@ struct EmbreeRays::Handles {};
 
 bool EmbreeRays::isBuilt() { return false; }
 EmbreeRays::EmbreeRays(const Scene&, const glm::dvec3&) {
-  throwMissingCapability("Embree was not there when this was built (Debian: libembree-dev)");
+  throwMissingCapability("built without Embree (Debian: libembree-dev)");
 }
 EmbreeRays::~EmbreeRays() = default;
 void EmbreeRays::trace(std::span<const PlainRay>, std::span<PlainHit>, bool) const {}

@@ -1,4 +1,5 @@
-// Embree 3 traces the same rays: a yardstick for benchmarks and tests, never for the engine. Optional: see isBuilt().
+// Traces the same rays with Embree 3: a baseline for benchmarks and tests, never for the engine. Optional: see
+// isBuilt().
 #pragma once
 
 #include "scene/scene.hpp"
@@ -9,7 +10,7 @@
 
 namespace lucerna {
 
-/// As shaders/rays/bvh.glsl has them.
+/// Same layout as in shaders/rays/bvh.glsl.
 struct PlainRay {
   glm::vec3 origin{0.0f};
   float tMin = 0.0f;
@@ -25,16 +26,15 @@ struct PlainHit {
 
 class EmbreeRays {
  public:
-  /// Whether Embree was there when this was built (LUCERNA_EMBREE); else the constructor throws
-  /// Error(missingCapability).
+  /// Whether this was built with Embree (LUCERNA_EMBREE); otherwise the constructor throws Error(missingCapability).
   static bool isBuilt();
 
   /// The scene moved by -origin. Embree's robust mode, its best build quality.
   EmbreeRays(const Scene& scene, const glm::dvec3& origin);
   ~EmbreeRays();
 
-  /// rtcIntersect1 or rtcOccluded1, one ray after the other on all cores. anyHit: only whether `triangle` is kNone is
-  /// meant.
+  /// rtcIntersect1 or rtcOccluded1, one ray after the other on all cores. anyHit: the result is only whether `triangle`
+  /// is kNone.
   void trace(std::span<const PlainRay> rays, std::span<PlainHit> hits, bool anyHit) const;
 
  private:

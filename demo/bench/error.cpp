@@ -1,5 +1,6 @@
-// lucerna bench error SCENE: every technique over a ladder of settings, its time and its error against a path-traced
-// reference. lucerna bench references SCENE: those references alone, which may be made in batches on many machines.
+// lucerna bench error SCENE: every technique over a ladder of settings, with its time and its error against a
+// path-traced reference. lucerna bench references SCENE: only those references, which may be computed in batches on
+// many machines.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/hash.hpp"
@@ -20,21 +21,21 @@ namespace bench {
 
 namespace {
 
-/// Patches are never fewer than triangles, and form factors go with their square: above that the ladder of radiosity
-/// would take hours on two cores.
+/// There are at least as many patches as triangles, and form factors grow with their square: above this limit the
+/// radiosity ladder would take hours on two cores.
 constexpr std::size_t kMostTrianglesOfRadiosity = 30000;
 
 /// The published program draws all triangles five times for each one, in three channels and up to seven sweeps: 75 s
-/// for 1,512 patches of the Cornell box on two cores, and twice as many take up to four times as long.
+/// for 1,512 patches of the Cornell box on two cores; twice as many take up to four times as long.
 constexpr std::size_t kMostTrianglesOfPublished = 3000;
 
-/// Techniques that a scene is too large for, a line each; only where none was asked for by name.
+/// Techniques for which a scene is too large, one line each; only if none was requested by name.
 std::vector<std::string> leftOutOf(const ErrorBenchOptions& options, const Scene& scene) {
   if (!options.techniques.empty() || scene.triangleCount() <= kMostTrianglesOfRadiosity) return {};
-  return {
-      fmt::format("radiosity: left out; {} triangles, a patch each at least, and it is measured up to {} (--techniques "
-                  "radiosity measures it all the same)",
-                  scene.triangleCount(), kMostTrianglesOfRadiosity)};
+  return {fmt::format(
+      "radiosity: left out; {} triangles, each at least one patch, and it is measured up to {} (--techniques "
+      "radiosity measures it all the same)",
+      scene.triangleCount(), kMostTrianglesOfRadiosity)};
 }
 
 std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
@@ -49,8 +50,8 @@ std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
   return options.techniques;
 }
 
-/// The scene as references see it, Lambert's surfaces alone: forward shading would add highlights that they have not
-/// (in the atrium 1.3 % of direct light).
+/// The scene as references see it, Lambertian only: forward shading would add highlights that references lack (in the
+/// atrium 1.3 % of direct light).
 Scene withoutHighlights(Scene scene) {
   for (Material& m : scene.materials)
     if (m.bsdf == Bsdf::diffuse) m.specular = glm::vec3(0.0f);
@@ -70,7 +71,7 @@ std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<st
   return rungs;
 }
 
-/// The command that measures this, but for --techniques and the folder.
+/// The command that repeats this measurement, except for --techniques and the folder.
 std::string benchCommand(const ErrorBenchOptions& options) {
   std::vector<std::string> words{"lucerna", "bench",      "error",    options.scene,
                                  "--size",  options.size, "--frames", std::to_string(options.frames)};
@@ -96,20 +97,21 @@ void ErrorBenchOptions::declareView(Command app) {
   app.addOption("--size", size, "WIDTHxHEIGHT of the pictures").showDefault();
   app.addOption("--references", references,
                 "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
-  offer(app.addOption("--techniques", techniques, "of direct, rsm, lpv, radiosity, path; default: all").delimiter(','),
+  offer(app.addOption("--techniques", techniques, "only these of direct, rsm, lpv, radiosity, path; default: all")
+            .delimiter(','),
         {"direct", "rsm", "lpv", "radiosity", "path"});
-  app.addFlag("--small", small, "without the most expensive rungs");
+  app.addFlag("--small", small, "leave out the most expensive rungs");
 }
 
 void ErrorBenchOptions::declare(Command app) {
   declareView(app);
-  app.addOption("--budget", budget, "seconds for references and path tracing; known references are used again")
+  app.addOption("--budget", budget, "seconds for references and path tracing; known references are reused")
       .showDefault()
       .range(0.01, 1e6);
-  app.addOption("--reference-spp", referenceSamples, "paths a pixel of every reference, instead of by time")
+  app.addOption("--reference-spp", referenceSamples, "paths per pixel of every reference, instead of by time")
       .range(2, 1 << 30);
-  app.addOption("--frames", frames, "pictures a rung at least").showDefault().range(1, 10000);
-  app.addOption("--out", out, "folder of the report; an interrupted bench goes on where it was");
+  app.addOption("--frames", frames, "minimum number of pictures per rung").showDefault().range(1, 10000);
+  app.addOption("--out", out, "folder for the report; an interrupted bench continues where it was");
 }
 
 ErrorBenchPlan::ErrorBenchPlan(const Scene& original, const ErrorBenchOptions& options)
@@ -157,11 +159,10 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   const ErrorBenchPlan plan(original, options);
   const Scene& scene = plan.scene;
   const std::vector<Rung>& rungs = plan.rungs;
-  // Rows of other processors or renderers are of other times.
+  // Rows of other processors or renderers have other times.
   const auto kept = [&](const PartOptions& part) {
     if (options.referenceSamples == 0)
-      throwBadInput(
-          "--part, --checkpoint: need --reference-spp, since references by time are different ones on each machine");
+      throwBadInput("--part, --checkpoint: need --reference-spp, since references by time differ between machines");
     return PartFolder(part, "bench error",
                       fmt::format("{}, {}, {} rungs of {}, references of {} samples, scene {}, {} on {}", plan.title,
                                   options.deviations ? "deviations" : "ladders", rungs.size(),
@@ -170,21 +171,21 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                                   context.capabilities().renderer, cpuName()),
                       rungs.size() + plan.withPath);
   };
-  // The folder, and in it what an earlier run or parts have left.
+  // Open the folder, with results of an earlier run or of parts.
   const bool isPart = options.part.isPart();
   if (isPart && options.referenceSamples > 0 && !hasReferences(plan.references(context, programs, options)))
     throwBadInput(
-        "--part {}: the references are not there: lucerna bench references with the same scene, --size, --camera, "
+        "--part {}: the references are missing: lucerna bench references with the same scene, --size, --camera, "
         "--techniques and --reference-spp makes them, in parts too",
         options.part.part);
   std::optional<PartFolder> part;
   if (!options.part.checkpoint.empty()) {
     if (!isPart && !isPartFolder(options.part.checkpoint))
-      throwBadInput("--checkpoint {}: is no folder of lucerna merge; a bench's own goes on by --out",
+      throwBadInput("--checkpoint {}: is no folder of lucerna merge; a bench's own results are resumed by --out",
                     options.part.checkpoint);
     part.emplace(kept(options.part));
   } else if (isPart) {
-    options.part.rangeOf(1);  // says what is missing
+    options.part.rangeOf(1);  // reports missing parts
   }
   const std::filesystem::path folder = isPart ? *part->folder() : std::filesystem::path(options.out);
   makeFolder(folder);
@@ -194,13 +195,13 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   auto references = obtainReferences(plan.references(context, programs, options, folder / "references"));
   if (!references) return result;
   result->references = std::move(*references);
-  // Rows are judged by the reference that there was: a better one is another bench.
+  // Rows are judged by the reference in use: a better reference makes it another bench.
   claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", plan.title,
                                   options.deviations ? "deviations" : "ladders", context.capabilities().renderer,
                                   measure::keyOf(scene, plan.camera, plan.size, Transport::all, "rows 2").name(),
                                   result->references.all().samples));
 
-  // Rows: of the raster ladders, then of path tracing.
+  // Rows: first the raster ladders, then path tracing.
   const ErrorBench bench{context,
                          programs,
                          scene,
@@ -278,7 +279,7 @@ std::unique_ptr<ErrorBenchResult> benchScene(const CommonOptions& common, ErrorB
   auto result = runErrorBench(context, programs, scene, options, std::string(nameOf(host->kind())));
   if (result->complete) return result;
   const bool isPart = options.part.isPart();
-  fmt::print(stderr, "lucerna: interrupted; the same command with {} {} goes on\n", isPart ? "--checkpoint" : "--out",
+  fmt::print(stderr, "lucerna: interrupted; the same command with {} {} resumes\n", isPart ? "--checkpoint" : "--out",
              isPart ? options.part.checkpoint : options.out);
   return nullptr;
 }
@@ -349,8 +350,9 @@ int runReferences(ReferencesOptions options) {
   const bench::ReferenceBatches result =
       bench::sampleReferences(plan.references(context, programs, bench), bench.part, plan.title);
   if (!result.complete) {
-    fmt::print(stderr, "lucerna: interrupted{}\n",
-               bench.part.checkpoint.empty() ? "; nothing is kept without --checkpoint" : "; the same command goes on");
+    fmt::print(
+        stderr, "lucerna: interrupted{}\n",
+        bench.part.checkpoint.empty() ? "; nothing is stored without --checkpoint" : "; the same command goes on");
     return exitCode();
   }
   nlohmann::ordered_json json{{"renderer", context.capabilities().renderer},
@@ -373,7 +375,7 @@ Work addBenchReferences(Command app) {
   auto options = std::make_shared<ReferencesOptions>();
   app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
   options->bench.declareView(app);
-  app.addOption("--reference-spp", options->bench.referenceSamples, "paths a pixel of every reference")
+  app.addOption("--reference-spp", options->bench.referenceSamples, "paths per pixel of every reference")
       .required()
       .range(2, 1 << 30);
   app.addFlag("--deviations", options->bench.deviations, "those of bench error --deviations");
@@ -387,7 +389,7 @@ Work addBenchError(Command app) {
   app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
   options->bench.declare(app);
   app.addFlag("--deviations", options->bench.deviations,
-              "each deviation of the originals alone, instead of ladders of settings");
+              "measure each deviation of the originals alone, instead of ladders of settings");
   options->bench.part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return runError(*options); };

@@ -1,4 +1,4 @@
-// `lucerna bench error` as a function, for those that build on it: tune, bench all.
+// `lucerna bench error` as a function, for callers that build on it: tune, bench all.
 #pragma once
 
 #include "bench/error_report.hpp"
@@ -13,20 +13,20 @@ struct ErrorBenchOptions {
   std::uint64_t referenceSamples = 0;  ///< 0: by time
   int frames = 5;
   bool deviations = false, small = false, quiet = false;
-  PartOptions part;  ///< of rows; the command's alone
+  PartOptions part;  ///< of rows; only for the command itself
 
   void declare(Command app);
-  void declareView(Command app);  ///< of them what decides the references
+  void declareView(Command app);  ///< only the options that determine the references
 };
 
 struct ErrorBenchResult {
   ErrorReport report;
   References references;  ///< report.references points here once placed
-  bool complete = false;  ///< false: interrupted; what was finished lies in the folder
-  std::size_t partRows = 0;  ///< of a part: its rows, which lie in its folder; there is no report
+  bool complete = false;  ///< false: interrupted; finished rows are in the folder
+  std::size_t partRows = 0;  ///< for a part: its number of rows, stored in its folder; there is no report
 };
 
-/// What is measured, before anything is.
+/// The plan, made before anything is measured.
 struct ErrorBenchPlan {
   Scene scene;  ///< without highlights
   Camera camera;
@@ -42,12 +42,12 @@ struct ErrorBenchPlan {
                               const ErrorBenchOptions& options, const std::filesystem::path& own = {}) const;
 };
 
-/// Measures what the folder does not hold yet; writes rows, CSV, plots and page into it. Throws Error(badInput) for
-/// options that cannot be.
+/// Measures everything that the folder does not hold yet; writes rows, CSV, plots and page into it. Throws
+/// Error(badInput) for invalid options.
 std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::ProgramLibrary& programs,
                                                 const Scene& scene, const ErrorBenchOptions& options,
                                                 const std::string& hostName);
-/// The same for a command: loads the scene, makes the host, says so where it was interrupted and is then null.
+/// The same for a command: loads the scene and creates the host. Reports an interruption, and then returns null.
 std::unique_ptr<ErrorBenchResult> benchScene(const CommonOptions& common, ErrorBenchOptions& options);
 nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const ErrorBenchOptions& options);
 

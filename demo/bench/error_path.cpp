@@ -1,5 +1,5 @@
-// The path tracer's ladders, corrected and as published, and its deviations one by one: pictures that go on being
-// sampled, observed at 1, 2, 4, ... samples a pixel.
+// The path tracer's ladders, corrected and as published, and its deviations one by one: pictures that accumulate
+// samples, observed at 1, 2, 4, ... samples per pixel.
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
@@ -19,16 +19,16 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-constexpr std::uint32_t kWarmUp = 8;  // samples a pixel
+constexpr std::uint32_t kWarmUp = 8;  // samples per pixel
 
 /// Corrected, as published, or corrected with one deviation.
 struct PathSeries {
   std::string name, fidelity;
   std::vector<std::string> deviations;
   PathDeviations switches;
-  int seeds = 1;  ///< the median of so many
-  double seconds = 0.0;  ///< a seed's ladder
-  bool lastRung = false;  ///< that one alone is kept
+  int seeds = 1;  ///< the median over this many
+  double seconds = 0.0;  ///< for one seed's ladder
+  bool lastRung = false;  ///< keep only that one
   std::uint32_t samples = 0;  ///< the last rung; 0: by time
 
   std::string label() const {
@@ -53,7 +53,7 @@ PathSeries seriesOf(const std::string& fidelity, const std::string& deviation) {
   return series;
 }
 
-/// The ladders; for the study of deviations a rung of each.
+/// The ladders; for the study of deviations, one rung each.
 std::vector<PathSeries> seriesOf(const ErrorBench& bench, bool deviations) {
   std::vector<PathSeries> all{seriesOf("corrected", "")};
   all[0].seeds = 3;
@@ -74,7 +74,7 @@ struct Observation {
   std::vector<JudgedPicture> errors;
   std::size_t gpuBytes = 0;
   double setupMs = 0.0;
-  Image picture, standardError;  // of the first seed
+  Image picture, standardError;  // for the first seed
 };
 
 std::uint32_t seedOf(int index) { return 0x51ed270bu + static_cast<std::uint32_t>(index) * 7919u; }
@@ -82,7 +82,7 @@ std::uint32_t seedOf(int index) { return 0x51ed270bu + static_cast<std::uint32_t
 PathTracer::Settings settingsOf(const ErrorBench& bench, const PathSeries& series, int seed) {
   PathTracer::Settings settings;
   settings.size = bench.size;
-  settings.diffuseOnly = !bench.references.own;  // as the reference
+  settings.diffuseOnly = !bench.references.own;  // like the reference
   settings.deviations = series.switches;
   settings.pixelCentres = true;
   settings.seed = seedOf(seed);
@@ -94,7 +94,8 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed,
   const auto made = Clock::now();
   PathTracer tracer(bench.context, bench.programs, bench.scene, settingsOf(bench, series, seed));
   tracer.setCamera(bench.camera);
-  // Baking: the driver finishes the program on first use, and submissions grow until each takes its share of a second.
+  // Preparation: the driver finishes the program on first use, and submissions grow until each takes its share of a
+  // second.
   tracer.record(kWarmUp);
   tracer.setCamera(bench.camera);
   gl::finish();
@@ -102,7 +103,7 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed,
   double spent = 0.0, cpu = 0.0;
   std::size_t step = 0;
   for (std::uint32_t samples = 1; !interrupted(); samples *= 2, ++step) {
-    // The first seed decides how far the ladder goes; the others climb the same rungs.
+    // The first seed decides how far the ladder goes; the others use the same rungs.
     if (seed == 0 && (series.samples ? samples > series.samples : samples > 4 && 2.0 * spent > 1e3 * series.seconds))
       break;
     if (seed > 0 && step >= ladder.size()) break;
@@ -119,7 +120,7 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed,
     const Image picture = tracer.mean();
     const measure::Reference& truth = bench.references.path();
     const glm::dvec3 own = tracer.statistics().meanError;
-    // Channels share their paths: their errors add up as if wholly dependent.
+    // Channels share their paths: their errors add as if fully correlated.
     const double ownError = samples > 1 ? (own.x + own.y + own.z) / 3.0 : INFINITY;
     o.errors.push_back(bench.references.judge(picture, truth, false, ownError));
     if (seed == 0) {
@@ -131,7 +132,7 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed,
   }
 }
 
-/// A figure of each seed.
+/// One value per seed.
 std::vector<double> ofSeeds(const std::vector<JudgedPicture>& errors, double (*of)(const JudgedPicture&)) {
   std::vector<double> values;
   for (const JudgedPicture& e : errors) values.push_back(of(e));
@@ -159,8 +160,8 @@ ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t 
   row["frames"] = o.ms.size();
   row["setup_ms"] = o.setupMs;
   row["gpu_bytes"] = o.gpuBytes;
-  // Medians of all seeds; biases of one seed, with its own standard error: a median of biases has none that is so
-  // simple.
+  // Medians over all seeds, but biases of one seed with its own standard error: a median of biases has no equally
+  // simple one.
   row.update(errorsJson(first));
   row["l2"] = medianOf(o.errors, [](const JudgedPicture& e) { return e.scattered.l2; });
   row["nrmse"] = medianOf(o.errors, [](const JudgedPicture& e) { return e.pixels.nrmse; });
@@ -188,8 +189,8 @@ ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t 
   return row;
 }
 
-/// How far a figure of one seed lies from another's, relative to their mean: pooled over rungs, as three seeds alone
-/// tell little. NaN where no rung has two.
+/// Spread of a value between seeds, relative to its mean: pooled over rungs, as three seeds alone are a poor estimate.
+/// NaN if no rung has two seeds.
 double relativeSpread(const std::vector<ErrorRow>& rows, const char* measure, double& freedom) {
   double squares = 0.0;
   freedom = 0.0;
@@ -208,7 +209,7 @@ double relativeSpread(const std::vector<ErrorRow>& rows, const char* measure, do
   return freedom > 0.0 ? std::sqrt(squares / freedom) : NAN;
 }
 
-/// A sampled picture's errors differ from seed to seed: their standard errors take that in.
+/// A sampled picture's errors differ from seed to seed: add that to their standard errors.
 void addSeedSpread(std::vector<ErrorRow>& rows) {
   for (const char* measure : {"l2", "nrmse", "relmse"}) {
     double freedom = 0.0;
@@ -221,7 +222,7 @@ void addSeedSpread(std::vector<ErrorRow>& rows) {
       const double own = spread * ofMedian * number(row, measure), reference = number(row, key.c_str());
       row[key] = std::isfinite(reference) ? std::hypot(reference, own) : own;
       row["error_freedom"] =
-          std::max(1.0, 0.5 * freedom);  // a rung holds the samples of those below it: half as many are independent
+          std::max(1.0, 0.5 * freedom);  // a rung includes the samples of those below it: half as many are independent
     }
   }
 }
@@ -231,7 +232,7 @@ void addSeedSpread(std::vector<ErrorRow>& rows) {
 std::vector<ErrorRow> measurePath(const ErrorBench& bench, bool deviations) {
   std::vector<ErrorRow> rows;
   for (PathSeries series : seriesOf(bench, deviations)) {
-    // Deviations are compared at as many samples as the corrected tracer had time for.
+    // Deviations are compared at the number of samples that the corrected tracer had time for.
     if (deviations && !rows.empty()) series.samples = rows.front().at("spp").get<std::uint32_t>();
     const std::filesystem::path file = rowFile(bench.folder, series.name);
     if (std::filesystem::exists(file)) {

@@ -20,10 +20,10 @@ ErrorRow measurePublished(const ErrorBench& bench, const Rung& rung) {
   const double seconds = secondsSince(start);
   if (interrupted()) return {};
 
-  // Shown as any solution is: from a file.
+  // Displayed like any solution, from a file.
   const std::filesystem::path file = bench.folder / "published.radiosity";
   RadiositySolution& solution = published.solution;
-  solution.deviations = asked.deviations;  // the view knows no 24 bits: they are in the numbers
+  solution.deviations = asked.deviations;  // the view need not know about 24 bits: they are already in the numbers
   solution.settings = textOf(asked);
   saveSolution(file, bench.scene, solution);
   const double bound = solution.progress.errorBound;

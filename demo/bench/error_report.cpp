@@ -35,7 +35,7 @@ double spread(const ErrorRow& row, std::size_t i) {
   return found == row.end() || !found->is_array() || !(*found)[i].is_number() ? NAN : (*found)[i].get<double>();
 }
 
-/// "12.3 %", or "< 0.4 % (noise)" where the reference cannot tell. measure: l2 or nrmse.
+/// "12.3 %", or "< 0.4 % (noise)" if the reference is too noisy. measure: l2 or nrmse.
 std::string errorText(const ErrorRow& errors, const char* measure) {
   const auto notFinite = errors.find("not_finite");
   if (notFinite != errors.end() && notFinite->is_number() && notFinite->get<double>() > 0) return "not finite";
@@ -44,7 +44,7 @@ std::string errorText(const ErrorRow& errors, const char* measure) {
   const double value = 100.0 * number(errors, measure);
   return std::isfinite(value) ? fmt::format("{:.3g} %", value) : "";
 }
-/// Of "blocks", "lit", "other" or "inside_model"; an empty row where there is none.
+/// The part "blocks", "lit", "other" or "inside_model"; an empty row if there is none.
 const ErrorRow& part(const ErrorRow& row, const char* key) {
   static const ErrorRow kNone = ErrorRow::object();
   const auto found = row.find(key);
@@ -66,7 +66,7 @@ std::string partBiasText(const ErrorRow& errors, const char* key) {
   return fmt::format("{:+.3g} %{}", 100.0 * bias, std::abs(bias) < 3.0 * error ? " (0)" : "");
 }
 std::string bytesText(double bytes) { return std::isnan(bytes) ? "" : fmt::format("{:.2f} MiB", bytes / 1048576.0); }
-/// Nothing where there is no figure: yardsticks take no time.
+/// Empty for NaN: yardsticks take no time.
 std::string fixed(double value, int digits) { return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits); }
 
 struct Column {
@@ -96,7 +96,7 @@ const Column kColumns[] = {
     {"GPU memory", [](const ErrorRow& r) { return bytesText(number(r, "gpu_bytes")); }},
 };
 
-/// Inside the model: the figures of row["inside_model"].
+/// Inside the model: the values in row["inside_model"].
 const Column kInsideColumns[] = {
     {"technique and settings", [](const ErrorRow& r) { return text(r, "label"); }},
     {"ms", [](const ErrorRow& r) { return fixed(number(r, "ms"), 2); }},
@@ -113,7 +113,7 @@ const Column kInsideColumns[] = {
     {"NRMSE in blocks", [](const ErrorRow& r) { return errorText(part(part(r, "inside_model"), "blocks"), "nrmse"); }},
 };
 
-/// Cells of rows, a line each.
+/// Table cells of rows, one line each.
 HtmlPage::Table tableOf(std::span<const Column> columns, const std::vector<const ErrorRow*>& rows, const char* marked) {
   HtmlPage::Table table;
   for (const Column& column : columns) table.columns.push_back(column.title);
@@ -148,7 +148,7 @@ HtmlPage::Table allLightTable(const ErrorReport& report) {
   return tableOf(kColumns, rows, "pareto");
 }
 
-/// Yardsticks, then the model's rows, the best first.
+/// Yardsticks, then the model's rows, best first.
 HtmlPage::Table insideTable(const ErrorReport& report, const InsideModel& model) {
   std::vector<const ErrorRow*> rows;
   for (const ErrorRow& row : report.rows)
@@ -162,11 +162,12 @@ HtmlPage::Table insideTable(const ErrorReport& report, const InsideModel& model)
 }
 
 constexpr const char* kInsideHeading =
-    "Inside the model: the light that the technique promises, of the lights that it knows";
+    "Inside the model: the light that the technique promises, from the lights it supports";
 constexpr const char* kInsideNote =
     "Settings of a technique are ranked here, never by the error of all light, where errors of the model and of the "
     "settings may cancel. Marked: on the front of their technique by time and error. "
-    "squares in lit: share of sum d^2 in directly lit pixels. Which of the error is the reflective shadow map's (all "
+    "squares in lit: share of sum d^2 in directly lit pixels. Which part of the error is the reflective shadow map's "
+    "(all "
     "its points gathered with true visibility) and which is storage's and lookup's "
     "(exact radiance in the cells) is not measured: the bench has no such floors.";
 
@@ -201,15 +202,14 @@ std::string modelText(const ModelError& m) {
   return fmt::format("{:<64}relative L2 {}, bias {} of {}", m.name, modelErrorText(m), modelBiasText(m), m.of);
 }
 
-/// How the path tracer's error falls by samples, and from the eighth on by wall clock and processor time: a pass
-/// doubles what there is, and in the first ones lanes wait for the longest path of so few, so that a sample alone costs
-/// more than one of many.
+/// Exponents of the path tracer's error by samples and, from the eighth on, by wall-clock and processor time. A pass
+/// doubles the samples; in the first passes lanes wait for the longest of few paths, so a sample costs more there.
 struct PathSlope {
   measure::Slope samples, time, processor;
   double first = 0.0, last = 0.0;  ///< samples
 };
 
-/// Those over time count from 32 samples on: in the first passes lanes wait for the longest path of so few. None with
+/// Slopes over time use 32 samples and more: in the first passes lanes wait for the longest of few paths. None with
 /// fewer than three such rows above the reference's noise.
 std::optional<PathSlope> pathSlope(const std::vector<ErrorRow>& rows) {
   std::vector<double> ms, cpuMs, samples, errors, errorsOverTime;
@@ -338,7 +338,7 @@ nlohmann::ordered_json referencesJson(const References& references) {
 
 namespace {
 
-/// Writes the plot; a warning and false where nothing can be drawn or gnuplot is missing.
+/// Writes the plot; warns and returns false if nothing can be drawn or gnuplot is missing.
 bool draw(const fs::path& folder, const std::string& stem, const LogLogPlot& plot) {
   if (std::all_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.points.empty(); })) {
     logWarning("no plot {}: every row is at the reference's noise; increase --budget", stem);
@@ -354,14 +354,14 @@ bool draw(const fs::path& folder, const std::string& stem, const LogLogPlot& plo
   }
 }
 
-/// Every series has one style in all plots and in the figure: its place among those of the report.
+/// Every series has the same style in all plots and in the figure: its index among those of the report.
 std::map<std::string, std::size_t> stylesOf(const ErrorReport& report) {
   std::map<std::string, std::size_t> styles;
   for (const ErrorRow& row : report.rows) styles.try_emplace(text(row, "series"), styles.size());
   return styles;
 }
 
-/// Points of one series in the order of time.
+/// Sorts the points of one series by time.
 void sortByTime(LogLogPlot& plot) {
   for (Series& series : plot.series)
     std::sort(series.points.begin(), series.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
@@ -395,7 +395,7 @@ bool plotAllLight(const fs::path& folder, const ErrorReport& report) {
   return draw(folder, "error", plot);
 }
 
-/// Indirect light of each technique inside its model; direct light, and models of all light, stay in their tables.
+/// Indirect light of each technique inside its model; direct light, and models of all light, appear only in tables.
 bool plotInside(const fs::path& folder, const ErrorReport& report) {
   LogLogPlot plot;
   plot.title = report.title + ": indirect light inside each model";
@@ -403,7 +403,7 @@ bool plotInside(const fs::path& folder, const ErrorReport& report) {
   plot.yLabel = "relative L2 error inside the model, % (black = 100 %)";
   std::map<std::string, std::size_t> index;
   const std::map<std::string, std::size_t> styles = stylesOf(report);
-  std::map<std::string, std::string> models;  // a short name of each that is drawn
+  std::map<std::string, std::string> models;  // a short name of each model drawn
   for (const ErrorRow& row : report.rows) {
     const ErrorRow& inside = part(row, "inside_model");
     if (inside.empty() || text(inside, "transport") == "direct" || text(inside, "transport") == "all") continue;
@@ -431,7 +431,7 @@ bool plotRows(const fs::path& folder, const ErrorReport& report) {
 
 namespace {
 
-/// The report as the figure takes it; pictures that the folder does not hold as linear ones are left out.
+/// Converts the report for the figure; pictures that the folder does not hold in linear form are left out.
 Figure figureOf(const fs::path& folder, const ErrorReport& report, std::vector<Image>& store) {
   Figure figure;
   figure.facts = {{"title", report.title},
@@ -461,7 +461,7 @@ Figure figureOf(const fs::path& folder, const ErrorReport& report, std::vector<I
     picture.picture = &store.emplace_back(readImage(stem + ".pfm"));
     if (fs::exists(stem + ".error.pfm")) picture.standardError = &store.emplace_back(readImage(stem + ".error.pfm"));
     if (fs::exists(stem + ".flip.png")) picture.flip = readBitmap(stem + ".flip.png");
-    // All of the front, and the last of every series; the rest where there is room.
+    // The whole front, and the last row of every series; the rest if there is room.
     const bool isLastOfSeries =
         i + 1 == report.rows.size() || text(row, "series") != text(report.rows[i + 1], "series");
     picture.isFirstChoice = flag(row, "pareto") || isLastOfSeries;
@@ -515,7 +515,7 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
       fmt::format("Heat maps: absolute, 0 (black) to {0:.3g} and more (white) radiance; signed luminance, -{0:.3g} "
                   "(blue), 0 (white), +{0:.3g} (red). One scale for all.",
                   scale));
-  // Tone-mapped copies for those who read without scripts, as far as there is room: the figure above holds the pictures
+  // Tone-mapped copies for readers without scripts, as far as there is room: the figure above holds the pictures
   // themselves.
   std::size_t room = bytes / 8;
   const auto show = [&](const std::vector<HtmlPage::Picture>& pictures) {
@@ -528,7 +528,7 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
   };
   int leftOut = show({{folder / "pictures/reference.png", "reference, all light"}}) ? 0 : 1;
   for (const ErrorRow& row : report.rows) {
-    // All of the front and of the deviations; of the rest one a series.
+    // All of the front and of the deviations; of the rest one per series.
     const bool isLastOfSeries = &row == &report.rows.back() || text(row, "series") != text(*(&row + 1), "series");
     if (!flag(row, "pareto") && !isLastOfSeries) continue;
     const std::string stem = text(row, "picture");
@@ -537,7 +537,7 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
                       {folder / (stem + ".signed.png"), "signed error, bias " + biasText(row)}});
   }
   if (leftOut > 0)
-    page.paragraph(fmt::format("{} more lie in the folder pictures: this page has no room for them.", leftOut));
+    page.paragraph(fmt::format("{} more are in the folder pictures: this page has no room for them.", leftOut));
 }
 
 }  // namespace lucerna::demo::bench

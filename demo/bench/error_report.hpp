@@ -1,4 +1,4 @@
-// What is made of the rows of `lucerna bench error`: terminal table, CSV, plots, HTML.
+// Output from the rows of `lucerna bench error`: terminal table, CSV, plots, HTML.
 #pragma once
 
 #include "bench/error_rows.hpp"
@@ -10,31 +10,31 @@ namespace lucerna::demo::bench {
 struct ErrorReport {
   std::string title;  ///< scene, camera, size
   std::string renderer, driver, host, cpu;
-  std::string command;  ///< that measures it again, but for --out
-  float exposure = 1.0f;  ///< of the pictures as they are shown first
+  std::string command;  ///< repeats the measurement, without --out
+  float exposure = 1.0f;  ///< of the pictures as first displayed
   std::vector<ErrorRow> rows;
   std::vector<ErrorRow> yardsticks;  ///< "black" and "constant", against all light
   std::vector<ModelError> model;
-  std::vector<InsideModel> inside;  ///< the models of the rows' techniques
+  std::vector<InsideModel> inside;  ///< models of the rows' techniques
   const References* references = nullptr;
   bool isDeviationStudy = false;
-  std::vector<std::string> leftOut;  ///< techniques that were not measured, and why
+  std::vector<std::string> leftOut;  ///< techniques that were not measured, with reasons
 };
 
 std::string terminalTable(const ErrorReport& report);
 /// Yardsticks and rows.
 std::string csvOf(const ErrorReport& report);
-/// The path tracer's corrected ladder: exponents of its error, null with fewer than three rows above the reference's
+/// Exponents of the error of the path tracer's corrected ladder; null with fewer than three rows above the reference's
 /// noise.
 nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows);
 nlohmann::ordered_json modelJson(const std::vector<ModelError>& model);
 nlohmann::ordered_json insideModelsJson(const std::vector<InsideModel>& inside);
 nlohmann::ordered_json referencesJson(const References& references);
-/// error: all light; error_inside: indirect light inside each model. SVG and PNG beside each other; one warning where
-/// gnuplot is missing, and false.
+/// error: all light; error_inside: indirect light inside each model. Writes SVG and PNG. Warns once and returns false
+/// if gnuplot is missing.
 bool plotRows(const std::filesystem::path& folder, const ErrorReport& report);
-/// Adds its sections to `page`; pictures and plot are read from the folder. `bytes`: what the figure's linear pictures
-/// may take of the page.
+/// Adds its sections to `page`; pictures and plot are read from the folder. `bytes`: limit for the figure's linear
+/// pictures in the page.
 void addToPage(HtmlPage& page, const std::filesystem::path& folder, const ErrorReport& report, std::size_t bytes);
 
 }  // namespace lucerna::demo::bench

@@ -37,14 +37,14 @@ std::string fileStem(const std::string& name) {
   return text;
 }
 
-/// A picture's options as settings of a renderer that measures.
+/// A picture's options as settings of a measuring renderer.
 RenderSettings settingsOf(const ErrorBench& bench, const PictureOptions& picture, Component component) {
   RenderSettings settings = picture.parse();
   settings.component = component;
   settings.size = bench.size;
   settings.fullFloatTarget = true;
-  settings.textures.anisotropy = 1.0f;  // how textures are filtered anisotropically is each driver's own
-  settings.reuse = false;  // what a picture costs from nothing, not what a still scene saves
+  settings.textures.anisotropy = 1.0f;  // anisotropic filtering differs between drivers
+  settings.reuse = false;  // measure a picture's full cost, without savings in a still scene
   return settings;
 }
 
@@ -56,7 +56,7 @@ struct Timed {
   Image picture;
 };
 
-/// A picture from nothing: what is added up over frames is begun anew and brought to its end.
+/// Renders from scratch: accumulated quantities are restarted and brought to their end.
 void renderAnew(Renderer& renderer, const Camera& camera) {
   renderer.forget();
   renderer.renderToTheEnd(camera);
@@ -93,7 +93,7 @@ std::optional<ErrorRow> readRow(const fs::path& file) {
   if (!fs::exists(file)) return std::nullopt;
   ErrorRow row = ErrorRow::parse(readFileText(file), nullptr, false);
   if (row.is_discarded()) {
-    logWarning("{}: damaged row, measured again", file.string());
+    logWarning("{}: damaged row, will be measured again", file.string());
     return std::nullopt;
   }
   return row;
@@ -106,7 +106,7 @@ nlohmann::ordered_json partJson(const measure::PartErrors& part) {
           {"squares", part.squares}};
 }
 
-/// Pixels of surfaces alone, where lights themselves are seen; indirect light has none.
+/// Judge only surface pixels if the model shows lights themselves; indirect light does not.
 bool onSurfacesAlone(const LightPaths& model) { return showsLights(model.transport); }
 
 /// A yardstick's errors. That of a black picture is 100 % by definition, however noisy the reference is.
@@ -117,7 +117,7 @@ ErrorRow yardstickErrors(const References& references, const std::string& name, 
   return errors;
 }
 
-/// A picture that costs nothing: what techniques must beat.
+/// A picture of no cost, which techniques must beat.
 ErrorRow yardstick(const References& references, const std::string& name, const Image& picture) {
   ErrorRow row;
   row["technique"] = row["series"] = row["label"] = name;
@@ -204,7 +204,7 @@ std::string writePictures(const ErrorBench& bench, const std::string& name, cons
                           const measure::Reference& reference, const std::vector<float>& flip, const Image* ownError) {
   const std::string stem = "pictures/" + fileStem(name);
   const Image& truth = reference.mean;
-  // One scale for all rows, so that they can be compared: a fifth of what a black picture would have.
+  // The same scale for all rows, so that they can be compared: a fifth of a black picture's error.
   const double scale = std::max(0.2 * measure::heatMapScale(Image(truth.width, truth.height), truth), 1e-30);
   const auto file = [&](const char* kind) { return bench.folder / (stem + kind + ".png"); };
   writePng(file(""), toneMapped(picture, bench.scene.exposure));
@@ -325,7 +325,7 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vecto
   measure::Flip flip{NAN, {}};
   if (errors.pixels.measured.notFinite == 0) flip = measure::flipHdr(timed.picture, bench.references.all().mean);
   row["flip"] = flip.mean;
-  // Inside its model: the light that it promises, of the lights that it knows. That of all light is above.
+  // Inside its model: the promised light, from the supported lights. All light is judged above.
   const LightPaths model = modelOf(rung, bench.references.lights).paths;
   if (model.lights.any() && model != LightPaths{Transport::all, bench.references.lights}) {
     const bool whole = showsLights(model.transport);
@@ -345,7 +345,7 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vecto
 
 namespace {
 
-/// A row's time and an l2 of it (errors: the row, or its inside_model), with their standard errors.
+/// A row's time and its l2 (errors: the row, or its inside_model), with their standard errors.
 measure::CostAndError pointOf(const ErrorRow& row, const ErrorRow& errors) {
   std::vector<double> samples;
   if (const auto found = row.find("wall_ms_samples"); found != row.end() && found->is_array())
@@ -375,7 +375,7 @@ void markFront(std::vector<ErrorRow>& rows) {
     const std::vector<bool> front = measure::paretoFront(points);
     for (std::size_t k = 0; k < group.size(); ++k) rows[group[k]]["inside_front"] = static_cast<bool>(front[k]);
   }
-  // What is left is ranked by all light.
+  // The remaining rows are ranked by all light.
   std::vector<measure::CostAndError> points;
   for (const ErrorRow& row : rows) {
     points.push_back(pointOf(row, row));
@@ -383,7 +383,7 @@ void markFront(std::vector<ErrorRow>& rows) {
   }
   const std::vector<bool> front = measure::paretoFront(points);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    int rank = 0;  // how many of the front are at most as slow
+    int rank = 0;  // number of front rows that are at most as slow
     for (std::size_t j = 0; j < rows.size(); ++j) rank += front[i] && front[j] && points[j].cost <= points[i].cost;
     rows[i]["pareto"] = static_cast<bool>(front[i]);
     rows[i]["front"] = rank;

@@ -24,7 +24,7 @@ glm::ivec2 shrunkSize(const Image& image, int block) {
   return {(image.width + block - 1) / block, (image.height + block - 1) / block};
 }
 
-/// Each block of block x block pixels, cut off at the edge, as one: f(sum of pixels, their number).
+/// Reduces each block of block x block pixels, cut off at the edge, to one: f(sum of pixels, their number).
 template <typename Of>
 std::vector<glm::dvec3> shrunk(const Image& image, int block, bool squares, Of of) {
   const glm::ivec2 size = shrunkSize(image, block);
@@ -45,7 +45,7 @@ std::vector<glm::dvec3> shrunk(const Image& image, int block, bool squares, Of o
 std::vector<glm::dvec3> means(const Image& image, int block) {
   return shrunk(image, block, false, [](const glm::dvec3& sum, double n) { return sum / n; });
 }
-/// Of a mean over independent pixels.
+/// Standard errors of block means over independent pixels.
 std::vector<glm::dvec3> standardErrors(const Image& image, int block) {
   return shrunk(image, block, true, [](const glm::dvec3& sum, double n) { return glm::sqrt(sum) / n; });
 }
@@ -57,7 +57,7 @@ std::string floats(const std::vector<glm::dvec3>& values) {
   return base64({reinterpret_cast<const std::uint8_t*>(flat.data()), flat.size() * sizeof(float)});
 }
 
-/// The power of two that takes the largest value to below 2^15: halves end at 65504, and below 2^-14 they lose digits.
+/// The power of two that scales the largest value to below 2^15: halves end at 65504, and lose digits below 2^-14.
 double halfScale(const std::vector<glm::dvec3>& values) {
   double largest = 0.0;
   for (const glm::dvec3& v : values)
@@ -84,14 +84,14 @@ std::string plane(const std::string& name, const std::string& data) {
   return fmt::format("<script type=\"text/plain\" data-plane=\"{}\">{}</script>\n", name, data);
 }
 
-/// JSON between script tags: no "</" may end them early.
+/// JSON between script tags: must not contain "</", which would end them early.
 std::string scriptJson(const nlohmann::ordered_json& json) {
   std::string text = json.dump();
   for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.replace(at, 2, "<\\/");
   return text;
 }
 
-/// Bytes of base64 that a picture, or a reference, takes.
+/// Base64 bytes of a picture or a reference.
 std::size_t cost(glm::ivec2 size, std::size_t bytesOfPixel) {
   return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * bytesOfPixel * 4 / 3;
 }
@@ -101,7 +101,7 @@ std::size_t cost(glm::ivec2 size, std::size_t bytesOfPixel) {
 std::string figureHtml(const Figure& figure, std::size_t bytes) {
   CHECK(!figure.references.empty(), "no reference");
   const Image& first = *figure.references.front().mean;
-  // What fits: all pictures, else those of first choice beside smaller others, else smaller ones of all.
+  // Choose what fits: all pictures; else the first choice with the others shrunk; else all shrunk.
   const auto total = [&](int block, int ofOthers) {
     std::size_t sum = figure.references.size() * cost(shrunkSize(first, block), 12 + 6);
     for (const FigurePicture& p : figure.pictures)

@@ -1,10 +1,10 @@
 // The interactive part of a report: linear pictures, their reference and its standard error, and the rows that they
-// belong to, as one piece of HTML that holds all of it. assets/report/figure.js shows it: viewer, maps, plot, tables,
+// belong to, in one self-contained piece of HTML. assets/report/figure.js displays it: viewer, maps, plot, tables,
 // crops, exports.
 //
-// Pictures travel as what they are less their reference, in half floats times a power of two (relative error of a
-// difference 2^-11, so that a z-score is right where both are nearly equal); references as floats, standard errors as
-// halves, FLIP as bytes.
+// Pictures are stored as differences from their reference, in half floats times a power of two (a difference has a
+// relative error of 2^-11, so that z-scores are right even where both are nearly equal); references as floats, standard
+// errors as halves, FLIP as bytes.
 #pragma once
 
 #include "base/image.hpp"
@@ -24,23 +24,23 @@ struct FigureReference {
 };
 
 struct FigurePicture {
-  std::size_t row = 0;  ///< of facts["rows"]
-  std::size_t reference = 0;  ///< what it is judged by
+  std::size_t row = 0;  ///< in facts["rows"]
+  std::size_t reference = 0;  ///< index of its reference
   const Image* picture = nullptr;
-  const Image* standardError = nullptr;  ///< its own, where it is sampled; else null
+  const Image* standardError = nullptr;  ///< its own if it is sampled; else null
   Bitmap flip;  ///< red 0..255 for 0..1; empty: none
-  bool isFirstChoice = true;  ///< the last to be shrunk where there is no room for all
+  bool isFirstChoice = true;  ///< among the last to be shrunk if there is too little room
 };
 
 struct Figure {
   nlohmann::ordered_json
-      facts;  ///< title, rows, yardsticks, references, exposure, provenance: what the JSON of the command says
-  std::vector<FigureReference> references;  ///< one at least; all of one size
+      facts;  ///< title, rows, yardsticks, references, exposure, provenance: the content of the command's JSON
+  std::vector<FigureReference> references;  ///< at least one; all of the same size
   std::vector<FigurePicture> pictures;
 };
 
-/// At most about `bytes` long: first the pictures that are no first choice are shrunk to means over blocks of 2 to 4
-/// pixels, then all are, and the figure says so.
+/// At most about `bytes` long. If necessary, pictures that are not first choice are reduced to means over blocks of 2
+/// to 4 pixels, then all of them; the figure says so.
 std::string figureHtml(const Figure& figure, std::size_t bytes);
 
 }  // namespace lucerna::demo::bench

@@ -71,7 +71,7 @@ void HtmlPage::preformatted(const std::string& text) {
 }
 
 void HtmlPage::table(const Table& table) {
-  // A column of numbers stands to the right; one that has words in it to the left, whatever its cells begin with.
+  // Columns of numbers are right-aligned; a column with words is left-aligned, whatever its cells begin with.
   std::vector<bool> words(table.columns.size(), false);
   for (const auto& row : table.rows)
     for (std::size_t c = 0; c < row.size() && c < words.size(); ++c)
@@ -80,7 +80,7 @@ void HtmlPage::table(const Table& table) {
     body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, column < words.size() && words[column] ? " class=\"text\"" : "",
                          escapeHtml(text));
   };
-  // Whoever has keys alone scrolls what has the focus.
+  // Keyboard users scroll the element with the focus.
   body_ += "<div class=\"scroll\" tabindex=\"0\"><table><tr>";
   for (std::size_t c = 0; c < table.columns.size(); ++c) cell("th", c, table.columns[c]);
   body_ += "</tr>\n";
@@ -104,7 +104,7 @@ void HtmlPage::pictures(const std::vector<Picture>& pictures) {
 void HtmlPage::svg(const std::filesystem::path& file) {
   std::string text = readFileText(file);
   if (const auto start = text.find("<svg"); start != std::string::npos)
-    text.erase(0, start);  // no XML head inside HTML
+    text.erase(0, start);  // no XML header inside HTML
   body_ += "<div class=\"plot\">\n" + text + "</div>\n";
 }
 
@@ -121,7 +121,7 @@ void HtmlPage::figure(const std::string& html) {
 
 void HtmlPage::append(const HtmlPage& other) {
   hasFigure_ = hasFigure_ || other.hasFigure_;
-  // Anchors of the other page start anew: they get a prefix of their own.
+  // Prefix the other page's anchors to keep them unique.
   std::string body = other.body_;
   const std::string prefix = fmt::format("p{}-", ++anchors_);
   for (const auto& [anchor, title] : other.index_) {

@@ -12,7 +12,7 @@ namespace lucerna::demo::bench {
 
 std::string escapeHtml(std::string_view text);
 std::string base64(std::span<const std::uint8_t> bytes);
-/// What a page with figures takes at most, bytes; its pictures get three quarters.
+/// Maximum size of a page with figures, bytes; its pictures get three quarters.
 inline constexpr std::size_t kPageLimit = 20'000'000, kPageBytes = 14'000'000;
 
 class HtmlPage {
@@ -23,26 +23,26 @@ class HtmlPage {
   void section(const std::string& title);
   void heading(const std::string& title);
   void paragraph(const std::string& text);
-  /// Cells are text; a row whose `marked` is true stands out.
+  /// Cells are text; a row with `marked` set is highlighted.
   struct Table {
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows;
     std::vector<bool> marked;
   };
   void table(const Table& table);
-  /// A PNG of the folder, with a caption; pictures in one group stand side by side.
+  /// A PNG of the folder, with a caption; pictures of one group are placed side by side.
   struct Picture {
     std::filesystem::path png;
     std::string caption;
   };
   void pictures(const std::vector<Picture>& pictures);
   void svg(const std::filesystem::path& file);
-  /// One that a figure shows better, for browsers that run no scripts.
+  /// An SVG that a figure displays better, for browsers without scripts.
   void svgWithoutScripts(const std::filesystem::path& file);
-  /// An interactive figure (figure.hpp): its script and style come with the page, once.
+  /// An interactive figure (figure.hpp); its script and style are included in the page once.
   void figure(const std::string& html);
   void preformatted(const std::string& text);
-  /// What another page holds, without its title and index.
+  /// The content of another page, without its title and index.
   void append(const HtmlPage& other);
 
   std::string text() const;

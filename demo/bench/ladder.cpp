@@ -44,7 +44,7 @@ std::vector<Rung> lpvLadder(bool shrink) {
   for (int iterations : {2, 4, 8, 16, 32})
     rungs.push_back(
         rung("lpv", "iterations", {"lpv.transport=propagate", fmt::format("lpv.iterations={}", iterations)}));
-  // Each number of bounces has a reference of its own.
+  // Each number of bounces has a separate reference.
   for (int bounces : {1, 2, 4})
     if (!shrink || bounces != 2)
       rungs.push_back(rung("lpv", "bounces", {"lpv.transport=propagate", fmt::format("lpv.bounces={}", bounces)}));
@@ -56,7 +56,7 @@ std::vector<Rung> lpvLadder(bool shrink) {
   for (int size : {64, 128, 256, 512})
     if (!shrink || size < 512)
       rungs.push_back(rung("lpv", "gather map", {"lpv.transport=gather", fmt::format("rsm.size={}", size)}));
-  // Paths to receivers: all light but in the ladder of bounces itself.
+  // Paths to receivers: all light, except in the ladder of bounces itself.
   const auto rays = [&](const char* series, std::string setting, bool allBounces = true) {
     std::vector<std::string> settings{"lpv.transport=rays", std::move(setting)};
     if (allBounces) settings.emplace_back("lpv.bounces=all");
@@ -71,7 +71,7 @@ std::vector<Rung> lpvLadder(bool shrink) {
   return rungs;
 }
 
-// What a solution costs is baking (setup_ms); a picture of it costs next to nothing, whatever the patches.
+// The cost of a solution is its preparation (setup_ms); drawing it costs almost nothing, however many patches.
 std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
   std::vector<Rung> rungs;
   for (int parts : {3, 6, 12, 24})
@@ -82,7 +82,7 @@ std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
       rungs.push_back(rung(
           "radiosity", "hemicubes",
           {fmt::format("radiosity.edge={:.6g}", longestSide / 6), fmt::format("radiosity.resolution={}", pixels)}));
-  // As published, beside the compute solution of the same patches.
+  // As published, next to the compute solution of the same patches.
   Rung published = rung("radiosity", "",
                         {fmt::format("radiosity.edge={:.6g}", longestSide / (shrink ? 3 : 6)),
                          fmt::format("radiosity.resolution={}", shrink ? 48 : 100), "radiosity.flat=on"},
@@ -92,7 +92,7 @@ std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
   return rungs;
 }
 
-/// What a technique's settings and deviations begin with.
+/// The prefix of a technique's settings and deviations.
 std::string prefixOf(const std::string& technique) { return technique + "."; }
 
 }  // namespace
@@ -131,8 +131,8 @@ std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
         rung(technique, "corrected",
              technique == "lpv" ? std::vector<std::string>{"lpv.transport=propagate"} : std::vector<std::string>{}));
     for (const Deviation& deviation : allDeviations()) {
-      // A deviation's name begins with the technique that it belongs to; the light propagation volume reads the
-      // reflective shadow map's flux too.
+      // A deviation's name begins with the technique that it belongs to; the light propagation volume also reads the
+      // reflective shadow map's flux.
       const std::string name(deviation.name);
       const bool reads = name.starts_with(prefixOf(technique)) || (technique == "lpv" && name == "rsm.flux-cosine");
       if (!reads) continue;

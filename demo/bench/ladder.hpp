@@ -1,4 +1,4 @@
-// What `lucerna bench error` measures: each technique over a ladder of settings, and each deviation alone.
+// The measurements of `lucerna bench error`: each technique over a ladder of settings, and each deviation alone.
 #pragma once
 
 #include "commands.hpp"
@@ -8,23 +8,23 @@
 
 namespace lucerna::demo::bench {
 
-/// One measurement: the options of a picture as the command line has them, and the series that it belongs to.
+/// One measurement: the options of a picture as on the command line, and the series that it belongs to.
 struct Rung {
   std::string series;  ///< such as "lpv cells"; a line of the plot
   PictureOptions picture;  ///< technique, fidelity, deviations, settings
-  bool byReadPixels = false;  ///< radiosity: solved by the published program, its colours drawn and read back
-  /// What is said of it in tables: settings that differ from the defaults.
+  bool byReadPixels = false;  ///< radiosity: solved by the published program, with colours drawn and read back
+  /// Label in tables: settings that differ from the defaults.
   std::string label() const;
-  /// The same measurement has the same name: a finished one is not made again.
+  /// Equal measurements have equal names: a finished one is not repeated.
   std::string name() const;
 };
 
-/// The techniques that have a ladder.
+/// The techniques with a ladder.
 std::vector<std::string> ladderTechniques();
-/// Throws Error(badInput) naming an unknown technique. `shrink`: leave the most expensive rungs out. longestSide: of
+/// Throws Error(badInput) naming an unknown technique. `shrink`: leave out the most expensive rungs. longestSide: of
 /// the scene, for patch sizes.
 std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double longestSide);
-/// Corrected, and corrected with one deviation on at a time, for every technique that the deviation belongs to.
+/// Corrected, and corrected with one deviation on at a time, for every technique that has the deviation.
 std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques);
 
 }  // namespace lucerna::demo::bench

@@ -23,7 +23,7 @@ std::string nameOf(const LightPaths& paths) {
 bool showsLights(Transport transport) { return transport == Transport::all || transport == Transport::direct; }
 
 LightKinds directLightsOf(const RenderSettings& settings) {
-  LightKinds kinds{true, true, false, false};  // forward shading's
+  LightKinds kinds{true, true, false, false};  // of forward shading
   if (settings.technique == Technique::radiosity) kinds.surfaces = true;
   if (settings.technique == Technique::lpv) {
     if (settings.lpv.transport == LpvTransport::rays) kinds.surfaces = true;
@@ -35,7 +35,7 @@ LightKinds directLightsOf(const RenderSettings& settings) {
 LightKinds lightsOf(const RenderSettings& settings) {
   LightKinds kinds = directLightsOf(settings);
   if (settings.technique == Technique::rsm) kinds.lamps = false;  // its gather places samples by parallel projection
-  // Gathered from lights' maps, in which the sky's light is not; it has the sky's direct light.
+  // Gathered from lights' maps, which lack the sky's light; the sky's direct light is included.
   if (settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::gather) kinds.environment = false;
   return kinds;
 }

@@ -1,5 +1,5 @@
-// Which light a technique computes: the paths of its model, and the kinds of light that it knows. It is judged against
-// that light; what its model leaves out is listed apart.
+// The light that a technique computes: the paths of its model, and the kinds of light that it supports. It is judged
+// against that light; light that its model omits is listed separately.
 #pragma once
 
 #include "measure/light_kinds.hpp"
@@ -16,20 +16,20 @@ namespace lucerna::demo::bench {
 struct LightPaths {
   Transport transport = Transport::all;
   measure::LightKinds lights;
-  int bounces = 0;  ///< of indirect light at most; 0: any number
+  int bounces = 0;  ///< maximum for indirect light; 0: any number
 
   auto operator<=>(const LightPaths&) const = default;
 };
 /// "one bounce of sun, lamps"; "up to 2 bounces of sun".
 std::string nameOf(const LightPaths& paths);
-/// What is seen of lights and of what lies behind the scene is part of it.
+/// Whether visible lights and the visible background are included.
 bool showsLights(Transport transport);
 
-/// The kinds of light that a technique reflects from surface to surface, whatever the scene has.
+/// The kinds of light that a technique reflects between surfaces, whatever the scene contains.
 measure::LightKinds lightsOf(const RenderSettings& settings);
-/// Those whose direct light it shows.
+/// The kinds whose direct light it shows.
 measure::LightKinds directLightsOf(const RenderSettings& settings);
-/// What its settings promise: direct light for `direct`, indirect light for rsm and lpv, all light for radiosity.
+/// The light that its settings promise: direct for `direct`, indirect for rsm and lpv, all for radiosity.
 LightPaths modelOf(const RenderSettings& settings);
 
 }  // namespace lucerna::demo::bench

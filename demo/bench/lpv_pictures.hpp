@@ -12,13 +12,13 @@ struct LpvPicturesInput {
   gl::ProgramLibrary& programs;
   const Scene& scene;
   const Camera& camera;
-  RenderSettings usual;  ///< size, fidelity; what a picture changes comes on top
+  RenderSettings usual;  ///< size, fidelity; each picture's changes are applied on top
   std::string fidelity;  ///< its name, for the title
-  std::optional<double> exposure;  ///< else the scene's
+  std::optional<double> exposure;  ///< otherwise the scene's
   bool quiet;
 };
 
-/// Without tiles where it was interrupted.
+/// Without tiles if interrupted.
 VptSheet drawLpvPictures(const LpvPicturesInput& input);
 
 }  // namespace lucerna::demo::bench

@@ -1,5 +1,5 @@
-// lucerna bench needs [SCENE]...: what a scene leaves out, and what leaving it out saves: the same picture with every
-// feature forced on beside it.
+// lucerna bench needs [SCENE]...: the features that a scene does not need, and what leaving them out saves, measured
+// against the same picture with every feature forced on.
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
@@ -19,7 +19,7 @@ namespace bench {
 
 namespace {
 
-/// Frames of the two renderers in turn, so that what else the machine does meets both.
+/// Alternates frames of the two renderers, so that other load on the machine affects both.
 void measureFrames(Renderer& renderer, const Camera& camera, std::vector<double>& ms) {
   const auto start = Clock::now();
   renderer.render(camera);
@@ -41,7 +41,7 @@ double largestDifference(const Image& a, const Image& b) {
 
 Scene withEverything(const Scene& scene, const RenderSettings& settings) {
   Scene full = scene;
-  // A lamp, however dark, adds the surfaces that it sees to the geometry volume: there it is not neutral.
+  // A lamp, however dark, adds the surfaces that it sees to the geometry volume, where it is therefore not neutral.
   const bool lampsBlock = settings.technique == Technique::lpv && settings.lpv.blocking;
   for (const std::string& need : measure::neutralNeeds())
     if (!(lampsBlock && (need == "spotLights" || need == "pointLights"))) measure::addNeutral(full, need);
@@ -51,10 +51,10 @@ Scene withEverything(const Scene& scene, const RenderSettings& settings) {
 NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings,
                          int frames) {
   settings.fullFloatTarget = true;
-  settings.reuse = false;  // what each frame would cost
+  settings.reuse = false;  // measure each frame's full cost
   const Scene full = withEverything(scene, settings);
   NeedsResult result;
-  // Libraries of their own: each compiles what it needs and nothing is found ready.
+  // Separate libraries: each compiles what it needs and finds nothing compiled already.
   gl::ProgramLibrary leanPrograms, fullPrograms;
   Renderer lean(context, leanPrograms, scene, settings), complete(context, fullPrograms, full, settings);
   lean.render(camera);

@@ -14,12 +14,12 @@ struct NeedsResult {
     double compileMs = 0.0, ms = 0.0;
   };
   std::string scene, technique;
-  std::vector<std::string> leftOut;  ///< here, and not where all is forced on
+  std::vector<std::string> leftOut;  ///< here, but not with everything forced on
   Cost with, without;
   double maxDifference = 0.0, maxRadiance = 0.0;
 };
 
-/// The scene with neutral data for all that it does not need and that has such data with these settings.
+/// The scene with neutral data for every unneeded feature that has such data with these settings.
 Scene withEverything(const Scene& scene, const RenderSettings& settings);
 NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings,
                          int frames);

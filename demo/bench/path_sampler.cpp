@@ -34,10 +34,10 @@ measure::Sampler PathSampler::asSampler() {
   return [this](std::uint64_t first, std::uint32_t samples) { return sample(first, samples); };
 }
 
-// A batch has a film of its own, so that it does not matter which were made before it, or where.
+// Each batch has its own film, so it does not matter which batches were computed before, or where.
 Image PathSampler::sample(std::uint64_t first, std::uint32_t samples) {
   if (first + samples > std::numeric_limits<std::int32_t>::max())
-    throwMissingCapability("a reference ends at {} paths a pixel", std::numeric_limits<std::int32_t>::max());
+    throwMissingCapability("a reference is limited to {} paths per pixel", std::numeric_limits<std::int32_t>::max());
   if (!tracer_) {
     PathTracer::Settings settings;
     settings.size = size_;
@@ -45,8 +45,8 @@ Image PathSampler::sample(std::uint64_t first, std::uint32_t samples) {
     settings.diffuseOnly = !allMaterials_;
     settings.pixelCentres = true;
     if (bounces_ > 0)
-      settings.bounces = 1u + static_cast<std::uint32_t>(bounces_);  // the first scattering is of direct light
-    // Another seed for each transport and each choice of lights: their noise must be independent.
+      settings.bounces = 1u + static_cast<std::uint32_t>(bounces_);  // the first scattering is direct light
+    // A different seed for each transport and each choice of lights: their noise must be independent.
     const measure::LightKinds lights = measure::kindsOf(scene_);
     Hash hash;
     hash.add(std::uint64_t{0});
@@ -71,11 +71,11 @@ Image seenLights(const gl::Context& context, gl::ProgramLibrary& programs, const
   settings.nextEvent = false;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
-  tracer.record(16);  // through media and thin boundaries by chance
+  tracer.record(16);  // enough to pass media and thin boundaries by chance
   return tracer.mean();
 }
 
-// Surfaces that shine with their albedo, in the dark.
+// Surfaces that emit their albedo, without other light.
 Image albedoPicture(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
                     glm::ivec2 size) {
   Scene shining = measure::litBy(scene, {false, false, false, false});

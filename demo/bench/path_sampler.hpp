@@ -1,5 +1,5 @@
-// The path tracer as the sampler of references: corrected, restricted to one transport, surfaces Lambert's unless all
-// materials are asked for, camera rays through pixel centres as forward shading has them.
+// The path tracer as the sampler of references: corrected, restricted to one transport, with Lambertian surfaces unless
+// all materials are requested, and camera rays through pixel centres as in forward shading.
 #pragma once
 
 #include "commands.hpp"
@@ -16,11 +16,11 @@ namespace lucerna::demo::bench {
 
 class PathSampler {
  public:
-  /// Part of the references' key: raised when the path tracer's answer changes.
+  /// Part of the references' key: incremented when the path tracer's result changes.
   static constexpr std::string_view kVersion = "path tracer 2, pixel centres, lambert";
   static constexpr std::string_view kVersionOfAllMaterials = "path tracer 2, pixel centres, all materials";
 
-  /// bounces: of indirect light at most; 0: any number.
+  /// bounces: maximum for indirect light; 0: any number.
   PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
               glm::ivec2 size, Transport transport, bool allMaterials = false, int bounces = 0);
   ~PathSampler();
@@ -28,7 +28,7 @@ class PathSampler {
   PathSampler& operator=(const PathSampler&) = delete;
 
   measure::Sampler asSampler();
-  /// kVersion or kVersionOfAllMaterials, and the bounces: what a reference's key says of its sampler.
+  /// kVersion or kVersionOfAllMaterials, and the bounces: the sampler's part of a reference's key.
   std::string version() const;
 
  private:
@@ -45,10 +45,10 @@ class PathSampler {
   std::unique_ptr<PathTracer> tracer_;
 };
 
-/// What is seen of lights alone, nothing scattered: emissive surfaces, environment, background.
+/// Only directly visible lights, nothing scattered: emissive surfaces, environment, background.
 Image seenLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
                  glm::ivec2 size);
-/// The albedo of what is seen through the pixels' centres; 0 where nothing is.
+/// The albedo visible through the pixels' centres; 0 where there is no surface.
 Image albedoPicture(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
                     glm::ivec2 size);
 

@@ -36,15 +36,15 @@ struct Picture {
   glm::dvec3 mean{0.0};
 };
 
-/// The camera of that name, else the one given.
+/// The camera of that name, or `otherwise`.
 const Camera& cameraOf(const Scene& scene, std::string_view name, const Camera& otherwise) {
   const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
                                   [&](const Camera& camera) { return camera.name == name; });
   return found == scene.cameras.end() ? otherwise : *found;
 }
 
-/// A target of the first reflective shadow map as a square in the middle of a tile: positions over the scene's bounds,
-/// normals as 0.5 + 0.5 n, flux over what 99 % of its texels have.
+/// A target of the first reflective shadow map as a square in the middle of a tile: positions relative to the scene's
+/// bounds, normals as 0.5 + 0.5 n, flux relative to the value reached by 99 % of its texels.
 Bitmap mapTile(const StagePicture& stage, const Bounds& bounds, glm::ivec2 size) {
   const std::vector<glm::vec4> texels = stage.texture->readRgba();
   const int side = stage.texture->size().x;
@@ -57,7 +57,7 @@ Bitmap mapTile(const StagePicture& stage, const Bounds& bounds, glm::ivec2 size)
     switch (stage.kind) {
       case StagePicture::Kind::position: return (v - bounds.min) / glm::max(bounds.extent(), glm::dvec3(1e-30));
       case StagePicture::Kind::normal: return 0.5 + 0.5 * v;
-      default: return glm::sqrt(glm::clamp(v / white, 0.0, 1.0));  // near enough to what a display does
+      default: return glm::sqrt(glm::clamp(v / white, 0.0, 1.0));  // close enough to a display's encoding
     }
   };
   Bitmap tile;
@@ -78,7 +78,7 @@ Bitmap mapTile(const StagePicture& stage, const Bounds& bounds, glm::ivec2 size)
   return tile;
 }
 
-// What b has and a has not, four times as strong, about grey.
+// The difference of b from a, amplified four times, around grey.
 Bitmap difference(const Bitmap& a, const Bitmap& b) {
   Bitmap result = a;
   for (std::size_t i = 0; i < a.rgba.size(); ++i)
@@ -93,7 +93,7 @@ namespace bench {
 
 namespace {
 
-/// What the sheet of the LPV original is made of, each rendered once.
+/// The contents of the LPV original's sheet, each rendered once.
 class LpvPictures {
  public:
   explicit LpvPictures(const LpvPicturesInput& input) : input_(input) {
@@ -103,7 +103,7 @@ class LpvPictures {
     rsm512 = add("RSM 512", [](S s) { s.rsm.size = 512; });
     const Camera &pillar = cameraOf(input.scene, "pillar", input.camera),
                  &curtain = cameraOf(input.scene, "curtain", input.camera);
-    // Indirect light alone and brighter, as the text shows it: details of it drown in the sun.
+    // Only indirect light, brightened as in the text: its details drown in sunlight.
     const auto alone = [](S s) { s.component = Component::indirect; };
     single = add(
         "one 64^3", [&](S s) { alone(s), s.lpv.cascades.cascades = 1, s.lpv.cascades.cells = 64; }, pillar);
@@ -119,7 +119,7 @@ class LpvPictures {
     smooth = add("with mipmaps", [](S s) { s.component = Component::direct, s.textures.anisotropy = 1.0f; });
   }
 
-  /// False where it was interrupted.
+  /// False if interrupted.
   bool render() {
     Progress progress("bench pictures", static_cast<int>(pictures_.size()), input_.quiet);
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
@@ -204,7 +204,7 @@ class LpvPictures {
   const LpvPicturesInput& input_;
   std::vector<Picture> pictures_;
   std::size_t rsm128, plain, rsm512, single, three, unblocked, blocked, indirect, direct, flickering, smooth;
-  std::map<StagePicture::Kind, Bitmap> map_;  ///< of the first light
+  std::map<StagePicture::Kind, Bitmap> map_;  ///< for the first light
   std::vector<Tile> tiles_;
 };
 
@@ -219,7 +219,7 @@ VptSheet drawLpvPictures(const LpvPicturesInput& input) {
 
 namespace {
 
-/// Tiles, and the published samples times this, where nothing else is asked for.
+/// Default tile size, and factor on the published samples.
 constexpr const char* kVptTile = "320x180";
 constexpr double kVptPicturesScale = 0.02;
 
@@ -228,8 +228,7 @@ int runVpt(const PicturesOptions& options) {
   const double scale = options.scale.value_or(kVptPicturesScale);
   if (size.x > 1920 || size.y > 1080) throwBadInput("--size {}: a tile of the sheet, at most 1920x1080", options.size);
   if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
-  if (!options.scene.empty())
-    throwBadInput("SCENE {}: the pictures of vpt are made of their own scenes", options.scene);
+  if (!options.scene.empty()) throwBadInput("SCENE {}: the pictures of vpt use their own scenes", options.scene);
   if (!options.camera.empty()) throwBadInput("--camera {}: the pictures of vpt have their own cameras", options.camera);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
@@ -313,7 +312,7 @@ Work addBenchPictures(Command app) {
   auto options = std::make_shared<PicturesOptions>();
   app.addOption("SCENE", options->scene,
                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  offer(app.addOption("--original", options->original, "whose pictures: lpv, rad or vpt").required(),
+  offer(app.addOption("--original", options->original, "the original: lpv, rad or vpt").required(),
         {"lpv", "rad", "vpt"});
   app.addOption("-o,--output", options->output, "FILE.png").required();
   app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");

@@ -1,5 +1,5 @@
-// lucerna bench pictures --original rad -o FILE.png: what the radiosity original's figures show, on the three models,
-// on one sheet.
+// lucerna bench pictures --original rad -o FILE.png: the radiosity original's figures, from the three models, on one
+// sheet.
 #include "bench/rad.hpp"
 
 #include "base/data.hpp"
@@ -21,14 +21,14 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-/// A place on an unfolded hemicube in half widths of a face: u, v from the middle of the top; a, b as the maps have
-/// them, on a side b is the height above the patch.
+/// A point on an unfolded hemicube in half widths of a face: u, v from the middle of the top; a, b as in the maps; on a
+/// side, b is the height above the patch.
 struct Place {
   double u, v, a, b;
 };
 
-/// Values over an unfolded hemicube, white 1 [RAD2008, figures 3.5, 3.7 to 3.9]: the top in the middle, a half face on
-/// each side of it. value(top, place).
+/// Values over an unfolded hemicube, white is 1 [RAD2008, figures 3.5, 3.7 to 3.9]: the top in the middle, a half face
+/// on each side. Calls value(top, place).
 template <class Value>
 Bitmap unfoldedTile(glm::ivec2 size, Value value) {
   Bitmap tile;
@@ -52,7 +52,7 @@ Bitmap unfoldedTile(glm::ivec2 size, Value value) {
   return tile;
 }
 
-/// The five views of a hemicube, unfolded as the maps are, times a weight [RAD2008, figure 3.9].
+/// The five views of a hemicube, unfolded like the maps, times a weight [RAD2008, figure 3.9].
 class Unfolded {
  public:
   Unfolded(gl::ProgramLibrary& programs, const RadTriangle& triangle, std::span<const RadTriangle> scene, int side)
@@ -76,7 +76,7 @@ class Unfolded {
     normal_ = normal, up_ = up, right_ = right;
   }
 
-  /// What is seen from the triangle through (u, v) of the unfolded hemicube, in half widths of a face; 0..1.
+  /// The view from the triangle through (u, v) of the unfolded hemicube, in half widths of a face; 0..1.
   double at(double u, double v) const {
     const bool top = std::abs(u) <= 1.0 && std::abs(v) <= 1.0;
     glm::dvec3 towards;
@@ -112,7 +112,7 @@ std::pair<glm::dvec3, glm::dvec3> boundsOf(std::span<const RadTriangle> triangle
   return {low, high};
 }
 
-/// Onto model 2's table and box, whose shadows lie on the floor [RAD2008, figure 4.4].
+/// A view of model 2's table and box, whose shadows lie on the floor [RAD2008, figure 4.4].
 Camera shadowsOf(std::span<const RadTriangle> triangles) {
   const auto [low, high] = boundsOf(triangles);
   const auto at = [&, low = low, high = high](double x, double y, double z) {
@@ -125,7 +125,7 @@ Camera shadowsOf(std::span<const RadTriangle> triangles) {
   return camera;
 }
 
-/// Of the floor, nearest to the middle of the scene.
+/// The floor triangle nearest to the middle of the scene.
 const RadTriangle& middleOfFloor(std::span<const RadTriangle> triangles) {
   const auto [low, high] = boundsOf(triangles);
   const glm::dvec3 middle = 0.5 * (low + high);
@@ -140,7 +140,7 @@ const RadTriangle& middleOfFloor(std::span<const RadTriangle> triangles) {
   });
 }
 
-/// A stone wall over everything, its picture four times along the scene's diagonal [RAD2008, figure 4.3].
+/// A stone wall texture over everything, repeated four times along the scene's diagonal [RAD2008, figure 4.3].
 RadTextures stoneOver(std::span<const RadTriangle> triangles, const Bitmap& stone) {
   const double side = 0.25 * diagonalOf(triangles);
   RadTextures textures;
@@ -177,7 +177,7 @@ VptSheet drawRadPictures(gl::ProgramLibrary& programs, glm::ivec2 size, double s
     settings.view = viewOf(pixels);
     return settings;
   };
-  /// After so many sweeps more than what is in the file.
+  /// Solves for this many sweeps beyond those in the file.
   const auto solve = [&](const std::vector<RadTriangle>& triangles, const Settings& settings, int sweeps) {
     OriginalRadiosity solver(programs, triangles, settings);
     OriginalProgress p = solver.start();
@@ -219,7 +219,7 @@ VptSheet drawRadPictures(gl::ProgramLibrary& programs, glm::ivec2 size, double s
   Settings corners = settingsOf(100);
   corners.deviations.centroid = false;
   add("3.10b camera at the three corners, 1 sweep", solve(cube, corners, 1), constant);
-  // The wall between the chambers is 2 units thick: beside it a camera whose near plane lies 4 units off looks through
+  // The wall between the chambers is 2 units thick: next to it, a camera with its near plane 4 units away looks through
   // it.
   Settings far = settingsOf(48);
   far.nearPlane = 4.0;
@@ -257,7 +257,7 @@ VptSheet drawRadPictures(gl::ProgramLibrary& programs, glm::ivec2 size, double s
     add(fmt::format("4.6 {} x {} px", viewOf(pixels), viewOf(pixels)),
         pixels == 100 ? lit : solve(cube, settingsOf(pixels), 3), constant);
   if (interrupted()) return {};
-  // The published 5, 1 and 0.25 units would take an hour here: forty times as large, in the same steps.
+  // The published 5, 1 and 0.25 units would take an hour here: forty times as large, with the same ratios.
   for (double threshold : {200.0, 40.0, 10.0}) {
     const std::vector<RadTriangle> finer = solve(model(2, threshold, 0.3, 1000000), settingsOf(32), 1);
     addFrom(shadowsOf(finer), fmt::format("4.4 model 2, triangles below {:.4g} units", threshold / scale), finer,

@@ -1,4 +1,4 @@
-// The pictures of the VPT original [VPT2024, 5.7 to 5.20] made again on scenes of ours, on one labelled sheet.
+// The pictures of the VPT original [VPT2024, 5.7 to 5.20] reproduced with our scenes, on one labelled sheet.
 #include "bench/contact_sheet.hpp"
 #include "bench/vpt_series.hpp"
 
@@ -11,14 +11,14 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-/// That a picture with fewer than the published samples may take: what a slow machine does not get done is noisier, not
-/// left out.
+/// Time limit for a picture with fewer than the published samples: on a slow machine pictures become noisier rather
+/// than missing.
 constexpr double kMostSecondsAPicture = 20.0;
-constexpr int kZoom = 6;  // of figure 5.11
+constexpr int kZoom = 6;  // for figure 5.11
 
 float luminance(const glm::vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
-/// The middle, every pixel as a square of kZoom.
+/// The middle, each pixel enlarged to a square of kZoom.
 Bitmap zoomed(const Bitmap& picture) {
   Bitmap result = picture;
   const int left = (picture.width - picture.width / kZoom) / 2, top = (picture.height - picture.height / kZoom) / 2;
@@ -34,7 +34,7 @@ Bitmap zoomed(const Bitmap& picture) {
   return result;
 }
 
-/// Pixels of less than a twentieth of the median of their eight neighbours: the published black fragments.
+/// Counts pixels below a twentieth of the median of their eight neighbours: the published black fragments.
 int blackPixels(const Image& image) {
   int count = 0;
   for (int y = 1; y + 1 < image.height; ++y)
@@ -62,7 +62,7 @@ class Drawing {
                                    (published_ ? 2 : 1)),
                   input.quiet) {}
 
-  /// A tile of a picture by an estimator on the scene that is lit for it.
+  /// Adds a tile of a picture by an estimator, on the scene lit for that estimator.
   VptResult add(const VptPicture& picture, Fidelity fidelity, const PathDeviations& deviations,
                 const std::string& note) {
     const Scene scene = loadVptScene(picture, fidelity);
@@ -87,13 +87,13 @@ class Drawing {
     return drawn;
   }
 
-  /// A picture by the estimator asked for; beside the published one the corrected.
+  /// A picture by the requested estimator; next to the published one, the corrected one.
   void addBoth(const VptPicture& picture) {
     add(picture, input_.fidelity, vptDeviations(picture, input_.fidelity), "");
     if (published_ && !interrupted()) add(picture, Fidelity::corrected, {}, ", corrected, lit by an area");
   }
 
-  /// Figure 5.11 of the two tiles last drawn of figure 5.10, enlarged.
+  /// Figure 5.11: the last two tiles of figure 5.10, enlarged.
   void addZoom(const std::string& label, std::size_t tile) { tiles.push_back({label, zoomed(tiles.at(tile).picture)}); }
 
   bool published() const { return published_; }
@@ -126,7 +126,7 @@ VptSheet drawVptPictures(const VptTablesInput& input, glm::ivec2 size, std::opti
     for (const auto& [label, tile] : enlarged)
       drawing.addZoom(fmt::format("5.11  {}, the middle {} times", label, kZoom), tile);
     if (!drawing.published() || interrupted()) continue;
-    // The black fragments that the text lays to the offsets of its rays, and their cure.
+    // The black fragments that the text attributes to the offsets of its rays, and their cure.
     PathDeviations cured = vptDeviations(picture, input.fidelity);
     cured.fixedEpsilon = false;
     drawing.add(picture, input.fidelity, cured, ", without path.fixed-epsilon");

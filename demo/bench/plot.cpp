@@ -14,15 +14,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// As in the figure of a report (assets/report/figure.js): colours that stay apart for colour-blind eyes [Okabe2008],
-// marks and dashes that stay apart in grey; a colour that comes again has another mark and other dashes.
+// Like a report's figure (assets/report/figure.js): colours that remain distinct for colour-blind readers [Okabe2008],
+// marks and dashes that remain distinct in grey. A repeated colour gets another mark and other dashes.
 constexpr std::size_t kRound = 8, kDashes = 3;
 constexpr const char* kColours[kRound] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                           "#E69F00", "#56B4E9", "#333333", "#480060"};
 // circle, square, triangles up and down, diamond, plus, cross, star
 constexpr int kMarks[kRound] = {7, 5, 9, 11, 13, 1, 2, 3};
 
-/// A string for gnuplot between double quotes; plain text, so the enhanced mode's signs are switched off by the script.
+/// A double-quoted string for gnuplot. The script turns off enhanced mode, so the text is plain.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (char c : text) result += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
@@ -34,7 +34,7 @@ bool drawable(const Series::Point& p) { return std::isfinite(p.x) && std::isfini
 struct Range {
   double low = INFINITY, high = 0.0;
   void add(double v) { low = std::min(low, v), high = std::max(high, v); }
-  /// Whole 1-2-5 steps, so that an axis ends on a number that is written there.
+  /// Rounds to a 1-2-5 step, so that an axis ends on a labelled number.
   static double step(double value, bool up) {
     const double power = std::pow(10.0, std::floor(std::log10(value)));
     double below = power;
@@ -44,7 +44,7 @@ struct Range {
     }
     return below;
   }
-  /// Numbers 1, 2 and 5 of every decade within, for an axis of few decades; gnuplot's own for one of many.
+  /// Ticks at 1, 2 and 5 of every decade, for an axis of few decades; gnuplot's own for one of many.
   std::string tics(const char* axis) const {
     const double first = step(low / 1.15, false), last = step(high * 1.15, true);
     if (last / first > 1e4) return "";

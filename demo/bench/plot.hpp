@@ -1,4 +1,4 @@
-// Log-log plots by gnuplot, run where a report is made (Debian package gnuplot-nox).
+// Log-log plots by gnuplot, which must be installed where a report is made (Debian package gnuplot-nox).
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,12 @@ struct Series {
   std::string name;
   struct Point {
     double x, y;
-    std::string label;  ///< beside the point; empty: none
+    std::string label;  ///< next to the point; empty: none
   };
   std::vector<Point> points;
   bool joined = true;
   bool isFront = false;  ///< drawn thick, behind the others
-  std::size_t style = 0;  ///< number of its colour, mark and dashes
+  std::size_t style = 0;  ///< index of its colour, mark and dashes
 };
 
 struct LogLogPlot {
@@ -28,13 +28,13 @@ struct LogLogPlot {
     std::string label;
   };
   std::vector<Level> levels;  ///< horizontal lines, such as a black picture's error and the reference's noise
-  double guideSlope = 0.0;  ///< a thin line of that slope through the first point of the last series; 0: none
+  double guideSlope = 0.0;  ///< draws a thin line of that slope through the first point of the last series; 0: none
 };
 
 bool haveGnuplot();
-/// Writes STEM.gp, STEM.svg and STEM.png into the folder. Points that are not finite and above 0 have no place on these
-/// axes: they are left out and counted in the return value. Throws Error(missingCapability) where gnuplot is missing or
-/// fails.
+/// Writes STEM.gp, STEM.svg and STEM.png into the folder. Points that are not finite and positive cannot be plotted on
+/// these axes; they are left out, and their number is returned. Throws Error(missingCapability) if gnuplot is missing
+/// or fails.
 int writeLogLogPlot(const std::filesystem::path& folder, const std::string& stem, const LogLogPlot& plot);
 
 }  // namespace lucerna::demo::bench

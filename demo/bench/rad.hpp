@@ -1,4 +1,4 @@
-// The benches of the radiosity original: it loads no scene, its models are made as they are needed.
+// The benches of the radiosity original. They load no scene: its models are generated as needed.
 #pragma once
 
 #include "bench/bench.hpp"
@@ -9,14 +9,14 @@
 
 namespace lucerna::demo::bench {
 
-/// Tables 4.1 and 4.2, the number of sweeps, and what each deviation costs: notes and rows. scale: 0..1. prints: each
-/// line as soon as it is known. part: of it alone, "rows_here" then says how many units it made.
+/// Tables 4.1 and 4.2, the number of sweeps, and the cost of each deviation: notes and rows. scale: 0..1. prints: print
+/// each line as soon as it is known. part: compute only that part; "rows_here" then holds the number of units it made.
 nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramLibrary& programs, double scale,
                                         bool quiet, bool prints, const PartOptions& part = {});
 int runRadTables(const CommonOptions& common, double scale, const PartOptions& part);
 
-/// Maps 3.5 to 3.8, pictures 3.10 to 3.18 and 4.1 to 4.6, as far as the three models show them, on one sheet; empty
-/// where it was interrupted. scale: 0..1, of the triangles and pixels.
+/// Maps 3.5 to 3.8, pictures 3.10 to 3.18 and 4.1 to 4.6, as far as the three models can show them, on one sheet; empty
+/// if interrupted. scale: 0..1, of the triangles and pixels.
 VptSheet drawRadPictures(gl::ProgramLibrary& programs, glm::ivec2 size, double scale, bool quiet);
 int runRadPictures(const CommonOptions& common, const std::string& output, glm::ivec2 size, double scale);
 

@@ -1,5 +1,5 @@
-// lucerna bench rays: rays per second of the hierarchy in a compute shader, beside Embree's single rays on the same
-// rays in the same run.
+// lucerna bench rays: rays per second through the hierarchy in a compute shader, compared with Embree's single rays on
+// the same rays in the same run.
 #include "base/clock.hpp"
 #include "bench/bench.hpp"
 
@@ -52,7 +52,7 @@ class Tracer {
                                   {"SHARED_STACK", scene_.sharedStack()}});
   }
   void upload(const std::vector<PlainRay>& rays) { rays_.upload(0, rays.size() * sizeof rays[0], rays.data()); }
-  /// What was uploaded, in submissions that no watchdog minds.
+  /// Traces the uploaded rays, in submissions small enough for any watchdog.
   void trace(const gl::Program& program, std::size_t count) {
     program.use();
     scene_.bind();
@@ -80,7 +80,7 @@ class Tracer {
   gl::Buffer rays_, hits_, skipped_;
 };
 
-/// A point on a surface, and its normal against the ray that found it.
+/// A point on a surface, with the normal facing the ray that found it.
 struct SurfacePoint {
   glm::vec3 position, normal;
 };
@@ -133,7 +133,7 @@ std::vector<PlainRay> diffuseRays(const std::vector<SurfacePoint>& points, std::
   return rays;
 }
 
-/// From each point to another one chosen at random; whether anything lies between.
+/// From each point to another one chosen at random; tests whether anything lies between.
 std::vector<PlainRay> shadowRays(const std::vector<SurfacePoint>& points, std::size_t count, std::mt19937& random) {
   std::vector<PlainRay> rays;
   for (std::size_t i = 0; i < count && points.size() > 1; ++i) {
@@ -200,7 +200,7 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
   double embreeBuild = 0.0;
   if (EmbreeRays::isBuilt()) embreeBuild = secondsOf([&] { embree.emplace(scene, rayScene.origin()); });
 
-  // Rays of three kinds, each from what those before it have met.
+  // Rays of three kinds, each starting from the hits of the previous ones.
   const auto hitsOf = [&](const std::vector<PlainRay>& rays) {
     tracer.upload(rays);
     tracer.trace(tracer.program(false, false), rays.size());
@@ -215,21 +215,21 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
   if (points.size() < 2)
     throwBadInput("{}: the camera sees nothing of it; choose another with --camera", scene.file.string());
   kinds[1] = {.name = "shadow", .anyHit = true, .rays = shadowRays(points, count, random)};
-  // Of the second bounce where there is one: those of the first still start side by side.
+  // Second-bounce rays if there are any: those of the first bounce still start side by side.
   const std::vector<PlainRay> first = diffuseRays(points, count, random);
   if (const std::vector<SurfacePoint> second = surfacePoints(scene, rayScene.origin(), first, hitsOf(first));
       second.size() > points.size() / 4)
     points = second;
   kinds[2] = {.name = "diffuse", .anyHit = false, .rays = diffuseRays(points, count, random)};
 
-  // Traced in turn with Embree's, so that a ratio is of one moment.
+  // Alternate with Embree, so that a ratio compares the same moment.
   Progress progress("bench rays", options.repeats * static_cast<int>(kinds.size()), quiet);
   int done = 0;
   for (Kind& kind : kinds) {
     const gl::Program& program = tracer.program(kind.anyHit, false);
     const double million = 1e-6 * static_cast<double>(kind.rays.size());
     countWork(tracer, kind);
-    tracer.trace(program, kind.rays.size());  // warms up
+    tracer.trace(program, kind.rays.size());  // warm-up
     const std::vector<PlainHit> ours = tracer.hits(kind.rays.size());
     std::vector<PlainHit> theirs(kind.rays.size());
     if (embree) {
@@ -246,7 +246,7 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
     }
   }
 
-  // As JSON and as a table.
+  // Results as JSON and as a table.
   const BvhStatistics& s = rayScene.statistics();
   nlohmann::ordered_json json{{"renderer", context.capabilities().renderer},
                               {"scene", scene.file.string()},
@@ -291,7 +291,7 @@ RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs,
                             {"bytes_per_ray", bytes},
                             {"lane_utilisation", k.utilisation}});
   }
-  if (!embree) result.text += "Embree was not there when this was built (Debian: libembree-dev): no comparison\n";
+  if (!embree) result.text += "built without Embree (Debian: libembree-dev): no comparison\n";
   result.json = std::move(json);
   return result;
 }
@@ -324,11 +324,11 @@ int runRaysCommand(const RaysCommandOptions& options) {
 Work addBenchRays(Command app) {
   auto options = std::make_shared<RaysCommandOptions>();
   app.addOption("SCENE", options->scene, "a scene file (default: the atrium)");
-  app.addOption("--rays", options->bench.rays, "rays of each kind").showDefault();
-  app.addOption("--repeats", options->bench.repeats, "measurements of each kind, after one to warm up").showDefault();
+  app.addOption("--rays", options->bench.rays, "number of rays of each kind").showDefault();
+  app.addOption("--repeats", options->bench.repeats, "measurements of each kind, after one warm-up").showDefault();
   app.addOption("--camera", options->bench.camera,
                 "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.addOption("--split-budget", options->bench.splitBudget, "references that spatial splits may add, a fraction")
+  app.addOption("--split-budget", options->bench.splitBudget, "references that spatial splits may add, as a fraction")
       .range(0.0, 10.0)
       .showDefault();
   app.setFooter(

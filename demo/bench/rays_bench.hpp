@@ -9,19 +9,19 @@ namespace lucerna::demo::bench {
 
 struct RaysOptions {
   std::string camera;
-  int rays = 1 << 18;  ///< of each kind
-  int repeats = 7;  ///< after one to warm up
-  double splitBudget;  ///< references that spatial splits may add, a fraction
+  int rays = 1 << 18;  ///< per kind
+  int repeats = 7;  ///< after one warm-up
+  double splitBudget;  ///< references that spatial splits may add, as a fraction
 
   RaysOptions();
 };
 
 struct RaysResult {
   std::string text;  ///< for a terminal
-  nlohmann::ordered_json json;  ///< `rows`: one a kind of ray
+  nlohmann::ordered_json json;  ///< `rows`: one per kind of ray
 };
 
-/// Throws Error(badInput) for options that cannot be, and where the camera sees nothing. Stops when interrupted.
+/// Throws Error(badInput) for invalid options, and if the camera sees nothing. Stops when interrupted.
 RaysResult measureRays(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                        const RaysOptions& options, bool quiet);
 

@@ -36,7 +36,7 @@ Image less(Image a, const Image& b) {
   return a;
 }
 
-/// Which references a bench needs: those of the techniques' models, and those that tell how much a model leaves out.
+/// The references that a bench needs: those of the techniques' models, and those that show how much a model leaves out.
 std::set<LightPaths> wantedOf(const std::vector<TechniqueModel>& models, LightKinds scene) {
   std::set<LightPaths> wanted{{Transport::all, scene},
                               {Transport::direct, scene},
@@ -44,7 +44,7 @@ std::set<LightPaths> wantedOf(const std::vector<TechniqueModel>& models, LightKi
                               {Transport::direct, scene & kDeltaLights}};
   for (const TechniqueModel& m : models) {
     wanted.insert({Transport::direct, m.direct});
-    if (!m.paths.lights.any()) continue;  // such a technique gives nothing that could be judged
+    if (!m.paths.lights.any()) continue;  // such a technique gives no light to judge
     wanted.insert(m.paths);
     const bool leavesOut = m.paths.lights != scene || m.paths.transport == Transport::oneBounceUnoccluded;
     if (leavesOut && m.paths.transport != Transport::direct) wanted.insert({Transport::oneBounce, m.paths.lights});
@@ -52,14 +52,14 @@ std::set<LightPaths> wantedOf(const std::vector<TechniqueModel>& models, LightKi
   return wanted;
 }
 
-/// Shares of the time; direct light of sun and lamps alone has next to no noise through pixels' centres.
+/// Shares of the time; direct light of sun and lamps alone has almost no noise through pixel centres.
 double weightOf(const LightPaths& paths, LightKinds scene) {
   if (paths.transport == Transport::indirect) return 1.0;
   if (paths.transport != Transport::direct) return 2.0;
   return paths.lights != scene && paths.lights == (scene & kDeltaLights) ? 0.2 : 1.0;
 }
 
-/// Half of the time for what judges every row, the rest by weight.
+/// Half of the time for the reference that judges every row, the rest by weight.
 struct Share {
   LightPaths paths;
   bool allMaterials;
@@ -79,7 +79,7 @@ std::vector<Share> sharesOf(const ReferenceRequest& request) {
   if (own) shares.push_back({all, true, 0.4});
   std::set<LightPaths> others = wantedOf(request.models, lights);
   others.erase(all);
-  others.erase({Transport::indirect, lights});  // is the difference of two
+  others.erase({Transport::indirect, lights});  // computed as a difference of two others
   double weights = 0.0;
   for (const LightPaths& paths : others) weights += weightOf(paths, lights);
   for (const LightPaths& paths : others)
@@ -87,7 +87,7 @@ std::vector<Share> sharesOf(const ReferenceRequest& request) {
   return shares;
 }
 
-/// What samples one of them, and its key.
+/// The sampler of a reference, and its key.
 struct ShareSampler {
   std::optional<Scene> lessLight;
   const Scene& scene;
@@ -135,7 +135,7 @@ ReferenceBatches sampleReferences(const ReferenceRequest& request, const PartOpt
       const std::size_t unit = s * kBatches + b;
       if (unit < part.first() || unit >= part.last()) continue;
       if (interrupted()) return result;
-      // The picture first: the JSON says that it is whole, and what it took.
+      // The picture first: the JSON marks it as complete, with its cost.
       Image batch;
       if (const auto kept = part.load(unit)) {
         batch = readImage(part.file(unit, ".pfm"));
@@ -162,7 +162,7 @@ ReferenceBatches sampleReferences(const ReferenceRequest& request, const PartOpt
     reference.samples = kBatches * size;
     reference.seconds = seconds;
     reference.renderer = request.context.capabilities().renderer;
-    // One with more samples stays.
+    // Keep one with more samples.
     const std::optional<Reference> known = cache.load(share.key);
     if (!known || known->samples < reference.samples) cache.store(share.key, reference);
     result.stored.push_back(cache.fileOf(share.key));
@@ -266,7 +266,7 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
   result.indirect_.transport = Transport::indirect;
   if (wantedOf(request.models, result.lights).contains(indirect)) result.of.emplace(indirect, result.indirect_);
 
-  // Surfaces, and which of them sun and lamps light. Without such lights none is lit.
+  // Surfaces, and whether sun and lamps light them. Without such lights none is lit.
   result.albedo = albedoPicture(request.context, request.programs, request.scene, request.camera, request.size);
   const auto directly = result.of.find(delta);
   for (std::size_t i = 0; i < result.albedo.pixels.size(); ++i) {
@@ -307,7 +307,7 @@ std::vector<ModelError> modelErrors(const References& r) {
   std::set<LightKinds> kinds;
   for (const TechniqueModel& m : r.models) kinds.insert(m.paths.lights);
 
-  // Visibility, for each choice of lights that is gathered without it.
+  // Visibility, for each choice of lights gathered without it.
   for (const LightKinds k : kinds) {
     const LightPaths unoccluded{Transport::oneBounceUnoccluded, k};
     if (const auto found = r.of.find(unoccluded); found != r.of.end())
@@ -319,7 +319,7 @@ std::vector<ModelError> modelErrors(const References& r) {
   if (const std::string names = techniques(isOne); !names.empty())
     lines.push_back(
         {fmt::format("one bounce only ({})", names), "indirect light", judge(oneBounce(r.lights), r.indirect())});
-  // Lights that a technique has not: in its direct light, and in what it reflects.
+  // Lights that a technique lacks: in its direct light, and in its reflected light.
   std::set<LightKinds> directKinds;
   for (const TechniqueModel& m : r.models) directKinds.insert(m.direct);
   const auto noLightOf = [&](LightKinds k) { return "no light of: " + measure::nameOf(measure::without(r.lights, k)); };
@@ -338,7 +338,7 @@ std::vector<ModelError> modelErrors(const References& r) {
     lines.push_back({fmt::format("{} ({})", noLightOf(k), names), "one bounce of all lights",
                      judge(k.any() ? oneBounce(k) : black(oneBounce(r.lights)), oneBounce(r.lights))});
   }
-  // All of it together.
+  // Everything together.
   std::set<LightPaths> seen;
   for (const TechniqueModel& m : r.models)
     if (isOne(m.paths) && m.paths.lights.any() && seen.insert(m.paths).second)

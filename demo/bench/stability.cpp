@@ -1,4 +1,4 @@
-// lucerna bench stability [--technique T]: a row a case: technique, parameter, expected, measured, verdict.
+// lucerna bench stability [--technique T]: one row per case: technique, parameter, expected, measured, verdict.
 #include "bench/stability.hpp"
 
 #include "base/clock.hpp"
@@ -53,7 +53,7 @@ StabilityRow runCase(const StabilityCase& c, const StabilityContext& context) {
   return row;
 }
 
-// A row as it is kept: what was measured; the rest is the case's.
+// A row as stored: the measurement; the rest comes from the case.
 PartFolder::Json keptOf(const StabilityRow& row) {
   const Measurement& m = row.measurement;
   return {{"expected", m.expected},           {"measured", m.measured}, {"tolerance", m.tolerance},
@@ -141,7 +141,7 @@ struct StabilityOptions {
 int runStabilityCommand(const StabilityOptions& options) {
   options.common.apply();
   if (options.part.isPart() && !options.compare.empty())
-    throwBadInput("--compare {}: needs all rows; --part makes some", options.compare);
+    throwBadInput("--compare {}: needs all rows; --part computes only some", options.compare);
   const nlohmann::ordered_json kept =
       options.compare.empty() ? nlohmann::ordered_json() : bench::readKept(options.compare);
   const auto host = options.common.makeHost(false);
@@ -178,8 +178,8 @@ int runStabilityCommand(const StabilityOptions& options) {
                             {"worse", worse},
                             {"seconds", seconds}});
   if (interrupted()) return exitCode();
-  if (options.part.isPart()) return 0;  // the verdict is of all rows
-  // Beside a table that was kept, a defect that it knows of is no news.
+  if (options.part.isPart()) return 0;  // the verdict needs all rows
+  // With a stored table to compare, its known defects are not failures.
   return (options.compare.empty() ? failed > 0 : !worse.empty()) ? 1 : 0;
 }
 
@@ -187,10 +187,11 @@ int runStabilityCommand(const StabilityOptions& options) {
 
 Work addBenchStability(Command app) {
   auto options = std::make_shared<StabilityOptions>();
-  app.addOption("--technique", options->technique, "only this one's rows");
-  app.addOption("--compare", options->compare,
-                "a table kept by --json: rows that are gone, fail now, expect another answer or allow more are named, "
-                "exit code 1");
+  app.addOption("--technique", options->technique, "only the rows of this technique");
+  app.addOption(
+      "--compare", options->compare,
+      "a table stored by --json: reports rows that are missing, fail now, expect another answer or allow more; "
+      "exit code 1");
   options->part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return runStabilityCommand(*options); };

@@ -1,4 +1,4 @@
-// `lucerna bench stability`: stiff and extreme cases of every technique, each with an exact or a bounding answer.
+// `lucerna bench stability`: stiff and extreme cases of every technique, each with an exact answer or a bound.
 #pragma once
 
 #include "gl/context.hpp"
@@ -16,7 +16,7 @@ struct PartOptions;
 
 namespace lucerna::demo::bench {
 
-/// How `measured` is held against `expected`. What is not finite passes none of them.
+/// How `measured` is compared with `expected`. Values that are not finite fail every rule.
 enum class Rule {
   equals,  ///< |measured - expected| <= tolerance
   atMost,  ///< measured <= expected
@@ -34,7 +34,7 @@ struct StabilityContext {
   gl::ProgramLibrary& programs;
 };
 
-/// A row of the table. `run` may throw: that is a failure, with the message as its note.
+/// A row of the table. `run` may throw: that counts as a failure, with the message as its note.
 struct StabilityCase {
   std::string technique;  ///< direct, rsm, lpv, radiosity, path
   std::string name, parameter;
@@ -42,11 +42,11 @@ struct StabilityCase {
 };
 
 void addLpvCases(std::vector<StabilityCase>& cases);
-/// Of lpv.transport=rays.
+/// Cases of lpv.transport=rays.
 void addReceiverCases(std::vector<StabilityCase>& cases);
-/// Of the techniques that Renderer draws: units, scale, place, size, nothing to light.
+/// Cases of the techniques that Renderer draws: units, scale, position, size, nothing to light.
 void addPictureCases(std::vector<StabilityCase>& cases);
-/// Of all techniques and lights: far from the origin, large faces.
+/// Cases of all techniques and lights: far from the origin, large faces.
 void addPlaceCases(std::vector<StabilityCase>& cases);
 void addPathCases(std::vector<StabilityCase>& cases);
 void addMediaCases(std::vector<StabilityCase>& cases);
@@ -58,17 +58,17 @@ struct StabilityRow {
   double seconds = 0.0;
   bool passed = false;
 };
-/// Of the rows of `technique`, or of all, those of a part; kept ones are taken from where they lie. Stops when
+/// Runs the rows of `technique`, or of all, that belong to the part; stored ones are read from its folder. Stops when
 /// interrupted.
 std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet,
                                        const PartOptions& part);
 nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows);
 std::string expectedText(const Measurement& m);
-/// The rows of a table that `--json` kept. Throws Error(badInput).
+/// The rows of a table stored by `--json`. Throws Error(badInput).
 nlohmann::ordered_json readKept(const std::string& file);
-/// What is worse in `now` than in `kept`, both as stabilityJson() has them, a line each: rows that are gone, that
-/// failed not and fail, that expect something else or allow more. New rows are no harm. `technique`, unless empty: of
-/// its rows alone. Throws Error(badInput) where `kept` is no such table; `file` is for the message.
+/// What is worse in `now` than in `kept`, both in the form of stabilityJson(), one line each: rows that are missing,
+/// that passed and now fail, that expect something else or allow more. New rows are fine. `technique`, unless empty:
+/// only its rows. Throws Error(badInput) if `kept` is not such a table; `file` is for the message.
 std::vector<std::string> worseRows(const nlohmann::ordered_json& now, const nlohmann::ordered_json& kept,
                                    const std::string& technique, const std::string& file);
 

@@ -1,5 +1,5 @@
-// Stiff and extreme cases of the light propagation volume alone, fed by hand-made reflective shadow maps: its kernel
-// has exact answers. The published answers are those of [Kaplanyan2010] with exact solid angles, worked out in double
+// Stiff and extreme cases of the light propagation volume alone, fed by synthetic reflective shadow maps: its kernel
+// has exact answers. The published answers are those of [Kaplanyan2010] with exact solid angles, computed in double
 // precision (tests/support/lpv_twin.*).
 #include "bench/stability.hpp"
 #include "lpv/light_propagation_volume.hpp"
@@ -26,10 +26,10 @@ struct Setup {
   bool full = true, blocking = false;
   LpvFill fill = LpvFill::layered;
   float referenceIrradiance = 1.0f;
-  float amplifier = 0.0f;  ///< above 0: the 4 pi kernel with it
+  float amplifier = 0.0f;  ///< above 0: selects the 4 pi kernel
 };
 
-/// One cascade with its corner in the origin, cells of size 1.
+/// One cascade with its corner at the origin, cells of size 1.
 class Volume {
  public:
   Volume(const StabilityContext& context, const Setup& setup, const std::vector<Vpl>& vpls)
@@ -108,7 +108,7 @@ class Volume {
   double scale_ = 1.0;
 };
 
-/// In the middle of cell n/2, looking along z. A light is moved half a cell along its normal before its cell is sought.
+/// In the middle of cell n/2, facing along z. A light is moved half a cell along its normal before its cell is found.
 Vpl inTheMiddle(int cells) {
   return {glm::vec3(static_cast<float>(cells / 2) + 0.5f, static_cast<float>(cells / 2) + 0.5f,
                     static_cast<float>(cells / 2) + 0.25f)};
@@ -134,7 +134,7 @@ void addKernel(std::vector<StabilityCase>& cases) {
   // Decay through a border of 32 cells; a front's flux is a difference of sums in 32-bit floats.
   constexpr std::pair<int, double> kDecay[] = {
       {1, 1.138208}, {16, 1.138208}, {32, 1.138115}, {64, 1.123262}, {128, 0.944911}};
-  for (const auto& [step, expected] : kDecay)  // clang 14 captures no structured bindings
+  for (const auto& [step, expected] : kDecay)  // clang 14 does not capture structured bindings
     addLpvRow(cases, "one light in 32^3, flux after N steps", fmt::format("N = {}", step),
               [n = step, flux = expected](const StabilityContext& c) {
                 return Measurement{flux, frontFlux(c, {}, n), 3e-5};
@@ -166,8 +166,8 @@ void addIterations(std::vector<StabilityCase>& cases) {
   addLpvRow(cases, "no step: the injected light alone", "N = 0", [](const StabilityContext& c) {
     return Measurement{1.0, fluxOf(c, {}, 0, {inTheMiddle(32)}), 1e-6};
   });
-  // The sum over all fronts of 8^3 is below what leaves in ever smaller parts: it is bounded by its value at 256 steps
-  // plus nothing that floats show.
+  // The sum over all fronts of 8^3 is bounded by its value at 256 steps, up to float rounding: the light leaves in ever
+  // smaller parts.
   for (const bool full : {true, false})
     addLpvRow(
         cases, fmt::format("ten thousand steps in 8^3 over 256, {} bits", full ? 32 : 16), "N = 10000",

@@ -1,7 +1,7 @@
-// Stiff and extreme cases of participating media: optical depths 1e-6 to 1e6, phase functions from isotropic to a
-// needle, albedo 1, channels that differ ten thousandfold, boundaries in each other, cameras inside, scale and place.
-// Slabs have exact answers [Chandrasekhar1960] [vandeHulst1980]; what absorbs nothing must give back all that it got.
-// Statistical: within 4 standard errors, and the error itself is bounded.
+// Stiff and extreme cases of participating media: optical depths 1e-6 to 1e6, phase functions from isotropic to
+// needle-like, albedo 1, channels that differ by a factor of ten thousand, nested boundaries, cameras inside, scale and
+// position. Slabs have exact answers [Chandrasekhar1960] [vandeHulst1980]; a medium without absorption must return all
+// light. Statistical: within 4 standard errors, and the error itself is bounded.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -24,14 +24,14 @@ PathTracer::Statistics trace(const StabilityContext& c, const Scene& scene, std:
   PathTracer::Settings settings;
   settings.size = {side, side};
   settings.seed = 1;
-  settings.nextEvent = false;  // an environment of two halves is hit by every path that leaves
+  settings.nextEvent = false;  // an environment of two halves is hit by every escaping path
   PathTracer tracer(c.context, c.programs, scene, settings);
   tracer.setCamera(scene.cameras.front());
   tracer.record(samples);
   return tracer.statistics();
 }
 
-/// A hundred-thousandth beside 4 standard errors: of a few counts an error knows nothing of itself.
+/// Allows 1e-5 in addition to 4 standard errors: the error estimated from a few counts is unreliable.
 Measurement within(double value, double error, double exact, double worstError) {
   const bool precise = error <= worstError && std::isfinite(value);
   return {exact, precise ? value : NAN, 4.0 * error + 1e-5 * std::max(1.0, exact)};
@@ -51,11 +51,11 @@ struct Slab {
   glm::dvec3 place{0.0};
   Bsdf bsdf = Bsdf::none;
   double ior = 1.0;
-  double halfWidth = 30.0;  ///< in thicknesses
+  double halfWidth = 30.0;  ///< in units of the thickness
 };
 
-/// Thickness 1, so wide that nothing leaves by its sides, seen straight from above; light 1 in red from above and in
-/// green from below, in all channels if `white`. Red is then the reflectance, green the transmittance.
+/// Thickness 1, so wide that nothing leaves through its sides, seen straight from above; light 1 in red from above and
+/// in green from below, in all channels if `white`. Red is then the reflectance, green the transmittance.
 Scene slabScene(const Medium& filling, const Slab& slab = {}, bool white = false) {
   SceneParts parts("slab");
   const int boundary = parts.material(glm::vec3(0.0f));
@@ -92,8 +92,8 @@ void addDepths(std::vector<StabilityCase>& cases) {
     std::uint32_t samples;
     int side;
   };
-  // Nothing is absorbed: each path's throughput stays 1, so that what comes back and what goes through are all, and no
-  // path is lost at a boundary.
+  // Without absorption each path's throughput stays 1, so reflection and transmission add up to all light, and no path
+  // is lost at a boundary.
   constexpr Row kRows[] = {{1e-6, 1.0 - 4.9999975e-7, 256, 16},
                            {1e-3, 1.0 - 4.9975038e-4, 1024, 16},
                            {100.0, .016553, 16, 16},
@@ -108,12 +108,12 @@ void addDepths(std::vector<StabilityCase>& cases) {
     addMediaRow(cases, "slab that absorbs nothing, both sides", fmt::format("optical depth {:g}", row.depth),
                 [row](const StabilityContext& c) {
                   Slab slab;
-                  if (row.depth >= 1e3) slab.halfWidth = 0.5;  // a block: coordinates no larger than they must be
+                  if (row.depth >= 1e3) slab.halfWidth = 0.5;  // a block: coordinates no larger than necessary
                   const auto s = trace(c, slabScene(grey(row.depth, 1.0), slab), row.samples, row.side);
                   return Measurement{1.0, s.mean.x + s.mean.y, 2e-5};
                 });
   }
-  // A block as wide as it is thick: coordinates resolve a mean free path of 1e-6 of it, but no shorter one.
+  // A block as wide as it is thick: coordinates resolve a mean free path of 1e-6 of it, but none shorter.
   for (const double depth : {1e3, 1e4, 1e5, 1e6})
     for (const auto& [albedo, reflectance] : {std::pair{.5, .115225878}, std::pair{.99, .752720717}})
       addMediaRow(cases, "half-space, 1 - H(1) sqrt(1 - albedo)", fmt::format("depth {:g}, albedo {:g}", depth, albedo),
@@ -129,14 +129,14 @@ void addDepths(std::vector<StabilityCase>& cases) {
                   Scene scene = slabScene(grey(depth, 0.0));
                   scene.environment.reset();
                   scene.media[0].emission = scene.media[0].absorption / static_cast<float>(depth);
-                  // A share of the radiance, in units of what an infinitely thin one would have.
+                  // A share of the radiance, relative to that of an infinitely thin one.
                   const auto s = trace(c, scene, 256);
                   return within(s.mean.x, s.meanError.x, -std::expm1(-depth) / depth,
                                 0.01 * std::min(1.0, 1.0 / depth));
                 });
 }
 
-/// Reflectance of matter that scatters straight back alone, the limit g = -1: light of one direction, there and back.
+/// Reflectance of matter that only scatters straight back, the limit g = -1: light of one direction, there and back.
 double rodReflectance(double albedo, double depth) {
   const double k = std::sqrt(1.0 - albedo * albedo), s = std::sinh(k * depth);
   return albedo * s / (k * std::cosh(k * depth) + s);
@@ -171,7 +171,7 @@ void addPhases(std::vector<StabilityCase>& cases) {
 }
 
 void addSpectra(std::vector<StabilityCase>& cases) {
-  // Beside a dense channel one ten thousand times as thin that absorbs alone, and one that does nothing.
+  // Next to a dense channel, one ten thousand times thinner that only absorbs, and one without effect.
   const auto spectral = [] {
     Scene scene = slabScene(medium({1e-2, 100.0, 0.0}, {0.0, .99, 0.0}));
     scene.environment->picture->at(0, 0) = {0.0f, 1.0f, 0.0f};
@@ -232,8 +232,8 @@ void addBoundaries(std::vector<StabilityCase>& cases) {
         });
 }
 
-/// Boxes in each other: a wall of glass, milk in it that overlaps the glass, a crystal in the milk that overlaps both
-/// and ranks below.
+/// Nested boxes: a wall of glass, milk in it that overlaps the glass, and in the milk a crystal that overlaps both and
+/// has a lower priority.
 Scene nested() {
   SceneParts parts("nested");
   const auto dielectric = [&](double ior, int interior, int priority) {

@@ -13,7 +13,7 @@ namespace lucerna::demo::bench {
 namespace {
 
 struct Answer {
-  double mean = 0.0, error = 0.0;  ///< of all pixels and channels; its standard error
+  double mean = 0.0, error = 0.0;  ///< over all pixels and channels; its standard error
   double notFinite = 0.0;
 };
 
@@ -62,14 +62,14 @@ void addFurnaces(std::vector<StabilityCase>& cases) {
                  room.albedo = rho;
                  room.emission = glm::vec3(1.0f);
                  PathView view;
-                 // Paths grow as 1 / (1 - rho), and with them the work of a sample and its spread.
+                 // Path length grows as 1 / (1 - rho), and with it the work and the variance of a sample.
                  view.samples = rho > 0.995f ? 16 : rho > 0.95f ? 32 : 128;
                  return within(trace(c, makeRoom(room), view), 1.0 / (1.0 - static_cast<double>(rho)),
                                rho > 0.95f ? 0.05 : 0.005);
                });
 }
 
-/// Surfaces that lose nothing, lit by 1 from all around: radiance 1 in every pixel.
+/// Surfaces without absorption, lit by 1 from all directions: radiance 1 in every pixel.
 void addWhiteFurnaces(std::vector<StabilityCase>& cases) {
   struct Kind {
     const char* name;
@@ -85,7 +85,7 @@ void addWhiteFurnaces(std::vector<StabilityCase>& cases) {
       Room room;
       room.irradiance = 0.0f;
       room.albedo = 1.0f;
-      // Glass must be closed: seen from outside.
+      // Glass must be closed, and seen from outside.
       room.closed = kind.bsdf == Bsdf::dielectric;
       Scene scene = makeRoom(room);
       if (room.closed) {

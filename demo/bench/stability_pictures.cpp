@@ -1,5 +1,5 @@
-// Stiff and extreme cases of whole pictures: units, scale, place, resolution, nothing to light. A room without a roof,
-// lit by the sun; answers are ratios that must be 1, or exact zeros.
+// Stiff and extreme cases of whole pictures: units, scale, position, resolution, nothing to light. A room without a
+// roof, lit by the sun; answers are ratios that must be 1, or exact zeros.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
 #include "render/renderer.hpp"
@@ -73,7 +73,7 @@ void addUnits(std::vector<StabilityCase>& cases, const PictureView& view) {
           Room room;
           const double usual = meanOfPicture(c, room, view);
           room.scale = scale;
-          // Powers of two change no rounding; others may shift a cell or a texel.
+          // Powers of two change no rounding; other factors may shift a cell or a texel.
           return Measurement{1.0, meanOfPicture(c, room, view) / usual,
                              std::exp2(std::round(std::log2(scale))) == scale ? 1e-5 : 5e-3};
         });

@@ -1,6 +1,6 @@
-// Every technique with every kind of light far from the origin, and on a tilted floor that is far larger than what is
-// seen of it. What the GPU computes in float must not be rounded by the scene's place or by its largest face: the
-// picture is that of the same scene at the origin, or on a small floor.
+// Every technique with every kind of light far from the origin, and on a tilted floor far larger than its visible part.
+// Float computations on the GPU must not be affected by the scene's position or its largest face: the picture must
+// match that of the same scene at the origin, or on a small floor.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -58,7 +58,7 @@ void addCamera(SceneParts& parts, const glm::dvec3& position, const glm::dvec3& 
 }
 
 /// Side 10, without roof and front; two tilted plates in it, one in the other's shadow. All coordinates are multiples
-/// of 1/4 about `place`.
+/// of 1/4 relative to `place`.
 Scene farRoom(Lamp lamp, const glm::dvec3& place) {
   SceneParts parts("far room");
   const int white = parts.material(glm::vec3(0.7f)), red = parts.material(glm::vec3(0.6f, 0.1f, 0.1f));
@@ -73,8 +73,8 @@ Scene farRoom(Lamp lamp, const glm::dvec3& place) {
   return std::move(parts.scene());
 }
 
-/// A floor that rises by 1/4 along x and 1/8 along z, seen at (640, 120, -320): from -1000 to 1000 along both, or as
-/// much as is seen.
+/// A floor that rises by 1/4 along x and 1/8 along z, seen at (640, 120, -320): from -1000 to 1000 along both, or only
+/// the visible part.
 Scene tiltedFloor(Lamp lamp, bool large) {
   SceneParts parts("tilted floor");
   const auto at = [](double x, double z) { return glm::dvec3(x, 0.25 * x + 0.125 * z, z); };
@@ -130,7 +130,7 @@ Image picture(const StabilityContext& c, const Scene& scene, How how, Component 
   return renderer.readRadiance();
 }
 
-/// Root mean square of the difference over the mean of `b`; NaN of a black picture.
+/// Root mean square of the difference over the mean of `b`; NaN for a black picture.
 double difference(const Image& a, const Image& b) {
   double sum = 0.0, mean = 0.0;
   for (std::size_t i = 0; i < b.pixels.size(); ++i) {
@@ -156,7 +156,7 @@ std::string nameOf(How how, Lamp lamp, const char* what) {
 void addPlaceCases(std::vector<StabilityCase>& cases) {
   for (const How how : kHows)
     for (const Lamp lamp : kLamps) {
-      if (lamp == Lamp::environment && how != How::path && how != How::rays) continue;  // others have none
+      if (lamp == Lamp::environment && how != How::path && how != How::rays) continue;  // the others do not support it
       for (const double sides : {1e3, 1e4})
         cases.push_back({techniqueOf(how), nameOf(how, lamp, "room far away against near"),
                          fmt::format("{:g} sides", sides), [how, lamp, sides](const StabilityContext& c) {
@@ -166,7 +166,7 @@ void addPlaceCases(std::vector<StabilityCase>& cases) {
                                                          picture(c, farRoom(lamp, {}), how, Component::all)),
                                               0.0, Rule::atMost};
                          }});
-      // Direct light is technique direct's; patches and the cells of receivers are as large as the floor.
+      // Direct light belongs to technique direct; patches and receivers' cells are as large as the floor.
       if (how == How::rsm || how == How::lpv || how == How::rays || how == How::patches) continue;
       cases.push_back({techniqueOf(how), nameOf(how, lamp, "tilted floor, large against small"), "+-1000 units",
                        [how, lamp](const StabilityContext& c) {

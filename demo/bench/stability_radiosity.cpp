@@ -1,6 +1,6 @@
-// Stiff and extreme cases of radiosity: walls that absorb next to nothing, patches that nearly touch, patches tiny and
-// huge, scale and place. Scenes without lamps, so that all light comes by form factors and the linear system; answers
-// are closed forms, or a solution that is a million times as exact.
+// Stiff and extreme cases of radiosity: walls that absorb almost nothing, patches that nearly touch, tiny and huge
+// patches, scale and position. Scenes have no lamps, so that all light comes through form factors and the linear
+// system; answers are closed forms, or a solution a million times more accurate.
 #include "base/angles.hpp"
 #include "base/error.hpp"
 #include "bench/stability.hpp"
@@ -17,9 +17,9 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-constexpr double kSide = 10.0;  ///< of a closed room of scale 1
+constexpr double kSide = 10.0;  ///< a closed room at scale 1
 
-/// Patches of a sixth of a room's side; hemicubes of few pixels: what is tested does not need more.
+/// Patches of a sixth of a room's side; low-resolution hemicubes suffice for these tests.
 RadiositySolutionSettings settingsFor(double longestEdge, double error = 1e-6) {
   RadiositySolutionSettings settings;
   settings.patches.longestEdge = longestEdge;
@@ -38,7 +38,7 @@ void addRadiosityRow(std::vector<StabilityCase>& cases, std::string name, std::s
   cases.push_back({"radiosity", std::move(name), std::move(parameter), std::move(run)});
 }
 
-/// By area; channels averaged.
+/// Area-weighted; channels averaged.
 double meanExitance(const RadiositySolution& s) {
   double sum = 0.0, area = 0.0;
   for (std::size_t i = 0; i < s.exitance.size(); ++i) {
@@ -54,7 +54,7 @@ double notFinite(const RadiositySolution& s) {
   return count;
 }
 
-/// Irradiance of the patches of a material, by area.
+/// Area-weighted irradiance of the patches of a material.
 double irradianceOf(const RadiositySolution& s, int material) {
   double sum = 0.0, area = 0.0;
   for (std::size_t i = 0; i < s.irradiance.size(); ++i)
@@ -63,7 +63,7 @@ double irradianceOf(const RadiositySolution& s, int material) {
   return sum / area;
 }
 
-/// Closed, all walls alike; only the left one shines.
+/// Closed, all walls alike; only the left one emits.
 Scene stiffRoom(float albedo) {
   Room room;
   room.closed = true;
@@ -146,7 +146,7 @@ void addStiff(std::vector<StabilityCase>& cases) {
                   });
 }
 
-/// 1 where `scene` is refused as bad input, 0 where it is solved.
+/// 1 if `scene` is rejected as bad input, 0 if it is solved.
 double refused(const StabilityContext& c, const Scene& scene) {
   try {
     solve(c, scene, settingsFor(kSide / 2.0));
@@ -184,7 +184,7 @@ double opposedSquares(double d) {
          (std::log(s / std::sqrt(1.0 + 2.0 * x * x)) + 2.0 * x * r * std::atan(x / r) - 2.0 * x * std::atan(x));
 }
 
-/// Black plates; the first shines with an exitance of 1: irradiance of the second is its form factor to the first.
+/// Black plates; the first emits an exitance of 1, so the irradiance of the second is its form factor to the first.
 struct Plates {
   SceneParts parts{"plates"};
   int light, black;
@@ -204,8 +204,8 @@ void addNear(std::vector<StabilityCase>& cases) {
           const double exact = opposedSquares(d);
           RadiositySolutionSettings settings = settingsFor(0.25);
           settings.hemicubes.resolution = 128;  // a patch at distance 10 covers two pixels
-          // 32 patches a square; their centres stand for them, which at the border of what is nearer than they are
-          // large costs up to 2 %.
+          // 32 patches per square, represented by their centres, which costs up to 2 % at the border of anything nearer
+          // than their size.
           return Measurement{exact, irradianceOf(solve(c, p.parts.scene(), settings), p.black), 0.02 * exact};
         });
   addRadiosityRow(
@@ -215,8 +215,8 @@ void addNear(std::vector<StabilityCase>& cases) {
         p.parts.plate({0, 0.5, -0.5}, {1, 0, 0}, {0, 1, 0}, p.black);
         return Measurement{0.2000438, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.25)), p.black), 0.002};
       });
-  // Nothing gets past a wall that all but touches. (At 1e-4, 2e-5 of the distance to the light, hemicubes' depth in
-  // floats lets 0.9 % past.)
+  // Nothing passes a wall that almost touches. (At 1e-4, which is 2e-5 of the distance to the light, the float depth of
+  // hemicubes lets 0.9 % through.)
   for (const double d : {1e-3, 1e-2})
     addRadiosityRow(
         cases, "light behind a wall close to the patch, irradiance", fmt::format("distance {:g}", d),
@@ -239,12 +239,12 @@ void addSizes(std::vector<StabilityCase>& cases) {
           p.parts.plate({0, 1, 0}, {s, 0, 0}, {0, 0, s}, p.light);
           p.parts.plate({0, 0, 0}, {0, 0, 1e-3}, {1e-3, 0, 0}, p.black);
           p.parts.plate({0, 1.5, 0}, {20, 0, 0}, {0, 0, 20},
-                        p.parts.material(glm::vec3(0.0f)));  // a light is small beside a room
+                        p.parts.material(glm::vec3(0.0f)));  // a light must be small compared with a room
           const double x = 0.5 * s / std::sqrt(1.0 + 0.25 * s * s),
                        exact = 4.0 / kPi * x * std::atan(x);  // four corners [Howell B-3]
           return Measurement{1.0, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.0)), p.black) / exact, 0.005};
         });
-  // What a tiny light sends to a huge floor all arrives: flux over what was sent.
+  // All light from a tiny source to a huge floor arrives: received over emitted flux.
   for (const double side : {1e2, 1e4, 1e5})
     addRadiosityRow(
         cases, "light of side 1 over a huge patch, flux that arrives", fmt::format("side {:g}", side),

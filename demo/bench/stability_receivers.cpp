@@ -1,6 +1,6 @@
-// Stiff and extreme cases of the light propagation volume's receivers (lpv.transport=rays): units, scale and place,
+// Stiff and extreme cases of the light propagation volume's receivers (lpv.transport=rays): units, scale and position,
 // light that is hardly absorbed, thin sheets, a lamp in a corner, tiny and huge cells. Answers are exact, bounds, or
-// ratios that must be 1 but for noise.
+// ratios that must be 1 up to noise.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
 #include "render/renderer.hpp"
@@ -58,7 +58,7 @@ void addReceiversUnits(std::vector<StabilityCase>& cases) {
           Room room;
           const double usual = mean(picture(c, makeRoom(room), settingsOf()));
           room.scale = scale;
-          // Powers of two change no rounding; others may choose other points of the same surfaces.
+          // Powers of two change no rounding; other factors may select other points of the same surfaces.
           return Measurement{1.0, mean(picture(c, makeRoom(room), settingsOf())) / usual,
                              std::exp2(std::round(std::log2(scale))) == scale ? 1e-5 : 5e-3};
         });
@@ -72,8 +72,8 @@ void addReceiversUnits(std::vector<StabilityCase>& cases) {
                     });
 }
 
-/// A closed room whose walls emit 1 and absorb next to nothing: after N bounces its radiance is that of N + 2 terms of
-/// 1 + a + a^2 + ...
+/// A closed room whose walls emit 1 and absorb almost nothing: after N bounces its radiance is that of N + 2 terms of 1
+/// + a + a^2 + ...
 void addAlbedo(std::vector<StabilityCase>& cases) {
   constexpr double kAlbedo = 1.0 - 1e-6;
   static const auto shining = [] {
@@ -100,8 +100,8 @@ void addAlbedo(std::vector<StabilityCase>& cases) {
   });
 }
 
-/// A room without windows behind a sheet that is lit brightly on its other side: whatever the sheet's thickness, none
-/// of it comes through.
+/// A room without windows behind a sheet that is brightly lit on its other side: no light may pass, whatever the
+/// sheet's thickness.
 void addThinSheet(std::vector<StabilityCase>& cases) {
   for (const double thickness : {0.0, 1e-4})
     addReceiversRow(
@@ -113,7 +113,7 @@ void addThinSheet(std::vector<StabilityCase>& cases) {
           parts.plate({0, 0, 0}, {0, 0, 10}, {10, 0, 0}, white);
           if (t > 0.0) parts.plate({0, -t, 0}, {0, 0, 10}, {10, 0, 0}, white);
           parts.plate({0, -2, 0}, {0, 0, 40}, {40, 0, 0},
-                      parts.material(glm::vec3(0.0f)));  // black ground: nothing comes round the sheet
+                      parts.material(glm::vec3(0.0f)));  // black ground: no light around the sheet
           parts.scene().sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(1e4f)};
           Camera camera;
           camera.position = {0.0, -1.9, 0.0};
@@ -127,7 +127,7 @@ void addThinSheet(std::vector<StabilityCase>& cases) {
         });
 }
 
-/// A small shining plate or lamp in a corner of the room, all but touching both walls.
+/// A small emissive plate or lamp in a corner of the room, almost touching both walls.
 void addCornerLamp(std::vector<StabilityCase>& cases) {
   for (const double distance : {0.1, 1e-3, 1e-5}) {
     const auto room = [distance](bool emissive) {
@@ -160,7 +160,8 @@ void addCornerLamp(std::vector<StabilityCase>& cases) {
   }
 }
 
-/// A room of one radiance has it in cells of any size; what differs elsewhere is how finely irradiance is interpolated.
+/// In a room of constant radiance cells of any size give that radiance; elsewhere they differ in how finely irradiance
+/// is interpolated.
 void addCells(std::vector<StabilityCase>& cases) {
   for (const double size : {1e-3, 0.1, 100.0, 1e5})
     addReceiversRow(
@@ -174,8 +175,8 @@ void addCells(std::vector<StabilityCase>& cases) {
           RenderSettings settings = settingsOf(2, 256);
           const double usual = mean(picture(c, scene, settings));
           settings.lpv.cascades.cellSize = size;
-          // Cells far smaller than the room cover a part of it near the camera: there is nothing to look up elsewhere,
-          // and it shows what it emits by itself, no less.
+          // Cells far smaller than the room cover only its part near the camera. Elsewhere there is nothing to look up,
+          // and surfaces show exactly their own emission.
           const double now = mean(picture(c, scene, settings));
           return size < 1.0 ? Measurement{1.0, now, 0.0, Rule::atLeast} : Measurement{1.0, now / usual, 0.02};
         });

@@ -61,7 +61,7 @@ void addBad(SceneParts& parts, const glm::dvec3& o, double s) {
 Scene makeRoom(const Room& room) {
   SceneParts parts("stability");
   const double s = 10.0 * room.scale, h = 0.5 * s;
-  const bool coloured = !room.closed;  // a closed room has one exact answer only where all walls are alike
+  const bool coloured = !room.closed;  // a closed room has an exact answer only if all walls are alike
   parts.material(glm::vec3(room.albedo), room.emission);
   parts.material(room.albedo * (coloured ? glm::vec3(0.85f, 0.15f, 0.15f) : glm::vec3(1.0f)), room.emission);
   parts.material(room.albedo * (coloured ? glm::vec3(0.15f, 0.85f, 0.15f) : glm::vec3(1.0f)), room.emission);

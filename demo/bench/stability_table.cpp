@@ -1,4 +1,4 @@
-// A table of bench stability that was kept, and what has become worse since (no GL).
+// Compares a stored table of bench stability with a new one (no GL).
 #include "bench/stability.hpp"
 
 #include "base/error.hpp"
@@ -44,8 +44,7 @@ std::vector<std::string> worseRows(const nlohmann::ordered_json& now, const nloh
       if (before.at("rule") != row.at("rule"))
         worse.push_back(
             fmt::format("{}: the rule is {}, was {}", name, row.at("rule").dump(), before.at("rule").dump()));
-      // Statistical rows allow multiples of their own standard error, which differs a little from processor to
-      // processor.
+      // Statistical rows allow multiples of their own standard error, which differs slightly between processors.
       const double allowed = row.at("tolerance"), allowedBefore = before.at("tolerance");
       if (!(allowed <= 1.05 * allowedBefore))
         worse.push_back(fmt::format("{}: allows {}, was {}", name, allowed, allowedBefore));

@@ -1,4 +1,4 @@
-// lucerna bench tables --original NAME [SCENE]: every published table of an original, measured again here.
+// lucerna bench tables --original NAME [SCENE]: reproduces every published table of an original.
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "base/files.hpp"
@@ -43,7 +43,7 @@ struct TablesOptions {
   std::optional<double> scale;
 };
 
-/// Milliseconds in a column: large ones without decimals that say nothing.
+/// Milliseconds in a column: large values without meaningless decimals.
 std::string column(double ms) { return ms < 1e5 ? fmt::format("{:.4f}", ms) : fmt::format("{:.5g}", ms); }
 
 void print(const bench::Tables& tables) {
@@ -106,8 +106,8 @@ nlohmann::ordered_json rowsJson(const bench::Tables& tables, const std::string& 
   return rows;
 }
 
-/// Figure 7.1 of the LPV original: image atomics against the geometry shader (tables 7.6 and 7.7), as published and
-/// here.
+/// Figure 7.1 of the LPV original: image atomics against the geometry shader (tables 7.6 and 7.7), published and
+/// measured here.
 void drawChart(const std::string& file, const bench::Tables& tables, const std::string& renderer) {
   std::vector<bench::Bar> published, here;
   for (const bench::Row& injection : tables.rows) {
@@ -136,7 +136,7 @@ void drawChart(const std::string& file, const bench::Tables& tables, const std::
                                      2));
 }
 
-/// So that a software renderer needs minutes.
+/// A software renderer then needs only minutes.
 constexpr double kVptTablesScale = 0.05;
 
 int runTables(TablesOptions options) {
@@ -152,8 +152,7 @@ int runTables(TablesOptions options) {
   }
   if (!options.fidelity.empty() && !vpt)
     throwBadInput(
-        "--fidelity {}: the tables of {} are measured in each way that has a name of its own there; only --original "
-        "vpt has estimators to choose from",
+        "--fidelity {}: the tables of {} cover all of its methods; only --original vpt has estimators to choose from",
         options.fidelity, options.original);
   if (!options.fidelity.empty() && options.fidelity != "corrected" && options.fidelity != "original")
     throwBadInput("--fidelity {}: unknown; expected one of corrected, original", options.fidelity);
@@ -168,11 +167,11 @@ int runTables(TablesOptions options) {
   for (const LpvFill one : {LpvFill::layered, LpvFill::fixed, LpvFill::atomic})
     if (options.fill == nameOf(one)) fill = one;
   if (!options.fill.empty() && options.original != "lpv")
-    throwBadInput("--fill {}: only the tables of lpv are filled", options.fill);
+    throwBadInput("--fill {}: only the tables of lpv have grids to fill", options.fill);
   if (!options.fill.empty() && !fill)
-    throwBadInput("--fill {}: unknown; there are layered, fixed, atomic", options.fill);
+    throwBadInput("--fill {}: unknown; expected one of layered, fixed, atomic", options.fill);
   if (options.original == "lpv" && !fill && (options.part.isPart() || !options.part.checkpoint.empty()))
-    throwBadInput("--part, --checkpoint: need --fill, since which is the fastest is another one on each machine");
+    throwBadInput("--part, --checkpoint: need --fill, since the fastest way differs between machines");
   Scene scene;
   if (!vpt) {
     options.scene = bench::sceneOrAtrium(options.scene);
@@ -222,9 +221,8 @@ Work addBenchTables(Command app) {
   auto options = std::make_shared<TablesOptions>();
   app.addOption("SCENE", options->scene,
                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  offer(
-      app.addOption("--original", options->original, "original whose tables are measured: lpv, rad or vpt").required(),
-      {"lpv", "rad", "vpt"});
+  offer(app.addOption("--original", options->original, "the original: lpv, rad or vpt").required(),
+        {"lpv", "rad", "vpt"});
   app.addOption("--scale", options->scale,
                 "less work on a slow machine, above 0, at most 1. lpv and rad (1): fewer frames or hemicubes; below "
                 "0.5 also smaller "
@@ -234,7 +232,7 @@ Work addBenchTables(Command app) {
                       "corrected (default)"),
         {"corrected", "original"});
   offer(app.addOption("--fill", options->fill,
-                      "lpv: the way to fill the grids that is measured beside the published one: layered, fixed, "
+                      "lpv: the way to fill the grids measured next to the published one: layered, fixed, "
                       "atomic (the fastest here, tried first)"),
         {"layered", "fixed", "atomic"});
   app.addOption("--chart", options->chart, "lpv: FILE.png, figure 7.1: atomics and the geometry shader as bars");

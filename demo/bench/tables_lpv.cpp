@@ -1,7 +1,8 @@
-// Tables 7.2 to 7.8 of the LPV original [LPV2015, 7.2] and its comparison of ways to clear, measured again.
+// Reproduces tables 7.2 to 7.8 of the LPV original [LPV2015, 7.2] and its comparison of methods to clear textures.
 //
-// Every configuration keeps its own volume; a round runs each of them once, published and best path of a setting next
-// to each other (A B A B), so that what else the machine does meets both. The first round is a warm-up and is dropped.
+// Every configuration keeps its own volume. A round runs each of them once, with the published and the best method for
+// a setting next to each other (A B A B), so that other load on the machine affects both. The first round is a warm-up
+// and is dropped.
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
@@ -148,13 +149,13 @@ constexpr double kClearTexImage = 0.0049, kTexSubImage = 0.09958;
 // ---------------------------------------------------------------------------------------------------- configurations
 
 struct Config {
-  int rsmSize, cells, grids, iterations;  // iterations 0: only injected is timed, for 7.8
+  int rsmSize, cells, grids, iterations;  // iterations 0: only injection is timed, for 7.8
   bool blocking;
   LpvFill fill;
   LpvPropagate propagate;
-  bool published = false;  // cell sizes, steps, formats and atomics of the text, nothing joined; else ours
+  bool published = false;  // cell sizes, steps, formats and atomics of the text, without joining; otherwise ours
   auto operator<=>(const Config&) const = default;
-  /// Atomics of ours are one a tile of texels that fall into the same cell; the published ones one a light.
+  /// Our atomics are one per tile of texels that fall into the same cell; the published ones are one per light.
   std::string fillName() const {
     return std::string(nameOf(fill)) + (fill == LpvFill::layered || published ? "" : " tiles");
   }
@@ -171,7 +172,7 @@ LpvSettings settingsOf(const Config& config) {
   lpv.transport = LpvTransport::propagate;
   if (config.published && config.fill != LpvFill::layered) {
     lpv.tile = 1;
-    lpv.deviations.halfGrids = false;  // that fills by layered passes
+    lpv.deviations.halfGrids = false;  // filling by layered passes needs this off
   }
   lpv.cascades.cells = config.cells;
   lpv.cascades.cascades = config.grids;
@@ -221,7 +222,7 @@ class Bench {
     order_.clear();
   }
 
-  /// Every map once, then every configuration once.
+  /// Draws every map once, then runs every configuration once.
   void runRound() {
     std::map<int, ReflectiveShadowMap::Outputs> outputs;
     for (auto& [size, map] : maps_) {
@@ -251,7 +252,7 @@ class Bench {
     timer_.collect();
   }
 
-  /// What was kept, else what was measured.
+  /// Stored samples if any, otherwise the measured ones.
   const std::vector<double>& samples(const std::string& stage) const {
     if (const auto found = kept_.find(stage); found != kept_.end()) return found->second;
     return capabilities_.softwareRenderer ? timer_.wallSamples(stage) : timer_.querySamples(stage);
@@ -282,7 +283,7 @@ class Bench {
   std::map<std::string, std::vector<double>> kept_;
 };
 
-/// Reading and writing grids of that size once a step, lit or not: the least that propagation in all cells must do.
+/// Reads and writes grids of that size once per step, lit or not: the least work of propagation in all cells.
 class Copy {
  public:
   Copy(gl::ProgramLibrary& programs, int cells, int grids, int iterations)
@@ -319,7 +320,7 @@ class Copy {
   std::array<gl::BufferTexture, 3> grids_;
 };
 
-/// One channel of a 32^3 grid set to zero, both ways in turn.
+/// Sets one channel of a 32^3 grid to zero, alternating between both methods.
 void measureClearing(gl::TimeQuery& timer, bool haveClearTexture, int count) {
   gl::Texture grid("bench cleared", gl::Format::rgba16f, glm::ivec3(32));
   const std::vector<std::uint8_t> zeros(grid.bytes(), 0);
@@ -352,7 +353,7 @@ nlohmann::ordered_json samplesJson(const std::vector<double>& samples) {
 }  // namespace
 
 Tables measureLpvTables(const TablesInput& input) {
-  // What is measured, at this scale.
+  // The configurations at this scale.
   const gl::Capabilities& capabilities = input.context.capabilities();
   const bool haveAtomic = capabilities.shaderAtomicFloat || capabilities.shaderAtomicFp16Vector;
   const int frames = std::max(1, static_cast<int>(std::ceil(10.0 * input.scale - 1e-9)));
@@ -362,7 +363,7 @@ Tables measureLpvTables(const TablesInput& input) {
   };
   Bench bench(input);
 
-  // Which way to fill is the fastest here: each in turn, three grids.
+  // Find the fastest way to fill here: try each with three grids.
   const Config trial{256, 32 / shrink, 3, 0, false, LpvFill::layered, LpvPropagate::compute};
   std::vector<LpvFill> fills{LpvFill::layered, LpvFill::fixed};
   if (haveAtomic) fills.push_back(LpvFill::atomic);
@@ -378,7 +379,7 @@ Tables measureLpvTables(const TablesInput& input) {
     for (int round = 0; round <= std::min(frames, 5) && !interrupted(); ++round) bench.runRound();
     bench.timer().drain();
   }
-  // The least time, not the median: what else the machine does only ever adds.
+  // The minimum, not the median: other load on the machine only ever adds time.
   const auto fastest = [&](LpvFill fill) { return percentile(bench.injection(trialOf(fill)), 0.0); };
   const LpvFill bestFill =
       input.fill ? *input.fill : *std::min_element(fills.begin(), fills.end(), [&](LpvFill a, LpvFill b) {
@@ -391,15 +392,15 @@ Tables measureLpvTables(const TablesInput& input) {
   bench.removeVolumes();
   bench.timer().reset();
 
-  // The ways that each published row is measured in, next to each other in the order of a round.
+  // The ways in which each published row is measured, adjacent in the order of a round.
   struct Planned {
     const PublishedRow* row;
     Config config;
-    bool first;  // carries the stage of the map, which no path changes
+    bool first;  // includes the stage of the map, which is the same for all methods
     bool there;
   };
   std::vector<Planned> plan;
-  std::vector<Config> wanted;  // each once
+  std::vector<Config> wanted;  // without duplicates
   const auto want = [&](const Config& one) {
     if (std::find(wanted.begin(), wanted.end(), one) == wanted.end()) wanted.push_back(one);
   };
@@ -423,11 +424,11 @@ Tables measureLpvTables(const TablesInput& input) {
   const Config published = config(usual, LpvFill::layered, LpvPropagate::layered),
                best = config(usual, bestFill, LpvPropagate::compute);
   const Config slices =
-      config(usual, LpvFill::layered, LpvPropagate::slices);  // what the published pass could have been
+      config(usual, LpvFill::layered, LpvPropagate::slices);  // a faster variant of the published pass
   want(published);
   want(slices);
 
-  // A unit a configuration, with the map that it is filled from; copying and clearing are the last.
+  // One unit per configuration, with the map it is filled from; copying and clearing are the last.
   const PartFolder part(
       input.part, "bench tables",
       fmt::format(
@@ -440,7 +441,7 @@ Tables measureLpvTables(const TablesInput& input) {
     if (unit == wanted.size()) return {"copy", "copy and sum", "glClearTexImage", "glTexSubImage3D"};
     return {rsmStage(wanted[unit].rsmSize), wanted[unit].key() + " injection", wanted[unit].key() + " propagation"};
   };
-  // Units that a part has are taken from it; the others are measured round by round.
+  // Units that a part already has are read from it; the others are measured round by round.
   std::vector<std::size_t> measured;
   for (std::size_t unit = part.first(); unit < part.last(); ++unit) {
     if (const auto kept = part.load(unit)) {
@@ -477,7 +478,7 @@ Tables measureLpvTables(const TablesInput& input) {
     return tables;
   }
 
-  // How to read them.
+  // Explain how to read the tables.
   tables.notes = {
       fmt::format("Scale    {}: {} frame{} a figure after one of warm-up{}", input.scale, frames, frames > 1 ? "s" : "",
                   shrink > 1 ? "; grids of 16^3 where 32^3 was published, 32^3 for 64^3" : ""),
@@ -499,7 +500,7 @@ Tables measureLpvTables(const TablesInput& input) {
         "Scene    not the published one: that is Crytek Sponza (262,267 triangles), no part of this repository; give "
         "its OBJ as SCENE");
 
-  // A row for each published figure and way.
+  // One row for each published number and method.
   for (const Planned& planned : plan) {
     const PublishedRow& row = *planned.row;
     const auto add = [&](const char* stage, double nvidia, double amd, const std::vector<double>& samples,

@@ -1,8 +1,9 @@
-// lucerna bench tables --original rad: the published program's times on model 2, and what each of its deviations costs.
+// lucerna bench tables --original rad: the published program's times on model 2, and the cost of each of its
+// deviations.
 //
 // A whole published run takes minutes to days. Here hemicubes of triangles spread evenly over the scene are drawn for a
-// while, and a run of 7 sweeps, as many as published, is computed from their rate: every hemicube costs the same, since
-// every view draws the whole scene.
+// while, and the time of a run of 7 sweeps, as published, is extrapolated from their rate: every hemicube costs the
+// same, since every view draws the whole scene.
 #include "bench/provenance.hpp"
 #include "bench/rad.hpp"
 
@@ -30,7 +31,7 @@ namespace {
 constexpr int kSweeps = 7;
 constexpr const char* kPublishedOn = "GeForce 7600 GT";
 
-// [RAD2008 tables 4.1 and 4.2]: minutes of a whole run, seconds a triangle.
+// [RAD2008 tables 4.1 and 4.2]: minutes for a whole run, seconds per triangle.
 struct Published {
   double threshold;
   int triangles;
@@ -64,7 +65,7 @@ Rate measure(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangle
   return {solver.hemicubes() - warm, solver.drawnTriangles() - warmTriangles, secondsSince(start)};
 }
 
-/// Sweeps to rest of the published solver, with the numbers of the manual's example; nothing where it was interrupted.
+/// Sweeps until the published solver stops changing, with the numbers of the manual's example; empty if interrupted.
 std::optional<std::uint32_t> sweepsToRest(gl::ProgramLibrary& programs, std::span<const RadTriangle> triangles,
                                           int view, bool quiet) {
   OriginalRadiosity::Settings settings;
@@ -87,8 +88,8 @@ struct Cost {
   double nrmse = 0.0, most = 0.0, bias = 0.0;
 };
 
-/// The lit cube as published, with one deviation turned off, and with all but the centroid off, each against that last
-/// one at four times the pixels.
+/// The lit cube as published, with one deviation turned off, and with all but the centroid off, each compared with the
+/// last one at four times the pixels.
 std::vector<Cost> deviationCosts(gl::ProgramLibrary& programs, int view, bool quiet) {
   const std::vector<RadTriangle> cube = makeRadModel(1, {20.0, 0.5, 100000});
   Progress bar("deviations", 8, quiet);
@@ -106,7 +107,7 @@ std::vector<Cost> deviationCosts(gl::ProgramLibrary& programs, int view, bool qu
     return progress.received;
   };
   RadiosityDeviations right;
-  right.centroid = true;  // the receiving points stay the same
+  right.centroid = true;  // keep the receiving points the same
   const std::vector<float> reference = solve(right, 4 * view);
   const auto costOf = [&](const std::string& name, const RadiosityDeviations& deviations) {
     const std::vector<float> received = solve(deviations, view);
@@ -170,12 +171,12 @@ Scene closedBox(int n) {
   return scene;
 }
 
-/// The units of these tables, in their order: each is taken from where it is kept, or made and kept.
+/// The units of these tables in order: each is read from where it is stored, or computed and stored.
 class Units {
  public:
   Units(const PartOptions& options, const std::string& identity, std::size_t count)
       : part_(options, "bench tables", identity, count) {}
-  /// Nothing where the next one is another part's, or the work was interrupted.
+  /// Empty if the next unit belongs to another part, or the work was interrupted.
   std::optional<PartFolder::Json> next(const std::function<PartFolder::Json()>& make) {
     const std::size_t unit = next_++;
     if (unit < part_.first() || unit >= part_.last() || interrupted()) return std::nullopt;
@@ -192,7 +193,7 @@ class Units {
   std::size_t next_ = 0;
 };
 
-/// Squares a side of each wall: boxes of 2,028 and 25,392 triangles.
+/// Squares per side of each wall: boxes of 2,028 and 25,392 triangles.
 constexpr std::array kBoxes{13, 46};
 
 template <class... Values>
@@ -202,8 +203,8 @@ void say(bool prints, fmt::format_string<Values...> format, Values&&... values) 
   std::fflush(stdout);
 }
 
-/// Hemicubes a second of the corrected solver: the whole stage, rows made, sorted out and kept. Median, least and most
-/// of five runs.
+/// Hemicubes per second of the corrected solver: the whole stage, with rows computed, sorted and stored. Median,
+/// minimum and maximum of five runs.
 PartFolder::Json closedBox(const gl::Context& context, gl::ProgramLibrary& programs, double scale, int squares,
                            HemicubeVisibility way) {
   PatchSettings whole;
@@ -266,7 +267,7 @@ void closedBoxes(const gl::Context& context, gl::ProgramLibrary& programs, doubl
 
 nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramLibrary& programs, double scale,
                                         bool quiet, bool prints, const PartOptions& part) {
-  // What is measured, at this scale.
+  // The configurations at this scale.
   const std::string& renderer = context.capabilities().renderer;
   const auto most = static_cast<std::size_t>(std::max(8.0, std::round(400.0 * scale)));
   const double mostSeconds = std::max(1.0, 40.0 * scale);
@@ -285,7 +286,7 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
   say(prints, "Renderer {}\n", renderer);
   for (const std::string& note : notes) say(prints, "{}\n", note);
 
-  // Each published model in each size of its views: the rate, and the whole computed from it.
+  // Each published model at each view size: the rate, and the extrapolated total.
   say(prints, "\nTables 4.1 and 4.2\n{:<28}{:>14}{:>14}{:>9}{:>14}{:>14}{:>13}{:>14}\n", "", "whole, min", "here, min",
       "ratio", "s a triangle", "here, s", "hemicubes/s", "Mtriangles/s");
   json["rows"] = nlohmann::ordered_json::array();
@@ -293,7 +294,7 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
     if (interrupted()) break;
     RadModelSettings model;
     model.areaThreshold = published.threshold;
-    std::vector<RadTriangle> triangles;  // made where they are measured
+    std::vector<RadTriangle> triangles;  // generated when measured
     for (std::size_t v = 0; v < kViews.size() && !interrupted(); ++v) {
       const auto kept = units.next([&] {
         if (triangles.empty()) triangles = makeRadModel(2, model);
@@ -335,7 +336,7 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
     }
   }
 
-  // Model 2 as coarse as it gets; the others where even that is too much.
+  // Model 2 at its coarsest; one of the others if even that is too much.
   const bool hall = scale >= 0.5;
   RadModelSettings model;
   model.areaThreshold = hall ? 100.0 : 30.0;

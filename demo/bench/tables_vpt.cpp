@@ -1,8 +1,8 @@
-// The published times of the VPT original [VPT2024, 5.7], measured again on scenes of ours.
+// The published times of the VPT original [VPT2024, 5.7], measured again with our scenes.
 //
-// With --scale below 1 the pictures are smaller and have fewer samples; what was measured is then multiplied up to the
+// With --scale below 1 the pictures are smaller and have fewer samples. The measured time is then scaled to the
 // published number of pixels times samples, as a path tracer's work is proportional to both. A picture that would take
-// too long ends early and is multiplied up likewise.
+// too long ends early and is scaled likewise.
 #include "bench/provenance.hpp"
 #include "bench/vpt_series.hpp"
 
@@ -20,11 +20,10 @@ namespace lucerna::demo::bench {
 
 namespace {
 
-/// Seconds a picture below full scale may take.
+/// Maximum seconds for a picture below full scale.
 constexpr double kMostSecondsATable = 15.0;
 
-/// Of the picture that stands for the estimator: espresso, as much absorbed as scattered behind a boundary that
-/// refracts.
+/// The picture used to compare estimators: espresso, with equal absorption and scattering behind a refracting boundary.
 constexpr std::size_t kEstimatorPicture = 14;
 
 struct Estimator {
@@ -32,8 +31,8 @@ struct Estimator {
   PathDeviations deviations;
 };
 
-/// Of the corrected estimator: each deviation alone turned on. Of the published one: each alone turned off, as what it
-/// does among the others is what made the pictures.
+/// For the corrected estimator, each deviation alone turned on. For the published one, each alone turned off, because
+/// the pictures were made with all others on.
 std::vector<Estimator> estimatorsOf(Fidelity fidelity) {
   const bool published = fidelity != Fidelity::corrected;
   RenderSettings corrected, original;
@@ -51,8 +50,8 @@ std::vector<Estimator> estimatorsOf(Fidelity fidelity) {
   return estimators;
 }
 
-/// The estimators against the first, corrected or published: time, and how far the picture is off. "summary" and
-/// "estimators"; not complete where it was interrupted.
+/// Compares the estimators with the first one, corrected or published: time, and error of the picture. Fills "summary"
+/// and "estimators"; incomplete if interrupted.
 PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size, double mostSeconds) {
   const VptPicture& picture = vptPictures()[kEstimatorPicture];
   const Scene scene = loadVptScene(picture, input.fidelity);
@@ -61,7 +60,7 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
   PartFolder::Json made{{"summary", ""}, {"estimators", PartFolder::Json::array()}};
   std::string summary;
   if (interrupted()) return made;
-  // With the published random numbers all pixels and seeds share one sequence: the reference has others.
+  // With the published random numbers all pixels and seeds share one sequence: the reference uses others.
   PathDeviations independent = estimators[0].deviations;
   independent.linearSeeds = false;
   const VptResult reference =
@@ -101,7 +100,7 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
   return made;
 }
 
-/// How each series grows: time, and the turns of loops that it takes, a sample and over the series' first picture.
+/// Growth along each series: time and loop iterations, per sample and relative to the series' first picture.
 std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<VptResult>& results, glm::ivec2 size) {
   std::string text = fmt::format("\n{:<44}{:>12}{:>12}{:>12}{:>16}\n", "Growth a sample over a series", "published",
                                  "time here", "loop turns", "collisions a path");
@@ -120,7 +119,7 @@ std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<
   return text;
 }
 
-/// A picture's measurement as it is kept: all but its pixels, with the time that loading took.
+/// A picture's measurement as stored: everything but its pixels, with the loading time.
 PartFolder::Json keptOf(const VptResult& result, double loadMs) {
   const PathTracer::Statistics& s = result.statistics;
   return {{"ms", result.ms},
@@ -170,13 +169,13 @@ Tables measureVptTables(const VptTablesInput& input) {
   const auto& pictures = vptPictures();
   std::vector<Fidelity> fidelities{input.fidelity};
   if (published) fidelities.push_back(Fidelity::corrected);
-  // A unit a picture; the estimators are the last.
+  // One unit per picture; the estimators are the last.
   const std::size_t units = pictures.size() * fidelities.size() + 1;
   const PartFolder part(input.part, "bench tables",
                         fmt::format("vpt, scale {}, {}, {} on {}", input.scale, published ? "original" : "corrected",
                                     input.context.capabilities().renderer, cpuName()),
                         units);
-  // A picture a unit: drawn, or taken from the part's folder; its row, and one for its scene's preparation.
+  // One picture per unit: drawn, or read from the part's folder; its row, and one for its scene's preparation.
   Progress progress("bench tables", static_cast<int>(part.last() - part.first()), input.quiet);
   std::size_t unit = 0;
   for (const Fidelity fidelity : fidelities) {
@@ -203,10 +202,10 @@ Tables measureVptTables(const VptTablesInput& input) {
               keptOf(renderVpt(input.context, input.programs, picture, scene, size, vptSamples(picture, input.scale),
                                mostSeconds, vptDeviations(picture, fidelity)),
                      loadMs);
-          if (!interrupted()) part.store(own, made);  // else it ended early
+          if (!interrupted()) part.store(own, made);  // otherwise it ended early
           results.push_back(resultOf(made));
         }
-        // What it would have taken at the published pixels and samples.
+        // Extrapolated to the published pixels and samples.
         const VptResult& result = results.back();
         const double done = result.statistics.samples * size.x * size.y;
         const double wanted = static_cast<double>(picture.samples) * kVptSize.x * kVptSize.y;
@@ -241,7 +240,7 @@ Tables measureVptTables(const VptTablesInput& input) {
       tables.rows.push_back(std::move(row));
       if (own >= part.first() && own < part.last()) progress.update(static_cast<int>(own + 1 - part.first()));
     }
-    if (part.isPart()) continue;  // sums and growth are of all
+    if (part.isPart()) continue;  // sums and growth need all pictures
     tables.rows.insert(tables.rows.end(), preparations.begin(), preparations.end());
     tables.summary += fmt::format("All pictures together{}: {:.4g} s here, {:.4g} s published ({:.4g} times).\n", name,
                                   measured / 1000.0, publishedMs / 1000.0, measured / publishedMs);

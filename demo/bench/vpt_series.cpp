@@ -14,7 +14,7 @@ namespace lucerna::demo::bench {
 
 const std::vector<VptPicture>& vptPictures() {
   constexpr float n = kVptLoweredIor;
-  // Scenes lit by an area light, with their camera; the same as published, lit by a point.
+  // Scenes lit by an area light, with their camera; and the same as published, lit by a point.
   struct Files {
     const char *scene, *camera, *original;
   };
@@ -68,8 +68,8 @@ const std::vector<VptPicture>& vptPictures() {
 }
 
 const std::vector<VptPicture>& vptUntimedPictures() {
-  // The text does not say of which scene figure 5.7 is: a medium that absorbs far more than it scatters, as grape juice
-  // does.
+  // The text does not name the scene of figure 5.7. We use a medium that absorbs far more than it scatters, like grape
+  // juice.
   static const std::vector<VptPicture> pictures = [] {
     VptPicture picture = vptPictures()[11];
     picture.table = "interaction, 5.7";
@@ -137,7 +137,7 @@ VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, co
     return secondsSince(begin);
   };
   PathTracer tracer(context, programs, scene, settings);
-  const double preparation = makeSeconds();  // the programs are there by now
+  const double preparation = makeSeconds();  // the programs are compiled by now
   const Camera camera = scene.cameras.size() > 1 ? chooseCamera(scene, picture.camera) : scene.cameras.front();
   tracer.setCamera(camera);
   tracer.advance(1);  // a driver may compile at the first dispatch

@@ -1,4 +1,4 @@
-// The checks of a lab: probes run on the GPU, statistics and the likeliest mistake.
+// The checks of a lab: probes run on the GPU, statistics, and recognition of the most likely mistake.
 #include "base/clock.hpp"
 #include "labs/lab.hpp"
 
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::uint64_t hashOf(const std::string& text) {
-  // FNV's low bits are weak; splitmix64 spreads them.
+  // FNV's low bits are weak; splitmix64 mixes them.
   return Random(Hash::of(text.data(), text.size())).word();
 }
 
@@ -36,7 +36,7 @@ bool isFinite(const glm::vec4& v) {
 }
 
 std::string vectorText(const glm::dvec4& v) {
-  // Components behind the last that is not zero say nothing.
+  // Omit components after the last nonzero one.
   std::string text = fmt::format("{:.6g}", v.x);
   if (v == glm::dvec4(v.x)) return text;  // a scalar
   const int last = v.w != 0.0 ? 3 : v.z != 0.0 ? 2 : v.y != 0.0 ? 1 : 0;
@@ -50,7 +50,7 @@ std::string pointText(Point point) {
   return text;
 }
 
-/// A ratio that a lost or doubled constant leaves behind.
+/// A ratio caused by a lost or doubled constant.
 std::optional<Mistake> factorMistake(double ratio) {
   constexpr double kPi = std::numbers::pi;
   struct Named {
@@ -67,7 +67,7 @@ std::optional<Mistake> factorMistake(double ratio) {
     for (const double sign : {1.0, -1.0})
       if (std::abs(ratio / (sign * f.value) - 1.0) < 2e-3)
         return Mistake{"factor",
-                       fmt::format("everything is {}{} times what it should be: a constant is lost or counted twice",
+                       fmt::format("everything is {}{} times what it should be: a constant is missing or counted twice",
                                    sign < 0.0 ? "-" : "", f.name)};
   if (std::abs(ratio + 1.0) < 2e-3) return Mistake{"sign", "everything has the wrong sign"};
   return std::nullopt;
@@ -109,7 +109,7 @@ fs::path labsFolder() { return dataFolder() / "demo/labs"; }
 
 namespace {
 
-/// The text with comments as blanks, so that lines keep their numbers.
+/// Replaces comments by blanks, so that lines keep their numbers.
 std::string withoutComments(const std::string& text) {
   std::string result = text;
   bool inLine = false, inBlock = false;
@@ -158,8 +158,8 @@ std::string forbiddenLine(const std::string& text, const std::string& name) {
   std::smatch match;
   for (std::string line; std::getline(stream, line); ++number)
     if (std::regex_search(line, match, kForbidden))
-      return fmt::format("{}:{}: '{}' has no place here: this file is functions and constants alone", name, number,
-                         match.str());
+      return fmt::format("{}:{}: '{}' has no place here: this file may only contain functions and constants", name,
+                         number, match.str());
   return "";
 }
 
@@ -267,12 +267,12 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
     square += glm::dot(truth[i], truth[i]);
   }
   const double rms = std::sqrt(square / static_cast<double>(count)), scale = 0.01 * rms;
-  // Where terms cancel, what is left carries the rounding of the terms: eight units in the last place of a float of the
-  // usual size.
+  // Where terms cancel, the result carries the rounding of the terms: eight units in the last place of a float of
+  // typical size.
   const double rounding = 0x1p-21 * rms;
   const std::vector<glm::vec4> measured = run(twin.probe, points, twin.stride, twin.points);
 
-  // Distance in units of the tolerance; the worst point, and how many points a wrong formula would explain.
+  // Distance in units of the tolerance; the worst point, and the number of points that a wrong formula would explain.
   const auto distance = [&](std::size_t i, const glm::dvec4& value) {
     return glm::length(glm::dvec4(measured[i]) - value) / (twin.tolerance * (glm::length(value) + scale) + rounding);
   };
@@ -339,7 +339,7 @@ bool Checks::mean(const std::string& name, const Mean& test) {
   const double mean = sum / count;
   for (const glm::vec4& v : values) square += (v.x - mean) * (v.x - mean);
   const double error = std::sqrt(square / (count - 1.0) / count);
-  // What rounding may add is taken off before the test; without noise it is all that may differ.
+  // Allowed rounding is subtracted before the test; without noise it is the only allowed difference.
   const auto tail = [&](double expected) {
     const double off = std::max(0.0, std::abs(mean - expected) - kFirmness * (std::abs(expected) + std::abs(mean)));
     return error > 0.0 ? studentTail(off / error, count - 1.0) : off > 0.0 ? 0.0 : 1.0;
@@ -349,7 +349,7 @@ bool Checks::mean(const std::string& name, const Mean& test) {
                      .measured = finite ? fmt::format("{:.6g} +- {:.2g}", mean, error) : "not a number"};
   if (finite) {
     result.pValue = tail(test.expected);
-    // An estimate without noise is off by many times its own deviation, and by rounding alone.
+    // An estimate without noise deviates by many times its own deviation through rounding alone.
     const double off = std::abs(mean - test.expected),
                  rounding = kFirmness * (std::abs(test.expected) + std::abs(mean));
     result.sigma = off <= rounding ? "off by a float's rounding at most"
@@ -375,14 +375,15 @@ bool Checks::chiSquare(const std::string& name, const ChiSquare& test) {
   CHECK(++tests_ <= kMostTests, "more tests than their thresholds are made for");
   const std::vector<glm::vec4> samples = run(test.probe, test.inputs, 0, test.samples);
   const std::size_t bins = test.shares.size();
-  std::vector<double> counts(bins + 1, 0.0);  // the last: in no bin
+  std::vector<double> counts(bins + 1, 0.0);  // the last: outside all bins
   bool finite = true;
   for (const glm::vec4& s : samples) {
     finite = finite && isFinite(s);
     const int bin = isFinite(s) ? test.bin(s) : -1;
     counts[bin < 0 || bin >= static_cast<int>(bins) ? bins : static_cast<std::size_t>(bin)] += 1.0;
   }
-  // An event that a hypothesis excludes ends it, if it is the truth; a mistake may do some of that beside.
+  // An event that a hypothesis excludes rules it out if it is the truth; a mistake may cause a share of such events
+  // besides.
   const auto statistic = [&](const std::vector<double>& shares, double least) {
     double sum = 0.0;
     for (std::size_t b = 0; b <= bins; ++b) {
@@ -444,7 +445,7 @@ bool Checks::picture(const std::string& name, const Picture& test, const std::ve
                      .expected = fmt::format("relative L2 {}", noisy ? "of the noise alone" : "below 0.1 %"),
                      .measured = fmt::format("relative L2 {:.3g} %", 100.0 * std::sqrt(squareOff / square))};
   if (noisy) {
-    // Tiles: the mean difference against its standard error.
+    // Tiles: compare the mean difference with its standard error.
     const int across = test.size.x / kTile, down = test.size.y / kTile;
     double worst = 0.0, least = 1.0;
     for (int ty = 0; ty < down; ++ty)
@@ -498,7 +499,7 @@ void Checks::answer(const std::string& name, double expected, double tolerance,
   CheckResult result{.name = "question " + name};
   if (found == handIn_.answers.end() || found->second.empty()) {
     result.verdict = Verdict::notDone;
-    result.mistake = {"not-done", fmt::format("answers.txt: {} has no figure yet", name)};
+    result.mistake = {"not-done", fmt::format("answers.txt: {} has no number yet", name)};
     add(result);
     return;
   }
@@ -506,15 +507,15 @@ void Checks::answer(const std::string& name, double expected, double tolerance,
   const double value = std::strtod(found->second.c_str(), &end);
   result.measured = found->second;
   const std::string near = tolerance > 0.0 ? fmt::format("within {:.2g} %", 100.0 * tolerance) : "exactly";
-  result.sigma = fmt::format("yours is {}; a figure counts {}", found->second, near);
+  result.sigma = fmt::format("yours is {}; a number counts {}", found->second, near);
   const auto isNear = [&](double wanted) { return std::abs(value - wanted) <= tolerance * std::abs(wanted) + 1e-12; };
   if (!end || *end != '\0' || end == found->second.c_str() || !std::isfinite(value))
     result.mistake = {
         "nan", fmt::format("answers.txt: {} is not a number; write it with a decimal point, such as 0.25", name)};
   else if (isNear(expected)) result.verdict = Verdict::passed, result.sigma = near;
   else {
-    // The right figure is not told: it would be the answer.
-    result.mistake = {"other", "not the figure of this seed; README.md tells what it follows from"};
+    // Do not reveal the correct number, which is the answer.
+    result.mistake = {"other", "not the number for this seed; README.md says what it follows from"};
     if (const auto factor = factorMistake(value / expected))
       result.mistake = {factor->id, "right but for a constant factor"};
     for (const Mean::Wrong& wrong : mistakes)
@@ -572,7 +573,7 @@ Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Prob
       lab.check(checks);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::badInput) throw;
-      // The driver's log names the copy; the student knows the file as it was given.
+      // The driver's log names the copy; the student knows the file by its original name.
       std::string message = error.what();
       const auto replaceAll = [&](const std::string& from, const std::string& to) {
         for (std::size_t at = 0; (at = message.find(from, at)) != std::string::npos; at += to.size())
@@ -582,7 +583,8 @@ Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Prob
       if (const auto end = message.find('\n'); message.starts_with("program lab ") && end != std::string::npos)
         message.replace(0, end, handIn.tasksName + " does not compile:");
       if (message.find("shaders/lab/probe.glsl") != std::string::npos)
-        message += "\nA function of " + handIn.tasksName + " is missing or has another signature than README.md says.";
+        message +=
+            "\nA function of " + handIn.tasksName + " is missing, or its signature differs from that in README.md.";
       report.compileError = message;
     }
   }

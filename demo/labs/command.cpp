@@ -33,10 +33,10 @@ struct LabOptions {
   bool watch = false;
 };
 
-constexpr int kWrong = 2;  ///< the exit code of a hand-in with anything wrong or missing
+constexpr int kWrong = 2;  ///< exit code for a hand-in with anything wrong or missing
 constexpr unsigned kLongest = 300;  ///< seconds; a check takes at most 60
 
-/// A loop of the student's that never ends must not hang the check for ever: GL cannot be interrupted, the process can.
+/// An endless loop in the student's code must not hang the check: GL cannot be interrupted, but the process can.
 void watchTime() {
   std::signal(SIGALRM, [](int) {
     constexpr char kMessage[] =
@@ -50,7 +50,7 @@ void watchTime() {
 std::uint64_t nonceOf(const LabOptions& options) {
   if (options.nonce != 0) return options.nonce;
   std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 16 ^ device()) & 0xffffffffffffu;  // short enough to be typed
+  return (static_cast<std::uint64_t>(device()) << 16 ^ device()) & 0xffffffffffffu;  // short enough to type
 }
 
 int list(const LabOptions& options) {
@@ -98,7 +98,7 @@ Judged judge(const Lab& lab, const LabOptions& options) {
   return judged;
 }
 
-/// Into lab.json, if the folder can be written: a grader's may be read-only.
+/// Stores the result in lab.json, if the folder is writable: a grader's may be read-only.
 void note(Judged& judged, const Lab& lab) {
   nlohmann::ordered_json passed = nlohmann::ordered_json::array();
   for (const Task& task : lab.tasks)
@@ -142,7 +142,7 @@ int solution(const LabOptions& options) {
   return 0;
 }
 
-/// Mine, reference and both times the difference, as PNGs beside the hand-in.
+/// Writes the student's picture, the reference and twice the difference as PNGs next to the hand-in.
 void writePictures(const fs::path& folder, const Report& report) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -159,8 +159,8 @@ void writePictures(const fs::path& folder, const Report& report) {
   }
 }
 
-/// Mine to the left, the reference to the right, one picture below the other, as a window shows them: bottom row first,
-/// six pixels a pixel.
+/// The student's pictures on the left, the references on the right, one below the other, as a window shows them: bottom
+/// row first, each pixel six pixels wide.
 struct Shown {
   glm::ivec2 size{0};
   std::vector<std::uint8_t> rgba;
@@ -188,8 +188,8 @@ Shown sideBySide(const Report& report) {
   return shown;
 }
 
-/// Checks and pictures anew whenever the task file is saved, in a window where there is a display, until Escape or
-/// Ctrl-C. What does not compile leaves the last good pictures.
+/// Checks and redraws whenever the task file is saved, in a window if there is a display, until Escape or Ctrl-C. If
+/// the file does not compile, the last good pictures stay.
 int watch(const LabOptions& options, const Lab& lab) {
   watchForInterrupt();
   const auto host = options.common.makeHost(
@@ -305,41 +305,40 @@ void addLabs(Subcommands& commands) {
     command.addOption("--nonce", options->nonce, "probe points and noise of an earlier run; 0: new ones").showDefault();
   };
   add("list", "The labs and their tasks", list);
-  Command startApp = add("start", "Copy a lab's files into a folder of your own", start);
+  Command startApp = add("start", "Copy a lab's files into your own folder", start);
   startApp.addOption("LAB", options->lab, "number of the lab").required();
   startApp.addOption("DIR", options->folder, "folder to make").required();
-  addSeed(startApp, "your ID: your figures follow from it (default: example)");
+  addSeed(startApp, "your ID, which determines your parameters (default: example)");
   Command checkApp = add("check", "Check and grade a hand-in", check);
   addLabAndFolder(checkApp);
   addSeed(checkApp, "for graders: instead of the hand-in's own");
   addNonce(checkApp);
   checkApp.addOption("--junit", options->junit, "FILE.xml: results as JUnit XML");
   checkApp.addOption("--gradescope", options->gradescope, "FILE.json: results for Gradescope's autograder");
-  Command hintApp = add("hint", "The next of three hints of a task; the hand-in notes it", hint);
+  Command hintApp = add("hint", "Show the next of a task's three hints; recorded in the hand-in", hint);
   hintApp.addOption("LAB.TASK", options->lab, "such as 1.2").required();
   hintApp.addOption("DIR", options->folder, "folder of the hand-in").showDefault();
-  addLabAndFolder(add("solution", "Put the sample solution into a hand-in; the hand-in notes it", solution));
+  addLabAndFolder(add("solution", "Put the sample solution into a hand-in; recorded in the hand-in", solution));
   Command showApp = add("show", "Write the lab's pictures: yours, the reference, the difference", show);
   addLabAndFolder(showApp);
   addNonce(showApp);
   showApp.addFlag("--watch", options->watch,
-                  "anew whenever tasks.glsl is saved, in a window where there is a display, until Escape or Ctrl-C");
+                  "again whenever tasks.glsl is saved, in a window where there is a display, until Escape or Ctrl-C");
   Command reportApp = add("report", "Write the hand-in as one self-contained HTML page", report);
   addLabAndFolder(reportApp);
   addNonce(reportApp);
   addSeed(reportApp, "for graders: instead of the hand-in's own");
   reportApp.addOption("-o,--output", options->html, "FILE.html (default: DIR/report.html)");
-  Command proveApp =
-      add("prove", "For authors: stub, solution and every wrong answer of a lab, and what the checks say", prove);
+  Command proveApp = add("prove", "For authors: check a lab's stub, solution and every wrong answer", prove);
   proveApp.addOption("LAB", options->lab, "number of the lab (default: all)");
   proveApp.addOption("--runs", options->runs, "checks of the solution with other noise, to count false alarms")
       .range(0, 1000000)
       .showDefault();
   addNonce(proveApp);
-  Command figuresApp = add("figures", "For authors: the figures that a lab's README quotes", figures);
+  Command figuresApp = add("figures", "For authors: the numbers that a lab's README quotes", figures);
   figuresApp.addOption("LAB", options->lab, "number of the lab").required();
   addSeed(figuresApp, "default: example");
-  figuresApp.addOption("--pictures", options->pictures, "DIR: write the pictures that README.md shows, too");
+  figuresApp.addOption("--pictures", options->pictures, "DIR: also write the pictures shown in README.md");
 }
 
 }  // namespace lucerna::demo

@@ -5,9 +5,9 @@
 
 namespace lucerna::demo {
 
-/// As commands.hpp has the others.
+/// Declared like the commands in commands.hpp.
 Work addLab(Command app);
-/// All but museum and mystery, which render: what these need of the engine ends with engine/gl.
+/// All but museum and mystery, which render: these depend on the engine only up to engine/gl.
 void addLabs(Subcommands& commands);
 
 }  // namespace lucerna::demo

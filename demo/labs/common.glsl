@@ -1,7 +1,7 @@
-// What a lab's functions may use beside GLSL itself.
+// Functions available to labs in addition to GLSL's own.
 const float PI = 3.14159265358979;
 
-// Marks a task that is not done; take the line out when it is.
+// Marks a task as not done; remove the line when it is.
 #define NOT_DONE(task)
 
 // Independent random numbers in [0,1): pcg3d [Jarzynski2020] of invocation, draw and run.
@@ -16,7 +16,7 @@ float random() {
 }
 vec2 random2() { float x = random(); return vec2(x, random()); }
 
-// Two unit vectors at right angles to a unit vector and to each other [Duff2017].
+// Two unit vectors perpendicular to a unit vector and to each other [Duff2017].
 void frame(vec3 n, out vec3 t, out vec3 b) {
   float s = n.z >= 0.0 ? 1.0 : -1.0;
   float p = -1.0 / (s + n.z), q = n.x * n.y * p;

@@ -49,7 +49,7 @@ std::vector<Mutant> mutantsOf(const Lab& lab) {
 std::string applied(const Mutant& mutant, const std::string& solution) {
   const auto at = solution.find(mutant.from);
   if (mutant.from.empty() || at == std::string::npos || solution.find(mutant.from, at + 1) != std::string::npos)
-    throwBadInput("mutant {}: '{}' does not stand in the solution exactly once", mutant.name, mutant.from);
+    throwBadInput("mutant {}: '{}' does not occur in the solution exactly once", mutant.name, mutant.from);
   std::string text = solution;
   return text.replace(at, mutant.from.size(), mutant.to);
 }
@@ -70,7 +70,7 @@ Folder Folder::open(const Lab& lab, const fs::path& path, const std::string& see
     } catch (const Json::exception& error) { throwBadInput("{}: {}", file.string(), error.what()); }
   } else if (seed.empty()) {
     throwBadInput(
-        "{} is no folder of a lab: lab.json is missing (lucerna lab start {} {} makes one; a grader names the seed: "
+        "{} is not a lab folder: lab.json is missing (lucerna lab start {} {} makes one; a grader names the seed: "
         "--seed ID)",
         path.string(), lab.number, path.string());
   } else {
@@ -97,7 +97,7 @@ HandIn Folder::handIn() const {
 void startLab(const Lab& lab, const fs::path& path, const std::string& seed) {
   for (const char* name : {"tasks.glsl", "answers.txt", "lab.json"})
     if (fs::exists(path / name))
-      throwBadInput("{} is there already: choose another folder, nothing is overwritten", (path / name).string());
+      throwBadInput("{} already exists: choose another folder, nothing is overwritten", (path / name).string());
   std::error_code error;
   fs::create_directories(path, error);
   if (error) throwBadInput("{}: {}", path.string(), error.message());
@@ -105,7 +105,7 @@ void startLab(const Lab& lab, const fs::path& path, const std::string& seed) {
   writeFileAtomically(path / "README.md", readFileText(source / "README.md"));
   writeFileAtomically(path / "tasks.glsl", stubText(lab));
   writeFileAtomically(path / "answers.txt", readFileText(source / "answers.txt"));
-  for (const auto& entry : fs::directory_iterator(source))  // that README.md shows
+  for (const auto& entry : fs::directory_iterator(source))  // pictures shown in README.md
     if (entry.path().extension() == ".png")
       fs::copy_file(entry.path(), path / entry.path().filename(), fs::copy_options::overwrite_existing);
   Folder{path,

@@ -1,5 +1,5 @@
-// A student's folder: tasks.glsl, answers.txt and lab.json, which keeps the seed, the hints taken and what each check
-// found.
+// A student's folder: tasks.glsl, answers.txt and lab.json, which stores the seed, the hints taken and the result of
+// each check.
 #pragma once
 
 #include "labs/lab.hpp"
@@ -12,21 +12,21 @@ struct Folder {
   std::filesystem::path path;
   nlohmann::ordered_json state;  ///< lab.json: lab, seed, started, hints, checks
 
-  /// Throws Error(badInput) where it is no folder of that lab. `seed` not empty: instead of the folder's (a grader's).
+  /// Throws Error(badInput) if it is not a folder of that lab. `seed` not empty: overrides the folder's (for graders).
   static Folder open(const Lab& lab, const std::filesystem::path& path, const std::string& seed);
   void save() const;
   HandIn handIn() const;
 };
 
-/// Copies README.md with its pictures, tasks.glsl and an empty answers.txt. Throws Error(badInput) where the folder
-/// holds any of them already.
+/// Copies README.md with its pictures, tasks.glsl and an empty answers.txt. Throws Error(badInput) if the folder
+/// already holds any of them.
 void startLab(const Lab& lab, const std::filesystem::path& path, const std::string& seed);
-/// Puts the sample solution in the place of tasks.glsl, which stays as tasks.mine.glsl; lab.json notes it.
+/// Replaces tasks.glsl by the sample solution and keeps the old file as tasks.mine.glsl; recorded in lab.json.
 void putSolution(const Lab& lab, const std::filesystem::path& path);
-/// The next hint of a task, 1 to 3, noted in lab.json; the third again when all were given.
+/// The next hint of a task, 1 to 3, recorded in lab.json; the third again once all were given.
 std::string takeHint(const Lab& lab, int task, const std::filesystem::path& path);
 
-/// Texts of a lab's folder.
+/// Texts in a lab's folder.
 std::string stubText(const Lab& lab);
 std::string solutionText(const Lab& lab);
 std::vector<std::string> hintsOf(const Lab& lab, int task);  ///< three
@@ -35,10 +35,10 @@ struct Mutant {
   std::string name, hint, from, to;
   int task = 0;
 };
-/// mutants.txt: blocks of "name task hint", "- text of the solution", "+ what stands there instead". Without its "-"
-/// line a mutant replaces the text that the one before it does.
+/// Parses mutants.txt: blocks of "name task hint", "- text of the solution", "+ replacement". Without a "-" line a
+/// mutant replaces the same text as the previous one.
 std::vector<Mutant> mutantsOf(const Lab& lab);
-/// The solution with the mutant's text in place. Throws Error(badInput) where `from` does not stand there exactly once.
+/// The solution with the mutant's replacement. Throws Error(badInput) if `from` does not occur exactly once.
 std::string applied(const Mutant& mutant, const std::string& solution);
 
 /// Every task and check as text for a terminal.

@@ -29,8 +29,8 @@ double gammaTail(double a, double x) {
   return front * h;
 }
 
-/// I_x(a, b), the regularised incomplete beta function, by its continued fraction; good where x < (a + 1) / (a + b +
-/// 2).
+/// I_x(a, b), the regularised incomplete beta function, by its continued fraction; converges well for x < (a + 1) / (a
+/// + b + 2).
 double betaPart(double a, double b, double x) {
   if (x <= 0.0) return 0.0;
   const double front =

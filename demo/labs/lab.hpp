@@ -1,15 +1,15 @@
-// Teaching labs: what a lab is, and the checks that judge a hand-in. docs/teaching.md tells how to write a lab of one's
-// own.
+// Teaching labs: the definition of a lab, and the checks that judge a hand-in. docs/teaching.md describes how to write
+// a lab.
 //
 // A lab is a folder (README.md, tasks.glsl, probe.glsl, hints.txt, mutants.txt), a solution (solutions/FOLDER.glsl) and
 // one .cpp with a Lab: its tasks and a function that checks them. The student edits tasks.glsl. Each check runs one
-// probe: kernel.comp with the student's file and the lab's probe.glsl, whose `vec4 probe()` is called once an
-// invocation. Probe points are drawn anew in each run (from the nonce), what the student's figures depend on (albedo,
-// g, ...) from the student's seed.
+// probe: kernel.comp with the student's file and the lab's probe.glsl, whose `vec4 probe()` is called once per
+// invocation. Probe points are drawn anew in each run (from the nonce); the student's parameters (albedo, g, ...)
+// follow from the student's seed.
 //
-// Statistics: each test refuses a correct answer with probability kFalseAlarm / kMostTests at most (Bonferroni), so a
-// whole check does with kFalseAlarm, below once in 10,000 runs. The thresholds come from Student's t and the chi-square
-// distribution.
+// Statistics: each test rejects a correct answer with probability at most kFalseAlarm / kMostTests (Bonferroni), and a
+// whole check thus with at most kFalseAlarm, below once in 10,000 runs. The thresholds come from Student's t and the
+// chi-square distribution.
 #pragma once
 
 #include "base/image.hpp"
@@ -29,9 +29,9 @@
 
 namespace lucerna::demo::labs {
 
-constexpr double kFalseAlarm = 2e-5;  ///< of a run of `lab check`
-constexpr int kMostTests = 40;  ///< statistical tests in a lab at most
-constexpr double kFirmness = 1e-6;  ///< a float's rounding, relative, that a mean may carry beside its noise
+constexpr double kFalseAlarm = 2e-5;  ///< probability per run of `lab check`
+constexpr int kMostTests = 40;  ///< maximum number of statistical tests in a lab
+constexpr double kFirmness = 1e-6;  ///< relative float rounding allowed in a mean in addition to its noise
 
 /// splitmix64 [Steele2014]: the same numbers on every machine.
 class Random {
@@ -46,7 +46,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// A typical wrong answer: what it would give, and what to say of it.
+/// A typical mistake: the value it would give, and the message to the student.
 struct Mistake {
   std::string id = {};  ///< such as "lost-cosine"; mutants.txt names it
   std::string text = {};  ///< one sentence to the student
@@ -56,7 +56,7 @@ struct Mistake {
 using Point = std::span<const glm::vec4>;
 using Function = std::function<glm::dvec4(Point)>;
 
-/// A function against its twin in double precision, point by point.
+/// Compares a function with its twin in double precision, point by point.
 struct Twin {
   int probe = 0;
   int stride = 1;
@@ -68,12 +68,11 @@ struct Twin {
   };
   std::vector<Wrong> mistakes = {};
   double tolerance =
-      1e-4;  ///< of |truth| plus a hundredth of its root mean square: rounding in float, far below any mistake
+      1e-4;  ///< relative to |truth| plus a hundredth of its root mean square: float rounding, far below any mistake
   int points = 2048;
 };
 
-/// The mean of what the invocations return in .x, independent of each other, against its expected value: Student's t
-/// test.
+/// Compares the mean of the invocations' independent results in .x with its expected value: Student's t test.
 struct Mean {
   int probe = 0;
   std::vector<glm::vec4> inputs = {};
@@ -86,12 +85,12 @@ struct Mean {
   int invocations = 4096;
 };
 
-/// Samples against the probabilities of bins: a chi-square test. A sample that falls into no bin refuses the answer by
+/// Compares samples with the probabilities of bins: a chi-square test. A sample outside all bins rejects the answer by
 /// itself.
 struct ChiSquare {
   int probe = 0;
   std::vector<glm::vec4> inputs = {};
-  std::function<int(const glm::vec4&)> bin = {};  ///< -1: no bin holds it
+  std::function<int(const glm::vec4&)> bin = {};  ///< -1: outside all bins
   std::vector<double> shares = {};  ///< of each bin; their sum is 1
   struct Wrong {
     Mistake mistake;
@@ -101,9 +100,9 @@ struct ChiSquare {
   int samples = 1 << 16;
 };
 
-/// A picture, .rgb the mean of an invocation's samples and .a the variance of the mean of its three channels, against a
-/// reference: tiles of 8 by 8 pixels by Student's t, each with its share of the false alarms. A picture without noise
-/// (.a = 0) keeps to 1e-3.
+/// Compares a picture with a reference; .rgb is the mean of an invocation's samples and .a the variance of the mean of
+/// its three channels. Tiles of 8 by 8 pixels are tested by Student's t, each with its share of the false alarms. A
+/// picture without noise (.a = 0) must agree within 1e-3.
 struct Picture {
   int probe = 0;
   std::vector<glm::vec4> inputs = {};
@@ -124,14 +123,14 @@ struct CheckResult {
   int task = 0;
   std::string name = {}, expected = {}, measured = {}, sigma = {};
   Verdict verdict = Verdict::wrong;
-  Mistake mistake = {};  ///< the likeliest, where wrong
+  Mistake mistake = {};  ///< the most likely one, if the answer is wrong
   double pValue = -1.0;  ///< of a statistical test; -1: none
 };
 
 struct PictureResult {
   std::string name, caption;
   Image mine, reference;
-  float exposure = 1.0f;  ///< to show both with: the reference's brightest channel is 1
+  float exposure = 1.0f;  ///< for displaying both: the reference's brightest channel is 1
 };
 
 struct Curve {
@@ -141,7 +140,7 @@ struct Curve {
 
 struct Task {
   int number = 0;
-  std::string function;  ///< as README.md names it
+  std::string function;  ///< as named in README.md
   int points = 0;
   std::vector<int> needs;  ///< tasks that must be right before this one can be judged
 };
@@ -152,7 +151,7 @@ struct Lab {
   int number = 0;
   std::string folder, title;
   std::vector<Task> tasks;
-  int answerPoints = 0;  ///< for the questions with figures; all points of a lab make 100
+  int answerPoints = 0;  ///< for the questions with numbers; all points of a lab sum to 100
   void (*check)(Checks&) = nullptr;
 };
 
@@ -160,15 +159,15 @@ struct Lab {
 std::span<const Lab> allLabs();
 /// Throws Error(badInput) listing the numbers.
 const Lab& findLab(const std::string& number);
-/// demo/labs in the data folder: what is installed.
+/// demo/labs in the data folder: the installed labs.
 std::filesystem::path labsFolder();
 
-/// What is judged: files, seed and figures of a hand-in.
+/// The parts of a hand-in that are judged: files, seed and numbers.
 struct HandIn {
   std::string tasks;  ///< text of tasks.glsl
   std::string tasksName = "tasks.glsl";  ///< as messages name it
-  std::filesystem::path tasksFile;  ///< where to look for changes (a window); empty: the text alone
-  std::map<std::string, std::string> answers;  ///< answers.txt: name, what stands behind the =
+  std::filesystem::path tasksFile;  ///< to watch for changes (in a window); empty: only the text
+  std::map<std::string, std::string> answers;  ///< answers.txt: name, text after the =
   std::string seed = "example";
 };
 
@@ -180,7 +179,7 @@ struct Report {
   std::vector<PictureResult> pictures;
   std::vector<Curve> curves;
   std::vector<std::pair<std::string, std::string>> yours;  ///< the student's parameters
-  std::vector<std::pair<std::string, std::string>> figures;  ///< what README.md quotes, for this seed
+  std::vector<std::pair<std::string, std::string>> figures;  ///< numbers quoted in README.md, for this seed
   std::vector<std::pair<std::string, double>> expectedAnswers;  ///< for tests; never shown
   double seconds = 0.0;
 
@@ -189,14 +188,14 @@ struct Report {
   bool allPassed() const;
 };
 
-/// The programs of a hand-in's probes: from a folder of its own that shows the installed shaders and, as lab/, the
-/// files of this check. Needs a GL context. Programs are built when a check first asks for them, and kept: many checks
-/// of one hand-in compile once.
+/// The programs of a hand-in's probes, loaded from a temporary folder with the installed shaders and, as lab/, the
+/// files of this check. Needs a GL context. Programs are built on first use and kept: many checks of one hand-in
+/// compile once.
 class Probes {
  public:
   Probes(const Lab& lab, const HandIn& handIn);
   ~Probes();
-  /// Throws Error(badInput) with the student's file and line where it does not compile.
+  /// Throws Error(badInput) with the student's file and line if it does not compile.
   const gl::Program& load(const Lab& lab, int probe);
 
  private:
@@ -206,46 +205,46 @@ class Probes {
 
 /// Runs a lab's checks on a hand-in; needs a GL context. The same nonce gives the same probe points and noise.
 Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce);
-/// The same, with the programs of an earlier check of the same hand-in.
+/// The same, reusing the programs of an earlier check of the same hand-in.
 Report runChecks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Probes& probes);
 
-/// answers.txt: "name = value" a line, # begins a comment; what stands below a line of --- is in words and not read.
+/// answers.txt: one "name = value" per line, # begins a comment; text below a line of --- is prose and ignored.
 std::map<std::string, std::string> parseAnswers(const std::string& text);
-/// NOT_DONE(n) that stand in the text outside comments.
+/// The NOT_DONE(n) that occur in the text outside comments.
 std::vector<int> tasksNotDone(const std::string& text);
-/// The first line that a task file must not have (other preprocessor lines, layout, gl_, buffer, ...), as
+/// The first line with content forbidden in a task file (other preprocessor lines, layout, gl_, buffer, ...), as
 /// "tasks.glsl:12: ..."; empty: none.
 std::string forbiddenLine(const std::string& text, const std::string& name);
 
-/// What a lab's check function talks to.
+/// The interface for a lab's check function.
 class Checks {
  public:
   Checks(const Lab& lab, const HandIn& handIn, std::uint64_t nonce, Report& report, Probes& probes);
 
-  /// A parameter of the student's, uniform between the two, rounded to `digits` after the point so that it can be
-  /// typed. The same for a seed and a name.
+  /// A parameter of the student's, uniform between the two, rounded to `digits` decimals so that it can be typed. It
+  /// follows from seed and name.
   double parameter(const std::string& name, double least, double most, int digits = 3) const;
-  /// A number that differs in each run: what was learnt by heart does not help.
+  /// A number that differs in each run, so that memorised results do not help.
   double fresh(double least, double most) { return random_.uniform(least, most); }
-  /// Whether a task can be judged: it is done, and so is right what it needs. Else says so in the report.
+  /// Whether a task can be judged: it is done, and the tasks that it needs are right. Otherwise the report says so.
   bool task(int number);
 
-  // Each returns whether it passed, so that later, harder checks stand behind &&.
+  // Each returns whether it passed, so that later, harder checks can follow after &&.
   bool twin(const std::string& name, const Twin& twin);
   bool mean(const std::string& name, const Mean& mean);
   bool chiSquare(const std::string& name, const ChiSquare& test);
   bool picture(const std::string& name, const Picture& picture);
-  /// The same of pixels that a lab put together itself.
+  /// The same for pixels that a lab assembled itself.
   bool picture(const std::string& name, const Picture& picture, const std::vector<glm::vec4>& pixels);
-  /// A question's figure in answers.txt. `tolerance` is relative.
+  /// A question's number in answers.txt. `tolerance` is relative.
   void answer(const std::string& name, double expected, double tolerance = 0.005,
               const std::vector<Mean::Wrong>& mistakes = {});
-  /// What a probe returns, for curves and checks of a lab's own.
+  /// Results of a probe, for curves and a lab's own checks.
   std::vector<glm::vec4> run(int probe, std::span<const glm::vec4> inputs, int stride, int count, int width = 1);
   void curve(Curve curve) { report_.curves.push_back(std::move(curve)); }
-  /// A parameter that the questions are about: shown to the student, and a figure.
+  /// A parameter of the questions: shown to the student, and also a number of the README.
   double yours(const std::string& name, double least, double most, int digits = 3);
-  /// A figure that README.md quotes for the seed "example", and a test compares.
+  /// A number that README.md quotes for the seed "example"; a test compares them.
   void figure(const std::string& name, double value, int digits = 6);
 
  private:
@@ -260,11 +259,11 @@ class Checks {
   Probes& probes_;
 };
 
-/// Irradiance at x, normal n, from a polygon of radiance 1 wholly in front of x's surface, by Lambert's formula: half
-/// the sum over edges of the angle they are seen under times the cosine between the edge's plane and the surface
+/// Irradiance at x with normal n from a polygon of radiance 1 wholly in front of x's surface, by Lambert's formula:
+/// half the sum over edges of the angle they subtend times the cosine between the edge's plane and the surface
 /// [Arvo1995].
 double polygonIrradiance(std::span<const glm::dvec3> corners, const glm::dvec3& x, const glm::dvec3& n);
-/// The same of a level square above the floor y = 0.
+/// The same for a horizontal square above the floor y = 0.
 double squareLampIrradiance(double side, double height, const glm::dvec3& x);
 
 // Distributions, by incomplete gamma and beta functions: continued fractions and series [Press2007, 6.2, 6.4].

@@ -31,7 +31,7 @@ RenderSettings settingsOf(const std::string& technique, const std::string& devia
   applyFidelity(settings, Fidelity::corrected);
   settings.technique = parseName<Technique>(technique, "technique");
   settings.component = Component::indirect;
-  settings.lpv.transport = LpvTransport::propagate;  // that all deviations of the volume belong to
+  settings.lpv.transport = LpvTransport::propagate;  // all deviations of the volume belong to it
   settings.size = {96, 96};
   settings.fullFloatTarget = true;
   if (!deviation.empty()) applyDeviation(settings, deviation + "=on");
@@ -48,7 +48,7 @@ double meanOfAll(const Image& image) {
   return (mean.x + mean.y + mean.z) / 3.0;
 }
 
-/// A picture of the path tracer, of demo/labs/museum/NAME.json. Both pictures of a pair have the same random numbers.
+/// A picture of the path tracer, of demo/labs/museum/NAME.json. Both pictures of a pair use the same random numbers.
 struct Traced {
   Image image;
   double error = 0.0;  ///< standard error of its mean
@@ -62,7 +62,7 @@ Traced traced(const gl::Context& context, gl::ProgramLibrary& programs, const st
   PathTracer::Settings settings;
   settings.size = {96, 96};
   settings.deviations = shared.path.deviations;
-  settings.nextEvent = lamps;  // a point lamp is found in no other way
+  settings.nextEvent = lamps;  // a point lamp cannot be found otherwise
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(scene.cameras.front());
   tracer.record(kSamples);
@@ -70,7 +70,7 @@ Traced traced(const gl::Context& context, gl::ProgramLibrary& programs, const st
   return {tracer.mean(), (error.x + error.y + error.z) / 3.0};
 }
 
-/// The scene in which a deviation of the path tracer shows best.
+/// The scene that shows a deviation of the path tracer best.
 std::string sceneOf(const std::string& deviation) {
   if (deviation == "path.distance-without-pdf" || deviation.starts_with("path.roulette")) return "furnace";
   return deviation == "path.fixed-epsilon" ? "small" : "lamp";
@@ -154,7 +154,7 @@ std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
 }
 
 Mystery mysteryOf(const std::string& seed) {
-  // Those that leave a mark in the Cornell box: the readings of any two differ.
+  // The deviations with a visible effect in the Cornell box: the readings of any two differ.
   static const std::vector<std::pair<std::string, std::vector<std::string>>> kPool{
       {"lpv",
        {"lpv.flux-units", "lpv.sum-cascades", "lpv.side-directions", "lpv.four-pi-kernel", "lpv.fewer-steps",
@@ -183,7 +183,7 @@ Readings readInstruments(const gl::Context& context, gl::ProgramLibrary& program
       return std::pair{traced(context, programs, scene, "", lamps).image,
                        traced(context, programs, scene, deviation, lamps).image};
     };
-    // The ball of fog is in the left half, that of water in the right one.
+    // The ball of fog is in the left half, the ball of water in the right one.
     const auto mean = [](const Image& image, int first, int last) {
       double sum = 0.0;
       for (int y = 0; y < image.height; ++y)

@@ -1,4 +1,4 @@
-// The museum of mistakes: every deviation of the project as a room, and the mystery, a picture with one of them hidden
+// The museum of mistakes: every deviation of the project as a room. And the mystery: a picture with one of them hidden
 // in it.
 #pragma once
 
@@ -15,31 +15,31 @@
 namespace lucerna::demo::labs {
 
 struct Room {
-  const char* deviation;  ///< as --deviation takes it
-  const char* symptom;  ///< what the eye or an instrument notices
+  const char* deviation;  ///< in the form that --deviation takes
+  const char* symptom;  ///< what is noticeable by eye or by an instrument
   const char* cause;
   const char* published;  ///< formula with the mistake
   const char* right;
-  const char* instrument;  ///< what finds it
+  const char* instrument;  ///< how to find it
   const char* test;  ///< FILE: NAME of the test that catches it
 };
 std::span<const Room> museumRooms();
 
-/// One self-contained page. Each room has three pictures: right, with the deviation, and their difference: of the
-/// Cornell box, or, for the path tracer, of a scene in demo/labs/museum.
+/// One self-contained page. Each room has three pictures (correct, with the deviation, and their difference) of the
+/// Cornell box or, for the path tracer, of a scene in demo/labs/museum.
 std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
                        const std::function<void(int done, int all)>& progress);
 
-/// The mystery: a deviation that follows from the seed alone.
+/// The mystery: a deviation determined by the seed alone.
 struct Mystery {
   std::string technique;  ///< "rsm", "lpv" or "path"
-  std::vector<std::string> candidates;  ///< of that technique
+  std::vector<std::string> candidates;  ///< for that technique
   std::string hidden;
 };
 Mystery mysteryOf(const std::string& seed);
 
-/// What the instruments read with the hidden deviation and without any: mean indirect radiance under several settings;
-/// for the path tracer the white furnace, and the two halves of a picture with a lamp and without.
+/// Readings of the instruments with the hidden deviation and without any: mean indirect radiance under several
+/// settings; for the path tracer the white furnace, and the two halves of a picture with and without a lamp.
 struct Reading {
   std::string instrument;
   double sound = 0.0, hidden = 0.0;

@@ -1,4 +1,4 @@
-// lucerna lab museum and lucerna lab mystery: what of the labs needs the renderer.
+// lucerna lab museum and lucerna lab mystery: the parts of the labs that need the renderer.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "commands.hpp"
@@ -33,7 +33,8 @@ int museum(const MuseumOptions& options) {
   return 0;
 }
 
-/// The hidden deviation's readings beside sound ones; with --answer it is graded instead, without a GPU.
+/// Prints the hidden deviation's readings next to correct ones; with --answer the answer is graded instead, without a
+/// GPU.
 int mystery(const MuseumOptions& options) {
   options.common.apply();
   const Mystery mystery = mysteryOf(options.seed);
@@ -85,12 +86,11 @@ Work addLab(Command app) {
   Subcommands commands(app);
   addLabs(commands);
   auto options = std::make_shared<MuseumOptions>();
-  Command mysteryApp =
-      commands.add("mystery", "A picture with one hidden deviation: find it by instruments, and say which",
-                   [options] { return mystery(*options); });
+  Command mysteryApp = commands.add("mystery", "A picture with one hidden deviation, to be found by instruments",
+                                    [options] { return mystery(*options); });
   options->common.declare(mysteryApp);
-  mysteryApp.addOption("--seed", options->seed, "which deviation is hidden follows from it").required();
-  mysteryApp.addOption("--answer", options->answer, "name of the deviation: graded");
+  mysteryApp.addOption("--seed", options->seed, "determines the hidden deviation").required();
+  mysteryApp.addOption("--answer", options->answer, "name of the deviation, to be graded");
   mysteryApp.addOption("-o,--output", options->folder, "folder of the pictures").showDefault();
   Command museumApp = commands.add(
       "museum", "One HTML page of every deviation: symptom, cause, formula, picture, the test that catches it",

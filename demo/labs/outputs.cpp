@@ -1,4 +1,4 @@
-// A check's result for a terminal, as JSON, JUnit XML and for Gradescope.
+// A check's result for the terminal, as JSON, as JUnit XML and for Gradescope.
 #include "bench/html.hpp"
 #include "labs/hand_in.hpp"
 

@@ -10,7 +10,7 @@ namespace lucerna::demo::labs {
 
 namespace {
 
-/// The answers that are right for a seed.
+/// The correct answers for a seed.
 std::map<std::string, std::string> rightAnswers(const Lab& lab, const std::string& seed) {
   HandIn handIn;
   handIn.tasks = stubText(lab);  // no task is judged
@@ -70,7 +70,7 @@ Proof proveLab(const Lab& lab, std::uint64_t nonce, int runs) {
     wrong.tasks = applied(mutant, handIn.tasks);
     proof.mutants.push_back(judged(lab, wrong, nonce, mutant.name, mutant.hint));
   }
-  // Every lab: figures copied from another student, and none that is a number.
+  // Checks shared by every lab: numbers copied from another student, and an answer that is not a number.
   HandIn copied = handIn;
   copied.answers = rightAnswers(lab, "another student");
   if (!copied.answers.empty()) proof.mutants.push_back(judged(lab, copied, nonce, "copied-figures", "other"));
@@ -78,7 +78,7 @@ Proof proveLab(const Lab& lab, std::uint64_t nonce, int runs) {
   for (auto& [name, value] : words.answers) value = "nan";
   if (!words.answers.empty()) proof.mutants.push_back(judged(lab, words, nonce, "figures-nan", "nan"));
 
-  // Each run is another student's, with other noise.
+  // Each run uses another student's seed and other noise.
   Probes probes(lab, handIn);
   for (int run = 0; run < runs; ++run) {
     const std::uint64_t again = Random(nonce + static_cast<std::uint64_t>(run) + 1000).word();

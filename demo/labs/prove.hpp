@@ -1,5 +1,5 @@
-// What an author proves of a lab: its stub is refused politely, its solution passes, every typical wrong answer is
-// refused with the right hint, and a correct answer is not refused by chance.
+// Proofs that a lab works: its stub is rejected politely, its solution passes, every typical mistake is rejected with
+// the right hint, and a correct answer is not rejected by chance.
 #pragma once
 
 #include "labs/hand_in.hpp"
@@ -11,19 +11,19 @@ struct Proof {
     std::string name, wantedHint, hint;  ///< the hint of the first wrong check
     bool rejected = false;
   };
-  bool stubPolite = false;  ///< it compiles, every task says "not done" or waits for one, no points
+  bool stubPolite = false;  ///< it compiles, every task reports "not done" or waits for one, no points
   bool solutionPasses = false;
-  std::string solutionTrouble;  ///< what the report says where it does not
+  std::string solutionTrouble;  ///< what the report says if the solution does not pass
   std::vector<Row> mutants;
   double solutionSeconds = 0.0;
   int runs = 0, refusals = 0, tests = 0,
       below1Percent =
-          0;  ///< of further runs, each with a seed of its own: statistical tests, and how many had p < 0.01
+          0;  ///< in further runs with different seeds: number of statistical tests, and of those with p < 0.01
   double leastP = 1.0;
-  std::vector<std::string> refused;  ///< which check of which run, so that it can be repeated
+  std::vector<std::string> refused;  ///< check and run, so that it can be repeated
 
   int rightHints() const;
-  /// All but `runs`: at least ten mutants, all refused, nine in ten with the right hint.
+  /// Everything but `runs`: at least ten mutants, all rejected, nine in ten with the right hint.
   bool good() const;
 };
 
@@ -33,7 +33,7 @@ nlohmann::ordered_json proofJson(const Lab& lab, const Proof& proof);
 
 /// Lines "| name | value |" for README.md.
 std::string figuresTable(const Lab& lab, const std::string& seed);
-/// Writes NAME.png for README.md into a folder: the references of the lab's pictures, four pixels a pixel.
+/// Writes NAME.png for README.md into a folder: the references of the lab's pictures, enlarged four times.
 void expectedPictures(const Lab& lab, const std::string& seed, const std::filesystem::path& folder);
 
 }  // namespace lucerna::demo::labs

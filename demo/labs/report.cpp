@@ -29,7 +29,7 @@ pre { background: #f5f5f7; padding: .8em; white-space: pre-wrap; overflow-wrap: 
 )";
 
 std::string base64Png(const Image& image, float exposure) {
-  // Through a file: DevIL writes files alone.
+  // Through a file: DevIL can only write files.
   const auto file = std::filesystem::temp_directory_path() /
                     fmt::format("lucerna-lab-{:x}.png", reinterpret_cast<std::uintptr_t>(&image));
   writePng(file, toneMapped(image, exposure));
@@ -38,8 +38,7 @@ std::string base64Png(const Image& image, float exposure) {
   return text;
 }
 
-/// Where a logarithmic axis has its ticks: 1, 2 and 5 of each decade, or decades alone; both ends where that is no
-/// scale.
+/// Ticks of a logarithmic axis: 1, 2 and 5 of each decade, or only decades; both ends if that gives no scale.
 std::vector<double> ticks(double least, double most) {
   const double decades = (most - least) / std::log(10.0);
   const int step = std::max(1, static_cast<int>(std::ceil(decades / 8.0)));
@@ -52,7 +51,7 @@ std::vector<double> ticks(double least, double most) {
   return values.size() < 2 ? std::vector{std::exp(least), std::exp(most)} : values;
 }
 
-/// A log-log plot as SVG; points that are not above zero have no place on it.
+/// A log-log plot as SVG; points that are not positive are left out.
 std::string plot(const Curve& curve) {
   constexpr double kWidth = 576.0, kHeight = 320.0, kLeft = 80.0, kBottom = 45.0, kTop = 15.0, kRight = 15.0;
   glm::dvec2 least(1e300), most(-1e300);
@@ -119,7 +118,7 @@ std::string reportHtml(const Lab& lab, const Folder& folder, const Report& repor
     body += "<p class=\"wrong\">The sample solution was put into this hand-in.</p>\n";
   if (!report.compileError.empty()) body += "<pre class=\"wrong\">" + escapeHtml(report.compileError) + "</pre>\n";
 
-  // Tasks: verdict, hints, and when a check first found it right.
+  // Tasks: verdict, hints, and the time of the first check that found it right.
   body +=
       "<h2>Tasks</h2><table><tr><th>task</th><th>verdict</th><th>points</th><th>hints taken</th><th>first right "
       "after</th><th>time for it</th></tr>\n";
@@ -135,7 +134,7 @@ std::string reportHtml(const Lab& lab, const Folder& folder, const Report& repor
     int hints = 0;
     for (const auto& hint : folder.state["hints"])
       hints = std::max(hints, hint.value("task", 0) == task.number ? hint.value("level", 0) : 0);
-    // Time since the start, and since whichever task was right last before.
+    // Time since the start, or since the previous task was right.
     const double first = firstRight(task.number);
     double before = started;
     for (const Task& other : lab.tasks)

@@ -1,4 +1,4 @@
-# cmake --install, the program's part (component program), and the packages that cpack makes of both: .deb and a
+# cmake --install of the program (component program), and the packages that cpack makes of both components: .deb and a
 # relocatable .tar.gz.
 include(GNUInstallDirs)
 set(LUCERNA_APP_ID alt.lucerna.Lucerna)  # why this name: alt.lucerna.Lucerna.metainfo.xml
@@ -34,13 +34,13 @@ add_custom_command(OUTPUT ${generated}/changelog.gz
 configure_file(${packaging}/${LUCERNA_APP_ID}.metainfo.xml.in ${generated}/${LUCERNA_APP_ID}.metainfo.xml @ONLY)
 add_custom_target(lucerna_pages ALL DEPENDS ${pages} ${generated}/lucerna.1.gz ${generated}/changelog.gz)
 
-# The program and what it reads; generators and the READMEs' pictures stay away.
+# The program and its data, without generators and the READMEs' pictures.
 install(TARGETS lucerna RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/assets ${PROJECT_SOURCE_DIR}/keyFrames
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lucerna COMPONENT program
         PATTERN generate.py EXCLUDE PATTERN generator EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN "*.jpg" EXCLUDE)
 
-# The teaching labs: what students get and what checks them.
+# The teaching labs: the students' files and their checks.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/demo/labs DESTINATION ${CMAKE_INSTALL_DATADIR}/lucerna/demo COMPONENT program
         FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.md" PATTERN "*.txt")
 
@@ -52,7 +52,7 @@ install(FILES ${generated}/${LUCERNA_APP_ID}.metainfo.xml
 install(FILES ${packaging}/${LUCERNA_APP_ID}.svg
         DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT program)
 
-# The shell: manual page and completions. Debian's zsh looks into a folder of its own.
+# The shell: manual page and completions. Debian's zsh uses its own folder.
 if(EXISTS /etc/debian_version)
   set(zsh_folder vendor-completions)
 else()
@@ -67,7 +67,7 @@ install(FILES ${generated}/_lucerna DESTINATION ${LUCERNA_ZSH_COMPLETIONS} COMPO
 install(FILES ${generated}/lucerna.fish
         DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
 
-# What Debian asks of every package; other systems find the licence there too.
+# Required by Debian in every package; other systems find the licence there too.
 foreach(name_component IN ITEMS "lucerna;program" "liblucerna-dev;development")
   list(GET name_component 0 name)
   list(GET name_component 1 component)
@@ -85,12 +85,12 @@ set(CPACK_GENERATOR "TGZ;DEB" CACHE STRING "What cpack makes")
 set(CPACK_COMPONENTS_ALL program development)
 set(CPACK_STRIP_FILES ON)
 
-# One archive of all; its prefix can lie anywhere.
+# One archive of everything, relocatable to any prefix.
 set(CPACK_PACKAGE_FILE_NAME lucerna-${PROJECT_VERSION}-${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR})
 string(TOLOWER ${CPACK_PACKAGE_FILE_NAME} CPACK_PACKAGE_FILE_NAME)
 set(CPACK_ARCHIVE_COMPONENT_INSTALL OFF)
 
-# Two Debian packages: the program, and the library for those who build on it.
+# Two Debian packages: the program, and the library for programs built on it.
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)

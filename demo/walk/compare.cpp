@@ -79,7 +79,7 @@ bool Compare::isRight(const Inputs& in, glm::ivec2 target, glm::vec2 cursor) {
   return in.layout != Layout::one && middleOfPixel(cursor).x >= edge * static_cast<float>(target.x);
 }
 
-// As shaders/walk/compose.frag has it.
+// Matches shaders/walk/compose.frag.
 gl::Lines::Placement Compare::placementOf(const Inputs& in, glm::ivec2 target, bool right) {
   const glm::vec2 pixels(target), size(in.left.radiance ? in.left.radiance->size2d() : target);
   const bool halves = in.layout == Layout::sideBySide;

@@ -1,5 +1,5 @@
-// Dear ImGui's controls, each noted by its name (Ui::note): what the panel's sections are made of. Between Ui::begin
-// and Ui::end.
+// Dear ImGui's controls, each registered by name (Ui::note); the building blocks of the panel's sections. Use between
+// Ui::begin and Ui::end.
 #pragma once
 
 #include "walk/ui.hpp"
@@ -32,7 +32,7 @@ inline bool slider(Ui& ui, const char* label, float& value, float least, float m
   return changed;
 }
 
-/// A menu; its items are noted as "label: item". The position of the chosen one.
+/// A menu; its items are registered as "label: item". Returns the index of the chosen one.
 template <class Names>
 bool menu(Ui& ui, const char* label, int& chosen, const Names& names) {
   bool changed = false;

@@ -9,11 +9,11 @@ namespace lucerna::demo {
 
 class FreeCamera {
  public:
-  /// speed: scene units a second; shift makes it four times as fast.
+  /// speed: scene units per second; shift multiplies it by four.
   FreeCamera(const Camera& camera, double speed) : camera_(camera), speed_(speed) {}
 
   void place(const Camera& camera) { camera_ = camera; }
-  /// Moves by what the keyboard and mouse did in the last `seconds`. The horizon stays level.
+  /// Moves according to the keyboard and mouse input of the last `seconds`. The horizon stays level.
   void move(const HostInput& input, double seconds);
   const Camera& camera() const { return camera_; }
   double speed() const { return speed_; }

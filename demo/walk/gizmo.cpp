@@ -7,7 +7,7 @@ namespace lucerna::demo {
 
 namespace {
 
-constexpr float kReach = 7.0f;  // pixels beside an axis that still take it
+constexpr float kReach = 7.0f;  // pixels: grabbing distance around an axis
 
 std::vector<glm::dvec3*> lampsOf(Scene& scene) {
   std::vector<glm::dvec3*> lamps;
@@ -59,8 +59,8 @@ bool Gizmo::take(Scene& scene, const Screen& screen, const glm::vec2& cursor, bo
     grip_.reset();
     return false;
   }
-  // The lamp follows the cursor's way along the axis as it is seen: the place on the axis whose picture is nearest to
-  // where the cursor has dragged the lamp's own.
+  // The lamp follows the cursor along the projected axis: the point on the axis whose projection is nearest to the
+  // lamp's projection plus the cursor's drag.
   glm::dvec3& place = *lamps[grip_->lamp];
   const glm::dvec3 axis = axisOf(grip_->axis);
   if (const auto from = screen.at(place), to = screen.at(place + lengthOf(scene) * axis); held && from && to) {

@@ -1,5 +1,5 @@
-// Lamps moved in the picture: three axes at each lamp, dragged along one at a time. The lamp moves when it is let go,
-// as a slider's number takes effect then.
+// Moves lamps in the picture: three axes at each lamp, dragged one at a time. The change takes effect on release, like
+// a slider's.
 #pragma once
 
 #include "gl/lines.hpp"
@@ -15,7 +15,7 @@ namespace lucerna::demo {
 
 class Gizmo {
  public:
-  /// Where places of the scene are in the window: pixels from the top left; none behind the camera.
+  /// Projects points of the scene to the window: pixels from the top left; none behind the camera.
   struct Screen {
     gl::Lines::Placement placement;
     gl::Lines::View view;
@@ -23,9 +23,9 @@ class Gizmo {
     int height = 0;  ///< of the target
     std::optional<glm::vec2> at(const glm::dvec3& place) const;
   };
-  /// The left button and the cursor, before anything else takes them. True: they are the gizmo's.
+  /// Receives the left button and the cursor before anything else. True: the gizmo uses them.
   bool take(Scene& scene, const Screen& screen, const glm::vec2& cursor, bool held);
-  /// A lamp was let go somewhere else, since the last call.
+  /// Whether a lamp was moved and released since the last call.
   bool takeMoved() { return std::exchange(moved_, false); }
   std::vector<gl::Lines::Line> lines(const Scene& scene, const glm::dvec3& origin) const;
 

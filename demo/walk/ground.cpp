@@ -11,7 +11,7 @@ void addGround(Scene& scene) {
   const double half = 1.5 * std::max({extent.x, extent.z, 0.1 * extent.y, 1e-9});
   const double height =
       scene.bounds.min.y -
-      1e-4 * std::max(glm::length(extent), 1e-9);  // below, so that a model's own floor stays in sight
+      1e-4 * std::max(glm::length(extent), 1e-9);  // slightly below, so that a model's own floor stays visible
   const auto first = static_cast<std::uint32_t>(scene.vertices.size());
   Mesh mesh;
   mesh.name = "ground";

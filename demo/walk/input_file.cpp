@@ -54,7 +54,7 @@ void InputPlayer::act(const Event& event) {
     for (std::string rest = event.rest; !rest.empty();) {
       const std::size_t plus = rest.find('+', 1);
       codes.push_back(key::named(rest.substr(0, plus)));
-      if (codes.back() < 0) fail(event.line, fmt::format("{}: there is no key of that name", rest.substr(0, plus)));
+      if (codes.back() < 0) fail(event.line, fmt::format("{}: no such key", rest.substr(0, plus)));
       rest = plus == std::string::npos ? "" : rest.substr(plus + 1);
     }
     if (down)
@@ -94,14 +94,15 @@ void InputPlayer::act(const Event& event) {
     touchingLine_ = event.line;
     touchStep_ = waited_ = rests_ = 0;
   } else {
-    fail(event.line, fmt::format("{}: unknown; there are key, down, up, cursor, press, release, click, wheel, text, "
-                                 "touch, drop, resize, focus, save, close",
-                                 event.verb));
+    fail(event.line,
+         fmt::format("{}: unknown; expected one of key, down, up, cursor, press, release, click, wheel, text, "
+                     "touch, drop, resize, focus, save, close",
+                     event.verb));
   }
 }
 
-// What is there comes first: items of an open menu ("Section/menu: item", any of them closes it), then controls. Then
-// what is not there: the section is opened, or the menu, and what does not come by that has gone.
+// Existing controls come first: items of an open menu ("Section/menu: item", any of them closes it), then other
+// controls. For a missing one its section or menu is opened; if it still does not appear, it is gone.
 void InputPlayer::chooseNext(Ui& ui) {
   const auto isItem = [](const std::string& label) { return label.find(": ") != std::string::npos; };
   const auto isWanted = [&](const std::string& label) { return label.starts_with(*every_); };
@@ -123,12 +124,12 @@ void InputPlayer::chooseNext(Ui& ui) {
         idle_ = 0;
         return;
       }
-  if (++idle_ < kSettles) return;  // what the last one changed may show others
+  if (++idle_ < kSettles) return;  // what the last one changed may reveal others
   idle_ = 0;
   for (const std::string& label : ui.labels()) {
     if (!isWanted(label) || touched_.contains(label) || gone_.contains(label)) continue;
     std::string parent = parentOf(label);
-    if (!ui.isThere(parent)) parent = parentOf(parent);  // a menu's section
+    if (!ui.isThere(parent)) parent = parentOf(parent);  // the section of a menu
     if (++attempts_[label] > kAttempts || !ui.isThere(parent)) {
       gone_.insert(label);
       continue;
@@ -146,7 +147,7 @@ void InputPlayer::touch(Ui* ui) {
   const auto place = ui->find(touching_);
   if (touchStep_ == 0 && (!place || !place->visible)) {
     if (++waited_ <= kPatience) return;
-    if (every_) {  // it went away with what it belonged to
+    if (every_) {  // it disappeared with its parent
       ++attempts_[touching_];
       gone_.insert(touching_);
       touching_.clear();
@@ -154,21 +155,21 @@ void InputPlayer::touch(Ui* ui) {
     }
     std::string known;
     for (const std::string& label : ui->labels()) known += (known.empty() ? "" : ", ") + label;
-    fail(touchingLine_, fmt::format("{}: the panel shows no such control; there are {}", touching_, known));
+    fail(touchingLine_, fmt::format("{}: the panel shows no such control; expected one of {}", touching_, known));
   }
-  // The panel scrolls to it for some frames: it is touched where it has come to rest.
+  // The panel scrolls to it for some frames: it is touched once it has stopped moving.
   if (touchStep_ == 0) {
     rests_ = place->centre == restsAt_ ? rests_ + 1 : 0;
     restsAt_ = place->centre;
     if (rests_ < kSettles) return;
   }
-  // A frame each: cursor over it, pressed, let go.
+  // One frame each: move the cursor over it, press, release.
   if (touchStep_ == 0 && place) state_.cursor(glm::dvec2(place->centre));
   if (touchStep_ == 1) state_.button(MouseButton::left, true);
   if (touchStep_ == 2) state_.button(MouseButton::left, false);
   if (++touchStep_ < 4) return;
   touched_.insert(touching_);
-  gone_.erase(touching_);  // it has come back
+  gone_.erase(touching_);  // it came back
   touching_.clear();
   touchStep_ = 0;
 }

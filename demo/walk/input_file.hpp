@@ -34,17 +34,17 @@ class InputPlayer {
   /// Throws Error(badInput) naming file and line.
   explicit InputPlayer(const std::filesystem::path& file);
 
-  /// The input of the next frame. `ui` finds controls by name; throws Error(badInput) where one is not there after
+  /// The input of the next frame. `ui` finds controls by name; throws Error(badInput) if one does not appear within
   /// kPatience frames.
   HostInput next(Ui* ui);
-  /// Set by `resize` in this frame.
+  /// The size set by `resize` in this frame.
   std::optional<glm::ivec2> takeSize() { return std::exchange(size_, std::nullopt); }
-  /// Set by `save` in this frame.
+  /// The file set by `save` in this frame.
   std::optional<std::filesystem::path> takeSave() { return std::exchange(save_, std::nullopt); }
-  /// Nothing is left to be done.
+  /// Whether all events are done.
   bool done() const { return events_.empty() && touching_.empty() && !every_; }
   const std::set<std::string>& touched() const { return touched_; }
-  /// Controls that went away before they could be touched, and did not come back.
+  /// Controls that disappeared before they could be touched, and did not come back.
   const std::set<std::string>& gone() const { return gone_; }
 
  private:
@@ -66,14 +66,14 @@ class InputPlayer {
   std::optional<glm::ivec2> size_;
   std::optional<std::filesystem::path> save_;
   int frame_ = 0;
-  // A control being touched: found, cursor over it, button down, button up.
+  // The control being touched, in steps: found, cursor over it, button down, button up.
   std::string touching_;
   int touchingLine_ = 0, touchStep_ = 0, waited_ = 0, idle_ = 0;
-  glm::vec2 restsAt_{-1.0f};  ///< where the control was in the frame before
+  glm::vec2 restsAt_{-1.0f};  ///< position of the control in the previous frame
   int rests_ = 0;  ///< frames
   std::optional<std::string> every_;  ///< being touched: controls whose names begin so
   std::set<std::string> touched_, gone_;
-  std::map<std::string, int> attempts_;  ///< to bring a control in sight
+  std::map<std::string, int> attempts_;  ///< to bring a control into view
 };
 
 }  // namespace lucerna::demo

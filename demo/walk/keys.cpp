@@ -9,36 +9,36 @@ namespace {
 constexpr KeyBinding kKeys[] = {
     {key::kF1, false, Action::help, "this list"},
     {key::kF2, false, Action::panel, "the panel"},
-    {key::kF5, false, Action::reload, "load changed shaders again"},
+    {key::kF5, false, Action::reload, "reload changed shaders"},
     {'L', false, Action::reload, "the same"},
     {key::kF11, false, Action::fullScreen, "full screen"},
     {key::kF12, false, Action::shot, "save the picture: PNG as shown, HDR linear, settings inside"},
     {'V', false, Action::video, "record a video, end it (ffmpeg)"},
-    {key::kF11, true, Action::capture, "a frame for RenderDoc (walk --capture N loads it)"},
-    {' ', false, Action::pause, "pause and go on along the path"},
-    {'R', false, Action::follow, "leave the path, take it up again"},
+    {key::kF11, true, Action::capture, "capture a frame for RenderDoc (requires walk --capture N)"},
+    {' ', false, Action::pause, "pause and resume along the path"},
+    {'R', false, Action::follow, "leave the path, return to it"},
     {'[', false, Action::slower, "half the speed along the path"},
     {']', false, Action::faster, "twice the speed along the path"},
-    {'O', false, Action::loop, "begin the path again at its end"},
+    {'O', false, Action::loop, "repeat the path at its end"},
     {'K', false, Action::addKeyFrame, "this view as a new key frame"},
     {'-', false, Action::darker, "less exposure"},
     {'=', false, Action::brighter, "more exposure"},
-    {'0', false, Action::autoExposure, "exposure by the picture, on or off"},
+    {'0', false, Action::autoExposure, "automatic exposure, on or off"},
     {'1', false, Action::direct, "technique direct"},
     {'2', false, Action::rsm, "technique rsm"},
     {'3', false, Action::lpv, "technique lpv"},
     {'4', false, Action::radiosity, "technique radiosity"},
     {'5', false, Action::path, "the path-traced reference; as B where two pictures are shown"},
-    {'Z', true, Action::undo, "take the last change of settings back"},
-    {key::kTab, false, Action::flicker, "the other one of A and B"},
-    {'X', false, Action::wipe, "A and B divided by a wipe, which the right button draws"},
+    {'Z', true, Action::undo, "undo the last change of settings"},
+    {key::kTab, false, Action::flicker, "switch between A and B"},
+    {'X', false, Action::wipe, "A and B divided by a wipe, dragged with the right button"},
     {'B', false, Action::sideBySide, "A and B side by side"},
     {'Z', false, Action::magnifier, "magnifier with values"},
     {'H', false, Action::nextView, "picture, signed error, relative error, z-score, FLIP"},
     {'T', false, Action::truth, "live truth: a reference of this view while the camera rests"},
     {'I', false, Action::ask, "what lit the pixel under the cursor"},
-    {'F', false, Action::fit, "the whole picture again, after zooming"},
-    {key::kEscape, false, Action::end, "stop what is being made; else end"},
+    {'F', false, Action::fit, "show the whole picture again, after zooming"},
+    {key::kEscape, false, Action::end, "stop the current work; otherwise quit"},
 };
 
 }  // namespace
@@ -62,7 +62,7 @@ std::string keysHelp() {
   text += fmt::format("  {:<20} {}\n", "right button", "draw the wipe");
   text += fmt::format("  {:<20} {}\n", "middle button", "move the zoomed picture");
   text += fmt::format("  {:<20} {}\n", "wheel", "zoom into the picture");
-  text += fmt::format("  {:<20} {}\n", "drop a file", "a scene, or a picture to compare with");
+  text += fmt::format("  {:<20} {}\n", "drop a file", "load a scene, or a picture to compare with");
   return text;
 }
 

@@ -1,4 +1,4 @@
-// The window's keys: one table, which the window obeys and from which F1 and `walk --help` are made.
+// The window's keys: one table for the window itself, F1 and `walk --help`.
 #pragma once
 
 #include "host/input.hpp"
@@ -51,9 +51,9 @@ struct KeyBinding {
 };
 
 std::span<const KeyBinding> allKeys();
-/// What a key that went down means; nothing where none is bound.
+/// The action of a pressed key; none if it is not bound.
 std::optional<Action> actionOf(const KeyEvent& event);
-/// A line a key, and what the mouse does.
+/// One line per key, and the mouse.
 std::string keysHelp();
 /// "F1", "control Z".
 std::string nameOf(const KeyBinding& binding);

@@ -1,4 +1,4 @@
-// What `lucerna walk` was asked for.
+// Options of `lucerna walk`.
 #pragma once
 
 #include "commands.hpp"
@@ -11,10 +11,10 @@ namespace lucerna::demo {
 struct WalkOptions {
   CommonOptions common;
   PictureOptions picture;
-  PartOptions part;  ///< of recorded frames
+  PartOptions part;  ///< for recorded frames
   std::string scene, keys, record, views, playInput, shots = ".", panel = "auto";
   bool flicker = false;
-  /// Off-screen into files, instead of a window.
+  /// Whether to render off-screen into files instead of a window.
   bool records() const { return !record.empty() || part.isPart() || !part.checkpoint.empty(); }
   int capture = -1;  ///< the frame that RenderDoc captures; negative: none
   int frames = 0;  ///< 0: 12 when recording, the whole path in a window

@@ -44,14 +44,12 @@ void showScene(Ui& ui, WalkState& s) {
   line(fmt::format("{:.4g} x {:.4g} x {:.4g} units of {:.4g} m", size.x, size.y, size.z, scene.metresPerUnit));
   if (textField(ui, "file", s.sceneText)) s.sceneToLoad = s.sceneText;
   explain(
-      "A scene file: JSON, OBJ, glTF, PLY. Enter loads it; a file dropped on the window is loaded, too. One that "
-      "cannot be read leaves this scene as it is.");
+      "A scene file: JSON, OBJ, glTF, PLY. Enter loads it; a file dropped on the window is loaded, too. If it "
+      "cannot be read, this scene stays.");
   if (button(ui, "load")) s.sceneToLoad = s.sceneText;
   ImGui::SameLine();
   checkbox(ui, "on a ground", s.ground);
-  explain(
-      "Models that come without light of their own get a grey floor when they are loaded here, besides our sun and "
-      "sky.");
+  explain("Models without their own light get a grey floor when loaded here, in addition to our sun and sky.");
 }
 
 void frameScene(WalkState& s) {
@@ -76,7 +74,7 @@ void showCamera(Ui& ui, WalkState& s, Host& host) {
   const float span = static_cast<float>(std::max(glm::length(s.scene->bounds.extent()), 1e-9));
   if (slider(ui, "speed", speed, 1e-4f * span, span, "%.3g units/s", true)) s.camera->setSpeed(speed);
   if (button(ui, "frame the scene")) frameScene(s);
-  explain("Moves back along the line of sight until all of the scene is in view.");
+  explain("Moves back along the line of sight until the whole scene is in view.");
   ImGui::SameLine();
   if (button(ui, "copy as --camera")) ImGui::SetClipboardText(("--camera " + cameraText(c)).c_str());
   if (s.scene->cameras.size() > 1 || !s.scene->cameras.front().name.empty())
@@ -104,7 +102,7 @@ void showCamera(Ui& ui, WalkState& s, Host& host) {
   (void)host;
 }
 
-/// Whether it was changed.
+/// Returns whether it was changed.
 bool showSun(Ui& ui, DirectionalLight& sun) {
   bool changed = false;
   const glm::dvec3 to = -sun.direction;
@@ -132,9 +130,11 @@ bool showSun(Ui& ui, DirectionalLight& sun) {
 
 void showLight(Ui& ui, WalkState& s) {
   slider(ui, "exposure", s.exposure, 1e-3f, 1e3f, "%.4g", true);
-  explain("Multiplies radiance before the tone curve, in all pictures alike.");
+  explain("Multiplies radiance before the tone curve, in all pictures.");
   checkbox(ui, "automatic exposure", s.autoExposure);
-  explain("Follows the picture's mean luminance. Off for measuring: pictures are compared before exposure anyway.");
+  explain(
+      "Follows the picture's mean luminance. Turn it off for measurements: pictures are compared before exposure "
+      "anyway.");
   ImGui::SameLine();
   if (button(ui, "meter once")) s.meterWanted = true;
   Scene& scene = *s.scene;
@@ -166,7 +166,7 @@ void showLight(Ui& ui, WalkState& s) {
   };
   if (!scene.spots.empty() || !scene.points.empty()) {
     checkbox(ui, "move lamps in the picture", s.movesLamps);
-    explain("Each lamp has three axes: drag it along one. The light follows when the button is let go.");
+    explain("Each lamp has three axes: drag it along one. The light is updated when the button is released.");
   }
   for (std::size_t i = 0; i < scene.spots.size() && i < 16; ++i)
     lamp(fmt::format("spot {}", i + 1), scene.spots[i].intensity, scene.spots[i].position);
@@ -230,7 +230,7 @@ void showJudgement(WalkState& s, int index) {
   if (side.shows == Shows::reference || !s.isVisible(index)) return;
   const char* name = index == 0 ? "A" : "B";
   if (!side.judgement.known()) {
-    line(fmt::format("{}: waits for {} samples a pixel", name, Truth::kFewest));
+    line(fmt::format("{}: waits for {} samples per pixel", name, Truth::kFewest));
     return;
   }
   const measure::ErrorInterval& e = side.judgement.nrmse();
@@ -238,8 +238,7 @@ void showJudgement(WalkState& s, int index) {
       fmt::format("{}: error {:.2f} %, {:.2f} to {:.2f} (99 %)", name, 100.0 * e.value, 100.0 * e.low, 100.0 * e.high));
   explain(
       "Root mean square difference from the path-traced reference of this view, over the reference's mean, with the "
-      "reference's own noise taken off. "
-      "The interval holds the true error but for one view in a hundred.");
+      "reference's own noise subtracted. The interval contains the true error with 99 % confidence.");
   const auto flip = side.judgement.flip();
   line(fmt::format("   bias {:+.2f} %, FLIP {}", 100.0 * side.judgement.bias(),
                    flip ? fmt::format("{:.4f}", *flip) : std::string("...")));
@@ -263,12 +262,12 @@ void showCompare(Ui& ui, WalkState& s) {
   ImGui::Separator();
   checkbox(ui, "live truth", s.truthOn);
   explain(
-      "While the camera rests, the path tracer makes the reference of this view; it is kept with the bench's "
+      "While the camera rests, the path tracer computes the reference of this view; it is stored with the bench's "
       "references.");
   slider(ui, "share of a frame", s.truthShare, 0.01f, 0.9f, "%.2f");
   explain(
-      "Of a frame's time for the path tracer while the picture is still being made; on a still view it takes what is "
-      "idle.");
+      "Share of a frame's time for the path tracer while the picture is still being computed; on a still view it uses "
+      "all idle time.");
   if (!s.truthOn) return;
   if (!s.truth || s.truth->samples() == 0) {
     line("the reference: when the camera rests");
@@ -305,11 +304,11 @@ void showStages(Ui& ui, WalkState& s) {
   if (isLight) slider(ui, "brightness", s.stageFactor, -20.0f, 40.0f, "2^%.1f");
   int count = static_cast<int>(s.countView), glyphs = static_cast<int>(s.glyphs);
   if (menu(ui, "count of", count, kCountViewNames)) s.countView = static_cast<CountView>(count);
-  explain("Instead of the picture: black is none, then red, yellow, and white for as many as the slider says.");
+  explain("Replaces the picture: black is none, then red, yellow, and white for the number set by the slider.");
   if (s.countView != CountView::none) {
     slider(ui, "white is", s.countWhite, 1.0f, 512.0f, "%.0f", true);
     if (s.countViews)
-      line(fmt::format("{:.1f} in the mean, {:.0f} at most", s.countViews->mean(), s.countViews->most()));
+      line(fmt::format("{:.1f} on average, {:.0f} at most", s.countViews->mean(), s.countViews->most()));
   }
   if (menu(ui, "in the scene", glyphs, kGlyphNames)) s.glyphs = static_cast<Glyphs>(glyphs);
   explain(
@@ -328,12 +327,12 @@ void showStages(Ui& ui, WalkState& s) {
   if (s.glyphs == Glyphs::receivers && !side.renderer->receivers())
     wrapped("Only technique lpv with lpv.transport=gather or rays has them.");
   else if ((s.glyphs == Glyphs::lobes || s.glyphs == Glyphs::geometry) && !side.renderer->lpv())
-    wrapped("Only technique lpv with lpv.transport=propagate has them.");
+    wrapped("Available only for technique lpv with lpv.transport=propagate.");
   else if (s.glyphs == Glyphs::geometry && !side.renderer->lpv()->geometryVolume())
-    wrapped("Only with lpv.blocking=on.");
+    wrapped("Available only with lpv.blocking=on.");
 }
 
-/// How often frames took how long, with the budget as a line.
+/// Distribution of frame times, with the budget as a line.
 void showHistogram(const WalkState& s, double most) {
   constexpr std::size_t kBins = 48;
   std::array<float, kBins> bins{};
@@ -411,15 +410,15 @@ void showMemory(Ui& ui, WalkState& s) {
   if (!side.renderer) return;
   std::string left;
   for (const std::string& name : side.renderer->leftOut()) left += (left.empty() ? "" : ", ") + name;
-  wrapped("Left out, as nothing here needs it: " + left);
+  wrapped("Left out, since nothing here needs it: " + left);
 }
 
 void showRecord(Ui& ui, WalkState& s, Host& host) {
   if (button(ui, "save the picture")) s.shotWanted = true;
-  explain("PNG as shown and HDR with linear radiance, both with settings, camera and exposure inside.");
+  explain("PNG as shown and HDR with linear radiance, both with embedded settings, camera and exposure.");
   ImGui::BeginDisabled(!s.canRecord);
   if (button(ui, s.records ? "end the video" : "record a video")) s.records = !s.records;
-  explain("What the picture's part of the window shows, by ffmpeg, 30 pictures a second. Key V does the same.");
+  explain("Records the picture's part of the window with ffmpeg, 30 pictures per second. Key V does the same.");
   ImGui::EndDisabled();
   if (!s.canRecord) wrapped("No video: ffmpeg is not installed (apt install ffmpeg).");
   if (!s.recording.empty()) {
@@ -487,7 +486,7 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
   s.frameLimit = limit;
   slider(ui, "render scale", s.renderScale, 0.25f, 2.0f, "%.2f x");
   explain(
-      "Sides of the picture that is computed over those of the window. 2: four samples a pixel, averaged after the "
+      "Size of the computed picture relative to the window's, per side. 2: four samples per pixel, averaged after the "
       "tone curve.");
 }
 
@@ -537,7 +536,7 @@ void Panel::showHelp(Ui& ui, WalkState& s) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.02f * screen.x, 0.04f * screen.y}, ImGuiCond_Always);
   ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, {0.96f * screen.x, 0.92f * screen.y});
-  ImGui::SetNextWindowBgAlpha(1.0f);  // it may lie over the panel
+  ImGui::SetNextWindowBgAlpha(1.0f);  // opaque, since it may cover the panel
   ImGui::Begin("Keys", nullptr,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
   ui.noteWindow();
@@ -572,7 +571,7 @@ void Panel::showValues(const WalkState& s) {
   if (!s.magnifier || !s.pixel) return;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (!ImGui::IsMousePosValid(&mouse) || ImGui::GetIO().WantCaptureMouse) return;
-  // Beside the magnifier; where the panel or the window's edge is in the way, below or above it.
+  // Next to the magnifier; if the panel or the window's edge is in the way, below or above it.
   const float scale = ImGui::GetFontSize() / 13.0f, beside = 90.0f, width = 300.0f * scale, height = 80.0f * scale;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float end = screen.x - (s.panel ? static_cast<float>(widthOf(scale)) : 0.0f);

@@ -1,4 +1,4 @@
-// The panel: sections of controls over WalkState, made anew each frame.
+// The panel: sections of controls for WalkState, rebuilt each frame.
 #pragma once
 
 #include "walk/state.hpp"
@@ -10,13 +10,13 @@ class Panel {
  public:
   /// Between Ui::begin and Ui::end.
   static void show(Ui& ui, WalkState& state, Host& host);
-  /// Pixels that it takes at the right edge.
+  /// Its width in pixels, at the right edge.
   static int widthOf(float scale);
   /// F1.
   static void showHelp(Ui& ui, WalkState& state);
-  /// One line at the bottom: what is going on, or the last message.
+  /// One line at the bottom: the current work, or the last message.
   static void showMessage(const WalkState& state, const std::string& work, double share);
-  /// Beside the cursor: values under the magnifier.
+  /// Values under the magnifier, next to the cursor.
   static void showValues(const WalkState& state);
 };
 

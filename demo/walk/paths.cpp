@@ -6,7 +6,7 @@ namespace lucerna::demo {
 
 namespace {
 
-// Once round the middle of the scene's bounds, looking at the centre.
+// Once around the middle of the scene's bounds, looking at the centre.
 std::vector<KeyFrame> orbit(const Scene& scene) {
   const glm::dvec3 centre = scene.bounds.centre();
   const Camera& first = scene.cameras.front();

@@ -7,7 +7,7 @@
 
 namespace lucerna::demo {
 
-/// From `keys`, else from the file that the scene names, else once round the scene.
+/// From `keys`, else from the file named by the scene, else once around the scene.
 Spline pathOf(const Scene& scene, const std::filesystem::path& keys);
 
 }  // namespace lucerna::demo

@@ -12,7 +12,7 @@ namespace lucerna::demo {
 
 namespace {
 
-/// A name, its share, and a bar as long as that.
+/// A name, its share, and a bar of that length.
 void showShare(const std::string& name, double share, ImU32 color) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetTextLineHeightWithSpacing();
@@ -28,7 +28,7 @@ void showShare(const std::string& name, double share, ImU32 color) {
   list.AddText({corner.x + width - figureWidth, corner.y}, IM_COL32_WHITE, figure.c_str());
 }
 
-/// "3 times" of "scattered 3 times": names are long.
+/// "3 times" from "scattered 3 times": the full names are long.
 std::string timesOf(const std::string& group) {
   constexpr std::string_view kScattered = "scattered ";
   return group.starts_with(kScattered) ? group.substr(kScattered.size()) : group;
@@ -54,9 +54,11 @@ constexpr ImU32 kGroupColor = IM_COL32(70, 110, 160, 190), kShareColor = IM_COL3
 
 void showPixel(Ui& ui, WalkState& s) {
   checkbox(ui, "ask by clicking", s.asksByClick);
-  explain("A click on the picture asks what lit that pixel, instead of looking around. Key I asks under the cursor.");
+  explain(
+      "Click on the picture to see what lit that pixel, instead of looking around. Key I shows it for the pixel under "
+      "the cursor.");
   if (!s.answer) {
-    wrapped("I over a pixel asks what lit it.");
+    wrapped("Press I over a pixel to see what lit it.");
     return;
   }
   const PixelAnswer& answer = *s.answer;
@@ -70,7 +72,7 @@ void showPixel(Ui& ui, WalkState& s) {
                      answer.standardError.y, answer.standardError.z));
   const double all = answer.shareOf(answer.sum());
   line(fmt::format("shares add up to {:.2f} %", 100.0 * all));
-  explain("What they lack is the rounding of filters and, for patches, what making form factors reciprocal has moved.");
+  explain("The rest is the rounding of filters and, for patches, light moved by making form factors reciprocal.");
   for (const auto& [group, radiance] : answer.groups()) showShare(group, answer.shareOf(radiance), kGroupColor);
   ImGui::Separator();
   s.pointedShare = -1;
@@ -124,7 +126,7 @@ std::vector<gl::Lines::Line> linesOf(const PixelAnswer& answer, int pointedAt, c
                           : part < 0.0 ? glm::vec3(1.0f, 0.3f, 0.3f)
                                        : glm::vec3(1.0f, 0.8f, 0.2f);
     const glm::vec4 color(hue, isPointedAt ? 1.0f : static_cast<float>(0.15 + 0.75 * std::abs(part) / most));
-    // A path begins at the camera, where its line would be a point.
+    // A path begins at the camera, from where its line would appear as a point.
     const std::size_t first = answer.samples > 0 && share.places.size() > 2 ? 1 : 0;
     for (std::size_t k = first; k + 1 < share.places.size(); ++k)
       lines.push_back({glm::vec3(share.places[k] - origin), glm::vec3(share.places[k + 1] - origin), color});

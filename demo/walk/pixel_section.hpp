@@ -1,4 +1,4 @@
-// The panel's section on the pixel that was asked for, and its light as lines in the scene.
+// The panel's section on the queried pixel, and its light paths as lines in the scene.
 #pragma once
 
 #include "gl/lines.hpp"
@@ -10,8 +10,8 @@
 namespace lucerna::demo {
 
 void showPixel(Ui& ui, WalkState& state);
-/// Where the pixel's light comes from, about `origin`: a line a share, the brighter the more opaque, and a cross where
-/// the light is.
+/// Sources of the pixel's light, relative to `origin`: one line per share, more opaque for brighter ones, and a cross
+/// at the light.
 std::vector<gl::Lines::Line> linesOf(const PixelAnswer& answer, int pointedAt, const glm::dvec3& origin,
                                      const Bounds& bounds);
 

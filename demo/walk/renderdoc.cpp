@@ -32,7 +32,7 @@ std::optional<RenderDoc> RenderDoc::find() {
 
 void RenderDoc::preload() {
   if (std::getenv(kBegunAgain)) return;
-  // As it is now: the library changes it when it is loaded.
+  // Read the settings now: the library changes the environment when it is loaded.
   std::vector<std::string> settings;
   for (char** setting = environ; *setting; ++setting)
     if (!std::string_view(*setting).starts_with("LD_PRELOAD=")) settings.emplace_back(*setting);

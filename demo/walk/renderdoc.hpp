@@ -1,5 +1,5 @@
-// Frames for RenderDoc, where it is installed. Its library must be there before all others, so that it sees what OpenGL
-// is asked for: the program begins again with it preloaded. Source of the interface: RenderDoc's "In-application API"
+// Captures frames for RenderDoc, if installed. Its library must be loaded before all others to intercept OpenGL, so the
+// program restarts itself with the library preloaded. Source of the interface: RenderDoc's "In-application API"
 // (https://renderdoc.org/docs/in_application_api.html, renderdoc_app.h, version 1.1.2).
 #pragma once
 
@@ -11,18 +11,18 @@ namespace lucerna::demo {
 
 class RenderDoc {
  public:
-  /// Where the library is in this process already: RenderDoc or preload() has begun it.
+  /// Finds the library if it is already in this process, started by RenderDoc or preload().
   static std::optional<RenderDoc> find();
-  /// Begins this program again, with the same command line, under the library. Returns only where there is none, or
-  /// where it did not help. Before anything is printed or opened.
+  /// Restarts this program with the same command line and the library preloaded. Returns only if there is no library,
+  /// or if that did not help. Call it before anything is printed or opened.
   static void preload();
 
   void begin() const;
-  /// The file of what was drawn since begin(); nothing where RenderDoc saw no frame.
+  /// The capture file of everything drawn since begin(); none if RenderDoc saw no frame.
   std::optional<std::string> end() const;
 
  private:
-  // Places in its table of functions.
+  // Indices into its table of functions.
   enum Function { kGetNumCaptures = 13, kGetCapture = 14, kStartFrameCapture = 19, kEndFrameCapture = 21 };
   using GetNumCaptures = std::uint32_t (*)();
   using GetCapture = std::uint32_t (*)(std::uint32_t index, char* file, std::uint32_t* length, std::uint64_t* time);

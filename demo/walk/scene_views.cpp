@@ -194,7 +194,7 @@ std::vector<gl::Lines::Line> lobesOf(const LightPropagationVolume& volume, const
   return lines;
 }
 
-/// Corners of cells that block light, as boxes as large as what they block.
+/// The geometry volume's cells that block light, as boxes whose size shows how much they block.
 std::vector<gl::Lines::Line> geometryOf(const LightPropagationVolume& volume, const Cascade& placed, int cascade,
                                         int most) {
   const gl::Texture* potential = volume.geometryVolume();
@@ -221,7 +221,7 @@ std::vector<gl::Lines::Line> geometryOf(const LightPropagationVolume& volume, co
   return lines;
 }
 
-/// Those of lpv.visibility=voxels, those first that lie nearest to the middle of the picture.
+/// The voxels of lpv.visibility=voxels, nearest to the middle of the picture first.
 std::vector<gl::Lines::Line> voxelsOf(const Scene& scene, int across, const glm::dvec3& origin, const Camera& camera,
                                       int most) {
   const SurfaceVoxels voxels = surfaceVoxels(scene, across);
@@ -306,7 +306,7 @@ std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, c
   if (glyphs == Glyphs::voxels) return voxelsOf(scene, settings.lpv.voxels, renderer.origin(), camera, most);
   const LightPropagationVolume* volume = renderer.lpv();
   if (glyphs == Glyphs::none || (glyphs == Glyphs::receivers ? !renderer.receivers() : !volume)) return {};
-  // As render/lpv_frame.cpp places them.
+  // Place them as render/lpv_frame.cpp does.
   Bounds bounds = scene.bounds;
   bounds.min -= renderer.origin();
   bounds.max -= renderer.origin();

@@ -7,7 +7,7 @@
 
 namespace lucerna::demo {
 
-/// Between Ui::begin and Ui::end. What is changed is put into the side's options; the window makes it so.
+/// Use between Ui::begin and Ui::end. Changes go into the side's options; the window applies them.
 void showSettings(Ui& ui, WalkState& state);
 
 }  // namespace lucerna::demo

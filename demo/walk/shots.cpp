@@ -28,7 +28,7 @@ void append(std::vector<std::uint8_t>& bytes, std::uint32_t bigEndian) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(bigEndian >> shift));
 }
 
-/// A file written by `write` beside its place, its bytes changed by `change`, then put there.
+/// Writes a file next to its final place by `write`, edits its bytes by `change`, then moves it there.
 template <class Write, class Change>
 void writeChanged(const fs::path& file, Write write, Change change) {
   fs::path draft = file;
@@ -46,7 +46,7 @@ void writePngWithNote(const fs::path& file, const Bitmap& bitmap, const std::str
   writeChanged(
       file, [&](const fs::path& draft) { writePng(draft, bitmap); },
       [&](std::vector<std::uint8_t>& bytes) {
-        constexpr std::size_t kHeaderEnd = 8 + 25;  // signature and IHDR, which comes first
+        constexpr std::size_t kHeaderEnd = 8 + 25;  // signature and IHDR, which must come first
         std::vector<std::uint8_t> body{'t', 'E', 'X', 't'}, chunk;
         const std::string text = std::string("Comment") + '\0' + note;
         body.insert(body.end(), text.begin(), text.end());

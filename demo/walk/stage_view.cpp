@@ -29,7 +29,7 @@ Shape shapeOf(const StagePicture& picture) {
 
 const gl::Texture& StageView::record(const StagePicture& picture, int layer, float factor, const Bounds& bounds) {
   const gl::Texture* texture = picture.texture;
-  // Shadow maps are textures for comparison, whose depths cannot be read as they are: from a copy they can.
+  // Shadow maps are comparison textures, whose depths cannot be read directly: copy them first.
   if (picture.kind == StagePicture::Kind::depth && shapeOf(picture) == flat) {
     if (!copy_.id() || copy_.size2d() != texture->size2d() || copy_.format() != texture->format())
       copy_ = gl::Texture("depth to be looked at", texture->format(), texture->size2d());
@@ -55,7 +55,7 @@ const gl::Texture& StageView::record(const StagePicture& picture, int layer, flo
     program.set("extent", glm::max(glm::vec3(bounds.extent()), glm::vec3(1e-30f)));
     gl::drawFullScreen(noAttributes_);
   };
-  // Light is of any size: of what is lit, one texel in ten is brighter than white.
+  // Light has no fixed scale: of the lit texels, one in ten becomes brighter than white.
   const std::string measured = fmt::format("{} {}", picture.name, layer);
   if (picture.isLight() && measured != measured_) {
     draw(1.0f);

@@ -1,4 +1,5 @@
-// A stage's own picture instead of the frame's: shadow maps, targets of reflective shadow maps, normals, depth.
+// Displays a stage's intermediate picture instead of the frame: shadow maps, targets of reflective shadow maps,
+// normals, depth.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -12,7 +13,8 @@ class StageView {
  public:
   explicit StageView(gl::ProgramLibrary& programs) : programs_(programs), noAttributes_("stage view") {}
 
-  /// Draws it; the picture is valid until the next call. factor: of light, over a brightness that suits the picture.
+  /// Draws it; the picture is valid until the next call. factor: scales light, relative to a brightness that suits the
+  /// picture.
   const gl::Texture& record(const StagePicture& picture, int layer, float factor, const Bounds& bounds);
   static int layersOf(const StagePicture& picture) { return picture.texture->size().z; }
 
@@ -21,7 +23,7 @@ class StageView {
   gl::VertexArray noAttributes_;
   gl::Texture copy_, result_;
   gl::Framebuffer target_;
-  std::string measured_;  ///< picture and layer that usualFactor_ is of
+  std::string measured_;  ///< picture and layer to which usualFactor_ belongs
   float usualFactor_ = 1.0f;
 };
 

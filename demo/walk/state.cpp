@@ -11,7 +11,7 @@ namespace lucerna::demo {
 
 namespace {
 
-/// As a shell takes it.
+/// Quoted for a shell.
 }  // namespace
 
 std::string textOf(const PictureOptions& o) {

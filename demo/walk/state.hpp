@@ -1,5 +1,5 @@
-// All that the window knows and the panel changes: the scene, the view, two techniques, how they are compared.
-// Plain data: window.cpp acts on it once a frame, panel.cpp shows it.
+// The window's entire state, which the panel changes: the scene, the view, two techniques, how they are compared.
+// Plain data: window.cpp acts on it once a frame, panel.cpp displays it.
 #pragma once
 
 #include "commands.hpp"
@@ -25,24 +25,24 @@ constexpr std::array<std::string_view, 3> kShowsNames{"a technique", "the refere
 
 /// A or B.
 struct SideState {
-  PictureOptions options;  ///< what is asked for
+  PictureOptions options;  ///< requested
   Shows shows = Shows::technique;
   std::string pictureFile;
 
-  // What there is. The renderer is that of `built`; until one for `options` is ready it goes on being shown.
+  // Built state. The renderer belongs to `built`; it stays visible until one for `options` is ready.
   std::unique_ptr<Renderer> renderer;
   PictureOptions built;
   std::string builtAs, failedAs;  ///< textOf() of options, with the scene's version
-  std::string failure;  ///< why the options could not be had; empty: they could
+  std::string failure;  ///< why the options could not be applied; empty: they could
   double buildSeconds = 0.0;
   std::optional<gl::Texture> picture;
   std::string pictureShown;  ///< the file of `picture`
-  bool settled = false;  ///< the picture stays as it is until something moves
+  bool settled = false;  ///< the picture stays the same until something moves
   std::uint64_t pictureVersion = 0, judgedPicture = 0, judgedTruth = 0;
   Judgement judgement;
 };
 
-/// A camera path and where on it the walk is.
+/// A camera path and the current position on it.
 struct PathState {
   std::optional<Spline> spline;
   int first = 0, last = 0;  ///< views
@@ -54,12 +54,12 @@ struct PathState {
 struct WalkState {
   // Scene
   std::unique_ptr<Scene> scene;
-  std::uint64_t sceneVersion = 1;  ///< raised where lights or materials were changed
+  std::uint64_t sceneVersion = 1;  ///< incremented when lights or materials change
   std::string sceneText;  ///< of the panel's text field
   std::optional<std::filesystem::path> sceneToLoad;
-  bool ground = true;  ///< under scenes that are loaded here and come without light of their own: models
+  bool ground = true;  ///< add a ground under loaded scenes without light of their own: bare models
   float emissionFactor = 1.0f;
-  bool movesLamps = false;  ///< by axes in the picture
+  bool movesLamps = false;  ///< by axes drawn in the picture
   std::vector<Material> materialsAsLoaded;
 
   // Camera
@@ -70,8 +70,8 @@ struct WalkState {
 
   // Techniques
   std::array<SideState, 2> sides;
-  int shown = 0;  ///< of the sides, where the layout is one picture
-  int edited = 0;  ///< of the sides, by the settings section
+  int shown = 0;  ///< visible side, if the layout is one picture
+  int edited = 0;  ///< side edited by the settings section
   std::vector<std::array<PictureOptions, 2>> undo;
   std::string settingsFilter;
 
@@ -83,12 +83,12 @@ struct WalkState {
   bool magnifier = false;
   float exposure = 1.0f;
   bool autoExposure = false;
-  float renderScale = 1.0f;  ///< of the picture's side over the window's; 2: four samples a pixel
+  float renderScale = 1.0f;  ///< picture's side over the window's; 2: four samples per pixel
 
   // Debug view
-  std::string stage;  ///< of the shown side's Renderer::stagePictures(); empty: the frame
+  std::string stage;  ///< one of the shown side's Renderer::stagePictures(); empty: the frame
   int stageLayer = 0;
-  float stageFactor = 0.0f;  ///< powers of two of flux
+  float stageFactor = 0.0f;  ///< exponent of two, scales flux
   CountView countView = CountView::none;
   float countWhite = 32.0f;
   std::unique_ptr<CountViews> countViews;
@@ -103,28 +103,28 @@ struct WalkState {
   // Window
   bool panel = true, help = false, hint = true;
   bool swapAtRefresh = true;
-  int frameLimit = 0;  ///< frames a second; 0: none
+  int frameLimit = 0;  ///< frames per second; 0: none
   float budgetMs = 16.7f;
   std::filesystem::path shotFolder = ".";
   bool shotWanted = false, meterWanted = false, reloadWanted = false, endWanted = false;
   bool records = false;  ///< a video
-  bool canRecord = false;  ///< there is an ffmpeg
-  std::string recording;  ///< the video that is being recorded, and how long it is; empty: none is
-  bool canCapture = false, captureWanted = false;  ///< a frame for RenderDoc
-  std::deque<std::string> messages;  ///< the newest last
+  bool canRecord = false;  ///< ffmpeg is installed
+  std::string recording;  ///< the video being recorded, and its length; empty: none
+  bool canCapture = false, captureWanted = false;  ///< capture a frame for RenderDoc
+  std::deque<std::string> messages;  ///< newest last
   double messageAge = 0.0;  ///< seconds
-  std::vector<float> frameMs;  ///< the last ones
+  std::vector<float> frameMs;  ///< recent frames
   std::string rendererName;
 
-  // The pixel that was asked what lit it.
+  // The queried pixel, and what lit it.
   bool asksByClick = false, drawsAnswer = true;
-  std::optional<glm::dvec2> askedPlace;  ///< of the window, to be asked in this frame
+  std::optional<glm::dvec2> askedPlace;  ///< in the window, to be queried in this frame
   std::optional<PixelAnswer> answer;
   int askedSide = 0;
   bool answerIsNew = false;
-  int pointedShare = -1;  ///< under the cursor
+  int pointedShare = -1;  ///< index of the share under the cursor
 
-  // Under the cursor, for the magnifier.
+  // Pixel under the cursor, for the magnifier.
   std::optional<glm::ivec2> pixel;  ///< from the picture's top left
   struct PixelValues {
     std::optional<glm::vec3> a, b, truth, error;
@@ -140,15 +140,15 @@ struct WalkState {
   bool isVisible(int side) const { return layout != Layout::one || side == shown; }
 };
 
-/// The options as text: equal texts make equal pictures.
+/// The options as text: equal texts give equal pictures.
 std::string textOf(const PictureOptions& options);
-/// Another technique begins with its defaults: settings and deviations of the one before are not its own.
+/// Switches to another technique with its defaults: settings and deviations of the previous one do not apply.
 void chooseTechnique(PictureOptions& options, const std::string& technique);
 /// `lucerna render ...` or `walk` with these options.
 std::string commandLine(const std::string& command, const std::string& scene, const PictureOptions& options);
-/// Sets KEY=VALUE, in place of what was said of the key before; an empty value takes it out.
+/// Sets KEY=VALUE, replacing any earlier assignment of the key; an empty value removes it.
 void assign(std::vector<std::string>& assignments, const std::string& key, const std::string& value);
-/// --camera's argument.
+/// The argument of --camera.
 std::string cameraText(const Camera& camera);
 
 }  // namespace lucerna::demo

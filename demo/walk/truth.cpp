@@ -30,8 +30,8 @@ gl::Texture textureOf(const std::string& name, const Image& image) {
   return texture;
 }
 
-// The settings are those of bench/path_sampler.cpp, so that both make the same picture; another seed makes it
-// independent of what the cache holds.
+// The settings are those of bench/path_sampler.cpp, so that both give the same picture; another seed makes it
+// independent of the cached samples.
 Truth::Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
              Component component)
     : context_(context),
@@ -84,7 +84,7 @@ void Truth::advance(double seconds) {
   } while (secondsSince(begin) + submission_ <= seconds);
 }
 
-// Of whole passes alone: every pixel has the same number of samples.
+// Publishes only whole passes: every pixel has the same number of samples.
 void Truth::publish() {
   measure::Reference mine;
   if (shownSamples_ >= 2) {
@@ -92,7 +92,7 @@ void Truth::publish() {
     mine.mean = tracer_->mean();
     mine.standardError = tracer_->standardError();
     const glm::dvec3 error = tracer_->statistics().meanError;
-    mine.meanError = (error.x + error.y + error.z) / 3.0;  // channels rise and fall together
+    mine.meanError = (error.x + error.y + error.z) / 3.0;  // channels are fully correlated
     mine.samples = shownSamples_;
     mine.seconds = seconds_;
     mine.renderer = context_.capabilities().renderer;
@@ -110,7 +110,7 @@ void Truth::keep() {
   if (!key_ || shownSamples_ < keptSamples_ + kWorthKeeping || shown_.samples == 0) return;
   try {
     cache_.store(*key_, shown_);
-  } catch (const Error& error) { logWarning("{}; the reference of this view is not kept", error.what()); }
+  } catch (const Error& error) { logWarning("{}; the reference of this view is not stored", error.what()); }
   keptSamples_ = shownSamples_;
 }
 

@@ -1,9 +1,9 @@
-// Live truth: while the camera rests, the path tracer makes the reference of the view that is shown, and pictures are
-// judged by it.
+// Live truth: while the camera rests, the path tracer computes the reference for the current view, and pictures are
+// judged against it.
 //
-// In: the scene, the view, the size and which light; each frame, the time that may be spent. Out: mean and standard
-// error as textures, and for a picture its error with the interval that holds the true one. References come from and go
-// to the bench's cache (measure/reference.hpp).
+// In: the scene, the view, the size and the kind of light; each frame, the time budget. Out: mean and standard error as
+// textures, and for a picture its error with an interval that contains the true error. References are loaded from and
+// stored in the bench's cache (measure/reference.hpp).
 #pragma once
 
 #include "gl/context.hpp"
@@ -21,34 +21,34 @@ namespace lucerna::demo {
 
 class Truth {
  public:
-  /// Compiles, and builds the hierarchy of the scene; `scene` must outlive it.
+  /// Compiles, and builds the scene's hierarchy; `scene` must outlive it.
   Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
         Component component);
   ~Truth();
 
   glm::ivec2 size() const { return size_; }
   Component component() const { return component_; }
-  /// Another view: what was sampled is put into the cache where it is worth it, and sampling begins again.
+  /// Switches to another view: stores the samples in the cache if worthwhile, and restarts sampling.
   void look(const Camera& camera);
-  /// Spends about `seconds`: after the first no submission begins that would probably take longer than what is left.
+  /// Spends about `seconds`: after the first submission, none is started that would probably exceed the remaining time.
   void advance(double seconds);
-  /// What a submission takes, as the last one did; 0 before the first.
+  /// Time of a submission, estimated by the last one; 0 before the first.
   double submissionSeconds() const { return submission_; }
 
-  /// Samples a pixel, the cache's among them; 0: there is nothing yet.
+  /// Samples per pixel, including those of the cache; 0: none yet.
   std::uint64_t samples() const { return cachedSamples_ + shownSamples_; }
   bool ready() const { return samples() >= kFewest; }
   double seconds() const { return seconds_; }  ///< spent on this view
   const gl::Texture& mean() const { return meanTexture_; }
   const gl::Texture& standardError() const { return errorTexture_; }
   const measure::Reference& reference() const { return shown_; }
-  /// Raised whenever the reference has become better, or another.
+  /// Incremented whenever the reference has improved or changed.
   std::uint64_t version() const { return version_; }
   std::size_t gpuBytes() const;
-  /// Keeps what was sampled of this view in the cache.
+  /// Stores the samples of this view in the cache.
   void keep();
 
-  static constexpr std::uint64_t kFewest = 16;  ///< samples before anything is said of errors
+  static constexpr std::uint64_t kFewest = 16;  ///< samples before errors are reported
   static constexpr std::uint64_t kWorthKeeping = 64;
 
  private:
@@ -70,7 +70,7 @@ class Truth {
   gl::Texture meanTexture_, errorTexture_;
 };
 
-/// A picture judged by a reference: the figures at once, FLIP on a thread of its own (a second of a core at 640x360).
+/// Judges a picture against a reference: the measures at once, FLIP on a separate thread (one core-second at 640x360).
 class Judgement {
  public:
   Judgement() = default;
@@ -81,8 +81,8 @@ class Judgement {
   void clear();
   bool known() const { return known_; }
   const measure::ErrorInterval& nrmse() const { return nrmse_; }
-  double bias() const { return bias_; }  ///< of the mean, relative
-  /// FLIP's mean and map, once they are there; the map as a texture.
+  double bias() const { return bias_; }  ///< relative, of the mean
+  /// FLIP's mean and map, once available; the map as a texture.
   std::optional<double> flip();
   const gl::Texture* flipMap() const { return flipMap_.id() ? &flipMap_ : nullptr; }
 
@@ -100,7 +100,7 @@ class Judgement {
   gl::Texture flipMap_;
 };
 
-/// A linear picture, top row first, as a texture, bottom row first.
+/// Converts a linear picture (top row first) to a texture (bottom row first).
 gl::Texture textureOf(const std::string& name, const Image& image);
 
 }  // namespace lucerna::demo

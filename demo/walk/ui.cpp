@@ -34,7 +34,7 @@ constexpr std::pair<ImGuiKey, int> kImguiKeys[] = {{ImGuiKey_Tab, key::kTab},
 Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), scale_(scale), overlay_(programs) {
   panel_ = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // nothing is written beside the user's files
+  io.IniFilename = nullptr;  // do not write any file into the user's folders
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
   for (const auto& [imguiKey, ours] : kImguiKeys) io.KeyMap[imguiKey] = ours;
   io.ClipboardUserData = this;
@@ -51,7 +51,7 @@ Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), sca
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowRounding = 4.0f;
   style.Colors[ImGuiCol_WindowBg].w = 0.86f;
-  style.Colors[ImGuiCol_PlotHistogram] = {0.58f, 0.42f, 0.08f, 1.0f};  // white figures stand on it
+  style.Colors[ImGuiCol_PlotHistogram] = {0.58f, 0.42f, 0.08f, 1.0f};  // white numbers are drawn on it
   style.ScaleAllSizes(scale);
   ImFontConfig font;
   font.SizePixels = std::round(13.0f * scale);

@@ -19,12 +19,12 @@ extern char** environ;
 
 namespace lucerna::demo {
 
-// A pair of sockets and no pipe: a pipe whose reader has died ends the writer by a signal.
+// Uses a pair of sockets instead of a pipe: a pipe whose reader has died ends the writer by a signal.
 Video::Video(std::filesystem::path file, glm::ivec2 size) : file_(std::move(file)), size_(size) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    throwMissingCapability("video: no connection to ffmpeg");
-  // H.264 has colours at half the resolution: sides must be even.
+    throwMissingCapability("video: cannot connect to ffmpeg");
+  // H.264 stores colours at half the resolution: sides must be even.
   std::vector<std::string> words{"ffmpeg",
                                  "-y",
                                  "-loglevel",
@@ -77,7 +77,7 @@ Video::~Video() { finish(); }
 
 bool Video::add(const Bitmap& shown, double seconds) {
   if (pipe_ < 0) return false;
-  constexpr double kMostOwed = kPicturesASecond;  // a frame that took longer stands for a second
+  constexpr double kMostOwed = kPicturesASecond;  // a frame that took longer counts as one second
   for (owed_ = std::min(owed_ + seconds * kPicturesASecond, kMostOwed); owed_ >= 1.0; owed_ -= 1.0) {
     for (std::size_t sent = 0; sent < shown.rgba.size();) {
       const ssize_t now = send(pipe_, shown.rgba.data() + sent, shown.rgba.size() - sent, MSG_NOSIGNAL);
@@ -95,7 +95,7 @@ bool Video::finish() {
   pipe_ = -1;
   int status = -1;
   const bool whole = waitpid(ffmpeg_, &status, 0) == ffmpeg_ && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  if (whole) {  // nothing is wrong: nobody needs what it said
+  if (whole) {  // success: the log is not needed
     std::error_code ignored;
     std::filesystem::remove(file_.string() + ".log", ignored);
   }

@@ -1,4 +1,4 @@
-// What the window shows as a video, by ffmpeg where it is installed: pictures go to it as they are, it makes the file.
+// Records the window as a video with ffmpeg, if installed: pictures are sent to it raw, and it writes the file.
 #pragma once
 
 #include "base/image.hpp"
@@ -14,7 +14,7 @@ namespace lucerna::demo {
 class Video {
  public:
   static constexpr int kPicturesASecond = 30;
-  /// Throws Error(missingCapability) where there is no ffmpeg; what it says goes beside the file, as FILE.log.
+  /// Throws Error(missingCapability) without ffmpeg; its output goes next to the file, as FILE.log.
   Video(std::filesystem::path file, glm::ivec2 size);
   /// Whether there is an ffmpeg in the folders of PATH.
   static bool canBeMade();
@@ -25,9 +25,9 @@ class Video {
   glm::ivec2 size() const { return size_; }
   const std::filesystem::path& file() const { return file_; }
   int pictures() const { return pictures_; }
-  /// What was shown for the next `seconds`. False: ffmpeg takes no more.
+  /// Adds the picture shown for the next `seconds`. False: ffmpeg accepts no more.
   bool add(const Bitmap& shown, double seconds);
-  /// Waits for ffmpeg; true: the file is whole.
+  /// Waits for ffmpeg; true: the file is complete.
   bool finish();
 
  private:

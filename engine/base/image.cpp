@@ -80,10 +80,10 @@ class DevilImage {
     const bool loaded = bytes.size() <= std::numeric_limits<ILuint>::max() &&
                         ilLoadL(type, bytes.data(), static_cast<ILuint>(bytes.size())) != IL_FALSE;
     const ILenum error = drainErrors();
-    if (!loaded) throwBadInput("{}: a broken picture: {}", file.string(), describe(error));
+    if (!loaded) throwBadInput("{}: damaged picture: {}", file.string(), describe(error));
     if (error == IL_FILE_READ_ERROR) throwBadInput("{}: truncated picture: the file ends too early", file.string());
     if (ilGetInteger(IL_IMAGE_WIDTH) != header.width || ilGetInteger(IL_IMAGE_HEIGHT) != header.height)
-      throwBadInput("{}: a broken picture: {} x {} pixels decoded, its header says {} x {}", file.string(),
+      throwBadInput("{}: damaged picture: {} x {} pixels decoded, its header says {} x {}", file.string(),
                     ilGetInteger(IL_IMAGE_WIDTH), ilGetInteger(IL_IMAGE_HEIGHT), header.width, header.height);
   }
 
@@ -109,8 +109,8 @@ class DevilImage {
       case IL_ILLEGAL_FILE_VALUE:
       case IL_INVALID_FILE_HEADER: return "an invalid header";
       case IL_FILE_READ_ERROR: return "the file ends too early";
-      case IL_LIB_PNG_ERROR: return "libpng refuses it as damaged or truncated";
-      case IL_LIB_JPEG_ERROR: return "libjpeg refuses it as damaged or truncated";
+      case IL_LIB_PNG_ERROR: return "libpng rejects it as damaged or truncated";
+      case IL_LIB_JPEG_ERROR: return "libjpeg rejects it as damaged or truncated";
       default: return fmt::format("DevIL error 0x{:x}", error);
     }
   }
@@ -173,12 +173,13 @@ std::string encodeHdr(const Image& image, const fs::path& file) {
   for (const glm::vec3& p : image.pixels) {
     for (int c = 0; c < 3; ++c) {
       if (!(std::abs(p[c]) <= kLargest))
-        throwBadInput("{}: the picture holds {}, which hdr cannot keep; write exr or pfm", file.string(), p[c]);
+        throwBadInput("{}: the picture holds {}, which hdr cannot store; write exr or pfm", file.string(), p[c]);
       negative += p[c] < 0.0f;
     }
   }
   if (negative > 0)
-    logWarning("{}: {} negative values become 0, as hdr cannot keep them; exr and pfm can", file.string(), negative);
+    logWarning("{}: {} negative values become 0, since hdr cannot store them; exr and pfm can", file.string(),
+               negative);
 
   std::string out =
       fmt::format("#?RADIANCE\nSOFTWARE=lucerna\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
@@ -241,7 +242,7 @@ void decodeHdrRow(HdrBytes& bytes, std::vector<std::array<std::uint8_t, 4>>& row
         const std::size_t code = bytes.next();
         const std::size_t count = code > 128 ? code - 128 : code;
         if (count == 0 || count > row.size() - x)
-          throwBadInput("{}: a broken hdr file: a run that does not fit its row", file.string());
+          throwBadInput("{}: damaged hdr file: a run that does not fit its row", file.string());
         const std::uint8_t value = code > 128 ? bytes.next() : std::uint8_t{0};
         for (std::size_t i = 0; i < count; ++i) row[x++][c] = code > 128 ? value : bytes.next();
       }
@@ -260,7 +261,7 @@ void decodeHdrRow(HdrBytes& bytes, std::vector<std::array<std::uint8_t, 4>>& row
     }
     const std::size_t count = shift < 32 ? std::size_t{pixel[3]} << shift : 0;
     if (x == 0 || count > row.size() - x || shift >= 32)
-      throwBadInput("{}: a broken hdr file: a run that does not fit its row", file.string());
+      throwBadInput("{}: damaged hdr file: a run that does not fit its row", file.string());
     std::fill_n(row.begin() + static_cast<std::ptrdiff_t>(x), count, row[x - 1]);
     x += count;
     shift += 8;

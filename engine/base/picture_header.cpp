@@ -47,7 +47,7 @@ PictureHeader checkPng(Bytes bytes, const fs::path& file) {
   if (bytes.size() < kSignature + kFrame + 13) throwTruncated(file, "PNG");
   const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (bigEndian(bytes, 8, 4) != 13 || all.substr(12, 4) != "IHDR")
-    throwBadInput("{}: a broken picture: a PNG that does not begin with IHDR", file.string());
+    throwBadInput("{}: damaged picture: a PNG that does not begin with IHDR", file.string());
   const PictureHeader header =
       checkedHeader(file, bytes, PictureFormat::png, bigEndian(bytes, 16, 4), bigEndian(bytes, 20, 4));
   bool pixels = false;
@@ -60,7 +60,7 @@ PictureHeader checkPng(Bytes bytes, const fs::path& file) {
     if (type == "IEND") break;
     at += kFrame + length;
   }
-  if (!pixels) throwBadInput("{}: a broken picture: a PNG without pixels (IDAT)", file.string());
+  if (!pixels) throwBadInput("{}: damaged picture: a PNG without pixels (IDAT)", file.string());
   return header;
 }
 
@@ -76,21 +76,21 @@ PictureHeader checkJpeg(Bytes bytes, const fs::path& file) {
     while (at < bytes.size() && bytes[at] == 0xff && at + 1 < bytes.size() && bytes[at + 1] == 0xff)
       ++at;  // fill bytes
     if (bytes.size() - at < 2) throwTruncated(file, "JPEG");
-    if (bytes[at] != 0xff) throwBadInput("{}: a broken picture: a JPEG without a marker at byte {}", file.string(), at);
+    if (bytes[at] != 0xff) throwBadInput("{}: damaged picture: a JPEG without a marker at byte {}", file.string(), at);
     const std::uint8_t marker = bytes[at + 1];
     at += 2;
     if (marker == kEoi) break;
     if (marker == kTem || marker == kSoi || (marker >= kRst0 && marker <= kRst7)) continue;
     if (bytes.size() - at < 2) throwTruncated(file, "JPEG");
     const auto length = static_cast<std::size_t>(bigEndian(bytes, at, 2));
-    if (length < 2) throwBadInput("{}: a broken picture: a JPEG segment of {} bytes", file.string(), length);
+    if (length < 2) throwBadInput("{}: damaged picture: a JPEG segment of {} bytes", file.string(), length);
     if (length > bytes.size() - at) throwTruncated(file, "JPEG");
     if (marker >= kSof0 && marker <= kSof15 && marker != kDht && marker != kJpg && marker != kDac) {
-      if (length < 8) throwBadInput("{}: a broken picture: a JPEG frame header of {} bytes", file.string(), length);
-      if (header) throwBadInput("{}: a broken picture: a JPEG of two frames", file.string());
+      if (length < 8) throwBadInput("{}: damaged picture: a JPEG frame header of {} bytes", file.string(), length);
+      if (header) throwBadInput("{}: damaged picture: a JPEG of two frames", file.string());
       const int bits = bytes[at + 2], components = bytes[at + 7];
       if (marker > kSof2 || bits != 8 || (components != 1 && components != 3))
-        throwBadInput("{}: a JPEG of a kind that is not read: expected baseline or progressive, 8 bits, grey or YCbCr",
+        throwBadInput("{}: an unsupported kind of JPEG: expected baseline or progressive, 8 bits, grey or YCbCr",
                       file.string());
       header =
           checkedHeader(file, bytes, PictureFormat::jpeg, bigEndian(bytes, at + 5, 2), bigEndian(bytes, at + 3, 2));
@@ -102,7 +102,7 @@ PictureHeader checkJpeg(Bytes bytes, const fs::path& file) {
                                       !(bytes[at + 1] >= kRst0 && bytes[at + 1] <= kRst7)))
       ++at;
   }
-  if (!header || scans == 0) throwBadInput("{}: a broken picture: a JPEG without pixels", file.string());
+  if (!header || scans == 0) throwBadInput("{}: damaged picture: a JPEG without pixels", file.string());
   return *header;
 }
 
@@ -124,7 +124,7 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
                                    : paletteKind == 0;
   if (!known || !depth || !paletteFits)
     throwBadInput(
-        "{}: a Targa of a kind that is not read: expected grey of 8 bits, colours of 24 or 32, or a palette of them",
+        "{}: an unsupported kind of Targa: expected grey of 8 bits, colours of 24 or 32, or a palette of them",
         file.string());
   const PictureHeader header = checkedHeader(file, bytes, PictureFormat::tga, width, height);
   const std::size_t begin =
@@ -136,17 +136,17 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
     if (data.size() / pixelBytes < count) throwTruncated(file, "Targa");
     if (palette && std::any_of(data.begin(), data.begin() + static_cast<std::ptrdiff_t>(count),
                                [&](std::uint8_t index) { return index >= paletteEntries; }))
-      throwBadInput("{}: a broken picture: a pixel beyond its palette of {}", file.string(), paletteEntries);
+      throwBadInput("{}: damaged picture: a pixel beyond its palette of {}", file.string(), paletteEntries);
     return header;
   }
   for (std::size_t at = 0, done = 0; done < count;) {
     if (at >= data.size()) throwTruncated(file, "Targa");
     const std::size_t run = std::size_t{data[at] & 127u} + 1, stored = data[at] & 128u ? 1 : run;
     if (stored * pixelBytes > data.size() - at - 1) throwTruncated(file, "Targa");
-    if (run > count - done) throwBadInput("{}: a broken picture: a Targa packet that runs over its end", file.string());
+    if (run > count - done) throwBadInput("{}: damaged picture: a Targa packet that runs over its end", file.string());
     for (std::size_t i = 0; palette && i < stored; ++i)
       if (data[at + 1 + i] >= paletteEntries)
-        throwBadInput("{}: a broken picture: a pixel beyond its palette of {}", file.string(), paletteEntries);
+        throwBadInput("{}: damaged picture: a pixel beyond its palette of {}", file.string(), paletteEntries);
     at += 1 + stored * pixelBytes;
     done += run;
   }
@@ -164,12 +164,12 @@ PictureHeader checkBmp(Bytes bytes, const fs::path& file) {
   const auto height = std::int64_t{static_cast<std::int32_t>(littleEndian(bytes, 22, 4))};  // negative: top row first
   if (headerBytes < 40 || headerBytes > 124 || planes != 1 || compression != 0 ||
       (bits != 8 && bits != 24 && bits != 32))
-    throwBadInput("{}: a BMP of a kind that is not read: expected 8, 24 or 32 bits, not compressed", file.string());
+    throwBadInput("{}: an unsupported kind of BMP: expected 8, 24 or 32 bits, not compressed", file.string());
   const PictureHeader header = checkedHeader(file, bytes, PictureFormat::bmp, width, height < 0 ? -height : height);
   const std::int64_t paletteEntries = bits == 8 ? (entries == 0 ? 256 : entries) : 0,
                      rowBytes = (width * bits + 31) / 32 * 4;
   if (paletteEntries > 256 || begin < 14 + headerBytes + 4 * paletteEntries)
-    throwBadInput("{}: a broken picture: a BMP whose pixels begin within its header", file.string());
+    throwBadInput("{}: damaged picture: a BMP whose pixels begin within its header", file.string());
   if (begin + rowBytes * header.height > static_cast<std::int64_t>(bytes.size())) throwTruncated(file, "BMP");
   return header;
 }

@@ -98,9 +98,9 @@ void throwIfReset() {
   const GLenum status = glGetGraphicsResetStatusARB();
   if (status == GL_NO_ERROR) return;
   const bool ours = status == GL_GUILTY_CONTEXT_RESET_ARB;
-  const char* whose = ours ? "for work of this program that took too long or went wrong"
-                      : status == GL_INNOCENT_CONTEXT_RESET_ARB ? "for work of another program"
-                                                                : "and does not say for whose work";
+  const char* whose = ours ? "because of work of this program that took too long or failed"
+                      : status == GL_INNOCENT_CONTEXT_RESET_ARB ? "because of work of another program"
+                                                                : "and does not say because of whose work";
   throw Error(ours ? ErrorKind::fault : ErrorKind::missingCapability,
               fmt::format("the driver reset the GPU {}: cannot continue", whose));
 }

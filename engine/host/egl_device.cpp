@@ -81,7 +81,7 @@ std::size_t eglDeviceNamed(const std::string& name, const std::vector<EglDevice>
     return known[*number].second;
   }
   if (family == "cuda" && which.starts_with("MIG-"))
-    refuse(name, "a part of a GPU, with which OpenGL cannot draw: ask for a whole one", devices);
+    refuse(name, "a part of a GPU, which OpenGL cannot use: request a whole one", devices);
   if (family != "cuda" || !which.starts_with("GPU-")) refuse(name, "no such device", devices);
   const std::vector<std::string> slots = slotsOfUuid(which, proc);
   if (slots.size() > 1) refuse(name, "more than one device", devices);

@@ -148,7 +148,7 @@ void FilmMerge::add(const Film& film, const std::string& name) {
   const std::uint32_t samples = film.mean.front().w;
   if (samples == 0 ||
       std::any_of(film.mean.begin(), film.mean.end(), [&](const glm::uvec4& w) { return w.w != samples; }))
-    throwBadInput("{}: the part is not finished; the command that makes it goes on with it", name);
+    throwBadInput("{}: the part is not finished; the command that makes it resumes it with it", name);
   if (films_ == 0) {
     head_ = film;
     headName_ = name;

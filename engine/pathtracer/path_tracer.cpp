@@ -327,7 +327,7 @@ void PathTracer::readAsked() {
   const std::vector<glm::uvec4> words = state_.read<glm::uvec4>();
   const std::size_t base = kStateHeaderBytes / kVec4Bytes + kStateWords;
   const std::size_t told = words[base].x, kept = std::min(told, kAskedRecords);
-  if (kept < told) logWarning("{} of {} lights of the pixel that is asked for found no room", told - kept, told);
+  if (kept < told) logWarning("{} of {} lights of the queried pixel did not fit", told - kept, told);
   const auto place = [&](std::size_t i) {
     return glm::dvec3(std::bit_cast<float>(words[i].x), std::bit_cast<float>(words[i].y),
                       std::bit_cast<float>(words[i].z));

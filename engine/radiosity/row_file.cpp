@@ -149,7 +149,7 @@ void RowFile::forEach(const std::function<void(const FormFactorRows&)>& take) {
   for (std::uint64_t at = sizeof(Header); at < end_;) {
     const auto rows = readBlock(expected, at);
     if (!rows)
-      throwBadInput("{}: was changed or damaged by something else while rows were read from it", file_.string());
+      throwBadInput("{}: was changed or damaged by another program while rows were read from it", file_.string());
     expected += static_cast<std::uint32_t>(rows->counts.size());
     take(*rows);
   }
@@ -171,7 +171,7 @@ void joinRowFiles(const std::vector<std::pair<std::uint32_t, std::filesystem::pa
   std::ifstream stream(parts.front().second, std::ios::binary);
   if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) ||
       std::memcmp(header.magic, kRowMagic, sizeof kRowMagic) != 0 || header.version != kRowVersion)
-    throwBadInput("{}: is no checkpoint of radiosity", parts.front().second.string());
+    throwBadInput("{}: is not a checkpoint of radiosity", parts.front().second.string());
   std::filesystem::path draft = whole;
   draft += ".joining";
   std::error_code ignored;
@@ -208,7 +208,7 @@ void RowFile::append(const FormFactorRows& rows) {
   }, there{};
   if (::fstat(descriptor_, &here) != 0 || ::stat(file_.c_str(), &there) != 0 || here.st_ino != there.st_ino ||
       here.st_dev != there.st_dev || static_cast<std::uint64_t>(here.st_size) != end_)
-    throwBadInput("{}: was changed or replaced by something else while rows were written to it; it is left as it is",
+    throwBadInput("{}: was changed or replaced by another program while rows were written to it; it is left unchanged",
                   file_.string());
   BlockHeader block{static_cast<std::uint32_t>(rows.first), static_cast<std::uint32_t>(rows.counts.size()),
                     rows.patches.size(), 0};

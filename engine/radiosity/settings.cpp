@@ -16,11 +16,11 @@ constexpr std::array kDeviations{
                        &RadiosityDeviations::publishedMap},
     RadiosityDeviation{"radiosity.24-bit", "radiosity in whole numbers of 24 bits, rounded down",
                        &RadiosityDeviations::values24Bit},
-    RadiosityDeviation{"radiosity.centroid", "one hemicube a patch, at its centroid, whatever its size",
+    RadiosityDeviation{"radiosity.centroid", "one hemicube per patch, at its centroid, whatever its size",
                        &RadiosityDeviations::centroid},
     RadiosityDeviation{"radiosity.fixed-orientation", "hemicubes turned towards the first corner, not rolled at random",
                        &RadiosityDeviations::fixedOrientation},
-    RadiosityDeviation{"radiosity.no-near-field", "near pairs and small sources by pixels alone, without a repair",
+    RadiosityDeviation{"radiosity.no-near-field", "near pairs and small sources by pixels only, without a repair",
                        &RadiosityDeviations::noNearField},
 };
 

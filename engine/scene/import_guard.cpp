@@ -31,7 +31,7 @@ extern "C" void onFault(int signal) {
 
 ImportGuard::ImportGuard(const std::filesystem::path& file) : stack_(kStackBytes) {
   g_message = fmt::format(
-      "lucerna: {}: cannot be read as a model: the model library fails on it (it is broken, or nested too deep)\n",
+      "lucerna: {}: cannot be read as a model: the model library crashes on it (it is damaged, or nested too deep)\n",
       file.string());
   stack_t stack{};
   stack.ss_sp = stack_.data();

@@ -91,7 +91,7 @@ class ObjChecker {
     int vertices = 0;
     std::array<bool, 3> partsOfFirst{};
     for (std::string_view text = word(); !text.empty(); text = word()) {
-      if (text[0] == '#') fail("a comment behind a face, which Assimp cannot read; expected it on a line of its own");
+      if (text[0] == '#') fail("a comment after a face, which Assimp cannot read; expected it on a line of its own");
       std::array<bool, 3> parts{};
       const char* next = text.data();
       const char* const end = text.data() + text.size();

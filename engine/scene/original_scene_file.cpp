@@ -267,7 +267,8 @@ std::pair<std::string, std::vector<std::string>> draftOriginalScene(const fs::pa
       key = "// " + key;
       report.push_back(fmt::format(
           "{}: resembles no medium, diffuse{}; commented out as glass of ior {:g}", entry.name,
-          entry.opacity < 1.0 || entry.ior > 1.0 ? ", though the MTL has it transparent or gives it an ior" : "", ior));
+          entry.opacity < 1.0 || entry.ior > 1.0 ? ", although the MTL makes it transparent or gives it an ior" : "",
+          ior));
     }
     if (!written.insert(key).second) continue;  // occurs twice in the MTL
     text += fmt::format(

@@ -195,9 +195,8 @@ Environment readEnvironment(const Value& object, const std::optional<Directional
   environment.radiance = radiance.value_or(glm::vec3(1.0f));
   if (sky) {
     if (environment.picture || object.has("rotation"))
-      object.fail("a \"sky\" without \"picture\" and \"rotation\": the sun says how it lies");
-    if (!sun || !(sun->direction.y <= 0.0))
-      object.at("sky").fail("a scene with a sun above the horizon, whose sky it is");
+      object.fail("a \"sky\" without \"picture\" and \"rotation\": the sun determines its orientation");
+    if (!sun || !(sun->direction.y <= 0.0)) object.at("sky").fail("a scene with a sun above the horizon, for its sky");
     environment.picture = clearSkyPicture(*sky, *sun);
     file = object.file;
   }

@@ -828,7 +828,7 @@ Scene loadModel(const fs::path& file) {
   // do not come first.
   const bool blind = !scene.cameras.empty() && !seesAnything(scene.cameras.front(), scene.bounds);
   if (blind)
-    logWarning("{}: camera '{}' sees nothing of the scene; the default view is from outside", file.string(),
+    logWarning("{}: camera '{}' sees nothing of the scene; using the default view from outside", file.string(),
                scene.cameras.front().name);
   if (scene.cameras.empty() || blind) {
     scene.cameras.insert(scene.cameras.begin(), outsideView(scene.bounds));

@@ -277,7 +277,7 @@ TEST(LabSeeds, ParametersAndAnswersFollowFromTheSeed) {
                                             "solid angle of a side face, sr",
                                             "share of band 1 that a step keeps",
                                             "slab of the table: reflected",
-                                            "slab of the table: let through"};
+                                            "slab of the table: transmitted"};
   for (const json& lab : labs()) {
     const auto figures = [&](const std::string& seed) {
       std::vector<std::string> lines;
@@ -505,7 +505,7 @@ TEST_F(LabWay, WordsAreForTheReportAlone) {
   start();
   std::ofstream(dir / "answers.txt", std::ios::app) << "Because value over density is constant:\nfurnace = 1\n";
   const RunResult checked = lab(fmt::format("check 1 {}", dir.string()));
-  EXPECT_NE(checked.out.find("furnace has no figure yet"), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("furnace has no number yet"), std::string::npos) << checked.out;
   lab(fmt::format("report 1 {}", dir.string()));
   EXPECT_NE(readFileText(dir / "report.html").find("Because value over density is constant:"), std::string::npos);
 }

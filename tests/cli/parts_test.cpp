@@ -124,7 +124,7 @@ TEST_F(Parts, AClusterOfOneMachineMakesTheSamePicture) {
   expectRefused("cluster plan -o '" + path("more") + "' --tasks 9 -- render " + picture() + "--spp 8 -o x.pfm",
                 "--tasks 9");
   expectRefused("cluster plan -o '" + path("more") + "' -- render x.json --technique lpv --spp 8 -o x.pfm",
-                "only those with --technique path");
+                "only pictures with --technique path");
   expectRefused("cluster status '" + path("more") + "'", "no job");
   // One task alone, as of an array; a second claim finds it done.
   ASSERT_EQ(RUN_LUCERNA("cluster run " + job + " --task 2 --quiet").exitCode, 0);
@@ -304,7 +304,7 @@ TEST_F(FolderParts, BatchesOfReferencesAndRowsOfErrors) {
   for (const char* name : {"parts", "whole", "other", "half"}) fs::remove_all(path(name));
   const std::string bench = "bench error " + scene + "--budget 1 --frames 1 ",
                     with = bench + "--references '" + path("one") + "' ";
-  expectRefused(bench + "--references '" + path("none") + "'" + partOf(0, 2, "no"), "references are not there");
+  expectRefused(bench + "--references '" + path("none") + "'" + partOf(0, 2, "no"), "references are missing");
   ASSERT_NO_FATAL_FAILURE(make(with, 2));
   const RunResult one = RUN_LUCERNA(with + "--quiet --out '" + path("report1") + "'"),
                   all = RUN_LUCERNA(with + "--quiet --out '" + path("report2") + "'" + whole());
@@ -425,7 +425,7 @@ TEST_F(FolderParts, AClusterCutsAnyOfThem) {
   ASSERT_EQ(RUN_LUCERNA(command + " --quiet --json '" + path("one.json") + "'").exitCode, 0);
   EXPECT_EQ(json("all.json").at("rows").size(), json("one.json").at("rows").size());
   EXPECT_EQ(json("all.json").at("failed"), 0);
-  expectRefused("cluster plan -o '" + path("no") + "' -- info", "one of the commands that are cut");
+  expectRefused("cluster plan -o '" + path("no") + "' -- info", "one that can be divided");
   expectRefused("cluster plan -o '" + path("no") + "' -- bench stability --part 0/2", "a task's own");
 }
 

@@ -222,7 +222,7 @@ TEST_F(RadiosityCorrected, FilesThatChangeUnderTheRunAreLeftAlone) {
   };
   const RunResult out = during("printf theirs > '" + path("o.lit") + "'");
   EXPECT_EQ(out.exitCode, 2) << out.err;
-  EXPECT_NE(out.err.find("changed by something else"), std::string::npos) << out.err;
+  EXPECT_NE(out.err.find("changed by another program"), std::string::npos) << out.err;
   EXPECT_EQ(lucerna::readFileText(path("o.lit")), "theirs");
   // What was computed is not lost.
   ASSERT_TRUE(fs::exists(path("o.lit.rows")));
@@ -231,7 +231,7 @@ TEST_F(RadiosityCorrected, FilesThatChangeUnderTheRunAreLeftAlone) {
   const RunResult rows =
       during("printf theirs > '" + path("new") + "' && mv '" + path("new") + "' '" + path("o.lit.rows") + "'");
   EXPECT_EQ(rows.exitCode, 2) << rows.err;
-  EXPECT_NE(rows.err.find("changed or replaced by something else"), std::string::npos) << rows.err;
+  EXPECT_NE(rows.err.find("changed or replaced by another program"), std::string::npos) << rows.err;
   EXPECT_EQ(lucerna::readFileText(path("o.lit.rows")), "theirs");
 }
 

@@ -258,7 +258,7 @@ TEST_F(Radiosity, FileThatChangesUnderTheRunIsLeftAlone) {
                               "'; wait $pid";
   const RunResult result = run(command);
   EXPECT_EQ(result.exitCode, 2) << result.out << result.err;
-  EXPECT_NE(result.err.find("changed by something else"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("changed by another program"), std::string::npos) << result.err;
   EXPECT_EQ(lucerna::readFileText(path("o.rad")), "theirs");
 }
 

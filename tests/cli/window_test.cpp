@@ -296,7 +296,7 @@ TEST_F(Window, RenderDocIsAskedForOrSaidToBeMissing) {
   write("input.txt", "1 key control+F11\n3 key F2\n");
   const RunResult inside = play(path("input.txt"), "--technique direct");
   ASSERT_EQ(inside.exitCode, 0) << inside.err;
-  EXPECT_NE(json().at("window").at("messages").dump().find("RenderDoc is not there"), std::string::npos);
+  EXPECT_NE(json().at("window").at("messages").dump().find("RenderDoc is missing"), std::string::npos);
   const RunResult asked = play(path("input.txt"), "--technique direct --capture 2");
   EXPECT_EQ(asked.exitCode, 3);
   EXPECT_NE(asked.err.find("librenderdoc.so"), std::string::npos) << asked.err;

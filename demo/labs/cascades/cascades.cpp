@@ -36,9 +36,9 @@ void check(Checks& c) {
   const double full = 1.0 - band, meanWeight = std::pow(full, 3.0) +
                                                (1.0 - std::pow(full, 3.0) - 0.75 * (1.0 - std::pow(full, 4.0))) / band;
   const double cascades = c.yours("cascades", 3.0, 7.0, 0);
-  // The README's questions, with what common wrong answers say.
+  // The README's questions, with the results of common mistakes.
   c.answer("snapped", std::floor(place / cell + 0.5) * cell, 0.0005,
-           {{{"truncation", "int() cuts towards zero; below zero that is the wrong cell"},
+           {{{"truncation", "int() truncates towards zero; below zero that is the wrong cell"},
              std::trunc(place / cell + 0.5) * cell}});
   c.answer("split", split, 0.005,
            {{{"schemes-exchanged", "lambda belongs to the logarithmic scheme"},
@@ -53,7 +53,7 @@ void check(Checks& c) {
     };
     c.twin("snapped centres",
            {.probe = 1,
-            // Between two cells by a fiftieth at least: rounding decides nothing.
+            // At least a fiftieth away from a boundary between cells, so that rounding decides nothing.
             .draw =
                 [](Random& r, std::span<glm::vec4> p) {
                   const double s = r.uniform(0.1, 2.0);
@@ -63,7 +63,7 @@ void check(Checks& c) {
                 },
             .truth = of([](double x, double s) { return std::floor(x / s + 0.5) * s; }),
             .mistakes = {{{"truncation",
-                           "int() cuts towards zero: left of the origin the grid is a cell off, and jumps as the "
+                           "int() truncates towards zero: left of the origin the grid is a cell off, and jumps as the "
                            "camera crosses it"},
                           of([](double x, double s) { return std::trunc(x / s + 0.5) * s; })},
                          {{"whole-units", "the grid moves in whole cells, not in whole units of the scene"},
@@ -71,7 +71,7 @@ void check(Checks& c) {
                          {{"not-rounded", "the nearest whole number of cells: add half before floor"},
                           of([](double x, double s) { return std::floor(x / s) * s; })},
                          {{"not-snapped", "nothing is snapped"}, of([](double x, double) { return x; })},
-                         {{"in-cells", "the result is a place, not a number of cells: times the cell"},
+                         {{"in-cells", "the result is a position, not a number of cells: multiply by the cell size"},
                           of([](double x, double s) { return std::floor(x / s + 0.5); })}}}) &&
         // A uniform error between -1/2 and 1/2 of a cell has the mean square 1/12.
         c.mean("the mean square of what snapping moves is cell^2 / 12",
@@ -153,7 +153,7 @@ void check(Checks& c) {
                     for (int k = 0; k < 3; ++k) w *= std::clamp((1.0 - std::abs(o[k])) / b, 0.0, 1.0);
                     return w;
                   })}},
-            // A float's rounding of the place, over the band.
+            // The position's float rounding, relative to the band.
             .tolerance = 1e-3}) &&
         c.mean("mean weight over the cascade",
                {.probe = 9, .inputs = {four(halfExtent, band)}, .expected = meanWeight});
@@ -185,7 +185,7 @@ void check(Checks& c) {
                                     of(BLEND { return w * f / fc + (1 - w) * g / gc; })},
                                    {{"volume-for-area", "a face has the area cell * cell, not a cell's volume"},
                                     of(BLEND { return w * f / (fc * fc * fc) + (1 - w) * g / (gc * gc * gc); })},
-                                   {{"weight-once", "the weights of both must make 1"},
+                                   {{"weight-once", "the weights of both must sum to 1"},
                                     of(BLEND { return w * f / (fc * fc) + g / (gc * gc); })}}});
 #undef BLEND
   }
@@ -244,7 +244,7 @@ void check(Checks& c) {
                                             .stride = 2,
                                             .draw =
                                                 [](Random& r, std::span<glm::vec4> p) {
-                                                  // A point of the border of cascade 0 or 1.
+                                                  // A point on the border of cascade 0 or 1.
                                                   const double e = r.uniform(1.0, 2.0);
                                                   glm::dvec3 q = inCube(r);
                                                   q[static_cast<int>(r.uniform(0, 3))] = r.uniform() < 0.5 ? -1.0 : 1.0;

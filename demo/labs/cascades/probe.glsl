@@ -1,7 +1,7 @@
-// Probes of lab 5. Points as demo/labs/cascades/cascades.cpp writes them.
+// Probes of lab 5. Points are laid out as in demo/labs/cascades/cascades.cpp.
 
-// Three cascades about the origin, each with a light of its own, so that seams show: cascade k has the irradiance 1 +
-// 0.3 k + 0.1 sin(x + k).
+// Three cascades about the origin with different lights, so that seams show: cascade k has the irradiance 1 + 0.3 k +
+// 0.1 sin(x + k).
 float lightOf(int k, vec3 p) { return 1.0 + 0.3 * float(k) + 0.1 * sin(p.x + float(k)); }
 float shown(vec3 p, float halfExtent, float band, float cell) {
   int k = cascadeOf(p, vec3(0.0), halfExtent, 3);
@@ -24,7 +24,7 @@ vec4 probe() {
 #elif PROBE == 5
   return vec4(splitDistance(int(point(0).x), int(point(0).y), point(0).z, point(0).w, point(1).x));
 #elif PROBE == 6
-  // Both sides of a border: the jump.
+  // The jump across a border: evaluate both sides.
   vec3 p = point(0).xyz, inside = p * 0.9999, outside = p * 1.0001;
   return vec4(shown(inside, point(0).w, point(1).x, point(1).y), shown(outside, point(0).w, point(1).x, point(1).y),
               0.0, 0.0);
@@ -32,7 +32,7 @@ vec4 probe() {
   vec3 p = vec3((vec2(pixel()) + 0.5 - vec2(48.0, 32.0)) / 10.0, 0.3);
   return vec4(vec3(shown(p, point(0).x, point(0).y, point(0).z)), 0.0);
 #elif PROBE == 8
-  // Places all over 64 cells about the origin.
+  // Points within 64 cells about the origin.
   float sum = 0.0;
   for (int k = 0; k < 64; ++k) {
     vec3 place = (vec3(random(), random(), random()) - 0.5) * 64.0 * point(0).x,

@@ -20,22 +20,24 @@ void check(Checks& c) {
   const double furnace = emission / (1.0 - albedo), irradiance = squareLampIrradiance(side, height, {away, 0.0, 0.0});
   const int bounces = static_cast<int>(std::ceil(std::log(0.01) / std::log(albedo) - 1.0));
 
-  const Mistake lostPi{"lost-pi", "1 / pi is lost: Lambert's BRDF is albedo / pi, and the cosine's density cos / pi"};
-  const Mistake lostCosine{"lost-cosine", "the cosine to the normal is lost"};
-  const Mistake noClamp{"no-clamp", "what is on the far side of a surface counts, negative: max(0, cos)"};
-  const Mistake absolute{"absolute-cosine",
-                         "what is on the far side of a surface counts like the near one: max(0, cos), not abs(cos)"};
-  // The README's questions, with what common wrong answers say.
+  const Mistake lostPi{"lost-pi",
+                       "1 / pi is missing: Lambert's BRDF is albedo / pi, and the cosine's density cos / pi"};
+  const Mistake lostCosine{"lost-cosine", "the cosine to the normal is missing"};
+  const Mistake noClamp{"no-clamp", "light from behind the surface counts as negative: use max(0, cos)"};
+  const Mistake absolute{
+      "absolute-cosine",
+      "light from behind the surface counts like light from the front: use max(0, cos), not abs(cos)"};
+  // The README's questions, with the results of common mistakes.
   c.answer(
       "furnace", furnace, 0.005,
-      {{{"lost-emission", "that is the reflected part alone: the walls' own emission is seen too"}, furnace - emission},
+      {{{"lost-emission", "that is only the reflected part: the walls' own emission is seen too"}, furnace - emission},
        {{"albedo-sum", "the parts form a geometric series: 1 / (1 - albedo)"}, emission * (1.0 + albedo)}});
   c.answer("irradiance", irradiance, 0.02,
-           {{{"lost-cosine", "a cosine is lost: there are two, one at the floor and one at the lamp"},
+           {{{"lost-cosine", "a cosine is missing: there are two, one at the floor and one at the lamp"},
              side * side * height / std::pow(away * away + height * height, 1.5)}});
   c.answer("bounces", bounces, 0.0, {});
 
-  // Task 1: reflected: the integrand for Lambert's surface.
+  // Task 1: reflected: the integrand for a Lambertian surface.
   if (c.task(1)) {
     const auto formula = [&](double constant, double (*cosine)(double)) {
       return [=](Point p) {
@@ -57,9 +59,9 @@ void check(Checks& c) {
                          {lostCosine, formula(1.0 / kPi, [](double) { return 1.0; })},
                          {noClamp, formula(1.0 / kPi, [](double x) { return x; })},
                          {absolute, formula(1.0 / kPi, [](double x) { return std::abs(x); })},
-                         {{"pi-squared", "1 / pi stands there twice, or 1 / (2 pi) for 1 / pi"},
+                         {{"pi-squared", "1 / pi is applied twice, or 1 / (2 pi) is used for 1 / pi"},
                           formula(0.5 / kPi, clamped)},
-                         {{"lost-albedo", "the albedo is lost"},
+                         {{"lost-albedo", "the albedo is missing"},
                           [=](Point p) {
                             return glm::dvec4(three(p[3]) / kPi * std::max(0.0, glm::dot(three(p[1]), three(p[2]))),
                                               0.0);
@@ -88,7 +90,7 @@ void check(Checks& c) {
   if (c.task(2)) {
     constexpr int kRings = 8, kSectors = 16;
     const glm::dvec3 n = glm::normalize(glm::dvec3(c.parameter("sx", -1.0, 1.0), c.parameter("sy", -1.0, 1.0), -0.6));
-    // Rings of equal shares: cos^2 is uniform.
+    // Rings of equal probability: cos^2 is uniform.
     const auto shares = [](double (*belowCosine)(double)) {
       std::vector<double> s;
       for (int ring = 0; ring < kRings; ++ring)
@@ -171,15 +173,15 @@ void check(Checks& c) {
              {lostCosine, of([](double, double d) { return 1.0 / (d * d); })},
              {{"distance-not-squared", "the distance counts once: 1 / d^2, and the cosine needs vectors of length 1"},
               of([](double x, double d) { return std::max(0.0, x) / d; })},
-             {{"wrong-side", "the lamp's back shines: the cosine is taken along the way from x to y"},
+             {{"wrong-side", "the lamp's back emits light: the cosine is taken along the way from x to y"},
               of([](double x, double d) { return std::max(0.0, -x) / (d * d); })},
              {noClamp, of([](double x, double d) { return x / (d * d); })},
              {absolute, of([](double x, double d) { return std::abs(x) / (d * d); })},
              {{"vector-not-unit", "the cosine needs a vector of length 1"},
               of([](double x, double d) { return std::max(0.0, x) * d / (d * d * d * d); })},
-             {{"not-over-area", "the distance is lost"}, of([](double x, double) { return std::max(0.0, x); })}}});
+             {{"not-over-area", "the distance is missing"}, of([](double x, double) { return std::max(0.0, x); })}}});
   }
-  // Task 5: furnace: radiance after so many bounces.
+  // Task 5: furnace: radiance after a number of bounces.
   if (c.task(5)) {
     const auto of = [](double (*value)(double e, double a, int n)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, static_cast<int>(p[0].z))); };
@@ -202,8 +204,8 @@ void check(Checks& c) {
                          {{"last-bounce-alone", "that is the light of the last bounce alone: sum over all of them"},
                           of([](double e, double a, int n) { return e * std::pow(a, n); })}}});
   }
-  // Together: a floor under a lamp, each pixel an estimate over the lamp's area.
-  // Task 6: a floor under a square lamp, by tasks 1 and 4.
+  // Combined: a floor under a lamp; each pixel is an estimate over the lamp's area.
+  // Task 6: a floor under a square lamp, using tasks 1 and 4.
   if (c.task(6)) {
     const std::vector<glm::vec4> lamp{withW({side, height, albedo}), withW({away, 0.0, 0.0})};
     c.mean("light of a square lamp at a point", {.probe = 8, .inputs = lamp, .expected = albedo / kPi * irradiance}) &&
@@ -223,7 +225,7 @@ void check(Checks& c) {
   c.figure("furnace", furnace);
   c.figure("irradiance", irradiance);
   c.figure("bounces", bounces);
-  // Of 4 albedo max(0, cos) over the sphere, see the curve of task 1; 64 samples in each of 4096 invocations.
+  // For 4 albedo max(0, cos) over the sphere, see the curve of task 1; 64 samples in each of 4096 invocations.
   c.figure("deviation of one sample, over the albedo", std::sqrt(16.0 / 6.0 - 1.0));
   c.figure("standard error of the check, % of the albedo", 100.0 * std::sqrt((16.0 / 6.0 - 1.0) / (64.0 * 4096.0)));
 }

@@ -1,6 +1,6 @@
-// Probes of lab 1. Points as demo/labs/furnace/furnace.cpp writes them.
+// Probes of lab 1. Points are laid out as in demo/labs/furnace/furnace.cpp.
 
-// A square lamp of radiance 1 that looks down on the floor: point(0) = side, height.
+// A square lamp of radiance 1, facing down: point(0) = side, height.
 const int kLampSamples = 64;
 float lampSample(vec3 x) {
   vec2 u = random2() - 0.5;
@@ -18,7 +18,7 @@ vec4 probe() {
 #if PROBE == 1
   return vec4(reflected(point(0).xyz, point(1).xyz, point(2).xyz, point(3).xyz), 0.0);
 #elif PROBE == 2
-  // Furnace: radiance 1 from all sides, directions uniform over the sphere.
+  // Furnace: radiance 1 from all directions, sampled uniformly over the sphere.
   float sum = 0.0;
   for (int k = 0; k < 64; ++k)
     sum += 4.0 * PI * reflected(vec3(point(0).w), point(0).xyz, uniformDirection(), vec3(1.0)).x;
@@ -34,7 +34,7 @@ vec4 probe() {
   for (int k = 0; k < 64; ++k) sum += 4.0 * PI * pdfCosine(point(0).xyz, uniformDirection());
   return vec4(sum / 64.0);
 #elif PROBE == 6
-  // Furnace once more, by the student's own directions: no noise is left.
+  // Furnace again, with the student's own directions: no noise remains.
   vec3 n = point(0).xyz, w = sampleCosine(random2(), n);
   return vec4(reflected(vec3(point(0).w), n, w, vec3(1.0)).x / pdfCosine(n, w));
 #elif PROBE == 7
@@ -46,7 +46,7 @@ vec4 probe() {
 #elif PROBE == 9
   return vec4(furnace(point(0).x, point(0).y, int(point(0).z)));
 #elif PROBE == 10
-  // The floor from above: 6 by 4 lengths about the lamp's foot.
+  // The floor from above: 6 by 4 units around the point below the lamp.
   vec3 x = vec3((vec2(pixel()) + 0.5) / 16.0 - vec2(3.0, 2.0), 0.0).xzy;
   float sum = 0.0, square = 0.0;
   for (int k = 0; k < kLampSamples; ++k) {
@@ -57,7 +57,7 @@ vec4 probe() {
   float mean = sum / float(kLampSamples);
   return vec4(vec3(mean), max(0.0, square / float(kLampSamples) - mean * mean) / float(kLampSamples - 1));
 #elif PROBE == 11
-  // Furnace with point(1).x samples an invocation, uniform directions.
+  // Furnace with point(1).x samples per invocation, uniform directions.
   float sum = 0.0;
   for (int k = 0; k < int(point(1).x); ++k)
     sum += 4.0 * PI * reflected(vec3(point(0).w), point(0).xyz, uniformDirection(), vec3(1.0)).x;

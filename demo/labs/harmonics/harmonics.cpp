@@ -21,14 +21,14 @@ void check(Checks& c) {
                tilt = c.yours("tilt", 20.0, 70.0, 0), angle = c.yours("angle", 15.0, 85.0, 0);
   const double cosine = std::cos(tilt * kPi / 180.0);
   const double exact = kPi * base + 2.0 * kPi / 3.0 * slope * cosine, lobe = 0.25 + 0.5 * std::cos(angle * kPi / 180.0);
-  // The README's questions, with what common wrong answers say.
+  // The README's questions, with the results of common mistakes.
   c.answer("irradiance", exact, 0.005,
            {{{"lobe-lost", "that is radiance times pi: band 1 is damped by the cosine, 2 pi / 3 for pi"},
              kPi * (base + slope * cosine)}});
   c.answer("reconstructed", lobe, 0.005,
            {{{"other", "that is the cosine itself: bands 0 and 1 hold an approximation of it"},
              std::cos(angle * kPi / 180.0)}});
-  // Of the integral of max(0, cos)^2, 2 pi / 3: the sum of the coefficients' squares.
+  // Relative to the integral of max(0, cos)^2, 2 pi / 3: the sum of the squared coefficients.
   const double share = (kLobe0 * kLobe0 + kLobe1 * kLobe1) / (2.0 * kPi / 3.0);
   c.answer("share", share, 0.005);
 
@@ -90,22 +90,23 @@ void check(Checks& c) {
     const auto of = [](double (*weight)(double l, double pdf)) {
       return [=](Point p) { return weight(p[1].x, p[1].y) * joined(kY0, kY1 * glm::dvec3(p[0])); };
     };
-    c.twin("one sample",
-           {.probe = 5,
-            .stride = 2,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = inFloat(glm::dvec4(r.direction(), 0.0)),
-                  p[1] = glm::vec4(r.uniform(0, 4), r.uniform(0.05, 2), 0, 0);
-                },
-            .truth = of([](double l, double pdf) { return l / pdf; }),
-            .mistakes = {{{"lost-density", "the density is lost: an estimate is value / density"},
-                          of([](double l, double) { return l; })},
-                         {{"times-density", "divide by the density, do not multiply"},
-                          of([](double l, double pdf) { return l * pdf; })},
-                         {{"lost-radiance", "the radiance is lost"}, of([](double, double pdf) { return 1.0 / pdf; })},
-                         {{"four-pi", "4 pi is the uniform density's own; pdf may be any"},
-                          of([](double l, double) { return l * 4.0 * kPi; })}}}) &&
+    c.twin(
+        "one sample",
+        {.probe = 5,
+         .stride = 2,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = inFloat(glm::dvec4(r.direction(), 0.0)),
+               p[1] = glm::vec4(r.uniform(0, 4), r.uniform(0.05, 2), 0, 0);
+             },
+         .truth = of([](double l, double pdf) { return l / pdf; }),
+         .mistakes = {{{"lost-density", "the density is missing: an estimate is value / density"},
+                       of([](double l, double) { return l; })},
+                      {{"times-density", "divide by the density, do not multiply"},
+                       of([](double l, double pdf) { return l * pdf; })},
+                      {{"lost-radiance", "the radiance is missing"}, of([](double, double pdf) { return 1.0 / pdf; })},
+                      {{"four-pi", "4 pi holds only for the uniform density; pdf may be any density"},
+                       of([](double l, double) { return l * 4.0 * kPi; })}}}) &&
         c.mean("an environment's coefficients",
                {.probe = 6, .inputs = with(probe), .expected = glm::dot(truth, probe)});
     Curve curve{"Error of a coefficient against samples", "samples", "standard deviation", {}, {}};
@@ -141,7 +142,7 @@ void check(Checks& c) {
                           of(kLobe0 / kPi, kLobe1 / kPi)},
                          {{"band-1-factor", "band 1 is damped by 2 pi / 3, not pi"}, of(kPi * kY0, kPi * kY1)},
                          {{"wrong-side", "the normal points the wrong way"}, of(kLobe0, -kLobe1)},
-                         {{"clamped", "leave negative results: a clamp here hides errors and is not linear"},
+                         {{"clamped", "keep negative results: a clamp here hides errors and is not linear"},
                           [](Point p) {
                             return glm::dvec4(
                                 std::max(0.0, glm::dot(glm::dvec4(p[0]), joined(kLobe0, kLobe1 * glm::dvec3(p[1])))));
@@ -151,7 +152,7 @@ void check(Checks& c) {
                 .inputs = with(glm::dvec4(normal, 0.0)),
                 .expected = kPi * base + 2.0 * kPi / 3.0 * slope * glm::dot(normal, axis)});
   }
-  // Task 5: rotateAboutZ: band 1 turns as a vector.
+  // Task 5: rotateAboutZ: band 1 rotates like a vector.
   if (c.task(5)) {
     const auto of = [](double sense, int axisOf) {
       return [=](Point p) {
@@ -171,12 +172,12 @@ void check(Checks& c) {
                 },
             .truth = of(1.0, 2),
             .mistakes = {
-                {{"wrong-sense", "it turns the other way: from x towards y is wanted"}, of(-1.0, 2)},
+                {{"wrong-sense", "the rotation has the wrong sense: it should go from x towards y"}, of(-1.0, 2)},
                 {{"wrong-axis", "band 1 is a vector (x, y, z) behind band 0: z is the last component"}, of(1.0, 0)},
-                {{"band-0-turns", "band 0 is the same in all directions: it does not turn"}, of(1.0, 1)},
+                {{"band-0-turns", "band 0 is the same in all directions: it does not rotate"}, of(1.0, 1)},
                 {{"not-turned", "nothing turns"}, [](Point p) { return glm::dvec4(p[0]); }}}});
   }
-  // Task 6: a ball in an environment, by tasks 1 to 4.
+  // Task 6: a ball in an environment, using tasks 1 to 4.
   if (c.task(6))
     c.picture(
         "ball",

@@ -1,4 +1,4 @@
-// Probes of lab 3. Points as demo/labs/harmonics/harmonics.cpp writes them.
+// Probes of lab 3. Points are laid out as in demo/labs/harmonics/harmonics.cpp.
 vec3 uniformDirection() {
   float z = 2.0 * random() - 1.0, angle = 2.0 * PI * random();
   return vec3(sqrt(1.0 - z * z) * vec2(cos(angle), sin(angle)), z);
@@ -28,7 +28,7 @@ vec4 probe() {
 #elif PROBE == 3
   return cosineLobe(point(0).xyz);
 #elif PROBE == 4
-  // The lobe's coefficient along point(1) by integration, less the student's.
+  // The lobe's coefficient along point(1) by integration, minus the student's.
   float sum = 0.0;
   for (int k = 0; k < 64; ++k) {
     vec3 w = uniformDirection();
@@ -48,7 +48,7 @@ vec4 probe() {
 #elif PROBE == 9
   return rotateAboutZ(point(0), point(1).x);
 #elif PROBE == 10
-  // A white ball in that environment, seen from +z without perspective.
+  // A white ball in that environment, seen from +z in orthographic projection.
   vec2 p = (vec2(pixel()) + 0.5 - vec2(48.0, 32.0)) / 30.0 * vec2(1.0, -1.0);
   if (dot(p, p) >= 1.0) return vec4(0.0);
   vec3 n = vec3(p, sqrt(1.0 - dot(p, p)));

@@ -1,4 +1,4 @@
-// Lab 6: hemicubes: delta form factors, Jacobi's sweeps and an honest stop.
+// Lab 6: hemicubes: delta form factors, Jacobi sweeps and a reliable stopping criterion.
 #include "labs/lab.hpp"
 
 #include <algorithm>
@@ -37,8 +37,8 @@ glm::dvec3 solved(Point p) {
   return radiosity;
 }
 
-/// The form factor of the square overhead by the published map: each direction's true share times the ratio of both
-/// maps' weights, which is r^2 of the hemicube's pixel but for a constant.
+/// The form factor of the square overhead with the published map: each direction's true share times the ratio of both
+/// maps' weights, which is r^2 of the hemicube's pixel up to a constant.
 double publishedFactor(double side, double height, double away) {
   constexpr int kSteps = 512;
   const auto midpoint = [](int k) { return (k + 0.5) / kSteps; };
@@ -71,7 +71,7 @@ void check(Checks& c) {
   const double x = c.yours("pixel x", 0.1, 0.95), y = c.yours("pixel y", 0.1, 0.95),
                reflectance = c.yours("reflectance", 0.6, 0.95), change = c.yours("change", 0.001, 0.01, 4);
   const double factor = squareLampIrradiance(side, height, {away, 0.0, 0.0}) / kPi;
-  // The README's questions, with what common wrong answers say.
+  // The README's questions, with the results of common mistakes.
   c.answer("form factor", factor, 0.02, {});
   c.answer(
       "published", 1.0 + x * x + y * y, 0.005,
@@ -95,11 +95,11 @@ void check(Checks& c) {
                        of([](double q) { return 1.0 / q; })},
                       {{"published-map", "that is the published map, 1 / r^2: two cosines over r^2 make 1 / r^4"},
                        of([](double q) { return 1.0 / (kPi * q); })},
-                      {{"lost-pi", "1 / pi is lost: the factors of all pixels sum to 1"},
+                      {{"lost-pi", "1 / pi is missing: the factors of all pixels sum to 1"},
                        of([](double q) { return 1.0 / (q * q); })},
-                      {{"one-cosine", "that is the solid angle over pi: the cosine at the patch is lost"},
+                      {{"one-cosine", "that is the solid angle over pi: the cosine at the patch is missing"},
                        of([](double q) { return 1.0 / (kPi * q * std::sqrt(q)); })},
-                      {{"area-lost", "the area is lost"}, [](Point p) {
+                      {{"area-lost", "the area is missing"}, [](Point p) {
                          const double q = double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0;
                          return glm::dvec4(1.0 / (kPi * q * q));
                        }}}});
@@ -118,14 +118,14 @@ void check(Checks& c) {
                     std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(0, 1), r.uniform(0.01, 4.0)); },
          .truth = of([](double z, double q) { return z / (kPi * q * q); }),
          .mistakes = {{{"published-map",
-                        "that is the published map, z / r^2: the cosine at the side's pixel is lost, and one r^2"},
+                        "that is the published map, z / r^2: the cosine at the side's pixel is missing, and one r^2"},
                        of([](double z, double q) { return z / q; })},
                       {{"published-map",
-                        "that is the published map, z / r^2: the cosine at the side's pixel is lost, and one r^2"},
+                        "that is the published map, z / r^2: the cosine at the side's pixel is missing, and one r^2"},
                        of([](double z, double q) { return z / (kPi * q); })},
-                      {{"lost-cosine", "the cosine at the patch, z / r, is lost"},
+                      {{"lost-cosine", "the cosine at the patch, z / r, is missing"},
                        of([](double, double q) { return 1.0 / (kPi * q * q); })},
-                      {{"lost-pi", "1 / pi is lost: the factors of all pixels sum to 1"},
+                      {{"lost-pi", "1 / pi is missing: the factors of all pixels sum to 1"},
                        of([](double z, double q) { return z / (q * q); })},
                       {{"wrong-height", "z is the height above the patch, y runs along the side"}, [](Point p) {
                          const double q = double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0;
@@ -156,7 +156,7 @@ void check(Checks& c) {
                  of(0.0, false, true)},
                 {{"not-unit", "the direction is not of length 1"}, of(0.5, false, false)},
                 {{"side-height", "a side has n by n / 2 pixels of the same size as the top's"}, of(0.5, true, true)},
-                {{"faces-exchanged", "faces are exchanged: 1 is +x, 2 is -x, 3 is +y, 4 is -y"}, [](Point p) {
+                {{"faces-exchanged", "faces are swapped: 1 is +x, 2 is -x, 3 is +y, 4 is -y"}, [](Point p) {
                    const double n = p[0].w;
                    const int f = static_cast<int>(p[0].x);
                    return glm::dvec4(directionOf(f == 1   ? 2
@@ -182,7 +182,7 @@ void check(Checks& c) {
                              .caption = "Form factor from each point of the floor to a square above it: 256 random "
                                         "points of the hemicube a pixel; the reference is exact"});
   }
-  // Task 4: sweep: one sweep of Jacobi's.
+  // Task 4: sweep: one Jacobi sweep.
   if (c.task(4)) {
     const auto of = [](const std::function<glm::dvec3(Point, glm::dvec3)>& value) {
       return [=](Point p) { return glm::dvec4(value(p, glm::dvec3(p[5])), 0.0); };
@@ -197,46 +197,46 @@ void check(Checks& c) {
          .stride = 6,
          .draw = draw,
          .truth = of(swept),
-         .mistakes = {{{"transposed", "rows and columns are exchanged: gathering takes F from i to j, F[3 i + j]"},
-                       of([](Point p, glm::dvec3 b) {
-                         const Rows f = rowsOf(p);
-                         return glm::dvec3(p[0]) + glm::dvec3(p[1]) * (f[0] * b.x + f[1] * b.y + f[2] * b.z);
-                       })},
-                      {{"lost-emission", "the emission is lost"},
-                       of([](Point p, glm::dvec3 b) { return swept(p, b) - glm::dvec3(p[0]); })},
-                      {{"lost-reflectance", "the reflectance is lost: all light would be reflected"},
-                       of([](Point p, glm::dvec3 b) {
-                         return glm::dvec3(p[0]) + (swept(p, b) - glm::dvec3(p[0])) / glm::dvec3(p[1]);
-                       })},
-                      {{"wrong-reflectance",
-                        "the reflectance is that of the patch that gathers, i, not of the one that is seen"},
-                       of([](Point p, glm::dvec3 b) {
-                         const Rows f = rowsOf(p);
-                         const glm::dvec3 rb = glm::dvec3(p[1]) * b;
-                         return glm::dvec3(p[0]) +
-                                glm::dvec3(glm::dot(f[0], rb), glm::dot(f[1], rb), glm::dot(f[2], rb));
-                       })},
-                      {{"gauss-seidel",
-                        "that is Gauss and Seidel's sweep, which uses new values at once; Jacobi's uses the old alone"},
-                       of([](Point p, glm::dvec3 b) {
-                         for (int i = 0; i < 3; ++i) b[i] = swept(p, b)[i];
-                         return b;
-                       })},
-                      {{"radiosity-lost", "the radiosity that is given is not used"},
-                       of([](Point p, glm::dvec3) { return swept(p, glm::dvec3(p[0])); })},
-                      {{"radiosity-lost", "the radiosity that is given is not used"}, of([](Point p, glm::dvec3) {
-                         glm::dvec3 b(p[0]);
-                         for (int i = 0; i < 3; ++i) b[i] = swept(p, b)[i];
-                         return b;
-                       })},
-                      {{"adds-up", "the new radiosity replaces the old, it is not added"},
-                       of([](Point p, glm::dvec3 b) { return b + swept(p, b) - glm::dvec3(p[0]); })}}}) &&
+         .mistakes =
+             {{{"transposed", "rows and columns are swapped: gathering takes F from i to j, F[3 i + j]"},
+               of([](Point p, glm::dvec3 b) {
+                 const Rows f = rowsOf(p);
+                 return glm::dvec3(p[0]) + glm::dvec3(p[1]) * (f[0] * b.x + f[1] * b.y + f[2] * b.z);
+               })},
+              {{"lost-emission", "the emission is missing"},
+               of([](Point p, glm::dvec3 b) { return swept(p, b) - glm::dvec3(p[0]); })},
+              {{"lost-reflectance", "the reflectance is missing: all light would be reflected"},
+               of([](Point p, glm::dvec3 b) {
+                 return glm::dvec3(p[0]) + (swept(p, b) - glm::dvec3(p[0])) / glm::dvec3(p[1]);
+               })},
+              {{"wrong-reflectance",
+                "the reflectance is that of the patch that gathers, i, not of the one that is seen"},
+               of([](Point p, glm::dvec3 b) {
+                 const Rows f = rowsOf(p);
+                 const glm::dvec3 rb = glm::dvec3(p[1]) * b;
+                 return glm::dvec3(p[0]) + glm::dvec3(glm::dot(f[0], rb), glm::dot(f[1], rb), glm::dot(f[2], rb));
+               })},
+              {{"gauss-seidel",
+                "that is a Gauss-Seidel sweep, which uses new values at once; a Jacobi sweep uses only the old ones"},
+               of([](Point p, glm::dvec3 b) {
+                 for (int i = 0; i < 3; ++i) b[i] = swept(p, b)[i];
+                 return b;
+               })},
+              {{"radiosity-lost", "the given radiosity is not used"},
+               of([](Point p, glm::dvec3) { return swept(p, glm::dvec3(p[0])); })},
+              {{"radiosity-lost", "the given radiosity is not used"}, of([](Point p, glm::dvec3) {
+                 glm::dvec3 b(p[0]);
+                 for (int i = 0; i < 3; ++i) b[i] = swept(p, b)[i];
+                 return b;
+               })},
+              {{"adds-up", "the new radiosity replaces the old, it is not added"},
+               of([](Point p, glm::dvec3 b) { return b + swept(p, b) - glm::dvec3(p[0]); })}}}) &&
         c.twin("two hundred sweeps: the solution", {.probe = 7,
                                                     .stride = 6,
                                                     .draw = draw,
                                                     .truth = [](Point p) { return glm::dvec4(solved(p), 0.0); },
                                                     .points = 256});
-    // One enclosure of the seed's: error against sweeps.
+    // One enclosure derived from the seed: error against sweeps.
     std::vector<glm::vec4> box(7);
     int drawn = 0;
     enclosure([&] { return c.parameter("enclosure " + std::to_string(++drawn), 0.0, 1.0); }, reflectance,
@@ -257,7 +257,7 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
-  // Task 5: errorBound: how far from the solution.
+  // Task 5: errorBound: distance from the solution.
   if (c.task(5)) {
     const auto of = [](double (*value)(double change, double r)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };

@@ -1,4 +1,4 @@
-// Probes of lab 6. Points as demo/labs/hemicubes/hemicubes.cpp writes them.
+// Probes of lab 6. Points are laid out as in demo/labs/hemicubes/hemicubes.cpp.
 
 // Three patches: point(0) emission, point(1) reflectance, point(2..4) rows of form factors.
 vec3 swept(vec3 radiosity) {
@@ -7,8 +7,8 @@ vec3 swept(vec3 radiosity) {
   return sweep(radiosity, point(0).xyz, point(1).xyz, F);
 }
 
-// One random point of the hemicube, 12 units of area in all: its weight if the ray from x hits the square (side,
-// height), and 0 if not.
+// One random point of the hemicube, whose total area is 12: its weight if the ray from x hits the square (side,
+// height), 0 otherwise.
 float hemicubeSample(vec3 x, float side, float height) {
   vec3 d;
   float weight, which = 12.0 * random();
@@ -74,7 +74,7 @@ vec4 probe() {
     square += value * value;
   }
   float mean = sum / 256.0;
-  // Pixels that saw nothing are not certain: the error of one hit is added.
+  // Pixels that saw nothing are not certain: add the error of one hit.
   return vec4(vec3(mean), (max(0.0, square / 256.0 - mean * mean) + 0.01 / 256.0) / 255.0);
 #elif PROBE == 11
   vec3 radiosity = point(0).xyz;

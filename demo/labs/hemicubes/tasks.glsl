@@ -1,8 +1,7 @@
-// Lab 6: hemicubes. README.md tells what is asked; PI, frame() and random() are there.
-// Take NOT_DONE(n) out when a task is done.
+// Lab 6: hemicubes. README.md describes the tasks; PI, frame() and random() are available.
+// Remove NOT_DONE(n) when a task is done.
 
-// TASK 1. Form factor of a small area on the hemicube's top (the square from -1 to 1 at height 1 above the patch), at
-// p.
+// TASK 1. Form factor of a small area at p on the hemicube's top (the square from -1 to 1 at height 1 above the patch).
 float deltaTop(vec2 p, float area) {
   NOT_DONE(1)
   return 0.0;
@@ -14,21 +13,21 @@ float deltaSide(float y, float z, float area) {
   return 0.0;
 }
 
-// TASK 3. The unit direction through the centre of a pixel. n pixels to a side of the cube; face 0 top, 1 +x, 2 -x, 3
+// TASK 3. The unit direction through the centre of a pixel. n: pixels per side of the cube; face: 0 top, 1 +x, 2 -x, 3
 // +y, 4 -y; z is the normal.
 vec3 pixelDirection(int face, ivec2 pixel, int n) {
   NOT_DONE(3)
   return vec3(0.0, 0.0, 1.0);
 }
 
-// TASK 4. One sweep of Jacobi's over three patches: the radiosity of each from that of all; F[3 * i + j] is the form
-// factor from i to j.
+// TASK 4. One Jacobi sweep over three patches: the radiosity of each from that of all; F[3 * i + j] is the form factor
+// from i to j.
 vec3 sweep(vec3 radiosity, vec3 emission, vec3 reflectance, float F[9]) {
   NOT_DONE(4)
   return vec3(0.0);
 }
 
-// TASK 5. How far from the solution the radiosity may be after a sweep whose largest change was `change`;
+// TASK 5. Upper bound of the radiosity's distance from the solution after a sweep whose largest change was `change`;
 // `reflectance` is the largest of all patches.
 float errorBound(float change, float reflectance) {
   NOT_DONE(5)

@@ -16,12 +16,12 @@ glm::vec4 four(double x, double y = 0.0, double z = 0.0, double w = 0.0) { retur
 double phase(double cosine, double g) {
   return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
 }
-/// Share of cosines below `cosine`.
+/// Probability of cosines below `cosine`.
 double phaseBelow(double cosine, double g) {
   if (std::abs(g) < 1e-9) return 0.5 * (1.0 + cosine);
   return (1.0 - g * g) / (2.0 * g) * (1.0 / std::sqrt(1.0 + g * g - 2.0 * g * cosine) - 1.0 / (1.0 + g));
 }
-/// Shares of 32 bins of the cosine, equal ones for the right g, and the bin of a cosine.
+/// 32 bins of the cosine with equal probability for the right g, and the bin of a cosine.
 constexpr int kBins = 32;
 double edgeOf(int k, double g) {  // the inversion in double precision
   const double u = static_cast<double>(k) / kBins, s = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
@@ -41,7 +41,7 @@ void check(Checks& c) {
                absorption = c.yours("absorption", 0.1, 0.5), depth = c.yours("depth", 0.5, 2.0);
   const double table = c.yours("table", 0.5, 9.0), millilitres = c.yours("millilitres", 15.0, 600.0, 0);
   const double extinction = scattering + absorption;
-  // The README's questions, with what common wrong answers say.
+  // The README's questions, with the results of common mistakes.
   c.answer(
       "transmittance", std::exp(-extinction * depth), 0.005,
       {{{"absorption-alone", "scattering takes light away too: extinction is both"}, std::exp(-absorption * depth)},
@@ -50,7 +50,7 @@ void check(Checks& c) {
   c.answer("coefficient", table * 0.01 * 23000.0 / millilitres, 0.005,
            {{{"diluted", "that is the diluted liquid in the tank"}, table * 0.01}});
   c.answer("way", 2.0 * depth, 0.005,
-           {{{"straight", "that is the way straight through; light enters at all angles"}, depth}});
+           {{{"straight", "that is the path straight through; light enters at all angles"}, depth}});
 
   // Task 1: henyeyGreenstein: density of a cosine.
   if (c.task(1)) {
@@ -65,7 +65,7 @@ void check(Checks& c) {
                           of([](double x, double h) { return phase(x, -h); })},
                          {{"two-pi", "2 pi for 4 pi: the phase function integrates to 1 over the whole sphere"},
                           of([](double x, double h) { return 2.0 * phase(x, h); })},
-                         {{"lost-four-pi", "1 / (4 pi) is lost"},
+                         {{"lost-four-pi", "1 / (4 pi) is missing"},
                           of([](double x, double h) { return 4.0 * kPi * phase(x, h); })},
                          {{"power", "the denominator has the power 3/2"}, of([](double x, double h) {
                             return (1.0 - h * h) / (4.0 * kPi * (1.0 + h * h - 2.0 * h * x));
@@ -76,7 +76,7 @@ void check(Checks& c) {
                          {{"isotropic", "g is ignored"}, of([](double, double) { return 0.25 / kPi; })}}}) &&
         c.mean("its integral over the sphere is 1", {.probe = 2, .inputs = {four(g)}, .expected = 1.0});
   }
-  // Task 2: sampleHenyeyGreenstein: cosines of that density.
+  // Task 2: sampleHenyeyGreenstein: cosines with that density.
   if (c.task(2)) {
     const double other = c.fresh(-0.8, -0.2);
     const auto bin = [](double h) {
@@ -92,9 +92,9 @@ void check(Checks& c) {
                                             phaseShares(h, [](double x, double k) { return phaseBelow(x, -k); })},
                                            {{"isotropic", "the directions do not depend on g"},
                                             phaseShares(h, [](double x, double) { return 0.5 * (1.0 + x); })},
-                                           {{"half-g", "g counts wrong: the mean cosine must be g"},
+                                           {{"half-g", "g has the wrong effect: the mean cosine must be g"},
                                             phaseShares(h, [](double x, double k) { return phaseBelow(x, 0.5 * k); })},
-                                           {{"half-g", "g counts wrong: the mean cosine must be g"},
+                                           {{"half-g", "g has the wrong effect: the mean cosine must be g"},
                                             phaseShares(h, [](double x, double k) { return phaseBelow(x, k * k); })}};
     };
     const std::vector<double> even(kBins, 1.0 / kBins);
@@ -104,7 +104,7 @@ void check(Checks& c) {
             .expected = static_cast<float>(g),
             .mistakes = {{{"g-negated", "g has the wrong sign: positive g scatters forward"}, -g},
                          {{"isotropic", "the directions do not depend on g"}, 0.0},
-                         {{"half-g", "g counts wrong: the mean cosine must be g"}, g * g}}}) &&
+                         {{"half-g", "g has the wrong effect: the mean cosine must be g"}, g * g}}}) &&
         c.chiSquare("cosines, 32 bins",
                     {.probe = 3, .inputs = {four(g)}, .bin = bin(g), .shares = even, .mistakes = wrongs(g)}) &&
         c.chiSquare(
@@ -122,7 +122,7 @@ void check(Checks& c) {
       return v.x < 0.0f ? -1 : std::min(kBins - 1, static_cast<int>(kBins * -std::expm1(-extinction * v.x)));
     };
     const auto shares =
-        [&](double sigma) {  // bins end where the transmittance of the right extinction is 1 - k / kBins
+        [&](double sigma) {  // bins end where the transmittance for the right extinction is 1 - k / kBins
           std::vector<double> s;
           for (int k = 0; k < kBins; ++k)
             s.push_back(std::pow(1.0 - double(k) / kBins, sigma / extinction) -
@@ -151,7 +151,7 @@ void check(Checks& c) {
                 .mistakes = {{{"other-inversion",
                                "log(u) has the right distribution but runs out of [0,1) at u = 0: -log(1 - u)"},
                               of([](double u, double s, double a) { return -std::log(u) / (s + a); })}}});
-    Curve curve{"Share of light that flies further", "distance", "transmittance", {}, {}};
+    Curve curve{"Share of light that travels farther", "distance", "transmittance", {}, {}};
     const std::vector<glm::vec4> flights = c.run(5, std::vector<glm::vec4>{four(scattering, absorption)}, 0, 4096);
     for (double d = 0.125 / extinction; d < 5.0 / extinction; d *= 1.25) {
       const auto further = std::count_if(flights.begin(), flights.end(), [&](const glm::vec4& v) { return v.x > d; });
@@ -160,11 +160,11 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
-  // Task 4: deltaTracking: collisions where the density varies.
+  // Task 4: deltaTracking: collisions in a varying density.
   if (c.task(4)) {
     const double base = c.fresh(0.3, 0.8), slope = c.fresh(0.5, 1.5), majorant = base + 2.0 * slope + 0.2;
     const auto depthAt = [=](double t) { return base * t + 0.5 * slope * t * t; };
-    // Bins of equal distance over the length 2, and one for those that get through.
+    // Bins of equal distance over the length 2, and one for flights that pass through.
     const auto shares = [&](const std::function<double(double)>& transmittance) {
       std::vector<double> s;
       for (int k = 0; k < 16; ++k) s.push_back(transmittance(k / 8.0) - transmittance((k + 1) / 8.0));
@@ -181,13 +181,13 @@ void check(Checks& c) {
              },
          .shares = shares([&](double t) { return std::exp(-depthAt(t)); }),
          .mistakes = {{{"null-collisions-count",
-                        "every candidate counts: accept one with probability extinction / majorant alone"},
+                        "every candidate counts: accept one only with probability extinction / majorant"},
                        shares([&](double t) { return std::exp(-majorant * t); })},
-                      {{"slope-lost", "the extinction of the beginning is used all the way"},
+                      {{"slope-lost", "the initial extinction is used all the way"},
                        shares([&](double t) { return std::exp(-base * t); })},
-                      {{"restarts", "after a null collision the flight goes on from there, it does not begin anew"},
+                      {{"restarts", "after a null collision the flight continues from there; it does not restart"},
                        shares([&](double t) { return 1.0 - t / 2.0; })},
-                      {{"accepts-complement", "accepted and null collisions are exchanged"},
+                      {{"accepts-complement", "accepted and null collisions are swapped"},
                        shares([&](double t) { return std::exp(-(majorant * t - depthAt(t))); })}}}) &&
         c.picture("wedge", {.probe = 11,
                             .inputs = {four(scattering * 0.3)},
@@ -200,7 +200,7 @@ void check(Checks& c) {
                             .caption = "Light that gets through a wedge of fog: to the right it is longer, to the "
                                        "bottom it thickens faster; 64 flights a pixel, the reference is exact"});
   }
-  // Task 5: naturalCoefficient: of the liquid as it is.
+  // Task 5: naturalCoefficient: of the undiluted liquid.
   if (c.task(5)) {
     const auto of = [](double (*value)(double t, double ml)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
@@ -211,14 +211,14 @@ void check(Checks& c) {
             .truth = of([](double t, double ml) { return t * 230.0 / ml; }),
             .mistakes = {
                 {{"unit", "the tables are in 1e-2 / mm"}, of([](double t, double ml) { return t * 23000.0 / ml; })},
-                {{"diluted", "that is the diluted liquid: divide by the share of it in the tank"},
+                {{"diluted", "that is the diluted liquid: divide by its share of the tank"},
                  of([](double t, double) { return t * 0.01; })},
                 {{"inverted", "the natural liquid is denser than the diluted one, not thinner"},
                  of([](double t, double ml) { return t * 0.01 * ml / 23000.0; })},
-                {{"tank", "the share is liquid / tank: 23 litres of water take the liquid in, all is 23 litres"},
+                {{"tank", "the share is liquid / tank: the 23 litres include the liquid"},
                  of([](double t, double ml) { return t * 0.01 * (23000.0 + ml) / ml; })}}});
   }
-  // Task 6: photons through slabs, by tasks 2 and 3.
+  // Task 6: photons through slabs, using tasks 2 and 3.
   if (c.task(6)) {
     const std::vector<glm::vec4> slab{four(2.0, 0.9, 0.1, 0.75), four(0.0)}, through{slab[0], four(1.0)};
     c.mean("slab: reflectance by van de Hulst's table", {.probe = 9, .inputs = slab, .expected = reflected}) &&
@@ -232,7 +232,7 @@ void check(Checks& c) {
   c.figure("coefficient", table * 0.01 * 23000.0 / millilitres);
   c.figure("way", 2.0 * depth);
   c.figure("slab of the table: reflected", reflected, 5);
-  c.figure("slab of the table: let through", passed, 5);
+  c.figure("slab of the table: transmitted", passed, 5);
 }
 
 }  // namespace

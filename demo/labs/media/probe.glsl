@@ -1,8 +1,7 @@
-// Probes of lab 8. Points as demo/labs/media/media.cpp writes them.
+// Probes of lab 8. Points are laid out as in demo/labs/media/media.cpp.
 
-// One photon in a slab of thickness `depth` (optical units when the coefficients are), from the top with that cosine:
-// (1, 0, length) came back, (0, 1,
-// length) went through, (0, 0, length) was absorbed.
+// One photon in a slab of thickness `depth` (in optical units if the coefficients are), entering at the top with that
+// cosine: (1, 0, length) came back, (0, 1, length) went through, (0, 0, length) was absorbed.
 vec3 slabWalk(float cosine, float depth, float scattering, float absorption, float g) {
   float z = 0.0, way = 0.0;
   vec3 w = vec3(sqrt(max(0.0, 1.0 - cosine * cosine)), 0.0, cosine);
@@ -43,7 +42,7 @@ vec4 probe() {
 #elif PROBE == 8
   return vec4(naturalCoefficient(point(0).x, point(0).y));
 #elif PROBE == 9
-  // Reflected and transmitted: point(0) = depth, scattering, absorption, g; point(1).x chooses.
+  // Reflected and transmitted: point(0) = depth, scattering, absorption, g; point(1).x selects.
   float sum = 0.0;
   for (int k = 0; k < 16; ++k) {
     vec3 end = slabWalk(1.0, point(0).x, point(0).y, point(0).z, point(0).w);
@@ -51,12 +50,12 @@ vec4 probe() {
   }
   return vec4(sum / 16.0);
 #elif PROBE == 10
-  // Mean length of ways through a slab that is lit evenly from all sides and absorbs nothing.
+  // Mean path length through a slab without absorption that is lit evenly from all sides.
   float sum = 0.0;
   for (int k = 0; k < 16; ++k) sum += slabWalk(sqrt(random()), point(0).x, point(0).y, 0.0, point(0).w).z;
   return vec4(sum / 16.0);
 #elif PROBE == 11
-  // Transmittance of a wedge: to the right it is longer, to the bottom denser.
+  // Transmittance of a wedge: longer to the right, denser to the bottom.
   vec2 p = (vec2(pixel()) + 0.5) / vec2(96.0, 64.0);
   float hits = 0.0;
   for (int k = 0; k < 64; ++k)
@@ -64,7 +63,7 @@ vec4 probe() {
                 ? 1.0
                 : 0.0;
   float mean = hits / 64.0;
-  // Laplace's rule for the variance: pixels that saw one kind of event alone are not certain.
+  // Laplace's rule for the variance: pixels that saw only one kind of event are not certain.
   float guess = (hits + 1.0) / 66.0;
   return vec4(vec3(mean), guess * (1.0 - guess) / 64.0);
 #endif

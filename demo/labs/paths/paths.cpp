@@ -21,7 +21,7 @@ void check(Checks& c) {
                away = c.yours("lamp away", 0.2, 0.9);
   const double error = c.yours("error at 64", 0.01, 0.05), wanted = c.yours("error wanted", 0.001, 0.004, 4);
   const double light = albedo / kPi * squareLampIrradiance(side, height, {away, 0.0, 0.0});
-  // The README's questions, with what common wrong answers say.
+  // The README's questions, with the results of common mistakes.
   c.answer("samples", 64.0 * std::pow(error / wanted, 2.0), 0.02,
            {{{"linear", "the error falls with the square root of the samples"}, 64.0 * error / wanted}});
   c.answer("bounces", survival / (1.0 - survival), 0.005,
@@ -34,8 +34,7 @@ void check(Checks& c) {
     const auto of = [](double (*value)(double a, double b)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
     };
-    const Mistake swapped{"swapped",
-                          "the weights are exchanged: a strategy counts where its own density is the greater"};
+    const Mistake swapped{"swapped", "the weights are swapped: a strategy counts where its own density is greater"};
     c.twin("weight at points",
            {.probe = 1,
             .draw =
@@ -44,17 +43,17 @@ void check(Checks& c) {
                   if (r.uniform() < 0.05) p[0] = four(0.0, 0.0);
                 },
             .truth = of([](double a, double b) { return a > 0.0 ? a / (a + b) : 0.0; }),
-            .mistakes = {{{"double-counting", "both strategies count whole: light is counted twice"},
+            .mistakes = {{{"double-counting", "both strategies have full weight: light is counted twice"},
                           of([](double, double) { return 1.0; })},
-                         {{"double-counting", "both strategies count whole: light is counted twice"},
+                         {{"double-counting", "both strategies have full weight: light is counted twice"},
                           of([](double a, double) { return a > 0.0 ? 1.0 : 0.0; })},
                          {swapped, of([](double a, double b) { return b > 0.0 ? b / (a + b) : 0.0; })},
                          {{"half",
-                           "half each is unbiased, but keeps the noise of the worse strategy: weigh by the densities"},
+                           "half each is unbiased, but keeps the noise of the worse strategy: weight by the densities"},
                           of([](double, double) { return 0.5; })},
-                         {{"power-heuristic", "that is the power heuristic; the balance heuristic is asked for"},
+                         {{"power-heuristic", "that is the power heuristic; the task asks for the balance heuristic"},
                           of([](double a, double b) { return a > 0.0 ? a * a / (a * a + b * b) : 0.0; })},
-                         {{"maximum", "that is the maximum heuristic; the balance heuristic is asked for"},
+                         {{"maximum", "that is the maximum heuristic; the task asks for the balance heuristic"},
                           of([](double a, double b) { return a > b ? 1.0 : 0.0; })}}}) &&
         c.mean("the two weights make one", {.probe = 2, .expected = 1.0});
   }
@@ -78,20 +77,20 @@ void check(Checks& c) {
                   p[3] = four(r.uniform(0.1, 5.0), r.uniform(0.05, 1.0), r.uniform(0.1, 3.0));
                 },
             .truth = of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) / pdf; }),
-            .mistakes = {{{"lost-pi", "1 / pi of Lambert's BRDF is lost"},
+            .mistakes = {{{"lost-pi", "1 / pi of Lambert's BRDF is missing"},
                           of(LIGHT { return l * a * cx * std::max(0.0, cy) / (d * d) / pdf; })},
                          {{"no-area-to-solid-angle",
                            "the lamp's cosine and 1 / d^2 are lost: an area is not a solid angle"},
                           of(LIGHT { return l * a / kPi * cx / pdf + 0.0 * (cy + d); })},
-                         {{"lost-lamp-cosine", "the cosine at the lamp is lost"},
+                         {{"lost-lamp-cosine", "the cosine at the lamp is missing"},
                           of(LIGHT { return l * a / kPi * cx / (d * d) / pdf + 0.0 * cy; })},
-                         {{"lost-cosine", "the cosine at x is lost"},
+                         {{"lost-cosine", "the cosine at x is missing"},
                           of(LIGHT { return l * a / kPi * std::max(0.0, cy) / (d * d) / pdf + 0.0 * cx; })},
                          {{"distance-not-squared", "the distance must be squared"},
                           of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / d / pdf; })},
-                         {{"lost-density", "the density is lost: value / density"},
+                         {{"lost-density", "the density is missing: value / density"},
                           of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) + 0.0 * pdf; })},
-                         {{"wrong-side", "the lamp's back shines: its cosine has the wrong sign"},
+                         {{"wrong-side", "the lamp's back emits light: its cosine has the wrong sign"},
                           of(LIGHT { return l * a / kPi * cx * std::max(0.0, -cy) / (d * d) / pdf; })},
                          {{"no-clamp", "the lamp's back gives negative light"},
                           of(LIGHT { return l * a / kPi * cx * cy / (d * d) / pdf; })}}}) &&
@@ -99,7 +98,7 @@ void check(Checks& c) {
                {.probe = 4, .inputs = {four(side, height, albedo), four(away)}, .expected = light});
 #undef LIGHT
   }
-  // Task 3: roulette: survivors stand for those that ended.
+  // Task 3: roulette: survivors represent the terminated paths.
   if (c.task(3)) {
     const auto of = [](bool exchanged, double (*after)(double t, double s)) {
       return [=](Point p) {
@@ -120,13 +119,13 @@ void check(Checks& c) {
                          {{"roulette-multiplied",
                            "survivors are multiplied by the probability; they must be divided by it"},
                           of(false, [](double t, double s) { return t * s; })},
-                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival goes on"},
+                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival continues"},
                           of(true, [](double t, double s) { return t / s; })},
-                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival goes on"},
+                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival continues"},
                           of(true, [](double t, double s) { return t / (1.0 - s); })},
-                         {{"roulette-wrong-probability", "divide by the probability of going on, not of ending"},
+                         {{"roulette-wrong-probability", "divide by the probability of continuing, not of ending"},
                           of(false, [](double t, double s) { return t / (1.0 - s); })},
-                         {{"never-ends", "the path goes on always"},
+                         {{"never-ends", "the path always continues"},
                           [](Point p) { return glm::dvec4(1.0, p[0].x / p[0].y, 0.0, 0.0); }}}}) &&
         c.mean("throughput is kept on average", {.probe = 7, .inputs = {four(1.5, survival)}, .expected = 1.5});
   }
@@ -142,18 +141,18 @@ void check(Checks& c) {
     std::vector<double> oneMore(16, 0.0);
     for (int k = 1; k < 16; ++k)
       oneMore[static_cast<std::size_t>(k)] = std::pow(survival, k - 1) * (k < 15 ? 1.0 - survival : 1.0);
-    c.mean("radiance in a closed box",
-           {.probe = 9,
-            .inputs = box,
-            .expected = truth,
-            .mistakes = {{{"lost-emission", "the walls' own emission, seen without a reflection, is missing"},
-                          truth - emission},
-                         {{"roulette-undivided",
-                           "the throughput that roulette returns is not used: survivors count too little"},
-                          emission / (1.0 - albedo * survival)},
-                         {{"one-bounce", "one reflection is not all: the path goes on until roulette ends it"},
-                          emission * (1.0 + albedo)},
-                         {{"emission-once", "every wall that the path meets emits: add it at each"}, emission}}}) &&
+    c.mean(
+        "radiance in a closed box",
+        {.probe = 9,
+         .inputs = box,
+         .expected = truth,
+         .mistakes =
+             {{{"lost-emission", "the walls' own emission, seen without a reflection, is missing"}, truth - emission},
+              {{"roulette-undivided", "the throughput that roulette returns is not used: survivors count too little"},
+               emission / (1.0 - albedo * survival)},
+              {{"one-bounce", "there is more than one reflection: the path continues until roulette ends it"},
+               emission * (1.0 + albedo)},
+              {{"emission-once", "every wall that the path meets emits: add it at each"}, emission}}}) &&
         c.mean("radiance in another closed box",
                {.probe = 9,
                 .inputs = {four(otherEmission, otherAlbedo, 0.85)},
@@ -177,7 +176,7 @@ void check(Checks& c) {
                            }()}}}) &&
         c.mean("each path's radiance by its reflections", {.probe = 10, .inputs = box, .expected = 1.0});
   }
-  // Task 5: standardError: of a mean.
+  // Task 5: standardError of a mean.
   if (c.task(5)) {
     const auto of = [](double (*value)(double mean, double meanSquare, double n)) {
       return [=](Point p) { return glm::dvec4(value(double(p[0].x) / p[0].z, double(p[0].y) / p[0].z, p[0].z)); };
@@ -203,7 +202,7 @@ void check(Checks& c) {
                 {{"mean-not-subtracted", "the square of the mean is not subtracted"},
                  of([](double, double q, double n) { return std::sqrt(q / (n - 1.0)); })}}});
   }
-  // Task 6: the floor close below a lamp, by tasks 1, 2 and 5.
+  // Task 6: the floor close below a lamp, using tasks 1, 2 and 5.
   if (c.task(6)) {
     const std::vector<glm::vec4> lamp{four(side, height, albedo), four(away)};
     c.mean("both strategies together", {.probe = 12, .inputs = lamp, .expected = light}) &&
@@ -227,7 +226,7 @@ void check(Checks& c) {
       curve.reference.emplace_back(samples, curve.mine.front().y / std::sqrt(samples));
     }
     c.curve(curve);
-    // The same against time on this machine; what a run costs without samples counts too.
+    // The same against time on this machine, including the overhead of a run without samples.
     Curve time{"Error against time, both strategies, on this machine", "seconds", "standard deviation", {}, {}};
     for (int samples = 4; samples <= 1024; samples *= 4) {
       const auto start = Clock::now();

@@ -1,8 +1,8 @@
-// Probes of lab 7. Points as demo/labs/paths/paths.cpp writes them.
+// Probes of lab 7. Points are laid out as in demo/labs/paths/paths.cpp.
 const vec3 kDown = vec3(0.0, -1.0, 0.0), kUp = vec3(0.0, 1.0, 0.0);
 
-// Light of a square lamp of radiance 1 (point(0) = side, height, albedo) at a point of the floor: one sample of the
-// lamp, one by the cosine.
+// Light from a square lamp of radiance 1 (point(0) = side, height, albedo) at a point of the floor: one sample of the
+// lamp, one cosine-weighted.
 float bothStrategies(vec3 x) {
   float side = point(0).x, height = point(0).y, albedo = point(0).z, pdfArea = 1.0 / (side * side);
   vec2 u = random2() - 0.5;
@@ -57,7 +57,7 @@ vec4 probe() {
   }
   return vec4(sum / 64.0);
 #elif PROBE == 10
-  // What a path returns for its number of bounces is known: the ratio is 1.
+  // The correct result for a path's number of bounces is known: the ratio is 1.
   int bounces;
   float radiance = furnacePath(point(0).x, point(0).y, point(0).z, bounces), ratio = point(0).y / point(0).z, sum = 0.0;
   for (int k = clamp(bounces, 0, 10000); k >= 0; --k) sum = sum * ratio + 1.0;
@@ -69,7 +69,7 @@ vec4 probe() {
   for (int k = 0; k < 64; ++k) sum += bothStrategies(vec3(point(1).x, 0.0, 0.0));
   return vec4(sum / 64.0);
 #elif PROBE == 13
-  // The floor from above: 3 by 2 lengths about the lamp's foot.
+  // The floor from above: 3 by 2 units around the point below the lamp.
   vec3 x = vec3((vec2(pixel()) + 0.5) / 32.0 - vec2(1.5, 1.0), 0.0).xzy;
   float sum = 0.0, square = 0.0;
   for (int k = 0; k < 64; ++k) {

@@ -1,4 +1,4 @@
-// Probes of lab 4. Points as demo/labs/propagation/propagation.cpp writes them.
+// Probes of lab 4. Points are laid out as in demo/labs/propagation/propagation.cpp.
 const vec3 kAxes[6] =
     vec3[6](vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1));
 vec4 along(vec4 c, int k) { return propagated(c, kAxes[k], kAxes[(k + 2) % 6], kAxes[(k + 4) % 6]); }
@@ -21,7 +21,7 @@ vec4 probe() {
 #elif PROBE == 6
   return vec4(irradianceAt(point(0), point(1).xyz, point(1).w));
 #elif PROBE == 7
-  // One step of a grid of 12 by 8 by 8 cells, kept in the inputs: each cell gathers from its six neighbours.
+  // One step on a grid of 12 by 8 by 8 cells, stored in the inputs: each cell gathers from its six neighbours.
   ivec3 cell = ivec3(int(labIndex) % kGrid.x, int(labIndex) / kGrid.x % kGrid.y, int(labIndex) / (kGrid.x * kGrid.y));
   vec4 sum = vec4(0.0);
   for (int k = 0; k < 6; ++k) {
@@ -31,7 +31,7 @@ vec4 probe() {
   }
   return sum;
 #elif PROBE == 8
-  // All that an intensity sends, by directions uniform over the sphere.
+  // Total flux of an intensity, by directions uniform over the sphere.
   float sum = 0.0;
   for (int k = 0; k < 64; ++k) {
     float z = 2.0 * random() - 1.0, angle = 2.0 * PI * random();

@@ -21,7 +21,7 @@ glm::vec4 four(const glm::dvec3& v, double w = 0.0) { return glm::vec4(glm::dvec
 glm::dvec4 joined(double a, const glm::dvec3& b) { return {a, b.x, b.y, b.z}; }
 glm::dvec4 some(Random& r) { return {r.uniform(0.2, 1), r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(-1, 1)}; }
 
-/// A propagation step with everything that is got wrong about it.
+/// A propagation step with every common mistake as an option.
 struct Kernel {
   double front = kFront, side = kSide, forward = 2.0, overPi = 1.0 / kPi;
   bool clamped = true, sides = true, towardsFace = false;
@@ -51,7 +51,7 @@ struct Kernel {
 };
 
 const std::array<glm::dvec3, 6> kAxes{glm::dvec3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-/// The share of band 1 that a step keeps where no clamp acts: what six neighbours send of it.
+/// The share of band 1 that a step preserves if nothing is clamped: the total from six neighbours.
 double bandOneKept() {
   const Kernel kernel{.clamped = false};
   glm::dvec4 sum(0.0);
@@ -81,9 +81,9 @@ void check(Checks& c) {
   const double flux = c.yours("flux", 0.5, 4.0), cell = c.yours("cell", 0.3, 1.2),
                steps = c.yours("steps", 3.0, 9.0, 0);
   const double kept = bandOneKept();
-  // The README's questions, with what common wrong answers say.
+  // The README's questions, with the results of common mistakes.
   c.answer("injected", flux / (2.0 * std::sqrt(kPi)), 0.005,
-           {{{"lost-pi", "1 / pi is lost: a surface of Lambert's has the intensity flux / pi * cos"}, flux * kLobe0}});
+           {{{"lost-pi", "1 / pi is missing: a Lambertian surface has the intensity flux / pi * cos"}, flux * kLobe0}});
   c.answer("band 1", std::pow(kept, steps), 0.02, {{{"one-step", "that is one step"}, kept}});
   c.answer("reach", steps * cell, 0.005, {});
 
@@ -101,7 +101,7 @@ void check(Checks& c) {
         "cells of lights",
         {.probe = 1,
          .stride = 3,
-         // Inside the cell by a fiftieth at least: rounding decides nothing.
+         // At least a fiftieth inside the cell, so that rounding decides nothing.
          .draw =
              [](Random& r, std::span<glm::vec4> p) {
                const double s = r.uniform(0.2, 2.0);
@@ -115,7 +115,7 @@ void check(Checks& c) {
              {{"no-half-cell", "the light is not moved half a cell along its normal: it would light its own surface"},
               of(0.0, down)},
              {{"wrong-way", "the light is moved into its surface, not out of it"}, of(-0.5, down)},
-             {{"truncation", "int() cuts towards zero: what lies before the grid falls into cell 0; take floor"},
+             {{"truncation", "int() truncates towards zero: what lies before the grid falls into cell 0; take floor"},
               of(0.5, [](double x) { return std::trunc(x); })},
              {{"whole-cell", "half a cell, not a whole one"}, of(1.0, down)},
              {{"rounded", "a cell begins at its corner: floor, do not round"},
@@ -135,14 +135,14 @@ void check(Checks& c) {
             .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.direction(), r.uniform(0.1, 5)); },
             .truth = of(kLobe0 / kPi, kLobe1 / kPi),
             .mistakes = {
-                {{"lost-pi", "1 / pi is lost: the intensity is flux / pi * cos, so that it integrates to the flux"},
+                {{"lost-pi", "1 / pi is missing: the intensity is flux / pi * cos, so that it integrates to the flux"},
                  of(kLobe0, kLobe1)},
-                {{"four-pi", "flux / (4 pi) is a point in free space; a surface of Lambert's has flux / pi * cos"},
+                {{"four-pi", "flux / (4 pi) is a point in free space; a Lambertian surface has flux / pi * cos"},
                  of(0.25 * kLobe0 / kPi, 0.25 * kLobe1 / kPi)},
                 {{"delta", "light leaves a surface in a cosine lobe, not in one direction"}, of(kY0, kY1)},
                 {{"wrong-side", "the light leaves on the wrong side"}, of(kLobe0 / kPi, -kLobe1 / kPi)},
                 {{"isotropic", "the normal is ignored"}, of(kLobe0 / kPi, 0.0)},
-                {{"lost-flux", "the flux is lost"},
+                {{"lost-flux", "the flux is missing"},
                  [](Point p) { return joined(kLobe0, kLobe1 * glm::dvec3(p[0])) / kPi; }}}});
   }
   // Task 3: fluxInto: through a face.
@@ -163,7 +163,7 @@ void check(Checks& c) {
             .truth = of(1.0, true, true),
             .mistakes = {{{"no-clamp", "an intensity within two bands may be negative; a flux may not"},
                           of(1.0, false, true)},
-                         {{"lost-solid-angle", "the solid angle is lost"}, of(1.0, true, false)},
+                         {{"lost-solid-angle", "the solid angle is missing"}, of(1.0, true, false)},
                          {{"wrong-side", "the direction has the wrong sign"}, of(-1.0, true, true)},
                          {{"absolute", "a negative intensity counts as zero, not as positive"},
                           [](Point p) {
@@ -181,9 +181,9 @@ void check(Checks& c) {
                {.probe = 8,
                 .inputs = {glm::vec4(flux / kPi * joined(kLobe0, kLobe1 * glm::dvec3(0, 1, 0)))},
                 .expected = 1.125 * flux,
-                .mistakes = {{{"no-clamp", "negative intensities are not cut off"}, flux}}});
+                .mistakes = {{{"no-clamp", "negative intensities are not clamped"}, flux}}});
   }
-  // Task 4: propagated: what a cell gets from the neighbour behind it.
+  // Task 4: propagated: the light that a cell receives from the neighbour behind it.
   if (c.task(4)) {
     const auto of = [](Kernel kernel) {
       return
@@ -204,7 +204,7 @@ void check(Checks& c) {
              {{{"side-solid-angle",
                 "0.42344 for 0.42343 sr: the wrong constant that several programs copied from each other"},
                of({.side = 0.4234413544})},
-              {{"solid-angles-exchanged", "the solid angles of front and sides are exchanged"},
+              {{"solid-angles-exchanged", "the solid angles of front and sides are swapped"},
                of({.front = kSide, .side = kFront})},
               {{"side-directions",
                 "the middle of a side face lies towards 2 travel + side, as seen from the middle of the cell behind"},
@@ -214,7 +214,7 @@ void check(Checks& c) {
                of({.forward = 0.0})},
               {{"no-clamp", "negative intensities must not send flux"}, of({.clamped = false})},
               {{"front-alone", "the four side faces are missing"}, of({.sides = false})},
-              {{"towards-face", "the new light leaves along the face's normal, not along the way to the face"},
+              {{"towards-face", "the new light leaves along the face's normal, not along the direction to the face"},
                of({.towardsFace = true})},
               {{"four-pi", "4 pi for pi: three quarters of the light are lost in each step"},
                of({.overPi = 0.25 / kPi})}},
@@ -227,7 +227,7 @@ void check(Checks& c) {
                     },
                 .truth = [kept](Point p) { return glm::dvec4(1.0, kept, kept, kept) * glm::dvec4(p[0]); },
                 .tolerance = 1e-5});
-    // The grid forgets direction: band 1 of even light, step by step.
+    // The grid loses direction: band 1 of uniform light, step by step.
     Curve curve{"What is left of band 1 after steps", "steps", "share", {}, {}};
     std::vector<glm::vec4> light{glm::vec4(1.0f, 0.25f, 0.0f, 0.0f)};
     for (int k = 1; k <= 9; ++k) {
@@ -237,14 +237,14 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
-  // Task 5: irradianceAt: what a surface stops.
+  // Task 5: irradianceAt: the light that a surface stops.
   if (c.task(5)) {
     const auto of = [](Kernel kernel, double sign, bool area) {
       return [=](Point p) {
         return glm::dvec4(kernel.irradiance(glm::dvec4(p[0]), sign * glm::dvec3(p[1]), area ? double(p[1].w) : 1.0));
       };
     };
-    // Nearly even light: no clamp acts, so that the turn of the frame about the normal does not count.
+    // Nearly uniform light: nothing is clamped, so the frame's rotation about the normal does not matter.
     c.twin("irradiance at points",
            {.probe = 6,
             .stride = 2,
@@ -295,7 +295,7 @@ void check(Checks& c) {
   c.figure("injected", flux / (2.0 * std::sqrt(kPi)));
   c.figure("band 1", std::pow(kept, steps));
   c.figure("reach", steps * cell);
-  // A fresh light, flux / pi (1/4 + cos/2), over the directions where it is not negative (cos > -1/2).
+  // A newly injected light, flux / pi (1/4 + cos/2), over the directions in which it is not negative (cos > -1/2).
   const double clamped = 2.0 * (0.25 * 1.5 + 0.25 * (1.0 - 0.25));
   c.figure("flux of the clamped lobe", clamped * flux);
   c.figure("the same over the light's own flux", clamped);

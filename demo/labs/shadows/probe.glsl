@@ -1,7 +1,7 @@
-// Probes of lab 2. Points as demo/labs/shadows/shadows.cpp writes them.
+// Probes of lab 2. Points are laid out as in demo/labs/shadows/shadows.cpp.
 
-// The wall z = 0, lit by a square of the floor that lies `gap` before it: point(0) = side, gap, albedo, cosine of the
-// sun; its irradiance is 1.
+// The wall z = 0, lit by a square of the floor that begins `gap` in front of it: point(0) = side, gap, albedo, cosine
+// of the sun; its irradiance is 1.
 float wallSample(vec3 x) {
   float side = point(0).x, cosine = point(0).w;
   vec2 u = random2();

@@ -26,7 +26,7 @@ void check(Checks& c) {
                high = c.yours("point height", 0.4, 1.2);
   const double texel = c.yours("texel", 0.01, 0.1), cosine = std::cos(sun * kPi / 180.0);
   const double light = albedo * cosine / kPi * fromFloor(side, gap, {0.0, high, 0.0});
-  // The README's questions, with what common wrong answers say.
+  // The README's questions, with the results of common mistakes.
   c.answer("bias", 0.5 * texel * std::tan(sun * kPi / 180.0), 0.005,
            {{{"whole-texel", "half a texel, not a whole one"}, texel * std::tan(sun * kPi / 180.0)}});
   c.answer("flux", albedo * side * side * cosine, 0.005,
@@ -35,7 +35,7 @@ void check(Checks& c) {
             {{"lost-cosine", "tilted to the sun the patch catches less"}, albedo * side * side}});
   c.answer("light", light, 0.02, {});
 
-  // Task 1: slopeBias: half a texel's change of depth.
+  // Task 1: slopeBias: the change of depth over half a texel.
   if (c.task(1)) {
     const auto of = [](double (*value)(double cosine, double texel)) {
       return [=](Point p) {
@@ -63,12 +63,12 @@ void check(Checks& c) {
                 {{"whole-texel", "half a texel, not a whole one"},
                  of([](double x, double t) { return t * std::sqrt(1.0 - x * x) / x; })},
                 {{"constant-bias", "the bias does not follow the slope"}, of([](double, double t) { return 0.5 * t; })},
-                {{"back-faces", "a surface that turns its back needs none"},
+                {{"back-faces", "a surface that faces away needs none"},
                  [](Point p) {
                    const double x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1]));
                    return glm::dvec4(0.5 * p[0].w * std::sqrt(1.0 - x * x) / x);
                  }},
-                {{"back-faces", "a surface that turns its back needs none"}, [](Point p) {
+                {{"back-faces", "a surface that faces away needs none"}, [](Point p) {
                    const double x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1]));
                    return glm::dvec4(0.5 * p[0].w * std::sqrt(1.0 - x * x) / std::abs(x));
                  }}}});
@@ -89,7 +89,7 @@ void check(Checks& c) {
     c.twin("shadow at points",
            {.probe = 2,
             .stride = 2,
-            // No comparison is decided by rounding, with the bias or without.
+            // No comparison is decided by rounding, with or without the bias.
             .draw =
                 [](Random& r, std::span<glm::vec4> p) {
                   bool near = true;
@@ -111,9 +111,9 @@ void check(Checks& c) {
                  }},
                 {{"bias-sign", "the bias has the wrong sign: it moves the surface towards the light"},
                  of(-1.0, false, false)},
-                {{"bias-lost", "the bias is lost"}, of(0.0, false, false)},
+                {{"bias-lost", "the bias is missing"}, of(0.0, false, false)},
                 {{"inverted", "that is the share in shadow: 1 is lit"}, of(1.0, true, false)},
-                {{"axes-exchanged", "x and y of f are exchanged"}, of(1.0, false, true)},
+                {{"axes-exchanged", "x and y of f are swapped"}, of(1.0, false, true)},
                 {{"nearest", "the four comparisons are not filtered by f"},
                  [=](Point p) { return glm::dvec4(double(p[1].x) - double(p[1].y) <= double(p[0].x) ? 1.0 : 0.0); }},
                 {{"average", "the four comparisons are averaged; they must be weighted by f"}, [=](Point p) {
@@ -122,32 +122,32 @@ void check(Checks& c) {
                    return glm::dvec4(s);
                  }}}});
   }
-  // Task 3: texelFlux: what a texel of the map reflects.
+  // Task 3: texelFlux: the flux that a texel of the map reflects.
   if (c.task(3)) {
     const auto of = [](double (*value)(double a, double e, double t, double x)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, p[0].z, p[0].w)); };
     };
-    c.twin(
-        "flux at points",
-        {.probe = 3,
-         .draw =
-             [](Random& r, std::span<glm::vec4> p) {
-               p[0] = four(r.uniform(0.1, 1), r.uniform(0.1, 5), r.uniform(0.001, 0.1), r.uniform(0.1, 1));
-             },
-         .truth = of([](double a, double e, double t, double) { return a * e * t; }),
-         .mistakes = {
-             {{"double-cosine",
-               "the cosine is in the texel's area already: the surface is larger by 1 / cos and lit less by cos"},
-              of([](double a, double e, double t, double x) { return a * e * t * x; })},
-             {{"divided-cosine", "the surface is larger by 1 / cos, but lit less by cos: neither is left"},
-              of([](double a, double e, double t, double x) { return a * e * t / x; })},
-             {{"over-pi", "flux is over all directions: 1 / pi belongs to radiance"},
-              of([](double a, double e, double t, double) { return a * e * t / kPi; })},
-             {{"area-lost", "the texel's area is lost: brightness would follow the map's resolution"},
-              of([](double a, double e, double, double) { return a * e; })},
-             {{"lost-albedo", "the albedo is lost"}, of([](double, double e, double t, double) { return e * t; })}}});
+    c.twin("flux at points",
+           {.probe = 3,
+            .draw =
+                [](Random& r, std::span<glm::vec4> p) {
+                  p[0] = four(r.uniform(0.1, 1), r.uniform(0.1, 5), r.uniform(0.001, 0.1), r.uniform(0.1, 1));
+                },
+            .truth = of([](double a, double e, double t, double) { return a * e * t; }),
+            .mistakes = {
+                {{"double-cosine",
+                  "the cosine is in the texel's area already: the surface is larger by 1 / cos and lit less by cos"},
+                 of([](double a, double e, double t, double x) { return a * e * t * x; })},
+                {{"divided-cosine", "the surface is larger by 1 / cos, but lit less by cos: neither is left"},
+                 of([](double a, double e, double t, double x) { return a * e * t / x; })},
+                {{"over-pi", "flux is over all directions: 1 / pi belongs to radiance"},
+                 of([](double a, double e, double t, double) { return a * e * t / kPi; })},
+                {{"area-lost", "the texel's area is missing: brightness would follow the map's resolution"},
+                 of([](double a, double e, double, double) { return a * e; })},
+                {{"lost-albedo", "the albedo is missing"},
+                 of([](double, double e, double t, double) { return e * t; })}}});
   }
-  // Task 4: texelLight: from a texel to a point.
+  // Task 4: texelLight: light from a texel to a point.
   if (c.task(4)) {
     const auto of = [](double (*value)(double cosP, double cosX, double d)) {
       return [=](Point p) {
@@ -166,7 +166,7 @@ void check(Checks& c) {
                   p[2] = four(r.direction() * 0.4), p[3] = four(r.direction());
                 },
             .truth = of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (kPi * d * d); }),
-            .mistakes = {{{"lost-pi", "1 / pi is lost: the intensity is flux / pi * cos"},
+            .mistakes = {{{"lost-pi", "1 / pi is missing: the intensity is flux / pi * cos"},
                           of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (d * d); })},
                          {{"power-of-distance",
                            "with vectors that are not of length 1 the distance counts to the fourth power: two of it "
@@ -175,13 +175,13 @@ void check(Checks& c) {
                          {{"power-of-distance",
                            "the distance counts twice too often: with unit vectors 1 / d^2, without 1 / d^4"},
                           of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (kPi * d * d * d * d); })},
-                         {{"lost-cosine", "a cosine is lost: one at the texel, one at x"},
+                         {{"lost-cosine", "a cosine is missing: one at the texel, one at x"},
                           of(PART { return std::max(0.0, cp) / (kPi * d * d) + 0.0 * cx; })},
-                         {{"lost-cosine", "a cosine is lost: one at the texel, one at x"},
+                         {{"lost-cosine", "a cosine is missing: one at the texel, one at x"},
                           of(PART { return std::max(0.0, cx) / (kPi * d * d) + 0.0 * cp; })},
                          {{"wrong-side", "the wrong side is lit: x is lit where its normal looks towards the texel"},
                           of(PART { return std::max(0.0, cp) * std::max(0.0, -cx) / (kPi * d * d); })},
-                         {{"wrong-side", "the texel's back shines"},
+                         {{"wrong-side", "the texel's back emits light"},
                           of(PART { return std::max(0.0, -cp) * std::max(0.0, cx) / (kPi * d * d); })},
                          {{"no-clamp", "two negative cosines make light: clamp each by itself"},
                           of(PART { return cp * cx / (kPi * d * d); })},
@@ -226,14 +226,14 @@ void check(Checks& c) {
       for (const glm::vec4& v : c.run(9, std::vector<glm::vec4>{four(1.0, samples)}, 0, 512))
         square += std::pow(v.x - 1.25 * kPi, 2.0) / 512.0;
       curve.mine.emplace_back(samples, std::sqrt(square));
-      // Of weight (1 + x^2) with x = u cos: 4 pi^2 (mean of u^2 (1 + u^2 cos^2)^2) less the square of the mean.
+      // Variance with the weight (1 + x^2), x = u cos: 4 pi^2 (mean of u^2 (1 + u^2 cos^2)^2) minus the squared mean.
       curve.reference.emplace_back(
           samples,
           std::sqrt((4.0 * kPi * kPi * (1.0 / 3.0 + 1.0 / 5.0 + 3.0 / 56.0) - std::pow(1.25 * kPi, 2.0)) / samples));
     }
     c.curve(curve);
   }
-  // Task 6: a wall lit by the floor before it, by tasks 3 and 4.
+  // Task 6: a wall lit by the floor in front of it, using tasks 3 and 4.
   if (c.task(6)) {
     const std::vector<glm::vec4> scene{four(side, gap, albedo, cosine), four(0.0, high)};
     c.mean("light of a floor on a wall", {.probe = 7, .inputs = scene, .expected = light}) &&

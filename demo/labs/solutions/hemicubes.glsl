@@ -1,7 +1,6 @@
 // Lab 6: hemicubes. Sample solution.
 
-// TASK 1. Form factor of a small area on the hemicube's top (the square from -1 to 1 at height 1 above the patch), at
-// p.
+// TASK 1. Form factor of a small area at p on the hemicube's top (the square from -1 to 1 at height 1 above the patch).
 float deltaTop(vec2 p, float area) {
   float square = dot(p, p) + 1.0;
   return area / (PI * square * square);
@@ -13,7 +12,7 @@ float deltaSide(float y, float z, float area) {
   return z * area / (PI * square * square);
 }
 
-// TASK 3. The unit direction through the centre of a pixel. n pixels to a side of the cube; face 0 top, 1 +x, 2 -x, 3
+// TASK 3. The unit direction through the centre of a pixel. n: pixels per side of the cube; face: 0 top, 1 +x, 2 -x, 3
 // +y, 4 -y; z is the normal.
 vec3 pixelDirection(int face, ivec2 pixel, int n) {
   vec2 p = 2.0 * (vec2(pixel) + 0.5) / float(n);
@@ -23,8 +22,8 @@ vec3 pixelDirection(int face, ivec2 pixel, int n) {
   return normalize(d);
 }
 
-// TASK 4. One sweep of Jacobi's over three patches: the radiosity of each from that of all; F[3 * i + j] is the form
-// factor from i to j.
+// TASK 4. One Jacobi sweep over three patches: the radiosity of each from that of all; F[3 * i + j] is the form factor
+// from i to j.
 vec3 sweep(vec3 radiosity, vec3 emission, vec3 reflectance, float F[9]) {
   vec3 result;
   for (int i = 0; i < 3; ++i)
@@ -33,7 +32,7 @@ vec3 sweep(vec3 radiosity, vec3 emission, vec3 reflectance, float F[9]) {
   return result;
 }
 
-// TASK 5. How far from the solution the radiosity may be after a sweep whose largest change was `change`;
+// TASK 5. Upper bound of the radiosity's distance from the solution after a sweep whose largest change was `change`;
 // `reflectance` is the largest of all patches.
 float errorBound(float change, float reflectance) {
   return change * reflectance / (1.0 - reflectance);

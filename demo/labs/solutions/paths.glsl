@@ -1,21 +1,21 @@
 // Lab 7: path tracing. Sample solution.
 
-// Given, from lab 1: a density over a lamp's area as a density over solid angle at x, p(omega) d omega = p(A) dA; 0
-// where x sees the lamp's back.
+// Given, from lab 1: converts a density over a lamp's area to a density over solid angle at x, p(omega) d omega = p(A)
+// dA; 0 if x sees the lamp's back.
 float densityOverSolidAngle(float pdfArea, vec3 x, vec3 y, vec3 ny) {
   vec3 way = x - y;
   float square = dot(way, way), cosine = dot(ny, way * inversesqrt(square));
   return cosine > 0.0 ? pdfArea * square / cosine : 0.0;
 }
 
-// TASK 1. The balance heuristic: the weight of a sample whose own strategy has density `own` there and the other
+// TASK 1. The balance heuristic: the weight of a sample at which its own strategy has density `own` and the other
 // strategy `other`.
 float misWeight(float own, float other) {
   return own > 0.0 ? own / (own + other) : 0.0;
 }
 
-// TASK 2. Next-event estimation: what the point y of a lamp adds to the radiance reflected at x, y drawn with density
-// pdfArea over the lamp.
+// TASK 2. Next-event estimation: the contribution of a lamp's point y to the radiance reflected at x, where y was drawn
+// with density pdfArea over the lamp.
 float lampSample(float radiance, float albedo, vec3 x, vec3 n, vec3 y, vec3 ny, float pdfArea) {
   vec3 way = y - x;
   float square = dot(way, way);
@@ -23,15 +23,15 @@ float lampSample(float radiance, float albedo, vec3 x, vec3 n, vec3 y, vec3 ny, 
   return radiance * albedo / PI * max(0.0, dot(n, w)) * max(0.0, -dot(ny, w)) / square / pdfArea;
 }
 
-// TASK 3. Russian roulette: whether the path goes on, with probability `survival`; u is uniform in [0,1).
+// TASK 3. Russian roulette: whether the path continues, with probability `survival`; u is uniform in [0,1).
 bool roulette(inout float throughput, float survival, float u) {
   if (u >= survival) return false;
   throughput /= survival;
   return true;
 }
 
-// TASK 4. One path in a closed box of walls that emit `emission` and reflect `albedo`: its radiance, and how often it
-// was reflected.
+// TASK 4. One path in a closed box of walls that emit `emission` and reflect `albedo`: its radiance, and the number of
+// reflections.
 float furnacePath(float emission, float albedo, float survival, out int bounces) {
   float radiance = emission, throughput = 1.0;
   bounces = 0;

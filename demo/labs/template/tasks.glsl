@@ -1,4 +1,4 @@
-// README.md tells what is asked; PI, frame() and random() are there. Take NOT_DONE(n) out when a task is done.
+// README.md describes the tasks; PI, frame() and random() are available. Remove NOT_DONE(n) when a task is done.
 
 // TASK 1. The area of a disc.
 float discArea(float radius) {
@@ -6,7 +6,7 @@ float discArea(float radius) {
   return 0.0;
 }
 
-// TASK 2. A point uniform in a disc of radius 1; u: two independent numbers in [0,1).
+// TASK 2. A uniformly distributed point in a disc of radius 1; u: two independent numbers in [0,1).
 vec2 discPoint(vec2 u) {
   NOT_DONE(2)
   return vec2(0.0);

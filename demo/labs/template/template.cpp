@@ -9,11 +9,11 @@ namespace lucerna::demo::labs {
 static void check(Checks& c) {
   constexpr double kPi = std::numbers::pi;
   const Mistake circumference{"circumference", "that is the circumference"};
-  // A question: what it is about follows from the seed, and its figure from a formula.
+  // A question: its parameter follows from the seed, and its number from a formula.
   const double radius = c.yours("radius", 0.5, 3.0);
   c.answer("area", kPi * radius * radius, 0.005, {{circumference, 2.0 * kPi * radius}});
   c.figure("area", kPi * radius * radius);
-  // A function against its twin in double precision, with what typical mistakes would give.
+  // A function compared with its twin in double precision, with the results of typical mistakes.
   if (c.task(1))
     c.twin("areas",
            {.probe = 1,
@@ -21,7 +21,8 @@ static void check(Checks& c) {
             .truth = [](Point p) { return glm::dvec4(kPi * p[0].x * p[0].x); },
             .mistakes = {{circumference, [](Point p) { return glm::dvec4(2.0 * kPi * p[0].x); }},
                          {{"not-squared", "square the radius"}, [](Point p) { return glm::dvec4(kPi * p[0].x); }}}});
-  // Samples against the shares of bins: eight rings of equal area; 8 is outside. A uniform radius crowds the middle.
+  // Samples compared with the probabilities of bins: eight rings of equal area; 8 is outside. A uniform radius crowds
+  // the middle.
   std::vector<double> crowded;
   for (int k = 0; k < 8; ++k) crowded.push_back(std::sqrt((k + 1) / 8.0) - std::sqrt(k / 8.0));
   const auto ringOf = [](const glm::vec4& v) { return static_cast<int>(glm::min(8.0f, 7.9999f * glm::dot(v, v))); };

@@ -15,7 +15,7 @@
 namespace lucerna {
 
 static_assert(std::endian::native == std::endian::little,
-              "the file is little endian; a big-endian machine needs its words turned here");
+              "the file is little endian; a big-endian machine must swap its words here");
 
 namespace {
 
