@@ -694,7 +694,7 @@ void WalkWindow::beginCapture() {
   captures_ = std::exchange(state_.captureWanted, false) || frames_ == options_.capture;
   if (!captures_) return;
   if (renderDoc_) renderDoc_->begin();
-  else state_.say("RenderDoc is not there: install it and begin with walk --capture N");
+  else state_.say("RenderDoc is missing: install it and start with walk --capture N");
 }
 
 void WalkWindow::endCapture() {
