@@ -21,8 +21,7 @@ static void check(Checks& c) {
             .truth = [](Point p) { return glm::dvec4(kPi * p[0].x * p[0].x); },
             .mistakes = {{circumference, [](Point p) { return glm::dvec4(2.0 * kPi * p[0].x); }},
                          {{"not-squared", "square the radius"}, [](Point p) { return glm::dvec4(kPi * p[0].x); }}}});
-  // Samples compared with the probabilities of bins: eight rings of equal area; 8 is outside. A uniform radius crowds
-  // the middle.
+  // Samples compared with the probabilities of bins: eight rings of equal area; 8 is outside.
   std::vector<double> crowded;
   for (int k = 0; k < 8; ++k) crowded.push_back(std::sqrt((k + 1) / 8.0) - std::sqrt(k / 8.0));
   const auto ringOf = [](const glm::vec4& v) { return static_cast<int>(glm::min(8.0f, 7.9999f * glm::dot(v, v))); };
