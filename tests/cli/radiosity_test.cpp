@@ -235,7 +235,7 @@ TEST_F(Radiosity, CheckpointOfAnotherRunIsNotTakenUp) {
   const RunResult other = run(
       solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1 --solver gauss-seidel --json '" + path("j.json") + "'"));
   EXPECT_EQ(other.exitCode, 0) << other.err;
-  EXPECT_NE(other.err.find("not resumed (made with other settings"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("not resumed (made with different settings"), std::string::npos) << other.err;
   EXPECT_EQ(json("j.json")["sweeps_here"], 1);
   // Another file in OUT's place.
   ASSERT_EQ(run(solve(path("m.rad"), path("whole.rad"), "--max-sweeps 1")).exitCode, 0);
