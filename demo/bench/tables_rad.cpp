@@ -213,7 +213,7 @@ PartFolder::Json closedBox(const gl::Context& context, gl::ProgramLibrary& progr
   HemicubeSettings settings;
   settings.visibility = way;
   Hemicubes hemicubes(programs, context.capabilities(), mesh, settings);
-  const int count = std::min(hemicubes.patchCount(), std::max(64, static_cast<int>(2000.0 * scale)));
+  const int count = std::min(hemicubes.patchCount(), std::max(16, static_cast<int>(2000.0 * scale)));
   hemicubes.rows(0, std::min(count, hemicubes.batchSize()));
   std::vector<double> rates;
   const std::clock_t processor = std::clock();
@@ -269,7 +269,7 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
                                         bool quiet, bool prints, const PartOptions& part) {
   // The configurations at this scale.
   const std::string& renderer = context.capabilities().renderer;
-  const auto most = static_cast<std::size_t>(std::max(8.0, std::round(400.0 * scale)));
+  const auto most = static_cast<std::size_t>(std::max(4.0, std::round(400.0 * scale)));
   const double mostSeconds = std::max(1.0, 40.0 * scale);
 
   Units units(part, fmt::format("rad, scale {}, {} on {}", scale, renderer, cpuName()),

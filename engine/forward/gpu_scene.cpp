@@ -45,8 +45,9 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
     : scene_(&scene), needs_(needs) {
   gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear,
                         gl::Wrap::repeat};
-  sampling.anisotropy =
-      capabilities.anisotropicFilter ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
+  // Without mipmaps a software renderer reads every texel below a pixel, thousands where the picture is small.
+  const bool anisotropic = capabilities.anisotropicFilter && settings.mipmaps;
+  sampling.anisotropy = anisotropic ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
 
   struct Use {
     const char* name;

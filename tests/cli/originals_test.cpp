@@ -66,7 +66,8 @@ std::string small(const std::string& command) {
   if (is("render")) {
     more = " --size 32x18 --quiet";
     if (has("--technique path")) more += " --spp 1";
-    if (has("--technique radiosity")) more += " --set radiosity.resolution=16 --set radiosity.error=0.1";
+    if (has("--technique radiosity"))
+      more += " --set radiosity.resolution=16 --set radiosity.error=0.1 --set radiosity.edge=0.2";
     else if (!has("--technique") && !has("lpv.transport=rays")) more += " --set lpv.cells=8";
   }
   if (is("walk")) more = " --record walk --frames 2 --size 32x18 --set lpv.cells=8 --quiet";

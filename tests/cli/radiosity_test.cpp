@@ -194,7 +194,8 @@ TEST_F(Radiosity, WrongInputIsOneClearLine) {
 }
 
 /// Ends a run by a signal `seconds` after its start, again and again, until it ends by itself. Where that is before the
-/// first signal (the machine was busier when the time was taken), from the start with half the time.
+/// first signal (the machine was busier when the time was taken), from the start with half the time. Each piece is
+/// longer than the last: where the machine is busier now, none is for ever too short to get anywhere.
 void runInPieces(const std::string& command, const std::string& out, const std::string& signal, double seconds) {
   int pieces = 0;
   for (int runs = 0; runs < 200; ++runs) {
@@ -206,6 +207,7 @@ void runInPieces(const std::string& command, const std::string& out, const std::
       continue;
     }
     ++pieces;
+    seconds *= 1.1;
     EXPECT_TRUE(result.exitCode == 124 || result.exitCode == 130 || result.exitCode == 137)
         << result.exitCode << result.err;
   }
@@ -252,10 +254,11 @@ TEST_F(Radiosity, CheckpointOfAnotherRunIsNotTakenUp) {
 
 TEST_F(Radiosity, FileThatChangesUnderTheRunIsLeftAlone) {
   generate("m.rad", "10 0.5 1000000");
-  // Another program replaces OUT while the first sweep runs.
-  const std::string command = solve(path("m.rad"), path("o.rad"), "--save-every 0") + " & pid=$!; while ! [ -s '" +
-                              path("o.rad") + "' ]; do sleep 0.02; done; sleep 0.3; printf theirs > '" + path("o.rad") +
-                              "'; wait $pid";
+  // Another program replaces OUT while the first sweep runs, and again, should a save that was under way replace its.
+  const std::string out = "'" + path("o.rad") + "'";
+  const std::string command = solve(path("m.rad"), path("o.rad"), "--save-every 0") + " & pid=$!; until [ -s " + out +
+                              " ]; do sleep 0.01; done; while kill -0 $pid; do " + "printf theirs > " + out +
+                              "; sleep 0.01; done 2>/dev/null; wait $pid";
   const RunResult result = run(command);
   EXPECT_EQ(result.exitCode, 2) << result.out << result.err;
   EXPECT_NE(result.err.find("changed by another program"), std::string::npos) << result.err;

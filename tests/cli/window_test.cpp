@@ -114,14 +114,15 @@ TEST_F(Window, DebugViewsShowWhatStagesMade) {
         "1 key R\n6 save frame.png\n7 touch Debug view\n8 touch Debug view/picture of\n9 touch Debug view/picture of: "
         "rsm 1 flux\n10 save flux.png\n11 touch Debug view/picture of\n12 touch Debug view/picture of: normals\n"
         "13 save normals.png\n");
-  const RunResult result = play(path("input.txt"), "--technique rsm --set rsm.samples=16", "", "800x700");
+  const RunResult result =
+      play(path("input.txt"), "--technique rsm --set rsm.samples=4 --set rsm.interpolate=off", "", "700x400");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
   const auto brightest = [&](const char* name) {
     const lucerna::Bitmap picture = lucerna::readBitmap(path(name));
     int most = 0;
-    for (int y = 100; y < 500; ++y)  // beside the panel and the hint
-      for (int x = 50; x < 400; ++x)
+    for (int y = 50; y < 300; ++y)  // beside the panel and the hint
+      for (int x = 50; x < 350; ++x)
         most = std::max<int>(most,
                              picture.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
                                                static_cast<std::size_t>(x))]);
@@ -138,8 +139,9 @@ TEST_F(Window, APixelIsAskedWhatLitIt) {
   write("input.txt",
         "1 key R\n4 save before.png\n5 cursor 200.5 250.5\n6 key I\n10 touch Pixel/export as JSON\n12 save lines.png\n"
         "13 touch Pixel/draw its light\n15 save hidden.png\n16 touch Pixel/forget\n"
-        "17 touch Pixel/ask by clicking\n18 click 100 300\n136 touch Pixel/export as JSON\n");
-  const RunResult result = play(path("input.txt"), "--technique rsm --set rsm.samples=16 --shots .", "", "800x700");
+        "17 touch Pixel/ask by clicking\n18 click 100 300\n40 touch Pixel/export as JSON\n");
+  const RunResult result =
+      play(path("input.txt"), "--technique rsm --set rsm.samples=4 --set rsm.interpolate=off --shots .", "", "700x400");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
   const auto file = nlohmann::json::parse(std::ifstream(path("room_pixel_200_250.json")));
@@ -154,7 +156,7 @@ TEST_F(Window, APixelIsAskedWhatLitIt) {
     const lucerna::Bitmap picture = lucerna::readBitmap(path(name));
     int count = 0;
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
-      count += static_cast<int>(i / 4) % picture.width < 480 && picture.rgba[i + 1] > 180 && picture.rgba[i] < 100;
+      count += static_cast<int>(i / 4) % picture.width < 380 && picture.rgba[i + 1] > 180 && picture.rgba[i] < 100;
     return count;
   };
   EXPECT_GT(lineColours("lines.png"), 10);
@@ -199,14 +201,14 @@ TEST_F(Window, DebugViewsOfTheSceneItself) {
         "16 touch Debug view/in the scene\n17 touch Debug view/in the scene: geometry volume\n18 save geometry.png\n"
         "19 touch Debug view/in the scene\n20 touch Debug view/in the scene: visibility voxels\n21 save voxels.png\n");
   const RunResult result =
-      play(path("input.txt"), "--technique lpv --set lpv.transport=propagate --set lpv.blocking=on", "", "800x700");
+      play(path("input.txt"), "--technique lpv --set lpv.transport=propagate --set lpv.blocking=on", "", "700x400");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
   const auto pixels = [&](const char* name) {  // of the picture, beside the panel and above the hint
     const lucerna::Bitmap picture = lucerna::readBitmap(path(name));
     std::vector<std::uint8_t> part;
-    for (int y = 50; y < 600; ++y)
-      for (int x = 0; x < 480; ++x)
+    for (int y = 50; y < 300; ++y)
+      for (int x = 0; x < 380; ++x)
         for (int c = 0; c < 3; ++c)
           part.push_back(picture.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
                                            static_cast<std::size_t>(x)) +
@@ -311,8 +313,8 @@ TEST_F(Window, SizesOfAllKinds) {
 // While the camera rests the reference comes, and the picture's error with its interval; what was sampled is in the
 // cache for the next time.
 TEST_F(Window, TruthComesWhileTheCameraRests) {
-  write("input.txt", "1 key R\n2 key T\n400 key F2\n");
-  const RunResult result = play(path("input.txt"), "--technique direct");
+  write("input.txt", "1 key R\n2 key T\n100 key F2\n");
+  const RunResult result = play(path("input.txt"), "--technique direct", "", "64x36");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto truth = json().at("window").at("truth");
   EXPECT_GE(truth.at("samples"), 64) << truth;

@@ -5,6 +5,7 @@
 #include "scene/triangle_parts.hpp"
 #include "support/form_factor_twin.hpp"
 #include "support/gl_fixture.hpp"
+#include "support/long_tests.hpp"
 #include "support/radiosity_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -423,7 +424,7 @@ Scene litBall(int level) {
 // A small source on a hollow surface, and triangles from many pixels down to a seventh of one: what reaches places in
 // the light, beside it and opposite.
 TEST_F(RadiosityKnownOnGl, ALitCapIsSeenWholeAtAnyTessellation) {
-  for (int level = 4; level <= 6; ++level)
+  for (int level = 4; level <= (test::longTests() ? 6 : 5); ++level)
     for (const HemicubeVisibility way :
          {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
       if (way != HemicubeVisibility::raster && level != 5) continue;

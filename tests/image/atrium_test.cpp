@@ -95,14 +95,14 @@ TEST_F(Pictures, BrightnessDoesNotFollowTheNumberOfCascadesOrTexels) {
     }
     return sum;
   };
-  const double one = mean(1, 256);
+  const double one = mean(1, 256), three = mean(3, 256);
   for (const int cascades : {2, 3}) {
-    const double ratio = mean(cascades, 256) / one;
+    const double ratio = (cascades == 3 ? three : mean(cascades, 256)) / one;
     std::cout << "[ measured ] " << cascades << " cascades over one, all cameras: " << ratio << "\n";
     EXPECT_NEAR(ratio, 1.0, 0.05);  // finer grids see thin columns that the coarse one smears: measured 1.012 and 1.033
   }
   for (const int texels : {128, 512}) {
-    const double ratio = mean(3, texels) / mean(3, 256);
+    const double ratio = mean(3, texels) / three;
     std::cout << "[ measured ] " << texels << " texels over 256: " << ratio << "\n";
     EXPECT_NEAR(ratio, 1.0, 0.02);
   }
