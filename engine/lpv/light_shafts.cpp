@@ -8,6 +8,13 @@
 
 namespace lucerna {
 
+namespace {
+
+constexpr int kGroup = 8;  // pixels each way of a work group
+constexpr double kTurnsOfStep = 8.0;  // lookups in the sun's maps and the volume's cascades
+
+}  // namespace
+
 std::optional<Haze> hazeOf(const Scene& scene) {
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const Material& material = scene.materials[m];
@@ -30,7 +37,7 @@ std::optional<Haze> hazeOf(const Scene& scene) {
 }
 
 LightShafts::LightShafts(gl::ProgramLibrary& programs, const Haze& haze, const Settings& settings)
-    : steps_(settings.steps) {
+    : steps_(settings.steps), pieces_(settings.unmeasuredTurns) {
   gl::ShaderFlags flags{{"SUN", settings.sun},
                         {"SUN_CASCADES", settings.sunCascades},
                         {"PROPAGATED", settings.volume},
@@ -50,7 +57,7 @@ LightShafts::LightShafts(gl::ProgramLibrary& programs, const Haze& haze, const S
 
 void LightShafts::bind() const { constants_.bindUniform(BLOCK_HAZE); }
 
-void LightShafts::record(const gl::Texture& radiance, const gl::Texture& depth, const glm::dmat4& clipFromWorld) const {
+void LightShafts::record(const gl::Texture& radiance, const gl::Texture& depth, const glm::dmat4& clipFromWorld) {
   const gl::ComputePass pass("light shafts", gl::Barrier::textureFetch | gl::Barrier::framebuffer);
   program_->use();
   program_->set("worldFromClip", glm::mat4(glm::inverse(clipFromWorld)));
@@ -58,7 +65,11 @@ void LightShafts::record(const gl::Texture& radiance, const gl::Texture& depth, 
   bind();
   depth.bind(0);
   radiance.bindImage(0, gl::Access::readWrite);
-  pass.dispatch(glm::ivec3(radiance.size2d(), 1), glm::ivec3(8, 8, 1));
+  pieces_.forEach(radiance.size2d(), kTurnsOfStep * steps_, kGroup,
+                  [&](const glm::ivec2& corner, const glm::ivec2& size) {
+                    program_->set("firstPixel", corner);
+                    pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroup, kGroup, 1));
+                  });
 }
 
 }  // namespace lucerna

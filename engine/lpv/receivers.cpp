@@ -408,6 +408,11 @@ void LpvReceivers::collect(bool wait) {
   }
 }
 
+double LpvReceivers::mostTurns() const {
+  const int lanes = settings_.transport == LpvTransport::rays ? settings_.rays : LPV_LANES;
+  return static_cast<double>(lit_.bytes() / sizeof(GLuint)) * lanes * static_cast<double>(kTurnsOfPath);
+}
+
 std::size_t LpvReceivers::gpuBytes() const {
   std::size_t bytes = scene_.gpuBytes() + lpvConstants_.bytes() + lpvConstantsBefore_.bytes() + constants_.bytes() +
                       pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() + seen_.bytes() +

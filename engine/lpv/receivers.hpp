@@ -88,6 +88,8 @@ class LpvReceivers {
   const LpvSettings& settings() const { return settings_; }
   std::uint32_t frame() const { return frame_; }  ///< the last update's number
   const gl::Texture& irradiance() const { return irradiance_; }
+  /// Of a submission, at most: the list of receivers that it works on ends there (gl/pieces.hpp).
+  double mostTurns() const;
   std::size_t gpuBytes() const;
 
  private:

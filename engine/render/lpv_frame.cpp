@@ -82,6 +82,14 @@ void LpvFrame::record(gl::TimeQuery& timer, const FrameView& view) {
   volume_.join();
 }
 
+double LpvFrame::largestTurns(const RenderSettings& settings, bool hasPoints) {
+  constexpr double kTurnsOfTexel = 2.0, kTurnsOfCell = 30.0;  // a cell: 6 neighbours, 5 faces each
+  const double cells = settings.lpv.cascades.cells, side = settings.rsm.size;
+  const double faces = hasPoints ? 6.0 / 4.0 : 1.0;  // six of half the side
+  return std::max(kTurnsOfTexel * faces * side * side,
+                  kTurnsOfCell * cells * cells * cells * settings.lpv.cascades.cascades);
+}
+
 void LpvFrame::forget() {
   maps_.forget();
   cascades_.clear();

@@ -31,6 +31,9 @@ class LpvFrame {
   void bindForShading() const { volume_.bindForLookup(); }
 
   const LightPropagationVolume& volume() const { return volume_; }
+  /// Estimated turns of the largest submission (gl/pieces.hpp): filling from a map, or a step of propagation.
+  static double largestTurns(const RenderSettings& settings, bool hasPoints);
+  double largestTurns() const { return largestTurns(parts_.settings, !parts_.points.empty()); }
   bool hasMaps() const { return maps_.count() > 0; }
   void addStagePictures(std::vector<StagePicture>& pictures) const;
   void addLeftOut(std::vector<std::string>& names) const;

@@ -38,6 +38,7 @@ class ReceiversFrame {
 
   bool hasMaps() const { return maps_ && maps_->count() > 0; }
   const LpvReceivers& receivers() const { return receivers_; }
+  double largestTurns() const { return receivers_.mostTurns(); }
   void addStagePictures(std::vector<StagePicture>& pictures) const {
     if (maps_) maps_->addStagePictures(pictures);
     pictures.push_back({StagePicture::Kind::normal, "normals", &visible_.normal()});

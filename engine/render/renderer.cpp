@@ -50,7 +50,8 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       exposure_(settings.exposure.value_or(scene.exposure)),
       timer_(context.capabilities().softwareRenderer),
       frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, gl::Usage::dynamicDraw),
-      noAttributes_("full screen") {
+      noAttributes_("full screen"),
+      surfacePieces_(settings.unmeasuredTurns) {
   allocateTargets();
   const Technique technique = settings.technique;
   if (technique == Technique::path) {
@@ -120,6 +121,7 @@ void Renderer::makeShafts(gl::ProgramLibrary& programs, const Haze& haze) {
   shafts.volume = lpv_.has_value();
   shafts.fullFloat = settings_.fullFloatTarget;
   shafts.lookup = LightPropagationVolume::lookupFlags(settings_.lpv);
+  shafts.unmeasuredTurns = settings_.unmeasuredTurns;
   shafts_.emplace(programs, haze, shafts);
 }
 
@@ -325,8 +327,30 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
     if (&sides == &all.front())
       pass.clearColor(0, glm::vec4(showsBackground ? gpuScene_->scene().background : glm::vec3(0.0f), 1.0f));
     if (radiosity_) radiosity_->draw(pass, *gpuScene_, surfacePrograms_, view);
-    else gpuScene_->draw(surfacePrograms_, view.drawn());
+    else
+      surfacePieces_.forEach(settings_.size, turnsOfSurface(), 1,
+                             [&](const glm::ivec2& corner, const glm::ivec2& size) {
+                               pass.restrictTo(corner, size);
+                               gpuScene_->draw(surfacePrograms_, view.drawn());
+                             });
   }
+}
+
+// Depth is known, so that a pixel shades one surface: its textures, four taps for each light's shadow, and a lookup of
+// what a technique adds.
+double Renderer::turnsOfSurface() const {
+  constexpr double kTurnsOfMaterial = 4.0, kTurnsOfShadow = 4.0, kTurnsOfIndirect = 24.0;
+  const int suns = sunCascades_ ? settings_.sunCascades.cascades : static_cast<int>(shadowMap_.has_value());
+  const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
+  return kTurnsOfMaterial + kTurnsOfShadow * (suns + lamps) + (lpv_ || receivers_ ? kTurnsOfIndirect : 0.0);
+}
+
+double Renderer::largestTurns() const {
+  double largest = std::max(surfacePieces_.largestTurns(), shafts_ ? shafts_->largestTurns() : 0.0);
+  forTechniques(*this, [&](const auto& technique) {
+    if constexpr (requires { technique.largestTurns(); }) largest = std::max(largest, technique.largestTurns());
+  });
+  return largest;
 }
 
 void Renderer::recordShafts(const FrameView& view) {

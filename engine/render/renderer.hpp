@@ -93,8 +93,9 @@ class Renderer {
   const RadiosityView* radiosity() const { return radiosity_ ? &radiosity_->view() : nullptr; }
   const RsmGather* gather() const { return rsm_ ? &rsm_->gather() : nullptr; }
   const PathTracer* path() const { return path_ ? &path_->tracer() : nullptr; }
-  /// Estimated turns of the largest submission of the last frame's shadow rays; 0 without any.
-  double largestTurns() const { return radiosity_ ? radiosity_->largestTurns() : 0.0; }
+  /// Estimated turns of the largest submission (gl/pieces.hpp) of any frame so far; of the path tracer, which counts
+  /// them, PathTracer::submissions().
+  double largestTurns() const;
   /// Waits for all pending results, times and counts; for the end of a run, not for a frame.
   void drain();
   /// Names of the omitted features.
@@ -114,6 +115,7 @@ class Renderer {
   void bindFrameConstants(const shared::FrameConstants& constants);
   void recordShadows(const Camera& camera);
   void shade(const FrameView& view, bool depthIsDrawn);
+  double turnsOfSurface() const;  ///< of a pixel of a raster technique
   void bindForShading() const;
   /// Shading programs; asked: the variant with which one pixel records its terms.
   SurfacePrograms surfacePrograms(gl::ProgramLibrary& programs, bool asked) const;
@@ -166,6 +168,7 @@ class Renderer {
   std::optional<PathFrame> path_;
   std::optional<EnvironmentView> environmentView_;
   std::optional<LightShafts> shafts_;  ///< added to the finished picture
+  gl::PicturePieces surfacePieces_;
 };
 
 }  // namespace lucerna

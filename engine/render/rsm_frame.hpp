@@ -34,6 +34,7 @@ class RsmFrame {
   void bindForShading() const;
 
   const RsmGather& gather() const { return gather_; }
+  double largestTurns() const { return gather_.largestTurns(); }
   void addStagePictures(std::vector<StagePicture>& pictures) const {
     maps_.addStagePictures(pictures);
     pictures.push_back({StagePicture::Kind::normal, "normals", &visible_.normal()});

@@ -15,12 +15,22 @@ namespace {
 
 constexpr GLuint kPatternBinding = 0, kWorkBinding = 1;
 constexpr GLuint kLowUnit = 5, kRefusedUnit = 5, kRefusedImage = 1;
+constexpr int kGroup = 8;  // pixels each way of a work group
+constexpr double kTurnsOfInterpolation = 8.0;  // of a pixel; a gathered sample is one
 
 // The Work block of shaders/rsm/work.glsl.
 struct GatherCounts {
   GLuint groupsX = 0, groupsY = 1, groupsZ = 1;
   GLuint refused = 0, surfaces = 0, lowSamples = 0;
 };
+
+/// Dispatches a part of a picture.
+auto dispatcher(const gl::ComputePass& pass, const gl::Program& program) {
+  return [&](const glm::ivec2& corner, const glm::ivec2& size) {
+    program.set("firstPixel", corner);
+    pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroup, kGroup, 1));
+  };
+}
 
 glm::ivec2 lowSize(glm::ivec2 size, int step) { return (size + step - 1) / step; }
 
@@ -53,8 +63,8 @@ gl::ShaderFlags RsmGather::flags(const Settings& settings, Light light) {
 }
 
 RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings,
-                     const VisibleSurfaces& visible)
-    : settings_(settings), visible_(&visible) {
+                     const VisibleSurfaces& visible, double unmeasuredTurns)
+    : settings_(settings), visible_(&visible), pieces_(unmeasuredTurns) {
   const std::array<std::pair<bool, const char*>, 3> lights{
       {{needs.directionalLight, ""}, {needs.spotLights, " spot"}, {needs.pointLights, " lamp"}}};
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -158,7 +168,7 @@ void RsmGather::gatherLow(const Inputs& inputs) {
     bindMap(program, settings_, map, &map != &inputs.maps.front());
     bindVisible(program, inputs);
     lowIrradiance_.bindImage(0, gl::Access::readWrite);
-    pass.dispatch(lowIrradiance_.size(), glm::ivec3(8, 8, 1));
+    pieces_.forEach(lowIrradiance_.size2d(), settings_.samples, kGroup, dispatcher(pass, program));
   }
 }
 
@@ -170,7 +180,7 @@ void RsmGather::interpolate(const Inputs& inputs) {
   setFit(*interpolate_, inputs);
   irradiance_.bindImage(0, gl::Access::write);
   refused_.bindImage(kRefusedImage, gl::Access::write);
-  pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));
+  pieces_.forEach(irradiance_.size2d(), kTurnsOfInterpolation, kGroup, dispatcher(pass, *interpolate_));
 }
 
 void RsmGather::gatherFull(const Inputs& inputs) {
@@ -185,9 +195,17 @@ void RsmGather::gatherFull(const Inputs& inputs) {
     bindMap(program, settings_, map, &map != &inputs.maps.front());
     bindVisible(program, inputs);
     irradiance_.bindImage(0, gl::Access::readWrite);
-    if (settings_.interpolates()) refused_.bind(kRefusedUnit);
-    if (settings_.interpolates()) pass.dispatchIndirect(work_);
-    else pass.dispatch(irradiance_.size(), glm::ivec3(8, 8, 1));
+    if (!settings_.interpolates()) {
+      pieces_.forEach(irradiance_.size2d(), settings_.samples, kGroup, dispatcher(pass, program));
+      continue;
+    }
+    // How long the list is only the GPU knows: at most every pixel.
+    refused_.bind(kRefusedUnit);
+    pieces_.forEach(irradiance_.size2d(), settings_.samples, 1, [&](const glm::ivec2& corner, const glm::ivec2& size) {
+      const int first = corner.y * irradiance_.size().x + corner.x;
+      program.set("listPart", glm::ivec2(first, first + size.x * size.y));
+      pass.dispatchIndirect(work_);
+    });
   }
   ring_->copy(work_);
 }

@@ -25,6 +25,7 @@ layout(rgba16f, binding = 0) uniform image2D radiance;
 layout(binding = 0) uniform sampler2D depth;
 uniform mat4 worldFromClip;
 uniform int steps;
+uniform ivec2 firstPixel;  // of a part of the picture
 
 #if PROPAGATED
 // Light of the volume scattered at a point into a direction: W per square scene unit and sr, over sigma_s.
@@ -67,7 +68,7 @@ vec3 scattered(vec3 position, vec3 towardsEye) {
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(radiance);
+  ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy), size = imageSize(radiance);
   if (any(greaterThanEqual(pixel, size))) return;
   vec3 clip = vec3((vec2(pixel) + 0.5) / vec2(size), texelFetch(depth, pixel, 0).r) * 2.0 - 1.0;
   vec4 seen = worldFromClip * vec4(clip, 1.0);

@@ -4,12 +4,13 @@
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) uniform image2D irradianceImage;
+uniform ivec2 firstPixel;  // of a part of the picture
 shared uint groupSurfaces;
 
 void main() {
   if (gl_LocalInvocationIndex == 0u) groupSurfaces = 0u;
   barrier();
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy);
   if (all(lessThan(pixel, imageSize(irradianceImage)))) {
     vec4 result = vec4(0.0);
     if (isVisibleSurface(pixel)) {

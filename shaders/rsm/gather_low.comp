@@ -5,12 +5,13 @@
 #include "rsm/work.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) uniform image2D lowIrradiance;  // W/m^2; w = 1 on a surface
+uniform ivec2 firstPixel;  // of a part of the picture
 shared uint groupSamples;
 
 void main() {
   if (gl_LocalInvocationIndex == 0u) groupSamples = 0u;
   barrier();
-  ivec2 low = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 low = firstPixel + ivec2(gl_GlobalInvocationID.xy);
   if (all(lessThan(low, imageSize(lowIrradiance)))) {
     ivec2 pixel = lowPixel(low);
     vec4 result = vec4(0.0);

@@ -7,12 +7,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;  // w: 0 no surface, 1 interpolated, 2 gathered
 layout(r32ui, binding = 1) writeonly uniform uimage2D refusedPixels;  // x | y << 16, row by row
 layout(binding = 5) uniform sampler2D lowIrradiance;
+uniform ivec2 firstPixel;  // of a part of the picture
 shared uint groupSurfaces;
 
 void main() {
   if (gl_LocalInvocationIndex == 0u) groupSurfaces = 0u;
   barrier();
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy);
   if (all(lessThan(pixel, imageSize(irradianceImage)))) {
     if (isVisibleSurface(pixel)) {
       atomicAdd(groupSurfaces, 1u);

@@ -1,0 +1,47 @@
+// Cuts work on a picture's pixels that nobody measures into submissions, within the bounds of gl/pieces.hpp: all of it
+// at once where that is safe, else pieces of unmeasured work. They do not wait for each other; each is handed over to
+// the driver by itself, since it is single submissions that must not take long.
+#pragma once
+
+#include "gl/pieces.hpp"
+#include "host/api.hpp"
+
+#include <glm/glm.hpp>
+
+#include <algorithm>
+
+namespace lucerna::gl {
+
+class PicturePieces {
+ public:
+  /// unmeasured: turns of a piece where the whole is cut.
+  explicit PicturePieces(double unmeasured = kUnmeasuredTurns) : unmeasured_(unmeasured) {}
+
+  /// draw(corner, size) for rectangles that make up the picture; their corners are multiples of `unit` pixels, the side
+  /// of a work group. turnsOfPixel: an upper estimate.
+  template <class Draw>
+  void forEach(const glm::ivec2& picture, double turnsOfPixel, int unit, const Draw& draw) {
+    const glm::ivec2 most = sizeOfPiece(picture, turnsOfPixel, unit);
+    for (int y = 0; y < picture.y; y += most.y)
+      for (int x = 0; x < picture.x; x += most.x) {
+        const glm::ivec2 corner(x, y), size = glm::min(most, picture - corner);
+        if (x + y > 0) glFlush();
+        draw(corner, size);
+        largestTurns_ = std::max(largestTurns_, turnsOfPixel * size.x * size.y);
+      }
+  }
+  /// Whole rows, or a part of `unit` rows where those are too much.
+  glm::ivec2 sizeOfPiece(const glm::ivec2& picture, double turnsOfPixel, int unit) const {
+    const double pixels = unmeasured_ / turnsOfPixel, width = picture.x;
+    if (width * picture.y <= kMostOverUnmeasured * pixels) return picture;
+    const auto units = [&](double length) { return unit * std::max(1, static_cast<int>(length / unit)); };
+    return unit * width <= pixels ? glm::ivec2(picture.x, units(pixels / width))
+                                  : glm::ivec2(units(pixels / unit), unit);
+  }
+  double largestTurns() const { return largestTurns_; }  ///< estimated, of the largest piece so far
+
+ private:
+  double unmeasured_, largestTurns_ = 0.0;
+};
+
+}  // namespace lucerna::gl

@@ -1,0 +1,137 @@
+// The longest submission of each raster technique: work items times turns, as gl/pieces.hpp counts them, not timed.
+// What is cut stays the same bit by bit. Those of path tracing, of radiosity's shadow rays and of hemicubes are in
+// PathTracerTest, RadiosityDirect and Hemicube.
+#include "render/renderer.hpp"
+#include "support/gl_fixture.hpp"
+#include "support/media_scenes.hpp"
+#include "support/small_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace lucerna {
+namespace {
+
+constexpr double kMost = gl::kMostOverUnmeasured * gl::kUnmeasuredTurns;
+
+class Submissions : public test::SharedProgramsTest {
+ protected:
+  struct Drawn {
+    Image picture;
+    double largestTurns;
+  };
+  static Drawn drawn(const Scene& scene, RenderSettings settings, double unmeasuredTurns) {
+    settings.size = {64, 48};
+    settings.fullFloatTarget = true;
+    settings.rsm.size = 64;
+    settings.lpv.cascades.cells = 8;
+    settings.unmeasuredTurns = unmeasuredTurns;
+    Renderer renderer(context(), library(), scene, settings);
+    renderer.render(test::openBoxCamera());
+    return {renderer.readRadiance(), renderer.largestTurns()};
+  }
+  /// unmeasuredTurns: such that the picture takes many pieces of at least a work group.
+  static void expectSameInPieces(const Scene& scene, const RenderSettings& settings, double unmeasuredTurns) {
+    const Drawn whole = drawn(scene, settings, gl::kUnmeasuredTurns), cut = drawn(scene, settings, unmeasuredTurns);
+    EXPECT_LE(whole.largestTurns, kMost);
+    EXPECT_GT(whole.largestTurns, gl::kMostOverUnmeasured * unmeasuredTurns) << "nothing was cut";
+    EXPECT_LE(cut.largestTurns, gl::kMostOverUnmeasured * unmeasuredTurns);
+    EXPECT_GT(cut.largestTurns, 0.0);
+    EXPECT_EQ(cut.picture.pixels, whole.picture.pixels);
+    EXPECT_GT(meanOf(whole.picture).x, 0.0);
+  }
+};
+
+TEST_F(Submissions, NoPieceOfAPictureIsMoreThanIsSafe) {
+  struct Case {
+    glm::ivec2 picture;
+    double turnsOfPixel;
+    int unit;
+    bool isCut;
+  };
+  for (const Case& c : {Case{{1280, 720}, 400.0, 8, true},  // the default gather of 3.7e8 turns
+                        {{640, 360}, 400.0, 8, false},
+                        {{1920, 1080}, 12.0, 1, false},  // surfaces in the sun
+                        {{7680, 4320}, 100.0, 1, true},
+                        {{3840, 2160}, 65536.0, 8, true},  // a row of work groups is too much
+                        {{16384, 16384}, 65536.0, 1, true}}) {
+    const glm::ivec2 piece = gl::PicturePieces().sizeOfPiece(c.picture, c.turnsOfPixel, c.unit);
+    EXPECT_EQ(piece != c.picture, c.isCut) << c.picture.x;
+    EXPECT_LE(c.turnsOfPixel * piece.x * piece.y, c.isCut ? gl::kUnmeasuredTurns : kMost) << c.picture.x;
+    for (int axis = 0; axis < 2; ++axis) EXPECT_TRUE(piece[axis] == c.picture[axis] || piece[axis] % c.unit == 0);
+  }
+}
+
+TEST_F(Submissions, PiecesMakeUpThePicture) {
+  for (const double turnsOfPixel : {0.1, 4.0, 50.0}) {
+    const glm::ivec2 picture(37, 21);
+    std::vector<int> times(37 * 21, 0);
+    gl::PicturePieces pieces(256.0);
+    pieces.forEach(picture, turnsOfPixel, 2, [&](const glm::ivec2& corner, const glm::ivec2& size) {
+      for (int y = corner.y; y < corner.y + size.y; ++y)
+        for (int x = corner.x; x < corner.x + size.x; ++x) ++times.at(static_cast<std::size_t>(37 * y + x));
+    });
+    EXPECT_EQ(times, std::vector<int>(37 * 21, 1)) << turnsOfPixel;
+  }
+}
+
+TEST_F(Submissions, DirectLight) {
+  Scene scene = test::openBox();
+  scene.points.push_back({{0.3, 1.5, 0.2}, glm::vec3(2.0f)});
+  RenderSettings settings;
+  settings.technique = Technique::direct;
+  expectSameInPieces(scene, settings, 1024.0);
+}
+
+TEST_F(Submissions, GatherFromTheMap) {
+  Scene scene = test::openBox();
+  scene.points.push_back({{0.3, 1.5, 0.2}, glm::vec3(2.0f)});  // a map more
+  RenderSettings settings;
+  settings.technique = Technique::rsm;
+  settings.gather.samples = 64;
+  settings.gather.lowResolution = 2;  // so that each of its passes is cut
+  for (const bool interpolate : {false, true}) {
+    settings.gather.interpolate = interpolate;
+    expectSameInPieces(scene, settings, 4096.0);
+  }
+}
+
+TEST_F(Submissions, LightShafts) {
+  Scene scene = test::openBox();
+  Medium haze;
+  haze.scattering = glm::vec3(0.1f);
+  scene.media.push_back(haze);
+  scene.cameraMedium = 0;
+  RenderSettings settings;
+  settings.technique = Technique::lpv;
+  settings.lpv.transport = LpvTransport::propagate;
+  settings.lpv.shafts = true;
+  expectSameInPieces(scene, settings, 65536.0);
+}
+
+// What the volume does in one go has a size of its own, which its settings limit; receivers come in lists that end
+// where a submission would be too long.
+TEST_F(Submissions, VolumesAtTheirLargest) {
+  RenderSettings settings;
+  settings.lpv.cascades.cells = 128;
+  settings.lpv.cascades.cascades = LPV_MAX_CASCADES;
+  settings.rsm.size = 8192;
+  for (const bool hasPoints : {false, true}) EXPECT_LE(LpvFrame::largestTurns(settings, hasPoints), kMost);
+  const Scene scene = test::openBox();
+  settings = {};
+  settings.technique = Technique::lpv;
+  for (const LpvTransport transport : {LpvTransport::rays, LpvTransport::gather})
+    for (const int rays : {1, 8, 64}) {
+      settings.lpv.transport = transport;
+      settings.lpv.rays = rays;
+      settings.lpv.cascades.cells = 32;
+      settings.size = {16, 16};
+      const Renderer renderer(context(), library(), scene, settings);
+      EXPECT_LE(renderer.largestTurns(), kMost) << rays;
+      EXPECT_GT(renderer.largestTurns(), 0.0);
+    }
+}
+
+}  // namespace
+}  // namespace lucerna
