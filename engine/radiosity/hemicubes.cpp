@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cmath>
 #include <future>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -188,7 +189,7 @@ void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& cap
     for (int k = 0; k < 3; ++k) {  // the first run warms up; then the better of two positions
       const int first = static_cast<int>(static_cast<std::int64_t>(patchCount_ - count) * k / 2);
       const auto start = Clock::now();
-      hemicubes.draw(first, count);
+      hemicubes.draw(first, count, 0);
       const double took = std::chrono::duration<double, std::milli>(Clock::now() - start).count() / count;
       if (k == 1 || (k == 2 && took < cost.milliseconds)) cost.milliseconds = took;
     }
@@ -204,27 +205,28 @@ void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& cap
           costs_.size() == 1 ? "; too few to measure the other methods" : "");
 }
 
-Hemicubes::Frame Hemicubes::frameOf(int index) const {
+Hemicubes::Frame Hemicubes::frameOf(int index, int roll) const {
   const Patch& patch = mesh_->patches[static_cast<std::size_t>(index)];
   const auto corners = mesh_->corners(patch);
   // Towards the first corner: never parallel to the normal, whatever the patch.
   const glm::dvec3 u0 = glm::normalize(corners[0] - patch.centroid), v0 = glm::cross(patch.faceNormal, u0);
-  const double roll =
-      settings_.randomRoll ? 2.0 * std::numbers::pi * hashed(settings_.seed, static_cast<std::uint32_t>(index)) : 0.0;
-  const glm::dvec3 u = std::cos(roll) * u0 + std::sin(roll) * v0, v = glm::cross(patch.faceNormal, u);
+  // A hemicube is the same after a quarter turn: several are spread evenly over that.
+  const double turns = hashed(settings_.seed, static_cast<std::uint32_t>(index)) + 0.25 * roll / rolls();
+  const double angle = settings_.randomRoll ? 2.0 * std::numbers::pi * turns : 0.0;
+  const glm::dvec3 u = std::cos(angle) * u0 + std::sin(angle) * v0, v = glm::cross(patch.faceNormal, u);
   const double inPlane = std::max(1e-4 * std::sqrt(patch.area), 4e-7 * mesh_->extent);
   return {glm::vec4(glm::vec3(patch.centroid), static_cast<float>(1.0 / inPlane)),
           glm::vec4(glm::vec3(u), patch.hidden), glm::vec4(glm::vec3(v), 0.0f),
           glm::vec4(glm::vec3(patch.faceNormal), 0.0f)};
 }
 
-DrawnHemicubes Hemicubes::draw(int first, int count) {
+DrawnHemicubes Hemicubes::draw(int first, int count, int roll) {
   // The hemicubes' frames, and the buffers that all programs read and write.
   CHECK(first >= 0 && count > 0 && count <= batch_ && first + count <= patchCount_, "rows {} + {} of {}, at most {}",
         first, count, patchCount_, batch_);
   const auto start = Clock::now();
   std::vector<Frame> frames;
-  for (int i = 0; i < count; ++i) frames.push_back(frameOf(first + i));
+  for (int i = 0; i < count; ++i) frames.push_back(frameOf(first + i, roll));
   frames_.upload(0, frames.size() * sizeof(Frame), frames.data());
   corners_.bind(kCornersUnit);
   frames_.bindUniform(kFrames);
@@ -317,6 +319,12 @@ DrawnHemicubes Hemicubes::draw(int first, int count) {
   return drawn;
 }
 
+std::vector<DrawnHemicubes> Hemicubes::drawRolls(int first, int count) {
+  std::vector<DrawnHemicubes> drawn;
+  for (int roll = 0; roll < rolls(); ++roll) drawn.push_back(draw(first, count, roll));
+  return drawn;
+}
+
 int Hemicubes::pieceSize() const { return std::min(batch_, static_cast<int>(pieces_.units())); }
 
 FormFactorRows Hemicubes::rows(int first, int count) {
@@ -325,7 +333,7 @@ FormFactorRows Hemicubes::rows(int first, int count) {
   all.first = first;
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   for (const int end = first + count; first < end;) {
-    const FormFactorRows piece = rowsOf(draw(first, std::min(end - first, pieceSize())));
+    const FormFactorRows piece = meanRowsOf(drawRolls(first, std::min(end - first, pieceSize())));
     append(all.counts, piece.counts), append(all.fronts, piece.fronts), append(all.backs, piece.backs);
     append(all.patches, piece.patches), append(all.factors, piece.factors);
     first += static_cast<int>(piece.counts.size());
@@ -337,11 +345,11 @@ void Hemicubes::stream(int first, int end, const std::function<void(const FormFa
                        const std::function<bool(int done)>& goOn) {
   std::future<void> taken;
   for (bool stopped = false; first < end && !stopped;) {
-    DrawnHemicubes drawn = draw(first, std::min(end - first, pieceSize()));
-    first += drawn.count;
+    std::vector<DrawnHemicubes> drawn = drawRolls(first, std::min(end - first, pieceSize()));
+    first += drawn.front().count;
     if (taken.valid()) taken.get();
-    taken =
-        std::async(std::launch::async, [&take, batch = std::move(drawn)]() mutable { take(rowsOf(std::move(batch))); });
+    taken = std::async(std::launch::async,
+                       [&take, batch = std::move(drawn)]() mutable { take(meanRowsOf(std::move(batch))); });
     stopped = goOn && !goOn(first);
   }
   if (taken.valid()) taken.get();
@@ -442,6 +450,34 @@ std::size_t Hemicubes::gpuBytes() const {
          factors_.bytes() + keptList_.bytes() + exactList_.bytes() + largeList_.bytes() + staging_.bytes() +
          (ownRays_ ? ownRays_->gpuBytes() : 0) +
          (itemBuffer_ ? itemBuffer_->items.bytes() + itemBuffer_->depth.bytes() : 0);
+}
+
+FormFactorRows meanRowsOf(std::vector<DrawnHemicubes> drawn) {
+  if (drawn.size() == 1) return rowsOf(std::move(drawn.front()));
+  std::vector<FormFactorRows> rolls;
+  for (DrawnHemicubes& one : drawn) rolls.push_back(rowsOf(std::move(one)));
+  const double share = 1.0 / static_cast<double>(rolls.size());
+  std::vector<std::size_t> at(rolls.size(), 0);
+  FormFactorRows mean;
+  mean.first = rolls.front().first;
+  for (std::size_t row = 0; row < rolls.front().counts.size(); ++row) {
+    std::map<std::uint32_t, double> factors;  // by patch
+    double fronts = 0.0, backs = 0.0;
+    for (std::size_t r = 0; r < rolls.size(); ++r) {
+      for (const std::size_t end = at[r] + rolls[r].counts[row]; at[r] < end; ++at[r])
+        factors[rolls[r].patches[at[r]]] += share * static_cast<double>(rolls[r].factors[at[r]]);
+      fronts += share * static_cast<double>(rolls[r].fronts[row]);
+      backs += share * static_cast<double>(rolls[r].backs[row]);
+    }
+    for (const auto& [patch, factor] : factors) {
+      mean.patches.push_back(patch);
+      mean.factors.push_back(static_cast<float>(factor));
+    }
+    mean.counts.push_back(static_cast<std::uint32_t>(factors.size()));
+    mean.fronts.push_back(static_cast<float>(fronts));
+    mean.backs.push_back(static_cast<float>(backs));
+  }
+  return mean;
 }
 
 }  // namespace lucerna

@@ -46,6 +46,8 @@ struct HemicubeSettings {
   DeltaMap map = DeltaMap::exact;
   bool randomRoll = true;  ///< each turned about its normal by a hash of seed and patch; else towards the first corner
   std::uint32_t seed = 1;
+  int rolls =
+      1;  ///< hemicubes per patch, each turned differently, whose mean counts: antialiasing; 1 without randomRoll
   int exactPixels = 12;  ///< patches that cover this many pixels get their closed form; 0: never
   float nearDistance = 3.0f;  ///< receivers are divided until (distance / size of a part) is this; 0: never
   int mostParts = 8;  ///< most parts per side of a receiver
@@ -74,6 +76,8 @@ struct DrawnHemicubes {
 };
 /// Without GL: another thread can do it while the next batch is drawn.
 FormFactorRows rowsOf(DrawnHemicubes drawn);
+/// The mean of hemicubes of the same patches, at least one.
+FormFactorRows meanRowsOf(std::vector<DrawnHemicubes> drawn);
 
 /// Raster or rays, whichever has less to do as counted from patches and pixels: the same answer on every machine,
 /// unlike automatic's clock.
@@ -115,7 +119,9 @@ class Hemicubes {
   std::size_t gpuBytes() const;  ///< of the chosen method
 
  private:
-  DrawnHemicubes draw(int first, int count);  ///< one submission; waits for it
+  DrawnHemicubes draw(int first, int count, int roll);  ///< one submission; waits for it
+  std::vector<DrawnHemicubes> drawRolls(int first, int count);  ///< one submission per roll
+  int rolls() const { return settings_.randomRoll ? settings_.rolls : 1; }
   int pieceSize() const;
   struct Frame {
     glm::vec4 origin, u, v, n;
@@ -127,7 +133,7 @@ class Hemicubes {
     const gl::Program *draw, *sum;
   };
   bool listsKept() const { return settings_.visibility != HemicubeVisibility::raster; }
-  Frame frameOf(int patch) const;
+  Frame frameOf(int patch, int roll) const;
   void choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities);
   void begin(const gl::Program& program, int first, int count) const;
 

@@ -48,6 +48,7 @@ std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings&
   f.add(s.map);
   f.add(s.randomRoll);
   f.add(s.seed);
+  if (s.rolls != 1) f.add(s.rolls);
   f.add(s.exactPixels);
   f.add(s.nearDistance);
   f.add(s.mostParts);

@@ -69,6 +69,7 @@ std::string textOf(const RadiositySolutionSettings& s) {
       "radiosity.seed={} radiosity.repair={} radiosity.refinements={}",
       s.hemicubes.resolution, s.hemicubes.exactPixels, s.hemicubes.nearDistance, s.hemicubes.mostParts,
       s.hemicubes.seed, s.repair ? "on" : "off", s.refinements);
+  if (s.hemicubes.rolls != 1) text += fmt::format(" radiosity.rolls={}", s.hemicubes.rolls);
   if (s.refinements > 0) text += fmt::format(" radiosity.steep={}", s.steep);
   return text;
 }

@@ -262,6 +262,10 @@ const std::vector<Setting>& table() {
        "difference between neighbouring patches that is refined", "", solution, kRadiosity, ""},
       {"radiosity.seed", number(FIELD(radiosity.solution.hemicubes.seed), 0, 4294967295.0), "",
        "of the hemicubes' random roll", "", solution, kRadiosity, ""},
+      {"radiosity.rolls", number(FIELD(radiosity.solution.hemicubes.rolls), 1, 64), "hemicubes",
+       "per patch, turned against each other, whose mean counts: antialiasing; twice the resolution is better (4 rolls "
+       "cost as much)",
+       "[RAD2008]", solution, kRadiosity, ""},
       {"radiosity.exact-pixels", number(FIELD(radiosity.solution.hemicubes.exactPixels), 0, 1 << 24), "pixels",
        "covered by a patch that gets its closed form factor; 0: never", "[Lambert1760]", solution, kRadiosity, ""},
       {"radiosity.part-distance", number(FIELD(radiosity.solution.hemicubes.nearDistance), 0.0, 1e6), "part sizes",
