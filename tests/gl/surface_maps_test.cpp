@@ -65,6 +65,42 @@ SceneBuilder floorOf(const Material& material) {
   return builder;
 }
 
+// ------------------------------------------------------------------------------------------------------------- mipmaps
+
+// A chessboard of 48 x 48 texels fills a picture of 16 x 16: each pixel's centre is one texel's, of its 3 x 3. Without
+// mipmaps a pixel is that texel, black or white; with them, log2(3) levels up, it is the mean.
+TEST_F(SurfaceMaps, MipmapsAreTheMeanOfWhatAPixelCovers) {
+  Material material;
+  material.diffuse = glm::vec3(1.0f);
+  SceneBuilder builder = floorOf(material);
+  std::vector<std::uint8_t> rgba;
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 48; ++x)
+      for (int c = 0; c < 4; ++c) rgba.push_back(c == 3 || (x + y) % 2 == 0 ? 255 : 0);
+  builder.materialAt(0).diffuseTexture = builder.texture(48, 48, rgba);
+  builder.sun({0, -1, 0}, glm::vec3(2.0f));
+  const Camera camera = lookingAt({0, 20, 0}, {0, 0, 0}, 2.0 * std::atan(4.0 / 20.0));
+  RenderSettings settings;
+  settings.technique = Technique::direct;
+  settings.size = glm::ivec2(16);
+  settings.fullFloatTarget = true;
+  settings.shadow.size = 256;
+  settings.textures.anisotropy = 1.0f;  // its filter too averages over texels
+  const double white = 2.0 / kPi;
+  for (const bool mipmaps : {true, false}) {
+    settings.textures.mipmaps = mipmaps;
+    Renderer renderer(context(), library(), builder.scene(), settings);
+    renderer.render(camera);
+    const Image image = renderer.readRadiance();
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) {
+        const double seen = image.at(x, y).y / white;  // texel (3 x + 1, 3 y + 1), rows from the top
+        if (mipmaps) ASSERT_NEAR(seen, 0.5, 0.5 * kDecoding) << x << " " << y;
+        else ASSERT_NEAR(seen, (x + y) % 2 == 0 ? 1.0 : 0.0, 1e-2) << x << " " << y;
+      }
+  }
+}
+
 // ------------------------------------------------------------------------------------------------------------- normals
 
 TEST_F(SurfaceMaps, NormalsLieAlongTheTextureWhicheverWayItLies) {
