@@ -47,9 +47,10 @@ LpvGeometryVolume::LpvGeometryVolume(gl::ProgramLibrary& programs, const gl::Cap
     viewPotential_ = gl::Texture("lpv view", gl::Format::rgba32f, grid.corners);
     allocate("lpv view", viewReflectance_, viewPotential_, viewTarget_);
   }
-  // Merging several views, and the albedo for reflection, need blending, whatever the fill.
+  // Merging several views, and the albedo for reflection, need blending, and glossy reflection the texture, whatever
+  // the fill.
   if (settings.fill != LpvFill::layered && !countsHalfFloats(settings, capabilities) && !settings.mergeViews &&
-      !reflects && !deviations.surfelArea) {
+      !reflects && !deviations.surfelArea && settings.glossy != LpvGlossy::march) {
     const bool fixed = settings.fill == LpvFill::fixed;
     const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed}, {"TRUNCATE", deviations.truncate}};
     count_ = &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp",

@@ -21,6 +21,10 @@ LpvSettings checked(const LpvSettings& settings, const gl::Capabilities& capabil
     throwBadInput(
         "lpv.bounces={}: the geometry volume reflects light; this needs two iterations and lpv.blocking other than off",
         settings.bounces);
+  if (settings.glossy == LpvGlossy::march && !settings.isBlocked())
+    throwBadInput(
+        "lpv.glossy=march: the geometry volume ends the march; this needs two iterations and lpv.blocking other than "
+        "off (lpv.glossy=mean does not)");
   return settings.resolved();
 }
 
@@ -89,7 +93,7 @@ shared::LpvConstants lpvConstants(const LpvSettings& settings, const std::vector
     target.blendHalf = coarsest ? 1e30f : static_cast<float>((0.5 * cells - 2.5 - offset) * cascade.cellSize);
     if (!coarsest && target.blendHalf <= 0.0f) target.blendHalf = 1e-30f;  // too few cells to blend: never used
   }
-  constants.shape = {cells, settings.cascades.cascades, 0, 0};
+  constants.shape = {cells, settings.cascades.cascades, settings.glossyCells(), 0};
   constants.referenceIrradiance = referenceIrradiance;
   constants.blendBand = settings.blendBand;
   constants.lookupOffset = offset;
@@ -155,6 +159,7 @@ void LightPropagationVolume::reflect(bool first) {
 void LightPropagationVolume::bindForLookup() const {
   constants_.bindUniform(BLOCK_LPV);
   for (GLuint channel = 0; channel < 3; ++channel) result()[channel].bind(UNIT_LPV_RED + channel);
+  if (settings_.glossy == LpvGlossy::march) geometry_->potential().bind(UNIT_LPV_GEOMETRY);
 }
 
 std::vector<AskedPart> LightPropagationVolume::ask(gl::ProgramLibrary& programs, const glm::vec3& position,

@@ -44,6 +44,11 @@ constexpr std::array<std::string_view, 2> namesOf(LpvVisibility) { return {"none
 enum class LpvSurfels { rsm, camera, both };
 constexpr std::array<std::string_view, 3> namesOf(LpvSurfels) { return {"rsm", "camera", "both"}; }
 
+/// Where glossy reflection reads the volume: `mean` over the next cells along the reflected ray [Kaplanyan2010];
+/// `march` along it to the first surfels of the geometry volume.
+enum class LpvGlossy { off, mean, march };
+constexpr std::array<std::string_view, 3> namesOf(LpvGlossy) { return {"off", "mean", "march"}; }
+
 struct LpvSettings {
   /// Storage of the result, rounded to nearest; everything before it is in 32 bits. `full` (32-bit) is for tests.
   enum class Storage { half, full };
@@ -86,6 +91,8 @@ struct LpvSettings {
                     ///< kAllBounces too
   bool shafts = false;  ///< light shafts in the scene's haze (light_shafts.hpp)
   int shaftSteps = 64;  ///< samples along a view ray
+  LpvGlossy glossy = LpvGlossy::off;  ///< reflection of the volume's light by glossy materials (glossy_lobes.hpp)
+  int glossySteps = 0;  ///< cells along the reflected ray; 0: 4 for the mean, as published, 64 for the march
   float blendBand = 0.25f;  ///< fraction of a cascade's half extent over which it fades into the next
   int handOver = 0;  ///< steps after which a finer cascade takes light from the coarser one; 0: lpvHandOverStep()
   std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not
@@ -107,6 +114,7 @@ struct LpvSettings {
   /// In cells along the normal.
   float offset() const { return lookupOffset.value_or(lookupUsed() == LpvLookup::published ? 0.5f : 0.0f); }
   bool reflects() const { return bounces > 1; }
+  int glossyCells() const { return glossySteps > 0 ? glossySteps : glossy == LpvGlossy::mean ? 4 : 64; }
   /// Propagation steps that are run.
   int steps() const { return std::max(iterations - (deviations.fewerSteps ? 1 : 0), 0); }
   /// Whether any step is blocked; the first is not by default.

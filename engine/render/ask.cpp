@@ -202,13 +202,16 @@ void Renderer::answerOfForward(gl::ProgramLibrary& programs, const FrameView& vi
         fmt::format("{} {} {} of cascade {}", part.number.x, part.number.y, part.number.z, part.number.w + 1);
     add(answer, "lpv", (lpv_ ? "cell " : "receiver ") + where, reflection * irradiance,
         {position, glm::dvec3(part.place) + origin_});
-    if (irradiance == glm::dvec3(0.0)) continue;
+    if (reflection * irradiance == glm::dvec3(0.0)) continue;  // nothing was added: no light, or a black surface
     answer.shares.back().weight = part.weight;
     if (lpv_) answer.shares.back().lobe = {part.red, part.green, part.blue};
   }
   glm::dvec3 cut(0.0);  // the lookup clamps each channel of a cascade at 0
   for (const auto& [cascade, sum] : ofCascade) cut += glm::max(sum, glm::dvec3(0.0)) - sum;
-  if (lpv_) add(answer, "lpv", "light below 0, cut off", reflection * cut, {position});
+  if (lpv_) {
+    add(answer, "lpv", "light below 0, cut off", reflection * cut, {position});
+    add(answer, "lpv", "glossy reflection", glm::dvec3(terms[ASKED_GLOSSY]), {position});
+  }
 }
 
 void Renderer::answerOfPatches(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,

@@ -12,8 +12,9 @@ bool takesCameraSurfels(const LpvSettings& volume) {
   return volume.blocking && volume.iterations > 1 && volume.surfels != LpvSurfels::rsm;
 }
 
-LpvSettings volumeSettings(const RenderSettings& settings, std::size_t lightMaps) {
+LpvSettings volumeSettings(const RenderSettings& settings, std::size_t lightMaps, bool isGlossy) {
   LpvSettings volume = settings.lpv;
+  if (!isGlossy) volume.glossy = LpvGlossy::off;
   const std::size_t views =
       (volume.surfels == LpvSurfels::camera ? 0 : lightMaps) + (takesCameraSurfels(volume) ? 1 : 0);
   volume.mergeViews = volume.blocking && views > 1;
@@ -35,7 +36,10 @@ LpvFrame::LpvFrame(const FrameParts& parts)
     : parts_(parts),
       maps_(parts, {true, true}, parts.settings.lpv.bounces > 1),
       cameraMap_(cameraMap(parts)),
-      volume_(parts.programs, parts.context.capabilities(), volumeSettings(parts.settings, maps_.count())) {}
+      volume_(parts.programs, parts.context.capabilities(),
+              volumeSettings(parts.settings, maps_.count(), parts.needs.specular)) {
+  if (parts.settings.lpv.glossy != LpvGlossy::off && parts.needs.specular) lobes_.emplace();
+}
 
 // Treats the camera as a lamp without light: the map's texels hold position, normal and area of the visible surfaces.
 std::vector<ReflectiveShadowMap::Outputs> LpvFrame::recordCameraMap(gl::TimeQuery& timer, const Camera& camera) {
@@ -97,7 +101,8 @@ void LpvFrame::forget() {
 
 gl::ShaderFlags LpvFrame::shadingFlags() const {
   gl::ShaderFlags flags = LightPropagationVolume::lookupFlags(parts_.settings.lpv);
-  flags.insert(flags.begin(), {"PROPAGATED", 1});
+  const bool marches = isGlossy() && parts_.settings.lpv.glossy == LpvGlossy::march;
+  flags.insert(flags.begin(), {{"PROPAGATED", 1}, {"GLOSSY", isGlossy()}, {"GLOSSY_MARCH", marches}});
   return flags;
 }
 

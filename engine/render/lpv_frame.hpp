@@ -6,6 +6,7 @@
 // surfels come from the camera.
 #pragma once
 
+#include "lpv/glossy_lobes.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "render/light_maps.hpp"
 
@@ -28,17 +29,22 @@ class LpvFrame {
 
   /// Flags of shaders/forward/indirect.glsl, and its inputs.
   gl::ShaderFlags shadingFlags() const;
-  void bindForShading() const { volume_.bindForLookup(); }
+  void bindForShading() const {
+    volume_.bindForLookup();
+    if (lobes_) lobes_->bind();
+  }
 
   const LightPropagationVolume& volume() const { return volume_; }
   /// Estimated turns of the largest submission (gl/pieces.hpp): filling from a map, or a step of propagation.
   static double largestTurns(const RenderSettings& settings, bool hasPoints);
   double largestTurns() const { return largestTurns(parts_.settings, !parts_.points.empty()); }
   bool hasMaps() const { return maps_.count() > 0; }
+  bool isGlossy() const { return lobes_.has_value(); }
   void addStagePictures(std::vector<StagePicture>& pictures) const;
   void addLeftOut(std::vector<std::string>& names) const;
   std::size_t gpuBytes() const {
-    return maps_.gpuBytes() + volume_.gpuBytes() + (cameraMap_ ? cameraMap_->gpuBytes() : 0);
+    return maps_.gpuBytes() + volume_.gpuBytes() + (cameraMap_ ? cameraMap_->gpuBytes() : 0) +
+           (lobes_ ? lobes_->gpuBytes() : 0);
   }
 
  private:
@@ -49,6 +55,7 @@ class LpvFrame {
   LightMaps maps_;
   std::optional<ReflectiveShadowMap> cameraMap_;  ///< the camera's view, for the geometry volume
   LightPropagationVolume volume_;
+  std::optional<GlossyLobes> lobes_;  ///< if lpv.glossy is asked for and a material of the scene is glossy
   std::vector<shared::LpvCascade> cascades_;  ///< those of the propagated light
 };
 

@@ -157,7 +157,7 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ask
       if constexpr (requires { technique.shadingFlags(); }) own = technique.shadingFlags();
     });
     flags.insert(flags.end(), own.begin(), own.end());
-    for (const char* flag : {"PROPAGATED", "RECEIVED", "GATHERED", "SHOW_REFUSED"})
+    for (const char* flag : {"PROPAGATED", "RECEIVED", "GATHERED", "SHOW_REFUSED", "GLOSSY", "GLOSSY_MARCH"})
       if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
         flags.push_back({flag, 0});
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
@@ -342,7 +342,9 @@ double Renderer::turnsOfSurface() const {
   constexpr double kTurnsOfMaterial = 4.0, kTurnsOfShadow = 4.0, kTurnsOfIndirect = 24.0;
   const int suns = sunCascades_ ? settings_.sunCascades.cascades : static_cast<int>(shadowMap_.has_value());
   const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
-  return kTurnsOfMaterial + kTurnsOfShadow * (suns + lamps) + (lpv_ || receivers_ ? kTurnsOfIndirect : 0.0);
+  constexpr double kGlossyRays = 8.0, kTurnsOfCell = 8.0;  // lpv/glossy.glsl
+  const double glossy = lpv_ && lpv_->isGlossy() ? kGlossyRays * kTurnsOfCell * settings_.lpv.glossyCells() : 0.0;
+  return kTurnsOfMaterial + kTurnsOfShadow * (suns + lamps) + (lpv_ || receivers_ ? kTurnsOfIndirect : 0.0) + glossy;
 }
 
 double Renderer::largestTurns() const {
@@ -481,7 +483,8 @@ std::vector<std::string> Renderer::leftOut() const {
                                                  {"shadow rays", radiosity_ && radiosity_->hasShadowRays()},
                                                  {"receivers", receivers_.has_value()},
                                                  {"light propagation volume", lpv_.has_value()},
-                                                 {"light shafts", shafts_.has_value()}};
+                                                 {"light shafts", shafts_.has_value()},
+                                                 {"glossy reflection", lpv_ && lpv_->isGlossy()}};
   for (const auto& [name, there] : stages)
     if (!there) names.emplace_back(name);
   if (lpv_) lpv_->addLeftOut(names);

@@ -188,6 +188,13 @@ const std::vector<Setting>& table() {
        kPropagate, ""},
       {"lpv.shaft-steps", number(FIELD(lpv.shaftSteps), 1, 4096), "steps", "of light shafts along a view ray", "",
        rebuild, kPropagate, ""},
+      {"lpv.glossy", choice(FIELD(lpv.glossy)), "",
+       "glossy reflection of the volume's light: mean, of the next cells along the reflected ray, as published; march, "
+       "along it to the first surfels of the geometry volume",
+       "[Kaplanyan2010]", rebuild, kPropagate, ""},
+      {"lpv.glossy-steps", number(FIELD(lpv.glossySteps), 0, 1024, "auto"), "cells",
+       "along the reflected ray, at most; auto: 4 for the mean, 64 for the march", "[Kaplanyan2010]", rebuild,
+       kPropagate, ""},
       // More of them: filling, propagation, receivers.
       {"lpv.fill", choice(FIELD(lpv.fill)), "",
        "how the grid is filled: layered, by blending; atomic, in floats; fixed, in integers, the same bits every run",

@@ -24,9 +24,12 @@ layout(location = 0) out vec4 radiance;
 #include "forward/lights.glsl"
 #endif
 
-#if SPECULAR
+#if SPECULAR || GLOSSY
 #include "lib/highlight.glsl"
 Highlight highlight;
+#endif
+#if GLOSSY
+#include "lpv/glossy.glsl"
 #endif
 #if EMISSION
 #include "lib/emission.glsl"
@@ -56,7 +59,7 @@ void add(inout vec3 result, vec3 radiance, int term) {
 
 void main() {
   vec3 albedo = materialAlbedo(vTexCoord), mapped = materialNormal(vNormal, vPosition, vTexCoord);
-#if SPECULAR
+#if SPECULAR || GLOSSY
   highlight = materialHighlight(vTexCoord);
 #endif
 #if EMISSION
@@ -98,6 +101,9 @@ void main() {
 #endif
   vec3 indirect = indirectIrradiance(vPosition, normal, meshNormal);
   result += albedo / kPi * indirect;
+#if GLOSSY
+  add(result, lpvGlossy(vPosition, normal, toCamera, albedo, highlight.specular, highlight.shininess), ASKED_GLOSSY);
+#endif
 #if EMISSION
   add(result, emitted, ASKED_EMISSION);
 #endif

@@ -11,7 +11,7 @@
 #include "lib/haze.glsl"
 #include "lib/sh.glsl"
 #if PROPAGATED
-#include "lpv/lookup.glsl"
+#include "lpv/radiance.glsl"
 #endif
 #if SUN
 #include "forward/sun_shadow.glsl"
@@ -26,46 +26,26 @@ layout(binding = 0) uniform sampler2D depth;
 uniform mat4 worldFromClip;
 uniform int steps;
 uniform ivec2 firstPixel;  // of a part of the picture
+const int kVolumeEvery = 4;  // segments that share a lookup of the volume, which has no shadow edges
 
 #if PROPAGATED
-// Light of the volume scattered at a point into a direction: W per square scene unit and sr, over sigma_s.
-//
-// The radiance is chosen to carry the flux of the kernel and the lookup. Radiance Y00 l0 + Y1 <l1, w> gives a plane the
-// irradiance pi Y00 l0 + 2 pi / 3 Y1 <l1, -n>, and coefficients c give it a0 c0 + a1 <c1, -n> (lpv/lookup.glsl). So l0
-// = 2/3 c0 and l1 = 3 / (2 pi) (Omega_f + 8 Omega_s / sqrt 5) c1. Scattering multiplies band 1 by g, the phase
-// function's mean cosine [HenyeyGreenstein1941].
+// Light of the volume scattered at a point into a direction: W per square scene unit and sr, over sigma_s. Scattering
+// multiplies band 1 by g, the phase function's mean cosine [HenyeyGreenstein1941].
 vec3 volumeScattered(vec3 position, vec3 towardsEye) {
-  const float kBand0 = 2.0 / 3.0, kBand1 = 0.91461886;
-  vec3 sum = vec3(0.0);
-  float left = 1.0;
-  for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
-    float weight = left * lpvCascadeWeight(k, position);
-    left -= weight;
-    if (weight <= 0.0) continue;
-    float border;
-    float cells = float(lpv.shape.x);
-    vec3 place = lpvPlace(k, position, vec3(0.0), border) / vec3(cells, cells, cells * float(lpv.shape.y));
-    vec3 first = kY1 * kBand1 * towardsEye;
-    vec3 found = vec3(dot(textureLod(lpvRed, place, 0.0), vec4(kY00 * kBand0, haze.anisotropy.r * first)),
-                      dot(textureLod(lpvGreen, place, 0.0), vec4(kY00 * kBand0, haze.anisotropy.g * first)),
-                      dot(textureLod(lpvBlue, place, 0.0), vec4(kY00 * kBand0, haze.anisotropy.b * first)));
-    sum += weight * border * max(found, 0.0);
-  }
-  return sum * lpv.referenceIrradiance;
+  mat3x4 light = lpvRadiance(position);
+  vec3 first = kY1 * towardsEye, g = haze.anisotropy;
+  vec3 found = vec3(dot(light[0], vec4(kY00, g.r * first)), dot(light[1], vec4(kY00, g.g * first)),
+                    dot(light[2], vec4(kY00, g.b * first)));
+  return max(found, 0.0) * lpv.referenceIrradiance;
 }
 #endif
 
-vec3 scattered(vec3 position, vec3 towardsEye) {
-  vec3 light = vec3(0.0);
 #if SUN
-  light += frame.sunIrradiance * sunVisibility(position, vec3(0.0)) * hazeTransmittance(position, -frame.sunDirection) *
-           hazePhase(dot(frame.sunDirection, towardsEye));
-#endif
-#if PROPAGATED
-  light += volumeScattered(position, towardsEye);
-#endif
-  return haze.scattering * light;
+vec3 sunScattered(vec3 position, vec3 towardsEye) {
+  return frame.sunIrradiance * sunVisibility(position, vec3(0.0)) * hazeTransmittance(position, -frame.sunDirection) *
+         hazePhase(dot(frame.sunDirection, towardsEye));
 }
+#endif
 
 void main() {
   ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy), size = imageSize(radiance);
@@ -86,9 +66,20 @@ void main() {
   vec3 x = haze.extinction * piece;
   vec3 taken = piece * mix((1.0 - passes) / max(x, vec3(1e-20)), 1.0 - 0.5 * x, lessThan(x, vec3(1e-3)));
   vec3 sum = vec3(0.0), through = vec3(1.0);
-  for (int i = 0; i < steps; ++i) {
-    sum += through * taken * scattered(frame.cameraPosition + (range.x + (float(i) + part) * piece) * ray, -ray);
-    through *= passes;
+  for (int first = 0; first < steps; first += kVolumeEvery) {
+    vec3 volume = vec3(0.0);
+#if PROPAGATED
+    float at = min(float(first) + float(kVolumeEvery) * part, float(steps));
+    volume = volumeScattered(frame.cameraPosition + (range.x + at * piece) * ray, -ray);
+#endif
+    for (int i = first; i < min(first + kVolumeEvery, steps); ++i) {
+      vec3 light = volume;
+#if SUN
+      light += sunScattered(frame.cameraPosition + (range.x + (float(i) + part) * piece) * ray, -ray);
+#endif
+      sum += through * taken * haze.scattering * light;
+      through *= passes;
+    }
   }
   vec4 before = imageLoad(radiance, pixel);
   imageStore(radiance, pixel, vec4(before.rgb * through + sum, before.a));

@@ -14,6 +14,7 @@ SHARED_BEGIN
 #define ASKED_EMISSION 5     // radiance
 #define ASKED_INDIRECT 6     // irradiance that the technique adds to direct light
 #define ASKED_CORNERS 7      // of radiosity: weights of the patch's corners; w: the patch
+#define ASKED_GLOSSY 7  // of forward shading: radiance reflected from the volume
 #define ASKED_LIGHTS 8       // radiance per light. Forward shading: as below; radiosity: the order of DirectLights
 #define ASKED_SUN 8
 #define ASKED_SPOTS 9

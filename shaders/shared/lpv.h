@@ -5,6 +5,8 @@
 SHARED_BEGIN
 
 #define LPV_MAX_CASCADES 4
+#define LPV_LOBES_ANGLES 64  // texels of the table of glossy lobes
+#define LPV_LOBES_ALPHAS 32
 
 struct LpvCascade {
   vec3 minimum;        // world: minimum corner of cell (0,0,0); an exact multiple of cellSize
@@ -15,7 +17,7 @@ struct LpvCascade {
 
 struct LpvConstants {
   LpvCascade cascades[LPV_MAX_CASCADES];
-  ivec4 shape;          // x: cells per side, y: cascades, z and w unused
+  ivec4 shape;  // x: cells per side, y: cascades, z: steps of glossy reflection, w unused
   float referenceIrradiance;  // E_ref: coefficients are stored as c / (E_ref cellSize^2)
   float blendBand;      // fraction of blendHalf over which a cascade fades into the next
   float lookupOffset;   // a receiver is moved by this many cells along its normal before the lookup
