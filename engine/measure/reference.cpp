@@ -9,6 +9,7 @@
 #include "scene/fingerprint.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -61,6 +62,33 @@ double BatchMean::meanError() const {
   return std::sqrt(meanSquares_ / (n * (n - 1.0)));
 }
 
+std::vector<double> BatchMean::state() const {
+  std::vector<double> numbers{static_cast<double>(width_), static_cast<double>(height_), static_cast<double>(batches_),
+                              meanOfMeans_, meanSquares_};
+  for (const auto* values : {&sum_, &squares_})
+    for (const glm::dvec3& value : *values) numbers.insert(numbers.end(), {value.x, value.y, value.z});
+  return numbers;
+}
+
+std::optional<BatchMean> BatchMean::fromState(const std::vector<double>& state) {
+  constexpr std::size_t kHead = 5;
+  constexpr double kMost = 1 << 20;
+  if (state.size() < kHead || !(state[0] >= 1.0 && state[0] < kMost && state[1] >= 1.0 && state[1] < kMost) ||
+      !(state[2] >= 1.0 && state[2] < kMost))
+    return std::nullopt;
+  BatchMean mean;
+  mean.width_ = static_cast<int>(state[0]), mean.height_ = static_cast<int>(state[1]);
+  mean.batches_ = static_cast<int>(state[2]);
+  mean.meanOfMeans_ = state[3], mean.meanSquares_ = state[4];
+  const std::size_t pixels = static_cast<std::size_t>(mean.width_) * static_cast<std::size_t>(mean.height_);
+  if (state.size() != kHead + 6 * pixels) return std::nullopt;
+  for (std::size_t i = 0; i < 2 * pixels; ++i) {
+    const double* at = &state[kHead + 3 * i];
+    (i < pixels ? mean.sum_ : mean.squares_).emplace_back(at[0], at[1], at[2]);
+  }
+  return mean;
+}
+
 Reference merged(const Reference& a, const Reference& b) {
   CHECK(a.mean.width == b.mean.width && a.mean.height == b.mean.height && a.transport == b.transport, "{} and {}",
         nameOf(a.transport), nameOf(b.transport));
@@ -85,10 +113,13 @@ std::uint32_t batchSize(std::uint64_t samples) {
 }
 
 std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first,
-                                         const SamplingGoal& goal, const std::function<bool()>& stop) {
+                                         const SamplingGoal& goal, const std::function<bool()>& stop,
+                                         UnfinishedReference* unfinished) {
   const auto start = Clock::now();
-  const auto elapsed = [&] { return secondsSince(start); };
   const bool byCount = goal.samples > 0;
+  CHECK(!unfinished || byCount, "by time nothing can be gone on from");
+  const double before = unfinished ? unfinished->seconds : 0.0;
+  const auto elapsed = [&] { return before + secondsSince(start); };
   // By time: the batch size doubles until one batch takes a sixteenth of the time. Then all batches start again at that
   // size, so that they are equal.
   std::uint32_t size = byCount ? batchSize(goal.samples) : 1;
@@ -96,19 +127,21 @@ std::optional<Reference> sampleReference(const Sampler& sampler, Transport trans
   if (!byCount) sampler(next, 1);  // keep one-time work such as compiling out of the batch's time
   if (!byCount)
     for (double last = 0.0;;) {
-      const double before = elapsed();
+      const double begun = elapsed();
       sampler(next, size);  // discarded, so its numbers may be used again below
-      last = elapsed() - before;
+      last = elapsed() - begun;
       if ((stop && stop()) || 2.0 * last * SamplingGoal::kBatches > goal.seconds || size >= (1u << 20)) break;
       size *= 2;
     }
-  BatchMean mean;
+  BatchMean mean = unfinished ? unfinished->mean : BatchMean();
+  next += static_cast<std::uint64_t>(mean.batches()) * size;
   while (!(stop && stop())) {
     mean.add(sampler(next, size));
     next += size;
     if (mean.batches() < SamplingGoal::kBatches) continue;
     if (byCount || elapsed() >= goal.seconds) break;
   }
+  if (unfinished) *unfinished = {first, size, elapsed(), mean};
   if (mean.batches() < 2) return std::nullopt;
   Reference result;
   result.transport = transport;
@@ -200,6 +233,12 @@ std::optional<Reference> decode(const ReferenceKey& key, const std::vector<std::
   return r;
 }
 
+std::uint64_t hashOf(const std::vector<std::uint64_t>& words, std::size_t count) {
+  Hash hash;
+  for (std::size_t i = 0; i < count; ++i) hash.add(words[i]);
+  return hash.value();
+}
+
 }  // namespace
 
 std::string ReferenceKey::name() const { return fmt::format("{:016x}", value); }
@@ -235,6 +274,41 @@ std::optional<Reference> ReferenceCache::load(const ReferenceKey& key) const {
 
 void ReferenceCache::store(const ReferenceKey& key, const Reference& reference) const {
   writeFileAtomically(fileOf(key), encode(key, reference));
+  std::error_code none;
+  fs::remove(unfinishedFileOf(key), none);
+}
+
+fs::path ReferenceCache::unfinishedFileOf(const ReferenceKey& key) const {
+  return folder_ / (key.name() + ".unfinished");
+}
+
+// Words of 8 bytes: key, first path, samples per batch, seconds, the batches' state, a hash of all before it.
+void ReferenceCache::store(const ReferenceKey& key, const UnfinishedReference& unfinished) const {
+  std::vector<std::uint64_t> words{key.value, unfinished.first, unfinished.size,
+                                   std::bit_cast<std::uint64_t>(unfinished.seconds)};
+  for (const double number : unfinished.mean.state()) words.push_back(std::bit_cast<std::uint64_t>(number));
+  words.push_back(hashOf(words, words.size()));
+  std::vector<std::uint8_t> bytes(words.size() * sizeof(std::uint64_t));
+  std::memcpy(bytes.data(), words.data(), bytes.size());
+  writeFileAtomically(unfinishedFileOf(key), bytes);
+}
+
+std::optional<UnfinishedReference> ReferenceCache::load(const ReferenceKey& key,
+                                                        const UnfinishedReference& wanted) const {
+  const fs::path file = unfinishedFileOf(key);
+  if (!fs::exists(file)) return std::nullopt;
+  const std::vector<std::uint8_t> bytes = readFileBytes(file);
+  std::vector<std::uint64_t> words(bytes.size() / sizeof(std::uint64_t));
+  if (words.size() < 5) return std::nullopt;
+  std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint64_t));
+  if (words[0] != key.value || words[1] != wanted.first || words[2] != wanted.size ||
+      words.back() != hashOf(words, words.size() - 1))
+    return std::nullopt;
+  std::vector<double> state;
+  for (std::size_t i = 4; i + 1 < words.size(); ++i) state.push_back(std::bit_cast<double>(words[i]));
+  const std::optional<BatchMean> mean = BatchMean::fromState(state);
+  if (!mean || mean->batches() >= SamplingGoal::kBatches) return std::nullopt;
+  return UnfinishedReference{wanted.first, wanted.size, std::bit_cast<double>(words[3]), *mean};
 }
 
 fs::path ReferenceCache::defaultFolder() {
@@ -258,7 +332,19 @@ std::optional<Reference> obtainReference(const ReferenceCache& cache, const Refe
     if (goal.samples > 0) rest.samples = goal.samples - known->samples;
     rest.seconds = goal.seconds - known->seconds;
   }
-  std::optional<Reference> more = sampleReference(sampler, transport, known ? known->samples : 0, rest, stop);
+  const std::uint64_t first = known ? known->samples : 0;
+  std::optional<Reference> more;
+  if (goal.samples > 0) {
+    UnfinishedReference unfinished{.first = first, .size = batchSize(rest.samples)};
+    unfinished = cache.load(key, unfinished).value_or(unfinished);
+    more = sampleReference(sampler, transport, first, rest, stop, &unfinished);
+    if (unfinished.mean.batches() < SamplingGoal::kBatches) {
+      if (unfinished.mean.batches() > 0) cache.store(key, unfinished);
+      return known;
+    }
+  } else {
+    more = sampleReference(sampler, transport, first, rest, stop);
+  }
   if (!more) return known;
   more->renderer = renderer;
   const Reference result = known ? merged(*known, *more) : *more;

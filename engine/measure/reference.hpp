@@ -40,6 +40,10 @@ class BatchMean {
   Image standardError() const;
   double meanError() const;
 
+  /// Everything that add() goes on from, as numbers for a file, and back. Empty if the numbers are no such state.
+  std::vector<double> state() const;
+  static std::optional<BatchMean> fromState(const std::vector<double>& state);
+
  private:
   int width_ = 0, height_ = 0, batches_ = 0;
   std::vector<glm::dvec3> sum_, squares_;  // Welford: mean, sum of squared deviations
@@ -55,10 +59,19 @@ struct SamplingGoal {
   static constexpr int kBatches = 16;
 };
 
+/// The batches so far of a reference by number of samples that was stopped.
+struct UnfinishedReference {
+  std::uint64_t first = 0;  ///< number of its first path
+  std::uint32_t size = 0;  ///< samples per batch
+  double seconds = 0.0;  ///< spent on it
+  BatchMean mean{};
+};
+
 /// Samples from path number `first` until the goal is met. `stop` is called between batches; fewer than two batches
-/// give no reference.
+/// give no reference. `unfinished`, by number of samples only: what to go on from, and where a stop leaves off.
 std::optional<Reference> sampleReference(const Sampler& sampler, Transport transport, std::uint64_t first,
-                                         const SamplingGoal& goal, const std::function<bool()>& stop = {});
+                                         const SamplingGoal& goal, const std::function<bool()>& stop = {},
+                                         UnfinishedReference* unfinished = nullptr);
 
 /// Identity of a reference: the scene's content, view, size, transport, and the sampler (version and switches, as
 /// text).
@@ -78,15 +91,23 @@ class ReferenceCache {
   std::optional<Reference> load(const ReferenceKey& key) const;
   void store(const ReferenceKey& key, const Reference& reference) const;
   std::filesystem::path fileOf(const ReferenceKey& key) const;
+  /// Its own file beside the reference's, removed by store() of the reference. load: empty too if the stored one
+  /// begins at another path or has batches of another size than `wanted`.
+  std::optional<UnfinishedReference> load(const ReferenceKey& key, const UnfinishedReference& wanted) const;
+  void store(const ReferenceKey& key, const UnfinishedReference& unfinished) const;
 
   /// LUCERNA_REFERENCES, else XDG_CACHE_HOME/lucerna, else ~/.cache/lucerna.
   static std::filesystem::path defaultFolder();
 
  private:
+  std::filesystem::path unfinishedFileOf(const ReferenceKey& key) const;
+
   std::filesystem::path folder_;
 };
 
-/// From the cache if it meets the goal; otherwise sampled further and stored. Empty if stopped before two batches.
+/// From the cache if it meets the goal; otherwise sampled further and stored. A stop keeps what there is: by time a
+/// reference of fewer samples, by number of samples the batches so far, from which the next call goes on to the bits
+/// of one that was not stopped. Empty if stopped without any reference.
 std::optional<Reference> obtainReference(const ReferenceCache& cache, const ReferenceKey& key, const Sampler& sampler,
                                          Transport transport, const SamplingGoal& goal, const std::string& renderer,
                                          const std::function<bool()>& stop = {});

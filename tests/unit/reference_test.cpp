@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <random>
 #include <thread>
 
@@ -240,6 +241,58 @@ TEST(ReferenceCache, IsUsedWhereItMeetsTheGoalAndSampledFurtherWhereNot) {
   EXPECT_EQ(more->samples, 96u);
   EXPECT_LT(errorsOf(more->mean, sample(noisy(), 0, 96).mean).max, 1e-5);  // the same paths, none of them twice
   EXPECT_EQ(cache.load({1})->samples, 96u);
+}
+
+// Stopped after any number of batches, by number of samples: the next call ends with the bits of one that was not
+// stopped, makes no batch twice, and leaves no file behind but the reference.
+TEST(ReferenceCache, AStoppedReferenceGoesOnToTheSameBits) {
+  const Sampler plain = noisy();
+  for (const std::uint64_t samples : {4u, 64u}) {
+    SamplingGoal goal;
+    goal.samples = samples;
+    const test::TempFolder wholeFolder;
+    const auto whole =
+        obtainReference(ReferenceCache(wholeFolder.path()), {1}, plain, Transport::all, goal, "here").value();
+    for (const int stopAfter : {1, 5, 15}) {
+      const test::TempFolder folder;
+      const ReferenceCache cache(folder.path());
+      int calls = 0;
+      const Sampler sampler = noisy(1.0, &calls);
+      EXPECT_FALSE(
+          obtainReference(cache, {1}, sampler, Transport::all, goal, "here", [&] { return calls >= stopAfter; }));
+      EXPECT_FALSE(cache.load({1}));
+      const auto resumed = obtainReference(cache, {1}, sampler, Transport::all, goal, "here");
+      ASSERT_TRUE(resumed);
+      EXPECT_EQ(calls, 16);
+      EXPECT_EQ(resumed->mean.pixels, whole.mean.pixels) << stopAfter;
+      EXPECT_EQ(resumed->standardError.pixels, whole.standardError.pixels);
+      EXPECT_EQ(resumed->meanError, whole.meanError);
+      EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+    }
+  }
+}
+
+// What was begun for another goal, or is damaged, is not gone on from.
+TEST(ReferenceCache, WhatWasBegunForAnotherGoalIsNotTakenUp) {
+  const test::TempFolder folder;
+  const ReferenceCache cache(folder.path());
+  int calls = 0;
+  const Sampler sampler = noisy(1.0, &calls);
+  SamplingGoal goal;
+  goal.samples = 64;
+  const auto stopAfterThree = [&] { return calls >= 3; };
+  EXPECT_FALSE(obtainReference(cache, {1}, sampler, Transport::all, goal, "here", stopAfterThree));
+  const UnfinishedReference begun{.first = 0, .size = 4};
+  ASSERT_TRUE(cache.load({1}, begun));
+  EXPECT_EQ(cache.load({1}, begun)->mean.batches(), 3);
+  EXPECT_FALSE(cache.load({2}, begun));
+  EXPECT_FALSE(cache.load({1}, UnfinishedReference{.first = 4, .size = 4}));
+  EXPECT_FALSE(cache.load({1}, UnfinishedReference{.first = 0, .size = 8}));
+  const std::filesystem::path file = folder.path() / (ReferenceKey{1}.name() + ".unfinished");
+  std::fstream(file, std::ios::binary | std::ios::in | std::ios::out).seekp(200).put('x');
+  EXPECT_FALSE(cache.load({1}, begun));
+  std::filesystem::resize_file(file, 40);
+  EXPECT_FALSE(cache.load({1}, begun));
 }
 
 }  // namespace
