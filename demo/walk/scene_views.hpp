@@ -1,6 +1,6 @@
-// Debug views that no technique makes: how many surfaces lie in a pixel, how many nodes of the hierarchy its ray
-// visits; the light in the cells of a propagation volume as lobes, voxels as boxes, receivers as disks, in the scene.
-// What they need is made when they are looked at for the first time, and dropped with the view.
+// Debug views that no technique draws. Two count for each pixel: the surfaces in it (overdraw) and the nodes of the
+// hierarchy that its ray visits. Three are drawn in the scene: the light in a propagation volume's cells as lobes,
+// voxels as boxes, receivers as disks. Their programs and buffers are made at first use and dropped with the view.
 #pragma once
 
 #include "forward/gpu_scene.hpp"
@@ -14,19 +14,20 @@
 
 namespace lucerna::demo {
 
-/// Counts a pixel; the first is none of these.
+/// What is counted for each pixel; the first entry stands for nothing.
 enum class CountView { none, overdraw, visits };
 constexpr std::array<std::string_view, 3> kCountViewNames{"nothing", "surfaces a pixel", "visits a ray"};
 
 class CountViews {
  public:
-  /// `scene` must outlive it.
+  /// `scene` must outlive this object.
   CountViews(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const glm::dvec3& origin);
 
-  /// Colours from black (0) over red and yellow to white (`white` and more). clipFromWorld: about `origin`.
+  /// Draws the counts in colours from black (0) through red and yellow to white (`white` or more).
+  /// clipFromWorld is relative to `origin`.
   const gl::Texture& record(CountView view, const Camera& camera, const glm::mat4& clipFromWorld, glm::ivec2 size,
                             float white);
-  float most() const { return most_; }  ///< of the last picture's counts
+  float most() const { return most_; }  ///< the largest count in the last picture
   float mean() const { return mean_; }
 
  private:
@@ -42,21 +43,21 @@ class CountViews {
   std::optional<RayScene> rays_;
   gl::Texture result_;
   float most_ = 0.0f, mean_ = 0.0f;
-  // That the picture is of.
+  // What the stored picture shows.
   CountView view_ = CountView::none;
   glm::mat4 clip_{0.0f};
   std::vector<float> counts_;
 };
 
-/// What is drawn in the scene as lines.
+/// The views that are drawn in the scene as lines.
 enum class Glyphs { none, lobes, geometry, voxels, receivers };
 constexpr std::array<std::string_view, 5> kGlyphNames{"nothing", "lobes of cells", "geometry volume",
                                                       "visibility voxels", "receivers"};
 
-/// About the renderer's origin(); empty where its technique has none of it. Lobes: intensity by direction in each of
-/// the `most` brightest cells of a cascade, the largest half a cell long. Receivers: `most` of those of a cascade in
-/// the picture, the same ones while the camera moves, as disks on their surfaces in the colour of their irradiance.
-/// Reads textures back: waits for the GPU.
+/// Lines relative to the renderer's origin(), empty if its technique has nothing of the kind. Lobes show intensity by
+/// direction in the `most` brightest cells of a cascade; the largest is half a cell long. Receivers show at most `most`
+/// of a cascade's receivers that are in the picture, as disks on their surfaces in the colour of their irradiance; the
+/// choice stays the same while the camera moves. Reads textures back, so it waits for the GPU.
 std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, const Scene& scene, const Camera& camera,
                                       int cascade, int most);
 

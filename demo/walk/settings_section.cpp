@@ -13,7 +13,7 @@ namespace lucerna::demo {
 
 namespace {
 
-/// What a setting is, where it comes from and what a change costs.
+/// A setting's tooltip: its meaning, its source, and what a change costs.
 std::string explanation(const Setting& setting) {
   std::string text = std::string(setting.meaning);
   text += fmt::format("\n{}: {}{}", nameOf(setting.value.type), allowedValues(setting),
@@ -28,16 +28,16 @@ std::string explanation(const Setting& setting) {
   return text;
 }
 
-/// The number as --set takes it, rounded and checked by the table.
+/// Formats a number as --set takes it, rounded and checked by the table.
 std::string textOfNumber(const Setting& setting, const RenderSettings& settings, double number) {
   RenderSettings copy = settings;
   setSettingNumber(setting, copy, std::clamp(number, setting.value.least, setting.value.most));
   return printSetting(setting, copy);
 }
 
-/// A slider that says its value when it is let go: a change may make the technique anew. What is being dragged is kept
-/// in `dragged`. The slider ends at 16 times the default: 100,000 propagation steps are allowed, and can be typed after
-/// a click with control, but as the end of a slider they would stop the window.
+/// A slider that passes its value on when it is released, because a change may rebuild the technique. `dragged` keeps
+/// the value meanwhile. The slider ends at 16 times the default. Larger values can be typed after Ctrl+click: 100,000
+/// propagation steps are allowed, but at the end of a slider they would freeze the window by accident.
 std::optional<double> numberControl(Ui& ui, const std::string& key, const Setting& setting, double current) {
   static const RenderSettings usual;
   constexpr double kMostOfUsual = 16.0;
@@ -99,7 +99,7 @@ void showSetting(Ui& ui, SideState& side, const RenderSettings& settings, const 
   explain(explanation(setting));
   if (given) {
     ImGui::PopStyleColor();
-    // Beside the name, or below it where that would be beyond the panel's edge.
+    // Beside the name, or below it where it would not fit the panel.
     const ImGuiStyle& style = ImGui::GetStyle();
     const float end =
         ImGui::GetItemRectMax().x + style.ItemSpacing.x + ImGui::CalcTextSize("reset").x + 2.0f * style.FramePadding.x;

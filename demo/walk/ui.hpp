@@ -1,8 +1,8 @@
-// Dear ImGui in the engine's terms: input from a host's HostInput, triangles through gl::Overlay. No GL loader of
-// ImGui's own (Debian's backend opens libGL.so.1 by itself, past EGL and OSMesa), so the panel works on every host.
+// Dear ImGui on the engine's terms: input comes from the host's HostInput, triangles are drawn by gl::Overlay. Debian's
+// ImGui backend is not used: it opens libGL.so.1 itself and so bypasses EGL and OSMesa. The panel works on every host.
 //
-// Controls are made through the functions below: each is known by its label, so that recorded input can ask for it by
-// name (walk/input_file.hpp) wherever it lies.
+// Controls are registered through the functions below by their labels, so that recorded input can find them by name
+// (walk/input_file.hpp) wherever they are.
 #pragma once
 
 #include "gl/overlay.hpp"
@@ -21,41 +21,41 @@ namespace lucerna::demo {
 
 class Ui {
  public:
-  /// scale: of text and controls, 1 for 96 dots an inch.
+  /// scale: size of text and controls; 1 for 96 dots per inch.
   Ui(gl::ProgramLibrary& programs, Host& host, float scale);
   ~Ui();
   Ui(const Ui&) = delete;
   Ui& operator=(const Ui&) = delete;
 
-  /// Begins a frame of `size` pixels; ImGui's own functions may be called until end().
+  /// Begins a frame of `size` pixels. ImGui's functions may be called until end().
   void begin(const HostInput& input, glm::ivec2 size, double seconds);
-  /// The same for a note while something long is made. The panel knows nothing of it: what is dragged there stays held.
+  /// Begins a frame for a note during long work. The panel is not part of it: what is being dragged there stays held.
   void beginNote(glm::ivec2 size, double seconds);
-  /// Draws what was asked for over the target.
+  /// Draws the frame over the target.
   void end(const gl::Framebuffer& target);
   /// Ends a frame without drawing it.
   void drop();
-  /// Whether the mouse is the panel's and not the picture's, with the cursor and the buttons of this frame's input;
-  /// ImGui itself says so only once the frame has begun.
+  /// Whether the mouse belongs to the panel and not to the picture, by the cursor and buttons of this frame's input.
+  /// ImGui itself knows only after the frame has begun.
   bool wantsMouse(const HostInput& input) const;
   bool wantsKeyboard() const { return ImGui::GetIO().WantTextInput; }
   float scale() const { return scale_; }
   std::size_t gpuBytes() const { return overlay_.gpuBytes() + font_.bytes(); }
 
-  // ---- controls by name. Called right after the control.
+  // ---- controls by name. To be called right after the control.
   struct Place {
     glm::vec2 centre;
     bool visible;
   };
-  /// Notes the window that is being made: where it lies the mouse is not the picture's.
+  /// Registers the current ImGui window: over it, the mouse does not belong to the picture.
   void noteWindow();
-  /// Before all windows are made anew; without it those of the last frame stay.
+  /// Forgets all registered windows. Without this call, those of the last frame stay.
   void beginWindows() { windows_.clear(); }
-  /// Notes the control that was made last; `label` with its section before it, such as "Light/sun height".
+  /// Registers the last control. Its name is `label` after its section, such as "Light/sun height".
   void note(const std::string& label);
-  /// The section that the following controls belong to.
+  /// Sets the section of the controls that follow.
   void section(const std::string& name) { section_ = name; }
-  /// Where that control lay in the last frame; the panel scrolls to it in the next one.
+  /// Where that control was in the last frame. The panel scrolls to it in the next one.
   std::optional<Place> find(const std::string& label);
   bool isThere(const std::string& label) const { return places_.contains(label); }
   /// All controls of all frames so far.
@@ -68,8 +68,8 @@ class Ui {
   gl::Overlay overlay_;
   gl::Texture font_;
   std::string section_, wanted_;
-  std::vector<std::array<glm::vec2, 2>> windows_;  ///< corner and end
-  bool held_ = false;  ///< a mouse button, in the last frame
+  std::vector<std::array<glm::vec2, 2>> windows_;  ///< lower and upper corner
+  bool held_ = false;  ///< a mouse button was held in the last frame
   std::map<std::string, Place> places_;
   std::set<std::string> labels_;
   std::string clipboard_;

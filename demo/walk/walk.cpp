@@ -1,6 +1,6 @@
-// lucerna walk [SCENE]: the walkthrough. In a window the path plays in real time, views are skipped where drawing is
-// slow, and it ends by itself where no panel is shown; without one, or with --record, views spread over the path are
-// drawn and written, with the time of every stage.
+// lucerna walk [SCENE]: the walkthrough. In a window the camera path plays in real time: slow drawing skips views, and
+// the walk ends with the path if no panel is shown. Without a window, or with --record, views spread over the path are
+// rendered and written, with the time of every stage.
 #include "base/clock.hpp"
 #include "base/data.hpp"
 #include "base/error.hpp"
@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "FIRST:LAST", views of the path; empty: all.
+// Views of the path as "FIRST:LAST"; empty means all.
 std::pair<int, int> parseViews(const std::string& text, int viewCount) {
   if (text.empty()) return {0, viewCount - 1};
   int first = -1, last = -1;
@@ -41,8 +41,8 @@ std::pair<int, int> parseViews(const std::string& text, int viewCount) {
   return {first, last};
 }
 
-// How much two pictures of one view differ: their means, and the 16x16 block that differs most, relative to its own
-// mean or, in the dark, to the picture's.
+// How much two pictures of one view differ: in their means, and in the 16x16 block that differs most, relative to its
+// own mean or, if it is dark, to the picture's.
 struct Change {
   double mean = 0.0, block = 0.0;
 };
@@ -89,7 +89,7 @@ nlohmann::ordered_json resultJson(const WalkOptions& options, const Host& host, 
   return json;
 }
 
-/// Frames of a walk as units. All that decides a frame: scene, settings, and where the camera is in each.
+/// The frames of a walk as units of work. Scene, settings and cameras determine a frame, so they identify the folder.
 PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Renderer& renderer,
                     const std::vector<Camera>& cameras) {
   if (options.part.checkpoint.empty()) return PartFolder(options.part, "walk", "", cameras.size());
@@ -135,7 +135,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
   const PartFolder part = framesOf(options, scene, renderer, cameras);
 
   watchForInterrupt();
-  renderer.render(path.view(first));  // warm-up: shaders are finished on first use; its times are dropped
+  renderer.render(path.view(first));  // warm-up: drivers finish shaders on first use; its times are dropped
   Progress progress("walk", static_cast<int>(part.last() - part.first()), options.common.quiet);
   std::vector<double> frameSeconds;
   std::optional<int> before;
@@ -147,16 +147,16 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
       frameSeconds.push_back(kept->at("seconds").get<double>());
     } else {
       const auto start = Clock::now();
-      if (renderer.path()) renderer.renderToTheEnd(cameras[i]);  // all samples: one alone is noise
+      if (renderer.path()) renderer.renderToTheEnd(cameras[i]);  // all samples: one alone is mere noise
       else renderer.render(cameras[i]);
       gl::finish();
       frameSeconds.push_back(secondsSince(start));
       writePng(part.folder() ? part.file(i, ".png") : file, renderer.readDisplay());
-      part.store(i, {{"seconds", frameSeconds.back()}});  // last: it says that the picture is whole
+      part.store(i, {{"seconds", frameSeconds.back()}});  // stored last: it says that the picture is complete
     }
     if (part.folder() && !part.isPart()) writeFileAtomically(file, readFileBytes(part.file(i, ".png")));
     if (options.flicker && before) {
-      // The same view, once with its own volume and once with that of the view before: motion drops out, flicker stays.
+      // The same view, once with its own volume and once with the previous view's: motion cancels, flicker remains.
       const Image now = renderer.readRadiance();
       renderer.render(cameras[i], path.view(*before));
       const Change change = changeBetween(renderer.readRadiance(), now);
@@ -187,10 +187,10 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
   return exitCode();
 }
 
-/// In a window, or driven by recorded input.
+/// Runs the walk in a window, or by recorded input.
 int play(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs, Scene scene,
          Spline path) {
-  // The state that the window begins with.
+  // The initial state of the window.
   watchForInterrupt();
   WalkState state;
   state.scene = std::make_unique<Scene>(std::move(scene));
@@ -211,7 +211,7 @@ int play(const WalkOptions& options, Host& host, const gl::Context& context, gl:
   state.panel = options.panel == "on" || (options.panel == "auto" && !measures);
   state.hint = !measures;
   state.messageAge = measures ? 1e9 : 0.0;
-  // Until it is closed; then what came of it.
+  // Run until it is closed, then report.
   WalkWindow window(options, host, context, programs, std::move(state));
   window.run();
   SideState& side = window.state().sides[0];
@@ -246,7 +246,7 @@ int runWalk(WalkOptions options) {
   HostOptions hostOptions;
   hostOptions.windowSize = settings.size;
   hostOptions.windowTitle = "Lucerna - " + scene.name;
-  hostOptions.swapAtRefresh = options.common.json.empty();  // with --json frames are measured
+  hostOptions.swapAtRefresh = options.common.json.empty();  // with --json, frames are measured
   const auto host = options.common.makeHost(!options.records(), hostOptions);
   const gl::Context context;
   gl::ProgramLibrary programs;

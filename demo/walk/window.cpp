@@ -28,10 +28,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPlayedFrame = 1.0 / 60.0;  // seconds, of recorded input: the same walk on every machine
+constexpr double kPlayedFrame =
+    1.0 / 60.0;  // seconds per frame of recorded input, so that the walk is the same on every machine
 constexpr double kMessageSeconds = 8.0, kHintSeconds = 8.0;
-constexpr double kLongestStep = 0.25;  // seconds that the path goes on in a frame
-constexpr int kStillFrames = 3;  // before the truth of a view is sought
+constexpr double kLongestStep = 0.25;  // seconds by which the path advances in one frame
+constexpr int kStillFrames = 3;  // still frames before the reference of a view is started
 constexpr std::size_t kPlotFrames = 240;
 
 bool sameView(const Camera& a, const Camera& b) {
@@ -73,7 +74,7 @@ bool WalkWindow::takeInput() {
       playedSize_ = *size;
       host_.setWindowSize(*size);
     }
-    host_.poll();  // so that the system sees a living window
+    host_.poll();  // the system must see that the window responds
   } else {
     input_ = host_.poll();
   }
@@ -186,15 +187,14 @@ void WalkWindow::act(Action action) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------------- the frame's
-// steps
+// ---------------------------------------------------------------------------------------------------- frame steps
 
 void WalkWindow::moveCamera(double seconds) {
   PathState& path = state_.path;
   const bool steers = input_.move != glm::dvec3(0.0) || input_.mouseDelta != glm::dvec2(0.0);
   if (steers) path.follows = false;
   if (path.follows) {
-    // Somebody who looks misses nothing of the path, however slow its frames are; who measures wants real time.
+    // A viewer should miss nothing of the path, however slow the frames are. A measurement needs real time.
     const bool measures = !options_.common.json.empty() && !player_;
     const double step = measures ? seconds : std::min(seconds, kLongestStep);
     if (!path.paused && frames_ > 0) path.seconds += step * path.speed;
@@ -205,15 +205,14 @@ void WalkWindow::moveCamera(double seconds) {
       view = playback.viewAt(path.seconds);
     }
     if (!view) {
-      stop_ =
-          !touched_ && (!state_.panel || player_);  // nobody has touched anything, and nothing is there to be touched
+      stop_ = !touched_ && (!state_.panel || player_);  // no input so far, and no panel that could be used
       path.seconds = playback.duration();
       path.paused = true;
       view = path.last - path.first;
     }
     state_.camera->place(path.spline->view(path.first + *view));
   } else {
-    state_.camera->move(input_, std::min(seconds, 0.1));  // a slow frame must not throw the camera across the room
+    state_.camera->move(input_, std::min(seconds, 0.1));  // a slow frame must not fling the camera across the room
   }
   if (!sameView(state_.camera->camera(), lastCamera_)) changed();
   lastCamera_ = state_.camera->camera();
@@ -231,7 +230,7 @@ void WalkWindow::loadWantedScene() {
     settings.size = state_.sides[0].renderer->size();
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
     auto renderer = std::make_unique<Renderer>(context_, programs_, *scene, settings);
-    // Nothing can fail from here on: the new scene takes the old one's place.
+    // Nothing can fail from here on: the new scene replaces the old one.
     state_.truth.reset();
     state_.countViews.reset();
     for (SideState& side : state_.sides) {
@@ -256,7 +255,7 @@ void WalkWindow::loadWantedScene() {
     state_.path.follows = false;
     state_.camera.emplace(state_.scene->cameras.front(), 0.08 * glm::length(state_.scene->bounds.extent()));
     state_.exposure = state_.scene->exposure;
-    if (state_.scene->defaultSun) state_.meterWanted = true;  // no file said how bright it is to look
+    if (state_.scene->defaultSun) state_.meterWanted = true;  // no file sets an exposure
     host_.setTitle("Lucerna - " + state_.scene->name);
     state_.say(fmt::format("{}: {} triangles", state_.scene->name, state_.scene->triangleCount()));
     changed();
@@ -288,7 +287,7 @@ void WalkWindow::make(SideState& side) {
     breathe("making technique " + side.options.technique);
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
     auto renderer = std::make_unique<Renderer>(context_, programs_, *state_.scene, settings);
-    lastBreath_ = {};  // a driver may finish its programs only now
+    lastBreath_ = {};  // a driver may compile its programs only now
     breathe("drawing the first picture by " + side.options.technique);
     side.renderer = std::move(renderer);
     side.buildSeconds = secondsSince(start);
@@ -328,7 +327,7 @@ void WalkWindow::makeReady() {
     state_.reloadWanted = false;
     const auto reload = programs_.reloadChanged();
     for (SideState& side : state_.sides)
-      if (side.renderer) side.renderer->forget();  // what was made by the programs before
+      if (side.renderer) side.renderer->forget();  // what the previous programs made
     state_.say(fmt::format("{} programs reloaded", reload.reloaded));
     for (const std::string& failure : reload.failures) {
       state_.say(failure);
@@ -348,7 +347,7 @@ const gl::Texture* WalkWindow::radianceOf(int index) const {
   return side.renderer ? &side.renderer->radiance() : nullptr;
 }
 
-// A side that shows the reference, or a stored picture, draws its technique until there is one.
+// A side that is set to the reference or to a stored picture draws its technique until there is one.
 void WalkWindow::draw() {
   if ((state_.autoExposure && frames_ % 8 == 0) || state_.meterWanted) {
     if (const gl::Texture* radiance = radianceOf(state_.shown); radiance && frames_ > 0) {
@@ -378,11 +377,11 @@ bool WalkWindow::allSettled() const {
   return true;
 }
 
-// All of it is measured: sampling, reading back, judging. While pictures are still being made that is at most the share
-// of what the frames take by themselves; when they have settled, all that is idle.
+// Everything counts: sampling, reading back, judging. While pictures are still changing, the reference gets at most its
+// share of the frames' own time; once they are still, all idle time.
 void WalkWindow::makeTruth(double frameSeconds) {
-  constexpr double kIdleSeconds = 0.03;  // a frame: the panel still answers
-  constexpr double kLongestFrame = 1.0;  // longer ones were something else, such as compiling
+  constexpr double kIdleSeconds = 0.03;  // per frame, so that the panel still responds
+  constexpr double kLongestFrame = 1.0;  // longer frames are something else, such as compiling
   if (!state_.truthOn || !state_.side().renderer) return;
   const double share = std::clamp(static_cast<double>(state_.truthShare), 0.01, 0.9);
   const double submission = state_.truth ? state_.truth->submissionSeconds() : 0.0;
@@ -390,16 +389,16 @@ void WalkWindow::makeTruth(double frameSeconds) {
   if (still_ < kStillFrames) return;
   const bool idle = allSettled();
   if (!idle && truthTime_.left() < submission) return;
-  gl::finish();  // the picture's own work is not the truth's
+  gl::finish();  // the picture's work must not count as the reference's
   auto start = Clock::now();
-  if (seekTruth()) start = Clock::now();  // compiling, once
+  if (seekTruth()) start = Clock::now();  // compiling happens once and is not counted
   if (state_.truth) state_.truth->advance(idle ? kIdleSeconds : truthTime_.left());
   judge();
   if (idle) truthTime_.idle(secondsSince(start));
   else truthTime_.spend(secondsSince(start));
 }
 
-/// The path tracer for what is shown now. Whether it had to be made.
+/// Provides the path tracer for the current view. Returns whether it had to be made.
 bool WalkWindow::seekTruth() {
   bool made = false;
   const SideState& shown = state_.side();
@@ -429,10 +428,10 @@ bool WalkWindow::seekTruth() {
   return made;
 }
 
-// Twice a second at most: pictures are read back for it.
+// At most twice a second, since pictures are read back.
 void WalkWindow::judge() {
   if (!state_.truth || !state_.truth->ready()) return;
-  for (SideState& side : state_.sides) side.judgement.flip();  // its picture, where it has been made
+  for (SideState& side : state_.sides) side.judgement.flip();  // takes up its FLIP picture once that is computed
   const double since = player_ ? kPlayedFrame * (frames_ - judgedFrame_) : secondsSince(judged_);
   if (since < 0.5) return;
   judged_ = Clock::now();
@@ -499,12 +498,12 @@ void WalkWindow::askPixel(const Compare::Inputs& inputs) {
   }
 }
 
-// Made anew where the camera or what they are of has changed; voxels, which take a while, stay as they were chosen.
+// Rebuilt when the camera or their source has changed. Voxels are slow to list and stay as they were chosen.
 void WalkWindow::drawGlyphs(const Compare::Inputs& inputs) {
   const SideState& side = state_.side();
   if (state_.glyphs == Glyphs::none || !side.renderer || side.shows == Shows::picture) return;
   const Camera& camera = state_.camera->camera();
-  const LpvReceivers* receivers = side.renderer->receivers();  // whose light changes from frame to frame
+  const LpvReceivers* receivers = side.renderer->receivers();  // their light changes from frame to frame
   const std::string are =
       fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs, state_.glyphCascade,
                   state_.glyphMost, state_.glyphs == Glyphs::voxels ? "" : cameraText(camera), state_.shown,
@@ -527,12 +526,12 @@ void WalkWindow::drawGizmo(const Compare::Inputs& inputs) {
                     renderer.linesView(state_.camera->camera(), state_.scene->bounds), renderer.origin(), window_.y};
   if (!lines_) lines_.emplace(programs_);
   gl::Lines::View view = screen_->view;
-  view.depth = nullptr;  // a lamp behind a wall can be taken, too
+  view.depth = nullptr;  // a lamp behind a wall can be grabbed too
   lines_->draw(pictureTarget_, screen_->placement, view, gizmo_.lines(*state_.scene, renderer.origin()),
                3.0f * host_.contentScale());
 }
 
-// Over the picture of the side that it is about, hidden by what that one shows.
+// Drawn over the picture of its side and hidden by the surfaces in that picture.
 void WalkWindow::drawLines(const Compare::Inputs& inputs) {
   if (!state_.answer || !state_.drawsAnswer) return;
   const bool right = inputs.layout != Layout::one && state_.askedSide == 1;
@@ -624,7 +623,7 @@ void WalkWindow::compose() {
   if (state_.shotWanted) takeShot();
 }
 
-/// The left part of the window, from its upper edge.
+/// Reads the presented picture: `size` pixels from the upper left corner of the window.
 Bitmap WalkWindow::shownPicture(glm::ivec2 size) const {
   const std::vector<glm::vec4> texels = picture_.readRgba();
   Bitmap bitmap;
@@ -703,7 +702,7 @@ void WalkWindow::endCapture() {
   state_.say(file ? fmt::format("RenderDoc: {}", *file) : "RenderDoc saw no frame on this host");
 }
 
-// ---------------------------------------------------------------------------------------------------- showing it
+// ---------------------------------------------------------------------------------------------------- presenting
 
 void WalkWindow::resizeTo(glm::ivec2 window) {
   if (window != window_) {
@@ -715,7 +714,7 @@ void WalkWindow::resizeTo(glm::ivec2 window) {
     pass.clearColor(0, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     changed();
   }
-  // An open panel has the right part for itself, where that leaves most of the window.
+  // An open panel gets the right part of the window if most of the window remains.
   const int panel = state_.panel ? Panel::widthOf(host_.contentScale()) : 0;
   view_ = {window_.x > 2 * panel ? window_.x - panel : window_.x, window_.y};
   for (SideState& side : state_.sides)
@@ -745,7 +744,7 @@ void WalkWindow::drawUi(const HostInput& input, double seconds, const std::strin
   ui_->end(pictureTarget_);
 }
 
-// What recorded input touches by name must be there; else nothing that nobody looks at is made.
+// Controls that recorded input uses by name must exist; apart from them, nothing invisible is built.
 bool WalkWindow::drawsUi() const {
   return state_.panel || state_.help || state_.hint ||
          (!state_.messages.empty() && state_.messageAge < kMessageSeconds) || player_.has_value();
@@ -758,7 +757,7 @@ void WalkWindow::breathe(const std::string& what, double share) {
     const HostInput input = host_.poll();
     if (input.closeRequested) stop_ = true;
     if (stop_ || interrupted() || input.pressed.find('\x1b') != std::string::npos) throw Stopped(what);
-    if (host_.framebufferSize() != window_) return;  // the next frame sees to that
+    if (host_.framebufferSize() != window_) return;  // the next frame handles it
   }
   drawUi({}, 0.02, what, share);
   host_.present(pictureTarget_.id(), window_);
@@ -841,6 +840,7 @@ nlohmann::ordered_json WalkWindow::toJson() const {
                         {"count", ms.size()}};
   }
   json["messages"] = state_.messages;
+  if (const auto& sun = state_.scene->sun) json["sun"] = {sun->direction.x, sun->direction.y, sun->direction.z};
   json["lamps"] = nlohmann::ordered_json::array();
   for (const SpotLight& l : state_.scene->spots) json["lamps"].push_back({l.position.x, l.position.y, l.position.z});
   for (const PointLight& l : state_.scene->points) json["lamps"].push_back({l.position.x, l.position.y, l.position.z});

@@ -1,5 +1,5 @@
-// The walkthrough in a window, or driven by recorded input on any host: path and free camera, panel, comparison, live
-// truth.
+// The walkthrough in a window, or driven by recorded input on any host: camera path and free camera, panel, comparison
+// and live truth.
 #pragma once
 
 #include "base/clock.hpp"
@@ -20,23 +20,23 @@ namespace lucerna::demo {
 
 class WalkWindow {
  public:
-  /// `state`: with scene, path and the first technique's renderer.
+  /// `state` must hold a scene, a path and the first technique's renderer.
   WalkWindow(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs,
              WalkState state);
   ~WalkWindow();
 
-  /// Until it is closed, the path ends or --frames are drawn.
+  /// Runs until the window is closed, the path ends or --frames are drawn.
   void run();
 
   int frames() const { return frames_; }
   double seconds() const { return seconds_; }
   WalkState& state() { return state_; }
-  /// What a driven run did: controls, messages.
+  /// Reports what a run by recorded input did: controls touched, messages shown.
   nlohmann::ordered_json toJson() const;
 
  private:
-  // A frame, in this order.
-  bool takeInput();  ///< false: it is to end
+  // The steps of a frame, in this order.
+  bool takeInput();  ///< false: the walk ends
   void act(Action action);
   void moveCamera(double seconds);
   void loadWantedScene();
@@ -59,14 +59,14 @@ class WalkWindow {
   void endCapture();
   void pace(Clock::time_point start);
 
-  /// Called while something long is made: shows the old picture with what is going on; throws Stopped where Escape was
+  /// Called during long work: shows the old picture and a note of what is being done. Throws Stopped if Escape was
   /// pressed.
   void breathe(const std::string& what, double share = -1.0);
   void resizeTo(glm::ivec2 window);
   void drawUi(const HostInput& input, double seconds, const std::string& work, double share);
   bool drawsUi() const;
   Bitmap shownPicture(glm::ivec2 size) const;
-  glm::ivec2 pictureSize() const;  ///< that is computed
+  glm::ivec2 pictureSize() const;  ///< size of the computed picture
   const gl::Texture* radianceOf(int side) const;
   void changed() { still_ = 0; }
 
@@ -81,26 +81,26 @@ class WalkWindow {
   std::optional<StageView> stageView_;
   std::optional<gl::Lines> lines_;
   Gizmo gizmo_;
-  std::optional<Gizmo::Screen> screen_;  ///< of the last frame
+  std::optional<Gizmo::Screen> screen_;  ///< in the last frame
   std::vector<gl::Lines::Line> glyphs_;
-  std::string glyphsAre_;  ///< what glyphs_ was made of
+  std::string glyphsAre_;  ///< what glyphs_ was made from
   std::optional<Video> video_;
   std::optional<RenderDoc> renderDoc_;
-  bool captures_ = false;  ///< this frame
+  bool captures_ = false;  ///< in this frame
   HostInput input_;
   glm::dvec2 cursorBefore_{0.0};
-  bool leftBefore_ = false;  ///< the left button was held
+  bool leftBefore_ = false;  ///< the left button was held in the last frame
   glm::ivec2 window_{0}, playedSize_{0};
-  glm::ivec2 view_{0};  ///< the window less the panel: where the picture is
-  gl::Texture picture_;  ///< what is presented, where that is not the renderer's own
+  glm::ivec2 view_{0};  ///< the window without the panel: the area of the picture
+  gl::Texture picture_;  ///< what is presented, unless it is the renderer's own picture
   gl::Framebuffer pictureTarget_;
   Camera lastCamera_;
-  int still_ = 0;  ///< frames since something moved
-  bool touched_ = false;  ///< somebody is there: the walk does not end by itself; nor with the panel
+  int still_ = 0;  ///< frames since anything moved
+  bool touched_ = false;  ///< there was input, so the walk does not end by itself
   bool stop_ = false;
-  bool presented_ = false;  ///< compose() showed the renderer's own picture
-  std::optional<Camera> truthCamera_;  ///< that the truth is of
-  std::uint64_t truthVersion_ = 0;  ///< of the scene that the truth is of
+  bool presented_ = false;  ///< compose() presented the renderer's own picture
+  std::optional<Camera> truthCamera_;  ///< the camera of the truth
+  std::uint64_t truthVersion_ = 0;  ///< version of the truth's scene
   TimeShare truthTime_;
   int frames_ = 0;
   double seconds_ = 0.0, sinceHint_ = 0.0;

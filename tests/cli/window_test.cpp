@@ -261,6 +261,22 @@ TEST_F(Window, LampsAreDraggedAlongTheirAxes) {
   EXPECT_NE(read("after.png"), read("before.png"));
 }
 
+// Each step of the drag makes the technique anew, with a note over the picture meanwhile. The slider stays held through
+// all of it: its last value is the end of its range, and what the cursor does after the release changes nothing.
+TEST_F(Window, TheSunIsDraggedThroughAllSteps) {
+  write("input.txt",
+        "1 key R\n2 touch Light\n3 touch Light/sun azimuth\n60 press left\n62 cursor 590 360\n64 cursor 600 400\n"
+        "66 cursor 610 420\n68 cursor 799 420\n70 release left\n72 cursor 520 350\n74 save after.png\n");
+  const RunResult result = play(path("input.txt"), "--technique lpv", "", "800x700");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  const auto sun = json().at("window").at("sun");
+  EXPECT_NEAR(sun.at(0).get<double>(), 0.0, 1e-5);
+  // The scene's sun comes from x 0.5, y 1, z 0.3; its height stays.
+  EXPECT_NEAR(sun.at(2).get<double>(), -std::hypot(0.5, 0.3) / std::hypot(0.5, 1.0, 0.3), 1e-5);
+  EXPECT_NEAR(sun.at(1).get<double>(), -1.0 / std::hypot(0.5, 1.0, 0.3), 1e-5);
+}
+
 // Without ffmpeg a line says so; with one, it is given every picture. Here one stands in for it that counts bytes.
 TEST_F(Window, VideosGoToFfmpeg) {
   write("input.txt", "1 key R\n2 key V\n30 key V\n32 key F2\n");
