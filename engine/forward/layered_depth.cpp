@@ -31,7 +31,7 @@ void LayeredDepth::record(const GpuScene& scene, std::span<const View> views) co
   CHECK(static_cast<int>(views.size()) == shape_.layers, "{} views for {} layers", views.size(), shape_.layers);
   gl::RasterState state;
   state.depth = gl::Depth::lessWrite;
-  state.polygonOffset = {1.5f, 2.0f};
+  state.polygonOffset = {shape_.slopeOffset, 2.0f};
   state.depthClamp = true;
   const gl::RasterPass pass(name_, framebuffer_, state);
   pass.clearDepth();

@@ -18,7 +18,7 @@ ShadowMap::ShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const 
 void ShadowMap::record(const GpuScene& scene) const {
   gl::RasterState state;
   state.depth = gl::Depth::lessWrite;
-  state.polygonOffset = {1.5f, 2.0f};
+  state.polygonOffset = {0.0f, 2.0f};  // lookups follow the receiver's plane
   const gl::RasterPass pass("shadow map", framebuffer_, state);
   pass.clearDepth();
   scene.drawDepth(programs_);

@@ -130,7 +130,7 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   const int cascades = settings_.sunCascades.cascades;
   if (showsSunLight && cascades > 1) {
     sunCascades_.emplace(programs, *gpuScene_, "sun cascades",
-                         LayeredDepth::Shape{gl::TextureKind::array, settings_.shadow.size, cascades, cascades});
+                         LayeredDepth::Shape{gl::TextureKind::array, settings_.shadow.size, cascades, cascades, 0.0f});
     sunCascadeConstants_ =
         gl::Buffer("sun cascades", sizeof(shared::SunCascadeConstants), nullptr, gl::Usage::dynamicDraw);
   } else if (showsSunLight) {

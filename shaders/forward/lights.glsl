@@ -31,7 +31,7 @@ Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   float depth = -dot(away, lights.spots[i].direction);
   vec4 clip = lights.spots[i].clipFromPlace *
               vec4(meshNormal * (kNormalOffset * lights.spots[i].shadowTexel * depth) - away, 1.0);
-  float visible = clip.w > 0.0 ? shadowTent(spotShadows, float(i), 0.5 * clip.xyz / clip.w + 0.5) : 1.0;
+  float visible = clip.w > 0.0 ? shadowTent(spotShadows, float(i), 0.5 * clip.xyz / clip.w + 0.5, vec2(0.0)) : 1.0;
   result.irradiance = lights.spots[i].intensity * (falloff * result.cosine / distance2 * visible);
   return result;
 }
