@@ -8,6 +8,7 @@
 #include "offers.hpp"
 #include "render/ask.hpp"
 #include "render_path.hpp"
+#include "scene/scene_file.hpp"
 #include "settings/deviations.hpp"
 
 #include <fmt/core.h>
@@ -78,8 +79,9 @@ int runRender(RenderOptions options) {
     settings.radiosity.direct = RadiosityView::Direct::pixels;
   if (!isWritableImageName(options.output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
-  const Scene scene = loadScene(options.scene);
+  Scene scene = loadScene(options.scene);
   const Camera camera = chooseCamera(scene, options.camera);
+  setDefaultExposure(scene, camera);
 
   // Render.
   const auto host = options.common.makeHost(false);

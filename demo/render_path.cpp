@@ -8,6 +8,7 @@
 #include "parts.hpp"
 #include "pathtracer/film.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "scene/scene_file.hpp"
 #include "settings/deviations.hpp"
 
 #include <fmt/core.h>
@@ -123,8 +124,9 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   if (output.empty() && !part) throwBadInput("--output is missing: the file for the picture");
   if (!output.empty() && !isWritableImageName(output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
-  const Scene scene = loadScene(sceneFile);
+  Scene scene = loadScene(sceneFile);
   const Camera camera = chooseCamera(scene, cameraText);
+  setDefaultExposure(scene, camera);
 
   // Create the path tracer, and load the film of an earlier run.
   const auto host = common.makeHost(false);

@@ -164,7 +164,8 @@ struct Scene {
   Bounds bounds;
   double metresPerUnit = 1.0;
   glm::vec3 background{0.0f};  ///< radiance visible where there is neither surface nor environment; it lights nothing
-  float exposure = 1.0f;  ///< multiplies radiance before tone mapping; 3 with the default sun
+  float exposure = 1.0f;  ///< multiplies radiance before tone mapping
+  bool defaultExposure = false;  ///< no file has one: it is chosen for the view (setDefaultExposure)
   std::filesystem::path keyFrames;  ///< the walk's camera path; empty: none named
   std::size_t degenerateTriangles =
       0;  ///< of zero area, kept so that counts agree with the file's (Crytek Sponza has one):

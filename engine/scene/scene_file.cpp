@@ -255,9 +255,13 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   if (sun || (scene.defaultSun && (spots || points))) {
     scene.sun = sun ? *sun : std::nullopt;
     scene.defaultSun = false;
-    scene.exposure = 1.0f;  // the default exposure belongs to the default sun
+    scene.defaultExposure = false;  // it belongs to the default sun
+    scene.exposure = 1.0f;
   }
-  if (exposure) scene.exposure = static_cast<float>(*exposure);
+  if (exposure) {
+    scene.defaultExposure = false;
+    scene.exposure = static_cast<float>(*exposure);
+  }
   if (background) scene.background = *background;
   readSceneMedia(root, scale, scene);
   if (!cameras.empty() || !keyFrames.empty()) useChosenView(scene);
@@ -269,6 +273,7 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   if (!root.has("environment")) setDefaultSky(scene);
   else if (const Value environment = root.at("environment"); !environment.json.is_null())
     scene.environment = readEnvironment(environment, scene.sun);
+  setDefaultExposure(scene, scene.cameras.front());
   return scene;
 }
 

@@ -25,6 +25,10 @@ std::string repairedObj(std::string_view obj);
 /// With the default sun, after a view has been chosen: the sun no longer follows the view from outside.
 void useChosenView(Scene& scene);
 
+/// With the default sun and no exposure in a file: 0.4 for a camera outside the scene's bounds, so that a white surface
+/// in the sun is just below white; 3 inside of them, so that surfaces lit by reflection alone are readable.
+void setDefaultExposure(Scene& scene, const Camera& camera);
+
 /// With the default sun: the clear sky for its current direction.
 void setDefaultSky(Scene& scene);
 

@@ -78,8 +78,8 @@ const glm::dvec3 kDefaultSunDirection = glm::normalize(glm::dvec3(0.12, -1.0, 0.
 /// sheet that faces +z.
 const glm::dvec3 kSunOverShoulder = glm::normalize(glm::dvec3(-0.3, -1.0, -0.6));
 const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
-/// Matches that sun: sunlit surfaces are bright, those lit by reflection alone still readable.
-const float kDefaultExposure = 3.0f;
+/// Match that sun and its sky, some 12 W/unit^2: white stands at 0.4 * 0.8 * 12 / pi = 1.2 before the tone curve.
+const float kExposureOutside = 0.4f, kExposureInside = 3.0f;
 
 glm::dvec3 toGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 glm::vec3 toGlm(const aiColor3D& c) { return {c.r, c.g, c.b}; }
@@ -676,7 +676,7 @@ void appendLights(Scene& scene, const aiScene& source) {
   if (scene.sun || !scene.spots.empty() || !scene.points.empty()) return;
   scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
   scene.defaultSun = true;
-  scene.exposure = kDefaultExposure;
+  scene.defaultExposure = true;
 }
 
 /// Whether the bounding sphere of the bounds intersects the cone around the view's corners, for a 16:9 picture.
@@ -841,6 +841,13 @@ void useChosenView(Scene& scene) {
   if (scene.defaultSun) scene.sun->direction = kDefaultSunDirection;
 }
 
+void setDefaultExposure(Scene& scene, const Camera& camera) {
+  if (!scene.defaultExposure) return;
+  const glm::bvec3 above = glm::greaterThan(camera.position, scene.bounds.min),
+                   below = glm::lessThan(camera.position, scene.bounds.max);
+  scene.exposure = glm::all(above) && glm::all(below) ? kExposureInside : kExposureOutside;
+}
+
 void setDefaultSky(Scene& scene) {
   if (scene.defaultSun) scene.environment = Environment{glm::vec3(1.0f), clearSkyPicture({}, *scene.sun), 0.0};
 }
@@ -873,6 +880,7 @@ Scene loadScene(const fs::path& file) {
   if (lowerExtension(file) == ".json") return loadSceneFile(file);
   Scene scene = loadModel(file);
   setDefaultSky(scene);
+  setDefaultExposure(scene, scene.cameras.front());
   setExposureForLamps(scene);
   return scene;
 }

@@ -32,7 +32,7 @@ struct LightFolder : TempFolder {
 TEST(SceneLights, TheDefaultExposureGoesWithTheDefaultSun) {
   const LightFolder folder;
   const std::string point = R"("points": [{"position": [0,1,0], "intensity": [1,1,1]}])";
-  EXPECT_EQ(folder.load("").exposure, 3.0f);
+  EXPECT_EQ(folder.load("").exposure, 0.4f);
   EXPECT_EQ(folder.load(", " + point).exposure, 1.0f);
   EXPECT_FALSE(folder.load(", " + point).sun.has_value());
   EXPECT_EQ(folder.load(", \"exposure\": 2, " + point).exposure, 2.0f);
@@ -189,7 +189,7 @@ TEST(SceneLights, LampsOfModelsThatAreFarTooWeakOrStrongChooseTheExposure) {
   EXPECT_NE(loggedWarnings()[0].find("black at exposure 1"), std::string::npos);
   EXPECT_NEAR(exposure(16000.0), 0.003f, 1e-5f);
   EXPECT_NE(loggedWarnings().at(0).find("white"), std::string::npos);
-  EXPECT_EQ(exposure(0.0), 3.0f);  // no lamp: the default sun's
+  EXPECT_EQ(exposure(0.0), 0.4f);  // no lamp: the default sun's
 }
 
 TEST(SceneLights, NeedsAreRaisedByLampsThatShine) {

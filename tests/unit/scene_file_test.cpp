@@ -4,6 +4,7 @@
 #include "scene/clear_sky.hpp"
 #include "scene/needs.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_file.hpp"
 #include "support/contains.hpp"
 #include "support/temp_folder.hpp"
 
@@ -34,10 +35,32 @@ TEST(SceneFile, AModelAloneTakesTheDefaults) {
   EXPECT_EQ(scene.file.filename(), "room.json");
   EXPECT_EQ(scene.triangleCount(), 1u);
   EXPECT_EQ(scene.metresPerUnit, 1.0);
-  EXPECT_EQ(scene.exposure, 3.0f);  // goes with the default sun
+  EXPECT_EQ(scene.exposure, 0.4f);  // goes with the default sun and the view from outside
   EXPECT_EQ(scene.cameras.size(), 1u);
   EXPECT_TRUE(scene.sun);
   EXPECT_EQ(folder.load(R"(, "sun": {"direction": [0, -1, 0], "irradiance": [1, 1, 1]})").exposure, 1.0f);
+  EXPECT_EQ(folder.load(R"(, "exposure": 2)").exposure, 2.0f);
+}
+
+// With the default sun surfaces in the sun decide from outside, those lit by reflection inside; a file's exposure
+// stays.
+TEST(SceneFile, TheDefaultExposureFollowsTheView) {
+  Scene scene;
+  scene.bounds.add({-1, -1, -1});
+  scene.bounds.add({1, 2, 1});
+  scene.defaultExposure = true;
+  Camera camera;
+  const std::pair<glm::dvec3, float> cases[] = {
+      {{0.0, 1.9, 0.0}, 3.0f}, {{0.0, 2.1, 0.0}, 0.4f}, {{-5.0, 0.0, 0.0}, 0.4f}};
+  for (const auto& [position, exposure] : cases) {
+    camera.position = position;
+    setDefaultExposure(scene, camera);
+    EXPECT_EQ(scene.exposure, exposure);
+  }
+  scene.defaultExposure = false;
+  scene.exposure = 2.0f;
+  setDefaultExposure(scene, camera);
+  EXPECT_EQ(scene.exposure, 2.0f);
 }
 
 TEST(SceneFile, EveryKeyIsRead) {
