@@ -390,6 +390,24 @@ TEST_F(LpvGatherGl, TheSkyAboveAFloorAndInAPit) {
   EXPECT_LT(meanOf(dark.image).x, 0.1);
 }
 
+// Each stage adds its light to what the stage before it has left: the sky first, then the lights' maps.
+TEST_F(LpvGatherGl, SkyAndSunAddUp) {
+  const auto lit = [&](bool sky, bool sun) {
+    FloorAndWall room;
+    if (sky) room.builder.scene().environment.emplace().radiance = {0.2f, 0.3f, 0.6f};
+    if (sun) room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));
+    return picture(room.builder.scene(), room.camera,
+                   gathered(FloorAndWall::fine(settings(1, 1, Component::indirect)), LpvVisibility::none))
+        .image;
+  };
+  const Image both = lit(true, true), sky = lit(true, false);
+  Image sum = lit(false, true);
+  EXPECT_GT(meanOf(sky).x, 0.05 * meanOf(both).x);
+  EXPECT_GT(meanOf(sum).x, 0.05 * meanOf(both).x);
+  for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += sky.pixels[i];
+  EXPECT_LT(largestDifference(both, sum), 1e-4 * largestValue(both));
+}
+
 TEST_F(LpvGatherGl, OneBounceAloneIsTaken) {
   FloorAndWall room;
   room.builder.sun({0, -1, 0}, glm::vec3(1.0f));
