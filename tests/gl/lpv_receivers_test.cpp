@@ -390,14 +390,13 @@ TEST_F(LpvGatherGl, TheSkyAboveAFloorAndInAPit) {
   EXPECT_LT(meanOf(dark.image).x, 0.1);
 }
 
-// Each stage adds its light to what the stage before it has left: the sky first, then the lights' maps.
+// Each stage adds its light to what the stage before it has left: the lights' maps first, then the sky.
 TEST_F(LpvGatherGl, SkyAndSunAddUp) {
   const auto lit = [&](bool sky, bool sun) {
     FloorAndWall room;
     if (sky) room.builder.scene().environment.emplace().radiance = {0.2f, 0.3f, 0.6f};
     if (sun) room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));
-    return picture(room.builder.scene(), room.camera,
-                   gathered(FloorAndWall::fine(settings(1, 1, Component::indirect)), LpvVisibility::none))
+    return picture(room.builder.scene(), room.camera, gathered(FloorAndWall::fine(settings(1, 1)), LpvVisibility::none))
         .image;
   };
   const Image both = lit(true, true), sky = lit(true, false);
@@ -406,6 +405,16 @@ TEST_F(LpvGatherGl, SkyAndSunAddUp) {
   EXPECT_GT(meanOf(sum).x, 0.05 * meanOf(both).x);
   for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += sky.pixels[i];
   EXPECT_LT(largestDifference(both, sum), 1e-4 * largestValue(both));
+}
+
+// The gather has one bounce: of the sky that is its own light. Receivers that nothing lights would wait for ever.
+TEST_F(LpvGatherGl, TheSkyAloneHasNoIndirectLight) {
+  FloorAndWall room;
+  room.builder.scene().environment.emplace().radiance = glm::vec3(0.5f);
+  Renderer renderer(context(), library(), room.builder.scene(), gathered(settings(1, 1, Component::indirect)));
+  EXPECT_FALSE(renderer.receivers());
+  renderer.renderToTheEnd(room.camera);
+  EXPECT_EQ(largestValue(renderer.readRadiance()), 0.0);
 }
 
 TEST_F(LpvGatherGl, OneBounceAloneIsTaken) {
