@@ -33,7 +33,6 @@ RenderSettings settingsOf(const std::string& technique, const std::string& devia
   settings.component = Component::indirect;
   settings.lpv.transport = LpvTransport::propagate;  // all deviations of the volume belong to it
   settings.size = {96, 96};
-  settings.radiosity.solution.patches.longestEdge = 0.1;  // of a box of half a metre: seconds, not half a minute
   settings.fullFloatTarget = true;
   if (!deviation.empty()) applyDeviation(settings, deviation + "=on");
   return settings;

@@ -52,8 +52,8 @@ bool isCut(const Cascade& before, const Cascade& now) {
 
 bool LpvReceivers::isNeeded(const SceneNeeds& needs, LpvTransport transport, Light light) {
   if (transport == LpvTransport::gather) {  // one bounce of lamps, and the sky's own light
-    const bool lamps = needs.directionalLight || needs.spotLights || needs.pointLights;
-    return (lamps && needs.indirect && light != Light::direct) || (needs.environment && light != Light::indirect);
+    return (needs.anyLight() && needs.indirect && light != Light::direct) ||
+           (needs.environment && light != Light::indirect);
   }
   const bool extended = needs.emission || needs.environment;
   return light == Light::direct ? extended : needs.indirect || extended;

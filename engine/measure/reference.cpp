@@ -233,12 +233,6 @@ std::optional<Reference> decode(const ReferenceKey& key, const std::vector<std::
   return r;
 }
 
-std::uint64_t hashOf(const std::vector<std::uint64_t>& words, std::size_t count) {
-  Hash hash;
-  for (std::size_t i = 0; i < count; ++i) hash.add(words[i]);
-  return hash.value();
-}
-
 }  // namespace
 
 std::string ReferenceKey::name() const { return fmt::format("{:016x}", value); }
@@ -287,7 +281,7 @@ void ReferenceCache::store(const ReferenceKey& key, const UnfinishedReference& u
   std::vector<std::uint64_t> words{key.value, unfinished.first, unfinished.size,
                                    std::bit_cast<std::uint64_t>(unfinished.seconds)};
   for (const double number : unfinished.mean.state()) words.push_back(std::bit_cast<std::uint64_t>(number));
-  words.push_back(hashOf(words, words.size()));
+  words.push_back(Hash::of(words.data(), words.size() * sizeof(std::uint64_t)));
   std::vector<std::uint8_t> bytes(words.size() * sizeof(std::uint64_t));
   std::memcpy(bytes.data(), words.data(), bytes.size());
   writeFileAtomically(unfinishedFileOf(key), bytes);
@@ -302,7 +296,7 @@ std::optional<UnfinishedReference> ReferenceCache::load(const ReferenceKey& key,
   if (words.size() < 5) return std::nullopt;
   std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint64_t));
   if (words[0] != key.value || words[1] != wanted.first || words[2] != wanted.size ||
-      words.back() != hashOf(words, words.size() - 1))
+      words.back() != Hash::of(words.data(), (words.size() - 1) * sizeof(std::uint64_t)))
     return std::nullopt;
   std::vector<double> state;
   for (std::size_t i = 4; i + 1 < words.size(); ++i) state.push_back(std::bit_cast<double>(words[i]));

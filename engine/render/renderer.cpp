@@ -5,6 +5,7 @@
 #include "rsm/lamp_choice.hpp"
 #include "scene/place.hpp"
 #include "shared/bindings.h"
+#include "shared/lpv.h"
 #include "shared/sun_cascades.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -342,8 +343,8 @@ double Renderer::turnsOfSurface() const {
   constexpr double kTurnsOfMaterial = 4.0, kTurnsOfShadow = 4.0, kTurnsOfIndirect = 24.0;
   const int suns = sunCascades_ ? settings_.sunCascades.cascades : static_cast<int>(shadowMap_.has_value());
   const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
-  constexpr double kGlossyRays = 8.0, kTurnsOfCell = 8.0;  // lpv/glossy.glsl
-  const double glossy = lpv_ && lpv_->isGlossy() ? kGlossyRays * kTurnsOfCell * settings_.lpv.glossyCells() : 0.0;
+  constexpr double kTurnsOfCell = 8.0;
+  const double glossy = lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kTurnsOfCell * settings_.lpv.glossyCells() : 0.0;
   return kTurnsOfMaterial + kTurnsOfShadow * (suns + lamps) + (lpv_ || receivers_ ? kTurnsOfIndirect : 0.0) + glossy;
 }
 

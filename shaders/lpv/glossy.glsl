@@ -93,13 +93,12 @@ vec3 lpvGlossy(vec3 position, vec3 normal, vec3 toCamera, vec3 albedo, vec3 spec
 
   // Directions spread evenly over a cap about the mean [Vogel1979]. Their mean, (1 + the cosine at its border) / 2, is
   // as long as the lobe's.
-  const int kDirections = 8;
   float meanLength = clamp(length(facets.yz) / max(facets.x, 1e-6), 0.5, 1.0);
   vec3 side = normalize(cross(normal, across)), over = cross(direction, side);
   mat3x4 light = mat3x4(0.0);
   float directions = 0.0;
-  for (int i = 0; i < kDirections; ++i) {
-    float z = 1.0 - 2.0 * (1.0 - meanLength) * (float(i) + 0.5) / float(kDirections);
+  for (int i = 0; i < LPV_GLOSSY_RAYS; ++i) {
+    float z = 1.0 - 2.0 * (1.0 - meanLength) * (float(i) + 0.5) / float(LPV_GLOSSY_RAYS);
     float turn = 2.399963229728653 * float(i);
     vec3 one = z * direction + sqrt(max(1.0 - z * z, 0.0)) * (cos(turn) * side + sin(turn) * over);
     if (dot(one, normal) <= 0.0) continue;

@@ -7,6 +7,7 @@ SHARED_BEGIN
 #define LPV_MAX_CASCADES 4
 #define LPV_LOBES_ANGLES 64  // texels of the table of glossy lobes
 #define LPV_LOBES_ALPHAS 32
+#define LPV_GLOSSY_RAYS 8  // directions of a lobe
 
 struct LpvCascade {
   vec3 minimum;        // world: minimum corner of cell (0,0,0); an exact multiple of cellSize

@@ -1,4 +1,5 @@
 // What cmake --install and cpack make: works in a prefix that was moved, with the source and build trees away.
+#include "support/sanitizers.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -95,9 +96,7 @@ TEST_F(Installed, ProgramRunsWithTheSourceTreeAway) {
 // Configured, built and run against the moved prefix with the sources away; draws what the program draws.
 TEST_F(Installed, ConsumerDrawsWhatTheProgramDraws) {
   NEEDS_NAMESPACES();
-#if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "the library of a sanitizer build is not for others";
-#endif
+  if (lucerna::test::kSanitized) GTEST_SKIP() << "the library of a sanitizer build is not for others";
   fs::copy(fs::path(LUCERNA_SOURCE_DIR) / "tests/consumer", path("consumer"), fs::copy_options::recursive);
   const RunResult built = runWithoutSources(
       "cmake -S consumer -B consumer/build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=" LUCERNA_COMPILER
@@ -145,9 +144,7 @@ TEST_F(Installed, MetainfoIsValid) {
 // Both packages, as Debian's own checker sees them: no error, no warning.
 TEST(DebianPackages, PassLintian) {
   if (!installed("dpkg-shlibdeps") || !installed("lintian")) GTEST_SKIP() << "dpkg-dev or lintian is not installed";
-#if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "a sanitizer build is not packaged";
-#endif
+  if (lucerna::test::kSanitized) GTEST_SKIP() << "a sanitizer build is not packaged";
   const TempFolder folder;
   const RunResult made = run(std::string("cpack --config ") + inQuotes(kBuild / "CPackConfig.cmake") + " -G DEB -B " +
                              inQuotes(folder.path()));

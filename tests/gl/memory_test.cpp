@@ -3,6 +3,7 @@
 #include "render/renderer.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/long_tests.hpp"
+#include "support/sanitizers.hpp"
 #include "support/small_scenes.hpp"
 #include "support/temp_folder.hpp"
 
@@ -189,13 +190,6 @@ MemoryTaken memoryTaken() {
   return {resident * static_cast<double>(sysconf(_SC_PAGESIZE)), static_cast<double>(heap.uordblks + heap.hblkhd)};
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized =
-    true;  // a sanitizer's own allocator: it keeps what was freed, and malloc knows nothing of it
-#else
-constexpr bool kSanitized = false;
-#endif
-
 /// `step` is called so often. A leak grows in every quarter; a driver's one step (a pool that fills) in one.
 template <class Step>
 void expectFlat(const char* what, int times, const Step& step) {
@@ -217,7 +211,7 @@ void expectFlat(const char* what, int times, const Step& step) {
 }
 
 TEST_F(Memory, AWalkTakesNoMoreInTheEndThanAtItsBeginning) {
-  if (kSanitized) GTEST_SKIP() << "a sanitizer allocates";
+  if (test::kSanitized) GTEST_SKIP() << "a sanitizer allocates, and keeps what was freed";
   const Scene scene = everything();
   for (const LpvTransport transport : {LpvTransport::rays, LpvTransport::propagate}) {
     RenderSettings settings = smallSettings();
@@ -239,7 +233,7 @@ TEST_F(Memory, AWalkTakesNoMoreInTheEndThanAtItsBeginning) {
 }
 
 TEST_F(Memory, ReloadedScenesLeaveNothing) {
-  if (kSanitized) GTEST_SKIP() << "a sanitizer allocates";
+  if (test::kSanitized) GTEST_SKIP() << "a sanitizer allocates, and keeps what was freed";
   const test::TempFolder folder;
   std::string text = "mtllib m.mtl\nusemtl a\n";
   constexpr int kSide = 60;
