@@ -18,6 +18,7 @@ struct PathDeviations {
   bool fixedEpsilon = false;
   bool rouletteAtSurfaces = false;
   bool unattenuatedShadowRays = false;
+  bool unscaledRefraction = false;
 };
 
 struct PathSettings {

@@ -182,6 +182,7 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"STRAIGHT_SHADOW_RAYS", settings_.deviations.straightShadowRays},
                          {"ROULETTE_AT_SURFACES", settings_.deviations.rouletteAtSurfaces},
                          {"UNATTENUATED_SHADOW_RAYS", settings_.deviations.unattenuatedShadowRays},
+                         {"UNSCALED_REFRACTION", settings_.deviations.unscaledRefraction},
                          {"LINEAR_SEEDS", settings_.deviations.linearSeeds},
                          {"FIXED_EPSILON", settings_.deviations.fixedEpsilon},
                          {"PIXEL_CENTRES", settings_.pixelCentres},

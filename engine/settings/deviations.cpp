@@ -79,6 +79,8 @@ const std::array kDeviations{
            path.deviations.rouletteAtSurfaces),
     SWITCH("path.unattenuated-shadow-rays", "media on the way to a lamp do not attenuate its light", both,
            path.deviations.unattenuatedShadowRays),
+    SWITCH("path.unscaled-refraction", "radiance keeps its value where light is refracted", both,
+           path.deviations.unscaledRefraction),
     radiosityDeviation<&RadiosityDeviations::publishedMap>(),
     radiosityDeviation<&RadiosityDeviations::centroid>(),
     radiosityDeviation<&RadiosityDeviations::fixedOrientation>(),

@@ -54,7 +54,7 @@ uniform float cameraIor;     // refractive index at the camera
 
 // A light's contribution at the path's current position.
 vec3 lightOf(Path path, vec3 light) {
-#if DIELECTRICS
+#if DIELECTRICS && !UNSCALED_REFRACTION  // [VPT2024, 5.7] adds what is found as it is
   light *= cameraIor * cameraIor / (path.ior * path.ior);
 #endif
   return path.throughput * light;
