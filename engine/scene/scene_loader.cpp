@@ -41,6 +41,7 @@
 #include "scene/gltf_file.hpp"
 #include "scene/import_guard.hpp"
 #include "scene/key_frames.hpp"
+#include "scene/shininess.hpp"
 #include "scene/texture_mean.hpp"
 
 #include <assimp/DefaultIOSystem.h>
@@ -315,9 +316,8 @@ Material convertMaterial(const aiMaterial& source, TextureLoader& textures, Scen
     }
     material.diffuse = base * (1.0f - metallic);
     material.specular = glm::mix(glm::vec3(0.04f), base, metallic);
-    const float alpha2 = std::pow(std::max(roughness, 0.03f), 4.0f);
-    material.shininess = std::max(2.0f / alpha2 - 2.0f, 1.0f);
     material.roughness = roughness * roughness;
+    material.shininess = shininessOf(material.roughness);
     // A metal's picture is the colour of its reflection.
     if (gltf && (picture >= 0 || (factors.metallic > 0.0f &&
                                   textures.has(source, {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR})))) {
