@@ -432,7 +432,7 @@ TEST_F(CommandLine, PathTracingAsPublishedNamesItsDeviations) {
       RUN_LUCERNA(common + "--fidelity original -o " + path("o.pfm") + " --json " + path("original.json")).exitCode, 0);
   EXPECT_EQ(json("original.json").at("fidelity"), "original");
   EXPECT_EQ(json("original.json").at("deviations").size(),
-            9u);  // all but path.schlick, which is a switch of the original's
+            10u);  // all but path.schlick, which is a switch of the original's
   ASSERT_EQ(
       RUN_LUCERNA(common + "--deviation path.fixed-epsilon=on -o " + path("one.pfm") + " --json " + path("one.json"))
           .exitCode,
