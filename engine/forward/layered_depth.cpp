@@ -19,9 +19,12 @@ LayeredDepth::LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, 
   };
   programs_.opaque = load(false);
   if (scene.needs().alphaMasks) programs_.masked = load(true);
-  gl::Sampling sampling{gl::Filter::linear, gl::Filter::linear, gl::Wrap::border, glm::vec4(1.0f)};
-  if (shape.kind == gl::TextureKind::cubeArray) sampling.wrap = gl::Wrap::edge;  // seamless: there is no edge
-  sampling.depthCompare = true;
+  gl::Sampling sampling;
+  if (!shape.followed) {
+    sampling = {gl::Filter::linear, gl::Filter::linear, gl::Wrap::border, glm::vec4(1.0f)};
+    if (shape.kind == gl::TextureKind::cubeArray) sampling.wrap = gl::Wrap::edge;  // seamless: there is no edge
+    sampling.depthCompare = true;
+  }
   depth_ = gl::Texture(name, gl::Format::depth32f, glm::ivec3(shape.size, shape.size, shape.layers), sampling, 1,
                        shape.kind);
   framebuffer_ = gl::Framebuffer(name, {}, &depth_);
@@ -31,7 +34,7 @@ void LayeredDepth::record(const GpuScene& scene, std::span<const View> views) co
   CHECK(static_cast<int>(views.size()) == shape_.layers, "{} views for {} layers", views.size(), shape_.layers);
   gl::RasterState state;
   state.depth = gl::Depth::lessWrite;
-  state.polygonOffset = {shape_.slopeOffset, 2.0f};
+  state.polygonOffset = {shape_.followed ? 0.0f : 1.5f, 2.0f};
   state.depthClamp = true;
   const gl::RasterPass pass(name_, framebuffer_, state);
   pass.clearDepth();

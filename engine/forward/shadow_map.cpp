@@ -8,10 +8,7 @@ ShadowMap::ShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const 
   if (scene.needs().alphaMasks)
     programs_.masked = &programs.loadRaster("shadow masked", "forward/depth.vert", "forward/depth.frag",
                                             {{"ALPHA_MASK", 1}, {"FROM_SUN", 1}});
-  gl::Sampling sampling{gl::Filter::linear, gl::Filter::linear, gl::Wrap::border,
-                        glm::vec4(1.0f)};  // points outside the map are lit
-  sampling.depthCompare = true;
-  depth_ = gl::Texture("shadow map", gl::Format::depth32f, glm::ivec2(settings.size), sampling);
+  depth_ = gl::Texture("shadow map", gl::Format::depth32f, glm::ivec2(settings.size));
   framebuffer_ = gl::Framebuffer("shadow map", {}, &depth_);
 }
 

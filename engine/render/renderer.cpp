@@ -19,7 +19,7 @@ namespace lucerna {
 
 namespace {
 
-constexpr float kShadowNormalOffset = 1.5f;  // texels of the sun's shadow map
+constexpr float kShadowNormalOffset = 0.1f;  // texels of the sun's shadow map
 
 double farPlane(const Camera& camera, const Bounds& bounds) {
   double farthest = std::max(glm::length(bounds.extent()), 1e-6);
@@ -131,7 +131,7 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   const int cascades = settings_.sunCascades.cascades;
   if (showsSunLight && cascades > 1) {
     sunCascades_.emplace(programs, *gpuScene_, "sun cascades",
-                         LayeredDepth::Shape{gl::TextureKind::array, settings_.shadow.size, cascades, cascades, 0.0f});
+                         LayeredDepth::Shape{gl::TextureKind::array, settings_.shadow.size, cascades, cascades, true});
     sunCascadeConstants_ =
         gl::Buffer("sun cascades", sizeof(shared::SunCascadeConstants), nullptr, gl::Usage::dynamicDraw);
   } else if (showsSunLight) {
@@ -279,7 +279,6 @@ void Renderer::bindFrameConstants(const FrameView& view) {
     frame.shadowNormalOffset =
         kShadowNormalOffset *
         static_cast<float>(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
-    frame.shadowTexelUv = 1.0f / static_cast<float>(settings_.shadow.size);
   }
   frame.background = scene.background;
   bindFrameConstants(frame);

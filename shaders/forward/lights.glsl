@@ -1,7 +1,6 @@
 // Incoming light from spot and omnidirectional lights: E = I(omega) cos / d^2, shadowed. The flags SPOTS and POINTS
 // give their numbers.
 #include "shared/bindings.h"
-#include "lib/shadow.glsl"
 #include "lib/spot.glsl"
 #include "shared/lights.h"
 layout(std140, binding = BLOCK_LIGHTS) uniform LightBlock { LightConstants lights; };
@@ -19,6 +18,17 @@ const float kTouching = 1e-30;
 #if SPOTS
 layout(binding = UNIT_SPOT_SHADOWS) uniform sampler2DArrayShadow spotShadows;
 
+// The visible fraction, from four bilinear depth comparisons that form a 3x3 tent filter. The receiver has been moved
+// along its normal, and the map is rendered with a depth offset by slope.
+float spotShadowTent(float layer, vec3 uvz) {
+  float d = 0.5 / float(textureSize(spotShadows, 0).x);
+  float sum = texture(spotShadows, vec4(uvz.xy + vec2(-d, -d), layer, uvz.z)) +
+              texture(spotShadows, vec4(uvz.xy + vec2(d, -d), layer, uvz.z)) +
+              texture(spotShadows, vec4(uvz.xy + vec2(-d, d), layer, uvz.z)) +
+              texture(spotShadows, vec4(uvz.xy + vec2(d, d), layer, uvz.z));
+  return 0.25 * sum;
+}
+
 // normal: for shading; meshNormal: the direction in which the shadow lookup is offset.
 Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   vec3 away = lights.spots[i].position - position;
@@ -31,7 +41,7 @@ Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   float depth = -dot(away, lights.spots[i].direction);
   vec4 clip = lights.spots[i].clipFromPlace *
               vec4(meshNormal * (kNormalOffset * lights.spots[i].shadowTexel * depth) - away, 1.0);
-  float visible = clip.w > 0.0 ? shadowTent(spotShadows, float(i), 0.5 * clip.xyz / clip.w + 0.5, vec2(0.0)) : 1.0;
+  float visible = clip.w > 0.0 ? spotShadowTent(float(i), 0.5 * clip.xyz / clip.w + 0.5) : 1.0;
   result.irradiance = lights.spots[i].intensity * (falloff * result.cosine / distance2 * visible);
   return result;
 }

@@ -5,7 +5,6 @@
 #include "lib/frame.glsl"
 #include "lib/sh.glsl"
 #include "lib/material.glsl"
-#include "lib/shadow.glsl"  // outside any condition, because two of the files below share it
 #include "forward/indirect.glsl"
 #include "shared/asked.h"
 #if ASKED
@@ -65,6 +64,9 @@ void main() {
 #if EMISSION
   vec3 emitted = materialEmitted(vTexCoord);
 #endif
+#if SUN
+  vec3 face = cross(normalize(dFdx(vPosition)), normalize(dFdy(vPosition)));  // the triangle's own normal
+#endif
   if (materialCutOut(vTexCoord)) discard;
   vec3 toCamera = normalize(frame.cameraPosition - vPosition);
   // Surfaces are two-sided. The geometric side of the face, not the interpolated normal, decides whether to flip the
@@ -78,7 +80,8 @@ void main() {
 #if SUN
   float cosine = dot(normal, -frame.sunDirection);
   if (cosine > 0.0) {
-    vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, meshNormal));
+    face = dot(face, face) > 1e-12 ? normalize(dot(face, toCamera) > 0.0 ? face : -face) : meshNormal;
+    vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, face));
 #if HAZE
     irradiance *= hazeTransmittance(vPosition, -frame.sunDirection);
 #endif

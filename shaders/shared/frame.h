@@ -12,9 +12,9 @@ struct FrameConstants {
   vec3 sunDirection;       // unit, along which light travels
   float shadowNormalOffset;  // world units: a receiver is moved this far along its normal before the shadow test
   vec3 sunIrradiance;      // across the rays
-  float shadowTexelUv;     // 1 / shadow map size
+  float padding0;
   vec3 background;         // radiance where there is no surface
-  float padding;
+  float padding1;
 };
 
 SHARED_END

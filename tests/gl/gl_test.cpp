@@ -862,7 +862,6 @@ TEST_F(GlSharedStructs, FrameBlock) {
   EXPECT_OFFSET(sunDirection);
   EXPECT_OFFSET(shadowNormalOffset);
   EXPECT_OFFSET(sunIrradiance);
-  EXPECT_OFFSET(shadowTexelUv);
   EXPECT_OFFSET(background);
 #undef EXPECT_OFFSET
   EXPECT_EQ(sizeOf(program, "FrameBlock"), static_cast<GLint>(sizeof(FrameConstants)));

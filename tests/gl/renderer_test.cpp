@@ -140,6 +140,41 @@ TEST_F(RendererGl, NoLightPassesUnderAWall) {
   for (const glm::vec3& pixel : before.pixels) ASSERT_NEAR(pixel.x, 0.5 * -sun.y, 5e-4);
 }
 
+// A wall below the edge of a roof that is all before it, a sun that shines almost straight at the wall: the map's
+// texels beside the edge store nothing, and the wall is lit by no more than the tenth of a texel that receivers are
+// moved.
+TEST_F(RendererGl, AWallInTheShadowOfItsRoofIsDarkUpToTheEdge) {
+  SceneBuilder builder;
+  const int grey = builder.material(glm::vec3(0.5f));
+  builder.plate({0, -1, 0}, {8, 0, 0}, {0, 2, 0}, grey);
+  builder.plate({0, 0, 2}, {8, 0, 0}, {0, 0, 4}, grey);
+  const glm::dvec3 sun = glm::normalize(glm::dvec3(0.2, -0.8, -1.0));
+  builder.sun(sun, glm::vec3(std::numbers::pi_v<float>));
+  for (const double height : {0.008, 0.015, 0.03}) {  // half a texel (8 / 512) to two
+    const glm::dvec3 at(0.0, -height, 0.0);
+    const Image wall =
+        render(builder.scene(), lookingAt(at + glm::dvec3(0, 0, 1), at, 0.006), settings(Component::direct));
+    EXPECT_LT(largestValue(wall), 0.25 * 0.5 * -sun.z) << height;
+  }
+}
+
+// Strips that lean against each other like the folds of a cloth: where they meet there is no dark line.
+TEST_F(RendererGl, FoldsInTheSunHaveNoDarkLines) {
+  SceneBuilder builder;
+  const int grey = builder.material(glm::vec3(0.5f));
+  for (int i = -8; i < 8; ++i) {
+    const double y = i % 2 == 0 ? -0.03 : 0.03;
+    const glm::dvec3 first(0.1 * i, y, 2.0), second(0.1 * (i + 1), -y, 2.0), back(0.0, 0.0, -4.0);
+    builder.triangle(first, second, second + back, grey);
+    builder.triangle(first, second + back, first + back, grey);
+  }
+  const glm::dvec3 sun = glm::normalize(glm::dvec3(0.05, -1.0, 0.1));
+  builder.sun(sun, glm::vec3(std::numbers::pi_v<float>));
+  const double least = -glm::dot(sun, glm::normalize(glm::dvec3(0.03, 0.05, 0.0)));  // of the strips turned away
+  const Image image = render(builder.scene(), lookingAt({0, 1, 0}, {0, 0, 0}, 0.6), settings(Component::direct));
+  for (const glm::vec3& pixel : image.pixels) ASSERT_GT(pixel.x, 0.999 * 0.5 * least);
+}
+
 TEST_F(RendererGl, AllIsDirectPlusIndirect) {
   Scene scene = openBox();
   scene.background = {0.1f, 0.2f, 0.3f};

@@ -195,7 +195,7 @@ TEST_F(ShadingValues, ShadowsAreFilteredByATentOfThreeTexels) {
     SceneBuilder builder = plateOverFloor();
     builder.sun({0.1, -1.0, 0.2}, glm::vec3(2.0f));
     const SunFrustum frustum = fitSunFrustum(builder.scene(), builder.scene().sun->direction);
-    const double offset = 1.5 * std::max(frustum.width, frustum.height) / kMap;
+    const double offset = 0.1 * std::max(frustum.width, frustum.height) / kMap;
     expectFilter(
         render(builder.scene(), camera, s), camera, "sun",
         [&](const glm::dvec3&) { return 2.0 * -builder.scene().sun->direction.y; },
