@@ -555,15 +555,20 @@ void Panel::showMessage(const WalkState& s, const std::string& work, double shar
   if (text.empty()) return;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({8.0f, screen.y - 8.0f}, ImGuiCond_Always, {0.0f, 1.0f});
-  ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, {0.6f * screen.x, screen.y});
+  // Of this text's size: a window that sizes itself has that of the last frame's text.
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float wrap = 0.58f * screen.x, bar = 20.0f * ImGui::GetFontSize();
+  ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+  if (share >= 0.0) size = {std::max(size.x, bar), size.y + style.ItemSpacing.y + ImGui::GetFrameHeight()};
+  ImGui::SetNextWindowSize({size.x + 2.0f * style.WindowPadding.x, size.y + 2.0f * style.WindowPadding.y});
   ImGui::SetNextWindowBgAlpha(work.empty() ? 0.6f : 1.0f);
   ImGui::Begin("##message", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
-                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
-  ImGui::PushTextWrapPos(0.58f * screen.x);
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PushTextWrapPos(style.WindowPadding.x + wrap);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
-  if (share >= 0.0) ImGui::ProgressBar(static_cast<float>(share), {20.0f * ImGui::GetFontSize(), 0.0f});
+  if (share >= 0.0) ImGui::ProgressBar(static_cast<float>(share), {bar, 0.0f});
   ImGui::End();
 }
 
