@@ -24,6 +24,7 @@ struct Generate {
   std::string file, model;  // 1, 2, 3, or a scene file
   std::vector<double> numbers;  // threshold, reflectance, light power; all or none
   std::optional<double> edge;  // for a scene's triangles
+  std::optional<unsigned> triangles;  // of a scene: at most this many, by a coarser model
   std::uint32_t power = RadSceneSettings{}.lightPower;
 };
 
@@ -35,14 +36,20 @@ int generateFromScene(const Generate& options) {
         options.numbers[0]);
   if (options.power < 1 || options.power > kRadMost)
     throwBadInput("--power {}: expected 1 to {} (24 bits)", options.power, kRadMost);
-  const Scene scene = loadScene(options.model);
-  const RadScene made = radTrianglesOf(scene, {options.edge.value_or(0.0), options.power});
+  const auto [model, edge] = loadRadSource(options.model, options.edge, options.triangles);
+  const Scene& scene = model.scene;
+  const RadScene made = radTrianglesOf(scene, {edge, options.power});
   if (scene.sun || !scene.spots.empty() || !scene.points.empty() || scene.environment)
     logWarning(
         "{}: the original's files have no lights except emissive triangles: its sun, lamps and environment are left "
         "out",
         options.model);
   writeRadFile(options.file, made.triangles);
+  if (!options.common.quiet && model.cell > 0.0)
+    fmt::print(
+        "{}: a coarser model: corners within cells of {:.4g} units were joined, {} triangles of {} are left and {:.1f} "
+        "% of the area; emissive ones stay as they are\n",
+        options.model, model.cell, scene.triangleCount(), model.triangles, 100.0 * model.area);
   if (!options.common.quiet)
     fmt::print(
         "{}: {}, {} triangles with edges of at most {:.6g} units ({} sources, the brightest of power {}), a step of e "
@@ -55,6 +62,8 @@ int generateFromScene(const Generate& options) {
   json["triangles"] = made.triangles.size();
   json["sources"] = made.sources;
   json["longest_edge"] = made.longestEdge;
+  json["model_cell"] = model.cell;
+  json["model_area"] = model.area;
   json["light_power"] = options.power;
   json["exitance_of_step"] = made.exitanceOfStep;
   options.common.writeJson(json);
@@ -66,6 +75,8 @@ int generate(const Generate& options) {
   const bool isModel = options.model.find_first_not_of("0123456789") == std::string::npos;
   if (!isModel) return generateFromScene(options);
   if (options.edge) throwBadInput("--edge {}: of a scene's triangles; the models have AREA_THRESHOLD", *options.edge);
+  if (options.triangles)
+    throwBadInput("--triangles {}: of a scene; the models have AREA_THRESHOLD", *options.triangles);
   const int model = options.model.size() > 9 ? 0 : std::stoi(options.model);
   RadModelSettings settings;
   if (!options.numbers.empty()) {
@@ -122,6 +133,9 @@ Work addGenerate(Command app) {
   app.addOption("--edge", options->edge,
                 "of a scene: longest edge of the triangles in scene units (a 12th of the scene)")
       .positive();
+  app.addOption("--triangles", options->triangles,
+                "of a scene: at most this many, by joining corners in cells of a grid; emissive ones stay")
+      .range(4u, 100'000'000u);
   app.addOption("--power", options->power, "of a scene: e of its brightest triangle, 1 to 16777215").showDefault();
   app.setFooter("As published: lucerna radiosity generate model1.out 1 2.5 0.15 100000");
   options->common.declare(app);
@@ -240,6 +254,20 @@ Work addSolve(Command app) {
 }
 
 }  // namespace
+
+RadSource loadRadSource(const std::string& file, std::optional<double> edge, std::optional<unsigned> triangles) {
+  RadSource source{{loadScene(file)}};
+  const Scene& scene = source.model.scene;
+  const glm::dvec3 extent = scene.bounds.extent();
+  source.edge = edge.value_or(std::max({extent.x, extent.y, extent.z}) / 12.0);
+  source.model.triangles = scene.triangleCount();
+  if (triangles) {
+    PatchSettings patches;
+    patches.longestEdge = source.edge;
+    source.model = coarserScene(Scene(scene), patches, *triangles);
+  }
+  return source;
+}
 
 Work addRadiosity(Command app) {
   Subcommands commands(app);

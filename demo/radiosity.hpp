@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "parts.hpp"
+#include "radiosity/original/coarse_scene.hpp"
 #include "radiosity/settings.hpp"
 
 #include <optional>
@@ -33,6 +34,14 @@ struct RadiositySolve {
 int solveOriginal(const RadiositySolve& options);
 /// Any scene or triangle file. demo/radiosity_corrected.cpp
 int solveCorrected(const RadiositySolve& options);
+
+/// A scene as its triangle file is made of it, by the options of `generate` that `show --scene` has too: edges of at
+/// most `edge` scene units, if given at most `triangles` of them. demo/radiosity.cpp
+struct RadSource {
+  CoarseScene model;
+  double edge = 0.0;  ///< the value used
+};
+RadSource loadRadSource(const std::string& file, std::optional<double> edge, std::optional<unsigned> triangles);
 
 Work addRadiosityShow(Command app);
 

@@ -24,6 +24,7 @@ struct RadiosityShowOptions {
   std::string file, mode, output, mapping, camera, fidelity, scene, size = "1280x720";
   double constant = 0.0;
   std::optional<double> edge;
+  std::optional<unsigned> triangles;
   bool mesh = false, falseColours = false, interpolate = false;
 };
 
@@ -103,12 +104,12 @@ int runRadiosityShow(const RadiosityShowOptions& options) {
   const std::vector<RadTriangle> triangles = readRadFile(options.file);
   checkRadTriangles(triangles, options.file);
   Shown shown{triangles, display, {}};
-  Scene scene;
+  RadSource source;
   if (!options.scene.empty()) {
-    scene = loadScene(options.scene);
-    shown.textures = texturesOf(scene, options.edge.value_or(0.0), triangles, options.file);
-  } else if (options.edge) {
-    throwBadInput("--edge {}: of the triangles of --scene SCENE, which is not given", *options.edge);
+    source = loadRadSource(options.scene, options.edge, options.triangles);
+    shown.textures = texturesOf(source.model.scene, source.edge, triangles, options.file);
+  } else if (options.edge || options.triangles) {
+    throwBadInput("--edge, --triangles: of the triangles of --scene SCENE, which is not given");
   }
   Scene cameras;
   cameras.cameras = {overviewOf(triangles)};
@@ -171,6 +172,8 @@ Work addRadiosityShow(Command app) {
       .oneOf({"original", "corrected"});
   app.addOption("--scene", options->scene, "the scene that FILE was generated from: its textures times the light");
   app.addOption("--edge", options->edge, "with --scene: the --edge that FILE was generated with").positive();
+  app.addOption("--triangles", options->triangles, "with --scene: the --triangles that FILE was generated with")
+      .range(4u, 100'000'000u);
   app.addFlag("--mesh", options->mesh, "draw the triangles' edges");
   app.addFlag("--false-colours", options->falseColours, "the same as --mapping false");
   app.addOption("--camera", options->camera,

@@ -18,7 +18,7 @@ struct ErrorReport {
   std::vector<InsideModel> inside;  ///< models of the rows' techniques
   const References* references = nullptr;
   bool isDeviationStudy = false;
-  std::vector<std::string> leftOut;  ///< techniques that were not measured, with reasons
+  std::vector<std::string> leftOut;  ///< what was not measured, or only of a coarser scene, with reasons
 };
 
 std::string terminalTable(const ErrorReport& report);

@@ -44,8 +44,11 @@ std::optional<ErrorRow> finishedRow(const std::filesystem::path& folder, const R
 /// Renders, judges, writes picture and row. `more`: settings that the rung's name does not include.
 ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vector<std::string>& more = {});
 /// A rung by glReadPixels: the published program solves the scene, and its solution is displayed and judged. "setup_ms"
-/// includes the solving, "published" describes the solution. Empty, with nothing stored, if interrupted.
+/// includes the solving, "published" describes the solution. Of a scene with too many triangles a coarser model is
+/// solved and drawn (radiosity/original/coarse_scene.hpp). Empty, with nothing stored, if interrupted.
 ErrorRow measurePublished(const ErrorBench& bench, const Rung& rung);
+/// A line for the report if such a row is of a coarser model; otherwise empty.
+std::string describePublished(const ErrorRow& row);
 /// Writes the row into the folder.
 void keepRow(const ErrorBench& bench, const Rung& rung, const ErrorRow& row);
 /// The path tracer's ladders, corrected and as published: one picture observed at 1, 2, 4, ... samples, one row each.

@@ -13,6 +13,7 @@ struct Rung {
   std::string series;  ///< such as "lpv cells"; a line of the plot
   PictureOptions picture;  ///< technique, fidelity, deviations, settings
   bool byReadPixels = false;  ///< radiosity: solved by the published program, with colours drawn and read back
+  std::size_t mostPatches = 0;  ///< then: of a scene with more, a coarser model
   /// Label in tables: settings that differ from the defaults.
   std::string label() const;
   /// Equal measurements have equal names: a finished one is not repeated.

@@ -97,6 +97,40 @@ TEST_F(Radiosity, AnySceneBecomesAFileOfTriangles) {
   EXPECT_FALSE(fs::exists(path("x.rad")));
 }
 
+TEST_F(Radiosity, AFineSceneBecomesFewerTriangles) {
+  // A floor of 20 x 20 squares, which lies flat in any cells, under a lamp that is kept.
+  std::ofstream(path("fine.mtl")) << "newmtl floor\nKd 0.6 0.6 0.6\nnewmtl lamp\nKd 0 0 0\nKe 2 2 2\n";
+  std::ofstream obj(path("fine.obj"));
+  obj << "mtllib fine.mtl\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n";
+  for (int z = 0; z <= 20; ++z)
+    for (int x = 0; x <= 20; ++x) obj << "v " << 0.2 * x - 2.0 << " 0 " << 0.2 * z - 2.0 << "\n";
+  obj << "usemtl lamp\nf 1 2 3 4\nusemtl floor\n";
+  for (int z = 0; z < 20; ++z)
+    for (int x = 0; x < 20; ++x) {
+      const int a = 5 + 21 * z + x;
+      obj << "f " << a << " " << a + 21 << " " << a + 22 << " " << a + 1 << "\n";
+    }
+  obj.close();
+  const std::string options = " --edge 10 --triangles 200", fine = "'" + path("fine.obj") + "'";
+  const RunResult made =
+      RUN_LUCERNA("radiosity generate '" + path("f.rad") + "' " + fine + options + " --json '" + path("g.json") + "'");
+  ASSERT_EQ(made.exitCode, 0) << made.err;
+  EXPECT_NE(made.out.find("coarser model"), std::string::npos) << made.out;
+  double floor = 0.0, lamp = 0.0;
+  const std::vector<RadTriangle> triangles = lucerna::readRadFile(path("f.rad"));
+  for (const RadTriangle& t : triangles) (t.e > 0 ? lamp : floor) += lucerna::areaOf(t);
+  EXPECT_GT(triangles.size(), 50u);
+  EXPECT_LE(triangles.size(), 200u);
+  EXPECT_NEAR(lamp, 4.0, 1e-4);
+  EXPECT_NEAR((floor + lamp) / 20.0, json("g.json").at("model_area").get<double>(), 1e-4);
+  EXPECT_GT(floor, 13.0);
+  const std::string show = "radiosity show '" + path("f.rad") + "' -o '" + path("f.png") + "' --size 16x12 --scene ";
+  EXPECT_EQ(RUN_LUCERNA(show + fine + options).exitCode, 0);
+  expectRefused("'" LUCERNA_BINARY "' " + show + fine + " --edge 10", {"f.rad", "--triangles"});
+  expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' 1 --triangles 20",
+                {"--triangles", "AREA_THRESHOLD"});
+}
+
 TEST_F(Radiosity, GenerateSolveShow) {
   const RunResult made =
       RUN_LUCERNA("radiosity generate '" + path("m.rad") + "' 1 40 0.5 1000000 --json '" + path("g.json") + "'");

@@ -1,5 +1,6 @@
 // The radiosity original's hemicubes on real GL, against closed-form factors and a double-precision solution.
 #include "radiosity/original/checkpoint.hpp"
+#include "radiosity/original/coarse_scene.hpp"
 #include "radiosity/original/display.hpp"
 #include "radiosity/original/rad_models.hpp"
 #include "radiosity/original/rad_scene.hpp"
@@ -331,6 +332,30 @@ TEST_F(RadOriginal, SunlightIsHandedOverAsEmission) {
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(exitance[c], glm::dvec3(0.5, 0.4, 0.2)[c] * 4.0 * std::sqrt(0.5), 1e-5) << c;
   EXPECT_THROW(solveAsPublished(context(), library(), test::dark(scene), settings, [](double) { return true; }), Error);
+}
+
+// A model of a few triangles stays closed and keeps its lamp, so the light that walls absorb is that of the lamp.
+TEST_F(RadOriginal, ACoarserModelHasTheLightOfItsScene) {
+  const Scene fine = test::cubeRoom(12, [](test::SceneBuilder& builder, int wall, double u, double v) {
+    const bool isLamp = wall == 1 && std::max(std::abs(u - 0.5), std::abs(v - 0.5)) < 0.1;
+    return isLamp ? test::lambertian(builder, 0.0, 100.0) : test::lambertian(builder, 0.5);
+  });
+  const CoarseScene coarse = coarserScene(fine, PatchSettings{}, 150);
+  ASSERT_GT(coarse.cell, 0.0);
+  PublishedSceneSettings settings;
+  settings.view = 32;
+  const PublishedScene made =
+      solveAsPublished(context(), library(), coarse.scene, settings, [](double) { return true; });
+  double emitted = 0.0, absorbed = 0.0;
+  const std::vector<Patch>& patches = made.solution.mesh.patches;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    emitted += patches[i].area * patches[i].emission.x;
+    absorbed += patches[i].area * (1.0 - patches[i].reflectance.x) * made.solution.irradiance[i].x;
+  }
+  std::printf("%zu of %zu triangles, emitted %.4f, absorbed %.4f\n", patches.size(), fine.triangleCount(), emitted,
+              absorbed);
+  EXPECT_NEAR(emitted, 100.0 * 4.0 / 144.0, 1e-6);
+  EXPECT_NEAR(absorbed / emitted, 1.0, 0.15);
 }
 
 TEST_F(RadOriginal, TrianglesWithoutAreaKeepTheirBytes) {

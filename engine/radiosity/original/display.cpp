@@ -188,8 +188,7 @@ RadTextures texturesOf(const Scene& scene, double longestEdge, std::span<const R
       !std::equal(triangles.begin(), triangles.end(), made.triangles.begin(), isSame))
     throwBadInput(
         "{}: {} triangles, which are not the {} that lucerna radiosity generate makes of {} with edges of at most "
-        "{:.6g} "
-        "units (--edge)",
+        "{:.6g} units (--edge, --triangles)",
         file, triangles.size(), made.triangles.size(), scene.file.string(), made.longestEdge);
   PatchSettings patches;
   patches.longestEdge = made.longestEdge;
