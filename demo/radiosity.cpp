@@ -6,9 +6,11 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "offers.hpp"
+#include "radiosity/direct_light.hpp"
 #include "radiosity/original/rad_file.hpp"
 #include "radiosity/original/rad_models.hpp"
 #include "radiosity/original/rad_scene.hpp"
+#include "scene/needs.hpp"
 
 #include <fmt/core.h>
 
@@ -24,9 +26,23 @@ struct Generate {
   std::string file, model;  // 1, 2, 3, or a scene file
   std::vector<double> numbers;  // threshold, reflectance, light power; all or none
   std::optional<double> edge;  // for a scene's triangles
+  bool lights = false;  // of a scene: sun, lamps and environment, as its surfaces reflect them
   std::optional<unsigned> triangles;  // of a scene: at most this many, by a coarser model
   std::uint32_t power = RadSceneSettings{}.lightPower;
 };
+
+/// Light of sun, lamps and environment on each patch.
+std::vector<glm::dvec3> receivedLight(const Generate& options, const Scene& scene, const RadiosityMesh& mesh) {
+  const auto host = options.common.makeHost(false);
+  const gl::Context context;
+  gl::ProgramLibrary programs;
+  const RayScene rays(sceneOf(mesh), context.capabilities());
+  std::vector<glm::dvec3> light = directLight(programs, rays, scene, mesh);
+  if (!analyse(scene).environment) return light;
+  const std::vector<glm::dvec3> sky = skyLight(programs, rays, scene, mesh);
+  for (std::size_t i = 0; i < light.size(); ++i) light[i] += sky[i];
+  return light;
+}
 
 int generateFromScene(const Generate& options) {
   if (!options.numbers.empty())
@@ -38,11 +54,14 @@ int generateFromScene(const Generate& options) {
     throwBadInput("--power {}: expected 1 to {} (24 bits)", options.power, kRadMost);
   const auto [model, edge] = loadRadSource(options.model, options.edge, options.triangles);
   const Scene& scene = model.scene;
-  const RadScene made = radTrianglesOf(scene, {edge, options.power});
-  if (scene.sun || !scene.spots.empty() || !scene.points.empty() || scene.environment)
+  RadReceived received;
+  if (options.lights) received = [&](const RadiosityMesh& mesh) { return receivedLight(options, scene, mesh); };
+  const RadScene made = radTrianglesOf(scene, {edge, options.power}, received);
+  const bool hasOthers = scene.sun || !scene.spots.empty() || !scene.points.empty() || scene.environment;
+  if (hasOthers && !options.lights)
     logWarning(
         "{}: the original's files have no lights except emissive triangles: its sun, lamps and environment are left "
-        "out",
+        "out (--lights hands them over)",
         options.model);
   writeRadFile(options.file, made.triangles);
   if (!options.common.quiet && model.cell > 0.0)
@@ -62,6 +81,7 @@ int generateFromScene(const Generate& options) {
   json["triangles"] = made.triangles.size();
   json["sources"] = made.sources;
   json["longest_edge"] = made.longestEdge;
+  json["lights"] = options.lights;
   json["model_cell"] = model.cell;
   json["model_area"] = model.area;
   json["light_power"] = options.power;
@@ -75,6 +95,7 @@ int generate(const Generate& options) {
   const bool isModel = options.model.find_first_not_of("0123456789") == std::string::npos;
   if (!isModel) return generateFromScene(options);
   if (options.edge) throwBadInput("--edge {}: of a scene's triangles; the models have AREA_THRESHOLD", *options.edge);
+  if (options.lights) throwBadInput("--lights: of a scene; the models have lamps of their own");
   if (options.triangles)
     throwBadInput("--triangles {}: of a scene; the models have AREA_THRESHOLD", *options.triangles);
   const int model = options.model.size() > 9 ? 0 : std::stoi(options.model);
@@ -136,6 +157,8 @@ Work addGenerate(Command app) {
   app.addOption("--triangles", options->triangles,
                 "of a scene: at most this many, by joining corners in cells of a grid; emissive ones stay")
       .range(4u, 100'000'000u);
+  app.addFlag("--lights", options->lights,
+              "of a scene: what surfaces reflect of sun, lamps and environment is their own emission");
   app.addOption("--power", options->power, "of a scene: e of its brightest triangle, 1 to 16777215").showDefault();
   app.setFooter("As published: lucerna radiosity generate model1.out 1 2.5 0.15 100000");
   options->common.declare(app);

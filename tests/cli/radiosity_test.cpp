@@ -4,6 +4,7 @@
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "radiosity/original/rad_file.hpp"
+#include "scene/scene.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -95,6 +96,31 @@ TEST_F(Radiosity, AnySceneBecomesAFileOfTriangles) {
   expectRefused("'" LUCERNA_BINARY "' radiosity generate '" + path("x.rad") + "' 1 --edge 2",
                 {"--edge", "AREA_THRESHOLD"});
   EXPECT_FALSE(fs::exists(path("x.rad")));
+}
+
+TEST_F(Radiosity, LightsWithoutASurfaceAreHandedOver) {
+  // A PLY has no materials that emit, but the default sun. A floor of albedo rho under an irradiance E sends out rho E,
+  // and the published solver and display run on it.
+  std::ofstream(path("floor.ply")) << "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                                      "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                                      "end_header\n-1 0 -1\n1 0 -1\n1 0 1\n-1 0 1\n3 0 2 1\n3 0 3 2\n";
+  const auto generate = [&](const char* file) {
+    return "radiosity generate '" + path("p.rad") + "' '" + path(file) + "' --edge 9 --power 1000 --json '" +
+           path("g.json") + "'";
+  };
+  expectRefused("'" LUCERNA_BINARY "' " + generate("floor.ply"), {"floor.ply", "no surface emits", "--lights"});
+  const RunResult made = RUN_LUCERNA(generate("floor.ply") + " --lights");
+  ASSERT_EQ(made.exitCode, 0) << made.err;
+  std::ofstream(path("sun.json"))
+      << R"({"model": "floor.ply", "sun": {"direction": [0, -1, 1], "irradiance": [2, 4, 6]}})";
+  ASSERT_EQ(RUN_LUCERNA(generate("sun.json") + " --lights").exitCode, 0);
+  const double sent = lucerna::loadScene(path("sun.json")).materials[0].diffuse.x * 4.0 * std::sqrt(0.5);
+  EXPECT_NEAR(1000.0 * json("g.json").at("exitance_of_step").get<double>(), sent, 1e-5);
+  const std::vector<RadTriangle> triangles = lucerna::readRadFile(path("p.rad"));
+  ASSERT_EQ(triangles.size(), 2u);
+  for (const RadTriangle& t : triangles) EXPECT_EQ(t.e, 1000u);
+  EXPECT_EQ(run(solve(path("p.rad"), path("q.rad"))).exitCode, 0);
+  EXPECT_EQ(RUN_LUCERNA("radiosity show '" + path("q.rad") + "' -o '" + path("q.png") + "' --size 16x12").exitCode, 0);
 }
 
 TEST_F(Radiosity, AFineSceneBecomesFewerTriangles) {

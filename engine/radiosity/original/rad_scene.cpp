@@ -34,19 +34,26 @@ std::uint32_t stepsOf(double exitance, double step) {
 
 }  // namespace
 
-RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings) {
+RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings, const RadReceived& received) {
   CHECK(settings.lightPower >= 1 && settings.lightPower <= kRadMost, "power {}", settings.lightPower);
   RadScene result;
   const glm::dvec3 extent = scene.bounds.extent();
   PatchSettings patches;
   patches.longestEdge = result.longestEdge =
       settings.longestEdge > 0.0 ? settings.longestEdge : std::max({extent.x, extent.y, extent.z}) / 12.0;
-  const RadiosityMesh mesh = makePatches(scene, patches);
+  RadiosityMesh mesh = makePatches(scene, patches);
+  if (received) {
+    const std::vector<glm::dvec3> irradiance = received(mesh);
+    for (std::size_t i = 0; i < mesh.patches.size(); ++i)
+      mesh.patches[i].emission += mesh.patches[i].reflectance * irradiance[i];
+  }
   double brightest = 0.0;
   for (const Patch& patch : mesh.patches) brightest = std::max(brightest, meanOfChannels(patch.emission));
   if (!(brightest > 0.0))
-    throwBadInput("{}: no surface emits; the original's files have no other lights than triangles with e above 0",
-                  scene.file.string());
+    throwBadInput(
+        "{}: no surface emits; the original's files have no other lights than triangles with e above 0 (--lights hands "
+        "over sun, lamps and environment)",
+        scene.file.string());
   result.exitanceOfStep = brightest / settings.lightPower;
   result.triangles.reserve(mesh.patches.size());
   for (const Patch& patch : mesh.patches) {

@@ -15,6 +15,8 @@
 #include "radiosity/patches.hpp"
 #include "scene/scene.hpp"
 
+#include <functional>
+
 namespace lucerna {
 
 struct RadSceneSettings {
@@ -29,8 +31,11 @@ struct RadScene {
   std::size_t sources = 0;
 };
 
+/// Irradiance of each patch by lights that the file cannot hold: it is reflected as the patch's own emission.
+using RadReceived = std::function<std::vector<glm::dvec3>(const RadiosityMesh&)>;
+
 /// Throws Error(badInput) if no surface emits, no triangle has an area, or a reflectance is above 1.
-RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings);
+RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings, const RadReceived& received = {});
 
 /// A mesh's patches in order, with one colour channel (0 to 2) of reflectance and of each patch's own exitance.
 std::vector<RadTriangle> radTrianglesOf(const RadiosityMesh& mesh, std::span<const glm::dvec3> exitance, int channel,
