@@ -137,7 +137,7 @@ void chooseTransport(RenderSettings& settings, const PictureOptions& options,
         break;
       }
   }
-  if (!isSet("lpv.bounces") && settings.lpv.transport == LpvTransport::rays)
+  if (!isSet("lpv.bounces") && settings.lpv.transport != LpvTransport::propagate)
     settings.lpv.bounces = LpvSettings::kAllBounces;
 }
 

@@ -50,12 +50,18 @@ std::vector<Rung> lpvLadder(bool shrink) {
       rungs.push_back(rung("lpv", "bounces", {"lpv.transport=propagate", fmt::format("lpv.bounces={}", bounces)}));
   for (int iterations : {8, 12})
     rungs.push_back(rung("lpv", "", {fmt::format("lpv.iterations={}", iterations)}, "original"));
+  const auto gather = [&](const char* series, std::vector<std::string> settings) {
+    settings.insert(settings.begin(), "lpv.transport=gather");
+    rungs.push_back(rung("lpv", std::string("gather ") + series, std::move(settings)));
+  };
   for (int cells : {16, 32, 64})
-    if (!shrink || cells < 64)
-      rungs.push_back(rung("lpv", "gather cells", {"lpv.transport=gather", fmt::format("lpv.cells={}", cells)}));
+    if (!shrink || cells < 64) gather("cells", {"lpv.bounces=1", fmt::format("lpv.cells={}", cells)});
   for (int size : {64, 128, 256, 512})
-    if (!shrink || size < 512)
-      rungs.push_back(rung("lpv", "gather map", {"lpv.transport=gather", fmt::format("rsm.size={}", size)}));
+    if (!shrink || size < 512) gather("map", {"lpv.bounces=1", fmt::format("rsm.size={}", size)});
+  for (int cells : {8, 16, 32})
+    if (!shrink || cells < 32) gather("bounce cells", {"lpv.bounces=all", fmt::format("lpv.bounce-cells={}", cells)});
+  for (const char* visibility : {"voxels", "none"})
+    if (!shrink) gather("visibility", {"lpv.bounces=1", fmt::format("lpv.visibility={}", visibility)});
   // Paths to receivers: all light, except in the ladder of bounces itself.
   const auto rays = [&](const char* series, std::string setting, bool allBounces = true) {
     std::vector<std::string> settings{"lpv.transport=rays", std::move(setting)};

@@ -26,8 +26,7 @@ LightKinds directLightsOf(const RenderSettings& settings) {
   LightKinds kinds{true, true, false, false};  // of forward shading
   if (settings.technique == Technique::radiosity) kinds.surfaces = true;
   if (settings.technique == Technique::lpv) {
-    if (settings.lpv.transport == LpvTransport::rays) kinds.surfaces = true;
-    if (settings.lpv.transport != LpvTransport::propagate) kinds.environment = true;
+    if (settings.lpv.transport != LpvTransport::propagate) kinds.surfaces = kinds.environment = true;
   }
   return kinds;
 }
@@ -35,8 +34,6 @@ LightKinds directLightsOf(const RenderSettings& settings) {
 LightKinds lightsOf(const RenderSettings& settings) {
   LightKinds kinds = directLightsOf(settings);
   if (settings.technique == Technique::rsm) kinds.lamps = false;  // its gather places samples by parallel projection
-  // Gathered from lights' maps, which lack the sky's light; the sky's direct light is included.
-  if (settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::gather) kinds.environment = false;
   return kinds;
 }
 

@@ -100,6 +100,24 @@ void addAlbedo(std::vector<StabilityCase>& cases) {
   });
 }
 
+/// The same room, gathered: the points that keep the light of all bounces give each other at most what they have.
+void addGatheredAlbedo(std::vector<StabilityCase>& cases) {
+  constexpr int kAll = LpvSettings::kAllBounces, kMostBounces = 64;
+  for (const int bounces : {1, 8, kMostBounces, kAll})
+    cases.push_back({"lpv", "gather: closed room of albedo 1 - 1e-6, radiance over that of its bounces",
+                     bounces == kAll ? "lpv.bounces=all" : fmt::format("lpv.bounces={}", bounces),
+                     [bounces](const StabilityContext& c) {
+                       Room room;
+                       room.closed = true;
+                       room.albedo = 1.0f - 1e-6f;
+                       room.emission = glm::vec3(1.0f);
+                       RenderSettings settings = settingsOf(bounces, 64);
+                       settings.lpv.transport = LpvTransport::gather;
+                       const int counted = bounces == kAll ? kMostBounces : bounces;
+                       return Measurement{1.0, mean(picture(c, makeRoom(room), settings)) / (counted + 2.0), 0.02};
+                     }});
+}
+
 /// A room without windows behind a sheet that is brightly lit on its other side: no light may pass, whatever the
 /// sheet's thickness.
 void addThinSheet(std::vector<StabilityCase>& cases) {
@@ -187,6 +205,7 @@ void addCells(std::vector<StabilityCase>& cases) {
 void addReceiverCases(std::vector<StabilityCase>& cases) {
   addReceiversUnits(cases);
   addAlbedo(cases);
+  addGatheredAlbedo(cases);
   addThinSheet(cases);
   addCornerLamp(cases);
   addCells(cases);

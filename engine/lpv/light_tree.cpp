@@ -10,7 +10,8 @@ constexpr GLuint kNodesBuffer = 0;
 constexpr std::size_t kNodeBytes = 48;
 }  // namespace
 
-LightTree::LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers)
+LightTree::LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers,
+                     Area area)
     : size_(size), layers_(layers) {
   const auto widthOf = [&](int level) { return (size + (1 << level) - 1) >> level; };
   std::size_t nodes = 0;
@@ -27,8 +28,10 @@ LightTree::LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capab
         "(GL_MAX_TEXTURE_BUFFER_SIZE)",
         size, texels, capabilities.maxTextureBufferSize);
   nodes_ = gl::BufferTexture("light tree", gl::Format::rgba32ui, nodes * kNodeBytes, nullptr, gl::Usage::dynamicCopy);
-  fromTexels_ = &programs.loadCompute("light tree of texels", "lpv/gather/build.comp", {{"FROM_TEXELS", 1}});
-  fromNodes_ = &programs.loadCompute("light tree of nodes", "lpv/gather/build.comp", {{"FROM_TEXELS", 0}});
+  fromTexels_ = &programs.loadCompute("light tree of texels", "lpv/gather/build.comp",
+                                      {{"FROM_TEXELS", 1}, {"MEAN_AREA", area == Area::mean}});
+  fromNodes_ = &programs.loadCompute("light tree of nodes", "lpv/gather/build.comp",
+                                     {{"FROM_TEXELS", 0}, {"MEAN_AREA", area == Area::mean}});
 }
 
 void LightTree::setShape(const gl::Program& program) const {

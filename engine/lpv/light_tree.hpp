@@ -11,8 +11,11 @@ namespace lucerna {
 class LightTree {
  public:
   static constexpr int kTop = 32;  ///< maximum nodes per side at the coarsest level
+  /// What a node's area is: of all its texels together, or their mean.
+  enum class Area { sum, mean };
   /// size, layers: of the map.
-  LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers);
+  LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers,
+            Area area = Area::sum);
 
   void build(const ReflectiveShadowMap::Outputs& map);
   /// For a program in use that includes tree.glsl; binds the nodes as texels to `unit`.

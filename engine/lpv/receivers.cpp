@@ -3,9 +3,7 @@
 #include "base/error.hpp"
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
-#include "lpv/surface_voxels.hpp"
 #include "rays/light_table.hpp"
-#include "rsm/rsm_gather.hpp"
 #include "shared/bindings.h"
 #include "shared/lpv_receivers.h"
 
@@ -18,7 +16,7 @@ namespace {
 
 constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3,
                  kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kSeenUnit = 6, kVoxelsUnit = 6, kTreeUnit = 7;
+constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kSeenUnit = 6;
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no receivers; it misses a share of albedo^64
 constexpr float kFullPaths = 256.0f;  // from here on: full weight, no averaging with neighbours
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
@@ -50,11 +48,8 @@ bool isCut(const Cascade& before, const Cascade& now) {
 
 }  // namespace
 
-bool LpvReceivers::isNeeded(const SceneNeeds& needs, LpvTransport transport, Light light) {
-  if (transport == LpvTransport::gather) {  // one bounce of lamps, and the sky's own light
-    return (needs.anyLight() && needs.indirect && light != Light::direct) ||
-           (needs.environment && light != Light::indirect);
-  }
+bool LpvReceivers::isNeeded(const SceneNeeds& needs, const LpvSettings& settings, Light light) {
+  if (settings.transport == LpvTransport::gather) return LightGather::partsOf(needs, settings, light).any();
   const bool extended = needs.emission || needs.environment;
   return light == Light::direct ? extended : needs.indirect || extended;
 }
@@ -63,7 +58,6 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
                            const glm::dvec3& origin, const LpvSettings& settings, Light light)
     : settings_(settings),
       programs_(&programs),
-      capabilities_(&capabilities),
       scene_(scene, analyse(scene), capabilities, PathScene::Settings{true, true, {}}),
       rayOrigin_(scene_.origin() - origin),
       referenceIrradiance_(typicalOf(scene)),
@@ -136,38 +130,8 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   if (settings.transport == LpvTransport::rays)
     paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
   store_ = &programs.loadCompute("lpv store receivers", "lpv/receivers/store.comp", common);
-  // Programs of the gather, and the voxels that block it.
-  if (settings.transport == LpvTransport::gather) {
-    if (settings.bounces != 1)
-      throwBadInput("lpv.bounces={}: lpv.transport=gather has one bounce; rays has more",
-                    settings.bounces == LpvSettings::kAllBounces ? "all" : std::to_string(settings.bounces));
-    const SceneNeeds needs = analyse(scene);
-    const bool voxels = settings.visibility == LpvVisibility::voxels;
-    const auto load = [&](const char* name, bool sky, bool perspective) {
-      return &programs.loadCompute(name, "lpv/gather/gather.comp",
-                                   with(common, {{"SKY", sky},
-                                                 {"PERSPECTIVE", perspective},
-                                                 {"VOXELS", voxels},
-                                                 {"NEAR", static_cast<int>(RsmGather::Near::quad)},
-                                                 {"MAP_LIGHT", 0},
-                                                 {"LINEAR_SEEDS", 0},
-                                                 {"GLOSSY", 0},
-                                                 {"ENVIRONMENT", needs.environment},
-                                                 {"ENVIRONMENT_PICTURE", needs.environmentPicture}}));
-    };
-    if (needs.directionalLight && light != Light::direct) gatherSun_ = load("lpv gather sun", false, false);
-    if ((needs.spotLights || needs.pointLights) && light != Light::direct)
-      gatherLamp_ = load("lpv gather lamp", false, true);
-    if (needs.environment && light != Light::indirect) gatherSky_ = load("lpv gather sky", true, false);
-    if (voxels) {
-      const SurfaceVoxels surfaces = surfaceVoxels(scene, settings.voxels);
-      voxelMinimum_ = glm::vec3(surfaces.minimum - origin);
-      voxelSize_ = static_cast<float>(surfaces.size);
-      voxelBricks_ = surfaces.bricks;
-      voxels_ = gl::BufferTexture("lpv voxels", gl::Format::rg32ui, surfaces.bits.size() * sizeof(glm::uvec2),
-                                  surfaces.bits.data());
-    }
-  }
+  if (settings.transport == LpvTransport::gather)
+    gather_ = std::make_unique<LightGather>(programs, capabilities, scene, origin, settings, light, scene_, common);
   forget();
 }
 
@@ -183,6 +147,7 @@ void LpvReceivers::forget() {
   gl::clearToZero(textures, clearTexture_);
   cascades_.clear();
   counts_ = {};
+  if (gather_) gather_->forget();
 }
 
 void LpvReceivers::place(const Inputs& inputs) {
@@ -291,37 +256,12 @@ void LpvReceivers::light(int target) {
   pass.dispatchIndirect(work_[0], 4 * sizeof(GLuint));
 }
 
-// New receivers gather from every map and from the sky; then they are final while the maps stay.
+// New receivers gather all their light; then they are final while the maps stay.
 void LpvReceivers::gather(const Inputs& inputs) {
-  if (gatherSun_ || gatherLamp_) {
-    const bool first = trees_.empty();
-    for (std::size_t i = 0; i < inputs.maps.size(); ++i) {
-      const ReflectiveShadowMap::Outputs& map = inputs.maps[i];
-      if (first) trees_.emplace_back(*programs_, *capabilities_, map.position.size().x, map.position.size().z);
-      if (first || inputs.mapsAreNew) trees_[i].build(map);
-    }
-  }
+  bindReceivers();
+  gather_->update(inputs.maps, inputs.mapsAreNew);
   list(1);
-  std::vector<const gl::Program*> todo;
-  if (gatherSun_ || gatherLamp_)
-    for (const ReflectiveShadowMap::Outputs& map : inputs.maps)
-      todo.push_back(map.light == ReflectiveShadowMap::Light::sun ? gatherSun_ : gatherLamp_);
-  if (gatherSky_) todo.push_back(gatherSky_);
-  for (std::size_t i = 0; i < todo.size(); ++i) {
-    const gl::ComputePass pass("lpv gather", gl::Barrier::storage);
-    const gl::Program& program = *todo[i];
-    program.use();
-    program.set("last", i + 1 == todo.size() ? 1u : 0u);
-    program.set("voxelMinimum", voxelMinimum_);
-    program.set("voxelSize", voxelSize_);
-    program.set("voxelBrickCount", voxelBricks_);
-    if (voxels_.bytes() > 0) voxels_.bind(kVoxelsUnit);
-    if (&program != gatherSky_) {
-      inputs.maps[i].bind();
-      trees_[i].bind(program, kTreeUnit);
-    }
-    pass.dispatchIndirect(work_[0], 4 * sizeof(GLuint));
-  }
+  gather_->gather(inputs.maps, work_[0], 4 * sizeof(GLuint));
 }
 
 void LpvReceivers::store(float mostChange) {
@@ -414,14 +354,14 @@ void LpvReceivers::collect(bool wait) {
 
 double LpvReceivers::mostTurns() const {
   const int lanes = settings_.transport == LpvTransport::rays ? settings_.rays : LPV_LANES;
-  return static_cast<double>(lit_.bytes() / sizeof(GLuint)) * lanes * static_cast<double>(kTurnsOfPath);
+  const std::size_t listed = std::max(lit_.bytes() / sizeof(GLuint), gather_ ? gather_->pointsAtOnce() : 0);
+  return static_cast<double>(listed) * lanes * static_cast<double>(kTurnsOfPath);
 }
 
 std::size_t LpvReceivers::gpuBytes() const {
   std::size_t bytes = scene_.gpuBytes() + lpvConstants_.bytes() + lpvConstantsBefore_.bytes() + constants_.bytes() +
                       pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() + seen_.bytes() +
-                      irradiance_.bytes() + ring_->bytes() + voxels_.bytes();
-  for (const LightTree& tree : trees_) bytes += tree.gpuBytes();
+                      irradiance_.bytes() + ring_->bytes() + (gather_ ? gather_->gpuBytes() : 0);
   for (std::size_t i = 0; i < 2; ++i) bytes += receivers_[i].bytes() + work_[i].bytes();
   return bytes;
 }

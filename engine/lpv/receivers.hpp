@@ -20,7 +20,7 @@
 #include "gl/read_back.hpp"
 #include "lpv/cascades.hpp"
 #include "lpv/light_propagation_volume.hpp"
-#include "lpv/light_tree.hpp"
+#include "lpv/light_gather.hpp"
 #include "rays/path_scene.hpp"
 
 #include <array>
@@ -32,9 +32,7 @@ namespace lucerna {
 
 class LpvReceivers {
  public:
-  /// Stored light: everything but the direct light of sun and lamps. `direct`: of emissive surfaces and the sky,
-  /// scattered once.
-  enum class Light { all, direct, indirect };
+  using Light = ReceivedLight;
   struct Inputs {
     std::vector<Cascade> cascades;  ///< finest first, as many as in the settings
     Camera camera;  ///< of the visible surfaces, in the frame's coordinates
@@ -57,7 +55,7 @@ class LpvReceivers {
   LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
                const glm::dvec3& origin, const LpvSettings& settings, Light light);
 
-  static bool isNeeded(const SceneNeeds& needs, LpvTransport transport, Light light);
+  static bool isNeeded(const SceneNeeds& needs, const LpvSettings& settings, Light light);
 
   /// One frame: finds receivers for visible surfaces, and traces Settings::rays paths for those that lack some,
   /// Settings::leastRays for new ones. rounds: the paths of this many frames at once.
@@ -104,7 +102,6 @@ class LpvReceivers {
 
   LpvSettings settings_;
   gl::ProgramLibrary* programs_;
-  const gl::Capabilities* capabilities_;
   PathScene scene_;
   glm::dvec3 rayOrigin_;  ///< in the frame's coordinates
   float referenceIrradiance_;  ///< of the order of the irradiance; only scales stored values
@@ -115,13 +112,8 @@ class LpvReceivers {
   std::vector<Cascade> cascades_;  ///< of the previous frame
   shared::PathConstants path_{};
   const gl::Program *mark_, *claim_, *keep_, *list_, *store_;
-  const gl::Program* paths_ = nullptr;  ///< only for rays; the following only for gather
-  const gl::Program *gatherSun_ = nullptr, *gatherLamp_ = nullptr, *gatherSky_ = nullptr;
-  std::vector<LightTree> trees_;  ///< one per map
-  glm::vec3 voxelMinimum_{0.0f};  ///< in the frame's coordinates
-  float voxelSize_ = 1.0f;
-  glm::ivec3 voxelBricks_{1};
-  gl::BufferTexture voxels_;
+  const gl::Program* paths_ = nullptr;  ///< only for rays
+  std::unique_ptr<LightGather> gather_;  ///< only for gather
   gl::Buffer lpvConstants_,
       lpvConstantsBefore_;  ///< the second: the cascades to which irradiance_ belongs when an update begins
   gl::Buffer constants_, pathConstants_, lit_;

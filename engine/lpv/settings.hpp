@@ -31,14 +31,15 @@ enum class LpvLookup { flux, published };
 constexpr std::array<std::string_view, 2> namesOf(LpvLookup) { return {"flux", "published"}; }
 
 /// How light gets from lit surfaces to the lookup. `propagate`: through the grids' cells, step by step, as published.
-/// The others store it at receivers, points of surfaces (receivers.hpp): `gather` from the lights' maps, one bounce;
-/// `rays` along paths.
+/// The others store it at receivers, points of surfaces (receivers.hpp): `gather` from the lights' maps and
+/// from points of the scene that keep the light of further bounces; `rays` along paths.
 enum class LpvTransport { propagate, gather, rays };
 constexpr std::array<std::string_view, 3> namesOf(LpvTransport) { return {"propagate", "gather", "rays"}; }
 
-/// What blocks gathered light: nothing, or the voxels that contain surfaces.
-enum class LpvVisibility { none, voxels };
-constexpr std::array<std::string_view, 2> namesOf(LpvVisibility) { return {"none", "voxels"}; }
+/// What blocks light gathered from maps and emissive surfaces: nothing, the voxels that contain surfaces, or the
+/// surfaces themselves.
+enum class LpvVisibility { none, voxels, rays };
+constexpr std::array<std::string_view, 3> namesOf(LpvVisibility) { return {"none", "voxels", "rays"}; }
 
 /// Whose surfels fill the geometry volume: those in the lights' maps, those seen by the camera, or both.
 enum class LpvSurfels { rsm, camera, both };
@@ -87,8 +88,8 @@ struct LpvSettings {
   bool blocking = true;  ///< geometry volume
   LpvSurfels surfels = LpvSurfels::rsm;
   bool mergeViews = false;  ///< several maps: the longer vector of a surfel seen twice counts; otherwise all are summed
-  int bounces = 1;  ///< with propagate more than 1 need blocking, two iterations and maps with albedo; with rays
-                    ///< kAllBounces too
+  int bounces = 1;  ///< with propagate more than 1 need blocking, two iterations and maps with albedo; with the
+                    ///< others kAllBounces too
   bool shafts = false;  ///< light shafts in the scene's haze (light_shafts.hpp)
   int shaftSteps = 64;  ///< samples along a view ray
   LpvGlossy glossy = LpvGlossy::off;  ///< reflection of the volume's light by glossy materials (glossy_lobes.hpp)
@@ -97,8 +98,9 @@ struct LpvSettings {
   int handOver = 0;  ///< steps after which a finer cascade takes light from the coarser one; 0: lpvHandOverStep()
   std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not
                                       ///< set: the lookup's default
-  LpvVisibility visibility = LpvVisibility::voxels;  ///< for LpvTransport::gather
+  LpvVisibility visibility = LpvVisibility::rays;  ///< for LpvTransport::gather
   int voxels = 256;  ///< likewise: along the longest side of the scene
+  int bounceCells = 16;  ///< likewise: of the points that keep light of further bounces
   int rays = 16;  ///< for LpvTransport::rays: paths per receiver and frame, 1, 2, 4 ... 64
   int leastRays = 64;  ///< likewise: minimum number of paths of a receiver in its first frame
   int samples = 512;  ///< likewise: paths of a receiver while light and geometry stand still

@@ -7,9 +7,6 @@
 
 namespace lucerna {
 
-namespace {
-
-/// Whether a material is cut out at a texture coordinate, as in forward shading, at the nearest texel.
 bool isCutOut(const Scene& scene, const Material& material, const glm::dvec2& texCoord) {
   const int index = material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture;
   if (!material.alphaMasked || index < 0) return false;
@@ -23,8 +20,6 @@ bool isCutOut(const Scene& scene, const Material& material, const glm::dvec2& te
       4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x));
   return bitmap.rgba[at + (bitmap.hasAlpha ? 3 : 0)] < 128;
 }
-
-}  // namespace
 
 bool SurfaceVoxels::isSet(const glm::ivec3& voxel) const {
   const glm::ivec3 brick = voxel / kBrick, within = voxel % kBrick;

@@ -24,4 +24,7 @@ struct SurfaceVoxels {
 /// points are sampled half a voxel apart.
 SurfaceVoxels surfaceVoxels(const Scene& scene, int across);
 
+/// Whether a material is cut out at a texture coordinate, as in forward shading, at the nearest texel.
+bool isCutOut(const Scene& scene, const Material& material, const glm::dvec2& texCoord);
+
 }  // namespace lucerna

@@ -1,7 +1,5 @@
 #include "render/receivers_frame.hpp"
 
-#include "base/log.hpp"
-
 namespace lucerna {
 
 namespace {
@@ -15,7 +13,6 @@ LpvReceivers::Light receivedLight(Component component) {
 
 std::optional<LightMaps> lightMaps(const FrameParts& parts) {
   if (!ReceiversFrame::takesMaps(parts.settings, parts.needs)) return {};
-  if (parts.needs.emission) logWarning("lpv.transport=gather: emissive surfaces light nothing (rays supports them)");
   return std::optional<LightMaps>(std::in_place, parts, LightMaps::Lights{true, true}, false);
 }
 
@@ -23,7 +20,7 @@ std::optional<LightMaps> lightMaps(const FrameParts& parts) {
 
 bool ReceiversFrame::isNeeded(const RenderSettings& settings, const SceneNeeds& needs) {
   return settings.technique == Technique::lpv && settings.lpv.transport != LpvTransport::propagate &&
-         LpvReceivers::isNeeded(needs, settings.lpv.transport, receivedLight(settings.component));
+         LpvReceivers::isNeeded(needs, settings.lpv, receivedLight(settings.component));
 }
 
 ReceiversFrame::ReceiversFrame(const FrameParts& parts, const gl::Texture& depth)
@@ -52,7 +49,7 @@ bool ReceiversFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEf
   const LpvReceivers::Counts& counts = receivers_.counts();
   settled_ = sameView && counts.frame >= since_ && counts.waiting == 0;
   if (settled_ && parts_.settings.reuse) return false;
-  const bool mapsAreNew = !maps_ || maps_->willBeDrawn();
+  const bool mapsAreNew = hasMaps() ? maps_->willBeDrawn() : !parts_.settings.reuse;
   const std::vector<ReflectiveShadowMap::Outputs> none;
   const std::vector<ReflectiveShadowMap::Outputs>& maps = maps_ ? maps_->record(timer) : none;
   {

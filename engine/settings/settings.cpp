@@ -142,7 +142,6 @@ constexpr SettingReaders kPropagate{bit(Technique::lpv), bit(LpvTransport::propa
 constexpr SettingReaders kGather{bit(Technique::lpv), bit(LpvTransport::gather)};
 constexpr SettingReaders kRays{bit(Technique::lpv), bit(LpvTransport::rays)};
 constexpr SettingReaders kReceivers{bit(Technique::lpv), bit(LpvTransport::gather) | bit(LpvTransport::rays)};
-constexpr SettingReaders kBounces{bit(Technique::lpv), bit(LpvTransport::propagate) | bit(LpvTransport::rays)};
 constexpr SettingReaders kMaps{bit(Technique::rsm) | bit(Technique::lpv),
                                bit(LpvTransport::propagate) | bit(LpvTransport::gather)};
 
@@ -168,8 +167,8 @@ const std::vector<Setting>& table() {
       {"lpv.blend", number(FIELD(lpv.blendBand), 0.001, 1.0), "half extents",
        "width of the band over which a cascade fades into the next", "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
       {"lpv.bounces", number(FIELD(lpv.bounces), 1, 64, "all", LpvSettings::kAllBounces), "",
-       "reflections before light reaches a surface; all: only with transport rays", "[Kaplanyan2010]", rebuild,
-       kBounces, "all with transport rays, else 1"},
+       "reflections before light reaches a surface; all: not with transport propagate", "[Kaplanyan2010]", rebuild,
+       kLpv, "1 with transport propagate, else all"},
       {"lpv.iterations", number(FIELD(lpv.iterations), 0, 100000), "steps", "propagation steps",
        "[Kaplanyan2010, section 4.3]", rebuild, kPropagate, ""},
       {"lpv.blocking", blocking(), "", "source of the surfels in the geometry volume, which blocks light; off: none",
@@ -210,9 +209,13 @@ const std::vector<Setting>& table() {
       {"lpv.amplifier", number(FIELD(lpv.amplifier), 0.0, 100.0), "",
        "factor of the deviation lpv.four-pi-kernel; 4 conserves energy", "[LPV2015]", rebuild, kPropagate, ""},
       {"lpv.visibility", choice(FIELD(lpv.visibility)), "",
-       "occlusion of gathered light: none, or by voxels that surfaces touch", "", rebuild, kGather, ""},
+       "occlusion of light gathered from maps and emissive surfaces: none; by voxels that surfaces touch; by rays", "",
+       rebuild, kGather, ""},
       {"lpv.voxels", number(FIELD(lpv.voxels), 1, 1024), "voxels", "along the longest side of the scene", "", rebuild,
        kGather, ""},
+      {"lpv.bounce-cells", number(FIELD(lpv.bounceCells), 1, 64), "cells",
+       "along the longest side of the scene: of the points that keep light of further bounces", "", rebuild, kGather,
+       ""},
       {"lpv.rays", raysOfFrame(), "paths", "per receiver and frame", "", rebuild, kRays, ""},
       {"lpv.least-rays", number(FIELD(lpv.leastRays), 1, 1 << 20), "paths",
        "at least, of a receiver in its first frame", "", rebuild, kRays, ""},

@@ -14,6 +14,7 @@ SHARED_BEGIN
 #define LPV_PRESENT 1.0
 #define LPV_FRONT 1u
 #define LPV_FIRST 2u
+#define LPV_ALONE 4u  // of a point that keeps light of further bounces: it lights no other surface
 
 struct LpvReceiver {
   ivec4 cell;           // cell of its cascade, counted from the origin; w: cascade * LPV_FACES + face

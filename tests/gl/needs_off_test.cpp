@@ -124,7 +124,7 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
     bool receivers, volume;
     std::size_t gpuBytes;
   };
-  const auto draw = [](LpvTransport transport, Component component, const Scene& scene) {
+  const auto draw = [](LpvTransport transport, Component component, const Scene& scene, int bounces = 1) {
     gl::ProgramLibrary library;
     RenderSettings settings;
     settings.technique = Technique::lpv;
@@ -134,6 +134,7 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
     settings.rsm.size = 64;
     settings.lpv.cascades.cells = 8;
     settings.lpv.transport = transport;
+    settings.lpv.bounces = bounces;
     settings.lpv.samples = 16;
     Renderer renderer(context(), library, scene, settings);
     renderer.renderToTheEnd(test::openBoxCamera());
@@ -191,6 +192,16 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
   EXPECT_FALSE(has(direct.programs, "lpv")) << direct.programs;
   EXPECT_FALSE(has(direct.stages, "receivers"));
   EXPECT_EQ(direct.gpuBytes, draw(LpvTransport::propagate, Component::direct, scene).gpuBytes);
+  // Gathered, one bounce of the sun needs neither points that keep light nor rays to them; more bounces do.
+  const Made once = draw(LpvTransport::gather, Component::all, scene),
+             twice = draw(LpvTransport::gather, Component::all, scene, 2);
+  for (const char* part : {"lpv gather around", "lpv trace bounces", "lpv bounce", "LpvLinks", "bounceSlots"}) {
+    EXPECT_FALSE(has(once.programs, part)) << part << " in\n" << once.programs;
+    EXPECT_TRUE(has(twice.programs, part)) << part << " in\n" << twice.programs;
+  }
+  EXPECT_FALSE(has(twice.programs, "lpv gather emission")) << twice.programs;
+  EXPECT_LT(once.gpuBytes, twice.gpuBytes);
+
   scene.environment = Environment{};
   scene.environment->radiance = glm::vec3(1.0f);
   EXPECT_TRUE(draw(LpvTransport::rays, Component::direct, scene).receivers);

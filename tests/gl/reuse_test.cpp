@@ -104,6 +104,12 @@ TEST_F(Reuse, PicturesAreTheSameBitByBitForEachTechnique) {
   Case original{"original", settings(Technique::lpv)};
   applyFidelity(original.settings, Fidelity::original);
   cases.push_back(original);
+  for (const int bounces : {1, LpvSettings::kAllBounces}) {
+    Case c{fmt::format("gather, bounces {}", bounces), settings(Technique::lpv)};
+    c.settings.lpv.transport = LpvTransport::gather;
+    c.settings.lpv.bounces = bounces;
+    cases.push_back(c);
+  }
   for (const int bounces : {2, LpvSettings::kAllBounces})
     for (const bool toTheEnd : {true, false}) {
       Case c{fmt::format("rays, bounces {}{}", bounces, toTheEnd ? ", settled" : ""), settings(Technique::lpv),

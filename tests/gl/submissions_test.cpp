@@ -125,6 +125,8 @@ TEST_F(Submissions, VolumesAtTheirLargest) {
     for (const int rays : {1, 8, 64}) {
       settings.lpv.transport = transport;
       settings.lpv.rays = rays;
+      settings.lpv.bounces = transport == LpvTransport::gather ? LpvSettings::kAllBounces : 1;
+      settings.lpv.bounceCells = 64;
       settings.lpv.cascades.cells = 32;
       settings.size = {16, 16};
       const Renderer renderer(context(), library(), scene, settings);

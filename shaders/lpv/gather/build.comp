@@ -1,5 +1,5 @@
 // Builds one level of the hierarchy over a reflective shadow map (tree.glsl) from the level below. FROM_TEXELS: the
-// first level, from the map itself.
+// first level, from the map itself. MEAN_AREA: a node's area is its texels' mean, else their sum.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/bindings.h"
 #include "lpv/gather/tree.glsl"
@@ -45,13 +45,20 @@ void main() {
     float weight = children[i].flux.r + children[i].flux.g + children[i].flux.b;
     sum.position += weight * children[i].position;
     sum.normal += weight * children[i].normal;
+#if MEAN_AREA
+    sum.area += weight * children[i].area;
+#else
     sum.area += children[i].area;
+#endif
     sum.flux += children[i].flux;
     weights += weight;
   }
   if (weights > 0.0) {
     sum.position /= weights;
     sum.normal /= weights;
+#if MEAN_AREA
+    sum.area /= weights;
+#endif
     float nearest = 3.0e38;
     for (int i = 0; i < 4; ++i) {
       if (children[i].radius < 0.0) continue;
