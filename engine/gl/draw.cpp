@@ -36,4 +36,6 @@ void readFloats(const Framebuffer& from, const glm::ivec2& corner, const glm::iv
 
 void finish() { glFinish(); }
 
+void flush() { glFlush(); }
+
 }  // namespace lucerna::gl

@@ -65,7 +65,7 @@ struct LightGather::Targets {
       return;
     }
     for (std::size_t first = 0; first < count; first += kMostGroups) {
-      if (first > 0) glFlush();
+      if (first > 0) gl::flush();
       program.set("firstListed", static_cast<unsigned>(first));
       const auto size = static_cast<int>(std::min(count - first, kMostGroups));
       pass.dispatch(glm::ivec3(size, 1, 1), glm::ivec3(1));

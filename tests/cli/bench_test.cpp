@@ -281,7 +281,7 @@ TEST_F(Bench, VptTablesHoldWhatWasPublished) {
   }
   // The estimator: corrected, as published, and each deviation alone.
   const auto& estimators = tables.at("estimators");
-  ASSERT_EQ(estimators.size(), 12u);
+  ASSERT_EQ(estimators.size(), 13u);
   EXPECT_EQ(estimators[0].at("estimator"), "corrected");
   EXPECT_EQ(estimators[0].at("time_ratio"), 1.0);
   EXPECT_EQ(estimators[1].at("estimator"), "original");

@@ -6,8 +6,8 @@
 // The rays' shares add up to 1 at most, so light that bounces on and on never grows.
 // OWN: sky and emissive surfaces count. BOUNCED: surfaces do. LINKS: the receivers are the bounces' points themselves;
 // a surface's point and albedo are noted for bounce.comp, and what was stored is replaced. RAYS is then 1.
-// `probes`, LINKS: only tells which points lie in a gap, as between a ceiling and the lamp on it, and stand for no other
-// part of their cell. No surface finds them any more.
+// `probes`, LINKS: only tells which points lie in a gap, as between a ceiling and the lamp on it, and stand for no
+// other part of their cell. No surface finds them any more.
 layout(local_size_x = 64) in;  // LPV_LANES
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"
