@@ -1,6 +1,7 @@
 #include "lpv/light_gather.hpp"
 
 #include "base/error.hpp"
+#include "gl/draw.hpp"
 #include "gl/pass.hpp"
 #include "lpv/bounce_points.hpp"
 #include "lpv/emission_points.hpp"
