@@ -336,15 +336,16 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
   }
 }
 
-// Depth is known, so that a pixel shades one surface: its textures, four taps for each light's shadow, and a lookup of
-// what a technique adds.
+// Depth is known, so that a pixel shades one surface: its textures, nine texels of the sun's shadow map, four taps of
+// each lamp's, and a lookup of what a technique adds.
 double Renderer::turnsOfSurface() const {
-  constexpr double kTurnsOfMaterial = 4.0, kTurnsOfShadow = 4.0, kTurnsOfIndirect = 24.0;
+  constexpr double kTurnsOfMaterial = 4.0, kTurnsOfSun = 9.0, kTurnsOfLamp = 4.0, kTurnsOfIndirect = 24.0;
   const int suns = sunCascades_ ? settings_.sunCascades.cascades : static_cast<int>(shadowMap_.has_value());
   const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
   constexpr double kTurnsOfCell = 8.0;
   const double glossy = lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kTurnsOfCell * settings_.lpv.glossyCells() : 0.0;
-  return kTurnsOfMaterial + kTurnsOfShadow * (suns + lamps) + (lpv_ || receivers_ ? kTurnsOfIndirect : 0.0) + glossy;
+  return kTurnsOfMaterial + kTurnsOfSun * suns + kTurnsOfLamp * lamps + (lpv_ || receivers_ ? kTurnsOfIndirect : 0.0) +
+         glossy;
 }
 
 double Renderer::largestTurns() const {
