@@ -27,7 +27,7 @@ constexpr GLuint kPlacesUnit = 13, kMapUnits = 10;  // with rays: the texture at
 constexpr std::size_t kLinkBytes = 12;  // of a ray: a point's number and the albedo there
 constexpr std::size_t kMostGroups = 1u << 14;  // per submission: gl/pieces.hpp
 constexpr int kMostBounces = 64;
-constexpr int kRaysOfLane = 4;  // around a receiver
+constexpr int kRaysOfLane = 2;  // around a receiver
 constexpr int kEmissionSize = 64;  // texels per side of the emissive surfaces' map
 constexpr double kLeft = 1.0 / 512.0;  // share of the light that all bounces may leave out
 
@@ -210,10 +210,10 @@ void LightGather::gatherTree(const gl::Program& program, const ReflectiveShadowM
   if (visibility_ == LpvVisibility::rays) {
     paths_->bind();
     program.set("rayEnd", rayEnd_);
-    map.position.bind(kMapUnits), map.normal.bind(kMapUnits + 1), map.flux.bind(kMapUnits + 2);
-  } else {
-    map.bind();
   }
+  if (&program == sun_ && visibility_ == LpvVisibility::rays)
+    map.position.bind(kMapUnits), map.normal.bind(kMapUnits + 1), map.flux.bind(kMapUnits + 2);
+  else if (&program == sun_) map.bind();
   if (visibility_ == LpvVisibility::voxels) {
     program.set("voxelMinimum", voxelMinimum_);
     program.set("voxelSize", voxelSize_);

@@ -3,6 +3,9 @@
 #include "base/error.hpp"
 #include "gl/pass.hpp"
 
+#include <algorithm>
+#include <bit>
+
 namespace lucerna {
 
 namespace {
@@ -12,15 +15,11 @@ constexpr std::size_t kNodeBytes = 48;
 
 LightTree::LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, int size, int layers,
                      Area area)
-    : size_(size), layers_(layers) {
-  const auto widthOf = [&](int level) { return (size + (1 << level) - 1) >> level; };
-  std::size_t nodes = 0;
-  for (int level = 1;; ++level) {
-    levels_ = level;
-    nodes += static_cast<std::size_t>(widthOf(level)) * static_cast<std::size_t>(widthOf(level)) *
-             static_cast<std::size_t>(layers);
-    if (widthOf(level) <= kTop) break;
-  }
+    : size_(size),
+      layers_(layers),
+      depth_(std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(size - 1))))),
+      top_(std::min(depth_ - 1, kTop)) {
+  const std::size_t nodes = ((std::size_t{1} << (2 * depth_ + 2)) - 1) / 3 * static_cast<std::size_t>(layers);
   const std::size_t texels = nodes * kNodeBytes / 16;
   if (texels > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
     throwMissingCapability(
@@ -37,20 +36,21 @@ LightTree::LightTree(gl::ProgramLibrary& programs, const gl::Capabilities& capab
 void LightTree::setShape(const gl::Program& program) const {
   program.set("treeSize", size_);
   program.set("treeLayers", layers_);
-  program.set("treeLevels", levels_);
+  program.set("treeDepth", depth_);
+  program.set("treeTop", top_);
 }
 
 void LightTree::build(const ReflectiveShadowMap::Outputs& map) {
-  for (int level = 1; level <= levels_; ++level) {
+  for (int depth = depth_ - 1; depth >= top_; --depth) {
     const gl::ComputePass pass("light tree", gl::Barrier::storage | gl::Barrier::textureFetch);
-    const gl::Program& program = level == 1 ? *fromTexels_ : *fromNodes_;
+    const bool fromTexels = depth == depth_ - 1;
+    const gl::Program& program = fromTexels ? *fromTexels_ : *fromNodes_;
     program.use();
     setShape(program);
-    program.set("level", level);
-    if (level == 1) map.bind();
+    program.set("depth", depth);
+    if (fromTexels) map.bind();
     nodes_.buffer().bindStorage(kNodesBuffer);
-    const int width = (size_ + (1 << level) - 1) >> level;
-    pass.dispatch(glm::ivec3(width, width, layers_), glm::ivec3(8, 8, 1));
+    pass.dispatch(glm::ivec3(1 << depth, 1 << depth, layers_), glm::ivec3(8, 8, 1));
   }
 }
 

@@ -10,7 +10,7 @@ namespace lucerna {
 
 class LightTree {
  public:
-  static constexpr int kTop = 32;  ///< maximum nodes per side at the coarsest level
+  static constexpr int kTop = 4;  ///< depth of the coarsest nodes at most: 2^kTop per side
   /// What a node's area is: of all its texels together, or their mean.
   enum class Area { sum, mean };
   /// size, layers: of the map.
@@ -20,14 +20,14 @@ class LightTree {
   void build(const ReflectiveShadowMap::Outputs& map);
   /// For a program in use that includes tree.glsl; binds the nodes as texels to `unit`.
   void bind(const gl::Program& program, GLuint unit) const;
-  int levels() const { return levels_; }
+  int depth() const { return depth_; }
   std::size_t gpuBytes() const { return nodes_.bytes(); }
-  /// 12 words per node, level by level, finest first; for tests.
+  /// 12 words per node, in the order of tree.glsl; of depths above the coarsest nothing is written. For tests.
   std::vector<GLuint> readNodes() const { return nodes_.buffer().read<GLuint>(); }
 
  private:
   void setShape(const gl::Program& program) const;
-  int size_, layers_, levels_ = 1;
+  int size_, layers_, depth_, top_;
   const gl::Program *fromTexels_, *fromNodes_;
   gl::BufferTexture nodes_;
 };

@@ -21,7 +21,8 @@ constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no receive
 constexpr float kFullPaths = 256.0f;  // from here on: full weight, no averaging with neighbours
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
 constexpr std::array<GLuint, 9> kNoWork{0, 1, 1, 0, 0, 1, 1, 0, 0};
-constexpr std::size_t kTurnsOfPath = 256;  // approximate: gl/pieces.hpp
+// Of a lane, approximately (gl/pieces.hpp): of a path, or of gather four rays, or one ray and nodes of the tree.
+constexpr std::size_t kTurnsOfPath = 256;
 constexpr std::size_t kMostPaths = (std::size_t{1} << 28) / kTurnsOfPath;  // per submission
 constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // number that a key distinguishes
 

@@ -425,6 +425,24 @@ TEST_F(LpvGatherGl, TheSkyAloneHasIndirectLight) {
   }
 }
 
+// A floor goes on below the walls that stand on it. Its points there lie in the dark, and must not stand for the floor
+// beside them.
+TEST_F(LpvGatherGl, WhatSolidsHideIsNotBounced) {
+  SceneBuilder builder;
+  builder.sun({0.3, -1.0, 0.2}, glm::vec3(4.0f));
+  const int white = builder.material(glm::vec3(0.8f));
+  builder.plate({0.0, 0.0, 0.0}, {0, 0, 8}, {8, 0, 0}, white);
+  builder.plate({-4.0, 2.0, 0.0}, {0, 4, 0}, {0, 0, 8}, white);
+  for (double x = -2.0; x <= 2.0; x += 2.0)  // along the middle of every other row of cells
+    for (double z = -3.75; z < 4.0; z += 0.5) test::addBox(builder, 0.25, white, false, {x, 0.24, z});
+  const Camera camera = lookingAt({4.0, 3.0, 0.5}, {-4.0, 1.0, 0.0}, 0.8);
+  const auto of = [&](RenderSettings s) { return meanOf(picture(builder.scene(), camera, s).image).x; };
+  RenderSettings s = FloorAndWall::fine(settings(kAll, 512, Component::indirect));
+  const double ratio = of(gathered(s, LpvVisibility::rays)) / of(s);
+  report("walls on a floor, gathered over traced", ratio);
+  EXPECT_NEAR(ratio, 1.0, 0.01);
+}
+
 // As AClosedRoomThatShines: nothing of its light may get lost, and none be made.
 TEST_F(LpvGatherGl, AClosedRoomThatShines) {
   const glm::dvec3 albedo(0.8f, 0.5f, 0.0f), emission(1.0, 2.0, 3.0);

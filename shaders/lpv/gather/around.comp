@@ -6,8 +6,8 @@
 // The rays' shares add up to 1 at most, so light that bounces on and on never grows.
 // OWN: sky and emissive surfaces count. BOUNCED: surfaces do. LINKS: the receivers are the bounces' points themselves;
 // a surface's point and albedo are noted for bounce.comp, and what was stored is replaced. RAYS is then 1.
-// `probes`, LINKS: only tells which points lie in a gap, as between a ceiling and the lamp on it, and stand for no
-// other part of their cell. No surface finds them any more.
+// `probes`, LINKS: only tells which points lie in a gap, as between a ceiling and the lamp on it, or within a solid, as
+// the floor below a column, and stand for no other part of their cell. No surface finds them any more.
 layout(local_size_x = 64) in;  // LPV_LANES
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"
@@ -25,10 +25,10 @@ uniform uint firstListed;       // of `lit`
 uniform float areaOverDensity;  // of emissive surfaces: area that a point stands for, times the triangle's pickDensity
 shared vec3 found[LPV_LANES];
 #if LINKS
-shared uint met[LPV_LANES];  // 1: the lane's ray met a surface; 2: right in front of it
+shared uint met[LPV_LANES];  // 1: the lane's ray met a surface; 2: right in front of it, or a back face near by
 uniform bool probes;
-const float kGap = 0.1;        // cells
-const uint kMostInGap = 60u;   // rays that may end there
+const float kGap = 0.1, kNear = 1.0;  // cells
+const uint kMostShut = 48u;           // rays that may end there
 #endif
 
 #if BOUNCED
@@ -134,7 +134,11 @@ vec3 lookAround(LpvReceiver receiver, uint index, uint ray) {
   // Rounded down: no surface reflects more than it does.
   uvec3 steps = uvec3(floor(albedo * 65535.0));
   links[link] = point;
-  met[ray] = hit.t < kGap * bounceCell ? 2u : 1u;
+  uint facing = hit.triangle * TRIANGLE_WORDS;
+  vec3 front =
+      uintBitsToFloat(uvec3(triangleData[facing + 1u].w, triangleData[facing + 2u].w, triangleData[facing + 3u].x));
+  bool inside = dot(front, direction) > 0.0 && hit.t < kNear * bounceCell;
+  met[ray] = inside || hit.t < kGap * bounceCell ? 2u : 1u;
   links[link + 1u] = steps.x | steps.y << 16u;
   links[link + 2u] = steps.z;
 #else
@@ -161,9 +165,9 @@ void main() {
     surfaces += min(met[i], 1u);
     near += met[i] / 2u;
   }
-  if (probes && near > kMostInGap)  // out of every surface's plane
+  if (probes && near > kMostShut)  // out of every surface's plane
     places[index].xyz += 1e6 * bounceCell * receiver.normal;
-  if (surfaces == 0u || (probes && near > kMostInGap)) receivers[index].state = receiver.state | LPV_ALONE;
+  if (surfaces == 0u || (probes && near > kMostShut)) receivers[index].state = receiver.state | LPV_ALONE;
 #else
   sum += receiver.irradiance;
 #endif

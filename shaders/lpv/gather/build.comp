@@ -1,5 +1,6 @@
-// Builds one level of the hierarchy over a reflective shadow map (tree.glsl) from the level below. FROM_TEXELS: the
-// first level, from the map itself. MEAN_AREA: a node's area is its texels' mean, else their sum.
+// Builds the nodes of one depth of the hierarchy over a reflective shadow map (tree.glsl) from their children.
+// FROM_TEXELS: the children are the map's texels, and are written too. MEAN_AREA: a node's area is its texels' mean,
+// else their sum.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/bindings.h"
 #include "lpv/gather/tree.glsl"
@@ -12,39 +13,49 @@ layout(std430, binding = 0) writeonly restrict buffer Nodes { uvec4 nodes[]; };
 #else
 layout(std430, binding = 0) restrict buffer Nodes { uvec4 nodes[]; };
 #endif
-uniform int level;
+uniform int depth;
 
-LightNode child(int layer, ivec2 place) {
+void write(uint index, LightNode node) {
+  uint at = TREE_TEXELS * index;
+  packNode(node, nodes[at], nodes[at + 1u], nodes[at + 2u]);
+}
+
+// The child with this number in the layer, whose first node is `layerStart`.
+LightNode child(uint layerStart, uint number, ivec3 place) {
 #if FROM_TEXELS
-  vec4 position = texelFetch(rsmPosition, ivec3(place, layer), 0), flux = texelFetch(rsmFlux, ivec3(place, layer), 0);
-  vec3 normal = texelFetch(rsmNormal, ivec3(place, layer), 0).xyz;
-  bool lit = position.w > 0.5 && flux.r + flux.g + flux.b > 0.0 && allFinite(position.xyz) && allFinite(normal) &&
-             allFinite(flux.rgb);
-  return LightNode(position.xyz, lit ? 0.0 : -1.0, normal, flux.w, flux.rgb, uint(place.x) | uint(place.y) << 16u);
+  LightNode leaf = kUnlit;
+  if (place.x < treeSize && place.y < treeSize) {
+    vec4 position = texelFetch(rsmPosition, place, 0), flux = texelFetch(rsmFlux, place, 0);
+    vec3 normal = texelFetch(rsmNormal, place, 0).xyz;
+    if (position.w > 0.5 && flux.r + flux.g + flux.b > 0.0 && allFinite(position.xyz) && allFinite(normal) &&
+        allFinite(flux.rgb))
+      leaf = LightNode(position.xyz, 0.0, normal, vec3(0.0), vec3(0.0), flux.w, flux.rgb);
+  }
+  write(layerStart + number, leaf);
+  return leaf;
 #else
-  int at = treeNode(level - 1, layer, place);
-  uvec4 a = nodes[at], b = nodes[at + 1], c = nodes[at + 2];
-  return LightNode(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz), uintBitsToFloat(b.w),
-                   uintBitsToFloat(c.xyz), c.w);
+  uint at = TREE_TEXELS * (layerStart + number);
+  return unpackNode(nodes[at], nodes[at + 1u], nodes[at + 2u]);
 #endif
 }
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
-  int width = treeWidth(level), below = treeWidth(level - 1);
-  if (at.x >= width || at.y >= width) return;
-  LightNode sum = LightNode(vec3(0.0), -1.0, vec3(0.0), 0.0, vec3(0.0), 0u);
+  if (at.x >= 1 << depth || at.y >= 1 << depth) return;
+  uint layerStart = uint(at.z) * treeNodesOfLayer(), number = treeFirst(depth) + mortonOf(at.xy);
+  LightNode sum = kUnlit;
   LightNode children[4];
   float weights = 0.0;
   for (int i = 0; i < 4; ++i) {
-    ivec2 place = 2 * at.xy + ivec2(i & 1, i >> 1);
-    children[i].radius = -1.0;
-    if (place.x >= below || place.y >= below) continue;
-    children[i] = child(at.z, place);
+    children[i] = child(layerStart, 4u * number + 1u + uint(i), ivec3(2 * at.xy + ivec2(i & 1, i >> 1), at.z));
     if (children[i].radius < 0.0) continue;
     float weight = children[i].flux.r + children[i].flux.g + children[i].flux.b;
+    vec3 n = children[i].normal;
     sum.position += weight * children[i].position;
-    sum.normal += weight * children[i].normal;
+    sum.normal += weight * n;
+    // Second moments, for now.
+    sum.spread += weight * (children[i].spread + n * n);
+    sum.mixed += weight * (children[i].mixed + vec3(n.x * n.y, n.x * n.z, n.y * n.z));
 #if MEAN_AREA
     sum.area += weight * children[i].area;
 #else
@@ -56,22 +67,15 @@ void main() {
   if (weights > 0.0) {
     sum.position /= weights;
     sum.normal /= weights;
+    vec3 n = sum.normal;
+    sum.spread = sum.spread / weights - n * n;
+    sum.mixed = sum.mixed / weights - vec3(n.x * n.y, n.x * n.z, n.y * n.z);
 #if MEAN_AREA
     sum.area /= weights;
 #endif
-    float nearest = 3.0e38;
-    for (int i = 0; i < 4; ++i) {
-      if (children[i].radius < 0.0) continue;
-      float away = distance(children[i].position, sum.position);
-      sum.radius = max(sum.radius, away + children[i].radius);
-      if (away < nearest) {
-        nearest = away;
-        sum.texel = children[i].texel;
-      }
-    }
+    for (int i = 0; i < 4; ++i)
+      if (children[i].radius >= 0.0)
+        sum.radius = max(sum.radius, distance(children[i].position, sum.position) + children[i].radius);
   }
-  int node = treeNode(level, at.z, at.xy);
-  nodes[node] = uvec4(floatBitsToUint(sum.position), floatBitsToUint(sum.radius));
-  nodes[node + 1] = uvec4(floatBitsToUint(sum.normal), floatBitsToUint(sum.area));
-  nodes[node + 2] = uvec4(floatBitsToUint(sum.flux), sum.texel);
+  write(layerStart + number, sum);
 }

@@ -1,17 +1,17 @@
 // Irradiance at receivers from a map of points that emit, a light's reflective shadow map or the emissive surfaces,
 // through a hierarchy over its texels (tree.glsl). One group of lanes gathers for one receiver.
 //
-// From a receiver at x with normal n a node of flux Phi, area A and mean normal n_p at p gives
-//   E = Phi c1 c2 / (pi (r^2 + A c2 / pi)),  c1 = <n, p - x>+ / r,  c2 = <n_p, x - p>+ / r:
+// From a receiver at x with normal n a node of flux Phi, area A and normals n_p at p gives
+//   E = Phi c1 c2 / (pi (r^2 + A c2 / pi)),  c1 = <n, p - x>+ / r,  c2 = mean <n_p, x - p>+ / r:
 // a point [Dachsbacher2005] at a distance, a disc near by. Near nodes are opened; nodes behind the receiver are
 // skipped. Near texels use their outline in the sun's map (rsm/transfer.glsl).
 // SHARED_WITH_RAYS: rays find the points too (around.comp), both weighted by the balance heuristic [Veach1997] of the
 // densities over solid angle, r^2 / (A c2) of points and n c1 / pi of n rays:
 //   E = Phi c1 c2 / (pi r^2 + n A c1 c2),
 // bounded next to a point. A is the area that one texel stands for.
-// Visibility: each lane keeps up to eight of its nodes, drawn in proportion to their contribution (reservoir sampling
-// [Chao1982]). Lanes with larger contributions trace more rays, so that some 200 rays represent all nodes, through
-// voxels or through the scene's hierarchy.
+// Visibility: each lane keeps four of its nodes, drawn in proportion to their contribution (reservoir sampling
+// [Chao1982]). One ray per lane, systematically spread over all contributions, goes through voxels or through the
+// scene's hierarchy to a texel of such a node, drawn by its flux.
 layout(local_size_x = 64) in;  // LPV_LANES
 #include "shared/bindings.h"
 #define VISIBILITY_VOXELS 1
@@ -34,7 +34,11 @@ uniform float rayEnd;  // by which a ray ends before its point, along the point'
 #if VISIBILITY == VISIBILITY_VOXELS
 #include "lpv/gather/voxels.glsl"
 #endif
+#if PERSPECTIVE
+const float kPi = 3.14159265358979;
+#else
 #include "rsm/transfer.glsl"
+#endif
 #include "lpv/gather/tree.glsl"
 layout(binding = 7) uniform usamplerBuffer treeNodes;
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
@@ -45,23 +49,23 @@ uniform uint firstListed;  // of `lit`
 uniform float raysAround;  // of a receiver
 #endif
 shared vec3 sums[LPV_LANES];
+#if VISIBILITY
 shared float weights[LPV_LANES];
+shared vec3 colours[LPV_LANES];  // of what a lane found, of which the channels add up to 1
+shared uvec2 rays[LPV_LANES];    // node + 1, or 0: none; the lane that chose it
+shared vec3 sent[LPV_LANES], arrived[LPV_LANES];
+#endif
 
 const float kOff = 2.0;  // voxels by which both ends of a ray are moved off their surfaces
-const float kOpen = 3.0;          // radii
-const float kOpenTurning = 32.0;  // for nodes with varying normals: their mean gives less light than they do
-const float kFlat = 0.98;        // normals count as varying below this squared length of the mean normal
-const int kReservoirs = 8;     // and at most as many rays of a lane
-const float kRays = 192.0;     // of a receiver, about
-const int kStack = 40;       // up to three siblings wait per level, and there are at most nine levels
+const float kOpen = 4.0;         // radii
+const int kMostOpening = 2048;  // turns of a lane that may open nodes
+#if !PERSPECTIVE
+const int kMostNear = 12;  // texels of a lane that give light by their outline
+#endif
 
-struct Candidate {
-  vec3 position, normal;
-};
-
-Candidate candidateOf(int layer, uint texel) {
-  ivec3 at = ivec3(int(texel & 0xffffu), int(texel >> 16u), layer);
-  return Candidate(texelFetch(rsmPosition, at, 0).xyz, texelFetch(rsmNormal, at, 0).xyz);
+LightNode nodeAt(uint node) {
+  int at = TREE_TEXELS * int(node);
+  return unpackNode(texelFetch(treeNodes, at), texelFetch(treeNodes, at + 1), texelFetch(treeNodes, at + 2));
 }
 
 // Irradiance from a point of that flux, at a distance of root r2.
@@ -73,136 +77,175 @@ vec3 ofPoint(vec3 flux, float area, float c1, float c2, float r2) {
 #endif
 }
 
+// What a lane has found: its sum, and four nodes drawn in proportion to their contribution, by random numbers that are
+// a quarter apart.
+struct Found {
+  vec3 sum;
+  float weight;  // the sum's channels, added up
+  uvec4 chosen;
+  uint random;
+};
+
+// A linear congruential generator: [0, 1), from the upper bits.
+float nextFloat(inout uint state) {
+  state = state * 747796405u + 2891336453u;
+  return unitFloat(state);
+}
+
+void add(inout Found found, vec3 given, uint node) {
+  float w = given.r + given.g + given.b;
+  if (!(w > 0.0)) return;
+  found.sum += given;
+  found.weight += w;
+  vec4 xi = fract(nextFloat(found.random) + vec4(0.0, 0.25, 0.5, 0.75));
+  for (int i = 0; i < 4; ++i)
+    if (xi[i] * found.weight < w) found.chosen[i] = node;
+}
+
+// Goes down the light tree, depth first, its coarsest nodes divided among the lanes.
+Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
+  Found found = Found(vec3(0.0), 0.0, uvec4(0u), seed);
+#if !PERSPECTIVE
+  uint near[kMostNear];
+  int nears = 0;
+  vec3 edge1, edge2;
+  rsmTexelEdges(edge1, edge2);
+  float edges2 = dot(edge1, edge1) + dot(edge2, edge2), across = length(cross(edge1, edge2));
+#endif
+  uint ofLayer = treeNodesOfLayer(), leaves = treeFirst(treeDepth), firstTop = treeFirst(treeTop);
+  uint topBits = uint(2 * treeTop), tops = uint(treeLayers) << topBits, top = lane;
+  uint root = firstTop + (top & ((1u << topBits) - 1u)), layerStart = (top >> topBits) * ofLayer, node = root;
+  for (int turn = 0; top < tops; ++turn) {
+    LightNode here = nodeAt(layerStart + node);
+    vec3 away = here.position - position;
+    float r2 = dot(away, away), height = dot(normal, away);
+    bool counts = here.radius >= 0.0 && height >= -here.radius, isLeaf = node >= leaves;
+#if !PERSPECTIVE
+    float slope = here.area / across;
+    if (isLeaf && counts && r2 < edges2 * (1.0 + slope * slope) && nears < kMostNear) {
+      near[nears++] = node;
+      counts = false;
+    }
+#endif
+    if (counts && !isLeaf && turn < kMostOpening && r2 < kOpen * kOpen * here.radius * here.radius) {
+      node = 4u * node + 1u;
+      continue;
+    }
+    float c1 = height * inversesqrt(r2), c2 = meanCosine(here, -away * inversesqrt(r2));
+    if (counts && c1 > 0.0 && c2 > 0.0)
+      add(found, ofPoint(here.flux, here.area, c1, c2, r2), layerStart + node);
+    // The next node that is not below this one.
+    while (node != root && (node & 3u) == 0u) node = (node - 1u) >> 2u;
+    if (node != root) {
+      ++node;
+      continue;
+    }
+    top += uint(LPV_LANES);
+    node = root = firstTop + (top & ((1u << topBits) - 1u));
+    layerStart = (top >> topBits) * ofLayer;
+  }
+#if !PERSPECTIVE
+  for (int i = 0; i < nears; ++i)
+    add(found, surfelIrradiance(rsmSurfel(ivec3(texelOf(near[i]), 0)), position, normal), near[i]);
+#endif
+  return found;
+}
+
+#if VISIBILITY
+// A leaf below a node, drawn in proportion to what its branches would give: not behind the receiver, nor turned away
+// from it, since the node's own contribution leaves that out already. Those would count as hidden.
+uint leafOf(uint node, vec3 position, vec3 normal, float xi) {
+  uint ofLayer = treeNodesOfLayer(), layerStart = node / ofLayer * ofLayer, leaves = layerStart + treeFirst(treeDepth);
+  while (node < leaves) {
+    uint child = layerStart + 4u * (node - layerStart) + 1u;
+    vec4 given;
+    for (int i = 0; i < 4; ++i) {
+      LightNode here = nodeAt(child + uint(i));
+      vec3 away = here.position - position;
+      float r2 = max(dot(away, away), 1e-30);
+      given[i] = here.radius < 0.0 ? 0.0
+                                   : (here.flux.r + here.flux.g + here.flux.b) * max(dot(normal, away), 0.0) *
+                                         meanCosine(here, -away * inversesqrt(r2)) * inversesqrt(r2) / r2;
+    }
+    float sum = given.x + given.y + given.z + given.w;
+    if (!(sum > 0.0)) break;
+    xi *= sum;
+    int pick = 0;
+    for (; pick < 3 && !(xi < given[pick]); ++pick) xi -= given[pick];
+    while (!(given[pick] > 0.0)) --pick;  // by rounding beyond the last of them
+    xi = clamp(xi / given[pick], 0.0, 0.9999999);
+    node = child + uint(pick);
+  }
+  return node;
+}
+
+// Whether light from a node's place arrives.
+bool arrives(LpvReceiver receiver, uint node) {
+  LightNode end = nodeAt(node);
 #if VISIBILITY == VISIBILITY_RAYS
-bool isHidden(LpvReceiver receiver, Candidate target) {
   uint first = receiver.triangle * TRIANGLE_WORDS;
   vec3 normal =
       uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
   Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third),
                               (receiver.state & LPV_FRONT) != 0u ? -normal : normal);
-  vec3 from = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
-  vec3 direction = target.position + rayEnd * target.normal - receiving.rayOrigin - from;
-  return !(dot(direction, surface.geometricNormal) > 0.0) ||
-         anyHit(Ray(from, 0.0, direction, 1.0), receiver.triangle);
-}
-#elif VISIBILITY == VISIBILITY_VOXELS
-bool isHidden(LpvReceiver receiver, Candidate target) {
-  return isBlocked(receiver.position + kOff * voxelSize * receiver.normal,
-                   target.position + kOff * voxelSize * target.normal, false);
-}
-#endif
-
-vec3 gatherAt(LpvReceiver receiver, uint lane, out float share) {
-  vec3 position = receiver.position, normal = receiver.normal;
-  vec3 sum = vec3(0.0);
-  share = 1.0;
-  // The map's texels: traverse the light tree, with its top levels divided among the lanes. Texels for rays are kept in
-  // weighted reservoirs of size one [Chao1982].
-  uint chosen[kReservoirs];
-  int chosenLayer[kReservoirs];
-  for (int i = 0; i < kReservoirs; ++i) {
-    chosen[i] = 0u;
-    chosenLayer[i] = 0;
-  }
-  float weight = 0.0;
-  uvec4 numbers = pcg4d(uvec4(receiver.cell) ^ uvec4(0u, 0u, lane << 8u, 0x9e3779b9u));
-  ivec2 stack[kStack];  // x | y << 16, level | layer << 8
-  int width = treeWidth(treeLevels), top = treeLayers * width * width;
-  for (int first = int(lane); first < top; first += LPV_LANES) {
-    int inLayer = first % (width * width);
-    int depth = 0;
-    stack[depth++] = ivec2(inLayer % width | (inLayer / width) << 16, treeLevels | (first / (width * width)) << 8);
-    while (depth > 0) {
-      ivec2 entry = stack[--depth];
-      ivec2 place = ivec2(entry.x & 0xffff, entry.x >> 16);
-      int level = entry.y & 0xff, layer = entry.y >> 8;
-      vec3 given = vec3(0.0);
-      uint texel;
-      if (level == 0) {
-        // A single texel.
-        texel = uint(place.x) | uint(place.y) << 16u;
-#if PERSPECTIVE
-        vec4 p = texelFetch(rsmPosition, ivec3(place, layer), 0), flux = texelFetch(rsmFlux, ivec3(place, layer), 0);
-        if (!(p.w > 0.5)) continue;
-        vec3 away = p.xyz - position;
-        float r2 = dot(away, away), r = sqrt(r2);
-        float c1 = dot(normal, away) / r, c2 = -dot(texelFetch(rsmNormal, ivec3(place, layer), 0).xyz, away) / r;
-        if (!(c1 > 0.0 && c2 > 0.0)) continue;
-        given = ofPoint(flux.rgb, flux.w, c1, c2, r2);
+  vec3 from = offsetRay(surface.position, surface.geometricNormal, surface.magnitude),
+       direction = end.position + rayEnd * end.normal - receiving.rayOrigin - from;
+  return dot(direction, surface.geometricNormal) > 0.0 && !anyHit(Ray(from, 0.0, direction, 1.0), receiver.triangle);
 #else
-        RsmSurfel surfel = rsmSurfel(ivec3(place, 0));
-        if (!surfel.lit) continue;
-        given = surfelIrradiance(surfel, position, normal);
+  return !isBlocked(receiver.position + kOff * voxelSize * receiver.normal,
+                    end.position + kOff * voxelSize * end.normal, false);
 #endif
-      } else {
-        // A node: treated as one texel from afar, otherwise opened.
-        int at = treeNode(level, layer, place);
-        uvec4 a = texelFetch(treeNodes, at);
-        float radius = uintBitsToFloat(a.w);
-        if (radius < 0.0) continue;
-        vec3 away = uintBitsToFloat(a.xyz) - position;
-        if (dot(normal, away) < -radius) continue;
-        float r2 = dot(away, away);
-        uvec4 b = texelFetch(treeNodes, at + 1);
-        vec3 facing = uintBitsToFloat(b.xyz);
-        float open = dot(facing, facing) < kFlat ? kOpenTurning : kOpen;
-        if (r2 < open * open * radius * radius) {
-          ivec2 below = ivec2(treeWidth(level - 1));
-          for (int i = 0; i < 4; ++i) {
-            ivec2 childPlace = 2 * place + ivec2(i & 1, i >> 1);
-            if (all(lessThan(childPlace, below)) && depth < kStack)
-              stack[depth++] = ivec2(childPlace.x | childPlace.y << 16, level - 1 | layer << 8);
-          }
-          continue;
-        }
-        uvec4 c = texelFetch(treeNodes, at + 2);
-        float r = sqrt(r2), c1 = dot(normal, away) / r, c2 = -dot(facing, away) / r;
-        if (!(c1 > 0.0 && c2 > 0.0)) continue;
-        given = ofPoint(uintBitsToFloat(c.xyz), uintBitsToFloat(b.w), c1, c2, r2);
-        texel = c.w;
-      }
-      // Add its contribution, and offer it to a reservoir.
-      float w = given.r + given.g + given.b;
-      if (!(w > 0.0)) continue;
-      sum += given;
-      weight += w;
-      for (int i = 0; i < kReservoirs; ++i) {
-        if ((i & 3) == 0) numbers = pcg4d(numbers);
-        if (unitFloat(numbers[i & 3]) * weight < w) {
-          chosen[i] = texel;
-          chosenLayer[i] = layer;
-        }
-      }
-    }
-  }
-  // Trace rays to the chosen texels for the visible share. The number of rays is the lane's share of the total weight.
-  weights[lane] = weight;
-  barrier();
-  float all = 0.0;
-  for (int i = 0; i < LPV_LANES; ++i) all += weights[i];
-#if VISIBILITY
-  if (weight > 0.0) {
-    int rays = clamp(int(round(kRays * weight / all)), 1, kReservoirs);
-    float open = 0.0;
-    for (int i = 0; i < rays; ++i)
-      if (!isHidden(receiver, candidateOf(chosenLayer[i], chosen[i]))) open += 1.0;
-    share = open / float(rays);
-  }
-#endif
-  return sum;
 }
+#endif
 
 void main() {
   uint lane = gl_LocalInvocationID.x, index = lit[firstListed + gl_WorkGroupID.x];
   LpvReceiver receiver = receivers[index];
   if ((receiver.state & LPV_ALONE) != 0u) return;  // what sees no surface lights none
-  float share;
-  vec3 sum = gatherAt(receiver, lane, share);
-  sums[lane] = share * sum;
+  uint seed = pcg4d(uvec4(receiver.cell)).x;
+  Found found = gatherAt(receiver.position, receiver.normal, lane, pcg4d(uvec4(seed, lane, 0u, 0u)).x);
+#if VISIBILITY
+  // One ray per lane, to nodes that the lanes chose: as many of each lane as its share of all weights tells.
+  weights[lane] = found.weight;
+  colours[lane] = found.weight > 0.0 ? found.sum / found.weight : vec3(0.0);
+  barrier();
+  float before = 0.0, all = 0.0;
+  for (uint i = 0u; i < uint(LPV_LANES); ++i) {
+    if (i == lane) before = all;
+    all += weights[i];
+  }
+  rays[lane] = uvec2(0u);
+  barrier();
+  if (all > 0.0) {
+    float raysPerWeight = float(LPV_LANES) / all, offset = unitFloat(seed);
+    int first = clamp(int(ceil(before * raysPerWeight - offset)), 0, LPV_LANES),
+        end = clamp(int(ceil((before + found.weight) * raysPerWeight - offset)), 0, LPV_LANES);
+    for (int i = first; i < end; ++i) rays[i] = uvec2(1u + found.chosen[(i - first) & 3], lane);
+  }
+  barrier();
+  bool open = false;
+  sent[lane] = vec3(0.0);
+  if (rays[lane].x != 0u) {
+    sent[lane] = colours[rays[lane].y];
+    open = arrives(receiver,
+                   leafOf(rays[lane].x - 1u, receiver.position, receiver.normal, nextFloat(found.random)));
+  }
+  arrived[lane] = open ? sent[lane] : vec3(0.0);
+#endif
+  sums[lane] = found.sum;
   barrier();
   if (lane != 0u) return;
-  vec3 all = vec3(0.0);
-  for (int i = 0; i < LPV_LANES; ++i) all += sums[i];
-  receivers[index].irradiance = receiver.irradiance + all;
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < LPV_LANES; ++i) sum += sums[i];
+#if VISIBILITY
+  // A ratio of sums, exact where all rays arrive or none.
+  vec3 ofAll = vec3(0.0), ofOpen = vec3(0.0);
+  for (int i = 0; i < LPV_LANES; ++i) {
+    ofAll += sent[i];
+    ofOpen += arrived[i];
+  }
+  sum *= ofOpen / max(ofAll, vec3(1e-30));
+#endif
+  receivers[index].irradiance = receiver.irradiance + sum;
   if (last != 0u) receivers[index].paths = LPV_GATHERED;
 }

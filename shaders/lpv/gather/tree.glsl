@@ -1,33 +1,80 @@
-// A hierarchy over the texels of a reflective shadow map. Level 0 is the texels; each further level has one node per
-// 2x2 nodes of the level below, up to at most TREE_TOP nodes per side at the top. A node stores a summary of its
-// texels: flux-weighted mean position and normal, the radius around that position, total area and flux, and the texel
-// nearest to the mean.
-// TREE_TEXELS texels per node: position, radius (negative: nothing is lit); normal (shorter than 1 where the normals
-// vary), area; flux, texel x | y << 16.
+// A hierarchy over the texels of a reflective shadow map: per layer of the map a complete quadtree, its nodes numbered
+// like a heap. The root is 0, the children of i are 4 i + 1 to 4 i + 4, so nodes of one depth follow a Morton curve.
+// The texels are the leaves; maps whose side is not a power of two have leaves without light. A node stores a summary
+// of its texels: flux-weighted mean position and normal, the normals' covariance, the radius around that position, area
+// and flux.
+// TREE_TEXELS texels per node, 16-bit numbers in pairs:
+//   position, radius (negative: nothing is lit; of a leaf 0);
+//   mean normal x y, z and covariance xx, yy xy, xz yz (zz follows, since normals are of unit length);
+//   area, sum of the flux's channels, red and green share of it, nothing.
 #define TREE_TEXELS 3
-uniform int treeSize;    // texels a side
+uniform int treeSize;    // texels a side of the map
 uniform int treeLayers;  // of the map: 1, or the faces of a cube
-uniform int treeLevels;  // the coarsest level's number, at least 1
+uniform int treeDepth;   // of the leaves: 2^treeDepth is at least treeSize
+uniform int treeTop;     // depth of the coarsest nodes that are built
 
-int treeWidth(int level) { return (treeSize + (1 << level) - 1) >> level; }
+// The first node of a depth, in its layer.
+uint treeFirst(int depth) { return ((1u << uint(2 * depth)) - 1u) / 3u; }
+// Nodes of a layer.
+uint treeNodesOfLayer() { return treeFirst(treeDepth + 1); }
 
-// Index of a level's first node.
-int treeFirst(int level) {
-  int first = 0;
-  for (int k = 1; k < level; ++k) first += treeLayers * treeWidth(k) * treeWidth(k);
-  return first;
+// Every other bit of a word; and the inverse.
+uint spreadBits(uint x) {
+  x = (x | x << 8u) & 0x00ff00ffu;
+  x = (x | x << 4u) & 0x0f0f0f0fu;
+  x = (x | x << 2u) & 0x33333333u;
+  return (x | x << 1u) & 0x55555555u;
 }
-
-int treeNode(int level, int layer, ivec2 place) {
-  int width = treeWidth(level);
-  return TREE_TEXELS * (treeFirst(level) + (layer * width + place.y) * width + place.x);
+uint gatherBits(uint x) {
+  x &= 0x55555555u;
+  x = (x | x >> 1u) & 0x33333333u;
+  x = (x | x >> 2u) & 0x0f0f0f0fu;
+  x = (x | x >> 4u) & 0x00ff00ffu;
+  return (x | x >> 8u) & 0x0000ffffu;
+}
+uint mortonOf(ivec2 place) { return spreadBits(uint(place.x)) | spreadBits(uint(place.y)) << 1u; }
+// The texel of a leaf of its layer.
+ivec2 texelOf(uint leaf) {
+  uint code = leaf - treeFirst(treeDepth);
+  return ivec2(int(gatherBits(code)), int(gatherBits(code >> 1u)));
 }
 
 struct LightNode {
   vec3 position;
   float radius;
-  vec3 normal;
+  vec3 normal;  // mean, at most 1 long
+  vec3 spread, mixed;  // covariance: xx yy zz; xy xz yz
   float area;
   vec3 flux;
-  uint texel;
 };
+
+const LightNode kUnlit = LightNode(vec3(0.0), -1.0, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, vec3(0.0));
+
+void packNode(LightNode node, out uvec4 a, out uvec4 b, out uvec4 c) {
+  float sum = node.flux.r + node.flux.g + node.flux.b;
+  a = uvec4(floatBitsToUint(node.position), floatBitsToUint(node.radius));
+  b = uvec4(packSnorm2x16(node.normal.xy), packSnorm2x16(vec2(node.normal.z, node.spread.x)),
+            packSnorm2x16(vec2(node.spread.y, node.mixed.x)), packSnorm2x16(node.mixed.yz));
+  c = uvec4(floatBitsToUint(node.area), floatBitsToUint(sum),
+            packUnorm2x16(sum > 0.0 ? node.flux.rg / sum : vec2(0.0)), 0u);
+}
+
+LightNode unpackNode(uvec4 a, uvec4 b, uvec4 c) {
+  vec2 first = unpackSnorm2x16(b.x), second = unpackSnorm2x16(b.y), third = unpackSnorm2x16(b.z),
+       share = unpackUnorm2x16(c.z);
+  vec3 normal = vec3(first, second.x);
+  float rest = max(1.0 - dot(normal, normal) - second.y - third.x, 0.0);
+  return LightNode(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), normal, vec3(second.y, third.x, rest),
+                   vec3(third.y, unpackSnorm2x16(b.w)), uintBitsToFloat(c.x),
+                   uintBitsToFloat(c.y) * vec3(share, max(1.0 - share.x - share.y, 0.0)));
+}
+
+// The mean of max(0, <n, d>) over a node's normals n for a unit direction d:
+//   (<m, d> + mean |<n, d>|) / 2, and mean |<n, d>| is at most sqrt(<m, d>^2 + d^T C d),
+// m being the mean and C the covariance. Exact for one normal, and for two whose cosines are equal or opposite.
+float meanCosine(LightNode node, vec3 d) {
+  float mean = dot(node.normal, d), variance = dot(node.spread, d * d) +
+                                               2.0 * dot(node.mixed, vec3(d.x * d.y, d.x * d.z, d.y * d.z));
+  // Covariances are known to some 1e-4: below, a flat node's.
+  return variance > 1e-3 ? 0.5 * (mean + sqrt(mean * mean + variance)) : max(mean, 0.0);
+}
