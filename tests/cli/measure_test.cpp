@@ -6,9 +6,11 @@
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -279,6 +281,40 @@ TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
                            "radiosity.fixed-orientation=on", "radiosity.no-near-field=on"})
     EXPECT_TRUE(bias.contains(name)) << name;
   EXPECT_NE(bias[""], bias["radiosity.published-map=on"]);
+}
+
+// A scene of more triangles than the published solver gets through in a minute has a row of a coarser model, and a line
+// that says how coarse.
+TEST_F(Measure, ThePublishedRowOfALargeSceneIsOfACoarserModel) {
+  std::ofstream scene(path("scene.obj"));
+  scene << "mtllib scene.mtl\nusemtl white\n";
+  constexpr int kSide = 24;  // 1,152 triangles of floor, gently curved
+  for (int z = 0; z <= kSide; ++z)
+    for (int x = 0; x <= kSide; ++x)
+      scene << fmt::format("v {} {} {}\n", 4.0 * x / kSide - 2.0, 0.2 * std::sin(0.3 * x), 4.0 * z / kSide - 2.0);
+  for (int z = 0; z < kSide; ++z)
+    for (int x = 0; x < kSide; ++x) {
+      const int i = z * (kSide + 1) + x + 1;
+      scene << fmt::format("f {} {} {} {}\n", i, i + kSide + 1, i + kSide + 2, i + 1);
+    }
+  scene.close();
+  const RunResult result = RUN_LUCERNA(benchError("--techniques radiosity"));
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const nlohmann::json ladder = json("error.json");
+  const auto& rows = ladder.at("rows");
+  const auto row = std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.contains("published"); });
+  ASSERT_NE(row, rows.end());
+  const auto& published = row->at("published");
+  EXPECT_EQ(published.at("scene_triangles"), 2 * kSide * kSide);
+  const int triangles = published.at("model_triangles"), patches = published.at("triangles");
+  EXPECT_LE(patches, 400);
+  EXPECT_GE(patches, triangles);
+  EXPECT_GT(triangles, 40);
+  EXPECT_GT(published.at("model_cell").get<double>(), 4.0 / kSide);
+  EXPECT_NEAR(published.at("model_area").get<double>(), 1.0, 0.1);
+  EXPECT_NE(result.out.find(fmt::format("{} triangles of the scene's {}", triangles, 2 * kSide * kSide)),
+            std::string::npos)
+      << result.out;
 }
 
 TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {
