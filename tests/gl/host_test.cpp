@@ -165,7 +165,8 @@ TEST_F(HostPictures, WithoutItsLibraryOsmesaIsAMissingCapabilityAndEglServes) {
   // An empty file that stands before the library on the loader's path.
   folder_.write("libOSMesa.so.8", "");
   const std::string program = "env -u LUCERNA_HOST -u DISPLAY -u WAYLAND_DISPLAY LD_LIBRARY_PATH='" +
-                              folder_.path().string() + "' '" LUCERNA_BINARY "' info --quiet";
+                              folder_.path().string() +
+                              "'\"${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}\" '" LUCERNA_BINARY "' info --quiet";
   const RunResult osmesa = test::run(program + " --host osmesa");
   EXPECT_EQ(osmesa.exitCode, 3) << osmesa.err;
   EXPECT_NE(osmesa.err.find("libosmesa6"), std::string::npos) << osmesa.err;
