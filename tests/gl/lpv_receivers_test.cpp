@@ -443,6 +443,49 @@ TEST_F(LpvGatherGl, WhatSolidsHideIsNotBounced) {
   EXPECT_NEAR(ratio, 1.0, 0.01);
 }
 
+// A lit square far away, of which a piece of a wall sees a part: a screen hides its lower half, or it reaches behind
+// the wall's plane. What a node's rays find must be that part, as the node's own contribution leaves the rest out
+// already.
+TEST_F(LpvGatherGl, PartsOfFarLightArrive) {
+  constexpr double kFar = 6.0;
+  const auto ratio = [&](double x, double side, bool screen) {
+    SceneBuilder builder;
+    builder.sun({0.0, -0.2, 1.0}, glm::vec3(100.0f));
+    const int white = builder.material(glm::vec3(0.8f)), black = builder.material(glm::vec3(0.0f));
+    builder.plate({0.0, 1.0, 0.0}, {0, 0.01, 0}, {0, 0, 0.01}, white);
+    for (const double end : {-3.0, 3.3})  // widen the map, so that the square has few nodes, one across x = 0
+      builder.plate({end, 1.0, 0.0}, {0, 0.01, 0}, {0, 0, 0.01}, black);
+    builder.plate({x, 1.0, kFar}, {0, side, 0}, {side, 0, 0}, white);
+    if (screen) builder.plate({0.5 * x, 0.75, 0.5 * kFar}, {0, 0.5, 0}, {2, 0, 0}, black);
+    const Camera camera = lookingAt({1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}, 0.005);
+    const Picture seen =
+        picture(builder.scene(), camera, gathered(settings(1, 1, Component::indirect), LpvVisibility::rays));
+    double expected = 0.0;
+    constexpr int kSteps = 200;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j) {
+        const double u = ((i + 0.5) / kSteps - 0.5) * side, v = ((j + 0.5) / kSteps - 0.5) * side;
+        const glm::dvec3 to(x + u, v, kFar);
+        if (to.x > 0.0 && !(screen && v < 0.0)) expected += to.x * to.z / std::pow(glm::dot(to, to), 2.0);
+      }
+    constexpr double kPi = std::numbers::pi;
+    const double exitance = 0.8 * 100.0 / std::hypot(0.2, 1.0);
+    expected *= side * side / (kSteps * kSteps) * exitance / kPi;
+    return meanOf(seen.image).x / (0.8 / kPi * expected);
+  };
+  const auto expectMean = [&](const char* what, double x, double side, bool screen, double within) {
+    constexpr int kPlaces = 12;  // each with other nodes
+    double mean = 0.0;
+    for (int i = 0; i < kPlaces; ++i) mean += ratio(x * (1.0 + 0.02 * i), side, screen) / kPlaces;
+    report(what, mean);
+    EXPECT_NEAR(mean, 1.0, within) << what;
+  };
+  expectMean("a far lit square", 1.3, 0.6, false, 0.02);
+  expectMean("a far lit square, half hidden", 1.3, 0.6, true, 0.03);
+  // Of a node across the horizon the mean height alone is known.
+  expectMean("a far lit square, a part behind the horizon", 0.04, 0.15, false, 0.1);
+}
+
 // As AClosedRoomThatShines: nothing of its light may get lost, and none be made.
 TEST_F(LpvGatherGl, AClosedRoomThatShines) {
   const glm::dvec3 albedo(0.8f, 0.5f, 0.0f), emission(1.0, 2.0, 3.0);
