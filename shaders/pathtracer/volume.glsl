@@ -26,11 +26,6 @@ const int kEnded = 2;
 
 int rankOf(uint triangle) { return int(materials[triangleData[triangle * TRIANGLE_WORDS].w].boundary); }
 
-vec3 normalOf(uint triangle) {
-  uint first = triangle * TRIANGLE_WORDS;
-  return uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
-}
-
 // Whether a ray comes from the triangle's front side.
 bool facesAgainst(uint triangle, vec3 direction) { return dot(normalOf(triangle), direction) < 0.0; }
 

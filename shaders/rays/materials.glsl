@@ -66,6 +66,12 @@ bool isCutOut(uint triangle, vec2 barycentrics) {
 }
 #endif
 
+// Of the triangle's front, unit.
+vec3 normalOf(uint triangle) {
+  uint first = triangle * TRIANGLE_WORDS;
+  return uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
+}
+
 Surface surfaceAt(uint triangle, vec2 barycentrics, vec3 direction) {
   uint first = triangle * TRIANGLE_WORDS;
   uvec4 words0 = triangleData[first], words1 = triangleData[first + 1u], words2 = triangleData[first + 2u];

@@ -18,6 +18,7 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 #include "rays/bvh.glsl"
 #include "rays/environment.glsl"
 #include "lpv/receivers/common.glsl"
+#include "lpv/receivers/surface.glsl"
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
 uniform uint last;              // 1: after this dispatch receivers have all their light
@@ -100,11 +101,7 @@ vec3 emissionNear(Surface at, Hit hit, float cosine, vec3 direction) {
 #endif
 
 vec3 lookAround(LpvReceiver receiver, uint index, uint ray) {
-  uint first = receiver.triangle * TRIANGLE_WORDS;
-  vec3 normal =
-      uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
-  Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third),
-                              (receiver.state & LPV_FRONT) != 0u ? -normal : normal);
+  Surface surface = surfaceOf(receiver);
   PathNumbers numbers = PathNumbers(pcg4d(uvec4(receiver.cell)).x, ray, tracer.seed);
   vec3 direction = cosineSample(surface.normal, randomPair(numbers, 1u, kPurposeScatter)), sum = vec3(0.0);
 #if LINKS
@@ -134,10 +131,7 @@ vec3 lookAround(LpvReceiver receiver, uint index, uint ray) {
   // Rounded down: no surface reflects more than it does.
   uvec3 steps = uvec3(floor(albedo * 65535.0));
   links[link] = point;
-  uint facing = hit.triangle * TRIANGLE_WORDS;
-  vec3 front =
-      uintBitsToFloat(uvec3(triangleData[facing + 1u].w, triangleData[facing + 2u].w, triangleData[facing + 3u].x));
-  bool inside = dot(front, direction) > 0.0 && hit.t < kNear * bounceCell;
+  bool inside = dot(normalOf(hit.triangle), direction) > 0.0 && hit.t < kNear * bounceCell;
   met[ray] = inside || hit.t < kGap * bounceCell ? 2u : 1u;
   links[link + 1u] = steps.x | steps.y << 16u;
   links[link + 2u] = steps.z;

@@ -33,6 +33,8 @@ uniform float rayEnd;  // by which a ray ends before its point, along the point'
 #include "lpv/receivers/common.glsl"
 #if VISIBILITY == VISIBILITY_VOXELS
 #include "lpv/gather/voxels.glsl"
+#elif VISIBILITY == VISIBILITY_RAYS
+#include "lpv/receivers/surface.glsl"
 #endif
 #if PERSPECTIVE
 const float kPi = 3.14159265358979;
@@ -183,11 +185,7 @@ uint leafOf(uint node, vec3 position, vec3 normal, float xi) {
 bool arrives(LpvReceiver receiver, uint node) {
   LightNode end = nodeAt(node);
 #if VISIBILITY == VISIBILITY_RAYS
-  uint first = receiver.triangle * TRIANGLE_WORDS;
-  vec3 normal =
-      uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
-  Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third),
-                              (receiver.state & LPV_FRONT) != 0u ? -normal : normal);
+  Surface surface = surfaceOf(receiver);
   vec3 from = offsetRay(surface.position, surface.geometricNormal, surface.magnitude),
        direction = end.position + rayEnd * end.normal - receiving.rayOrigin - from;
   return dot(direction, surface.geometricNormal) > 0.0 && !anyHit(Ray(from, 0.0, direction, 1.0), receiver.triangle);

@@ -26,6 +26,7 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 #endif
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 #include "lpv/receivers/work.glsl"
+#include "lpv/receivers/surface.glsl"
 layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
 shared vec3 found[LPV_LANES];
 
@@ -158,11 +159,7 @@ void main() {
   LpvReceiver receiver = receivers[index];
   found[lane] = vec3(0.0);
   if (there) {
-    uint first = receiver.triangle * TRIANGLE_WORDS;
-    vec3 normal =
-        uintBitsToFloat(uvec3(triangleData[first + 1u].w, triangleData[first + 2u].w, triangleData[first + 3u].x));
-    Surface surface = surfaceAt(receiver.triangle, vec2(receiver.second, receiver.third),
-                                (receiver.state & LPV_FRONT) != 0u ? -normal : normal);
+    Surface surface = surfaceOf(receiver);
     // The receiver's place determines the random numbers, not the order in which receivers were found.
     found[lane] =
         followPath(surface, receiver.triangle,
